@@ -65,6 +65,11 @@ impl<F: Filling> MediumStack<F> {
     /// In nothing.
     pub const NONE: Self = Self { count: 0, interiors: [F::NONE; MOST] };
 
+    /// How many enclose the point.
+    pub(super) fn depth(&self) -> u32 {
+        self.count
+    }
+
     /// What is there; `None` where nothing encloses the point.
     pub(super) fn top(&self) -> Option<&F> {
         self.interiors[..self.count as usize].iter().reduce(|a, b| if b.is_above(a) { b } else { a })

@@ -1,7 +1,7 @@
 //! Path tracing.
 
 use super::transport::{Settings, can_share};
-use super::volumes::Volumes;
+use super::volumes::{self, Volumes};
 use super::{Integrator, Job, Session};
 use crate::scene::{Scene, ShadingVariant};
 use crate::workers::Cancel;
@@ -16,7 +16,8 @@ pub struct Path {
     /// Roulette is played from this number of bounces on.
     pub roulette_depth: u32,
     /// The side of the square patches of pixels whose paths share what they find from their second surface on, where
-    /// both that and the first are diffuse; 1 for none ([`Integrator::patch`]).
+    /// both that and the first are diffuse, or where both are points of one even medium; 1 for none
+    /// ([`Integrator::patch`]).
     pub reuse: u32,
     /// Whether matt surfaces draw directions also from where light comes by way of mirrors and glass
     /// ([`super::Guide`]).
@@ -56,7 +57,8 @@ impl Path {
 impl Integrator for Path {
     fn begin<'a>(&'a self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a> {
         if job.scene.plan().needs().media {
-            return Volumes::path(self.max_depth, self.roulette_depth).begin(job);
+            let shares = self.patch(job.scene) > 1;
+            return Volumes { shares, ..Volumes::path(self.max_depth, self.roulette_depth) }.begin(job);
         }
         self.settings(job.scene).begin(job, cancel)
     }
@@ -72,6 +74,6 @@ impl Integrator for Path {
     /// 1 where nothing can be shared, or no path goes on from its second surface.
     fn patch(&self, scene: &Scene) -> u32 {
         let goes_on = self.max_depth.is_none_or(|depth| depth > 1);
-        if goes_on && can_share(scene) { self.reuse.max(1) } else { 1 }
+        if goes_on && (can_share(scene) || volumes::can_share(scene)) { self.reuse.max(1) } else { 1 }
     }
 }

@@ -67,7 +67,7 @@ pub use mirror::Mirror;
 pub use null::Null;
 pub use once::Once;
 pub use oren_nayar::OrenNayar;
-pub use phase::{HenyeyGreenstein, Phase};
+pub use phase::{HenyeyGreenstein, Phase, PhaseTerms};
 pub use phong::Phong;
 pub use principled::{Look, Principled, PrincipledThin};
 pub use sample_lanes::BsdfSampleLanes;

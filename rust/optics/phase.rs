@@ -31,6 +31,20 @@ impl Phase {
         }
     }
 
+    /// Its terms.
+    pub fn terms(&self) -> PhaseTerms {
+        let even = PhaseTerms { scale: 0.25 * FRAC_1_PI, sign: 1.0, least: 1.0, chord: 0.0, square: 0.0 };
+        match self {
+            Self::Isotropic => even,
+            Self::HenyeyGreenstein(HenyeyGreenstein { g }) => {
+                let least = (1.0 - g.abs()) * (1.0 - g.abs());
+                let scale = even.scale * (1.0 - g.abs()) * (1.0 + g.abs());
+                PhaseTerms { scale, sign: 1f64.copysign(*g), least, chord: g.abs(), square: 0.0 }
+            }
+            Self::Rayleigh => PhaseTerms { scale: 0.1875 * FRAC_1_PI, square: 1.0, ..even },
+        }
+    }
+
     /// Draws a direction to go on along, with the density of [`Phase::pdf`].
     #[inline]
     pub fn sample(&self, before: DVec3, u: [f64; 2]) -> DVec3 {
@@ -47,6 +61,27 @@ impl Phase {
                 turned(before, 1.0 - cosine, u[1])
             }
         }
+    }
+}
+
+/// What is in the densities of any phase function, for loops that are one for all.
+#[derive(Clone, Copy, Debug)]
+pub struct PhaseTerms {
+    scale: f64,
+    sign: f64,
+    least: f64,
+    chord: f64,
+    square: f64,
+}
+
+impl PhaseTerms {
+    /// The density of going on along `next` after `before`, as [`Phase::pdf`] has it, but for rounding.
+    #[inline(always)]
+    pub fn pdf(&self, before: [f64; 3], next: [f64; 3]) -> f64 {
+        let [x, y, z] = [0, 1, 2].map(|axis| next[axis] - before[axis] * self.sign);
+        let cosine = before[0] * next[0] + before[1] * next[1] + before[2] * next[2];
+        let square = self.least + self.chord * (x * x + y * y + z * z);
+        self.scale * (1.0 + self.square * cosine * cosine) / (square * square.sqrt())
     }
 }
 
@@ -184,6 +219,18 @@ mod tests {
             let ahead = BEFORE * 1f64.copysign(g);
             let peak = 1.9999 / (4.0 * std::f64::consts::PI * 1e-8);
             assert!((needle.pdf(BEFORE, ahead) / peak - 1.0).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn terms_tell_the_same_density() {
+        let phases = [0.5, -0.9, 0.0, 0.999].map(|g| Phase::HenyeyGreenstein(HenyeyGreenstein::new(g).unwrap()));
+        for phase in phases.into_iter().chain([Phase::Isotropic, Phase::Rayleigh]) {
+            for number in 0..100 {
+                let next = warp::uniform_sphere(Sampler::new(24, 0, number).two(0));
+                let told = phase.terms().pdf(BEFORE.to_array(), next.to_array());
+                assert!((told / phase.pdf(BEFORE, next) - 1.0).abs() < 1e-13, "{phase:?}");
+            }
         }
     }
 

@@ -25,6 +25,8 @@ pub struct SceneNeeds {
     pub nested: bool,
     /// What dims or scatters light between surfaces.
     pub media: bool,
+    /// What is the same everywhere, of that, and scatters light.
+    pub even_media: bool,
     /// What glows between surfaces.
     pub glow: bool,
     /// Emission that varies over a surface.
@@ -45,6 +47,11 @@ pub struct SceneNeeds {
     pub waves: bool,
 }
 
+/// Whether a medium is the same everywhere, and scatters.
+fn scatters_evenly(medium: &dyn Medium) -> bool {
+    medium.is_even() && medium.scatters()
+}
+
 impl BitOr for SceneNeeds {
     type Output = Self;
 
@@ -57,6 +64,7 @@ impl BitOr for SceneNeeds {
             // Two of what encloses something may overlap.
             nested: self.nested | other.nested | (self.interiors & other.interiors),
             media: self.media | other.media,
+            even_media: self.even_media | other.even_media,
             glow: self.glow | other.glow,
             patterned_lights: self.patterned_lights | other.patterned_lights,
             smooth: self.smooth | other.smooth,
@@ -172,6 +180,7 @@ impl Plan {
             masks: !material.is_opaque(),
             interiors: material.interior().is_some(),
             media: material.medium().is_some(),
+            even_media: material.medium().is_some_and(|medium| scatters_evenly(&**medium)),
             glow: material.medium().is_some_and(|medium| medium.glows()),
             waves: material.medium().is_some_and(|medium| medium.has_waves()),
             patterned_lights: !is_dark && emission.needs().of_place(),
@@ -199,8 +208,8 @@ impl Plan {
     /// The same plan of a scene that has a medium around all that is in it, or none.
     pub(super) fn with_medium_around(&self, medium: Option<&dyn Medium>) -> Self {
         let (media, glow) = (medium.is_some(), medium.is_some_and(Medium::glows));
-        let waves = medium.is_some_and(Medium::has_waves);
-        let around = SceneNeeds { media, glow, waves, ..SceneNeeds::default() };
+        let (even_media, waves) = (medium.is_some_and(scatters_evenly), medium.is_some_and(Medium::has_waves));
+        let around = SceneNeeds { media, even_media, glow, waves, ..SceneNeeds::default() };
         Self { needs: self.needs | around, ..self.clone() }
     }
 

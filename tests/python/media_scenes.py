@@ -34,7 +34,8 @@ def looking(cosine=1.0, side=8, below=False, distance=0.5, azimuth=0.0):
 
 def seen(scene, camera, samples, integrator=None, seed=0):
     """Mean of a picture of one colour, and its standard error, from pixels that are independent."""
-    image = rw.render(scene, camera, integrator or rw.Path(), samples, seed=seed, progress=False)
+    alone = integrator or rw.Path(reuse=1)
+    image = rw.render(scene, camera, alone, samples, seed=seed, progress=False)
     values = image.rgb.astype(float)[..., 1].ravel()
     return values.mean(), values.std(ddof=1) / math.sqrt(values.size)
 

@@ -33,9 +33,12 @@ class Path:
 
         What goes from one `Diffuse` surface to another is shared; all else is as without. Nothing is shared
         where something moves, and in scenes with masks, with media in one another or with textures that are
-        filtered by width. Patches are cut elsewhere for each sample, so pixels err together with those around
-        them, and noise is as coarse as a patch. The error estimate knows it: its interval is wider than
-        without, most so in small pictures.
+        filtered by width. In scenes with `Homogeneous` media it is what goes from where such a medium
+        scatters a path first to where the same medium does next, or to a `Diffuse` surface in it or beyond
+        its end, and nothing else; light of points is left out there, and so are wavelengths. It pays where
+        most light is scattered often, and pixels are small beside the way between. Patches are cut
+        elsewhere for each sample, so pixels err together with those around them, and noise is as coarse as a
+        patch. The error estimate knows it: its interval is wider than without, most so in small pictures.
     caustics : bool, optional
         Whether matt surfaces look for light where it comes to them by way of mirrors and glass; if not given,
         `render` chooses by what a pilot finds, and False for small pictures of few samples. Photons are sent

@@ -24,6 +24,12 @@ _COSTS: dict[str, dict[Any, float]] = {
     "reuse": {1: 0.0, 2: 0.2, _REUSE: 0.5, _LARGE: 1.3},
     "caustics": {False: 0.0, True: 1.2},
 }
+# Among media paths go on for longer, beside which sharing costs less, and larger patches are always tried.
+_MEDIA = "smoke and haze"
+_COSTS_AMONG: dict[str, dict[Any, float]] = {
+    "reuse": {1: 0.0, 2: 0.1, _REUSE: 0.2, _LARGE: 0.5},
+    "caustics": {False: 0.0, True: 0.0},
+}
 # What is more than plain has to be better by so much: a pilot may be wrong.
 _BETTER = 0.9
 # The share of a render's samples that a pilot of each way may take, and that where it is cheap to ask more.
@@ -91,14 +97,20 @@ def followed(
             why |= {name: _NEVER[name] for name in open_ if not can[name]}
             open_ = [name for name in open_ if can[name]]
 
+            is_hazy = _MEDIA in scene.plan().needed
+            costs = _COSTS_AMONG if is_hazy else _COSTS
+
+            def cost(way: Mapping[str, Any]) -> float:
+                return 1 + sum(costs[name][value] for name, value in way.items())
+
             def sent(ways: list[dict[str, Any]]) -> list[float]:
                 paths = [replace(path, **way) for way in ways]
                 errors = _core.pilot(compiled, camera, paths, threads, clamp, filter, look)
-                return [error * _cost(way) for error, way in zip(errors, ways, strict=True)]
+                return [error * cost(way) for error, way in zip(errors, ways, strict=True)]
 
             # Nobody is sent where only one way is left.
-            is_long = samples >= _SMALL_SHARE * _core.PILOT
-            ways, worth = _tried(fixed, open_, sent, is_long) if open_ else ([fixed], [0.0])
+            is_long = is_hazy or samples >= _SMALL_SHARE * _core.PILOT
+            ways, worth = _tried(fixed, open_, sent, cost, is_long) if open_ else ([fixed], [0.0])
         except StoppedError:
             why |= dict.fromkeys(open_, "it was stopped before a pilot was back")
         else:
@@ -113,19 +125,20 @@ def _tried(
     fixed: dict[str, Any],
     names: list[str],
     sent: Callable[[list[dict[str, Any]]], list[float]],
+    cost: Callable[[Mapping[str, Any]], float],
     is_long: bool,
 ) -> tuple[list[dict[str, Any]], list[float]]:
     """Return ways, the plain one first, and what each takes in error times time, as pilots tell."""
     ways = [fixed | dict(zip(names, way, strict=True)) for way in product(*_options(names))]
     worth = sent(ways)
     least = ways[worth.index(min(worth))]
-    is_rare = min(worth) > _NOISY * _cost(least)
+    is_rare = not is_long and min(worth) > _NOISY * cost(least)
     if "reuse" in names and least["reuse"] == _REUSE and (is_long or is_rare):
         larger = least | {"reuse": _LARGE}
         small, large = sent([least, larger])
         if is_rare:
             # What few find is shared by few, however large patches are: they take no more time.
-            large *= _cost(least) / _cost(larger)
+            large *= cost(least) / cost(larger)
         if large < _BETTER * small:
             ways.append(larger)
             worth.append(min(worth) * large / small)
@@ -134,11 +147,6 @@ def _tried(
 
 def _options(names: list[str]) -> list[tuple[Any, Any]]:
     return [(_PLAIN[name], _MORE[name]) for name in names]
-
-
-def _cost(way: Mapping[str, Any]) -> float:
-    """Return how many times as long a sample takes as one of a plain path."""
-    return 1 + sum(_COSTS[name][value] for name, value in way.items())
 
 
 def _told(name: str, ways: list[dict[str, Any]], worth: list[float]) -> str:

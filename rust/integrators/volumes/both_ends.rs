@@ -181,7 +181,7 @@ impl<'a> BothEnds<'a> {
         let mut numbers = Numbers::apart(&mut sample.sampler);
         // Not by the number of the wavelengths: what parts these goes by the first.
         let hero = if waves.is_some() { numbers.hero() } else { hero };
-        let going = Going { ray: sample.ray, weights: Weights::START, media };
+        let going = Going { ray: sample.ray, weights: Weights::START, media, passed: 0 };
         let partial = Partial::of_camera(self.paths, 0.0);
         let (normal, single) = (DVec3::ZERO, false);
         let mut path = EyePath { going, scale: 1.0, bounce: 0, gilded: false, partial, normal, waves, single };

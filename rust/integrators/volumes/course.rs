@@ -34,6 +34,8 @@ pub(in crate::integrators) struct Going {
     pub ray: Ray,
     pub weights: Weights,
     pub media: MediumStack<Filled>,
+    /// How many ends of media it has passed on this way; what it has passed in part counts for several.
+    pub passed: u32,
 }
 
 /// Where a path has come to.
@@ -120,7 +122,9 @@ impl<A: Asks> Course<'_, A> {
             }
             start = hit.t;
             match come_to((self.scene, self.asks), &path.ray, &hit, &path.media).await {
-                Met::Passed(beyond, media) => (path.ray.t_min, path.media) = (beyond, media),
+                Met::Passed(beyond, media) => {
+                    (path.ray.t_min, path.media, path.passed) = (beyond, media, path.passed.saturating_add(1));
+                }
                 Met::Surface { hit, outside, through, beyond } => {
                     let opacity = opacity(self.scene, &path.ray, &hit);
                     let straight = straight(self.scene, &path.ray, &hit, outside);
@@ -131,6 +135,7 @@ impl<A: Asks> Course<'_, A> {
                     } else {
                         return Some(Place::Surface { hit, outside, through });
                     }
+                    path.passed = path.passed.saturating_add(2);
                 }
             }
         }

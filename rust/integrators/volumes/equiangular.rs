@@ -62,7 +62,7 @@ impl<A: Asks> OnTheWay for OfPoints<'_, '_, A> {
         (here, phase): (&Coefficients, Phase),
         numbers: &mut Numbers<'_>,
     ) -> Rgb {
-        let Going { ray, weights, media } = *now;
+        let Going { ray, weights, media, .. } = *now;
         let path = PathState { ray, weights, media, ..*self.path };
         self.walker.lit_on_the_way(&path, span, here, phase, self.hero, numbers, self.cancel).await
     }

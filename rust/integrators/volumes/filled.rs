@@ -44,6 +44,11 @@ impl Filling for Filled {
 }
 
 impl Filled {
+    /// What stands for the shape.
+    pub fn shape(&self) -> (u32, u32) {
+        self.shape
+    }
+
     /// What stands for the shape that is around a point in some media, the same for all points in it.
     pub fn there(media: &MediumStack<Self>) -> (u32, u32) {
         media.top().unwrap_or(&Self::NONE).shape

@@ -140,7 +140,8 @@ impl<'a> MediaLightWalk<'a> {
             }
             let sampler = &mut paths[number as usize];
             let hero = ((sampler.one(EmissionDimensions::HERO) * 3.0) as usize).min(2);
-            let going = Going { ray, weights: Weights { carried: light.weight, ..Weights::START }, media };
+            let weights = Weights { carried: light.weight, ..Weights::START };
+            let going = Going { ray, weights, media, passed: 0 };
             let again = Rgb::ONE;
             let (bounce, is_sharp, is_adrift, held, single) = (0, false, false, 0, false);
             let waves = self.waves.get(number as usize).copied();

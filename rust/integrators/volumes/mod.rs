@@ -18,8 +18,11 @@ mod known;
 mod light_end;
 mod light_walk;
 mod numbers;
+mod pairs;
 mod path_state;
+mod reuse;
 mod scattering;
+mod shared;
 mod surfaces;
 mod to_camera;
 mod together;
@@ -32,6 +35,7 @@ pub(super) use filled::Filled;
 pub(super) use known::KnownLight;
 pub(super) use light_walk::{Drifting, MediaLightWalk, MediaVisitor};
 pub(super) use numbers::Numbers;
+pub(super) use reuse::can_share;
 pub(super) use scattering::Scattering;
 pub(super) use surfaces::{Met, meet};
 pub(super) use to_camera::{Counting, MediaLightPaths};
@@ -73,13 +77,16 @@ pub(super) struct Volumes {
     /// What becomes of paths at matt surfaces whose light is known, as it is among media then; where that is so,
     /// [`Volumes::begin_with`] is told of it. `None` where they go on.
     pub gather: Option<Gather>,
+    /// Whether paths of a group share what they find, in scenes where they can ([`can_share`]).
+    pub shares: bool,
 }
 
 impl Volumes {
     /// Those of a path tracer.
     pub fn path(max_depth: Option<u32>, roulette_depth: u32) -> Self {
         let (onwards, ambient) = (Onwards::All, Rgb::ZERO);
-        Self { max_depth, roulette_depth, scatters: true, onwards, ambient, least: 0.0, gather: None }
+        let scatters = true;
+        Self { max_depth, roulette_depth, scatters, onwards, ambient, least: 0.0, gather: None, shares: false }
     }
 
     /// Those of what follows light among surfaces alone, to so many of them, and is dimmed between.

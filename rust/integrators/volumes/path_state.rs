@@ -39,6 +39,12 @@ pub(super) struct PathState {
     /// Whether it looks about from where light is known, and has been at something sharp since.
     pub is_gathered: bool,
     pub is_sharp_since: bool,
+    /// Whether it has just been where it takes from others, and whether what it finds is shared with them
+    /// ([`super::reuse`]).
+    pub is_first: bool,
+    pub is_shared: bool,
+    /// How many ends of media its ray has passed ([`super::course::Going::passed`]).
+    pub passed: u32,
 }
 
 impl PathState {
@@ -60,6 +66,9 @@ impl PathState {
             splits: 1.0,
             is_gathered: false,
             is_sharp_since: false,
+            is_first: false,
+            is_shared: false,
+            passed: 0,
         }
     }
 
@@ -100,6 +109,13 @@ impl PathState {
             }
             (self.waves, self.single) = (self.waves.map(|waves| waves.alone()), true);
         }
+    }
+
+    /// From here on it counts by itself, for all that share what it finds; roulette knows what it has lost.
+    pub fn share(&mut self) {
+        self.scale *= self.weights.throughput().max();
+        self.weights.carried = Rgb::splat(self.weights.drawn.mean());
+        self.is_shared = true;
     }
 
     /// It comes to a surface that leaves so much of its light if it has been at such a surface before

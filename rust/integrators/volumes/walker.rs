@@ -6,6 +6,7 @@ use super::filled::Filled;
 use super::known::KnownLight;
 use super::numbers::{Numbers, depth};
 use super::path_state::PathState;
+use super::reuse::{First, Parts, Reuse, Second};
 use super::scattering::Scattering;
 use super::together::{Lane, lanes, together};
 use super::{Onwards, Volumes};
@@ -34,7 +35,12 @@ pub(super) struct Walker<'a, A> {
 }
 
 /// What one thread works with.
-pub(super) struct Walkers<'a>(Walker<'a, ()>);
+pub(super) struct Walkers<'a> {
+    walker: Walker<'a, ()>,
+    reuse: Reuse,
+    /// What each path leaves to be shared, where any is.
+    parts: Vec<Parts>,
+}
 
 /// The part of a ray in an even medium in which it was scattered, and the density of the place.
 struct Part {
@@ -50,7 +56,8 @@ impl<'a> Walkers<'a> {
         points: &'a [(DVec3, &'a dyn Light)],
         known: Option<&'a dyn KnownLight>,
     ) -> Self {
-        Self(Walker { settings, scene, points, known, asks: () })
+        let walker = Walker { settings, scene, points, known, asks: () };
+        Self { walker, reuse: Reuse::default(), parts: Vec::new() }
     }
 }
 
@@ -60,12 +67,14 @@ impl<'a, A: Asks> Walker<'a, A> {
         self.settings.onwards == Onwards::All
     }
 
-    /// What arrives along a camera's ray. `waiting` is room for paths that have been split off and wait.
+    /// What arrives along a camera's ray. `waiting` is room for paths that have been split off and wait, and `parts` is
+    /// told what is to be shared, which is not in what is returned.
     async fn follow(
         &self,
         sample: &mut CameraSample,
         media: MediumStack<Filled>,
         waiting: &mut Vec<PathState>,
+        parts: &mut Parts,
         cancel: &Cancel,
     ) -> Rgb {
         let mut light = Rgb::ZERO;
@@ -89,21 +98,46 @@ impl<'a, A: Asks> Walker<'a, A> {
         while let Some(mut path) = waiting.pop() {
             while !cancel.is_raised() {
                 numbers.ray = Dimensions::of(path.bounce, path.branch);
-                let place = self.advance(&mut path, hero, &mut numbers, cancel, &mut light).await;
+                let was_first = std::mem::take(&mut path.is_first);
+                let light = match &mut parts.second {
+                    Some(second) if path.is_shared => &mut second.found,
+                    _ => &mut light,
+                };
+                let place = self.advance(&mut path, hero, &mut numbers, cancel, light).await;
                 let Some(place) = place else { break };
                 let goes_on = match place {
                     Place::Medium { here, .. } if self.known.is_some() => {
-                        light += self.known_among(&path, &here, number);
+                        *light += self.known_among(&path, &here, number);
                         false
                     }
+                    // Nothing but the medium lies between.
+                    Place::Medium { here, .. } if was_first && path.passed == 0 => {
+                        let met = self.scatter_shared(&mut path, &here, hero, &mut numbers, cancel).await;
+                        let Some((second, goes_on)) = met else { break };
+                        parts.second = Some(second);
+                        goes_on
+                    }
                     Place::Medium { here, collision, span } => {
+                        let takes = self.settings.shares && parts.first.is_none() && !path.gilded;
+                        if takes && collision.density.is_some() {
+                            let is_limited = self.settings.max_depth.is_some();
+                            parts.first = Some(First::new(&here, collision.here, &path, is_limited));
+                            path.is_first = true;
+                        }
                         let part = collision.density.map(|density| Part { span, t: collision.t, density });
                         let part = part.filter(|_| self.is_lit(&path));
-                        self.scatter(&mut path, &here, part, hero, &mut numbers, cancel, &mut light).await
+                        self.scatter(&mut path, &here, part, hero, &mut numbers, cancel, light).await
                     }
                     Place::Surface { hit, outside, through } => {
                         let (at, of) = ((hit, outside, through), (hero, number));
-                        self.reflect(&mut path, at, of, waiting, &mut numbers, cancel, &mut light).await
+                        let first = parts.first.filter(|first| was_first && self.is_within_reach(first, &path));
+                        let mut second = None;
+                        let to = (first.is_some().then_some(&mut second), light);
+                        let goes_on = self.reflect(&mut path, at, of, waiting, &mut numbers, cancel, to).await;
+                        if second.is_some() {
+                            parts.second = second;
+                        }
+                        goes_on
                     }
                     Place::Outside => false,
                 };
@@ -132,12 +166,12 @@ impl<'a, A: Asks> Walker<'a, A> {
     ) -> Option<Place> {
         let u = numbers.ray.mask();
         let way = depth(numbers.one(u));
-        let mut going = Going { ray: path.ray, weights: path.weights, media: path.media };
+        let mut going = Going { ray: path.ray, weights: path.weights, media: path.media, passed: 0 };
         let lit = self.is_lit(path).then(|| self.of_points(path, hero, cancel));
         let course = self.course(path.waves);
         let place = course.advance(&mut going, (hero, way), numbers, cancel, light, lit.as_ref()).await;
         drop(lit);
-        (path.ray, path.weights, path.media) = (going.ray, going.weights, going.media);
+        (path.ray, path.weights, path.media, path.passed) = (going.ray, going.weights, going.media, going.passed);
         if let Some(Place::Outside) = place {
             *light += path.weights.throughput() * self.light_from_outside(path);
             return None;
@@ -209,7 +243,8 @@ impl<'a, A: Asks> Walker<'a, A> {
         self.go_on(path, here, &next, media, numbers.one(chance), self.never_ends())
     }
 
-    /// Scatters a path at a surface, and says whether it goes on.
+    /// Scatters a path at a surface, and says whether it goes on. Where what it finds from there on may be shared,
+    /// that is told apart from what is its own.
     #[allow(clippy::too_many_arguments)]
     async fn reflect(
         &self,
@@ -219,7 +254,7 @@ impl<'a, A: Asks> Walker<'a, A> {
         waiting: &mut Vec<PathState>,
         numbers: &mut Numbers<'_>,
         cancel: &Cancel,
-        light: &mut Rgb,
+        (shared, mut light): (Option<&mut Option<Second>>, &mut Rgb),
     ) -> bool {
         let ray = path.ray;
         let (scene, geometry) = (self.scene, self.scene.geometry());
@@ -242,6 +277,12 @@ impl<'a, A: Asks> Walker<'a, A> {
             path.end_all_but_hero();
         }
         path.meet(here.bsdf().again());
+        if let Some(shared) = shared
+            && let Some(second) = Second::of_surface(&here, path, hit.t)
+        {
+            path.share();
+            light = &mut shared.insert(second).found;
+        }
         if !self.settings.ambient.is_black() {
             let share = here.ambient(scene, &ray, &hit, path.waves, outside);
             *light += path.weights.throughput() * share * self.settings.ambient;
@@ -324,13 +365,13 @@ impl<'a, A: Asks> Walker<'a, A> {
     }
 
     /// Whether paths could be scattered for ever between surfaces.
-    fn never_ends(&self) -> bool {
+    pub(super) fn never_ends(&self) -> bool {
         self.scene.surrounding().is_some()
     }
 
     /// Sends a path on along a direction drawn, unless roulette ends it by a uniform number, and says whether it did.
     /// Where light leaves a medium sooner or later, none of it has to be ended that has lost nothing.
-    fn go_on(
+    pub(super) fn go_on(
         &self,
         path: &mut PathState,
         here: &impl Encounter,
@@ -351,13 +392,14 @@ impl<'a, A: Asks> Walker<'a, A> {
         if throughput.max() * path.scale < self.settings.least {
             return false;
         }
-        if path.bounce < self.settings.roulette_depth.min(roulette::AT_LATEST) {
+        // Whether a path gets to where it shares is for the densities there alone to tell.
+        if path.is_first || path.bounce < self.settings.roulette_depth.min(roulette::AT_LATEST) {
             return !throughput.is_black();
         }
         let survival = if may_never_end {
             roulette::survival(throughput, path.scale)
         } else {
-            (throughput.max() * path.scale).sqrt().min(1.0)
+            roulette::survival_among(throughput, path.scale)
         };
         if chance >= survival {
             return false;
@@ -367,26 +409,56 @@ impl<'a, A: Asks> Walker<'a, A> {
     }
 }
 
-impl Worker for Walkers<'_> {
-    fn radiance(&mut self, samples: &mut [CameraSample], cancel: &Cancel, radiance: &mut [Rgb]) {
+impl Walkers<'_> {
+    /// Follows the paths of some samples to their ends.
+    fn follow(&mut self, samples: &mut [CameraSample], cancel: &Cancel, radiance: &mut [Rgb]) {
         assert_eq!(samples.len(), radiance.len());
-        let Walker { settings, scene, points, known, .. } = self.0;
+        let Walker { settings, scene, points, known, .. } = self.walker;
         let rays: Vec<Ray> = samples.iter().map(|sample| sample.ray).collect();
         let mut media = Vec::new();
         MediumStack::at(scene, &rays, &mut media);
         let lanes = lanes(samples.len());
         let radiance = Cell::from_mut(radiance).as_slice_of_cells();
-        let to_do = RefCell::new(samples.iter_mut().zip(media).zip(radiance));
+        self.parts.clear();
+        self.parts.resize(if settings.shares { samples.len() } else { 0 }, Parts::default());
+        let left = Cell::from_mut(&mut self.parts[..]).as_slice_of_cells();
+        let to_do = RefCell::new(samples.iter_mut().zip(media).zip(radiance).enumerate());
         together(scene, &lanes, |lane: &Lane| {
             let (walker, to_do) = (Walker { settings, scene, points, known, asks: lane }, &to_do);
             async move {
                 let mut waiting = Vec::new();
                 while !cancel.is_raised() {
                     let next = to_do.borrow_mut().next();
-                    let Some(((sample, media), radiance)) = next else { return };
-                    radiance.set(walker.follow(sample, media, &mut waiting, cancel).await);
+                    let Some((number, ((sample, media), radiance))) = next else { return };
+                    let mut parts = Parts::default();
+                    radiance.set(walker.follow(sample, media, &mut waiting, &mut parts, cancel).await);
+                    if let Some(left) = left.get(number) {
+                        left.set(parts);
+                    }
                 }
             }
         });
+    }
+}
+
+impl Worker for Walkers<'_> {
+    fn radiance(&mut self, samples: &mut [CameraSample], cancel: &Cancel, radiance: &mut [Rgb]) {
+        if self.walker.settings.shares {
+            return self.radiance_in_groups(samples, &vec![1; samples.len()], cancel, radiance);
+        }
+        self.follow(samples, cancel, radiance);
+    }
+
+    fn radiance_in_groups(
+        &mut self,
+        samples: &mut [CameraSample],
+        groups: &[u32],
+        cancel: &Cancel,
+        radiance: &mut [Rgb],
+    ) {
+        self.follow(samples, cancel, radiance);
+        if self.walker.settings.shares {
+            self.reuse.share(self.walker.scene, groups, &self.parts, cancel, radiance);
+        }
     }
 }
