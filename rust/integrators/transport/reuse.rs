@@ -156,8 +156,8 @@ impl Reuse {
         self.strays.rays.clear();
     }
 
-    /// A path comes to a surface, on a primitive of the scene. Where what it finds from there on is to be shared, it goes on as the path of a sample
-    /// of number `samples` or more.
+    /// A path comes to a surface, on a primitive of the scene. Where what it finds from there on is to be shared, it
+    /// goes on as the path of a sample of number `samples` or more.
     #[inline]
     pub fn visit<S: Bsdf>(&mut self, mut path: PathState, here: &SurfaceInteraction<S>, primitive: u32) -> PathState {
         if path.bounce > 1 {
