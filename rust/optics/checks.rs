@@ -399,6 +399,16 @@ fn films_on_rough_glass_keep_nearly_all_light() {
     }
 }
 
+#[test]
+fn nothing_is_negative_where_facets_are_as_open_as_they_are_seen() {
+    let wo = DVec3::new(-0.8704846115323935, 0.49219563294009216, 3.0954523573989317e-12);
+    let wi = DVec3::new(0.0, 1.0, 1.307040304137441e-12);
+    for bsdf in kinds() {
+        let (value, pdf) = bsdf.evaluate(wo, wi);
+        assert!(value.is_radiance() && pdf >= 0.0, "{value} {pdf} {bsdf:?}");
+    }
+}
+
 /// Unit vectors, many of them in the plane, next to it, or next to the axes.
 fn any_direction() -> impl Strategy<Value = DVec3> {
     let tiny = prop_oneof![Just(0.0), Just(1e-300), Just(1e-12), Just(-1e-12), Just(1e-5), -1.0..1.0f64];

@@ -90,6 +90,8 @@ impl Facet {
             None => divided.reflectance * self.density * geometry,
             Some(bare) => {
                 let open = open::openness(facets, wo, (wo + wi).normalize(), eta) / (4.0 * o.z);
+                // No more than that is open, but for rounding.
+                let open = open.min(geometry);
                 (divided.reflectance * open).plus(bare * (geometry - open)) * self.density
             }
         };
@@ -112,7 +114,7 @@ impl Facet {
             Some(bare) => {
                 let q = wo + wi * eta;
                 let h = q.normalize() * (q.z * wo.z).signum();
-                let open = open::openness(facets, wo, h, eta) / wo.z.abs();
+                let open = (open::openness(facets, wo, h, eta) / wo.z.abs()).min(both);
                 let rest = (divided.reflectance.rest() * open).plus((1.0 - bare) * (both - open));
                 rest * density * o * i / square
             }
