@@ -9,8 +9,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .vdb import read_vdb
-
 Bounds = tuple[tuple[float, ...], tuple[float, ...]]
 # Magic, version, encoding, size along x, y and z, channels, and the box: all little-endian.
 _VOL = struct.Struct("<3sBiiiii6f")
@@ -39,6 +37,9 @@ def read_grids(path: str | PathLike[str], names: Mapping[str, str]) -> Found:
         If the path is none.
     """
     if isinstance(path, str | PathLike) and Path(fspath(path)).suffix == ".vdb":
+        # What few need is imported where it is used.
+        from .vdb import read_vdb
+
         grids, place = read_vdb(Path(fspath(path)), tuple(dict.fromkeys(names.values())))
         return Found({kind: grids[name] for kind, name in names.items()}, place, {"at": "centres"})
     if named := [kind for kind in names if kind != "density"]:

@@ -15,8 +15,6 @@ from numpy.typing import ArrayLike, NDArray
 from .. import _core
 from ..accelerators import BVH, Accelerator
 from ..arrays import frozen, integer, label, real_array
-from ..mesh_files.meshes import load
-from ..mesh_files.trimesh_objects import of_scene, of_trimesh
 from ..shapes import Shape
 from ..shapes.mesh import Mesh, face_count
 
@@ -276,18 +274,25 @@ def only_meshes(shapes: Any) -> tuple[Mesh, ...]:
 
 
 def _each(shapes: Any) -> Iterator[AnyShape]:
-    # trimesh is never imported only to ask: whoever made such an object has imported it.
+    # trimesh is never imported only to ask: whoever made such an object has imported it. What reads files and
+    # such objects is imported where there are any.
     trimesh = sys.modules.get("trimesh")
     if isinstance(shapes, Mesh | Shape | Instance):
         yield shapes
     elif isinstance(shapes, str | PathLike):
+        from ..mesh_files.meshes import load
+
         yield from load(shapes)
     elif isinstance(shapes, list | tuple):
         for shape in shapes:
             yield from _each(shape)
     elif isinstance(shapes, getattr(trimesh, "Trimesh", ())):
+        from ..mesh_files.trimesh_objects import of_trimesh
+
         yield of_trimesh(shapes)
     elif isinstance(shapes, getattr(trimesh, "Scene", ())):
+        from ..mesh_files.trimesh_objects import of_scene
+
         yield from of_scene(shapes)
     else:
         came = f"{type(shapes).__module__}.{type(shapes).__qualname__}"
