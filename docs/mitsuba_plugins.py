@@ -32,6 +32,7 @@ NEARLY = {
     "sdfgrid": "a mesh of a third of its cells, with corners on the surface",
     "heightfield": "Mitsuba 0.6's: a mesh of four triangles a patch, whose points are those of the picture",
     "mesh_attribute": "of PLY files: vertices or faces, one attribute a mesh, between 0 and 1",
+    "volume": "a grid: of meshes, quartered until edges are half a cell or there are 4 million triangles",
     "bumpmap": "slopes are means over a thousandth of the coordinates",
     "spot": "with a texture: a projector of up to 2048² points, in which the fall-off is",
     "projector": "a texture's picture is resampled to 512 points or more",
@@ -57,7 +58,7 @@ REFUSED = {
     "BSDFs": (
         "circular", "hair", "measured", "measured_polarized", "polarizer", "pplastic", "retarder",
     ),
-    "textures and colours": ("volume",),
+    "textures and colours": (),
     "emitters": ("directionalarea", "timed_sunsky"),
     "sensors": ("batch", "irradiancemeter"),
     "films": ("specfilm",),

@@ -20,16 +20,18 @@ _ENDINGS = ("rgb", "xyz", "012", "123")
 
 def named_within(plugin: Plugin) -> set[str]:
     """Return the names of the attributes that the materials and lights of a shape ask for."""
-    names = (one.get("name") for one in _within(plugin) if str(one.get("type")).lower() == "mesh_attribute")
+    names = (
+        one.get("name") for one in all_within(plugin) if str(one.get("type")).lower() == "mesh_attribute"
+    )
     return {name for name in names if isinstance(name, str)}
 
 
 def has_within(plugin: Plugin, kind: str) -> bool:
     """Whether there is a plugin of a type within another, however deep."""
-    return any(str(one.get("type")).lower() == kind for one in _within(plugin))
+    return any(str(one.get("type")).lower() == kind for one in all_within(plugin))
 
 
-def _within(plugin: Plugin) -> list[Mapping[str, Any]]:
+def all_within(plugin: Plugin) -> list[Mapping[str, Any]]:
     """Return a plugin and all that is in it, each once."""
     found: dict[int, Mapping[str, Any]] = {}
 

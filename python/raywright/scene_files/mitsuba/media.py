@@ -18,7 +18,7 @@ from .values import colour, shade
 TYPES = ("homogeneous", "heterogeneous")
 PHASES = ("isotropic", "hg", "rayleigh")
 VOLUMES = ("constvolume", "gridvolume")
-_WRAPS = ("clamp", "repeat")
+WRAPS = ("clamp", "repeat")
 # Of a grid that goes on as far as its shape does.
 _MOST_CELLS = 2**26
 # The least and the greatest corner, (2, 3).
@@ -126,7 +126,7 @@ def _read(plugin: Plugin, box: Box | None) -> Medium:
             if box is None:
                 plugin.fail("albedo on a grid is read within meshes only")
             extinction = scale * np.array(colour(plugin, "sigma_t", 1.0))
-            return _shared(plugin, _grid(shares, _WRAPS), box, extinction, phase)
+            return _shared(plugin, grid(shares, WRAPS), box, extinction, phase)
         albedo = _constant(plugin, "albedo", 0.75)
         return Homogeneous(*_parts(_constant(plugin, "sigma_t", 1.0), albedo, scale), phase)
     # There is nothing of it where its extinction has no volume.
@@ -143,7 +143,7 @@ def _read(plugin: Plugin, box: Box | None) -> Medium:
 
 
 def _shared(
-    plugin: Plugin, albedo: "_Volume", box: Box, extinction: NDArray[np.float64], phase: Phase
+    plugin: Plugin, albedo: "Volume", box: Box, extinction: NDArray[np.float64], phase: Phase
 ) -> GridMedium:
     """Return what has one extinction all over, and an albedo that goes on beyond its grid as that wraps."""
     assert albedo.numbers is not None
@@ -205,7 +205,7 @@ def _constant(plugin: Plugin, name: str, default: float) -> Triple | Spectrum:
     return result
 
 
-class _Volume(NamedTuple):
+class Volume(NamedTuple):
     """Numbers over the unit cube, or bounds, wherever a transform takes these; else a colour."""
 
     colour: NDArray[np.float64]
@@ -216,21 +216,23 @@ class _Volume(NamedTuple):
 
     @property
     def density(self) -> NDArray[Any]:
+        """How dense it is: 1 where it has no numbers."""
         return np.ones((1, 1, 1)) if self.numbers is None else self.numbers
 
 
-def _volume(medium: Plugin, name: str, default: float) -> _Volume:
+def _volume(medium: Plugin, name: str, default: float) -> Volume:
     plugin = medium.child(name)
     if plugin is None or plugin.type not in VOLUMES:
-        return _Volume(np.array(colour(medium, name, default)), transform=np.eye(4))
+        return Volume(np.array(colour(medium, name, default)), transform=np.eye(4))
     if plugin.type == "constvolume":
         value, transform = np.array(colour(plugin, "value", 1.0)), plugin.to_world()
         plugin.done()
-        return _Volume(value, transform=transform)
-    return _grid(plugin, ("clamp",))
+        return Volume(value, transform=transform)
+    return grid(plugin, ("clamp",))
 
 
-def _grid(plugin: Plugin, wraps: tuple[str, ...]) -> _Volume:
+def grid(plugin: Plugin, wraps: tuple[str, ...]) -> Volume:
+    """Return what a plugin of a grid holds, which may go on beyond its ends in some ways."""
     if not plugin.has("filename"):
         plugin.fail("a grid must be given by its filename")
     plugin.choice("filter_type", "trilinear", ("trilinear",))
@@ -240,7 +242,7 @@ def _grid(plugin: Plugin, wraps: tuple[str, ...]) -> _Volume:
     placed = plugin.switch("use_grid_bbox", False)
     transform = plugin.to_world()
     plugin.done()
-    return _Volume(np.ones(3), numbers, box if placed else None, transform, repeats)
+    return Volume(np.ones(3), numbers, box if placed else None, transform, repeats)
 
 
 def _phase(plugin: Plugin) -> Phase:

@@ -13,7 +13,7 @@ from ...scene.instance import AnyShape, Instance
 from ...shapes import Cylinder, Disk, Shape, Sphere
 from ...shapes.mesh import Mesh
 from .. import tubes
-from . import attributes, bsdfs, curves, height_fields, media, mesh_files, sdf_grids
+from . import attributes, bsdfs, curves, height_fields, media, mesh_files, sdf_grids, solid
 from .errors import SceneError
 from .plugin import Plugin
 from .textures import heights, value
@@ -34,8 +34,11 @@ def shapes_of(plugin: Plugin) -> tuple[Mesh | Shape, ...]:
     ValueError
         If its type, or a parameter of it, is not supported; tells which.
     """
+    reader = _READERS[plugin.type]
     try:
-        result = _READERS[plugin.type](plugin)
+        if reader is not _mesh and solid.grids_within(plugin):
+            plugin.fail("a volume of a grid is read as a texture of meshes only")
+        result = reader(plugin)
     except SceneError:
         raise
     except (ValueError, TypeError, np.linalg.LinAlgError) as error:
@@ -57,6 +60,12 @@ def _mesh(plugin: Plugin) -> Mesh | tuple[Mesh, ...]:
         # All corners of each face have its own normal.
         normals = None
     placed = mesh_files.Triangles(vertices, faces, normals, uv)
+    solids = solid.grids_within(plugin)
+    if len(solids) + len(names) > 1:
+        plugin.fail("one volume or mesh_attribute of a mesh is read")
+    if solids:
+        fine, colours = solid.coloured(placed, solids[0])
+        return Mesh(*fine, *_look(plugin, SAME, box=placed.box), colours)
     if not names:
         return _by_hand(plugin, placed)
     if plugin.type != "ply":

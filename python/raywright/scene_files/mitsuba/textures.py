@@ -11,13 +11,14 @@ from ...io.pictures import read
 from ...textures import Checker, ImageTexture, ProductTexture, Spectrum, UvTransform, VertexColors
 from ...textures.texture import Number, Texture, Value
 from .plugin import Plugin, Triple
+from .solid import VOLUME, held
 from .uv import UPRIGHT, Uv
-from .values import UNIFORM, at_each_nm, of_plugin, shade
+from .values import UNIFORM, at_each_nm, colour, of_plugin, shade
 
 # Luminance of linear Rec. 709.
 _LUMINANCE = np.array([0.212671, 0.715160, 0.072169])
 
-TYPES = ("bitmap", "checkerboard", "mesh_attribute")
+TYPES = ("bitmap", "checkerboard", "mesh_attribute", VOLUME)
 
 # What is done to colours, of numbers and of every point of a picture.
 Change = Callable[[NDArray[np.float64]], NDArray[np.float64]]
@@ -49,8 +50,9 @@ def value(
         What is done to its colours.
     """
     inner = plugin.child(name)
-    if inner is None or inner.type in UNIFORM:
-        found = shade(plugin, name, default, emits)
+    whole = _whole(inner)
+    if inner is None or inner.type in UNIFORM or whole is not None:
+        found = shade(plugin, name, default, emits) if whole is None else shade(whole, "value", 1.0, emits)
         if change is None:
             return found
         if plugin.context.by_wavelength and not isinstance(found, Spectrum) and len({*found}) > 1:
@@ -71,7 +73,20 @@ def scalar(plugin: Plugin, name: str, default: float, uv: Uv) -> Number:
         return plugin.number(name, default)
     if inner.type in UNIFORM:
         return float(np.mean(of_plugin(inner, False)))
-    return numbers(inner, uv)
+    whole = _whole(inner)
+    return numbers(inner, uv) if whole is None else float(np.mean(colour(whole, "value", 1.0)))
+
+
+def _whole(plugin: Plugin | None) -> Plugin | None:
+    """Return the volume of a texture that is the same everywhere; None if it is none."""
+    if plugin is None or plugin.type != VOLUME:
+        return None
+    found = held(plugin)
+    if found.type != "constvolume":
+        return None
+    found.ignore("to_world")
+    plugin.done()
+    return found
 
 
 def numbers(plugin: Plugin, uv: Uv) -> Texture:
@@ -94,6 +109,8 @@ def texture(plugin: Plugin, uv: Uv, change: Change | None = None, grey: bool = F
         return _checkerboard(plugin, uv, change, ("color0", "color1"))
     if plugin.type == "mesh_attribute":
         return _attribute(plugin, None if grey else change)
+    if plugin.type == VOLUME:
+        return _solid(plugin, None if grey else change)
     plugin.fail("this kind of texture is not supported")
 
 
@@ -105,6 +122,15 @@ def _attribute(plugin: Plugin, change: Change | None) -> Texture:
     scale = plugin.number("scale", 1.0)
     plugin.done()
     return VertexColors() if scale == 1.0 else ProductTexture(VertexColors(), scale)
+
+
+def _solid(plugin: Plugin, change: Change | None) -> Texture:
+    """Return what a grid has at the vertices of a mesh, which is given to it with its shape."""
+    if change is not None:
+        plugin.fail("it cannot colour the base of a plastic")
+    held(plugin)
+    plugin.done()
+    return VertexColors()
 
 
 def picture(plugin: Plugin) -> tuple[NDArray[Any], bool]:
