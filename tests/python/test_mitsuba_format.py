@@ -292,7 +292,7 @@ def test_a_part_of_a_film_sees_what_the_whole_does_there():
         ),
         (
             {"s": {"type": "sphere", "b": {"type": "diffuse", "reflectance": {"type": "volume"}}}},
-            "volume 's.b.reflectance': this kind of texture is not supported",
+            "volume 's': a volume must be within, of type constvolume or gridvolume",
         ),
         (
             {"e": {"type": "spot", "cutoff_angle": 85.0, "texture": {"type": "checkerboard"}}},
