@@ -24,12 +24,11 @@ class Path:
         Bounces before Russian roulette begins, at least 0.
     reuse : int, optional
         Side of the square patches of pixels that share paths: 1, 2, 4 or 8, where 1 shares nothing. If not
-        given, `render` chooses by what a pilot finds: 1 or 4, or 8 where light is rare or the picture has
-        four million samples; and 1 for small pictures of few samples. What a path finds from its second
-        surface on counts for every pixel of the patch whose own first surface sees that second one (Bekaert,
-        Sbert and Halton 2002), in proportion to how likely each was to come there, which leaves no bias. It
-        pays where surfaces are matt and most light is indirect, as in a room: rays between all these points
-        cost time, and direct light gains nothing.
+        given, `render` chooses 1, 4 or 8 by what a pilot finds, and 1 for small pictures of few samples. What
+        a path finds from its second surface on counts for every pixel of the patch whose own first surface
+        sees that second one (Bekaert, Sbert and Halton 2002), in proportion to how likely each was to come
+        there, which leaves no bias. It pays where surfaces are matt and most light is indirect, as in a room:
+        rays between all these points cost time, and direct light gains nothing.
 
         What goes from one `Diffuse` surface to another is shared; all else is as without. Nothing is shared
         where something moves, and in scenes with masks, with media in one another or with textures that are

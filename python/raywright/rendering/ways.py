@@ -14,9 +14,8 @@ from .choices import Limits, expected
 from .filters import Filter
 from .plan import Choice
 
-# The side of patches that share paths, where any do. Larger ones have coarser noise, and intervals that are
-# wider the fewer there are: they are tried where light is found by few paths, as behind a keyhole, so that a
-# pilot's relMSE is above the last; and in pictures of so many samples that their pilot is a small share.
+# The side of patches that share paths, where any do; that of larger ones, which are tried where those pay;
+# and the relMSE of a pilot above which light is taken to be found by few paths, as behind a keyhole.
 _REUSE, _LARGE, _NOISY = 4, 8, 0.3
 # How much longer samples take that share paths, or that aim, by `benches/choices.py`, in times of a plain
 # one. It is not measured on the spot: the same has to be chosen everywhere, every time.
@@ -24,7 +23,7 @@ _COSTS: dict[str, dict[Any, float]] = {
     "reuse": {1: 0.0, 2: 0.2, _REUSE: 0.5, _LARGE: 1.3},
     "caustics": {False: 0.0, True: 1.2},
 }
-# Among media paths go on for longer, beside which sharing costs less, and larger patches are always tried.
+# Among media paths go on for longer, beside which sharing costs less.
 _MEDIA = "smoke and haze"
 _COSTS_AMONG: dict[str, dict[Any, float]] = {
     "reuse": {1: 0.0, 2: 0.1, _REUSE: 0.2, _LARGE: 0.5},
@@ -32,8 +31,8 @@ _COSTS_AMONG: dict[str, dict[Any, float]] = {
 }
 # What is more than plain has to be better by so much: a pilot may be wrong.
 _BETTER = 0.9
-# The share of a render's samples that a pilot of each way may take, and that where it is cheap to ask more.
-_SHARE, _SMALL_SHARE = 64, 256
+# The share of a render's samples that a pilot of each way may take.
+_SHARE = 64
 _PLAIN: dict[str, Any] = {"reuse": 1, "caustics": False}
 _MORE: dict[str, Any] = {"reuse": _REUSE, "caustics": True}
 _NEVER = {
@@ -83,8 +82,7 @@ def followed(
     if open_ and scene.wavelengths is not None:
         why |= dict.fromkeys(open_, "paths that carry wavelengths neither share nor aim")
         open_ = []
-    samples = expected(limits, pixels) * pixels
-    if open_ and samples < _SHARE * _core.PILOT:
+    if open_ and expected(limits, pixels) * pixels < _SHARE * _core.PILOT:
         why |= dict.fromkeys(open_, "the picture has too few samples to send a pilot")
         open_ = []
     compiled = scene._compiled() if open_ else None
@@ -97,8 +95,7 @@ def followed(
             why |= {name: _NEVER[name] for name in open_ if not can[name]}
             open_ = [name for name in open_ if can[name]]
 
-            is_hazy = _MEDIA in scene.plan().needed
-            costs = _COSTS_AMONG if is_hazy else _COSTS
+            costs = _COSTS_AMONG if _MEDIA in scene.plan().needed else _COSTS
 
             def cost(way: Mapping[str, Any]) -> float:
                 return 1 + sum(costs[name][value] for name, value in way.items())
@@ -109,8 +106,7 @@ def followed(
                 return [error * cost(way) for error, way in zip(errors, ways, strict=True)]
 
             # Nobody is sent where only one way is left.
-            is_long = is_hazy or samples >= _SMALL_SHARE * _core.PILOT
-            ways, worth = _tried(fixed, open_, sent, cost, is_long) if open_ else ([fixed], [0.0])
+            ways, worth = _tried(fixed, open_, sent, cost) if open_ else ([fixed], [0.0])
         except StoppedError:
             why |= dict.fromkeys(open_, "it was stopped before a pilot was back")
         else:
@@ -126,17 +122,15 @@ def _tried(
     names: list[str],
     sent: Callable[[list[dict[str, Any]]], list[float]],
     cost: Callable[[Mapping[str, Any]], float],
-    is_long: bool,
 ) -> tuple[list[dict[str, Any]], list[float]]:
     """Return ways, the plain one first, and what each takes in error times time, as pilots tell."""
     ways = [fixed | dict(zip(names, way, strict=True)) for way in product(*_options(names))]
     worth = sent(ways)
     least = ways[worth.index(min(worth))]
-    is_rare = not is_long and min(worth) > _NOISY * cost(least)
-    if "reuse" in names and least["reuse"] == _REUSE and (is_long or is_rare):
+    if "reuse" in names and least["reuse"] == _REUSE:
         larger = least | {"reuse": _LARGE}
         small, large = sent([least, larger])
-        if is_rare:
+        if min(worth) > _NOISY * cost(least):
             # What few find is shared by few, however large patches are: they take no more time.
             large *= cost(least) / cost(larger)
         if large < _BETTER * small:
