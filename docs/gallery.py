@@ -182,14 +182,14 @@ def marble():
     under a rough surface: photons are kept where the stone scatters them, and paths from the eye ask there.
     """
     within = rw.Homogeneous(absorption=(0.13, 0.44, 1.0), scattering=11)
-    stone = rw.Dielectric(1.5, 0.4, interior=within)
+    stone = rw.Dielectric(1.5, 0.5, interior=within)
     knot = rw.scenes.torus_knot(tube=0.3, along=600, around=48, material=stone)
     table = rw.Disk((0, 0, -0.76), (0, 0, 1), 14, material=rw.Diffuse((0.16, 0.13, 0.12)))
     lamp = rw.Disk((-2.2, 4, 3.8), (2.2, -4, -4.1), 2.7, emission=(5.5, 4.15, 2.8))
     window = rw.Disk((3.5, -3, 4.5), (-3.5, 3, -4.5), 1.8, emission=(0.9, 1.1, 1.4))
     camera = rw.Camera((0.6, -5.2, 2.5), (0.05, 0, -0.12), up=(0, 0, 1), fov=28, width=1000, height=560)
     scene = rw.Scene([knot, table, lamp, window])
-    image = rw.render(scene, camera, rw.ProgressivePhotonMap(150_000), samples=64)
+    image = rw.render(scene, camera, rw.ProgressivePhotonMap(120_000), samples=72)
     image.save("marble.jpg", exposure=1)
     return image
 
