@@ -24,7 +24,7 @@ _SILENCE = 10.0
 _BODY = re.compile(r"<body[^>]*>(.*)</body>", re.DOTALL)
 
 
-class ViewerWidget(anywidget.AnyWidget):
+class ViewerWidget(anywidget.AnyWidget):  # type: ignore[misc]
     """A session in a cell of a notebook.
 
     Parameters
