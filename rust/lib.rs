@@ -5,6 +5,7 @@
 pub mod accel;
 pub mod exchange;
 pub mod integrators;
+pub mod loops;
 pub mod math;
 pub mod optics;
 pub mod render;

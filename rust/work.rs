@@ -3,9 +3,10 @@
 //! Who does it asks at coarse steps, of some milliseconds each, whether to go on, and tells at the same time what is
 //! done. Nobody waits for an answer: both are plain numbers that threads share.
 
-use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU32, AtomicUsize, Ordering::Relaxed};
+
+use crate::loops;
 
 /// What is known of some work by those who do it, and by those who watch it.
 #[derive(Debug, Default)]
@@ -97,7 +98,7 @@ impl<'a> Work<'a> {
     pub fn collect<T: Send>(self, count: usize, make: impl Fn(usize) -> T + Sync) -> Result<Vec<T>, Stopped> {
         let mut made = Vec::with_capacity(count);
         for round in self.rounds(count) {
-            made.par_extend(round?.into_par_iter().map(&make));
+            loops::extend(&mut made, round?, &make);
         }
         self.done();
         Ok(made)

@@ -66,14 +66,26 @@ pub fn watched<T: Send>(
     work: impl FnOnce(&Cancel) -> T + Send,
     mut watch: impl FnMut() -> bool,
 ) -> Result<T, String> {
+    let (mut work, mut result) = (Some(work), None);
+    let mut once = |cancel: &Cancel| result = work.take().map(|work| work(cancel));
+    watched_once(threads, &mut once, &mut watch)?;
+    Ok(result.expect("work that does not panic leaves a result"))
+}
+
+/// [`watched`], compiled once for all sorts of work. `work` is called once.
+fn watched_once(
+    threads: Option<usize>,
+    work: &mut (dyn FnMut(&Cancel) + Send),
+    watch: &mut dyn FnMut() -> bool,
+) -> Result<(), String> {
     let pool = pool(threads)?;
     let cancel = Cancel::default();
     if pool.current_thread_index().is_some() {
         // One of its own threads, which must not wait for the others: they may all be here. Whoever called it is
         // watched.
-        return Ok(work(&cancel));
+        work(&cancel);
+        return Ok(());
     }
-    let result = Mutex::new(None);
     let (done, ended) = (Mutex::new(false), Condvar::new());
     /// Tells the watcher even if the work panics; the scope then passes the panic on.
     struct Tell<'a>(&'a Mutex<bool>, &'a Condvar);
@@ -86,7 +98,7 @@ pub fn watched<T: Send>(
     pool.in_place_scope(|scope| {
         scope.spawn(|_| {
             let _tell = Tell(&done, &ended);
-            *result.lock().unwrap_or_else(PoisonError::into_inner) = Some(work(&cancel));
+            work(&cancel);
         });
         let mut over = done.lock().unwrap_or_else(PoisonError::into_inner);
         while !*over {
@@ -102,8 +114,7 @@ pub fn watched<T: Send>(
             }
         }
     });
-    let value = result.into_inner().unwrap_or_else(PoisonError::into_inner);
-    Ok(value.expect("work that does not panic leaves a result"))
+    Ok(())
 }
 
 /// Does `work` on the pool of so many threads while the calling thread calls `watch` 50 times a second. When that says

@@ -88,12 +88,12 @@ pub trait Primitives: Sync {
 
     /// Where the primitives lie that can be hit, but for those without end: [`region`], unless that is known.
     fn region(&self) -> Region {
-        region(self.count(), |p| self.bounds(p))
+        region(self.count(), &|p| self.bounds(p))
     }
 }
 
 /// Where all of so many lie that have bounds, and an end.
-pub fn region(count: usize, bounds: impl Fn(u32) -> Option<Bounds> + Sync) -> Region {
+pub fn region(count: usize, bounds: &(dyn Fn(u32) -> Option<Bounds> + Sync)) -> Region {
     let nothing = || (DVec3::INFINITY, DVec3::NEG_INFINITY);
     let join = |a: (DVec3, DVec3), b: (DVec3, DVec3)| (a.0.min(b.0), a.1.max(b.1));
     let (min, max) = (0..count as u32)

@@ -47,7 +47,7 @@ impl Bsdf for BlinnPhong {
     }
 
     #[inline(always)]
-    fn sample(&self, wo: DVec3, choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
+    fn sample(&self, wo: DVec3, choice: &mut dyn FnMut() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
         if wo.z == 0.0 || self.lobes.black() {
             return None;
         }

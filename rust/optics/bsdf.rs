@@ -21,7 +21,7 @@ pub trait Bsdf {
     /// Draws where the light comes from: `choice`, uniform in [0, 1), among the lobes that it has (only asked for when
     /// there are several), `u` for the direction. `None` if the draw scatters nothing. Single directions have the least
     /// choices.
-    fn sample(&self, wo: DVec3, choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample>;
+    fn sample(&self, wo: DVec3, choice: &mut dyn FnMut() -> f64, u: [f64; 2]) -> Option<BsdfSample>;
 
     /// About the share of white light that is scattered, for pictures of it: that of even light where it is known.
     fn albedo(&self) -> Rgb;
@@ -67,7 +67,7 @@ impl<B: Bsdf> Bsdf for &B {
     }
 
     #[inline(always)]
-    fn sample(&self, wo: DVec3, choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
+    fn sample(&self, wo: DVec3, choice: &mut dyn FnMut() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
         (**self).sample(wo, choice, u)
     }
 

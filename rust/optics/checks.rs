@@ -144,7 +144,7 @@ fn directions() -> Vec<DVec3> {
 
 fn draw(bsdf: &AnyBsdf, wo: DVec3, numbers: &mut Sampler) -> Option<BsdfSample> {
     let (choice, u) = (numbers.one(2), numbers.two(0));
-    bsdf.sample(wo, || choice, u)
+    bsdf.sample(wo, &mut || choice, u)
 }
 
 /// The mean weight of draws without the 1 / η² of radiance, and its standard error: the share of light scattered.
@@ -199,7 +199,7 @@ fn light_is_scattered_alike_in_both_directions() {
         b.extend(a.clone());
         for wo in a {
             // What is close to a lobe, too: the direction of a draw, from both sides of the surface.
-            let drawn = bsdf.sample(wo, || 0.9, [0.3, 0.4]).map(|s| s.wi);
+            let drawn = bsdf.sample(wo, &mut || 0.9, [0.3, 0.4]).map(|s| s.wi);
             for &wi in b.iter().chain(drawn.as_ref()) {
                 // f(wo, wi) / η² of the side of wi is symmetric.
                 let index = |w: DVec3| if w.z < 0.0 { index(&bsdf) } else { 1.0 };
@@ -281,7 +281,7 @@ fn assert_alike(turn: u32, each: &[AnyBsdf; LANES]) {
             }
             let found = (value.get(lane), pdf[lane]);
             assert_eq!(found, one.evaluate(wo, from.get(lane)), "{level:?} {turn} {lane} {one:?}");
-            let wanted = one.sample(wo, || choice[lane], [u[0][lane], u[1][lane]]);
+            let wanted = one.sample(wo, &mut || choice[lane], [u[0][lane], u[1][lane]]);
             let told = |of: BsdfSample| (of.wi, of.weight, of.pdf, of.eta, of.is_through);
             assert_eq!(drawn.map(told), wanted.map(told), "{level:?} {turn} {lane} {one:?}");
         }
@@ -340,7 +340,7 @@ fn choices_say_which_lobe_is_drawn() {
             for i in 0..60 {
                 let mut numbers = Sampler::new(4, 0, i);
                 let (choice, u) = (numbers.one(2), numbers.two(0));
-                let drawn = |choice: f64| bsdf.sample(wo, || choice, u);
+                let drawn = |choice: f64| bsdf.sample(wo, &mut || choice, u);
                 let Some(s) = drawn(choice) else { continue };
                 let [from, to] = s.choices;
                 assert!(0.0 <= from && from <= choice && choice < to && to <= 1.0, "{choice} {s:?} {bsdf:?} {wo}");
@@ -451,7 +451,7 @@ proptest! {
             prop_assert!(albedo.is_radiance() && albedo.max() <= 1.01, "{bsdf:?}");
             prop_assert!((0.0..=1.42).contains(&bsdf.roughness()));
             prop_assert!(!bsdf.is_delta() || value.is_black());
-            if let Some(s) = bsdf.sample(wo, || choice, [u, v]) {
+            if let Some(s) = bsdf.sample(wo, &mut || choice, [u, v]) {
                 prop_assert!(s.weight.is_radiance() && s.pdf > 0.0 && s.eta > 0.0, "{s:?} {bsdf:?} {wo}");
                 prop_assert!((s.wi.length() - 1.0).abs() < 1e-9, "{s:?} {bsdf:?} {wo}");
                 prop_assert!(bsdf.transmits() || s.wi.z * wo.z >= 0.0);

@@ -101,7 +101,7 @@ fn assert_density(bsdf: &AnyBsdf, wo: DVec3, chart: &impl Chart) {
     for i in 0..DRAWS {
         let mut numbers = Sampler::new(18, 0, i);
         let (choice, u) = (numbers.one(2), numbers.two(0));
-        let wi = bsdf.sample(wo, || choice, u).filter(|s| s.pdf.is_finite()).map(|s| s.wi);
+        let wi = bsdf.sample(wo, &mut || choice, u).filter(|s| s.pdf.is_finite()).map(|s| s.wi);
         let cell = wi.and_then(|wi| chart.cell(wi)).map_or(ROWS * COLUMNS, |[a, b]| {
             ((a * ROWS as f64) as usize).min(ROWS - 1) * COLUMNS + ((b * COLUMNS as f64) as usize).min(COLUMNS - 1)
         });

@@ -55,7 +55,7 @@ impl<F: Facets> Bsdf for CoatedOnce<F> {
     }
 
     #[inline(always)]
-    fn sample(&self, wo: DVec3, choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
+    fn sample(&self, wo: DVec3, choice: &mut dyn FnMut() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
         if !F::sees(wo) {
             return None;
         }

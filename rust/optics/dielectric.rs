@@ -268,7 +268,7 @@ impl<F: Lossy, S: Split> Bsdf for Dielectric<F, S> {
     }
 
     #[inline]
-    fn sample(&self, wo: DVec3, choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
+    fn sample(&self, wo: DVec3, choice: &mut dyn FnMut() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
         if !F::sees(wo) {
             return None;
         }

@@ -25,7 +25,7 @@ impl Bsdf for Diffuse {
 
     /// By the cosine, so that every draw weighs the reflectance.
     #[inline(always)]
-    fn sample(&self, wo: DVec3, _choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
+    fn sample(&self, wo: DVec3, _choice: &mut dyn FnMut() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
         if wo.z == 0.0 || self.reflectance.is_black() {
             return None;
         }
@@ -94,7 +94,7 @@ mod tests {
             let mut counts = vec![0; 20 * 12];
             for sample in 0..100_000 {
                 let u = Sampler::new(6, 0, sample).two(0);
-                let s = AnyBsdf::Diffuse(GREY).sample(wo, || unreachable!("it has one part"), u).unwrap();
+                let s = AnyBsdf::Diffuse(GREY).sample(wo, &mut || unreachable!("it has one part"), u).unwrap();
                 let (value, pdf) = GREY.evaluate(wo, s.wi);
                 assert!((s.weight * s.pdf - value).abs().max() < 1e-15);
                 assert_eq!(s.pdf, pdf);
@@ -114,6 +114,6 @@ mod tests {
 
     #[test]
     fn black_ends_a_path() {
-        assert!(Diffuse { reflectance: Rgb::ZERO }.sample(ABOVE, || 0.0, [0.3, 0.3]).is_none());
+        assert!(Diffuse { reflectance: Rgb::ZERO }.sample(ABOVE, &mut || 0.0, [0.3, 0.3]).is_none());
     }
 }

@@ -37,7 +37,7 @@ pub fn drawn_albedo(scatter: &impl Bsdf, wo: DVec3, draws: u32) -> f64 {
     let weight = |i: u32| {
         let u = [(f64::from(i) + 0.5) / f64::from(draws), radical_inverse(i, 3)];
         let choice = radical_inverse(i, 2);
-        scatter.sample(wo, || choice, u).map_or(0.0, |drawn| drawn.weight[0] * drawn.eta * drawn.eta)
+        scatter.sample(wo, &mut || choice, u).map_or(0.0, |drawn| drawn.weight[0] * drawn.eta * drawn.eta)
     };
     (0..draws).map(weight).sum::<f64>() / f64::from(draws)
 }

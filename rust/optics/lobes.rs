@@ -29,7 +29,7 @@ impl Lobes {
     }
 
     #[inline(always)]
-    pub fn is_specular(&self, choice: impl FnOnce() -> f64) -> bool {
+    pub fn is_specular(&self, choice: &mut dyn FnMut() -> f64) -> bool {
         self.share == 1.0 || (self.share > 0.0 && choice() < self.share)
     }
 

@@ -42,7 +42,7 @@ loops! {
     ) {
         for i in 0..LANES {
             if let Some(of) = each[i] {
-                drawn.set(i, of.sample(wo.get(i), || choice[i], [u[0][i], u[1][i]]));
+                drawn.set(i, of.sample(wo.get(i), &mut || choice[i], [u[0][i], u[1][i]]));
             }
         }
     }

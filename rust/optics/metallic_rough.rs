@@ -138,7 +138,7 @@ impl Bsdf for MetallicRough {
     }
 
     #[inline]
-    fn sample(&self, wo: DVec3, choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
+    fn sample(&self, wo: DVec3, choice: &mut dyn FnMut() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
         if !Ggx::sees(wo) {
             return None;
         }

@@ -27,7 +27,7 @@ impl Bsdf for Mirror {
     }
 
     #[inline(always)]
-    fn sample(&self, wo: DVec3, _choice: impl FnOnce() -> f64, _u: [f64; 2]) -> Option<BsdfSample> {
+    fn sample(&self, wo: DVec3, _choice: &mut dyn FnMut() -> f64, _u: [f64; 2]) -> Option<BsdfSample> {
         (wo.z != 0.0 && !self.reflectance.is_black()).then(|| BsdfSample::delta(mirrored(wo), self.reflectance))
     }
 

@@ -17,7 +17,7 @@ impl Bsdf for Null {
     }
 
     #[inline(always)]
-    fn sample(&self, _wo: DVec3, _choice: impl FnOnce() -> f64, _u: [f64; 2]) -> Option<BsdfSample> {
+    fn sample(&self, _wo: DVec3, _choice: &mut dyn FnMut() -> f64, _u: [f64; 2]) -> Option<BsdfSample> {
         None
     }
 

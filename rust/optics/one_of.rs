@@ -79,7 +79,7 @@ macro_rules! one_of {
             fn sample(
                 &self,
                 wo: glam::DVec3,
-                choice: impl FnOnce() -> f64,
+                choice: &mut dyn FnMut() -> f64,
                 u: [f64; 2],
             ) -> Option<$crate::optics::BsdfSample> {
                 match self {

@@ -65,7 +65,7 @@ impl Bsdf for OrenNayar {
     }
 
     #[inline(always)]
-    fn sample(&self, wo: DVec3, _choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
+    fn sample(&self, wo: DVec3, _choice: &mut dyn FnMut() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
         if wo.z == 0.0 || self.reflectance.is_black() {
             return None;
         }

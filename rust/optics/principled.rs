@@ -254,7 +254,7 @@ impl Bsdf for Principled {
     }
 
     #[inline(always)]
-    fn sample(&self, wo: DVec3, choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
+    fn sample(&self, wo: DVec3, choice: &mut dyn FnMut() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
         let (is_front, eta) = self.side(wo);
         if !Ggx::sees(wo) || (!is_front && self.bodies()[1] == 0.0) {
             return None;
@@ -358,7 +358,7 @@ impl Bsdf for PrincipledThin {
     }
 
     #[inline(always)]
-    fn sample(&self, wo: DVec3, choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
+    fn sample(&self, wo: DVec3, choice: &mut dyn FnMut() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
         if !Ggx::sees(wo) {
             return None;
         }

@@ -44,7 +44,7 @@ loops! {
         is_through: &mut [bool; LANES],
     ) {
         for i in 0..LANES {
-            let drawn = B::get(all, i).sample(wo.get(i), || choice[i], [u[0][i], u[1][i]]);
+            let drawn = B::get(all, i).sample(wo.get(i), &mut || choice[i], [u[0][i], u[1][i]]);
             let drawn = drawn.unwrap_or(BsdfSample::new(wo.get(i), Rgb::ZERO, 0.0));
             wi.set(i, drawn.wi);
             weight.set(i, drawn.weight);

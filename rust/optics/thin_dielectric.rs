@@ -37,7 +37,7 @@ impl Bsdf for ThinDielectric {
     }
 
     #[inline(always)]
-    fn sample(&self, wo: DVec3, choice: impl FnOnce() -> f64, _u: [f64; 2]) -> Option<BsdfSample> {
+    fn sample(&self, wo: DVec3, choice: &mut dyn FnMut() -> f64, _u: [f64; 2]) -> Option<BsdfSample> {
         if wo.z == 0.0 {
             return None;
         }

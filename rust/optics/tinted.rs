@@ -32,7 +32,7 @@ impl<B: Bsdf> Bsdf for Tinted<B> {
     }
 
     #[inline]
-    fn sample(&self, wo: DVec3, choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
+    fn sample(&self, wo: DVec3, choice: &mut dyn FnMut() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
         let drawn = self.inner.sample(wo, choice, u)?;
         Some(BsdfSample { weight: drawn.weight * self.share(drawn.is_through), ..drawn })
     }

@@ -20,7 +20,7 @@ impl Bsdf for Transparent {
     }
 
     #[inline(always)]
-    fn sample(&self, wo: DVec3, _choice: impl FnOnce() -> f64, _u: [f64; 2]) -> Option<BsdfSample> {
+    fn sample(&self, wo: DVec3, _choice: &mut dyn FnMut() -> f64, _u: [f64; 2]) -> Option<BsdfSample> {
         (!self.transmittance.is_black()).then(|| BsdfSample::delta(-wo, self.transmittance).through(1.0))
     }
 

@@ -308,7 +308,7 @@ impl Interactions {
         self.check("choice", choice.len())?;
         self.check("u", u.len())?;
         let ([direction, weight], pdf) = all_filled(py, self.entries.len(), |i| {
-            let drawn = self.entries[i].here.as_ref().and_then(|here| here.sample(|| choice[i], u[i]));
+            let drawn = self.entries[i].here.as_ref().and_then(|here| here.sample(&mut || choice[i], u[i]));
             drawn.map_or(([[f64::NAN; 3], [0.0; 3]], 0.0), |s| ([s.wi.to_array(), s.weight.to_array()], s.pdf))
         })?;
         Ok((direction, weight, pdf))

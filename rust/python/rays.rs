@@ -2,12 +2,11 @@
 
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
-use rayon::prelude::*;
 
 use super::arrays::{Numbers, Row, Rows, Triples};
 use crate::math::gathering::WINDOW;
 use crate::math::{Ray, Tiling, row_length};
-use crate::workers;
+use crate::{loops, workers};
 
 /// Rays that are gathered from the arrays and asked together, at most: few enough to stay in a near cache and for
 /// Ctrl-C to be heard, and enough that a wave of rays in flight is seldom run down. (512 take 2 to 5 % longer where
@@ -235,8 +234,8 @@ pub fn each<C: Send, T: Send>(
             workers::watched(
                 threads,
                 |cancel| {
-                    let chunks = chunks.into_par_iter();
-                    chunks.map(|chunk| (!cancel.is_raised()).then(|| work(chunk))).collect::<Option<_>>()
+                    let made = loops::of_parts(chunks, |chunk| (!cancel.is_raised()).then(|| work(chunk)));
+                    made.into_iter().collect::<Option<_>>()
                 },
                 || {
                     signal = Python::attach(|py| py.check_signals());

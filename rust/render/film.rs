@@ -2,6 +2,7 @@
 
 use super::bytes::{Malformed, Reader, Writer};
 use super::tile::{Cell, FilmTile};
+use crate::loops;
 use crate::optics::Rgb;
 use rayon::prelude::*;
 
@@ -273,7 +274,8 @@ impl Film {
     fn pixels<T: Clone + Default + Send>(&self, of: impl Fn(&[Cell]) -> T + Sync) -> Vec<T> {
         let mut all = vec![T::default(); self.pixel_count()];
         // Rows of no pixels would be chunks of nothing.
-        all.par_chunks_mut(self.width.max(1) as usize).enumerate().for_each(|(y, row)| self.row(y as u32, row, &of));
+        let rows: Vec<_> = (0..).zip(all.chunks_mut(self.width.max(1) as usize)).collect();
+        loops::of_parts(rows, |(y, row)| self.row(y, row, &of));
         all
     }
 

@@ -21,5 +21,5 @@ pub trait Encounter {
     fn evaluate(&self, direction: DVec3) -> (Rgb, f64);
 
     /// Draws where the path goes on to, in the world: `choice` and `u` as [`crate::optics::Bsdf::sample`] takes them.
-    fn sample(&self, choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample>;
+    fn sample(&self, choice: &mut dyn FnMut() -> f64, u: [f64; 2]) -> Option<BsdfSample>;
 }

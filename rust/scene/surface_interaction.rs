@@ -297,7 +297,7 @@ impl<B: Bsdf> Encounter for SurfaceInteraction<B> {
     }
 
     #[inline(always)]
-    fn sample(&self, choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
+    fn sample(&self, choice: &mut dyn FnMut() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
         self.to_world(self.bsdf.sample(self.wo, choice, u)?)
     }
 }
@@ -375,7 +375,7 @@ mod tests {
                 let (scattered, pdf) = here.evaluate(other);
                 assert!(scattered.is_finite() && pdf.is_finite());
                 assert!(scattered.is_black() || other.z * from.z > 0.0, "light leaks");
-                if let Some(next) = here.sample(|| 0.5, sampler.two(2)) {
+                if let Some(next) = here.sample(&mut || 0.5, sampler.two(2)) {
                     assert!(next.wi.z * from.z > 0.0, "a path leaks");
                     assert!((next.wi.length() - 1.0).abs() < 1e-12);
                     let (scattered, pdf) = here.evaluate(next.wi);

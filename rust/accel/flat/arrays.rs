@@ -110,7 +110,7 @@ impl Flat {
             primitives.is_finite(p).then(|| Bounds { min: a.min(b).min(c), max: a.max(b).max(c) })
         };
         let of_triangles = match primitives.objects() {
-            Some(_) => region(primitives.count(), region_of),
+            Some(_) => region(primitives.count(), &region_of),
             None => input.region,
         };
         let Layout { nodes, triangles, instances, .. } = layout;

@@ -322,7 +322,7 @@ impl<'a> BidirectionalWorker<'a> {
     fn go_on(&mut self, at: &EyeVertex, mut path: EyePath, width: f64, sampler: &mut Sampler, dimensions: Dimensions) {
         let here = at.here();
         let u = sampler.two(dimensions.direction());
-        let Some(next) = here.sample(|| sampler.one(dimensions.scattering_choice()), u) else { return };
+        let Some(next) = here.sample(&mut || sampler.one(dimensions.scattering_choice()), u) else { return };
         path.throughput *= next.weight;
         path.part(at.parting.as_ref(), here.wo(), &next);
         path.scale *= next.eta * next.eta;

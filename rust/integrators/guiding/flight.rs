@@ -250,7 +250,7 @@ fn branch(here: &SurfaceInteraction, choice: f64, u: [f64; 2]) -> Option<(BsdfSa
     } else {
         1f64.next_down()
     };
-    let next = here.sample(|| choice, u)?;
+    let next = here.sample(&mut || choice, u)?;
     let is_end = |is_it| if is_it { 0.25 } else { 0.0 };
     let ends = is_end(next.choices[0] == 0.0) + is_end(next.choices[1] == 1.0);
     let likely = next.probability();

@@ -172,7 +172,7 @@ impl<'a> Arrived<'a> {
     }
 
     /// Draws where light goes on to.
-    pub fn onward(&self, choice: impl FnOnce() -> f64, [u, v]: [f64; 2]) -> Option<Onward> {
+    pub fn onward(&self, choice: &mut dyn FnMut() -> f64, [u, v]: [f64; 2]) -> Option<Onward> {
         let here = &self.here;
         let transmits = here.bsdf().transmits();
         let about = about_geometric(here);

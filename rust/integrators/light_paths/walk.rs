@@ -283,7 +283,7 @@ impl<'a> LightWalk<'a> {
             return;
         }
         let u = sampler.two(dimensions.direction());
-        let Some(next) = arrived.onward(|| sampler.one(dimensions.scattering_choice()), u) else { return };
+        let Some(next) = arrived.onward(&mut || sampler.one(dimensions.scattering_choice()), u) else { return };
         visitor.go_on(arrived, &path, &next);
         match parting {
             Some(_) if next.is_through => path.end_all_but_hero(),

@@ -64,7 +64,7 @@ fn by_scattering(scene: &Scene, count: u32) -> (f64, f64) {
     let (mut sum, mut squares) = (0.0, 0.0);
     for number in 0..count {
         let mut sampler = Sampler::new(11, 0, number);
-        let Some(next) = here.sample(|| sampler.one(0), Sampler::new(11, 1, number).two(0)) else { continue };
+        let Some(next) = here.sample(&mut || sampler.one(0), Sampler::new(11, 1, number).two(0)) else { continue };
         let ray = here.ray_origin().ray(next.wi);
         scene.intersect(&[ray], &mut hit);
         let arriving = if hit[0].is_hit() {

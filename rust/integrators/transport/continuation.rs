@@ -30,7 +30,7 @@ loops! {
     ) {
         for i in 0..LANES {
             let here = encounters.faded(i, Diffuse { reflectance: reflectance.get(i) });
-            let (towards, times, density) = match here.sample(|| 0.0, [u[0][i], u[1][i]]) {
+            let (towards, times, density) = match here.sample(&mut || 0.0, [u[0][i], u[1][i]]) {
                 Some(next) => (next.wi, next.weight, next.pdf),
                 None => (here.normal(), Rgb::ZERO, 0.0),
             };

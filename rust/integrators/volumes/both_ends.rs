@@ -384,8 +384,8 @@ impl<'a> BothEnds<'a> {
         let ray = sample.numbers.ray;
         let (u, choice) = (sample.numbers.two(ray.direction()), ray.scattering_choice());
         let next = match &at.point {
-            Point::Surface { arrived, .. } => arrived.here.sample(|| sample.numbers.one(choice), u),
-            Point::Medium { here, .. } => here.sample(|| 0.0, u),
+            Point::Surface { arrived, .. } => arrived.here.sample(&mut || sample.numbers.one(choice), u),
+            Point::Medium { here, .. } => here.sample(&mut || 0.0, u),
         };
         let Some(next) = next else { return false };
         match (&at.point, parting) {

@@ -246,7 +246,7 @@ impl<'a> MediaLightWalk<'a> {
         }
         let u = numbers.two(dimensions.direction());
         let choice = dimensions.scattering_choice();
-        let Some(next) = at.onward(|| numbers.one(choice), u) else { return false };
+        let Some(next) = at.onward(&mut || numbers.one(choice), u) else { return false };
         visitor.go_on(at, path, &next);
         match (&at.point, parting) {
             (_, Some(_)) if next.is_through => path.end_all_but_first(),

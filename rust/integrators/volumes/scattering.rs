@@ -31,7 +31,7 @@ impl Encounter for Scattering {
         (Rgb::splat(pdf), pdf)
     }
 
-    fn sample(&self, _choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
+    fn sample(&self, _choice: &mut dyn FnMut() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
         let wi = self.phase.sample(self.before, u);
         Some(BsdfSample::new(wi, Rgb::ONE, self.phase.pdf(self.before, wi)))
     }

@@ -37,7 +37,7 @@ impl Encounter for AllWays {
         (Rgb::ONE, Self::PDF)
     }
 
-    fn sample(&self, choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
+    fn sample(&self, choice: &mut dyn FnMut() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
         self.0.sample(choice, u).map(|drawn| BsdfSample::new(drawn.wi, Rgb::ONE, Self::PDF))
     }
 }
@@ -60,7 +60,7 @@ impl<A: Asks> Walker<'_, A> {
         let asked = self.direct_light(&here, path, |_| media, hero, numbers, cancel).await;
         let (to_light, lit) = asked.map_or((DVec3::X, Rgb::ZERO), |(light, arrives)| (light.direction, arrives));
         let u = numbers.ray.direction();
-        let next = here.sample(|| 0.0, numbers.two(u))?;
+        let next = here.sample(&mut || 0.0, numbers.two(u))?;
         let chance = numbers.ray.roulette();
         let goes_on = self.go_on(path, &here, &next, media, numbers.one(chance), self.never_ends());
         let second = Second::of_medium(here.position(), (to_light, lit), next.wi);

@@ -165,7 +165,7 @@ impl<'a> Vertex<'a> {
     }
 
     /// Draws where light goes on to.
-    pub fn onward(&self, choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<Onward> {
+    pub fn onward(&self, choice: &mut dyn FnMut() -> f64, u: [f64; 2]) -> Option<Onward> {
         match &self.point {
             Point::Surface { arrived, .. } => arrived.onward(choice, u),
             Point::Medium { here, .. } => {

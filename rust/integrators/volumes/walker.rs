@@ -238,7 +238,7 @@ impl<'a, A: Asks> Walker<'a, A> {
             *light += arrives * weight;
         }
         let u = numbers.ray.direction();
-        let Some(next) = here.sample(|| 0.0, numbers.two(u)) else { return false };
+        let Some(next) = here.sample(&mut || 0.0, numbers.two(u)) else { return false };
         let chance = numbers.ray.roulette();
         self.go_on(path, here, &next, media, numbers.one(chance), self.never_ends())
     }
@@ -305,7 +305,7 @@ impl<'a, A: Asks> Walker<'a, A> {
         }
         let choice = numbers.ray.scattering_choice();
         let u = numbers.two(choice + 1);
-        let Some(next) = here.sample(|| numbers.one(choice), u) else { return false };
+        let Some(next) = here.sample(&mut || numbers.one(choice), u) else { return false };
         let media = if next.is_through { through } else { path.media };
         path.is_sharp_since = path.is_gathered;
         let chance = numbers.ray.roulette();
@@ -352,7 +352,7 @@ impl<'a, A: Asks> Walker<'a, A> {
             let dimensions = Dimensions::of(path.bounce, branch);
             let choice = dimensions.scattering_choice();
             let u = numbers.two(choice + 1);
-            let Some(mut next) = here.sample(|| numbers.one(choice), u) else { continue };
+            let Some(mut next) = here.sample(&mut || numbers.one(choice), u) else { continue };
             let media = if next.is_through { through } else { path.media };
             next.pdf *= path.splits;
             next.weight /= path.splits;

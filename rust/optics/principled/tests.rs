@@ -139,7 +139,7 @@ fn draws_are_as_dense_as_they_say() {
             for i in 0..count {
                 let mut numbers = Sampler::new(7, 0, i);
                 let (choice, u, place) = (numbers.one(2), numbers.two(0), numbers.two(3));
-                if let Some(sample) = bsdf.sample(wo, || choice, u) {
+                if let Some(sample) = bsdf.sample(wo, &mut || choice, u) {
                     let (value, pdf) = bsdf.evaluate(wo, sample.wi);
                     assert!((sample.pdf / pdf - 1.0).abs() < 1e-12);
                     assert!((sample.weight - value / pdf).abs().max() < 1e-12);
@@ -177,7 +177,7 @@ fn little_light_is_gained() {
                     for i in 0..4000 {
                         let mut numbers = Sampler::new(3, 0, i);
                         let (choice, u) = (numbers.one(2), numbers.two(0));
-                        sum += bsdf.sample(wo, || choice, u).map_or(0.0, |s| s.weight.max() * s.eta * s.eta);
+                        sum += bsdf.sample(wo, &mut || choice, u).map_or(0.0, |s| s.weight.max() * s.eta * s.eta);
                     }
                     let most = if wo.z.abs() > 0.3 { 1.17 } else { 1.5 };
                     assert!(sum / 4000.0 < most, "{roughness} {transmission} {wo}: {}", sum / 4000.0);

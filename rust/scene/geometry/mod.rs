@@ -201,7 +201,7 @@ impl Primitives for Geometry {
 
     fn region(&self) -> Region {
         // Not within the lock: threads that wait for others take up work of theirs, which may come here too.
-        let region = self.region.get().copied().unwrap_or_else(|| region(self.count(), |p| self.bounds(p)));
+        let region = self.region.get().copied().unwrap_or_else(|| region(self.count(), &|p| self.bounds(p)));
         let _ = self.region.set(region);
         region
     }

@@ -113,7 +113,7 @@ impl Lights {
         one: u32,
         geometry: &Geometry,
         receiver: &LightSampleContext,
-        choice: impl FnOnce() -> f64,
+        choice: &mut dyn FnMut() -> f64,
         u: [f64; 2],
     ) -> Option<LightSample> {
         let Some(lamp) = self.few.within.get(one as usize) else {

@@ -139,7 +139,7 @@ impl Lights {
         if !self.is_within(one) {
             for lane in 0..LANES {
                 let (receiver, u) = (receivers.get(lane), [u[0][lane], u[1][lane]]);
-                lights.set(lane, self.sample_one(one, geometry, &receiver, || choice[lane], u));
+                lights.set(lane, self.sample_one(one, geometry, &receiver, &mut || choice[lane], u));
             }
             return;
         }

@@ -325,7 +325,7 @@ mod tests {
                     let (one, wo) = (bsdf(turn, lane), to.get(lane));
                     let found = (value.get(lane), pdf[lane]);
                     assert_eq!(found, one.evaluate(wo, from.get(lane)), "{level:?} {turn} {lane}");
-                    let wanted = one.sample(wo, || choice[lane], [u[0][lane], u[1][lane]]);
+                    let wanted = one.sample(wo, &mut || choice[lane], [u[0][lane], u[1][lane]]);
                     let told = |of: BsdfSample| (of.wi, of.weight, of.pdf, of.eta, of.is_through);
                     let found = drawn.get(lane);
                     assert_eq!(found.map(told), wanted.map(told), "{level:?} {turn} {lane}");

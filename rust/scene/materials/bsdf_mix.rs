@@ -73,10 +73,10 @@ impl BsdfMix {
 }
 
 /// Those of one kind, which have the least choices: one after the other.
-fn delta_lobes(bsdf: &AnyBsdf, weight: Rgb, wo: DVec3, each: &mut impl FnMut(BsdfSample)) {
+fn delta_lobes(bsdf: &AnyBsdf, weight: Rgb, wo: DVec3, each: &mut dyn FnMut(BsdfSample)) {
     let mut choice = 0.0;
     while choice < 1.0
-        && let Some(drawn) = bsdf.sample(wo, || choice, [0.5; 2])
+        && let Some(drawn) = bsdf.sample(wo, &mut || choice, [0.5; 2])
         && drawn.is_delta()
     {
         each(BsdfSample { weight: drawn.weight * weight * drawn.probability(), ..drawn });
@@ -100,13 +100,13 @@ impl Bsdf for BsdfMix {
     }
 
     #[inline]
-    fn sample(&self, wo: DVec3, choice: impl FnOnce() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
+    fn sample(&self, wo: DVec3, choice: &mut dyn FnMut() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
         match self {
             Self::One(bsdf) => bsdf.sample(wo, choice, u),
             Self::Several(parts) => {
                 let chosen = Chosen::new(parts, choice())?;
                 let (weight, bsdf) = &parts[chosen.part];
-                let sample = bsdf.sample(wo, || chosen.rest, u)?;
+                let sample = bsdf.sample(wo, &mut || chosen.rest, u)?;
                 let choices = sample.choices.map(|choice| chosen.among_all(choice));
                 if sample.is_delta() {
                     let weight = sample.weight * *weight / chosen.probability();

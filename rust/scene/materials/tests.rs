@@ -112,7 +112,7 @@ fn no_material_gives_more_light_than_it_gets() {
             for sample in 0..draws {
                 let mut sampler = Sampler::new(31, 2, sample);
                 let u = sampler.two(0);
-                let Some(drawn) = bsdf.sample(wo, || sampler.one(1), u) else { continue };
+                let Some(drawn) = bsdf.sample(wo, &mut || sampler.one(1), u) else { continue };
                 assert!((drawn.wi.length() - 1.0).abs() < 1e-9, "{material:?}");
                 // Radiance grows by the square of the index where it is squeezed into less of a solid angle.
                 let energy = drawn.weight * drawn.eta * drawn.eta;
@@ -168,7 +168,7 @@ fn draws_of_mixes_have_their_density() {
     for sample in 0..draws {
         let mut sampler = Sampler::new(32, 3, sample);
         let u = sampler.two(0);
-        let Some(drawn) = bsdf.sample(wo, || sampler.one(1), u) else {
+        let Some(drawn) = bsdf.sample(wo, &mut || sampler.one(1), u) else {
             counts[rows * columns] += 1;
             continue;
         };
@@ -204,13 +204,13 @@ fn black_parts_of_a_mix_are_never_drawn() {
     for sample in 0..100 {
         let mut sampler = Sampler::new(35, 6, sample);
         let u = sampler.two(0);
-        let drawn = bsdf.sample(wo, || sampler.one(1), u).unwrap();
+        let drawn = bsdf.sample(wo, &mut || sampler.one(1), u).unwrap();
         assert!((drawn.weight - 0.2).abs().max() < 1e-15);
         assert!((drawn.pdf - drawn.wi.z / PI).abs() < 1e-15);
     }
     let black = MixMaterial { a: grey(0.0), b: grey(0.0), amount: 0.25.into() };
     let black = black.bsdf(&at(0.0, 0.0));
-    assert!(black.sample(wo, || 0.5, [0.5; 2]).is_none());
+    assert!(black.sample(wo, &mut || 0.5, [0.5; 2]).is_none());
     assert_eq!(black.evaluate(wo, DVec3::Z), (Rgb::ZERO, 0.0));
 }
 
@@ -222,7 +222,7 @@ fn mixes_with_single_directions_keep_both() {
     for sample in 0..draws {
         let mut sampler = Sampler::new(33, 4, sample);
         let u = sampler.two(0);
-        let drawn = bsdf.sample(DVec3::new(0.6, 0.0, 0.8), || sampler.one(1), u).unwrap();
+        let drawn = bsdf.sample(DVec3::new(0.6, 0.0, 0.8), &mut || sampler.one(1), u).unwrap();
         assert!((drawn.weight - 1.0).abs().max() < 1e-12);
         single += u32::from(drawn.pdf == f64::INFINITY);
     }
@@ -368,7 +368,7 @@ fn glass_is_relative_to_what_is_outside() {
     // By Snell's law the sine is divided by the ratio; of the same index nothing is bent.
     for outside in [1.0, 1.2, 1.5, 2.0] {
         let refracted = (0..100).find_map(|i| {
-            within(outside).sample(wo, || (f64::from(i) + 0.5) / 100.0, [0.5; 2]).filter(|drawn| drawn.wi.z < 0.0)
+            within(outside).sample(wo, &mut || (f64::from(i) + 0.5) / 100.0, [0.5; 2]).filter(|drawn| drawn.wi.z < 0.0)
         });
         let refracted = refracted.unwrap();
         assert!((refracted.wi.x + 0.6 * outside / 1.5).abs() < 1e-12, "{refracted:?}");
@@ -391,7 +391,7 @@ fn what_is_the_same_everywhere_is_told_as_at_any_point() {
             let sharply = |s: crate::optics::BsdfSample| (s.wi, s.weight, s.pdf, s.eta);
             for side in [wo, -wo] {
                 assert_eq!(bsdf.evaluate(side, wi), here.evaluate(side, wi), "{material:?}");
-                let [a, b] = [bsdf.sample(side, || 0.3, [0.4, 0.6]), here.sample(side, || 0.3, [0.4, 0.6])];
+                let [a, b] = [bsdf.sample(side, &mut || 0.3, [0.4, 0.6]), here.sample(side, &mut || 0.3, [0.4, 0.6])];
                 assert_eq!(a.map(sharply), b.map(sharply), "{material:?}");
             }
         }

@@ -4,9 +4,9 @@ use super::leaves::Leaves;
 use super::pretest::{BlockRay, BlockRays};
 use super::rows::Rows;
 use super::{EdgeRay, PlainRays, RAYS};
+use crate::loops;
 use crate::math::{DVec3, Region};
 use crate::simd::Lanes;
-use rayon::prelude::*;
 
 /// Triangles whose coordinates are f32.
 #[derive(Clone, Debug)]
@@ -80,7 +80,7 @@ impl<const N: usize> Leaves<N> for DoubleLeaves<N> {
             let [a, b, c] = corners(p);
             [region.to_box(a).as_vec3(), ((b - a) * region.scale).as_vec3(), ((c - a) * region.scale).as_vec3()]
         });
-        Self { rows, corners: order.par_iter().map(|&p| corners(p)).collect() }
+        Self { rows, corners: loops::collect(order.len(), |i| corners(order[i])) }
     }
 
     #[inline(always)]

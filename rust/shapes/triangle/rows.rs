@@ -1,9 +1,9 @@
 //! The triangles of a tree's leaves in f32, side by side, and the first test of them.
 
 use super::pretest::{BlockRay, difference, not_rejected};
+use crate::loops;
 use crate::math::Vec3;
 use crate::simd::Lanes;
-use rayon::prelude::*;
 
 /// Numbers of a triangle: nine coordinates and which it is.
 const ROWS: usize = 10;
@@ -51,7 +51,7 @@ impl<const N: usize> Rows<N> {
             parts.push((part, mine, counts));
             (rest, order) = (others, more);
         }
-        parts.into_par_iter().for_each(|(mut part, mut order, counts)| {
+        loops::of_parts(parts, |(mut part, mut order, counts): (&mut [f32], &[u32], &[u32])| {
             for &count in counts {
                 let count = count as usize;
                 assert!(count <= N, "a leaf has at most {N} triangles");

@@ -247,12 +247,12 @@ impl Made {
     fn of(boxes: &[Aabb], shapes: &impl Shapes, least: f32, budget: usize) -> Self {
         let mut made = Self::default();
         let long: Vec<_> = long(boxes, least).collect();
-        made.cut(&long, |p, whole| Cut::new(p, whole, shapes, least), budget);
+        made.cut(&long, &|p, whole| Cut::new(p, whole, shapes, least), budget);
         made
     }
 
     /// Cuts so often at most, the cuts that gain most first, to a factor of two.
-    fn cut(&mut self, long: &[(u32, &Aabb)], cut: impl Fn(u32, &Aabb) -> Option<Cut> + Sync, mut budget: usize) {
+    fn cut(&mut self, long: &[(u32, &Aabb)], cut: &(dyn Fn(u32, &Aabb) -> Option<Cut> + Sync), mut budget: usize) {
         let first: Vec<_> = long.par_iter().map(|&(p, whole)| cut(p, whole)).collect();
         let greatest = first.iter().flatten().fold(0f32, |greatest, cut| greatest.max(cut.gain));
         // Those that gain more than half of the greatest, more than a quarter, and so on.

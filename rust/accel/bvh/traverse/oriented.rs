@@ -4,9 +4,9 @@
 use super::numbered::Numbered;
 use super::volumes::{Line, NOWHERE, Points, Span, Volumes, grow};
 use crate::accel::SlabRay;
+use crate::loops;
 use crate::math::{DVec3, Vec3};
 use crate::shapes::oriented_box::OrientedBox;
-use rayon::prelude::*;
 
 /// What a turned box has of the surface of the node's own at most: one that has more is not worth its test.
 const WORTHWHILE: f32 = 0.8;
@@ -50,10 +50,9 @@ impl Volumes for Oriented {
     type Ready = Line;
 
     fn around(tree: &Numbered, points: &Points) -> Self {
-        let turned: Vec<_> = (0..tree.nodes.len())
-            .into_par_iter()
-            .map(|i| Turned::around(&points.below(tree, i), tree.nodes[i].aabb().half_area()))
-            .collect();
+        let turned = loops::collect(tree.nodes.len(), |i| {
+            Turned::around(&points.below(tree, i), tree.nodes[i].aabb().half_area())
+        });
         let mut count = 0;
         let which = turned.iter().map(|turned| match turned {
             None => Self::NONE,

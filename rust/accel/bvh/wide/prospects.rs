@@ -9,6 +9,7 @@
 
 use super::WideBvh;
 use super::node::{Packed, WideNode};
+use crate::loops;
 use crate::math::{Aabb, DVec3};
 use crate::shapes::triangle::Leaves;
 use rayon::prelude::*;
@@ -53,17 +54,15 @@ fn arrange<const N: usize, L: Leaves<N>>(
     to_box: impl Fn(DVec3) -> DVec3 + Sync,
 ) {
     // What a node knows by itself, side by side; then what it knows from below, which is little work; then the moves.
-    let known: Vec<[Known; N]> = nodes
-        .par_iter()
-        .map(|node| {
-            let whole = node.bounds().half_area().max(f32::MIN_POSITIVE);
-            from_fn(|lane| {
-                let (child, bounds) = (Packed::of(node.children[lane]), node.aabb(lane));
-                let of_leaf = (child.kind() == 1).then(|| leaf(leaves, &to_box, child, &bounds));
-                Known { met: (bounds.half_area() / whole).min(1.0), of_leaf }
-            })
+    let known: Vec<[Known; N]> = loops::collect(nodes.len(), |i| {
+        let node = &nodes[i];
+        let whole = node.bounds().half_area().max(f32::MIN_POSITIVE);
+        from_fn(|lane| {
+            let (child, bounds) = (Packed::of(node.children[lane]), node.aabb(lane));
+            let of_leaf = (child.kind() == 1).then(|| leaf(leaves, &to_box, child, &bounds));
+            Known { met: (bounds.half_area() / whole).min(1.0), of_leaf }
         })
-        .collect();
+    });
     let mut of_nodes = vec![Prospect { chance: 0.0, cost: 1.0 }; nodes.len()];
     let mut orders = vec![[0; N]; nodes.len()];
     for (index, node) in nodes.iter().enumerate().rev() {

@@ -38,7 +38,7 @@ fn sky(radiance: f64) -> Arc<dyn Light> {
 fn draw(scene: &Scene, one: u32, receiver: &LightSampleContext, number: u32) -> Option<LightSample> {
     let mut sampler = Sampler::new(1, one, number);
     let u = sampler.two(1);
-    scene.lights().sample_one(one, scene.geometry(), receiver, || sampler.one(0), u)
+    scene.lights().sample_one(one, scene.geometry(), receiver, &mut || sampler.one(0), u)
 }
 
 /// Mean and standard error of the irradiance of one.

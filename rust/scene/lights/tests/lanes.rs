@@ -91,7 +91,7 @@ fn lanes_have_the_light_of_each_draw_at_every_level() {
                 for one in 0..lights.few() {
                     lights.sample_one_lanes(one, level, geometry, &receivers, &choice, &u, &mut lanes);
                     for lane in 0..LANES {
-                        let wanted = lights.sample_one(one, geometry, &own[lane], || choice[lane], at(lane));
+                        let wanted = lights.sample_one(one, geometry, &own[lane], &mut || choice[lane], at(lane));
                         assert_eq!(bits(lanes.sample(lane)), bits(wanted), "{which} {one} {level:?} {:?}", own[lane]);
                     }
                 }
