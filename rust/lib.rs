@@ -5,9 +5,9 @@
 pub mod accel;
 pub mod exchange;
 pub mod integrators;
-pub mod loops;
 pub mod math;
 pub mod optics;
+pub mod parallel;
 pub mod render;
 pub mod sampling;
 pub mod scene;

@@ -6,7 +6,7 @@
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU32, AtomicUsize, Ordering::Relaxed};
 
-use crate::loops;
+use crate::parallel;
 
 /// What is known of some work by those who do it, and by those who watch it.
 #[derive(Debug, Default)]
@@ -98,7 +98,7 @@ impl<'a> Work<'a> {
     pub fn collect<T: Send>(self, count: usize, make: impl Fn(usize) -> T + Sync) -> Result<Vec<T>, Stopped> {
         let mut made = Vec::with_capacity(count);
         for round in self.rounds(count) {
-            loops::extend(&mut made, round?, &make);
+            parallel::extend(&mut made, round?, &make);
         }
         self.done();
         Ok(made)

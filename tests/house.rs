@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 
 /// On which floor what stands in `rust/` is.
 const FLOORS: [(&str, u8); 15] = [
-    ("loops", 0),
+    ("parallel", 0),
     ("math", 0),
     ("simd", 0),
     ("sampling", 0),

@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 use super::arrays::{Numbers, Row, Rows, Triples};
 use crate::math::gathering::WINDOW;
 use crate::math::{Ray, Tiling, row_length};
-use crate::{loops, workers};
+use crate::{parallel, workers};
 
 /// Rays that are gathered from the arrays and asked together, at most: few enough to stay in a near cache and for
 /// Ctrl-C to be heard, and enough that a wave of rays in flight is seldom run down. (512 take 2 to 5 % longer where
@@ -234,7 +234,7 @@ pub fn each<C: Send, T: Send>(
             workers::watched(
                 threads,
                 |cancel| {
-                    let made = loops::of_parts(chunks, |chunk| (!cancel.is_raised()).then(|| work(chunk)));
+                    let made = parallel::of_parts(chunks, |chunk| (!cancel.is_raised()).then(|| work(chunk)));
                     made.into_iter().collect::<Option<_>>()
                 },
                 || {

@@ -2,8 +2,8 @@
 
 use super::bytes::{Malformed, Reader, Writer};
 use super::tile::{Cell, FilmTile};
-use crate::loops;
 use crate::optics::Rgb;
+use crate::parallel;
 use rayon::prelude::*;
 
 /// The samples of a picture so far: for each pixel and channel their sum, and what it takes to know its error.
@@ -275,7 +275,7 @@ impl Film {
         let mut all = vec![T::default(); self.pixel_count()];
         // Rows of no pixels would be chunks of nothing.
         let rows: Vec<_> = (0..).zip(all.chunks_mut(self.width.max(1) as usize)).collect();
-        loops::of_parts(rows, |(y, row)| self.row(y, row, &of));
+        parallel::of_parts(rows, |(y, row)| self.row(y, row, &of));
         all
     }
 

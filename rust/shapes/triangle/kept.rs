@@ -4,8 +4,8 @@ use super::leaves::Leaves;
 use super::pretest::{BlockRay, BlockRays};
 use super::rows::Rows;
 use super::{EdgeRay, PlainRays, RAYS};
-use crate::loops;
 use crate::math::{DVec3, Region};
+use crate::parallel;
 use crate::simd::Lanes;
 
 /// Triangles whose coordinates are f32.
@@ -80,7 +80,7 @@ impl<const N: usize> Leaves<N> for DoubleLeaves<N> {
             let [a, b, c] = corners(p);
             [region.to_box(a).as_vec3(), ((b - a) * region.scale).as_vec3(), ((c - a) * region.scale).as_vec3()]
         });
-        Self { rows, corners: loops::collect(order.len(), |i| corners(order[i])) }
+        Self { rows, corners: parallel::collect(order.len(), &|i| corners(order[i])) }
     }
 
     #[inline(always)]

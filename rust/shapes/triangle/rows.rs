@@ -1,8 +1,8 @@
 //! The triangles of a tree's leaves in f32, side by side, and the first test of them.
 
 use super::pretest::{BlockRay, difference, not_rejected};
-use crate::loops;
 use crate::math::Vec3;
+use crate::parallel;
 use crate::simd::Lanes;
 
 /// Numbers of a triangle: nine coordinates and which it is.
@@ -51,7 +51,7 @@ impl<const N: usize> Rows<N> {
             parts.push((part, mine, counts));
             (rest, order) = (others, more);
         }
-        loops::of_parts(parts, |(mut part, mut order, counts): (&mut [f32], &[u32], &[u32])| {
+        parallel::of_parts(parts, |(mut part, mut order, counts): (&mut [f32], &[u32], &[u32])| {
             for &count in counts {
                 let count = count as usize;
                 assert!(count <= N, "a leaf has at most {N} triangles");

@@ -4,8 +4,8 @@
 use super::numbered::Numbered;
 use super::volumes::{Line, NOWHERE, Points, Span, Volumes, grow};
 use crate::accel::SlabRay;
-use crate::loops;
 use crate::math::{DVec3, Vec3};
+use crate::parallel;
 use crate::shapes::oriented_box::OrientedBox;
 
 /// What a turned box has of the surface of the node's own at most: one that has more is not worth its test.
@@ -50,7 +50,7 @@ impl Volumes for Oriented {
     type Ready = Line;
 
     fn around(tree: &Numbered, points: &Points) -> Self {
-        let turned = loops::collect(tree.nodes.len(), |i| {
+        let turned = parallel::collect(tree.nodes.len(), &|i| {
             Turned::around(&points.below(tree, i), tree.nodes[i].aabb().half_area())
         });
         let mut count = 0;

@@ -9,8 +9,8 @@
 
 use super::WideBvh;
 use super::node::{Packed, WideNode};
-use crate::loops;
 use crate::math::{Aabb, DVec3};
+use crate::parallel;
 use crate::shapes::triangle::Leaves;
 use rayon::prelude::*;
 use std::array::from_fn;
@@ -54,7 +54,7 @@ fn arrange<const N: usize, L: Leaves<N>>(
     to_box: impl Fn(DVec3) -> DVec3 + Sync,
 ) {
     // What a node knows by itself, side by side; then what it knows from below, which is little work; then the moves.
-    let known: Vec<[Known; N]> = loops::collect(nodes.len(), |i| {
+    let known: Vec<[Known; N]> = parallel::collect(nodes.len(), &|i| {
         let node = &nodes[i];
         let whole = node.bounds().half_area().max(f32::MIN_POSITIVE);
         from_fn(|lane| {
