@@ -43,7 +43,7 @@ pub fn matrix(scene: &Scene, aim: &Aim, work: Work) -> Result<Matrix, Stopped> {
         aim,
         level: Level::current().unwrap_or(Level::Scalar),
         steps: work.steps(count * count),
-        factors: (0..count * count).map(|_| AtomicU64::new(0)).collect(),
+        factors: (0..count * count).into_par_iter().map(|_| AtomicU64::new(0)).collect(),
         sampled: Mutex::default(),
         counts: Default::default(),
         rays: AtomicU64::new(0),
@@ -159,16 +159,19 @@ impl Everything<'_> {
     /// All pairs of faces of two clusters.
     fn pairs(&self, one: &Cluster, other: &Cluster, is_same: bool, may_hide: &[u32]) {
         let (ones, others) = (self.tree.faces(one), self.tree.faces(other));
+        let against = [ones, others].map(|faces| self.against(faces, may_hide));
+        let face = |side: usize, k: usize, number: u32| Face {
+            facet: &self.facets[number as usize],
+            against: &against[side][k * may_hide.len()..][..may_hide.len()],
+        };
         let mut quadrature = Quadrature::new(self.level);
         let (mut open, mut counts) = (Vec::new(), [0; 3]);
         for (k, &i) in ones.iter().enumerate() {
-            let rest = if is_same { &others[k + 1..] } else { others };
-            for &j in rest {
-                let (from, to) = (&self.facets[i as usize], &self.facets[j as usize]);
-                let faces = [i.min(j), i.max(j)];
+            for (l, &j) in others.iter().enumerate().skip(if is_same { k + 1 } else { 0 }) {
                 // In the order of their numbers, whatever that of the tree.
-                let (from, to) = if i < j { (from, to) } else { (to, from) };
-                match self.hidden(from, to, may_hide) {
+                let [one, other] = if i < j { [face(0, k, i), face(1, l, j)] } else { [face(1, l, j), face(0, k, i)] };
+                let (from, to, faces) = (one.facet, other.facet, [i.min(j), i.max(j)]);
+                match self.hidden(&one, &other, may_hide) {
                     Some(Hidden::Wholly) => counts[1] += 1,
                     Some(Hidden::Partly) => {
                         let whole = pair(&mut quadrature, from, to);
@@ -204,37 +207,49 @@ impl Everything<'_> {
         let _ = self.steps.did(if is_same { pairs } else { 2 * pairs });
     }
 
+    /// What each of some faces is to each of some blockers: by face.
+    fn against(&self, faces: &[u32], blockers: &[u32]) -> Vec<Against> {
+        let one = |face: u32, blocker: u32| {
+            let face = &self.facets[face as usize];
+            match &self.blockers[blocker as usize] {
+                Blocker::Facet(facet) => Against {
+                    sides: facet.sides(face.corners),
+                    sees: face.sides(facet.corners)[0],
+                    heights: facet.heights(face),
+                },
+                Blocker::Curved(_) => Against { sides: [true, true], sees: true, heights: [0.0; 3] },
+            }
+        };
+        faces.iter().flat_map(|&face| blockers.iter().map(move |&blocker| one(face, blocker))).collect()
+    }
+
     /// How far two faces may be hidden from each other; not at all if none of these blockers touches their shaft.
-    fn hidden(&self, one: &Facet, other: &Facet, may_hide: &[u32]) -> Option<Hidden> {
+    fn hidden(&self, one: &Face, other: &Face, may_hide: &[u32]) -> Option<Hidden> {
         if may_hide.is_empty() {
             return None;
         }
         let looks = |one: &Facet, other: &Facet| one.sides(other.corners)[0];
-        if !looks(one, other) || !looks(other, one) {
+        if !looks(one.facet, other.facet) || !looks(other.facet, one.facet) {
             return None;
         }
         let geometry = self.scene.geometry();
-        let points = [one.corners, other.corners];
         let mut shaft: Option<Vec<HalfSpace>> = None;
         let mut found = None;
-        for &i in may_hide {
+        for (&i, (from, to)) in may_hide.iter().zip(one.against.iter().zip(other.against)) {
+            // What has both on one side of its plane, or is seen by one alone, lies aside.
+            let is_between = (0..2).all(|side| from.sides[side] || to.sides[side]);
+            if !is_between || !from.sees || !to.sees {
+                continue;
+            }
             let blocker = &self.blockers[i as usize];
-            if blocker.has_aside(points.iter().flatten().copied()) {
-                continue;
-            }
             if let Blocker::Facet(facet) = blocker
-                && (!looks(one, facet) || !looks(other, facet))
-            {
-                continue;
-            }
-            if let Blocker::Facet(facet) = blocker
-                && hides(facet, one, other)
+                && hides(facet, (one.facet, from.heights), (other.facet, to.heights))
             {
                 return Some(Hidden::Wholly);
             }
             // Where one is known to touch the shaft, others count only if they hide all.
             if found.is_none() {
-                let shaft = shaft.get_or_insert_with(|| between_facets(one, other));
+                let shaft = shaft.get_or_insert_with(|| between_facets(one.facet, other.facet));
                 if !shaft.iter().any(|half| blocker.is_beyond(geometry, half)) {
                     found = Some(Hidden::Partly);
                 }
@@ -295,6 +310,22 @@ impl Everything<'_> {
         }
         Ok(())
     }
+}
+
+/// A face, and what it is to each of the blockers that may hide it.
+struct Face<'a> {
+    facet: &'a Facet,
+    against: &'a [Against],
+}
+
+/// What a face is to a blocker, whatever it looks at.
+struct Against {
+    /// Whether some of the face is in front of the blocker's plane, and whether some is behind.
+    sides: [bool; 2],
+    /// Whether some of the blocker is in front of the face.
+    sees: bool,
+    /// How far in front of the blocker's plane the face's corners are.
+    heights: [f64; 3],
 }
 
 /// How far one face is hidden from another.

@@ -126,10 +126,9 @@ pub fn between_facets(one: &Facet, other: &Facet) -> Vec<HalfSpace> {
 }
 
 /// Whether a triangle hides all of one from all of another: it parts them, and all segments between their corners go
-/// through it, so that those between any of their points do.
-pub fn hides(blocker: &Facet, one: &Facet, other: &Facet) -> bool {
+/// through it, so that those between any of their points do. Each comes with the heights of its corners over the blocker.
+pub fn hides(blocker: &Facet, (one, from): (&Facet, [f64; 3]), (other, to): (&Facet, [f64; 3])) -> bool {
     let parts = |of: [f64; 3], than: [f64; 3]| of.iter().all(|&h| h > 0.0) && than.iter().all(|&h| h < 0.0);
-    let (from, to) = (blocker.heights(one), blocker.heights(other));
     if !parts(from, to) && !parts(to, from) {
         return false;
     }
