@@ -2,12 +2,16 @@
 
 import math
 import operator
+import os
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 Triple = tuple[float, float, float]
+
+# As many may be started on any machine, if they are asked for.
+_THREADS = 64
 
 _DOUBLE, _SINGLE = np.dtype(np.float64), np.dtype(np.float32)
 
@@ -144,6 +148,17 @@ def integer(name: str, value: int, least: int, most: int | None = None) -> int:
         allowed = f"at least {least}" if most is None else f"between {least} and {most}"
         raise ValueError(f"{name} must be {allowed}, got {result}")
     return result
+
+
+def thread_limit(threads: int | None) -> int | None:
+    """Return how many threads may be used, or None for one a core.
+
+    Many more than there are cores bring nothing, and take long to be started: of those there are no more.
+    """
+    if threads is None:
+        return None
+    limit = integer("threads", threads, 1)
+    return limit if limit <= _THREADS else min(limit, max(_THREADS, os.cpu_count() or 1))
 
 
 def choice(name: str, value: str, choices: tuple[str, ...]) -> None:

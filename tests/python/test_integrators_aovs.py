@@ -89,5 +89,16 @@ def test_the_way_in_the_picture_is_that_of_what_moves_and_of_what_looks():
 def test_unknown_names_are_refused(room):
     with pytest.raises(ValueError, match=r"aov 'height' is not known, expected some of depth, "):
         rw.aovs(*room, "height")
-    with pytest.raises(TypeError, match="aov must be names, got 7"):
-        rw.aovs(*room, ["depth", 7])
+    for other, told in ((["depth", 7], "7"), (7, "7"), (None, "None"), ([["depth"]], r"\['depth'\]")):
+        with pytest.raises(TypeError, match=f"aov must be names, got {told}"):
+            rw.aovs(*room, other)
+        with pytest.raises(TypeError, match=f"aov must be names, got {told}"):
+            rw.render(*room, samples=1, aov=other, progress=False)
+
+
+def test_what_is_no_scene_or_no_camera_is_refused(room):
+    scene, camera = room
+    with pytest.raises(TypeError, match=r"scene must be a raywright\.Scene, got NoneType"):
+        rw.aovs(None, camera)
+    with pytest.raises(TypeError, match=r"camera must be a raywright\.Camera, got Scene"):
+        rw.aovs(scene, scene)

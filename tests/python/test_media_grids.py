@@ -205,7 +205,6 @@ def test_sparse_grids_keep_their_numbers(coloured):
         (lambda: rw.SparseGrid((4, 4, 4), [((0, 0, 1), [[[1.0, -1.0]]])]), ValueError, "got -1 at .0, 0, 2"),
         (lambda: rw.SparseGrid((4, 4, 4), [((0, 0, 1), [[["a"]]])]), TypeError, "must be real"),
         (lambda: rw.SparseGrid.of([[[1e39]]]), ValueError, "at least 0, got inf"),
-        (lambda: rw.SparseGrid.of(np.ones((2, 2))), ValueError, "shape must be"),
         (lambda: np.array(rw.SparseGrid((1, 1, 1)), copy=False), ValueError, "by a copy"),
         (lambda: rw.GridMedium(ONE, extinction=1.0), ValueError, "extinction must come with an albedo"),
         (
@@ -227,6 +226,15 @@ def test_sparse_grids_keep_their_numbers(coloured):
             lambda: rw.GridMedium(np.ones((1, 1, 1)), temperature=rw.SparseGrid((1, 1, 1, 3))),
             ValueError,
             r"temperature must have shape \(X, Y, Z\)",
+        ),
+        (lambda: rw.SparseGrid.of(3.0), ValueError, r"numbers must have shape \(X, Y, Z\) or .*, got \(\)"),
+        (lambda: rw.SparseGrid.of(np.ones((2, 2))), ValueError, "numbers must have shape"),
+        (lambda: rw.SparseGrid((2.5, 2, 2)), TypeError, r"shape must be integers, got \(2.5, 2, 2\)"),
+        (lambda: rw.SparseGrid(2), TypeError, "shape must be integers, got 2"),
+        (
+            lambda: rw.SparseGrid((2, 2, 2), [((0.5, 0, 0), np.ones((1, 1, 1)))]),
+            TypeError,
+            r"origin of a part must be integers, got \(0.5, 0, 0\)",
         ),
         (lambda: rw.GridMedium(ONE, temperature=[[[-1.0]]]), ValueError, "temperature must be finite"),
         (lambda: rw.GridMedium(ONE, brightness=-1), ValueError, "brightness must be at least 0"),

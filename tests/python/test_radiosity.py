@@ -406,6 +406,11 @@ REFUSED: list[tuple[str, Any, dict[str, Any]]] = [
         lambda: rw.Scene([rw.Mesh(CUBE[0], [(0, 1, 2), (0, 1, 1)], emission=1.0)]),
         {},
     ),
+    (
+        "scene has a medium",
+        lambda: rw.Scene([*room().shapes], medium=rw.Homogeneous(1.0)),
+        {},
+    ),
     ("has no area, or no end", lambda: rw.Scene([rw.Plane((0, 0, 0), (0, 0, 1), emission=1.0)]), {}),
     (
         "stretched",

@@ -122,6 +122,8 @@ def test_clamping_is_named_as_bias():
     share = 100 * (1 - clamped.rgb.mean(dtype=float) / free.rgb.mean(dtype=float))
     assert told.startswith("biased: ")
     assert told.endswith(f" samples were clamped to 2, which took {share:.2g} % of the radiance")
+    (told,) = render(scene, camera, samples=1, clamp=1e-9).warnings
+    assert told.endswith(" samples were clamped to 1e-09, which took 100 % of the radiance")
     # A bound that nothing reaches is no bias.
     unclamped = render(scene, camera, samples=32, clamp=1e6)
     assert unclamped == free or (np.array_equal(unclamped.rgb, free.rgb) and not unclamped.biased)

@@ -36,6 +36,12 @@ def test_what_is_no_radiance_counts_as_black_and_is_counted(value):
     assert math.isfinite(image.error.estimate)
 
 
+def test_one_sample_that_is_no_radiance_is_told_as_one():
+    scene, camera = rw.scenes.cornell_box(width=1, height=1)
+    image = rw.render(scene, camera, Spoilt(np.nan, 1.0), samples=1, progress=False)
+    assert image.warnings[0] == "1 sample was not finite or negative, and counts as black"
+
+
 def test_a_picture_without_any_says_nothing():
     scene, camera = rw.scenes.cornell_box(width=4, height=4)
     how = {"samples": 16, "sampler": rw.Independent(), "progress": False}

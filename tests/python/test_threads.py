@@ -2,6 +2,7 @@
 
 import multiprocessing
 import signal
+import subprocess
 import sys
 import threading
 import time
@@ -23,6 +24,21 @@ def rays(count):
 
 def hit_count(_):
     return int(rw.Scene(TETRAHEDRON).intersect(*rays(5000)).hit.sum())
+
+
+MANY = """
+import numpy as np
+import raywright as rw
+
+scene = rw.Scene(rw.Sphere((0, 0, 0), 1))
+for threads in (10**9, 2**70):
+    assert scene.intersect(np.zeros((1000, 3)), (0, 0, 1), threads=threads).hit.all()
+"""
+
+
+def test_a_limit_beyond_all_machines_starts_no_more_threads_than_are_of_use():
+    # Thousands of threads took minutes to be started, and nothing could end that.
+    subprocess.run([sys.executable, "-c", MANY], check=True, timeout=20)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no fork there")

@@ -27,12 +27,15 @@ def check_exchanging(scene: object, diffuse: bool = True) -> Scene:
     TypeError
         If it is no scene.
     ValueError
-        If it is empty, or something in it scatters otherwise than diffusely, where that counts.
+        If it is empty or filled by a medium, or something in it scatters otherwise than diffusely, where that
+        counts.
     """
     if not isinstance(scene, Scene):
         raise TypeError(f"scene must be a raywright.Scene, got {type(scene).__name__}")
     if not scene.shapes:
         raise ValueError("scene has no shapes: nothing exchanges light")
+    if scene.medium is not None:
+        raise ValueError("scene has a medium: what surfaces exchange goes through nothing, give medium=None")
     for number, shape in enumerate(scene.shapes):
         other = _not_diffuse(shape) if diffuse else None
         if other is not None:

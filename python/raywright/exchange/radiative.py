@@ -7,7 +7,7 @@ from typing import Any, Literal, TypeAlias, get_args
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..arrays import choice, integer, number, real_array
+from ..arrays import choice, integer, number, real_array, thread_limit
 from ..lights import ConstantEnvironment
 from ..scene.progress import BuildProgress, check_progress, watcher
 from ..scene.scene import Scene
@@ -24,6 +24,8 @@ ExchangeMethod: TypeAlias = Literal["matrix", "stochastic"]
 STEFAN_BOLTZMANN = 5.670374419184429e-8
 # Net fluxes are small differences, so that what is unshot must be next to nothing.
 _BIAS = 1e-5
+# Kelvin: of what is hotter the heat would be no finite number.
+_HOTTEST = 1e70
 # Up to so many faces the matrix is the default.
 _SMALL = 2048
 
@@ -152,7 +154,8 @@ def radiative_exchange(
     Raises
     ------
     ValueError
-        If a number is out of its range, there are too few or too many of them, or a face has no area.
+        If a number is out of its range, there are too few or too many of them, a face has no area, or the
+        scene has a medium.
     TypeError
         If something is of the wrong kind.
     """
@@ -168,6 +171,7 @@ def radiative_exchange(
         raise ValueError("sides must be 'front' for method='matrix', whose view factors are of fronts")
     kelvin = _per_face("temperature", temperature, faces)
     _check("temperature", kelvin, kelvin >= 0, "at least 0")
+    _check("temperature", kelvin, kelvin <= _HOTTEST, f"at most {_HOTTEST:g}")
     grey = _per_face("emissivity", emissivity, faces)
     _check("emissivity", grey, (grey > 0) & (grey <= 1), "above 0 and at most 1")
     light = grey if absorptance is None else _per_face("absorptance", absorptance, faces)
@@ -175,14 +179,15 @@ def radiative_exchange(
     sky = None
     if sky_temperature is not None:
         above = number("sky_temperature", sky_temperature)
-        if above < 0:
-            raise ValueError(f"sky_temperature must be at least 0, got {sky_temperature}")
+        _check("sky_temperature", np.array(above), np.array(above >= 0), "at least 0")
+        _check("sky_temperature", np.array(above), np.array(above <= _HOTTEST), f"at most {_HOTTEST:g}")
         sky = Scene([], environment=ConstantEnvironment(STEFAN_BOLTZMANN * above**4 / np.pi))
     wanted = None if error is None else number("error", error)
     if wanted is not None and wanted <= 0:
         raise ValueError(f"error must be greater than 0, got {error}")
     limit = None if rays is None else integer("rays", rays, 1, 2**50)
     integer("seed", seed, 0, 2**64 - 1)
+    threads = thread_limit(threads)
     check_progress(progress)
     kelvin, grey, light = (np.tile(part, 2 if both else 1) for part in (kelvin, grey, light))
     cuts = np.ones(sum(faces), np.uint32)
@@ -268,7 +273,7 @@ def _numbers(name: str, given: Any, count: int) -> Floats:
             f"{name} must be one number, or one for each of {count} faces, got shape {array.shape}"
         )
     if not np.isfinite(array).all():
-        raise ValueError(f"{name} must be finite")
+        raise ValueError(f"{name} must be finite, got {array[~np.isfinite(array)].flat[0]:g}")
     return np.broadcast_to(array, count).copy()
 
 

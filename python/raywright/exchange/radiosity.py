@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterator
 from typing import Any, Literal, get_args, overload
 
-from ..arrays import choice, integer, number
+from ..arrays import choice, integer, number, thread_limit
 from ..scene.progress import BuildProgress, check_progress, watcher
 from ..scene.scene import Scene
 from .copies import laid_out
@@ -110,7 +110,7 @@ def radiosity(
     ------
     ValueError
         If something is out of its range, a surface is not diffuse, reflects all of a channel or has no area,
-        or nothing shines.
+        the scene has a medium, or nothing shines.
     TypeError
         If something is of the wrong kind.
 
@@ -135,8 +135,7 @@ def radiosity(
         raise ValueError(f"error must be greater than 0, got {error}")
     limit = None if rays is None else integer("rays", rays, 1, 2**50)
     integer("seed", seed, 0, 2**64 - 1)
-    if threads is not None:
-        integer("threads", threads, 1)
+    threads = thread_limit(threads)
     check_progress(progress)
     if not isinstance(states, bool):
         raise TypeError(f"states must be True or False, got {states!r}")

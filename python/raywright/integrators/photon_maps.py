@@ -78,7 +78,7 @@ class PhotonMap:
     ValueError
         If a number is out of its range, or `filter` none of the three. When rendering, with `adaptive=True`,
         and of a scene where a light is that no photon can start at: one that has no end, or that moves in
-        instances, or a medium that glows; and of one that has media and is rendered by wavelength.
+        instances, or a medium that glows.
     TypeError
         If a number is none.
     """

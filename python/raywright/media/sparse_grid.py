@@ -1,5 +1,6 @@
 """Numbers on a grid that is mostly empty."""
 
+import operator
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, Protocol, final
 
@@ -53,7 +54,7 @@ class SparseGrid:
     shape: tuple[int, ...]
 
     def __init__(self, shape: Sequence[int], parts: Iterable[tuple[Sequence[int], ArrayLike]] = ()) -> None:
-        self.shape = _shape(shape)
+        self.shape = _shape("shape", shape)
         self._blocks = _core.GridBlocks(self.shape[:3], len(self.shape) == 4, self._checked(parts))
 
     def _checked(
@@ -63,7 +64,7 @@ class SparseGrid:
             found = real_array("numbers", numbers)
             if found.ndim != len(self.shape) or found.shape[3:] != self.shape[3:]:
                 raise ValueError(f"numbers of a grid of shape {self.shape} cannot have shape {found.shape}")
-            begins = tuple(int(n) for n in origin)
+            begins = _integers("origin of a part", origin)
             if len(begins) != 3 or any(
                 a < 0 or a + n > most for a, n, most in zip(begins, found.shape, self.shape, strict=False)
             ):
@@ -96,6 +97,7 @@ class SparseGrid:
             If numbers are not real.
         """
         sliced: Any = numbers if hasattr(numbers, "shape") else real_array("numbers", numbers)
+        _shape("numbers", sliced.shape)
         slabs = (((x, 0, 0), sliced[x : x + BLOCK]) for x in range(0, sliced.shape[0], BLOCK))
         return cls(sliced.shape, slabs)
 
@@ -139,8 +141,16 @@ class SparseGrid:
         return f"SparseGrid(<{' x '.join(map(str, self.shape))}>, {self.nbytes / 1e6:.3g} MB)"
 
 
-def _shape(given: Sequence[int]) -> tuple[int, ...]:
-    shape = tuple(given)
+def _shape(name: str, given: Sequence[int]) -> tuple[int, ...]:
+    shape = _integers(name, given)
     if len(shape) not in (3, 4) or shape[3:] not in ((), (3,)) or min(shape) < 1:
-        raise ValueError(f"shape must be (X, Y, Z) or (X, Y, Z, 3), and not empty, got {shape}")
-    return tuple(int(n) for n in shape)
+        kind = "be" if name == "shape" else "have shape"
+        raise ValueError(f"{name} must {kind} (X, Y, Z) or (X, Y, Z, 3), and not be empty, got {shape}")
+    return shape
+
+
+def _integers(name: str, given: Sequence[int]) -> tuple[int, ...]:
+    try:
+        return tuple(operator.index(n) for n in given)
+    except TypeError:
+        raise TypeError(f"{name} must be integers, got {given!r}") from None

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _core
-from ..arrays import frozen, integer
+from ..arrays import frozen, integer, thread_limit
 from ..cameras import AnyCamera
 from ..integrators import Path
 from ..scene.scene import Scene
@@ -41,15 +41,17 @@ def names_of(aov: str | Iterable[str]) -> tuple[str, ...]:
     ValueError
         If one is not known.
     TypeError
-        If one is no text.
+        If they are no names.
     """
-    names = (aov,) if isinstance(aov, str) else tuple(dict.fromkeys(aov))
+    if not isinstance(aov, Iterable):
+        raise TypeError(f"aov must be names, got {aov!r}")
+    names = (aov,) if isinstance(aov, str) else tuple(aov)
     for name in names:
         if not isinstance(name, str):
             raise TypeError(f"aov must be names, got {name!r}")
         if name not in AOVS:
             raise ValueError(f"aov {name!r} is not known, expected some of {', '.join(AOVS)}")
-    return names
+    return tuple(dict.fromkeys(names))
 
 
 def aovs(
@@ -99,10 +101,14 @@ def aovs(
     TypeError
         If an argument is of the wrong kind.
     """
+    if not isinstance(scene, Scene):
+        raise TypeError(f"scene must be a raywright.Scene, got {type(scene).__name__}")
+    if not isinstance(camera, AnyCamera):
+        raise TypeError(f"camera must be a raywright.Camera, got {type(camera).__name__}")
     names = names_of(aov)
     samples = integer("samples", samples, 1, 2**32 - 1)
     seed = integer("seed", seed, 0, 2**64 - 1)
-    threads = None if threads is None else integer("threads", threads, 1)
+    threads = thread_limit(threads)
     found = seen(scene, camera, names, samples, seed, threads)
     if any(name in _COVER for name in names):
         job = Job(scene, camera, Path(), seed, False, None, Independent(), BoxFilter())

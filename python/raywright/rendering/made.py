@@ -40,12 +40,12 @@ def made(
     rgb = done.rgb
     standard_error, pooled, degrees = done.uncertainty or (np.full_like(rgb, np.nan), None, None)
     if done.dropped:
-        warnings.append(f"{_samples(done.dropped)} not finite or negative, and count as black")
+        counts = "counts" if done.dropped == 1 else "count"
+        warnings.append(f"{_samples(done.dropped)} not finite or negative, and {counts} as black")
     clamped, taken = done.clamped
     if clamped:
         warnings.append(
-            f"biased: {_samples(clamped)} clamped to {clamp:g}, "
-            f"which took {100 * taken:.2g} % of the radiance"
+            f"biased: {_samples(clamped)} clamped to {clamp:g}, which took {_share(taken)} of the radiance"
         )
     return Image(
         rgb,
@@ -84,6 +84,11 @@ def doubts(done: _core.Rendering) -> list[str]:
         f"light is found so rarely that the error may be {low:.2g} or {high:.2g}: "
         "its estimate cannot be trusted yet"
     ]
+
+
+def _share(of_all: float) -> str:
+    """Return a share in percent, by two digits or as 100."""
+    return f"{100 * of_all:.2g} %" if of_all < 0.995 else "100 %"
 
 
 def _samples(count: int) -> str:
