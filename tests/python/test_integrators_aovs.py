@@ -91,3 +91,5 @@ def test_unknown_names_are_refused(room):
         rw.aovs(*room, "height")
     with pytest.raises(TypeError, match="aov must be names, got 7"):
         rw.aovs(*room, ["depth", 7])
+    with pytest.raises(TypeError, match="aov must be names, got 7"):
+        rw.aovs(*room, 7)

@@ -7,7 +7,7 @@ from typing import Any, Literal, TypeAlias, get_args
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..arrays import choice, integer, number, real_array
+from ..arrays import choice, integer, number, real_array, thread_count
 from ..lights import ConstantEnvironment
 from ..scene.progress import BuildProgress, check_progress, watcher
 from ..scene.scene import Scene
@@ -183,6 +183,7 @@ def radiative_exchange(
         raise ValueError(f"error must be greater than 0, got {error}")
     limit = None if rays is None else integer("rays", rays, 1, 2**50)
     integer("seed", seed, 0, 2**64 - 1)
+    workers = thread_count(threads)
     check_progress(progress)
     kelvin, grey, light = (np.tile(part, 2 if both else 1) for part in (kelvin, grey, light))
     cuts = np.ones(sum(faces), np.uint32)
@@ -190,7 +191,7 @@ def radiative_exchange(
 
     def solve(lamps: Scene | None, emission: Floats, absorbing: Floats) -> RadiositySolution:
         looks = _three(emission), _three(1.0 - absorbing)
-        problem = Problem.of(laid, cuts, both, "face", seed, threads, lamps, looks)
+        problem = Problem.of(laid, cuts, both, "face", seed, workers, lamps, looks)
         if method == "matrix":
             from .matrix import solve as by_matrix
 

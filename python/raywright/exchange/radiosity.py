@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterator
 from typing import Any, Literal, get_args, overload
 
-from ..arrays import choice, integer, number
+from ..arrays import choice, integer, number, thread_count
 from ..scene.progress import BuildProgress, check_progress, watcher
 from ..scene.scene import Scene
 from .copies import laid_out
@@ -135,8 +135,7 @@ def radiosity(
         raise ValueError(f"error must be greater than 0, got {error}")
     limit = None if rays is None else integer("rays", rays, 1, 2**50)
     integer("seed", seed, 0, 2**64 - 1)
-    if threads is not None:
-        integer("threads", threads, 1)
+    threads = thread_count(threads)
     check_progress(progress)
     if not isinstance(states, bool):
         raise TypeError(f"states must be True or False, got {states!r}")

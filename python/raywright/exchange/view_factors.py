@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .. import _core
-from ..arrays import choice, frozen, integer, positive, real_array
+from ..arrays import choice, frozen, integer, positive, real_array, thread_count
 from ..scene.progress import BuildProgress, check_progress, watcher
 from ..scene.scene import Scene
 from ..shapes import Plane
@@ -206,7 +206,7 @@ def view_factors(
     start = _RAYS if rays is None else integer("rays", rays, 1, 2**20)
     aim = None if error is None else positive("error", error)
     number = integer("seed", seed, 0, 2**64 - 1)
-    workers = None if threads is None else integer("threads", threads, 1)
+    workers = thread_count(threads)
     check_progress(progress)
     laid = laid_out(scene)
     first = _first_faces(laid)

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arrays import Triple, integer
+from ..arrays import Triple, integer, thread_count
 from .hits import same, sealed
 
 Floats = NDArray[np.float64]
@@ -128,5 +128,5 @@ def photon_arguments(
         None if max_depth is None else integer("max_depth", max_depth, 1, 2**32 - 1),
         integer("roulette_depth", roulette_depth, 0, 2**32 - 1),
         integer("seed", seed, 0, 2**64 - 1),
-        None if threads is None else integer("threads", threads, 1),
+        thread_count(threads),
     )

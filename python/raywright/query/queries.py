@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .. import _core
 from .._core import CompiledScene
-from ..arrays import indices, integer, last_axis, number
+from ..arrays import indices, last_axis, number, thread_count
 from ..cameras import AnyCamera, pixel_offsets
 from .all_hits import AllHits
 from .cones import ConeCoverage, ConeTouches, cone_arguments, cone_solid_angle
@@ -333,7 +333,7 @@ class Queries(PointQueries):
         moment = camera.scene_time(None if time is None else number("time", time))
         if core.curved or (time and camera.moved_to):
             return self.intersect(*camera.rays(where, time=time), threads=threads, time=moment)
-        threads = None if threads is None else integer("threads", threads, 1)
+        threads = thread_count(threads)
         t, shape_id, primitive, uv, _ = _core.first_hits(core, camera, where, threads)
         return Hits(t, shape_id, primitive, uv, None, core)
 

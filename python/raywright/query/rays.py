@@ -6,7 +6,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..arrays import integer, last_axis, real_array
+from ..arrays import last_axis, real_array, thread_count
 
 Floats: TypeAlias = NDArray[np.floating[Any]]
 RayArguments: TypeAlias = tuple[
@@ -41,8 +41,7 @@ def ray_arguments(
     ways = last_axis("directions", directions, 3)
     near = _distances("t_min", t_min)
     far = _distances("t_max", t_max)
-    if threads is not None:
-        threads = integer("threads", threads, 1)
+    threads = thread_count(threads)
     when = None if time is None else _times(time)
     shape, lead = starts.shape[:-1], ways.shape[:-1]
     if type(near) is float and type(far) is float and not isinstance(when, np.ndarray):
@@ -79,7 +78,7 @@ def flags(name: str, array: NDArray[np.bool_], shape: tuple[int, ...]) -> NDArra
 def point_arguments(points: ArrayLike, threads: int | None) -> tuple[Floats, tuple[int, ...], int | None]:
     """Check points, and give what the core's queries take: the points, their leading shape, and threads."""
     array = _in_order(last_axis("points", points, 3))
-    return array, array.shape[:-1], None if threads is None else integer("threads", threads, 1)
+    return array, array.shape[:-1], thread_count(threads)
 
 
 def nearest_arguments(

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _core
-from ..arrays import frozen, integer
+from ..arrays import frozen, integer, thread_count
 from ..cameras import AnyCamera
 from ..integrators import Path
 from ..scene.scene import Scene
@@ -43,6 +43,8 @@ def names_of(aov: str | Iterable[str]) -> tuple[str, ...]:
     TypeError
         If one is no text.
     """
+    if not isinstance(aov, Iterable):
+        raise TypeError(f"aov must be names, got {aov!r}")
     names = (aov,) if isinstance(aov, str) else tuple(dict.fromkeys(aov))
     for name in names:
         if not isinstance(name, str):
@@ -102,7 +104,7 @@ def aovs(
     names = names_of(aov)
     samples = integer("samples", samples, 1, 2**32 - 1)
     seed = integer("seed", seed, 0, 2**64 - 1)
-    threads = None if threads is None else integer("threads", threads, 1)
+    threads = thread_count(threads)
     found = seen(scene, camera, names, samples, seed, threads)
     if any(name in _COVER for name in names):
         job = Job(scene, camera, Path(), seed, False, None, Independent(), BoxFilter())

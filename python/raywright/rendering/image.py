@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _core
-from ..arrays import frozen, integer, number
+from ..arrays import frozen, number, thread_count
 from ..io import pictures, shown
 from ..io.exr_layers import write_exr
 from ..io.tone import DEFAULT, check_tone
@@ -219,7 +219,7 @@ class Image:
         samples has to tell.
         """
         method = check_method("method", method)
-        threads = None if threads is None else integer("threads", threads, 1)
+        threads = thread_count(threads)
         if any(row.what == "denoised" for row in self.plan.rows):
             raise ValueError("the picture is denoised already")
         if self.halves is None:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 from numpy.typing import NDArray
 
 from .. import _core
-from ..arrays import integer, positive
+from ..arrays import integer, positive, thread_count
 from ..cameras import AnyCamera
 from ..integrators import AnyIntegrator, Path, check_integrator
 from ..integrators.base import Integrator
@@ -416,7 +416,7 @@ def check(
     if samples is None and error is None and seconds is None:
         samples = _DEFAULT_SAMPLES
     seed = integer("seed", seed, 0, 2**64 - 1)
-    threads = None if threads is None else integer("threads", threads, 1)
+    threads = thread_count(threads)
     return Checked((samples, error, seconds), seed, threads, clamp)
 
 

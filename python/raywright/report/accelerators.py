@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..accelerators import Accelerator, every, name_of
-from ..arrays import integer
+from ..arrays import integer, thread_count
 from ..scene.scene import Scene
 from .contest import Measured, measured
 from .per_build import COUNTS, RaysPerBuild, rays_per_build_of
@@ -131,7 +131,7 @@ def accelerators(
     if not isinstance(scene, Scene):
         raise TypeError(f"scene must be a Scene, got {type(scene).__name__}")
     chosen = named_accelerators(accelerators)
-    threads = None if threads is None else integer("threads", threads, 1)
+    threads = thread_count(threads)
     repeats = integer("repeats", repeats, 1, 10_000)
     check = None if check is None else integer("check", check, 1)
     sets = ray_sets(scene, rays, integer("seed", seed, 0, 2**64 - 1))

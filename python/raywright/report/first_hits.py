@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from .. import _core
-from ..arrays import integer
+from ..arrays import integer, thread_count
 from ..cameras import AnyCamera
 from ..scene.scene import Scene
 from .table import Column, Table
@@ -61,8 +61,7 @@ def first_hits(scene: Scene, camera: AnyCamera, threads: int | None = 1, repeats
     if not isinstance(camera, AnyCamera):
         raise TypeError(f"camera must be a Camera, got {type(camera).__name__}")
     repeats = integer("repeats", repeats, 1, 10_000)
-    if threads is not None:
-        threads = integer("threads", threads, 1)
+    threads = thread_count(threads)
     rays = camera.rays()
     wanted, found = scene.intersect(*rays, threads=threads), scene.first_hits(camera, threads=threads)
     core = scene._compiled()
