@@ -1,8 +1,8 @@
 //! Loops whose rounds threads share out, compiled once.
 //!
-//! Rayon's own are compiled anew for each closure, and take some hundred kilobytes of intermediate code each time. Where
-//! a closure comes in many kinds (one an accelerator, a width, a sort of answer), that is most of what it is compiled
-//! to. Here it is called through a pointer, some microseconds of work at a time.
+//! Rayon's own are compiled anew for each closure, and take some hundred kilobytes of intermediate code each time.
+//! Where a closure comes in many kinds (one an accelerator, a width, a sort of answer), that is most of what it is
+//! compiled to. Here it is called through a pointer, some microseconds of work at a time.
 
 use rayon::prelude::*;
 use std::ops::Range;
