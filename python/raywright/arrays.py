@@ -31,6 +31,7 @@ def real_array(name: str, value: ArrayLike) -> NDArray[Any]:
     if type(value) is np.ndarray and (value.dtype is _DOUBLE or value.dtype is _SINGLE):
         return value
     array = _as_array(name, value)
+    _unmasked(name, value)
     if array.dtype.kind not in "iuf":
         came = f"dtype {array.dtype}" if isinstance(value, np.ndarray) else _describe(value, array)
         raise TypeError(f"{name} must be real numbers, got {came}")
@@ -60,6 +61,7 @@ def rows(name: str, value: ArrayLike, columns: int, count: int | None = None) ->
 def triangles(name: str, value: ArrayLike, vertices: int) -> NDArray[np.uint32]:
     """Return a read-only, C-contiguous uint32 copy of (F, 3) indices, each in 0..vertices - 1."""
     array = _as_array(name, value)
+    _unmasked(name, value)
     if array.size == 0 and array.shape in ((0,), (0, 3)):
         array = np.empty((0, 3), np.uint32)
     if array.dtype.kind not in "iu":
@@ -76,6 +78,7 @@ def triangles(name: str, value: ArrayLike, vertices: int) -> NDArray[np.uint32]:
 def indices(name: str, value: ArrayLike, count: int) -> NDArray[np.int64]:
     """Return integers of any shape, each in 0..count - 1."""
     array = _as_array(name, value)
+    _unmasked(name, value)
     if array.dtype.kind not in "iu":
         raise TypeError(f"{name} must be integers, got {_describe(value, array)}")
     if array.size and (int(array.min()) < 0 or int(array.max()) >= count):
@@ -172,6 +175,12 @@ def _as_array(name: str, value: ArrayLike) -> NDArray[Any]:
         return np.asarray(value)
     except (ValueError, TypeError):
         raise ValueError(f"{name} must be a rectangular array, got ragged {type(value).__name__}") from None
+
+
+def _unmasked(name: str, value: ArrayLike) -> None:
+    """Refuse masked entries, which numpy would take for what lies below the mask."""
+    if isinstance(value, np.ma.MaskedArray) and (count := int(np.ma.getmaskarray(value).sum())):
+        raise ValueError(f"{name} must have no masked entries, got {count}: fill them, as with NaN")
 
 
 def _finite(name: str, array: NDArray[Any]) -> Triple:

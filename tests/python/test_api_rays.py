@@ -178,6 +178,16 @@ def test_zero_directions_miss(scene):
         (((0, 0, 0), DOWN, "near"), TypeError, r"t_min must be real numbers, got 'near'"),
         (((0, 0, 0), DOWN, 0, 1, 0), ValueError, r"threads must be at least 1, got 0"),
         (((0, 0, 0), DOWN, 0, 1, 1.5), TypeError, r"threads must be an integer, got 1.5"),
+        (
+            (np.ma.array([(0.0, 0, 1), (0, 0, 2)], mask=[(False,) * 3, (True,) * 3]), DOWN),
+            ValueError,
+            r"origins must have no masked entries, got 3: fill them",
+        ),
+        (
+            ((0, 0, 0), DOWN, 0, np.ma.array([1.0, 2], mask=[True, False])),
+            ValueError,
+            r"t_max must have no masked entries, got 1",
+        ),
     ],
 )
 def test_bad_rays_are_refused_in_one_line(scene, ask, arguments, error, message):
@@ -259,7 +269,8 @@ def test_rays_that_go_much_the_same_way_keep_their_places(count, dtype, one):
         assert np.array_equal(whole.shape_id[some], few.shape_id)
 
 
-@pytest.mark.parametrize("threads", [1, 2, 5])
+# The last would take all memory if so many were started.
+@pytest.mark.parametrize("threads", [1, 2, 5, 10**30])
 def test_threads_do_not_change_the_answer(threads):
     scene = rw.Scene(rw.scenes.torus_knot(along=60, around=8))
     rng = np.random.default_rng(2)

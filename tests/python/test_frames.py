@@ -71,6 +71,7 @@ class Film:
 
     def close(self):
         self.closed = True
+        self.path.write_bytes(b"film")
 
 
 @pytest.fixture
@@ -106,6 +107,36 @@ def test_what_is_interrupted_keeps_what_is_done(moving, tmp_path, films):
         rw.render_frames(frame, tmp_path / "a.mp4", 5, **HOW)
     assert films[0].closed
     assert len(films[0].frames) == 2
+
+
+def test_films_have_the_sizes_that_their_codecs_have(tmp_path, films):
+    def odd(number):
+        eye = rw.Camera((0, 0, 4), (0, 0, 0), width=16, height=12 + number)
+        return rw.Scene(rw.Sphere(), environment=1.0), eye
+
+    with pytest.raises(ValueError, match="frame 1 is 16 by 13, but a film has an even width and height"):
+        rw.render_frames(odd, tmp_path / "a.mp4", 2, **HOW)
+    assert len(films[0].frames) == 1
+    rw.render_frames(odd, tmp_path / "a.webm", 2, **HOW)
+    assert films[1].how["codec"] == "libvpx-vp9"
+
+
+def test_an_encoder_that_fails_is_told(moving, tmp_path, films, monkeypatch):
+    monkeypatch.setattr(Film, "close", lambda film: None)
+    with pytest.raises(OSError, match="its encoder has written no film"):
+        rw.render_frames(moving, tmp_path / "a.mp4", 2, **HOW)
+
+
+# Of imageio's own pipes.
+@pytest.mark.filterwarnings("ignore:unclosed file:ResourceWarning")
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
+@pytest.mark.parametrize("name", ["a.mp4", "a.mov", "a.mkv", "a.webm"])
+def test_films_can_be_read(moving, tmp_path, name):
+    imageio = pytest.importorskip("imageio")
+    pytest.importorskip("imageio_ffmpeg")
+    rw.render_frames(moving, tmp_path / name, 2, **HOW)
+    with imageio.get_reader(tmp_path / name) as film:
+        assert [film.get_data(0).shape, film.count_frames()] == [(12, 16, 3), 2]
 
 
 def test_a_film_without_imageio_names_the_extra(moving, tmp_path, monkeypatch):

@@ -253,6 +253,24 @@ def test_what_cannot_be_is_refused(make, error, says):
     assert "\n" not in str(told.value)
 
 
+def test_arrays_that_cannot_be_read_are_refused_with_their_name(tmp_path):
+    path = tmp_path / "fog.npy"
+    np.save(path, np.ones((2, 2, 2), np.float32))
+    whole = path.read_bytes()
+    # A header that does not end, one that says more than there is, and one cut short.
+    for broken in (
+        whole.replace(b"}", b" "),
+        whole.replace(b"(2, 2, 2)", b"(9999, 99999, 99999)"),
+        whole[:30],
+    ):
+        path.write_bytes(broken)
+        with pytest.raises(ValueError, match=r"fog\.npy cannot be read: ") as told:
+            rw.GridMedium.load(path, scattering=1.0)
+        assert "\n" not in str(told.value)
+    path.write_bytes(whole)
+    assert np.array_equal(rw.GridMedium.load(path).density, np.ones((2, 2, 2)))
+
+
 GROWN = """
 import numpy as np
 import raywright as rw

@@ -263,6 +263,14 @@ def test_objects_are_copied(tmp_path):
     assert np.allclose(places, [(-1, 0, 1, 1), (-1, 0, 2, 1)], rtol=0, atol=1e-12)
 
 
+def test_editors_may_have_marked_a_file_and_ended_its_lines_their_way(tmp_path):
+    path = tmp_path / "scene.pbrt"
+    text = f'{HEAD}\nWorldBegin\nMaterial "diffuse" "rgb reflectance" [.1 .1 .1]\nShape "sphere"'
+    path.write_bytes(b"\xef\xbb\xbf" + text.lstrip().replace("\n", "\r\n").encode())
+    (ball,) = rw.load(path).scene.shapes
+    assert ball.material == rw.Diffuse(0.1)
+
+
 def test_files_include_others(tmp_path):
     (tmp_path / "more.pbrt").write_text('Material "diffuse" "rgb reflectance" [.1 .1 .1]\nShape "sphere"')
     assert load(tmp_path, 'Include "more.pbrt"').scene.shapes[0].material == rw.Diffuse(0.1)
@@ -306,6 +314,30 @@ def test_files_include_others(tmp_path):
             'Shape "curve" "point3 P" [0 0 0 1 0 0 2 0 0 3 0 0] "integer degree" 2 "string type" "cylinder"',
             "a curve must be cubic",
         ),
+        # What the library itself refuses is told with its line as well.
+        ('LightSource "point" "rgb I" [-1 0 0]', "line 9: LightSource point: intensity must be at least 0"),
+        ('LightSource "spot" "float coneangle" 200', "line 9: LightSource spot: angle must be above 0"),
+        ('AreaLightSource "diffuse" "rgb L" [-1 0 0]', "line 9: AreaLightSource diffuse: radiance must be"),
+        ('Shape "sphere" "float alpha" 2', "line 9: Shape sphere: opacity must be between 0 and 1, got 2"),
+        ('Texture "x" "spectrum" "mix" "float amount" 5', "line 9: Texture x spectrum mix: amount must be"),
+        ("Translate 0 inf 0", "line 9: Translate must be finite numbers"),
+        ('AreaLightSource "diffuse" "rgb L" ["a" "b" "c"]', "L must be an rgb or a spectrum of numbers"),
+        ('AreaLightSource "diffuse" "rgb L" [true true true]', "L must be an rgb or a spectrum of numbers"),
+        ('AreaLightSource "diffuse" "blackbody L" 0', "L must be a temperature above 0, in kelvin, got 0"),
+        ('AreaLightSource "diffuse" "blackbody L" [nan]', "L must be finite numbers"),
+        ('Shape "sphere" "float radius" "2"', "radius must be finite numbers"),
+        ('Shape "sphere" "bool radius" true', "radius must be finite numbers"),
+        ('Material "conductor" "spectrum eta" []', "eta must be an rgb or a spectrum of numbers, got a"),
+        ('Material "conductor" "rgb reflectance" [-1 0 0]', "reflectance must be at least 0, got -1"),
+        ('Material "dielectric" "spectrum eta" [500 1.5 400 1.4]', "eta must have wavelengths that rise"),
+        ('Material "dielectric" "float roughness" -1', "a roughness must be at least 0"),
+        ('Shape "bilinearmesh" "point3 P" [0 0 0] "integer indices" []', "indices must be given"),
+        ('Shape "trianglemesh" "point3 P" [0 0 0] "integer indices" [0 0 1e300]', "at least 0 and below 1"),
+        (
+            'Shape "loopsubdiv" "point3 P" [0 0 0 1 0 0 0 1 0] "integer indices" [0 1 2 0 1 2 1 0 2]',
+            "its faces must be those of a surface",
+        ),
+        ('Attribute "shapes" "float radius" 2', "its target must be one of shape, light, material"),
     ],
 )
 def test_what_is_wrong_is_told_with_its_line(tmp_path, world, told):
@@ -321,6 +353,12 @@ def test_what_is_wrong_is_told_with_its_line(tmp_path, world, told):
         (HEAD.replace("perspective", "realistic"), "Camera realistic: a camera 'realistic' is not supported"),
         (HEAD.replace("volpath", "magic"), "an integrator 'magic' is not supported"),
         (HEAD + 'ColorSpace "rec2020"', "a colour space must be srgb"),
+        (HEAD.replace("[ 40 ]", "0"), "line 4: Film rgb: a resolution must be between 1 and 65536, got 0"),
+        (HEAD.replace("50", "200"), "line 3: Camera perspective: fov must be between 0 and 180 degrees"),
+        (HEAD.replace("fov", "lensradius").replace("50", "-1"), "lensradius must be at least 0, got -1"),
+        (HEAD + 'PixelFilter "gaussian" "float sigma" 0', "line 7: PixelFilter gaussian: sigma must be"),
+        (HEAD + 'Sampler "stratified" "integer xsamples" -2 "integer ysamples" -2', "samples must be at"),
+        (HEAD + 'Integrator "sppm" "float radius" -1', "Integrator sppm: radius must be greater than 0"),
     ],
 )
 def test_options_that_are_wrong_are_told(tmp_path, head, told):

@@ -95,6 +95,7 @@ def test_numbers_may_be_told_in_several_ways() -> None:
         ("method must be one of", {"method": "progressive"}),
         ("sides must be 'front' for method='matrix'", {"method": "matrix", "sides": "both"}),
         ("error must be greater than 0", {"error": 0.0}),
+        ("threads must be at least 1, got 0", {"threads": 0}),
     ],
 )
 def test_what_cannot_be_is_refused_in_a_line(line: str, options: dict[str, Any]) -> None:

@@ -99,6 +99,13 @@ def test_exr_and_npy_are_read_from_files(tmp_path, picture):
         assert np.array_equal(rw.ImageTexture(str(tmp_path / name)).image, picture.rgb)
 
 
+def test_the_order_of_bytes_does_not_matter():
+    sixteen = np.random.default_rng(1).integers(0, 65536, (3, 4, 3)).astype(np.uint16)
+    assert np.array_equal(rw.ImageTexture(sixteen.astype(">u2")).image, rw.ImageTexture(sixteen).image)
+    shares = sixteen.astype(np.float32)
+    assert np.array_equal(rw.ImageTexture(shares.astype(">f4")).image, shares)
+
+
 def test_files_that_are_no_pictures_are_refused(tmp_path):
     with pytest.raises(FileNotFoundError, match="no such file"):
         rw.ImageTexture(tmp_path / "none.png")

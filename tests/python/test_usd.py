@@ -1,5 +1,6 @@
 """USD stages: meshes, preview surfaces, cameras and lights, by usd-core where it is installed."""
 
+import re
 import sys
 
 import numpy as np
@@ -44,6 +45,21 @@ def Mesh "Square" (prepend apiSchemas = ["MaterialBindingAPI"]) {
 """
 
 
+def paint(inputs, more=""):
+    return PAINT.format(inputs=inputs, more=more)
+
+
+COPIES = """
+def PointInstancer "P" {{
+    rel prototypes = [</P/S>]
+    int[] protoIndices = {which}
+    point3f[] positions = {places}
+    def Sphere "S" {{
+    }}
+}}
+"""
+
+
 def load(folder, text, **more):
     path = folder / "stage.usda"
     path.write_text(HEAD + text, encoding="utf-8")
@@ -52,10 +68,6 @@ def load(folder, text, **more):
 
 def shapes(folder, text):
     return load(folder, CAMERA + LAMP + text).scene.shapes
-
-
-def paint(inputs, more=""):
-    return PAINT.format(inputs=inputs, more=more)
 
 
 @pytest.fixture(autouse=True)
@@ -240,6 +252,49 @@ def test_what_is_no_stage_is_refused(tmp_path):
         load(tmp_path, broken + paint(""))
     with pytest.raises(TypeError, match="spp is no parameter"):
         rw.load(path, spp=3)
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ('def Sphere "Ball" {\n    double radius = -1\n}', "/Ball: radius must be greater than 0, got -1"),
+        ('def Cylinder "Rod" {\n    token axis = "Q"\n}', "/Rod: axis must be one of 'X', 'Y', 'Z', got 'Q'"),
+        (
+            'def DistantLight "Lamp" {\n    float inputs:intensity = -1\n}',
+            "/Lamp: irradiance must be at least",
+        ),
+        (SQUARE + paint("float inputs:roughness = 7"), "/Square: roughness must be between 0 and 1, got 7"),
+        (
+            SQUARE.replace("[4]", "[-2, 6]").replace("[0, 1, 2, 3]", "[0, 1, 2, 3]") + paint(""),
+            "/Square has faces that do not fit its points",
+        ),
+        (
+            SQUARE.rstrip().removesuffix("}")
+            + 'def GeomSubset "Half" {\n    int[] indices = [-1]\n'
+            + '    uniform token familyName = "materialBind"\n}\n}'
+            + paint(""),
+            "/Square/Half has faces that are not there: number -1 of 1",
+        ),
+        (COPIES.format(which="[0, 1]", places="[(0, 0, 0), (1, 0, 0)]"), "number 1 of 1"),
+        (
+            COPIES.format(which="[0]", places="[(0, 0, 0), (1, 0, 0)]"),
+            "/P: it has 1 protoIndices, but 2 positions",
+        ),
+    ],
+)
+def test_what_is_wrong_is_told_with_its_prim(tmp_path, text, told):
+    with pytest.raises(ValueError, match=re.escape(told)) as caught:
+        load(tmp_path, 'def Sphere "S" {\n}\n' + text)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_missing_reference_is_told_and_a_mesh_without_points_is_none(tmp_path):
+    ball = 'def Sphere "S" {\n}\n'
+    with pytest.raises(FileNotFoundError, match=r"gone\.usda"):
+        load(tmp_path, ball + 'def Xform "A" (\n    references = @gone.usda@\n) {\n}\n')
+    with pytest.warns(RuntimeWarning, match="it is not put together as it says: Cycle detected"):
+        load(tmp_path, ball + 'def Xform "A" (\n    references = </A>\n) {\n}\n')
+    assert len(shapes(tmp_path, ball + 'def Mesh "Empty" {\n}\n')) == 1
 
 
 def test_without_the_library_it_is_named(tmp_path, monkeypatch):

@@ -187,7 +187,7 @@ def radiative_exchange(
         raise ValueError(f"error must be greater than 0, got {error}")
     limit = None if rays is None else integer("rays", rays, 1, 2**50)
     integer("seed", seed, 0, 2**64 - 1)
-    threads = thread_limit(threads)
+    workers = thread_limit(threads)
     check_progress(progress)
     kelvin, grey, light = (np.tile(part, 2 if both else 1) for part in (kelvin, grey, light))
     cuts = np.ones(sum(faces), np.uint32)
@@ -195,7 +195,7 @@ def radiative_exchange(
 
     def solve(lamps: Scene | None, emission: Floats, absorbing: Floats) -> RadiositySolution:
         looks = _three(emission), _three(1.0 - absorbing)
-        problem = Problem.of(laid, cuts, both, "face", seed, threads, lamps, looks)
+        problem = Problem.of(laid, cuts, both, "face", seed, workers, lamps, looks)
         if method == "matrix":
             from .matrix import solve as by_matrix
 

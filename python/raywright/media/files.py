@@ -9,6 +9,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..io.quiet import reason
+
 Bounds = tuple[tuple[float, ...], tuple[float, ...]]
 # Magic, version, encoding, size along x, y and z, channels, and the box: all little-endian.
 _VOL = struct.Struct("<3sBiiiii6f")
@@ -70,12 +72,16 @@ def read_density(path: str | PathLike[str]) -> tuple[NDArray[Any], Bounds | None
     if name.suffix != ".npy":
         raise ValueError(f"{name} must be a .npy, a .vol or a .vdb file")
     try:
-        array = np.load(name, allow_pickle=False)
-    except (ValueError, EOFError) as error:
-        raise ValueError(f"{name} cannot be read: {error}") from error
+        # A map of a file cannot be longer than the file is, whatever its header says.
+        array = np.load(name, mmap_mode="r", allow_pickle=False)
+    except (OSError, MemoryError):
+        raise
+    except Exception as error:
+        # Headers are read as Python is, and fail in every way there is.
+        raise ValueError(f"{name} cannot be read: {reason(error)}") from error
     if not isinstance(array, np.ndarray):
         raise ValueError(f"{name} holds several arrays, expected one")
-    return array, None
+    return np.array(array), None
 
 
 def read_vol(name: Path) -> tuple[NDArray[np.float32], Bounds]:

@@ -1,5 +1,6 @@
 """From scenes that change to animations."""
 
+import errno
 import os
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack, closing
@@ -17,6 +18,8 @@ from .render import render
 Frame = tuple[Scene, AnyCamera]
 # What films may be called.
 _FILMS = (".mp4", ".mov", ".mkv", ".webm")
+# .webm takes no other codec that there is everywhere; H.264, the default of the others, has no odd sizes.
+_FREE = {".webm": {"codec": "libvpx-vp9"}}
 _NO_IMAGEIO = "a film needs imageio: pip install 'raywright[video]'"
 
 
@@ -42,8 +45,9 @@ def render_frames(
         a new one: it is asked for the next frame when the last is done.
     out : str, path or callable
         ``"frames/{:04}.png"``, a name with a place for the number, of any picture that `Image.save` writes;
-        or a film, ``"film.mp4"`` (also .mov, .mkv, .webm), which needs imageio; or a function that is given
-        the number and the `Image`.
+        or a film, ``"film.mp4"`` (also .mov, .mkv, .webm), which needs imageio, and pixels of an
+        even number along both sides unless it is a .webm; or a function that is given the number and the
+        `Image`.
     count : int, optional
         How many frames; a function needs it, and something to iterate over ends there if it does not before.
     seed : int
@@ -66,13 +70,14 @@ def render_frames(
     Raises
     ------
     ValueError
-        If a number is out of its range, or `out` has no place for the number; and as `render` does.
+        If a number is out of its range, `out` has no place for the number, or a film cannot have frames of
+        such a size; and as `render` does.
     TypeError
         If an argument is of the wrong kind, or a frame is no scene and camera; and as `render` does.
     ImportError
         If imageio is missing for a film.
     OSError
-        If a file cannot be written.
+        If a file cannot be written, or the encoder of a film fails.
     KeyboardInterrupt
         When Ctrl-C is pressed. Frames that were done are kept, and a film ends with the last of them.
     """
@@ -82,6 +87,8 @@ def render_frames(
     if not isinstance(progress, bool):
         raise TypeError(f"progress must be True or False, got {progress!r}")
     every = _each(frames, count)
+    suffix = Path(out).suffix.lower() if isinstance(out, str | os.PathLike) else ""
+    is_film, even = suffix in _FILMS, suffix in _FILMS and suffix not in _FREE
     with ExitStack() as stack:
         write = _writer(out, fps, exposure, tone, stack)
         written: dict[Path, None] = {}
@@ -90,11 +97,15 @@ def render_frames(
 
             every = stack.enter_context(closing(tqdm(every, desc="frames", total=count, unit="frame")))
         for number, frame in enumerate(every):
-            scene, camera = _checked(number, frame)
+            scene, camera = _checked(number, frame, even)
             image = render(scene, camera, seed=(seed + number) % 2**64, progress=False, **how)
             path = write(number, image)
             if path is not None:
                 written[path] = None
+    for path in written if is_film else ():
+        # imageio says nothing of an encoder that fails.
+        if not path.is_file() or not path.stat().st_size:
+            raise OSError(errno.EIO, "its encoder has written no film", str(path))
     return list(written)
 
 
@@ -120,10 +131,14 @@ def _first(frames: Iterator[Frame], count: int) -> Iterator[Frame]:
             return
 
 
-def _checked(number: int, frame: Any) -> Frame:
+def _checked(number: int, frame: Any, even: bool) -> Frame:
     if not (isinstance(frame, tuple | list) and len(frame) == 2):
         raise TypeError(f"frame {number} must be a scene and a camera, got {type(frame).__name__}")
-    return frame[0], frame[1]
+    scene, camera = frame
+    if even and isinstance(camera, AnyCamera) and (camera.width % 2 or camera.height % 2):
+        size = f"{camera.width} by {camera.height}"
+        raise ValueError(f"frame {number} is {size}, but a film has an even width and height, unless .webm")
+    return scene, camera
 
 
 def _writer(
@@ -170,7 +185,8 @@ def _film(
         raise ImportError(_NO_IMAGEIO) from error
 
     # Sizes are kept as they are: by default it would stretch pictures to multiples of 16.
-    film = stack.enter_context(closing(imageio.get_writer(path, fps=fps, macro_block_size=1)))
+    how = _FREE.get(path.suffix.lower(), {})
+    film = stack.enter_context(closing(imageio.get_writer(path, fps=fps, macro_block_size=1, **how)))
 
     def add(_number: int, image: Image) -> Path:
         film.append_data(image.srgb(exposure, tone)[..., :3])

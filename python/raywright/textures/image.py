@@ -182,7 +182,7 @@ def _pixels(image: Any, linear: bool) -> NDArray[Any]:
         array = array[..., np.newaxis]
     if array.ndim != 3 or not 1 <= array.shape[2] <= 4 or 0 in array.shape:
         raise ValueError(f"image must have shape (H, W) or (H, W, 1 to 4), got {np.shape(image)}")
-    if array.dtype == np.uint16:
+    if array.dtype.newbyteorder("=") == np.uint16:
         colours = array.shape[2] - (array.shape[2] in (2, 4))
         shares = array / 65535
         if not linear:

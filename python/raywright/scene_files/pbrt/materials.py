@@ -119,8 +119,10 @@ class Materials:
             return pair[0], pair[1]
         if any(isinstance(one, Texture) for one in pair):
             parameters.fail("a roughness by texture must have remaproughness false")
+        if min(float(one) for one in pair) < 0:  # type: ignore[arg-type]
+            parameters.fail("a roughness must be at least 0")
         # pbrt's root of what somebody thinks of as roughness.
-        u, v = (math.sqrt(min(max(float(one), 0.0), 1.0)) for one in pair)  # type: ignore[arg-type]
+        u, v = (math.sqrt(min(float(one), 1.0)) for one in pair)  # type: ignore[arg-type]
         return u, v
 
     def _ior(self, parameters: Parameters, name: str, default: float) -> float:
@@ -138,6 +140,8 @@ class Materials:
         if found is not None and found[0] == "spectrum":
             table = parameters.numbers(name, 2)
             assert table is not None
+            if not len(table) or (np.diff(table[:, 0]) <= 0).any():
+                parameters.fail(f"{name} must have wavelengths that rise, each with an index")
             # In the middle of what is seen: no formula is known.
             return float(np.interp(587.6, table[:, 0], table[:, 1]))
         return parameters.number(name, default)
@@ -171,9 +175,13 @@ class Materials:
         reflectance = f"{prefix}reflectance" if parameters.has(f"{prefix}reflectance") else "reflectance"
         if parameters.has(reflectance):
             share = np.minimum(colour(parameters, reflectance, 0.5), 0.9999)
+            if share.min() < 0:
+                parameters.fail(f"{reflectance} must be at least 0, got {share.min():g}")
             return Conductor(eta=1.0, k=2 * np.sqrt(share) / np.sqrt(1 - share), **rough)
         names = [
-            one[1][0] if one is not None and one[0] == "spectrum" and isinstance(one[1][0], str) else None
+            one[1][0]
+            if one is not None and one[0] == "spectrum" and one[1] and isinstance(one[1][0], str)
+            else None
             for one in (parameters.given.get(f"{prefix}{name}") for name in ("eta", "k"))
         ]
         if names[0] is not None or not parameters.has(f"{prefix}eta"):

@@ -55,10 +55,8 @@ class Parameters:
         found = self.take(name)
         if found is None:
             return None
-        try:
-            array = np.array(found[1], np.float64)
-        except (TypeError, ValueError):
-            array = np.array([np.nan])
+        plain = set(map(type, found[1])) <= {float}
+        array = np.array(found[1] if plain else [np.nan], np.float64)
         if not np.isfinite(array).all() or array.ndim != 1 or array.size % columns:
             each = "" if columns == 1 else f", {columns} each"
             self.fail(f"{name} must be finite numbers{each}")

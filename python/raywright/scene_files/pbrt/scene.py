@@ -25,6 +25,8 @@ from .textures import Textures
 from .tokens import Directive, directives
 
 _MOST_FILES, _MOST_DEPTH = 1000, 32
+# What attributes may be given to.
+_TARGETS = ("shape", "light", "material", "medium", "texture")
 # Turns a left-handed world into a right-handed one, and leaves one that a file has turned itself.
 _MIRROR, _AS_IT_IS = np.diag([-1.0, 1.0, 1.0, 1.0]), np.eye(4)
 
@@ -102,7 +104,16 @@ class _Reader:
             if one.name in ("Include", "Import"):
                 self.file(self.path.parent / one.texts[0], depth + 1)
             else:
-                self._directive(one)
+                self._read(one)
+
+    def _read(self, one: Directive) -> None:
+        """Do what a directive asks for; whatever is wrong with it is told with its line."""
+        try:
+            self._directive(one)
+        except PbrtError:
+            raise
+        except (ValueError, TypeError) as error:
+            one.parameters.fail(str(error))
 
     def _directive(self, one: Directive) -> None:
         name = one.name
@@ -122,6 +133,8 @@ class _Reader:
         elif name == "ReverseOrientation":
             self._set(flipped=not self._state.flipped)
         elif name == "Attribute":
+            if one.texts[0] not in _TARGETS:
+                one.parameters.fail(f"its target must be one of {', '.join(_TARGETS)}")
             self._set(defaults=(*self._state.defaults, (one.texts[0], one.parameters.given)))
         elif name == "WorldBegin":
             self._in_world = True
@@ -244,9 +257,15 @@ class _Reader:
         kind, parameters, matrix = self._camera
         sampler, samples, seed = self._sampler
         around = self._around[0] if len(self._around) == 1 else self._around or None
+        try:
+            eye = views.camera(kind, parameters, self._mirror @ matrix, self._size)
+        except PbrtError:
+            raise
+        except (ValueError, TypeError) as error:
+            parameters.fail(str(error))
         return Shot(
             Scene(found, self._lights, around),
-            views.camera(kind, parameters, self._mirror @ matrix, self._size),
+            eye,
             self._integrator,
             samples,
             sampler=sampler,
@@ -258,6 +277,8 @@ class _Reader:
 def _step(one: Directive) -> Floats:
     """Return the matrix of a directive, which acts on what comes after it first."""
     values = np.array(one.numbers)
+    if not np.isfinite(values).all():
+        raise PbrtError(f"{one.where}: {one.name} must be finite numbers")
     if one.name in ("Transform", "ConcatTransform"):
         matrix = values.reshape(4, 4).T
         if not np.array_equal(matrix[3], (0, 0, 0, 1)):

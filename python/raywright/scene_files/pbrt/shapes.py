@@ -114,15 +114,17 @@ def _corners(parameters: Parameters, count: int) -> tuple[Floats, Any]:
     if vertices is None or not len(vertices):
         parameters.fail("P must be given")
     given = parameters.numbers("indices")
+    if given is not None and not len(given):
+        # As if they were not there, for pbrt too.
+        given = None
     if given is None and len(vertices) != count:
         parameters.fail("indices must be given")
     numbers = np.arange(count, dtype=np.float64) if given is None else given
-    indices = numbers.astype(np.int64)
-    if len(indices) % count or (indices != numbers).any():
+    if len(numbers) % count or (np.floor(numbers) != numbers).any():
         parameters.fail(f"indices must be whole numbers, {count} each")
-    if len(indices) and not (indices.min() >= 0 and indices.max() < len(vertices)):
+    if not (numbers.min() >= 0 and numbers.max() < len(vertices)):
         parameters.fail(f"indices must be at least 0 and below {len(vertices)}")
-    return vertices, indices.reshape(-1, count)
+    return vertices, numbers.astype(np.int64).reshape(-1, count)
 
 
 def _ply(parameters: Parameters, matrix: Floats, look: Look, textures: Textures) -> Mesh:
@@ -176,7 +178,10 @@ def _subdivided(parameters: Parameters, matrix: Floats, look: Look, _: Textures)
     levels = parameters.integer("levels", 3)
     if not 0 <= levels <= 7:
         parameters.fail(f"levels must be between 0 and 7, got {levels}")
-    vertices, faces = loop(vertices, faces, levels) if levels else (vertices, faces)
+    try:
+        vertices, faces = loop(vertices, faces, levels) if levels else (vertices, faces)
+    except (ValueError, IndexError):
+        parameters.fail("its faces must be those of a surface, of which no edge has more than two")
     a, b, c = (vertices[faces[:, k]] for k in range(3))
     normals = np.zeros_like(vertices)
     for k in range(3):

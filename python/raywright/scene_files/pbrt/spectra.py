@@ -32,15 +32,18 @@ def colour(parameters: Parameters, name: str, default: float | Triple, emits: bo
     if found is None:
         return _triple(np.broadcast_to(default, 3))
     kind, values = found
-    if kind == "rgb":
-        if len(values) != 3:
-            parameters.fail(f"{name} must be 3 numbers, got {len(values)}")
-        return _triple(values)
-    if kind in ("float", "color", "xyz") and len(values) in (1, 3):
+    if kind == "rgb" and len(values) != 3:
+        parameters.fail(f"{name} must be 3 numbers, got {len(values)}")
+    plain = set(map(type, values)) <= {float}
+    if plain and not np.isfinite(values).all():
+        parameters.fail(f"{name} must be finite numbers")
+    if plain and kind in ("rgb", "float", "color", "xyz") and len(values) in (1, 3):
         return _triple(np.broadcast_to(values, 3))
-    if kind == "blackbody" and emits and len(values) == 1:
-        return _bright(black_body(float(values[0])))
-    if kind == "spectrum" and len(values) >= 4 and len(values) % 2 == 0 and not isinstance(values[0], str):
+    if plain and kind == "blackbody" and emits and len(values) == 1:
+        if values[0] <= 0:
+            parameters.fail(f"{name} must be a temperature above 0, in kelvin, got {values[0]:g}")
+        return _bright(black_body(values[0]))
+    if plain and kind == "spectrum" and len(values) >= 4 and len(values) % 2 == 0:
         table = np.array(values, np.float64).reshape(-1, 2)
         if (np.diff(table[:, 0]) <= 0).any():
             parameters.fail(f"{name} must have wavelengths that rise")

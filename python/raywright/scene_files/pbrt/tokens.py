@@ -99,7 +99,7 @@ class _Words:
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        self._text = path.read_text(encoding="utf-8", errors="replace")
+        self._text = path.read_text(encoding="utf-8-sig", errors="replace")
         self._matches = _WORD.finditer(self._text)
         self._line = 1
         self._back: Word | None = None

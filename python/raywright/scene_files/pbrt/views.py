@@ -65,6 +65,8 @@ def camera(kind: str, parameters: Parameters, matrix: Floats, size: tuple[int, i
     if kind == "perspective":
         lens, distance = parameters.number("lensradius", 0.0), parameters.number("focaldistance", 1e6)
         fov = parameters.number("fov", 90.0)
+        if lens < 0:
+            parameters.fail(f"lensradius must be at least 0, got {lens:g}")
         if lens > 0:
             made = ThinLens(
                 place, fov=fov, fov_axis="smaller", aperture_radius=lens, focus_distance=distance, **common
@@ -102,6 +104,9 @@ def film(kind: str, parameters: Parameters) -> tuple[int, int]:
         "coordinatesystem", "nbuckets", "lambdamin", "lambdamax",
     )  # fmt: skip
     parameters.done()
+    for side in size:
+        if not 1 <= side <= 65536:
+            parameters.fail(f"a resolution must be between 1 and 65536, got {side:g}")
     return size
 
 
@@ -145,14 +150,15 @@ def sampler(kind: str, parameters: Parameters) -> tuple[Sampler | None, int, int
     if kind not in kinds:
         parameters.fail(f"a sampler {kind!r} is not supported")
     if kind == "stratified":
-        count = parameters.integer("xsamples", 4) * parameters.integer("ysamples", 4)
+        sides = parameters.integer("xsamples", 4), parameters.integer("ysamples", 4)
+        count = sides[0] * sides[1] if min(sides) > 0 else 0
     else:
         count = parameters.integer("pixelsamples", 16)
     seed = parameters.integer("seed", 0)
     parameters.ignore("jitter", "randomization")
     parameters.done()
-    if count < 1 or seed < 0:
-        parameters.fail(f"samples must be at least 1 and seed at least 0, got {count} and {seed}")
+    if count < 1 or not 0 <= seed < 2**64:
+        parameters.fail(f"samples must be at least 1 and seed at least 0, got {count:g} and {seed:g}")
     return kinds[kind], count, seed
 
 

@@ -1,5 +1,6 @@
 """Scenes of USD: meshes with their preview surfaces, cameras and lights, by PyPI's usd-core."""
 
+import errno
 from pathlib import Path
 from typing import Any, Literal
 
@@ -12,7 +13,7 @@ from ...scene.scene import Scene
 from ..shown import shown
 from .cameras import camera
 from .lights import light
-from .notes import Notes
+from .notes import Notes, told_of
 from .shapes import shapes
 
 __all__ = ["read_usd"]
@@ -40,8 +41,10 @@ def read_usd(path: Path, width: int | None = None, height: int | None = None) ->
     ------
     ImportError
         If usd-core is not installed.
+    FileNotFoundError
+        If a file that it names is missing.
     ValueError
-        If it is no USD file that can be read, or holds nothing that is seen.
+        If it is no USD file that can be read, or holds nothing that is seen; tells which prim is wrong.
 
     Warns
     -----
@@ -66,6 +69,7 @@ def read_usd(path: Path, width: int | None = None, height: int | None = None) ->
     except Tf.ErrorException as error:
         raise refused(path, "USD file", ValueError("its stage cannot be opened")) from error
     notes = Notes(path)
+    _composed(stage, path, notes)
     up: Literal["y", "z"] = "z" if UsdGeom.GetStageUpAxis(stage) == UsdGeom.Tokens.z else "y"
     try:
         found: list[Any] = []
@@ -79,13 +83,14 @@ def read_usd(path: Path, width: int | None = None, height: int | None = None) ->
         )
         placed = UsdGeom.XformCache(time)
         for prim in _seen(stage, time):
-            matrix = np.array(placed.GetLocalToWorldTransform(prim), np.float64).T
-            if prim.IsA(UsdGeom.Camera):
-                cameras.append((prim, matrix))
-            elif (made := light(prim, matrix, time, notes)) is not None:
-                {"light": lights, "shape": found, "around": around}[made.kind].append(made.thing)
-            else:
-                found += shapes(prim, matrix, time, notes)
+            with told_of(prim):
+                matrix = np.array(placed.GetLocalToWorldTransform(prim), np.float64).T
+                if prim.IsA(UsdGeom.Camera):
+                    cameras.append((prim, matrix))
+                elif (made := light(prim, matrix, time, notes)) is not None:
+                    {"light": lights, "shape": found, "around": around}[made.kind].append(made.thing)
+                else:
+                    found += shapes(prim, matrix, time, notes)
         if not found:
             raise ValueError("it holds nothing that is seen")
         if len(cameras) > 1:
@@ -95,12 +100,23 @@ def read_usd(path: Path, width: int | None = None, height: int | None = None) ->
         if lights or around or any(getattr(one, "emission", None) is not None for one in found):
             # It has light of its own, which surfaces that are no meshes give too.
             shot = Shot(Scene(found, lights, around[0] if len(around) == 1 else around or None), shot.camera)
-    except (ImportError, MemoryError):
+    except (ImportError, MemoryError, FileNotFoundError):
         raise
     except Exception as error:
         raise refused(path, "USD file", error) from error
     notes.warn()
     return shot
+
+
+def _composed(stage: Any, path: Path, notes: Notes) -> None:
+    """Refuse a stage of which a file is missing, and note what else of it could not be put together."""
+    for error in stage.GetCompositionErrors():
+        line = " ".join(str(error).split())
+        if "AssetPath" in type(error).__name__ or "SublayerPath" in type(error).__name__:
+            name = line.partition("@")[2].partition("@")[0]
+            if name and not (path.parent / name).exists():
+                raise FileNotFoundError(errno.ENOENT, "no such file", str(path.parent / name))
+        notes.tell(f"it is not put together as it says: {line.partition(':')[0][:200]}")
 
 
 def _seen(stage: Any, time: Any) -> Any:

@@ -1,7 +1,20 @@
-"""What of a file is not shown as it says."""
+"""What of a file is not shown as it says, and what is wrong with it."""
 
 import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
+
+
+@contextmanager
+def told_of(prim: Any) -> Iterator[None]:
+    """Name the prim in whatever is wrong with its values."""
+    try:
+        yield
+    except (ValueError, TypeError, IndexError) as error:
+        told, name = str(error), str(prim.GetPath())
+        raise ValueError(told if told.startswith(name) else f"{name}: {told}") from error
 
 
 class Notes:

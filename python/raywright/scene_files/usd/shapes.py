@@ -5,11 +5,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import choice
 from ...scene.instance import Instance
 from ...shapes import Box, Cone, Cylinder, Sphere
 from ...shapes.mesh import Mesh
 from .materials import PLAIN, Surface, bound, coloured
-from .notes import Notes
+from .notes import Notes, told_of
 
 Matrix = NDArray[np.float64]
 
@@ -41,9 +42,10 @@ def shapes(
     if kind == "Cube":
         half = 0.5 * number("size")
         return [Box((-half,) * 3, (half,) * 3, **look)]
-    axis = "XYZ".index(str(prim.GetAttribute("axis").Get(time)))
+    axis = str(prim.GetAttribute("axis").Get(time))
+    choice("axis", axis, ("X", "Y", "Z"))
     end = np.zeros(3)
-    end[axis] = 0.5 * number("height")
+    end["XYZ".index(axis)] = 0.5 * number("height")
     if kind == "Cylinder":
         return [Cylinder(-end, end, number("radius"), **look)]
     return [Cone(-end, end, number("radius"), 0.0, **look)]
@@ -53,11 +55,14 @@ def _mesh(mesh: Any, matrix: Matrix, time: Any, notes: Notes, kept: dict[str, Su
     from pxr import UsdGeom, UsdShade
 
     prim = mesh.GetPrim()
-    points = np.array(mesh.GetPointsAttr().Get(time), np.float64).reshape(-1, 3)
-    counts = np.array(mesh.GetFaceVertexCountsAttr().Get(time), np.int64).reshape(-1)
-    indices = np.array(mesh.GetFaceVertexIndicesAttr().Get(time), np.int64).reshape(-1)
-    if counts.sum() != len(indices) or (
-        len(indices) and not (indices.min() >= 0 and indices.max() < len(points))
+    # What has no value has none of them.
+    points = np.array(mesh.GetPointsAttr().Get(time) or (), np.float64).reshape(-1, 3)
+    counts = np.array(mesh.GetFaceVertexCountsAttr().Get(time) or (), np.int64).reshape(-1)
+    indices = np.array(mesh.GetFaceVertexIndicesAttr().Get(time) or (), np.int64).reshape(-1)
+    if (
+        (counts < 0).any()
+        or counts.sum() != len(indices)
+        or (len(indices) and not (indices.min() >= 0 and indices.max() < len(points)))
     ):
         raise ValueError(f"{prim.GetPath()} has faces that do not fit its points")
     scheme = mesh.GetSubdivisionSchemeAttr()
@@ -69,7 +74,9 @@ def _mesh(mesh: Any, matrix: Matrix, time: Any, notes: Notes, kept: dict[str, Su
     for subset in UsdShade.MaterialBindingAPI(prim).GetMaterialBindSubsets():
         own = bound(subset.GetPrim(), notes, kept)
         chosen = np.zeros(len(counts), np.bool_)
-        chosen[np.array(subset.GetIndicesAttr().Get(time), np.int64)] = True
+        chosen[_numbers(subset.GetIndicesAttr().Get(time), len(counts), f"{subset.GetPath()} has faces")] = (
+            True
+        )
         parts[0] = parts[0][0], parts[0][1] & ~chosen
         parts.append((own, chosen))
     if mesh.GetOrientationAttr().Get(time) == "leftHanded":
@@ -155,22 +162,38 @@ def _corners(values: Matrix, how: str, counts: Any, indices: Any) -> Matrix | No
     return values[at] if len(at) == 0 or at.max() < len(values) else None
 
 
+def _numbers(given: Any, count: int, what: str) -> NDArray[np.int64]:
+    """Return numbers of things, of which there are so many."""
+    numbers = np.array(given or (), np.int64).reshape(-1)
+    if len(numbers) and not (numbers.min() >= 0 and numbers.max() < count):
+        wrong = numbers[(numbers < 0) | (numbers >= count)][0]
+        raise ValueError(f"{what} that are not there: number {wrong} of {count}")
+    return numbers
+
+
 def _copies(instancer: Any, matrix: Matrix, time: Any, notes: Notes) -> list[Instance]:
     from pxr import Usd, UsdGeom
 
     stage = instancer.GetPrim().GetStage()
-    which = np.array(instancer.GetProtoIndicesAttr().Get(time), np.int64)
+    targets = instancer.GetPrototypesRel().GetTargets()
+    which = _numbers(instancer.GetProtoIndicesAttr().Get(time), len(targets), "protoIndices has prototypes")
+    positions = instancer.GetPositionsAttr().Get(time) or ()
+    if len(positions) != len(which):
+        raise ValueError(f"it has {len(which)} protoIndices, but {len(positions)} positions")
     places = instancer.ComputeInstanceTransformsAtTime(time, time)
     found = []
-    for number, path in enumerate(instancer.GetPrototypesRel().GetTargets()):
+    for number, path in enumerate(targets):
         root = stage.GetPrimAtPath(path)
+        if not root:
+            raise ValueError(f"there is no prototype {path}")
         placed = UsdGeom.XformCache(time)
         # The root's own transform is in what is computed for each copy.
         home = np.linalg.inv(np.array(placed.GetLocalToWorldTransform(root), np.float64).T)
         parts: list[Any] = []
         for prim in Usd.PrimRange(root, Usd.TraverseInstanceProxies()):
             own = home @ np.array(placed.GetLocalToWorldTransform(prim), np.float64).T
-            parts += shapes(prim, own, time, notes)
+            with told_of(prim):
+                parts += shapes(prim, own, time, notes)
         there = [matrix @ np.array(places[int(k)], np.float64).T for k in np.flatnonzero(which == number)]
         if parts and there:
             found.append(Instance(parts, np.stack(there)))
