@@ -31,6 +31,18 @@ impl Phase {
         }
     }
 
+    /// Its greatest density: of going straight on, or back.
+    pub fn greatest(&self) -> f64 {
+        match self {
+            Self::Isotropic => 0.25 * FRAC_1_PI,
+            Self::HenyeyGreenstein(by) => {
+                let g = by.g.abs();
+                0.25 * FRAC_1_PI * (1.0 + g) / ((1.0 - g) * (1.0 - g))
+            }
+            Self::Rayleigh => 0.375 * FRAC_1_PI,
+        }
+    }
+
     /// Its terms.
     pub fn terms(&self) -> PhaseTerms {
         let even = PhaseTerms { scale: 0.25 * FRAC_1_PI, sign: 1.0, least: 1.0, chord: 0.0, square: 0.0 };
@@ -159,6 +171,8 @@ mod tests {
     fn draws_have_the_distribution_and_the_mean_cosine() {
         for g in [-0.9999, -0.5, 0.0, 1e-9, 0.7, 0.9999] {
             let phase = HenyeyGreenstein::new(g).unwrap();
+            let straight = phase.pdf(BEFORE, BEFORE * 1f64.copysign(g));
+            assert!((straight / Phase::HenyeyGreenstein(phase).greatest() - 1.0).abs() < 1e-9);
             let mut counts = vec![0; 20];
             let count = 50_000;
             let mut sum = 0.0;

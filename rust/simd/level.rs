@@ -104,7 +104,7 @@ impl Dispatch<4> for Level {
     fn dispatch<K: Kernel<4>>(self, kernel: K) -> K::Output {
         match self {
             #[cfg(any(test, not(any(target_arch = "x86_64", target_arch = "aarch64"))))]
-            Self::Scalar => kernel.run(Scalar),
+            Self::Scalar => with_scalar(kernel),
             // Four lanes are for processors without more; wider levels have no code of their own for them.
             #[cfg(target_arch = "x86_64")]
             _ => kernel.run(Sse2::new()),
@@ -139,6 +139,16 @@ impl Dispatch<8> for Level {
             }
         }
     }
+}
+
+/// Apart from the others, for two large kernels in one function take more than twice as long to compile.
+#[cfg(any(test, not(any(target_arch = "x86_64", target_arch = "aarch64"))))]
+#[inline(never)]
+fn with_scalar<const N: usize, K: Kernel<N>>(kernel: K) -> K::Output
+where
+    Scalar: Simd<N>,
+{
+    kernel.run(Scalar)
 }
 
 #[cfg(target_arch = "x86_64")]

@@ -1,4 +1,7 @@
 //! Lanes as plain arrays: for processors without a level of their own, and as the reading of what the others do.
+//!
+//! Tests compile every kernel so, and that took a third of the time that all of them took to compile; there, what an
+//! operation does is a call.
 
 use super::{Lanes, Simd};
 use std::array::from_fn;
@@ -36,75 +39,75 @@ pub(super) fn pick_by_lane<const N: usize>(
 impl<const N: usize> Lanes<N> for Scalar {
     type F32 = [f32; N];
 
-    #[inline(always)]
+    #[cfg_attr(not(test), inline(always))]
     fn splat(self, x: f32) -> [f32; N] {
         [x; N]
     }
-    #[inline(always)]
+    #[cfg_attr(not(test), inline(always))]
     fn load(self, from: &[f32; N]) -> [f32; N] {
         *from
     }
-    #[inline(always)]
+    #[cfg_attr(not(test), inline(always))]
     fn store(self, x: [f32; N], to: &mut [f32; N]) {
         *to = x;
     }
-    #[inline(always)]
+    #[cfg_attr(not(test), inline(always))]
     fn add(self, a: [f32; N], b: [f32; N]) -> [f32; N] {
         from_fn(|i| a[i] + b[i])
     }
-    #[inline(always)]
+    #[cfg_attr(not(test), inline(always))]
     fn sub(self, a: [f32; N], b: [f32; N]) -> [f32; N] {
         from_fn(|i| a[i] - b[i])
     }
-    #[inline(always)]
+    #[cfg_attr(not(test), inline(always))]
     fn mul(self, a: [f32; N], b: [f32; N]) -> [f32; N] {
         from_fn(|i| a[i] * b[i])
     }
-    #[inline(always)]
+    #[cfg_attr(not(test), inline(always))]
     fn div(self, a: [f32; N], b: [f32; N]) -> [f32; N] {
         from_fn(|i| a[i] / b[i])
     }
-    #[inline(always)]
+    #[cfg_attr(not(test), inline(always))]
     fn neg(self, a: [f32; N]) -> [f32; N] {
         a.map(|x| -x)
     }
-    #[inline(always)]
+    #[cfg_attr(not(test), inline(always))]
     fn abs(self, a: [f32; N]) -> [f32; N] {
         a.map(|x| x.abs())
     }
-    #[inline(always)]
+    #[cfg_attr(not(test), inline(always))]
     fn mul_sub(self, a: [f32; N], b: [f32; N], c: [f32; N]) -> [f32; N] {
         from_fn(|i| a[i] * b[i] - c[i])
     }
-    #[inline(always)]
+    #[cfg_attr(not(test), inline(always))]
     fn mul_add(self, a: [f32; N], b: [f32; N], c: [f32; N]) -> [f32; N] {
         from_fn(|i| a[i] * b[i] + c[i])
     }
-    #[inline(always)]
+    #[cfg_attr(not(test), inline(always))]
     fn min(self, a: [f32; N], b: [f32; N]) -> [f32; N] {
         from_fn(|i| if a[i] < b[i] { a[i] } else { b[i] })
     }
-    #[inline(always)]
+    #[cfg_attr(not(test), inline(always))]
     fn max(self, a: [f32; N], b: [f32; N]) -> [f32; N] {
         from_fn(|i| if a[i] > b[i] { a[i] } else { b[i] })
     }
-    #[inline(always)]
+    #[cfg_attr(not(test), inline(always))]
     fn select(self, mask: u32, a: [f32; N], b: [f32; N]) -> [f32; N] {
         from_fn(|i| if mask >> i & 1 == 1 { a[i] } else { b[i] })
     }
-    #[inline(always)]
+    #[cfg_attr(not(test), inline(always))]
     fn le(self, a: [f32; N], b: [f32; N]) -> u32 {
         mask::<N>(|i| a[i] <= b[i])
     }
-    #[inline(always)]
+    #[cfg_attr(not(test), inline(always))]
     fn gt(self, a: [f32; N], b: [f32; N]) -> u32 {
         mask::<N>(|i| a[i] > b[i])
     }
-    #[inline(always)]
+    #[cfg_attr(not(test), inline(always))]
     fn same(self, a: [f32; N], b: [f32; N]) -> u32 {
         mask::<N>(|i| a[i].to_bits() == b[i].to_bits())
     }
-    #[inline(always)]
+    #[cfg_attr(not(test), inline(always))]
     fn greatest(self, a: [f32; N]) -> f32 {
         a.into_iter().fold(f32::NEG_INFINITY, |most, x| if x > most { x } else { most })
     }
@@ -113,11 +116,11 @@ impl<const N: usize> Lanes<N> for Scalar {
 impl<const N: usize> Simd<N> for Scalar {
     type Sixteen = Self;
 
-    #[inline(always)]
+    #[cfg_attr(not(test), inline(always))]
     fn sixteen(self) -> Self {
         self
     }
-    #[inline(always)]
+    #[cfg_attr(not(test), inline(always))]
     fn pick(
         self,
         nears: [f32; N],
@@ -130,6 +133,6 @@ impl<const N: usize> Simd<N> for Scalar {
     ) -> usize {
         pick_by_lane(nears, mask::<N>(|i| nears[i] <= fars[i]), items, order, count, to_nears, to_items)
     }
-    #[inline(always)]
+    #[cfg_attr(not(test), inline(always))]
     fn prefetch(self, _: *const u8, _: usize) {}
 }

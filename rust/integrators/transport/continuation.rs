@@ -139,7 +139,8 @@ impl<N: Features> TransportWorker<'_, N> {
         if !N::GENERAL {
             return true;
         }
-        if self.is_at_known(block, lane) && !self.gathers_from(block, lane) {
+        // What is known is scattered by all but single directions.
+        if self.is_at_known(block, lane) && !self.gathers_from(block, lane) && pdf != f64::INFINITY {
             return false;
         }
         match self.settings.follow {
@@ -250,7 +251,7 @@ impl<N: Features> TransportWorker<'_, N> {
             let footprint = if self.widths { self.widened(block, lane, next) } else { carried.footprint };
             let media =
                 if self.passing.is_nested() && next.is_through { self.boundary(block, lane).1 } else { carried.media };
-            let (is_gathered, is_sharp_since) = self.gathered(block, lane);
+            let (is_gathered, is_sharp_since) = self.gathered(block, lane, next.is_delta());
             let (chance, branch) = (-1.0, branch.number);
             self.next.carried.push(Carried { footprint, media, chance, branch, is_gathered, is_sharp_since });
         }

@@ -1,4 +1,5 @@
-//! Paths at matt surfaces whose light is known: they end there, or after they have looked about once.
+//! Paths at matt surfaces whose light is known: they end there, or after they have looked about once. Only what such a
+//! surface reflects in single directions, as a coat does, is not known, and is followed as a mirror's.
 
 use super::block::Block;
 use super::features::{Carried, Features};
@@ -46,10 +47,10 @@ impl<N: Features> TransportWorker<'_, N> {
         path.throughput * known.radiance(&block.other(lane), visit)
     }
 
-    /// Of a path that goes on from the surface of a lane: whether it is gathered, and whether it has been at something
-    /// sharp since.
-    pub(super) fn gathered(&self, block: &Block, lane: usize) -> (bool, bool) {
-        let carried = self.carried(block, lane);
-        if self.is_at_known(block, lane) { (true, false) } else { (carried.is_gathered, carried.is_gathered) }
+    /// Of a path that goes on from the surface of a lane, in a single direction or not: whether it is gathered, and
+    /// whether it has been at something sharp since. A coat that is like a mirror is one, whatever lies below.
+    pub(super) fn gathered(&self, block: &Block, lane: usize, is_single: bool) -> (bool, bool) {
+        let was = self.carried(block, lane).is_gathered;
+        if self.is_at_known(block, lane) && !is_single { (true, false) } else { (was, was) }
     }
 }

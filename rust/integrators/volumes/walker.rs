@@ -118,7 +118,8 @@ impl<'a, A: Asks> Walker<'a, A> {
                         goes_on
                     }
                     Place::Medium { here, collision, span } => {
-                        let takes = self.settings.shares && parts.first.is_none() && !path.gilded;
+                        let takes =
+                            self.settings.shares && parts.first.is_none() && !path.gilded && First::may_be(&here);
                         if takes && collision.density.is_some() {
                             let is_limited = self.settings.max_depth.is_some();
                             parts.first = Some(First::new(&here, collision.here, &path, is_limited));
@@ -299,13 +300,18 @@ impl<'a, A: Asks> Walker<'a, A> {
         if !self.follows_all() {
             return self.split(path, &here, through, later.as_ref(), waiting);
         }
-        if arrival.is_known() {
+        if path.splits > 0.0 && arrival.is_known() {
             self.look_about(path, &here, through, waiting, numbers);
             return false;
         }
         let choice = numbers.ray.scattering_choice();
         let u = numbers.two(choice + 1);
         let Some(next) = here.sample(&mut || numbers.one(choice), u) else { return false };
+        // What is known is scattered by all but single directions.
+        if arrival.is_known() && !next.is_delta() {
+            return false;
+        }
+        path.splits = 1.0;
         let media = if next.is_through { through } else { path.media };
         path.is_sharp_since = path.is_gathered;
         let chance = numbers.ray.roulette();
@@ -356,7 +362,10 @@ impl<'a, A: Asks> Walker<'a, A> {
             let media = if next.is_through { through } else { path.media };
             next.pdf *= path.splits;
             next.weight /= path.splits;
-            let mut one = PathState { branch, is_gathered: true, is_sharp_since: false, splits: 1.0, ..*path };
+            // A coat that is like a mirror is one, whatever lies below.
+            let is_gathered = !next.is_delta() || path.is_gathered;
+            let is_sharp_since = next.is_delta() && path.is_gathered;
+            let mut one = PathState { branch, is_gathered, is_sharp_since, splits: 1.0, ..*path };
             let chance = numbers.one(dimensions.roulette());
             if self.go_on(&mut one, here, &next, media, chance, true) {
                 waiting.push(one);
