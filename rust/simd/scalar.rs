@@ -39,74 +39,92 @@ pub(super) fn pick_by_lane<const N: usize>(
 impl<const N: usize> Lanes<N> for Scalar {
     type F32 = [f32; N];
 
+    #[cfg_attr(test, inline(never))]
     #[cfg_attr(not(test), inline(always))]
     fn splat(self, x: f32) -> [f32; N] {
         [x; N]
     }
+    #[cfg_attr(test, inline(never))]
     #[cfg_attr(not(test), inline(always))]
     fn load(self, from: &[f32; N]) -> [f32; N] {
         *from
     }
+    #[cfg_attr(test, inline(never))]
     #[cfg_attr(not(test), inline(always))]
     fn store(self, x: [f32; N], to: &mut [f32; N]) {
         *to = x;
     }
+    #[cfg_attr(test, inline(never))]
     #[cfg_attr(not(test), inline(always))]
     fn add(self, a: [f32; N], b: [f32; N]) -> [f32; N] {
         from_fn(|i| a[i] + b[i])
     }
+    #[cfg_attr(test, inline(never))]
     #[cfg_attr(not(test), inline(always))]
     fn sub(self, a: [f32; N], b: [f32; N]) -> [f32; N] {
         from_fn(|i| a[i] - b[i])
     }
+    #[cfg_attr(test, inline(never))]
     #[cfg_attr(not(test), inline(always))]
     fn mul(self, a: [f32; N], b: [f32; N]) -> [f32; N] {
         from_fn(|i| a[i] * b[i])
     }
+    #[cfg_attr(test, inline(never))]
     #[cfg_attr(not(test), inline(always))]
     fn div(self, a: [f32; N], b: [f32; N]) -> [f32; N] {
         from_fn(|i| a[i] / b[i])
     }
+    #[cfg_attr(test, inline(never))]
     #[cfg_attr(not(test), inline(always))]
     fn neg(self, a: [f32; N]) -> [f32; N] {
         a.map(|x| -x)
     }
+    #[cfg_attr(test, inline(never))]
     #[cfg_attr(not(test), inline(always))]
     fn abs(self, a: [f32; N]) -> [f32; N] {
         a.map(|x| x.abs())
     }
+    #[cfg_attr(test, inline(never))]
     #[cfg_attr(not(test), inline(always))]
     fn mul_sub(self, a: [f32; N], b: [f32; N], c: [f32; N]) -> [f32; N] {
         from_fn(|i| a[i] * b[i] - c[i])
     }
+    #[cfg_attr(test, inline(never))]
     #[cfg_attr(not(test), inline(always))]
     fn mul_add(self, a: [f32; N], b: [f32; N], c: [f32; N]) -> [f32; N] {
         from_fn(|i| a[i] * b[i] + c[i])
     }
+    #[cfg_attr(test, inline(never))]
     #[cfg_attr(not(test), inline(always))]
     fn min(self, a: [f32; N], b: [f32; N]) -> [f32; N] {
         from_fn(|i| if a[i] < b[i] { a[i] } else { b[i] })
     }
+    #[cfg_attr(test, inline(never))]
     #[cfg_attr(not(test), inline(always))]
     fn max(self, a: [f32; N], b: [f32; N]) -> [f32; N] {
         from_fn(|i| if a[i] > b[i] { a[i] } else { b[i] })
     }
+    #[cfg_attr(test, inline(never))]
     #[cfg_attr(not(test), inline(always))]
     fn select(self, mask: u32, a: [f32; N], b: [f32; N]) -> [f32; N] {
         from_fn(|i| if mask >> i & 1 == 1 { a[i] } else { b[i] })
     }
+    #[cfg_attr(test, inline(never))]
     #[cfg_attr(not(test), inline(always))]
     fn le(self, a: [f32; N], b: [f32; N]) -> u32 {
         mask::<N>(|i| a[i] <= b[i])
     }
+    #[cfg_attr(test, inline(never))]
     #[cfg_attr(not(test), inline(always))]
     fn gt(self, a: [f32; N], b: [f32; N]) -> u32 {
         mask::<N>(|i| a[i] > b[i])
     }
+    #[cfg_attr(test, inline(never))]
     #[cfg_attr(not(test), inline(always))]
     fn same(self, a: [f32; N], b: [f32; N]) -> u32 {
         mask::<N>(|i| a[i].to_bits() == b[i].to_bits())
     }
+    #[cfg_attr(test, inline(never))]
     #[cfg_attr(not(test), inline(always))]
     fn greatest(self, a: [f32; N]) -> f32 {
         a.into_iter().fold(f32::NEG_INFINITY, |most, x| if x > most { x } else { most })
@@ -116,10 +134,12 @@ impl<const N: usize> Lanes<N> for Scalar {
 impl<const N: usize> Simd<N> for Scalar {
     type Sixteen = Self;
 
+    #[cfg_attr(test, inline(never))]
     #[cfg_attr(not(test), inline(always))]
     fn sixteen(self) -> Self {
         self
     }
+    #[cfg_attr(test, inline(never))]
     #[cfg_attr(not(test), inline(always))]
     fn pick(
         self,
@@ -133,6 +153,7 @@ impl<const N: usize> Simd<N> for Scalar {
     ) -> usize {
         pick_by_lane(nears, mask::<N>(|i| nears[i] <= fars[i]), items, order, count, to_nears, to_items)
     }
+    #[cfg_attr(test, inline(never))]
     #[cfg_attr(not(test), inline(always))]
     fn prefetch(self, _: *const u8, _: usize) {}
 }

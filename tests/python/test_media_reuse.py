@@ -121,3 +121,17 @@ def test_what_cannot_be_shared_is_as_without():
         assert np.array_equal(render(scene, 4, 4).rgb, render(scene, 1, 4).rgb)
     once = filled(thick())
     assert np.array_equal(render(once, 4, 4, depth=1).rgb, render(once, 1, 4, depth=1).rgb)
+
+
+def test_where_nearly_all_light_goes_straight_on_nothing_is_shared():
+    """Shares would be worth a thousand times their mean there, and come once in as many samples."""
+    cloud = rw.Homogeneous(0, 1, rw.HenyeyGreenstein(0.99))
+    scene = rw.Scene([rw.Sphere((0, 0, 0), 1, material=rw.Boundary(cloud))], environment=1.0)
+    camera = rw.Camera((0, 0, 4), (0, 0, 0), fov=20, width=8, height=8)
+    errors = []
+    for reuse in (1, 4):
+        made = rw.render(
+            scene, camera, rw.Path(reuse=reuse), samples=64, sampler=rw.Independent(), progress=False
+        )
+        errors.append(float(((made.rgb - 1) ** 2).mean()))
+    assert errors[1] < 1.5 * errors[0] < 0.003, errors

@@ -373,3 +373,37 @@ def test_it_is_a_value():
     again = pickle.loads(pickle.dumps(image))
     assert again == image
     assert not again.bias.flags.writeable
+
+
+@pytest.mark.parametrize("among", [False, True], ids=["in air", "in a thin medium"])
+@pytest.mark.parametrize(
+    "coated",
+    [
+        rw.Mix(rw.Diffuse(0.5), rw.Mirror(), 0.5),
+        rw.Plastic(0.5, ior=1.87),
+        rw.MetallicRough((0.5, 0.5, 0.5), 0.0, 0.0),
+    ],
+    ids=lambda coated: type(coated).__name__,
+)
+@pytest.mark.parametrize(
+    "way",
+    [
+        rw.ProgressivePhotonMap(photons=1000),
+        rw.PhotonMap(photons=1000, gather=0),
+        rw.PhotonMap(photons=1000),
+    ],
+    ids=["progressive", "seen at once", "looked about"],
+)
+def test_what_a_coat_reflects_is_not_lost(way, coated, among):
+    """Of what is reflected in a single direction nothing is known from photons: it has to be followed."""
+    shapes = [rw.Sphere((0, 0, 0), 0.8, material=coated)]
+    if among:
+        shapes.append(rw.Sphere((0, 0, 0), 2, material=rw.Boundary(rw.Homogeneous(1e-6, 0))))
+    scene, camera = (
+        rw.Scene(shapes, environment=1.0),
+        rw.Camera((0, 0, 4), (0, 0, 0), fov=22, width=4, height=4),
+    )
+    wanted = rw.render(scene, camera, rw.Path(), samples=256, progress=False)
+    found = rw.render(scene, camera, way, samples=256, progress=False)
+    # What photons tell of even light is no exact number: their rings end at the ball's rim.
+    assert found.rgb.mean() == pytest.approx(wanted.rgb.mean(), rel=0.01)

@@ -126,7 +126,8 @@ pub fn between_facets(one: &Facet, other: &Facet) -> Vec<HalfSpace> {
 }
 
 /// Whether a triangle hides all of one from all of another: it parts them, and all segments between their corners go
-/// through it, so that those between any of their points do. Each comes with the heights of its corners over the blocker.
+/// through it, so that those between any of their points do. Each comes with the heights of its corners over the
+/// blocker.
 pub fn hides(blocker: &Facet, (one, from): (&Facet, [f64; 3]), (other, to): (&Facet, [f64; 3])) -> bool {
     let parts = |of: [f64; 3], than: [f64; 3]| of.iter().all(|&h| h > 0.0) && than.iter().all(|&h| h < 0.0);
     if !parts(from, to) && !parts(to, from) {
