@@ -45,7 +45,7 @@ def names_of(aov: str | Iterable[str]) -> tuple[str, ...]:
     """
     if not isinstance(aov, Iterable):
         raise TypeError(f"aov must be names, got {aov!r}")
-    names = (aov,) if isinstance(aov, str) else tuple(dict.fromkeys(aov))
+    names = (aov,) if isinstance(aov, str) else tuple(aov)
     for name in names:
         if not isinstance(name, str):
             raise TypeError(f"aov must be names, got {name!r}")
