@@ -141,7 +141,7 @@ impl Dispatch<8> for Level {
     }
 }
 
-/// Apart from the others, for two large kernels in one function take more than twice as long to compile.
+/// A function of its own, as those of the other levels are.
 #[cfg(any(test, not(any(target_arch = "x86_64", target_arch = "aarch64"))))]
 #[inline(never)]
 fn with_scalar<const N: usize, K: Kernel<N>>(kernel: K) -> K::Output

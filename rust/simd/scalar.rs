@@ -1,7 +1,7 @@
 //! Lanes as plain arrays: for processors without a level of their own, and as the reading of what the others do.
 //!
-//! Tests compile every kernel so, and that took a third of the time that all of them took to compile; there, what an
-//! operation does is a call.
+//! Tests compile every kernel so. There an operation is a call: all of them compile in an eighth less time, and take no
+//! longer to run.
 
 use super::{Lanes, Simd};
 use std::array::from_fn;
