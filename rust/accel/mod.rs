@@ -15,6 +15,7 @@ mod nearest;
 pub mod octree;
 mod parity;
 mod query;
+mod rare_query;
 mod slab;
 mod touches;
 pub mod trees;
@@ -43,6 +44,7 @@ use crate::work::Work;
 use kept::Kept;
 use parity::Parity;
 use query::{Answers, Counted};
+use rare_query::RareQuery;
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -212,12 +214,12 @@ impl<A: Answers> Accelerator for A {
 
     fn kept(&self, rays: &[Ray], counts: &Counts<'_>, any: bool, hits: &mut [Hit]) {
         assert_eq!(rays.len(), hits.len(), "a hit for each ray");
-        self.answer(rays, &mut Kept { counts, any, hits });
+        self.answer(rays, &mut RareQuery::Kept(Kept { counts, any, hits }));
     }
 
     fn met(&self, rays: &[Ray]) -> Every {
         let mut every = Every::of(rays.len());
-        self.answer(rays, &mut every);
+        self.answer(rays, &mut RareQuery::Every(&mut every));
         every
     }
 

@@ -32,6 +32,12 @@ pub trait Query {
     /// Whether the nearest triangles should be looked at first.
     const NEAREST_FIRST: bool = matches!(Self::WANTED, Wanted::Closest);
 
+    /// What has to be offered; one type may hold queries of several kinds.
+    #[inline(always)]
+    fn wanted(&self) -> Wanted {
+        Self::WANTED
+    }
+
     /// Nothing is known yet of ray `i`, asked for `t` up to `t_max` along its scaled direction.
     fn start(&self, i: usize, t_max: f64) -> Self::State;
     /// The greatest `t` that still matters.

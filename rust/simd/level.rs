@@ -2,7 +2,7 @@
 
 #[cfg(target_arch = "aarch64")]
 use super::Neon;
-#[cfg(any(test, not(any(target_arch = "x86_64", target_arch = "aarch64"))))]
+#[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
 use super::Scalar;
 use super::Simd;
 #[cfg(target_arch = "x86_64")]
@@ -12,8 +12,7 @@ use std::sync::OnceLock;
 /// A level of the processor's vector instructions, from least to most.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Level {
-    /// What the compiler makes of arrays, where it is all that there is, and in tests: a processor that always has
-    /// vectors needs no second copy of each kernel.
+    /// Arrays, for processors without vectors: those that always have some need no second copy of each kernel.
     Scalar,
     /// NEON, on every 64-bit ARM.
     Neon,
@@ -48,7 +47,7 @@ impl Level {
     /// Whether this processor has it.
     pub fn is_available(self) -> bool {
         match self {
-            Self::Scalar => cfg!(any(test, not(any(target_arch = "x86_64", target_arch = "aarch64")))),
+            Self::Scalar => cfg!(not(any(target_arch = "x86_64", target_arch = "aarch64"))),
             Self::Neon => cfg!(target_arch = "aarch64"),
             #[cfg(target_arch = "x86_64")]
             Self::Sse2 => true,
@@ -94,20 +93,26 @@ pub trait Kernel<const N: usize> {
 }
 
 /// Runs kernels of `N` lanes compiled for a level, which must be available and have as many ([`Level::lanes`]).
-pub trait Dispatch<const N: usize> {
+pub trait Dispatch<const N: usize>: Sized {
     /// Runs one.
     fn dispatch<K: Kernel<N>>(self, kernel: K) -> K::Output;
+
+    /// Runs a rare one, which has no copy for AVX-512.
+    #[inline]
+    fn dispatch_rare<K: Kernel<N>>(self, kernel: K) -> K::Output {
+        self.dispatch(kernel)
+    }
 }
 
 impl Dispatch<4> for Level {
     #[inline]
     fn dispatch<K: Kernel<4>>(self, kernel: K) -> K::Output {
         match self {
-            #[cfg(any(test, not(any(target_arch = "x86_64", target_arch = "aarch64"))))]
+            #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
             Self::Scalar => with_scalar(kernel),
             // Four lanes are for processors without more; wider levels have no code of their own for them.
             #[cfg(target_arch = "x86_64")]
-            _ => kernel.run(Sse2::new()),
+            _ => with_sse2(kernel),
             #[cfg(target_arch = "aarch64")]
             _ => kernel.run(Neon::new()),
             #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
@@ -139,16 +144,33 @@ impl Dispatch<8> for Level {
             }
         }
     }
+
+    #[cfg(target_arch = "x86_64")]
+    #[inline]
+    fn dispatch_rare<K: Kernel<8>>(self, kernel: K) -> K::Output {
+        let simd = Avx2::detect().expect("an available level of eight lanes");
+        // SAFETY: the processor was just seen to have what `with_avx2` is compiled for.
+        unsafe { with_avx2(kernel, simd) }
+    }
 }
 
 /// A function of its own, as those of the other levels are.
-#[cfg(any(test, not(any(target_arch = "x86_64", target_arch = "aarch64"))))]
+#[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
 #[inline(never)]
 fn with_scalar<const N: usize, K: Kernel<N>>(kernel: K) -> K::Output
 where
     Scalar: Simd<N>,
 {
     kernel.run(Scalar)
+}
+
+#[cfg(target_arch = "x86_64")]
+#[inline(never)]
+fn with_sse2<const N: usize, K: Kernel<N>>(kernel: K) -> K::Output
+where
+    Sse2: Simd<N>,
+{
+    kernel.run(Sse2::new())
 }
 
 #[cfg(target_arch = "x86_64")]
@@ -171,7 +193,7 @@ where
 
 #[cfg(test)]
 mod tests {
-    use super::super::{ASCENDING, Lanes};
+    use super::super::{ASCENDING, Lanes, Scalar};
     use super::*;
     use proptest::prelude::*;
 

@@ -16,7 +16,6 @@ macro_rules! loops {
         ) $body:block
     ) => {
         $(#[$attribute])*
-        #[inline]
         #[allow(clippy::too_many_arguments)]
         $visibility fn $name$(<$($of: $bound $(+ $more)*),+>)?(level: $crate::simd::Level, $($argument: $type),*) {
             #[inline(always)]
@@ -37,6 +36,12 @@ macro_rules! loops {
                 run$(::<$($of),+>)?($($argument),*);
             }
 
+            #[inline(never)]
+            #[allow(clippy::too_many_arguments)]
+            fn at_base_level$(<$($of: $bound $(+ $more)*),+>)?($($argument: $type),*) {
+                run$(::<$($of),+>)?($($argument),*);
+            }
+
             match level {
                 #[cfg(target_arch = "x86_64")]
                 $crate::simd::Level::Avx512 if $crate::simd::Avx512::detect().is_some() => {
@@ -48,7 +53,7 @@ macro_rules! loops {
                     // SAFETY: the processor was just seen to have what `with_avx2` is compiled for.
                     unsafe { with_avx2$(::<$($of),+>)?($($argument),*) }
                 }
-                _ => run$(::<$($of),+>)?($($argument),*),
+                _ => at_base_level$(::<$($of),+>)?($($argument),*),
             }
         }
     };

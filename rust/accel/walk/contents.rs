@@ -211,7 +211,7 @@ impl<const N: usize, L: Leaves<N>> Contents<N, L> {
             Q::visit_leaf(state, 1);
             let t_max = t_max.min(Q::limit(state));
             let asked = Ray { t_min, t_max, time: ray.time, ..Ray::new(origin, direction) };
-            let answered = objects.meet(number, Q::WANTED, &asked, &mut |met| {
+            let answered = objects.meet(number, query.wanted(), &asked, &mut |met| {
                 // What lies so far along a short direction that an f64 cannot say it is no hit.
                 (met.t * scale).is_finite() && query.offer(state, number, met)
             });

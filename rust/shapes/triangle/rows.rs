@@ -93,8 +93,11 @@ impl<const N: usize> Rows<N> {
     pub(super) fn vectors(&self, first: usize, count: u32, lane: usize) -> [Vec3; 3] {
         let count = count as usize;
         let leaf = &self.numbers[first * ROWS + lane..][..8 * count + 1];
-        let vector = |c: usize| Vec3::new(leaf[3 * c * count], leaf[(3 * c + 1) * count], leaf[(3 * c + 2) * count]);
-        [vector(0), vector(1), vector(2)]
+        #[inline(always)]
+        fn vector(leaf: &[f32], count: usize, c: usize) -> Vec3 {
+            Vec3::new(leaf[3 * c * count], leaf[(3 * c + 1) * count], leaf[(3 * c + 2) * count])
+        }
+        [vector(leaf, count, 0), vector(leaf, count, 1), vector(leaf, count, 2)]
     }
 
     /// What stands from where a leaf begins.

@@ -163,11 +163,15 @@ impl EdgeRays {
     /// its `t_min` and `t_max`. Open are those for which f64 does not say where; only those in `asked` count.
     #[inline(always)]
     pub fn won<T: Copy + Into<f64>>(&self, [a, b, c]: &[[Column<T>; 3]; 3], asked: u32) -> Met {
+        /// No closure: those are not always inlined.
+        #[inline(always)]
+        fn of<T: Copy + Into<f64>>(corner: &[Column<T>; 3], i: usize) -> [f64; 3] {
+            [corner[0][i].into(), corner[1][i].into(), corner[2][i].into()]
+        }
         let mut met = Met::NONE;
         let mut certain = [0u32; RAYS];
         for i in 0..RAYS {
-            let of = |corner: &[Column<T>; 3]| [corner[0][i].into(), corner[1][i].into(), corner[2][i].into()];
-            let (_, is_open, t, v, w) = self.meet_one::<true>(i, [of(a), of(b), of(c)]);
+            let (_, is_open, t, v, w) = self.meet_one::<true>(i, [of(a, i), of(b, i), of(c, i)]);
             let t = t * self.scale[i];
             certain[i] = u32::from((is_open == 0) & (t.abs() <= f64::MAX));
             (met.t[i], met.uv[0][i], met.uv[1][i]) = (t, v, w);

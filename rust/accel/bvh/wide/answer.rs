@@ -68,6 +68,41 @@ impl Answer for HitColumns<'_> {
     }
 }
 
+/// Closest hits, in rows or in columns: which of them is decided where a hit is written, so that kernels are compiled
+/// once for both.
+pub enum Closest<'a> {
+    Rows(&'a mut [Hit]),
+    Columns(HitColumns<'a>),
+}
+
+impl Answer for Closest<'_> {
+    const ANY: bool = false;
+
+    #[inline(always)]
+    fn miss(&mut self, i: usize) {
+        match self {
+            Self::Rows(hits) => hits.miss(i),
+            Self::Columns(hits) => hits.miss(i),
+        }
+    }
+
+    #[inline(always)]
+    fn hit(&mut self, i: usize, t: f64, uv: [f64; 2], primitive: u32) {
+        match self {
+            Self::Rows(hits) => hits.hit(i, t, uv, primitive),
+            Self::Columns(hits) => hits.hit(i, t, uv, primitive),
+        }
+    }
+
+    #[inline(always)]
+    fn some(&mut self, start: usize, count: usize, hits: u32, all: &Met, primitives: &Column<u32>) {
+        match self {
+            Self::Rows(rows) => rows.some(start, count, hits, all, primitives),
+            Self::Columns(columns) => columns.some(start, count, hits, all, primitives),
+        }
+    }
+}
+
 impl Answer for &mut [bool] {
     const ANY: bool = true;
 

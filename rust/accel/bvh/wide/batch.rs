@@ -13,6 +13,13 @@ use crate::simd::{Kernel, Simd};
 /// Fewer rays than these leave a packet or a wave mostly empty.
 const FEW: usize = 8;
 
+struct Width<const N: usize>;
+
+impl<const N: usize> Width<N> {
+    /// On x86-64, kernels of four lanes serve processors that lack AVX2: only the single-ray kernel is compiled for them.
+    const SINGLE_RAYS_ONLY: bool = N == 4 && cfg!(target_arch = "x86_64");
+}
+
 /// A question about all that a batch of rays meets.
 pub struct All<'a, const N: usize, L, Q> {
     pub bvh: &'a WideBvh<N, L>,
@@ -29,7 +36,7 @@ impl<const N: usize, L: Leaves<N>, Q: Query> Kernel<N> for All<'_, N, L, Q> {
         let errand = &mut Telling { rays: &rays, query };
         if bvh.nodes.is_empty() {
             miss(bvh, rays.len(), errand);
-        } else if Q::COUNTED || rays.len() < FEW {
+        } else if Width::<N>::SINGLE_RAYS_ONLY || Q::COUNTED || rays.len() < FEW {
             single::answer(simd, bvh, &rays, errand);
         } else {
             wave::answer(simd, bvh, &rays, errand);
@@ -50,9 +57,13 @@ impl<const N: usize, L: Leaves<N>, A: Answer> Kernel<N> for Firsts<'_, N, L, A> 
     #[inline(always)]
     fn run<S: Simd<N>>(self, simd: S) {
         let Self { bvh, rays, mut answer } = self;
-        if rays.len() == 1 && !bvh.nodes.is_empty() {
+        if Width::<N>::SINGLE_RAYS_ONLY || rays.len() == 1 {
             let errand = &mut First { rays: &rays, answer: &mut answer, winners: Alone };
-            return single::answer(simd, bvh, &rays, errand);
+            return if bvh.nodes.is_empty() {
+                miss(bvh, rays.len(), errand);
+            } else {
+                single::answer(simd, bvh, &rays, errand);
+            };
         }
         let errand = &mut First { rays: &rays, answer: &mut answer, winners: Winners::new() };
         if bvh.nodes.is_empty() {
@@ -97,7 +108,7 @@ mod tests {
     use crate::math::{DVec3, Hit, HitColumns, Numbers, Ray, RayColumns, Vec3, Vectors};
     use crate::sampling::philox4x32;
     use crate::shapes::triangle::{DoubleLeaves, SingleLeaves};
-    use crate::simd::{Dispatch, Level};
+    use crate::simd::{Dispatch, Level, Scalar};
 
     struct Soup(Vec<[Vec3; 3]>);
 
@@ -203,9 +214,27 @@ mod tests {
         }
     }
 
+    /// Runs a kernel at a level. Levels of four lanes run what batches run; all kernels of four lanes run as arrays.
+    fn run<const N: usize, L: Leaves<N>, A: Answer>(level: Level, by: By<'_, N, L, A>)
+    where
+        Level: Dispatch<N>,
+        Scalar: Simd<N>,
+    {
+        if N == Level::Scalar.lanes() {
+            if level == Level::Scalar {
+                by.run(Scalar);
+            } else {
+                level.dispatch(by.asked);
+            }
+        } else {
+            level.dispatch(by);
+        }
+    }
+
     fn kernels_agree<const N: usize>()
     where
         Level: Dispatch<N>,
+        Scalar: Simd<N>,
     {
         // Many; and few: large ones, and a part of the planes.
         let Soup(all) = soup();
@@ -234,11 +263,13 @@ mod tests {
     fn kernels_agree_over<const N: usize, L: Leaves<N>>(soup: &Soup, is_turned: bool)
     where
         Level: Dispatch<N>,
+        Scalar: Simd<N>,
     {
         let is_few = soup.0.len() <= few::TRIANGLES;
         let kernels = [Which::Single, Which::Wave, Which::Packet, Which::Few];
         let kernels = if is_few { &kernels[..] } else { &kernels[..3] };
-        for level in Level::ALL.into_iter().filter(|l| l.is_available() && l.lanes() >= N) {
+        let is_tested = |level: &Level| level.lanes() >= N && (*level == Level::Scalar || level.is_available());
+        for level in Level::ALL.into_iter().filter(is_tested) {
             let brute = BruteForce::over(soup, level);
             let bvh = WideBvh::<N, L>::new(soup, &Options::DEFAULT, level);
             assert_eq!(bvh.axes.is_some(), is_turned);
@@ -252,10 +283,10 @@ mod tests {
                 for &which in kernels {
                     let mut hits = vec![Hit::MISS; rays.len()];
                     let rays = RayBatch::Rows(&rays);
-                    level.dispatch(By { which, asked: Firsts { bvh: &bvh, rays, answer: hits.as_mut_slice() } });
+                    run(level, By { which, asked: Firsts { bvh: &bvh, rays, answer: hits.as_mut_slice() } });
                     assert_eq!(hits, wanted, "{which:?} at {level:?}");
                     let mut any = vec![false; rays.len()];
-                    level.dispatch(By { which, asked: Firsts { bvh: &bvh, rays, answer: any.as_mut_slice() } });
+                    run(level, By { which, asked: Firsts { bvh: &bvh, rays, answer: any.as_mut_slice() } });
                     assert!(any.iter().zip(&wanted).all(|(&any, hit)| any == hit.is_hit()), "{which:?} at {level:?}");
                 }
             }

@@ -36,6 +36,7 @@ use crate::math::{Aabb, Axes, DVec3, Hit, HitColumns, Ray, RayBatch, RayColumns,
 use crate::shapes::triangle::{Leaves, SolidCone, clipped};
 use crate::simd::{Dispatch, Level};
 use crate::work::{Stopped, Work};
+use answer::Closest;
 use batch::{All, Firsts};
 use collapse::Outline;
 use node::{Child, WideNode};
@@ -195,12 +196,14 @@ where
 {
     fn intersect(&self, rays: &RayColumns<'_>, hits: HitColumns<'_>) {
         assert_eq!(rays.len(), hits.len(), "a hit for each ray");
-        self.level.dispatch(Firsts { bvh: self, rays: RayBatch::Columns(*rays), answer: hits });
+        let answer = Closest::Columns(hits);
+        self.level.dispatch(Firsts { bvh: self, rays: RayBatch::Columns(*rays), answer });
     }
 
     fn first_hits(&self, rays: &RayColumns<'_>, hits: &mut [Hit]) {
         assert_eq!(rays.len(), hits.len(), "a hit for each ray");
-        self.level.dispatch(Firsts { bvh: self, rays: RayBatch::Columns(*rays), answer: hits });
+        let answer = Closest::Rows(hits);
+        self.level.dispatch(Firsts { bvh: self, rays: RayBatch::Columns(*rays), answer });
     }
 
     fn occluded(&self, rays: &RayColumns<'_>, occluded: &mut [bool]) {
@@ -218,11 +221,11 @@ where
     Level: Dispatch<N>,
 {
     fn answer<Q: Query>(&self, rays: &[Ray], query: &mut Q) {
-        self.level.dispatch(All { bvh: self, rays: RayBatch::Rows(rays), query });
+        self.level.dispatch_rare(All { bvh: self, rays: RayBatch::Rows(rays), query });
     }
 
     fn intersect(&self, rays: &[Ray], hits: &mut [Hit]) {
-        self.level.dispatch(Firsts { bvh: self, rays: RayBatch::Rows(rays), answer: hits });
+        self.level.dispatch(Firsts { bvh: self, rays: RayBatch::Rows(rays), answer: Closest::Rows(hits) });
     }
 
     fn occluded(&self, rays: &[Ray], occluded: &mut [bool]) {
