@@ -1,28 +1,12 @@
 //! raywright: rays to hits, scenes to pictures, each with an honest error.
 //!
-//! The house has floors, and each uses only those under it; `ARCHITECTURE.md` draws them.
+//! Each module is a crate of its own, and uses only those below it; `ARCHITECTURE.md` draws them.
 
-pub mod accel;
-pub mod exchange;
-pub mod integrators;
-pub mod math;
-pub mod optics;
-pub mod parallel;
-pub mod render;
-pub mod sampling;
-pub mod scene;
-pub mod shapes;
-pub mod simd;
-pub mod timing;
-pub mod work;
-pub mod workers;
-
-#[cfg(feature = "python")]
-mod python;
-
-#[cfg(test)]
-extern crate self as raywright;
-
-#[cfg(test)]
-#[path = "../tests/main.rs"]
-mod tests;
+pub use raywright_accel as accel;
+pub use raywright_base::{math, parallel, sampling, simd, timing, work, workers};
+pub use raywright_exchange as exchange;
+pub use raywright_integrators as integrators;
+pub use raywright_optics as optics;
+pub use raywright_render as render;
+pub use raywright_scene as scene;
+pub use raywright_shapes as shapes;

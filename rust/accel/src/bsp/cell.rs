@@ -1,0 +1,152 @@
+//! What planes leave of a box: convex bodies, whose surface says how many rays they meet.
+
+use super::plane::Plane;
+use raywright_base::math::{Aabb, DVec3};
+
+/// A convex body by its faces. What it is used for, expected costs, bears any rounding.
+#[derive(Clone, Debug)]
+pub struct Cell {
+    faces: Vec<Vec<DVec3>>,
+    /// By face, its area times its normal, one way or the other.
+    areas: Vec<DVec3>,
+}
+
+impl Cell {
+    /// A box.
+    pub fn new(aabb: &Aabb) -> Self {
+        let corners = [aabb.min.as_dvec3(), aabb.max.as_dvec3()];
+        let face = |k: usize| {
+            let (axis, side) = (k / 2, k % 2);
+            let turn = [[0, 0], [0, 1], [1, 1], [1, 0]].map(|[u, v]| {
+                let mut corner = corners[side];
+                corner[(axis + 1) % 3] = corners[u][(axis + 1) % 3];
+                corner[(axis + 2) % 3] = corners[v][(axis + 2) % 3];
+                corner
+            });
+            turn.to_vec()
+        };
+        Self::of((0..6).map(face).collect())
+    }
+
+    fn of(faces: Vec<Vec<DVec3>>) -> Self {
+        let areas = faces.iter().map(|face| area(face)).collect();
+        Self { faces, areas }
+    }
+
+    /// The surface.
+    pub fn area(&self) -> f64 {
+        self.areas.iter().map(|area| area.length()).sum()
+    }
+
+    /// The least and the greatest height over a plane.
+    pub fn range(&self, plane: &Plane) -> [f64; 2] {
+        let ranges = self.faces.iter().map(|face| plane.range(face));
+        ranges.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], [least, greatest]| [a.min(least), b.max(greatest)])
+    }
+
+    /// How much surface a plane may leave on either side, if the cell is taken for a prism that stands across the plane
+    /// and is as wide as the cell at its widest: each side has two ends, as large as the cell's shadow on the plane,
+    /// and its share of what is around.
+    ///
+    /// None if the plane has less than `least` of the cell on a side.
+    pub fn guessed_areas(&self, plane: &Plane, least: f64) -> Option<[f64; 2]> {
+        let [lowest, highest] = self.range(plane);
+        let back = -lowest / (highest - lowest);
+        // Every ray along the normal that meets it does so twice.
+        let ends: f64 =
+            self.areas.iter().map(|area| plane.normal.dot(*area).abs()).sum::<f64>() / plane.normal.length();
+        let around = (self.area() - ends).max(0.0);
+        (lowest < -least && highest > least).then(|| [back, 1.0 - back].map(|share| ends + share * around))
+    }
+
+    /// What lies behind a plane, and what in front of it.
+    pub fn halved(&self, plane: &Plane) -> [Self; 2] {
+        let mut cuts = Vec::new();
+        let mut halves = [Vec::with_capacity(self.faces.len() + 1), Vec::with_capacity(self.faces.len() + 1)];
+        for face in &self.faces {
+            for (half, face) in halves.iter_mut().zip(plane.cut(face, &mut cuts)) {
+                if face.len() >= 3 {
+                    half.push(face);
+                }
+            }
+        }
+        let cap = around(cuts, plane.normal);
+        halves.map(|mut faces| {
+            if cap.len() >= 3 {
+                faces.push(cap.clone());
+            }
+            Self::of(faces)
+        })
+    }
+}
+
+/// The area of a convex outline, times its normal.
+fn area(outline: &[DVec3]) -> DVec3 {
+    let Some(&first) = outline.first() else { return DVec3::ZERO };
+    let twice: DVec3 = outline.windows(2).map(|p| (p[0] - first).cross(p[1] - first)).sum();
+    0.5 * twice
+}
+
+/// Points of a convex outline across a direction, in turn.
+fn around(mut points: Vec<DVec3>, normal: DVec3) -> Vec<DVec3> {
+    let middle = points.iter().sum::<DVec3>() / points.len().max(1) as f64;
+    let u = normal.any_orthogonal_vector();
+    let v = normal.cross(u);
+    let turn = |p: &DVec3| f64::atan2(v.dot(p - middle), u.dot(p - middle) * normal.length());
+    points.sort_by(|a, b| turn(a).total_cmp(&turn(b)));
+    points.dedup();
+    points
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use raywright_base::math::Vec3;
+
+    fn cube() -> Cell {
+        Cell::new(&Aabb { min: Vec3::ZERO, max: Vec3::ONE })
+    }
+
+    #[test]
+    fn a_cube_has_six_squares_and_its_halves_five_sixths_of_them_together_with_two_cuts() {
+        assert_eq!(cube().area(), 6.0);
+        let halves = cube().halved(&Plane::across(1, 0.25));
+        assert_eq!(halves.each_ref().map(Cell::area), [3.0, 5.0]);
+        let [back, front] = cube().halved(&Plane::across(2, -0.5));
+        assert_eq!((back.area(), front.area()), (0.0, 6.0));
+    }
+
+    #[test]
+    fn a_corner_is_a_tetrahedron_and_the_rest_has_what_it_lacks() {
+        let plane = Plane::through(DVec3::new(0.5, 0.0, 0.0), DVec3::ONE).unwrap();
+        let [corner, rest] = cube().halved(&plane);
+        let (legs, cut) = (3.0 / 8.0, 3f64.sqrt() / 8.0);
+        assert!((corner.area() - (legs + cut)).abs() < 1e-15);
+        assert!((rest.area() - (6.0 - legs + cut)).abs() < 1e-14);
+    }
+
+    #[test]
+    fn through_the_middle_across_the_diagonal_the_cut_is_a_hexagon() {
+        let plane = Plane::through(DVec3::splat(0.5), DVec3::ONE).unwrap();
+        let hexagon = 0.75 * 3f64.sqrt();
+        for half in cube().halved(&plane) {
+            assert!((half.area() - (3.0 + hexagon)).abs() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn halves_of_a_prism_are_guessed_right() {
+        let plane = Plane::across(1, 0.25);
+        let halves = cube().halved(&plane);
+        assert_eq!(cube().guessed_areas(&plane, 0.0), Some(halves.each_ref().map(Cell::area)));
+        assert_eq!(cube().guessed_areas(&plane, 0.3), None);
+    }
+
+    #[test]
+    fn a_plane_through_corners_counts_them_once() {
+        let plane = Plane::through(DVec3::ZERO, DVec3::new(1.0, -1.0, 0.0)).unwrap();
+        for half in cube().halved(&plane) {
+            assert!((half.area() - (3.0 + 2f64.sqrt())).abs() < 1e-14);
+        }
+    }
+}

@@ -1,0 +1,218 @@
+//! From the bottom up by locally ordered clustering (Meister and Bittner, "Parallel Locally-Ordered Clustering for
+//! Bounding Volume Hierarchy Construction", 2018).
+//!
+//! Clusters stand in the order of Morton codes, one primitive each at first. In every round each seeks, among those up
+//! to a radius before and behind it, the one with which it makes the smallest box; two that seek each other become one.
+//! Which of several as near is sought is a matter of their places alone, in an order that both sides see alike: so some
+//! pair is made in every round, all are where everything coincides, and threads do not matter.
+//!
+//! In a chain of scales only one pair finds itself a round. After more rounds than a reasonable scene takes, neighbours
+//! are paired as they stand, which bounds time and depth.
+
+use super::morton::{self, Bits};
+use super::reference::{Bounds, Reference, references};
+use super::slices::{self, Opened, Subtree};
+use super::{BinaryBvh, spare};
+use rayon::prelude::*;
+use raywright_base::math::Aabb;
+use raywright_base::work::{Stopped, Work};
+use std::borrow::Cow;
+
+/// How to cluster.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Options {
+    /// How far off in the order a neighbour is sought, from 1 to [`MAX_RADIUS`].
+    pub radius: usize,
+}
+
+/// Farthest that may be asked for.
+pub const MAX_RADIUS: usize = 128;
+
+/// What the authors found to be worth its time.
+pub const RADIUS: usize = 14;
+
+/// So many clusters are one thread's share.
+const SHARE: usize = 1 << 12;
+
+/// Builds a tree over boxes, leaving out empty ones. Leaves have one primitive each; what shares a block is decided
+/// when the tree is collapsed.
+///
+/// # Panics
+/// If the radius is out of range.
+pub fn build<'a>(boxes: impl Into<Cow<'a, [Aabb]>>, options: &Options, work: Work) -> Result<BinaryBvh, Stopped> {
+    let Options { radius } = *options;
+    assert!((1..=MAX_RADIUS).contains(&radius), "radius is {radius}, not from 1 to {MAX_RADIUS}");
+    let [gather, sort, merge, write] = work.parts([1.0, 8.0, 30.0, 10.0]);
+    let mut sorted = references(boxes, gather)?;
+    if sorted.is_empty() {
+        return Ok(BinaryBvh::default());
+    }
+    sorted = morton::sorted(&sorted, Bits::SixtyThree, sort)?
+        .into_par_iter()
+        .map(|(_, place)| sorted[place as usize])
+        .collect();
+    let count = sorted.len();
+    let cluster = |(link, r): (u32, &Reference)| Cluster { bounds: r.bounds, link, count: 1 };
+    let mut clusters: Vec<Cluster> = (0..count as u32).into_par_iter().zip(&sorted).map(cluster).collect();
+    let mut pairs = Vec::with_capacity(count - 1);
+    let (mut rounds, steps) = (spare(count), merge.steps(count));
+    while clusters.len() > 1 {
+        let before = clusters.len();
+        let sought = if rounds > 0 { nearest(&clusters, radius) } else { beside(clusters.len()) };
+        clusters = merged(&clusters, &sought, count, &mut pairs);
+        rounds = rounds.saturating_sub(1);
+        steps.did(before - clusters.len())?;
+    }
+    slices::write(Merged { link: clusters[0].link, leaves: &sorted, pairs: &pairs }, count, write)
+}
+
+/// Some primitives that are a subtree by now.
+#[derive(Clone, Copy)]
+struct Cluster {
+    bounds: Bounds,
+    /// Of a single primitive, its place; of a pair, its place among the pairs, counted on from the primitives.
+    link: u32,
+    /// How many primitives.
+    count: u32,
+}
+
+/// What became one: the links of both, and how many primitives are in the first.
+struct Pair {
+    links: [u32; 2],
+    first: u32,
+}
+
+/// A neighbour, and how near it is.
+#[derive(Clone, Copy)]
+struct Neighbour {
+    area: f32,
+    /// Of equal areas the least rank is nearer: two that are paired as they stand, then those that are less far apart,
+    /// then those that come first.
+    rank: u64,
+    place: u32,
+}
+
+impl Neighbour {
+    const NONE: Self = Self { area: f32::INFINITY, rank: u64::MAX, place: u32::MAX };
+
+    #[inline(always)]
+    fn offer(&mut self, other: Self) {
+        if other.area < self.area || (other.area == self.area && other.rank < self.rank) {
+            *self = other;
+        }
+    }
+}
+
+/// For each cluster, the place of that which it makes the smallest box with. There are at least two.
+fn nearest(clusters: &[Cluster], radius: usize) -> Vec<u32> {
+    let mut sought = vec![0; clusters.len()];
+    sought.par_chunks_mut(SHARE).enumerate().for_each(|(share, sought)| {
+        let start = share * SHARE;
+        let own = start..start + sought.len();
+        let mut found = vec![Neighbour::NONE; own.len()];
+        // Each pair is looked at once, unless two shares have it in common.
+        for a in start.saturating_sub(radius)..own.end {
+            let bounds = clusters[a].bounds;
+            for b in (a + 1).max(start)..(a + radius + 1).min(clusters.len()) {
+                // Of an infinite box it may be no number.
+                let area = bounds.union(&clusters[b].bounds).half_area().min(f32::MAX);
+                let rank = if a ^ 1 == b { a as u64 } else { ((b - a) as u64) << 32 | a as u64 };
+                for (one, other) in [(a, b), (b, a)] {
+                    if own.contains(&one) {
+                        found[one - start].offer(Neighbour { area, rank, place: other as u32 });
+                    }
+                }
+            }
+        }
+        sought.iter_mut().zip(found).for_each(|(sought, found)| *sought = found.place);
+    });
+    sought
+}
+
+/// Each cluster's partner where they are paired as they stand; itself if it has none.
+fn beside(count: usize) -> Vec<u32> {
+    (0..count).map(|place| if place ^ 1 < count { place ^ 1 } else { place } as u32).collect()
+}
+
+/// What is left when all that seek each other have become one, in the place of the first.
+fn merged(clusters: &[Cluster], sought: &[u32], leaves: usize, pairs: &mut Vec<Pair>) -> Vec<Cluster> {
+    let agree = |place: usize| sought[sought[place] as usize] as usize == place && sought[place] as usize != place;
+    let is_first = |place: &usize| agree(*place) && *place < sought[*place] as usize;
+    let shares = || (0..clusters.len().div_ceil(SHARE)).into_par_iter();
+    let own = |share: usize| share * SHARE..((share + 1) * SHARE).min(clusters.len());
+    let made: Vec<usize> = shares().map(|share| own(share).filter(is_first).count()).collect();
+    let before = made.iter().scan(leaves + pairs.len(), |next, made| {
+        *next += made;
+        Some(*next - made)
+    });
+    let before: Vec<usize> = before.collect();
+    let of_share = |share: usize| {
+        let (mut left, mut new) = (Vec::with_capacity(SHARE), Vec::with_capacity(made[share]));
+        for place in own(share) {
+            let cluster = clusters[place];
+            if !agree(place) {
+                left.push(cluster);
+            } else if is_first(&place) {
+                let other = clusters[sought[place] as usize];
+                left.push(Cluster {
+                    bounds: cluster.bounds.union(&other.bounds),
+                    link: (before[share] + new.len()) as u32,
+                    count: cluster.count + other.count,
+                });
+                new.push(Pair { links: [cluster.link, other.link], first: cluster.count });
+            }
+        }
+        (left, new)
+    };
+    let done: Vec<_> = shares().map(of_share).collect();
+    let mut left = Vec::with_capacity(clusters.len() - made.iter().sum::<usize>());
+    for (of_share, new) in done {
+        left.extend(of_share);
+        pairs.extend(new);
+    }
+    left
+}
+
+/// What came of it, from a link down.
+#[derive(Clone, Copy)]
+struct Merged<'a> {
+    link: u32,
+    leaves: &'a [Reference],
+    pairs: &'a [Pair],
+}
+
+impl Subtree for Merged<'_> {
+    fn open(self) -> Opened<Self> {
+        match self.leaves.get(self.link as usize) {
+            Some(leaf) => Opened::Leaf(leaf.bounds.aabb(), leaf.primitive()),
+            None => {
+                let Pair { links: [left, right], first } = self.pairs[self.link as usize - self.leaves.len()];
+                Opened::Pair(Self { link: left, ..self }, Self { link: right, ..self }, first as usize)
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use raywright_base::math::Vec3;
+
+    #[test]
+    fn pairs_that_are_near_come_first() {
+        // Two and two close together, in an order that the codes do not tell.
+        let boxes =
+            [0.0, 0.1, 7.0, 7.1].map(|x: f32| Aabb::around([Vec3::new(x, 0.0, 0.0), Vec3::new(x + 0.05, 1.0, 1.0)]));
+        let bvh = build(&boxes, &Options { radius: RADIUS }, Work::UNWATCHED).unwrap();
+        bvh.validate(&boxes).unwrap();
+        let [left, right] = bvh.nodes[0].children().map(|child| bvh.nodes[child].aabb());
+        assert_eq!([left, right], [boxes[0].union(boxes[1]), boxes[2].union(boxes[3])]);
+    }
+
+    #[test]
+    fn coinciding_boxes_make_a_tree_of_least_depth() {
+        let boxes = vec![Aabb::around([Vec3::ONE]); 1 << 14];
+        let bvh = build(boxes, &Options { radius: RADIUS }, Work::UNWATCHED).unwrap();
+        assert_eq!(bvh.depth(), 14);
+    }
+}

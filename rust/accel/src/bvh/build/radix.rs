@@ -1,0 +1,93 @@
+//! A stable parallel radix sort by whole-number keys (Zagha and Blelloch, "Radix Sort for Vector Multiprocessors",
+//! 1991).
+
+use rayon::prelude::*;
+use raywright_base::work::{Stopped, Work};
+
+/// Bits of a digit.
+const DIGIT: u32 = 8;
+
+const DIGITS: usize = 1 << DIGIT;
+
+/// So many pairs are one thread's share.
+const SHARE: usize = 1 << 14;
+
+/// Sorts pairs by the lowest `bits` of the first, and keeps pairs of one key in the order they had.
+pub fn sort(pairs: &mut Vec<(u64, u32)>, bits: u32, work: Work) -> Result<(), Stopped> {
+    let mut other = vec![(0, 0); pairs.len()];
+    let steps = work.steps(bits.div_ceil(DIGIT) as usize);
+    for shift in (0..bits).step_by(DIGIT as usize) {
+        if pass(pairs, &mut other, shift) {
+            std::mem::swap(pairs, &mut other);
+        }
+        steps.did(1)?;
+    }
+    Ok(())
+}
+
+fn digit(key: u64, shift: u32) -> usize {
+    (key >> shift) as usize & (DIGITS - 1)
+}
+
+/// Writes the pairs by one digit; not if all have the same.
+fn pass(from: &[(u64, u32)], to: &mut [(u64, u32)], shift: u32) -> bool {
+    let count = |share: &[(u64, u32)]| {
+        let mut counts = [0usize; DIGITS];
+        share.iter().for_each(|&(key, _)| counts[digit(key, shift)] += 1);
+        counts
+    };
+    let counts: Vec<[usize; DIGITS]> = from.par_chunks(SHARE).map(count).collect();
+    if (0..DIGITS).any(|d| counts.iter().map(|c| c[d]).sum::<usize>() == from.len()) {
+        return false;
+    }
+    // Where each share writes its pairs of each digit: by digit, then by share.
+    let mut rooms: Vec<Vec<std::slice::IterMut<(u64, u32)>>> =
+        counts.iter().map(|_| Vec::with_capacity(DIGITS)).collect();
+    let mut rest = to;
+    for d in 0..DIGITS {
+        for (room, counts) in rooms.iter_mut().zip(&counts) {
+            let (own, others) = rest.split_at_mut(counts[d]);
+            room.push(own.iter_mut());
+            rest = others;
+        }
+    }
+    from.par_chunks(SHARE).zip(rooms).for_each(|(share, mut room)| {
+        for &pair in share {
+            let place = room[digit(pair.0, shift)].next().expect("as much room as was counted");
+            *place = pair;
+        }
+    });
+    true
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn sorted(keys: &[u64], bits: u32) -> Vec<(u64, u32)> {
+        let mut pairs: Vec<_> = keys.iter().copied().zip(0..).collect();
+        sort(&mut pairs, bits, Work::UNWATCHED).unwrap();
+        pairs
+    }
+
+    proptest! {
+        #[test]
+        fn as_the_standard_sort_does_it(keys in prop::collection::vec(prop_oneof![0..1u64 << 63, 0..5u64], 0..600)) {
+            let mut wanted: Vec<(u64, u32)> = keys.iter().copied().zip(0..).collect();
+            wanted.sort_by_key(|p| p.0);
+            prop_assert_eq!(sorted(&keys, 63), wanted);
+        }
+    }
+
+    #[test]
+    fn many_with_any_number_of_threads() {
+        let keys: Vec<u64> = (0..200_000u64).map(|i| i.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 34).collect();
+        let mut wanted: Vec<(u64, u32)> = keys.iter().copied().zip(0..).collect();
+        wanted.sort();
+        for threads in [1, 3] {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            assert_eq!(pool.install(|| sorted(&keys, 30)), wanted);
+        }
+    }
+}

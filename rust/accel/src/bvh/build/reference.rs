@@ -1,0 +1,216 @@
+//! What builders sort: boxes with the numbers of their primitives.
+
+use glam::{Vec4, Vec4Swizzles};
+use rayon::prelude::*;
+use raywright_base::math::{Aabb, Vec3};
+use raywright_base::work::{Stopped, Work};
+use std::borrow::Cow;
+
+/// So many references are one thread's share of a large node.
+pub const SHARE: usize = 1 << 14;
+
+/// From so many references on, several threads look at them.
+pub const MANY: usize = 1 << 16;
+
+/// A box that grows: its least corner, and its greatest with all signs turned, so that both grow by taking the lesser.
+/// What stands in `w` does not count.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct Bounds {
+    min: Vec4,
+    neg_max: Vec4,
+}
+
+impl Bounds {
+    /// Holds nothing.
+    pub const EMPTY: Self = Self { min: Vec4::INFINITY, neg_max: Vec4::INFINITY };
+
+    /// Around one point.
+    #[inline(always)]
+    pub fn point(at: Vec4) -> Self {
+        Self { min: at, neg_max: -at }
+    }
+
+    /// Makes it hold another as well.
+    #[inline(always)]
+    pub fn grow(&mut self, other: &Self) {
+        self.min = self.min.min(other.min);
+        self.neg_max = self.neg_max.min(other.neg_max);
+    }
+
+    /// The smallest around two.
+    #[inline(always)]
+    pub fn union(mut self, other: &Self) -> Self {
+        self.grow(other);
+        self
+    }
+
+    /// As others know it.
+    pub fn aabb(&self) -> Aabb {
+        Aabb { min: self.min.truncate(), max: -self.neg_max.truncate() }
+    }
+
+    /// What two have in common; whether that is empty, [`Bounds::is_empty`] tells.
+    #[inline(always)]
+    pub fn common(&self, other: &Self) -> Self {
+        Self { min: self.min.max(other.min), neg_max: self.neg_max.max(other.neg_max) }
+    }
+
+    /// Whether nothing is inside.
+    #[inline(always)]
+    pub fn is_empty(&self) -> bool {
+        self.size().truncate().cmplt(Vec3::ZERO).any()
+    }
+
+    /// The least corner.
+    #[inline(always)]
+    pub fn least(&self) -> Vec4 {
+        self.min
+    }
+
+    /// The greatest corner.
+    #[inline(always)]
+    pub fn greatest(&self) -> Vec4 {
+        -self.neg_max
+    }
+
+    /// How long it is along each axis; not positive where it is flat, or empty.
+    #[inline(always)]
+    pub fn size(&self) -> Vec4 {
+        -(self.min + self.neg_max)
+    }
+
+    /// The axis along which it is longest.
+    #[inline(always)]
+    pub fn longest(&self) -> usize {
+        let [x, y, z, _] = self.size().to_array();
+        if x >= y && x >= z { 0 } else { 1 + usize::from(z > y) }
+    }
+
+    /// Half the surface; of an empty box, no number.
+    #[inline(always)]
+    pub fn half_area(&self) -> f32 {
+        // The signs cancel out.
+        let d = self.min + self.neg_max;
+        let [x, y, z, _] = (d * d.yzxw()).to_array();
+        x + y + z
+    }
+}
+
+impl From<&Aabb> for Bounds {
+    fn from(aabb: &Aabb) -> Self {
+        Self { min: aabb.min.extend(0.0), neg_max: (-aabb.max).extend(0.0) }
+    }
+}
+
+/// A box with the number of its primitive, as builders sort them.
+#[derive(Clone, Copy, Debug)]
+#[repr(transparent)]
+pub struct Reference {
+    /// The lower half of the primitive's number stands in the first `w`, the upper in the second. Halves, as the bits
+    /// of a whole number would make subnormals, which slow arithmetic down.
+    pub bounds: Bounds,
+}
+
+impl Reference {
+    /// A primitive and its box.
+    pub fn new(aabb: &Aabb, primitive: u32) -> Self {
+        let half = |bits: u32| (bits & 0xffff) as f32;
+        let (min, neg_max) = (aabb.min.extend(half(primitive)), (-aabb.max).extend(half(primitive >> 16)));
+        Self { bounds: Bounds { min, neg_max } }
+    }
+
+    /// The primitive's number.
+    pub fn primitive(&self) -> u32 {
+        self.bounds.min.w as u32 | (self.bounds.neg_max.w as u32) << 16
+    }
+
+    /// Twice the box's centre.
+    #[inline(always)]
+    pub fn centre(&self) -> Vec4 {
+        self.bounds.min - self.bounds.neg_max
+    }
+
+    /// The same along one axis.
+    #[inline(always)]
+    pub fn centre_on(&self, axis: usize) -> f32 {
+        let Bounds { min, neg_max } = &self.bounds;
+        min.as_ref()[axis] - neg_max.as_ref()[axis]
+    }
+}
+
+/// Boxes of a set of references: of all that they hold, and of their centres (doubled).
+#[derive(Clone, Copy)]
+pub struct Extents {
+    /// Of all that they hold.
+    pub all: Bounds,
+    /// Of their centres, doubled.
+    pub centres: Bounds,
+}
+
+impl Extents {
+    /// Of no references.
+    pub const EMPTY: Self = Self { all: Bounds::EMPTY, centres: Bounds::EMPTY };
+
+    /// Of some references.
+    #[inline(always)]
+    pub fn around(references: &[Reference]) -> Self {
+        let mut extents = Self::EMPTY;
+        for r in references {
+            extents.all.grow(&r.bounds);
+            extents.centres.grow(&Bounds::point(r.centre()));
+        }
+        extents
+    }
+
+    /// Of two sets.
+    pub fn union(self, other: Self) -> Self {
+        Self { all: self.all.union(&other.all), centres: self.centres.union(&other.centres) }
+    }
+}
+
+impl Extents {
+    /// Of some references, by several threads if they are many.
+    pub fn around_many(references: &[Reference]) -> Self {
+        if references.len() < MANY {
+            Self::around(references)
+        } else {
+            references.par_chunks(SHARE).map(Self::around).reduce(|| Self::EMPTY, Self::union)
+        }
+    }
+}
+
+/// References to all boxes but empty ones. Boxes that are given away are freed.
+pub fn references<'a>(boxes: impl Into<Cow<'a, [Aabb]>>, work: Work) -> Result<Vec<Reference>, Stopped> {
+    let boxes = boxes.into();
+    let reference = |i: usize| Reference::new(&boxes[i], i as u32);
+    if boxes.par_iter().any(Aabb::is_empty) {
+        work.goes_on()?;
+        Ok((0..boxes.len()).into_par_iter().filter(|&i| !boxes[i].is_empty()).map(reference).collect())
+    } else {
+        // Where each belongs is known, so it is written there at once.
+        work.collect(boxes.len(), reference)
+    }
+}
+
+/// Brings those that belong on the left to the front and tells how many they are. Without a branch on the side, which
+/// would be guessed wrong every other time.
+#[inline(always)]
+pub fn partition(references: &mut [Reference], is_left: impl Fn(&Reference) -> bool) -> usize {
+    let mut left = 0;
+    for i in 0..references.len() {
+        references.swap(i, left);
+        left += usize::from(is_left(&references[left]));
+    }
+    left
+}
+
+/// Halves by number along the longest axis of the centres; equal centres by their primitive's number.
+pub fn median(references: &mut [Reference], centres: &Bounds) -> usize {
+    let axis = centres.longest();
+    let middle = references.len() / 2;
+    references.select_nth_unstable_by(middle, |a, b| {
+        a.centre_on(axis).total_cmp(&b.centre_on(axis)).then(a.primitive().cmp(&b.primitive()))
+    });
+    middle
+}

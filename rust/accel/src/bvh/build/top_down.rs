@@ -1,0 +1,129 @@
+//! From the top down, subtree by subtree, whatever decides on the splits.
+
+use super::part::Part;
+use super::{BinaryBvh, Node};
+use raywright_base::math::Aabb;
+use raywright_base::work::{Steps, Stopped, Work};
+
+/// Up to so many primitives, a subtree is built by one thread.
+pub const TASK: usize = 1024;
+
+/// How much is told once a subtree is built.
+#[derive(Clone, Copy)]
+pub struct Due<'a> {
+    amount: usize,
+    /// How many levels it is for, at least one.
+    levels: usize,
+    steps: &'a Steps<'a>,
+}
+
+impl<'a> Due<'a> {
+    /// It takes as long to go through all once a level where subtrees are large, and so many times as long to build
+    /// what is below.
+    const BELOW: usize = 8;
+
+    fn levels(count: usize) -> usize {
+        (count / TASK).max(1).ilog2() as usize + Self::BELOW
+    }
+
+    /// A build of so many primitives in steps.
+    pub fn steps(count: usize, work: Work) -> Steps {
+        work.steps(count * Self::levels(count))
+    }
+
+    /// All of these steps.
+    pub fn all(count: usize, steps: &'a Steps<'a>) -> Self {
+        let levels = Self::levels(count);
+        Self { amount: count * levels, levels, steps }
+    }
+
+    /// Tells that a set is split: what is due for either side, of so many primitives.
+    pub fn split(self, [left, right]: [usize; 2]) -> Result<[Self; 2], Stopped> {
+        let Self { amount, levels, steps } = self;
+        let now = amount / levels;
+        steps.did(now)?;
+        let rest = amount - now;
+        let of_left = (rest as u128 * left as u128 / (left + right).max(1) as u128) as usize;
+        Ok([of_left, rest - of_left].map(|amount| Self { amount, levels: levels.saturating_sub(1).max(1), steps }))
+    }
+
+    /// Tells all of it.
+    pub fn tell(self) -> Result<(), Stopped> {
+        self.steps.did(self.amount)
+    }
+}
+
+/// A set of primitives that may be split in two.
+pub trait Set: Sized + Send {
+    /// What is reused from split to split.
+    type Workspace: Default;
+
+    /// How many there are, at least one.
+    fn len(&self) -> usize;
+
+    /// The box around them.
+    fn aabb(&self) -> Aabb;
+
+    /// Two sets of it, neither empty; or itself, if it is to be a leaf.
+    fn split(self, workspace: &mut Self::Workspace) -> Result<[Self; 2], Self>;
+
+    /// Adds the numbers of its primitives.
+    fn list(&self, order: &mut Vec<u32>);
+}
+
+/// Builds a tree over a set. The sets must not be split much more often in a row than a stack can hold.
+pub fn build<S: Set>(set: S, work: Work) -> Result<BinaryBvh, Stopped> {
+    let [grow, place] = work.parts([10.0, 1.0]);
+    let count = set.len();
+    let steps = Due::steps(count, grow);
+    part(set, Due::all(count, &steps))?.assemble(Vec::new(), place)
+}
+
+fn part<S: Set>(set: S, due: Due) -> Result<Part, Stopped> {
+    let below = if set.len() <= TASK {
+        Err(set)
+    } else {
+        let aabb = set.aabb();
+        set.split(&mut S::Workspace::default()).map(|sides| (aabb, sides))
+    };
+    match below {
+        Ok((aabb, [left, right])) => {
+            let [of_left, of_right] = due.split([left.len(), right.len()])?;
+            let (left, right) = rayon::join(|| part(left, of_left), || part(right, of_right));
+            Ok(Part::pair(aabb, left?, right?))
+        }
+        Err(leaf) => {
+            let part = alone(leaf, &mut S::Workspace::default());
+            due.tell()?;
+            Ok(part)
+        }
+    }
+}
+
+/// Builds a subtree on this thread.
+fn alone<S: Set>(set: S, workspace: &mut S::Workspace) -> Part {
+    let nothing = Node::leaf(Aabb::EMPTY, 0, 0);
+    let (mut root, mut below, mut order) = (nothing, Vec::new(), Vec::with_capacity(set.len()));
+    // With its place below the root, or none for the root.
+    let mut open: Vec<(Option<usize>, S)> = vec![(None, set)];
+    while let Some((place, set)) = open.pop() {
+        let aabb = set.aabb();
+        let made = match set.split(workspace) {
+            Ok([left, right]) => {
+                let child = below.len();
+                below.extend([nothing; 2]);
+                // The last is taken first, so that what is below the left child comes first.
+                open.push((Some(child + 1), right));
+                open.push((Some(child), left));
+                Node::inner(aabb, child as u32)
+            }
+            Err(leaf) => {
+                let first = order.len();
+                leaf.list(&mut order);
+                Node::leaf(aabb, first as u32, (order.len() - first) as u32)
+            }
+        };
+        *place.map_or(&mut root, |place| &mut below[place]) = made;
+    }
+    Part::Whole { root, below, order }
+}

@@ -1,0 +1,164 @@
+//! Putting treelets together anew (Karras and Aila, "Fast Parallel Construction of High-Quality Bounding Volume
+//! Hierarchies", 2013).
+//!
+//! From the bottom up, each node and its largest descendants are a treelet of seven leaves. Of all the ways in which
+//! these can hang together, dynamic programming over their subsets finds the one whose inner nodes have the least area.
+//! Treelets of one level do not meet, so threads share them out, and the tree is the same for any number of threads.
+//!
+//! What fits one block of triangles is a leaf here, and stays as it is.
+
+use super::tree::{Tree, Treelet};
+use crate::bvh::BinaryBvh;
+use crate::bvh::build::Bounds;
+use rayon::prelude::*;
+use raywright_base::work::{Stopped, Work};
+
+/// How much to try.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// How many times the tree is gone through. Each time, only nodes with twice as many leaves below are looked at.
+    pub rounds: u32,
+    /// A round that saves less than this share of the cost is the last.
+    pub worthwhile: f32,
+    /// Subtrees of up to so many primitives stay as they are: as many as fit a block.
+    pub block: usize,
+}
+
+/// Leaves of a treelet.
+const LEAVES: usize = 7;
+
+/// Goes through a tree, which is laid out depth first and is so again afterwards. Its inner nodes have no more area
+/// then, and it is no deeper than it was or than three times the logarithm of its primitives and some.
+pub fn optimise(bvh: &mut BinaryBvh, options: &Options, work: Work) -> Result<(), Stopped> {
+    if options.rounds == 0 || bvh.nodes.is_empty() {
+        return Ok(());
+    }
+    // Each looks at half as many nodes as the one before.
+    let steps = work.steps(2 * bvh.order.len());
+    let mut tree = Tree::new(bvh, options.block as u32);
+    // Stacks are made for the depth, and a tree of least cost can be a chain.
+    let deepest = tree.height().max(3 * bvh.order.len().ilog2() + 42);
+    let worthwhile = f64::from(options.worthwhile) * tree.cost();
+    let mut changed = false;
+    for round in 0..options.rounds {
+        let mut saved = 0.0;
+        for (depth, level) in levels(&tree).iter().enumerate().rev() {
+            // What is below has changed.
+            level.iter().for_each(|seen| tree.measure(seen.node));
+            let best = |seen: &Seen| {
+                if steps.is_stopped() {
+                    return None;
+                }
+                // No way down becomes longer than the longest that was there, or than all are allowed to be.
+                let highest = seen.height.max(deepest.saturating_sub(depth as u32));
+                if seen.leaves >= (LEAVES as u32) << round { best(&tree, seen.node, highest) } else { None }
+            };
+            let found: Vec<_> = level.par_iter().with_min_len(16).filter_map(best).collect();
+            for (treelet, gain) in &found {
+                tree.regrow(treelet);
+                saved += gain;
+            }
+            steps.did((level.len() * options.block) >> (2 + round))?;
+        }
+        changed |= saved > 0.0;
+        if saved <= worthwhile {
+            break;
+        }
+    }
+    if changed {
+        *bvh = tree.lay_out(bvh);
+    }
+    Ok(())
+}
+
+/// An inner node before anything below it has changed.
+struct Seen {
+    node: u32,
+    height: u32,
+    /// How many leaves there are below.
+    leaves: u32,
+}
+
+/// The inner nodes, by depth.
+fn levels(tree: &Tree) -> Vec<Vec<Seen>> {
+    let has_children = |node: &u32| tree.below(*node).is_some();
+    let mut levels: Vec<Vec<u32>> = vec![[0].into_iter().filter(has_children).collect()];
+    while let Some(level) = levels.last().filter(|level| !level.is_empty()) {
+        let below = level.iter().filter_map(|&node| tree.below(node)).flat_map(|first| [first, first + 1]);
+        let below: Vec<u32> = below.filter(has_children).collect();
+        levels.push(below);
+    }
+    let mut leaves = vec![1u32; tree.len()];
+    for &node in levels.iter().rev().flatten() {
+        if let Some(first) = tree.below(node) {
+            leaves[node as usize] = leaves[first as usize] + leaves[first as usize + 1];
+        }
+    }
+    let seen = |node: u32| Seen { node, height: tree.height_of(node), leaves: leaves[node as usize] };
+    levels.into_iter().map(|level| level.into_iter().map(seen).collect()).collect()
+}
+
+/// The best treelet at a node, and how much area it saves; none if that is nothing, or if it would be higher than
+/// allowed.
+fn best(tree: &Tree, root: u32, highest: u32) -> Option<(Treelet, f64)> {
+    let first = tree.below(root)?;
+    let mut leaves = Vec::with_capacity(LEAVES);
+    let mut pairs = Vec::with_capacity(LEAVES - 1);
+    leaves.extend([first, first + 1]);
+    pairs.push(first);
+    let mut before = f64::from(tree.area(root));
+    while leaves.len() < LEAVES {
+        let inner = (0..leaves.len()).filter_map(|i| tree.below(leaves[i]).map(|first| (i, first)));
+        let Some((largest, first)) = inner.max_by(|a, b| tree.area(leaves[a.0]).total_cmp(&tree.area(leaves[b.0])))
+        else {
+            break;
+        };
+        before += f64::from(tree.area(leaves[largest]));
+        leaves[largest] = first;
+        leaves.push(first + 1);
+        pairs.push(first);
+    }
+    let (left, after) = divided(tree, &leaves);
+    let mut treelet = Treelet { root, leaves, pairs, left: Box::new([0; 128]) };
+    treelet.left.copy_from_slice(&left);
+    let all = (1u32 << treelet.leaves.len()) - 1;
+    let saved = before - after;
+    (saved > 0.0 && height(tree, &treelet, all as u8) <= highest).then_some((treelet, saved))
+}
+
+/// For every set of leaves, its left part where its inner nodes have the least area; and what that is for all of them.
+fn divided(tree: &Tree, leaves: &[u32]) -> ([u8; 1 << LEAVES], f64) {
+    let sets = 1usize << leaves.len();
+    let mut bounds = [Bounds::EMPTY; 1 << LEAVES];
+    let (mut cost, mut left) = ([0f64; 1 << LEAVES], [0; 1 << LEAVES]);
+    for set in 1..sets {
+        let (lowest, others) = (set & set.wrapping_neg(), set & (set - 1));
+        bounds[set] = tree.bounds(leaves[lowest.trailing_zeros() as usize]).union(&bounds[others]);
+        if others == 0 {
+            continue;
+        }
+        // Each part that has the lowest leaf and is not all, once.
+        let (mut least, mut best) = (f64::INFINITY, lowest);
+        let mut right = others;
+        while right != 0 {
+            let part = set & !right;
+            let sum = cost[part] + cost[right];
+            if sum < least {
+                (least, best) = (sum, part);
+            }
+            right = (right - 1) & others;
+        }
+        left[set] = best as u8;
+        cost[set] = least + f64::from(bounds[set].half_area());
+    }
+    (left, cost[sets - 1])
+}
+
+/// How high a set of leaves of a treelet is.
+fn height(tree: &Tree, treelet: &Treelet, set: u8) -> u32 {
+    if set.is_power_of_two() {
+        return tree.height_of(treelet.leaves[set.trailing_zeros() as usize]);
+    }
+    let left = treelet.left[set as usize];
+    1 + height(tree, treelet, left).max(height(tree, treelet, set & !left))
+}

@@ -1,0 +1,357 @@
+//! How a tree is made, step by step, and how much time that may take for the sake of the rays.
+
+use super::BinaryBvh;
+use super::build::presplit::{self, Pieces, Remedy};
+use super::build::spatial::{BUDGET, MAX_BUDGET};
+use super::build::{Builder, Leaves, Shapes};
+use super::optimise::{Optimiser, Optimisers, reinsertion, treelet};
+use raywright_base::math::{Aabb, Vec3};
+use raywright_base::work::{Stopped, Work};
+use std::borrow::Cow;
+
+/// A choice between a tree soon and a tree that rays walk fast.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Quality {
+    /// For few rays, or for geometry that changes all the time.
+    FastBuild,
+    /// For most scenes: what is long and diagonal is taken care of, by spatial splits where it is little and by cuts
+    /// before the build where it is much, and a mesh of even triangles takes no more time than it takes to see that
+    /// nothing in it is.
+    #[default]
+    Balanced,
+    /// For many rays on one scene, which does not move: what straddles a plane may be parted by it.
+    FastRays,
+}
+
+impl Quality {
+    /// All of them, from least to most time.
+    pub const ALL: [Self; 3] = [Self::FastBuild, Self::Balanced, Self::FastRays];
+
+    /// Bins an axis that suit it.
+    pub const fn bins(self) -> usize {
+        match self {
+            Self::FastBuild => 8,
+            Self::Balanced => 16,
+            Self::FastRays => 32,
+        }
+    }
+
+    /// How to build for leaves of blocks of so many triangles.
+    pub const fn steps(self, block: usize) -> Steps {
+        // Where time is short nothing is improved, unless that is asked for.
+        let (optimisers, rounds, share, worthwhile) = match self {
+            Self::FastBuild => (Optimisers::NONE, 6, 0.1, 2e-3),
+            Self::Balanced => (Optimisers::REINSERTION, 6, 0.1, 2e-3),
+            Self::FastRays => (Optimisers::REINSERTION, 30, 0.3, 1e-4),
+        };
+        let builder = Builder::Binned { bins: Some(self.bins()) };
+        let cuts = match self {
+            Self::FastBuild => None,
+            // A tree over pieces cannot be refitted, so a ray must meet less than half as many boxes. With more pieces
+            // it would meet fewer still, but be slower for want of cache.
+            Self::Balanced => {
+                let planes = Builder::Spatial { bins: Some(self.bins()), budget: BUDGET };
+                Some(Cuts { options: presplit::Options { budget: 4.0, worthwhile: 0.5 }, builder, planes })
+            }
+            Self::FastRays => Some(Cuts::and_splits(Some(self.bins()), MAX_BUDGET)),
+        };
+        Steps {
+            cuts,
+            may_turn: cuts.is_some(),
+            builder,
+            leaves: Leaves::for_blocks(block),
+            optimisers,
+            reinsertion: reinsertion::Options { rounds, share, worthwhile, block },
+            treelet: treelet::Options { rounds: 3, worthwhile, block },
+        }
+    }
+}
+
+/// What is done about what fills little of its box.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cuts {
+    /// How much is cut before a build, where there is much of it.
+    pub options: presplit::Options,
+    /// How the tree is built then.
+    pub builder: Builder,
+    /// How it is built where there is less of it, so that nothing need be cut before.
+    pub planes: Builder,
+}
+
+impl Cuts {
+    /// The same with so many bins.
+    pub fn with_bins(self, bins: usize) -> Self {
+        let [builder, planes] = [self.builder, self.planes].map(|builder| builder.with_bins(bins));
+        Self { builder, planes, ..self }
+    }
+
+    /// Spatial splits, and the cuts that they need before. Together they add at most `budget` references for each
+    /// primitive.
+    pub const fn and_splits(bins: Option<usize>, budget: f32) -> Self {
+        let builder = Builder::Spatial { bins, budget };
+        Self { options: presplit::Options { budget, worthwhile: 0.125 }, builder, planes: builder }
+    }
+}
+
+/// What is done one after the other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Steps {
+    /// What is cut before, where that is worthwhile.
+    pub cuts: Option<Cuts>,
+    /// Whether boxes may lie along other axes than the scene's, where that serves.
+    pub may_turn: bool,
+    /// How the tree is built where nothing is.
+    pub builder: Builder,
+    /// When a builder makes a leaf.
+    pub leaves: Leaves,
+    /// What improves it then.
+    pub optimisers: Optimisers,
+    /// How much is reinserted, if anything is.
+    pub reinsertion: reinsertion::Options,
+    /// How many treelets are tried, if any are.
+    pub treelet: treelet::Options,
+}
+
+impl Steps {
+    /// Makes a tree over boxes none of which is cut, leaving out empty ones, and says how.
+    pub fn whole(self, boxes: &[Aabb], work: Work) -> Result<(BinaryBvh, String), Stopped> {
+        let fill = |p: u32, to: &Aabb| boxes[p as usize].intersection(*to);
+        Self { cuts: None, ..self }.build(boxes, fill, work)
+    }
+
+    /// Makes a tree over boxes, leaving out empty ones, and tells how it was made, for people.
+    ///
+    /// # Panics
+    /// If an option is out of range.
+    pub fn build<'a>(
+        &self,
+        boxes: impl Into<Cow<'a, [Aabb]>>,
+        shapes: impl Shapes,
+        work: Work,
+    ) -> Result<(BinaryBvh, String), Stopped> {
+        let boxes = boxes.into();
+        let shapes = Wanted { shapes, work };
+        let [look, make] = work.parts([if self.cuts.is_some() { 1.0 } else { 0.0 }, 24.0]);
+        let remedy = self.cuts.map(|cuts| (cuts, Remedy::of(&boxes, &shapes, &cuts.options)));
+        work.goes_on()?;
+        look.done();
+        // Planes take some five times as long as whole primitives do, and cuts longer than a tree of their pieces.
+        let (cutting, growing) = match remedy {
+            Some((_, Remedy::Pieces)) => (12.0, 5.0),
+            Some((_, Remedy::Planes)) => (0.0, 24.0),
+            _ => (0.0, 8.0),
+        };
+        let improving = 2.0 * self.optimisers.iter().count() as f32;
+        let [cut, grow, improve] = make.parts([cutting, growing, improving]);
+        let pieces = match remedy {
+            Some((cuts, Remedy::Pieces)) => Pieces::cut(&boxes, &shapes, &cuts.options).map(|pieces| (cuts, pieces)),
+            _ => None,
+        };
+        work.goes_on()?;
+        cut.done();
+        let (mut bvh, mut name) = if let Some((cuts, mut pieces)) = pieces {
+            let builder = cuts.builder.over_pieces(boxes.len(), pieces.boxes.len());
+            drop(boxes);
+            let boxes = std::mem::take(&mut pieces.boxes);
+            let mut bvh = builder.build(boxes, pieces.shapes(&shapes), &self.leaves, grow)?;
+            pieces.put_together(&mut bvh);
+            (bvh, format!("{} of pieces", builder.name()))
+        } else {
+            let builder = match remedy {
+                Some((cuts, Remedy::Planes)) => cuts.planes,
+                _ => self.builder,
+            };
+            (builder.build(boxes, shapes, &self.leaves, grow)?, builder.name().into())
+        };
+        let second = self.optimisers.iter().skip(1).count() as f32;
+        for (optimiser, work) in self.optimisers.iter().zip(improve.parts([1.0, second])) {
+            match optimiser {
+                Optimiser::Reinsertion => reinsertion::optimise(&mut bvh, &self.reinsertion, work)?,
+                Optimiser::Treelet => treelet::optimise(&mut bvh, &self.treelet, work)?,
+            }
+            name = format!("{name} and {}", optimiser.name());
+        }
+        // Who finds nothing more to gain ends early.
+        improve.done();
+        Ok((bvh, name))
+    }
+}
+
+/// Shapes that are clipped as long as that is wanted: then nothing is cut any further.
+struct Wanted<'a, S> {
+    shapes: S,
+    work: Work<'a>,
+}
+
+impl<S: Shapes> Shapes for Wanted<'_, S> {
+    fn clip(&self, primitive: u32, to: &Aabb) -> Aabb {
+        if self.work.is_stopped() { Aabb::EMPTY } else { self.shapes.clip(primitive, to) }
+    }
+
+    fn corners(&self, primitive: u32) -> Option<[Vec3; 3]> {
+        self.shapes.corners(primitive)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bvh::Node;
+    use raywright_base::math::DVec3;
+    use raywright_base::sampling::philox4x32;
+    use raywright_base::work::Watch;
+    use raywright_shapes::triangle::clipped;
+    use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+
+    fn built(quality: Quality, boxes: &[Aabb], shapes: impl Shapes) -> (BinaryBvh, String) {
+        quality.steps(8).build(boxes, shapes, Work::UNWATCHED).unwrap()
+    }
+
+    #[test]
+    fn more_time_makes_trees_of_less_area() {
+        // A jumble of sticks.
+        let boxes: Vec<_> = (0..20_000)
+            .map(|i| {
+                let [x, y, z, which] = philox4x32([i, 0, 0, 0], [0, 0]).map(|bits| bits as f32 / 2f32.powi(32));
+                let mut size = Vec3::splat(0.002);
+                size[(which * 3.0) as usize] = 0.2 * which.fract();
+                Aabb { min: Vec3::new(x, y, z), max: Vec3::new(x, y, z) + size }
+            })
+            .collect();
+        let costs = Quality::ALL.map(|quality| {
+            let (bvh, _) = built(quality, &boxes, |p: u32, to: &Aabb| boxes[p as usize].intersection(*to));
+            bvh.validate(&boxes).unwrap();
+            bvh.nodes.iter().filter(|n| !n.is_leaf()).map(|n| f64::from(n.aabb().half_area())).sum::<f64>()
+        });
+        assert!(costs[1] < costs[0] && costs[2] < costs[1], "{costs:?}");
+    }
+
+    /// Triangles, whose parts are estimated by their corners.
+    struct Triangles(Vec<[DVec3; 3]>);
+
+    impl Shapes for Triangles {
+        fn clip(&self, primitive: u32, to: &Aabb) -> Aabb {
+            clipped(self.0[primitive as usize], to)
+        }
+
+        fn corners(&self, primitive: u32) -> Option<[Vec3; 3]> {
+            Some(self.0[primitive as usize].map(|c| c.as_vec3()))
+        }
+    }
+
+    /// Triangles along a diagonal, one in so many of which is long, and their boxes.
+    fn triangles(long_one_in: u32) -> (Triangles, Vec<Aabb>) {
+        let triangle = |i: u32| {
+            let [x, y, z, _] = philox4x32([i, 0, 0, 0], [0, 0]).map(|bits| f64::from(bits) / 2f64.powi(32));
+            let size = if i.is_multiple_of(long_one_in) { 0.8 } else { 0.004 };
+            let (from, along) = (DVec3::new(x, y, z), size * DVec3::new(1.0, 0.9, 0.8));
+            [from, from + along, from + along + DVec3::new(0.004, 0.0, 0.0)]
+        };
+        let triangles = Triangles((0..30_000).map(triangle).collect());
+        let everywhere = Aabb { min: Vec3::splat(-4.0), max: Vec3::splat(4.0) };
+        let boxes: Vec<_> = (0..30_000).map(|p| triangles.clip(p, &everywhere)).collect();
+        (triangles, boxes)
+    }
+
+    #[test]
+    fn planes_part_a_few_long_ones_among_many() {
+        let (triangles, boxes) = triangles(50);
+        let build = |quality: Quality, threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| built(quality, &boxes, |p: u32, to: &Aabb| triangles.clip(p, to)))
+        };
+        let estimated = |quality: Quality, threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            let shapes = Triangles(triangles.0.clone());
+            pool.install(|| built(quality, &boxes, shapes))
+        };
+        // Inner nodes and leaves by area, over the root's.
+        let cost = |bvh: &BinaryBvh| {
+            let area = |n: &Node| f64::from(n.aabb().half_area()) * f64::from(n.count.max(1));
+            bvh.nodes.iter().map(area).sum::<f64>() / f64::from(bvh.nodes[0].aabb().half_area())
+        };
+        let (whole, _) = build(Quality::FastBuild, 2);
+        let (clipped, _) = build(Quality::Balanced, 2);
+        let (one, name) = estimated(Quality::Balanced, 1);
+        let (three, _) = estimated(Quality::Balanced, 3);
+        assert_eq!(name, "SAH with spatial splits and reinsertion");
+        one.validate_parts(&boxes, |p, to| triangles.clip(p, to)).unwrap();
+        assert!(cost(&one) < 0.6 * cost(&whole), "{} from {}", cost(&one), cost(&whole));
+        // Planes found by estimates are as good as planes found by clipping.
+        assert!(cost(&one) < 1.02 * cost(&clipped), "{}, not {}", cost(&one), cost(&clipped));
+        assert!(one.order.len() < 45_000, "{}", one.order.len());
+        let nodes = |bvh: &BinaryBvh| -> Vec<_> {
+            bvh.nodes.iter().map(|n| (n.min.to_array(), n.index, n.max.to_array(), n.count)).collect()
+        };
+        assert!(one.order == three.order && nodes(&one) == nodes(&three));
+    }
+
+    #[test]
+    fn planes_and_cuts_tell_all_that_they_do_and_end_when_they_are_stopped() {
+        /// Stops the work when so many have been clipped.
+        struct Stopping<'a> {
+            triangles: &'a Triangles,
+            watch: &'a Watch,
+            clips: AtomicUsize,
+            most: usize,
+        }
+
+        impl Shapes for &Stopping<'_> {
+            fn clip(&self, primitive: u32, to: &Aabb) -> Aabb {
+                if self.clips.fetch_add(1, Relaxed) + 1 == self.most {
+                    self.watch.stop();
+                }
+                self.triangles.clip(primitive, to)
+            }
+
+            fn corners(&self, primitive: u32) -> Option<[Vec3; 3]> {
+                self.triangles.corners(primitive)
+            }
+        }
+
+        for (long_one_in, made) in [(50, "SAH with spatial splits and"), (1, "binned SAH of pieces and")] {
+            let (triangles, boxes) = triangles(long_one_in);
+            let build = |most: usize| {
+                let watch = Watch::default();
+                let shapes = Stopping { triangles: &triangles, watch: &watch, clips: AtomicUsize::new(0), most };
+                let built = Quality::Balanced.steps(8).build(&boxes, &shapes, Work::of(&watch));
+                (built.map(|built| built.1), shapes.clips.into_inner(), watch.share())
+            };
+            let (name, clips, share) = build(usize::MAX);
+            assert!(name.as_ref().is_ok_and(|name| name.starts_with(made)), "{name:?}");
+            assert_eq!(share, 1.0);
+            // Wherever it is stopped, hardly anything is clipped any more.
+            for most in [1, clips / 10, clips / 2, 9 * clips / 10] {
+                let (stopped, after, share) = build(most);
+                assert_eq!(stopped, Err(Stopped), "at {most} of {clips}");
+                assert!(after < most + 1000 && share < 1.0, "{after} after {most} of {clips}, {share}");
+            }
+        }
+    }
+
+    #[test]
+    fn diagonals_are_cut_where_that_is_worthwhile() {
+        let triangle = |i| {
+            let [x, y, z, _] = philox4x32([i, 0, 0, 0], [0, 0]).map(|bits| f64::from(bits) / 2f64.powi(32));
+            let (from, along) = (DVec3::new(x, y, z), DVec3::new(0.5, 0.4, 0.5));
+            [from, from + along, from + along + DVec3::new(1e-3, 0.0, 0.0)]
+        };
+        let triangles: Vec<_> = (0..3000).map(triangle).collect();
+        let clip = |p: u32, to: &Aabb| clipped(triangles[p as usize], to);
+        let boxes: Vec<_> =
+            (0..3000).map(|p| clip(p, &Aabb { min: Vec3::splat(-4.0), max: Vec3::splat(4.0) })).collect();
+        let [fast, balanced, best] = Quality::ALL.map(|quality| built(quality, &boxes, clip));
+        fast.0.validate(&boxes).unwrap();
+        for (bvh, name) in [&balanced, &best] {
+            bvh.validate_parts(&boxes, clip).unwrap();
+            assert!(bvh.order.len() > 9000 && name.ends_with(" of pieces and reinsertion"), "{name}");
+        }
+        // Less by a factor, at least.
+        let leaves = |bvh: &BinaryBvh| {
+            let area = |n: &Node| f64::from(n.aabb().half_area()) * f64::from(n.count);
+            bvh.nodes.iter().map(area).sum::<f64>()
+        };
+        let [fast, balanced, best] = [leaves(&fast.0), leaves(&balanced.0), leaves(&best.0)];
+        assert!(best < balanced && balanced < 0.4 * fast, "{best}, {balanced}, {fast}");
+    }
+}

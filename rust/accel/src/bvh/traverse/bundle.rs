@@ -1,0 +1,258 @@
+//! Sixty-four rays together. What is known of a bundle at a node is its first ray that may meet the box, and the last;
+//! those between are not looked at (Wald, Boulos and Shirley, "Ray Tracing Deformable Scenes using Dynamic Bounding
+//! Volume Hierarchies", 2007; Overbeck, Ramamoorthi and Mark, "Large Ray Packets for Real-time Whitted Ray Tracing",
+//! 2008, where it is called ranged traversal). A box is tested in three steps:
+//!
+//! 1. if the first ray so far meets it, all go on: where rays keep together, that is all that a box takes;
+//! 2. if an interval that holds all rays misses it, none does (Boulos et al., "Packet-based Whitted and Distribution
+//!    Ray Tracing", 2007): what is derived in `bvh/wide/packet.rs` holds here, where rays may be far too, since each
+//!    has its own pad;
+//! 3. else the first that meets it is sought, ray after ray.
+//!
+//! In place of one ray stands a vector of them. Which child comes first is decided by the first ray, by the axis along
+//! which the children are farthest apart. A node is tested when it is its turn, so that what was found until then
+//! counts.
+//!
+//! Rays that go different ways have ranges that are long and mostly empty: they are answered as well, but slowly.
+
+use super::columns::{Columns, First};
+use super::numbered::Numbered;
+use crate::SlabRay;
+use crate::bvh::Node;
+use crate::walk::{MOST_TOGETHER, Together};
+use raywright_base::math::robust::{greater, lesser};
+use raywright_base::simd::{Dispatch, Kernel, Level, Simd};
+
+/// Rays in a bundle.
+const WIDTH: usize = MOST_TOGETHER;
+
+/// Ready to walk a tree with sixty-four rays at a time.
+pub fn walk(tree: &Numbered, counted: bool, level: Level) -> Box<dyn Together + '_> {
+    match (level.lanes(), counted) {
+        (8.., false) => Box::new(Walk::<8, false>::new(tree, level)),
+        (8.., true) => Box::new(Walk::<8, true>::new(tree, level)),
+        (_, false) => Box::new(Walk::<4, false>::new(tree, level)),
+        (_, true) => Box::new(Walk::<4, true>::new(tree, level)),
+    }
+}
+
+/// Rays come in groups of `N`, as vectors have them.
+struct Walk<'a, const N: usize, const COUNTED: bool> {
+    tree: &'a Numbered,
+    level: Level,
+    rays: Columns<WIDTH>,
+    around: Interval,
+    /// How many rays there are.
+    count: usize,
+    stack: Vec<Entry>,
+    nodes: [u32; WIDTH],
+}
+
+/// A node still to be tested, and against which groups.
+#[derive(Clone, Copy)]
+struct Entry {
+    node: u32,
+    groups: Range,
+}
+
+/// Groups from `first` up to `end`.
+#[derive(Clone, Copy)]
+struct Range {
+    first: usize,
+    end: usize,
+}
+
+impl<'a, const N: usize, const COUNTED: bool> Walk<'a, N, COUNTED> {
+    fn new(tree: &'a Numbered, level: Level) -> Self {
+        // A path puts one child away a level.
+        let stack = Vec::with_capacity(tree.depth + 1);
+        let (rays, around) = (Columns::NONE, Interval::EVERYWHERE);
+        Self { tree, level, rays, around, count: 0, stack, nodes: [0; WIDTH] }
+    }
+
+    /// Which rays of a group meet a box.
+    #[inline(always)]
+    fn met<S: Simd<N>>(&mut self, simd: S, group: usize, node: &Node, limits: &[f32; WIDTH]) -> u32 {
+        if COUNTED {
+            for i in group * N..(group + 1) * N {
+                self.nodes[i] += u32::from(limits[i] > f32::NEG_INFINITY);
+            }
+        }
+        self.rays.meet::<N, S>(simd, group, node, limits).1
+    }
+
+    /// The groups between the first and the last of some in which any ray meets a box, and one such ray of the first.
+    /// None if no ray does.
+    #[inline(always)]
+    fn narrowed<S: Simd<N>>(
+        &mut self,
+        simd: S,
+        groups: Range,
+        node: &Node,
+        limits: &[f32; WIDTH],
+        last: f32,
+    ) -> Option<(Range, usize)> {
+        let Range { mut first, mut end } = groups;
+        let mut met = self.met(simd, first, node, limits);
+        if met == 0 {
+            if COUNTED {
+                // The test of all is put down to the first of them.
+                self.nodes[first * N] += 1;
+            }
+            if !self.around.may_meet(node, last) {
+                return None;
+            }
+            while met == 0 {
+                first += 1;
+                if first == end {
+                    return None;
+                }
+                met = self.met(simd, first, node, limits);
+            }
+        }
+        while end > first + 1 && self.met(simd, end - 1, node, limits) == 0 {
+            end -= 1;
+        }
+        Some((Range { first, end }, first * N + met.trailing_zeros() as usize))
+    }
+
+    /// The children of a node: the one that a ray comes to first, and the other.
+    #[inline(always)]
+    fn in_order(&self, node: &Node, ray: usize) -> [u32; 2] {
+        let [a, b] = node.children().map(|child| &self.tree.nodes[child]);
+        // Of twice the centres.
+        let apart = (b.min + b.max) - (a.min + a.max);
+        let axis = apart.abs().max_position();
+        let [a, b] = [node.index, node.index + 1];
+        if (apart[axis] >= 0.0) == self.rays.goes_up(ray, axis) { [a, b] } else { [b, a] }
+    }
+}
+
+impl<const N: usize, const COUNTED: bool> Together for Walk<'_, N, COUNTED>
+where
+    Level: Dispatch<N>,
+{
+    fn width(&self) -> usize {
+        WIDTH
+    }
+
+    fn start(&mut self, rays: &[SlabRay]) {
+        self.rays.fill(rays);
+        self.around = Interval::of(rays, &self.rays);
+        self.count = rays.len();
+        self.nodes = [0; WIDTH];
+        self.stack.clear();
+        if !self.tree.nodes.is_empty() {
+            self.stack.push(Entry { node: 0, groups: Range { first: 0, end: rays.len().div_ceil(N) } });
+        }
+    }
+
+    fn next(&mut self, limits: &[f32; WIDTH]) -> Option<(u32, u64)> {
+        self.level.dispatch(Next { walk: self, limits })
+    }
+
+    fn nodes(&self, ray: usize) -> u32 {
+        self.nodes[ray]
+    }
+}
+
+/// Goes on to the next leaf.
+struct Next<'w, 'a, const N: usize, const COUNTED: bool> {
+    walk: &'w mut Walk<'a, N, COUNTED>,
+    limits: &'w [f32; WIDTH],
+}
+
+impl<const N: usize, const COUNTED: bool> Kernel<N> for Next<'_, '_, N, COUNTED> {
+    type Output = Option<(u32, u64)>;
+
+    #[inline(always)]
+    fn run<S: Simd<N>>(self, simd: S) -> Option<(u32, u64)> {
+        let Self { walk, limits } = self;
+        let nodes = walk.tree.nodes.as_slice();
+        let mut last = f32::NEG_INFINITY;
+        for &limit in limits {
+            last = greater(limit, last);
+        }
+        while let Some(Entry { node: mut at, mut groups }) = walk.stack.pop() {
+            loop {
+                let node = &nodes[at as usize];
+                let Some((met, ray)) = walk.narrowed(simd, groups, node, limits, last) else { break };
+                if node.is_leaf() {
+                    let mut rays = 0;
+                    for group in met.first..met.end {
+                        rays |= u64::from(walk.rays.meet::<N, S>(simd, group, node, limits).1) << (group * N);
+                    }
+                    return Some((node.index, rays));
+                }
+                let [near, far] = walk.in_order(node, ray);
+                walk.stack.push(Entry { node: far, groups: met });
+                (at, groups) = (near, met);
+            }
+        }
+        None
+    }
+}
+
+/// What holds all rays of a bundle.
+struct Interval {
+    /// By axis, the origin from which the plane that is met first is met last.
+    near: [f32; 3],
+    /// The origin from which the other plane is met first.
+    far: [f32; 3],
+    /// The least inverse of a direction in magnitude, and the greatest.
+    inverse: [[f32; 2]; 3],
+    t_min: f32,
+    /// Along an axis on which rays go both ways nothing is known.
+    first: [First; 3],
+}
+
+impl Interval {
+    /// Nothing is known.
+    const EVERYWHERE: Self = Self {
+        near: [0.0; 3],
+        far: [0.0; 3],
+        inverse: [[1.0; 2]; 3],
+        t_min: f32::NEG_INFINITY,
+        first: [First::Mixed; 3],
+    };
+
+    fn of(rays: &[SlabRay], columns: &Columns<WIDTH>) -> Self {
+        let mut around = Self { t_min: f32::INFINITY, ..Self::EVERYWHERE };
+        for ray in rays {
+            around.t_min = lesser(ray.t_min, around.t_min);
+        }
+        for axis in 0..3 {
+            around.first[axis] = columns.first(axis);
+            let towards = if around.first[axis] == First::All(1) { -1.0 } else { 1.0 };
+            let (mut near, mut far) = (f32::NEG_INFINITY, f32::INFINITY);
+            let (mut least, mut greatest) = (f32::INFINITY, 0.0);
+            for ray in rays {
+                let (origin, size) = (towards * ray.origin[axis], ray.inverse[axis].abs());
+                near = greater(origin + ray.pad, near);
+                far = lesser(origin - ray.pad, far);
+                least = lesser(size, least);
+                greatest = greater(size, greatest);
+            }
+            around.near[axis] = near * towards;
+            around.far[axis] = far * towards;
+            around.inverse[axis] = [least * towards, greatest * towards];
+        }
+        around
+    }
+
+    /// Whether any ray may be in a box before `last`.
+    #[inline(always)]
+    fn may_meet(&self, node: &Node, last: f32) -> bool {
+        let planes = [node.min.to_array(), node.max.to_array()];
+        let (mut enter, mut leave) = (self.t_min, last);
+        for axis in 0..3 {
+            let First::All(first) = self.first[axis] else { continue };
+            let [least, greatest] = self.inverse[axis];
+            let near = planes[first & 1][axis] - self.near[axis];
+            let far = planes[first & 1 ^ 1][axis] - self.far[axis];
+            enter = greater(enter, lesser(near * least, near * greatest));
+            leave = lesser(leave, greater(far * least, far * greatest));
+        }
+        enter <= leave
+    }
+}

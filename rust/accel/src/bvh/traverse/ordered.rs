@@ -1,0 +1,179 @@
+//! The stack: the nearer child first, the other put away with the distance at which its box begins, and left out when
+//! something nearer was found meanwhile (Kay and Kajiya, "Ray tracing complex scenes", 1986, with a stack for their
+//! heap).
+
+use super::any::{Unordered, larger_first};
+use super::numbered::Numbered;
+use super::volumes::{Alone, Points, Volumes};
+use super::{bundle, packets};
+use crate::bvh::BinaryBvh;
+use crate::walk::{Built, Input, Lists, Structure, Together, Walker};
+use crate::{Info, NodeBox, SlabRay};
+use raywright_base::simd::Level;
+
+/// How many rays go through a tree together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rays {
+    /// Each alone.
+    One,
+    /// In packets of 4: one vector.
+    Four,
+    /// In bundles of 64: a range of vectors.
+    SixtyFour,
+}
+
+/// A binary tree walked with a stack, by rays alone or together.
+pub struct Ordered<V = Alone> {
+    tree: Numbered,
+    /// What nodes have beside their boxes.
+    volumes: V,
+    rays: Rays,
+    kind: String,
+}
+
+impl Ordered {
+    /// Walks a tree; `kind` says how it was built.
+    pub fn over(mut bvh: BinaryBvh, rays: Rays, kind: &str) -> Built {
+        larger_first(&mut bvh);
+        let (tree, lists) = Numbered::new(bvh);
+        let name = match rays {
+            Rays::One => "stack",
+            Rays::Four => "packets of 4",
+            Rays::SixtyFour => "packets of 64",
+        };
+        (Box::new(Self { tree, volumes: Alone, rays, kind: format!("BVH, {kind}, {name}") }), lists)
+    }
+}
+
+impl<V: Volumes> Ordered<V> {
+    /// Walks a tree whose nodes have volumes beside their boxes, each ray alone.
+    pub(super) fn within(mut bvh: BinaryBvh, input: &Input, kind: &str) -> Built {
+        larger_first(&mut bvh);
+        let (tree, lists) = Numbered::new(bvh);
+        let volumes = V::around(&tree, &Points::new(input, &lists));
+        (Box::new(Self { tree, volumes, rays: Rays::One, kind: format!("BVH, {kind}, stack{}", V::NAME) }), lists)
+    }
+
+    fn lists(&self, primitives: &dyn Fn(u32) -> Vec<u32>) -> Lists {
+        let leaves = self.tree.nodes.iter().filter(|n| n.is_leaf()).count() as u32;
+        let all: Vec<_> = (0..leaves).map(primitives).collect();
+        Lists::of(all.iter().map(Vec::as_slice))
+    }
+}
+
+impl<V: Volumes> Structure for Ordered<V> {
+    fn walker(&self, counted: bool) -> Box<dyn Walker + '_> {
+        if counted { Box::new(Walk::<V, true>::new(self)) } else { Box::new(Walk::<V, false>::new(self)) }
+    }
+
+    fn any_walker(&self) -> Box<dyn Walker + '_> {
+        Box::new(Unordered::new(&self.tree, &self.volumes))
+    }
+
+    fn together(&self, counted: bool, level: Level) -> Option<Box<dyn Together + '_>> {
+        match self.rays {
+            Rays::One => None,
+            Rays::Four => Some(packets::walk(&self.tree, counted, level)),
+            Rays::SixtyFour => Some(bundle::walk(&self.tree, counted, level)),
+        }
+    }
+
+    fn info(&self) -> Info {
+        let info = self.tree.info(&self.kind);
+        Info { bytes: info.bytes + self.volumes.bytes(), ..info }
+    }
+
+    fn boxes(&self, _: &dyn Fn(u32) -> usize) -> Option<Vec<NodeBox>> {
+        Some(self.tree.boxes())
+    }
+
+    fn validate(&self, input: &Input, primitives: &dyn Fn(u32) -> Vec<u32>) -> Result<(), String> {
+        self.tree.validate(input, primitives)?;
+        let lists = self.lists(primitives);
+        let points = Points::new(input, &lists);
+        let holds = |i: usize| points.below(&self.tree, i).into_iter().all(|p| self.volumes.holds(i, p));
+        match (0..self.tree.nodes.len()).find(|&i| !V::NAME.is_empty() && !holds(i)) {
+            Some(i) => Err(format!("the volume of node {i} does not hold what is below it")),
+            None => Ok(()),
+        }
+    }
+
+    fn refitted(&self, input: &Input, primitives: &dyn Fn(u32) -> Vec<u32>) -> Result<Box<dyn Structure>, String> {
+        let tree = self.tree.refitted(input, primitives)?;
+        let volumes = V::around(&tree, &Points::new(input, &self.lists(primitives)));
+        Ok(Box::new(Self { tree, volumes, rays: self.rays, kind: self.kind.clone() }))
+    }
+}
+
+struct Walk<'a, V: Volumes, const COUNTED: bool> {
+    tree: &'a Numbered,
+    volumes: &'a V,
+    ray: SlabRay,
+    ready: V::Ready,
+    /// Nodes that are met, and from where on.
+    stack: Vec<(u32, f32)>,
+    nodes: u32,
+}
+
+impl<'a, V: Volumes, const COUNTED: bool> Walk<'a, V, COUNTED> {
+    fn new(of: &'a Ordered<V>) -> Self {
+        let ray = SlabRay::EVERYWHERE;
+        // A path puts one child away a level.
+        let stack = Vec::with_capacity(of.tree.depth + 1);
+        Self { tree: &of.tree, volumes: &of.volumes, ray, ready: V::ready(&ray), stack, nodes: 0 }
+    }
+}
+
+impl<V: Volumes, const COUNTED: bool> Walker for Walk<'_, V, COUNTED> {
+    fn start(&mut self, ray: &SlabRay) {
+        self.ray = *ray;
+        self.ready = V::ready(ray);
+        self.nodes = 0;
+        self.stack.clear();
+        if let Some(root) = self.tree.nodes.first() {
+            self.nodes += u32::from(COUNTED);
+            self.stack.extend(ray.passes(&root.aabb(), f32::INFINITY).map(|(enter, _)| (0, enter)));
+        }
+    }
+
+    fn next(&mut self, limit: f32) -> Option<u32> {
+        let nodes = self.tree.nodes.as_slice();
+        while let Some((mut at, enter)) = self.stack.pop() {
+            if enter > limit {
+                continue;
+            }
+            loop {
+                let node = &nodes[at as usize];
+                if node.is_leaf() {
+                    return Some(node.index);
+                }
+                if COUNTED {
+                    self.nodes += 2;
+                }
+                let [a, b] = [node.index, node.index + 1];
+                let passes = |i: u32| {
+                    let within = self.ray.passes(&nodes[i as usize].aabb(), limit)?;
+                    self.volumes.narrowed(i, &self.ready, within)
+                };
+                at = match (passes(a), passes(b)) {
+                    (Some((enter, _)), Some((other, _))) if enter <= other => {
+                        self.stack.push((b, other));
+                        a
+                    }
+                    (Some((enter, _)), Some(_)) => {
+                        self.stack.push((a, enter));
+                        b
+                    }
+                    (Some(_), None) => a,
+                    (None, Some(_)) => b,
+                    (None, None) => break,
+                };
+            }
+        }
+        None
+    }
+
+    fn nodes(&self) -> u32 {
+        self.nodes
+    }
+}

@@ -1,0 +1,89 @@
+//! Turned boxes: a node has, beside its box, one along axes of its own, where that has less surface (Gottschalk, Lin
+//! and Manocha, "OBBTree: A Hierarchical Structure for Rapid Interference Detection", 1996).
+
+use super::numbered::Numbered;
+use super::volumes::{Line, NOWHERE, Points, Span, Volumes, grow};
+use crate::SlabRay;
+use raywright_base::math::{DVec3, Vec3};
+use raywright_base::parallel;
+use raywright_shapes::oriented_box::OrientedBox;
+
+/// What a turned box has of the surface of the node's own at most: one that has more is not worth its test.
+const WORTHWHILE: f32 = 0.8;
+
+/// Turned boxes of the nodes that have one.
+pub struct Oriented {
+    /// By node, which; [`Oriented::NONE`] where there is none.
+    which: Vec<u32>,
+    boxes: Vec<Turned>,
+}
+
+/// A turned box.
+#[derive(Clone, Copy)]
+struct Turned {
+    axes: [Vec3; 3],
+    spans: [Span; 3],
+}
+
+impl Turned {
+    /// Around points, if it has little enough of a surface.
+    fn around(points: &[DVec3], surface: f32) -> Option<Self> {
+        // Its axes serve, rounded; from where to where it goes along these is found anew.
+        let axes = OrientedBox::around(points)?.axes.map(|axis| axis.as_vec3());
+        let mut spans = [NOWHERE; 3];
+        for &point in points {
+            for (span, axis) in spans.iter_mut().zip(axes) {
+                *span = grow(*span, axis.as_dvec3().dot(point));
+            }
+        }
+        let [a, b, c] = spans.map(|[low, high]| high - low);
+        (a * (b + c) + b * c < WORTHWHILE * surface).then_some(Self { axes, spans })
+    }
+}
+
+impl Oriented {
+    const NONE: u32 = u32::MAX;
+}
+
+impl Volumes for Oriented {
+    const NAME: &'static str = " in turned boxes";
+    type Ready = Line;
+
+    fn around(tree: &Numbered, points: &Points) -> Self {
+        let turned = parallel::collect(tree.nodes.len(), &|i| {
+            Turned::around(&points.below(tree, i), tree.nodes[i].aabb().half_area())
+        });
+        let mut count = 0;
+        let which = turned.iter().map(|turned| match turned {
+            None => Self::NONE,
+            Some(_) => {
+                count += 1;
+                count - 1
+            }
+        });
+        Self { which: which.collect(), boxes: turned.into_iter().flatten().collect() }
+    }
+
+    #[inline(always)]
+    fn ready(ray: &SlabRay) -> Line {
+        Line::new(ray)
+    }
+
+    #[inline(always)]
+    fn narrowed(&self, node: u32, ray: &Line, mut within: (f32, f32)) -> Option<(f32, f32)> {
+        let Some(turned) = self.boxes.get(self.which[node as usize] as usize) else { return Some(within) };
+        for (&axis, &span) in turned.axes.iter().zip(&turned.spans) {
+            within = ray.across(axis).narrowed(span, within);
+        }
+        (within.0 <= within.1).then_some(within)
+    }
+
+    fn holds(&self, node: usize, point: DVec3) -> bool {
+        let Some(turned) = self.boxes.get(self.which[node] as usize) else { return true };
+        turned.axes.iter().zip(turned.spans).all(|(axis, span)| grow(span, axis.as_dvec3().dot(point)) == span)
+    }
+
+    fn bytes(&self) -> usize {
+        size_of_val(self.which.as_slice()) + size_of_val(self.boxes.as_slice())
+    }
+}

@@ -1,0 +1,96 @@
+//! The best that is known of a ray's way so far, and how f64 decides between two.
+
+use super::node::Packed;
+use raywright_base::math::robust::{greater, lesser};
+use raywright_base::simd::Lanes;
+use raywright_shapes::Candidate;
+use raywright_shapes::triangle::{EdgeRay, Leaves};
+
+/// The best that is known, in the units of leaves ([`Leaves::unit`]).
+#[derive(Clone, Copy, Debug)]
+pub struct Best {
+    /// Its `t` is at least this, and at most `high`. At first, up to where the ray is asked.
+    pub low: f32,
+    pub high: f32,
+    /// In which leaf it stands; nothing yet if in none.
+    pub leaf: Packed,
+    /// And in which lane.
+    pub lane: u32,
+}
+
+/// Four times the error of rounding to f32.
+const ULPS: f32 = 1.0 / (1u32 << 22) as f32;
+
+/// A number as two of f32, between which it lies: the first is never infinite above, nor the second below.
+// Without a branch, unlike the nearest two.
+#[inline(always)]
+pub fn between(x: f64) -> (f32, f32) {
+    let y = greater(lesser(x as f32, f32::MAX), f32::MIN);
+    let room = y.abs() * ULPS + f32::MIN_POSITIVE;
+    (y - room, y + room)
+}
+
+/// The same of many that have been rounded already.
+#[inline(always)]
+pub fn between_all<const N: usize, S: Lanes<N>>(simd: S, x: S::F32) -> (S::F32, S::F32) {
+    let y = simd.max(simd.min(x, simd.splat(f32::MAX)), simd.splat(f32::MIN));
+    let room = simd.add(simd.mul(simd.abs(y), simd.splat(ULPS)), simd.splat(f32::MIN_POSITIVE));
+    (simd.sub(y, room), simd.add(y, room))
+}
+
+impl Best {
+    /// Nothing, up to a `t`.
+    #[inline(always)]
+    pub fn until(t: f64) -> Self {
+        Self { leaf: Packed::NONE, lane: 0, low: 0.0, high: 0.0 }.at(t)
+    }
+
+    /// The same, known to be at a `t`.
+    #[inline(always)]
+    fn at(self, t: f64) -> Self {
+        let (low, high) = between(t);
+        Self { low, high, ..self }
+    }
+
+    /// Whether it is this triangle.
+    #[inline(always)]
+    pub fn is<const N: usize, L: Leaves<N>>(&self, leaves: &L, leaf: Packed, lane: u32) -> bool {
+        self.leaf != Packed::NONE && primitive(leaves, self.leaf, self.lane) == primitive(leaves, leaf, lane)
+    }
+
+    /// Decides in f64 whether a ray meets a triangle before all that it has met, and notes it if it does. Of the same
+    /// `t` the lowest primitive counts.
+    #[inline(never)]
+    pub fn decide<const N: usize, L: Leaves<N>>(
+        &mut self,
+        leaves: &L,
+        unit: f64,
+        ray: &EdgeRay,
+        leaf: Packed,
+        lane: u32,
+    ) {
+        let Some(new) = meet(leaves, ray, leaf, lane) else { return };
+        if self.leaf != Packed::NONE
+            && let Some(old) = meet(leaves, ray, self.leaf, self.lane)
+            && (old.t, primitive(leaves, self.leaf, self.lane)) <= (new.t, primitive(leaves, leaf, lane))
+        {
+            *self = self.at(old.t * unit);
+            return;
+        }
+        *self = Self { leaf, lane, ..*self }.at(new.t * unit);
+    }
+}
+
+/// The number of the triangle in a lane of a leaf.
+#[inline(always)]
+pub fn primitive<const N: usize, L: Leaves<N>>(leaves: &L, leaf: Packed, lane: u32) -> u32 {
+    let (first, count) = leaf.leaf();
+    leaves.primitive(first, count, lane as usize & (N - 1))
+}
+
+/// Where a ray meets the triangle in a lane of a leaf.
+#[inline(always)]
+pub fn meet<const N: usize, L: Leaves<N>>(leaves: &L, ray: &EdgeRay, leaf: Packed, lane: u32) -> Option<Candidate> {
+    let (first, count) = leaf.leaf();
+    ray.meet(leaves.corners(first, count, lane as usize & (N - 1)))
+}

@@ -1,0 +1,213 @@
+//! The best that is known of sixteen rays together, and triangles that are tested against all of them.
+
+use super::WideBvh;
+use super::best::{Best, meet, primitive};
+use super::looking::Looking;
+use super::node::Packed;
+use super::sixteen::Sixteen;
+use raywright_base::math::RayBatch;
+use raywright_base::simd::{Lanes, Simd};
+use raywright_shapes::triangle::{ALL, Column, EdgeRay, Leaves, RAYS, Spread};
+
+/// Whether so few of sixteen rays are asked about a leaf that each is tested alone.
+#[inline(always)]
+pub fn are_few(asked: u32, leaf: Packed) -> bool {
+    3 * asked.count_ones() <= 2 * leaf.leaf().1
+}
+
+/// The best that is known of sixteen rays, by columns; see [`Best`].
+pub struct Bests {
+    low: Column<f32>,
+    pub high: Column<f32>,
+    /// Bits of a [`Packed`], to be moved as f32.
+    leaf: Column<f32>,
+    /// Bits of a lane.
+    lane: Column<f32>,
+    /// Where any hit will do, those that have one.
+    pub answered: u32,
+}
+
+impl Bests {
+    /// Of no rays.
+    pub const NOTHING: Self = Self {
+        low: [0.0; RAYS],
+        high: [0.0; RAYS],
+        leaf: [f32::from_bits(Packed::NONE.bits()); RAYS],
+        lane: [0.0; RAYS],
+        answered: 0,
+    };
+
+    /// Nothing, up to the `t_max` of each.
+    #[inline(always)]
+    pub fn none(rays: &Sixteen) -> Self {
+        let [low, high] = rays.t_max;
+        Self { low, high, ..Self::NOTHING }
+    }
+
+    /// The best that is known of a ray.
+    #[inline(always)]
+    pub fn get(&self, i: usize) -> Best {
+        let i = i & (RAYS - 1);
+        let (leaf, lane) = (Packed::of(self.leaf[i].to_bits()), self.lane[i].to_bits());
+        Best { low: self.low[i], high: self.high[i], leaf, lane }
+    }
+
+    #[inline(always)]
+    pub fn note(&mut self, i: usize, best: Best) {
+        let i = i & (RAYS - 1);
+        (self.low[i], self.high[i]) = (best.low, best.high);
+        (self.leaf[i], self.lane[i]) = (f32::from_bits(best.leaf.bits()), f32::from_bits(best.lane));
+    }
+
+    /// One of the rays alone, the first of which is `start` of the batch.
+    #[inline(always)]
+    pub fn looking(&self, rays: &Sixteen, i: usize, start: usize) -> Looking {
+        Looking { best: self.get(i), ..Looking::of(rays, i, start + i) }
+    }
+
+    /// Those that have hit something.
+    #[inline(always)]
+    pub fn hits<S: Lanes<RAYS>>(&self, simd: S) -> u32 {
+        ALL & !simd.same(simd.load(&self.leaf), simd.splat(f32::from_bits(Packed::NONE.bits())))
+    }
+
+    /// Those that have hit what one of them has.
+    #[inline(always)]
+    pub fn like<S: Lanes<RAYS>>(&self, simd: S, i: usize) -> u32 {
+        let i = i & (RAYS - 1);
+        simd.same(simd.load(&self.leaf), simd.splat(self.leaf[i]))
+            & simd.same(simd.load(&self.lane), simd.splat(self.lane[i]))
+    }
+
+    /// Takes note of new limits of some rays, in box units: `limits` are those before.
+    #[inline(always)]
+    pub fn limits<S: Lanes<RAYS>>(&self, simd: S, to_box: f64, changed: u32, limits: S::F32) -> S::F32 {
+        // A power of two, or too great for an f32, and then nothing is left out.
+        let to_box = to_box as f32;
+        if to_box > f32::MAX {
+            return simd.select(changed, simd.splat(f32::INFINITY), limits);
+        }
+        let least = simd.splat(f32::MIN_POSITIVE);
+        simd.select(changed, simd.mul_add(simd.load(&self.high), simd.splat(to_box), least), limits)
+    }
+
+    /// Tests a leaf against so few of the rays that each is tested alone against all of its triangles; says what
+    /// [`Bests::test`] does.
+    #[inline(always)]
+    pub fn visit_alone<const ANY: bool, const N: usize, L: Leaves<N>, S: Simd<N>>(
+        &mut self,
+        simd: S,
+        bvh: &WideBvh<N, L>,
+        rays: &Sixteen,
+        from: (&RayBatch<'_>, usize),
+        leaf: Packed,
+        asked: u32,
+    ) -> u32 {
+        let (mut changed, mut rest) = (0, asked);
+        while rest != 0 {
+            let i = rest.trailing_zeros() as usize & (RAYS - 1);
+            rest &= rest - 1;
+            let mut ray = self.looking(rays, i, from.1);
+            let has_changed = ray.visit::<ANY, N, L, S>(simd, &bvh.leaves, &bvh.region, leaf, from.0);
+            if !ANY {
+                // What has won may lie no nearer in f32.
+                self.note(i, ray.best);
+            }
+            changed |= u32::from(has_changed) << i;
+        }
+        changed
+    }
+
+    /// Tests a leaf against the rays in `asked`, each triangle against all of them; says what [`Bests::test`] does.
+    #[inline(always)]
+    #[allow(clippy::too_many_arguments)]
+    pub fn visit<const ANY: bool, const N: usize, L: Leaves<N>, S: Simd<N>>(
+        &mut self,
+        simd: S,
+        bvh: &WideBvh<N, L>,
+        rays: &Sixteen,
+        from: (&RayBatch<'_>, usize),
+        triangles: &Spread<N>,
+        leaf: Packed,
+        asked: u32,
+    ) -> u32 {
+        let mut changed = 0;
+        for lane in 0..leaf.leaf().1 {
+            // Where any hit will do, what is answered is asked no more.
+            let asked = if ANY { asked & !changed } else { asked };
+            changed |= self.test::<ANY, N, L, _>(simd.sixteen(), bvh, rays, from, triangles, leaf, lane, asked);
+        }
+        changed
+    }
+
+    /// Tests the triangle in a lane of a leaf against those of the rays in `asked`; says of which what is known has
+    /// changed, or, if any hit will do, which are answered.
+    #[inline(always)]
+    #[allow(clippy::too_many_arguments)]
+    fn test<const ANY: bool, const N: usize, L: Leaves<N>, S: Lanes<RAYS>>(
+        &mut self,
+        simd: S,
+        bvh: &WideBvh<N, L>,
+        rays: &Sixteen,
+        from: (&RayBatch<'_>, usize),
+        triangles: &Spread<N>,
+        leaf: Packed,
+        lane: u32,
+        asked: u32,
+    ) -> u32 {
+        let Some(bracket) = triangles.bracket(simd, &rays.blocks, lane as usize, asked) else { return 0 };
+        let (low, high) = (simd.load(&self.low), simd.load(&self.high));
+        let (earliest, latest) = (simd.load(&rays.t_min[0]), simd.load(&rays.t_min[1]));
+        let beyond = simd.gt(bracket.low, high) | simd.gt(earliest, bracket.high);
+        let mut open = bracket.possible & !(bracket.known & beyond);
+        if open == 0 {
+            return 0;
+        }
+        let sure = bracket.known & bracket.inside & simd.gt(bracket.low, latest) & simd.gt(low, bracket.high);
+        let sure = open & sure;
+        open &= !sure;
+        let mut changed = sure;
+        if !ANY {
+            simd.store(simd.select(sure, bracket.low, low), &mut self.low);
+            simd.store(simd.select(sure, bracket.high, high), &mut self.high);
+            let which = simd.select(sure, simd.splat(f32::from_bits(leaf.bits())), simd.load(&self.leaf));
+            simd.store(which, &mut self.leaf);
+            let which = simd.select(sure, simd.splat(f32::from_bits(lane)), simd.load(&self.lane));
+            simd.store(which, &mut self.lane);
+        }
+        while open != 0 {
+            let i = open.trailing_zeros() as usize;
+            open &= open - 1;
+            if from.0.misses(from.1 + i, primitive(&bvh.leaves, leaf, lane)) {
+                continue;
+            }
+            changed |= u32::from(self.decide::<ANY, N, L>(bvh, from.0, from.1, i, leaf, lane)) << i;
+        }
+        changed
+    }
+
+    /// Decides about a ray and a triangle in f64.
+    #[inline(never)]
+    fn decide<const ANY: bool, const N: usize, L: Leaves<N>>(
+        &mut self,
+        bvh: &WideBvh<N, L>,
+        rays: &RayBatch<'_>,
+        start: usize,
+        i: usize,
+        leaf: Packed,
+        lane: u32,
+    ) -> bool {
+        let mut best = self.get(i);
+        if !ANY && best.is(&bvh.leaves, leaf, lane) {
+            return false;
+        }
+        let Some(ray) = EdgeRay::new(&rays.get(start + i), &bvh.region) else { return false };
+        if ANY {
+            return meet(&bvh.leaves, &ray, leaf, lane).is_some();
+        }
+        let before = best.high;
+        best.decide(&bvh.leaves, L::unit(&bvh.region), &ray, leaf, lane);
+        self.note(i, best);
+        best.high < before
+    }
+}

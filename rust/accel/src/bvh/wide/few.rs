@@ -1,0 +1,94 @@
+//! Few triangles: sixteen rays at a time go to every leaf that some of them may meet, and to no node at all.
+
+use super::WideBvh;
+use super::answer::Answer;
+use super::bests::{Bests, are_few};
+use super::first::First;
+use super::node::Packed;
+use super::sixteen::Sixteen;
+use super::step::Stacks;
+use super::winners::Settling;
+use super::{single, winners};
+use raywright_base::math::Aabb;
+use raywright_base::simd::{Lanes, Simd};
+use raywright_shapes::triangle::{ALL, Leaves, Met, RAYS};
+
+/// So many triangles are few, in so many leaves: a tree of more is walked sooner.
+pub const TRIANGLES: usize = 64;
+const LEAVES: usize = 32;
+
+/// The leaves of a tree and their boxes, if they are few.
+pub fn leaves<const N: usize, L: Leaves<N>>(bvh: &WideBvh<N, L>) -> Option<Vec<(Packed, Aabb)>> {
+    if bvh.info.primitives > TRIANGLES {
+        return None;
+    }
+    let leaf = |node: usize, lane: usize| (Packed::of(bvh.nodes[node].children[lane]), bvh.nodes[node].aabb(lane));
+    let all = (0..bvh.nodes.len()).flat_map(|node| (0..N).map(move |lane| leaf(node, lane)));
+    let leaves: Vec<_> = all.filter(|(child, _)| child.kind() == 1).collect();
+    (leaves.len() <= LEAVES).then_some(leaves)
+}
+
+/// Answers all rays by the leaves of the tree.
+#[inline(always)]
+pub fn answer<const N: usize, L: Leaves<N>, S: Simd<N>, A: Answer>(
+    simd: S,
+    bvh: &WideBvh<N, L>,
+    leaves: &[(Packed, Aabb)],
+    errand: &mut First<'_, A>,
+) {
+    let batch = errand.rays;
+    let sixteen = simd.sixteen();
+    let mut lone = Stacks::spare::<N>(bvh.stack);
+    let mut rays = Sixteen::NONE;
+    for start in (0..batch.len()).step_by(RAYS) {
+        let count = RAYS.min(batch.len() - start);
+        let here = ALL >> (RAYS - count);
+        rays.take::<N, L, _>(sixteen, batch, start, &bvh.region, bvh.axes.as_ref());
+        let plain = here & rays.plain.plain;
+        let mut bests = Bests::none(&rays);
+        let mut limit = sixteen.load(&rays.slabs.limit);
+        for &(leaf, bounds) in leaves {
+            let active = plain & !bests.answered & rays.slabs.meeting(sixteen, &bounds, limit);
+            if active == 0 {
+                continue;
+            }
+            let from = (batch, start);
+            let changed = if are_few(active, leaf) {
+                if A::ANY {
+                    bests.visit_alone::<true, N, L, S>(simd, bvh, &rays, from, leaf, active)
+                } else {
+                    bests.visit_alone::<false, N, L, S>(simd, bvh, &rays, from, leaf, active)
+                }
+            } else {
+                let (first, count) = leaf.leaf();
+                let triangles = bvh.leaves.spread(simd, &rays.blocks, first, count);
+                if A::ANY {
+                    bests.visit::<true, N, L, S>(simd, bvh, &rays, from, &triangles, leaf, active)
+                } else {
+                    bests.visit::<false, N, L, S>(simd, bvh, &rays, from, &triangles, leaf, active)
+                }
+            };
+            if A::ANY {
+                bests.answered |= changed;
+                if bests.answered == plain {
+                    break;
+                }
+            } else if changed != 0 {
+                limit = bests.limits(sixteen, bvh.region.scale / L::unit(&bvh.region), changed, limit);
+            }
+        }
+        if A::ANY {
+            errand.answer.some(start, count, bests.answered, &Met::NONE, &[0; RAYS]);
+        } else {
+            winners::settle(sixteen, bvh, batch, start, count, &bests, errand.answer);
+        }
+        let mut others = here & !plain;
+        while others != 0 {
+            let i = others.trailing_zeros() as usize;
+            others &= others - 1;
+            single::ask(simd, bvh, batch, start + i, errand, &mut lone);
+        }
+    }
+    lone.put_away();
+    errand.winners.settle(bvh, batch, errand.answer);
+}

@@ -1,0 +1,343 @@
+//! Up to four times sixteen rays together: nodes are tested against all of them at once, by intervals; only before what
+//! is below a child is visited are its box and each ray tested, sixteen at a time, and where few are left they go on
+//! alone. (Boulos et al., "Packet-based Whitted and Distribution Ray Tracing", 2007.) In leaves, a triangle is tested
+//! against sixteen rays, or a ray against all triangles, whichever is less work.
+//!
+//! A step waits for the one before, and for its outcome: what is done for many rays at once hides that. Sixteen alone
+//! take up to twice as long.
+//!
+//! The interval test: along an axis on which all rays go the same way, ray i meets the nearer plane of a box no earlier
+//! than `(plane − o) · r`, with o the latest origin of all rays, moved on by the pad, and r the least or the greatest
+//! inverse of all directions, whichever gives less. It errs by no more than the slab test of a single ray
+//! (`accel/slab.rs`): v·|o| for rounding the origin and as much for moving it, v·(|plane| + |o|) for the difference,
+//! and 2v + v of it for the inverse and the product: less than 6v·R in units of |r|.
+
+use super::WideBvh;
+use super::answer::Answer;
+use super::bests::{Bests, are_few};
+use super::first::First;
+use super::node::{Packed, WideNode};
+use super::sixteen::Sixteen;
+use super::step::Stacks;
+use super::winners::Settling;
+use super::{single, winners};
+use crate::slab::Clock;
+use raywright_base::simd::{ASCENDING, Lanes, Simd};
+use raywright_shapes::triangle::{ALL, Column, Leaves, Met, RAYS};
+
+/// So many rays or fewer go on alone, and so many more for each further sixteen that they are among.
+const FEW: [u32; 2] = [3, 2];
+
+/// Sixteens of a packet, at most.
+const SIXTEENS: usize = 4;
+
+/// Rays of one packet, all plain ([`Sixteen`]) and going the same way along every axis.
+struct Packet<'a> {
+    rays: &'a [Sixteen],
+    bests: [Bests; SIXTEENS],
+    /// Where in box units each loses interest; −∞ for rays that are answered or missing.
+    limits: [Column<f32>; SIXTEENS],
+    bounds: Bounds,
+    /// The plane that is met first, by axis; for all rays.
+    first: [usize; 3],
+    /// The first of them in the batch.
+    start: usize,
+}
+
+/// What holds for all rays of a packet.
+struct Bounds {
+    /// The origin from which the nearer plane is met last, by axis.
+    near: [f32; 3],
+    /// The origin from which the farther plane is met first.
+    far: [f32; 3],
+    /// The least inverse of a direction in magnitude, and the greatest.
+    inverse: [[f32; 2]; 3],
+    t_min: f32,
+}
+
+/// Answers all rays; the tree is not empty.
+#[inline(always)]
+pub fn answer<const N: usize, L: Leaves<N>, S: Simd<N>, A: Answer>(
+    simd: S,
+    bvh: &WideBvh<N, L>,
+    errand: &mut First<'_, A>,
+) {
+    let batch = errand.rays;
+    let mut stack = Stacks::new::<N>(1, bvh.stack);
+    let mut lone = Stacks::new::<N>(1, bvh.stack);
+    let mut masks = vec![0; bvh.stack + 1 + N];
+    let mut rays = [const { Sixteen::NONE }; SIXTEENS];
+    let mut start = 0;
+    while start < batch.len() {
+        let (mut first, mut together) = (None, 0);
+        while together < SIXTEENS && start + together * RAYS + FEW[0] as usize <= batch.len() {
+            let sixteen = &mut rays[together];
+            sixteen.take::<N, L, _>(simd.sixteen(), batch, start + together * RAYS, &bvh.region, bvh.axes.as_ref());
+            let here = if sixteen.plain.plain == ALL { sixteen.slabs.first(simd.sixteen()) } else { None };
+            if here.is_none() || together > 0 && here != first {
+                break;
+            }
+            (first, together) = (here, together + 1);
+        }
+        let count = (RAYS * together.max(1)).min(batch.len() - start);
+        if let Some(first) = first {
+            let rays = &mut rays[..together];
+            Sixteen::unite(rays);
+            let mut packet = Packet::new(simd.sixteen(), rays, first, start, count);
+            packet.walk(simd, bvh, errand, (&mut stack, &mut masks), &mut lone);
+            for (which, bests) in packet.bests[..together].iter().enumerate() {
+                let (start, count) = (start + which * RAYS, RAYS.min(count - which * RAYS));
+                if A::ANY {
+                    errand.answer.some(start, count, bests.answered, &Met::NONE, &[0; RAYS]);
+                } else {
+                    winners::settle(simd.sixteen(), bvh, batch, start, count, bests, errand.answer);
+                }
+            }
+        } else {
+            for i in start..start + count {
+                single::ask(simd, bvh, batch, i, errand, &mut lone);
+            }
+        }
+        start += count;
+    }
+    errand.winners.settle(bvh, batch, errand.answer);
+}
+
+impl Bounds {
+    #[inline(always)]
+    fn of<S: Lanes<RAYS>>(simd: S, rays: &[Sixteen], first: [usize; 3]) -> Self {
+        let mut earliest = simd.splat(f32::INFINITY);
+        for sixteen in rays {
+            earliest = simd.min(earliest, simd.load(&sixteen.slabs.t_min));
+        }
+        let t_min = simd.least(earliest);
+        let mut bounds = Self { near: [0.0; 3], far: [0.0; 3], inverse: [[0.0; 2]; 3], t_min };
+        for axis in 0..3 {
+            let towards = if first[axis] == 0 { 1.0 } else { -1.0 };
+            let (mut near, mut longest) = (simd.splat(f32::NEG_INFINITY), simd.splat(f32::NEG_INFINITY));
+            let (mut far, mut shortest) = (simd.splat(f32::INFINITY), simd.splat(f32::INFINITY));
+            for sixteen in rays {
+                let pad = simd.load(&sixteen.slabs.pad);
+                let origin = simd.mul(simd.load(&sixteen.origins()[axis]), simd.splat(towards));
+                near = simd.max(near, simd.add(origin, pad));
+                far = simd.min(far, simd.sub(origin, pad));
+                let size = simd.abs(simd.load(&sixteen.slabs.inverse[axis]));
+                longest = simd.max(longest, size);
+                shortest = simd.min(shortest, size);
+            }
+            bounds.near[axis] = simd.greatest(near) * towards;
+            bounds.far[axis] = simd.least(far) * towards;
+            bounds.inverse[axis] = [simd.least(shortest) * towards, simd.greatest(longest) * towards];
+        }
+        bounds
+    }
+}
+
+impl<'a> Packet<'a> {
+    /// The first `count` of some sixteens.
+    #[inline(always)]
+    fn new<S: Lanes<RAYS>>(simd: S, rays: &'a [Sixteen], first: [usize; 3], start: usize, count: usize) -> Self {
+        let none = simd.splat(f32::NEG_INFINITY);
+        let (mut limits, mut bests) = ([[f32::NEG_INFINITY; RAYS]; SIXTEENS], [const { Bests::NOTHING }; SIXTEENS]);
+        for (which, sixteen) in rays.iter().enumerate() {
+            let here = ALL >> (RAYS - RAYS.min(count - which * RAYS));
+            simd.store(simd.select(here, simd.load(&sixteen.slabs.limit), none), &mut limits[which]);
+            bests[which] = Bests::none(sixteen);
+        }
+        Self { rays, bests, limits, bounds: Bounds::of(simd, rays, first), first, start }
+    }
+
+    /// Where the last ray loses interest.
+    #[inline(always)]
+    fn last_limit<S: Lanes<RAYS>>(&self, simd: S) -> f32 {
+        let [a, b, c, d] = &self.limits;
+        let most = simd.max(simd.max(simd.load(a), simd.load(b)), simd.max(simd.load(c), simd.load(d)));
+        simd.greatest(most)
+    }
+
+    /// Visits all that any ray may hit. With each child on the stack goes which of the sixteens may meet it.
+    #[inline(always)]
+    fn walk<const N: usize, L: Leaves<N>, S: Simd<N>, A: Answer>(
+        &mut self,
+        simd: S,
+        bvh: &WideBvh<N, L>,
+        errand: &mut First<'_, A>,
+        (stack, masks): (&mut Stacks, &mut [u8]),
+        lone: &mut Stacks,
+    ) {
+        let octant = self.first[0] | self.first[1] << 1 | self.first[2] << 2;
+        let mut limit = self.last_limit(simd.sixteen());
+        let (bottom, mut index) = (1, 0);
+        let (mut top, mut mask) = (bottom, (1u8 << self.rays.len()) - 1);
+        'down: loop {
+            let node = &bvh.nodes[index];
+            let (nears, fars) = self.interval(simd, node, limit);
+            // A child is known by its node and lane, so that its box is at hand when it is popped.
+            let mut places = [(index * N) as u32; N];
+            for (lane, place) in places.iter_mut().enumerate() {
+                *place += lane as u32;
+            }
+            *masks[top..].first_chunk_mut::<N>().expect("as long as the stack") = [mask; N];
+            // For any hit, the nearest first is up to a sixth slower where much is hidden by large triangles.
+            let order = if A::ANY { ASCENDING } else { node.order(octant) };
+            top += stack.push::<true, N, S>(simd, top, nears, fars, &places, order);
+            loop {
+                if top == bottom {
+                    return;
+                }
+                top -= 1;
+                let (near, place) = stack.entry(top);
+                // What starts exactly at the limit may hold an equal t of a lower primitive.
+                if near > limit {
+                    continue;
+                }
+                let (parent, lane) = (&bvh.nodes[place as usize / N], place as usize & (N - 1));
+                let (asked, child) = (masks[top], Packed::of(parent.children[lane]));
+                let mut active = [0; SIXTEENS];
+                let mut count = 0;
+                mask = 0;
+                for which in 0..self.rays.len() {
+                    if asked >> which & 1 == 1 {
+                        active[which] = self.meeting(simd.sixteen(), which, parent, lane);
+                        mask |= u8::from(active[which] != 0) << which;
+                        count += active[which].count_ones();
+                    }
+                }
+                if child.is_leaf() == 1 {
+                    if mask != 0 && self.visit_leaf::<N, L, S, A>(simd, bvh, child, active, errand) {
+                        limit = self.last_limit(simd.sixteen());
+                    }
+                    continue;
+                }
+                if count == 0 {
+                    continue;
+                }
+                if count > FEW[0] + FEW[1] * (mask.count_ones() - 1) {
+                    index = child.node();
+                    continue 'down;
+                }
+                for which in 0..self.rays.len() {
+                    let mut active = active[which];
+                    while active != 0 {
+                        let i = active.trailing_zeros() as usize & (RAYS - 1);
+                        active &= active - 1;
+                        self.walk_alone(simd, bvh, child, which, i, errand, lone);
+                    }
+                }
+                limit = self.last_limit(simd.sixteen());
+            }
+        }
+    }
+
+    /// Tests a leaf against the rays in `active`: each triangle against sixteen of them, or each of them against all
+    /// triangles. Whether some have a new limit.
+    #[inline(always)]
+    fn visit_leaf<const N: usize, L: Leaves<N>, S: Simd<N>, A: Answer>(
+        &mut self,
+        simd: S,
+        bvh: &WideBvh<N, L>,
+        leaf: Packed,
+        active: [u32; SIXTEENS],
+        errand: &First<'_, A>,
+    ) -> bool {
+        let (first, count) = leaf.leaf();
+        let triangles = bvh.leaves.spread(simd, &self.rays[0].blocks, first, count);
+        let mut has_changed = false;
+        for which in 0..self.rays.len() {
+            let active = active[which];
+            if active == 0 {
+                continue;
+            }
+            let (rays, bests, start) = (&self.rays[which], &mut self.bests[which], self.start + which * RAYS);
+            let from = (errand.rays, start);
+            let changed = match (A::ANY, are_few(active, leaf)) {
+                (false, false) => bests.visit::<false, N, L, S>(simd, bvh, rays, from, &triangles, leaf, active),
+                (false, true) => bests.visit_alone::<false, N, L, S>(simd, bvh, rays, from, leaf, active),
+                (true, false) => bests.visit::<true, N, L, S>(simd, bvh, rays, from, &triangles, leaf, active),
+                (true, true) => bests.visit_alone::<true, N, L, S>(simd, bvh, rays, from, leaf, active),
+            };
+            if changed != 0 {
+                has_changed = true;
+                self.lose_interest::<N, L, _, A>(simd.sixteen(), bvh, which, changed);
+            }
+        }
+        has_changed
+    }
+
+    /// Takes note of new limits of some rays.
+    #[inline(always)]
+    fn lose_interest<const N: usize, L: Leaves<N>, S: Lanes<RAYS>, A: Answer>(
+        &mut self,
+        simd: S,
+        bvh: &WideBvh<N, L>,
+        which: usize,
+        changed: u32,
+    ) {
+        let (bests, limits) = (&mut self.bests[which], &mut self.limits[which]);
+        let before = simd.load(limits);
+        let limit = if A::ANY {
+            bests.answered |= changed;
+            simd.select(changed, simd.splat(f32::NEG_INFINITY), before)
+        } else {
+            bests.limits(simd, bvh.region.scale / L::unit(&bvh.region), changed, before)
+        };
+        simd.store(limit, limits);
+    }
+
+    #[inline(always)]
+    #[allow(clippy::too_many_arguments)]
+    fn walk_alone<const N: usize, L: Leaves<N>, S: Simd<N>, A: Answer>(
+        &mut self,
+        simd: S,
+        bvh: &WideBvh<N, L>,
+        child: Packed,
+        which: usize,
+        i: usize,
+        errand: &mut First<'_, A>,
+        stacks: &mut Stacks,
+    ) {
+        let (rays, bests, limits) = (&self.rays[which], &mut self.bests[which], &mut self.limits[which]);
+        let mut ray = bests.looking(rays, i, self.start + which * RAYS);
+        let boxes = rays.boxes(i, limits[i], child, 0);
+        if single::walk(simd, bvh, boxes, errand, &mut ray, stacks) {
+            bests.answered |= 1 << i;
+            limits[i] = f32::NEG_INFINITY;
+        } else if !A::ANY {
+            bests.note(i, ray.best);
+            limits[i] = Clock::of(&bvh.region).limit(f64::from(ray.best.high) / L::unit(&bvh.region));
+        }
+    }
+
+    /// From where at the earliest to where at the latest any ray is in each child.
+    #[inline(always)]
+    fn interval<const N: usize, S: Simd<N>>(&self, simd: S, node: &WideNode<N>, limit: f32) -> (S::F32, S::F32) {
+        let mut nears = simd.splat(self.bounds.t_min);
+        let mut fars = simd.splat(limit);
+        for axis in 0..3 {
+            let first = self.first[axis] & 1;
+            let [least, greatest] =
+                [simd.splat(self.bounds.inverse[axis][0]), simd.splat(self.bounds.inverse[axis][1])];
+            let near = simd.sub(simd.load(&node.planes[axis][first]), simd.splat(self.bounds.near[axis]));
+            let far = simd.sub(simd.load(&node.planes[axis][first ^ 1]), simd.splat(self.bounds.far[axis]));
+            nears = simd.max(nears, simd.min(simd.mul(near, least), simd.mul(near, greatest)));
+            fars = simd.min(fars, simd.max(simd.mul(far, least), simd.mul(far, greatest)));
+        }
+        (nears, fars)
+    }
+
+    /// Those of sixteen rays that meet the box in one lane of a node.
+    #[inline(always)]
+    fn meeting<const N: usize, S: Lanes<RAYS>>(&self, simd: S, which: usize, node: &WideNode<N>, lane: usize) -> u32 {
+        let slabs = &self.rays[which].slabs;
+        let (mut nears, mut fars) = (simd.load(&slabs.t_min), simd.load(&self.limits[which]));
+        for axis in 0..3 {
+            let first = self.first[axis] & 1;
+            let inverse = simd.load(&slabs.inverse[axis]);
+            let near = simd.splat(node.planes[axis][first][lane]);
+            let far = simd.splat(node.planes[axis][first ^ 1][lane]);
+            nears = simd.max(nears, simd.mul_add(near, inverse, simd.load(&slabs.near[axis])));
+            fars = simd.min(fars, simd.mul_add(far, inverse, simd.load(&slabs.far[axis])));
+        }
+        simd.le(nears, fars)
+    }
+}

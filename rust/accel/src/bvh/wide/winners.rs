@@ -1,0 +1,262 @@
+//! Triangles that have won, computed in f64 sixteen at a time.
+
+use super::WideBvh;
+use super::answer::Answer;
+use super::best::{Best, meet, primitive};
+use super::bests::Bests;
+use super::node::Packed;
+use raywright_base::math::RayBatch;
+use raywright_base::simd::Lanes;
+use raywright_shapes::triangle::{Column, EdgeRay, EdgeRays, Leaves, Met, RAYS, Real};
+
+/// What computes the triangles that have won.
+pub trait Settling {
+    /// One more, of ray `i`.
+    fn add<const N: usize, L: Leaves<N>, A: Answer>(
+        &mut self,
+        bvh: &WideBvh<N, L>,
+        rays: &RayBatch<'_>,
+        i: usize,
+        best: &Best,
+        answer: &mut A,
+    );
+
+    /// Answers all that there are.
+    fn settle<const N: usize, L: Leaves<N>, A: Answer>(
+        &mut self,
+        bvh: &WideBvh<N, L>,
+        rays: &RayBatch<'_>,
+        answer: &mut A,
+    );
+}
+
+/// Each by itself, at once: what sixteen take together takes one ray as long.
+pub struct Alone;
+
+impl Settling for Alone {
+    #[inline(always)]
+    fn add<const N: usize, L: Leaves<N>, A: Answer>(
+        &mut self,
+        bvh: &WideBvh<N, L>,
+        rays: &RayBatch<'_>,
+        i: usize,
+        best: &Best,
+        answer: &mut A,
+    ) {
+        alone(bvh, rays, i, best.leaf, best.lane, answer);
+    }
+
+    #[inline(always)]
+    fn settle<const N: usize, L: Leaves<N>, A: Answer>(&mut self, _: &WideBvh<N, L>, _: &RayBatch<'_>, _: &mut A) {}
+}
+
+/// Rays that are done, each with the triangle that it hits. While one sixteen fill up, the sixteen before wait: what is
+/// written number by number is not to be read as vectors at once, since a wide load must wait for narrow stores.
+pub struct Winners {
+    sixteens: [Sixteen; 2],
+    /// Which of them fill up.
+    filling: usize,
+}
+
+/// Up to sixteen of them.
+struct Sixteen {
+    rays: [usize; RAYS],
+    leaves: Column<Packed>,
+    lanes: Column<u32>,
+    edges: EdgeRays,
+    /// Of the triangles, by corner and axis.
+    corners: [[Column<f64>; 3]; 3],
+    len: usize,
+}
+
+impl Winners {
+    /// None yet.
+    pub fn new() -> Self {
+        Self { sixteens: [Sixteen::new(), Sixteen::new()], filling: 0 }
+    }
+}
+
+impl Settling for Winners {
+    #[inline(always)]
+    fn add<const N: usize, L: Leaves<N>, A: Answer>(
+        &mut self,
+        bvh: &WideBvh<N, L>,
+        rays: &RayBatch<'_>,
+        i: usize,
+        best: &Best,
+        answer: &mut A,
+    ) {
+        let filling = &mut self.sixteens[self.filling & 1];
+        filling.put(bvh, rays, i, best);
+        if filling.len == RAYS {
+            self.filling ^= 1;
+            self.sixteens[self.filling & 1].settle(bvh, rays, answer);
+        }
+    }
+
+    #[inline(always)]
+    fn settle<const N: usize, L: Leaves<N>, A: Answer>(
+        &mut self,
+        bvh: &WideBvh<N, L>,
+        rays: &RayBatch<'_>,
+        answer: &mut A,
+    ) {
+        for sixteen in &mut self.sixteens {
+            sixteen.settle(bvh, rays, answer);
+        }
+    }
+}
+
+impl Sixteen {
+    fn new() -> Self {
+        Self {
+            rays: [0; RAYS],
+            leaves: [Packed::NONE; RAYS],
+            lanes: [0; RAYS],
+            edges: EdgeRays::default(),
+            corners: [[[0.0; RAYS]; 3]; 3],
+            len: 0,
+        }
+    }
+
+    #[inline(always)]
+    fn put<const N: usize, L: Leaves<N>>(&mut self, bvh: &WideBvh<N, L>, rays: &RayBatch<'_>, i: usize, best: &Best) {
+        let at = self.len & (RAYS - 1);
+        (self.rays[at], self.leaves[at], self.lanes[at]) = (i, best.leaf, best.lane);
+        self.edges.put(at, &rays.get(i));
+        let (first, count) = best.leaf.leaf();
+        let [a, b, c] = bvh.leaves.corners(first, count, best.lane as usize & (N - 1));
+        let to = &mut self.corners;
+        (to[0][0][at], to[0][1][at], to[0][2][at]) = (a.x, a.y, a.z);
+        (to[1][0][at], to[1][1][at], to[1][2][at]) = (b.x, b.y, b.z);
+        (to[2][0][at], to[2][1][at], to[2][2][at]) = (c.x, c.y, c.z);
+        self.len = at + 1;
+    }
+
+    /// Answers those that there are, and is empty then.
+    #[inline(always)]
+    fn settle<const N: usize, L: Leaves<N>, A: Answer>(
+        &mut self,
+        bvh: &WideBvh<N, L>,
+        rays: &RayBatch<'_>,
+        answer: &mut A,
+    ) {
+        let count = std::mem::take(&mut self.len).min(RAYS);
+        if count == 0 {
+            return;
+        }
+        let here = !(u32::MAX << count);
+        let plain = self.edges.prepare(&bvh.region) & here;
+        let all = self.edges.won(&self.corners, plain);
+        let mut met = all.met;
+        while met != 0 {
+            let i = met.trailing_zeros() as usize & (RAYS - 1);
+            met &= met - 1;
+            let number = primitive(&bvh.leaves, self.leaves[i], self.lanes[i]);
+            let uv = [all.uv[0][i], all.uv[1][i]];
+            answer.hit(self.rays[i], all.t[i], uv, number);
+        }
+        let mut rest = here & !all.met;
+        while rest != 0 {
+            let i = rest.trailing_zeros() as usize & (RAYS - 1);
+            rest &= rest - 1;
+            alone(bvh, rays, self.rays[i], self.leaves[i], self.lanes[i], answer);
+        }
+    }
+}
+
+/// The triangles that up to sixteen rays have hit.
+struct Triangles<T> {
+    /// By corner and axis.
+    corners: [[Column<T>; 3]; 3],
+    primitives: Column<u32>,
+}
+
+impl<T: Real> Triangles<T> {
+    /// Those of the rays in `hits`. Neighbours often hit the same, which is fetched once.
+    #[inline(always)]
+    fn of<const N: usize, L: Leaves<N, Real = T>, S: Lanes<RAYS>>(
+        simd: S,
+        leaves: &L,
+        bests: &Bests,
+        hits: u32,
+    ) -> Self {
+        let mut triangles = Self { corners: [[[T::default(); RAYS]; 3]; 3], primitives: [0; RAYS] };
+        let mut rest = hits;
+        while rest != 0 {
+            let i = rest.trailing_zeros() as usize & (RAYS - 1);
+            let like = rest & bests.like(simd, i);
+            rest &= !like;
+            let best = bests.get(i);
+            let (first, count) = best.leaf.leaf();
+            let lane = best.lane as usize & (N - 1);
+            let (primitive, corners) = (leaves.primitive(first, count, lane), leaves.coordinates(first, count, lane));
+            let is_lone = like & like.wrapping_sub(1) == 0;
+            for (to, corner) in triangles.corners.iter_mut().zip(corners) {
+                for (to, x) in to.iter_mut().zip(corner) {
+                    if is_lone {
+                        to[i] = x;
+                    } else {
+                        x.spread(simd, like, to);
+                    }
+                }
+            }
+            for (k, to) in triangles.primitives.iter_mut().enumerate() {
+                *to = if like >> k & 1 == 1 { primitive } else { *to };
+            }
+        }
+        triangles
+    }
+}
+
+/// Answers up to sixteen neighbours of a batch, the first of which is `start`.
+#[inline(always)]
+pub fn settle<const N: usize, L: Leaves<N>, A: Answer, S: Lanes<RAYS>>(
+    simd: S,
+    bvh: &WideBvh<N, L>,
+    rays: &RayBatch<'_>,
+    start: usize,
+    count: usize,
+    bests: &Bests,
+    answer: &mut A,
+) {
+    let hits = bests.hits(simd);
+    if hits == 0 {
+        answer.some(start, count, 0, &Met::NONE, &[0; RAYS]);
+        return;
+    }
+    // Before the rays, so that what is written number by number is there when it is read as vectors.
+    let triangles = Triangles::of(simd, &bvh.leaves, bests, hits);
+    let mut edges = EdgeRays::default();
+    edges.take(rays, start);
+    let plain = edges.prepare(&bvh.region) & hits;
+    let all = edges.won(&triangles.corners, plain);
+    answer.some(start, count, all.met, &all, &triangles.primitives);
+    let mut rest = hits & !all.met;
+    while rest != 0 {
+        let i = rest.trailing_zeros() as usize & (RAYS - 1);
+        rest &= rest - 1;
+        let best = bests.get(i);
+        alone(bvh, rays, start + i, best.leaf, best.lane, answer);
+    }
+}
+
+/// Answers one of which sixteen together do not know enough.
+#[inline(never)]
+fn alone<const N: usize, L: Leaves<N>, A: Answer>(
+    bvh: &WideBvh<N, L>,
+    rays: &RayBatch<'_>,
+    ray: usize,
+    leaf: Packed,
+    lane: u32,
+    answer: &mut A,
+) {
+    let edges = EdgeRay::new(&rays.get(ray), &bvh.region);
+    match edges.and_then(|edges| Some((edges.scale, meet(&bvh.leaves, &edges, leaf, lane)?))) {
+        Some((scale, met)) => answer.hit(ray, met.t * scale, met.uv, primitive(&bvh.leaves, leaf, lane)),
+        None => {
+            debug_assert!(L::PRECISION == "plain", "what has won is met");
+            answer.miss(ray);
+        }
+    }
+}

@@ -1,0 +1,369 @@
+//! Grids in the dense cells of grids, each with a resolution of its own (Jevans and Wyvill, "Adaptive Voxel Subdivision
+//! for Ray Tracing", 1989): what a single grid cannot do where a little of the scene is fine and most of it is not.
+//!
+//! A grid in a cell lies around what of the cell's primitives is in the cell, widened by PAD, and is walked while the
+//! ray is in the cell. Where the walk says that the ray is in the cell then, it is there or at most PAD outside; a hit
+//! at that time is therefore within what the inner grid lies around, whose border is beyond that again. So what the
+//! module says of one grid holds of grids in grids.
+
+use super::fill::{Budget, Filled, expected};
+use super::halving::Halving;
+use super::lattice::{Lattice, Occupied};
+use super::uniform::{around, check_border, present};
+use super::walk::Walk;
+use super::{Resolution, can_step};
+use crate::walk::{Input, Lists, Structure, Walker};
+use crate::{Info, SlabRay};
+use rayon::prelude::*;
+use raywright_base::math::Aabb;
+
+/// How to build.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// Cells of the outermost grid.
+    pub resolution: Resolution,
+    /// Cells a primitive of the grids in it.
+    pub density: f32,
+    /// The most that stand in a cell before a grid in it is thought of.
+    pub leaf: u32,
+    /// The most grids in each other; 1 for a single one.
+    pub depth: u32,
+}
+
+impl Options {
+    /// A cell a primitive in every grid, for what is more than eight in a cell, up to five deep.
+    pub const DEFAULT: Self = Self { resolution: Resolution::Density(1.0), density: 1.0, leaf: 8, depth: 5 };
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self::DEFAULT
+    }
+}
+
+/// A grid, and where its bits begin.
+struct Part {
+    lattice: Lattice,
+    word: usize,
+}
+
+/// What is in a cell that is not empty: a leaf, or if this bit is set, a grid.
+const INNER: u32 = 1 << 31;
+
+/// Grids in grids, the outermost first; none if there is nothing in them.
+struct Nested {
+    parts: Vec<Part>,
+    occupied: Occupied,
+    /// By cell that is not empty, what is in it.
+    entries: Vec<u32>,
+    depth: usize,
+    cost: f64,
+}
+
+/// A grid as it is built.
+struct Made {
+    filled: Filled,
+    /// Cells that have grids in them, and which, in order.
+    inner: Vec<(usize, u32)>,
+    /// The share of the rays that meet the outermost grid's box that come into a cell, on average.
+    share: f64,
+}
+
+/// What coming into a grid takes, in steps or tests: it is ten times the instructions of a step, and waits for memory.
+const ENTRY: f64 = 12.0;
+
+/// Builds the grids; leaves are numbered grid by grid, those in a cell before what is in the next.
+///
+/// Grids in each other are made level by level, until the least of these is reached: `depth`, a dozen references a
+/// primitive, or none that lowers the cost.
+pub fn build(input: &Input, options: &Options) -> (Box<dyn Structure>, Lists) {
+    let primitives = present(input);
+    if primitives.is_empty() {
+        let nothing =
+            Nested { parts: Vec::new(), occupied: Occupied::default(), entries: Vec::new(), depth: 0, cost: 0.0 };
+        return (Box::new(nothing), Lists::default());
+    }
+    let (made, depth) = levels(input, &primitives, options);
+    let mut cost = 0.0;
+    let (mut parts, mut occupied) = (Vec::with_capacity(made.len()), Occupied::default());
+    for Made { filled: Filled { lattice, counts, .. }, inner, share } in &made {
+        parts.push(Part { lattice: *lattice, word: occupied.words() });
+        occupied.push(counts);
+        let outside: u64 = counts.iter().map(|&n| u64::from(n)).sum();
+        let inside: u64 = inner.iter().map(|&(cell, _)| u64::from(counts[cell])).sum();
+        cost += share * ((outside - inside) as f64 + lattice.count() as f64);
+    }
+    let mut nested = Nested { entries: vec![0; occupied.count() as usize], parts, occupied, depth, cost };
+    let mut lists = Lists::default();
+    nested.number(&made, 0, &mut lists);
+    (Box::new(nested), lists)
+}
+
+/// All grids, each after the one it is in, and how deep they are.
+fn levels(input: &Input, primitives: &[u32], options: &Options) -> (Vec<Made>, usize) {
+    let n = primitives.len() as u64;
+    let bounds = around(input, primitives);
+    let budget = Budget { looked_at: 64 * n + (1 << 16), references: 4 * n + (1 << 12) };
+    let cells = options.resolution.cells(&bounds, primitives.len());
+    let filled = Filled::new(input, primitives, &bounds, cells, budget);
+    let mut left = (12 * n + (1 << 14)).saturating_sub(filled.order.len() as u64);
+    let share = filled.lattice.cell_area() / filled.lattice.area();
+    let mut made = vec![Made { filled, inner: Vec::new(), share }];
+    let (mut depth, mut from) = (1, 0);
+    let steps = input.work.steps(options.depth as usize);
+    while depth < options.depth as usize && steps.did(1).is_ok() {
+        let dense = (from..made.len()).flat_map(|outer| {
+            let lists = made[outer].filled.lists().filter(|(_, own)| own.len() > options.leaf as usize);
+            lists.map(move |(cell, own)| (outer, cell, own))
+        });
+        let dense: Vec<_> = dense.collect();
+        let inner = dense.into_par_iter().filter_map(|(outer, cell, own)| {
+            let filled = inside(input, &made[outer].filled.lattice, cell, own, options)?;
+            Some((outer, cell, own.len() as u64, filled))
+        });
+        let inner: Vec<_> = inner.collect();
+        from = made.len();
+        for (outer, cell, before, filled) in inner {
+            let more = (filled.order.len() as u64).saturating_sub(before);
+            if more > left {
+                continue;
+            }
+            left -= more;
+            let share = made[outer].share * filled.lattice.cell_area() / made[outer].filled.lattice.cell_area();
+            let number = made.len() as u32;
+            made[outer].inner.push((cell, number));
+            made.push(Made { filled, inner: Vec::new(), share });
+        }
+        if made.len() == from {
+            break;
+        }
+        depth += 1;
+    }
+    (made, depth)
+}
+
+/// A grid in a cell, if there is one that costs less than testing what stands there.
+fn inside(input: &Input, outer: &Lattice, cell: usize, own: &[u32], options: &Options) -> Option<Filled> {
+    let bounds = content(input, outer, cell, own);
+    if bounds.is_empty() {
+        return None;
+    }
+    let n = own.len() as u64;
+    let cells = Resolution::Density(options.density).cells(&bounds, own.len());
+    let filled = Filled::new(input, own, &bounds, cells, Budget { looked_at: 64 * n + 4096, references: 4 * n });
+    let lattice = &filled.lattice;
+    let walked = lattice.cell_area() * (lattice.count() + filled.order.len()) as f64;
+    let cost = (ENTRY * lattice.area() + walked) / outer.cell_area();
+    (lattice.count() > 1 && cost < n as f64).then_some(filled)
+}
+
+/// The box around what is in a cell of some primitives that touch it.
+fn content(input: &Input, lattice: &Lattice, cell: usize, own: &[u32]) -> Aabb {
+    let place = lattice.cell(cell);
+    let cell = lattice.aabb(place, place);
+    own.iter().fold(Aabb::EMPTY, |all, &p| {
+        let Aabb { min, max } = input.boxes[p as usize];
+        let part = Aabb { min: min.max(cell.min), max: max.min(cell.max) };
+        if part.is_empty() { all } else { all.union(part) }
+    })
+}
+
+impl Nested {
+    /// Numbers the leaves below a grid.
+    fn number(&mut self, made: &[Made], part: u32, lists: &mut Lists) {
+        let Made { filled, inner, .. } = &made[part as usize];
+        let mut inner = inner.iter().peekable();
+        let first = self.occupied.rank(self.parts[part as usize].word, 0);
+        for (place, (cell, own)) in filled.lists().enumerate() {
+            let entry = match inner.next_if(|&&(at, _)| at == cell) {
+                Some(&(_, grid)) => {
+                    self.number(made, grid, lists);
+                    INNER | grid
+                }
+                None => {
+                    lists.order.extend_from_slice(own);
+                    lists.counts.push(own.len() as u32);
+                    lists.counts.len() as u32 - 1
+                }
+            };
+            self.entries[first as usize + place] = entry;
+        }
+    }
+
+    /// What is in a cell, if anything.
+    #[inline(always)]
+    fn entry(&self, part: u32, cell: usize) -> Option<u32> {
+        let word = self.parts[part as usize].word;
+        self.occupied.has(word, cell).then(|| self.entries[self.occupied.rank(word, cell) as usize])
+    }
+
+    /// Checks a grid that should have all of some primitives in it, and those in its cells; gives how deep they are.
+    fn check(
+        &self,
+        part: u32,
+        input: &Input,
+        primitives: &[u32],
+        leaf: &mut dyn FnMut(u32) -> Vec<u32>,
+    ) -> Result<usize, String> {
+        let lattice = &self.parts[part as usize].lattice;
+        let mut depth = 1;
+        for (cell, wanted) in expected(input, lattice, primitives).into_iter().enumerate() {
+            match self.entry(part, cell) {
+                None if wanted.is_empty() => {}
+                None => return Err(format!("cell {cell} of grid {part} is empty, and should have {wanted:?}")),
+                Some(entry) if entry & INNER != 0 => {
+                    let grid = entry & !INNER;
+                    if grid <= part {
+                        return Err(format!("grid {grid} stands in grid {part}"));
+                    }
+                    check_border(&self.parts[grid as usize].lattice, &content(input, lattice, cell, &wanted))?;
+                    depth = depth.max(1 + self.check(grid, input, &wanted, leaf)?);
+                }
+                Some(entry) => {
+                    let mut own = leaf(entry);
+                    own.sort_unstable();
+                    if own != wanted {
+                        return Err(format!("cell {cell} of grid {part} has {own:?}, and should have {wanted:?}"));
+                    }
+                }
+            }
+        }
+        Ok(depth)
+    }
+}
+
+impl Structure for Nested {
+    fn walker(&self, counted: bool) -> Box<dyn Walker + '_> {
+        if counted { Box::new(NestedWalk::<true>::new(self)) } else { Box::new(NestedWalk::<false>::new(self)) }
+    }
+
+    /// The cost is that of a uniform grid, summed over all: of each cell a step and, if there is no grid in it, a test
+    /// of each primitive, times the chance that a line that meets the outermost grid's box comes into it.
+    fn info(&self) -> Info {
+        let cells = self.parts.iter().map(|part| part.lattice.count()).sum();
+        Info {
+            kind: format!("nested grid, {} in all", self.parts.len()),
+            nodes: cells,
+            leaves: self.entries.len() - self.parts.len().saturating_sub(1),
+            depth: self.depth,
+            bytes: self.occupied.bytes()
+                + size_of_val(self.entries.as_slice())
+                + size_of_val(self.parts.as_slice())
+                + size_of::<Self>(),
+            sah_cost: self.cost,
+            ..Info::default()
+        }
+    }
+
+    fn validate(&self, input: &Input, primitives: &dyn Fn(u32) -> Vec<u32>) -> Result<(), String> {
+        let all = present(input);
+        let Some(outermost) = self.parts.first() else {
+            return if all.is_empty() { Ok(()) } else { Err(format!("no grid over {} primitives", all.len())) };
+        };
+        check_border(&outermost.lattice, &around(input, &all))?;
+        let mut next = 0;
+        let depth = self.check(0, input, &all, &mut |leaf| {
+            // In this order each comes once.
+            next += u32::from(leaf == next);
+            primitives(leaf)
+        })?;
+        let leaves = (self.entries.len() + 1 - self.parts.len()) as u32;
+        if next != leaves {
+            return Err(format!("{next} leaves stand in cells, of {leaves}"));
+        }
+        if depth == self.depth { Ok(()) } else { Err(format!("depth is {depth}, not {}", self.depth)) }
+    }
+}
+
+/// A walk through one of the grids.
+struct Level {
+    part: u32,
+    walk: Walk,
+    /// Whether it is still in its first cell.
+    is_new: bool,
+}
+
+struct NestedWalk<'a, const COUNTED: bool> {
+    nested: &'a Nested,
+    ray: SlabRay,
+    /// Walks in grids, each in the cell that the one before it has come to.
+    levels: Vec<Level>,
+    halving: Halving,
+    nodes: u32,
+}
+
+impl<'a, const COUNTED: bool> NestedWalk<'a, COUNTED> {
+    fn new(nested: &'a Nested) -> Self {
+        let levels = Vec::with_capacity(nested.depth);
+        Self { nested, ray: SlabRay::EVERYWHERE, levels, halving: Halving::default(), nodes: 0 }
+    }
+
+    /// Goes into a grid, from one t to another.
+    #[inline(always)]
+    fn enter(&mut self, part: u32, from: f32, until: f32) {
+        let walk = Walk::new(&self.nested.parts[part as usize].lattice, &self.ray, from, until);
+        self.levels.extend(walk.map(|walk| Level { part, walk, is_new: true }));
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn next_by_halving(&mut self, limit: f32) -> Option<u32> {
+        let Nested { parts, occupied, entries, .. } = self.nested;
+        let grid = |number: u32| {
+            let Part { lattice, word } = &parts[number as usize];
+            (lattice, *word)
+        };
+        loop {
+            let (number, cell) = self.halving.next(&self.ray, limit, occupied, grid, &mut self.nodes)?;
+            match entries[occupied.rank(grid(number).1, cell) as usize] {
+                entry if entry & INNER != 0 => self.halving.push(entry & !INNER, grid(entry & !INNER).0),
+                leaf => return Some(leaf),
+            }
+        }
+    }
+}
+
+impl<const COUNTED: bool> Walker for NestedWalk<'_, COUNTED> {
+    fn start(&mut self, ray: &SlabRay) {
+        self.levels.clear();
+        self.halving.clear();
+        (self.ray, self.nodes) = (*ray, 0);
+        let Some(outermost) = self.nested.parts.first() else { return };
+        if can_step(ray) {
+            self.enter(0, ray.t_min, f32::INFINITY);
+        } else {
+            self.halving.push(0, &outermost.lattice);
+        }
+    }
+
+    fn next(&mut self, limit: f32) -> Option<u32> {
+        let Nested { parts, occupied, entries, .. } = self.nested;
+        while let Some(level) = self.levels.last_mut() {
+            let word = parts[level.part as usize].word;
+            let Level { walk, is_new, .. } = level;
+            let mut is_there = std::mem::replace(is_new, false) || walk.step(limit);
+            while is_there {
+                self.nodes += u32::from(COUNTED);
+                if occupied.has(word, walk.cell) {
+                    break;
+                }
+                is_there = walk.step(limit);
+            }
+            if !is_there {
+                self.levels.pop();
+                continue;
+            }
+            let entry = entries[occupied.rank(word, walk.cell) as usize];
+            if entry & INNER == 0 {
+                return Some(entry);
+            }
+            let (from, until) = (walk.enter, walk.leave());
+            self.enter(entry & !INNER, from, until);
+        }
+        self.next_by_halving(limit)
+    }
+
+    fn nodes(&self) -> u32 {
+        if COUNTED { self.nodes } else { 0 }
+    }
+}

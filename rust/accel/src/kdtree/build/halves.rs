@@ -1,0 +1,103 @@
+//! Planes that do not look at what they cost: in the middle, or at the median.
+
+use super::{Builder, Grown, Node, Options, PARALLEL, is_stopped, told};
+use crate::walk::{Halves, Input, Part, Plane, Room};
+use raywright_base::math::Aabb;
+use raywright_base::work::Steps;
+
+/// A builder at work.
+#[derive(Clone, Copy)]
+pub struct Halving<'a> {
+    pub input: &'a Input<'a>,
+    pub builder: Builder,
+    pub options: &'a Options,
+    pub steps: &'a Steps<'a>,
+}
+
+/// What goes to each side of a plane, and what may yet be done there.
+type Sides = ([Vec<Part>; 2], [Room; 2]);
+
+impl Halving<'_> {
+    /// Builds what is in a cell; gives its node.
+    pub fn grow(self, parts: Vec<Part>, cell: Aabb, room: Room, grown: &mut Grown) -> Node {
+        if is_stopped(self.steps, parts.len()) {
+            return Node::EMPTY;
+        }
+        if parts.len() <= self.options.leaf_size || room.depth == 0 {
+            return grown.leaf(&parts);
+        }
+        let mut planes = self.axes(&cell, room).into_iter().filter_map(|axis| self.plane(&parts, &cell, axis));
+        let parted = planes.find_map(|plane| self.parted(&parts, plane, room).map(|sides| (plane, sides)));
+        let Some((plane, ([below, above], [below_room, above_room]))) = parted else { return grown.leaf(&parts) };
+        let many = parts.len() > PARALLEL;
+        drop(parts);
+        let [below_cell, above_cell] = plane.cut(&cell);
+        let child = |parts: Vec<Part>, cell, room, grown: &mut Grown| {
+            let count = parts.len();
+            let node = self.grow(parts, cell, room, grown);
+            told(self.steps, count, room, many);
+            node
+        };
+        let pair = grown.pair(
+            many,
+            |grown| child(below, below_cell, below_room, grown),
+            |grown| child(above, above_cell, above_room, grown),
+        );
+        Node::inner(plane.axis, plane.at, pair)
+    }
+
+    /// The axes in the order in which they are tried.
+    fn axes(self, cell: &Aabb, room: Room) -> [usize; 3] {
+        let size = cell.max - cell.min;
+        match self.builder {
+            // The levels that are left go down as the levels that have been go up.
+            Builder::Cycle => [0, 1, 2].map(|k| (k + 3 - room.depth % 3) % 3),
+            _ => {
+                let mut axes = [0, 1, 2];
+                axes.sort_by(|&a, &b| size[b].total_cmp(&size[a]));
+                axes
+            }
+        }
+    }
+
+    /// The plane across an axis, if it leaves room on both sides.
+    fn plane(self, parts: &[Part], cell: &Aabb, axis: usize) -> Option<Plane> {
+        let at = match self.builder {
+            Builder::Middle => 0.5 * (cell.min[axis] + cell.max[axis]),
+            _ => {
+                let mut centres: Vec<f32> = parts.iter().map(|part| part.centre(axis)).collect();
+                let middle = centres.len() / 2;
+                *centres.select_nth_unstable_by(middle, f32::total_cmp).1
+            }
+        };
+        let plane = Plane { axis, at };
+        plane.is_within(cell).then_some(plane)
+    }
+
+    /// What goes to each side; none if that makes nothing better, as for primitives that coincide.
+    fn parted(self, parts: &[Part], plane: Plane, room: Room) -> Option<Sides> {
+        let mut sides = [Vec::new(), Vec::new()];
+        for part in parts {
+            match part.halves(self.input, plane) {
+                Halves::Below => sides[0].push(*part),
+                Halves::Above => sides[1].push(*part),
+                Halves::Within => {
+                    let fewer = usize::from(sides[1].len() < sides[0].len());
+                    sides[fewer].push(*part);
+                }
+                Halves::Both(halves) => {
+                    for (side, aabb) in sides.iter_mut().zip(halves) {
+                        if !aabb.is_empty() {
+                            side.push(Part { aabb, ..*part });
+                        }
+                    }
+                }
+            }
+        }
+        let counts = [sides[0].len(), sides[1].len()];
+        if counts[0] + counts[1] > parts.len() + parts.len() / 2 {
+            return None;
+        }
+        room.shared(parts.len(), counts).map(|rooms| (sides, rooms))
+    }
+}

@@ -1,0 +1,334 @@
+//! Triangles and objects, each in a structure of their own: one is asked, then the other for what is left.
+
+use super::walk::{Build, Mailbox};
+use super::walked::walked;
+use super::{
+    Accelerator, Boxes, ByColumns, Cost, Counts, Crossings, Every, Info, Nearest, Primitives, Side, Touches,
+    UserGeometry,
+};
+use raywright_base::math::{DVec3, Hit, HitColumns, Ray, RayColumns};
+use raywright_base::simd::Level;
+use raywright_base::work::Work;
+use raywright_shapes::Bounds;
+use raywright_shapes::triangle::SolidCone;
+use std::cell::Cell;
+use std::sync::Arc;
+
+/// An accelerator over both: `triangles` builds the one over triangles, `objects` that over the others. Where there is
+/// only one kind, its accelerator is all that is built.
+pub fn mixed(
+    primitives: &dyn Primitives,
+    level: Level,
+    triangles: &dyn Fn(&dyn Primitives) -> Box<dyn Accelerator>,
+    objects: &Build,
+) -> Box<dyn Accelerator> {
+    let Some(kept) = primitives.objects() else { return triangles(primitives) };
+    // One of them is no triangle, most are: what takes longer is seldom known before.
+    let [first, then] = primitives.work().parts([1.0, 3.0]);
+    let (kept_moves, kept_nests) = (kept.moves(), kept.is_nested());
+    let others = walked(&OnlyObjects(primitives, kept, first), level, Mailbox::Stamps, objects);
+    let triangles = triangles(&OnlyTriangles(primitives, then));
+    if triangles.info().primitives == 0 {
+        return others;
+    }
+    Box::new(Mixed::of(triangles, others, !kept_moves && !kept_nests))
+}
+
+/// Primitives without those that are no triangles.
+struct OnlyTriangles<'a>(&'a dyn Primitives, Work<'a>);
+
+impl Primitives for OnlyTriangles<'_> {
+    fn count(&self) -> usize {
+        self.0.count()
+    }
+    fn corners(&self, primitive: u32) -> [DVec3; 3] {
+        self.0.corners(primitive)
+    }
+    fn is_single(&self) -> bool {
+        self.0.is_single()
+    }
+    fn work(&self) -> Work<'_> {
+        self.1
+    }
+}
+
+/// Primitives without triangles.
+struct OnlyObjects<'a>(&'a dyn Primitives, Arc<dyn UserGeometry>, Work<'a>);
+
+impl<'a> OnlyObjects<'a> {
+    fn of(primitives: &'a dyn Primitives) -> Result<Self, String> {
+        let objects = primitives.objects().ok_or("there are triangles only, and were others")?;
+        Ok(Self(primitives, objects, primitives.work()))
+    }
+}
+
+impl Primitives for OnlyObjects<'_> {
+    fn count(&self) -> usize {
+        self.0.count()
+    }
+    fn corners(&self, _: u32) -> [DVec3; 3] {
+        [DVec3::NAN; 3]
+    }
+    fn is_single(&self) -> bool {
+        true
+    }
+    fn work(&self) -> Work<'_> {
+        self.2
+    }
+    fn objects(&self) -> Option<Arc<dyn UserGeometry>> {
+        Some(self.1.clone())
+    }
+    fn bounds(&self, primitive: u32) -> Option<Bounds> {
+        self.1.bounds(primitive)
+    }
+}
+
+struct Mixed {
+    triangles: Box<dyn Accelerator>,
+    objects: Box<dyn Accelerator>,
+    /// Whether columns say all of a ray and of its hit: nothing moves, and there are no primitives within others.
+    is_plain: bool,
+    info: Info,
+}
+
+/// Rays that objects are asked about together: more leave the cache before they are answered.
+const TOGETHER: usize = 256;
+
+impl Mixed {
+    fn of(triangles: Box<dyn Accelerator>, objects: Box<dyn Accelerator>, is_plain: bool) -> Self {
+        let (a, b) = (triangles.info(), objects.info());
+        let info = Info {
+            kind: format!("{}; beside it {}", a.kind, b.kind),
+            precision: a.precision,
+            primitives: a.primitives + b.primitives,
+            nodes: a.nodes + b.nodes,
+            leaves: a.leaves + b.leaves,
+            depth: a.depth.max(b.depth),
+            bytes: a.bytes + b.bytes,
+            build_seconds: a.build_seconds + b.build_seconds,
+            sah_cost: a.sah_cost + b.sah_cost,
+        };
+        Self { triangles, objects, is_plain, info }
+    }
+
+    /// Asks objects for what is nearer than what was hit, and says for which rays it is.
+    fn nearer(
+        &self,
+        count: usize,
+        ray: impl Fn(usize) -> Ray,
+        hit: impl Fn(usize) -> Hit,
+        mut found: impl FnMut(usize, Hit),
+    ) {
+        let mut rays = Vec::with_capacity(TOGETHER.min(count));
+        let mut others = [Hit::MISS; TOGETHER];
+        for start in (0..count).step_by(TOGETHER) {
+            let these = start..count.min(start + TOGETHER);
+            rays.clear();
+            // A hit takes over at equal `t` too, if it is that of a lower primitive.
+            rays.extend(these.clone().map(|i| {
+                let ray = ray(i);
+                Ray { t_max: ray.t_max.min(hit(i).t), ..ray }
+            }));
+            let others = &mut others[..these.len()];
+            self.objects.intersect(&rays, others);
+            for (i, other) in these.zip(others) {
+                if is_before(other, &hit(i)) {
+                    found(i, *other);
+                }
+            }
+        }
+    }
+
+    /// Asks objects about rays on whose way no triangle is.
+    fn also(&self, ray: impl Fn(usize) -> Ray, occluded: &mut [bool]) {
+        let open: Vec<usize> = (0..occluded.len()).filter(|&i| !occluded[i]).collect();
+        let (mut rays, mut others) = (Vec::with_capacity(TOGETHER.min(open.len())), [false; TOGETHER]);
+        for open in open.chunks(TOGETHER) {
+            rays.clear();
+            rays.extend(open.iter().map(|&i| ray(i)));
+            let others = &mut others[..open.len()];
+            self.objects.occluded(&rays, others);
+            for (&i, other) in open.iter().zip(others) {
+                occluded[i] = *other;
+            }
+        }
+    }
+}
+
+/// Which of two hits comes first: of equal `t`, that of the lowest primitive.
+fn is_before(a: &Hit, b: &Hit) -> bool {
+    (a.t, a.primitive, a.inner) < (b.t, b.primitive, b.inner)
+}
+
+/// The hits of two structures in one order.
+fn joined(count: usize, a: &Crossings, b: &Crossings) -> Crossings {
+    let mut all = Crossings { splits: vec![0], hits: Vec::with_capacity(a.hits.len() + b.hits.len()) };
+    for i in 0..count {
+        let of = |c: &Crossings| c.splits[i]..c.splits[i + 1];
+        let from = all.hits.len();
+        all.hits.extend_from_slice(&a.hits[of(a)]);
+        all.hits.extend_from_slice(&b.hits[of(b)]);
+        // Stable: what is told twice stays so. The sum with zero is zero for −0 too.
+        all.hits[from..].sort_by(|x, y| {
+            (x.t + 0.0).total_cmp(&(y.t + 0.0)).then((x.primitive, x.inner).cmp(&(y.primitive, y.inner)))
+        });
+        all.splits.push(all.hits.len());
+    }
+    all
+}
+
+impl Accelerator for Mixed {
+    fn intersect(&self, rays: &[Ray], hits: &mut [Hit]) {
+        self.triangles.intersect(rays, hits);
+        let hits = Cell::from_mut(hits).as_slice_of_cells();
+        self.nearer(rays.len(), |i| rays[i], |i| hits[i].get(), |i, hit| hits[i].set(hit));
+    }
+
+    fn by_columns(&self) -> Option<&dyn ByColumns> {
+        (self.is_plain && self.triangles.by_columns().is_some()).then_some(self)
+    }
+
+    fn intersect_one(&self, ray: &Ray) -> Hit {
+        let hit = self.triangles.intersect_one(ray);
+        let other = self.objects.intersect_one(&Ray { t_max: ray.t_max.min(hit.t), ..*ray });
+        if is_before(&other, &hit) { other } else { hit }
+    }
+
+    fn occluded_one(&self, ray: &Ray) -> bool {
+        self.triangles.occluded_one(ray) || self.objects.occluded_one(ray)
+    }
+
+    fn occluded(&self, rays: &[Ray], occluded: &mut [bool]) {
+        self.triangles.occluded(rays, occluded);
+        self.also(|i| rays[i], occluded);
+    }
+
+    fn crossings(&self, rays: &[Ray]) -> Crossings {
+        joined(rays.len(), &self.triangles.crossings(rays), &self.objects.crossings(rays))
+    }
+
+    fn kept(&self, rays: &[Ray], counts: &Counts<'_>, any: bool, hits: &mut [Hit]) {
+        self.triangles.kept(rays, counts, any, hits);
+        let left = |(ray, hit): (&Ray, &Hit)| Ray { t_max: ray.t_max.min(hit.t), ..*ray };
+        let left: Vec<_> = rays.iter().zip(&*hits).map(left).collect();
+        let mut others = vec![Hit::MISS; rays.len()];
+        self.objects.kept(&left, counts, any, &mut others);
+        for (hit, other) in hits.iter_mut().zip(&others) {
+            if is_before(other, hit) {
+                *hit = *other;
+            }
+        }
+    }
+
+    fn met(&self, rays: &[Ray]) -> Every {
+        let (mut all, others) = (self.triangles.met(rays), self.objects.met(rays));
+        all.met.extend(others.met);
+        // A ray that one of the two lets pass is not told about by it.
+        for (mine, other) in all.rays.iter_mut().zip(others.rays) {
+            *mine = if *mine == Every::UNTOLD { other } else { *mine };
+        }
+        all
+    }
+
+    fn crossings_kept(&self, rays: &[Ray], counts: &Counts<'_>) -> Crossings {
+        let (a, b) = (self.triangles.crossings_kept(rays, counts), self.objects.crossings_kept(rays, counts));
+        joined(rays.len(), &a, &b)
+    }
+
+    fn sides(&self, primitives: &dyn Primitives, rays: &[Ray], doubt: f64, sides: &mut [Side]) {
+        self.triangles.sides(primitives, rays, doubt, sides);
+        let mut others = vec![Side::Outside; rays.len()];
+        self.objects.sides(primitives, rays, doubt, &mut others);
+        for (side, other) in sides.iter_mut().zip(others) {
+            *side = match (*side, other) {
+                (Side::Surface, _) | (_, Side::Surface) => Side::Surface,
+                (a, b) if a == b => Side::Outside,
+                _ => Side::Inside,
+            };
+        }
+    }
+
+    fn nearest(&self, points: &[DVec3], max_distances: &[f64], nearest: &mut [Nearest]) {
+        self.triangles.nearest(points, max_distances, nearest);
+    }
+
+    fn touched(&self, cones: &[Option<SolidCone>]) -> Touches {
+        self.triangles.touched(cones)
+    }
+
+    fn cost(&self, rays: &[Ray], costs: &mut [Cost]) {
+        self.triangles.cost(rays, costs);
+        let mut hits = vec![Hit::MISS; rays.len()];
+        self.triangles.intersect(rays, &mut hits);
+        let rays: Vec<_> = rays.iter().zip(&hits).map(|(r, h)| Ray { t_max: r.t_max.min(h.t), ..*r }).collect();
+        let mut others = vec![Cost::default(); rays.len()];
+        self.objects.cost(&rays, &mut others);
+        for (cost, other) in costs.iter_mut().zip(others) {
+            cost.nodes += other.nodes;
+            cost.primitives += other.primitives;
+        }
+    }
+
+    fn boxes(&self) -> Option<Vec<Boxes>> {
+        let mut all = self.triangles.boxes()?;
+        all.append(&mut self.objects.boxes()?);
+        Some(all)
+    }
+
+    fn refitted(&self, primitives: &dyn Primitives) -> Result<Box<dyn Accelerator>, String> {
+        let triangles = self.triangles.refitted(&OnlyTriangles(primitives, primitives.work()))?;
+        let objects = self.objects.refitted(&OnlyObjects::of(primitives)?)?;
+        Ok(Box::new(Self::of(triangles, objects, self.is_plain)))
+    }
+
+    fn validate(&self, primitives: &dyn Primitives) -> Result<(), String> {
+        self.triangles.validate(&OnlyTriangles(primitives, primitives.work()))?;
+        self.objects.validate(&OnlyObjects::of(primitives)?)
+    }
+
+    fn info(&self) -> &Info {
+        &self.info
+    }
+}
+
+impl Mixed {
+    /// The triangles, as what takes columns.
+    fn columns(&self) -> &dyn ByColumns {
+        self.triangles.by_columns().expect("asked only where they are")
+    }
+}
+
+impl ByColumns for Mixed {
+    fn intersect(&self, rays: &RayColumns<'_>, hits: HitColumns<'_>) {
+        let HitColumns { t, uv, primitive } = hits;
+        self.columns().intersect(rays, HitColumns { t, uv, primitive });
+        let (t, primitive) = (Cell::from_mut(t).as_slice_of_cells(), Cell::from_mut(primitive).as_slice_of_cells());
+        // Of what is missed, −1 is greater than any other.
+        let hit = |i: usize| Hit { t: t[i].get(), primitive: primitive[i].get() as u32, ..Hit::MISS };
+        self.nearer(
+            rays.len(),
+            |i| rays.get(i),
+            hit,
+            |i, hit| {
+                t[i].set(hit.t);
+                primitive[i].set(hit.primitive as i32);
+                uv[i] = hit.uv;
+            },
+        );
+    }
+
+    fn first_hits(&self, rays: &RayColumns<'_>, hits: &mut [Hit]) {
+        self.columns().first_hits(rays, hits);
+        let hits = Cell::from_mut(hits).as_slice_of_cells();
+        self.nearer(rays.len(), |i| rays.get(i), |i| hits[i].get(), |i, hit| hits[i].set(hit));
+    }
+
+    fn occluded(&self, rays: &RayColumns<'_>, occluded: &mut [bool]) {
+        self.columns().occluded(rays, occluded);
+        self.also(|i| rays.get(i), occluded);
+    }
+
+    fn extent(&self) -> Option<f64> {
+        self.columns().extent()
+    }
+}

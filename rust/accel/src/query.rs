@@ -1,0 +1,252 @@
+//! What is asked of each ray: a type each, so that each question has kernels of its own.
+
+use super::{Boxes, ByColumns, Cost, Info, Nearest, Primitives, Touches};
+use raywright_base::math::{DVec3, Hit, Ray};
+use raywright_shapes::triangle::{Along, SolidCone};
+use raywright_shapes::{Candidate, Contact};
+
+/// How much has to be known of a ray.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wanted {
+    /// Whatever is met first.
+    Closest,
+    /// Whether anything is met.
+    Any,
+    /// All that is met, points that triangles share once.
+    Every,
+    /// All that is met, by every triangle: whoever asks looks for what counts among it.
+    Met,
+    /// On which side of a closed surface the ray starts: what it crosses, an odd number of times or an even one, and
+    /// whether it starts on the surface, where `t` is 0.
+    Side,
+}
+
+/// A question about rays. Kernels offer it the triangles that a ray meets, in any order.
+pub trait Query {
+    /// What is known of a ray so far.
+    type State: Copy;
+
+    /// What has to be offered.
+    const WANTED: Wanted;
+
+    /// Whether the nearest triangles should be looked at first.
+    const NEAREST_FIRST: bool = matches!(Self::WANTED, Wanted::Closest);
+
+    /// What has to be offered; one type may hold queries of several kinds.
+    #[inline(always)]
+    fn wanted(&self) -> Wanted {
+        Self::WANTED
+    }
+
+    /// Nothing is known yet of ray `i`, asked for `t` up to `t_max` along its scaled direction.
+    fn start(&self, i: usize, t_max: f64) -> Self::State;
+    /// The greatest `t` that still matters.
+    fn limit(state: &Self::State) -> f64;
+    /// A triangle that is met; true if the question is answered.
+    fn offer(&mut self, state: &mut Self::State, primitive: u32, candidate: Candidate) -> bool;
+    /// Writes down the answer for ray `i`; without a state, that of a ray that hits nothing.
+    fn finish(&mut self, i: usize, answer: Option<(Along, Self::State)>);
+
+    /// Whether what is visited is counted. Such a question is asked of one ray after the other: what a ray costs is its
+    /// own work.
+    const COUNTED: bool = false;
+
+    /// A node is about to be tested.
+    #[inline(always)]
+    fn visit_node(state: &mut Self::State) {
+        Self::visit_nodes(state, 1);
+    }
+    /// So many nodes have been tested.
+    #[inline(always)]
+    fn visit_nodes(_: &mut Self::State, _: u32) {}
+    /// So many primitives are about to be tested.
+    #[inline(always)]
+    fn visit_leaf(_: &mut Self::State, _: u32) {}
+}
+
+/// The closest hit.
+pub struct Closest<'a>(pub &'a mut [Hit]);
+
+impl Query for Closest<'_> {
+    type State = Hit;
+    const WANTED: Wanted = Wanted::Closest;
+
+    #[inline(always)]
+    fn start(&self, _: usize, t_max: f64) -> Hit {
+        // Beyond t_max nothing is met, so that a hit at t_max itself still beats this.
+        Hit { t: t_max.next_up(), ..Hit::MISS }
+    }
+    #[inline(always)]
+    fn limit(state: &Hit) -> f64 {
+        state.t
+    }
+    #[inline(always)]
+    fn offer(&mut self, best: &mut Hit, primitive: u32, Candidate { t, uv, inner, .. }: Candidate) -> bool {
+        if t < best.t || (t == best.t && primitive < best.primitive) {
+            *best = Hit { t, uv, primitive, inner };
+        }
+        false
+    }
+    #[inline(always)]
+    fn finish(&mut self, i: usize, answer: Option<(Along, Hit)>) {
+        self.0[i] = match answer {
+            Some((ray, hit)) if hit.is_hit() => Hit { t: hit.t * ray.scale, ..hit },
+            _ => Hit::MISS,
+        };
+    }
+}
+
+/// Whether there is any hit.
+pub struct Any<'a>(pub &'a mut [bool]);
+
+impl Query for Any<'_> {
+    type State = (bool, f64);
+    const WANTED: Wanted = Wanted::Any;
+
+    #[inline(always)]
+    fn start(&self, _: usize, t_max: f64) -> (bool, f64) {
+        (false, t_max)
+    }
+    #[inline(always)]
+    fn limit(state: &(bool, f64)) -> f64 {
+        state.1
+    }
+    #[inline(always)]
+    fn offer(&mut self, state: &mut (bool, f64), _: u32, _: Candidate) -> bool {
+        state.0 = true;
+        true
+    }
+    #[inline(always)]
+    fn finish(&mut self, i: usize, answer: Option<(Along, (bool, f64))>) {
+        self.0[i] = answer.is_some_and(|(_, (hit, _))| hit);
+    }
+}
+
+/// A triangle that a ray meets, and how.
+#[derive(Clone, Copy, Debug)]
+pub struct Meeting {
+    /// `t` is along the scaled direction.
+    pub hit: Hit,
+    /// How it is met.
+    pub contact: Contact,
+}
+
+/// All triangles that are met, one list for all rays.
+#[derive(Debug, Default)]
+pub struct Every {
+    /// Each with the number of its ray, in no order.
+    pub met: Vec<(u32, Meeting)>,
+    /// By ray: what turns `t` into the ray's own, and how far apart the same point may be found.
+    pub rays: Vec<(f64, f64)>,
+}
+
+impl Every {
+    /// What is said of a ray that meets nothing.
+    pub const UNTOLD: (f64, f64) = (1.0, 0.0);
+
+    /// Nothing yet of so many rays.
+    pub fn of(rays: usize) -> Self {
+        Self { met: Vec::new(), rays: vec![Self::UNTOLD; rays] }
+    }
+}
+
+impl Query for Every {
+    type State = (u32, f64);
+    const WANTED: Wanted = Wanted::Every;
+
+    #[inline(always)]
+    fn start(&self, i: usize, t_max: f64) -> (u32, f64) {
+        (i as u32, t_max)
+    }
+    #[inline(always)]
+    fn limit(state: &(u32, f64)) -> f64 {
+        state.1
+    }
+    #[inline(always)]
+    fn offer(&mut self, state: &mut (u32, f64), primitive: u32, candidate: Candidate) -> bool {
+        let Candidate { t, uv, contact, inner } = candidate;
+        self.met.push((state.0, Meeting { hit: Hit { t, uv, primitive, inner }, contact }));
+        false
+    }
+    #[inline(always)]
+    fn finish(&mut self, i: usize, answer: Option<(Along, (u32, f64))>) {
+        if let Some((ray, _)) = answer {
+            self.rays[i] = (ray.scale, ray.same_point());
+        }
+    }
+}
+
+/// The work that the closest hit takes.
+pub struct Counted<'a>(pub &'a mut [Cost]);
+
+impl Query for Counted<'_> {
+    type State = (Hit, Cost);
+    const WANTED: Wanted = Wanted::Closest;
+    const COUNTED: bool = true;
+
+    #[inline(always)]
+    fn start(&self, i: usize, t_max: f64) -> (Hit, Cost) {
+        (Closest(&mut []).start(i, t_max), Cost::default())
+    }
+    #[inline(always)]
+    fn limit(state: &(Hit, Cost)) -> f64 {
+        state.0.t
+    }
+    #[inline(always)]
+    fn offer(&mut self, state: &mut (Hit, Cost), primitive: u32, candidate: Candidate) -> bool {
+        Closest(&mut []).offer(&mut state.0, primitive, candidate)
+    }
+    #[inline(always)]
+    fn finish(&mut self, i: usize, answer: Option<(Along, (Hit, Cost))>) {
+        self.0[i] = answer.map_or(Cost::default(), |(_, (_, cost))| cost);
+    }
+    #[inline(always)]
+    fn visit_nodes(state: &mut (Hit, Cost), count: u32) {
+        state.1.nodes += count;
+    }
+    #[inline(always)]
+    fn visit_leaf(state: &mut (Hit, Cost), count: u32) {
+        state.1.primitives += count;
+    }
+}
+
+/// What can be asked any question: every [`super::Accelerator`] is one.
+pub trait Answers: Send + Sync + Sized + 'static {
+    /// Answers every ray once.
+    fn answer<Q: Query>(&self, rays: &[Ray], query: &mut Q);
+
+    /// See [`super::Accelerator::intersect`].
+    fn intersect(&self, rays: &[Ray], hits: &mut [Hit]) {
+        self.answer(rays, &mut Closest(hits));
+    }
+
+    /// See [`super::Accelerator::occluded`].
+    fn occluded(&self, rays: &[Ray], occluded: &mut [bool]) {
+        self.answer(rays, &mut Any(occluded));
+    }
+
+    /// See [`super::Accelerator::by_columns`].
+    fn by_columns(&self) -> Option<&dyn ByColumns> {
+        None
+    }
+
+    /// See [`super::Accelerator::nearest`].
+    fn nearest(&self, points: &[DVec3], max_distances: &[f64], nearest: &mut [Nearest]);
+
+    /// See [`super::Accelerator::touched`].
+    fn touched(&self, cones: &[Option<SolidCone>]) -> Touches;
+
+    /// See [`super::Accelerator::boxes`].
+    fn boxes(&self) -> Option<Boxes> {
+        None
+    }
+
+    /// See [`super::Accelerator::refitted`].
+    fn refitted(&self, primitives: &dyn Primitives) -> Result<Self, String>;
+
+    /// See [`super::Accelerator::validate`].
+    fn validate(&self, primitives: &dyn Primitives) -> Result<(), String>;
+
+    /// See [`super::Accelerator::info`].
+    fn info(&self) -> &Info;
+}

@@ -1,0 +1,224 @@
+//! What stands in the leaves of a structure: triangles by the block, and anything else by its number.
+
+use super::mailbox::Marks;
+use super::{Few, Input, Lists};
+use crate::query::Query;
+use crate::{Primitives, UserGeometry};
+use raywright_base::math::{DVec3, Ray, Region};
+use raywright_base::simd::Simd;
+use raywright_shapes::triangle::{BlockRay, EdgeRay, Leaves};
+use std::sync::Arc;
+
+/// A ray as whatever stands in leaves needs it.
+pub struct LeafRay<'a> {
+    pub edges: &'a EdgeRay,
+    pub lanes: BlockRay,
+    pub time: f64,
+}
+
+/// The primitives of all leaves, with triangles in blocks of up to `N`.
+pub struct Contents<const N: usize, L> {
+    triangles: L,
+    /// Where the triangles of each leaf begin, and where the last end. Empty where there are none.
+    ends: Vec<u32>,
+    objects: Option<Arc<dyn UserGeometry>>,
+    /// The numbers of objects, leaf by leaf; and where those of each leaf begin. Empty where there are none.
+    numbers: Vec<u32>,
+    number_ends: Vec<u32>,
+}
+
+impl<const N: usize, L: Leaves<N>> Contents<N, L> {
+    /// Puts primitives into leaves.
+    pub fn new(input: &Input, lists: &Lists) -> Self {
+        let primitives = input.primitives;
+        let (mut order, mut blocks, mut ends) = (Vec::with_capacity(lists.order.len()), Vec::new(), vec![0]);
+        let (mut numbers, mut number_ends) = (Vec::new(), vec![0]);
+        let mut rest = lists.order.as_slice();
+        for &count in &lists.counts {
+            let (leaf, others) = rest.split_at(count as usize);
+            rest = others;
+            let before = order.len();
+            for &p in leaf {
+                // What nothing can hit is in no leaf.
+                if primitives.objects().is_none() || primitives.is_finite(p) { order.push(p) } else { numbers.push(p) }
+            }
+            let triangles = order.len() - before;
+            blocks.extend((0..triangles).step_by(N).map(|i| (triangles - i).min(N) as u32));
+            ends.push(order.len() as u32);
+            number_ends.push(numbers.len() as u32);
+        }
+        if numbers.is_empty() {
+            number_ends = Vec::new();
+        } else if order.is_empty() {
+            ends = Vec::new();
+        }
+        ends.shrink_to_fit();
+        number_ends.shrink_to_fit();
+        numbers.shrink_to_fit();
+        let triangles = L::new(&input.region, &order, &blocks, |p| primitives.corners(p));
+        Self { triangles, ends, objects: primitives.objects(), numbers, number_ends }
+    }
+
+    /// All there is, if that is a few objects.
+    pub fn few(&self) -> Option<Few> {
+        let objects = self.objects.as_deref().filter(|_| self.ends.is_empty())?;
+        Few::new(&self.numbers, objects)
+    }
+
+    /// Memory held.
+    pub fn bytes(&self) -> usize {
+        let words = self.ends.len() + self.numbers.len() + self.number_ends.len();
+        self.triangles.bytes() + words * size_of::<u32>()
+    }
+
+    /// Of a leaf, where its triangles begin and end.
+    #[inline(always)]
+    fn ends_of(&self, leaf: u32) -> (usize, usize) {
+        match self.ends.get(leaf as usize..leaf as usize + 2) {
+            Some(&[first, end]) => (first as usize, end as usize),
+            _ => (0, 0),
+        }
+    }
+
+    /// Of a leaf, the blocks of triangles: where each begins and how many it has.
+    #[inline(always)]
+    fn blocks(&self, leaf: u32) -> impl Iterator<Item = (usize, u32)> + use<N, L> {
+        let (first, end) = self.ends_of(leaf);
+        (first..end).step_by(N).map(move |at| (at, (end - at).min(N) as u32))
+    }
+
+    #[inline(always)]
+    fn numbers(&self, leaf: u32) -> &[u32] {
+        match self.number_ends.get(leaf as usize..leaf as usize + 2) {
+            Some(&[from, to]) => &self.numbers[from as usize..to as usize],
+            _ => &[],
+        }
+    }
+
+    /// How many leaves there are.
+    fn leaves(&self) -> u32 {
+        self.ends.len().max(self.number_ends.len()) as u32 - 1
+    }
+
+    /// The primitives of a leaf.
+    pub fn primitives(&self, leaf: u32) -> Vec<u32> {
+        let triangles = self.blocks(leaf).flat_map(|(first, count)| self.triangles.primitives(first, count));
+        triangles.chain(self.numbers(leaf).iter().copied()).collect()
+    }
+
+    /// The primitives of all leaves.
+    pub fn lists(&self) -> Lists {
+        let leaves: Vec<_> = (0..self.leaves()).map(|leaf| self.primitives(leaf)).collect();
+        Lists::of(leaves.iter().map(Vec::as_slice))
+    }
+
+    /// The triangles of all leaves, with their numbers.
+    pub fn triangles(&self) -> Vec<(u32, [DVec3; 3])> {
+        let blocks = (0..self.leaves()).flat_map(|leaf| self.blocks(leaf));
+        let of_block = |(first, count): (usize, u32)| {
+            let corners = move |lane| self.triangles.corners(first, count, lane);
+            self.triangles.primitives(first, count).enumerate().map(move |(lane, p)| (p, corners(lane)))
+        };
+        blocks.flat_map(of_block).collect()
+    }
+
+    /// Checks that triangles have the corners that they were given.
+    pub fn validate(&self, primitives: &dyn Primitives) -> Result<(), String> {
+        match self.triangles().into_iter().find(|&(p, corners)| corners != primitives.corners(p)) {
+            Some((p, _)) => Err(format!("primitive {p} has other corners in its leaf")),
+            None => Ok(()),
+        }
+    }
+
+    /// A ray as leaves need it.
+    #[inline(always)]
+    pub fn ray<'a>(&self, ray: &Ray, edges: &'a EdgeRay, region: &Region) -> LeafRay<'a> {
+        LeafRay { edges, lanes: L::ray(edges, region), time: ray.time }
+    }
+
+    /// Of a block, the lanes with a primitive that the ray comes to for the first time.
+    #[inline(always)]
+    fn new_lanes(&self, first: usize, count: u32, marks: &mut Option<&mut Marks>) -> u32 {
+        let is_new = |lane: usize| {
+            let primitive = self.triangles.primitive(first, count, lane);
+            marks.as_mut().is_none_or(|marks| marks.is_new(primitive))
+        };
+        (0..count as usize).map(is_new).enumerate().fold(0, |new, (lane, is_new)| new | u32::from(is_new) << lane)
+    }
+
+    /// Offers what of a leaf is met to the query; true if that answers it.
+    ///
+    /// No primitive is decided twice for a ray, nor counted twice, as far as the ray's marks remember; the test of a
+    /// block in f32 may be done again.
+    #[inline(always)]
+    pub fn meet<Q: Query, S: Simd<N>>(
+        &self,
+        simd: S,
+        leaf: u32,
+        ray: &LeafRay,
+        marks: &mut Option<&mut Marks>,
+        query: &mut Q,
+        state: &mut Q::State,
+    ) -> bool {
+        let (mut first, end) = self.ends_of(leaf);
+        while first < end {
+            let count = (end - first).min(N) as u32;
+            let mut left = self.triangles.not_rejected(simd, &ray.lanes, first, count);
+            if Q::COUNTED {
+                let new = self.new_lanes(first, count, marks);
+                Q::visit_leaf(state, new.count_ones());
+                left &= new;
+            }
+            while left != 0 {
+                let lane = left.trailing_zeros() as usize & (N - 1);
+                left &= left - 1;
+                let primitive = self.triangles.primitive(first, count, lane);
+                // Only what f32 leaves is asked about: to ask about every lane took longer than to test the block
+                // again.
+                if !Q::COUNTED
+                    && let Some(marks) = marks
+                    && !marks.is_new(primitive)
+                {
+                    continue;
+                }
+                if let Some(candidate) = ray.edges.meet(self.triangles.corners(first, count, lane))
+                    && query.offer(state, primitive, candidate)
+                {
+                    return true;
+                }
+            }
+            first += N;
+        }
+        let numbers = self.numbers(leaf);
+        !numbers.is_empty() && self.meet_objects(numbers, ray, marks, query, state)
+    }
+
+    /// The same for objects, by their numbers.
+    pub fn meet_objects<Q: Query>(
+        &self,
+        numbers: &[u32],
+        ray: &LeafRay,
+        marks: &mut Option<&mut Marks>,
+        query: &mut Q,
+        state: &mut Q::State,
+    ) -> bool {
+        let Some(objects) = &self.objects else { return false };
+        let EdgeRay { origin, direction, t_min, t_max, scale, .. } = *ray.edges;
+        for &number in numbers {
+            if marks.as_mut().is_some_and(|marks| !marks.is_new(number)) {
+                continue;
+            }
+            Q::visit_leaf(state, 1);
+            let t_max = t_max.min(Q::limit(state));
+            let asked = Ray { t_min, t_max, time: ray.time, ..Ray::new(origin, direction) };
+            let answered = objects.meet(number, query.wanted(), &asked, &mut |met| {
+                // What lies so far along a short direction that an f64 cannot say it is no hit.
+                (met.t * scale).is_finite() && query.offer(state, number, met)
+            });
+            if answered {
+                return true;
+            }
+        }
+        false
+    }
+}

@@ -1,0 +1,9 @@
+//! Floor 0 of raywright: what all other crates use.
+
+pub mod math;
+pub mod parallel;
+pub mod sampling;
+pub mod simd;
+pub mod timing;
+pub mod work;
+pub mod workers;

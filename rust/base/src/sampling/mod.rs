@@ -1,0 +1,27 @@
+//! Floor 0: random numbers, and what turns them into points, directions and choices.
+
+mod bits;
+#[cfg(any(test, feature = "testing"))]
+pub mod chi_square;
+mod discrete;
+mod halton;
+mod kind;
+mod lanes;
+mod lattice;
+mod permutation;
+mod philox;
+mod sampler;
+mod scramble;
+mod sobol;
+mod stratified;
+mod stream;
+pub mod warp;
+
+#[cfg(test)]
+mod tests;
+
+pub use discrete::AliasTable;
+pub use kind::{BatchSize, SamplerKind};
+pub use lanes::{Pairs, SamplerLanes};
+pub use philox::philox4x32;
+pub use sampler::{CAMERA_DIMENSIONS, Sampler};

@@ -1,0 +1,163 @@
+//! What exchanges light: the sides of patches, what they reflect, and what they emit.
+
+use rayon::prelude::*;
+use raywright_accel::Primitives;
+use raywright_base::math::{Hit, Ray};
+use raywright_optics::{Bsdf, Rgb};
+use raywright_scene::{Patches, Scene, SurfaceInteraction, SurfacePoint};
+use std::f64::consts::PI;
+
+/// Which sides of faces take part.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sides {
+    /// That of the normals; the other is black, and sends nothing on.
+    Front,
+    /// Each for itself.
+    Both,
+}
+
+/// Patches of a scene that exchange light. A source is one side of one: first all fronts, then all backs, if these take
+/// part.
+#[derive(Clone, Debug)]
+pub struct Enclosure {
+    pub(super) patches: Patches,
+    pub(super) sides: Sides,
+    pub(super) areas: Vec<f64>,
+    pub(super) emission: Vec<Rgb>,
+    pub(super) reflectance: Vec<Rgb>,
+}
+
+/// Points of a patch, by the weights of its second and third corner: the middles of the four that it would be cut into.
+const LOOKS: [[f64; 2]; 4] = [[1.0 / 3.0, 1.0 / 3.0], [2.0 / 3.0, 1.0 / 6.0], [1.0 / 6.0, 2.0 / 3.0], [1.0 / 6.0; 2]];
+
+impl Enclosure {
+    /// The patches of a scene. What is not diffuse counts as black; textures have their mean of four points of a patch.
+    ///
+    /// # Errors
+    /// If something has no area that could be told, or no points that could be drawn evenly.
+    pub fn new(scene: &Scene, patches: Patches, sides: Sides) -> Result<Self, String> {
+        let geometry = scene.geometry();
+        if patches.primitives() != geometry.count() {
+            return Err(format!("{} faces are cut, of {}", patches.primitives(), geometry.count()));
+        }
+        let count = patches.count() as u32;
+        let area = |patch: u32| {
+            let primitive = patches.cell(patch).primitive;
+            geometry.area(primitive) * patches.share(primitive)
+        };
+        let areas: Vec<f64> = (0..count).into_par_iter().map(area).collect();
+        if let Some(bad) = areas.iter().position(|area| !(area.is_finite() && *area > 0.0)) {
+            let (shape, face) = geometry.locate(patches.cell(bad as u32).primitive);
+            return Err(format!("face {face} of shape {shape} has no area, or no end: it cannot exchange light"));
+        }
+        let all = if sides == Sides::Both { 2 * count } else { count };
+        let mut made = Self { patches, sides, areas, emission: Vec::new(), reflectance: Vec::new() };
+        let looks: Vec<(Rgb, Rgb)> =
+            (0..all).into_par_iter().map(|source| made.look(scene, source)).collect::<Result<_, _>>()?;
+        (made.emission, made.reflectance) = looks.into_iter().unzip();
+        Ok(made)
+    }
+
+    /// The same with other radiosities by emission and other reflectances, one a source.
+    ///
+    /// # Errors
+    /// If there are more or fewer.
+    pub fn with(self, emission: Vec<Rgb>, reflectance: Vec<Rgb>) -> Result<Self, String> {
+        let count = self.sources();
+        if emission.len() != count || reflectance.len() != count {
+            return Err(format!("{} emissions, {} reflectances of {count} sides", emission.len(), reflectance.len()));
+        }
+        Ok(Self { emission, reflectance, ..self })
+    }
+
+    /// What a source emits and what it reflects.
+    fn look(&self, scene: &Scene, source: u32) -> Result<(Rgb, Rgb), String> {
+        let (patch, side) = self.side(source);
+        let (geometry, cell) = (scene.geometry(), self.patches.cell(patch));
+        let mut sums = (Rgb::ZERO, Rgb::ZERO);
+        for look in LOOKS {
+            let (surface, uv) = match geometry.shape(cell.primitive) {
+                None => {
+                    let uv = cell.at(look);
+                    (geometry.on_triangle(cell.primitive, uv), uv)
+                }
+                Some(shape) => {
+                    let drawn = shape.sample(look).filter(|drawn| (drawn.pdf * shape.area() - 1.0).abs() < 1e-6);
+                    let drawn = drawn.ok_or_else(|| {
+                        let number = geometry.locate(cell.primitive).0;
+                        format!("shape {number} is stretched, and points cannot be drawn from it evenly: use a mesh")
+                    })?;
+                    (geometry.on_shape(cell.primitive, &drawn.point.site()), drawn.point.uv)
+                }
+            };
+            let back = surface.normal * side;
+            let ray = Ray::new(surface.position + back, -back);
+            let hit = Hit { t: 1.0, uv, primitive: cell.primitive, inner: 0 };
+            let (emission, reflectance) = seen(scene, &ray, &hit, surface);
+            sums = (sums.0 + emission, sums.1 + reflectance);
+        }
+        let share = 1.0 / LOOKS.len() as f64;
+        Ok((sums.0 * (PI * share), sums.1 * share))
+    }
+
+    /// How many sides take part.
+    pub fn sources(&self) -> usize {
+        self.patches.count() * if self.sides == Sides::Both { 2 } else { 1 }
+    }
+
+    /// Of which patch a source is a side, and of which side.
+    #[inline]
+    pub(super) fn side(&self, source: u32) -> (u32, f64) {
+        let count = self.patches.count() as u32;
+        if source < count { (source, 1.0) } else { (source - count, -1.0) }
+    }
+
+    /// The source that a ray meets; none if it meets what is black.
+    #[inline]
+    pub(super) fn met(&self, scene: &Scene, ray: &Ray, hit: &Hit) -> Option<u32> {
+        let (patch, _) = self.patches.find(hit.primitive, hit.uv);
+        let geometry = scene.geometry();
+        let normal = match geometry.shape(hit.primitive) {
+            None => geometry.normal(hit.primitive),
+            Some(_) => geometry.surface(ray, hit).normal,
+        };
+        match (ray.direction.dot(normal) <= 0.0, self.sides) {
+            (true, _) => Some(patch),
+            (false, Sides::Both) => Some(patch + self.patches.count() as u32),
+            (false, Sides::Front) => None,
+        }
+    }
+
+    /// The area of a source.
+    #[inline]
+    pub(super) fn area(&self, source: u32) -> f64 {
+        self.areas[self.side(source).0 as usize]
+    }
+
+    /// The patches.
+    pub fn patches(&self) -> &Patches {
+        &self.patches
+    }
+
+    /// The area of each patch.
+    pub fn areas(&self) -> &[f64] {
+        &self.areas
+    }
+
+    /// The radiosity by emission of each source, W/m².
+    pub fn emission(&self) -> &[Rgb] {
+        &self.emission
+    }
+
+    /// The share of light that each source reflects.
+    pub fn reflectance(&self) -> &[Rgb] {
+        &self.reflectance
+    }
+}
+
+/// The radiance that a surface emits along a ray that meets it, and its reflectance.
+fn seen(scene: &Scene, ray: &Ray, hit: &Hit, surface: SurfacePoint) -> (Rgb, Rgb) {
+    let emission = scene.emission_at(&surface).sent(scene.geometry(), ray, hit, &surface, || 0.0);
+    let here = SurfaceInteraction::new(scene, ray, hit, surface, 0.0, 1.0);
+    (emission, here.bsdf().diffuse().unwrap_or(Rgb::ZERO))
+}

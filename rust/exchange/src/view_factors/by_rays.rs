@@ -1,0 +1,145 @@
+//! Whole rows of the matrix by rays: of surfaces that are no triangles, and of scenes with too many faces for all
+//! pairs.
+
+use super::Aim;
+use super::facet::Facet;
+use raywright_accel::Primitives;
+use raywright_base::math::{DVec3, Frame, Hit, Ray};
+use raywright_base::sampling::{BatchSize, SamplerKind, warp};
+use raywright_scene::{RayOrigin, Scene};
+
+/// Rays that are asked together.
+const TOGETHER: u32 = 1 << 12;
+
+/// No row takes more rays.
+const MOST: u32 = 1 << 26;
+
+/// One face in a row: to which, the view factor, and its standard error.
+pub type Entry = (u32, f64, f64);
+
+/// What a thread makes rows with.
+pub struct Rows<'a> {
+    scene: &'a Scene,
+    seed: u64,
+    /// By face: what its hits count in this batch, in all, and the sum of the squares of batches.
+    batch: Vec<f64>,
+    sums: Vec<[f64; 2]>,
+    /// The faces that are hit, in this batch and at all.
+    fresh: Vec<u32>,
+    touched: Vec<u32>,
+    rays: Vec<Ray>,
+    /// What each ray counts.
+    weights: Vec<f64>,
+    hits: Vec<Hit>,
+}
+
+impl<'a> Rows<'a> {
+    /// Of a scene.
+    pub fn new(scene: &'a Scene, seed: u64) -> Self {
+        let count = scene.geometry().count();
+        Self {
+            scene,
+            seed,
+            batch: vec![0.0; count],
+            sums: vec![[0.0; 2]; count],
+            fresh: Vec::new(),
+            touched: Vec::new(),
+            rays: Vec::new(),
+            weights: Vec::new(),
+            hits: Vec::new(),
+        }
+    }
+
+    /// The row of a face, by rays that leave even by area and by the cosine, each counted where it lands first, if it
+    /// does so on a front. Doubled until no error is larger than is asked for.
+    pub fn row(&mut self, primitive: u32, facet: &Facet, aim: &Aim, sent: &mut u64) -> Vec<Entry> {
+        let rays = aim.row_rays;
+        let size = BatchSize::for_budget(Some(rays));
+        let (mut done, mut target) = (0, rays.next_multiple_of(size.samples()).max(2 * size.samples()));
+        loop {
+            while done < target {
+                let to = target.min(done + TOGETHER.max(size.samples()));
+                self.send(primitive, facet, size, done..to);
+                done = to;
+            }
+            let batches = f64::from(done / size.samples());
+            let entry = |&face: &u32| {
+                let [sum, squares] = self.sums[face as usize];
+                let mean = sum / batches;
+                let variance = (squares / batches - mean * mean).max(0.0) / (batches - 1.0);
+                let each = f64::from(size.samples());
+                (face, mean / each, variance.sqrt() / each)
+            };
+            let row: Vec<Entry> = self.touched.iter().map(entry).collect();
+            let is_met = aim.error.is_none_or(|error| row.iter().all(|entry| entry.2 <= error));
+            if is_met || target > MOST / 2 {
+                *sent += u64::from(done);
+                for face in self.touched.drain(..) {
+                    self.sums[face as usize] = [0.0; 2];
+                }
+                return row;
+            }
+            target *= 2;
+        }
+    }
+
+    fn send(&mut self, primitive: u32, facet: &Facet, size: BatchSize, samples: std::ops::Range<u32>) {
+        let geometry = self.scene.geometry();
+        let kind = SamplerKind::Sobol(size);
+        let shape = geometry.shape(primitive);
+        self.rays.clear();
+        self.weights.clear();
+        for sample in samples {
+            let mut sampler = kind.sampler(self.seed, primitive, sample);
+            let (u, v) = (sampler.two(1), sampler.two(3));
+            let direction = warp::cosine_hemisphere(v);
+            let (origin, normal, weight) = match shape {
+                Some(shape) => match shape.sample(u) {
+                    Some(drawn) => {
+                        let site = drawn.point.site();
+                        let point = geometry.on_shape(primitive, &site);
+                        (RayOrigin::new(&point), point.normal, 1.0 / (drawn.pdf * shape.area()))
+                    }
+                    None => (RayOrigin::free(facet.centre), facet.normal, 0.0),
+                },
+                None => {
+                    let place = geometry.position(primitive, warp::uniform_triangle(u));
+                    (RayOrigin::off(place, geometry.error(primitive), facet.normal), facet.normal, 1.0)
+                }
+            };
+            if weight > 0.0 {
+                let misses = [primitive, Ray::NO_TRIANGLE];
+                self.rays.push(Ray { misses, ..origin.ray(Frame::new(normal).to_world(direction)) });
+                self.weights.push(weight);
+            } else {
+                // A ray that counts nothing keeps its place in its batch.
+                self.rays.push(Ray::new(facet.centre, DVec3::Z));
+                self.weights.push(0.0);
+            }
+        }
+        self.hits.resize(self.rays.len(), Hit::MISS);
+        self.scene.intersect(&self.rays, &mut self.hits);
+        let each = size.samples() as usize;
+        for start in (0..self.rays.len()).step_by(each) {
+            for i in start..start + each {
+                let (ray, hit) = (&self.rays[i], &self.hits[i]);
+                if self.weights[i] > 0.0 && hit.is_hit() && geometry.surface(ray, hit).is_front(ray) {
+                    let face = hit.primitive;
+                    if self.batch[face as usize] == 0.0 {
+                        self.fresh.push(face);
+                    }
+                    self.batch[face as usize] += self.weights[i];
+                }
+            }
+            for face in self.fresh.drain(..) {
+                let value = std::mem::take(&mut self.batch[face as usize]);
+                let sums = &mut self.sums[face as usize];
+                if sums[0] == 0.0 {
+                    self.touched.push(face);
+                }
+                sums[0] += value;
+                sums[1] += value * value;
+            }
+        }
+    }
+}

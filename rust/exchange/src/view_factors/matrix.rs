@@ -1,0 +1,335 @@
+//! The whole matrix: pairs of clusters, and what may lie between them, down to pairs of faces.
+
+use super::by_rays::Rows;
+use super::clusters::{Cluster, Clusters};
+use super::distant::Quadrature;
+use super::facet::Facet;
+use super::pair::pair;
+use super::partly::{Open, sampled};
+use super::shaft::{Blocker, HalfSpace, between_boxes, between_facets, hides};
+use super::{Aim, Sampled, areas, facets};
+use rayon::prelude::*;
+use raywright_base::simd::Level;
+use raywright_base::work::{Steps, Stopped, Work};
+use raywright_scene::Scene;
+use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::sync::{Mutex, PoisonError};
+
+/// View factors between all faces of a scene.
+#[derive(Debug, Default)]
+pub struct Matrix {
+    /// By row: from each face to each.
+    pub factors: Vec<f64>,
+    /// What was sampled, and its errors.
+    pub sampled: Vec<Sampled>,
+    /// Pairs in closed form, pairs that are hidden for certain, and pairs by rays.
+    pub counts: [u64; 3],
+    /// Rays that were sent.
+    pub rays: u64,
+}
+
+/// All view factors of a scene. What has no area sees nothing.
+pub fn matrix(scene: &Scene, aim: &Aim, work: Work) -> Result<Matrix, Stopped> {
+    let facets = facets(scene);
+    let count = facets.len();
+    let sending = (0..count as u32).filter(|&i| facets[i as usize].area > 0.0).collect();
+    let tree = Clusters::new(&facets, sending);
+    let all = Everything {
+        scene,
+        facets: &facets,
+        tree: &tree,
+        blockers: blockers(scene, &facets, &tree),
+        aim,
+        level: Level::current().unwrap_or(Level::Scalar),
+        steps: work.steps(count * count),
+        factors: (0..count * count).into_par_iter().map(|_| AtomicU64::new(0)).collect(),
+        sampled: Mutex::default(),
+        counts: Default::default(),
+        rays: AtomicU64::new(0),
+    };
+    if let Some(root) = tree.nodes.first() {
+        let may_hide: Vec<u32> = (0..all.blockers.len() as u32).collect();
+        all.visit(root, root, &may_hide);
+    }
+    all.curved(&areas(scene))?;
+    work.goes_on()?;
+    work.done();
+    let mut sampled = all.sampled.into_inner().unwrap_or_else(PoisonError::into_inner);
+    sampled.sort_unstable_by_key(|sampled| sampled.faces);
+    Ok(Matrix {
+        factors: all.factors.into_iter().map(|bits| f64::from_bits(bits.into_inner())).collect(),
+        sampled,
+        counts: all.counts.map(AtomicU64::into_inner),
+        rays: all.rays.into_inner(),
+    })
+}
+
+/// What may hide anything: all but those whose plane has the whole scene on one side, as every face of a convex room.
+fn blockers(scene: &Scene, facets: &[Facet], tree: &Clusters) -> Vec<Blocker> {
+    let geometry = scene.geometry();
+    let curved: Vec<u32> = (0..facets.len() as u32).filter(|&i| geometry.shape(i).is_some()).collect();
+    let parts = |facet: &Facet| {
+        let mut sides = [false; 2];
+        for &i in &curved {
+            let shape = geometry.shape(i);
+            let height = facet.normal.dot(facet.centre);
+            sides[0] |= shape.is_none_or(|shape| shape.support(facet.normal) > height);
+            sides[1] |= shape.is_none_or(|shape| -shape.support(-facet.normal) < height);
+        }
+        for some in tree.order.chunks(16) {
+            let [front, back] = facet.sides(some.iter().flat_map(|&i| facets[i as usize].corners));
+            sides = [sides[0] || front, sides[1] || back];
+            if sides == [true, true] {
+                return true;
+            }
+        }
+        false
+    };
+    let flat = tree.order.par_iter().map(|&i| facets[i as usize]).filter(|facet| parts(facet)).map(Blocker::Facet);
+    flat.chain(curved.par_iter().map(|&i| Blocker::Curved(i))).collect()
+}
+
+/// What all threads share.
+struct Everything<'a> {
+    scene: &'a Scene,
+    facets: &'a [Facet],
+    tree: &'a Clusters,
+    blockers: Vec<Blocker>,
+    aim: &'a Aim,
+    level: Level,
+    steps: Steps<'a>,
+    /// The bits of the view factors, each of which is written once.
+    factors: Vec<AtomicU64>,
+    sampled: Mutex<Vec<Sampled>>,
+    counts: [AtomicU64; 3],
+    rays: AtomicU64,
+}
+
+/// Rows of surfaces that are no triangles, before they are added up.
+const ROWS: usize = 64;
+
+/// Pairs of faces that are worth a task of their own.
+const TASK: u64 = 1 << 14;
+
+impl Everything<'_> {
+    /// All pairs of two clusters, or of one with itself; what may lie between them is among these blockers.
+    fn visit(&self, one: &Cluster, other: &Cluster, may_hide: &[u32]) {
+        if self.steps.is_stopped() {
+            return;
+        }
+        let is_same = one.first == other.first && one.count == other.count;
+        let left = if is_same { may_hide.to_vec() } else { self.between(one, other, may_hide) };
+        let pairs = u64::from(one.count) * u64::from(other.count);
+        let is_done = one.is_leaf() && other.is_leaf();
+        if is_done || (left.is_empty() && pairs <= TASK) {
+            self.pairs(one, other, is_same, &left);
+            return;
+        }
+        let both: Vec<(&Cluster, &Cluster)> = if is_same {
+            let [first, second] = self.tree.parts(one);
+            vec![(first, first), (first, second), (second, second)]
+        } else if other.is_leaf() || (!one.is_leaf() && one.count >= other.count) {
+            self.tree.parts(one).map(|part| (part, other)).into()
+        } else {
+            self.tree.parts(other).map(|part| (one, part)).into()
+        };
+        if pairs > TASK {
+            both.into_par_iter().for_each(|(one, other)| self.visit(one, other, &left));
+        } else {
+            both.into_iter().for_each(|(one, other)| self.visit(one, other, &left));
+        }
+    }
+
+    /// Those blockers that may lie between faces of two clusters.
+    fn between(&self, one: &Cluster, other: &Cluster, may_hide: &[u32]) -> Vec<u32> {
+        if may_hide.is_empty() {
+            return Vec::new();
+        }
+        let geometry = self.scene.geometry();
+        let shaft = between_boxes(one, other);
+        let corners = [one.corners(), other.corners()];
+        let is_open = |blocker: &Blocker| {
+            !shaft.iter().any(|half| blocker.is_beyond(geometry, half))
+                && !blocker.has_aside(corners.iter().flatten().copied())
+        };
+        may_hide.iter().copied().filter(|&i| is_open(&self.blockers[i as usize])).collect()
+    }
+
+    /// All pairs of faces of two clusters.
+    fn pairs(&self, one: &Cluster, other: &Cluster, is_same: bool, may_hide: &[u32]) {
+        let (ones, others) = (self.tree.faces(one), self.tree.faces(other));
+        let against = [ones, others].map(|faces| self.against(faces, may_hide));
+        let face = |side: usize, k: usize, number: u32| Face {
+            facet: &self.facets[number as usize],
+            against: &against[side][k * may_hide.len()..][..may_hide.len()],
+        };
+        let mut quadrature = Quadrature::new(self.level);
+        let (mut open, mut counts) = (Vec::new(), [0; 3]);
+        for (k, &i) in ones.iter().enumerate() {
+            for (l, &j) in others.iter().enumerate().skip(if is_same { k + 1 } else { 0 }) {
+                // In the order of their numbers, whatever that of the tree.
+                let [one, other] = if i < j { [face(0, k, i), face(1, l, j)] } else { [face(1, l, j), face(0, k, i)] };
+                let (from, to, faces) = (one.facet, other.facet, [i.min(j), i.max(j)]);
+                match self.hidden(&one, &other, may_hide) {
+                    Some(Hidden::Wholly) => counts[1] += 1,
+                    Some(Hidden::Partly) => {
+                        let whole = pair(&mut quadrature, from, to);
+                        if whole > 0.0 {
+                            open.push(Open { faces, whole });
+                        }
+                    }
+                    None => {
+                        let whole = pair(&mut quadrature, from, to);
+                        if whole > 0.0 {
+                            counts[0] += 1;
+                            self.store(faces, whole);
+                        }
+                    }
+                }
+            }
+        }
+        if !open.is_empty() {
+            let mut rays = 0;
+            let found = sampled(self.scene, self.facets, &open, self.aim, &mut rays);
+            for sampled in &found {
+                self.store(sampled.faces, sampled.value);
+            }
+            counts[2] += found.len() as u64;
+            self.rays.fetch_add(rays, Relaxed);
+            self.sampled.lock().unwrap_or_else(PoisonError::into_inner).extend(found);
+        }
+        for (all, count) in self.counts.iter().zip(counts) {
+            all.fetch_add(count, Relaxed);
+        }
+        let pairs = one.count as usize * other.count as usize;
+        // Whoever waits is told by the tree's next pair.
+        let _ = self.steps.did(if is_same { pairs } else { 2 * pairs });
+    }
+
+    /// What each of some faces is to each of some blockers: by face.
+    fn against(&self, faces: &[u32], blockers: &[u32]) -> Vec<Against> {
+        let one = |face: u32, blocker: u32| {
+            let face = &self.facets[face as usize];
+            match &self.blockers[blocker as usize] {
+                Blocker::Facet(facet) => Against {
+                    sides: facet.sides(face.corners),
+                    sees: face.sides(facet.corners)[0],
+                    heights: facet.heights(face),
+                },
+                Blocker::Curved(_) => Against { sides: [true, true], sees: true, heights: [0.0; 3] },
+            }
+        };
+        faces.iter().flat_map(|&face| blockers.iter().map(move |&blocker| one(face, blocker))).collect()
+    }
+
+    /// How far two faces may be hidden from each other; not at all if none of these blockers touches their shaft.
+    fn hidden(&self, one: &Face, other: &Face, may_hide: &[u32]) -> Option<Hidden> {
+        if may_hide.is_empty() {
+            return None;
+        }
+        let looks = |one: &Facet, other: &Facet| one.sides(other.corners)[0];
+        if !looks(one.facet, other.facet) || !looks(other.facet, one.facet) {
+            return None;
+        }
+        let geometry = self.scene.geometry();
+        let mut shaft: Option<Vec<HalfSpace>> = None;
+        let mut found = None;
+        for (&i, (from, to)) in may_hide.iter().zip(one.against.iter().zip(other.against)) {
+            // What has both on one side of its plane, or is seen by one alone, lies aside.
+            let is_between = (0..2).all(|side| from.sides[side] || to.sides[side]);
+            if !is_between || !from.sees || !to.sees {
+                continue;
+            }
+            let blocker = &self.blockers[i as usize];
+            if let Blocker::Facet(facet) = blocker
+                && hides(facet, (one.facet, from.heights), (other.facet, to.heights))
+            {
+                return Some(Hidden::Wholly);
+            }
+            // Where one is known to touch the shaft, others count only if they hide all.
+            if found.is_none() {
+                let shaft = shaft.get_or_insert_with(|| between_facets(one.facet, other.facet));
+                if !shaft.iter().any(|half| blocker.is_beyond(geometry, half)) {
+                    found = Some(Hidden::Partly);
+                }
+            }
+        }
+        found
+    }
+
+    /// Writes what two faces exchange into both rows.
+    fn store(&self, [i, j]: [u32; 2], exchanged: f64) {
+        let (i, j) = (i as usize, j as usize);
+        self.write(i, j, exchanged / self.facets[i].area);
+        self.write(j, i, exchanged / self.facets[j].area);
+    }
+
+    fn write(&self, row: usize, column: usize, factor: f64) {
+        self.factors[row * self.facets.len() + column].store(factor.to_bits(), Relaxed);
+    }
+
+    /// The rows and columns of all that is no triangle. Of two such surfaces both rows tell what they exchange, A F,
+    /// with a variance of about A² F / n, so that the one of the smaller area counts more.
+    fn curved(&self, areas: &[f64]) -> Result<(), Stopped> {
+        let geometry = self.scene.geometry();
+        let is_curved = |i: u32| geometry.shape(i).is_some();
+        let curved: Vec<u32> = (0..areas.len() as u32).filter(|&i| is_curved(i) && areas[i as usize] > 0.0).collect();
+        let mut exchanged = BTreeMap::<[u32; 2], [f64; 2]>::new();
+        for some in curved.chunks(ROWS) {
+            let row = |rows: &mut Rows, &i: &u32| {
+                let mut rays = 0;
+                if self.steps.is_stopped() {
+                    return Vec::new();
+                }
+                let row = rows.row(i, &self.facets[i as usize], self.aim, &mut rays);
+                self.rays.fetch_add(rays, Relaxed);
+                row
+            };
+            let rows: Vec<_> =
+                some.par_iter().with_max_len(1).map_init(|| Rows::new(self.scene, self.aim.seed), row).collect();
+            self.steps.did(some.len() * areas.len())?;
+            for (&i, row) in some.iter().zip(rows) {
+                let area = areas[i as usize];
+                for (j, factor, error) in row {
+                    let other = areas[j as usize];
+                    let share = if i != j && is_curved(j) { other / (area + other) } else { 1.0 };
+                    let [value, variance] = exchanged.entry([i.min(j), i.max(j)]).or_default();
+                    *value += share * area * factor;
+                    *variance += (share * area * error).powi(2);
+                }
+            }
+        }
+        self.counts[2].fetch_add(exchanged.len() as u64, Relaxed);
+        let mut sampled = self.sampled.lock().unwrap_or_else(PoisonError::into_inner);
+        for (faces, [value, variance]) in exchanged {
+            let [i, j] = faces.map(|face| face as usize);
+            self.write(i, j, value / areas[i]);
+            self.write(j, i, value / areas[j]);
+            sampled.push(Sampled { faces, value, error: variance.sqrt() });
+        }
+        Ok(())
+    }
+}
+
+/// A face, and what it is to each of the blockers that may hide it.
+struct Face<'a> {
+    facet: &'a Facet,
+    against: &'a [Against],
+}
+
+/// What a face is to a blocker, whatever it looks at.
+struct Against {
+    /// Whether some of the face is in front of the blocker's plane, and whether some is behind.
+    sides: [bool; 2],
+    /// Whether some of the blocker is in front of the face.
+    sees: bool,
+    /// How far in front of the blocker's plane the face's corners are.
+    heights: [f64; 3],
+}
+
+/// How far one face is hidden from another.
+enum Hidden {
+    Partly,
+    Wholly,
+}

@@ -1,0 +1,207 @@
+//! Beam tracing.
+
+mod beam;
+mod onward;
+mod shading;
+mod shadow;
+mod tree;
+mod visible;
+
+use super::{CameraSample, Integrator, Job, Session, Worker};
+use raywright_accel::Primitives;
+use raywright_base::math::convex::{HalfPlane, area, clip};
+use raywright_base::math::{DVec3, Hit, Ray};
+use raywright_base::workers::Cancel;
+use raywright_optics::Rgb;
+use raywright_scene::{Camera, Scene, SurfaceInteraction};
+use tree::Tree;
+
+/// Beam tracing (Heckbert and Hanrahan, "Beam Tracing Polygonal Objects", 1984): in place of rays, the whole view is
+/// followed as a beam. What is seen in it parts it into polygons; flat mirrors throw these back, as beams from where
+/// the eye is seen in them, flat faces of glass refract them, and beams from lights part them into lit and shadowed.
+/// Each pixel is the mean over its own square: of every polygon, its area there times its radiance, by three points of
+/// each triangle that it is cut into. So edges are exact, and the picture has no noise.
+///
+/// It is Whitted's picture (what is scattered otherwise than as by a mirror is not followed) of meshes in the light of
+/// lights without extent. Its time grows with the square of the number of faces in view.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BeamTraced {
+    /// The greatest number of surfaces that light comes by, from the light on.
+    pub max_depth: u32,
+    /// Radiance that arrives from everywhere in place of what is not followed. Surfaces reflect their ambient share of
+    /// it ([`Material::ambient`](raywright_scene::Material::ambient)).
+    pub ambient: Rgb,
+    /// How many pixels a refracted ray may be off, seen from afar; refracted beams are cut until none is. Infinite cuts
+    /// none, as the paper does.
+    pub tolerance: f64,
+}
+
+impl Default for BeamTraced {
+    fn default() -> Self {
+        Self { max_depth: 8, ambient: Rgb::ZERO, tolerance: 0.25 }
+    }
+}
+
+/// Lights that a piece of the film can tell apart.
+const MOST_LIGHTS: usize = u64::BITS as usize;
+
+impl Integrator for BeamTraced {
+    fn begin<'a>(&'a self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a> {
+        let tree = job.camera.as_perspective().map(|camera| Tree::new(&job, camera, self, cancel));
+        let size = [job.camera.width(), job.camera.height()];
+        let blocks = tree.as_ref().map_or_else(Vec::new, |tree| tree.by_block(size, Film::SIDE));
+        Box::new(Film { job, ambient: self.ambient, tree, blocks })
+    }
+
+    fn objection(&self, scene: &Scene, _: bool) -> Option<String> {
+        let (geometry, lights) = (scene.geometry(), scene.lights());
+        if let Some(shape) = geometry.first_other() {
+            return Some(format!("beams meet meshes alone, and shape {shape} is none: use Whitted"));
+        }
+        let mut shapes = 0..geometry.shapes() as u32;
+        if let Some((shape, why)) = shapes.find_map(|shape| Some((shape, unsuited(scene, shape)?))) {
+            return Some(format!("shape {shape} {why}: use Whitted"));
+        }
+        if let Some([a, b]) = nested(scene) {
+            return Some(format!(
+                "shapes {a} and {b} are of glass and may be within each other, and beams know of one glass at a time: \
+                 use Whitted"
+            ));
+        }
+        if lights.others().any(|light| light.place().is_none()) {
+            return Some("beams come from lights without extent alone, and an environment has one: use Whitted".into());
+        }
+        let count = lights.others().count();
+        (count > MOST_LIGHTS).then(|| format!("beams come from {MOST_LIGHTS} lights at most, not {count}: use Whitted"))
+    }
+
+    fn view_objection(&self, camera: &dyn Camera, filter_radius: f64) -> Option<String> {
+        if camera.as_perspective().is_none() {
+            return Some("beams start from a pinhole that does not move: use a Camera, or Whitted".into());
+        }
+        (filter_radius != 0.5).then(|| "a beam's pixels are means over their own squares: use BoxFilter()".into())
+    }
+}
+
+/// What of a shape beams cannot do.
+fn unsuited(scene: &Scene, shape: u32) -> Option<&'static str> {
+    let material = scene.material(shape);
+    if scene.lights().shines(shape) {
+        Some("shines, and beams come from lights without extent alone")
+    } else if !material.is_opaque() {
+        Some("has a mask, which beams do not see")
+    } else {
+        is_unlike_paper(scene, shape)
+    }
+}
+
+/// What beams cannot do of the single directions that the faces of a shape scatter into in their middles.
+fn is_unlike_paper(scene: &Scene, shape: u32) -> Option<&'static str> {
+    scene.geometry().primitives_of(shape).find_map(|face| is_face_unlike_paper(scene, face))
+}
+
+/// The same of one face, if it has an area.
+fn is_face_unlike_paper(scene: &Scene, face: u32) -> Option<&'static str> {
+    let geometry = scene.geometry();
+    let third = [1.0 / 3.0; 2];
+    let (at, normal) = (geometry.position(face, third), geometry.normal(face));
+    if !normal.is_finite() {
+        return None;
+    }
+    let ray = Ray::new(at + normal, -normal);
+    let hit = Hit { t: 1.0, uv: third, primitive: face, inner: 0 };
+    let here = SurfaceInteraction::at(scene, &ray, &hit);
+    let (mut singles, mut etas) = (0, Vec::new());
+    here.bsdf().delta_lobes(here.wo(), |single| {
+        singles += 1;
+        if single.is_through && !etas.contains(&single.eta) {
+            etas.push(single.eta);
+        }
+    });
+    if singles > 0 && !here.is_flat() {
+        return Some("mirrors or refracts with bent normals, and beams need flat ones");
+    }
+    (etas.len() > 1).then_some("lets light through in two ways, and a beam goes one")
+}
+
+/// Two shapes of glass whose boxes have space in common.
+fn nested(scene: &Scene) -> Option<[u32; 2]> {
+    let geometry = scene.geometry();
+    let of = |shape: u32| {
+        let corners = geometry.primitives_of(shape).flat_map(|face| geometry.corners(face));
+        let whole = |(low, high): (DVec3, DVec3), corner: DVec3| (low.min(corner), high.max(corner));
+        corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), whole)
+    };
+    let is_glass = |&shape: &u32| scene.material(shape).interior().is_some();
+    let boxes: Vec<_> = (0..geometry.shapes() as u32).filter(is_glass).map(|shape| (shape, of(shape))).collect();
+    let overlap = |a: &(DVec3, DVec3), b: &(DVec3, DVec3)| a.0.cmplt(b.1).all() && b.0.cmplt(a.1).all();
+    boxes.iter().enumerate().find_map(|(i, (a, box_a))| {
+        let (b, _) = boxes[i + 1..].iter().find(|(_, box_b)| overlap(box_a, box_b))?;
+        Some([*a, *b])
+    })
+}
+
+/// The film, in pieces.
+struct Film<'a> {
+    job: Job<'a>,
+    ambient: Rgb,
+    /// None for a camera that beams do not start from.
+    tree: Option<Tree>,
+    /// The pieces in each block of pixels.
+    blocks: Vec<Vec<u32>>,
+}
+
+impl Film<'_> {
+    /// Pixels along a side of a block.
+    const SIDE: u32 = 8;
+
+    /// The mean radiance over a pixel.
+    fn pixel(&self, pixel: u32) -> Rgb {
+        let width = self.job.camera.width();
+        let [x, y] = [pixel % width, pixel / width];
+        let block = y / Self::SIDE * width.div_ceil(Self::SIDE) + x / Self::SIDE;
+        let (Some(tree), Some(pieces)) = (&self.tree, self.blocks.get(block as usize)) else { return Rgb::ZERO };
+        let [x, y] = [x, y].map(f64::from);
+        let lines = [[1.0, 0.0, -x], [-1.0, 0.0, x + 1.0], [0.0, 1.0, -y], [0.0, -1.0, y + 1.0]];
+        let square = lines.map(|line| HalfPlane { line: DVec3::from_array(line), slack: 0.0 });
+        let mut light = Rgb::ZERO;
+        for &number in pieces {
+            let piece = &tree.pieces[number as usize];
+            let [low, high] = piece.bounds;
+            if low.x >= x + 1.0 || low.y >= y + 1.0 || high.x <= x || high.y <= y {
+                continue;
+            }
+            let here = clip(&piece.outline, &square);
+            for i in 2..here.len() {
+                let corners = [here[0], here[i - 1], here[i]];
+                let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
+                // Exact where radiance is quadratic over the triangle.
+                for corner in corners {
+                    let at = middle + (corner - middle) * 0.5;
+                    light += tree.radiance(&self.job, self.ambient, piece, at) * (area(&corners) / 3.0);
+                }
+            }
+        }
+        light
+    }
+}
+
+impl Session for Film<'_> {
+    fn worker(&self) -> Box<dyn Worker + '_> {
+        Box::new(Looking(self))
+    }
+}
+
+/// What looks pixels up.
+struct Looking<'a>(&'a Film<'a>);
+
+impl Worker for Looking<'_> {
+    fn radiance(&mut self, samples: &mut [CameraSample], cancel: &Cancel, radiance: &mut [Rgb]) {
+        for (sample, radiance) in samples.iter().zip(radiance) {
+            if cancel.is_raised() {
+                return;
+            }
+            *radiance = self.0.pixel(sample.sampler.pixel());
+        }
+    }
+}

@@ -1,0 +1,148 @@
+//! The tree of beams, and the pieces of the film that its leaves are.
+
+use super::BeamTraced;
+use super::beam::{Beam, LEAST, Origin, Seen};
+use super::onward::Onward;
+use super::shading::Met;
+use super::shadow::Shadows;
+use super::visible::visible;
+use crate::Job;
+use rayon::prelude::*;
+use raywright_accel::Primitives;
+use raywright_base::math::convex::{Convex, area};
+use raywright_base::math::{DVec2, DVec3};
+use raywright_base::workers::Cancel;
+use raywright_optics::Rgb;
+use raywright_scene::Perspective;
+
+/// A part of the film that shows one face, by way of certain mirrors and in the light of certain lights.
+#[derive(Clone, Debug)]
+pub(super) struct Piece {
+    pub outline: Convex,
+    /// The corners of the least rectangle around it.
+    pub bounds: [DVec2; 2],
+    beam: usize,
+    primitive: u32,
+    nearness: DVec3,
+    /// By the number of a light, whether it comes here.
+    lit: u64,
+}
+
+/// All beams of a picture.
+pub(super) struct Tree {
+    beams: Vec<Beam>,
+    pub pieces: Vec<Piece>,
+}
+
+/// What one face gives in one beam.
+#[derive(Default)]
+struct Found {
+    pieces: Vec<Piece>,
+    next: Vec<Beam>,
+}
+
+/// What is smaller, in pixels, is not followed further.
+const LEAST_FOLLOWED: f64 = 1e-10;
+
+impl Tree {
+    /// Follows the view of a camera.
+    pub fn new(job: &Job, camera: &Perspective, settings: &BeamTraced, cancel: &Cancel) -> Self {
+        let scene = job.scene;
+        let region = scene.region();
+        let reach = region.min.abs().max(region.max.abs()).max_element();
+        let places: Vec<_> = scene.lights().others().filter_map(|light| light.place()).collect();
+        let lights: Vec<Shadows> =
+            places.par_iter().map(|&place| Shadows::new(place, scene.geometry(), reach)).collect();
+        let mut tree = Self { beams: Vec::new(), pieces: Vec::new() };
+        let mut next = if settings.max_depth > 0 { vec![Beam::of(camera)] } else { Vec::new() };
+        while !next.is_empty() && !cancel.is_raised() {
+            let first = tree.beams.len();
+            tree.beams.append(&mut next);
+            for number in first..tree.beams.len() {
+                for found in tree.trace(job, &lights, number, settings, cancel) {
+                    tree.pieces.extend(found.pieces);
+                    next.extend(found.next);
+                }
+            }
+        }
+        tree
+    }
+
+    /// What each face gives in a beam.
+    fn trace(
+        &self,
+        job: &Job,
+        lights: &[Shadows],
+        number: usize,
+        settings: &BeamTraced,
+        cancel: &Cancel,
+    ) -> Vec<Found> {
+        let (beam, geometry) = (&self.beams[number], job.scene.geometry());
+        let follows = beam.bounce + 1 < settings.max_depth;
+        let mut seen: Vec<Seen> =
+            (0..geometry.count() as u32).into_par_iter().filter_map(|face| beam.see(geometry, face)).collect();
+        // What is near hides most.
+        seen.sort_by(|a, b| b.nearest.total_cmp(&a.nearest).then(a.primitive.cmp(&b.primitive)));
+        let one = |which: usize| {
+            let mut found = Found::default();
+            if cancel.is_raised() {
+                return found;
+            }
+            let Seen { primitive, nearness, .. } = seen[which];
+            let onward = Onward { job, beam, number, seen: &seen[which], tolerance: settings.tolerance };
+            for part in visible(&seen, which, cancel) {
+                if follows && area(&part) > LEAST_FOLLOWED {
+                    found.next.extend(onward.beams(&part, cancel));
+                }
+                let transmits = job.scene.material(geometry.locate(primitive).0).transmits();
+                let mut pieces = vec![(part, 0)];
+                for (light, shadows) in lights.iter().enumerate() {
+                    if !transmits && !shadows.is_before(geometry, primitive, beam.apex) {
+                        continue;
+                    }
+                    let mut parted = Vec::new();
+                    for (piece, lit) in pieces {
+                        let [bright, dark] = shadows.part(beam, primitive, nearness, piece, cancel);
+                        parted.extend(bright.into_iter().map(|piece| (piece, lit | 1 << light)));
+                        parted.extend(dark.into_iter().map(|piece| (piece, lit)));
+                    }
+                    pieces = parted;
+                }
+                for (outline, lit) in pieces {
+                    let low = outline.iter().copied().reduce(DVec2::min).unwrap_or_default();
+                    let high = outline.iter().copied().reduce(DVec2::max).unwrap_or_default();
+                    found.pieces.push(Piece { outline, bounds: [low, high], beam: number, primitive, nearness, lit });
+                }
+            }
+            found
+        };
+        (0..seen.len()).into_par_iter().map(one).collect()
+    }
+
+    /// The radiance that comes from a piece at a place of the film.
+    pub fn radiance(&self, job: &Job, ambient: Rgb, piece: &Piece, at: DVec2) -> Rgb {
+        let mut beam = &self.beams[piece.beam];
+        let mut light = Met::new(job, beam, piece.primitive, piece.nearness, at).light(job, piece.lit, ambient);
+        while let Some(Origin { beam: before, primitive, nearness, through }) = beam.origin {
+            beam = &self.beams[before];
+            light *= Met::new(job, beam, primitive, nearness, at).share(through.is_some());
+        }
+        light
+    }
+
+    /// The numbers of pieces that may be seen in blocks of so many pixels a side, row by row.
+    pub fn by_block(&self, size: [u32; 2], side: u32) -> Vec<Vec<u32>> {
+        let blocks = size.map(|length| length.div_ceil(side));
+        let mut all = vec![Vec::new(); (blocks[0] * blocks[1]) as usize];
+        for (number, piece) in self.pieces.iter().enumerate().filter(|(_, piece)| area(&piece.outline) > LEAST) {
+            let block = |at: f64, axis: usize| ((at.max(0.0) / f64::from(side)) as u32).min(blocks[axis] - 1);
+            let [low, high] = piece.bounds.map(|corner| [block(corner.x, 0), block(corner.y, 1)]);
+            for y in low[1]..=high[1] {
+                for x in low[0]..=high[0] {
+                    all[(y * blocks[0] + x) as usize].push(number as u32);
+                }
+            }
+        }
+        all
+    }
+}

@@ -1,0 +1,158 @@
+//! Paths that are walked from lights and from the camera, and meet.
+
+mod connections;
+mod eye;
+mod light_vertices;
+mod merging;
+#[cfg(test)]
+mod tests;
+mod worker;
+
+pub use merging::Merge;
+
+use super::light_paths::{LightPaths, Limits, Partials, Weighing, emitters};
+use super::volumes::{BothEnds, Counting, MediaLightPaths};
+use super::{Integrator, Job, LightWorker, Session, Worker};
+use merging::Merging;
+use raywright_base::workers::Cancel;
+use raywright_scene::{Emitters, Scene};
+use std::ops::Range;
+use worker::BidirectionalWorker;
+
+/// Bidirectional path tracing (Lafortune and Willems, "Bi-Directional Path Tracing", 1993; Veach and Guibas,
+/// "Bidirectional Estimators for Light Transport", 1994): for each sample of each pixel a path is walked from the
+/// camera and one from a light, and each surface of the one is connected to each of the other, to the light and to the
+/// camera. A path that is found in several of these ways counts in each by the balance heuristic.
+///
+/// Walks may be merged as well, which meet at about the same place (vertex connection and merging: Georgiev et al.
+/// 2012; Hachisuka et al. 2012): each sample of all pixels has photons of its own, as many as there are paths of light,
+/// and gathers them at matt surfaces from ever less far away. Then path tracing, light tracing and progressive photon
+/// maps are all special cases.
+///
+/// What path tracing finds well, and what light tracing does, is found as well by both together, and light that is hard
+/// to reach from either end, such as behind a door ajar, by their connections. Only what is seen by way of something
+/// sharp, lit by way of something sharp from a small light, is found no better unless walks are merged.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bidirectional {
+    /// The greatest number of times that light is scattered; 0 shows only what shines itself. `None` sets no limit.
+    pub max_depth: Option<u32>,
+    /// Roulette is played from this number of bounces on, along either walk.
+    pub roulette_depth: u32,
+    /// How walks are merged, if they are.
+    pub merge: Option<Merge>,
+    /// If one way alone is to be shown, at its full weight.
+    pub alone: Option<Alone>,
+}
+
+/// A way to find paths.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Alone {
+    /// The number of vertices from the light on, and of those from the camera on, itself the first.
+    pub vertices: [u32; 2],
+    /// Whether the last of either are the same, where they merge.
+    pub merges: bool,
+}
+
+impl Default for Bidirectional {
+    fn default() -> Self {
+        Self { max_depth: None, roulette_depth: 4, merge: None, alone: None }
+    }
+}
+
+impl Integrator for Bidirectional {
+    fn begin<'a>(&'a self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a> {
+        let limits = Limits { max_depth: self.max_depth, roulette_depth: self.roulette_depth };
+        // Light that is merged, or splatted from what is matt alone (`LightTraced`), has more noise where it is aimed.
+        let emitters = if self.merge.is_none() { emitters(job.scene) } else { job.scene.emitters() };
+        // Of light that has been scattered once at least, at the second surface.
+        let merge = self.merge.filter(|_| self.max_depth.is_none_or(|depth| depth > 1));
+        let merging = merge.zip(emitters.as_ref());
+        let merging = merging.map(|(merge, emitters)| Merging::new(job, merge, limits, emitters, cancel));
+        Box::new(Bidirection { limits, job, emitters, merging, alone: self.alone })
+    }
+
+    fn objection(&self, scene: &Scene, adaptive: bool) -> Option<String> {
+        // What glows is found from the camera alone.
+        if adaptive || scene.not_drawn().is_some() {
+            return super::LightTraced::default().objection(scene, adaptive);
+        }
+        let is_merged = self.merge.is_some() && scene.plan().needs().media;
+        is_merged.then(|| "walks are not merged among media: use merge=False, or ProgressivePhotonMap".into())
+    }
+
+    fn takes_media(&self) -> bool {
+        true
+    }
+
+    fn takes_waves(&self) -> bool {
+        true
+    }
+
+    fn narrowed(&self, scale: f64, samples: u32) -> Option<Box<dyn Integrator>> {
+        let merge = self.merge?;
+        let merge = Some(Merge { scale: merge.scale * scale, mean_of: Some(samples), ..merge });
+        Some(Box::new(Self { merge, ..*self }))
+    }
+}
+
+/// What workers on a picture share.
+struct Bidirection<'a> {
+    limits: Limits,
+    job: Job<'a>,
+    /// None where nothing shines.
+    emitters: Option<Emitters<'a>>,
+    merging: Option<Merging<'a>>,
+    alone: Option<Alone>,
+}
+
+impl Bidirection<'_> {
+    fn among_media(&self) -> bool {
+        self.job.scene.plan().needs().media
+    }
+
+    /// The way that alone counts, if one does and is no merge: no way has no vertices.
+    fn way_alone(&self) -> Option<[u32; 2]> {
+        self.alone.map(|alone| if alone.merges { [0; 2] } else { alone.vertices })
+    }
+}
+
+impl Session for Bidirection<'_> {
+    fn worker(&self) -> Box<dyn Worker + '_> {
+        if self.among_media() {
+            return Box::new(BothEnds::new(self.job, self.emitters.as_ref(), self.limits, self.way_alone()));
+        }
+        Box::new(BidirectionalWorker::new(self))
+    }
+
+    fn at_once(&self) -> Option<u32> {
+        self.merging.as_ref().map(Merging::at_once)
+    }
+
+    fn before_samples(&self, numbers: Range<u32>, alone: bool, cancel: &Cancel) {
+        if let (Some(merging), Some(emitters)) = (&self.merging, &self.emitters) {
+            merging.prepare(numbers, emitters, alone, cancel);
+        }
+    }
+
+    fn time(&self, number: u32) -> Option<f64> {
+        self.merging.as_ref().and_then(|merging| merging.time(number))
+    }
+
+    fn light_worker(&self) -> Option<Box<dyn LightWorker + '_>> {
+        let emitters = self.emitters.as_ref().filter(|_| self.limits.max_depth != Some(0))?;
+        let paths = f64::from(self.job.camera.width()) * f64::from(self.job.camera.height());
+        let alone = self.way_alone();
+        if self.among_media() {
+            let counting = match alone {
+                None => Counting::Beside(paths),
+                Some([light, 1]) => Counting::Alone(light),
+                Some(_) => Counting::Nothing,
+            };
+            return Some(Box::new(MediaLightPaths::new(self.job, emitters, self.limits, counting)));
+        }
+        let disk = |merging| Box::new(move |number| Merging::disk(merging, number)) as Box<dyn Fn(u32) -> f64 + Send>;
+        let disks = self.merging.as_ref().map(disk);
+        let weighing = Weighing { partials: Partials::new(emitters), disks, paths, alone };
+        Some(Box::new(LightPaths::new(self.job, emitters, self.limits, Some(weighing))))
+    }
+}

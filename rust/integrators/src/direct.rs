@@ -1,0 +1,40 @@
+//! Direct light.
+
+use super::transport::Settings;
+use super::volumes::Volumes;
+use super::{Integrator, Job, Session};
+use raywright_base::workers::Cancel;
+
+/// What shines, and what is lit by it: one bounce. Lights are sampled and so are surfaces, combined through multiple
+/// importance sampling (Veach and Guibas, "Optimally Combining Sampling Techniques", 1995).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Direct {
+    /// How many light samples a surface takes, from equal shares of the lights; at least 1.
+    pub light_samples: u32,
+    /// How many directions are drawn from its scattering; at least 1.
+    pub surface_samples: u32,
+}
+
+impl Default for Direct {
+    fn default() -> Self {
+        Self { light_samples: 1, surface_samples: 1 }
+    }
+}
+
+impl Integrator for Direct {
+    fn begin<'a>(&'a self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a> {
+        if job.scene.plan().needs().media {
+            return Volumes::dimmed(1).begin(job);
+        }
+        let (light_samples, splits) = (self.light_samples.max(1), self.surface_samples.max(1));
+        Settings { light_samples, splits, ..Settings::path(Some(1), u32::MAX) }.begin(job, cancel)
+    }
+
+    fn takes_media(&self) -> bool {
+        true
+    }
+
+    fn takes_waves(&self) -> bool {
+        true
+    }
+}

@@ -1,0 +1,206 @@
+//! Places, divided by how much light comes there.
+
+use super::lobe::{Lobe, LobeLanes};
+use super::photon::Photon;
+use rayon::prelude::*;
+use raywright_base::math::{DVec3, LANES};
+use std::ops::Range;
+
+/// Places in cells, by halving the photons at the longest side of the box around them until few are left.
+#[derive(Debug)]
+pub(super) struct Cells {
+    nodes: Vec<Node>,
+    leaves: Vec<Leaf>,
+    lobes: Vec<LobeLanes>,
+}
+
+/// What is below `at` along an axis is in the first child, which is the next node; the rest is in the second, of this
+/// number. Without an axis it is a leaf, of this number.
+#[derive(Clone, Copy, Debug)]
+struct Node {
+    at: f64,
+    axis: u32,
+    second: u32,
+}
+
+impl Node {
+    /// In place of an axis.
+    const NONE: u32 = 3;
+
+    fn leaf(number: usize) -> Self {
+        Self { at: 0.0, axis: Self::NONE, second: number as u32 }
+    }
+}
+
+/// A cell, and roughly where photons came to it.
+#[derive(Clone, Debug)]
+struct Leaf {
+    min: DVec3,
+    max: DVec3,
+    share: f64,
+    gain: f64,
+    rarity: f64,
+    /// How many lobes, and in which lanes.
+    count: usize,
+    lobes: Range<usize>,
+}
+
+/// What is known of a cell.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cell<'a> {
+    /// Where light comes from: one lobe at least, [`LOBES`] at most, whose shares add up to 1; and how many.
+    pub lobes: &'a [LobeLanes],
+    pub count: usize,
+    /// How often to aim.
+    pub share: f64,
+    /// How much brighter than usual it is there.
+    pub gain: f64,
+    /// How rarely that light is found: see [`LocalGuide::rarity`](super::LocalGuide::rarity).
+    pub rarity: f64,
+}
+
+/// The most photons in a cell. With 32 or 128 there is more noise in pictures of balls of glass.
+const PHOTONS: usize = 64;
+
+/// The most lobes of a cell. With 16 there is more noise.
+const LOBES: usize = 32;
+
+/// What a cell knows of those beside it, in sizes of its own: without, light at its borders is missed.
+const BESIDE: f64 = 0.5;
+
+/// How often directions are drawn from the ball around all others, in case that one is missing.
+const WIDE: f64 = 0.1;
+
+/// How often paths aim, at least and at most.
+const SHARES: [f64; 2] = [0.1, 0.6];
+
+/// The smallest share of all directions that light is told to come from.
+const SMALLEST: f64 = 1e-8;
+
+/// The most that a cell is brighter than usual.
+const BRIGHTEST: f64 = 1e6;
+
+impl Cells {
+    /// Those of some photons, where so much light over area is usual.
+    pub fn new(mut photons: Vec<Photon>, usual: f64) -> Self {
+        let mut all = Self { nodes: Vec::new(), leaves: Vec::new(), lobes: Vec::new() };
+        let mut ranges = Vec::new();
+        let count = photons.len();
+        all.divide(&mut photons, 0..count, &mut ranges);
+        let told = |range: Range<usize>| {
+            let (min, max) = bounds(&photons[range]);
+            let beside = DVec3::splat(BESIDE * (max - min).max_element());
+            let (min, max) = (min - beside, max + beside);
+            let mut near = Vec::new();
+            all.gather(0, &photons, (min, max), &mut near);
+            Leaf::told(&mut near, (min, max), usual)
+        };
+        let told: Vec<(Leaf, Vec<Lobe>)> = ranges.into_par_iter().map(told).collect();
+        for (leaf, lobes) in told {
+            let first = all.lobes.len();
+            all.lobes.extend(lobes.chunks(LANES).map(LobeLanes::of));
+            all.leaves.push(Leaf { count: lobes.len(), lobes: first..all.lobes.len(), ..leaf });
+        }
+        all
+    }
+
+    /// Divides a range of photons. Leaves are numbered in the order of their ranges.
+    fn divide(&mut self, photons: &mut [Photon], range: Range<usize>, ranges: &mut Vec<Range<usize>>) {
+        let mine = &mut photons[range.clone()];
+        let (min, max) = bounds(mine);
+        let size = max - min;
+        let axis = (0..3).max_by(|&a, &b| size[a].total_cmp(&size[b])).unwrap_or(0);
+        if mine.len() <= PHOTONS || size[axis] <= 0.0 {
+            self.nodes.push(Node::leaf(ranges.len()));
+            ranges.push(range);
+            return;
+        }
+        let half = mine.len() / 2;
+        mine.select_nth_unstable_by(half, |a, b| a.position[axis].total_cmp(&b.position[axis]));
+        let (at, node) = (mine[half].position[axis], self.nodes.len());
+        self.nodes.push(Node::leaf(0));
+        self.divide(photons, range.start..range.start + half, ranges);
+        self.nodes[node] = Node { at, axis: axis as u32, second: self.nodes.len() as u32 };
+        self.divide(photons, range.start + half..range.end, ranges);
+    }
+
+    /// Adds those photons of a node that are in a box.
+    fn gather(&self, node: usize, photons: &[Photon], (min, max): (DVec3, DVec3), near: &mut Vec<Photon>) {
+        let Node { at, axis, second } = self.nodes[node];
+        if axis == Node::NONE {
+            let inside = |p: &&Photon| p.position.cmpge(min).all() && p.position.cmple(max).all();
+            near.extend(photons.iter().filter(inside));
+            return;
+        }
+        // Halves are where `divide` made them.
+        let (one, other) = photons.split_at(photons.len() / 2);
+        if min[axis as usize] <= at {
+            self.gather(node + 1, one, (min, max), near);
+        }
+        if max[axis as usize] >= at {
+            self.gather(second as usize, other, (min, max), near);
+        }
+    }
+
+    /// The cell of a place; `None` where no photon has been about.
+    #[inline]
+    pub fn find(&self, place: DVec3) -> Option<Cell<'_>> {
+        // The way down is about as long for all places, but which it is nobody can foretell: no branch depends on it.
+        let coordinates = [place.x, place.y, place.z, 0.0];
+        let mut node = 0;
+        while self.nodes[node].axis != Node::NONE {
+            let Node { at, axis, second } = self.nodes[node];
+            let is_below = coordinates[axis as usize & 3] < at;
+            node = std::hint::select_unpredictable(is_below, node + 1, second as usize);
+        }
+        let leaf = &self.leaves[self.nodes[node].second as usize];
+        let inside = place.cmpge(leaf.min).all() && place.cmple(leaf.max).all();
+        let &Leaf { share, gain, rarity, count, .. } = leaf;
+        inside.then(|| Cell { lobes: &self.lobes[leaf.lobes.clone()], count, share, gain, rarity })
+    }
+}
+
+impl Leaf {
+    /// What photons that have come to a cell and those beside it tell of it, and its lobes, which stand nowhere yet.
+    fn told(near: &mut [Photon], (min, max): (DVec3, DVec3), usual: f64) -> (Self, Vec<Lobe>) {
+        let sides = max - min;
+        let size = sides.max_element();
+        let light: f64 = near.iter().map(|photon| photon.flux).sum();
+        let area = (sides.x * sides.y).max(sides.y * sides.z).max(sides.z * sides.x);
+        // Where no light comes straight, or on no area, all that comes is by way of what is sharp.
+        let brighter = if usual > 0.0 { (light / area / usual).min(BRIGHTEST) } else { BRIGHTEST };
+        let all = Lobe::around(near, size);
+        let of_all = if usual > 0.0 { brighter / (1.0 + brighter) } else { 1.0 };
+        near.sort_by_key(|photon| photon.chain);
+        let mut each = Vec::new();
+        for prototype in near.chunk_by_mut(|a, b| a.chain == b.chain) {
+            Lobe::divide(prototype, size, 3, &mut each);
+        }
+        // What comes from a lobe is found with the share of directions that it fills.
+        let found = |(lobe, of_lobe): &(Lobe, f64)| (of_lobe / light).powi(2) / lobe.fills().max(SMALLEST);
+        let rarity = if light > 0.0 { of_all * of_all * each.iter().map(found).sum::<f64>() } else { 0.0 };
+        // The variance of what is sought in a lobe is its light times its brightness times its solid angle, over how
+        // often it is drawn: so it is best drawn in proportion to the root of their product. The larger ones are mostly
+        // less bright, so that of both together a root of the solid angle is left.
+        let mut strengths: Vec<(Lobe, f64)> =
+            each.into_iter().map(|(lobe, light)| (lobe, (light * lobe.fills().sqrt()).sqrt())).collect();
+        strengths.sort_by(|a, b| b.1.total_cmp(&a.1));
+        strengths.truncate(LOBES - 1);
+        let total: f64 = strengths.iter().map(|(_, strength)| strength).sum();
+        let part = if total > 0.0 { (1.0 - WIDE) / total } else { 0.0 };
+        let mut lobes: Vec<Lobe> =
+            strengths.iter().filter(|(_, s)| *s > 0.0).map(|(lobe, s)| lobe.drawn(s * part)).collect();
+        let wide = if total > 0.0 { WIDE } else { 1.0 };
+        lobes.push(all.drawn(wide));
+        // By how much noise it takes from what paths find of the rest, and adds to it, were each lobe half filled by
+        // what is sought.
+        let share = (2.0 * brighter / (2.0 * brighter + 1.0)).clamp(SHARES[0], SHARES[1]);
+        let leaf = Self { min, max, share, gain: 1.0 + brighter, rarity, count: lobes.len(), lobes: 0..0 };
+        (leaf, lobes)
+    }
+}
+
+fn bounds(photons: &[Photon]) -> (DVec3, DVec3) {
+    let start = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    photons.iter().fold(start, |(min, max), p| (min.min(p.position), max.max(p.position)))
+}

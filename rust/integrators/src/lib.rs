@@ -1,0 +1,200 @@
+//! Floor 4: what turns rays into radiance.
+
+mod ambient_occlusion;
+mod aov;
+mod beam_traced;
+mod bidirectional;
+mod cone_traced;
+mod direct;
+mod distributed;
+mod guiding;
+mod light_paths;
+mod light_traced;
+mod nesting;
+mod parting;
+mod passing;
+mod path;
+mod photon_map;
+mod photons;
+mod radiosity;
+mod ray_cast;
+mod roulette;
+mod shadows;
+#[cfg(test)]
+mod tests;
+mod transparent;
+mod transport;
+mod volumes;
+mod whitted;
+
+pub use ambient_occlusion::AmbientOcclusion;
+pub use aov::{Channel, aovs};
+pub use beam_traced::BeamTraced;
+pub use bidirectional::{Alone, Bidirectional, Merge};
+pub use cone_traced::ConeTraced;
+pub use direct::Direct;
+pub use distributed::Distributed;
+pub use guiding::{Guide, LocalGuide, is_matt};
+pub use light_traced::LightTraced;
+pub use path::Path;
+pub use photon_map::{Kernel, PhotonMap, ProgressivePhotonMap};
+pub use photons::{Photon, Photons, photons};
+pub use radiosity::Radiosity;
+pub use ray_cast::RayCast;
+pub use transparent::Transparent;
+pub use transport::FirstSeen;
+pub use whitted::Whitted;
+
+use raywright_base::math::Ray;
+use raywright_base::sampling::Sampler;
+use raywright_base::workers::Cancel;
+use raywright_optics::Rgb;
+use raywright_scene::{Camera, Footprint, Scene};
+use std::ops::Range;
+
+/// One sample of one pixel: the ray that the camera sends, and the numbers for what follows.
+#[derive(Clone, Debug)]
+pub struct CameraSample {
+    /// The ray, of unit direction.
+    pub ray: Ray,
+    /// Its numbers; the camera has used the first [`raywright_base::sampling::CAMERA_DIMENSIONS`].
+    pub sampler: Sampler,
+}
+
+/// What there is to be rendered.
+#[derive(Clone, Copy)]
+pub struct Job<'a> {
+    /// What is looked at.
+    pub scene: &'a Scene,
+    /// What looks.
+    pub camera: &'a dyn Camera,
+    /// That of the camera's rays, for the filtering of textures.
+    pub footprint: Footprint,
+    /// Which of all possible pictures.
+    pub seed: u64,
+    /// How many samples of a pixel, from its first on, belong together: only between these is their spread told.
+    pub batch: u32,
+}
+
+impl<'a> Job<'a> {
+    /// A picture of a scene by a camera, of a seed, whose samples come in batches of so many.
+    pub fn new(scene: &'a Scene, camera: &'a dyn Camera, seed: u64, batch: u32) -> Self {
+        let spread = camera.spread();
+        let footprint = Footprint { width: spread.width, spread: spread.angle };
+        Self { scene, camera, footprint, seed, batch }
+    }
+}
+
+/// A way to turn rays into radiance.
+pub trait Integrator: Send + Sync {
+    /// Begins to work on a picture: makes all that its workers share. That may take long, on the current pool of
+    /// threads; it returns soon after `cancel` is raised, with what is of no use.
+    fn begin<'a>(&'a self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a>;
+
+    /// Why it cannot take a picture of a scene, or none whose pixels have as many samples as their errors ask for, if
+    /// that is so: what the one is, and what to do instead.
+    fn objection(&self, _scene: &Scene, _adaptive: bool) -> Option<String> {
+        None
+    }
+
+    /// Whether it knows of media, which dim and scatter light between surfaces.
+    fn takes_media(&self) -> bool {
+        false
+    }
+
+    /// Whether its paths know of wavelengths, or nothing that it shows depends on these.
+    fn takes_waves(&self) -> bool {
+        false
+    }
+
+    /// Why it cannot take a picture by a camera, or by a filter of this radius, in pixels, if that is so.
+    fn view_objection(&self, _camera: &dyn Camera, _filter_radius: f64) -> Option<String> {
+        None
+    }
+
+    /// The side of the square patches of pixels whose samples of the same number work together; 1 where each sample is
+    /// on its own.
+    fn patch(&self, _scene: &Scene) -> u32 {
+        1
+    }
+
+    /// The same, all of whose estimates gather light from so many times as far (at most 1), at the mean of the squared
+    /// radii that so many samples have; `None` of an integrator that is not biased by how far it gathers light from.
+    fn narrowed(&self, _scale: f64, _samples: u32) -> Option<Box<dyn Integrator>> {
+        None
+    }
+
+    /// Whether workers must run on the thread that asked for the picture, as what is written in Python must. They are
+    /// then handed batches of tens of thousands of samples, and may raise the cancel themselves to end the render.
+    fn runs_on_caller(&self) -> bool {
+        false
+    }
+}
+
+/// An integrator at work on a picture, and what all of its threads share.
+pub trait Session: Send + Sync {
+    /// What one thread works with: the memory that it needs, to be used again and again.
+    fn worker(&self) -> Box<dyn Worker + '_>;
+
+    /// Called before each pass, when so many samples of each pixel are done, and again if it has to be begun anew. What
+    /// changes from pass to pass must depend on that number alone. Returns soon after `cancel` is raised.
+    fn before_pass(&self, _done: u32, _cancel: &Cancel) {}
+
+    /// How many samples of each pixel it can be made ready for at a time; `None` where it need not be.
+    fn at_once(&self) -> Option<u32> {
+        None
+    }
+
+    /// Makes it ready for samples of these numbers, at most [`Session::at_once`], before they are taken: with all
+    /// threads of the current pool, or `alone`. What is made depends on their numbers, and not on which were asked for
+    /// before. Returns soon after `cancel` is raised, with what is of no use.
+    fn before_samples(&self, _numbers: Range<u32>, _alone: bool, _cancel: &Cancel) {}
+
+    /// When samples of a number see the scene, from 0 to 1 while the shutter is open; `None` where each pixel's does at
+    /// a time of its own.
+    fn time(&self, _number: u32) -> Option<f64> {
+        None
+    }
+
+    /// What one thread follows paths from lights with; none where nothing comes to the film but by its own rays.
+    fn light_worker(&self) -> Option<Box<dyn LightWorker + '_>> {
+        None
+    }
+}
+
+/// Light that has come to the camera by itself, not along a ray that was sent for it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Splat {
+    /// Where on the film, in pixels as [`Camera`] counts them: beyond the picture too.
+    pub film: [f64; 2],
+    /// Radiance times pixels: over the number of paths, its sum over those in a pixel is, on average, the part of that
+    /// pixel's radiance that they find.
+    pub light: Rgb,
+}
+
+/// An integrator at work on paths that start at lights.
+pub trait LightWorker: Send {
+    /// Follows a path for each of these numbers, and adds what it brings to the film. What is added, and in which
+    /// order, depends on these paths alone. Returns soon after `cancel` is raised, with what is of no use.
+    fn follow(&mut self, paths: &mut [Sampler], cancel: &Cancel, splats: &mut Vec<Splat>);
+}
+
+/// An integrator at work on batches of camera samples. It advances all paths of a batch together, one bounce at a
+/// time, so that every ray goes through the accelerator in large groups.
+pub trait Worker: Send {
+    /// Writes the radiance that arrives along each ray. Each depends on its own sample only, not on the batch that it
+    /// is in. Returns early, with nothing of use written, soon after `cancel` is raised.
+    fn radiance(&mut self, samples: &mut [CameraSample], cancel: &Cancel, radiance: &mut [Rgb]);
+
+    /// As [`Worker::radiance`], of samples that stand in groups one after the other, of so many each. What arrives
+    /// along a ray may depend on all samples of its group, but on no others, and its mean not even on these.
+    fn radiance_in_groups(
+        &mut self,
+        samples: &mut [CameraSample],
+        _groups: &[u32],
+        cancel: &Cancel,
+        radiance: &mut [Rgb],
+    ) {
+        self.radiance(samples, cancel, radiance);
+    }
+}

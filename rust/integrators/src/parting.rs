@@ -1,0 +1,83 @@
+//! Where the index of refraction parts the wavelengths of a path.
+
+use raywright_base::math::DVec3;
+use raywright_optics::spectra::Waves;
+use raywright_optics::{Bsdf, Dispersive, Rgb, fresnel};
+use raywright_scene::materials::Material;
+
+/// What parts wavelengths at a surface. Bent light has one direction for each of them, so all but the hero end; what a
+/// smooth surface mirrors keeps its direction, and all go on.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Parting {
+    /// Of each wavelength, the index beyond over that before the surface, if all light that is not mirrored is bent.
+    etas: Option<Rgb>,
+}
+
+impl Parting {
+    /// What parts them at a surface of a material, if anything does, and the hero's index of refraction on the other
+    /// side of what the surface encloses: that is `outside` for yellow light, and goes with wavelength as `around` has
+    /// it.
+    pub fn at(
+        material: &dyn Material,
+        is_front: bool,
+        (outside, around): (f64, Dispersive),
+        waves: &Waves,
+    ) -> (f64, Option<Self>) {
+        // What encloses nothing knows of nothing around it.
+        let Some(interior) = material.interior().filter(|within| around.is_any() || within.dispersion.is_any()) else {
+            return (outside, None);
+        };
+        let out = waves.lanes(|wavelength| around.at(wavelength).unwrap_or(outside));
+        let eta = |within: Rgb| if is_front { within / out } else { out / within };
+        let within = || waves.lanes(|wavelength| interior.dispersion.at(wavelength).unwrap_or(interior.ior));
+        (out[0], Some(Self { etas: material.is_clear().then(|| eta(within())) }))
+    }
+
+    /// Whether light may be mirrored first, by how the surface scatters: if all wavelengths are mirrored about alike,
+    /// as by what is denser.
+    pub fn waits(&self, bsdf: &impl Bsdf) -> bool {
+        bsdf.is_delta() && self.etas.is_some_and(|etas| etas.min() > 1.0)
+    }
+
+    /// What each wavelength is to be multiplied by where the hero has been mirrored back along a direction of the
+    /// shading frame.
+    pub fn mirrored(&self, wo: DVec3) -> Rgb {
+        let Some(etas) = self.etas else { return Rgb::ONE };
+        let reflectance = etas.map(|eta| fresnel::dielectric(wo.z.abs().min(1.0), eta));
+        if reflectance[0] > 0.0 { reflectance / reflectance[0] } else { Rgb::ONE }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use raywright_optics::{Dielectric, Dispersion};
+    use raywright_scene::materials::{DielectricMaterial, DiffuseMaterial, Interior};
+
+    #[test]
+    fn mirrored_light_keeps_the_reflectance_of_each_wavelength() {
+        let dispersion = Dispersive::of(Dispersion::Cauchy([1.6, 0.02])).unwrap();
+        let interior = Interior { ior: 1.66, dispersion, priority: 0 };
+        let glass = DielectricMaterial { interior, roughness: 0.0.into(), medium: None };
+        let waves = Waves::of(0.4);
+        let (outside, parting) = Parting::at(&glass, true, (1.33, Dispersive::NONE), &waves);
+        let parting = parting.unwrap();
+        assert_eq!(outside, 1.33);
+        assert!(parting.waits(&Dielectric::new(1.2, 0.0)) && !parting.waits(&Dielectric::new(1.2, 0.3)));
+        let found = parting.mirrored(DVec3::new(0.6, 0.0, 0.8));
+        for lane in 0..3 {
+            let of = |lane: usize| fresnel::dielectric(0.8, dispersion.at(waves.all()[lane]).unwrap() / 1.33);
+            assert!((found[lane] - of(lane) / of(0)).abs() < 1e-14);
+        }
+        // From within, all may be mirrored for one and hardly anything for another.
+        let (_, within) = Parting::at(&glass, false, (1.0, Dispersive::NONE), &waves);
+        assert!(!within.unwrap().waits(&Dielectric::new(0.6, 0.0)));
+        // What is the same for all wavelengths parts them in what disperses, if it encloses anything.
+        let plain = DielectricMaterial { interior: Interior::new(1.2, 0), ..glass };
+        let (around, parting) = Parting::at(&plain, true, (1.66, dispersion), &waves);
+        assert_eq!(around, dispersion.at(waves.hero()).unwrap());
+        assert!(!parting.unwrap().waits(&Dielectric::new(0.7, 0.0)));
+        let (around, parting) = Parting::at(&DiffuseMaterial::default(), true, (1.0, dispersion), &waves);
+        assert!(around == 1.0 && parting.is_none());
+    }
+}

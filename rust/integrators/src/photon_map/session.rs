@@ -1,0 +1,167 @@
+//! Pictures by photon maps.
+
+use super::among::room;
+use super::cover::cover;
+use super::estimate::Estimate;
+use super::kernel::Kernel;
+use super::maps::{Maps, PhotonIndex, fly};
+use super::radius::NEIGHBOURS;
+use super::series::{Sending, Series};
+use super::store::Suitable;
+use super::volume_photon::VolumeIndex;
+use crate::light_paths::Limits;
+use crate::nesting::MediumStack;
+use crate::transport::{Gather, MattLight, Settings, Visit};
+use crate::volumes::{Filled, KnownLight, Scattering, Volumes};
+use crate::{Job, Session, Worker};
+use raywright_base::workers::Cancel;
+use raywright_optics::spectra::Waves;
+use raywright_optics::{Bsdf, Rgb};
+use raywright_scene::materials::BsdfMix;
+use raywright_scene::{Emitters, Scene, SurfaceInteraction};
+use std::cell::Cell;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// How a picture is made of photons.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Recipe {
+    pub sending: Sending,
+    pub nearest: Option<u32>,
+    pub gather: u32,
+    pub kernel: Kernel,
+    pub scale: f64,
+}
+
+/// What samples are being taken by.
+struct Known<'a> {
+    scene: &'a Scene,
+    estimate: Estimate,
+    /// That among media.
+    among: Estimate,
+    series: Series<'a, Maps>,
+}
+
+impl Known<'_> {
+    fn matt<B: Bsdf>(&self, here: &SurfaceInteraction<B>, visit: Visit) -> Rgb {
+        let Some(maps) = self.series.of(visit.number) else { return Rgb::ZERO };
+        let time = || self.series.scene_time(visit.number);
+        // Of both maps the disk is the same where all within a radius count, and probed once.
+        let probed = Cell::new((f64::NAN, 0.0));
+        let share = |squared: f64| {
+            if probed.get().0 != squared {
+                probed.set((squared, cover(self.scene, here, squared, self.estimate.kernel, time())));
+            }
+            probed.get().1
+        };
+        let gathered = |of| self.estimate.radiance(of, here, &visit, share);
+        let light = gathered(&maps.caustic);
+        if visit.looks_about { light } else { light + gathered(&maps.global) }
+    }
+}
+
+impl MattLight for Known<'_> {
+    fn radiance(&self, here: &SurfaceInteraction<&BsdfMix>, visit: Visit) -> Rgb {
+        self.matt(here, visit)
+    }
+
+    fn waves(&self, number: u32) -> Option<Waves> {
+        self.series.waves(number)
+    }
+}
+
+impl KnownLight for Known<'_> {
+    fn at_surface(&self, here: &SurfaceInteraction, visit: Visit) -> Rgb {
+        self.matt(here, visit)
+    }
+
+    fn waves(&self, number: u32) -> Option<Waves> {
+        self.series.waves(number)
+    }
+
+    fn among(&self, here: &Scattering, media: &MediumStack<Filled>, time: f64, visit: Visit) -> Rgb {
+        let Some(maps) = self.series.of(visit.number) else { return Rgb::ZERO };
+        let share = |squared: f64| room(self.scene, here.position, media, squared, self.among.kernel, time);
+        self.among.scattered(&maps.among, here, media, &visit, share)
+    }
+}
+
+/// How many times as far nearest photons are looked for as they lie where most are. Where there are hardly any, the
+/// whole map would be looked through at each place, and light is too dark there to need as many.
+const FARTHEST: f64 = 8.0;
+
+/// What workers on a picture share.
+pub(super) struct Mapped<'a> {
+    job: Job<'a>,
+    /// None where nothing shines, or no photon would be kept.
+    emitters: Option<Emitters<'a>>,
+    known: Arc<Known<'a>>,
+    seen: Box<dyn Session + 'a>,
+}
+
+impl<'a> Mapped<'a> {
+    pub fn new(job: Job<'a>, recipe: Recipe, radius: Option<f64>, cancel: &Cancel) -> Self {
+        let Recipe { sending, nearest, gather, kernel, scale } = recipe;
+        let limits = sending.limits;
+        // What comes straight from lights is kept among media alone.
+        let media = job.scene.plan().needs().media;
+        let least = u32::from(!media);
+        let emitters = job.scene.emitters().filter(|_| limits.max_depth.is_none_or(|depth| depth > least));
+        let series = Series::new(job, sending);
+        let suitable = || series.suitable(emitters.as_ref(), cancel);
+        let far = |count: u32| {
+            let (suitable, more) = (suitable(), f64::from(count) / NEIGHBOURS as f64);
+            Suitable { disk: FARTHEST * suitable.disk * more.sqrt(), ball: FARTHEST * suitable.ball * more.cbrt() }
+        };
+        let given = radius.map(|radius| Suitable { disk: radius, ball: radius });
+        let (most, series) = match nearest {
+            None => {
+                let radii = given.unwrap_or_else(suitable);
+                (
+                    Suitable { disk: f64::INFINITY, ball: f64::INFINITY },
+                    series.with_radius(radii.disk).with_ball(radii.ball),
+                )
+            }
+            Some(count) => {
+                let radii = given.unwrap_or_else(|| far(count));
+                (Suitable { disk: radii.disk * radii.disk, ball: radii.ball * radii.ball }, series)
+            }
+        };
+        let estimate = Estimate { nearest, most: most.disk, kernel, scale };
+        let among = Estimate { most: most.ball, ..estimate };
+        let known = Arc::new(Known { scene: job.scene, estimate, among, series });
+        let gather = Some(Gather { rays: gather, caustic: sending.caustic });
+        let Limits { max_depth, roulette_depth } = limits;
+        let seen = if media {
+            let settings = Volumes { gather, ..Volumes::path(max_depth, roulette_depth) };
+            settings.begin_with(job, Arc::clone(&known) as Arc<dyn KnownLight + 'a>)
+        } else {
+            let settings = Settings { gather, ..Settings::path(max_depth, roulette_depth) };
+            settings.begin_with(job, Arc::clone(&known) as Arc<dyn MattLight + 'a>)
+        };
+        Self { job, emitters, known, seen }
+    }
+}
+
+impl Session for Mapped<'_> {
+    fn worker(&self) -> Box<dyn Worker + '_> {
+        self.seen.worker()
+    }
+
+    fn at_once(&self) -> Option<u32> {
+        Some(self.known.series.at_once())
+    }
+
+    fn before_samples(&self, numbers: Range<u32>, alone: bool, cancel: &Cancel) {
+        let Some(emitters) = &self.emitters else { return };
+        self.known.series.prepare(numbers, cancel, |flight, radius| {
+            let found = fly(self.job.scene, emitters, self.job.camera, flight, alone, cancel);
+            let [caustic, global] = found.surfaces.map(|photons| PhotonIndex::new(photons, radius));
+            Some(Maps { caustic, global, among: VolumeIndex::new(found.among, self.known.series.ball(flight.number)) })
+        });
+    }
+
+    fn time(&self, number: u32) -> Option<f64> {
+        self.known.series.time(number)
+    }
+}

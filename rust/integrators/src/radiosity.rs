@@ -1,0 +1,147 @@
+//! Pictures of a radiosity solution.
+
+use super::{CameraSample, Integrator, Job, Session, Worker};
+use raywright_accel::Primitives;
+use raywright_base::math::{Hit, Ray};
+use raywright_base::workers::Cancel;
+use raywright_optics::{Bsdf, Rgb};
+use raywright_scene::{Patches, Scene, SurfaceInteraction};
+use std::f64::consts::FRAC_1_PI;
+
+/// Looks up what arrives at the patch that a camera's ray meets, and shows what the surface reflects of it and emits:
+/// one ray a sample, from any camera. Textures are looked up where the ray meets them, not by the mean of a patch.
+#[derive(Clone, Debug)]
+pub struct Radiosity {
+    /// How the scene was cut, all copies in it counted.
+    pub patches: Patches,
+    /// The first of `patches`' primitives that each primitive of the scene stands for, and their number at the end: a
+    /// copy of a prototype stands for as many as there are in it.
+    pub first: Vec<u32>,
+    /// Which of `patches`' primitives are mirrored: their second and third corners have changed places.
+    pub mirrored: Vec<bool>,
+    /// Whether backs follow fronts in `irradiance`; else they are black.
+    pub has_backs: bool,
+    /// The irradiance at the three corners of each side of a patch, W/m²: between them it is linear.
+    pub irradiance: Vec<[Rgb; 3]>,
+    /// The area of all that was cut and stands in no copy, by which another scene is told.
+    pub area: f64,
+}
+
+impl Integrator for Radiosity {
+    fn begin<'a>(&'a self, job: Job<'a>, _cancel: &Cancel) -> Box<dyn Session + 'a> {
+        Box::new(Shown { solution: self, scene: job.scene })
+    }
+
+    fn objection(&self, scene: &Scene, _adaptive: bool) -> Option<String> {
+        let geometry = scene.geometry();
+        let count = geometry.count();
+        let faces = self.first.len() - 1;
+        if count != faces {
+            return Some(format!("the radiosity is of a scene of {faces} faces, this one has {count}: solve it anew"));
+        }
+        // The area of copies is not at hand; how many faces each of them has is.
+        let mut area = 0.0;
+        for primitive in 0..count as u32 {
+            let (shape, _) = geometry.locate(primitive);
+            let [first, next] = [0, 1].map(|more| self.first[primitive as usize + more]);
+            let inside = geometry.instances_of(shape).map(|copies| copies.prototype().count());
+            if next - first != inside.unwrap_or(1) {
+                return Some(format!("the radiosity is of a scene whose shape {shape} is another one: solve it anew"));
+            }
+            area += if inside.is_none() { geometry.area(primitive) } else { 0.0 };
+        }
+        let is_same = (area - self.area).abs() <= 1e-9 * self.area;
+        (!is_same).then(|| {
+            format!("the radiosity is of a scene of area {:.6}, this one has {area:.6}: solve it anew", self.area)
+        })
+    }
+}
+
+/// A solution and its scene.
+struct Shown<'a> {
+    solution: &'a Radiosity,
+    scene: &'a Scene,
+}
+
+impl Session for Shown<'_> {
+    fn worker(&self) -> Box<dyn Worker + '_> {
+        Box::new(Looking { shown: self, rays: Vec::new(), hits: Vec::new() })
+    }
+}
+
+impl Shown<'_> {
+    fn radiance(&self, ray: &Ray, hit: &Hit) -> Rgb {
+        if !hit.is_hit() {
+            return self.scene.lights().infinite_radiance(ray.direction);
+        }
+        let geometry = self.scene.geometry();
+        let surface = geometry.surface(ray, hit);
+        let emission = self.scene.emission_at(&surface).sent(geometry, ray, hit, &surface, || 0.0);
+        let primitive = self.solution.first[hit.primitive as usize] + hit.inner;
+        let [u, v] = hit.uv;
+        let uv = if self.solution.mirrored[primitive as usize] { [v, u] } else { [u, v] };
+        let (patch, [u, v]) = self.solution.patches.find(primitive, uv);
+        let is_front = surface.is_front(ray);
+        if !is_front && !self.solution.has_backs {
+            return emission;
+        }
+        let patch = patch as usize + if is_front { 0 } else { self.solution.patches.count() };
+        let [a, b, c] = self.solution.irradiance[patch];
+        // Coordinates of what is no triangle are no weights, and its corners are alike.
+        let irradiance = a + (b - a) * u + (c - a) * v;
+        let here = SurfaceInteraction::new(self.scene, ray, hit, surface, 0.0, 1.0);
+        emission + here.bsdf().diffuse().unwrap_or(Rgb::ZERO) * irradiance * FRAC_1_PI
+    }
+}
+
+struct Looking<'a> {
+    shown: &'a Shown<'a>,
+    rays: Vec<Ray>,
+    hits: Vec<Hit>,
+}
+
+impl Worker for Looking<'_> {
+    fn radiance(&mut self, samples: &mut [CameraSample], cancel: &Cancel, radiance: &mut [Rgb]) {
+        if cancel.is_raised() {
+            return;
+        }
+        self.rays.clear();
+        self.rays.extend(samples.iter().map(|sample| sample.ray));
+        self.hits.clear();
+        self.hits.resize(self.rays.len(), Hit::MISS);
+        self.shown.scene.intersect(&self.rays, &mut self.hits);
+        for ((radiance, ray), hit) in radiance.iter_mut().zip(&self.rays).zip(&self.hits) {
+            *radiance = self.shown.radiance(ray, hit);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use raywright_base::sampling::Sampler;
+    use raywright_scene::Camera;
+    use raywright_scene::fixtures::cornell;
+
+    #[test]
+    fn a_picture_shows_what_is_emitted_and_reflected() {
+        let (scene, camera) = cornell(16, 16);
+        let patches = Patches::new(vec![2; scene.geometry().count()]).unwrap();
+        let irradiance = vec![[Rgb::splat(2.0); 3]; patches.count()];
+        let area = (0..scene.geometry().count() as u32).map(|p| scene.geometry().area(p)).sum();
+        let count = patches.primitives();
+        let (first, mirrored) = ((0..=count as u32).collect(), vec![false; count]);
+        let radiosity = Radiosity { patches, first, mirrored, has_backs: false, irradiance, area };
+        assert_eq!(radiosity.objection(&scene, false), None);
+        let other = Radiosity { area: 2.0 * area, ..radiosity.clone() };
+        assert!(other.objection(&scene, false).unwrap().contains("area"));
+        let session = radiosity.begin(Job::new(&scene, &camera, 0, 1), &Cancel::default());
+        let rays = (0..256).map(|i| camera.ray([f64::from(i % 16) + 0.5, f64::from(i / 16) + 0.5], [0.5; 2], 0.0).ray);
+        let mut samples: Vec<_> = rays.map(|ray| CameraSample { ray, sampler: Sampler::new(0, 0, 0) }).collect();
+        let mut seen = vec![Rgb::ZERO; 256];
+        session.worker().radiance(&mut samples, &Cancel::default(), &mut seen);
+        // White walls, and the lamp, which reflects nothing.
+        assert!(seen.iter().any(|light| (light.mean() - 2.0 * 0.73 * FRAC_1_PI).abs() < 1e-12));
+        assert!(seen.iter().any(|light| (light.mean() - 15.0).abs() < 1e-12));
+    }
+}

@@ -1,0 +1,43 @@
+//! Ray casting.
+
+use super::transport::{Follow, Settings};
+use super::{Integrator, Job, Session};
+use raywright_base::workers::Cancel;
+use raywright_optics::Rgb;
+
+/// Ray casting with shadows (Appel, "Some Techniques for Shading Machine Renderings of Solids", 1968): what shines,
+/// what the lights give a surface by its scattering, and ambient light. Nothing is followed further, so that mirrors
+/// and glass are black.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RayCast {
+    /// Radiance that arrives from everywhere, unshadowed. Surfaces reflect their ambient share of it
+    /// ([`Material::ambient`](raywright_scene::Material::ambient)).
+    pub ambient: Rgb,
+    /// Whether what lies on the way to a light shadows it.
+    pub shadows: bool,
+    /// How many light samples a surface takes, from equal shares of the lights; at least 1.
+    pub light_samples: u32,
+}
+
+impl Default for RayCast {
+    fn default() -> Self {
+        Self { ambient: Rgb::ZERO, shadows: true, light_samples: 1 }
+    }
+}
+
+impl Integrator for RayCast {
+    fn begin<'a>(&'a self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a> {
+        Settings {
+            follow: Follow::Nothing,
+            shadows: self.shadows,
+            ambient: self.ambient,
+            light_samples: self.light_samples.max(1),
+            ..Settings::path(Some(1), u32::MAX)
+        }
+        .begin(job, cancel)
+    }
+
+    fn takes_waves(&self) -> bool {
+        true
+    }
+}

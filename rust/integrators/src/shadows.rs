@@ -1,0 +1,138 @@
+//! Whether light that was drawn arrives.
+
+use super::nesting::{Boundary, MediumStack, around};
+use raywright_base::math::{Hit, Ray, RayLanes, RayQueue};
+use raywright_optics::Rgb;
+use raywright_scene::materials::Interior;
+use raywright_scene::textures::TexturePoint;
+use raywright_scene::{Scene, ShadingPoint};
+
+/// Shadow rays of a batch, and what arrives along each if nothing lies on the way.
+#[derive(Default)]
+pub(super) struct Shadows {
+    rays: RayQueue,
+    arriving: Vec<(u32, Rgb)>,
+    /// What each starts in, in a scene of nested media.
+    media: Vec<MediumStack>,
+    occluded: Vec<bool>,
+    hits: Vec<Hit>,
+    /// The parts of rays around hits of what encloses a medium, and which rays' they are.
+    windows: Vec<Ray>,
+    of: Vec<usize>,
+}
+
+impl Shadows {
+    /// Forgets all.
+    pub fn clear(&mut self) {
+        self.rays.clear();
+        self.arriving.clear();
+        self.media.clear();
+    }
+
+    /// A ray.
+    #[inline]
+    pub fn push(&mut self, ray: &Ray) {
+        self.rays.push(ray);
+    }
+
+    /// Rays of the lanes in a mask.
+    #[inline]
+    pub fn push_lanes(&mut self, rays: &RayLanes, mask: u32) {
+        self.rays.push_lanes(rays, mask);
+    }
+
+    /// How much arrives at a sample along the next ray, of those pushed, for which it is not said yet.
+    #[inline]
+    pub fn bring(&mut self, sample: u32, arriving: Rgb) {
+        self.arriving.push((sample, arriving));
+    }
+
+    /// What the next ray starts in for which it is not said yet.
+    #[inline]
+    pub fn start_in(&mut self, media: MediumStack) {
+        self.media.push(media);
+    }
+
+    /// Adds to each sample what arrives at it, as if nothing were in the way.
+    pub fn add_all(&mut self, radiance: &mut [Rgb]) {
+        for &(sample, arriving) in &self.arriving {
+            radiance[sample as usize] += arriving;
+        }
+    }
+
+    /// Adds to each sample what arrives at it in a scene in which every hit blocks.
+    pub fn add_unblocked(&mut self, scene: &Scene, radiance: &mut [Rgb]) {
+        self.occluded.resize(self.rays.len(), false);
+        scene.occluded_queue(&mut self.rays, &mut self.occluded);
+        for (&(sample, arriving), &occluded) in self.arriving.iter().zip(&self.occluded) {
+            if !occluded {
+                radiance[sample as usize] += arriving;
+            }
+        }
+    }
+
+    /// Adds to each sample what arrives at it through masks, dimmed by their opacity, and through surfaces that are
+    /// none because another medium is there.
+    pub fn add_through(&mut self, scene: &Scene, nested: bool, radiance: &mut [Rgb]) {
+        // Light is added in the order of the rays, whichever of them are followed for longer.
+        let mut on_way: Vec<usize> = (0..self.rays.len()).collect();
+        while !on_way.is_empty() {
+            let rays: Vec<Ray> = on_way.iter().map(|&i| self.rays.get(i)).collect();
+            self.hits.clear();
+            self.hits.resize(rays.len(), Hit::MISS);
+            scene.intersect(&rays, &mut self.hits);
+            self.windows.clear();
+            self.of.clear();
+            if nested {
+                for (i, (ray, hit)) in rays.iter().zip(&self.hits).enumerate() {
+                    if hit.is_hit()
+                        && let Some(window) = around::<Interior>(scene, ray, hit)
+                    {
+                        self.windows.push(window);
+                        self.of.push(i);
+                    }
+                }
+            }
+            let crossings = scene.crossings(&self.windows);
+            let mut window = 0;
+            let mut kept = 0;
+            for i in 0..rays.len() {
+                let (ray, hit, which) = (&rays[i], &self.hits[i], on_way[i]);
+                if !hit.is_hit() {
+                    continue;
+                }
+                if self.of.get(window) == Some(&i) {
+                    window += 1;
+                    let hits = crossings.of_ray(window - 1);
+                    if let Boundary::None(media) = Boundary::new(scene, ray, &self.media[which], hits) {
+                        self.rays.set_t_min(which, self.windows[window - 1].t_max.next_up());
+                        self.media[which] = media;
+                        on_way[kept] = which;
+                        kept += 1;
+                        continue;
+                    }
+                }
+                let opacity = opacity(scene, ray, hit);
+                self.arriving[which].1 *= 1.0 - opacity;
+                if opacity < 1.0 {
+                    self.rays.set_t_min(which, hit.t.next_up());
+                    on_way[kept] = which;
+                    kept += 1;
+                }
+            }
+            on_way.truncate(kept);
+        }
+        self.add_all(radiance);
+    }
+}
+
+/// The share of rays that meet what is hit.
+pub(super) fn opacity(scene: &Scene, ray: &Ray, hit: &Hit) -> f64 {
+    let material = scene.material_of(hit);
+    if material.is_opaque() {
+        return 1.0;
+    }
+    let (needs, surface) = (material.needs(), scene.geometry().surface(ray, hit));
+    let texture: TexturePoint = ShadingPoint::new(scene.geometry(), ray, hit, surface, needs, 0.0).texture;
+    material.opacity(&texture).clamp(0.0, 1.0)
+}

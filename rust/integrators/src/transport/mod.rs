@@ -1,0 +1,168 @@
+//! What path tracing and its ancestors share: a batch of paths on their way, one bounce at a time.
+
+mod aiming;
+mod ambient;
+mod arrivals;
+mod arrive;
+mod block;
+mod continuation;
+mod dimensions;
+mod direct_light;
+mod emission;
+mod features;
+mod first_seen;
+mod guided;
+mod known;
+mod matt;
+mod meet;
+mod path_state;
+mod resampling;
+mod reuse;
+mod shade;
+mod splitting;
+mod waves;
+mod weights;
+mod widths;
+mod worker;
+
+use super::{Guide, Job, Session, Worker};
+pub(super) use dimensions::Dimensions;
+use features::{Features, General, Open, Plain, Sharing};
+pub use first_seen::FirstSeen;
+pub(super) use known::{Gather, MattLight, Visit};
+use raywright_base::workers::Cancel;
+use raywright_optics::Rgb;
+use raywright_scene::{Scene, ShadingVariant};
+use std::sync::Arc;
+pub(super) use weights::power_heuristic;
+pub(super) use widths::widened;
+use worker::TransportWorker;
+
+/// Along which of the directions that surfaces scatter into paths are followed. What is not followed is left to the
+/// light that is asked directly.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Follow {
+    /// All.
+    All,
+    /// Those drawn with a density, in solid angle, above this.
+    MinDensity(f64),
+    /// Single directions only, and of these every one: paths are split.
+    DeltaLobes,
+    /// None.
+    Nothing,
+}
+
+/// How light is transported.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Settings {
+    /// The greatest number of bounces.
+    pub max_depth: Option<u32>,
+    /// Roulette is played from this number of bounces on.
+    pub roulette_depth: u32,
+    /// How often light is asked at the first surface.
+    pub light_samples: u32,
+    /// Into how many a path is split at the first surface.
+    pub splits: u32,
+    /// Which directions are followed.
+    pub follow: Follow,
+    /// Whether what lies on the way to a light shadows it.
+    pub shadows: bool,
+    /// Radiance that arrives from everywhere in place of what is not followed, where it is scattered diffusely.
+    pub ambient: Rgb,
+    /// Paths end that contribute less than this, in any colour.
+    pub least: f64,
+    /// Whether paths of a group share what they find, in scenes where they can ([`can_share`]).
+    pub shares: bool,
+    /// Whether paths are guided to where light comes from by way of mirrors and glass.
+    pub guided: bool,
+    /// What becomes of paths at matt surfaces whose light is known; where that is so, [`Settings::begin_with`] is told
+    /// of it. `None` where they go on.
+    pub gather: Option<Gather>,
+}
+
+impl Settings {
+    /// Those of a path tracer.
+    pub fn path(max_depth: Option<u32>, roulette_depth: u32) -> Self {
+        Self {
+            max_depth,
+            roulette_depth,
+            light_samples: 1,
+            splits: 1,
+            follow: Follow::All,
+            shadows: true,
+            ambient: Rgb::ZERO,
+            least: 0.0,
+            shares: false,
+            guided: false,
+            gather: None,
+        }
+    }
+
+    /// Whether they are those of a path tracer, the only ones that the special variants know.
+    fn are_plain(&self) -> bool {
+        self.light_samples == 1
+            && self.splits == 1
+            && self.follow == Follow::All
+            && self.shadows
+            && self.ambient.is_black()
+            && self.least == 0.0
+            && self.gather.is_none()
+    }
+
+    /// Begins with the variant that has what the scene and these settings need.
+    pub fn begin<'a>(self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a> {
+        self.begin_as(job, job.scene.plan().variant(), cancel)
+    }
+
+    /// As [`Settings::begin`], with this variant or one that can do more.
+    pub fn begin_as<'a>(self, job: Job<'a>, variant: ShadingVariant, cancel: &Cancel) -> Box<dyn Session + 'a> {
+        let guide = if self.guided { Guide::of(job.scene, cancel) } else { None };
+        Box::new(Transport { settings: self, job, variant, guide, known: None })
+    }
+
+    /// As [`Settings::begin`], where light at matt surfaces is known.
+    pub fn begin_with<'a>(self, job: Job<'a>, known: Arc<dyn MattLight + 'a>) -> Box<dyn Session + 'a> {
+        let variant = ShadingVariant::General;
+        Box::new(Transport { settings: self, job, variant, guide: None, known: Some(known) })
+    }
+}
+
+/// What workers on a picture share.
+struct Transport<'a> {
+    settings: Settings,
+    job: Job<'a>,
+    variant: ShadingVariant,
+    /// Where light comes from by way of what is sharp, if paths are guided and there is any.
+    guide: Option<Arc<Guide>>,
+    /// What is known of the light at matt surfaces.
+    known: Option<Arc<dyn MattLight + 'a>>,
+}
+
+impl Transport<'_> {
+    fn at_work<N: Features>(&self) -> Box<dyn Worker + '_> {
+        Box::new(TransportWorker::<N>::new(self.settings, &self.job, self.guide.as_deref(), self.known.as_deref()))
+    }
+}
+
+impl Session for Transport<'_> {
+    fn worker(&self) -> Box<dyn Worker + '_> {
+        let (shares, are_plain) = (self.settings.shares, self.settings.are_plain());
+        match self.variant {
+            ShadingVariant::Plain if shares => self.at_work::<Sharing<Plain>>(),
+            _ if shares => self.at_work::<Sharing<Open>>(),
+            ShadingVariant::Plain if are_plain => self.at_work::<Plain>(),
+            ShadingVariant::Open if are_plain => self.at_work::<Open>(),
+            _ => self.at_work::<General>(),
+        }
+    }
+}
+
+/// Whether paths can share in a scene: two points see each other or do not, at any time, and what is found at a point
+/// does not depend on who looks.
+///
+/// Masks and nested media make sight more than a yes or no; where something moves, the samples of a group see the scene
+/// at times of their own; and a filtered texture shows to each what is of its own width.
+pub(super) fn can_share(scene: &Scene) -> bool {
+    let needs = scene.plan().needs();
+    scene.plan().suits(ShadingVariant::Open) && !needs.motion && !scene.lights().is_dark()
+}

@@ -1,0 +1,214 @@
+//! How a path gets on among media, from where it was scattered last to where it is next.
+
+use super::asking::{Alone, Asks};
+use super::filled::{self, Filled};
+use super::flight::{Collision, Flight};
+use super::numbers::Numbers;
+use super::scattering::Scattering;
+use super::surfaces::{Met, come_to, straight};
+use super::weights::Weights;
+use crate::nesting::MediumStack;
+use crate::shadows::opacity;
+use raywright_base::math::{Hit, Ray};
+use raywright_base::workers::Cancel;
+use raywright_optics::spectra::Waves;
+use raywright_optics::{Phase, Rgb};
+use raywright_scene::Scene;
+use raywright_scene::media::Coefficients;
+
+/// What lies on the way of any path.
+#[derive(Clone, Copy)]
+pub(crate) struct Course<'a, A = Alone<'a>> {
+    pub scene: &'a Scene,
+    /// Who tells what rays hit.
+    pub asks: A,
+    /// Whether what media scatter counts; if not, they only dim.
+    pub scatters: bool,
+    /// The wavelengths of what is on the way; none for red, green and blue.
+    pub waves: Option<Waves>,
+}
+
+/// What is on its way: its ray, what it carries, and what it is in.
+#[derive(Clone, Copy)]
+pub(crate) struct Going {
+    pub ray: Ray,
+    pub weights: Weights,
+    pub media: MediumStack<Filled>,
+    /// How many ends of media it has passed on this way; what it has passed in part counts for several.
+    pub passed: u32,
+}
+
+/// Where a path has come to.
+pub(crate) enum Place {
+    /// Where a medium scatters it, and the part of its ray in that medium.
+    Medium { here: Scattering, collision: Collision, span: [f64; 2] },
+    /// A surface.
+    Surface { hit: Hit, outside: f64, through: MediumStack<Filled> },
+    /// Out of the scene.
+    Outside,
+}
+
+/// Who adds what light comes to a path on its way.
+pub(super) trait OnTheWay {
+    /// That on a part of its ray in an even medium that scatters.
+    async fn add(&self, now: &Going, span: [f64; 2], here: (&Coefficients, Phase), numbers: &mut Numbers<'_>) -> Rgb;
+}
+
+/// Nobody does.
+pub(super) struct Nobody;
+
+impl OnTheWay for Nobody {
+    async fn add(&self, _: &Going, _: [f64; 2], _: (&Coefficients, Phase), _: &mut Numbers<'_>) -> Rgb {
+        Rgb::ZERO
+    }
+}
+
+impl<'a> Course<'a> {
+    /// That of a path that is followed by itself.
+    pub fn alone(scene: &'a Scene, waves: Option<Waves>) -> Self {
+        Self { scene, asks: Alone(scene), scatters: true, waves }
+    }
+}
+
+impl<A: Asks> Course<'_, A> {
+    /// Takes a path along its ray to where it is scattered next; none if nothing of it is left. `way` is the optical
+    /// depth that it gets through before that, for its hero: drawn once for a ray, however many media it goes through.
+    /// `light` is added what it comes by that glows.
+    pub async fn advance(
+        &self,
+        path: &mut Going,
+        (hero, mut way): (usize, f64),
+        numbers: &mut Numbers<'_>,
+        cancel: &Cancel,
+        light: &mut Rgb,
+        on_the_way: Option<&impl OnTheWay>,
+    ) -> Option<Place> {
+        let mut start = path.ray.t_min;
+        while !cancel.is_raised() {
+            let around = filled::around(self.scene, &path.media, &path.ray);
+            let scattering = around.as_ref().filter(|(medium, _)| self.scatters && medium.is_even());
+            let waves = self.waves;
+            let even = scattering.map(|(medium, within)| {
+                let here = medium.at(within.origin);
+                waves.as_ref().map_or(here, |waves| medium.by_waves(here, waves))
+            });
+            let even = even.filter(|here| !here.scattering.is_black());
+            let mut asked = path.ray;
+            if let Some(here) = even.filter(|here| here.emission.is_black() && on_the_way.is_none()) {
+                // Nobody asks what lies beyond where it is scattered.
+                let reach = start + way / here.extinction[hero] * (1.0 + 1e-12);
+                asked.t_max = reach.next_up().min(asked.t_max);
+            }
+            let hit = self.asks.first(&asked).await;
+            let end = if hit.is_hit() { hit.t } else { f64::INFINITY };
+            if let Some((medium, within)) = around {
+                let span = [start, end];
+                if let (Some(here), Some(lit)) = (even, on_the_way) {
+                    *light += lit.add(path, span, (&here, medium.phase()), numbers).await;
+                }
+                let flight = Flight { medium, ray: within, span, length: 1.0, scatters: self.scatters, waves };
+                let weights = &mut path.weights;
+                if let Some(collision) = flight.fly(weights, (hero, &mut way), numbers, cancel, light) {
+                    let (position, before) = (path.ray.at(collision.t), path.ray.direction);
+                    let here = Scattering { position, before, phase: medium.phase() };
+                    return Some(Place::Medium { here, collision, span });
+                }
+                if path.weights.carried.is_black() {
+                    return None;
+                }
+            }
+            if !hit.is_hit() {
+                return Some(Place::Outside);
+            }
+            start = hit.t;
+            match come_to((self.scene, self.asks), &path.ray, &hit, &path.media).await {
+                Met::Passed(beyond, media) => {
+                    (path.ray.t_min, path.media, path.passed) = (beyond, media, path.passed.saturating_add(1));
+                }
+                Met::Surface { hit, outside, through, beyond } => {
+                    let opacity = opacity(self.scene, &path.ray, &hit);
+                    let straight = straight(self.scene, &path.ray, &hit, outside);
+                    if opacity < 1.0 && numbers.next() >= opacity {
+                        path.ray.t_min = hit.t.next_up();
+                    } else if straight > 0.0 && numbers.next() < straight {
+                        (path.ray.t_min, path.media) = (beyond, through);
+                    } else {
+                        return Some(Place::Surface { hit, outside, through });
+                    }
+                    path.passed = path.passed.saturating_add(2);
+                }
+            }
+        }
+        None
+    }
+
+    /// Dims light along a ray that starts in some media, by all that lies on it. Which wavelength decides by chance is
+    /// drawn where that is asked for, unless it is told.
+    #[allow(clippy::too_many_arguments)]
+    pub async fn shadow(
+        &self,
+        mut ray: Ray,
+        mut media: MediumStack<Filled>,
+        weights: &mut Weights,
+        hero: &mut Option<usize>,
+        numbers: &mut Numbers<'_>,
+        cancel: &Cancel,
+    ) {
+        let length = ray.direction.length();
+        let mut start = ray.t_min;
+        while !cancel.is_raised() {
+            let hit = self.asks.first(&ray).await;
+            let met = match hit.is_hit() {
+                true => Some(come_to((self.scene, self.asks), &ray, &hit, &media).await),
+                false => None,
+            };
+            let (mut left, mut pane) = (1.0, 0.0);
+            if let Some(Met::Surface { hit, outside, .. }) = &met {
+                pane = straight(self.scene, &ray, hit, *outside);
+                left -= opacity(self.scene, &ray, hit) * (1.0 - pane);
+                if left <= 0.0 {
+                    weights.carried = Rgb::ZERO;
+                    return;
+                }
+            }
+            let end = if hit.is_hit() { hit.t } else { ray.t_max };
+            if let Some((medium, within)) = filled::around(self.scene, &media, &ray) {
+                let span = [start, end];
+                let flight = Flight { medium, ray: within, span, length, scatters: self.scatters, waves: self.waves };
+                flight.fade(weights, hero, numbers, cancel);
+            }
+            weights.carried *= left;
+            if weights.carried.is_black() {
+                return;
+            }
+            start = end;
+            match met {
+                None => return,
+                Some(Met::Passed(beyond, now)) => (ray.t_min, media) = (beyond, now),
+                Some(Met::Surface { through, beyond, .. }) if pane > 0.0 => (ray.t_min, media) = (beyond, through),
+                Some(Met::Surface { hit, .. }) => ray.t_min = hit.t.next_up(),
+            }
+            if ray.t_min > ray.t_max {
+                // The rest of the way is shorter than rounding tells.
+                return;
+            }
+        }
+        weights.carried = Rgb::ZERO;
+    }
+
+    /// What of some light gets along a ray that starts in some media: right on average where media are uneven. The
+    /// light may have come by a draw of its own, of which another wavelength decided: the mean of a product is that of
+    /// the means only where these have nothing to do with each other.
+    pub async fn through(
+        &self,
+        light: Rgb,
+        ray: Ray,
+        media: MediumStack<Filled>,
+        numbers: &mut Numbers<'_>,
+        cancel: &Cancel,
+    ) -> Rgb {
+        let mut weights = Weights { carried: light, ..Weights::START };
+        self.shadow(ray, media, &mut weights, &mut None, numbers, cancel).await;
+        weights.carried / weights.asked.mean()
+    }
+}

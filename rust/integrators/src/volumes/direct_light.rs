@@ -1,0 +1,67 @@
+//! Light that is asked for where paths are scattered.
+
+use super::asking::Asks;
+use super::filled::Filled;
+use super::numbers::Numbers;
+use super::path_state::PathState;
+use super::walker::Walker;
+use super::weights::Weights;
+use crate::nesting::MediumStack;
+use crate::transport::power_heuristic;
+use raywright_base::math::Ray;
+use raywright_base::workers::Cancel;
+use raywright_optics::Rgb;
+use raywright_scene::{Encounter, LightSample, LightSampleContext};
+
+impl<A: Asks> Walker<'_, A> {
+    /// Next-event estimation: draws light where a path is, and tells what arrives of it. `through` is what rays start
+    /// in that leave to the other side, if they do.
+    pub(super) async fn direct_light(
+        &self,
+        here: &impl Encounter,
+        path: &PathState,
+        media: impl FnOnce(&LightSample) -> MediumStack<Filled>,
+        hero: usize,
+        numbers: &mut Numbers<'_>,
+        cancel: &Cancel,
+    ) -> Option<(LightSample, Rgb)> {
+        let choice = numbers.ray.light_choice(0);
+        let (choice, u) = (numbers.one(choice), numbers.two(choice + 1));
+        let (lights, geometry) = (self.scene.lights(), self.scene.geometry());
+        let light =
+            lights.sample(geometry, &LightSampleContext { waves: path.waves, ..here.light_context() }, choice, u)?;
+        let arrives = self.arriving(here, path, &light, media(&light), hero, numbers, cancel).await?;
+        Some((light, arrives))
+    }
+
+    /// What arrives where a path is of light that was drawn, weighed beside running into it by chance.
+    #[allow(clippy::too_many_arguments)]
+    pub(super) async fn arriving(
+        &self,
+        here: &impl Encounter,
+        path: &PathState,
+        light: &LightSample,
+        media: MediumStack<Filled>,
+        hero: usize,
+        numbers: &mut Numbers<'_>,
+        cancel: &Cancel,
+    ) -> Option<Rgb> {
+        let (scattered, pdf) = here.evaluate(light.direction);
+        let carried = path.weights.carried * scattered * light.weight;
+        if carried.is_black() {
+            return None;
+        }
+        let from = here.ray_origin();
+        let ray = match &light.source {
+            Some(source) => from.segment(source),
+            None => from.ray(light.direction),
+        };
+        let ray = Ray { time: path.ray.time, misses: [Ray::NO_TRIANGLE, light.primitive], ..ray };
+        // Running into a light that is a point or of a single direction never happens.
+        let by_chance = path.weights.drawn * if self.follows_all() { path.splits * pdf / light.pdf } else { 0.0 };
+        let mut weights = Weights { carried, drawn: by_chance, asked: path.weights.drawn };
+        self.course(path.waves).shadow(ray, media, &mut weights, &mut Some(hero), numbers, cancel).await;
+        let asked = weights.asked.mean();
+        Some(weights.carried / asked * power_heuristic(asked, weights.drawn.mean()))
+    }
+}

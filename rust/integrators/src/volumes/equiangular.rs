@@ -1,0 +1,162 @@
+//! Light of points, scattered into a path on its way.
+
+use super::asking::Asks;
+use super::course::{Going, OnTheWay};
+use super::numbers::Numbers;
+use super::path_state::PathState;
+use super::scattering::Scattering;
+use super::walker::Walker;
+use super::weights::Weights;
+use crate::transport::power_heuristic;
+use raywright_base::math::{DVec3, Ray};
+use raywright_base::workers::Cancel;
+use raywright_optics::{Phase, Rgb};
+use raywright_scene::media::Coefficients;
+use raywright_scene::{Encounter, LightSampleContext};
+
+/// A part of a ray of unit direction on which places are drawn as a point sees them, the same number in the same angle
+/// (Kulla and Fajardo, "Importance Sampling Techniques for Path Tracing in Participating Media", 2012): what the point
+/// lights is 1/d² along the ray, and this is the density that it has.
+pub(super) struct Equiangular {
+    /// Where on the ray the point is nearest, and how far it is there.
+    foot: f64,
+    distance: f64,
+    angles: [f64; 2],
+}
+
+impl Equiangular {
+    /// Of a part of a ray, which may be endless, as a point sees it. None if the point lies on the ray.
+    pub fn new(ray: &Ray, [start, end]: [f64; 2], point: DVec3) -> Option<Self> {
+        let foot = (point - ray.origin).dot(ray.direction);
+        let distance = (point - ray.origin).cross(ray.direction).length();
+        let angles = [start, end].map(|t| (t - foot).atan2(distance));
+        (distance > 0.0 && angles[1] > angles[0]).then_some(Self { foot, distance, angles })
+    }
+
+    /// The density of a place, by length.
+    pub fn pdf(&self, t: f64) -> f64 {
+        let (along, [from, to]) = (t - self.foot, self.angles);
+        self.distance / ((to - from) * (self.distance * self.distance + along * along))
+    }
+
+    /// Draws a place.
+    pub fn sample(&self, u: f64) -> f64 {
+        let [from, to] = self.angles;
+        self.foot + self.distance * (from + u * (to - from)).tan()
+    }
+}
+
+/// Light of points that comes to a path as it sets out on a part of its way.
+struct OfPoints<'p, 'a, A> {
+    walker: &'p Walker<'a, A>,
+    path: &'p PathState,
+    hero: usize,
+    cancel: &'p Cancel,
+}
+
+impl<A: Asks> OnTheWay for OfPoints<'_, '_, A> {
+    async fn add(
+        &self,
+        now: &Going,
+        span: [f64; 2],
+        (here, phase): (&Coefficients, Phase),
+        numbers: &mut Numbers<'_>,
+    ) -> Rgb {
+        let Going { ray, weights, media, .. } = *now;
+        let path = PathState { ray, weights, media, ..*self.path };
+        self.walker.lit_on_the_way(&path, span, here, phase, self.hero, numbers, self.cancel).await
+    }
+}
+
+impl<'a, A: Asks> Walker<'a, A> {
+    /// Who adds light of points as a path sets out on its way.
+    pub(super) fn of_points<'p>(
+        &'p self,
+        path: &'p PathState,
+        hero: usize,
+        cancel: &'p Cancel,
+    ) -> impl OnTheWay + use<'p, 'a, A> {
+        OfPoints { walker: self, path, hero, cancel }
+    }
+
+    /// What comes to a path of the light of points that a medium on its way scatters: of an even medium between two `t`
+    /// of its ray. It is weighed beside what is asked for where the path itself is scattered.
+    #[allow(clippy::too_many_arguments)]
+    async fn lit_on_the_way(
+        &self,
+        path: &PathState,
+        span: [f64; 2],
+        here: &Coefficients,
+        phase: Phase,
+        hero: usize,
+        numbers: &mut Numbers<'_>,
+        cancel: &Cancel,
+    ) -> Rgb {
+        let choice = numbers.ray.light_choice(1);
+        let count = self.points.len() as f64;
+        let (place, light) = self.points[((numbers.one(choice) * count) as usize).min(self.points.len() - 1)];
+        let Some(ways) = Equiangular::new(&path.ray, span, place) else { return Rgb::ZERO };
+        let [u, _] = numbers.two(choice + 1);
+        let t = ways.sample(u).clamp(span[0], span[1]);
+        let pdf = ways.pdf(t) / count;
+        let left = here.left(t - span[0]);
+        let point = Scattering { position: path.ray.at(t), before: path.ray.direction, phase };
+        let Some(light) = light.sample(&LightSampleContext { waves: path.waves, ..point.light_context() }, [0.5; 2])
+        else {
+            return Rgb::ZERO;
+        };
+        let weights = Weights { carried: path.weights.carried * here.scattering * left / pdf, ..path.weights };
+        let there = PathState { weights, ..*path };
+        let arrives = self.arriving(&point, &there, &light, path.media, hero, numbers, cancel).await;
+        let Some(arrives) = arrives else {
+            return Rgb::ZERO;
+        };
+        let drawn = (path.weights.drawn * here.extinction * left).mean() / path.weights.drawn.mean();
+        arrives * power_heuristic(pdf, drawn)
+    }
+
+    /// How much light of a point counts that was asked for where a path was scattered, beside what is drawn on the way.
+    pub(super) fn beside_the_way(&self, ray: &Ray, span: [f64; 2], t: f64, density: f64, place: DVec3) -> f64 {
+        if !self.points.iter().any(|(point, _)| *point == place) {
+            return 1.0;
+        }
+        let Some(ways) = Equiangular::new(ray, span, place) else { return 1.0 };
+        power_heuristic(density, ways.pdf(t) / self.points.len() as f64)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use raywright_base::sampling::Sampler;
+    use raywright_base::sampling::chi_square::assert_frequencies;
+
+    #[test]
+    fn places_are_drawn_with_the_density_that_is_told() {
+        let ray = Ray::new(DVec3::new(1.0, 2.0, 3.0), DVec3::X);
+        for (point, span) in [
+            (DVec3::new(2.0, 2.5, 3.0), [0.0, 3.0]),
+            (DVec3::new(-4.0, 2.0, 2.0), [0.5, 20.0]),
+            (DVec3::new(3.0, 2.0, 3.01), [0.0, f64::INFINITY]),
+        ] {
+            let ways = Equiangular::new(&ray, span, point).unwrap();
+            // The places that part all into twenty of the same probability.
+            let cuts: Vec<f64> = (0..=20).map(|i| ways.sample(f64::from(i) / 20.0)).collect();
+            for pair in cuts.windows(2).filter(|pair| pair[1] < 1e6) {
+                let steps = 4000;
+                let step = (pair[1] - pair[0]) / f64::from(steps);
+                let sum: f64 = (0..steps).map(|i| ways.pdf(pair[0] + (f64::from(i) + 0.5) * step) * step).sum();
+                assert!((sum - 0.05).abs() < 1e-4, "{sum}");
+            }
+            let mut counts = vec![0; 20];
+            for number in 0..20_000 {
+                let t = ways.sample(Sampler::new(31, 0, number).one(0));
+                assert!(t >= span[0] - 1e-9 && t <= span[1] + 1e-9);
+                counts[(cuts.partition_point(|&cut| cut <= t).max(1) - 1).min(19)] += 1;
+            }
+            assert_frequencies(&counts, &[0.05; 20]);
+        }
+        // From a point on the ray itself, all is one direction.
+        assert!(Equiangular::new(&ray, [0.0, 5.0], DVec3::new(4.0, 2.0, 3.0)).is_none());
+    }
+}

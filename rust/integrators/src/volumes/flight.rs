@@ -1,0 +1,180 @@
+//! How far a path gets in a medium.
+
+use super::numbers::Numbers;
+use super::weights::Weights;
+use raywright_base::math::Ray;
+use raywright_base::workers::Cancel;
+use raywright_optics::Rgb;
+use raywright_optics::spectra::Waves;
+use raywright_scene::media::{Coefficients, Content, Medium, Stretch};
+
+/// A part of a ray in a medium.
+pub(super) struct Flight<'a> {
+    pub medium: &'a dyn Medium,
+    /// The ray in the space of the medium.
+    pub ray: Ray,
+    /// The `t` where it begins and ends; the end may be infinite.
+    pub span: [f64; 2],
+    /// The length of the ray's direction in the world.
+    pub length: f64,
+    /// Whether what is scattered counts; if not, it is lost.
+    pub scatters: bool,
+    /// The wavelengths of what is on the way; none for red, green and blue.
+    pub waves: Option<Waves>,
+}
+
+/// What a ray in a medium has come to.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Collision {
+    /// Where.
+    pub t: f64,
+    /// The density, by length, with which such a place is drawn by all wavelengths together; none where that is not
+    /// known.
+    pub density: Option<f64>,
+    /// What the medium does to light there.
+    pub here: Coefficients,
+    /// What the path carries for each unit of scattering there: what has come, over the density of the place.
+    pub came: Rgb,
+}
+
+impl Flight<'_> {
+    /// A length in the world, between two `t`.
+    #[inline]
+    fn way(&self, from: f64, to: f64) -> f64 {
+        (to - from) * self.length
+    }
+
+    /// What is at a `t` of the ray.
+    #[inline]
+    pub(super) fn at(&self, t: f64) -> Coefficients {
+        let point = self.ray.at(t);
+        match &self.waves {
+            Some(waves) => self.medium.at_waves(point, waves),
+            None => self.medium.at(point),
+        }
+    }
+
+    /// What is in a stretch of it.
+    #[inline]
+    pub(super) fn content(&self, stretch: &Stretch) -> Content {
+        match (stretch.content, &self.waves) {
+            (Content::Even(here), Some(waves)) => Content::Even(self.medium.by_waves(here, waves)),
+            (Content::Varies(most), Some(waves)) => Content::Varies(self.medium.most_by_waves(most, waves)),
+            (content, None) => content,
+        }
+    }
+
+    /// Draws how far it gets: where it is scattered, or none if it gets to its end. `depth` is the optical depth that
+    /// it is still to get through before that, for its hero; `light` is added what it comes by that glows.
+    ///
+    /// Where the medium is even, that is closed; elsewhere it meets, as often as in the densest medium that it could
+    /// be, things of which so many are nothing as the medium is thinner (Woodcock et al., "Techniques Used in the GEM
+    /// Code", 1965). Where nothing is scattered, it is not drawn, but dimmed.
+    pub fn fly(
+        &self,
+        weights: &mut Weights,
+        (hero, depth): (usize, &mut f64),
+        numbers: &mut Numbers,
+        cancel: &Cancel,
+        light: &mut Rgb,
+    ) -> Option<Collision> {
+        let mut start = self.span[0];
+        for stretch in self.medium.stretches(&self.ray, self.span) {
+            let span = [start, stretch.end];
+            let found = match self.content(&stretch) {
+                Content::Even(here) => self.fly_evenly(&here, span, weights, (hero, depth), light),
+                Content::Varies(most) => self.track(most, span, weights, (hero, depth), numbers, cancel, light),
+            };
+            if found.is_some() || weights.carried.is_black() {
+                return found;
+            }
+            start = stretch.end;
+        }
+        None
+    }
+
+    fn fly_evenly(
+        &self,
+        here: &Coefficients,
+        [start, end]: [f64; 2],
+        weights: &mut Weights,
+        (hero, depth): (usize, &mut f64),
+        light: &mut Rgb,
+    ) -> Option<Collision> {
+        let way = self.way(start, end);
+        if !here.emission.is_black() {
+            *light += weights.throughput() * here.glow(way);
+        }
+        if !self.scatters || here.scattering.is_black() {
+            weights.carried *= here.left(way);
+            return None;
+        }
+        let extinction = here.extinction[hero];
+        if extinction > 0.0 && extinction * way > *depth {
+            let way = *depth / extinction;
+            let left = here.left(way);
+            let density = (weights.drawn * here.extinction * left).mean() / weights.drawn.mean();
+            let by = left / (extinction * left[hero]);
+            let came = weights.carried * by;
+            weights.times(here.scattering * by, here.extinction * by, Rgb::ONE);
+            let t = (start + way / self.length).min(end);
+            return Some(Collision { t, density: Some(density), here: *here, came });
+        }
+        if extinction > 0.0 {
+            *depth -= extinction * way;
+        }
+        let left = here.left(way);
+        let by = left / left[hero];
+        weights.times(by, by, Rgb::splat(1.0 / left[hero]));
+        None
+    }
+
+    #[allow(clippy::too_many_arguments)]
+    fn track(
+        &self,
+        most: Rgb,
+        [mut t, end]: [f64; 2],
+        weights: &mut Weights,
+        (hero, depth): (usize, &mut f64),
+        numbers: &mut Numbers,
+        cancel: &Cancel,
+        light: &mut Rgb,
+    ) -> Option<Collision> {
+        let scatters = self.scatters && self.medium.scatters();
+        while !cancel.is_raised() {
+            let rest = self.way(t, end);
+            if most[hero] * rest <= *depth {
+                *depth -= most[hero] * rest;
+                let left = (most * -rest).map(f64::exp);
+                let by = left / left[hero];
+                weights.times(by, by, by);
+                return None;
+            }
+            let way = *depth / most[hero];
+            *depth = numbers.depth();
+            t = (t + way / self.length).min(end);
+            let left = (most * -way).map(f64::exp);
+            let here = self.at(t);
+            let met = left / (most[hero] * left[hero]);
+            if !here.emission.is_black() {
+                *light += weights.carried * here.emission * met / (weights.drawn * most * met).mean();
+            }
+            let nothing = (most - here.extinction).at_least(Rgb::ZERO);
+            if !scatters {
+                weights.times(nothing * met, most * met, most * met);
+            } else if numbers.next() * most[hero] < here.extinction[hero] {
+                let by = left / (here.extinction[hero] * left[hero]);
+                let came = weights.carried * by;
+                weights.times(here.scattering * by, here.extinction * by, Rgb::ONE);
+                return Some(Collision { t, density: None, here, came });
+            } else {
+                let by = left / (nothing[hero] * left[hero]);
+                weights.times(nothing * by, nothing * by, most * by);
+            }
+            if weights.carried.is_black() {
+                return None;
+            }
+        }
+        None
+    }
+}

@@ -1,0 +1,78 @@
+//! Where paths come to what they share.
+
+use super::asking::Asks;
+use super::numbers::Numbers;
+use super::path_state::PathState;
+use super::reuse::{First, Second};
+use super::scattering::Scattering;
+use super::walker::Walker;
+use raywright_base::math::DVec3;
+use raywright_base::workers::Cancel;
+use raywright_optics::{BsdfSample, Rgb};
+use raywright_scene::{Encounter, LightSampleContext, RayOrigin};
+use std::f64::consts::FRAC_1_PI;
+
+/// A point of a medium that scatters the same into all directions: what arrives there is told, and not from where.
+struct AllWays(Scattering);
+
+impl AllWays {
+    /// In whose place each phase function is weighed beside asking for light: one weight for all that take.
+    const PDF: f64 = 0.25 * FRAC_1_PI;
+}
+
+impl Encounter for AllWays {
+    fn position(&self) -> DVec3 {
+        self.0.position()
+    }
+
+    fn ray_origin(&self) -> RayOrigin {
+        self.0.ray_origin()
+    }
+
+    fn light_context(&self) -> LightSampleContext {
+        self.0.light_context()
+    }
+
+    fn evaluate(&self, _direction: DVec3) -> (Rgb, f64) {
+        (Rgb::ONE, Self::PDF)
+    }
+
+    fn sample(&self, choice: &mut dyn FnMut() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
+        self.0.sample(choice, u).map(|drawn| BsdfSample::new(drawn.wi, Rgb::ONE, Self::PDF))
+    }
+}
+
+impl<A: Asks> Walker<'_, A> {
+    /// Scatters a path where what it finds is shared, and says whether it goes on.
+    pub(super) async fn scatter_shared(
+        &self,
+        path: &mut PathState,
+        here: &Scattering,
+        hero: usize,
+        numbers: &mut Numbers<'_>,
+        cancel: &Cancel,
+    ) -> Option<(Second, bool)> {
+        if self.settings.max_depth.is_some_and(|most| path.bounce >= most) {
+            return None;
+        }
+        path.share();
+        let (here, media) = (AllWays(*here), path.media);
+        let asked = self.direct_light(&here, path, |_| media, hero, numbers, cancel).await;
+        let (to_light, lit) = asked.map_or((DVec3::X, Rgb::ZERO), |(light, arrives)| (light.direction, arrives));
+        let u = numbers.ray.direction();
+        let next = here.sample(&mut || 0.0, numbers.two(u))?;
+        let chance = numbers.ray.roulette();
+        let goes_on = self.go_on(path, &here, &next, media, numbers.one(chance), self.never_ends());
+        let second = Second::of_medium(here.position(), (to_light, lit), next.wi);
+        Some((second, goes_on))
+    }
+
+    /// Whether a surface that a path has come to from a first point lies in the same medium, or next beyond its end.
+    pub(super) fn is_within_reach(&self, first: &First, path: &PathState) -> bool {
+        match path.passed {
+            0 => true,
+            1 => first.is_alone && path.media.depth() == 0 && self.scene.surrounding().is_none(),
+            _ => false,
+        }
+    }
+}

@@ -1,0 +1,473 @@
+//! Paths from the camera.
+
+use super::asking::Asks;
+use super::course::{Course, Going, Place};
+use super::filled::Filled;
+use super::known::KnownLight;
+use super::numbers::{Numbers, depth};
+use super::path_state::PathState;
+use super::reuse::{First, Parts, Reuse, Second};
+use super::scattering::Scattering;
+use super::together::{Lane, lanes, together};
+use super::{Onwards, Volumes};
+use crate::nesting::MediumStack;
+use crate::parting::Parting;
+use crate::transport::{Dimensions, power_heuristic};
+use crate::{CameraSample, Worker, roulette};
+use raywright_base::math::{DVec3, Hit, Ray};
+use raywright_base::workers::Cancel;
+use raywright_optics::spectra::Waves;
+use raywright_optics::{Bsdf, BsdfSample, Rgb};
+use raywright_scene::{Encounter, Light, LightSample, LightSampleContext, Scene, SurfaceInteraction};
+use std::cell::{Cell, RefCell};
+
+/// Who follows paths, and asks what their rays hit.
+#[derive(Clone, Copy)]
+pub(super) struct Walker<'a, A> {
+    pub(super) settings: Volumes,
+    pub(super) scene: &'a Scene,
+    /// Lights that are points.
+    pub(super) points: &'a [(DVec3, &'a dyn Light)],
+    /// What is known of light where paths are scattered, if anything is.
+    pub(super) known: Option<&'a dyn KnownLight>,
+    /// Who tells what they hit.
+    asks: A,
+}
+
+/// What one thread works with.
+pub(super) struct Walkers<'a> {
+    walker: Walker<'a, ()>,
+    reuse: Reuse,
+    /// What each path leaves to be shared, where any is.
+    parts: Vec<Parts>,
+}
+
+/// The part of a ray in an even medium in which it was scattered, and the density of the place.
+struct Part {
+    span: [f64; 2],
+    t: f64,
+    density: f64,
+}
+
+impl<'a> Walkers<'a> {
+    pub fn new(
+        settings: Volumes,
+        scene: &'a Scene,
+        points: &'a [(DVec3, &'a dyn Light)],
+        known: Option<&'a dyn KnownLight>,
+    ) -> Self {
+        let walker = Walker { settings, scene, points, known, asks: () };
+        Self { walker, reuse: Reuse::default(), parts: Vec::new() }
+    }
+}
+
+impl<'a, A: Asks> Walker<'a, A> {
+    /// Whether paths go on in all directions into which light is scattered.
+    pub(super) fn follows_all(&self) -> bool {
+        self.settings.onwards == Onwards::All
+    }
+
+    /// What arrives along a camera's ray. `waiting` is room for paths that have been split off and wait, and `parts` is
+    /// told what is to be shared, which is not in what is returned.
+    async fn follow(
+        &self,
+        sample: &mut CameraSample,
+        media: MediumStack<Filled>,
+        waiting: &mut Vec<PathState>,
+        parts: &mut Parts,
+        cancel: &Cancel,
+    ) -> Rgb {
+        let mut light = Rgb::ZERO;
+        let u = sample.sampler.one(Dimensions::WAVES);
+        let number = sample.sampler.number();
+        let waves = match self.known {
+            Some(known) => known.waves(number),
+            None => self.scene.plan().needs().waves.then(|| Waves::of(u)),
+        };
+        let mut numbers = Numbers::new(&mut sample.sampler);
+        // The first of the wavelengths is the hero, unless other paths have the same: what parts these ends all but the
+        // first, and the one that decides is to have nothing to do with that. Of red, green and blue it is any.
+        let hero = match (waves, self.known) {
+            (Some(_), Some(_)) => numbers.hero(),
+            (Some(_), None) => 0,
+            (None, _) => ((u * 3.0) as usize).min(2),
+        };
+        let path = PathState::of_camera(sample.ray, media, waves);
+        waiting.clear();
+        waiting.push(PathState { shares_waves: self.known.is_some(), ..path });
+        while let Some(mut path) = waiting.pop() {
+            while !cancel.is_raised() {
+                numbers.ray = Dimensions::of(path.bounce, path.branch);
+                let was_first = std::mem::take(&mut path.is_first);
+                let light = match &mut parts.second {
+                    Some(second) if path.is_shared => &mut second.found,
+                    _ => &mut light,
+                };
+                let place = self.advance(&mut path, hero, &mut numbers, cancel, light).await;
+                let Some(place) = place else { break };
+                let goes_on = match place {
+                    Place::Medium { here, .. } if self.known.is_some() => {
+                        *light += self.known_among(&path, &here, number);
+                        false
+                    }
+                    // Nothing but the medium lies between.
+                    Place::Medium { here, .. } if was_first && path.passed == 0 => {
+                        let met = self.scatter_shared(&mut path, &here, hero, &mut numbers, cancel).await;
+                        let Some((second, goes_on)) = met else { break };
+                        parts.second = Some(second);
+                        goes_on
+                    }
+                    Place::Medium { here, collision, span } => {
+                        let takes =
+                            self.settings.shares && parts.first.is_none() && !path.gilded && First::may_be(&here);
+                        if takes && collision.density.is_some() {
+                            let is_limited = self.settings.max_depth.is_some();
+                            parts.first = Some(First::new(&here, collision.here, &path, is_limited));
+                            path.is_first = true;
+                        }
+                        let part = collision.density.map(|density| Part { span, t: collision.t, density });
+                        let part = part.filter(|_| self.is_lit(&path));
+                        self.scatter(&mut path, &here, part, hero, &mut numbers, cancel, light).await
+                    }
+                    Place::Surface { hit, outside, through } => {
+                        let (at, of) = ((hit, outside, through), (hero, number));
+                        let first = parts.first.filter(|first| was_first && self.is_within_reach(first, &path));
+                        let mut second = None;
+                        let to = (first.is_some().then_some(&mut second), light);
+                        let goes_on = self.reflect(&mut path, at, of, waiting, &mut numbers, cancel, to).await;
+                        if second.is_some() {
+                            parts.second = second;
+                        }
+                        goes_on
+                    }
+                    Place::Outside => false,
+                };
+                if !goes_on {
+                    break;
+                }
+            }
+        }
+        waves.map_or(light, |waves| waves.seen(light))
+    }
+
+    /// What lies on the way of paths.
+    pub(super) fn course(&self, waves: Option<Waves>) -> Course<'a, A> {
+        Course { scene: self.scene, asks: self.asks, scatters: self.settings.scatters, waves }
+    }
+
+    /// Takes a path along its ray to where it is scattered next; none if it leaves the scene, and with what arrives
+    /// from there.
+    async fn advance(
+        &self,
+        path: &mut PathState,
+        hero: usize,
+        numbers: &mut Numbers<'_>,
+        cancel: &Cancel,
+        light: &mut Rgb,
+    ) -> Option<Place> {
+        let u = numbers.ray.mask();
+        let way = depth(numbers.one(u));
+        let mut going = Going { ray: path.ray, weights: path.weights, media: path.media, passed: 0 };
+        let lit = self.is_lit(path).then(|| self.of_points(path, hero, cancel));
+        let course = self.course(path.waves);
+        let place = course.advance(&mut going, (hero, way), numbers, cancel, light, lit.as_ref()).await;
+        drop(lit);
+        (path.ray, path.weights, path.media, path.passed) = (going.ray, going.weights, going.media, going.passed);
+        if let Some(Place::Outside) = place {
+            *light += path.weights.throughput() * self.light_from_outside(path);
+            return None;
+        }
+        place
+    }
+
+    /// Whether light of points is asked for on the way of a path through even media.
+    fn is_lit(&self, path: &PathState) -> bool {
+        let may_scatter = self.settings.max_depth.is_none_or(|most| path.bounce < most);
+        may_scatter && !self.points.is_empty() && self.known.is_none()
+    }
+
+    /// What comes from outside the scene along a path's ray, weighed beside asking for it.
+    fn light_from_outside(&self, path: &PathState) -> Rgb {
+        let lights = self.scene.lights();
+        let arriving = lights.infinite_radiance_at(path.ray.direction, path.waves.as_ref());
+        if arriving.is_black() {
+            return arriving;
+        }
+        let receiver = LightSampleContext { position: path.ray.origin, normal: path.normal, waves: path.waves };
+        arriving * self.by_chance(path, || lights.infinite_pdf(&receiver, path.ray.direction))
+    }
+
+    /// How much light counts that a path has run into, beside asking for it where the path was scattered last, which
+    /// has this density.
+    fn by_chance(&self, path: &PathState, asked: impl FnOnce() -> f64) -> f64 {
+        if path.pdf == f64::INFINITY {
+            return 1.0;
+        }
+        let asked = asked();
+        if asked == 0.0 {
+            1.0
+        } else {
+            power_heuristic(path.pdf * path.weights.drawn.mean(), asked * path.weights.asked.mean())
+        }
+    }
+
+    /// Scatters a path in a medium, and says whether it goes on.
+    #[allow(clippy::too_many_arguments)]
+    async fn scatter(
+        &self,
+        path: &mut PathState,
+        here: &Scattering,
+        part: Option<Part>,
+        hero: usize,
+        numbers: &mut Numbers<'_>,
+        cancel: &Cancel,
+        light: &mut Rgb,
+    ) -> bool {
+        if self.settings.max_depth.is_some_and(|most| path.bounce >= most) {
+            return false;
+        }
+        let media = path.media;
+        let asked = self.direct_light(here, path, |_| media, hero, numbers, cancel).await;
+        if let Some((drawn, arrives)) = asked {
+            let place = drawn.source.filter(|_| drawn.pdf == f64::INFINITY).map(|source| source.position());
+            let weight = match (part, place) {
+                (Some(Part { span, t, density }), Some(place)) => {
+                    self.beside_the_way(&path.ray, span, t, density, place)
+                }
+                _ => 1.0,
+            };
+            *light += arrives * weight;
+        }
+        let u = numbers.ray.direction();
+        let Some(next) = here.sample(&mut || 0.0, numbers.two(u)) else { return false };
+        let chance = numbers.ray.roulette();
+        self.go_on(path, here, &next, media, numbers.one(chance), self.never_ends())
+    }
+
+    /// Scatters a path at a surface, and says whether it goes on. Where what it finds from there on may be shared,
+    /// that is told apart from what is its own.
+    #[allow(clippy::too_many_arguments)]
+    async fn reflect(
+        &self,
+        path: &mut PathState,
+        (hit, outside, through): (Hit, f64, MediumStack<Filled>),
+        (hero, number): (usize, u32),
+        waiting: &mut Vec<PathState>,
+        numbers: &mut Numbers<'_>,
+        cancel: &Cancel,
+        (shared, mut light): (Option<&mut Option<Second>>, &mut Rgb),
+    ) -> bool {
+        let ray = path.ray;
+        let (scene, geometry) = (self.scene, self.scene.geometry());
+        let surface = geometry.surface(&ray, &hit);
+        let emission = scene.emission_at(&surface);
+        if !emission.is_dark() && !self.is_shining_known(path) {
+            let sent = emission.sent(geometry, &ray, &hit, &surface, || path.waves);
+            let cosine = -ray.direction.dot(surface.normal);
+            let receiver = LightSampleContext { position: ray.origin, normal: path.normal, waves: path.waves };
+            let asked = || scene.lights().surface_pdf(geometry, &receiver, &ray, &hit, cosine);
+            *light += path.weights.throughput() * sent * self.by_chance(path, asked);
+        }
+        if self.settings.max_depth.is_some_and(|most| path.bounce >= most) {
+            return false;
+        }
+        let (outside, parting) = path.parting(scene, &surface, &through, outside);
+        let here = SurfaceInteraction::new(scene, &ray, &hit, surface, path.waves, outside);
+        let later = parting.filter(|parting| parting.waits(here.bsdf()));
+        if parting.is_some() && later.is_none() {
+            path.end_all_but_hero();
+        }
+        path.meet(here.bsdf().again());
+        if let Some(shared) = shared
+            && let Some(second) = Second::of_surface(&here, path, hit.t)
+        {
+            path.share();
+            light = &mut shared.insert(second).found;
+        }
+        if !self.settings.ambient.is_black() {
+            let share = here.ambient(scene, &ray, &hit, path.waves, outside);
+            *light += path.weights.throughput() * share * self.settings.ambient;
+        }
+        let arrival = self.arrive(path, &here, number, light);
+        path.splits = arrival.splits();
+        if !here.bsdf().is_delta() && !arrival.is_lit() {
+            let now = path.media;
+            let side = |drawn: &LightSample| if here.is_through(drawn.direction) { through } else { now };
+            if let Some((_, arrives)) = self.direct_light(&here, path, side, hero, numbers, cancel).await {
+                *light += arrives;
+            }
+        }
+        if !self.follows_all() {
+            return self.split(path, &here, through, later.as_ref(), waiting);
+        }
+        if path.splits > 0.0 && arrival.is_known() {
+            self.look_about(path, &here, through, waiting, numbers);
+            return false;
+        }
+        let choice = numbers.ray.scattering_choice();
+        let u = numbers.two(choice + 1);
+        let Some(next) = here.sample(&mut || numbers.one(choice), u) else { return false };
+        // What is known is scattered by all but single directions.
+        if arrival.is_known() && !next.is_delta() {
+            return false;
+        }
+        path.splits = 1.0;
+        let media = if next.is_through { through } else { path.media };
+        path.is_sharp_since = path.is_gathered;
+        let chance = numbers.ray.roulette();
+        path.part(later.as_ref(), here.wo(), &next);
+        self.go_on(path, &here, &next, media, numbers.one(chance), true)
+    }
+
+    /// Sends on a path for every single direction that a surface scatters into.
+    fn split(
+        &self,
+        path: &PathState,
+        here: &SurfaceInteraction,
+        through: MediumStack<Filled>,
+        parting: Option<&Parting>,
+        waiting: &mut Vec<PathState>,
+    ) -> bool {
+        let mut branch = path.branch.wrapping_mul(2);
+        here.bsdf().delta_lobes(here.wo(), |single| {
+            if let Some(next) = here.to_world(single) {
+                let mut one = PathState { branch, ..*path };
+                one.part(parting, here.wo(), &next);
+                let media = if next.is_through { through } else { path.media };
+                if self.go_on(&mut one, here, &next, media, 0.0, true) {
+                    waiting.push(one);
+                }
+                branch = branch.wrapping_add(1);
+            }
+        });
+        false
+    }
+
+    /// Sends on as many paths as look about from where light is known.
+    fn look_about(
+        &self,
+        path: &PathState,
+        here: &SurfaceInteraction,
+        through: MediumStack<Filled>,
+        waiting: &mut Vec<PathState>,
+        numbers: &mut Numbers,
+    ) {
+        for branch in 0..path.splits as u32 {
+            // The first goes on as the path that it comes from.
+            let branch = if branch == 0 { path.branch } else { branch };
+            let dimensions = Dimensions::of(path.bounce, branch);
+            let choice = dimensions.scattering_choice();
+            let u = numbers.two(choice + 1);
+            let Some(mut next) = here.sample(&mut || numbers.one(choice), u) else { continue };
+            let media = if next.is_through { through } else { path.media };
+            next.pdf *= path.splits;
+            next.weight /= path.splits;
+            // A coat that is like a mirror is one, whatever lies below.
+            let is_gathered = !next.is_delta() || path.is_gathered;
+            let is_sharp_since = next.is_delta() && path.is_gathered;
+            let mut one = PathState { branch, is_gathered, is_sharp_since, splits: 1.0, ..*path };
+            let chance = numbers.one(dimensions.roulette());
+            if self.go_on(&mut one, here, &next, media, chance, true) {
+                waiting.push(one);
+            }
+        }
+    }
+
+    /// Whether paths could be scattered for ever between surfaces.
+    pub(super) fn never_ends(&self) -> bool {
+        self.scene.surrounding().is_some()
+    }
+
+    /// Sends a path on along a direction drawn, unless roulette ends it by a uniform number, and says whether it did.
+    /// Where light leaves a medium sooner or later, none of it has to be ended that has lost nothing.
+    pub(super) fn go_on(
+        &self,
+        path: &mut PathState,
+        here: &impl Encounter,
+        next: &BsdfSample,
+        media: MediumStack<Filled>,
+        chance: f64,
+        may_never_end: bool,
+    ) -> bool {
+        let receiver = here.light_context();
+        let ray = here.ray_origin().ray(next.wi);
+        path.weights.carried *= next.weight;
+        path.weights.asked = path.weights.drawn;
+        (path.pdf, path.normal, path.media) = (next.pdf, receiver.normal, media);
+        path.scale *= next.eta * next.eta;
+        path.bounce = path.bounce.saturating_add(1);
+        path.ray = Ray { time: path.ray.time, ..ray };
+        let throughput = path.weights.throughput();
+        if throughput.max() * path.scale < self.settings.least {
+            return false;
+        }
+        // Whether a path gets to where it shares is for the densities there alone to tell.
+        if path.is_first || path.bounce < self.settings.roulette_depth.min(roulette::AT_LATEST) {
+            return !throughput.is_black();
+        }
+        let survival = if may_never_end {
+            roulette::survival(throughput, path.scale)
+        } else {
+            roulette::survival_among(throughput, path.scale)
+        };
+        if chance >= survival {
+            return false;
+        }
+        path.weights.carried /= survival;
+        true
+    }
+}
+
+impl Walkers<'_> {
+    /// Follows the paths of some samples to their ends.
+    fn follow(&mut self, samples: &mut [CameraSample], cancel: &Cancel, radiance: &mut [Rgb]) {
+        assert_eq!(samples.len(), radiance.len());
+        let Walker { settings, scene, points, known, .. } = self.walker;
+        let rays: Vec<Ray> = samples.iter().map(|sample| sample.ray).collect();
+        let mut media = Vec::new();
+        MediumStack::at(scene, &rays, &mut media);
+        let lanes = lanes(samples.len());
+        let radiance = Cell::from_mut(radiance).as_slice_of_cells();
+        self.parts.clear();
+        self.parts.resize(if settings.shares { samples.len() } else { 0 }, Parts::default());
+        let left = Cell::from_mut(&mut self.parts[..]).as_slice_of_cells();
+        let to_do = RefCell::new(samples.iter_mut().zip(media).zip(radiance).enumerate());
+        together(scene, &lanes, |lane: &Lane| {
+            let (walker, to_do) = (Walker { settings, scene, points, known, asks: lane }, &to_do);
+            async move {
+                let mut waiting = Vec::new();
+                while !cancel.is_raised() {
+                    let next = to_do.borrow_mut().next();
+                    let Some((number, ((sample, media), radiance))) = next else { return };
+                    let mut parts = Parts::default();
+                    radiance.set(walker.follow(sample, media, &mut waiting, &mut parts, cancel).await);
+                    if let Some(left) = left.get(number) {
+                        left.set(parts);
+                    }
+                }
+            }
+        });
+    }
+}
+
+impl Worker for Walkers<'_> {
+    fn radiance(&mut self, samples: &mut [CameraSample], cancel: &Cancel, radiance: &mut [Rgb]) {
+        if self.walker.settings.shares {
+            return self.radiance_in_groups(samples, &vec![1; samples.len()], cancel, radiance);
+        }
+        self.follow(samples, cancel, radiance);
+    }
+
+    fn radiance_in_groups(
+        &mut self,
+        samples: &mut [CameraSample],
+        groups: &[u32],
+        cancel: &Cancel,
+        radiance: &mut [Rgb],
+    ) {
+        self.follow(samples, cancel, radiance);
+        if self.walker.settings.shares {
+            self.reuse.share(self.walker.scene, groups, &self.parts, cancel, radiance);
+        }
+    }
+}

@@ -1,0 +1,102 @@
+//! What facets between two dielectrics lose.
+
+use super::cubic::Cubic;
+use super::tables::{INTERFACE_AVERAGE, THIN};
+use super::variables::{DENSEST, of_alpha, of_index};
+use super::{Rough, Tables, Tabulated};
+use crate::fresnel;
+use glam::DVec3;
+
+/// A rough interface between two dielectrics: what it loses of light from either side in one scattering, and how that
+/// light is given back so that nothing is lost and nothing depends on which way the light goes.
+#[derive(Clone, Copy, Debug)]
+pub struct Interface {
+    tables: &'static Tables,
+    rough: Rough,
+    alpha: Cubic,
+    index: Cubic,
+    /// Above and below the surface.
+    sides: [Side; 2],
+}
+
+/// What holds on one side.
+#[derive(Clone, Copy, Debug)]
+struct Side {
+    dense: bool,
+    /// Mean loss over even light.
+    average: f64,
+    /// The share of what is lost that is given back on the other side.
+    crosses: f64,
+}
+
+impl Interface {
+    /// Of facets that are alike in all directions, with `eta` the index below over that above.
+    pub fn new<F: Tabulated>(facets: F, eta: f64) -> Self {
+        Self::with(F::TABLES, facets.alpha()[0], eta)
+    }
+
+    /// Of these tables.
+    pub(super) fn with(tables: &'static Tables, alpha: f64, eta: f64) -> Self {
+        let dense = eta.max(1.0 / eta).min(DENSEST);
+        let (rough, a, i) = (Rough::new(alpha, dense), of_alpha(alpha), of_index(alpha, dense));
+        let [rows, columns] = INTERFACE_AVERAGE;
+        let (row, column) = (Cubic::new(a, rows), Cubic::new(i, columns));
+        let average = |dense: bool| {
+            let table = if dense { &tables.dense_average } else { &tables.thin_average };
+            table.at(&row, &column).exp() * rough.unit()
+        };
+        let averages = [average(eta < 1.0), average(eta > 1.0)];
+        // A share t of a loss L̄ that crosses from side a to b is reciprocal if na² ta L̄a = nb² tb L̄b (Kulla and
+        // Conty, "Revisiting Physically Based Shading at Imageworks", 2017). A smooth interface lets through 1 − F̄,
+        // for which na² (1 − F̄a) = nb² (1 − F̄b): so t = (1 − F̄) / L̄ times what keeps both at most 1 − F̄.
+        let least = averages[0].min(averages[1]);
+        let side = |below: bool| {
+            let (own, average) = (if below { 1.0 / eta } else { eta }, averages[usize::from(below)]);
+            let through = 1.0 - fresnel::dielectric_average(own);
+            Side { dense: own < 1.0, average, crosses: if average > 0.0 { through * least / average } else { 0.0 } }
+        };
+        let (alpha, index) = (Cubic::new(a, THIN[0]), Cubic::new(i, THIN[2]));
+        Self { tables, rough, alpha, index, sides: [side(false), side(true)] }
+    }
+
+    #[inline]
+    fn side(&self, w: DVec3) -> &Side {
+        &self.sides[usize::from(w.z < 0.0)]
+    }
+
+    /// The share of light from `w` that is neither reflected nor refracted away by one facet.
+    #[inline]
+    pub fn loss(&self, w: DVec3) -> f64 {
+        let dense = self.side(w).dense;
+        let (cosine, most) = if dense { self.rough.dense(w) } else { self.rough.thin(w) };
+        let table = if dense { &self.tables.dense } else { &self.tables.thin };
+        (most * table.at(&self.alpha, &Cubic::new(cosine, table.sizes[1]), &self.index)).clamp(0.0, 1.0)
+    }
+
+    /// The share of what is lost on the side of `w` that is given back on the other side.
+    #[inline]
+    pub fn crossing(&self, w: DVec3) -> f64 {
+        self.side(w).crosses
+    }
+
+    /// The cosine on the side of `w` about which light is lost.
+    #[inline]
+    pub fn scale(&self, w: DVec3) -> f64 {
+        if self.side(w).dense { (self.rough.alpha * self.rough.bent).max(1e-8) } else { self.rough.alpha }
+    }
+
+    /// What is given back to `wo` of light from `wi`, per solid angle, with the cosine of `wi` in it and without the 1
+    /// / η² of radiance. `loss` is that of `wo`.
+    #[inline]
+    pub fn given_back(&self, loss: f64, wo: DVec3, wi: DVec3) -> f64 {
+        loss * self.given_back_density(wo, wi)
+    }
+
+    /// The density over the sphere with which lost light is given back.
+    #[inline]
+    pub fn given_back_density(&self, wo: DVec3, wi: DVec3) -> f64 {
+        let (from, to) = (self.side(wo), self.side(wi));
+        let share = if wo.z * wi.z > 0.0 { 1.0 - from.crosses } else { from.crosses };
+        if to.average > 0.0 { share * self.loss(wi) * wi.z.abs() / (std::f64::consts::PI * to.average) } else { 0.0 }
+    }
+}

@@ -1,0 +1,459 @@
+//! The principled models of the film studios: many looks by a few numbers.
+
+use super::bsdf_columns::LaneBsdf;
+use super::conductor::above;
+use super::lobes::diffuse;
+use super::straight::Straight;
+use super::{Bsdf, BsdfSample, Facets, Ggx, Once, Rgb, fresnel};
+use raywright_base::math::exponential::exp;
+use raywright_base::math::turn::sin_cos_turn;
+use raywright_base::math::{DVec3, in_lanes, select};
+use std::f64::consts::{FRAC_1_PI, PI};
+
+/// What the principled models are told of a point, each number 0 to 1 unless it says otherwise.
+#[derive(Clone, Copy, Debug)]
+pub struct Look {
+    /// The colour of what is matt, of what metal reflects, and of what goes through.
+    pub base_color: Rgb,
+    /// How bright that is to the eye.
+    pub luminance: f64,
+    /// Its square is the α of the facets, 0.001 at least.
+    pub roughness: f64,
+    /// How much longer highlights are along x than along y.
+    pub anisotropic: f64,
+    /// The share that goes through, of what is no metal.
+    pub transmission: f64,
+    /// How much of the colour highlights of what is no metal have.
+    pub specular_tint: f64,
+    /// Light along the edges of cloth.
+    pub sheen: f64,
+    /// How much of the colour it has.
+    pub sheen_tint: f64,
+    /// How much of what is matt is as flat as what light gets deep into.
+    pub flatness: f64,
+}
+
+in_lanes! {
+    /// What they are told of points, a lane each.
+    LookLanes of Look {
+        base_color: Rgb,
+        luminance: f64,
+        roughness: f64,
+        anisotropic: f64,
+        transmission: f64,
+        specular_tint: f64,
+        sheen: f64,
+        sheen_tint: f64,
+        flatness: f64,
+    }
+}
+
+impl Look {
+    /// Facets of a roughness, stretched.
+    fn facets(&self, roughness: f64) -> Once<Ggx> {
+        let (alpha, aspect) = (roughness * roughness, (1.0 - 0.9 * self.anisotropic).sqrt());
+        Once::new([(alpha / aspect).max(0.001), (alpha * aspect).max(0.001)])
+    }
+
+    /// The colour at a luminance of 1.
+    #[inline(always)]
+    fn tint(&self) -> Rgb {
+        if self.luminance > 0.0 { self.base_color / self.luminance } else { Rgb::ONE }
+    }
+
+    /// What is matt, with its cosine: Burley's diffuse reflection, part of it flattened as by Hanrahan and Krueger, and
+    /// sheen, between two directions above.
+    #[inline(always)]
+    fn matt(&self, wo: DVec3, wi: DVec3, shares: [f64; 2]) -> Rgb {
+        let half = (wo + wi).normalize_or(DVec3::Z);
+        let cosine = wi.dot(half);
+        let [o, i] = [wo.z, wi.z].map(fresnel::schlick_weight);
+        let retro = 2.0 * self.roughness * cosine * cosine;
+        let edges = (1.0 - 0.5 * i) * (1.0 - 0.5 * o) + retro * (o + i + o * i * (retro - 1.0));
+        let [fo, fi] = [o, i].map(|weight| 1.0 - weight + weight * 0.5 * retro);
+        let flat = 1.25 * (fo * fi * ((wo.z + wi.z).recip() - 0.5) + 0.5);
+        let sheen = Rgb::splat(1.0 - self.sheen_tint) + self.tint() * self.sheen_tint;
+        let [matt, cloth] = shares;
+        (self.base_color * (matt * FRAC_1_PI * (edges + (flat - edges) * self.flatness))
+            + sheen * (cloth * self.sheen * fresnel::schlick_weight(cosine.abs())))
+            * wi.z
+    }
+}
+
+/// Schlick's reflectance for what it is at normal incidence, of light that meets a facet at a cosine, with `eta` the
+/// index beyond over that before: towards the thinner side it is that of the angle within.
+#[inline(always)]
+fn schlick(normal: Rgb, cosine: f64, eta: f64) -> Rgb {
+    let weight = if eta > 1.0 {
+        fresnel::schlick_weight(cosine)
+    } else {
+        fresnel::schlick_weight((1.0 - (1.0 - cosine * cosine) / (eta * eta)).max(0.0).sqrt())
+    };
+    normal + (Rgb::ONE - normal) * weight
+}
+
+/// Reflectance at normal incidence.
+#[inline(always)]
+fn at_normal(eta: f64) -> f64 {
+    ((eta - 1.0) / (eta + 1.0)).powi(2)
+}
+
+/// The principled model (Burley, "Physically Based Shading at Disney", 2012, and "Extending the Disney BRDF to a BSDF
+/// with Integrated Subsurface Scattering", 2015), as Mitsuba 3 has it: from plastic to metal to glass, under a clear
+/// coat. Facets are GGX's and scatter once, which is why rough ones lose light; grazing light may gain some.
+///
+/// What lets no light through is the same on both sides. What does has its front where the normals are, and its back
+/// reflects and refracts only.
+#[derive(Clone, Copy, Debug)]
+pub struct Principled {
+    look: Look,
+    facets: Once<Ggx>,
+    /// The index below over that above.
+    eta: f64,
+    metallic: f64,
+    coat: f64,
+    gloss: Gtr1,
+    solid: bool,
+}
+
+impl Principled {
+    /// The coat's reflectance at normal incidence, and the roughness by which it is masked.
+    const COAT: f64 = 0.04;
+    const MASKED: f64 = 0.25;
+
+    /// Of a look, the index of refraction below over that above, a metalness, a coat and its gloss. `solid`: whether
+    /// light goes through anywhere.
+    pub fn new(look: Look, eta: f64, metallic: f64, [coat, gloss]: [f64; 2], solid: bool) -> Self {
+        // At an index of 1 there would be no surface.
+        let eta = if (eta - 1.0).abs() < 1e-3 { 1.001 } else { eta };
+        let gloss = Gtr1::new(0.1 + (0.001 - 0.1) * gloss);
+        Self { look, facets: look.facets(look.roughness), eta, metallic, coat, gloss, solid }
+    }
+
+    /// The index below over that above.
+    pub fn eta(&self) -> f64 {
+        self.eta
+    }
+
+    /// The shares of what is matt and of what goes through.
+    #[inline(always)]
+    fn bodies(&self) -> [f64; 2] {
+        let through = self.look.transmission;
+        [(1.0 - self.metallic) * (1.0 - through), (1.0 - self.metallic) * through]
+    }
+
+    /// What facets reflect of light that meets them at a cosine.
+    #[inline(always)]
+    fn reflectance(&self, is_front: bool, cosine: f64) -> Rgb {
+        let look = &self.look;
+        if !is_front {
+            return Rgb::splat(self.bodies()[1] * fresnel::dielectric(cosine, 1.0 / self.eta));
+        }
+        let (tint, plain) = (look.specular_tint, 1.0 - self.metallic);
+        Rgb::splat(plain * (1.0 - tint) * fresnel::dielectric(cosine, self.eta))
+            + schlick(look.base_color, cosine, self.eta) * self.metallic
+            + schlick(look.tint() * at_normal(self.eta), cosine, self.eta) * (plain * tint)
+    }
+
+    /// The probabilities of the matt part and of the coat; the rest is the facets'.
+    #[inline(always)]
+    fn shares(&self, is_front: bool) -> [f64; 2] {
+        if !is_front {
+            return [0.0; 2];
+        }
+        let [matt, _] = self.bodies();
+        let coat = 0.25 * self.coat;
+        let sum = 1.0 + coat + matt;
+        [matt / sum, coat / sum]
+    }
+
+    /// The probability that a facet drawn reflects, at a cosine.
+    #[inline(always)]
+    fn reflecting(&self, is_front: bool, cosine: f64) -> f64 {
+        let [_, through] = self.bodies();
+        if is_front {
+            1.0 - through * (1.0 - fresnel::dielectric(cosine, self.eta))
+        } else {
+            fresnel::dielectric(cosine, 1.0 / self.eta)
+        }
+    }
+
+    /// Whether a direction is on the side that all of it is on, and the index beyond it.
+    #[inline(always)]
+    fn side(&self, wo: DVec3) -> (bool, f64) {
+        let is_front = wo.z > 0.0 || !self.solid;
+        (is_front, if is_front { self.eta } else { 1.0 / self.eta })
+    }
+
+    #[inline(always)]
+    fn reflected(&self, is_front: bool, o: DVec3, i: DVec3) -> (Rgb, f64) {
+        let [matt, coat] = self.shares(is_front);
+        let (density, cosine) = self.facets.mirroring(o, i);
+        let mut value = self.reflectance(is_front, cosine) * (density * self.facets.reflection_geometry(o, i));
+        let drawn = self.reflecting(is_front, cosine) * self.facets.reflected_pdf(o, density);
+        let mut pdf = (1.0 - matt - coat) * drawn;
+        if is_front {
+            let [body, _] = self.bodies();
+            if body > 0.0 {
+                value += self.look.matt(o, i, [body, 1.0 - self.metallic]);
+                pdf += matt * i.z * FRAC_1_PI;
+            }
+            if self.coat > 0.0 {
+                let half = (o + i).normalize_or(DVec3::Z);
+                let (density, cosine) = (self.gloss.density(half), o.dot(half));
+                let masked = Ggx::new([Self::MASKED; 2]);
+                let fresnel = schlick(Rgb::splat(Self::COAT), cosine, self.eta);
+                value += fresnel * (0.25 * self.coat * density * masked.masking(o) * masked.masking(i) * i.z);
+                pdf += coat * density * half.z / (4.0 * cosine);
+            }
+        }
+        (value, pdf)
+    }
+
+    #[inline(always)]
+    fn refracted(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64) {
+        let (is_front, eta) = self.side(wo);
+        let [_, through] = self.bodies();
+        let q = wo + wi * eta;
+        let q = if q.z * wo.z < 0.0 { -q } else { q };
+        let square = q.length_squared();
+        let h = q / square.sqrt();
+        let (o, i) = (wo.dot(h), -wi.dot(h));
+        if through == 0.0 || square == 0.0 || o <= 0.0 || i <= 0.0 {
+            return (Rgb::ZERO, 0.0);
+        }
+        let crossing = self.facets.density(h) * o * i / square;
+        let [seen, both] = self.facets.refraction_geometry(wo, wi);
+        let fresnel = fresnel::dielectric(o, eta);
+        let [matt, coat] = self.shares(is_front);
+        let drawn = (1.0 - matt - coat) * (1.0 - self.reflecting(is_front, o));
+        (
+            self.look.base_color.sqrt() * (through * (1.0 - fresnel) * crossing * both),
+            drawn * crossing * seen * eta * eta,
+        )
+    }
+}
+
+impl Bsdf for Principled {
+    #[inline(always)]
+    fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64) {
+        if !Ggx::sees(wo) || !Ggx::sees(wi) {
+            return (Rgb::ZERO, 0.0);
+        }
+        let (is_front, _) = self.side(wo);
+        if !is_front && self.bodies()[1] == 0.0 {
+            return (Rgb::ZERO, 0.0);
+        }
+        if wo.z * wi.z > 0.0 {
+            self.reflected(is_front, above(wo), above(wi))
+        } else if self.solid {
+            self.refracted(wo, wi)
+        } else {
+            (Rgb::ZERO, 0.0)
+        }
+    }
+
+    #[inline(always)]
+    fn sample(&self, wo: DVec3, choice: &mut dyn FnMut() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
+        let (is_front, eta) = self.side(wo);
+        if !Ggx::sees(wo) || (!is_front && self.bodies()[1] == 0.0) {
+            return None;
+        }
+        let (choice, up) = (choice(), above(wo));
+        let [matt, coat] = self.shares(is_front);
+        let smooth = matt + coat;
+        // All are computed, and one is taken: lanes have no branches.
+        let (gloss, half) = (self.gloss.sample(u), self.facets.sample_visible(up, u));
+        let cosine = up.dot(half);
+        let between = smooth + (1.0 - smooth) * self.reflecting(is_front, cosine);
+        let (bent, is_total) = fresnel::refracted(up, half, eta);
+        let (is_matt, is_smooth) = (choice < matt, choice < smooth);
+        let beyond = !is_smooth & (choice >= between);
+        let sharp = select(beyond, bent, half * (2.0 * cosine) - up);
+        let coated = select(is_smooth, gloss * (2.0 * up.dot(gloss)) - up, sharp);
+        let mut wi = select(is_matt, diffuse(up, u), coated);
+        let of_facet = if beyond { [between, 1.0] } else { [smooth, between] };
+        let of_rest = if is_smooth { [matt, smooth] } else { of_facet };
+        let choices = if is_matt { [0.0, matt] } else { of_rest };
+        if (beyond & is_total) | ((wi.z > 0.0) == beyond) | !Ggx::sees(wi) {
+            return None;
+        }
+        wi.z = wi.z.abs().copysign(if beyond { -wo.z } else { wo.z });
+        let (value, pdf) = self.evaluate(wo, wi);
+        let drawn = BsdfSample::new(wi, value / pdf, pdf).of_lobe(choices);
+        (pdf > 0.0).then(|| if beyond { drawn.through(eta) } else { drawn })
+    }
+
+    fn albedo(&self) -> Rgb {
+        self.look.base_color
+    }
+
+    fn transmits(&self) -> bool {
+        self.solid
+    }
+
+    fn roughness(&self) -> f64 {
+        self.facets.mean_alpha()
+    }
+}
+
+/// The principled model of a sheet (Burley, 2015), as Mitsuba 3 has it: a leaf, paper, a bubble. Both sides are alike,
+/// and light goes straight through or is scattered on the other side.
+#[derive(Clone, Copy, Debug)]
+pub struct PrincipledThin {
+    look: Look,
+    /// Of what is reflected, and of what goes through.
+    facets: [Once<Ggx>; 2],
+    eta: f64,
+    /// The share of what is matt that is scattered on the other side.
+    diffuse_transmission: f64,
+}
+
+impl PrincipledThin {
+    /// Of a look, the index of refraction, and the share of what is matt that goes through, 0 to 1.
+    pub fn new(look: Look, eta: f64, diffuse_transmission: f64) -> Self {
+        // Light that goes through a rough sheet is spread the more the higher the index (Burley, 2015, figure 15).
+        let through = look.facets((0.65 * eta - 0.35).max(0.0) * look.roughness);
+        Self { look, facets: [look.facets(look.roughness), through], eta, diffuse_transmission }
+    }
+
+    /// The choices up to the end of each lobe: sharp and matt, of each what is reflected and what goes through.
+    #[inline(always)]
+    fn ends(&self) -> [f64; 4] {
+        let sharp = self.look.transmission;
+        [0.5 * sharp, sharp, 1.0 - (1.0 - sharp) * self.diffuse_transmission, 1.0]
+    }
+}
+
+impl Bsdf for PrincipledThin {
+    #[inline(always)]
+    fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64) {
+        if !Ggx::sees(wo) || !Ggx::sees(wi) {
+            return (Rgb::ZERO, 0.0);
+        }
+        let (look, is_through) = (&self.look, wo.z * wi.z < 0.0);
+        let (o, i, sharp) = (above(wo), above(wi), look.transmission);
+        let (mut value, mut pdf) = (Rgb::ZERO, 0.0);
+        if sharp > 0.0 {
+            let facets = if is_through { self.facets[1] } else { self.facets[0] };
+            let (density, cosine) = facets.mirroring(o, i);
+            let plain = fresnel::dielectric(cosine, self.eta);
+            let share = if is_through {
+                look.base_color * (1.0 - plain)
+            } else {
+                let tinted = schlick(look.tint() * at_normal(self.eta), cosine, self.eta);
+                Rgb::splat(plain) * (1.0 - look.specular_tint) + tinted * look.specular_tint
+            };
+            value += share * (sharp * density * facets.reflection_geometry(o, i));
+            pdf += 0.5 * sharp * facets.reflected_pdf(o, density);
+        }
+        let (matt, across) = (1.0 - sharp, self.diffuse_transmission);
+        if is_through {
+            value += look.base_color * (matt * across * FRAC_1_PI * i.z);
+        } else {
+            value += look.matt(o, i, [matt * (1.0 - across); 2]);
+        }
+        pdf += matt * if is_through { across } else { 1.0 - across } * i.z * FRAC_1_PI;
+        (value, pdf)
+    }
+
+    #[inline(always)]
+    fn sample(&self, wo: DVec3, choice: &mut dyn FnMut() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
+        if !Ggx::sees(wo) {
+            return None;
+        }
+        let (choice, up) = (choice(), above(wo));
+        let [mirrored, sharp, matt, all] = self.ends();
+        let (is_sharp, is_first) = (choice < sharp, choice < if choice < sharp { mirrored } else { matt });
+        // Both are computed, and one is taken: lanes have no branches.
+        let facets = if is_first { self.facets[0] } else { self.facets[1] };
+        let mut wi = select(is_sharp, facets.sample_reflection(up, u), diffuse(up, u));
+        if !(wi.z > 0.0 && Ggx::sees(wi)) {
+            return None;
+        }
+        let is_through = !is_first;
+        let of_sharp = if is_first { [0.0, mirrored] } else { [mirrored, sharp] };
+        let of_matt = if is_first { [sharp, matt] } else { [matt, all] };
+        let choices = if is_sharp { of_sharp } else { of_matt };
+        wi.z = wi.z.copysign(if is_through { -wo.z } else { wo.z });
+        let (value, pdf) = self.evaluate(wo, wi);
+        let drawn = BsdfSample::new(wi, value / pdf, pdf).of_lobe(choices);
+        (pdf > 0.0).then(|| if is_through { drawn.through(1.0) } else { drawn })
+    }
+
+    fn albedo(&self) -> Rgb {
+        self.look.base_color
+    }
+
+    fn transmits(&self) -> bool {
+        true
+    }
+
+    fn roughness(&self) -> f64 {
+        self.facets[0].mean_alpha()
+    }
+}
+
+/// Facets of tails so long that they glow, for coats: Burley's (2012) generalisation of GGX with an exponent of 1.
+#[derive(Clone, Copy, Debug)]
+struct Gtr1 {
+    /// α², and its logarithm.
+    square: f64,
+    log: f64,
+}
+
+in_lanes! {
+    /// Such facets, a lane each.
+    Gtr1Lanes of Gtr1 { square: f64, log: f64 }
+}
+
+impl Gtr1 {
+    fn new(alpha: f64) -> Self {
+        let square = alpha * alpha;
+        Self { square, log: square.ln() }
+    }
+
+    #[inline(always)]
+    fn density(&self, h: DVec3) -> f64 {
+        let square = self.square;
+        (square - 1.0) / (PI * self.log * (1.0 + (square - 1.0) * h.z * h.z))
+    }
+
+    /// Draws a normal with density D cos θ.
+    #[inline(always)]
+    fn sample(&self, u: [f64; 2]) -> DVec3 {
+        let height = ((1.0 - exp(self.log * (1.0 - u[1]))) / (1.0 - self.square)).clamp(0.0, 1.0);
+        let [sin, cos] = sin_cos_turn(u[0]);
+        let radius = (1.0 - height).sqrt();
+        DVec3::new(radius * cos, radius * sin, height.sqrt())
+    }
+}
+
+in_lanes! {
+    /// Such surfaces, a lane each.
+    PrincipledLanes of Principled {
+        look: Look,
+        facets: Once<Ggx>,
+        eta: f64,
+        metallic: f64,
+        coat: f64,
+        gloss: Gtr1,
+        solid: bool,
+    }
+}
+
+impl LaneBsdf for Principled {
+    type Lanes = Straight<Self>;
+}
+
+in_lanes! {
+    /// Such sheets, a lane each.
+    PrincipledThinLanes of PrincipledThin { look: Look, facets: [Once<Ggx>; 2], eta: f64, diffuse_transmission: f64 }
+}
+
+impl LaneBsdf for PrincipledThin {
+    type Lanes = Straight<Self>;
+}
+
+#[cfg(test)]
+mod tests;

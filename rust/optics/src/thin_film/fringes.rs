@@ -1,0 +1,104 @@
+//! What the eye sees of fringes.
+
+use crate::Rgb;
+use crate::spectra::{Illuminant, Response};
+use std::f64::consts::TAU;
+use std::sync::LazyLock;
+
+/// The way behind, in nm, from which on fringes are too close for the eye: what is left of them is below 0.0013.
+pub const FARTHEST: f64 = 48_000.0;
+
+/// Between entries, nm.
+const STEP: f64 = 6.0;
+
+/// As many as reach one beyond [`FARTHEST`], and one before 0.
+const COUNT: usize = (FARTHEST / STEP) as usize + 4;
+
+/// What daylight looks like of which a share of cos(2π x / λ), or of sin(2π x / λ), is there at each wavelength λ, by
+/// the way x that a part of the light is behind: the Fourier transforms of what the eye sees of daylight (Belcour and
+/// Barla, "A Practical Extension to Microfacet Theory for the Modeling of Varying Iridescence", 2017), with the same
+/// weights of every nm by which all spectra are seen. Cubics between entries err by at most 3e-6.
+static FRINGES: LazyLock<[Vec<Rgb>; 2]> = LazyLock::new(|| {
+    let mut all = [vec![Rgb::ZERO; COUNT], vec![Rgb::ZERO; COUNT]];
+    for (wavelength, weight) in Response::new(Illuminant::Daylight, 1).weights() {
+        let (turn_sin, turn_cos) = (TAU * STEP / wavelength).sin_cos();
+        // From the entry before 0 on.
+        let (mut cos, mut sin) = (turn_cos, -turn_sin);
+        let [cosines, sines] = &mut all;
+        for (cosine, sine) in cosines.iter_mut().zip(sines) {
+            *cosine += weight * cos;
+            *sine += weight * sin;
+            (cos, sin) = (cos * turn_cos - sin * turn_sin, sin * turn_cos + cos * turn_sin);
+        }
+    }
+    all
+});
+
+/// What is seen of the cosine and of the sine, for light that is `behind` by so many nm, not negative.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Fringes {
+    cosines: &'static [Rgb],
+    sines: &'static [Rgb],
+}
+
+impl Fringes {
+    /// The tables, made when they are first asked for.
+    #[inline]
+    pub fn get() -> Self {
+        let [cosines, sines] = &*FRINGES;
+        Self { cosines, sines }
+    }
+
+    /// Of the cosine.
+    #[inline]
+    pub fn cosine(&self, behind: f64) -> Rgb {
+        if behind < FARTHEST { between(self.cosines, behind) } else { Rgb::ZERO }
+    }
+
+    /// Of the cosine and of the sine.
+    #[inline]
+    pub fn both(&self, behind: f64) -> [Rgb; 2] {
+        if behind < FARTHEST { [between(self.cosines, behind), between(self.sines, behind)] } else { [Rgb::ZERO; 2] }
+    }
+}
+
+/// The cubic through four entries.
+#[inline]
+fn between(table: &[Rgb], behind: f64) -> Rgb {
+    let steps = behind * (1.0 / STEP);
+    let before = steps as usize;
+    let t = steps - before as f64;
+    let (up, down) = (t + 1.0, 1.0 - t);
+    let far = 2.0 - t;
+    let near = &table[before..before + 4];
+    (near[1] * (down * far * up) + near[2] * (t * up * far)) * 0.5
+        - (near[0] * (down * far * t) + near[3] * (t * up * down)) * (1.0 / 6.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tables_are_the_transforms() {
+        let daylight = Response::new(Illuminant::Daylight, 1);
+        let fringes = Fringes::get();
+        for i in 0..2000 {
+            // Denser towards 0, and nowhere on an entry.
+            let behind = 47_990.0 * (f64::from(i) / 2000.0).powi(3) + 0.1234;
+            let truth = [f64::cos, f64::sin].map(|wave| daylight.seen(|wavelength| wave(TAU * behind / wavelength)));
+            let [cosine, sine] = fringes.both(behind);
+            let off = (cosine - truth[0]).abs().max().max((sine - truth[1]).abs().max());
+            assert!(off < 3e-6 && fringes.cosine(behind) == cosine, "{behind} {off:e}");
+        }
+        assert!((fringes.cosine(0.0) - Rgb::ONE).abs().max() < 1e-12 && fringes.both(0.0)[1].abs().max() < 1e-12);
+        // What is left out.
+        for i in 0..400 {
+            let behind = FARTHEST + 97.0 * f64::from(i);
+            for wave in [f64::cos, f64::sin] {
+                assert!(daylight.seen(|wavelength| wave(TAU * behind / wavelength)).abs().max() < 1.3e-3);
+            }
+            assert_eq!(fringes.both(behind), [Rgb::ZERO; 2]);
+        }
+    }
+}

@@ -1,0 +1,137 @@
+//! Bounding volume hierarchies.
+
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use super::{Build, unknown, within};
+use raywright::accel::bvh::build::halves::Way;
+use raywright::accel::bvh::build::morton::Bits;
+use raywright::accel::bvh::build::{Builder, binned, ploc, spatial};
+use raywright::accel::bvh::optimise::{Optimiser, Optimisers};
+use raywright::accel::bvh::traverse::{Orders, Rays, Traversal};
+use raywright::accel::bvh::{self, Quality};
+use raywright::accel::flat;
+use raywright::accel::trees;
+use raywright::simd::Level;
+
+/// `raywright.BVH`.
+#[derive(FromPyObject)]
+pub struct Bvh {
+    builder: String,
+    bins: Option<usize>,
+    traversal_cost: f32,
+    intersection_cost: f32,
+    budget: Option<f32>,
+    radius: Option<usize>,
+    optimise: Option<Vec<String>>,
+    traversal: String,
+    orders: Option<u32>,
+    bounds: String,
+}
+
+/// The tree that rays go through, and how.
+enum Tree {
+    /// One of so many children a node, or of as many as suit the level.
+    Wide(Option<usize>),
+    Binary(Traversal),
+    /// As arrays without pointers.
+    Flat(flat::Way),
+}
+
+impl Bvh {
+    /// Reads what is to be built; `quality` decides what nothing else does.
+    pub fn build(self, quality: &str, level: Level) -> PyResult<Build> {
+        let options = self.options(quality)?;
+        Ok(match self.tree(level)? {
+            Tree::Wide(None) => Box::new(move |geometry| trees::over(geometry, &options, level)),
+            Tree::Wide(Some(width)) => Box::new(move |geometry| trees::of_width(width, geometry, &options, level)),
+            Tree::Flat(way) => Box::new(move |geometry| trees::flat(geometry, &options, way, level)),
+            Tree::Binary(way) => Box::new(move |geometry| trees::binary(geometry, &options, way, level)),
+        })
+    }
+
+    /// Reads how a tree is built.
+    pub fn options(&self, quality: &str) -> PyResult<bvh::Options> {
+        let quality = match quality {
+            "fast build" => Quality::FastBuild,
+            "balanced" => Quality::Balanced,
+            "fast rays" => Quality::FastRays,
+            other => return Err(unknown("quality", other, &["fast build", "balanced", "fast rays"])),
+        };
+        Ok(bvh::Options {
+            quality,
+            builder: self.builder()?,
+            optimisers: self.optimisers()?,
+            traversal_cost: self.traversal_cost,
+            intersection_cost: self.intersection_cost,
+        })
+    }
+
+    fn tree(&self, level: Level) -> PyResult<Tree> {
+        let orders = match self.orders {
+            None | Some(8) => Orders::Eight,
+            Some(6) => Orders::Six,
+            Some(other) => return Err(PyValueError::new_err(format!("orders is {other}, expected 6 or 8"))),
+        };
+        Ok(match self.traversal.as_str() {
+            "wide" => Tree::Wide(None),
+            "wide4" => Tree::Wide(Some(4)),
+            "wide8" if level.lanes() < 8 => {
+                let name = level.name();
+                return Err(PyValueError::new_err(format!(
+                    "traversal \"wide8\" needs AVX2, and kernels run at {name}"
+                )));
+            }
+            "wide8" => Tree::Wide(Some(8)),
+            "stack" => Tree::Binary(match self.bounds.as_str() {
+                "box" => Traversal::Stack(Rays::One),
+                "oriented" => Traversal::Oriented,
+                "slabs" => Traversal::Slabs,
+                other => return Err(unknown("bounds", other, &["box", "oriented", "slabs"])),
+            }),
+            "packets4" => Tree::Binary(Traversal::Stack(Rays::Four)),
+            "packets64" => Tree::Binary(Traversal::Stack(Rays::SixtyFour)),
+            "flat" => Tree::Flat(flat::Way::Stack),
+            "stackless" => Tree::Flat(flat::Way::Stackless),
+            "threaded" => Tree::Binary(Traversal::Threaded(orders)),
+            other => return Err(unknown("traversal", other, &TRAVERSALS)),
+        })
+    }
+
+    fn builder(&self) -> PyResult<Builder> {
+        let Self { bins, budget, radius, .. } = *self;
+        within("bins", bins, 2..=binned::MAX_BINS)?;
+        within("budget", budget, 0.0..=spatial::MAX_BUDGET)?;
+        within("radius", radius, 1..=ploc::MAX_RADIUS)?;
+        Ok(match self.builder.as_str() {
+            "binned" => Builder::Binned { bins },
+            "sweep" => Builder::Sweep,
+            "spatial" => Builder::Spatial { bins, budget: budget.unwrap_or(spatial::BUDGET) },
+            "morton" => Builder::Morton(Bits::default()),
+            "ploc" => Builder::Ploc { radius: radius.unwrap_or(ploc::RADIUS) },
+            "midpoint" => Builder::Halves(Way::Midpoint),
+            "median" => Builder::Halves(Way::Median),
+            "mean" => Builder::Halves(Way::Mean),
+            other => return Err(unknown("builder", other, &BUILDERS)),
+        })
+    }
+
+    fn optimisers(&self) -> PyResult<Option<Optimisers>> {
+        let Some(names) = &self.optimise else { return Ok(None) };
+        let optimiser = |name: &String| match name.as_str() {
+            "reinsertion" => Ok(Optimiser::Reinsertion),
+            "treelet" => Ok(Optimiser::Treelet),
+            other => Err(unknown("optimise", other, &["reinsertion", "treelet"])),
+        };
+        let optimisers = names.iter().map(optimiser).collect::<PyResult<Vec<_>>>()?;
+        match Optimisers::new(optimisers) {
+            Some(optimisers) => Ok(Some(optimisers)),
+            None => Err(PyValueError::new_err(format!("optimise is {names:?}, expected each at most once"))),
+        }
+    }
+}
+
+const BUILDERS: [&str; 8] = ["binned", "sweep", "spatial", "morton", "ploc", "midpoint", "median", "mean"];
+
+const TRAVERSALS: [&str; 9] =
+    ["wide", "wide4", "wide8", "stack", "threaded", "packets4", "packets64", "flat", "stackless"];

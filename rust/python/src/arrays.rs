@@ -1,0 +1,231 @@
+//! numpy arrays as slices of numbers or of vectors.
+
+use numpy::{
+    Element, PyArrayDyn, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArrayDyn, PyReadwriteArrayDyn,
+    PyUntypedArrayMethods,
+};
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
+use pyo3::types::{PyFloat, PyTuple};
+
+use raywright::math::{DVec3, Vec3};
+use raywright::scene::Vertices;
+
+/// A (..., 3) array of either float type.
+pub enum Triples<'py> {
+    /// float64.
+    Double(PyReadonlyArrayDyn<'py, f64>),
+    /// float32.
+    Single(PyReadonlyArrayDyn<'py, f32>),
+}
+
+impl<'py> FromPyObject<'_, 'py> for Triples<'py> {
+    type Error = PyErr;
+
+    fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        if let Ok(array) = object.cast::<PyArrayDyn<f64>>() {
+            return Ok(Self::Double(array.try_readonly()?));
+        }
+        match object.cast::<PyArrayDyn<f32>>() {
+            Ok(array) => Ok(Self::Single(array.try_readonly()?)),
+            Err(_) => Err(PyTypeError::new_err("expected an array of float32 or float64")),
+        }
+    }
+}
+
+/// The rows of a [`Triples`], which threads may share.
+#[derive(Clone, Copy)]
+pub enum Rows<'a> {
+    /// float64.
+    Double(&'a [[f64; 3]]),
+    /// float32.
+    Single(&'a [[f32; 3]]),
+}
+
+/// A row of three numbers.
+pub trait Row: Copy {
+    /// The row as a vector.
+    fn vector(self) -> DVec3;
+    /// A vector as a row, rounded to its type.
+    fn of(vector: DVec3) -> Self;
+}
+
+impl Row for [f64; 3] {
+    #[inline(always)]
+    fn vector(self) -> DVec3 {
+        DVec3::from_array(self)
+    }
+    #[inline(always)]
+    fn of(vector: DVec3) -> Self {
+        vector.to_array()
+    }
+}
+
+impl Row for [f32; 3] {
+    #[inline(always)]
+    fn vector(self) -> DVec3 {
+        Vec3::from_array(self).as_dvec3()
+    }
+    #[inline(always)]
+    fn of(vector: DVec3) -> Self {
+        vector.as_vec3().to_array()
+    }
+}
+
+impl Triples<'_> {
+    /// Its rows; `name` is the argument's, for the error if it is not what the package promised.
+    pub fn rows(&self, name: &str) -> PyResult<Rows<'_>> {
+        Ok(match self {
+            Self::Double(array) => Rows::Double(vectors(name, array)?),
+            Self::Single(array) => Rows::Single(vectors(name, array)?),
+        })
+    }
+}
+
+impl Rows<'_> {
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Double(rows) => rows.len(),
+            Self::Single(rows) => rows.len(),
+        }
+    }
+
+    /// One of them.
+    #[inline(always)]
+    pub fn get(&self, i: usize) -> DVec3 {
+        match self {
+            Self::Double(rows) => rows[i].vector(),
+            Self::Single(rows) => rows[i].vector(),
+        }
+    }
+
+    /// All of them as vertices, with all of their digits.
+    pub fn vertices(self) -> Vertices {
+        match self {
+            Self::Double(rows) => Vertices::Double(rows.iter().map(|&r| DVec3::from_array(r)).collect()),
+            Self::Single(_) => Vertices::Single(self.to_single()),
+        }
+    }
+
+    /// All of them, rounded to f32.
+    pub fn to_single(self) -> Vec<Vec3> {
+        match self {
+            Self::Double(rows) => rows.iter().map(|&r| DVec3::from_array(r).as_vec3()).collect(),
+            Self::Single(rows) => rows.iter().map(|&r| Vec3::from_array(r)).collect(),
+        }
+    }
+}
+
+/// A number for all rays, or an array of one for each.
+pub enum Numbers<'py> {
+    /// A float.
+    One([f64; 1]),
+    /// A float64 array of any shape.
+    Each(PyReadonlyArrayDyn<'py, f64>),
+}
+
+impl<'py> FromPyObject<'_, 'py> for Numbers<'py> {
+    type Error = PyErr;
+
+    fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        match object.cast::<PyFloat>() {
+            Ok(number) => Ok(Self::One([number.value()])),
+            Err(_) => Ok(Self::Each(object.extract()?)),
+        }
+    }
+}
+
+impl Numbers<'_> {
+    /// All of them, or the only one; `name` is the argument's.
+    pub fn slice(&self, name: &str) -> PyResult<&[f64]> {
+        match self {
+            Self::One(number) => Ok(number),
+            Self::Each(array) => contiguous(name, array),
+        }
+    }
+}
+
+fn contiguous<'a, T: Element>(name: &str, array: &'a PyReadonlyArrayDyn<'_, T>) -> PyResult<&'a [T]> {
+    match array.as_slice() {
+        Ok(all) if array.is_c_contiguous() => Ok(all),
+        _ => Err(PyValueError::new_err(format!("{name} must be C-contiguous"))),
+    }
+}
+
+/// The vectors of a (..., K) array.
+pub fn vectors<'a, T: Element, const K: usize>(
+    name: &str,
+    array: &'a PyReadonlyArrayDyn<'_, T>,
+) -> PyResult<&'a [[T; K]]> {
+    match array.shape().last() {
+        Some(&k) if k == K => Ok(contiguous(name, array)?.as_chunks().0),
+        _ => Err(PyValueError::new_err(format!("{name} has shape {:?}, expected (..., {K})", array.shape()))),
+    }
+}
+
+/// The rows of an (N, 2) array of either float type, rounded to f32.
+pub fn pairs(name: &str, array: &Bound<'_, PyAny>) -> PyResult<Vec<[f32; 2]>> {
+    if let Ok(doubles) = array.extract::<PyReadonlyArray2<'_, f64>>() {
+        return Ok(rows::<f64, 2>(name, &doubles)?.iter().map(|row| row.map(|x| x as f32)).collect());
+    }
+    Ok(rows::<f32, 2>(name, &array.extract()?)?.to_vec())
+}
+
+/// The rows of an (N,K) array.
+pub fn rows<'a, T: Element, const K: usize>(name: &str, array: &'a PyReadonlyArray2<'_, T>) -> PyResult<&'a [[T; K]]> {
+    match array.as_slice() {
+        Ok(all) if array.shape()[1] == K => Ok(all.as_chunks().0),
+        _ => {
+            Err(PyValueError::new_err(format!("{name} has shape {:?}, expected C-contiguous (N, {K})", array.shape())))
+        }
+    }
+}
+
+/// The numbers of an (N,) array.
+pub fn numbers<'a, T: Element>(name: &str, array: &'a PyReadonlyArray1<'_, T>) -> PyResult<&'a [T]> {
+    array.as_slice().map_err(|_| PyValueError::new_err(format!("{name} must be C-contiguous")))
+}
+
+/// An array with the leading shape `lead`, and `width` entries a row if that is not none. Its entries are anything, and
+/// it is for the caller to write every one: to write zeros first would be one more pass over memory, and by one thread
+/// alone.
+pub fn unwritten<'py, T: Element>(
+    py: Python<'py>,
+    lead: &[usize],
+    width: Option<usize>,
+) -> PyResult<Bound<'py, PyArrayDyn<T>>> {
+    // Zeros take less time than a call of a Python function up to here.
+    const SMALL: usize = 4096;
+    static EMPTY: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
+    let shape: Vec<usize> = lead.iter().copied().chain(width).collect();
+    if shape.iter().product::<usize>() <= SMALL {
+        return Ok(PyArrayDyn::zeros(py, shape, false));
+    }
+    let empty = EMPTY.import(py, "numpy", "empty")?;
+    Ok(empty.call1((PyTuple::new(py, shape)?, T::get_dtype(py)))?.cast_into()?)
+}
+
+/// The array, to be written to: of the shape that [`unwritten`] would give it, C-contiguous, and shared with none that
+/// is read meanwhile. `name` is the argument's.
+pub fn writable<'py, T: Element>(
+    name: &str,
+    array: &Bound<'py, PyArrayDyn<T>>,
+    lead: &[usize],
+    width: Option<usize>,
+) -> PyResult<PyReadwriteArrayDyn<'py, T>> {
+    let is_fit = array.is_c_contiguous() && array.shape().iter().eq(lead.iter().chain(&width));
+    if !is_fit {
+        let shape = array.shape();
+        return Err(PyValueError::new_err(format!("{name} has shape {shape:?}, expected C-contiguous, of {lead:?}")));
+    }
+    let why = "is read-only, or shares memory with what is asked";
+    array.try_readwrite().map_err(|_| PyValueError::new_err(format!("{name} cannot be written to: it {why}")))
+}
+
+/// The array, which can be read only from now on.
+pub fn sealed<'py, T: Element>(array: Bound<'py, PyArrayDyn<T>>) -> PyResult<Bound<'py, PyArrayDyn<T>>> {
+    array.try_readwrite()?.make_nonwriteable();
+    Ok(array)
+}

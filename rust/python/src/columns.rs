@@ -1,0 +1,315 @@
+//! Rays of arrays by columns, and their closest hits back to arrays.
+
+use super::arrays::Rows;
+use super::rays::{BATCH, RayArrays};
+use raywright::accel::ByColumns;
+use raywright::math::coherence::is_coherent;
+use raywright::math::gathering::{Gathering, RUN, Spread, WINDOW};
+use raywright::math::{HitColumns, Numbers, RayColumns, Run, Tiling, Vectors};
+use raywright::scene::Geometry;
+use raywright::simd::{ask_for, columns_of_four};
+use std::cell::Cell;
+
+/// Where t, shape_id, primitive and uv of some rays are written.
+pub type HitParts<'a> = (&'a mut [f64], &'a mut [i32], &'a mut [i32], &'a mut [[f64; 2]]);
+
+/// Rays that are asked together, of a chunk of `count`.
+#[derive(Clone, Copy)]
+struct Part<'a> {
+    tiling: Tiling,
+    from: usize,
+    len: usize,
+    count: usize,
+    /// Which runs of neighbours after `window` they are, if they are asked in an order that is neither theirs nor an
+    /// image's. What is left of a window that is no whole run stands last.
+    order: Option<&'a [u16]>,
+    window: usize,
+}
+
+impl Part<'_> {
+    /// Whether they are asked in the order in which they lie.
+    fn is_sequence(&self) -> bool {
+        self.tiling.is_sequence() && self.order.is_none()
+    }
+
+    /// Where they lie in the chunk.
+    #[inline(always)]
+    fn runs(&self, mut each: impl FnMut(Run)) {
+        let Some(order) = self.order else { return self.tiling.runs(self.from, self.len, self.count, each) };
+        for (i, &run) in order.iter().enumerate() {
+            each(Run { place: self.window + RUN * usize::from(run), at: RUN * i, len: RUN });
+        }
+        let at = RUN * order.len();
+        if at < self.len {
+            each(Run { place: self.from + at, at, len: self.len - at });
+        }
+    }
+
+    /// Copies what belongs to them from where it lies to the order in which they are asked.
+    #[inline(always)]
+    fn read<T: Copy>(&self, from: &[T], to: &mut [T]) {
+        self.runs(|Run { place, at, len }| copy(&from[place..][..len], &mut to[at..][..len]));
+    }
+
+    /// The same the other way.
+    #[inline(always)]
+    fn write<T: Copy>(&self, from: &[T], to: &mut [T]) {
+        self.runs(|Run { place, at, len }| copy(&from[at..][..len], &mut to[place..][..len]));
+    }
+}
+
+/// So many rays further along a row they are asked for: the next tiles but three.
+const AHEAD: usize = 32;
+
+/// Fewer rays than these are as near to each other as they can be.
+const FEW: usize = 256;
+
+/// What a thread needs for the rays that it asks together; kept, since to make it anew takes as long as many rays.
+#[derive(Default)]
+struct Room {
+    single: [[Vec<f32>; 3]; 2],
+    double: [[Vec<f64>; 3]; 2],
+    t_min: Vec<f64>,
+    t_max: Vec<f64>,
+    answers: Answers,
+    gathering: Gathering,
+}
+
+/// Room for answers in the order in which rays are asked.
+#[derive(Default)]
+struct Answers {
+    t: Vec<f64>,
+    uv: Vec<[f64; 2]>,
+    shape: Vec<i32>,
+    primitive: Vec<i32>,
+    found: Vec<bool>,
+}
+
+thread_local! {
+    static ROOM: Cell<Option<Box<Room>>> = const { Cell::new(None) };
+}
+
+/// Numbers that vectors are made of.
+trait Coordinate: Copy + Default {
+    /// Some neighbours by axis.
+    fn columns(rows: &[[Self; 3]; RUN]) -> [[Self; RUN]; 3];
+}
+
+impl Coordinate for f32 {
+    #[inline(always)]
+    fn columns(rows: &[[f32; 3]; RUN]) -> [[f32; RUN]; 3] {
+        columns_of_four(rows)
+    }
+}
+
+impl Coordinate for f64 {
+    #[inline(always)]
+    fn columns(rows: &[[f64; 3]; RUN]) -> [[f64; RUN]; 3] {
+        [0, 1, 2].map(|axis| [rows[0][axis], rows[1][axis], rows[2][axis], rows[3][axis]])
+    }
+}
+
+/// Copies as many numbers as there are: mostly [`RUN`], and then without a call.
+#[inline(always)]
+fn copy<T: Copy>(from: &[T], to: &mut [T]) {
+    let ((fours, others), (to_fours, to_others)) = (from.as_chunks::<RUN>(), to.as_chunks_mut::<RUN>());
+    for (from, to) in fours.iter().zip(to_fours) {
+        *to = *from;
+    }
+    for (from, to) in others.iter().zip(to_others) {
+        *to = *from;
+    }
+}
+
+/// Of some room, as much as is needed.
+fn some<T: Clone + Default>(room: &mut Vec<T>, count: usize) -> &mut [T] {
+    if room.len() < count {
+        room.resize(count, T::default());
+    }
+    &mut room[..count]
+}
+
+/// Some rows, or the one that serves for all.
+fn slice(rows: Rows<'_>, start: usize, count: usize) -> Rows<'_> {
+    match rows {
+        Rows::Single(rows) => Rows::Single(if rows.len() == 1 { rows } else { &rows[start..][..count] }),
+        Rows::Double(rows) => Rows::Double(if rows.len() == 1 { rows } else { &rows[start..][..count] }),
+    }
+}
+
+fn spread(rows: Rows<'_>) -> Spread {
+    match rows {
+        Rows::Single(rows) => Spread::of(rows),
+        Rows::Double(rows) => Spread::of(rows),
+    }
+}
+
+/// The rows of a part of a chunk, by axis.
+fn vectors<'a>(
+    single: &'a mut [Vec<f32>; 3],
+    double: &'a mut [Vec<f64>; 3],
+    rows: &Rows<'_>,
+    start: usize,
+    part: &Part<'_>,
+) -> Vectors<'a> {
+    match rows {
+        Rows::Single(rows) => Vectors::Single(fill(single, rows, start, part)),
+        Rows::Double(rows) => Vectors::Double(fill(double, rows, start, part)),
+    }
+}
+
+fn fill<'a, T: Coordinate>(room: &'a mut [Vec<T>; 3], rows: &[[T; 3]], start: usize, part: &Part<'_>) -> [&'a [T]; 3] {
+    let [x, y, z] = room;
+    let (x, y, z) = (some(x, part.len), some(y, part.len), some(z, part.len));
+    // One that serves for all.
+    if let [row] = rows {
+        for (column, number) in [&mut *x, &mut *y, &mut *z].into_iter().zip(row) {
+            column.fill(*number);
+        }
+        return [x, y, z];
+    }
+    let rows = &rows[start..];
+    part.runs(|Run { place, at, len }| {
+        ask_for(rows.as_ptr().wrapping_add(place + AHEAD).cast());
+        let (rows, x, y, z) = (&rows[place..][..len], &mut x[at..][..len], &mut y[at..][..len], &mut z[at..][..len]);
+        let (fours, others) = rows.as_chunks::<RUN>();
+        let to = x.as_chunks_mut().0.iter_mut().zip(y.as_chunks_mut().0).zip(z.as_chunks_mut().0);
+        for (four, ((x, y), z)) in fours.iter().zip(to) {
+            [*x, *y, *z] = T::columns(four);
+        }
+        for (i, &row) in (len - others.len()..).zip(others) {
+            [x[i], y[i], z[i]] = row;
+        }
+    });
+    [x, y, z]
+}
+
+/// The numbers of a part of a chunk; `room` holds them where their order is another.
+fn numbers<'a>(all: &'a [f64], start: usize, part: &Part<'_>, room: &'a mut Vec<f64>) -> Numbers<'a> {
+    if let [one] = all {
+        return Numbers::One(*one);
+    }
+    let all = &all[start..];
+    if part.is_sequence() {
+        return Numbers::Each(&all[part.from..][..part.len]);
+    }
+    let room = some(room, part.len);
+    part.read(all, room);
+    Numbers::Each(room)
+}
+
+impl RayArrays<'_> {
+    /// Calls `answer` with up to [`BATCH`] rays at a time of the `count` from `start` on, with where they lie among
+    /// them, and with room.
+    fn columns(
+        &self,
+        tree: &dyn ByColumns,
+        start: usize,
+        count: usize,
+        mut answer: impl FnMut(&RayColumns<'_>, &Part<'_>, &mut Answers),
+    ) {
+        let mut room = ROOM.take().unwrap_or_default();
+        for window in (0..count).step_by(WINDOW) {
+            let end = count.min(window + WINDOW);
+            let Room { single: [o, d], double: [long_o, long_d], t_min, t_max, answers, gathering } = &mut *room;
+            let order = self.gather_near(tree, start + window, end - window, gathering);
+            for from in (window..end).step_by(BATCH) {
+                let len = BATCH.min(end - from);
+                let order = order.map(|order| &order[(from - window) / RUN..][..len / RUN]);
+                let part = Part { tiling: self.tiling, from, len, count, order, window };
+                let rays = RayColumns::new(
+                    vectors(o, long_o, &self.origins, start, &part),
+                    vectors(d, long_d, &self.directions, start, &part),
+                    numbers(self.t_min, start, &part, t_min),
+                    numbers(self.t_max, start, &part, t_max),
+                );
+                answer(&rays, &part, answers);
+            }
+        }
+        ROOM.set(Some(room));
+    }
+
+    /// An order of some rays in which those near each other stand together, if that helps.
+    fn gather_near<'a>(
+        &self,
+        tree: &dyn ByColumns,
+        start: usize,
+        count: usize,
+        to: &'a mut Gathering,
+    ) -> Option<&'a [u16]> {
+        let extent = tree.extent()?;
+        let one = |rows: Rows<'_>, i: usize| rows.get(if rows.len() == 1 { 0 } else { start + i });
+        let ray = |i: usize| (one(self.origins, i), one(self.directions, i));
+        if !self.tiling.is_sequence() || count < FEW || !is_coherent(count, ray, extent) {
+            return None;
+        }
+        let (from, towards) = (slice(self.origins, start, count), slice(self.directions, start, count));
+        let (origins, directions) = (spread(from), spread(towards));
+        let (far, wide) = (origins.over(Some(extent)), directions.over(None));
+        let (rows, spread, size) = if far >= wide { (from, origins, far) } else { (towards, directions, wide) };
+        if !(size > 0.0 && size < f32::INFINITY) {
+            return None;
+        }
+        Some(match rows {
+            Rows::Single(rows) => to.of(rows, &spread),
+            Rows::Double(rows) => to.of(rows, &spread),
+        })
+    }
+
+    /// The closest hits of the rays from `start` on, of which there are as many as there is room for.
+    pub fn closest(&self, geometry: &Geometry, tree: &dyn ByColumns, start: usize, to: HitParts<'_>) {
+        let (t, shape, primitive, uv) = to;
+        self.columns(tree, start, t.len(), |rays, part, room| {
+            if part.is_sequence() {
+                let here = part.from..part.from + part.len;
+                let (t, uv, primitive) = (&mut t[here.clone()], &mut uv[here.clone()], &mut primitive[here.clone()]);
+                tree.intersect(rays, HitColumns { t, uv, primitive });
+                return locate(geometry, &mut shape[here], primitive);
+            }
+            let (ts, uvs) = (some(&mut room.t, part.len), some(&mut room.uv, part.len));
+            let (shapes, primitives) = (some(&mut room.shape, part.len), some(&mut room.primitive, part.len));
+            tree.intersect(rays, HitColumns { t: ts, uv: uvs, primitive: primitives });
+            locate(geometry, shapes, primitives);
+            part.write(ts, t);
+            part.write(uvs, uv);
+            part.write(shapes, shape);
+            part.write(primitives, primitive);
+        });
+    }
+
+    /// Whether the rays from `start` on hit anything, of which there are as many as there is room for.
+    pub fn occluded(&self, tree: &dyn ByColumns, start: usize, to: &mut [bool]) {
+        self.columns(tree, start, to.len(), |rays, part, room| {
+            if part.is_sequence() {
+                return tree.occluded(rays, &mut to[part.from..][..part.len]);
+            }
+            let found = some(&mut room.found, part.len);
+            tree.occluded(rays, found);
+            part.write(found, to);
+        });
+    }
+}
+
+/// The shape of a primitive and its number there; −1 for none.
+#[inline(always)]
+fn located(geometry: &Geometry, primitive: i32) -> (i32, i32) {
+    if primitive < 0 {
+        return (-1, -1);
+    }
+    let (shape, primitive) = geometry.locate(primitive as u32);
+    (shape as i32, primitive as i32)
+}
+
+/// Takes primitives as numbered among all to the shapes that they are of.
+fn locate(geometry: &Geometry, shape: &mut [i32], primitive: &mut [i32]) {
+    if geometry.shapes() == 1 {
+        for (shape, &primitive) in shape.iter_mut().zip(&*primitive) {
+            // 0, or −1 where there is none.
+            *shape = primitive >> 31;
+        }
+        return;
+    }
+    for (shape, primitive) in shape.iter_mut().zip(primitive) {
+        (*shape, *primitive) = located(geometry, *primitive);
+    }
+}

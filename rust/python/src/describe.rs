@@ -1,0 +1,172 @@
+//! Scenes, cameras and integrators as the package describes them, read by attribute.
+
+use numpy::PyReadonlyArray2;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use std::collections::HashSet;
+use std::sync::Arc;
+
+use super::arrays::{Rows, Triples, pairs, rows};
+use super::builds::Builds;
+use super::instances::{self, Wishes};
+use super::lights;
+use super::materials::Appearances;
+use super::media;
+use super::shapes;
+use raywright::scene::media::Medium;
+use raywright::scene::textures::Needs;
+use raywright::scene::{self, Precision, Rounding, SceneDescription, Surface};
+
+/// `raywright.Scene`.
+#[derive(FromPyObject)]
+pub struct Scene<'py> {
+    shapes: Vec<Bound<'py, PyAny>>,
+    lights: Vec<Bound<'py, PyAny>>,
+    environment: Option<Bound<'py, PyAny>>,
+    medium: Option<Bound<'py, PyAny>>,
+    precision: String,
+    /// Why paths are to carry wavelengths; none for red, green and blue.
+    wavelengths: Option<String>,
+    /// What each of the shapes is called.
+    pub names: Py<PyAny>,
+    /// How much the build may take for rays to be fast.
+    pub quality: String,
+    /// What becomes of shading normals.
+    shading_normals: String,
+}
+
+/// `raywright.Mesh`.
+#[derive(FromPyObject)]
+struct Mesh<'py> {
+    vertices: Triples<'py>,
+    faces: PyReadonlyArray2<'py, u32>,
+    normals: Option<Triples<'py>>,
+    uv: Option<Bound<'py, PyAny>>,
+    colors: Option<Triples<'py>>,
+}
+
+impl Scene<'_> {
+    /// Whether shading normals are taken as they are given.
+    pub fn normals_as_given(&self) -> bool {
+        self.shading_normals == "as given"
+    }
+
+    /// The core's own description of it, and what has to live as long as what is made of it.
+    ///
+    /// Groups in it that nobody has yet are among the `builds`.
+    pub fn describe(self, builds: &Builds) -> PyResult<(SceneDescription, Vec<Py<PyAny>>)> {
+        let precision = match self.precision.as_str() {
+            "auto" => Precision::Auto,
+            "single" => Precision::Single,
+            "double" => Precision::Double,
+            other => {
+                return Err(PyValueError::new_err(format!(
+                    "precision is {other:?}, expected \"auto\", \"single\" or \"double\""
+                )));
+            }
+        };
+        let waves = self.wavelengths.is_some();
+        let wishes = Wishes { precision, quality: &self.quality, waves, builds };
+        let (appearances, mut kept) = (Appearances::new(waves), Vec::new());
+        let shapes = read(&self.shapes, wishes, &appearances, &mut kept)?;
+        let mut all = self.lights.iter().map(|light| lights::read(light, waves)).collect::<PyResult<Vec<_>>>()?;
+        all.extend(lights::read_environment(self.environment, waves)?);
+        Ok((SceneDescription { shapes, lights: all }, kept))
+    }
+
+    /// What fills the space in which nothing else is.
+    pub fn surrounding(&self) -> PyResult<Option<Arc<dyn Medium>>> {
+        self.medium.as_ref().map(|medium| media::read(medium, self.wavelengths.is_some())).transpose()
+    }
+
+    /// How much there is to build, prototypes included.
+    pub fn size(&self) -> PyResult<usize> {
+        instances::size(&self.shapes, &mut HashSet::new())
+    }
+}
+
+/// How any shape appearances.
+#[derive(FromPyObject)]
+struct Appearance<'py> {
+    material: Bound<'py, PyAny>,
+    emission: Option<Bound<'py, PyAny>>,
+}
+
+/// Reads the shapes of a scene, or of a prototype in it. Vertices are rounded as they are read, and read again where
+/// that is a loss: all of them, so that meshes which share some still do.
+fn read(
+    all: &[Bound<'_, PyAny>],
+    wishes: Wishes<'_>,
+    appearances: &Appearances,
+    kept: &mut Vec<Py<PyAny>>,
+) -> PyResult<Vec<scene::Shape>> {
+    let (mut shapes, mut rounded) = (Vec::with_capacity(all.len()), Vec::new());
+    for one in all {
+        if instances::is_instance(one)? {
+            shapes.push(instances::read(one, wishes, kept, &|within, kept| read(within, wishes, appearances, kept))?);
+            continue;
+        }
+        let (shape, given) = describe(one, wishes.precision, appearances)?;
+        one.py().check_signals()?;
+        rounded.extend(given.map(|given| (shapes.len(), given)));
+        shapes.push(shape);
+    }
+    let meshes = shapes.iter().filter_map(|shape| if let Surface::Mesh(m) = &shape.surface { Some(m) } else { None });
+    if wishes.precision.is_double(meshes.map(|mesh| mesh.rounding).fold(Rounding::default(), Rounding::worst)) {
+        for (number, given) in rounded {
+            if let Surface::Mesh(mesh) = &mut shapes[number].surface {
+                mesh.vertices = given.rows("vertices")?.vertices();
+            }
+        }
+    }
+    Ok(shapes)
+}
+
+/// Reads any shape: a mesh, or what is none; and of a mesh whose vertices were rounded, all of their digits.
+fn describe<'py>(
+    shape: &Bound<'py, PyAny>,
+    precision: Precision,
+    appearances: &Appearances,
+) -> PyResult<(scene::Shape, Option<Triples<'py>>)> {
+    let appearance: Appearance<'_> = shape.extract()?;
+    let material = appearances.material(&appearance.material)?;
+    let emission = appearance
+        .emission
+        .map_or_else(|| Ok(scene::Emission::default()), |e| lights::read_emission(&e, &appearances.textures))?;
+    let appearance = scene::Shape { material, emission, ..scene::Shape::default() };
+    if shape.get_type().name()? != "Mesh" {
+        return Ok((scene::Shape { surface: shapes::read(shape)?.into(), ..appearance }, None));
+    }
+    let given = shape.extract::<Mesh<'py>>()?;
+    let mesh = given.describe(precision, appearance.needs())?;
+    let is_rounded = mesh.rounding.moved > 0.0;
+    Ok((scene::Shape { surface: mesh.into(), ..appearance }, is_rounded.then_some(given.vertices)))
+}
+
+impl Mesh<'_> {
+    /// Of what the vertices have beside their places, only what is needed is read.
+    fn describe(&self, precision: Precision, needs: Needs) -> PyResult<scene::Mesh> {
+        let (given, faces) = (self.vertices.rows("vertices")?, rows("faces", &self.faces)?.to_vec());
+        let count = given.len();
+        if let Some(face) = faces.iter().position(|f| f.iter().any(|&v| v as usize >= count)) {
+            let corners = faces[face];
+            return Err(PyValueError::new_err(format!("face {face} is {corners:?}, but there are {count} vertices")));
+        }
+        let (vertices, rounding) = match given {
+            Rows::Double(rows) if precision != Precision::Double => scene::rounded(rows, &faces),
+            given => (given.vertices(), Rounding::default()),
+        };
+        let normals = self.normals.as_ref().map(|n| n.rows("normals").map(|rows| rows.to_single())).transpose()?;
+        let uvs = self.uv.as_ref().filter(|_| needs.uv).map(|uv| pairs("uv", uv)).transpose()?;
+        let colours = self.colors.as_ref().filter(|_| needs.colours);
+        let colours = colours.map(|c| c.rows("colors").map(|rows| rows.to_single())).transpose()?;
+        let colours = colours.map(|all| all.into_iter().map(|colour| colour.to_array()).collect());
+        let mesh = scene::Mesh { vertices, rounding, faces, normals, uvs, colours };
+        let sizes =
+            [mesh.normals.as_ref().map(Vec::len), mesh.uvs.as_ref().map(Vec::len), mesh.colours.as_ref().map(Vec::len)];
+        match sizes.into_iter().flatten().find(|&size| size != count) {
+            Some(size) => Err(PyValueError::new_err(format!("{size} values are given for {count} vertices"))),
+            None => Ok(mesh),
+        }
+    }
+}

@@ -1,0 +1,244 @@
+//! A scene as flat arrays, and what kernels over these need of the core: rays made ready, and candidates decided.
+
+use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use super::accelerators;
+use super::arrays::{numbers, rows, sealed, unwritten};
+use super::hits::{HitArrays, Hits};
+use super::instances;
+use super::level;
+use super::query::{CompiledScene, write};
+use super::rays::{BATCH, RayArguments, RayArrays, answer, share};
+use raywright::accel::Primitives;
+use raywright::accel::flat::{CANDIDATES, CERTAIN, Flat, NO_CANDIDATE, Settled, Settler, flat_ray};
+use raywright::math::Hit;
+use raywright::workers;
+
+/// A compiled scene's flat arrays.
+#[pyclass(frozen, module = "raywright._core")]
+pub struct FlatScene {
+    scene: Py<CompiledScene>,
+    flat: Flat,
+}
+
+/// Which rays hit anything, of how many that had to be decided, and how many were asked of the scene.
+type Occluded<'py> = (Bound<'py, PyArrayDyn<bool>>, (usize, usize));
+
+#[pymethods]
+#[allow(clippy::too_many_arguments)]
+impl FlatScene {
+    /// Builds a tree over a scene's geometry, as an accelerator's description and a quality say, and over prototypes if
+    /// these are wanted.
+    #[new]
+    fn new(
+        py: Python<'_>,
+        scene: Bound<'_, CompiledScene>,
+        accelerator: &Bound<'_, PyAny>,
+        quality: &str,
+        prototypes: bool,
+    ) -> PyResult<Self> {
+        let options = accelerators::tree_options(accelerator, quality)?;
+        let compiled = scene.get();
+        let flat = py
+            .detach(|| {
+                let build = || Flat::new(compiled.scene().geometry(), &options, prototypes);
+                workers::pool(None).map(|pool| pool.install(build))
+            })
+            .map_err(PyRuntimeError::new_err)?;
+        Ok(Self { scene: scene.unbind(), flat })
+    }
+
+    /// (K, 8) uint32, the bytes of nodes.
+    #[getter]
+    fn nodes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<u32>>> {
+        let rows = self.flat.nodes.iter().map(|n| {
+            let ([a, b, c], [d, e, f]) = (n.min.map(f32::to_bits), n.max.map(f32::to_bits));
+            [a, b, c, n.index, d, e, f, n.count]
+        });
+        table(py, self.flat.nodes.len(), rows)
+    }
+
+    /// (M, 12) uint32, the bytes of triangles.
+    #[getter]
+    fn triangles<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<u32>>> {
+        let rows = self.flat.triangles.iter().map(|t| {
+            let [corner, edge, other] = [t.corner, t.edge, t.other].map(|v| v.map(f32::to_bits));
+            let [[a, b, c], [d, e, f], [g, h, i]] = [corner, edge, other];
+            [a, b, c, t.primitive, d, e, f, t.largest.to_bits(), g, h, i, t.instance]
+        });
+        table(py, self.flat.triangles.len(), rows)
+    }
+
+    /// (I, 16) uint32, the bytes of instances.
+    #[getter]
+    fn instances<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<u32>>> {
+        let rows = self.flat.instances.iter().map(|one| {
+            let [[a, b, c, d], [e, f, g, h], [i, j, k, l]] = one.rows.map(|row| row.map(f32::to_bits));
+            [a, b, c, d, e, f, g, h, i, j, k, l, one.node, one.end, one.primitive, one.reserved]
+        });
+        table(py, self.flat.instances.len(), rows)
+    }
+
+    /// How many of the nodes and of the triangles are the scene's own.
+    #[getter]
+    fn own(&self) -> (usize, usize) {
+        (self.flat.own[0], self.flat.own[1])
+    }
+
+    /// What has no end.
+    #[getter]
+    fn unbounded<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
+        PyArray1::from_slice(py, &self.flat.unbounded)
+    }
+
+    /// The first primitive of each shape, and how many there are in all.
+    #[getter]
+    fn first(&self) -> Vec<u32> {
+        let geometry = self.scene.get().scene().geometry();
+        let shapes = (0..geometry.shapes() as u32).map(|shape| geometry.primitives_of(shape).start);
+        shapes.chain([Primitives::count(geometry) as u32]).collect()
+    }
+
+    #[getter]
+    fn depth(&self) -> usize {
+        self.flat.depth
+    }
+
+    /// The middle of box units.
+    #[getter]
+    fn centre<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, &self.flat.region.centre.to_array())
+    }
+
+    /// From the scene's units to box units.
+    #[getter]
+    fn scale(&self) -> f64 {
+        self.flat.region.scale
+    }
+
+    /// Rays as kernels take them: (N, 8) float32.
+    fn rays<'py>(&self, py: Python<'py>, rays: RayArguments<'py>) -> PyResult<Bound<'py, PyArrayDyn<f32>>> {
+        let (threads, rays) = (rays.threads, rays.rays()?);
+        let out = unwritten(py, &[rays.count], Some(8))?;
+        answer(
+            py,
+            rays.count,
+            rays.chunk(),
+            threads,
+            out.readwrite().as_slice_mut()?.as_chunks_mut().0,
+            |start, out| {
+                rays.gathered(start, out.len(), |batch, places| {
+                    for (ray, &place) in batch.iter().zip(places) {
+                        out[place] = flat_ray(ray, &self.flat.region);
+                    }
+                });
+            },
+        )?;
+        Ok(out)
+    }
+
+    /// The closest hits among candidates, (N, 4) uint32; and of how many rays the candidates had to be decided, and how
+    /// many were asked of the scene's own accelerator.
+    fn intersect<'py>(
+        &self,
+        py: Python<'py>,
+        rays: RayArguments<'py>,
+        candidates: PyReadonlyArray2<'py, u32>,
+    ) -> PyResult<(Hits<'py>, (usize, usize))> {
+        let (lead, threads, rays) = (&rays.shape, rays.threads, rays.rays()?);
+        let candidates = rows::<u32, CANDIDATES>("candidates", &candidates)?;
+        self.check(&rays, candidates)?;
+        let scene = self.scene.get().scene();
+        let settler = Settler::new(scene.geometry(), &self.flat, scene.accelerator(), level()?);
+        let (decided, walked) = (AtomicUsize::new(0), AtomicUsize::new(0));
+        let hits = HitArrays::new(py, scene, lead, None)?.written(|parts| {
+            answer(py, rays.count, rays.chunk(), threads, parts, |start, ((t, shape, primitive, uv), mut instance)| {
+                let count = t.len();
+                let mut hits = vec![Hit::MISS; BATCH.min(count)];
+                let mut mine = Vec::with_capacity(hits.len());
+                rays.gathered(start, count, |batch, places| {
+                    let hits = &mut hits[..batch.len()];
+                    mine.clear();
+                    mine.extend(places.iter().map(|place| candidates[start + place]));
+                    let told: Settled = settler.closest(batch, &mine, hits);
+                    decided.fetch_add(told.decided, Ordering::Relaxed);
+                    walked.fetch_add(told.walked, Ordering::Relaxed);
+                    write(scene, hits, places, (t, shape, primitive, uv));
+                    if let Some(instance) = &mut instance {
+                        instances::write(scene, hits, places, instance, primitive);
+                    }
+                });
+            })
+        })?;
+        Ok((hits, (decided.into_inner(), walked.into_inner())))
+    }
+
+    /// Whether rays hit anything, of which (N,) uint32 tells what they may hit; and of how many rays that had to be
+    /// decided, and how many were asked of the scene's own accelerator.
+    fn occluded<'py>(
+        &self,
+        py: Python<'py>,
+        rays: RayArguments<'py>,
+        told: PyReadonlyArray1<'py, u32>,
+    ) -> PyResult<Occluded<'py>> {
+        let (lead, threads, rays) = (&rays.shape, rays.threads, rays.rays()?);
+        let told = numbers("told", &told)?;
+        let scene = self.scene.get().scene();
+        self.check(&rays, told.as_chunks::<1>().0)?;
+        let settler = Settler::new(scene.geometry(), &self.flat, scene.accelerator(), level()?);
+        let out = unwritten(py, lead, None)?;
+        let (decided, walked) = (AtomicUsize::new(0), AtomicUsize::new(0));
+        answer(py, rays.count, share(rays.count), threads, out.readwrite().as_slice_mut()?, |start, out| {
+            // Most are answered already: only of the others is the ray wanted.
+            let (mut open, mut places, mut mine) = (Vec::new(), Vec::new(), Vec::new());
+            let is_open = |told: u32| told != CERTAIN && (told != NO_CANDIDATE || !self.flat.unbounded.is_empty());
+            for (i, to) in out.iter_mut().enumerate() {
+                let told = told[start + i];
+                *to = told == CERTAIN;
+                if is_open(told) {
+                    open.push(rays.ray(start + i));
+                    places.push(i);
+                    mine.push(told);
+                }
+            }
+            let mut found = vec![false; open.len()];
+            let settled = settler.occluded(&open, &mine, &mut found);
+            decided.fetch_add(settled.decided, Ordering::Relaxed);
+            walked.fetch_add(settled.walked, Ordering::Relaxed);
+            places.iter().zip(found).for_each(|(&i, found)| out[i] = found);
+        })?;
+        Ok((out, (decided.into_inner(), walked.into_inner())))
+    }
+}
+
+impl FlatScene {
+    /// Refuses what is told of another number of rays, so many numbers each, or of primitives that there are not.
+    fn check<const K: usize>(&self, rays: &RayArrays<'_>, told: &[[u32; K]]) -> PyResult<()> {
+        if rays.count != told.len() {
+            let count = told.len();
+            return Err(PyValueError::new_err(format!("{count} rays are told of, expected {}", rays.count)));
+        }
+        let count = Primitives::count(self.scene.get().scene().geometry()) as u32;
+        let strange = |row: &[u32; K]| row.iter().any(|&p| p >= count && p < CERTAIN);
+        match told.iter().position(strange) {
+            Some(i) => Err(PyValueError::new_err(format!("ray {i} is told of a primitive beyond the {count}"))),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Rows of numbers as an array.
+fn table<'py, const K: usize>(
+    py: Python<'py>,
+    count: usize,
+    rows: impl Iterator<Item = [u32; K]>,
+) -> PyResult<Bound<'py, PyArrayDyn<u32>>> {
+    let out = unwritten(py, &[count], Some(K))?;
+    for (to, row) in out.readwrite().as_slice_mut()?.as_chunks_mut::<K>().0.iter_mut().zip(rows) {
+        *to = row;
+    }
+    sealed(out)
+}

@@ -1,0 +1,130 @@
+//! Floor 6: the bindings. Arrays in, arrays out, errors mapped; no algorithm lives here.
+
+mod accelerators;
+mod arrays;
+mod builds;
+mod cameras;
+mod columns;
+mod cones;
+mod denoise;
+mod describe;
+mod every;
+mod exr_files;
+mod first_hits;
+mod flat;
+mod freeform;
+mod grid_blocks;
+mod hits;
+mod info;
+mod instances;
+mod integrators;
+mod interactions;
+mod job;
+mod leave;
+mod lights;
+mod materials;
+mod media;
+mod photons;
+mod points;
+mod query;
+mod radiosity;
+mod random;
+mod rays;
+mod render;
+mod report;
+mod samplers;
+mod shapes;
+mod sight;
+mod signals;
+mod spectra;
+mod textures;
+mod tree;
+mod view_factors;
+mod watcher;
+mod written;
+
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use raywright::simd::Level;
+
+/// The level that kernels run at, or a `ValueError` that says what is wrong with the one asked for.
+fn level() -> PyResult<Level> {
+    Level::current().map_err(PyValueError::new_err)
+}
+
+/// The SIMD level the kernels run at.
+#[pyfunction]
+fn simd() -> PyResult<&'static str> {
+    Ok(level()?.name())
+}
+
+#[pymodule]
+mod _core {
+    #[pymodule_export]
+    use super::cameras::{camera_rays, camera_rays_through};
+    #[pymodule_export]
+    use super::cones::{cone_coverage, cones};
+    #[pymodule_export]
+    use super::denoise::{denoise_candidates, denoise_settle};
+    #[pymodule_export]
+    use super::exr_files::exr_channels;
+    #[pymodule_export]
+    use super::first_hits::first_hits;
+    #[pymodule_export]
+    use super::flat::FlatScene;
+    #[pymodule_export]
+    use super::freeform::{implicit_trouble, polygon_trouble};
+    #[pymodule_export]
+    use super::grid_blocks::GridBlocks;
+    #[pymodule_export]
+    use super::info::AcceleratorInfo;
+    #[pymodule_export]
+    use super::instances::singular_transform;
+    #[pymodule_export]
+    use super::integrators::{aovs, plan};
+    #[pymodule_export]
+    use super::interactions::{Interactions, interactions};
+    #[pymodule_export]
+    use super::job::Job;
+    #[pymodule_export]
+    use super::leave::leave;
+    #[pymodule_export]
+    use super::materials::{metal_index, metals};
+    #[pymodule_export]
+    use super::photons::photons;
+    #[pymodule_export]
+    use super::points::points;
+    #[pymodule_export]
+    use super::query::CompiledScene;
+    #[pymodule_export]
+    use super::radiosity::RadiosityShots;
+    #[pymodule_export]
+    use super::random::random_numbers;
+    #[cfg(feature = "timing")]
+    #[pymodule_export]
+    use super::render::timing;
+    #[pymodule_export]
+    use super::render::{Rendering, chances, pilot, student};
+    #[pymodule_export]
+    use super::report::KernelContest;
+    #[pymodule_export]
+    use super::samplers::batch_for;
+    #[pymodule_export]
+    use super::shapes::{matrix_trouble, shape_area, shape_bounds};
+    #[pymodule_export]
+    use super::sight::Sight;
+    #[pymodule_export]
+    use super::simd;
+    #[pymodule_export]
+    use super::spectra::{daylight_power, smooth_spectrum, spectrum_luminance, spectrum_rgb};
+    #[pymodule_export]
+    use super::tree::tree;
+    #[pymodule_export]
+    use super::view_factors::{view_factor_matrix, view_factor_rows};
+    /// The most samples that a pilot takes of each way.
+    #[pymodule_export]
+    const PILOT: u32 = raywright::render::PILOT;
+    #[pymodule_export]
+    const VERSION: &str = env!("CARGO_PKG_VERSION");
+}

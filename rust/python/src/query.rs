@@ -1,0 +1,459 @@
+//! A compiled scene's answers, from arrays to arrays.
+
+use numpy::{PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+
+use super::accelerators;
+use super::arrays::{Numbers, Triples, numbers, rows, sealed, unwritten, writable};
+use super::builds::{self, Builds};
+use super::columns::HitParts;
+use super::describe::Scene;
+use super::every;
+use super::hits::{HitArrays, Hits};
+use super::info::AcceleratorInfo;
+use super::instances;
+use super::rays::{BATCH, RayArguments, answer, share};
+use raywright::accel::{Cost, Nearest};
+use raywright::math::{DVec3, Hit};
+use raywright::scene;
+use raywright::scene::media::Medium;
+use raywright::work::{Watch, Work};
+use raywright::workers;
+use std::sync::Arc;
+
+/// A scene ready for rays.
+#[pyclass(frozen, module = "raywright._core")]
+pub struct CompiledScene(
+    pub scene::Scene,
+    /// What prototypes in it are known by: see `instances`.
+    #[expect(dead_code, reason = "it is only held")]
+    Vec<Py<PyAny>>,
+    /// What its shapes are called, in their order.
+    Py<PyAny>,
+);
+
+/// Whether each shape counts, and whether only what faces the ray does.
+#[derive(FromPyObject)]
+struct Counted(Option<Vec<bool>>, bool);
+
+impl From<Counted> for scene::Filter {
+    fn from(Counted(shapes, is_front_only): Counted) -> Self {
+        Self { shapes, is_front_only }
+    }
+}
+
+/// What a scene is told when it is compiled: what fills it, and whether shading normals are taken as they are given.
+struct Around {
+    medium: Option<Arc<dyn Medium>>,
+    as_given: bool,
+}
+
+impl Around {
+    fn put(self, scene: scene::Scene) -> scene::Scene {
+        let scene = scene.surrounded_by(self.medium);
+        if self.as_given { scene.with_normals_as_given() } else { scene }
+    }
+}
+
+/// Nodes and primitives.
+type Costs<'py> = (Bound<'py, PyArrayDyn<i32>>, Bound<'py, PyArrayDyn<i32>>);
+
+/// Distance, position, shape_id, primitive and uv.
+type ClosestPoints<'py> = (
+    Bound<'py, PyArrayDyn<f64>>,
+    Bound<'py, PyArrayDyn<f64>>,
+    Bound<'py, PyArrayDyn<i32>>,
+    Bound<'py, PyArrayDyn<i32>>,
+    Bound<'py, PyArrayDyn<f64>>,
+    Option<Bound<'py, PyArrayDyn<i32>>>,
+);
+
+#[pymethods]
+#[allow(clippy::too_many_arguments)]
+impl CompiledScene {
+    /// `progress` is called now and then with the share of the build that is done, and may raise to end it.
+    #[new]
+    #[pyo3(signature = (scene, accelerator, progress=None))]
+    fn new(
+        py: Python<'_>,
+        scene: Scene<'_>,
+        accelerator: &Bound<'_, PyAny>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Self> {
+        let build = accelerators::read(accelerator, &scene.quality)?;
+        let builds = Builds::new(progress, scene.size()?);
+        let names = scene.names.clone_ref(py);
+        let around = Around { medium: scene.surrounding()?, as_given: scene.normals_as_given() };
+        let (description, kept) = scene.describe(&builds)?;
+        let size = builds::size(&description.shapes);
+        let scene = builds.build(py, size, |work| scene::Scene::watched(description, build, work))?;
+        Ok(Self(around.put(scene), kept, names))
+    }
+
+    fn refitted(&self, py: Python<'_>, scene: Scene<'_>) -> PyResult<Option<Self>> {
+        let names = scene.names.clone_ref(py);
+        let around = Around { medium: scene.surrounding()?, as_given: scene.normals_as_given() };
+        let (description, kept) = scene.describe(&Builds::new(None, 0))?;
+        let (watch, mut signal) = (Watch::default(), Ok(()));
+        let look = || {
+            signal = Python::attach(|py| py.check_signals());
+            signal.is_ok() || {
+                watch.stop();
+                false
+            }
+        };
+        let compiled = py
+            .detach(|| workers::watched(None, |_| self.0.refitted(description, Work::of(&watch)), look))
+            .map_err(PyRuntimeError::new_err)?;
+        signal?;
+        compiled
+            .map(|scene| scene.map(|scene| Self(around.put(scene), kept, names)))
+            .map_err(|e| PyValueError::new_err(e.to_string()))
+    }
+
+    #[pyo3(signature = (rays, out=None, counted=None))]
+    fn intersect<'py>(
+        &self,
+        py: Python<'py>,
+        rays: RayArguments<'py>,
+        out: Option<Hits<'py>>,
+        counted: Option<Counted>,
+    ) -> PyResult<Hits<'py>> {
+        let (lead, threads, rays) = (&rays.shape, rays.threads, rays.rays()?);
+        let (scene, filter) = (&self.0, counted.map(scene::Filter::from));
+        let by_columns = scene.accelerator().by_columns().filter(|_| filter.is_none());
+        let chunk = if by_columns.is_some() { rays.window() } else { rays.chunk() };
+        HitArrays::new(py, scene, lead, out)?.written(|parts| {
+            answer(py, rays.count, chunk, threads, parts, |start, (parts, mut instance)| {
+                if let Some(tree) = by_columns {
+                    return rays.closest(scene.geometry(), tree, start, parts);
+                }
+                let (t, shape, primitive, uv) = parts;
+                let count = t.len();
+                let mut hits = vec![Hit::MISS; BATCH.min(count)];
+                rays.gathered(start, count, |batch, places| {
+                    let hits = &mut hits[..batch.len()];
+                    match &filter {
+                        Some(filter) => filter.intersect(scene, batch, false, hits),
+                        None => scene.intersect(batch, hits),
+                    }
+                    write(scene, hits, places, (t, shape, primitive, uv));
+                    if let Some(instance) = &mut instance {
+                        instances::write(scene, hits, places, instance, primitive);
+                    }
+                });
+            })
+        })
+    }
+
+    #[pyo3(signature = (rays, out=None, counted=None))]
+    fn occluded<'py>(
+        &self,
+        py: Python<'py>,
+        rays: RayArguments<'py>,
+        out: Option<Bound<'py, PyArrayDyn<bool>>>,
+        counted: Option<Counted>,
+    ) -> PyResult<Bound<'py, PyArrayDyn<bool>>> {
+        let (lead, threads, rays) = (&rays.shape, rays.threads, rays.rays()?);
+        let out = out.map_or_else(|| unwritten(py, lead, None), Ok)?;
+        {
+            let mut out = writable("out", &out, lead, None)?;
+            let (scene, filter) = (&self.0, counted.map(scene::Filter::from));
+            let by_columns = scene.accelerator().by_columns().filter(|_| filter.is_none());
+            let chunk = if by_columns.is_some() { rays.window() } else { rays.chunk() };
+            answer(py, rays.count, chunk, threads, out.as_slice_mut()?, |start, out| {
+                if let Some(tree) = by_columns {
+                    return rays.occluded(tree, start, out);
+                }
+                let count = out.len();
+                let mut found = vec![false; BATCH.min(count)];
+                let mut hits = vec![Hit::MISS; if filter.is_some() { found.len() } else { 0 }];
+                rays.gathered(start, count, |batch, places| {
+                    let found = &mut found[..batch.len()];
+                    match &filter {
+                        Some(filter) => {
+                            let hits = &mut hits[..batch.len()];
+                            filter.intersect(scene, batch, true, hits);
+                            found.iter_mut().zip(hits).for_each(|(found, hit)| *found = hit.is_hit());
+                        }
+                        None => scene.occluded(batch, found),
+                    }
+                    for (&found, &i) in found.iter().zip(places) {
+                        out[i] = found;
+                    }
+                });
+            })?;
+        }
+        Ok(out)
+    }
+
+    #[pyo3(signature = (rays, counted=None))]
+    fn intersect_all<'py>(
+        &self,
+        py: Python<'py>,
+        rays: RayArguments<'py>,
+        counted: Option<Counted>,
+    ) -> PyResult<every::AllHits<'py>> {
+        every::intersect_all(py, &self.0, &rays.rays()?, rays.threads, counted.map(scene::Filter::from).as_ref())
+    }
+
+    fn count<'py>(&self, py: Python<'py>, rays: RayArguments<'py>) -> PyResult<Bound<'py, PyArrayDyn<i32>>> {
+        let (lead, threads, rays) = (&rays.shape, rays.threads, rays.rays()?);
+        let out = unwritten(py, lead, None)?;
+        answer(py, rays.count, rays.chunk(), threads, out.readwrite().as_slice_mut()?, |start, out| {
+            every::count(&self.0, &rays, start, out);
+        })?;
+        Ok(out)
+    }
+
+    fn cost<'py>(&self, py: Python<'py>, rays: RayArguments<'py>) -> PyResult<Costs<'py>> {
+        let (lead, threads, rays) = (&rays.shape, rays.threads, rays.rays()?);
+        let (nodes, primitives) = (unwritten(py, lead, None)?, unwritten(py, lead, None)?);
+        {
+            let (mut nodes, mut primitives) = (nodes.readwrite(), primitives.readwrite());
+            let parts = (nodes.as_slice_mut()?, primitives.as_slice_mut()?);
+            answer(py, rays.count, rays.chunk(), threads, parts, |start, (nodes, primitives)| {
+                let count = nodes.len();
+                let mut costs = vec![Cost::default(); BATCH.min(count)];
+                rays.gathered(start, count, |batch, places| {
+                    let costs = &mut costs[..batch.len()];
+                    self.0.cost(batch, costs);
+                    for (cost, &i) in costs.iter().zip(places) {
+                        (nodes[i], primitives[i]) = (cost.nodes as i32, cost.primitives as i32);
+                    }
+                });
+            })?;
+        }
+        Ok((sealed(nodes)?, sealed(primitives)?))
+    }
+
+    fn contains<'py>(
+        &self,
+        py: Python<'py>,
+        points: Triples<'py>,
+        shape: Vec<usize>,
+        threads: Option<usize>,
+    ) -> PyResult<Bound<'py, PyArrayDyn<bool>>> {
+        let points = points.rows("points")?;
+        let out = unwritten(py, &shape, None)?;
+        let count = shape.iter().product();
+        answer(py, count, share(count), threads, out.readwrite().as_slice_mut()?, |start, out| {
+            let some: Vec<_> = (start..start + out.len()).map(|i| points.get(i)).collect();
+            self.0.contains(&some, out);
+        })?;
+        Ok(out)
+    }
+
+    fn nearest<'py>(
+        &self,
+        py: Python<'py>,
+        points: Triples<'py>,
+        max_distance: Numbers<'py>,
+        shape: Vec<usize>,
+        threads: Option<usize>,
+    ) -> PyResult<ClosestPoints<'py>> {
+        let (points, most) = (points.rows("points")?, max_distance.slice("max_distance")?);
+        let (count, lead) = (shape.iter().product(), &shape);
+        if [points.len(), most.len()].iter().any(|&n| n != 1 && n != count) {
+            let lengths = [points.len(), most.len()];
+            return Err(PyValueError::new_err(format!(
+                "points and max_distance have lengths {lengths:?}, expected 1 or {count}"
+            )));
+        }
+        let (distance, position) = (unwritten(py, lead, None)?, unwritten(py, lead, Some(3))?);
+        let (shape, primitive, uv) =
+            (unwritten(py, lead, None)?, unwritten(py, lead, None)?, unwritten(py, lead, Some(2))?);
+        let instance = match self.0.geometry().has_instances() {
+            true => Some(unwritten(py, lead, None)?),
+            false => None,
+        };
+        {
+            let mut to_instance = instance.as_ref().map(|to| to.readwrite());
+            let instances = to_instance.as_mut().map(|to| to.as_slice_mut()).transpose()?;
+            let (mut distance, mut position) = (distance.readwrite(), position.readwrite());
+            let (mut shape, mut primitive, mut uv) = (shape.readwrite(), primitive.readwrite(), uv.readwrite());
+            let numbers = (shape.as_slice_mut()?, primitive.as_slice_mut()?);
+            let (position, uv) = (position.as_slice_mut()?.as_chunks_mut().0, uv.as_slice_mut()?.as_chunks_mut().0);
+            let parts = ((distance.as_slice_mut()?, position, numbers, uv), instances);
+            let scene = &self.0;
+            answer(py, count, share(count), threads, parts, |start, (parts, mut instance)| {
+                let (distance, position, (shape, primitive), uv) = parts;
+                let some = start..start + distance.len();
+                let of = |n: usize, i: usize| if n == 1 { 0 } else { i };
+                let places: Vec<_> = some.clone().map(|i| points.get(of(points.len(), i))).collect();
+                let within: Vec<_> = some.map(|i| most[of(most.len(), i)]).collect();
+                let mut found = vec![Nearest::MISS; places.len()];
+                scene.nearest(&places, &within, &mut found);
+                for (i, nearest) in found.iter().enumerate() {
+                    (distance[i], position[i], uv[i]) = (nearest.distance, nearest.position.to_array(), nearest.uv);
+                    (shape[i], primitive[i]) = located(scene, nearest.primitive);
+                    if let Some(instance) = &mut instance {
+                        let Nearest { primitive: number, inner, .. } = *nearest;
+                        let hit = Hit { primitive: number, inner, ..Hit::MISS };
+                        (instance[i], primitive[i]) = instances::located(scene, &hit, primitive[i]);
+                    }
+                }
+            })?;
+        }
+        let instance = instance.map(sealed).transpose()?;
+        Ok((sealed(distance)?, sealed(position)?, sealed(shape)?, sealed(primitive)?, sealed(uv)?, instance))
+    }
+
+    fn positions<'py>(
+        &self,
+        py: Python<'py>,
+        shape_id: PyReadonlyArray1<'py, i32>,
+        primitive: PyReadonlyArray1<'py, i32>,
+        uv: PyReadonlyArray2<'py, f64>,
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        let uv = rows("uv", &uv)?;
+        self.of_primitives(py, &shape_id, &primitive, |geometry, p, i| geometry.position(p, uv[i]).to_array())
+    }
+
+    fn sites<'py>(
+        &self,
+        py: Python<'py>,
+        shape_id: PyReadonlyArray1<'py, i32>,
+        primitive: PyReadonlyArray1<'py, i32>,
+        uv: PyReadonlyArray2<'py, f64>,
+        position: PyReadonlyArray2<'py, f64>,
+        instance: Option<PyReadonlyArray1<'py, i32>>,
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        let (uv, position) = (rows("uv", &uv)?, rows("position", &position)?);
+        let instance = instance.as_ref().map(|instance| numbers("instance", instance)).transpose()?;
+        // What there is of a shape of instances is their number, and what is in them.
+        let copy_of = |i: usize| instance.and_then(|all| u32::try_from(all[i]).ok());
+        let inside = numbers("primitive", &primitive)?.to_vec();
+        let which: Vec<i32> = (0..inside.len()).map(|i| copy_of(i).map_or(inside[i], |copy| copy as i32)).collect();
+        let which = numpy::PyArray1::from_vec(py, which).readonly();
+        self.of_primitives(py, &shape_id, &which, |geometry, p, i| {
+            let inner = copy_of(i).map_or(0, |_| inside[i] as u32);
+            let (normal, error) = geometry.site(p, inner, DVec3::from_array(position[i]), uv[i]);
+            [normal.x, normal.y, normal.z, error]
+        })
+    }
+
+    fn normals<'py>(
+        &self,
+        py: Python<'py>,
+        shape_id: PyReadonlyArray1<'py, i32>,
+        primitive: PyReadonlyArray1<'py, i32>,
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        self.of_primitives(py, &shape_id, &primitive, |geometry, p, _| geometry.normal(p).to_array())
+    }
+
+    fn errors<'py>(
+        &self,
+        py: Python<'py>,
+        shape_id: PyReadonlyArray1<'py, i32>,
+        primitive: PyReadonlyArray1<'py, i32>,
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        self.of_primitives(py, &shape_id, &primitive, |geometry, p, _| [geometry.error(p)])
+    }
+
+    /// What its shapes are called, in their order.
+    #[getter]
+    fn names(&self, py: Python<'_>) -> Py<PyAny> {
+        self.2.clone_ref(py)
+    }
+
+    #[getter]
+    fn growth(&self) -> f64 {
+        self.0.growth()
+    }
+
+    #[getter]
+    fn accelerator(&self) -> AcceleratorInfo {
+        AcceleratorInfo(self.0.accelerator().info().clone())
+    }
+
+    /// Whether anything in it is no mesh.
+    #[getter]
+    fn curved(&self) -> bool {
+        self.0.geometry().first_other().is_some()
+    }
+
+    #[getter]
+    fn dropped(&self) -> usize {
+        self.0.geometry().dropped()
+    }
+
+    /// How far rounding to f32 has moved vertices, and what share of their mesh's extent that is, where it is a loss.
+    #[getter]
+    fn loss(&self) -> Option<(f64, f64)> {
+        self.0.plan().loss().map(|rounding| (rounding.moved, rounding.share()))
+    }
+
+    #[getter]
+    fn bounds<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+        let bounds = self.0.region();
+        if bounds.is_empty() {
+            return Ok(None);
+        }
+        let corners = [bounds.min, bounds.max].map(|c| c.to_array().to_vec());
+        Ok(Some(PyArray2::from_vec2(py, &corners)?))
+    }
+
+    #[getter]
+    fn bytes(&self) -> usize {
+        self.0.accelerator().info().bytes + self.0.geometry().bytes()
+    }
+}
+
+impl CompiledScene {
+    pub(super) fn scene(&self) -> &scene::Scene {
+        &self.0
+    }
+
+    /// So many numbers of each primitive, NaN for misses.
+    fn of_primitives<'py, const K: usize>(
+        &self,
+        py: Python<'py>,
+        shape_id: &PyReadonlyArray1<'py, i32>,
+        primitive: &PyReadonlyArray1<'py, i32>,
+        numbers_of: impl Fn(&scene::Geometry, u32, usize) -> [f64; K] + Sync,
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        let (shape, primitive) = (numbers("shape_id", shape_id)?, numbers("primitive", primitive)?);
+        let count = primitive.len();
+        let out = unwritten(py, &[count], Some(K))?;
+        {
+            let geometry = self.0.geometry();
+            let mut out = out.readwrite();
+            answer(py, count, share(count), None, out.as_slice_mut()?.as_chunks_mut().0, |start, out| {
+                for (i, to) in out.iter_mut().enumerate() {
+                    let i = start + i;
+                    *to = match (u32::try_from(shape[i]), u32::try_from(primitive[i])) {
+                        (Ok(shape), Ok(primitive)) => {
+                            numbers_of(geometry, geometry.primitives_of(shape).start + primitive, i)
+                        }
+                        _ => [f64::NAN; K],
+                    };
+                }
+            })?;
+        }
+        Ok(out)
+    }
+}
+
+/// Writes hits down where they belong.
+// On its own, or the loop's pointers do not fit into registers.
+#[inline(never)]
+pub(super) fn write(scene: &scene::Scene, hits: &[Hit], places: &[usize], (t, shape, primitive, uv): HitParts<'_>) {
+    // Told to be as long, so that one comparison serves all four.
+    let count = t.len();
+    let (shape, primitive, uv) = (&mut shape[..count], &mut primitive[..count], &mut uv[..count]);
+    for (hit, &i) in hits.iter().zip(places) {
+        (t[i], uv[i]) = (hit.t, hit.uv);
+        (shape[i], primitive[i]) = located(scene, hit.primitive);
+    }
+}
+
+/// The shape and the face of a primitive, as arrays say it: −1 for none.
+fn located(scene: &scene::Scene, primitive: u32) -> (i32, i32) {
+    if primitive == Hit::MISS.primitive {
+        return (-1, -1);
+    }
+    let (shape, primitive) = scene.geometry().locate(primitive);
+    (shape as i32, primitive as i32)
+}

@@ -1,0 +1,249 @@
+//! Batches of rays as they come, and their answers shared out among threads.
+
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+
+use super::arrays::{Numbers, Row, Rows, Triples};
+use raywright::math::gathering::WINDOW;
+use raywright::math::{Ray, Tiling, row_length};
+use raywright::{parallel, workers};
+
+/// Rays that are gathered from the arrays and asked together, at most: few enough to stay in a near cache and for
+/// Ctrl-C to be heard, and enough that a wave of rays in flight is seldom run down. (512 take 2 to 5 % longer where
+/// rays are scattered, and as long where they are not; 8192 gain no more.)
+pub const BATCH: usize = 2048;
+
+/// So many go to a thread where there are not many: enough to make the hand-over free.
+const LEAST: usize = 1024;
+
+/// Rays or points that a thread takes at a time, of so many.
+pub fn share(count: usize) -> usize {
+    (count / 32).clamp(LEAST, BATCH)
+}
+
+/// A batch of rays as it came: each part one for all rays, or one a ray.
+#[derive(Clone, Copy)]
+pub struct RayArrays<'a> {
+    pub(super) origins: Rows<'a>,
+    pub(super) directions: Rows<'a>,
+    pub(super) t_min: &'a [f64],
+    pub(super) t_max: &'a [f64],
+    time: &'a [f64],
+    /// How many rays.
+    pub count: usize,
+    pub(super) tiling: Tiling,
+}
+
+/// What the package gives for a batch of rays, as one tuple: arrays and numbers, the leading shape of all, and on how
+/// many threads they are traced.
+pub struct RayArguments<'py> {
+    pub origins: Triples<'py>,
+    pub directions: Triples<'py>,
+    pub t_min: Numbers<'py>,
+    pub t_max: Numbers<'py>,
+    pub shape: Vec<usize>,
+    pub threads: Option<usize>,
+    /// None is 0 for all.
+    pub time: Option<Numbers<'py>>,
+}
+
+impl<'py> FromPyObject<'_, 'py> for RayArguments<'py> {
+    type Error = PyErr;
+
+    fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        let (origins, directions, t_min, t_max, shape, threads, time) = object.extract()?;
+        Ok(Self { origins, directions, t_min, t_max, shape, threads, time })
+    }
+}
+
+impl RayArguments<'_> {
+    /// The rays.
+    pub fn rays(&self) -> PyResult<RayArrays<'_>> {
+        let (origins, directions) = (self.origins.rows("origins")?, self.directions.rows("directions")?);
+        let (t_min, t_max) = (self.t_min.slice("t_min")?, self.t_max.slice("t_max")?);
+        let time = self.time.as_ref().map_or(Ok([0.0].as_slice()), |time| time.slice("time"))?;
+        let count = self.shape.iter().product();
+        let lengths = [origins.len(), directions.len(), t_min.len(), t_max.len(), time.len()];
+        if lengths.iter().any(|&n| n != 1 && n != count) {
+            return Err(PyValueError::new_err(format!(
+                "origins, directions, t_min, t_max and time have lengths {lengths:?}, expected 1 or {count}"
+            )));
+        }
+        // The rays of an image are traced in tiles, where neighbours share more than along a row.
+        let row = match self.shape.as_slice() {
+            [_, .., row] => *row,
+            _ => match row_length(directions.len(), |i| directions.get(i)) {
+                0 => row_length(origins.len(), |i| origins.get(i)),
+                row => row,
+            },
+        };
+        Ok(RayArrays { origins, directions, t_min, t_max, time, count, tiling: Tiling::new(count, row) })
+    }
+}
+
+impl RayArrays<'_> {
+    /// Rays that a thread takes at a time.
+    pub fn chunk(&self) -> usize {
+        self.tiling.chunk(share(self.count))
+    }
+
+    /// The same where rays are put in an order of their own.
+    pub fn window(&self) -> usize {
+        self.tiling.chunk(if self.tiling.is_sequence() {
+            (self.count / 32).clamp(LEAST, WINDOW)
+        } else {
+            share(self.count)
+        })
+    }
+
+    /// One of them.
+    pub fn ray(&self, i: usize) -> Ray {
+        let of = |length: usize| if length == 1 { 0 } else { i };
+        let Self { t_min, t_max, time, .. } = *self;
+        Ray {
+            t_min: t_min[of(t_min.len())],
+            t_max: t_max[of(t_max.len())],
+            time: time[of(time.len())],
+            ..Ray::new(self.origins.get(of(self.origins.len())), self.directions.get(of(self.directions.len())))
+        }
+    }
+
+    /// Calls `answer` with up to [`BATCH`] rays at a time of the `count` from `start` on, and with where each lies
+    /// among them.
+    #[inline(always)]
+    pub fn gathered(&self, start: usize, count: usize, mut answer: impl FnMut(&[Ray], &[usize])) {
+        let some = BATCH.min(count);
+        let (mut rays, mut places) = (Vec::with_capacity(some), vec![0; some]);
+        for from in (0..count).step_by(BATCH) {
+            let places = &mut places[..BATCH.min(count - from)];
+            self.tiling.places(from, count, places);
+            rays.clear();
+            // Which floats they are is asked once, not for each ray.
+            match (self.origins, self.directions) {
+                (Rows::Single(o), Rows::Single(d)) => self.gather(o, d, start, places, &mut rays),
+                (Rows::Single(o), Rows::Double(d)) => self.gather(o, d, start, places, &mut rays),
+                (Rows::Double(o), Rows::Single(d)) => self.gather(o, d, start, places, &mut rays),
+                (Rows::Double(o), Rows::Double(d)) => self.gather(o, d, start, places, &mut rays),
+            }
+            answer(&rays, places);
+        }
+    }
+
+    /// The rays that lie at some places after `start`.
+    fn gather<O: Row, D: Row>(
+        &self,
+        origins: &[O],
+        directions: &[D],
+        start: usize,
+        places: &[usize],
+        rays: &mut Vec<Ray>,
+    ) {
+        let Self { t_min, t_max, time, .. } = *self;
+        // One that serves for all is at no distance from itself.
+        let step = |length: usize| usize::from(length != 1);
+        let [origin, direction] = [step(origins.len()), step(directions.len())];
+        let [near, far, when] = [step(t_min.len()), step(t_max.len()), step(time.len())];
+        // What it reads must not be thought to lie where it writes: `move`.
+        rays.extend(places.iter().map(move |&place| {
+            let i = start + place;
+            Ray {
+                origin: origins[i * origin].vector(),
+                direction: directions[i * direction].vector(),
+                t_min: t_min[i * near],
+                t_max: t_max[i * far],
+                time: time[i * when],
+                misses: [Ray::NO_TRIANGLE; 2],
+            }
+        }));
+    }
+}
+
+/// Arrays of answers that can be shared out among threads.
+pub trait Parts: Send + Sized {
+    /// Those of the first so many rays, and the others.
+    fn split(self, at: usize) -> (Self, Self);
+}
+
+impl<T: Send> Parts for &mut [T] {
+    fn split(self, at: usize) -> (Self, Self) {
+        self.split_at_mut(at)
+    }
+}
+
+impl<P: Parts> Parts for Option<P> {
+    fn split(self, at: usize) -> (Self, Self) {
+        match self.map(|parts| parts.split(at)) {
+            Some((first, others)) => (Some(first), Some(others)),
+            None => (None, None),
+        }
+    }
+}
+
+impl<A: Parts, B: Parts> Parts for (A, B) {
+    fn split(self, at: usize) -> (Self, Self) {
+        let ((a, c), (b, d)) = (self.0.split(at), self.1.split(at));
+        ((a, b), (c, d))
+    }
+}
+
+impl<A: Parts, B: Parts, C: Parts, D: Parts> Parts for (A, B, C, D) {
+    fn split(self, at: usize) -> (Self, Self) {
+        let ((a, e), (b, f), (c, g), (d, h)) = (self.0.split(at), self.1.split(at), self.2.split(at), self.3.split(at));
+        ((a, b, c, d), (e, f, g, h))
+    }
+}
+
+/// Fills `n` answers, `chunk` at a time, with the interpreter detached and signals heard.
+pub fn answer<P: Parts>(
+    py: Python<'_>,
+    n: usize,
+    chunk: usize,
+    threads: Option<usize>,
+    parts: P,
+    fill: impl Fn(usize, P) + Sync,
+) -> PyResult<()> {
+    let mut chunks = Vec::with_capacity(n.div_ceil(chunk));
+    let mut rest = parts;
+    for start in (0..n).step_by(chunk) {
+        let (part, more) = rest.split(chunk.min(n - start));
+        chunks.push((start, part));
+        rest = more;
+    }
+    each(py, threads, chunks, |(start, part)| fill(start, part)).map(drop)
+}
+
+/// The chunks of `n` rays: where each starts, and how many it has.
+pub fn chunks(n: usize, chunk: usize) -> Vec<(usize, usize)> {
+    (0..n).step_by(chunk).map(|start| (start, chunk.min(n - start))).collect()
+}
+
+/// What `work` makes of each of the chunks, in their order, with the interpreter detached and signals heard. One chunk
+/// alone is the calling thread's: waking others takes longer.
+pub fn each<C: Send, T: Send>(
+    py: Python<'_>,
+    threads: Option<usize>,
+    chunks: Vec<C>,
+    work: impl Fn(C) -> T + Sync,
+) -> PyResult<Vec<T>> {
+    if chunks.len() <= 1 {
+        return Ok(py.detach(|| chunks.into_iter().map(&work).collect()));
+    }
+    let mut signal = Ok(());
+    let made = py
+        .detach(|| {
+            workers::watched(
+                threads,
+                |cancel| {
+                    let made = parallel::of_parts(chunks, |chunk| (!cancel.is_raised()).then(|| work(chunk)));
+                    made.into_iter().collect::<Option<_>>()
+                },
+                || {
+                    signal = Python::attach(|py| py.check_signals());
+                    signal.is_ok()
+                },
+            )
+        })
+        .map_err(PyRuntimeError::new_err)?;
+    signal?;
+    made.ok_or_else(|| PyRuntimeError::new_err("work was stopped, and no signal raised"))
+}

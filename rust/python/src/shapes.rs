@@ -1,0 +1,154 @@
+//! Shapes that are no meshes, as the package describes them, read by attribute.
+
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use std::sync::Arc;
+
+use raywright::math::{Affine, DVec3};
+use raywright::shapes::{Cuboid, Disk, Ellipsoid, Placed, Plane, Revolution, Shape, Sphere};
+
+/// `raywright.Sphere`.
+#[derive(FromPyObject)]
+struct PySphere {
+    center: [f64; 3],
+    radius: f64,
+}
+
+/// `raywright.Plane`.
+#[derive(FromPyObject)]
+struct PyPlane {
+    point: [f64; 3],
+    normal: [f64; 3],
+}
+
+/// `raywright.Disk`.
+#[derive(FromPyObject)]
+struct PyDisk {
+    center: [f64; 3],
+    normal: [f64; 3],
+    radius: f64,
+    inner_radius: f64,
+}
+
+/// `raywright.Cylinder`.
+#[derive(FromPyObject)]
+struct PyCylinder {
+    base: [f64; 3],
+    tip: [f64; 3],
+    radius: f64,
+    capped: bool,
+}
+
+/// `raywright.Cone`.
+#[derive(FromPyObject)]
+struct PyCone {
+    base: [f64; 3],
+    tip: [f64; 3],
+    base_radius: f64,
+    tip_radius: f64,
+    capped: bool,
+}
+
+/// `raywright.Box`.
+#[derive(FromPyObject)]
+struct PyBox {
+    min: [f64; 3],
+    max: [f64; 3],
+}
+
+/// `raywright.Ellipsoid`.
+#[derive(FromPyObject)]
+struct PyEllipsoid {
+    center: [f64; 3],
+    semi_axes: [f64; 3],
+}
+
+/// `raywright.Paraboloid`.
+#[derive(FromPyObject)]
+struct PyParaboloid {
+    apex: [f64; 3],
+    tip: [f64; 3],
+    radius: f64,
+    capped: bool,
+}
+
+/// The shape of a description, under its transform if it has one.
+///
+/// # Errors
+///
+/// A `TypeError` for what is no shape, and a `ValueError` for a transform without an inverse.
+pub fn read(shape: &Bound<'_, PyAny>) -> PyResult<Arc<dyn Shape>> {
+    let own = read_own(shape)?;
+    match shape.getattr("transform")?.extract::<Option<[[f64; 4]; 4]>>()? {
+        None => Ok(own),
+        Some([x, y, z, _]) => {
+            let placed = Placed::new(own, Affine::from_matrix([x, y, z]));
+            let placed = placed.map_err(|why| PyValueError::new_err(format!("transform has no inverse: {why}")))?;
+            Ok(Arc::new(placed))
+        }
+    }
+}
+
+/// The shape in its own space, by the name of its class.
+fn read_own(shape: &Bound<'_, PyAny>) -> PyResult<Arc<dyn Shape>> {
+    let vector = DVec3::from_array;
+    let name = shape.get_type().name()?;
+    if let Some(shape) = super::freeform::read(name.to_str()?, shape)? {
+        return Ok(shape);
+    }
+    Ok(match name.to_str()? {
+        "Sphere" => {
+            let PySphere { center, radius } = shape.extract()?;
+            Arc::new(Sphere { center: vector(center), radius })
+        }
+        "Plane" => {
+            let PyPlane { point, normal } = shape.extract()?;
+            Arc::new(Plane { point: vector(point), normal: vector(normal) })
+        }
+        "Disk" => {
+            let PyDisk { center, normal, radius, inner_radius } = shape.extract()?;
+            Arc::new(Disk { center: vector(center), normal: vector(normal), radius, inner_radius })
+        }
+        "Cylinder" => {
+            let PyCylinder { base, tip, radius, capped } = shape.extract()?;
+            Arc::new(Revolution::cylinder(vector(base), vector(tip), radius, capped))
+        }
+        "Cone" => {
+            let PyCone { base, tip, base_radius, tip_radius, capped } = shape.extract()?;
+            Arc::new(Revolution::cone(vector(base), vector(tip), [base_radius, tip_radius], capped))
+        }
+        "Box" => {
+            let PyBox { min, max } = shape.extract()?;
+            Arc::new(Cuboid { min: vector(min), max: vector(max) })
+        }
+        "Ellipsoid" => {
+            let PyEllipsoid { center, semi_axes } = shape.extract()?;
+            Arc::new(Ellipsoid { center: vector(center), semi_axes: vector(semi_axes) })
+        }
+        "Paraboloid" => {
+            let PyParaboloid { apex, tip, radius, capped } = shape.extract()?;
+            Arc::new(Revolution::paraboloid(vector(apex), vector(tip), radius, capped))
+        }
+        other => return Err(PyTypeError::new_err(format!("expected a raywright shape, got {other}"))),
+    })
+}
+
+/// Least and greatest corner of a shape under its transform, rounded outwards.
+#[pyfunction]
+pub fn shape_bounds(shape: &Bound<'_, PyAny>) -> PyResult<[[f64; 3]; 2]> {
+    let bounds = read(shape)?.bounds();
+    Ok([bounds.min.to_array(), bounds.max.to_array()])
+}
+
+/// Area of a shape under its transform.
+#[pyfunction]
+pub fn shape_area(shape: &Bound<'_, PyAny>) -> PyResult<f64> {
+    Ok(read(shape)?.area())
+}
+
+/// Why an affine matrix has no inverse, or None if it has one.
+#[pyfunction]
+pub fn matrix_trouble(matrix: [[f64; 4]; 4]) -> Option<String> {
+    let [x, y, z, _] = matrix;
+    Affine::from_matrix([x, y, z]).inverse().err().map(|why| why.to_string())
+}

@@ -1,0 +1,125 @@
+//! Spectra and indices of refraction as the package describes them, read by attribute, and the colours of spectra.
+
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use std::sync::Arc;
+
+use raywright::optics::spectra::{self, FIRST, Illuminant, LAST, Response, Role, Smooth, Spectrum, Table, Told};
+use raywright::optics::{Dispersion, Dispersive, Rgb};
+
+/// The linear Rec. 709 of values at wavelengths in nm, which rise: linear between them, and 0 outside. They say how
+/// much there is of daylight, or, unless `of_daylight`, of light that is even over wavelengths and has a luminance of
+/// 1.
+#[pyfunction]
+pub fn spectrum_rgb(rows: Vec<[f64; 2]>, of_daylight: bool) -> [f64; 3] {
+    let illuminant = if of_daylight { Illuminant::Daylight } else { Illuminant::Even };
+    let value = |wavelength| spectra::at(&rows, wavelength).map_or(0.0, |[_, value]| value);
+    Response::new(illuminant, 1).seen(value).to_array()
+}
+
+/// The luminance of light of such power at wavelengths in nm, which rise: linear between them, and 0 outside. It is 1
+/// where that is 1 everywhere.
+#[pyfunction]
+pub fn spectrum_luminance(rows: Vec<[f64; 2]>) -> f64 {
+    let (mut seen, mut all) = (0.0, 0.0);
+    for nm in (FIRST as u32..=LAST as u32).map(f64::from) {
+        let weight = spectra::matching(nm).y;
+        seen += weight * spectra::at(&rows, nm).map_or(0.0, |[_, value]| value);
+        all += weight;
+    }
+    seen / all
+}
+
+/// The power of daylight (D65) at each nm from 360 to 830, 100 at 560.
+#[pyfunction]
+pub fn daylight_power() -> Vec<f64> {
+    (FIRST as u32..=LAST as u32).map(|nm| spectra::daylight(nm.into())).collect()
+}
+
+/// The smooth spectrum of a colour, a share of light at most or an amount without a bound, at wavelengths in nm.
+///
+/// # Errors
+/// A `ValueError` for a colour that is negative somewhere.
+#[pyfunction]
+pub fn smooth_spectrum(colour: [f64; 3], bounded: bool, looked_up: bool, wavelengths: Vec<f64>) -> PyResult<Vec<f64>> {
+    let colour = Rgb::from_array(colour);
+    if !colour.is_radiance() {
+        return Err(PyValueError::new_err("a colour must be finite and not negative"));
+    }
+    let role = if bounded { Role::Share } else { Role::Amount };
+    let smooth = if looked_up { Smooth::looked_up(colour, role) } else { Smooth::of(colour, role) };
+    Ok(wavelengths.into_iter().map(|nm| smooth.at(nm)).collect())
+}
+
+/// What the numbers of a texture stand for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Meaning {
+    /// Shares of light.
+    Share,
+    /// Amounts of light.
+    Light,
+    /// Other amounts without a bound, as indices of refraction.
+    Amount,
+    /// No colours.
+    Numbers,
+}
+
+/// A `raywright.Spectrum`.
+///
+/// # Errors
+/// A `ValueError` for one without values.
+pub fn table(given: &Bound<'_, PyAny>, meaning: Meaning) -> PyResult<Arc<Spectrum>> {
+    let [wavelengths, values] = ["wavelengths", "values"].map(|name| given.getattr(name)?.extract::<Vec<f64>>());
+    let told = match meaning {
+        Meaning::Light => Told::Power,
+        Meaning::Share => Told::Shares,
+        Meaning::Amount | Meaning::Numbers => Told::Index,
+    };
+    let table = Table::new(&wavelengths?, &values?, told);
+    table
+        .map(|table| Arc::new(Spectrum::Table(table)))
+        .ok_or_else(|| PyValueError::new_err("a spectrum must have values"))
+}
+
+/// The spectrum of a colour, and the colour that stands for it in red, green and blue: of three numbers the smooth one,
+/// or a `raywright.Spectrum`.
+///
+/// # Errors
+/// As [`table`].
+pub fn tint(given: &Bound<'_, PyAny>, meaning: Meaning) -> PyResult<(Arc<Spectrum>, Rgb)> {
+    if let Ok(colour) = given.extract::<[f64; 3]>() {
+        let colour = Rgb::from_array(colour);
+        let role = if meaning == Meaning::Share { Role::Share } else { Role::Amount };
+        return Ok((Arc::new(Spectrum::Smooth(Smooth::of(colour.at_least(Rgb::ZERO), role))), colour));
+    }
+    let spectrum = table(given, meaning)?;
+    let colour = spectrum.seen().at_least(Rgb::ZERO);
+    Ok((spectrum, colour))
+}
+
+/// An index of refraction, that of yellow light where it goes with wavelength, and how it does.
+///
+/// # Errors
+/// A `TypeError` for what is none, a `ValueError` for a formula that gives none for some of the light that is seen, or
+/// if there are too many.
+pub fn index(given: &Bound<'_, PyAny>) -> PyResult<(f64, Dispersive)> {
+    if let Ok(number) = given.extract::<f64>() {
+        return Ok((number, Dispersive::NONE));
+    }
+    let dispersion = match given.get_type().name()?.to_str()? {
+        "Cauchy" => Dispersion::Cauchy([given.getattr("B")?.extract()?, given.getattr("C")?.extract()?]),
+        "Sellmeier" => {
+            let [b, c] = ["B", "C"].map(|name| given.getattr(name)?.extract::<Vec<f64>>());
+            Dispersion::Sellmeier(b?.into_iter().zip(c?).map(|(b, c)| [b, c]).collect())
+        }
+        other => return Err(PyTypeError::new_err(format!("ior must be a number or a dispersion, got {other}"))),
+    };
+    if !dispersion.is_physical(FIRST, LAST) {
+        return Err(PyValueError::new_err(format!(
+            "ior must be above 0 from {FIRST} to {LAST} nm, which {dispersion:?} is not"
+        )));
+    }
+    let yellow = dispersion.at(587.5618);
+    let kept = Dispersive::of(dispersion);
+    kept.map(|kept| (yellow, kept)).ok_or_else(|| PyValueError::new_err("ior must be one of at most 4096 dispersions"))
+}

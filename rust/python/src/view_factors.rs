@@ -1,0 +1,119 @@
+//! View factors of a scene, from numbers to arrays.
+
+use numpy::{PyArray1, PyArray2, PyArrayMethods};
+use pyo3::exceptions::PyRuntimeError;
+use pyo3::prelude::*;
+
+use super::query::CompiledScene;
+use raywright::exchange::{Aim, areas, matrix, sparse};
+use raywright::work::{Stopped, Watch, Work};
+use raywright::workers::watched;
+
+/// Areas, factors by row, pairs that are sampled and their errors, how many pairs are closed, hidden and sampled, and
+/// rays.
+type Dense<'py> = (
+    Bound<'py, PyArray1<f64>>,
+    Bound<'py, PyArray2<f64>>,
+    (Bound<'py, PyArray2<i64>>, Bound<'py, PyArray1<f64>>),
+    (u64, u64, u64),
+    u64,
+);
+
+/// Areas; where rows start, faces, factors and their errors; and rays.
+type ByRays<'py> = (
+    Bound<'py, PyArray1<f64>>,
+    (Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<i32>>, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f32>>),
+    u64,
+);
+
+/// View factors between all faces: in closed form where nothing lies between, by rays elsewhere.
+#[pyfunction]
+pub fn view_factor_matrix<'py>(
+    py: Python<'py>,
+    scene: &Bound<'py, CompiledScene>,
+    rays: (u32, u32),
+    error: Option<f64>,
+    seed: u64,
+    threads: Option<usize>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Dense<'py>> {
+    let scene = &scene.get().0;
+    let aim = Aim { rays: rays.0, row_rays: rays.1, error, seed };
+    let found = told(py, threads, progress, |work| matrix(scene, &aim, work))?;
+    let areas = areas(scene);
+    let count = areas.len();
+    let pairs = found.sampled.iter().flat_map(|sampled| sampled.faces.map(i64::from));
+    let [closed, hidden, sampled] = found.counts;
+    Ok((
+        PyArray1::from_vec(py, areas),
+        PyArray1::from_vec(py, found.factors).reshape([count, count])?,
+        (
+            PyArray1::from_vec(py, pairs.collect()).reshape([found.sampled.len(), 2])?,
+            PyArray1::from_iter(py, found.sampled.iter().map(|sampled| sampled.error)),
+        ),
+        (closed, hidden, sampled),
+        found.rays,
+    ))
+}
+
+/// View factors between all faces, each row by rays.
+#[pyfunction]
+pub fn view_factor_rows<'py>(
+    py: Python<'py>,
+    scene: &Bound<'py, CompiledScene>,
+    rays: u32,
+    error: Option<f64>,
+    seed: u64,
+    threads: Option<usize>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<ByRays<'py>> {
+    let scene = &scene.get().0;
+    let aim = Aim { rays: 0, row_rays: rays, error, seed };
+    let found = told(py, threads, progress, |work| sparse(scene, &aim, work))?;
+    let rows = (
+        PyArray1::from_vec(py, found.starts),
+        PyArray1::from_vec(py, found.faces),
+        PyArray1::from_vec(py, found.values),
+        PyArray1::from_vec(py, found.errors),
+    );
+    Ok((PyArray1::from_vec(py, areas(scene)), rows, found.rays))
+}
+
+/// Does work on the pool of so many threads without the interpreter. Signals are heard, and `progress` is called with
+/// the share that is done, ten times a second; what one of them raises ends it.
+fn told<T: Send>(
+    py: Python<'_>,
+    threads: Option<usize>,
+    progress: Option<Py<PyAny>>,
+    work: impl FnOnce(Work<'_>) -> Result<T, Stopped> + Send,
+) -> PyResult<T> {
+    let watch = Watch::default();
+    let (mut raised, mut looks) = (None, 0u32);
+    let look = |py: Python<'_>, share: f32, looks: u32| {
+        py.check_signals()?;
+        match &progress {
+            Some(progress) if looks.is_multiple_of(5) => progress.call1(py, (share,)).map(drop),
+            _ => Ok(()),
+        }
+    };
+    let done = py.detach(|| {
+        watched(
+            threads,
+            |_| work(Work::of(&watch)),
+            || {
+                looks = looks.wrapping_add(1);
+                raised = Python::attach(|py| look(py, watch.share(), looks)).err();
+                if raised.is_some() {
+                    watch.stop();
+                }
+                raised.is_none()
+            },
+        )
+    });
+    match (raised, done) {
+        (Some(error), _) => Err(error),
+        (None, Ok(Ok(found))) => Ok(found),
+        (None, Ok(Err(Stopped))) => Err(PyRuntimeError::new_err("work was stopped, and nobody says why")),
+        (None, Err(why)) => Err(PyRuntimeError::new_err(why)),
+    }
+}

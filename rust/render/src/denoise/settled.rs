@@ -1,0 +1,202 @@
+//! The picture that comes out, and how wrong it is.
+
+use super::super::ErrorEstimate;
+use super::super::denominators::{Denominators, cross};
+use super::super::outliers::{Largest, beside, is_find};
+use super::super::patchwork::Patchwork;
+use super::halves::Halves;
+use super::planes::{Size, blurred};
+use super::selection::selected;
+use rayon::prelude::*;
+use raywright_optics::Rgb;
+
+/// A picture that was filtered, and what is known of its error.
+#[derive(Clone, Debug)]
+pub struct Denoised {
+    /// The picture.
+    pub means: Vec<Rgb>,
+    /// What its pixels are off by, squared, as the pixels around tell.
+    pub squares: Vec<Rgb>,
+    /// Its error.
+    pub error: ErrorEstimate,
+}
+
+/// Errors of a pixel are told by squares that go so far, twice one after the other.
+const REACH: usize = 3;
+
+/// Settles for one of the candidates of each half, pixel by pixel, and tells the error of the outcome.
+///
+/// One quarter b of the other half chooses among the candidates of a half, and the other, b′, tells what was chosen. Of
+/// a picture x that knows nothing of b′, (x − b′)² is (x − μ)² and the variance of b′, on average; and (b − b′)² / 2 is
+/// that variance on average, whatever x took from b, for x is not in it. So (x − b′)² − (b − b′)² / 2 is the squared
+/// error of x without bias, whatever filter x comes from and however it was chosen. There are four such pictures: of
+/// two halves, each chosen by two quarters. What comes out is their mean, whose squared error is the mean of theirs
+/// less their own variance about it. No variance is known beforehand, and nothing is assumed of filters.
+///
+/// The denominators are as in every other error (`denominators.rs`), but that the filtered picture stands for the
+/// neighbours.
+pub fn settle(halves: &Halves, candidates: &[Vec<Vec<Rgb>>; 2]) -> Denoised {
+    let size = Size { width: halves.width, height: halves.height };
+    let Outcome { picture, errors, apart } = outcome(halves, candidates, size);
+    // Two halves that were filtered apart vary apart: by that much the picture is off at least.
+    let varies = smooth(&apart, size);
+    let squares = smooth(&errors, size).iter().zip(&varies).map(|(error, least)| error.at_least(*least)).collect();
+    let error = told(halves, &picture, &errors, &varies);
+    Denoised { means: picture, squares, error }
+}
+
+/// What came of the candidates.
+struct Outcome {
+    picture: Vec<Rgb>,
+    /// The squared errors of its pixels, without bias.
+    errors: Vec<Rgb>,
+    /// The squares of what the halves differ from it.
+    apart: Vec<Rgb>,
+}
+
+fn outcome(halves: &Halves, candidates: &[Vec<Vec<Rgb>>; 2], size: Size) -> Outcome {
+    let quarters = &halves.quarters;
+    // Whose candidates, who chooses, who tells.
+    let ways = [(0, 2, 3), (0, 3, 2), (1, 0, 1), (1, 1, 0)];
+    let chosen = ways.map(|(half, chooser, _)| {
+        selected(&candidates[half], &quarters[chooser], &halves.variances[half], halves.samples / 2.0, size)
+    });
+    let pixels = || (0..size.pixels()).into_par_iter();
+    let picture: Vec<Rgb> =
+        pixels().map(|i| (chosen[0][i] + chosen[1][i] + chosen[2][i] + chosen[3][i]) / 4.0).collect();
+    let of = |i: usize| {
+        let mut sum = Rgb::ZERO;
+        for (chosen, (_, chooser, teller)) in chosen.iter().zip(ways) {
+            let (off, apart) = (chosen[i] - quarters[teller][i], quarters[chooser][i] - quarters[teller][i]);
+            let about = chosen[i] - picture[i];
+            sum += off * off - apart * apart / 2.0 - about * about;
+        }
+        sum / 4.0
+    };
+    let errors = pixels().map(of).collect();
+    let apart = |i: usize| {
+        let off = (chosen[0][i] + chosen[1][i] - chosen[2][i] - chosen[3][i]) / 4.0;
+        off * off
+    };
+    let apart = pixels().map(apart).collect();
+    Outcome { picture, errors, apart }
+}
+
+fn smooth(values: &[Rgb], size: Size) -> Vec<Rgb> {
+    let of = |channel: usize| {
+        let plane: Vec<f64> = values.iter().map(|rgb| rgb[channel]).collect();
+        blurred(&blurred(&plane, size, REACH), size, REACH)
+    };
+    let [red, green, blue] = [of(0), of(1), of(2)];
+    (0..values.len()).map(|i| Rgb::new(red[i], green[i], blue[i])).collect()
+}
+
+/// The error of a picture from what its pixels' squared errors are, each without bias and with much noise.
+///
+/// The noise of each is independent of that of others but for patches, and their squares tell how large that of the sum
+/// is. Denominators are in doubt by as much as others would change: those of the filtered picture alone, where it may
+/// be bright by light that was spilt, with its neighbours and without, and those of the picture with its noise. Few
+/// pixels that carry much count as such if they met what the next ones do not show.
+///
+/// Squares are skewed: where the sum happens to be small, so do the squares that tell its noise. So the upper end is as
+/// many times the estimate as a logarithm that is as uncertain has it.
+fn told(halves: &Halves, picture: &[Rgb], errors: &[Rgb], varies: &[Rgb]) -> ErrorEstimate {
+    let (width, patch) = (halves.width, halves.patch);
+    let across = width.div_ceil(patch);
+    let means: Vec<Rgb> = halves.mean(0).iter().zip(halves.mean(1)).map(|(a, b)| (*a + b) / 2.0).collect();
+    let shown: Vec<f64> = means.iter().map(|mean| mean.abs().max()).collect();
+    let mut patches = vec![0.0; across * halves.height.div_ceil(patch)];
+    let (mut largest, mut others) = (Largest::default(), [0.0; 3]);
+    for (i, &error) in errors.iter().enumerate() {
+        let (x, y) = (i % width, i / width);
+        let [mean, filtered] = [means[i], picture[i]];
+        let variance = (halves.variances[0][i] + halves.variances[1][i]) / 4.0;
+        let of = |cross: &[Rgb; 5], variance| Denominators::new(cross, variance, halves.samples);
+        let likely = of(&[mean, filtered, filtered, filtered, filtered], variance);
+        let near = of(&cross(picture, width, x, y), varies[i]);
+        let noisy = of(&cross(&means, width, x, y), variance);
+        let brings = error.dot(likely.inverse);
+        for (other, inverse) in others.iter_mut().zip([near.inverse, near.own, noisy.inverse]) {
+            *other += error.dot(inverse);
+        }
+        patches[y / patch * across + x / patch] += brings;
+        let quarters = halves.quarters.each_ref().map(|quarter| quarter[i].abs().max());
+        let brightest = quarters.into_iter().fold(0.0, f64::max);
+        let rest = (quarters.iter().sum::<f64>() - brightest) / 3.0;
+        if is_find(brightest, rest, beside(&shown, width, x, y, patch)) {
+            largest.add(brings.max(0.0));
+        }
+    }
+    let count = 3.0 * errors.len() as f64;
+    let sum: f64 = patches.iter().sum();
+    let evenness = Patchwork { patch: patch as u32 }.evenness();
+    let noise = 1.96 * (evenness * patches.iter().map(|patch| patch * patch).sum::<f64>()).sqrt();
+    let [least, most] = others.iter().fold([sum; 2], |[least, most], &other| [least.min(other), most.max(other)]);
+    let value = sum.max(0.0) / count;
+    ErrorEstimate {
+        value,
+        low: ((sum - noise.hypot(sum - least)) / count).max(0.0),
+        high: greatest(sum, noise.hypot(most - sum)) / count,
+        carried: if sum > 0.0 { largest.carry(sum) } else { None },
+    }
+}
+
+/// The upper end of a sum that is uncertain by so much.
+fn greatest(sum: f64, away: f64) -> f64 {
+    /// More than that is no longer told by the sum.
+    const MOST: f64 = 4.0;
+    let times = if sum > 0.0 { (away / sum).min(MOST).exp() } else { 0.0 };
+    (sum + away).max(sum * times).max(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use raywright_base::sampling::Sampler;
+
+    const SIDE: usize = 24;
+
+    /// Halves whose quarters are 1 and noise, and of a variance that is known.
+    fn halves(seed: u64) -> Halves {
+        let noise = |quarter: u32, i: usize| {
+            let mut sampler = Sampler::new(seed, i as u32, quarter);
+            // Skewed, of variance 1.
+            Rgb::new(-sampler.one(0).ln(), -sampler.one(1).ln(), -sampler.one(2).ln())
+        };
+        let count = SIDE * SIDE;
+        Halves {
+            width: SIDE,
+            height: SIDE,
+            patch: 1,
+            samples: 16.0,
+            quarters: std::array::from_fn(|quarter| (0..count).map(|i| noise(quarter as u32, i)).collect()),
+            variances: std::array::from_fn(|_| vec![Rgb::splat(0.5); count]),
+        }
+    }
+
+    #[test]
+    fn errors_are_told_without_bias_whatever_was_chosen() {
+        // Candidates: as it is, a part of it, and too bright everywhere.
+        let size = Size { width: SIDE, height: SIDE };
+        let (mut told, mut are, mut held) = (0.0, 0.0, 0);
+        for seed in 0..60 {
+            let halves = halves(seed);
+            let candidates = [0, 1].map(|half| {
+                let mean = halves.mean(half);
+                let part = mean.iter().map(|rgb| *rgb * 0.8).collect();
+                vec![mean, part, vec![Rgb::splat(if half == 0 { 1.4 } else { 1.2 }); SIDE * SIDE]]
+            });
+            let found = outcome(&halves, &candidates, size);
+            let truth: f64 = found.picture.iter().map(|rgb| (*rgb - Rgb::ONE).dot(*rgb - Rgb::ONE)).sum();
+            told += found.errors.iter().map(|error| error.sum()).sum::<f64>();
+            are += truth;
+            let error = settle(&halves, &candidates).error;
+            let relative = truth / (3 * SIDE * SIDE) as f64 / 1.01;
+            held += usize::from((error.low..=error.high).contains(&relative));
+        }
+        // A squared error is known to about 0.7, and that of 60 pictures to a fortieth of itself.
+        assert!((told / are - 1.0).abs() < 0.1, "{told} {are}");
+        // Of intervals that hold in 95 of 100 cases, 51 of 60 or fewer do so once in 600.
+        assert!(held > 51, "{held}");
+    }
+}

@@ -1,0 +1,392 @@
+//! A rectangle of a film.
+
+use super::bytes::{Malformed, Reader, Writer, check};
+use super::patchwork::Patchwork;
+use super::quarters::{Quarters, Sums};
+use raywright_optics::Rgb;
+
+/// Sums that a mean and its error are computed from.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Moments {
+    /// Sum of samples.
+    sum: Rgb,
+    /// Sum of the squares of batches' sums.
+    squares: Rgb,
+}
+
+impl Moments {
+    fn add(&mut self, other: &Self) {
+        self.sum += other.sum;
+        self.squares += other.squares;
+    }
+}
+
+/// A rectangle of a film, which one thread works on at a time.
+///
+/// Its cells lie pixel by pixel, row by row: one a pixel, or two where the film is in halves.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FilmTile {
+    corner: [u32; 2],
+    size: [u32; 2],
+    batch: u32,
+    halves: bool,
+    clamp: f64,
+    /// Samples of each cell.
+    counts: Vec<u32>,
+    /// Whole blocks, of each cell.
+    total: Vec<Moments>,
+    /// The block that is being filled.
+    partial: Vec<Moments>,
+    /// The largest sample, by its largest channel.
+    largest: Vec<Rgb>,
+    /// Squares of samples of whole blocks, and of the one that is being filled; empty if each sample is a batch.
+    singles: Vec<[Rgb; 2]>,
+    /// The batch that is being filled; empty if each sample is one.
+    unfinished: Vec<Rgb>,
+    /// What clamping took from whole blocks, and from the one that is being filled; empty without.
+    taken: Vec<[Rgb; 2]>,
+    /// Sums of samples and their squares, and the count up to which they are kept; empty unless the film is in halves.
+    evidence: Vec<(Rgb, Rgb)>,
+    evidence_until: Vec<u32>,
+    /// Parts of the samples; none unless they are kept apart.
+    quarters: Quarters,
+    dropped: u64,
+    clamped: u64,
+}
+
+/// All that is kept of a cell.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Cell {
+    pub count: u32,
+    pub sum: Rgb,
+    pub squares: Rgb,
+    /// The sum of the squares of samples.
+    pub singles: Rgb,
+    pub largest: Rgb,
+    pub unfinished: Rgb,
+    pub taken: Rgb,
+    pub evidence: (Rgb, Rgb),
+}
+
+impl FilmTile {
+    /// Samples that are added up before they are added to the total, or a batch if that is more.
+    pub(super) const BLOCK: u32 = 16;
+
+    /// The greatest sample that counts: pictures are stored in single precision, in which more would be infinite.
+    const GREATEST: f64 = f32::MAX as f64;
+
+    pub(super) fn new(corner: [u32; 2], size: [u32; 2], batch: u32, halves: bool, clamp: Option<f64>) -> Self {
+        let cells = (size[0] * size[1]) as usize * if halves { 2 } else { 1 };
+        let if_any = |wanted: bool| if wanted { cells } else { 0 };
+        Self {
+            corner,
+            size,
+            batch,
+            halves,
+            clamp: clamp.unwrap_or(f64::INFINITY),
+            counts: vec![0; cells],
+            total: vec![Moments::default(); cells],
+            partial: vec![Moments::default(); cells],
+            largest: vec![Rgb::ZERO; cells],
+            singles: vec![[Rgb::ZERO; 2]; if_any(batch > 1)],
+            unfinished: vec![Rgb::ZERO; if_any(batch > 1)],
+            taken: vec![[Rgb::ZERO; 2]; if_any(clamp.is_some())],
+            evidence: vec![(Rgb::ZERO, Rgb::ZERO); if_any(halves)],
+            evidence_until: vec![0; if_any(halves)],
+            quarters: Quarters::default(),
+            dropped: 0,
+            clamped: 0,
+        }
+    }
+
+    /// The same tile, without samples yet, with parts of them kept apart.
+    pub(super) fn kept_apart(self) -> Self {
+        Self { quarters: Quarters::new(self.counts.len()), ..self }
+    }
+
+    /// Sums over the quarters of a cell's samples, where they are kept apart.
+    pub(super) fn quarters(&self, cell: usize) -> Option<Sums> {
+        self.quarters.of(cell)
+    }
+
+    /// The positions of its pixels on the film, row by row.
+    pub fn pixels(&self) -> impl Iterator<Item = (u32, u32)> + use<> {
+        let ([left, top], [width, height]) = (self.corner, self.size);
+        (top..top + height).flat_map(move |y| (left..left + width).map(move |x| (x, y)))
+    }
+
+    /// The position on the film of the pixel that a cell belongs to.
+    pub fn position(&self, cell: usize) -> (u32, u32) {
+        let pixel = if self.halves { cell / 2 } else { cell } as u32;
+        (self.corner[0] + pixel % self.size[0], self.corner[1] + pixel / self.size[0])
+    }
+
+    /// Its cells, patch by patch as they take the sample of a number, and one kind of cell after the other.
+    pub(super) fn together(
+        &self,
+        patchwork: Patchwork,
+        number: u32,
+    ) -> impl Iterator<Item = impl Iterator<Item = usize> + use<>> + use<> {
+        let (width, kinds) = (self.size[0], if self.halves { 2 } else { 1 });
+        patchwork.patches(self.size, number).flat_map(move |[columns, rows]| {
+            (0..kinds).map(move |kind| {
+                let columns = columns.clone();
+                let pixels = rows.clone().flat_map(move |y| columns.clone().map(move |x| y * width + x));
+                pixels.map(move |pixel| (pixel * kinds + kind) as usize)
+            })
+        })
+    }
+
+    /// Pixels in a row of it, and rows.
+    pub(super) fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
+    /// Samples of each cell.
+    pub fn counts(&self) -> &[u32] {
+        &self.counts
+    }
+
+    /// The mean of a pixel, over those of its cells that have samples; black without any.
+    pub(super) fn mean(&self, pixel: usize) -> Rgb {
+        let of = |cell: usize| (self.total[cell].sum + self.partial[cell].sum) / f64::from(self.counts[cell].max(1));
+        match self.halves {
+            true if self.counts[2 * pixel + 1] > 0 => (of(2 * pixel) + of(2 * pixel + 1)) / 2.0,
+            true => of(2 * pixel),
+            false => of(pixel),
+        }
+    }
+
+    /// The number, among all samples of its pixel, of the sample that is number `nth` of its cell. Halves take turns by
+    /// the batch, so no batch is in both.
+    #[inline]
+    pub fn number(&self, cell: usize, nth: u32) -> u32 {
+        if self.halves {
+            let (batch, within) = (nth / self.batch, nth % self.batch);
+            (2 * batch + (cell % 2) as u32) * self.batch + within
+        } else {
+            nth
+        }
+    }
+
+    /// Adds the next sample of a cell: radiance, times the weight that the film's filter gives it.
+    #[inline]
+    pub fn add(&mut self, cell: usize, radiance: Rgb, weight: f64) {
+        let sample = self.allowed(cell, radiance) * weight;
+        self.add_sample(cell, sample);
+    }
+
+    /// The same with light that came to the pixel by itself, which the filter has weighed, and which may be negative
+    /// where that is.
+    #[inline]
+    pub fn add_with(&mut self, cell: usize, radiance: Rgb, weight: f64, brought: Rgb) {
+        let brought = self.allowed(cell, brought.abs()).copysign(brought);
+        let sample = self.allowed(cell, radiance) * weight + brought;
+        self.add_sample(cell, sample);
+    }
+
+    #[inline]
+    fn add_sample(&mut self, cell: usize, sample: Rgb) {
+        let number = self.counts[cell];
+        self.counts[cell] += 1;
+        let partial = &mut self.partial[cell];
+        partial.sum += sample;
+        if self.halves && number < self.evidence_until[cell] {
+            let (sum, squares) = &mut self.evidence[cell];
+            *sum += sample;
+            *squares += sample * sample;
+        }
+        let batch = if self.batch == 1 {
+            Some(sample)
+        } else {
+            self.singles[cell][1] += sample * sample;
+            let unfinished = &mut self.unfinished[cell];
+            *unfinished += sample;
+            (number + 1).is_multiple_of(self.batch).then(|| std::mem::take(unfinished))
+        };
+        if let Some(batch) = batch {
+            partial.squares += batch * batch;
+        }
+        keep_largest(&mut self.largest[cell], sample);
+        if self.quarters.are_kept() {
+            self.quarters.add(cell, sample, number / self.batch, self.halves);
+        }
+        if (number + 1).is_multiple_of(Self::BLOCK.max(self.batch)) {
+            self.total[cell].add(partial);
+            *partial = Moments::default();
+            for pairs in [&mut self.taken, &mut self.singles] {
+                if let Some([whole, now]) = pairs.get_mut(cell) {
+                    *whole += std::mem::take(now);
+                }
+            }
+            if self.quarters.are_kept() {
+                self.quarters.end_block(cell);
+            }
+        }
+    }
+
+    /// What of a sample's radiance counts.
+    #[inline]
+    fn allowed(&mut self, cell: usize, radiance: Rgb) -> Rgb {
+        let greatest = radiance.max();
+        if !radiance.is_radiance() || greatest > Self::GREATEST {
+            self.dropped += 1;
+            return Rgb::ZERO;
+        }
+        if greatest <= self.clamp {
+            return radiance;
+        }
+        let left = radiance * (self.clamp / greatest);
+        self.clamped += 1;
+        self.taken[cell][1] += radiance - left;
+        left
+    }
+
+    /// The memory held for its cells.
+    #[cfg(test)]
+    pub(super) fn bytes(&self) -> usize {
+        self.counts.capacity() * size_of::<u32>()
+            + (self.total.capacity() + self.partial.capacity()) * size_of::<Moments>()
+            + (self.largest.capacity() + self.unfinished.capacity()) * size_of::<Rgb>()
+            + (self.taken.capacity() + self.singles.capacity()) * size_of::<[Rgb; 2]>()
+            + self.evidence.capacity() * size_of::<(Rgb, Rgb)>()
+            + self.evidence_until.capacity() * size_of::<u32>()
+            + self.quarters.bytes()
+    }
+
+    pub(super) fn dropped(&self) -> u64 {
+        self.dropped
+    }
+
+    pub(super) fn clamped(&self) -> u64 {
+        self.clamped
+    }
+
+    /// Samples of the cell that has the fewest.
+    pub(super) fn fewest(&self) -> u32 {
+        self.counts.iter().copied().min().unwrap_or(u32::MAX)
+    }
+
+    pub(super) fn take_evidence(&mut self, count: u32) {
+        for (until, &now) in self.evidence_until.iter_mut().zip(&self.counts) {
+            *until = now + count;
+        }
+    }
+
+    #[inline]
+    pub(super) fn cell(&self, cell: usize) -> Cell {
+        let mut moments = self.total[cell];
+        moments.add(&self.partial[cell]);
+        let or_nothing = |all: &[Rgb]| all.get(cell).copied().unwrap_or(Rgb::ZERO);
+        let both = |pairs: &[[Rgb; 2]]| pairs.get(cell).map(|[whole, now]| *whole + *now);
+        Cell {
+            count: self.counts[cell],
+            sum: moments.sum,
+            squares: moments.squares,
+            singles: both(&self.singles).unwrap_or(moments.squares),
+            largest: self.largest[cell],
+            unfinished: or_nothing(&self.unfinished),
+            taken: both(&self.taken).unwrap_or(Rgb::ZERO),
+            evidence: self.evidence.get(cell).copied().unwrap_or_default(),
+        }
+    }
+
+    /// Adds the samples that follow those here, which are whole blocks.
+    pub(super) fn append(&mut self, next: &Self) {
+        for (total, next) in self.total.iter_mut().zip(&next.total) {
+            total.add(next);
+        }
+        for (largest, &next) in self.largest.iter_mut().zip(&next.largest) {
+            keep_largest(largest, next);
+        }
+        for (pairs, next) in [(&mut self.taken, &next.taken), (&mut self.singles, &next.singles)] {
+            for ([whole, now], next) in pairs.iter_mut().zip(next) {
+                *whole += next[0];
+                *now = next[1];
+            }
+        }
+        for (count, next) in self.counts.iter_mut().zip(&next.counts) {
+            *count += next;
+        }
+        self.partial.clone_from(&next.partial);
+        self.unfinished.clone_from(&next.unfinished);
+        self.quarters.append(&next.quarters);
+        self.dropped += next.dropped;
+        self.clamped += next.clamped;
+    }
+
+    /// Adds samples to each cell, each a batch, that were added up elsewhere: by the position of its pixel, their sum,
+    /// the sum of their squares, and the largest.
+    ///
+    /// # Panics
+    /// If the film is in halves, or has batches of several samples, or keeps more of them than these.
+    pub(super) fn add_sums(&mut self, count: u32, of: impl Fn((u32, u32)) -> [Rgb; 3]) {
+        assert!(self.batch == 1 && !self.halves && self.taken.is_empty() && !self.quarters.are_kept(), "sums alone");
+        for cell in 0..self.counts.len() {
+            let [sum, squares, largest] = of(self.position(cell));
+            self.counts[cell] += count;
+            self.total[cell].add(&Moments { sum, squares });
+            keep_largest(&mut self.largest[cell], largest);
+        }
+    }
+
+    /// Counts samples that were dropped elsewhere.
+    pub(super) fn drop_more(&mut self, count: u64) {
+        self.dropped += count;
+    }
+
+    /// The most samples of a cell that bytes may tell of: sums of them stay far below what numbers hold.
+    pub(super) const MOST: u32 = u32::MAX / 4;
+
+    /// All that has been added to it, as bytes.
+    pub(super) fn write(&self, to: &mut Writer) {
+        to.words(self.counts.iter().copied());
+        for moments in [&self.total, &self.partial] {
+            to.colours(moments, |m| m.sum);
+            to.colours(moments, |m| m.squares);
+        }
+        to.colours(&self.largest, |rgb| *rgb);
+        to.colours(&self.unfinished, |rgb| *rgb);
+        for part in 0..2 {
+            to.colours(&self.taken, |taken| taken[part]);
+            to.colours(&self.singles, |squares| squares[part]);
+        }
+        to.colours(&self.evidence, |(sum, _)| *sum);
+        to.colours(&self.evidence, |(_, squares)| *squares);
+        to.words(self.evidence_until.iter().copied());
+        self.quarters.write(to);
+        to.word(self.dropped);
+        to.word(self.clamped);
+    }
+
+    /// Reads what was added to a tile of the same place and shape. If that fails, this tile is of no use.
+    pub(super) fn read(&mut self, from: &mut Reader) -> Result<(), Malformed> {
+        from.words(self.counts.iter_mut())?;
+        check(self.counts.iter().all(|&count| count <= Self::MOST), "a cell has too many samples")?;
+        for moments in [&mut self.total, &mut self.partial] {
+            from.colours(moments, |m| &mut m.sum)?;
+            from.colours(moments, |m| &mut m.squares)?;
+        }
+        from.colours(&mut self.largest, |rgb| rgb)?;
+        from.colours(&mut self.unfinished, |rgb| rgb)?;
+        for part in 0..2 {
+            from.colours(&mut self.taken, |taken| &mut taken[part])?;
+            from.colours(&mut self.singles, |squares| &mut squares[part])?;
+        }
+        from.colours(&mut self.evidence, |(sum, _)| sum)?;
+        from.colours(&mut self.evidence, |(_, squares)| squares)?;
+        from.words(self.evidence_until.iter_mut())?;
+        self.quarters.read(from)?;
+        (self.dropped, self.clamped) = (from.word()?, from.word()?);
+        let most = self.counts.len() as u64 * u64::from(Self::MOST);
+        check(self.dropped <= most && self.clamped <= most, "there are more samples of a kind than samples")
+    }
+}
+
+/// Keeps the sample with the larger channel; filters may weigh samples negatively.
+#[inline]
+fn keep_largest(largest: &mut Rgb, sample: Rgb) {
+    if sample.abs().max() > largest.abs().max() {
+        *largest = sample;
+    }
+}

@@ -1,0 +1,393 @@
+//! Work on a pass: samples of all pixels, tile by tile over the threads.
+
+use super::camera_samples::{CameraSampler, Wanted};
+use super::epoch::Epoch;
+use super::lent::held;
+use super::patchwork::Patchwork;
+use super::splats::{Brought, LightTracer};
+use super::{FilmTile, Settings};
+use rayon::prelude::*;
+use raywright_base::timing::{self, timed};
+use raywright_base::workers::Cancel;
+use raywright_integrators::{CameraSample, Integrator, Session, Worker};
+use raywright_optics::Rgb;
+use raywright_scene::{Camera, Scene};
+use std::ops::Range;
+use std::sync::{Mutex, PoisonError};
+use std::{iter, slice};
+
+/// Paths advanced together at most: enough to keep the accelerator's kernels full, few enough to stay in cache.
+const BATCH: usize = 4096;
+
+/// Paths handed together to an integrator that works on the calling thread, where a call costs more than a path.
+const LARGE_BATCH: usize = 65_536;
+
+/// A picture being taken: everything that stays the same from pass to pass.
+pub(super) struct Exposure<'a> {
+    session: &'a dyn Session,
+    /// Whether all work is to be done on the calling thread.
+    pub stays: bool,
+    samples: CameraSampler<'a>,
+    /// Whether samples may be negative.
+    signed: bool,
+    /// What follows paths from lights, if there are any.
+    light: Option<LightTracer<'a>>,
+    /// Whose samples work together.
+    patchwork: Patchwork,
+    /// Workers that no thread is using: their memory is used again.
+    idle: Mutex<Vec<Bench<'a>>>,
+}
+
+/// How many samples cells shall have. It is reached in steps, of one sample of all pixels on average, in each of which
+/// pixels of a patch work together: who works with whom depends on nothing but the step.
+#[derive(Clone, Copy)]
+pub(super) enum Goal<'a> {
+    /// The same number in all, counted with the `before` that are on another film.
+    Even { before: u32, samples: u32 },
+    /// As it is decided for so many on average, where all pixels have had `done` on average.
+    Planned { epoch: &'a Epoch, done: u32, samples: u32 },
+}
+
+impl Goal<'_> {
+    /// How many samples a cell of a tile has after so many on average.
+    #[inline]
+    fn at(&self, number: usize, tile: &FilmTile, cell: usize, samples: u32) -> u32 {
+        match *self {
+            Self::Even { before, .. } => samples - before,
+            Self::Planned { epoch, .. } => epoch.goal(number, cell, tile.position(cell), samples),
+        }
+    }
+
+    /// The steps that a tile has to go.
+    fn steps(&self, tile: &FilmTile) -> Range<u32> {
+        match *self {
+            Self::Even { before, samples } => before + tile.fewest()..samples,
+            Self::Planned { done, samples, .. } => done..samples,
+        }
+    }
+
+    fn before(&self) -> u32 {
+        if let Self::Even { before, .. } = *self { before } else { 0 }
+    }
+}
+
+/// A goal, and the light that comes to the film by itself on the way there.
+#[derive(Clone, Copy)]
+struct Part<'a> {
+    goal: Goal<'a>,
+    light: Option<&'a Brought>,
+    /// Whether a session was made ready for it.
+    is_ready: bool,
+}
+
+impl Part<'_> {
+    /// Whether it is to be left: light that was brought, or what a session was made ready with, is used up first, or a
+    /// pause that comes sooner would leave nothing done.
+    fn is_ended(&self, stop: &Stop) -> bool {
+        stop.cancel.is_raised() || self.light.is_none() && !self.is_ready && stop.pause.is_raised()
+    }
+}
+
+/// What may keep a goal from being reached.
+#[derive(Default)]
+pub(super) struct Stop {
+    /// Raised to end all work at once, by whoever watches or by an integrator that cannot go on.
+    pub cancel: Cancel,
+    /// Raised to end it when what has been begun is done.
+    pub pause: Cancel,
+}
+
+impl Stop {
+    fn is_raised(&self) -> bool {
+        self.cancel.is_raised() || self.pause.is_raised()
+    }
+}
+
+/// What a thread works with.
+struct Bench<'a> {
+    worker: Box<dyn Worker + 'a>,
+    /// Whether samples may be negative.
+    signed: bool,
+    /// What is to be taken next.
+    wanted: Vec<Wanted>,
+    samples: Vec<CameraSample>,
+    /// How much each sample counts, by the filter and the camera: also those for which the camera has no ray, and the
+    /// integrator is not asked.
+    weights: Vec<f64>,
+    radiance: Vec<Rgb>,
+    /// Where each group of samples that work together ends among those that are to be taken; empty where each is on its
+    /// own.
+    ends: Vec<usize>,
+    /// How many they are.
+    groups: Vec<u32>,
+    /// Whose the samples are.
+    runs: Vec<Run>,
+}
+
+/// A cell whose samples are taken with those of others.
+struct Member {
+    cell: usize,
+    position: (u32, u32),
+    /// Those of a step.
+    samples: Range<u32>,
+    /// How many it has.
+    count: u32,
+}
+
+impl Member {
+    /// Its own number of a sample of a step, if that is there and has not been taken.
+    #[inline]
+    fn wants(&self, of_step: u32) -> Option<u32> {
+        let nth = self.samples.start + of_step;
+        (nth < self.samples.end && nth >= self.count).then_some(nth)
+    }
+}
+
+/// Consecutive samples of one cell.
+struct Run {
+    tile: usize,
+    cell: usize,
+    count: u32,
+}
+
+impl<'a> Exposure<'a> {
+    /// One of a scene by a camera, in a session of an integrator.
+    pub fn new(
+        scene: &Scene,
+        camera: &'a dyn Camera,
+        integrator: &dyn Integrator,
+        session: &'a dyn Session,
+        settings: &'a Settings,
+    ) -> Self {
+        let samples = CameraSampler::new(scene, camera, session, settings);
+        let patchwork = Patchwork { patch: integrator.patch(scene) };
+        let (stays, light) = (integrator.runs_on_caller(), LightTracer::new(camera, session, settings));
+        let signed = scene.plan().needs().waves;
+        Self { session, stays, samples, signed, light, patchwork, idle: Mutex::default() }
+    }
+
+    /// Adds samples until the goal is reached, and says whether it was: it returns soon when it is asked to stop. Even
+    /// then each cell has the first of its samples and nothing else, and can be taken further. Before this, each pixel
+    /// has `done` samples, or all have on average.
+    pub fn expose(&self, tiles: &[Mutex<FilmTile>], done: u32, goal: Goal, stop: &Stop) -> bool {
+        self.session.before_pass(done, &stop.cancel);
+        self.in_parts(tiles, goal, false, stop, |tiles, part| {
+            let reached = |(number, tile): (usize, &Mutex<FilmTile>)| {
+                !part.is_ended(stop) && {
+                    let mut bench = self.take_bench();
+                    let reached =
+                        self.expose_tiles(slice::from_ref(tile), number, part, BATCH, &mut bench, stop, &mut || {});
+                    self.put_bench(bench);
+                    reached
+                }
+            };
+            tiles.par_iter().enumerate().with_max_len(1).map(reached).reduce(|| true, |a, b| a && b)
+        })
+    }
+
+    /// As [`Exposure::expose`], with the integrator on this thread alone. After each batch, which is large for an
+    /// integrator that wants to be here, `poll` is called, which may ask to stop.
+    pub fn expose_here(
+        &self,
+        tiles: &[Mutex<FilmTile>],
+        done: u32,
+        goal: Goal,
+        stop: &Stop,
+        mut poll: impl FnMut(),
+    ) -> bool {
+        self.session.before_pass(done, &stop.cancel);
+        let most = if self.stays { LARGE_BATCH } else { BATCH };
+        self.in_parts(tiles, goal, true, stop, |tiles, part| {
+            let mut bench = self.take_bench();
+            let reached = self.expose_tiles(tiles, 0, part, most, &mut bench, stop, &mut poll);
+            self.put_bench(bench);
+            reached
+        })
+    }
+
+    /// Works towards a goal: at once, or, where light comes to the film by itself or a session is made ready, in parts
+    /// of as many samples as that is kept for. Says whether all parts were done.
+    fn in_parts(
+        &self,
+        tiles: &[Mutex<FilmTile>],
+        goal: Goal,
+        alone: bool,
+        stop: &Stop,
+        mut work: impl FnMut(&[Mutex<FilmTile>], Part) -> bool,
+    ) -> bool {
+        let ready = self.session.at_once();
+        let at_once = self.light.as_ref().map(LightTracer::at_once).into_iter().chain(ready).min();
+        let (Some(at_once), Goal::Even { before, samples }) = (at_once, goal) else {
+            return work(tiles, Part { goal, light: None, is_ready: false });
+        };
+        let first = before + tiles.iter().map(|tile| held(tile).fewest()).min().unwrap_or(0);
+        (first..samples).step_by(at_once.max(1) as usize).all(|start| {
+            if start > first && stop.is_raised() {
+                return false;
+            }
+            let end = samples.min(start.saturating_add(at_once.max(1)));
+            if ready.is_some() {
+                self.session.before_samples(start..end, alone, &stop.cancel);
+            }
+            let brought = self.light.as_ref().map(|light| light.trace(start..end, alone, &stop.cancel));
+            let goal = Goal::Even { before, samples: end };
+            let part = Part { goal, light: brought.as_ref(), is_ready: ready.is_some() };
+            !stop.cancel.is_raised() && work(tiles, part)
+        })
+    }
+
+    fn take_bench(&self) -> Bench<'a> {
+        let idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner).pop();
+        idle.unwrap_or_else(|| Bench {
+            worker: self.session.worker(),
+            signed: self.signed,
+            wanted: Vec::new(),
+            samples: Vec::new(),
+            weights: Vec::new(),
+            radiance: Vec::new(),
+            ends: Vec::new(),
+            groups: Vec::new(),
+            runs: Vec::new(),
+        })
+    }
+
+    fn put_bench(&self, bench: Bench<'a>) {
+        self.idle.lock().unwrap_or_else(PoisonError::into_inner).push(bench);
+    }
+
+    /// Brings tiles, of which the first has this number, to the goal in batches of `most` paths.
+    #[allow(clippy::too_many_arguments)]
+    fn expose_tiles(
+        &self,
+        tiles: &[Mutex<FilmTile>],
+        first: usize,
+        part: Part,
+        most: usize,
+        bench: &mut Bench,
+        stop: &Stop,
+        poll: &mut dyn FnMut(),
+    ) -> bool {
+        bench.clear();
+        let goal = part.goal;
+        let before = goal.before();
+        let works_together = self.patchwork.patch > 1;
+        let mut members: Vec<Member> = Vec::new();
+        for index in 0..tiles.len() {
+            let mut tile = held(&tiles[index]);
+            let (number, steps) = (first + index, goal.steps(&tile));
+            // Pixels on their own take all of their samples one after the other: the rays of one are near each other.
+            let stride = if works_together { 1 } else { steps.len().max(1) as u32 };
+            for step in steps.clone().step_by(stride as usize) {
+                let end = steps.end.min(step + stride);
+                for cells in tile.together(self.patchwork, step) {
+                    members.clear();
+                    members.extend(cells.map(|cell| Member {
+                        cell,
+                        position: tile.position(cell),
+                        samples: goal.at(number, &tile, cell, step)..goal.at(number, &tile, cell, end),
+                        count: tile.counts()[cell],
+                    }));
+                    for of_step in 0..members.iter().map(|member| member.samples.len()).max().unwrap_or(0) as u32 {
+                        for member in &members {
+                            let Some(nth) = member.wants(of_step) else { continue };
+                            let number = before + tile.number(member.cell, nth);
+                            bench.add(index, member.cell, Wanted { position: member.position, number });
+                        }
+                        if works_together && bench.ends.last().copied().unwrap_or(0) < bench.wanted.len() {
+                            bench.ends.push(bench.wanted.len());
+                        }
+                        if bench.wanted.len() + members.len() > most {
+                            // Whoever looks at it need not wait for rays.
+                            drop(tile);
+                            let developed = bench.develop(&self.samples, tiles, part.light, &stop.cancel);
+                            poll();
+                            if !developed || part.is_ended(stop) {
+                                return false;
+                            }
+                            tile = held(&tiles[index]);
+                        }
+                    }
+                }
+            }
+        }
+        bench.develop(&self.samples, tiles, part.light, &stop.cancel)
+    }
+}
+
+impl Bench<'_> {
+    fn clear(&mut self) {
+        self.wanted.clear();
+        self.samples.clear();
+        self.weights.clear();
+        self.ends.clear();
+        self.groups.clear();
+        self.runs.clear();
+    }
+
+    /// Has a sample of a cell taken next.
+    #[inline]
+    fn add(&mut self, tile: usize, cell: usize, wanted: Wanted) {
+        self.wanted.push(wanted);
+        match self.runs.last_mut() {
+            Some(run) if (run.tile, run.cell) == (tile, cell) => run.count += 1,
+            _ => self.runs.push(Run { tile, cell, count: 1 }),
+        }
+    }
+
+    /// Takes the samples, adds their radiance to their cells, and clears them away. Says whether it did: what a
+    /// cancelled integrator says is not heard.
+    fn develop(
+        &mut self,
+        sampler: &CameraSampler,
+        tiles: &[Mutex<FilmTile>],
+        light: Option<&Brought>,
+        cancel: &Cancel,
+    ) -> bool {
+        if self.wanted.is_empty() {
+            return true;
+        }
+        timed(timing::Part::Camera, || sampler.take(&self.wanted, &mut self.samples, &mut self.weights));
+        let mut start = 0;
+        for &end in &self.ends {
+            let seen = self.weights[start..end].iter().filter(|&&weight| weight != 0.0).count();
+            if seen > 0 {
+                self.groups.push(seen as u32);
+            }
+            start = end;
+        }
+        self.radiance.resize(self.samples.len(), Rgb::ZERO);
+        if self.groups.is_empty() {
+            self.worker.radiance(&mut self.samples, cancel, &mut self.radiance);
+        } else {
+            self.worker.radiance_in_groups(&mut self.samples, &self.groups, cancel, &mut self.radiance);
+        }
+        if cancel.is_raised() {
+            return false;
+        }
+        timed(timing::Part::Film, || {
+            let (mut radiance, mut wanted) = (self.radiance.iter(), self.weights.iter().zip(&self.wanted));
+            for runs in self.runs.chunk_by(|a, b| a.tile == b.tile) {
+                let mut tile = held(&tiles[runs[0].tile]);
+                let each = runs.iter().flat_map(|run| iter::repeat_n(run, run.count as usize));
+                for (run, (&weight, wanted)) in each.zip(wanted.by_ref()) {
+                    let seen = if weight == 0.0 { None } else { radiance.next() };
+                    let seen = seen.copied().unwrap_or(Rgb::ZERO);
+                    match light {
+                        // What a wavelength looks like is less than nothing in some channels.
+                        None if self.signed => tile.add_with(run.cell, Rgb::ZERO, weight, seen * weight),
+                        None => tile.add(run.cell, seen, weight),
+                        Some(light) if self.signed => {
+                            let brought = seen * weight + light.to(wanted.position, wanted.number);
+                            tile.add_with(run.cell, Rgb::ZERO, weight, brought);
+                        }
+                        Some(light) => {
+                            tile.add_with(run.cell, seen, weight, light.to(wanted.position, wanted.number));
+                        }
+                    }
+                }
+            }
+        });
+        self.clear();
+        true
+    }
+}

@@ -1,0 +1,49 @@
+//! Rays of a camera, sixteen at a time.
+
+use super::CameraRay;
+use raywright_base::math::{LANES, Ray, VectorLanes};
+use raywright_base::sampling::Pairs;
+
+/// Rays of a camera, a lane each, as [`CameraRay`] has them.
+#[derive(Clone, Debug)]
+pub struct CameraRayLanes {
+    pub(super) origin: VectorLanes,
+    pub(super) direction: VectorLanes,
+    pub(super) time: [f64; LANES],
+    pub(super) weight: [f64; LANES],
+}
+
+impl CameraRayLanes {
+    /// No rays.
+    pub const NONE: Self =
+        Self { origin: VectorLanes::ZERO, direction: VectorLanes::ZERO, time: [0.0; LANES], weight: [0.0; LANES] };
+
+    /// That of a lane.
+    #[inline(always)]
+    pub fn get(&self, lane: usize) -> CameraRay {
+        let ray = Ray { time: self.time[lane], ..Ray::new(self.origin.get(lane), self.direction.get(lane)) };
+        CameraRay { ray, weight: self.weight[lane] }
+    }
+
+    /// Takes that of each lane by itself.
+    pub(super) fn take_each(
+        &mut self,
+        film: &Pairs,
+        lens: &Pairs,
+        time: &[f64; LANES],
+        ray: impl Fn([f64; 2], [f64; 2], f64) -> CameraRay,
+    ) {
+        for lane in 0..LANES {
+            let [film, lens] = [film, lens].map(|points| [points[0][lane], points[1][lane]]);
+            self.set(lane, &ray(film, lens, time[lane]));
+        }
+    }
+
+    /// Sets that of a lane.
+    #[inline(always)]
+    fn set(&mut self, lane: usize, CameraRay { ray, weight }: &CameraRay) {
+        self.origin.set(lane, ray.origin);
+        self.direction.set(lane, ray.direction);
+        (self.time[lane], self.weight[lane]) = (ray.time, *weight);
+    }
+}

@@ -1,0 +1,456 @@
+//! A scene ready for rays.
+
+use super::geometry::Watched;
+use super::lights::{Emitters, not_drawn};
+use super::media::Medium;
+use super::{DescriptionError, Emission, Geometry, Lights, Material, Plan, SceneDescription, SurfacePoint};
+use raywright_accel::{Accelerator, Cost, Crossings, Nearest, Primitives, Side, Touches};
+use raywright_base::math::{DVec3, Hit, Ray, RayQueue, Region};
+use raywright_base::work::{Stopped, Work};
+use raywright_shapes::triangle::SolidCone;
+use std::any::Any;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// A scene ready for rays.
+pub struct Scene {
+    geometry: Geometry,
+    materials: Vec<Arc<dyn Material>>,
+    lights: Lights,
+    plan: Plan,
+    /// What others have made of it, each of a type of its own.
+    kept: Mutex<Vec<Arc<dyn Any + Send + Sync>>>,
+    accelerator: Box<dyn Accelerator>,
+    region: Region,
+    /// What fills the space in which nothing else is.
+    surrounding: Option<Arc<dyn Medium>>,
+    /// The accelerator's cost when it was built.
+    built_cost: f64,
+}
+
+/// Ways out for [`Scene::contains`]: in no special position relative to anything that people make, and with a largest
+/// coordinate between 1 and 2, so that `t` is not scaled.
+const WAYS_OUT: [DVec3; 7] = [
+    DVec3::new(1.289_430_857_193_402_8, 0.371_920_584_301_275_66, 0.587_109_384_750_921_3),
+    DVec3::new(-1.289_430_857_193_402_8, -0.371_920_584_301_275_66, -0.587_109_384_750_921_3),
+    DVec3::new(-0.518_302_947_561_093_8, 1.470_193_857_204_918_4, -0.219_385_710_482_957_5),
+    DVec3::new(0.293_847_502_918_375_7, -0.638_201_947_562_910_4, 1.619_204_857_391_028_3),
+    DVec3::new(0.851_029_384_756_102_9, -1.137_482_910_583_749_2, -0.743_918_205_764_839_1),
+    DVec3::new(-1.057_291_840_375_629_3, -0.482_910_375_829_104_7, 0.963_820_194_756_382_9),
+    DVec3::new(0.139_204_857_610_293_8, 0.917_364_820_591_837_4, -1.384_710_293_857_460_2),
+];
+
+impl Scene {
+    /// Compiles a description, with an accelerator made for its geometry.
+    ///
+    /// # Panics
+    /// If a mesh is no mesh; see [`Geometry::new`].
+    pub fn new(
+        description: SceneDescription,
+        accelerator: impl FnOnce(&dyn Primitives) -> Box<dyn Accelerator>,
+    ) -> Result<Self, DescriptionError> {
+        Self::watched(description, accelerator, Work::UNWATCHED)
+    }
+
+    /// The same, as work that may be stopped, which is an error.
+    ///
+    /// # Panics
+    /// As [`Scene::new`].
+    pub fn watched(
+        description: SceneDescription,
+        accelerator: impl FnOnce(&dyn Primitives) -> Box<dyn Accelerator>,
+        work: Work,
+    ) -> Result<Self, DescriptionError> {
+        let goes_on = || work.goes_on().map_err(|Stopped| DescriptionError::Stopped);
+        let parts = description.joined()?;
+        goes_on()?;
+        let lights = Lights::new(&parts.geometry, parts.emission, parts.lights);
+        goes_on()?;
+        let accelerator = accelerator(&Watched { geometry: &parts.geometry, work });
+        goes_on()?;
+        Ok(Self::with(accelerator, None, parts.geometry, parts.materials, lights))
+    }
+
+    /// The same scene over meshes that have moved, with the accelerator fitted to them. `None` if that cannot be done
+    /// ([`Accelerator::refitted`]).
+    ///
+    /// # Panics
+    /// As [`Scene::new`].
+    pub fn refitted(&self, description: SceneDescription, work: Work) -> Result<Option<Self>, DescriptionError> {
+        let parts = description.joined()?;
+        let lights = Lights::new(&parts.geometry, parts.emission, parts.lights);
+        let accelerator = self.accelerator.refitted(&Watched { geometry: &parts.geometry, work }).ok();
+        work.goes_on().map_err(|Stopped| DescriptionError::Stopped)?;
+        Ok(accelerator.map(|a| Self::with(a, Some(self.built_cost), parts.geometry, parts.materials, lights)))
+    }
+
+    fn with(
+        accelerator: Box<dyn Accelerator>,
+        built_cost: Option<f64>,
+        geometry: Geometry,
+        materials: Vec<Arc<dyn Material>>,
+        lights: Lights,
+    ) -> Self {
+        let (region, cost) = (geometry.region(), accelerator.info().sah_cost);
+        let plan = Plan::new(&geometry, &materials, &lights);
+        let built_cost = built_cost.unwrap_or(cost);
+        let kept = Mutex::default();
+        Self { geometry, materials, lights, plan, kept, accelerator, region, surrounding: None, built_cost }
+    }
+
+    /// The same with a medium in all space in which nothing else is.
+    pub fn surrounded_by(self, medium: Option<Arc<dyn Medium>>) -> Self {
+        let plan = self.plan.with_medium_around(medium.as_deref());
+        Self { plan, surrounding: medium, ..self }
+    }
+
+    /// The same with all shading normals taken as they are given.
+    pub fn with_normals_as_given(self) -> Self {
+        let plan = self.plan.clone().with_normals_as_given(&self.geometry);
+        Self { plan, ..self }
+    }
+
+    /// What fills the space in which nothing else is; none if it is empty.
+    #[inline]
+    pub fn surrounding(&self) -> Option<&dyn Medium> {
+        self.surrounding.as_deref()
+    }
+
+    /// What the accelerator costs over what it did when it was built, by the surface-area heuristic; 1 until it is
+    /// refitted.
+    pub fn growth(&self) -> f64 {
+        let cost = self.accelerator.info().sah_cost;
+        if cost == self.built_cost { 1.0 } else { cost / self.built_cost }
+    }
+
+    /// The closest hit of each ray.
+    pub fn intersect(&self, rays: &[Ray], hits: &mut [Hit]) {
+        self.accelerator.intersect(rays, hits);
+    }
+
+    /// The closest hit of one ray.
+    pub fn intersect_one(&self, ray: &Ray) -> Hit {
+        self.accelerator.intersect_one(ray)
+    }
+
+    /// Whether each ray hits anything.
+    pub fn occluded(&self, rays: &[Ray], occluded: &mut [bool]) {
+        self.accelerator.occluded(rays, occluded);
+    }
+
+    /// The closest hit of each ray of a queue.
+    pub fn intersect_queue(&self, rays: &mut RayQueue, hits: &mut [Hit]) {
+        match self.accelerator.by_columns() {
+            Some(tree) => tree.first_hits(&rays.columns(), hits),
+            None => self.accelerator.intersect(rays.rows(), hits),
+        }
+    }
+
+    /// Whether each ray of a queue hits anything.
+    pub fn occluded_queue(&self, rays: &mut RayQueue, occluded: &mut [bool]) {
+        match self.accelerator.by_columns() {
+            Some(tree) => tree.occluded(&rays.columns(), occluded),
+            None => self.accelerator.occluded(rays.rows(), occluded),
+        }
+    }
+
+    /// Every hit of each ray.
+    pub fn crossings(&self, rays: &[Ray]) -> Crossings {
+        self.accelerator.crossings(rays)
+    }
+
+    /// Whether each point is inside the surface or on it: on the way out it is crossed an odd number of times.
+    ///
+    /// On any two ways out of a closed surface, the numbers of crossings differ by an even number, so one way and the
+    /// opposite one agree. Where they do not, there is a hole, and what most of seven ways find is told.
+    pub fn contains(&self, points: &[DVec3], inside: &mut [bool]) {
+        assert_eq!(points.len(), inside.len(), "an answer for each point");
+        inside.fill(false);
+        let within = |p: &DVec3| p.cmpge(self.region.min).all() && p.cmple(self.region.max).all();
+        let mut open: Vec<usize> = (0..points.len()).filter(|&i| within(&points[i])).collect();
+        let mut votes = vec![0u32; points.len()];
+        let (pair, others) = WAYS_OUT.split_at(2);
+        self.vote(points, &open, pair, &mut votes, inside);
+        open.retain(|&i| {
+            inside[i] |= votes[i] == 2;
+            votes[i] == 1 && !inside[i]
+        });
+        self.vote(points, &open, others, &mut votes, inside);
+        for i in open {
+            inside[i] |= 2 * votes[i] as usize > WAYS_OUT.len();
+        }
+    }
+
+    /// Counts the ways out that find some of the points inside, and tells which are on the surface.
+    fn vote(&self, points: &[DVec3], which: &[usize], ways: &[DVec3], votes: &mut [u32], on: &mut [bool]) {
+        // The sign of a t may be wrong up to `EdgeRay::T_ERROR` of at most two radii.
+        let doubt = self.region.radius / (1u64 << 24) as f64;
+        let mut sides = vec![Side::Outside; which.len()];
+        for &way in ways.iter().filter(|_| !which.is_empty()) {
+            let leaving = |&i: &usize| Ray { t_min: -doubt, ..Ray::new(points[i], way) };
+            let rays: Vec<_> = which.iter().map(leaving).collect();
+            self.accelerator.sides(&self.geometry, &rays, doubt, &mut sides);
+            for (&i, &side) in which.iter().zip(&sides) {
+                votes[i] += u32::from(side == Side::Inside);
+                on[i] |= side == Side::Surface;
+            }
+        }
+    }
+
+    /// The nearest point to each point, within its greatest distance: one for all of them, or one each.
+    pub fn nearest(&self, points: &[DVec3], max_distances: &[f64], nearest: &mut [Nearest]) {
+        if self.geometry.has_vertices() {
+            self.accelerator.nearest(points, max_distances, nearest);
+        } else {
+            nearest.fill(Nearest::MISS);
+        }
+        self.geometry.nearest_of_others(points, max_distances, nearest);
+    }
+
+    /// The triangles that each cone touches, nearest first.
+    pub fn touched(&self, cones: &[Option<SolidCone>]) -> Touches {
+        self.accelerator.touched(cones)
+    }
+
+    /// What finding the closest hit of each ray takes.
+    pub fn cost(&self, rays: &[Ray], costs: &mut [Cost]) {
+        self.accelerator.cost(rays, costs);
+    }
+
+    /// Its surfaces.
+    pub fn geometry(&self) -> &Geometry {
+        &self.geometry
+    }
+
+    /// Its lights.
+    pub fn lights(&self) -> &Lights {
+        &self.lights
+    }
+
+    /// What it needs of those who shade it.
+    #[inline]
+    pub fn plan(&self) -> &Plan {
+        &self.plan
+    }
+
+    /// What is made of the scene, and kept with it for whoever asks next: one of each type. `None` if nothing was made.
+    pub fn kept<T: Any + Send + Sync>(&self, make: impl FnOnce() -> Option<T>) -> Option<Arc<T>> {
+        let lock = || self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        let find =
+            |kept: &[Arc<dyn Any + Send + Sync>]| kept.iter().find_map(|one| Arc::clone(one).downcast::<T>().ok());
+        if let Some(found) = find(&lock()) {
+            return Some(found);
+        }
+        // Not within the lock: threads that wait for others take up work of theirs, which may come here too. Of what
+        // several have made, all get the first.
+        let made = Arc::new(make()?);
+        let mut kept = lock();
+        Some(find(&kept).unwrap_or_else(|| {
+            kept.push(Arc::clone(&made) as Arc<dyn Any + Send + Sync>);
+            made
+        }))
+    }
+
+    /// What a shape is made of.
+    #[inline]
+    pub fn material(&self, shape: u32) -> &dyn Material {
+        &*self.materials[shape as usize]
+    }
+
+    /// What a point of a surface is made of.
+    #[inline]
+    pub fn material_at(&self, surface: &SurfacePoint) -> &dyn Material {
+        match surface.inner {
+            Some(inner) => self.appearance(surface.shape, inner).0,
+            None => self.material(surface.shape),
+        }
+    }
+
+    /// What that is made of which a ray has hit.
+    #[inline]
+    pub fn material_of(&self, hit: &Hit) -> &dyn Material {
+        let shape = self.geometry.locate(hit.primitive).0;
+        if self.geometry.instances_of(shape).is_some() {
+            self.appearance(shape, hit.inner).0
+        } else {
+            self.material(shape)
+        }
+    }
+
+    /// How a point of a surface shines.
+    #[inline]
+    pub fn emission_at(&self, surface: &SurfacePoint) -> &Emission {
+        match surface.inner {
+            Some(inner) => self.appearance(surface.shape, inner).1,
+            None => self.lights.emission(surface.shape),
+        }
+    }
+
+    /// Of a shape that is instances of a prototype, what the primitive of a flattened number is made of, and how it
+    /// shines.
+    fn appearance(&self, shape: u32, inner: u32) -> (&dyn Material, &Emission) {
+        match self.geometry.instances_of(shape) {
+            Some(instances) => instances.prototype().appearance(inner),
+            None => (self.material(shape), self.lights.emission(shape)),
+        }
+    }
+
+    /// What finds its hits.
+    pub fn accelerator(&self) -> &dyn Accelerator {
+        self.accelerator.as_ref()
+    }
+
+    /// What light that sets out is drawn from; `None` if nothing shines that could be drawn.
+    pub fn emitters(&self) -> Option<Emitters<'_>> {
+        Emitters::new(&self.lights, &self.geometry, &self.region)
+    }
+
+    /// Why light cannot all be drawn as it sets out, if so.
+    pub fn not_drawn(&self) -> Option<String> {
+        not_drawn(&self.lights, &self.geometry)
+    }
+
+    /// Why light does not all come from lights, if so.
+    pub fn glow(&self) -> Option<String> {
+        self.plan.needs().glow.then(|| "a medium glows".to_owned())
+    }
+
+    /// Where all that can be hit lies.
+    pub fn region(&self) -> &Region {
+        &self.region
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixtures::{furnace, inward_box, scene, shape};
+    use crate::{LightSampleContext, Shape};
+    use raywright_base::math::HitColumns;
+    use raywright_base::simd::Level;
+    use raywright_shapes::{Plane, Sphere};
+
+    #[test]
+    fn a_closed_surface_is_crossed_evenly_however_the_ray_is_aimed() {
+        let cube = furnace(0.5, 0.0);
+        let ways = (-2..=2).flat_map(|x| (-2..=2).flat_map(move |y| (-2..=2).map(move |z| [x, y, z])));
+        let ways: Vec<_> = ways.map(|w| DVec3::from_array(w.map(f64::from))).filter(|w| *w != DVec3::ZERO).collect();
+        // Through corners, edges, middles of faces, and within faces.
+        let rays: Vec<_> =
+            ways.iter().flat_map(|&at| ways.iter().map(move |&way| Ray::new(at - 8.0 * way, way))).collect();
+        let crossings = cube.crossings(&rays);
+        let mut hits = vec![Hit::MISS; rays.len()];
+        cube.intersect(&rays, &mut hits);
+        for (ends, hit) in crossings.splits.windows(2).zip(&hits) {
+            let mine = &crossings.hits[ends[0]..ends[1]];
+            assert_eq!(mine.len() % 2, 0, "{mine:?}");
+            assert_eq!(mine.first().unwrap_or(&Hit::MISS), hit);
+        }
+        assert!(hits.iter().filter(|h| h.is_hit()).count() > 1000);
+    }
+
+    #[test]
+    fn points_are_inside_to_the_last_bit() {
+        let cube = furnace(0.5, 0.0);
+        let near = [-2.0, -1f64.next_up(), -1.0, (-1f64).next_up(), -0.0, 0.3, 1f64.next_down(), 1.0, 1f64.next_up()];
+        let points: Vec<_> =
+            near.iter().flat_map(|&x| near.iter().flat_map(move |&y| near.map(|z| DVec3::new(x, y, z)))).collect();
+        let mut inside = vec![false; points.len()];
+        cube.contains(&points, &mut inside);
+        for (p, inside) in points.iter().zip(inside) {
+            assert_eq!(inside, p.abs().max_element() <= 1.0, "{p}");
+        }
+    }
+
+    #[test]
+    fn with_a_wall_missing_most_ways_out_decide() {
+        let five = inward_box([-1.0; 3], [2.0; 3]).into_iter().take(5).map(|mesh| shape(mesh, [0.5; 3], 0.0));
+        let open = scene(SceneDescription { shapes: five.collect(), ..Default::default() });
+        let mut inside = [false; 3];
+        open.contains(&[DVec3::new(0.1, 0.2, -0.5), DVec3::NAN, DVec3::new(0.0, 0.0, 1.1)], &mut inside);
+        assert_eq!(inside, [true, false, false]);
+    }
+
+    #[test]
+    fn queues_meet_objects_and_triangles_as_brute_force_has_it() {
+        // Few balls, and more than few; with something that has no end.
+        for (balls, has_plane) in [(1, false), (5, true), (16, false), (40, true)] {
+            let mut numbers = raywright_base::sampling::Sampler::new(17, balls, 0);
+            let mut draw = |dimension| {
+                let ([x, y], z) = (numbers.two(dimension), numbers.one(dimension + 2));
+                2.0 * DVec3::new(x, y, z) - 1.0
+            };
+            let mut shapes: Vec<Shape> =
+                inward_box([-2.0; 3], [4.0; 3]).into_iter().take(4).map(|mesh| shape(mesh, [0.5; 3], 0.0)).collect();
+            let centers: Vec<DVec3> = (0..balls).map(|ball| draw(4 * ball)).collect();
+            for &center in &centers {
+                let surface: Arc<dyn raywright_shapes::Shape> =
+                    Arc::new(Sphere { center, radius: 0.02 + 0.1 * center.x.abs() });
+                shapes.push(Shape { surface: surface.into(), ..shape(Default::default(), [0.5; 3], 0.0) });
+            }
+            if has_plane {
+                let plane: Arc<dyn raywright_shapes::Shape> =
+                    Arc::new(Plane { point: -0.9 * DVec3::Z, normal: DVec3::Z });
+                shapes.push(Shape { surface: plane.into(), ..shape(Default::default(), [0.5; 3], 0.0) });
+            }
+            let scene = scene(SceneDescription { shapes, ..Default::default() });
+            let brute = raywright_accel::BruteForce::over(scene.geometry(), Level::current().unwrap());
+            let mut queue = RayQueue::default();
+            let rays: Vec<Ray> = (0..1500)
+                .map(|i| {
+                    let origin = 1.5 * draw(1000 + 8 * i);
+                    let to = centers[(i % balls) as usize] + 0.1 * draw(1004 + 8 * i);
+                    let t_max = if i % 3 == 0 { 0.8 } else { f64::INFINITY };
+                    Ray { t_max, ..Ray::new(origin, to - origin) }
+                })
+                .collect();
+            rays.iter().for_each(|ray| queue.push(ray));
+            let (mut wanted, mut occluded) = (vec![Hit::MISS; rays.len()], vec![false; rays.len()]);
+            brute.intersect(&rays, &mut wanted);
+            brute.occluded(&rays, &mut occluded);
+            let (mut hits, mut any) = (vec![Hit::MISS; rays.len()], vec![false; rays.len()]);
+            scene.intersect_queue(&mut queue, &mut hits);
+            scene.occluded_queue(&mut queue, &mut any);
+            assert!(hits == wanted && any == occluded, "{balls}");
+            scene.intersect(&rays, &mut hits);
+            scene.occluded(&rays, &mut any);
+            assert!(hits == wanted && any == occluded, "{balls}");
+            let (mut t, mut uv, mut primitive) = (vec![0.0; 1500], vec![[0.0; 2]; 1500], vec![0; 1500]);
+            let columns = scene.accelerator().by_columns().expect("nothing moves");
+            columns.intersect(&queue.columns(), HitColumns { t: &mut t, uv: &mut uv, primitive: &mut primitive });
+            for (i, hit) in wanted.iter().enumerate() {
+                assert_eq!((t[i], uv[i], primitive[i]), (hit.t, hit.uv, hit.primitive as i32));
+            }
+            let of_balls = hits.iter().filter(|hit| hit.is_hit() && hit.primitive >= 8).count();
+            assert!(of_balls > 20 && hits.len() - of_balls > 200, "{of_balls} of {balls}");
+        }
+    }
+
+    #[test]
+    fn what_is_refitted_answers_as_if_built() {
+        let described = |by: f32| {
+            let shapes: Vec<Shape> = inward_box([-1.0, by, -1.0], [2.0, 2.0 + by, 2.0])
+                .into_iter()
+                .enumerate()
+                .map(|(i, mesh)| shape(mesh, [0.5; 3], if i == 3 { 1.0 } else { 0.0 }))
+                .collect();
+            SceneDescription { shapes, ..Default::default() }
+        };
+        let (still, moved) = (scene(described(0.0)), scene(described(0.75)));
+        let refitted = still.refitted(described(0.75), Work::UNWATCHED).unwrap().unwrap();
+        let rays: Vec<_> =
+            (0..100).map(|i| Ray::new(DVec3::new(0.1, 1.0, 0.2), DVec3::new(f64::from(i).sin(), 1.0, 0.3))).collect();
+        let (mut a, mut b) = ([Hit::MISS; 100], [Hit::MISS; 100]);
+        refitted.intersect(&rays, &mut a);
+        moved.intersect(&rays, &mut b);
+        assert_eq!(a, b);
+        assert_eq!(refitted.region(), moved.region());
+        assert_eq!(still.growth(), 1.0);
+        let receiver = LightSampleContext { position: rays[0].origin, normal: DVec3::Y, waves: None };
+        let light = |s: &Scene| s.lights().sample(s.geometry(), &receiver, 0.5, [0.5; 2]).unwrap().direction;
+        assert_eq!(light(&refitted), light(&moved));
+        assert_ne!(light(&refitted), light(&still));
+        // Another number of faces is another scene.
+        let fewer = SceneDescription { shapes: vec![Shape::default()], ..Default::default() };
+        assert!(still.refitted(fewer, Work::UNWATCHED).unwrap().is_none());
+    }
+}

@@ -1,0 +1,186 @@
+//! A scene as it is described, before it is compiled.
+
+use super::geometry::Watched;
+use super::textures::Needs;
+use super::{DiffuseMaterial, Emission, Geometry, Light, Material, Prototype, Surface};
+use raywright_accel::{Accelerator, Primitives};
+use raywright_base::work::{Stopped, Work};
+use std::fmt;
+use std::sync::Arc;
+
+/// One surface, what it is made of, and how it shines.
+#[derive(Clone, Debug)]
+pub struct Shape {
+    /// What rays hit.
+    pub surface: Surface,
+    /// What it is made of.
+    pub material: Arc<dyn Material>,
+    /// How it shines.
+    pub emission: Emission,
+}
+
+impl Default for Shape {
+    /// Nothing, of half grey.
+    fn default() -> Self {
+        let material = Arc::new(DiffuseMaterial::default());
+        Self { surface: Surface::default(), material, emission: Emission::default() }
+    }
+}
+
+impl Shape {
+    /// What must be known of a point of it to shade it.
+    pub fn needs(&self) -> Needs {
+        // What is dark is not asked how it shines.
+        let emission = if self.emission.is_dark() { Needs::NONE } else { self.emission.needs() };
+        self.material.needs() | emission
+    }
+}
+
+/// All that is in a scene.
+#[derive(Clone, Debug, Default)]
+pub struct SceneDescription {
+    /// Surfaces; the index of one is its shape number.
+    pub shapes: Vec<Shape>,
+    /// Lights that are no surfaces.
+    pub lights: Vec<Arc<dyn Light>>,
+}
+
+/// Why there can be no such scene.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum DescriptionError {
+    /// What is wrong with the material of this shape.
+    Material(usize, String),
+    /// This shape emits less than nothing, or NaN, or infinitely much.
+    Emission(usize),
+    /// What is wrong with this light that is no surface.
+    Light(usize, String),
+    /// A prototype has so many primitives, all copies in it counted.
+    TooMany(u64),
+    /// None: nobody wanted it any more before it was built.
+    Stopped,
+}
+
+impl fmt::Display for DescriptionError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Material(i, why) => write!(f, "material of shape {i}: {why}"),
+            Self::Emission(i) => write!(f, "emission of shape {i} must be finite and not negative"),
+            Self::Light(i, why) => write!(f, "light {i}: {why}"),
+            Self::TooMany(n) => write!(
+                f,
+                "an instance holds {n} primitives, all copies in it counted; fewer than 2^31 can be told apart"
+            ),
+            Self::Stopped => write!(f, "building was stopped"),
+        }
+    }
+}
+
+impl std::error::Error for DescriptionError {}
+
+impl SceneDescription {
+    /// Whether there can be such a scene.
+    pub fn validate(&self) -> Result<(), DescriptionError> {
+        for (i, shape) in self.shapes.iter().enumerate() {
+            shape.material.validate().map_err(|why| DescriptionError::Material(i, why))?;
+            if shape.material.is_passed() && !shape.emission.is_dark() {
+                let why = "it is the end of a medium and no surface, and cannot shine; a medium may, by its emission";
+                return Err(DescriptionError::Material(i, why.into()));
+            }
+            if !shape.emission.is_physical() {
+                return Err(DescriptionError::Emission(i));
+            }
+        }
+        for (i, light) in self.lights.iter().enumerate() {
+            light.validate().map_err(|why| DescriptionError::Light(i, why))?;
+        }
+        Ok(())
+    }
+
+    /// Its surfaces joined, without what nobody asks of them.
+    ///
+    /// # Panics
+    /// If a mesh is no mesh; see [`Geometry::new`].
+    pub(super) fn joined(self) -> Result<Parts, DescriptionError> {
+        self.validate()?;
+        let (mut surfaces, mut materials, mut emission) = (Vec::new(), Vec::new(), Vec::new());
+        for shape in self.shapes {
+            let needs = shape.needs();
+            surfaces.push(shape.surface.with_only(needs));
+            materials.push(shape.material);
+            emission.push(shape.emission);
+        }
+        Ok(Parts { geometry: Geometry::new(surfaces), materials, emission, lights: self.lights })
+    }
+}
+
+/// What a description is made into, before it has an accelerator.
+pub(super) struct Parts {
+    pub geometry: Geometry,
+    /// What each shape is made of.
+    pub materials: Vec<Arc<dyn Material>>,
+    /// How each shape shines.
+    pub emission: Vec<Emission>,
+    /// Lights that are no surfaces.
+    pub lights: Vec<Arc<dyn Light>>,
+}
+
+impl Prototype {
+    /// Compiles shapes, with an accelerator made for their geometry.
+    ///
+    /// # Errors
+    /// If a shape's material is impossible, or there are 2³¹ primitives or more, flattened: arrays count them as int32.
+    pub fn new(
+        shapes: Vec<Shape>,
+        accelerator: impl FnOnce(&dyn Primitives) -> Box<dyn Accelerator>,
+    ) -> Result<Self, DescriptionError> {
+        Self::watched(shapes, accelerator, Work::UNWATCHED)
+    }
+
+    /// The same, as work that may be stopped.
+    ///
+    /// # Errors
+    /// If it was stopped, too.
+    pub fn watched(
+        shapes: Vec<Shape>,
+        accelerator: impl FnOnce(&dyn Primitives) -> Box<dyn Accelerator>,
+        work: Work,
+    ) -> Result<Self, DescriptionError> {
+        let parts = SceneDescription { shapes, ..SceneDescription::default() }.joined()?;
+        let accelerator = |geometry: &Geometry| accelerator(&Watched { geometry, work });
+        let prototype = Self::of(parts.geometry, parts.materials, parts.emission, accelerator);
+        work.goes_on().map_err(|Stopped| DescriptionError::Stopped)?;
+        prototype.map_err(DescriptionError::TooMany)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{ConstantEnvironment, PointLight};
+    use raywright_base::math::DVec3;
+    use raywright_optics::Rgb;
+
+    #[test]
+    fn says_what_cannot_be() {
+        let shape = |reflectance: f64, emission: f64| Shape {
+            material: Arc::new(DiffuseMaterial { reflectance: reflectance.into() }),
+            emission: Rgb::splat(emission).into(),
+            ..Shape::default()
+        };
+        let shapes = |last| SceneDescription { shapes: vec![shape(1.0, 5.0), last], ..Default::default() };
+        assert_eq!(shapes(shape(0.0, 0.0)).validate(), Ok(()));
+        for bad in [-0.1, 1.000_001, f64::NAN] {
+            assert!(matches!(shapes(shape(bad, 0.0)).validate(), Err(DescriptionError::Material(1, _))));
+        }
+        for bad in [-0.1, f64::INFINITY, f64::NAN] {
+            assert_eq!(shapes(shape(0.5, bad)).validate(), Err(DescriptionError::Emission(1)));
+            let good = || Arc::new(ConstantEnvironment { radiance: Rgb::ONE }) as Arc<dyn Light>;
+            let point = Arc::new(PointLight { position: DVec3::ZERO, intensity: Rgb::splat(bad) });
+            let points = SceneDescription { lights: vec![good(), point], ..Default::default() };
+            assert!(matches!(points.validate(), Err(DescriptionError::Light(1, _))));
+            let sky = Arc::new(ConstantEnvironment { radiance: Rgb::splat(bad) });
+            let sky = SceneDescription { lights: vec![sky], ..Default::default() };
+            assert!(matches!(sky.validate(), Err(DescriptionError::Light(0, _))));
+        }
+    }
+}

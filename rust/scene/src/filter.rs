@@ -1,0 +1,166 @@
+//! What of a scene counts for rays: some of its shapes, or what faces the ray.
+
+use super::{Geometry, Scene};
+use raywright_accel::{Crossings, Primitives};
+use raywright_base::math::robust::{UNIT, greater, normalising_scale};
+use raywright_base::math::{DVec3, Hit, Ray, exact_edges};
+use raywright_shapes::Candidate;
+
+/// What counts for rays: all goes as it would if all else were not there.
+#[derive(Clone, Debug, Default)]
+pub struct Filter {
+    /// Whether each shape counts; all do without it. One that is not told of does not.
+    pub shapes: Option<Vec<bool>>,
+    /// Whether a surface counts only where its geometric normal is against the ray.
+    pub is_front_only: bool,
+}
+
+impl Filter {
+    /// The closest hit of each ray or, if `any` will do, one of them.
+    pub fn intersect(&self, scene: &Scene, rays: &[Ray], any: bool, hits: &mut [Hit]) {
+        let counts =
+            |i: usize, primitive: u32, met: &Candidate| self.counts(scene.geometry(), &rays[i], primitive, met);
+        scene.accelerator().kept(rays, &counts, any, hits);
+    }
+
+    /// Every hit of each ray.
+    pub fn crossings(&self, scene: &Scene, rays: &[Ray]) -> Crossings {
+        let counts =
+            |i: usize, primitive: u32, met: &Candidate| self.counts(scene.geometry(), &rays[i], primitive, met);
+        scene.accelerator().crossings_kept(rays, &counts)
+    }
+
+    fn counts(&self, geometry: &Geometry, ray: &Ray, primitive: u32, met: &Candidate) -> bool {
+        if let Some(shapes) = &self.shapes
+            && !shapes.get(geometry.locate(primitive).0 as usize).is_some_and(|&counts| counts)
+        {
+            return false;
+        }
+        !self.is_front_only || is_front(geometry, ray, primitive, met)
+    }
+}
+
+/// Whether a ray comes to the side to which the geometric normal points. Of triangles that is decided without error;
+/// of curved shapes and copies by the normal as f64 has it.
+fn is_front(geometry: &Geometry, ray: &Ray, primitive: u32, met: &Candidate) -> bool {
+    if geometry.shape(primitive).is_none() && geometry.instance(primitive).is_none() {
+        return is_front_of(geometry.corners(primitive), ray);
+    }
+    let (scale, direction) = scaled(ray);
+    let hit = Hit { t: met.t * scale, uv: met.uv, primitive, inner: met.inner };
+    geometry.surface(ray, &hit).normal.dot(direction) < 0.0
+}
+
+/// The power of two that brings the direction's largest coordinate to between 1 and 2, and the direction there.
+fn scaled(ray: &Ray) -> (f64, DVec3) {
+    let size = ray.direction.abs();
+    let (scale, _) = normalising_scale(greater(greater(size.x, size.y), size.z));
+    (scale, ray.direction * scale)
+}
+
+/// The same of a triangle that the ray meets, by the sign of `d · ((b − a) × (c − a))`.
+fn is_front_of([a, b, c]: [DVec3; 3], ray: &Ray) -> bool {
+    let (d, v, w) = (scaled(ray).1, b - a, c - a);
+    let terms = [(0, 1, 2), (1, 2, 0), (2, 0, 1)].map(|(i, j, k)| [d[i] * v[j] * w[k], -(d[i] * v[k] * w[j])]);
+    let (mut volume, mut size) = (0.0, 0.0);
+    for term in terms.as_flattened() {
+        volume += term;
+        size += term.abs();
+    }
+    // Each term errs by four roundings, and each of five sums by one; what underflows on the way is far less where
+    // nothing is large.
+    let largest = v.abs().max(w.abs()).max_element();
+    if largest < 1e50 && size > 1e-250 && volume.abs() > 16.0 * UNIT * size {
+        return volume < 0.0;
+    }
+    // The edges' volumes add up to it, and of a triangle that is met all have one sign or are zero.
+    exact_edges(ray.origin, d, [a, b, c]).iter().any(|&volume| volume < 0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixtures::shape;
+    use crate::{Mesh, SceneDescription};
+    use raywright_accel::bvh::Options;
+    use raywright_accel::trees;
+    use raywright_base::sampling::{Sampler, warp};
+    use raywright_base::simd::Level;
+
+    /// Triangles as flat as a needle's shadow, large and small, far from the origin and near it.
+    fn corners(seed: u32) -> [DVec3; 3] {
+        let (mut sampler, mut dimension) = (Sampler::new(5, 0, seed), 0);
+        let mut next = || {
+            dimension += 1;
+            warp::uniform_sphere(sampler.two(dimension))
+        };
+        let middle = next() * [0.0, 1.0, 1e6][seed as usize % 3];
+        [0; 3].map(|_| middle + next() * [1e-6, 1.0, 1e3][(seed / 3) as usize % 3])
+    }
+
+    #[test]
+    fn a_side_is_what_the_exact_volumes_say() {
+        let mut seen = [0; 2];
+        for seed in 0..3000 {
+            let corners = corners(seed);
+            let [a, b, c] = corners;
+            // In the plane of the triangle but for rounding: where f64 alone cannot tell the side.
+            let along = if seed % 2 == 0 { b - a } else { 0.3 * (b - a) + 0.9 * (c - a) };
+            let way = along + (b - a).cross(c - a) * [0.0, 1e-18, -1e-14, -1.0, 1.0][seed as usize % 5];
+            let ray = Ray::new((a + b + c) / 3.0 - way, way);
+            let exact = exact_edges(ray.origin, way, corners);
+            if exact.iter().all(|&v| v >= 0.0) != exact.iter().all(|&v| v <= 0.0) {
+                let front = is_front_of(corners, &ray);
+                assert_eq!(front, exact.iter().all(|&v| v <= 0.0), "triangle {seed}");
+                // The same face the other way round is seen from the other side.
+                assert_ne!(front, is_front_of([a, c, b], &ray), "triangle {seed}");
+                seen[usize::from(front)] += 1;
+            }
+        }
+        assert!(seen.iter().all(|&count| count > 200), "{seen:?}");
+    }
+
+    #[test]
+    fn what_does_not_count_is_as_if_it_were_not_there() {
+        let mesh = |from: u32| Mesh {
+            vertices: (from..from + 60)
+                .flat_map(|i| corners(9 * i + 4))
+                .map(|v| v.as_vec3())
+                .collect::<Vec<_>>()
+                .into(),
+            faces: (0..60).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect(),
+            normals: None,
+            ..Mesh::default()
+        };
+        let scene = |from: &[u32]| {
+            let shapes = from.iter().map(|&from| shape(mesh(from), [0.5; 3], 0.0)).collect();
+            Scene::new(SceneDescription { shapes, ..Default::default() }, |geometry| {
+                trees::over(geometry, &Options::default(), Level::current().unwrap())
+            })
+            .unwrap()
+        };
+        let (all, last) = (scene(&[0, 100, 200]), scene(&[200]));
+        let filter = Filter { shapes: Some(vec![false, false, true]), is_front_only: false };
+        let mut sampler = Sampler::new(6, 0, 0);
+        let rays: Vec<_> = (0..2000)
+            .map(|i| {
+                let origin = warp::uniform_sphere(sampler.two(2 * i)) * 3.0;
+                Ray::new(origin, warp::uniform_sphere(sampler.two(2 * i + 1)) - origin)
+            })
+            .collect();
+        let (mut hits, mut wanted) = (vec![Hit::MISS; rays.len()], vec![Hit::MISS; rays.len()]);
+        filter.intersect(&all, &rays, false, &mut hits);
+        last.intersect(&rays, &mut wanted);
+        let same = |hit: &Hit, wanted: &Hit| {
+            hit.is_hit() == wanted.is_hit()
+                && (!hit.is_hit() || (hit.primitive == wanted.primitive + 120 && hit.t == wanted.t))
+        };
+        assert!(hits.iter().zip(&wanted).all(|(hit, wanted)| same(hit, wanted)));
+        assert!(wanted.iter().filter(|hit| hit.is_hit()).count() > 200);
+        let mut any = vec![Hit::MISS; rays.len()];
+        filter.intersect(&all, &rays, true, &mut any);
+        assert!(any.iter().zip(&wanted).all(|(hit, wanted)| hit.is_hit() == wanted.is_hit()));
+        let crossings = filter.crossings(&all, &rays);
+        assert_eq!(crossings.splits, last.crossings(&rays).splits);
+    }
+}

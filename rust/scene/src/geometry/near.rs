@@ -1,0 +1,133 @@
+//! The nearest point of what stands in a geometry: of shapes, of instances, and of all that is in those.
+//!
+//! A tree of boxes is gone through, what is nearer first. In an instance all is measured where it stands, corners and
+//! boxes mapped on the way: a map that scales some lengths more than others changes what is nearest, so that no answer
+//! in the prototype's own space would do.
+
+use super::Geometry;
+use raywright_accel::{BoxTree, Nearest, Primitives};
+use raywright_base::math::{Affine, DVec3, Hit};
+use raywright_shapes::gap_under;
+use raywright_shapes::triangle::{length, nearest_point, point_of};
+
+/// What is asked for.
+#[derive(Clone, Copy)]
+struct Quest {
+    place: DVec3,
+    /// What is farther does not count.
+    most: f64,
+    found: Nearest,
+}
+
+impl Quest {
+    /// How far it is still to be looked.
+    fn left(&self) -> f64 {
+        self.found.distance.min(self.most)
+    }
+
+    /// Takes what is nearer than what was found, or as near and of a lower number.
+    fn offer(&mut self, other: Nearest) {
+        let key = |nearest: &Nearest| (nearest.distance, nearest.primitive, nearest.inner);
+        if other.distance <= self.most && other.distance.is_finite() && key(&other) < key(&self.found) {
+            self.found = other;
+        }
+    }
+}
+
+impl Geometry {
+    /// Puts the nearest points of shapes that are no meshes, and of instances, in the place of what was found on meshes
+    /// and is farther. What moves is where it is as the shutter opens.
+    pub(crate) fn nearest_of_others(&self, points: &[DVec3], most: &[f64], found: &mut [Nearest]) {
+        let Some(tree) = self.tree_of_others() else { return };
+        for (i, (&place, found)) in points.iter().zip(found).enumerate() {
+            // One for all, or one a point.
+            let most = most[if most.len() == 1 { 0 } else { i }];
+            if place.is_finite() && most >= 0.0 {
+                let mut quest = Quest { place, most, found: *found };
+                self.look(tree, None, &mut quest);
+                *found = quest.found;
+            }
+        }
+    }
+
+    fn tree_of_others(&self) -> Option<&BoxTree> {
+        let others = self.others.as_ref()?;
+        let boxed = |number: u32| self.bounds(number).map(|bounds| (number, bounds));
+        Some(self.near_others.get_or_init(|| BoxTree::new(others.all().filter_map(boxed))))
+    }
+
+    fn tree_of_all(&self) -> &BoxTree {
+        let boxed = |number: u32| self.bounds(number).map(|bounds| (number, bounds));
+        self.near_all.get_or_init(|| BoxTree::new((0..self.count() as u32).filter_map(boxed)))
+    }
+
+    /// Looks through a tree of what stands here, under a map.
+    fn look(&self, tree: &BoxTree, map: Option<&Affine>, quest: &mut Quest) {
+        let place = quest.place;
+        let gap = |bounds: &_| gap_under(map, bounds, place);
+        tree.nearest(quest.left(), gap, |primitive, _| {
+            if let Some(found) = self.nearest_on(primitive, map, quest) {
+                quest.offer(found);
+            }
+            quest.left()
+        });
+    }
+
+    /// The nearest point of a primitive under a map; none where there is none, or none within what is left.
+    fn nearest_on(&self, primitive: u32, map: Option<&Affine>, quest: &Quest) -> Option<Nearest> {
+        let place = quest.place;
+        if let Some((instances, number)) = self.instance(primitive) {
+            let pose = instances.pose(number, 0.0)?.map()?;
+            let map = match map {
+                Some(map) => map.compose(&pose),
+                None => pose,
+            };
+            let prototype = instances.prototype();
+            let (inside, most) = (prototype.geometry(), quest.left());
+            let mut within = Quest { place, most, found: Nearest::MISS };
+            inside.look(inside.tree_of_all(), Some(&map), &mut within);
+            let found = within.found;
+            let (own, inner) = (found.primitive, found.inner);
+            return found.is_hit().then(|| {
+                let inner = prototype.flatten(&Hit { primitive: own, inner, ..Hit::MISS });
+                Nearest { primitive, inner, ..found }
+            });
+        }
+        if let Some(shape) = self.shape(primitive) {
+            let closest = match map {
+                Some(map) => shape.closest_under(map, &map.inverse().ok()?, place)?,
+                None => shape.closest(place)?,
+            };
+            let (position, uv) = (closest.position, closest.uv);
+            return Some(Nearest { distance: length(place - position), position, uv, primitive, inner: 0 });
+        }
+        let corners = self.corners(primitive);
+        let corners = map.map_or(corners, |map| corners.map(|corner| map.point(corner)));
+        let on = nearest_point(corners, place);
+        Some(Nearest { distance: on.distance, position: point_of(corners, on.uv), uv: on.uv, primitive, inner: 0 })
+    }
+
+    /// The unit normal of a primitive at a point of it, and a bound on the error of each of the point's coordinates; of
+    /// an instance, those of the primitive of a flattened number in it, as it stands when the shutter opens.
+    pub fn site(&self, primitive: u32, inner: u32, position: DVec3, uv: [f64; 2]) -> (DVec3, f64) {
+        if let Some((instances, number)) = self.instance(primitive) {
+            let none = (DVec3::NAN, f64::NAN);
+            let Some(map) = instances.pose(number, 0.0).and_then(|pose| pose.map()) else { return none };
+            let Ok(inverse) = map.inverse() else { return none };
+            let prototype = instances.prototype();
+            let (own, within) = prototype.split(inner);
+            let (normal, error) = prototype.geometry().site(own, within, inverse.point(position), uv);
+            // The point itself was rounded where it stands.
+            let rounded = 8.0 * f64::EPSILON * position.abs().max_element();
+            return (map.normal(normal).normalize(), map.spread(error) + rounded);
+        }
+        match self.shape(primitive) {
+            Some(shape) => {
+                let point = shape.point(&raywright_base::math::Ray::new(position, DVec3::X), 0.0, uv);
+                // What is nearest is found by a few roundings more than a point of given coordinates.
+                (point.normal, 4.0 * point.error)
+            }
+            None => (self.normal(primitive), self.error(primitive)),
+        }
+    }
+}

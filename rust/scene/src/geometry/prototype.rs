@@ -1,0 +1,245 @@
+//! What is put into a scene many times: shapes in a space of their own, with an accelerator of their own.
+
+use super::Geometry;
+use crate::textures::Needs;
+use crate::{Emission, Material, ShadingPoint, SurfacePoint};
+use rayon::prelude::*;
+use raywright_accel::{Accelerator, Primitives, Side};
+use raywright_base::math::robust::normalising_scale;
+use raywright_base::math::{DVec3, Hit, Ray, Region};
+use raywright_shapes::Bounds;
+use std::fmt;
+use std::sync::Arc;
+
+/// Shapes that are put elsewhere together, compiled once.
+///
+/// Their primitives are numbered through, *flattened*: shape after shape; a mesh has its faces, a shape that is no mesh
+/// one, and instances of a prototype for every instance, from the first to the last, all primitives of that prototype
+/// as it numbers them.
+pub struct Prototype {
+    geometry: Geometry,
+    accelerator: Box<dyn Accelerator>,
+    materials: Vec<Arc<dyn Material>>,
+    emission: Vec<Emission>,
+    /// The flattened number of each shape's first primitive, and how many there are.
+    first: Vec<u64>,
+    has_instances: bool,
+    moves: bool,
+    region: Region,
+    bounds: Option<Bounds>,
+}
+
+impl fmt::Debug for Prototype {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Prototype({} shapes, {} primitives)", self.geometry.shapes(), self.count())
+    }
+}
+
+impl Prototype {
+    /// Of surfaces, what each is made of and how it shines, with an accelerator made for them.
+    ///
+    /// # Errors
+    /// If there are 2³¹ primitives or more, flattened: how many.
+    pub(crate) fn of(
+        geometry: Geometry,
+        materials: Vec<Arc<dyn Material>>,
+        emission: Vec<Emission>,
+        accelerator: impl FnOnce(&Geometry) -> Box<dyn Accelerator>,
+    ) -> Result<Self, u64> {
+        let mut first = vec![0u64];
+        for shape in 0..geometry.shapes() as u32 {
+            let primitives = geometry.primitives_of(shape).len() as u64;
+            let each = geometry.instances_of(shape).map_or(1, |instances| u64::from(instances.prototype().count()));
+            first.push(first[shape as usize] + primitives * each);
+        }
+        let count = first[first.len() - 1];
+        if count >= 1 << 31 {
+            return Err(count);
+        }
+        let (has_instances, moves) = (geometry.has_instances(), geometry.moves());
+        let region = geometry.region();
+        let is_endless = |p: u32| geometry.bounds(p).is_some_and(|b| !b.is_finite());
+        let bounds = if geometry.objects().is_some() && (0..geometry.count() as u32).into_par_iter().any(is_endless) {
+            Some(Bounds { min: DVec3::NEG_INFINITY, max: DVec3::INFINITY })
+        } else {
+            (!region.is_empty()).then_some(Bounds { min: region.min, max: region.max })
+        };
+        let accelerator = accelerator(&geometry);
+        Ok(Self { geometry, accelerator, materials, emission, first, has_instances, moves, region, bounds })
+    }
+
+    /// How many primitives there are, flattened.
+    pub fn count(&self) -> u32 {
+        self.first[self.first.len() - 1] as u32
+    }
+
+    /// The box around all, at any time; none if nothing can be hit.
+    pub fn bounds(&self) -> Option<Bounds> {
+        self.bounds
+    }
+
+    /// Whether anything in it moves.
+    pub fn moves(&self) -> bool {
+        self.moves
+    }
+
+    /// Its surfaces.
+    pub fn geometry(&self) -> &Geometry {
+        &self.geometry
+    }
+
+    /// What finds its hits.
+    pub fn accelerator(&self) -> &dyn Accelerator {
+        self.accelerator.as_ref()
+    }
+
+    /// The flattened number of what was hit.
+    #[inline]
+    pub fn flatten(&self, hit: &Hit) -> u32 {
+        if !self.has_instances {
+            return hit.primitive;
+        }
+        let (shape, number) = self.geometry.locate(hit.primitive);
+        let within = match self.geometry.instances_of(shape) {
+            Some(instances) => number * instances.prototype().count() + hit.inner,
+            None => number,
+        };
+        self.first[shape as usize] as u32 + within
+    }
+
+    /// The primitive of a flattened number, and which in it.
+    #[inline]
+    pub fn split(&self, flat: u32) -> (u32, u32) {
+        if !self.has_instances {
+            return (flat, 0);
+        }
+        let shape = self.first.partition_point(|&f| f <= u64::from(flat)) - 1;
+        let rest = flat - self.first[shape] as u32;
+        let (number, inner) = match self.geometry.instances_of(shape as u32) {
+            Some(instances) => (rest / instances.prototype().count(), rest % instances.prototype().count()),
+            None => (rest, 0),
+        };
+        (self.geometry.primitives_of(shape as u32).start + number, inner)
+    }
+
+    /// Of all primitives that belong to the same shape, copy by copy, as that of a flattened number, the first.
+    pub fn first_alike(&self, flat: u32) -> u32 {
+        let (primitive, inner) = self.split(flat);
+        let (primitive, inner) = self.geometry.first_alike(primitive, inner);
+        self.flatten(&Hit { primitive, inner, ..Hit::MISS })
+    }
+
+    /// Where a ray in its space meets the primitive of a flattened number, `inner`, and how the surface lies there.
+    pub fn surface(&self, ray: &Ray, hit: &Hit) -> SurfacePoint {
+        let (primitive, inner) = self.split(hit.inner);
+        self.geometry.surface(ray, &Hit { primitive, inner, ..*hit })
+    }
+
+    /// What is needed of the point where a ray in its space hits the primitive of a flattened number, `inner`.
+    pub(super) fn shading_point(&self, ray: &Ray, hit: &Hit, needs: Needs) -> ShadingPoint {
+        let (primitive, inner) = self.split(hit.inner);
+        let hit = Hit { primitive, inner, ..*hit };
+        self.geometry.shading_point(ray, &hit, self.geometry.surface(ray, &hit), needs)
+    }
+
+    /// What the primitive of a flattened number is made of, and how it shines.
+    pub fn appearance(&self, flat: u32) -> (&dyn Material, &Emission) {
+        let (primitive, inner) = self.split(flat);
+        let (shape, _) = self.geometry.locate(primitive);
+        match self.geometry.instances_of(shape) {
+            Some(instances) => instances.prototype().appearance(inner),
+            None => (&*self.materials[shape as usize], &self.emission[shape as usize]),
+        }
+    }
+
+    /// What each of its shapes is made of, and how it shines.
+    pub fn appearances(&self) -> impl Iterator<Item = (&dyn Material, &Emission)> {
+        self.materials.iter().map(|material| &**material).zip(&self.emission)
+    }
+
+    /// On which side of its surfaces the origin of a ray in its space lies, by the crossings from there on.
+    pub fn side(&self, ray: &Ray) -> Side {
+        let size = ray.direction.abs().max_element();
+        if !size.is_normal() {
+            return Side::Outside;
+        }
+        let (scale, _) = normalising_scale(size);
+        // As `Scene::contains` doubts it.
+        let doubt = self.region.radius / (1u64 << 24) as f64;
+        let ray = Ray { direction: ray.direction * scale, t_min: -doubt, ..*ray };
+        let mut sides = [Side::Outside];
+        self.accelerator.sides(&self.geometry, &[ray], doubt, &mut sides);
+        sides[0]
+    }
+
+    /// Memory held, without prototypes in it that were `seen`; it and they count as seen from then on.
+    pub fn bytes(&self, seen: &mut Vec<*const Self>) -> usize {
+        let me = std::ptr::from_ref(self);
+        if seen.contains(&me) {
+            return 0;
+        }
+        seen.push(me);
+        let tables = size_of_val(self.materials.as_slice())
+            + size_of_val(self.emission.as_slice())
+            + size_of_val(self.first.as_slice());
+        self.accelerator.info().bytes + self.geometry.bytes_but(seen) + tables
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixtures::{rectangle, shape};
+    use crate::{DescriptionError, Instances, Matrix, Shape};
+    use raywright_accel::BruteForce;
+    use raywright_base::simd::Level;
+    use raywright_optics::Rgb;
+
+    const HERE: Matrix = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
+
+    fn prototype(shapes: Vec<Shape>) -> Result<Arc<Prototype>, DescriptionError> {
+        Prototype::new(shapes, |geometry| BruteForce::over(geometry, Level::Scalar)).map(Arc::new)
+    }
+
+    fn sheet(emission: f64) -> Shape {
+        shape(rectangle([0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]), [0.25; 3], emission)
+    }
+
+    fn instances(prototype: &Arc<Prototype>, count: usize) -> Shape {
+        Shape { surface: Instances::new(prototype.clone(), &vec![HERE; count]).unwrap().into(), ..Shape::default() }
+    }
+
+    #[test]
+    fn numbers_are_flattened_and_split() {
+        let pair = prototype(vec![sheet(1.0), sheet(2.0)]).unwrap();
+        let all =
+            prototype(vec![sheet(3.0), instances(&pair, 3), sheet(4.0), instances(&pair, 0), sheet(5.0)]).unwrap();
+        assert_eq!((pair.count(), all.count()), (4, 2 + 12 + 2 + 2));
+        // Shape, number in the shape, and which in that, of each flattened number in turn.
+        let mut flat = 0;
+        for (shape, each, inner, emission) in
+            [(0, 2, 1, [3.0; 2]), (1, 3, 4, [1.0, 2.0]), (2, 2, 1, [4.0; 2]), (4, 2, 1, [5.0; 2])]
+        {
+            for number in 0..each {
+                for inner in 0..inner {
+                    let primitive = all.geometry().primitives_of(shape).start + number;
+                    let hit = Hit { primitive, inner, ..Hit::MISS };
+                    assert_eq!((all.flatten(&hit), all.split(flat)), (flat, (primitive, inner)));
+                    assert_eq!(*all.appearance(flat).1, Rgb::splat(emission[inner as usize / 2]).into());
+                    flat += 1;
+                }
+            }
+        }
+        assert_eq!(flat, all.count());
+    }
+
+    #[test]
+    fn what_cannot_be_counted_or_be_is_refused() {
+        let mut shape = sheet(0.0);
+        for _ in 0..6 {
+            shape = instances(&prototype(vec![shape]).unwrap(), 32);
+        }
+        assert_eq!(prototype(vec![shape]).unwrap_err(), DescriptionError::TooMany(1 << 31));
+        assert_eq!(prototype(vec![sheet(0.0), sheet(f64::NAN)]).unwrap_err(), DescriptionError::Emission(1));
+    }
+}

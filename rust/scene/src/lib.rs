@@ -1,0 +1,55 @@
+//! Floor 3: what a scene is made of, compiled for rays.
+
+pub mod cameras;
+mod compiled;
+mod coverage;
+mod description;
+mod emission;
+mod encounter;
+mod filter;
+mod first_hits;
+#[cfg(any(test, feature = "testing"))]
+pub mod fixtures;
+mod gaze;
+mod geometry;
+pub mod lights;
+pub mod materials;
+pub mod media;
+mod patches;
+mod plan;
+mod ray_origin;
+mod shading;
+mod surface_interaction;
+mod surface_lanes;
+mod surface_point;
+pub mod textures;
+mod view;
+
+pub use cameras::{Camera, CameraConnection, CameraError, CameraRay, CameraRayLanes, Perspective};
+pub use compiled::Scene;
+pub use coverage::{Counted, Coverage, Covering};
+pub use description::{DescriptionError, SceneDescription, Shape};
+pub use emission::{Emission, Sides};
+pub use encounter::Encounter;
+pub use filter::Filter;
+pub use first_hits::FirstHits;
+pub use gaze::Gaze;
+pub use geometry::{
+    BadTransform, Geometry, Instances, Matrix, Mesh, Objects, Precision, Prototype, Rounding, Surface, Vertices,
+    check_transforms, rounded,
+};
+pub use lights::SeenTriangle;
+pub use lights::{
+    Aim, ConstantEnvironment, DirectionalLight, EmissionDensity, EmissionNumbers, EmissionPdf, EmissionSample,
+    Emitters, EnvironmentMap, Light, LightBounds, LightContextLanes, LightLanes, LightSample, LightSampleContext,
+    Lights, Picture, Place, PointEmission, PointLight, Profile, Projector, Reach, Source, SpotLight, SunSky, Waved,
+};
+pub use materials::{DiffuseMaterial, Material};
+pub use patches::{Cell, Patches};
+pub use plan::{Plan, PlanRow, SceneNeeds, ShadingVariant};
+pub use ray_origin::RayOrigin;
+pub use shading::{Footprint, ShadingPoint};
+pub use surface_interaction::fading;
+pub use surface_interaction::{SurfaceInteraction, SurfaceInteractionLanes};
+pub use surface_lanes::SurfaceLanes;
+pub use surface_point::SurfacePoint;

@@ -1,0 +1,251 @@
+//! Light from surfaces in instances of prototypes.
+
+use super::choice::Strength;
+use super::light::strength;
+use super::triangle::SeenTriangle;
+use super::{Emission, LightSample, LightSampleContext, surface};
+use crate::{Geometry, Instances, Prototype, SurfacePoint};
+use raywright_accel::Primitives;
+use raywright_base::math::{DVec3, Hit, Ray};
+use raywright_base::sampling::warp::uniform_triangle;
+use raywright_shapes::Bounds;
+
+/// The primitives that shine in instances of prototypes, each of every instance a light of its own: those of instances
+/// that stand still, and of what stands in a prototype itself, not in instances within it. Where there would be more
+/// than [`Copied::MOST`], the shapes that come last are left out. What is left out is found by rays that meet it by
+/// chance.
+#[derive(Debug, Default)]
+pub(super) struct Copied {
+    /// The shapes that are instances whose lights are here, in order.
+    shapes: Vec<Glow>,
+    lights: Vec<Light>,
+}
+
+/// A shape that is instances of a prototype in which something shines.
+#[derive(Debug)]
+struct Glow {
+    shape: u32,
+    /// The first light.
+    first: u32,
+    /// The primitives of the prototype that shine, flattened, in order.
+    flat: Vec<u32>,
+}
+
+/// One primitive of one instance.
+#[derive(Debug)]
+struct Light {
+    /// The instance.
+    primitive: u32,
+    /// Flattened.
+    inner: u32,
+    /// Of a triangle, its corners in the world; NaN of another shape.
+    corners: [DVec3; 3],
+}
+
+impl Copied {
+    /// The most lights in instances, in a scene.
+    pub const MOST: usize = 4096;
+
+    /// Those of a geometry, and how strong each is.
+    pub fn new(geometry: &Geometry) -> (Self, Vec<Strength>) {
+        let (mut all, mut strengths) = (Self::default(), Vec::new());
+        if !geometry.has_instances() {
+            return (all, strengths);
+        }
+        for shape in 0..geometry.shapes() as u32 {
+            let Some(instances) = geometry.instances_of(shape).filter(|instances| instances.stand_still()) else {
+                continue;
+            };
+            let flat: Vec<u32> = instances.prototype().shining().collect();
+            if flat.is_empty() || all.lights.len() + flat.len() * instances.count() > Self::MOST {
+                continue;
+            }
+            let first = all.lights.len() as u32;
+            for primitive in geometry.primitives_of(shape) {
+                for &inner in &flat {
+                    let (light, strength) = Light::new(geometry, instances, primitive, inner);
+                    all.lights.push(light);
+                    strengths.push(strength);
+                }
+            }
+            all.shapes.push(Glow { shape, first, flat });
+        }
+        (all, strengths)
+    }
+
+    /// How strong each is.
+    pub fn strengths(&self, geometry: &Geometry) -> impl Iterator<Item = Strength> {
+        self.lights.iter().map(|light| match geometry.instance(light.primitive) {
+            Some((instances, _)) => Light::new(geometry, instances, light.primitive, light.inner).1,
+            None => Strength::NONE,
+        })
+    }
+
+    /// Whether the lights of a shape are among them.
+    pub fn has(&self, shape: u32) -> bool {
+        self.shapes.binary_search_by_key(&shape, |glow| glow.shape).is_ok()
+    }
+
+    /// Draws a point of one by area, and gives how it shines, the point, a hit there from at distance 1, and the
+    /// density.
+    pub fn place<'a>(
+        &self,
+        light: usize,
+        geometry: &'a Geometry,
+        u: [f64; 2],
+    ) -> Option<(&'a Emission, SurfacePoint, Hit, f64)> {
+        let Light { primitive, inner, .. } = self.lights[light];
+        let (instances, instance) = geometry.instance(primitive)?;
+        let (prototype, pose) = (instances.prototype(), instances.pose(instance, 0.0)?);
+        let (own, _) = prototype.split(inner);
+        let (point, uv, pdf) = match prototype.geometry().shape(own) {
+            Some(shape) => {
+                let drawn = shape.sample(u)?;
+                (prototype.geometry().on_shape(own, &drawn.point.site()), drawn.point.uv, drawn.pdf)
+            }
+            None => {
+                let uv = uniform_triangle(u);
+                (prototype.geometry().on_triangle(own, uv), uv, 1.0 / prototype.geometry().area(own))
+            }
+        };
+        // An area there is so many times as large in the world.
+        let stretch = pose.map()?.normal(point.normal).length();
+        let mut surface = pose.point(&point)?;
+        (surface.shape, surface.inner) = (geometry.locate(primitive).0, Some(inner));
+        Some((prototype.appearance(inner).1, surface, Hit { t: 1.0, uv, primitive, inner }, pdf / stretch))
+    }
+
+    /// Which instance one is in.
+    pub fn primitive(&self, light: usize) -> u32 {
+        self.lights[light].primitive
+    }
+
+    /// How many sides of one shine, and about how large it is: what is no triangle as if its instance stretched it
+    /// alike in each direction.
+    pub fn extent(&self, light: usize, geometry: &Geometry) -> Option<(f64, f64)> {
+        let Light { primitive, inner, corners: [a, b, c] } = &self.lights[light];
+        let (instances, instance) = geometry.instance(*primitive)?;
+        let prototype = instances.prototype();
+        let (own, sides) = (prototype.split(*inner).0, prototype.appearance(*inner).1.sides.count());
+        let Some(shape) = prototype.geometry().shape(own) else {
+            return Some((sides, 0.5 * (*b - *a).cross(*c - *a).length()));
+        };
+        let stretch = instances.pose(instance, 0.0)?.map()?.determinant().abs().cbrt();
+        Some((sides, shape.area() * stretch * stretch))
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.lights.len()
+    }
+
+    /// The light that was hit in an instance, if it is one.
+    #[inline]
+    pub fn find(&self, shape: u32, instance: u32, inner: u32) -> Option<usize> {
+        let glow = &self.shapes[self.shapes.binary_search_by_key(&shape, |glow| glow.shape).ok()?];
+        let within = glow.flat.binary_search(&inner).ok()?;
+        Some(glow.first as usize + instance as usize * glow.flat.len() + within)
+    }
+
+    /// Draws light from one.
+    pub fn sample(
+        &self,
+        light: usize,
+        geometry: &Geometry,
+        receiver: &LightSampleContext,
+        u: [f64; 2],
+    ) -> Option<LightSample> {
+        let Light { primitive, inner, corners } = &self.lights[light];
+        let (instances, instance) = geometry.instance(*primitive)?;
+        let (prototype, pose) = (instances.prototype(), instances.pose(instance, 0.0)?);
+        let (own, _) = prototype.split(*inner);
+        let emission = prototype.appearance(*inner).1;
+        let place = (*primitive, *inner);
+        match prototype.geometry().shape(own) {
+            Some(shape) => {
+                let from = pose.enter(&Ray::new(receiver.position, DVec3::Z)).origin;
+                let (seen, uv) = surface::seen(shape, emission.needs(), from, u)?;
+                let surface = pose.point(&prototype.geometry().on_shape(own, &seen.site))?;
+                let sends = |ray: &Ray, hit: &Hit| emission.sent(geometry, ray, hit, &surface, || receiver.waves);
+                let density = |direction: DVec3, _| seen.pdf * pose.crowding(direction);
+                surface::sample(receiver, &surface, place, uv, density, sends)
+            }
+            None => {
+                let seen = SeenTriangle::new(*corners, receiver.position);
+                let uv = seen.sample(u);
+                let surface = pose.point(&prototype.geometry().on_triangle(own, uv))?;
+                let sends = |ray: &Ray, hit: &Hit| emission.sent(geometry, ray, hit, &surface, || receiver.waves);
+                let density = |direction: DVec3, distance| seen.pdf(distance, direction.dot(surface.normal));
+                surface::sample(receiver, &surface, place, uv, density, sends)
+            }
+        }
+    }
+
+    /// The density with which [`Copied::sample`] draws the direction of a ray that meets a light under the cosine of an
+    /// angle to its normal.
+    pub fn pdf(
+        &self,
+        light: usize,
+        geometry: &Geometry,
+        receiver: &LightSampleContext,
+        (ray, hit): (&Ray, &Hit),
+        cosine: f64,
+    ) -> f64 {
+        let Light { primitive, inner, corners } = &self.lights[light];
+        let Some((instances, instance)) = geometry.instance(*primitive) else { return 0.0 };
+        match instances.prototype().geometry().shape(instances.prototype().split(*inner).0) {
+            Some(shape) => {
+                let Some(pose) = instances.pose(instance, 0.0) else { return 0.0 };
+                let own = pose.enter(ray);
+                let pdf = shape.pdf_of_met(own.origin, own.direction);
+                if pdf > 0.0 { pdf * pose.crowding(ray.direction) } else { 0.0 }
+            }
+            None => SeenTriangle::new(*corners, receiver.position).pdf(hit.t, cosine),
+        }
+    }
+
+    /// The memory held.
+    pub fn bytes(&self) -> usize {
+        size_of_val(self.lights.as_slice())
+            + self.shapes.iter().map(|glow| size_of::<Glow>() + size_of_val(glow.flat.as_slice())).sum::<usize>()
+    }
+}
+
+impl Prototype {
+    /// The primitives that shine, flattened, in order, without those in instances.
+    fn shining(&self) -> impl Iterator<Item = u32> {
+        let own = |shape: &u32| self.geometry().instances_of(*shape).is_none();
+        let flat = |shape: u32| {
+            let primitives = self.geometry().primitives_of(shape);
+            primitives.map(|primitive| self.flatten(&Hit { primitive, ..Hit::MISS }))
+        };
+        (0..self.geometry().shapes() as u32)
+            .filter(own)
+            .flat_map(flat)
+            .filter(|&flat| !self.appearance(flat).1.is_dark())
+    }
+}
+
+impl Light {
+    fn new(geometry: &Geometry, instances: &Instances, primitive: u32, inner: u32) -> (Self, Strength) {
+        let prototype = instances.prototype();
+        let (own, emission) = (prototype.split(inner).0, prototype.appearance(inner).1);
+        let (radiance, sides) = (strength(emission.radiance.mean()), emission.sides);
+        let map = geometry.instance(primitive).and_then(|(instances, instance)| instances.pose(instance, 0.0)?.map());
+        let (corners, strength) = match (map, prototype.geometry().shape(own)) {
+            (None, _) => ([DVec3::NAN; 3], Strength::NONE),
+            (Some(map), Some(shape)) => {
+                let bounds = Bounds::of_support(|d| shape.support(map.transposed(d)) + map.shift.dot(d));
+                let facing = shape.facing().and_then(|normal| map.normal(normal).try_normalize());
+                let area = shape.area_under(&map);
+                let strength = Strength::of_shape(area, [bounds.min, bounds.max], facing, radiance, sides);
+                ([DVec3::NAN; 3], strength)
+            }
+            (Some(map), None) => {
+                let corners = prototype.geometry().corners(own).map(|corner| map.point(corner));
+                (corners, Strength::of_triangle(corners, map.determinant() < 0.0, radiance, sides))
+            }
+        };
+        (Self { primitive, inner, corners }, strength)
+    }
+}

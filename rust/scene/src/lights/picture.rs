@@ -1,0 +1,54 @@
+//! Pictures of light.
+
+use raywright_optics::Rgb;
+
+/// A picture of linear colours, row after row from its top.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Picture {
+    width: usize,
+    texels: Vec<[f32; 3]>,
+}
+
+impl Picture {
+    /// Of so many colours a row.
+    ///
+    /// # Errors
+    /// If there are none, or not a whole number of rows, or one is negative or not finite; in a few words.
+    pub fn new(width: usize, texels: Vec<[f32; 3]>) -> Result<Self, String> {
+        if width == 0 || texels.is_empty() || !texels.len().is_multiple_of(width) {
+            return Err(format!("a picture must have whole rows, and at least one: {} of {width}", texels.len()));
+        }
+        match texels.iter().position(|texel| texel.iter().any(|x| !(x.is_finite() && *x >= 0.0))) {
+            Some(i) => {
+                let (row, column) = (i / width, i % width);
+                Err(format!(
+                    "a picture of light must be finite and not negative, but is {:?} in row {row}, column {column}",
+                    texels[i]
+                ))
+            }
+            None => Ok(Self { width, texels }),
+        }
+    }
+
+    /// How many colours there are in a row.
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
+    /// How many rows there are.
+    pub fn height(&self) -> usize {
+        self.texels.len() / self.width
+    }
+
+    /// One of its colours.
+    #[inline]
+    pub fn at(&self, column: usize, row: usize) -> Rgb {
+        let [red, green, blue] = self.texels[row * self.width + column].map(f64::from);
+        Rgb::new(red, green, blue)
+    }
+
+    /// The memory held.
+    pub fn bytes(&self) -> usize {
+        size_of_val(self.texels.as_slice())
+    }
+}

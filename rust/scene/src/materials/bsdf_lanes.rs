@@ -1,0 +1,337 @@
+//! How sixteen points scatter light.
+
+use super::BsdfMix;
+use super::bsdf_mix::{Chosen, weighed, with_part};
+use raywright_base::math::{DVec3, LANES, VectorLanes};
+use raywright_base::sampling::Pairs;
+use raywright_base::simd::{Level, loops};
+use raywright_optics::{AnyBsdf, AnyBsdfLanes, BsdfColumns, BsdfSampleLanes, Rgb, RgbLanes};
+use std::array::from_fn;
+use std::borrow::Cow;
+
+/// How points scatter light, a lane each; there may be fewer than lanes.
+///
+/// What all of them scatter by stands in columns. Where several are weighed, the first parts stand together, and the
+/// second ones, and so on.
+#[derive(Clone, Debug, Default)]
+pub struct BsdfLanes<'a> {
+    /// Borrowed where it is how all of a surface scatters.
+    each: Vec<Cow<'a, BsdfMix>>,
+    /// As many as any lane has had.
+    parts: Vec<Part>,
+    is_mixed: [bool; LANES],
+}
+
+/// One of what is weighed, a lane each.
+#[derive(Clone, Debug)]
+struct Part {
+    bsdf: AnyBsdfLanes,
+    weight: RgbLanes,
+    /// The probability that it is drawn from.
+    probability: [f64; LANES],
+}
+
+impl Part {
+    /// Of nothing yet.
+    const NONE: Self = Self { bsdf: AnyBsdfLanes::NONE, weight: RgbLanes::ZERO, probability: [0.0; LANES] };
+}
+
+loops! {
+    /// Adds what a part scatters.
+    fn add(
+        weight: &RgbLanes,
+        probability: &[f64; LANES],
+        of_part: &RgbLanes,
+        density: &[f64; LANES],
+        value: &mut RgbLanes,
+        pdf: &mut [f64; LANES],
+    ) {
+        for i in 0..LANES {
+            let part = (weight.get(i), probability[i]);
+            let (sum, drawn) = with_part((value.get(i), pdf[i]), part, (of_part.get(i), density[i]));
+            value.set(i, sum);
+            pdf[i] = drawn;
+        }
+    }
+}
+
+loops! {
+    /// What throughputs are multiplied by, of single directions by what was drawn, of others by what is scattered.
+    fn weigh(
+        single: &[f64; LANES],
+        times: &RgbLanes,
+        value: &RgbLanes,
+        density: &[f64; LANES],
+        weight: &mut RgbLanes,
+        pdf: &mut [f64; LANES],
+    ) {
+        for i in 0..LANES {
+            let of_single = weight.get(i) * times.get(i) / single[i];
+            let is_single = pdf[i] == f64::INFINITY;
+            weight.set(i, Rgb::select(is_single, of_single, value.get(i) / density[i]));
+            pdf[i] = if is_single { pdf[i] } else { density[i] };
+        }
+    }
+}
+
+/// The part of a number.
+#[inline]
+fn part(bsdf: &BsdfMix, number: usize) -> Option<&AnyBsdf> {
+    match bsdf {
+        BsdfMix::One(bsdf) => (number == 0).then_some(bsdf),
+        BsdfMix::Several(parts) => parts.get(number).map(|(_, bsdf)| bsdf),
+    }
+}
+
+impl<'a> BsdfLanes<'a> {
+    /// Forgets all.
+    pub fn clear(&mut self) {
+        self.each.clear();
+    }
+
+    /// Puts one into the next lane.
+    #[inline]
+    pub fn push(&mut self, bsdf: Cow<'a, BsdfMix>) {
+        self.each.push(bsdf);
+    }
+
+    /// That of a lane.
+    #[inline]
+    pub fn get(&self, lane: usize) -> &BsdfMix {
+        &self.each[lane]
+    }
+
+    /// Puts that of the last lane, and a direction in its shading frame that light goes to, into columns: only such
+    /// lanes may ask.
+    #[inline]
+    pub fn prepare(&mut self, wo: DVec3) {
+        let lane = self.each.len() - 1;
+        if self.parts.is_empty() {
+            self.parts.push(Part::NONE);
+        }
+        match &*self.each[lane] {
+            BsdfMix::One(bsdf) => {
+                self.is_mixed[lane] = false;
+                self.parts[0].bsdf.set(lane, bsdf, wo);
+            }
+            BsdfMix::Several(parts) => {
+                self.is_mixed[lane] = true;
+                if self.parts.len() < parts.len() {
+                    self.parts.resize(parts.len(), Part::NONE);
+                }
+                self.parts.iter_mut().for_each(|part| part.probability[lane] = 0.0);
+                for (part, (weight, probability, bsdf)) in self.parts.iter_mut().zip(weighed(parts)) {
+                    part.bsdf.set(lane, bsdf, wo);
+                    part.weight.set(lane, weight);
+                    part.probability[lane] = probability;
+                }
+            }
+        }
+    }
+
+    /// What [`raywright_optics::Bsdf::evaluate`] gives for directions that they were prepared for and others, in shading
+    /// frames, in the lanes that ask; 0 in the others.
+    pub fn evaluate(
+        &self,
+        level: Level,
+        asks: &[bool; LANES],
+        wo: &VectorLanes,
+        wi: &VectorLanes,
+        value: &mut RgbLanes,
+        pdf: &mut [f64; LANES],
+    ) {
+        let [mixed, one] = self.are_mixed(asks);
+        if !mixed.contains(&true) {
+            return self.evaluate_part(level, 0, &one, [wo, wi], value, pdf);
+        }
+        let ([mut sum, mut some], [mut density, mut drawn]) = ([RgbLanes::ZERO; 2], [[0.0; LANES]; 2]);
+        for (number, part) in self.parts.iter().enumerate() {
+            let asks = from_fn(|lane| mixed[lane] && part.probability[lane] > 0.0);
+            self.evaluate_part(level, number, &asks, [wo, wi], &mut some, &mut drawn);
+            add(level, &part.weight, &part.probability, &some, &drawn, &mut sum, &mut density);
+        }
+        if one.contains(&true) {
+            self.evaluate_part(level, 0, &one, [wo, wi], value, pdf);
+        } else {
+            (*value, *pdf) = (RgbLanes::ZERO, [0.0; LANES]);
+        }
+        for lane in (0..LANES).filter(|&lane| mixed[lane]) {
+            value.set(lane, sum.get(lane));
+            pdf[lane] = density[lane];
+        }
+    }
+
+    /// What [`raywright_optics::Bsdf::sample`] gives for directions that they were prepared for, in shading frames, in the
+    /// lanes that ask; nothing in the others.
+    pub fn sample(
+        &self,
+        level: Level,
+        asks: &[bool; LANES],
+        wo: &VectorLanes,
+        (choice, u): (&[f64; LANES], &Pairs),
+        drawn: &mut BsdfSampleLanes,
+    ) {
+        let [mixed, one] = self.are_mixed(asks);
+        if !mixed.contains(&true) {
+            return self.sample_part(level, 0, &one, wo, (choice, u), drawn);
+        }
+        drawn.pdf = [0.0; LANES];
+        let mut some = BsdfSampleLanes::NONE;
+        if one.contains(&true) {
+            self.sample_part(level, 0, &one, wo, (choice, u), &mut some);
+            drawn.take(&one, &some);
+        }
+        let (mut rest, mut times, mut single) = (*choice, RgbLanes::ZERO, [1.0; LANES]);
+        let chosen: [Option<usize>; LANES] = from_fn(|lane| {
+            let BsdfMix::Several(parts) = self.get_if(mixed[lane], lane)? else { return None };
+            let chosen = Chosen::new(parts, choice[lane])?;
+            (rest[lane], single[lane]) = (chosen.rest, chosen.probability());
+            times.set(lane, parts[chosen.part].0);
+            Some(chosen.part)
+        });
+        let mut of_mixed = BsdfSampleLanes::NONE;
+        for number in 0..self.parts.len() {
+            let asks = chosen.map(|part| part == Some(number));
+            if asks.contains(&true) {
+                self.sample_part(level, number, &asks, wo, (&rest, u), &mut some);
+                of_mixed.take(&asks, &some);
+            }
+        }
+        let goes = from_fn(|lane| mixed[lane] && of_mixed.pdf[lane] > 0.0 && of_mixed.pdf[lane] < f64::INFINITY);
+        let (mut value, mut density) = (RgbLanes::ZERO, [0.0; LANES]);
+        if goes.contains(&true) {
+            self.evaluate(level, &goes, wo, &of_mixed.wi, &mut value, &mut density);
+        }
+        weigh(level, &single, &times, &value, &density, &mut of_mixed.weight, &mut of_mixed.pdf);
+        drawn.take(&mixed, &of_mixed);
+    }
+
+    /// Of the lanes that ask, those of several parts, and the others.
+    #[inline]
+    fn are_mixed(&self, asks: &[bool; LANES]) -> [[bool; LANES]; 2] {
+        [true, false].map(|mixed| from_fn(|lane| asks[lane] && self.is_mixed[lane] == mixed))
+    }
+
+    #[inline]
+    fn get_if(&self, asks: bool, lane: usize) -> Option<&BsdfMix> {
+        if asks { self.each.get(lane).map(Cow::as_ref) } else { None }
+    }
+
+    fn evaluate_part(
+        &self,
+        level: Level,
+        number: usize,
+        asks: &[bool; LANES],
+        directions: [&VectorLanes; 2],
+        value: &mut RgbLanes,
+        pdf: &mut [f64; LANES],
+    ) {
+        let each = |lane: usize| self.each.get(lane).and_then(|bsdf| part(bsdf, number));
+        match self.parts.get(number) {
+            Some(part) => part.bsdf.evaluate(level, each, asks, directions, value, pdf),
+            None => (*value, *pdf) = (RgbLanes::ZERO, [0.0; LANES]),
+        }
+    }
+
+    fn sample_part(
+        &self,
+        level: Level,
+        number: usize,
+        asks: &[bool; LANES],
+        wo: &VectorLanes,
+        numbers: (&[f64; LANES], &Pairs),
+        drawn: &mut BsdfSampleLanes,
+    ) {
+        let each = |lane: usize| self.each.get(lane).and_then(|bsdf| part(bsdf, number));
+        match self.parts.get(number) {
+            Some(part) => part.bsdf.sample(level, each, asks, wo, numbers, drawn),
+            None => drawn.pdf = [0.0; LANES],
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use raywright_base::sampling::Sampler;
+    use raywright_base::sampling::warp::uniform_sphere;
+    use raywright_optics::{
+        Bsdf, BsdfSample, Coated, Dielectric, Diffuse, MetallicRough, Mirror, OrenNayar, ThinDielectric,
+    };
+    use std::array::from_fn;
+
+    /// What scatters in a lane: one of some kinds, or two or three of them, of which single directions may be one.
+    fn bsdf(turn: u32, lane: usize) -> BsdfMix {
+        let one = |kind: usize| -> BsdfMix {
+            let colour = [Rgb::new(0.2, 0.4, 0.9), Rgb::ONE, Rgb::new(0.0, 1.0, 0.5)][(kind + lane) % 3];
+            match kind % 7 {
+                0 => Diffuse { reflectance: colour }.into(),
+                1 => Mirror { reflectance: colour }.into(),
+                2 => Dielectric::new(1.5, [0.0, 0.3][lane % 2]).into(),
+                3 => ThinDielectric::new(1.5).into(),
+                4 => Coated::new(colour, 1.5, [0.0, 0.1][lane % 2]).into(),
+                5 => MetallicRough::new(colour, 0.4, 0.5).into(),
+                _ => OrenNayar::new(colour, 0.6).into(),
+            }
+        };
+        let (kind, turn) = (lane % 5, turn as usize);
+        let two = |a: usize, b: usize| BsdfMix::mixed((Rgb::splat(0.25), one(a)), (Rgb::new(0.75, 0.5, 0.1), one(b)));
+        match turn % 4 {
+            0 => one(kind + turn),
+            1 => two(turn, turn / 4),
+            2 if kind < 2 => one(turn),
+            2 => two(kind, turn + lane),
+            _ => BsdfMix::mixed((Rgb::splat(0.5), two(lane, turn)), (Rgb::splat(0.5), one(kind))),
+        }
+    }
+
+    /// Two directions: any, grazing, straight, in the plane, mirrored, opposite, or about the critical angle.
+    fn directions(turn: u32, sampler: &mut Sampler) -> [DVec3; 2] {
+        let [wo, wi] = [1, 3].map(|dimension| uniform_sphere(sampler.two(dimension)));
+        match turn % 8 {
+            0 => [DVec3::new(wo.x, wo.y, 1e-9 * wo.z).normalize(), wi],
+            1 => [DVec3::Z.copysign(wo), wi],
+            2 => [DVec3::X, wi],
+            3 => [wo, DVec3::new(-wo.x, -wo.y, wo.z)],
+            4 => [wo, -wo],
+            5 => [DVec3::new((1.0 / 1.5) * (1.0 + 1e-16 * (wi.x * 4.0).round()), 0.0, -(5f64 / 9.0).sqrt()), wi],
+            _ => [wo, wi],
+        }
+    }
+
+    #[test]
+    fn lanes_answer_as_each_by_itself() {
+        for turn in 0..128 {
+            let mut sampler: [Sampler; LANES] = from_fn(|lane| Sampler::new(8, turn, lane as u32));
+            let (mut all, mut to, mut from, mut u) =
+                (BsdfLanes::default(), VectorLanes::ZERO, VectorLanes::ZERO, [[0.0; LANES]; 2]);
+            // Fewer than lanes.
+            for lane in 0..LANES - 3 {
+                let [wo, wi] = directions(turn + lane as u32, &mut sampler[lane]);
+                to.set(lane, wo);
+                from.set(lane, wi);
+                all.push(Cow::Owned(bsdf(turn, lane)));
+                all.prepare(wo);
+                [u[0][lane], u[1][lane]] = sampler[lane].two(5);
+            }
+            let choice = from_fn(|lane| sampler[lane].one(6));
+            let asks = from_fn(|lane| lane < LANES - 3 && lane as u32 != turn % 16);
+            for level in Level::ALL.into_iter().filter(|level| level.is_available()) {
+                let (mut value, mut pdf) = (RgbLanes::ZERO, [0.0; LANES]);
+                all.evaluate(level, &asks, &to, &from, &mut value, &mut pdf);
+                let mut drawn = BsdfSampleLanes::NONE;
+                all.sample(level, &asks, &to, (&choice, &u), &mut drawn);
+                for lane in (0..LANES).filter(|&lane| asks[lane]) {
+                    let (one, wo) = (bsdf(turn, lane), to.get(lane));
+                    let found = (value.get(lane), pdf[lane]);
+                    assert_eq!(found, one.evaluate(wo, from.get(lane)), "{level:?} {turn} {lane}");
+                    let wanted = one.sample(wo, &mut || choice[lane], [u[0][lane], u[1][lane]]);
+                    let told = |of: BsdfSample| (of.wi, of.weight, of.pdf, of.eta, of.is_through);
+                    let found = drawn.get(lane);
+                    assert_eq!(found.map(told), wanted.map(told), "{level:?} {turn} {lane}");
+                }
+                assert!((0..LANES).all(|lane| asks[lane] || drawn.get(lane).is_none()));
+            }
+        }
+    }
+}

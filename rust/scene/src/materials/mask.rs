@@ -1,0 +1,70 @@
+//! Holes.
+
+use super::checks::within;
+use super::{BsdfMix, Interior, Material};
+use crate::ShadingPoint;
+use crate::media::Medium;
+use crate::textures::{Needs, TexturePoint, Value};
+use raywright_base::math::DVec3;
+use raywright_optics::Rgb;
+use std::sync::Arc;
+
+/// A material with holes: leaves, lace, fences. Where it is partly there, rays go through it in proportion.
+#[derive(Clone, Debug)]
+pub struct Mask {
+    /// What is between the holes.
+    pub material: Arc<dyn Material>,
+    /// How much of it is there: 0 in a hole, 1 beside it.
+    pub opacity: Value<f64>,
+}
+
+impl Material for Mask {
+    fn bsdf(&self, at: &ShadingPoint) -> BsdfMix {
+        self.material.bsdf(at)
+    }
+
+    fn kinds(&self) -> Option<[usize; 2]> {
+        self.material.kinds()
+    }
+
+    fn needs(&self) -> Needs {
+        self.material.needs() | self.opacity.needs()
+    }
+
+    fn validate(&self) -> Result<(), String> {
+        within("opacity", &self.opacity, 0.0, 1.0)?;
+        self.material.validate()
+    }
+
+    fn opacity(&self, at: &TexturePoint) -> f64 {
+        self.opacity.at(at).clamp(0.0, 1.0) * self.material.opacity(at)
+    }
+
+    fn is_opaque(&self) -> bool {
+        self.opacity.is_within(1.0, 1.0) && self.material.is_opaque()
+    }
+
+    fn transmits(&self) -> bool {
+        self.material.transmits()
+    }
+
+    fn normal(&self, at: &ShadingPoint) -> Option<DVec3> {
+        self.material.normal(at)
+    }
+
+    fn tangent(&self, at: &ShadingPoint) -> Option<DVec3> {
+        self.material.tangent(at)
+    }
+
+    fn interior(&self) -> Option<Interior> {
+        self.material.interior()
+    }
+
+    fn medium(&self) -> Option<&Arc<dyn Medium>> {
+        self.material.medium()
+    }
+
+    fn ambient(&self, at: &ShadingPoint) -> Rgb {
+        self.material.ambient(at)
+    }
+}

@@ -1,0 +1,48 @@
+//! The model of glTF.
+
+use super::checks::within;
+use super::{BsdfMix, Material};
+use crate::ShadingPoint;
+use crate::textures::{Needs, TexturePoint, Value};
+use raywright_optics::{AnyBsdf, MetallicRough};
+
+/// The metallic-roughness model of glTF 2.0: from plastic to metal, in three numbers. Both sides reflect.
+#[derive(Clone, Debug)]
+pub struct MetallicRoughMaterial {
+    /// The colour, 0 to 1 in each channel: of what is matt, or of what the metal reflects.
+    pub base_colour: Value,
+    /// From 0, none, to 1, metal.
+    pub metallic: Value<f64>,
+    /// From 0 to 1; its square is the facets' α.
+    pub roughness: Value<f64>,
+}
+
+impl MetallicRoughMaterial {
+    fn bsdf(&self, point: &TexturePoint) -> MetallicRough {
+        MetallicRough::new(self.base_colour.at(point), self.metallic.at(point), self.roughness.at(point))
+    }
+}
+
+impl Material for MetallicRoughMaterial {
+    fn bsdf(&self, at: &ShadingPoint) -> BsdfMix {
+        self.bsdf(&at.texture).into()
+    }
+
+    fn constant(&self) -> Option<AnyBsdf> {
+        (!self.needs().any()).then(|| self.bsdf(&TexturePoint::default()).into())
+    }
+
+    fn kinds(&self) -> Option<[usize; 2]> {
+        Some([AnyBsdf::from(self.bsdf(&TexturePoint::default())).kind(); 2])
+    }
+
+    fn needs(&self) -> Needs {
+        self.base_colour.needs() | self.metallic.needs() | self.roughness.needs()
+    }
+
+    fn validate(&self) -> Result<(), String> {
+        within("base_color", &self.base_colour, 0.0, 1.0)?;
+        within("metallic", &self.metallic, 0.0, 1.0)?;
+        within("roughness", &self.roughness, 0.0, 1.0)
+    }
+}

@@ -1,0 +1,88 @@
+//! Normals from a picture.
+
+use super::bump::on_its_side;
+use super::checks::{number, within};
+use super::{BsdfMix, Interior, Material};
+use crate::ShadingPoint;
+use crate::media::Medium;
+use crate::textures::{Needs, TexturePoint, Value};
+use raywright_base::math::DVec3;
+use raywright_optics::Rgb;
+use std::sync::Arc;
+
+/// A material whose normals a texture turns: red, green and blue from 0 to 1 are −1 to 1 along u, along v and along the
+/// normal, as in glTF.
+#[derive(Clone, Debug)]
+pub struct NormalMap {
+    /// The material.
+    pub material: Arc<dyn Material>,
+    /// The normals, not sRGB.
+    pub normals: Value,
+    /// How much they turn: what lies along u and v is multiplied by it.
+    pub scale: f64,
+}
+
+impl Material for NormalMap {
+    fn bsdf(&self, at: &ShadingPoint) -> BsdfMix {
+        self.material.bsdf(at)
+    }
+
+    fn kinds(&self) -> Option<[usize; 2]> {
+        self.material.kinds()
+    }
+
+    fn needs(&self) -> Needs {
+        self.material.needs() | self.normals.needs() | Needs { uv: true, tangents: true, ..Needs::NONE }
+    }
+
+    fn validate(&self) -> Result<(), String> {
+        within("normals", &self.normals, 0.0, 1.0)?;
+        number("scale", self.scale, f64::MIN, f64::MAX)?;
+        self.material.validate()
+    }
+
+    fn opacity(&self, at: &TexturePoint) -> f64 {
+        self.material.opacity(at)
+    }
+
+    fn is_opaque(&self) -> bool {
+        self.material.is_opaque()
+    }
+
+    fn transmits(&self) -> bool {
+        self.material.transmits()
+    }
+
+    fn normal(&self, at: &ShadingPoint) -> Option<DVec3> {
+        let own = self.material.normal(at);
+        let normal = own.unwrap_or(at.point.shading_normal);
+        let [x, y, z] = (self.normals.at(&at.texture) * 2.0 - 1.0).to_array();
+        let (x, y) = (x * self.scale, y * self.scale);
+        if x == 0.0 && y == 0.0 {
+            return own;
+        }
+        // Along u as far as the normal lets it, and at right angles to both on the side of v.
+        let Some(u) = (at.dp[0] - normal * normal.dot(at.dp[0])).try_normalize() else { return own };
+        let v = normal.cross(u);
+        let v = if v.dot(at.dp[1]) < 0.0 { -v } else { v };
+        let z = if at.as_given { z } else { z.max(0.0) };
+        let Some(turned) = (u * x + v * y + normal * z).try_normalize() else { return own };
+        Some(on_its_side(turned, at))
+    }
+
+    fn tangent(&self, at: &ShadingPoint) -> Option<DVec3> {
+        self.material.tangent(at)
+    }
+
+    fn interior(&self) -> Option<Interior> {
+        self.material.interior()
+    }
+
+    fn medium(&self) -> Option<&Arc<dyn Medium>> {
+        self.material.medium()
+    }
+
+    fn ambient(&self, at: &ShadingPoint) -> Rgb {
+        self.material.ambient(at)
+    }
+}

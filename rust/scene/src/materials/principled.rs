@@ -1,0 +1,196 @@
+//! The principled models.
+
+use super::checks::{number, within};
+use super::{BsdfMix, Interior, Material};
+use crate::ShadingPoint;
+use crate::textures::{Needs, TexturePoint, Value};
+use raywright_base::math::DVec3;
+use raywright_optics::{AnyBsdf, Look, Principled, PrincipledThin};
+
+/// What the principled models have in common, each 0 to 1: see [`Look`].
+#[derive(Clone, Debug)]
+pub struct LookTextures {
+    /// The colour.
+    pub base_color: Value,
+    /// Its square is the facets' α.
+    pub roughness: Value<f64>,
+    /// How much longer highlights are along the one direction than along the other.
+    pub anisotropic: Value<f64>,
+    /// The share that goes through.
+    pub transmission: Value<f64>,
+    /// How much of the colour highlights have.
+    pub specular_tint: Value<f64>,
+    /// Light along the edges.
+    pub sheen: Value<f64>,
+    /// How much of the colour that has.
+    pub sheen_tint: Value<f64>,
+    /// How much is as flat as what light gets deep into.
+    pub flatness: Value<f64>,
+}
+
+impl LookTextures {
+    fn numbers(&self) -> [(&str, &Value<f64>); 7] {
+        [
+            ("roughness", &self.roughness),
+            ("anisotropic", &self.anisotropic),
+            ("transmission", &self.transmission),
+            ("specular_tint", &self.specular_tint),
+            ("sheen", &self.sheen),
+            ("sheen_tint", &self.sheen_tint),
+            ("flatness", &self.flatness),
+        ]
+    }
+
+    fn at(&self, point: &TexturePoint) -> Look {
+        Look {
+            base_color: self.base_color.at(point),
+            luminance: self.base_color.at(&TexturePoint { waves: None, ..*point }).luminance(),
+            roughness: self.roughness.at(point),
+            anisotropic: self.anisotropic.at(point),
+            transmission: self.transmission.at(point),
+            specular_tint: self.specular_tint.at(point),
+            sheen: self.sheen.at(point),
+            sheen_tint: self.sheen_tint.at(point),
+            flatness: self.flatness.at(point),
+        }
+    }
+
+    fn needs(&self) -> Needs {
+        let along = if self.is_alike() { Needs::NONE } else { Needs { uv: true, tangents: true, ..Needs::NONE } };
+        self.numbers().into_iter().fold(self.base_color.needs() | along, |needs, (_, value)| needs | value.needs())
+    }
+
+    /// Whether highlights are the same in all directions.
+    fn is_alike(&self) -> bool {
+        self.anisotropic.range()[1] <= 0.0
+    }
+
+    /// Where u goes, if it makes a difference.
+    fn tangent(&self, at: &ShadingPoint) -> Option<DVec3> {
+        (!self.is_alike()).then_some(at.dp[0])
+    }
+
+    fn validate(&self) -> Result<(), String> {
+        within("base_color", &self.base_color, 0.0, 1.0)?;
+        self.numbers().into_iter().try_for_each(|(name, value)| within(name, value, 0.0, 1.0))
+    }
+}
+
+/// The principled model: from plastic to metal to glass, under a clear coat.
+#[derive(Clone, Debug)]
+pub struct PrincipledMaterial {
+    /// What it looks like.
+    pub looks: LookTextures,
+    /// What is within.
+    pub interior: Interior,
+    /// From 0, none, to 1, metal.
+    pub metallic: Value<f64>,
+    /// How much of a clear coat there is, 0 to 1.
+    pub clearcoat: Value<f64>,
+    /// How glossy that is, 0 to 1.
+    pub clearcoat_gloss: Value<f64>,
+}
+
+impl PrincipledMaterial {
+    fn bsdf(&self, point: &TexturePoint, outside: f64) -> AnyBsdf {
+        let solid = self.is_solid();
+        // What is opaque fills nothing: what is around it does not count, and all that it mirrors has the index of
+        // yellow light.
+        let eta = if solid { self.interior.ior_at(point.waves.as_ref()) / outside } else { self.interior.ior };
+        let coat = [self.clearcoat.at(point), self.clearcoat_gloss.at(point)];
+        Principled::new(self.looks.at(point), eta, self.metallic.at(point), coat, solid).into()
+    }
+
+    /// Whether light goes through anywhere.
+    fn is_solid(&self) -> bool {
+        self.looks.transmission.range()[1] > 0.0
+    }
+}
+
+impl Material for PrincipledMaterial {
+    fn bsdf(&self, at: &ShadingPoint) -> BsdfMix {
+        self.bsdf(&at.texture, at.outside).into()
+    }
+
+    fn constant(&self) -> Option<AnyBsdf> {
+        (!self.needs().any()).then(|| self.bsdf(&TexturePoint::default(), 1.0))
+    }
+
+    fn kinds(&self) -> Option<[usize; 2]> {
+        Some([self.bsdf(&TexturePoint::default(), 1.0).kind(); 2])
+    }
+
+    fn needs(&self) -> Needs {
+        let parts = Needs { waves: self.interior.dispersion.is_any(), ..Needs::NONE };
+        self.looks.needs() | self.metallic.needs() | self.clearcoat.needs() | self.clearcoat_gloss.needs() | parts
+    }
+
+    fn validate(&self) -> Result<(), String> {
+        self.looks.validate()?;
+        number("ior", self.interior.ior, f64::MIN_POSITIVE, f64::MAX)?;
+        within("metallic", &self.metallic, 0.0, 1.0)?;
+        within("clearcoat", &self.clearcoat, 0.0, 1.0)?;
+        within("clearcoat_gloss", &self.clearcoat_gloss, 0.0, 1.0)
+    }
+
+    fn transmits(&self) -> bool {
+        self.is_solid()
+    }
+
+    fn tangent(&self, at: &ShadingPoint) -> Option<DVec3> {
+        self.looks.tangent(at)
+    }
+
+    fn interior(&self) -> Option<Interior> {
+        self.is_solid().then_some(self.interior)
+    }
+}
+
+/// The principled model of a sheet.
+#[derive(Clone, Debug)]
+pub struct PrincipledThinMaterial {
+    /// What it looks like.
+    pub looks: LookTextures,
+    /// The index of refraction.
+    pub ior: f64,
+    /// The share of what is matt that is scattered on the other side, 0 to 1.
+    pub diffuse_transmission: Value<f64>,
+}
+
+impl PrincipledThinMaterial {
+    fn bsdf(&self, point: &TexturePoint) -> AnyBsdf {
+        PrincipledThin::new(self.looks.at(point), self.ior, self.diffuse_transmission.at(point)).into()
+    }
+}
+
+impl Material for PrincipledThinMaterial {
+    fn bsdf(&self, at: &ShadingPoint) -> BsdfMix {
+        self.bsdf(&at.texture).into()
+    }
+
+    fn constant(&self) -> Option<AnyBsdf> {
+        (!self.needs().any()).then(|| self.bsdf(&TexturePoint::default()))
+    }
+
+    fn kinds(&self) -> Option<[usize; 2]> {
+        Some([self.bsdf(&TexturePoint::default()).kind(); 2])
+    }
+
+    fn needs(&self) -> Needs {
+        self.looks.needs() | self.diffuse_transmission.needs()
+    }
+
+    fn validate(&self) -> Result<(), String> {
+        self.looks.validate()?;
+        number("ior", self.ior, f64::MIN_POSITIVE, f64::MAX)?;
+        within("diffuse_transmission", &self.diffuse_transmission, 0.0, 1.0)
+    }
+
+    fn transmits(&self) -> bool {
+        true
+    }
+
+    fn tangent(&self, at: &ShadingPoint) -> Option<DVec3> {
+        self.looks.tangent(at)
+    }
+}

@@ -1,0 +1,67 @@
+//! One material on the front and another on the back.
+
+use super::{BsdfMix, Material};
+use crate::ShadingPoint;
+use crate::textures::Needs;
+use raywright_base::math::DVec3;
+use raywright_optics::{AnyBsdf, Rgb};
+use std::sync::Arc;
+
+/// A sheet that is made of one thing where its normals point to, and of another behind. Neither lets light through.
+#[derive(Clone, Debug)]
+pub struct TwoSided {
+    /// On the side of the normals.
+    pub front: Arc<dyn Material>,
+    /// On the other.
+    pub back: Arc<dyn Material>,
+}
+
+impl TwoSided {
+    fn side(&self, at: &ShadingPoint) -> &dyn Material {
+        if at.is_front { &*self.front } else { &*self.back }
+    }
+}
+
+impl Material for TwoSided {
+    fn bsdf(&self, at: &ShadingPoint) -> BsdfMix {
+        self.side(at).bsdf(at)
+    }
+
+    fn constant_sides(&self) -> Option<[AnyBsdf; 2]> {
+        let ([front, _], [_, back]) = (self.front.constant_sides()?, self.back.constant_sides()?);
+        Some([front, back])
+    }
+
+    fn kinds(&self) -> Option<[usize; 2]> {
+        Some([self.front.kinds()?[0], self.back.kinds()?[1]])
+    }
+
+    fn needs(&self) -> Needs {
+        self.front.needs() | self.back.needs()
+    }
+
+    fn validate(&self) -> Result<(), String> {
+        for (name, side) in [("front", &self.front), ("back", &self.back)] {
+            side.validate().map_err(|why| format!("in {name}: {why}"))?;
+            if side.transmits() {
+                return Err(format!("{name} must let no light through, as the other side does not know of it"));
+            }
+            if !side.is_opaque() {
+                return Err(format!("{name} must have no holes; those go through both sides, as a mask of the whole"));
+            }
+        }
+        Ok(())
+    }
+
+    fn normal(&self, at: &ShadingPoint) -> Option<DVec3> {
+        self.side(at).normal(at)
+    }
+
+    fn tangent(&self, at: &ShadingPoint) -> Option<DVec3> {
+        self.side(at).tangent(at)
+    }
+
+    fn ambient(&self, at: &ShadingPoint) -> Rgb {
+        self.side(at).ambient(at)
+    }
+}

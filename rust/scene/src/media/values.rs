@@ -1,0 +1,98 @@
+//! Numbers on a regular grid over the unit cube, and what lies between.
+
+use super::Blocks;
+use raywright_base::math::DVec3;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// Where in the cells of a grid its numbers stand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum At {
+    /// At their corners: the outermost on the faces of the cube.
+    Corners,
+    /// In the middle of each: within half a cell of a face, what is there is that of the cell.
+    Centres,
+}
+
+/// Numbers on a regular grid over the unit cube, `C` of them at a point, interpolated linearly along each axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Values<const C: usize> {
+    blocks: Arc<Blocks<C>>,
+    at: At,
+}
+
+impl<const C: usize> Values<C> {
+    /// Of blocks, which may be shared.
+    pub fn new(blocks: Arc<Blocks<C>>, at: At) -> Self {
+        Self { blocks, at }
+    }
+
+    /// How many numbers there are along each axis.
+    pub fn size(&self) -> [usize; 3] {
+        self.blocks.size()
+    }
+
+    /// A coordinate of the unit cube in steps of the grid along an axis, from the first number on.
+    #[inline]
+    fn steps(&self, axis: usize, u: f64) -> f64 {
+        let last = (self.size()[axis] - 1) as f64;
+        match self.at {
+            At::Corners => (u * last).clamp(0.0, last),
+            At::Centres => (u * self.size()[axis] as f64 - 0.5).clamp(0.0, last),
+        }
+    }
+
+    /// What is at a point of the unit cube, of which one outside counts as the nearest within.
+    #[inline]
+    pub fn value(&self, point: DVec3) -> [f64; C] {
+        let mut low = [0; 3];
+        let mut high = [0; 3];
+        let mut part = [0.0; 3];
+        for axis in 0..3 {
+            let steps = self.steps(axis, point[axis]);
+            low[axis] = steps as usize;
+            high[axis] = (low[axis] + 1).min(self.size()[axis] - 1);
+            part[axis] = steps - low[axis] as f64;
+        }
+        let mut sum = [0.0; C];
+        let Some(corners) = self.blocks.cell(low, high) else { return sum };
+        let mut corner = corners.iter();
+        for wx in [1.0 - part[0], part[0]] {
+            for wy in [1.0 - part[1], part[1]] {
+                for wz in [1.0 - part[2], part[2]] {
+                    let weight = wx * wy * wz;
+                    for (sum, &value) in sum.iter_mut().zip(corner.next().expect("a cell has eight corners")) {
+                        *sum += weight * f64::from(value);
+                    }
+                }
+            }
+        }
+        sum
+    }
+
+    /// The greatest number of each kind in each of so many equal blocks of the unit cube, the last axis fastest.
+    pub fn greatest(&self, blocks: [usize; 3]) -> Vec<[f32; C]> {
+        let mut greatest = Vec::with_capacity(blocks.iter().product());
+        // Which numbers count in a part of the cube: those within, and the next on either side.
+        let counting = |axis: usize, block: usize| -> Range<usize> {
+            let [from, to] = [block, block + 1].map(|b| self.steps(axis, b as f64 / blocks[axis] as f64));
+            // What rounding may have moved to the other side of a number counts too.
+            let last = (self.size()[axis] - 1) as f64;
+            let [from, to] = [from * (1.0 - 1e-12), (to * (1.0 + 1e-12)).min(last)];
+            from.floor() as usize..to.ceil() as usize + 1
+        };
+        for x in 0..blocks[0] {
+            for y in 0..blocks[1] {
+                for z in 0..blocks[2] {
+                    greatest.push(self.blocks.greatest([counting(0, x), counting(1, y), counting(2, z)]));
+                }
+            }
+        }
+        greatest
+    }
+
+    /// The memory held.
+    pub fn bytes(&self) -> usize {
+        self.blocks.bytes()
+    }
+}

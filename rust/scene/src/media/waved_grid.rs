@@ -1,0 +1,93 @@
+//! Media on grids by wavelength, where they have other colours at other points.
+
+use super::grid::Here;
+use super::{Coefficients, GridMedium, Medium, Stretches};
+use raywright_base::math::{DVec3, Ray};
+use raywright_optics::spectra::{Role, Smooth, Spectrum, Waves};
+use raywright_optics::{Phase, Rgb};
+use std::sync::Arc;
+
+/// A medium on a grid that absorbs and scatters by spectra and, where it has colours at its points, by the smooth
+/// spectra of these too.
+#[derive(Clone, Debug)]
+pub struct WavedGrid {
+    /// Its density alone: coefficients of 1, or of 0 where there is none of something.
+    grid: GridMedium,
+    /// What is absorbed, scattered and given off at unit density; all that is dimmed for what is absorbed, where the
+    /// share that is scattered has a grid.
+    absorption: Arc<Spectrum>,
+    scattering: Arc<Spectrum>,
+    emission: Option<Arc<Spectrum>>,
+}
+
+impl WavedGrid {
+    /// Of a medium that does at unit density 1 to all light, as far as it does anything, and what that 1 stands for.
+    pub fn new(
+        grid: GridMedium,
+        [absorption, scattering]: [Arc<Spectrum>; 2],
+        emission: Option<Arc<Spectrum>>,
+    ) -> Self {
+        Self { grid, absorption, scattering, emission }
+    }
+
+    /// What is dimmed and scattered at unit density.
+    fn plain(&self, waves: &Waves, has_albedo: bool) -> [Rgb; 2] {
+        let absorbed = self.absorption.lanes(waves);
+        let scattered = if has_albedo { Rgb::ZERO } else { self.scattering.lanes(waves) };
+        [absorbed + scattered, scattered]
+    }
+}
+
+impl Medium for WavedGrid {
+    fn phase(&self) -> Phase {
+        self.grid.phase()
+    }
+
+    fn scatters(&self) -> bool {
+        self.grid.scatters()
+    }
+
+    fn glows(&self) -> bool {
+        self.grid.glows()
+    }
+
+    fn stretches(&self, ray: &Ray, span: [f64; 2]) -> Stretches<'_> {
+        self.grid.stretches(ray, span)
+    }
+
+    fn at(&self, point: DVec3) -> Coefficients {
+        self.grid.at(point)
+    }
+
+    fn at_waves(&self, point: DVec3, waves: &Waves) -> Coefficients {
+        let within = self.grid.within(point);
+        let Here { density, albedo } = self.grid.here(within);
+        let density = Smooth::looked_up(density, Role::Amount).lanes(waves);
+        let [dimmed, scattered] = self.plain(waves, albedo.is_some());
+        let extinction = dimmed * density;
+        let scattering = match albedo {
+            Some(albedo) => extinction * Smooth::looked_up(albedo, Role::Share).lanes(waves).at_most(Rgb::ONE),
+            None => scattered * density,
+        };
+        let absorbed = || (extinction - scattering).at_least(Rgb::ZERO);
+        let emission = self.emission.as_ref().map_or(Rgb::ZERO, |spectrum| spectrum.lanes(waves) * density);
+        let beside = self.grid.glow().map_or(Rgb::ZERO, |glow| glow.at_waves(within, absorbed, waves));
+        Coefficients { extinction, scattering, emission: emission + beside }
+    }
+
+    fn most_by_waves(&self, most: Rgb, waves: &Waves) -> Rgb {
+        let [dimmed, _] = self.plain(waves, self.grid.has_albedo());
+        // The smooth spectrum of a colour is nowhere above twice its greatest channel.
+        let more = if self.grid.is_coloured() { 2.0 } else { 1.0 };
+        let most = dimmed * (most.max() * more * (1.0 + 1e-12));
+        if self.glows() { most.at_least(Rgb::splat(1.0 / self.grid.across())) } else { most }
+    }
+
+    fn has_waves(&self) -> bool {
+        true
+    }
+
+    fn bytes(&self) -> usize {
+        size_of::<Self>() + self.grid.bytes()
+    }
+}

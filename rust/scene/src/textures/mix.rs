@@ -1,0 +1,38 @@
+//! Two textures by a third.
+
+use super::pattern::{blend, either};
+use super::{Needs, Texture, TexturePoint, Value};
+use raywright_optics::Rgb;
+
+/// Two values, weighed by a third, channel by channel.
+#[derive(Clone, Debug)]
+pub struct MixTexture {
+    /// What is where the amount is 0.
+    pub a: Value,
+    /// What is where it is 1.
+    pub b: Value,
+    /// How much of `b`; below 0 it counts as 0, above 1 as 1.
+    pub amount: Value,
+}
+
+impl Texture for MixTexture {
+    fn at(&self, point: &TexturePoint) -> Rgb {
+        blend(self.a.at(point), self.b.at(point), share(self.amount.at(point)))
+    }
+
+    fn range(&self) -> [Rgb; 2] {
+        either(&self.a, &self.b)
+    }
+
+    fn mean(&self) -> Rgb {
+        blend(self.a.mean(), self.b.mean(), share(self.amount.mean()))
+    }
+
+    fn needs(&self) -> Needs {
+        self.a.needs() | self.b.needs() | self.amount.needs()
+    }
+}
+
+fn share(amount: Rgb) -> Rgb {
+    amount.at_least(Rgb::ZERO).at_most(Rgb::ONE)
+}

@@ -1,0 +1,29 @@
+//! What textures give.
+
+use raywright_optics::Rgb;
+use std::fmt::{Debug, Display};
+
+/// A colour, or a number.
+pub trait Quantity: Copy + Debug + Display + PartialEq + Send + Sync + 'static {
+    /// Nothing of it.
+    const ZERO: Self;
+
+    /// Whether something holds for it, for each channel of a colour.
+    fn all(self, holds: impl Fn(f64) -> bool) -> bool;
+}
+
+impl Quantity for f64 {
+    const ZERO: Self = 0.0;
+
+    fn all(self, holds: impl Fn(f64) -> bool) -> bool {
+        holds(self)
+    }
+}
+
+impl Quantity for Rgb {
+    const ZERO: Self = Self::ZERO;
+
+    fn all(self, holds: impl Fn(f64) -> bool) -> bool {
+        self.to_array().into_iter().all(holds)
+    }
+}

@@ -1,0 +1,82 @@
+//! Colours by wavelength.
+
+use super::{Needs, Texture, TexturePoint, Value};
+use raywright_optics::Rgb;
+use raywright_optics::spectra::{Role, Smooth, Spectrum};
+use std::sync::Arc;
+
+/// A spectrum, the same everywhere.
+#[derive(Clone, Debug)]
+pub struct Spectral {
+    spectrum: Arc<Spectrum>,
+    range: [f64; 2],
+    /// What it looks like.
+    colour: Rgb,
+}
+
+impl Spectral {
+    /// Of a spectrum.
+    pub fn new(spectrum: Arc<Spectrum>) -> Self {
+        Self { range: spectrum.range(), colour: spectrum.seen().at_least(Rgb::ZERO), spectrum }
+    }
+
+    /// The smooth spectrum of a colour; its own value where that is the same at all wavelengths, as of greys.
+    pub fn of(colour: Rgb, role: Role) -> Value {
+        match Smooth::of(colour, role) {
+            smooth if smooth.is_flat() => colour.into(),
+            smooth => {
+                let spectrum = Arc::new(Spectrum::Smooth(smooth));
+                Value::Texture(Arc::new(Self { range: [colour.min(), colour.max()], colour, spectrum }))
+            }
+        }
+    }
+}
+
+impl Texture for Spectral {
+    fn at(&self, point: &TexturePoint) -> Rgb {
+        point.waves.as_ref().map_or(self.colour, |waves| self.spectrum.lanes(waves))
+    }
+
+    fn range(&self) -> [Rgb; 2] {
+        self.range.map(Rgb::splat)
+    }
+
+    fn mean(&self) -> Rgb {
+        self.colour
+    }
+
+    fn needs(&self) -> Needs {
+        Needs { waves: true, ..Needs::NONE }
+    }
+}
+
+/// A texture of colours, each by its smooth spectrum.
+#[derive(Clone, Debug)]
+pub struct Upsampled {
+    /// The colours.
+    pub colours: Arc<dyn Texture>,
+    /// What they are of.
+    pub role: Role,
+}
+
+impl Texture for Upsampled {
+    fn at(&self, point: &TexturePoint) -> Rgb {
+        let colour = self.colours.at(point);
+        match &point.waves {
+            Some(waves) => Smooth::looked_up(colour.at_least(Rgb::ZERO), self.role).lanes(waves),
+            None => colour,
+        }
+    }
+
+    fn range(&self) -> [Rgb; 2] {
+        self.colours.range()
+    }
+
+    fn mean(&self) -> Rgb {
+        self.colours.mean()
+    }
+
+    fn needs(&self) -> Needs {
+        Needs { waves: true, ..self.colours.needs() }
+    }
+}

@@ -1,0 +1,286 @@
+//! The disk, whole or with a round hole.
+
+use super::around::Around;
+use super::line::Line;
+use super::meeting::tell;
+use super::plane::crossing;
+use super::solid::{Meets, Solid};
+use super::{Bounds, Candidate, Carried, Closest, Drawn, Point, Shape};
+use raywright_base::math::robust::UNIT;
+use raywright_base::math::{Affine, DVec3, Frame, Number, Ray, Triple};
+use raywright_base::sampling::warp::uniform_disk;
+use std::cmp::Ordering;
+use std::f64::consts::{PI, TAU};
+
+/// The points of a plane between two distances from a centre, both included.
+///
+/// Its coordinates are the angle about the normal, in turns, and the way from the outer rim inwards to the inner one,
+/// or to the centre.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Disk {
+    /// Its centre.
+    pub center: DVec3,
+    /// At right angles to it, to its outside; of any length but 0.
+    pub normal: DVec3,
+    /// The distance of its rim.
+    pub radius: f64,
+    /// The distance of the hole's rim; 0 for a whole disk.
+    pub inner_radius: f64,
+}
+
+impl Disk {
+    fn frame(&self) -> Frame {
+        Frame::new((self.normal / self.normal.abs().max_element()).normalize())
+    }
+
+    fn at(&self, [u, v]: [f64; 2]) -> Point {
+        let Frame { tangent, bitangent, normal } = self.frame();
+        let (sin, cos) = (TAU * u).sin_cos();
+        let out = tangent * cos + bitangent * sin;
+        let width = self.radius - self.inner_radius;
+        let radius = self.inner_radius + width * (1.0 - v);
+        let position = self.center + out * radius;
+        // The last sum; and the radius times a frame whose axes are at right angles to within 8 UNIT.
+        let error = UNIT * (position.abs().max_element() + 16.0 * self.radius);
+        let round = (bitangent * cos - tangent * sin) * (TAU * radius);
+        Point { position, error, normal, uv: [u, v], dp: [round, out * -width], dn: [DVec3::ZERO; 2] }
+    }
+}
+
+/// A whole disk as it is seen from near, in polar coordinates about the foot of the perpendicular from the place to its
+/// plane. Of a solid angle one has dω = dφ dc, c being the cosine to the normal: along the line of an angle φ,
+/// directions are drawn evenly. How angles are drawn is a choice that the density counts; evenly where the foot is
+/// inside, and else by the length of the chord that the line cuts, both of which differ from what is even in all
+/// directions by small factors. (The even way, of Guillén et al., "Area-Preserving Parameterizations for Spherical
+/// Ellipses", 2017, takes the inverse of an elliptic integral for every draw.)
+struct Seen {
+    height: f64,
+    /// From the foot to the centre, in the disk's frame: how far, and the unit vector there.
+    distance: f64,
+    towards: [f64; 2],
+    radius: f64,
+}
+
+/// The part of a line through the foot that is on the disk.
+struct Chord {
+    /// The density in solid angle of the directions to it.
+    pdf: f64,
+    /// 1 − c at its near end, c at its far end, and the difference of c.
+    near: f64,
+    far: f64,
+    span: f64,
+}
+
+impl Seen {
+    /// The line at an angle of which cosine and sine are given, or nearly so.
+    fn chord(&self, cos: f64, sin: f64) -> Chord {
+        let (height, aside) = (self.height, self.distance * sin);
+        let half = ((self.radius - aside) * (self.radius + aside)).max(0.0).sqrt();
+        let middle = self.distance * cos;
+        let end = middle + half;
+        // From the foot itself, or from where the line comes to the disk.
+        let inside = self.distance < self.radius;
+        let start = if inside { 0.0 } else { (self.distance - self.radius) * (self.distance + self.radius) / end };
+        let (r0, r1) = (start.hypot(height), end.hypot(height));
+        // The span is height · (end² − start²) / lengths, and the density of the angle is 1 / 2π, or outside 2 half ·
+        // middle / π radius² where end² − start² is 4 half · middle: of a chord of no length, the quotient has its
+        // limit.
+        let lengths = r0 * r1 * (r0 + r1);
+        let (squares, per_square) = if inside {
+            (end * end, 1.0 / (TAU * end * end))
+        } else {
+            (4.0 * middle * half, 0.5 / (PI * self.radius.powi(2)))
+        };
+        Chord {
+            pdf: per_square * lengths / height,
+            near: start * start / (r0 * (r0 + height)),
+            far: height / r1,
+            span: height * squares / lengths,
+        }
+    }
+
+    /// A point, from the foot, in the disk's frame, and its density.
+    fn sample(&self, u: [f64; 2]) -> ([f64; 2], f64) {
+        let (cos, sin, along) = if self.distance < self.radius {
+            let (sin, cos) = (TAU * u[0]).sin_cos();
+            (cos, sin, u[1])
+        } else {
+            // Of a point of the unit disk, x has the density of a chord's length, and where on its chord it is is even.
+            let point = uniform_disk(u);
+            let half = ((1.0 - point.x) * (1.0 + point.x)).max(0.0).sqrt();
+            let sin = self.radius * point.x / self.distance;
+            let along = if half > 0.0 { (0.5 + 0.5 * point.y / half).clamp(0.0, 1.0) } else { 0.5 };
+            (((1.0 - sin) * (1.0 + sin)).max(0.0).sqrt(), sin, along)
+        };
+        let chord = self.chord(cos, sin);
+        let (down, cosine) = (chord.near + chord.span * along, chord.far + chord.span * (1.0 - along));
+        let out = self.height * (down * (2.0 - down)).max(0.0).sqrt() / cosine;
+        let [x, y] = self.towards;
+        ([out * (x * cos - y * sin), out * (y * cos + x * sin)], chord.pdf)
+    }
+
+    /// The density of a point, given from the foot.
+    fn pdf(&self, [x, y]: [f64; 2]) -> f64 {
+        let out = x.hypot(y);
+        let [a, b] = self.towards;
+        let (cos, sin) = if out > 0.0 { ((x * a + y * b) / out, (y * a - x * b) / out) } else { (1.0, 0.0) };
+        self.chord(cos, sin).pdf
+    }
+}
+
+impl Disk {
+    /// How far away the centre of a distant disk is at least, in radii: there, drawing by area is as good.
+    const DISTANT: f64 = 3.0;
+
+    /// How it is seen from a place that is given in its frame, unless by area.
+    fn seen(&self, place: DVec3) -> Option<Seen> {
+        let is_near = place.length_squared() < (Self::DISTANT * self.radius).powi(2) && self.inner_radius == 0.0;
+        (is_near && place.z != 0.0).then(|| {
+            let distance = place.x.hypot(place.y);
+            let towards = if distance > 0.0 { [-place.x / distance, -place.y / distance] } else { [1.0, 0.0] };
+            Seen { height: place.z.abs(), distance, towards, radius: self.radius }
+        })
+    }
+}
+
+impl Solid for Disk {
+    fn meets<N: Number>(&self, line: &Line<N>) -> Option<Meets<N>> {
+        let line = line.from(self.center);
+        let (w, d) = (&line.origin, &line.direction);
+        let normal = Triple::of(self.normal);
+        // Where the plane is met, times n · d: (n · d) w − (n · w) d = n × (w × d).
+        let along = normal.dot(d);
+        if along.sign()? == Ordering::Equal {
+            return Some(Meets::new(false));
+        }
+        let there = normal.cross(&w.cross(d));
+        let square = there.dot(&there);
+        let against = |radius: f64| {
+            let limit = N::of(radius).times(&line.unit).times(&along);
+            square.minus(&limit.squared()).sign()
+        };
+        if against(self.radius)? == Ordering::Greater
+            || (self.inner_radius > 0.0 && against(self.inner_radius)? == Ordering::Less)
+        {
+            return Some(Meets::new(false));
+        }
+        crossing(&line, &normal)
+    }
+
+    #[inline(always)]
+    fn surface<N: Number>(&self, _: usize, point: &Triple<N>, _: &N) -> N {
+        Triple::of(self.normal).dot(point)
+    }
+
+    fn coordinates(&self, _: usize, point: DVec3) -> [f64; 2] {
+        let local = self.frame().to_local(point);
+        let turn = local.y.atan2(local.x) / TAU;
+        let v = (self.radius - local.x.hypot(local.y)) / (self.radius - self.inner_radius);
+        [if turn < 0.0 { (turn + 1.0).min(1.0) } else { turn }, v.clamp(0.0, 1.0)]
+    }
+
+    fn reference(&self) -> DVec3 {
+        self.center
+    }
+}
+
+impl Shape for Disk {
+    fn closest(&self, place: DVec3) -> Option<Closest> {
+        let frame = self.frame();
+        let local = frame.to_local(place - self.center);
+        let distance = local.x.hypot(local.y);
+        let [x, y] = if distance > 0.0 { [local.x / distance, local.y / distance] } else { [1.0, 0.0] };
+        let out = distance.clamp(self.inner_radius, self.radius);
+        let from_center = (frame.tangent * x + frame.bitangent * y) * out;
+        Some(Closest { position: self.center + from_center, uv: self.coordinates(0, from_center) })
+    }
+
+    fn closest_stretched(&self, to_world: &Affine, _: &Affine, place: DVec3) -> Option<Closest> {
+        let frame = self.frame();
+        let around = Around::new(to_world, &frame, self.center, place);
+        let ends = [[self.inner_radius, 0.0], [self.radius, 0.0]];
+        let from_center = frame.to_world(around.nearest(self.radius, |out| around.of_segment(out, ends)).local);
+        let position = to_world.point(self.center + from_center);
+        Some(Closest { position, uv: self.coordinates(0, from_center) })
+    }
+
+    fn bounds(&self) -> Bounds {
+        Bounds::of_support(|d| self.support(d))
+    }
+
+    fn support(&self, d: DVec3) -> f64 {
+        let normal = self.frame().normal;
+        let size = (d.abs() * self.center.abs()).element_sum();
+        d.dot(self.center)
+            + self.radius * d.cross(normal).length()
+            + UNIT * (4.0 * size + 16.0 * self.radius * d.length())
+    }
+
+    fn meet(&self, ray: &Ray, met: &mut dyn FnMut(Candidate) -> bool) -> bool {
+        self.meet_carried(&Carried::Ray(ray), met)
+    }
+
+    fn meet_carried(&self, ray: &Carried<'_>, met: &mut dyn FnMut(Candidate) -> bool) -> bool {
+        tell(self, ray, met)
+    }
+
+    fn point(&self, _: &Ray, _: f64, uv: [f64; 2]) -> Point {
+        self.at(uv)
+    }
+
+    fn area(&self) -> f64 {
+        PI * (self.radius - self.inner_radius) * (self.radius + self.inner_radius)
+    }
+
+    fn area_under(&self, map: &Affine) -> f64 {
+        self.area() * map.cofactors(self.frame().normal).length()
+    }
+
+    fn facing(&self) -> Option<DVec3> {
+        Some(self.frame().normal)
+    }
+
+    fn sample(&self, u: [f64; 2]) -> Option<Drawn> {
+        // Even in the square of the distance.
+        let (inner, outer) = (self.inner_radius, self.radius);
+        let radius = (inner * inner + u[1] * (outer - inner) * (outer + inner)).sqrt();
+        let v = ((outer - radius) / (outer - inner)).clamp(0.0, 1.0);
+        Some(Drawn { point: self.at([u[0], v]), pdf: 1.0 / self.area() })
+    }
+
+    fn sample_from(&self, place: DVec3, u: [f64; 2]) -> Option<Drawn> {
+        let from = self.frame().to_local(place - self.center);
+        let Some(seen) = self.seen(from) else {
+            let drawn = self.sample(u)?;
+            let pdf = self.pdf_from(place, drawn.point.position - place);
+            return (pdf > 0.0).then_some(Drawn { pdf, ..drawn });
+        };
+        let ([x, y], pdf) = seen.sample(u);
+        let (x, y) = (from.x + x, from.y + y);
+        let turn = y.atan2(x) / TAU;
+        let turn = if turn < 0.0 { (turn + 1.0).min(1.0) } else { turn };
+        let v = (1.0 - x.hypot(y) / self.radius).clamp(0.0, 1.0);
+        (pdf > 0.0 && pdf.is_finite()).then(|| Drawn { point: self.at([turn, v]), pdf })
+    }
+
+    fn pdf_from(&self, place: DVec3, direction: DVec3) -> f64 {
+        let frame = self.frame();
+        let (from, way) = (frame.to_local(place - self.center), frame.to_local(direction));
+        let t = -from.z / way.z;
+        let (x, y) = (way.x * t, way.y * t);
+        let out = (from.x + x).hypot(from.y + y);
+        // What rounding puts off the rim is on it.
+        let slack = 1e-12 * self.radius;
+        if !(t > 0.0 && out <= self.radius + slack && out >= self.inner_radius - slack) {
+            return 0.0;
+        }
+        match self.seen(from) {
+            Some(seen) => seen.pdf([x, y]),
+            None => {
+                let length = way.length();
+                let distance = t * length;
+                distance * distance / (way.z.abs() / length * self.area())
+            }
+        }
+    }
+}

@@ -1,0 +1,48 @@
+//! Floor 1: what can be hit, one shape a module.
+
+mod around;
+mod closest;
+mod cone;
+mod contact;
+mod cuboid;
+mod cylinder;
+mod disk;
+mod ellipsoid;
+#[cfg(test)]
+mod exact_hits;
+mod gap;
+mod implicit;
+mod line;
+mod meeting;
+mod newton;
+#[cfg(test)]
+mod oracle;
+pub mod oriented_box;
+mod paraboloid;
+mod placed;
+mod plane;
+mod polygon;
+mod revolution;
+mod shape;
+mod solid;
+mod sphere;
+#[cfg(test)]
+mod surfaces;
+mod torus;
+pub mod triangle;
+
+pub use closest::Closest;
+pub use contact::{Candidate, Contact};
+pub use cuboid::Cuboid;
+pub use disk::Disk;
+pub use ellipsoid::Ellipsoid;
+pub use gap::gap_under;
+pub use implicit::Implicit;
+pub use line::{Carried, Line};
+pub use placed::Placed;
+pub use plane::Plane;
+pub use polygon::Polygon;
+pub use revolution::Revolution;
+pub use shape::{Ball, Bounds, Drawn, Point, Seen, Shape, Site};
+pub use sphere::Sphere;
+pub use torus::Torus;

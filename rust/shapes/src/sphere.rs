@@ -1,0 +1,311 @@
+//! The sphere.
+
+use super::closest::{of_ellipsoid, of_ellipsoid_under};
+use super::line::Line;
+use super::meeting::{ball, ball_surface, tell};
+use super::solid::{Meet, Meets, Solid};
+use super::{Ball, Bounds, Candidate, Carried, Closest, Contact, Drawn, Point, Seen, Shape, Site};
+use raywright_base::math::robust::UNIT;
+use raywright_base::math::turn::{sin_cos_turn, upper_angle};
+use raywright_base::math::{Affine, Bounded, DVec3, Frame, Number, Ray, Triple, at_right_angles, ellipsoid_area};
+use raywright_base::sampling::warp::{UNIFORM_SPHERE_PDF, uniform_sphere};
+use std::f64::consts::{PI, TAU};
+
+/// All points at one distance from a centre; closed.
+///
+/// Its coordinates are the longitude about +z from +x on, in turns, and the latitude from the pole at −z to that at +z,
+/// in half turns.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sphere {
+    /// Its centre.
+    pub center: DVec3,
+    /// The distance from it, above 0.
+    pub radius: f64,
+}
+
+impl Sphere {
+    /// The unit sphere around the origin.
+    pub const UNIT: Self = Self { center: DVec3::ZERO, radius: 1.0 };
+
+    /// The point of given coordinates.
+    fn at(&self, uv: [f64; 2]) -> Point {
+        let (direction, dn) = globe(uv);
+        let Site { position, error, normal } = self.towards(direction);
+        Point { position, error, normal, uv, dp: dn.map(|d| d * self.radius), dn }
+    }
+
+    /// [`Shape::sight_from`] for a place outside; and whether it is one, without which nothing is said.
+    #[inline(always)]
+    pub fn sight_from_outside(&self, place: DVec3, u: [f64; 2]) -> (Seen, bool) {
+        let (cone, is_outside) = self.cone_from_outside(place);
+        (self.sight_in(&cone, u), is_outside)
+    }
+
+    /// A point drawn evenly in the cone that it fills.
+    #[inline(always)]
+    fn sight_in(&self, cone: &Cone, u: [f64; 2]) -> Seen {
+        // x = 1 − cos θ is even in [0, height), and sin² θ = x (2 − x) is the square of the cone's sine times that of
+        // the angle at which the sphere is met there.
+        let x = u[0] * cone.height();
+        let square = u[0] * cone.part * (2.0 - x);
+        let facing = (1.0 - square).max(0.0).sqrt();
+        // The angle between the place and the point as seen from the centre: that at which it is met less θ.
+        let cosine = (1.0 - x) * facing + square * cone.sine;
+        let across = square.sqrt() * (1.0 - x - cone.sine * facing);
+        let [sin, cos] = sin_cos_turn(u[1]);
+        let direction = Frame::new(cone.axis).to_world(DVec3::new(across * cos, across * sin, cosine));
+        // Unit but for some roundings: a step of Newton's is as good as a root and a quotient, and need not wait for
+        // them.
+        let direction = direction * (1.5 - 0.5 * direction.length_squared());
+        Seen { site: self.towards(direction), pdf: 1.0 / (TAU * cone.height()) }
+    }
+
+    /// The point in a direction from the centre that is unit to within 4 UNIT in each coordinate; the last sum adds one
+    /// UNIT of its own.
+    #[inline(always)]
+    fn towards(&self, direction: DVec3) -> Site {
+        let position = self.center + direction * self.radius;
+        Site { position, error: UNIT * (position.abs().max_element() + 5.0 * self.radius), normal: direction }
+    }
+
+    /// The cone that it fills as seen from a place; none from inside, and from places on it.
+    #[inline]
+    fn cone(&self, place: DVec3) -> Option<Cone> {
+        let (cone, is_outside) = self.cone_from_outside(place);
+        is_outside.then_some(cone)
+    }
+
+    /// The same, and whether there is one.
+    #[inline(always)]
+    fn cone_from_outside(&self, place: DVec3) -> (Cone, bool) {
+        let way = place - self.center;
+        let distance = way.length();
+        // By so much the way to a place on the sphere may be too long.
+        let rounding = 4.0 * UNIT * (place.abs().max_element() + 5.0 * self.radius);
+        let inverse = 1.0 / distance;
+        let sine = self.radius * inverse;
+        let cosine = ((distance - self.radius) * (distance + self.radius)).sqrt() * inverse;
+        let cone = Cone { axis: way * inverse, sine, part: 1.0 / (1.0 + cosine) };
+        (cone, distance >= self.radius + rounding)
+    }
+}
+
+/// The directions in which a sphere is seen from a place outside.
+struct Cone {
+    /// From the centre to the place, unit.
+    axis: DVec3,
+    /// The sine of half its angle.
+    sine: f64,
+    /// 1 / (1 + cos) of it.
+    part: f64,
+}
+
+impl Cone {
+    /// 1 − cos of half its angle, by sin² / (1 + cos), so that a small one keeps its digits.
+    #[inline(always)]
+    fn height(&self) -> f64 {
+        self.sine * self.sine * self.part
+    }
+}
+
+impl Sphere {
+    /// [`Solid::meets`] by a bound of the whole formula ([`ball`]) in place of one for each step.
+    ///
+    /// With u = [`UNIT`], and w the rounded way from the centre: d² errs by 3u of it, r² d² by 5u, w² by 5u, w · d by
+    /// 4u |w| |d|, and w × d by 3u of the sizes of its products, in all by 3√2 u |w| |d|, so that its square errs by 3u
+    /// of it and 8.5u |w × d| |w| |d| + 18u² w² d² more. What is allowed for here is greater by more than the roundings
+    /// of the bounds, and, where r² d² is not tiny, by more than any underflow takes.
+    #[inline(always)]
+    fn quickly(&self, ray: &Ray) -> Option<Meets<Bounded>> {
+        const LEAST: f64 = f64::from_bits((1023 - 400) << 52);
+        let (w, d) = (ray.origin - self.center, ray.direction);
+        let (a, ww, rr) = (d.dot(d), w.dot(w), self.radius * self.radius);
+        let (moment, level) = (w.cross(d).length_squared(), rr * a);
+        let size = (ww * a).sqrt();
+        let error = UNIT * (8.0 * level + 5.0 * moment + 9.0 * moment.sqrt() * size + 64.0 * UNIT * size * size);
+        let discriminant = level - moment;
+        if !((LEAST..1.0 / LEAST).contains(&a) && level >= LEAST && discriminant.abs() > error) {
+            return None;
+        }
+        if discriminant < 0.0 {
+            return Some(Meets::new(true));
+        }
+        let root = discriminant.sqrt();
+        let root_error = error / root + 2.0 * UNIT * root;
+        let (b, c) = (w.dot(d), ww - rr);
+        let q = root + b.abs();
+        let q_error = root_error + 5.0 * UNIT * size + 2.0 * UNIT * q;
+        // The root farther from the origin of the line, and the nearer, both as if it went towards the centre.
+        let (outer, inner) = (q / a, c / q);
+        let outer_error = q_error / a * (1.0 + 8.0 * UNIT) + 6.0 * UNIT * outer;
+        let inner_error = (6.0 * UNIT * (ww + rr) + inner.abs() * q_error) / (q - q_error) + 3.0 * UNIT * inner.abs();
+        let meet = |t: f64, error: f64, slope: f64| {
+            let slope = Bounded { value: slope, error: 2.0 * root_error };
+            let bend = Bounded { value: a, error: 4.0 * UNIT * a };
+            Meet { t: Bounded { value: t, error }, slope, bend, surface: 0, part: 0, contact: Contact::Inside }
+        };
+        let (rise, meets) = (2.0 * root, Meets::new(true));
+        Some(if b < 0.0 {
+            meets.with(meet(inner, inner_error, -rise)).with(meet(outer, outer_error, rise))
+        } else {
+            meets.with(meet(-outer, outer_error, -rise)).with(meet(-inner, inner_error, rise))
+        })
+    }
+}
+
+/// The unit vector of a longitude and a latitude, and how it changes with either.
+pub(super) fn globe([u, v]: [f64; 2]) -> (DVec3, [DVec3; 2]) {
+    let ((sin, cos), (out, down)) = ((TAU * u).sin_cos(), (PI * v).sin_cos());
+    let direction = DVec3::new(out * cos, out * sin, -down);
+    (direction, [DVec3::new(-out * sin, out * cos, 0.0) * TAU, DVec3::new(down * cos, down * sin, out) * PI])
+}
+
+/// The longitude and the latitude of a vector of any length.
+pub(super) fn longitude_latitude(x: DVec3) -> [f64; 2] {
+    let turn = upper_angle(x.y.abs(), x.x) / TAU;
+    let square = x.x * x.x + x.y * x.y;
+    // Squares that are too large or too small to be numbers are few.
+    let across = if (1e-280..1e280).contains(&square) { square.sqrt() } else { x.x.hypot(x.y) };
+    [if x.y < 0.0 { 1.0 - turn } else { turn }, upper_angle(across, -x.z) / PI]
+}
+
+impl Solid for Sphere {
+    fn meets<N: Number>(&self, line: &Line<N>) -> Option<Meets<N>> {
+        ball(&line.from(self.center), &N::of(self.radius).times(&line.unit))
+    }
+
+    #[inline(always)]
+    fn meets_roughly(&self, ray: &Carried<'_>) -> Option<Meets<Bounded>> {
+        match ray {
+            Carried::Ray(ray) => self.quickly(ray),
+            Carried::Into(..) => self.meets(&ray.line()),
+        }
+    }
+
+    #[inline(always)]
+    fn surface<N: Number>(&self, _: usize, point: &Triple<N>, unit: &N) -> N {
+        ball_surface(point, &N::of(self.radius).times(unit))
+    }
+
+    fn coordinates(&self, _: usize, point: DVec3) -> [f64; 2] {
+        longitude_latitude(point)
+    }
+
+    fn reference(&self) -> DVec3 {
+        self.center
+    }
+}
+
+impl Shape for Sphere {
+    fn closest(&self, place: DVec3) -> Option<Closest> {
+        let unit = of_ellipsoid(DVec3::splat(self.radius), place - self.center);
+        Some(Closest { position: self.center + unit * self.radius, uv: longitude_latitude(unit) })
+    }
+
+    fn closest_under(&self, to_world: &Affine, to_object: &Affine, place: DVec3) -> Option<Closest> {
+        let axes = DVec3::splat(self.radius);
+        let (position, unit) = of_ellipsoid_under([to_world, to_object], [self.center, axes], place);
+        Some(Closest { position, uv: longitude_latitude(unit) })
+    }
+
+    fn bounds(&self) -> Bounds {
+        // One rounding each.
+        Bounds {
+            min: (self.center - self.radius).to_array().map(f64::next_down).into(),
+            max: (self.center + self.radius).to_array().map(f64::next_up).into(),
+        }
+    }
+
+    fn around(&self) -> Ball {
+        Ball { center: self.center, radius: self.radius.next_up() }
+    }
+
+    fn support(&self, d: DVec3) -> f64 {
+        let size = (d.abs() * self.center.abs()).element_sum();
+        let reach = self.radius * d.length();
+        d.dot(self.center) + reach + UNIT * (4.0 * size + 8.0 * reach)
+    }
+
+    fn meet(&self, ray: &Ray, met: &mut dyn FnMut(Candidate) -> bool) -> bool {
+        self.meet_carried(&Carried::Ray(ray), met)
+    }
+
+    fn meet_carried(&self, ray: &Carried<'_>, met: &mut dyn FnMut(Candidate) -> bool) -> bool {
+        tell(self, ray, met)
+    }
+
+    fn point(&self, _: &Ray, _: f64, uv: [f64; 2]) -> Point {
+        self.at(uv)
+    }
+
+    fn site(&self, _: &Ray, _: f64, [u, v]: [f64; 2]) -> Site {
+        let ([sin, cos], [out, down]) = (sin_cos_turn(u), sin_cos_turn(0.5 * v));
+        let direction = DVec3::new(out * cos, out * sin, -down);
+        // As in `sight_in`.
+        self.towards(direction * (1.5 - 0.5 * direction.length_squared()))
+    }
+
+    fn area(&self) -> f64 {
+        4.0 * PI * self.radius * self.radius
+    }
+
+    fn area_under(&self, map: &Affine) -> f64 {
+        ellipsoid_area_under(map, DVec3::splat(self.radius))
+    }
+
+    fn sample(&self, u: [f64; 2]) -> Option<Drawn> {
+        let direction = uniform_sphere(u);
+        let uv = longitude_latitude(direction);
+        Some(Drawn { point: self.at(uv), pdf: 1.0 / self.area() })
+    }
+
+    /// Evenly in the cone that it fills, or in all directions from inside.
+    ///
+    /// From outside the point is found from the angle at the centre, which has no difference of great numbers in it
+    /// (Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th edition, 2023, section 6.2.4): a sphere may be as
+    /// small or as distant as it likes.
+    fn sight_from(&self, place: DVec3, u: [f64; 2]) -> Option<Seen> {
+        let Some(cone) = self.cone(place) else {
+            let direction = uniform_sphere(u);
+            let ray = Ray { t_min: f64::MIN_POSITIVE, ..Ray::new(place, direction) };
+            let mut point = None;
+            self.meet(&ray, &mut |met| {
+                let here = self.at(met.uv).site();
+                // A place on the sphere is not seen from itself, though rounding may have moved it off.
+                let seen = met.t > 4.0 * here.error;
+                point = seen.then_some(here);
+                seen
+            });
+            return Some(Seen { site: point?, pdf: UNIFORM_SPHERE_PDF });
+        };
+        Some(self.sight_in(&cone, u))
+    }
+
+    fn sample_from(&self, place: DVec3, u: [f64; 2]) -> Option<Drawn> {
+        let Seen { site, pdf } = self.sight_from(place, u)?;
+        Some(Drawn { point: self.at(longitude_latitude(site.normal)), pdf })
+    }
+
+    fn pdf_from(&self, place: DVec3, direction: DVec3) -> f64 {
+        let is_met = self.cone(place).is_none() || self.meet(&Ray::new(place, direction), &mut |_| true);
+        if is_met { self.pdf_of_met(place, direction) } else { 0.0 }
+    }
+
+    fn ball(&self) -> Option<(DVec3, f64)> {
+        Some((self.center, self.radius))
+    }
+
+    fn pdf_of_met(&self, place: DVec3, _: DVec3) -> f64 {
+        self.cone(place).map_or(UNIFORM_SPHERE_PDF, |cone| 1.0 / (TAU * cone.height()))
+    }
+}
+
+/// The area of the image of an ellipsoid of given semi-axes, to about 10⁻¹⁴ of itself.
+///
+/// The image is the unit sphere's under L diag(a), and the singular values of that map's cofactors are the products of
+/// the image's semi-axes two by two.
+pub(super) fn ellipsoid_area_under(map: &Affine, axes: DVec3) -> f64 {
+    let [x, y, z] = axes.to_array();
+    let columns = [DVec3::X * (y * z), DVec3::Y * (z * x), DVec3::Z * (x * y)].map(|c| map.cofactors(c));
+    ellipsoid_area(at_right_angles(columns).map(DVec3::length))
+}

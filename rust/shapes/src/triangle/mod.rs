@@ -1,0 +1,28 @@
+//! Triangles: the exact decision whether a ray meets one, alone and by the block.
+
+mod bracket;
+mod clip;
+mod edge;
+mod in_cone;
+mod kept;
+mod leaves;
+mod nearest;
+mod plain;
+mod pretest;
+pub mod routines;
+mod rows;
+mod sixteen;
+mod spread;
+
+pub use bracket::Bracket;
+pub use clip::clipped;
+pub use edge::{Along, EdgeRay};
+pub use in_cone::SolidCone;
+pub use kept::{DoubleLeaves, SingleLeaves};
+pub use leaves::{Leaves, Real};
+pub use nearest::{NearestPoint, length, nearest_point, point_of};
+pub use plain::PlainRays;
+pub use pretest::{BlockRay, BlockRays};
+pub use rows::Rows;
+pub use sixteen::{ALL, Column, EdgeRays, Met, RAYS, bits};
+pub use spread::Spread;

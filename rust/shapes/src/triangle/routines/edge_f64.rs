@@ -1,0 +1,33 @@
+//! The library's own: the edge form in f64 with a bound on its error, and exact where the bound leaves a sign open.
+//!
+//! [`EdgeRay`] has the formulas and the proof. Corners are kept in f32 and widened when they are tested.
+
+use super::{Meeting, Routine, SingleRay};
+use crate::triangle::EdgeRay;
+use raywright_base::math::{Ray, Region, Vec3};
+
+/// The edge form in f64, exact where it is in doubt.
+pub struct EdgeF64;
+
+impl Routine for EdgeF64 {
+    const NAME: &'static str = "edge form, f64, exact";
+    type Triangle = [Vec3; 3];
+    /// None for a ray that hits nothing.
+    type Ray = Option<EdgeRay>;
+
+    fn triangle(corners: [Vec3; 3]) -> [Vec3; 3] {
+        corners
+    }
+
+    fn ray(ray: SingleRay, corners: [Vec3; 3]) -> Option<EdgeRay> {
+        let region = Region::around(corners.map(|c| c.as_dvec3()));
+        EdgeRay::new(&Ray::new(ray.origin.as_dvec3(), ray.direction.as_dvec3()), &region)
+    }
+
+    #[inline(always)]
+    fn meet(ray: &Option<EdgeRay>, corners: &[Vec3; 3]) -> Option<Meeting> {
+        let ray = ray.as_ref()?;
+        let found = ray.meet(corners.map(|c| c.as_dvec3()))?;
+        Some(Meeting { t: found.t * ray.scale, u: found.uv[0], v: found.uv[1] })
+    }
+}

@@ -1,0 +1,48 @@
+//! Signed volumes: Amanatides and Choi, "Ray Tracing Triangular Meshes" (1997); Segura and Feito, "Algorithms to Test
+//! Ray-Triangle Intersection. Comparative Study" (2001).
+//!
+//! With corners relative to the ray's origin, `d · (b × c)` is six times the volume of a tetrahedron between the ray
+//! and the edge from b to c, and its sign tells on which side of the edge the ray passes. In Plücker coordinates the
+//! same number is the side product of two lines. The three are also the weights of the corners, and with the volume
+//! under the whole triangle, `a · (b × c)`, they give t.
+//!
+//! An edge that two triangles share has the same volume in both, but for its sign, so nothing leaks between them. Far
+//! from the origin b and c are nearly the same vector, and their product is little but rounding.
+
+use super::{Meeting, Routine, SingleRay, relative, signs_differ};
+use raywright_base::math::Vec3;
+
+/// Signed volumes in f32.
+pub struct Volumes;
+
+impl Routine for Volumes {
+    const NAME: &'static str = "signed volumes";
+    type Triangle = [Vec3; 3];
+    type Ray = SingleRay;
+
+    fn triangle(corners: [Vec3; 3]) -> [Vec3; 3] {
+        corners
+    }
+
+    fn ray(ray: SingleRay, _: [Vec3; 3]) -> SingleRay {
+        ray
+    }
+
+    #[inline(always)]
+    fn meet(ray: &SingleRay, corners: &[Vec3; 3]) -> Option<Meeting> {
+        let [a, b, c] = relative(corners, ray.origin);
+        let bc = b.cross(c);
+        let of_a = ray.direction.dot(bc);
+        let of_b = ray.direction.dot(c.cross(a));
+        let of_c = ray.direction.dot(a.cross(b));
+        if signs_differ(of_a, of_b, of_c) {
+            return None;
+        }
+        let sum = of_a + of_b + of_c;
+        if sum == 0.0 {
+            return None;
+        }
+        let inverse = 1.0 / sum;
+        Meeting::new(a.dot(bc) * inverse, of_b * inverse, of_c * inverse)
+    }
+}

@@ -1,0 +1,250 @@
+//! Sixteen rays by columns, made ready together and tested against a triangle together.
+//!
+//! Every loop here runs over all columns, has no branch and does to each ray what [`EdgeRay`] does to one, in the same
+//! order and with the same roundings: so the compiler makes vectors of it, and the bits are the same.
+
+use super::EdgeRay;
+use raywright_base::math::robust::{greater, lesser};
+use raywright_base::math::{DVec3, Ray, RayBatch, Region};
+
+/// Rays that go together.
+pub const RAYS: usize = 16;
+
+/// A number of each ray.
+pub type Column<T> = [T; RAYS];
+
+/// Sixteen rays as triangles see them; see [`EdgeRay`] for what each number is.
+#[derive(Clone, Debug)]
+#[repr(C, align(64))]
+pub struct EdgeRays {
+    /// As given, by axis.
+    pub origin: [Column<f64>; 3],
+    /// The origin relative to the region's centre.
+    pub local: [Column<f64>; 3],
+    /// The direction as given.
+    unscaled: [Column<f64>; 3],
+    /// Scaled, once the rays are ready.
+    pub direction: [Column<f64>; 3],
+    /// Of the scaled direction, once the rays are ready.
+    pub t_min: Column<f64>,
+    /// Of the scaled direction, once the rays are ready.
+    pub t_max: Column<f64>,
+    /// `t` as given over `t` along the scaled direction.
+    pub scale: Column<f64>,
+    /// Bounds every coordinate of a corner relative to the origin.
+    pub largest: Column<f64>,
+}
+
+/// How sixteen rays meet a triangle.
+pub struct Met {
+    /// Rays that meet it for certain.
+    pub met: u32,
+    /// Rays for which f64 is not enough.
+    pub open: u32,
+    /// Along the scaled directions, or the directions as given.
+    pub t: Column<f64>,
+    /// Weights of the second and the third corner.
+    pub uv: [Column<f64>; 2],
+}
+
+impl Met {
+    /// None of them.
+    pub const NONE: Self = Self { met: 0, open: 0, t: [0.0; RAYS], uv: [[0.0; RAYS]; 2] };
+}
+
+impl Default for EdgeRays {
+    fn default() -> Self {
+        let zero = [0.0; RAYS];
+        Self {
+            origin: [zero; 3],
+            local: [zero; 3],
+            unscaled: [zero; 3],
+            direction: [zero; 3],
+            t_min: zero,
+            t_max: zero,
+            scale: zero,
+            largest: zero,
+        }
+    }
+}
+
+/// One bit for each ray.
+#[inline(always)]
+pub fn bits(flags: &Column<u32>) -> u32 {
+    let mut all = 0;
+    for i in 0..RAYS {
+        all |= flags[i] << i;
+    }
+    all
+}
+
+/// All rays.
+pub const ALL: u32 = u32::MAX >> (32 - RAYS);
+
+impl EdgeRays {
+    /// Takes up to sixteen rays of a batch, at least one; the last stands for those that are missing.
+    #[inline(always)]
+    pub fn take(&mut self, rays: &RayBatch<'_>, from: usize) {
+        match rays {
+            RayBatch::Rows(rays) => {
+                let rays = &rays[from..];
+                for i in 0..RAYS {
+                    self.put(i, &rays[if i < rays.len() { i } else { rays.len() - 1 }]);
+                }
+            }
+            RayBatch::Columns(columns) => {
+                let (origin, direction, t_min, t_max) = columns.parts();
+                origin.read(from, &mut self.origin);
+                direction.read(from, &mut self.unscaled);
+                t_min.read(from, &mut self.t_min);
+                t_max.read(from, &mut self.t_max);
+            }
+        }
+    }
+
+    /// Takes a ray in the place of the `i`-th.
+    #[inline(always)]
+    pub fn put(&mut self, i: usize, ray: &Ray) {
+        let i = i & (RAYS - 1);
+        (self.origin[0][i], self.origin[1][i], self.origin[2][i]) = (ray.origin.x, ray.origin.y, ray.origin.z);
+        let d = ray.direction;
+        (self.unscaled[0][i], self.unscaled[1][i], self.unscaled[2][i]) = (d.x, d.y, d.z);
+        (self.t_min[i], self.t_max[i]) = (ray.t_min, ray.t_max);
+    }
+
+    /// Makes rays that were taken ready, and says which are plain: not those that cannot hit anything, or are far from
+    /// the scene, or have a direction at the end of the range of f64. Those are better asked one by one.
+    #[inline(always)]
+    pub fn prepare(&mut self, region: &Region) -> u32 {
+        let mut plain = [0u32; RAYS];
+        for i in 0..RAYS {
+            let (ox, oy, oz) = (self.origin[0][i], self.origin[1][i], self.origin[2][i]);
+            let (dx, dy, dz) = (self.unscaled[0][i], self.unscaled[1][i], self.unscaled[2][i]);
+            let longest = greater(greater(dx.abs(), dy.abs()), dz.abs());
+            let finite = ox * 0.0 + dx * 0.0 + (oy * 0.0 + dy * 0.0) + (oz * 0.0 + dz * 0.0) == 0.0;
+            let biased = longest.to_bits() >> 52;
+            let (scale, inverse) = (f64::from_bits(2046u64.wrapping_sub(biased) << 52), f64::from_bits(biased << 52));
+            self.direction[0][i] = dx * scale;
+            self.direction[1][i] = dy * scale;
+            self.direction[2][i] = dz * scale;
+            self.scale[i] = scale;
+            let ordered = self.t_min[i] <= self.t_max[i];
+            self.t_min[i] *= inverse;
+            self.t_max[i] *= inverse;
+            let (lx, ly, lz) = (ox - region.centre.x, oy - region.centre.y, oz - region.centre.z);
+            self.local[0][i] = lx;
+            self.local[1][i] = ly;
+            self.local[2][i] = lz;
+            let far = greater(greater(lx.abs(), ly.abs()), lz.abs());
+            self.largest[i] = far + region.radius;
+            let near = far <= EdgeRay::FAR * region.radius;
+            // The largest numbers have an inverse that is subnormal.
+            let normal = (biased > 0) & (biased < 2046);
+            plain[i] = u32::from(finite & ordered & near & normal);
+        }
+        bits(&plain)
+    }
+
+    /// Tests all rays against a triangle; only the answers of those in `asked` count.
+    #[inline(always)]
+    pub fn meet(&self, [a, b, c]: [DVec3; 3], asked: u32) -> Met {
+        let mut met = Met::NONE;
+        let (mut certain, mut open) = ([0u32; RAYS], [0u32; RAYS]);
+        for i in 0..RAYS {
+            let corners = [[a.x, a.y, a.z], [b.x, b.y, b.z], [c.x, c.y, c.z]];
+            (certain[i], open[i], met.t[i], met.uv[0][i], met.uv[1][i]) = self.meet_one::<false>(i, corners);
+        }
+        met.met = bits(&certain) & asked;
+        met.open = bits(&open) & asked;
+        met
+    }
+
+    /// Where each ray meets a triangle of its own, given by corner and axis, of which it is known to meet it between
+    /// its `t_min` and `t_max`. Open are those for which f64 does not say where; only those in `asked` count.
+    #[inline(always)]
+    pub fn won<T: Copy + Into<f64>>(&self, [a, b, c]: &[[Column<T>; 3]; 3], asked: u32) -> Met {
+        /// No closure: those are not always inlined.
+        #[inline(always)]
+        fn of<T: Copy + Into<f64>>(corner: &[Column<T>; 3], i: usize) -> [f64; 3] {
+            [corner[0][i].into(), corner[1][i].into(), corner[2][i].into()]
+        }
+        let mut met = Met::NONE;
+        let mut certain = [0u32; RAYS];
+        for i in 0..RAYS {
+            let (_, is_open, t, v, w) = self.meet_one::<true>(i, [of(a, i), of(b, i), of(c, i)]);
+            let t = t * self.scale[i];
+            certain[i] = u32::from((is_open == 0) & (t.abs() <= f64::MAX));
+            (met.t[i], met.uv[0][i], met.uv[1][i]) = (t, v, w);
+        }
+        met.met = bits(&certain) & asked;
+        met.open = asked & !met.met;
+        met
+    }
+
+    /// Whether a ray meets a triangle for certain, whether that is open, and where it does: `t`, and the weights of the
+    /// second and the third corner. Where it is known to, nobody asks for the first.
+    #[inline(always)]
+    fn meet_one<const WON: bool>(&self, i: usize, corners: [[f64; 3]; 3]) -> (u32, u32, f64, f64, f64) {
+        let [[ax, ay, az], [bx, by, bz], [cx, cy, cz]] = corners;
+        let (ox, oy, oz) = (self.origin[0][i], self.origin[1][i], self.origin[2][i]);
+        let (dx, dy, dz) = (self.direction[0][i], self.direction[1][i], self.direction[2][i]);
+        let (ax, ay, az) = (ax - ox, ay - oy, az - oz);
+        let (bx, by, bz) = (bx - ox, by - oy, bz - oz);
+        let (cx, cy, cz) = (cx - ox, cy - oy, cz - oz);
+        let u = volume(dx, dy, dz, bx, by, bz, cx, cy, cz);
+        let v = volume(dx, dy, dz, cx, cy, cz, ax, ay, az);
+        let w = volume(dx, dy, dz, ax, ay, az, bx, by, bz);
+        let largest = self.largest[i];
+        let above = EdgeRay::sign_error(largest);
+        let passed = !WON & ((u > above) | (v > above) | (w > above)) & ((u < -above) | (v < -above) | (w < -above));
+        let (sx, sy, sz) = (dx.abs(), dy.abs(), dz.abs());
+        let longest = greater(greater(sx, sy), sz);
+        let (is_x, is_y) = (sx == longest, sy == longest);
+        let za = if is_x {
+            ax
+        } else if is_y {
+            ay
+        } else {
+            az
+        };
+        let zb = if is_x {
+            bx
+        } else if is_y {
+            by
+        } else {
+            bz
+        };
+        let zc = if is_x {
+            cx
+        } else if is_y {
+            cy
+        } else {
+            cz
+        };
+        let d = if is_x {
+            dx
+        } else if is_y {
+            dy
+        } else {
+            dz
+        };
+        let least = lesser(lesser(u.abs(), v.abs()), w.abs());
+        let sum = u + v + w;
+        let range = greater(greater(za, zb), zc) - lesser(lesser(za, zb), zc);
+        let t = (u * za + v * zb + w * zc) / (sum * d);
+        let is_certain = (least > above)
+            & (6.0 * above * range <= EdgeRay::T_ERROR * largest * sum.abs())
+            & !EdgeRay::may_be_behind(t, self.t_min[i], sum, range, above);
+        let counts = (t >= self.t_min[i]) & (t <= self.t_max[i]) & ((t * self.scale[i]).abs() <= f64::MAX);
+        (u32::from(!passed & is_certain & counts), u32::from(!passed & !is_certain), t, v / sum, w / sum)
+    }
+}
+
+/// `d · ((v − w) × (v + w))`.
+#[inline(always)]
+#[allow(clippy::too_many_arguments)]
+fn volume(dx: f64, dy: f64, dz: f64, vx: f64, vy: f64, vz: f64, wx: f64, wy: f64, wz: f64) -> f64 {
+    let (px, py, pz) = (vx - wx, vy - wy, vz - wz);
+    let (qx, qy, qz) = (vx + wx, vy + wy, vz + wz);
+    dx * (py * qz - qy * pz) + dy * (pz * qx - qz * px) + dz * (px * qy - qx * py)
+}
