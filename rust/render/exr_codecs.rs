@@ -1,7 +1,7 @@
-//! Decoders of EXR chunks that go symbol by symbol: run lengths, and PIZ (Huffman codes of a Haar wavelet). The other
-//! methods are zlib and whole-array arithmetic, and stand in `python/raywright/io/exr_codecs.py`.
+//! Decoders of EXR chunks that go symbol by symbol: differences, run lengths, and PIZ (Huffman codes of a wavelet). The
+//! rest is zlib and arithmetic of whole arrays, in `python/raywright/io/exr/`.
 //!
-//! After `ImfRle.cpp`, `ImfHuf.cpp`, `ImfWav.cpp` and `ImfPizCompressor.cpp` of OpenEXR. Every function takes any bytes:
+//! After `ImfZip.cpp`, `ImfRle.cpp`, `ImfHuf.cpp`, `ImfWav.cpp` and `ImfPizCompressor.cpp` of OpenEXR. Each takes any bytes:
 //! it returns what they hold or an error, and allocates no more than a multiple of their number.
 
 /// Number of 16-bit symbols, and the code after them that repeats the last one.
@@ -14,6 +14,23 @@ const SHORT_RUN: u64 = 59;
 const LONG_RUN: u64 = 63;
 /// A run takes at least 9 bits and yields at most 255 symbols.
 const MOST_SYMBOLS_PER_BIT: usize = 255 / 9 + 1;
+
+/// Sum the differences that ZIP and RLE store, each with 128 added; the even bytes come before the odd ones.
+pub fn integrate(data: &[u8]) -> Vec<u8> {
+    let mut out = vec![0; data.len()];
+    let (even, odd) = data.split_at(data.len().div_ceil(2));
+    let mut last = 128_u8;
+    for (pair, difference) in out.chunks_mut(2).zip(even) {
+        // The highest bit is 128, and only the sum depends on the last byte: one addition each.
+        last = last.wrapping_add(difference ^ 128);
+        pair[0] = last;
+    }
+    for (pair, difference) in out.chunks_exact_mut(2).zip(odd) {
+        last = last.wrapping_add(difference ^ 128);
+        pair[1] = last;
+    }
+    out
+}
 
 /// Decode `count` bytes of run lengths: n >= 0 repeats the next byte n + 1 times, n < 0 copies -n bytes.
 ///
@@ -323,6 +340,13 @@ fn modular_pair(mean: u16, difference: u16) -> (u16, u16) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn differences_are_summed_and_bytes_interleaved() {
+        // 10 20 30 and 11 21 in that order.
+        assert_eq!(integrate(&[10, 138, 138, 109, 138]), [10, 11, 20, 21, 30]);
+        assert!(integrate(&[]).is_empty());
+    }
 
     #[test]
     fn runs_are_decoded_and_their_count_is_checked() {

@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .exr.reader import read_exr
 from .quiet import quiet, reason
 from .radiance_hdr import read_hdr
 from .shown import FORMATS, check_format
@@ -105,6 +104,9 @@ def read(path: str | PathLike[str]) -> NDArray[Any]:
         elif suffix == ".hdr":
             array = read_hdr(path)
         elif suffix == ".exr":
+            # Whoever reads none does not wait for the import.
+            from .exr.reader import read_exr
+
             array = read_exr(path, _colours)
         else:
             array = decode(path)

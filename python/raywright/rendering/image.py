@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from .. import _core
 from ..arrays import frozen, number, thread_limit
 from ..io import pictures, shown
-from ..io.exr.layers import write_layers
 from ..io.tone import DEFAULT, check_tone
 from .denoising import check_method, denoised
 from .halves import Halves
@@ -307,6 +306,9 @@ class Image:
         if suffix == ".npy":
             np.save(path, self.rgb)
         elif suffix == ".exr":
+            # Whoever saves none does not wait for the import.
+            from ..io.exr.layers import write_layers
+
             write_layers(path, self.rgb, self.standard_error, self.alpha, self.aov)
         else:
             alpha = None if shown.FORMATS[suffix] == "JPEG" else self.alpha

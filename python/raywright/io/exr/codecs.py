@@ -8,7 +8,7 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from ..._core import exr_piz, exr_run_lengths
+from ..._core import exr_integrate, exr_piz, exr_run_lengths
 from .header import Channel, Part
 
 Octets: TypeAlias = NDArray[np.uint8]
@@ -46,12 +46,12 @@ def deflate(raw: Octets) -> bytes:
     """Return bytes as the method ZIP packs them; as they are if that is no longer."""
     halves = np.concatenate([raw[0::2], raw[1::2]])
     halves[1:] -= halves[:-1] + np.uint8(128)
-    # The level that OpenEXR takes.
-    packed = zlib.compress(halves.tobytes(), 4)
+    # Level 4, OpenEXR's own, gains 0 to 2 % of rendered pictures and takes 1.2 to 2.6 times as long.
+    packed = zlib.compress(halves.tobytes(), 1)
     return packed if len(packed) < raw.size else raw.tobytes()
 
 
-def inflate(packed: bytes, size: int) -> Octets:
+def inflate(packed: bytes, size: int) -> bytes:
     """Undo zlib, to just so many bytes.
 
     Raises
@@ -65,22 +65,10 @@ def inflate(packed: bytes, size: int) -> Octets:
         # The end, with its check sum, may still be to come.
         more = b"" if inflater.eof else inflater.decompress(inflater.unconsumed_tail, 1)
     except zlib.error as error:
-        raise ValueError(str(error)) from error
+        raise ValueError("its zlib stream is broken") from error
     if len(raw) != size or more or not inflater.eof:
         raise ValueError("it is not as long as it should be")
-    return np.frombuffer(raw, np.uint8)
-
-
-def integrate(coded: Octets) -> Octets:
-    """Undo the differences of ZIP and RLE, and bring the even bytes, which come first, among the odd ones."""
-    # Each difference has 128 added: an odd number of them is the highest bit, for there the sum is modulo 256.
-    summed: Octets = np.add.accumulate(coded, dtype=np.uint8)
-    summed.view("<u2")[...] ^= 0x8000
-    half = len(summed) // 2
-    words = summed[half:].astype("<u2")
-    words <<= 8
-    words |= summed[:half]
-    return words.view(np.uint8)
+    return raw
 
 
 def _rows(raw: bytes | Octets, block: Block, wanted: Sequence[Channel]) -> list[Plane]:
@@ -96,11 +84,11 @@ def _rows(raw: bytes | Octets, block: Block, wanted: Sequence[Channel]) -> list[
 
 
 def _rle(packed: bytes, block: Block, wanted: Sequence[Channel]) -> list[Plane]:
-    return _rows(integrate(exr_run_lengths(packed, block.size)), block, wanted)
+    return _rows(exr_integrate(exr_run_lengths(packed, block.size)), block, wanted)
 
 
 def _zip(packed: bytes, block: Block, wanted: Sequence[Channel]) -> list[Plane]:
-    return _rows(integrate(inflate(packed, block.size)), block, wanted)
+    return _rows(exr_integrate(inflate(packed, block.size)), block, wanted)
 
 
 def _piz(packed: bytes, block: Block, wanted: Sequence[Channel]) -> list[Plane]:
@@ -109,33 +97,35 @@ def _piz(packed: bytes, block: Block, wanted: Sequence[Channel]) -> list[Plane]:
     found = []
     for channel in wanted:
         begin, end = (
-            block.width * block.rows * n // 2
-            for n in (channel.start, channel.start + channel.dtype.itemsize)
+            block.width * block.rows * n // 2 for n in (channel.start, channel.start + channel.dtype.itemsize)
         )
         found.append(samples[begin:end].view(channel.dtype).reshape(block.rows, block.width))
     return found
 
 
 def _pxr24(packed: bytes, block: Block, wanted: Sequence[Channel]) -> list[Plane]:
-    """Sum the differences along each row, whose highest bytes come first; floats have lost their lowest one."""
+    """Sum differences along each row. Their highest bytes come first; floats lack their lowest byte."""
     begins = [0]
     for channel in block.part.channels:
         begins.append(begins[-1] + block.width * (4, 2, 3)[channel.kind])
-    rows = inflate(packed, begins[-1] * block.rows).reshape(block.rows, -1)
+    raw = inflate(packed, begins[-1] * block.rows)
+    rows = np.frombuffer(raw, np.uint8).reshape(block.rows, -1)
     found = []
     for channel in wanted:
         number = block.part.channels.index(channel)
         octets = rows[:, begins[number] : begins[number + 1]].reshape(block.rows, -1, block.width)
-        unsigned = np.dtype("<u2") if channel.kind == 1 else np.dtype("<u4")
-        differences = np.zeros((block.rows, block.width), unsigned)
+        # Bytes of the type from the highest to the lowest.
+        differences = np.zeros((block.rows, block.width, channel.dtype.itemsize), np.uint8)
         for k in range(octets.shape[1]):
-            differences |= octets[:, k].astype(unsigned) << unsigned.type(8 * (unsigned.itemsize - 1 - k))
-        found.append(np.add.accumulate(differences, axis=1, dtype=unsigned).view(channel.dtype))
+            differences[..., -1 - k] = octets[:, k]
+        unsigned = f"<u{channel.dtype.itemsize}"
+        summed = np.add.accumulate(differences.view(unsigned)[..., 0], axis=1, dtype=unsigned)
+        found.append(summed.view(channel.dtype))
     return found
 
 
 def _b44(packed: bytes, block: Block, wanted: Sequence[Channel]) -> list[Plane]:
-    """Unpack half channels from 4 x 4 samples in 14 bytes, or 3 where all are the same; others are as they are."""
+    """Unpack half channels from 4 x 4 samples in 14 bytes, or in 3 where all are equal; copy the others."""
     found = {}
     samples = block.width * block.rows
     across, down = -(-block.width // 4), -(-block.rows // 4)
@@ -147,16 +137,25 @@ def _b44(packed: bytes, block: Block, wanted: Sequence[Channel]) -> list[Plane]:
             end = at + 4 * samples
             if end > len(packed):
                 raise ValueError("it is cut short")
-            found[channel.name] = np.frombuffer(packed[at:end], channel.dtype).reshape(block.rows, block.width)
+            stored = np.frombuffer(packed[at:end], channel.dtype)
+            found[channel.name] = stored.reshape(block.rows, block.width)
         else:
             starts, end = _starts_of_4x4(packed, at, across * down)
             if channel in wanted:
                 values = _values_of_4x4(octets, starts).reshape(down, across, 4, 4)
-                plane = values.transpose(0, 2, 1, 3).reshape(4 * down, 4 * across)[: block.rows, : block.width]
+                whole = values.transpose(0, 2, 1, 3).reshape(4 * down, 4 * across)
+                plane = whole[: block.rows, : block.width]
                 plane = _from_perceptual()[plane] if channel.is_perceptual else plane
                 found[channel.name] = np.ascontiguousarray(plane, "<u2").view(channel.dtype)
         at = end
     return [found[channel.name] for channel in wanted]
+
+
+def _dwa(packed: bytes, block: Block, wanted: Sequence[Channel]) -> list[Plane]:
+    """Unpack blocks of cosines, which need modules of their own."""
+    from .dwa import unpack
+
+    return unpack(packed, block, wanted)
 
 
 def _starts_of_4x4(packed: bytes, at: int, count: int) -> tuple[NDArray[np.int64], int]:
@@ -180,8 +179,8 @@ def _values_of_4x4(octets: Octets, starts: NDArray[np.int64]) -> Words:
     triples = blocks[:, 2:].reshape(-1, 4, 3).astype(np.uint32) @ np.array([1 << 16, 1 << 8, 1], np.uint32)
     fields = triples[..., np.newaxis] >> np.array([18, 12, 6, 0], np.uint32) & np.uint32(63)
     shift = fields[:, :1, :1]
-    # By column and row: the first field is the shift, the others are what is added, on the way down the first column
-    # and from each of its samples to the right.
+    # By column and row. The first field is the shift; the others are steps down the first column, and from
+    # each of its samples to the right.
     steps = (fields.astype(np.int32) - 32 << np.minimum(shift, 12).astype(np.int32)).astype(np.uint16)
     steps[shift[:, 0, 0] >= 13] = 0
     steps[:, 0, 0] = blocks[:, 0].astype(np.uint16) << np.uint16(8) | blocks[:, 1]
@@ -193,7 +192,7 @@ def _values_of_4x4(octets: Octets, starts: NDArray[np.int64]) -> Words:
 
 @cache
 def _from_perceptual() -> Words:
-    """Return, by the bits of a half x, those of 8 log(x): what B44 stores of channels that are perceptually linear."""
+    """Return a table of 8 log(x) by the bits of x: B44 stores exp(x / 8) of perceptually linear channels."""
     x = np.arange(65536, dtype=np.uint16).view(np.float16).astype(np.float32)
     with np.errstate(all="ignore"):
         logs = (8 * np.log(x.astype(np.float64))).astype(np.float16)
@@ -201,4 +200,4 @@ def _from_perceptual() -> Words:
 
 
 _Method: TypeAlias = Callable[[bytes, Block, Sequence[Channel]], list[Plane]]
-_METHODS: tuple[_Method, ...] = (_rows, _rle, _zip, _zip, _piz, _pxr24, _b44, _b44)
+_METHODS: tuple[_Method, ...] = (_rows, _rle, _zip, _zip, _piz, _pxr24, _b44, _b44, _dwa, _dwa)

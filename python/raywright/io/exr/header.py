@@ -1,4 +1,4 @@
-"""Headers of EXR files, and the table of their chunks: checked before anything is allocated for what they promise."""
+"""Headers of EXR files and the tables of their chunks, checked before pixels are allocated."""
 
 import struct
 from collections.abc import Callable
@@ -12,9 +12,10 @@ TILED, LONG_NAMES, DEEP, PARTS = 0x200, 0x400, 0x800, 0x1000
 # 16384 x 8192.
 MOST_POINTS = 2**27
 _MOST_HEADER = 2**24
-# By the number of the compression: rows in a chunk, and the most bytes that one packed byte can stand for. Deflate
-# yields 258 bytes for 2 bits (1032), PXR24 drops one byte of four after it; a run of RLE is 128 bytes for 2, one of
-# PIZ 255 words for 9 bits, a flat block of B44 32 bytes for 3. DWA packs runs, or blocks of 128 bytes in 2, again.
+# By the number of the compression: rows in a chunk, and a bound on the bytes that one packed byte expands to.
+# Deflate expands 2 bits to 258 bytes (1032), and PXR24 omits one byte of four before it. A run of RLE is 128
+# bytes in 2, a run of PIZ 255 words in 9 bits, a flat block of B44 32 bytes in 3. DWA deflates runs, and
+# blocks of up to 256 bytes that take 4.
 _ROWS = (1, 1, 1, 16, 32, 16, 32, 32, 32, 256)
 _MOST_RATIO = (1, 64, 1032, 1032, 464, 1376, 11, 11, 2**17, 2**17)
 
@@ -39,7 +40,6 @@ class Part(NamedTuple):
     number: int
     width: int
     height: int
-    left: int
     top: int
     compression: int
     tile: tuple[int, int] | None
@@ -68,7 +68,7 @@ class Chunk(NamedTuple):
 
 
 def read_header(file: BinaryIO, size: int) -> tuple[Part, int, bool]:
-    """Read the first part that is no deep one, where its table of chunks begins, and whether parts are numbered.
+    """Return the first part that is not deep, the start of its table, and whether chunks name their part.
 
     Raises
     ------
@@ -165,7 +165,7 @@ def _part(number: int, found: dict[bytes, bytes], tiled: bool) -> Part:
     if width * height > MOST_POINTS:
         raise ValueError(f"it has {width} x {height} points by its header, and {MOST_POINTS} are read")
     if compression[0] >= len(_ROWS):
-        raise ValueError(f"its compression has the number {compression[0]}, and 0 to {len(_ROWS) - 1} are read")
+        raise ValueError(f"its compression is number {compression[0]}, and 0 to {len(_ROWS) - 1} are read")
     tile = None
     if tiled:
         tiles = found.get(b"tiles", b"")
@@ -173,7 +173,8 @@ def _part(number: int, found: dict[bytes, bytes], tiled: bool) -> Part:
         if min(tile) < 1:
             raise ValueError("its header has no size of tiles")
         tile = (min(tile[0], width), min(tile[1], height))
-    return Part(number, width, height, left, top, compression[0], tile, _channels(found.get(b"channels", b"\0")))
+    channels = _channels(found.get(b"channels", b""))
+    return Part(number, width, height, top, compression[0], tile, channels)
 
 
 def _channels(data: bytes) -> tuple[Channel, ...]:

@@ -30,9 +30,8 @@ def read_exr(path: Path, choose: Callable[[list[str]], Sequence[str]]) -> NDArra
     Raises
     ------
     ValueError
-        If the file is cut short or broken, or holds what is not read: deep pixels, channels of fewer points than the
-        picture, more than `header.MOST_POINTS`, or a compression other than none, RLE, ZIP, ZIPS, PIZ, PXR24, B44,
-        B44A, DWAA and DWAB.
+        If the file is cut short or broken, or has deep pixels, channels of fewer points than the picture,
+        more than `header.MOST_POINTS` points, or a compression after DWAB (HTJ2K).
     """
     with path.open("rb") as file:
         size = os.fstat(file.fileno()).st_size

@@ -1,8 +1,7 @@
-"""Work on the chunks of a picture, in as many threads as pay: zlib, numpy and the core run beside each other."""
+"""Threads for the chunks of a picture: zlib, numpy and the core release the interpreter's lock."""
 
 import os
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from typing import TypeVar
 
 T = TypeVar("T")
@@ -13,10 +12,13 @@ _FEW = 2**20
 
 
 def each(function: Callable[[T], Result], items: Sequence[T], size: int) -> Iterator[Result]:
-    """Yield a function's result for each of some items, in their order; `size` is that of all, in bytes."""
+    """Yield the result of a function for each item, in order; `size` is the number of bytes of all items."""
     workers = min(os.cpu_count() or 1, len(items))
     if workers < 2 or size < _FEW:
         yield from map(function, items)
         return
+    # Whoever packs nothing does not wait for the import.
+    from concurrent.futures import ThreadPoolExecutor
+
     with ThreadPoolExecutor(workers) as pool:
         yield from pool.map(function, items)
