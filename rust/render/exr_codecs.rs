@@ -1,8 +1,8 @@
 //! Decoders of EXR chunks that go symbol by symbol: differences, run lengths, and PIZ (Huffman codes of a wavelet). The
 //! rest is zlib and arithmetic of whole arrays, in `python/raywright/io/exr/`.
 //!
-//! After `ImfZip.cpp`, `ImfRle.cpp`, `ImfHuf.cpp`, `ImfWav.cpp` and `ImfPizCompressor.cpp` of OpenEXR. Each takes any bytes:
-//! it returns what they hold or an error, and allocates no more than a multiple of their number.
+//! After `ImfZip.cpp`, `ImfRle.cpp`, `ImfHuf.cpp`, `ImfWav.cpp` and `ImfPizCompressor.cpp` of OpenEXR. Each function
+//! takes any bytes, and returns their content or an error; it allocates no more than a multiple of their number.
 
 /// Number of 16-bit symbols, and the code after them that repeats the last one.
 const SYMBOLS: usize = 1 << 16;

@@ -6,7 +6,7 @@ So do ours: 1 of 3000 samples is another half, as its stored value is rounded to
 
 import struct
 from collections.abc import Sequence
-from functools import cache
+from functools import cache, lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -34,6 +34,8 @@ _ZIGZAG = np.array(
 # samples.
 _HALF_COSINES = (0.3535536, 0.4903927, 0.4619398, 0.4157349, 0.3535536, 0.2777855, 0.1913422, 0.09754573, 0)
 _HEAD = struct.Struct("<11Q")
+# OpenEXR writes up to 15.
+_MOST_RULES = 64
 
 
 class _Sizes(NamedTuple):
@@ -199,8 +201,9 @@ def _to_linear() -> Words:
     return np.where(np.isfinite(x), halves, np.float16(0)).view(np.uint16)
 
 
+@lru_cache(maxsize=16)
 def _classify(
-    channels: Sequence[Channel], rules: Sequence[_Rule]
+    channels: tuple[Channel, ...], rules: tuple[_Rule, ...]
 ) -> tuple[list[int], list[tuple[Channel, ...]]]:
     """Return the scheme of each channel, and groups of those that are cosines: triples of colours first."""
     schemes = []
@@ -226,24 +229,25 @@ def _classify(
     return schemes, [tuple(channels[n] for n in group) for group in threes + ones]
 
 
-def _read_rules(packed: bytes, at: int) -> tuple[list[_Rule], int]:
+def _read_rules(packed: bytes, at: int) -> tuple[tuple[_Rule, ...], int]:
     end = at + int.from_bytes(packed[at : at + 2], "little")
     if not at + 2 <= end <= len(packed):
         raise ValueError("it is cut short")
-    rest, rules = packed[at + 2 : end], []
+    rest = packed[at + 2 : end]
+    rules: list[_Rule] = []
     while rest:
         suffix, _, rest = rest.partition(b"\0")
-        if len(rest) < 2 or rest[0] >> 4 > 3 or rest[0] >> 2 & 3 > 2:
+        if len(rest) < 2 or rest[0] >> 4 > 3 or rest[0] >> 2 & 3 > 2 or len(rules) == _MOST_RULES:
             raise ValueError("its rules are broken")
         flags, kind = rest[:2]
         rules.append(
             _Rule(suffix.decode("utf-8", "replace"), kind, flags >> 2 & 3, flags >> 4, bool(flags & 1))
         )
         rest = rest[2:]
-    return rules, end
+    return tuple(rules), end
 
 
-def _old_rules() -> list[_Rule]:
+def _old_rules() -> tuple[_Rule, ...]:
     """Return the rules of chunks that have none."""
     names = ("y by ry", "r red", "g grn green", "b blu blue")
     lossy = [
@@ -252,4 +256,4 @@ def _old_rules() -> list[_Rule]:
         for suffix in suffixes.split()
         for kind in (1, 2)
     ]
-    return [*lossy, *(_Rule("a", kind, _RUNS, 0, True) for kind in range(3))]
+    return (*lossy, *(_Rule("a", kind, _RUNS, 0, True) for kind in range(3)))

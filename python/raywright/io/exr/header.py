@@ -12,6 +12,7 @@ TILED, LONG_NAMES, DEEP, PARTS = 0x200, 0x400, 0x800, 0x1000
 # 16384 x 8192.
 MOST_POINTS = 2**27
 _MOST_HEADER = 2**24
+_MOST_CHANNELS = 2**14
 # By the number of the compression: rows in a chunk, and a bound on the bytes that one packed byte expands to.
 # Deflate expands 2 bits to 258 bytes (1032), and PXR24 omits one byte of four before it. A run of RLE is 128
 # bytes in 2, a run of PIZ 255 words in 9 bits, a flat block of B44 32 bytes in 3. DWA deflates runs, and
@@ -140,7 +141,7 @@ def find_chunks(data: bytes, part: Part, table: int, numbered: bool) -> list[Chu
     _refuse(misplaced | ~is_first, lambda n: f"it is broken: chunk {n} is in no place of its own")
     x, y = column * width, row * rows
     widths, heights = np.minimum(width, part.width - x), np.minimum(rows, part.height - y)
-    # As floats: numbers of a hostile header may exceed 64 bits.
+    # As floats: sizes of a hostile header may exceed 64 bits.
     _refuse(
         widths * heights * float(part.pixel_bytes) > length * float(_MOST_RATIO[part.compression]),
         lambda n: f"it is cut short or broken: chunk {n} has {length[n]} bytes, too few for its points",
@@ -178,20 +179,23 @@ def _part(number: int, found: dict[bytes, bytes], tiled: bool) -> Part:
 
 
 def _channels(data: bytes) -> tuple[Channel, ...]:
-    found, start = [], 0
-    while data[:1] not in (b"", b"\0"):
-        name, _, rest = data.partition(b"\0")
-        if len(rest) < 16:
+    found: list[Channel] = []
+    at = start = 0
+    while data[at : at + 1] not in (b"", b"\0"):
+        end = data.find(b"\0", at)
+        if end < 0 or end + 17 > len(data):
             raise ValueError("its header is broken")
-        kind, is_perceptual, *sampling = struct.unpack("<iB3x2i", rest[:16])
-        told = name.decode("utf-8", "replace")
+        if len(found) == _MOST_CHANNELS:
+            raise ValueError(f"it has more than {_MOST_CHANNELS} channels")
+        name = data[at:end].decode("utf-8", "replace")
+        kind, is_perceptual, *sampling = struct.unpack_from("<iB3x2i", data, end + 1)
         if not 0 <= kind <= 2:
-            raise ValueError(f"its channel {told} is of no known type")
+            raise ValueError(f"its channel {name} is of no known type")
         if sampling != [1, 1]:
-            raise ValueError(f"its channel {told} has fewer points than the picture")
-        found.append(Channel(told, kind, bool(is_perceptual), start))
+            raise ValueError(f"its channel {name} has fewer points than the picture")
+        found.append(Channel(name, kind, bool(is_perceptual), start))
         start += found[-1].dtype.itemsize
-        data = rest[16:]
+        at = end + 17
     if not found:
         raise ValueError("it has no channels")
     return tuple(found)
