@@ -212,6 +212,9 @@ def chunks_of(count, data=bytes(12)):
 
 
 ZEROS = zlib.compress(bytes(10**7))
+# A chunk of DWA with Y as it is, and A as no runs, which expand to all of the bomb.
+FOUR = zlib.compress(bytes(4))
+NO_RUNS = struct.pack("<11QH2s2B", 2, 4, len(FOUR), 0, 0, len(ZEROS), 0, 4, 0, 0, 0, 6, b"A", 2 << 2, 2)
 ONE = head(1, 2)
 BROKEN = {
     "given twice": (with_chunks(head(1, 3), chunks_of(3), (0, 1, 1)), "chunk 2 is in no place of its own"),
@@ -219,6 +222,10 @@ BROKEN = {
     "too few": (with_chunks(ONE, [rows(0, bytes(12)), rows(1, bytes(11))]), "chunk 1 has 11 bytes, too few"),
     "too many": (with_chunks(ONE, chunks_of(2, bytes(13))), "chunk 0 is broken: it is not as long"),
     "a bomb": (with_chunks(head(1, 1, compression=3), [rows(0, ZEROS)]), "it is not as long as it should"),
+    "a bomb of runs": (
+        with_chunks(head(1, 1, "AY", compression=8), [rows(0, NO_RUNS + FOUR + ZEROS)]),
+        "chunk 0 is broken: it is not as long",
+    ),
     "no zlib": (with_chunks(head(9, 1, compression=3), [rows(0, b"x" * 50)]), "its zlib stream is broken"),
     "subsampled": (with_chunks(head(4, 2, sampling=2), chunks_of(2)), "its channel B has fewer points"),
     "unknown type": (with_chunks(head(1, 1, kind=3), chunks_of(1)), "its channel B is of no known type"),

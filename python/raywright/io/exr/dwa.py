@@ -70,7 +70,7 @@ class _Rule(NamedTuple):
         return same and channel.kind == self.kind
 
 
-def unpack(packed: bytes, block: Block, wanted: Sequence[Channel]) -> list[Plane]:
+def unpack_dwa(packed: bytes, block: Block, wanted: Sequence[Channel]) -> list[Plane]:
     """Return the samples of some channels of a packed block, each (rows, width) of the channel's own type.
 
     Raises

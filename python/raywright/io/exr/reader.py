@@ -7,8 +7,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from .codecs import Block, planes
+from .codecs import Block
 from .header import Channel, Chunk, find_chunks, read_header
+from .methods import unpack
 from .threads import each
 
 
@@ -45,11 +46,11 @@ def read_exr(path: Path, choose: Callable[[list[str]], Sequence[str]]) -> NDArra
     chunks = find_chunks(data, part, table, numbered)
     pixels = np.empty((part.height, part.width, len(wanted)), np.float32)
 
-    def unpack(item: tuple[int, Chunk]) -> None:
+    def place_chunk(item: tuple[int, Chunk]) -> None:
         number, chunk = item
         packed = data[chunk.start : chunk.start + chunk.length]
         try:
-            found = planes(packed, Block(part, chunk.width, chunk.rows), wanted)
+            found = unpack(packed, Block(part, chunk.width, chunk.rows), wanted)
         except ValueError as error:
             raise ValueError(f"chunk {number} is broken: {error}") from error
         place = pixels[chunk.y : chunk.y + chunk.rows, chunk.x : chunk.x + chunk.width]
@@ -58,6 +59,6 @@ def read_exr(path: Path, choose: Callable[[list[str]], Sequence[str]]) -> NDArra
             for k, plane in enumerate(found):
                 place[..., k] = plane
 
-    for _ in each(unpack, list(enumerate(chunks)), part.width * part.height * part.pixel_bytes):
+    for _ in each(place_chunk, list(enumerate(chunks)), part.width * part.height * part.pixel_bytes):
         pass
     return pixels
