@@ -34,7 +34,10 @@ __all__ = [
     "daylight_power",
     "denoise_candidates",
     "denoise_settle",
-    "exr_channels",
+    "exr_huffman",
+    "exr_integrate",
+    "exr_piz",
+    "exr_run_lengths",
     "first_hits",
     "implicit_trouble",
     "interactions",
@@ -684,8 +687,17 @@ def shape_area(shape: Any) -> float:
 def matrix_trouble(matrix: list[list[float]]) -> str | None:
     """Why an affine matrix (4 rows of 4) has no inverse, or None if it has one."""
 
-def exr_channels(data: bytes) -> tuple[int, int, list[tuple[str, NDArray[np.float32]]]]:
-    """Read the channels of an EXR file's first part: width, height, and numbers from the top by name."""
+def exr_integrate(data: bytes) -> NDArray[np.uint8]:
+    """Sum the differences of an EXR chunk, and interleave its bytes."""
+
+def exr_run_lengths(data: bytes, count: int) -> bytes:
+    """Decode so many bytes of run lengths."""
+
+def exr_huffman(data: bytes, count: int) -> NDArray[np.uint16]:
+    """Decode so many words of OpenEXR's Huffman code."""
+
+def exr_piz(data: bytes, width: int, rows: int, words: Sequence[int]) -> NDArray[np.uint16]:
+    """Decode a PIZ chunk, channel by channel, given the words of each one's samples."""
 
 def metals() -> list[tuple[str, str]]:
     """Tell the metals that are known: symbol and name."""

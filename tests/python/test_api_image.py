@@ -4,7 +4,6 @@ import io
 import math
 import os
 import pickle
-import sys
 
 import numpy as np
 import OpenEXR
@@ -163,13 +162,6 @@ def test_folders_and_files_without_permission(tmp_path, there):
             rw.check_writable(path)
     finally:
         tmp_path.chmod(0o700)
-
-
-def test_exr_without_openexr_names_the_extra(tmp_path, picture, monkeypatch):
-    monkeypatch.setitem(sys.modules, "OpenEXR", None)
-    for save in (rw.check_writable, picture.save):
-        with pytest.raises(ImportError, match=r"pip install 'raywright\[exr\]'"):
-            save(tmp_path / "a.exr")
 
 
 @pytest.mark.parametrize("path", [3, None, b"a.png"])

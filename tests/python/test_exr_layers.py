@@ -1,13 +1,16 @@
-"""Layers of EXR files: what each is called, and what is in it."""
+"""EXR files that are saved: their layers, and that OpenEXR reads the bits that were written."""
 
 import json
 
 import numpy as np
 import OpenEXR
 import pytest
+from exr_files import write
 
 import raywright as rw
 from raywright.io.cryptomatte import identity, murmur3
+from raywright.io.exr.writer import write_exr
+from raywright.io.pictures import read
 
 
 @pytest.mark.parametrize(
@@ -78,3 +81,39 @@ def test_shapes_are_told_as_cryptomatte(saved):
                 mask += np.where(same, channels[f"CryptoObject{i:02}.{cover}"], 0)
         mine = np.where(ranked[..., 0] == int(name.split()[1]), ranked[..., 1], 0).sum(axis=-1)
         np.testing.assert_allclose(mask, mine, atol=1e-7)
+
+
+@pytest.mark.parametrize("size", [(1, 1), (1, 33), (33, 1), (16, 7), (47, 20), (500, 130)])
+def test_every_bit_is_read_again(tmp_path, size):
+    rng = np.random.default_rng(sum(size))
+    smooth = np.add.outer(np.arange(size[0]), np.arange(size[1])).astype(np.float32)
+    channels = {c: rng.integers(0, 2**32, size, np.uint32).view(np.float32) for c in "RGBA"}
+    channels |= {
+        "depth.Z": smooth,
+        "id.X": rng.integers(0, 2**32, size, np.uint32),
+        "z" * 200: smooth.T.copy().T,
+    }
+    write_exr(tmp_path / "a.exr", channels, {"comments": "größer", "n" * 200: ""})
+    with OpenEXR.File(str(tmp_path / "a.exr"), separate_channels=True) as file:
+        found = {name: one.pixels for name, one in file.channels().items()}
+        header = dict(file.header())
+    assert set(found) == set(channels)
+    for name, array in channels.items():
+        assert found[name].dtype == array.dtype
+        assert np.array_equal(found[name].view(np.uint32), array.view(np.uint32))
+    assert header["comments"] == "größer"
+    assert header["n" * 200] == ""
+    same = np.stack([channels[c] for c in "RGBA"], -1)
+    assert np.array_equal(read(tmp_path / "a.exr"), same, equal_nan=True)
+
+
+def test_the_header_is_that_of_the_library(tmp_path):
+    channels = {c: np.ones((5, 3), np.float32) for c in ("R", "B", "G", "normal.X")}
+    channels["id.X"] = np.ones((5, 3), np.uint32)
+    told = {"cryptomatte/1234567/name": "CryptoObject", "zebra": "x"}
+    write_exr(tmp_path / "a.exr", channels, told)
+    write(tmp_path / "b.exr", channels, "ZIP", **told)
+    # Up to the table of chunks, all is the same.
+    ours, theirs = ((tmp_path / name).read_bytes() for name in ("a.exr", "b.exr"))
+    length = ours.index(b"zebra") + len("zebra\0string\0") + 4 + 1 + 1
+    assert ours[:length] == theirs[:length]

@@ -209,7 +209,7 @@ def run_limited(path, tmp_path):
     """Load a file in a process of 1 GB of address space beyond what it has at the start; its last word."""
     code = (
         "import resource, sys, time, raywright as rw\n"
-        "import numpy, PIL.Image, OpenEXR\n"
+        "import numpy, PIL.Image\n"
         "pages = int(open('/proc/self/statm').read().split()[0])\n"
         "limit = pages * resource.getpagesize() + 2**30\n"
         "resource.setrlimit(resource.RLIMIT_AS, (limit, limit))\n"

@@ -93,7 +93,6 @@ def test_pictures_are_read_from_files(tmp_path, mode):
 
 
 def test_exr_and_npy_are_read_from_files(tmp_path, picture):
-    pytest.importorskip("OpenEXR")
     for name in ("picture.exr", "picture.npy"):
         picture.save(tmp_path / name)
         assert np.array_equal(rw.ImageTexture(str(tmp_path / name)).image, picture.rgb)

@@ -1,7 +1,6 @@
 """Which shapes cover a pixel, as compositing programs read it: Cryptomatte 1.2 (Friedman and Jones, 2015)."""
 
 from collections.abc import Iterable
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,7 +38,7 @@ def name_of(shape: int) -> str:
     return f"shape {shape}"
 
 
-def layers(ranked: NDArray[np.float32]) -> tuple[dict[str, NDArray[np.float32]], dict[str, Any]]:
+def layers(ranked: NDArray[np.float32]) -> tuple[dict[str, NDArray[np.float32]], dict[str, str]]:
     """Return channels and header of the shapes of each pixel, (H, W, ranks, 2): their numbers and shares."""
     shapes = ranked[..., 0].astype(np.int64)
     numbers = np.unique(shapes[shapes >= 0])
@@ -53,7 +52,7 @@ def layers(ranked: NDArray[np.float32]) -> tuple[dict[str, NDArray[np.float32]],
     return channels, _header(map(name_of, numbers.tolist()))
 
 
-def _header(names: Iterable[str]) -> dict[str, Any]:
+def _header(names: Iterable[str]) -> dict[str, str]:
     import json
 
     key = f"cryptomatte/{murmur3(LAYER.encode()):08x}"[: len("cryptomatte/") + 7]

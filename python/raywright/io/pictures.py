@@ -1,7 +1,6 @@
 """Picture files: where they can be written, and what is in them."""
 
 import errno
-import importlib.util
 import io
 from os import PathLike
 from pathlib import Path
@@ -10,8 +9,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .._core import exr_channels
-from .exr_chunks import check_exr
 from .quiet import quiet, reason
 from .radiance_hdr import read_hdr
 from .shown import FORMATS, check_format
@@ -45,7 +42,7 @@ def check_writable(
     ValueError
         If the suffix is not one of those.
     ImportError
-        If the suffix is .exr and OpenEXR is not installed, or one that the installed Pillow cannot write.
+        If the suffix is one that the installed Pillow cannot write.
     FileNotFoundError, IsADirectoryError, NotADirectoryError, PermissionError, OSError
         If the folder is missing, the path is a folder, or the file cannot be written.
     TypeError
@@ -56,8 +53,6 @@ def check_writable(
     path = Path(path)
     if path.suffix.lower() not in suffixes:
         raise ValueError(f"{what} is saved as {', '.join(suffixes)}; {path} is none of these")
-    if path.suffix.lower() == ".exr" and importlib.util.find_spec("OpenEXR") is None:
-        raise ImportError(NO_EXR)
     if path.suffix.lower() in FORMATS:
         check_format(path.suffix.lower())
     if path.is_dir():
@@ -109,7 +104,10 @@ def read(path: str | PathLike[str]) -> NDArray[Any]:
         elif suffix == ".hdr":
             array = read_hdr(path)
         elif suffix == ".exr":
-            array = _read_exr(path)
+            # Whoever reads none does not wait for the import.
+            from .exr.reader import read_exr
+
+            array = read_exr(path, _colours)
         else:
             array = decode(path)
     except (ImportError, MemoryError):
@@ -175,15 +173,12 @@ def pixels_of(picture: Any) -> NDArray[Any]:
     return array if array.ndim == 3 else array[..., np.newaxis]
 
 
-def _read_exr(path: Path) -> NDArray[np.float32]:
-    # Nothing is made of a header that promises what the file does not hold.
-    check_exr(path)
-    width, height, found = exr_channels(path.read_bytes())
-    channels = {name: numbers.reshape(height, width) for name, numbers in found}
-    names = ["R", "G", "B"] if "R" in channels else ["Y"]
-    if missing := [name for name in names if name not in channels]:
-        raise ValueError(f"it has no channel {missing[0]}, only {', '.join(channels)}")
-    return np.stack([channels[name] for name in [*names, *(["A"] if "A" in channels else [])]], -1)
+def _colours(names: list[str]) -> list[str]:
+    """Return the channels of an EXR file that are its picture, of all that it has."""
+    wanted = ["R", "G", "B"] if "R" in names else ["Y"]
+    if missing := [name for name in wanted if name not in names]:
+        raise ValueError(f"it has no channel {missing[0]}, only {', '.join(names)}")
+    return [*wanted, *(["A"] if "A" in names else [])]
 
 
 def read_linear(path: str | PathLike[str]) -> NDArray[np.floating[Any]]:
@@ -203,4 +198,3 @@ def read_linear(path: str | PathLike[str]) -> NDArray[np.floating[Any]]:
 
 
 _TOO_MANY = "it has more than {} points by its header, which is PIL.Image.MAX_IMAGE_PIXELS"
-NO_EXR = "saving .exr needs OpenEXR: pip install 'raywright[exr]'"

@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from .. import _core
 from ..arrays import frozen, number, thread_limit
 from ..io import pictures, shown
-from ..io.exr_layers import write_exr
 from ..io.tone import DEFAULT, check_tone
 from .denoising import check_method, denoised
 from .halves import Halves
@@ -298,8 +297,7 @@ class Image:
         ValueError
             If the suffix is another one, the exposure is out of -100..100, or the tone is not known.
         ImportError
-            If the suffix is .exr and OpenEXR is not installed (``pip install 'raywright[exr]'``), or if it is
-            one that the installed Pillow cannot write.
+            If the suffix is one that the installed Pillow cannot write.
         OSError
             If the file cannot be written: FileNotFoundError if the folder is missing, and so on.
         """
@@ -308,7 +306,10 @@ class Image:
         if suffix == ".npy":
             np.save(path, self.rgb)
         elif suffix == ".exr":
-            write_exr(path, self.rgb, self.standard_error, self.alpha, self.aov)
+            # Whoever saves none does not wait for the import.
+            from ..io.exr.layers import write_layers
+
+            write_layers(path, self.rgb, self.standard_error, self.alpha, self.aov)
         else:
             alpha = None if shown.FORMATS[suffix] == "JPEG" else self.alpha
             path.write_bytes(shown.encoded(shown.srgb(self.rgb, alpha, exposure, tone), suffix))

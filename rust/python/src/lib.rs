@@ -9,7 +9,7 @@ mod cones;
 mod denoise;
 mod describe;
 mod every;
-mod exr_files;
+mod exr_codecs;
 mod first_hits;
 mod flat;
 mod freeform;
@@ -68,7 +68,7 @@ mod _core {
     #[pymodule_export]
     use super::denoise::{denoise_candidates, denoise_settle};
     #[pymodule_export]
-    use super::exr_files::exr_channels;
+    use super::exr_codecs::{exr_huffman, exr_integrate, exr_piz, exr_run_lengths};
     #[pymodule_export]
     use super::first_hits::first_hits;
     #[pymodule_export]

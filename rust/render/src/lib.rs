@@ -9,6 +9,7 @@ pub mod denoise;
 mod denominators;
 mod epoch;
 mod error;
+pub mod exr_codecs;
 mod film;
 pub mod filter;
 mod jumps;

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from . import cryptomatte
-from .pictures import NO_EXR
+from .. import cryptomatte
+from .writer import write_exr
 
 # What the channels of each layer are called; one of no known name has "X".
 _CHANNELS = {
@@ -25,39 +25,25 @@ _CHANNELS = {
 }
 
 
-def write_exr(
+def write_layers(
     path: Path,
     rgb: NDArray[np.float32],
     standard_error: NDArray[np.float32],
     alpha: NDArray[np.float32] | None = None,
     aov: Mapping[str, NDArray[Any]] | None = None,
 ) -> None:
-    """Write linear colours as R, G, B, those that are multiplied by an `alpha` with that as A, and layers.
-
-    Raises
-    ------
-    ImportError
-        If OpenEXR is not installed.
-    """
-    try:
-        import OpenEXR
-    except ImportError as error:
-        raise ImportError(NO_EXR) from error
-
+    """Write linear colours as R, G, B, those that are multiplied by an `alpha` with that as A, and layers."""
     channels = dict(zip("RGB", np.moveaxis(rgb, -1, 0), strict=True))
-    header: dict[str, Any] = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
+    attributes: dict[str, str] = {}
     if alpha is not None:
         channels["A"] = alpha
     for layer, array in {"standard_error": standard_error, **(aov or {})}.items():
         if layer == "cryptomatte":
             more, told = cryptomatte.layers(array)
             channels |= more
-            header |= told
+            attributes |= told
             continue
         deep = array if array.ndim == 3 else array[..., np.newaxis]
         for i, name in enumerate(_CHANNELS.get(layer, "X")):
             channels[f"{layer}.{name}"] = deep[..., i]
-    kinds = {name: np.float32 if array.dtype.kind == "f" else np.uint32 for name, array in channels.items()}
-    packed = {name: np.ascontiguousarray(array.astype(kinds[name])) for name, array in channels.items()}
-    with OpenEXR.File(header, packed) as file:
-        file.write(str(path))
+    write_exr(path, channels, attributes)

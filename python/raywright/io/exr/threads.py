@@ -1,0 +1,24 @@
+"""Threads for the chunks of a picture: zlib, numpy and the core release the interpreter's lock."""
+
+import os
+from collections.abc import Callable, Iterator, Sequence
+from typing import TypeVar
+
+T = TypeVar("T")
+Result = TypeVar("Result")
+
+# Below so many bytes it takes longer to start threads than to do without.
+_FEW = 2**20
+
+
+def each(function: Callable[[T], Result], items: Sequence[T], size: int) -> Iterator[Result]:
+    """Yield the result of a function for each item, in order; `size` is the number of bytes of all items."""
+    workers = min(os.cpu_count() or 1, len(items))
+    if workers < 2 or size < _FEW:
+        yield from map(function, items)
+        return
+    # Whoever packs nothing does not wait for the import.
+    from concurrent.futures import ThreadPoolExecutor
+
+    with ThreadPoolExecutor(workers) as pool:
+        yield from pool.map(function, items)
