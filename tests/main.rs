@@ -5,6 +5,8 @@
 
 #[path = "extending/main.rs"]
 mod extending;
+#[path = "../rust/accel/src/bvh/wide/fans.rs"]
+mod fans;
 #[path = "fuzz/main.rs"]
 mod fuzz;
 #[path = "hits/main.rs"]

@@ -4,6 +4,7 @@ mod agreement;
 mod boxes;
 mod builders;
 mod cones;
+mod kernels;
 mod nearest;
 mod signs;
 mod space;

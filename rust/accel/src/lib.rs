@@ -1,5 +1,9 @@
 //! Floor 2: what finds hits.
 
+// Files that tests share name the crate as its users do.
+#[cfg(test)]
+extern crate self as raywright_accel;
+
 mod box_tree;
 mod boxes;
 mod brute;

@@ -115,9 +115,9 @@ where
 {
     fn answer<Q: Query>(&self, rays: &[Ray], query: &mut Q) {
         match &self.mailboxes {
-            None => self.level.dispatch_rare(Batch { walked: self, rays, marks: None, query }),
+            None => self.level.dispatch(Batch { walked: self, rays, marks: None, query }),
             Some(boxes) => {
-                boxes.with(|marks| self.level.dispatch_rare(Batch { walked: self, rays, marks: Some(marks), query }));
+                boxes.with(|marks| self.level.dispatch(Batch { walked: self, rays, marks: Some(marks), query }));
             }
         }
     }
@@ -247,6 +247,7 @@ struct Batch<'a, const N: usize, L, Q> {
 
 impl<const N: usize, L: Leaves<N>, Q: Query> Kernel<N> for Batch<'_, N, L, Q> {
     type Output = ();
+    const AVX512: bool = false;
 
     #[inline(always)]
     fn run<S: Simd<N>>(self, simd: S) {

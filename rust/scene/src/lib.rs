@@ -8,7 +8,8 @@ mod emission;
 mod encounter;
 mod filter;
 mod first_hits;
-#[cfg(any(test, feature = "testing"))]
+// For the tests of the crates above: what is not called is not linked.
+#[doc(hidden)]
 pub mod fixtures;
 mod gaze;
 mod geometry;

@@ -36,14 +36,19 @@ fn quantile(degrees: f64) -> f64 {
     degrees * (1.0 - spread + NORMAL * spread.sqrt()).powi(3)
 }
 
-#[test]
-fn quantiles_agree_with_tables() {
-    assert!((quantile(10.0) / 35.564 - 1.0).abs() < 0.02);
-    assert!((quantile(100.0) / 161.319 - 1.0).abs() < 0.002);
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-#[test]
-#[should_panic(expected = "chi-square")]
-fn notices_a_loaded_die() {
-    assert_frequencies(&[1000, 1000, 1000, 1000, 1000, 1300], &[1.0 / 6.0; 6]);
+    #[test]
+    fn quantiles_agree_with_tables() {
+        assert!((quantile(10.0) / 35.564 - 1.0).abs() < 0.02);
+        assert!((quantile(100.0) / 161.319 - 1.0).abs() < 0.002);
+    }
+
+    #[test]
+    #[should_panic(expected = "chi-square")]
+    fn notices_a_loaded_die() {
+        assert_frequencies(&[1000, 1000, 1000, 1000, 1000, 1300], &[1.0 / 6.0; 6]);
+    }
 }

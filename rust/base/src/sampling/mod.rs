@@ -1,7 +1,8 @@
 //! Floor 0: random numbers, and what turns them into points, directions and choices.
 
 mod bits;
-#[cfg(any(test, feature = "testing"))]
+// For the tests of all crates: what is not called is not linked.
+#[doc(hidden)]
 pub mod chi_square;
 mod discrete;
 mod halton;

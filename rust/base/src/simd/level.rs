@@ -87,21 +87,18 @@ pub trait Kernel<const N: usize> {
     /// What it gives.
     type Output;
 
+    /// Whether it is compiled for AVX-512 too. AVX2 serves rare kernels as well, and each copy takes long to compile.
+    const AVX512: bool = true;
+
     /// Runs it. Implementations must be `#[inline(always)]`, down to every function that takes `simd`, so that all is
     /// compiled for the level that [`Dispatch`] chose.
     fn run<S: Simd<N>>(self, simd: S) -> Self::Output;
 }
 
 /// Runs kernels of `N` lanes compiled for a level, which must be available and have as many ([`Level::lanes`]).
-pub trait Dispatch<const N: usize>: Sized {
+pub trait Dispatch<const N: usize> {
     /// Runs one.
     fn dispatch<K: Kernel<N>>(self, kernel: K) -> K::Output;
-
-    /// Runs a rare one, which has no copy for AVX-512.
-    #[inline]
-    fn dispatch_rare<K: Kernel<N>>(self, kernel: K) -> K::Output {
-        self.dispatch(kernel)
-    }
 }
 
 impl Dispatch<4> for Level {
@@ -126,13 +123,13 @@ impl Dispatch<8> for Level {
     fn dispatch<K: Kernel<8>>(self, kernel: K) -> K::Output {
         match self {
             #[cfg(target_arch = "x86_64")]
-            Self::Avx512 => {
+            Self::Avx512 if K::AVX512 => {
                 let simd = Avx512::detect().expect("an available level");
                 // SAFETY: the processor was just seen to have what `with_avx512` is compiled for.
                 unsafe { with_avx512(kernel, simd) }
             }
             #[cfg(target_arch = "x86_64")]
-            Self::Avx2 => {
+            Self::Avx2 | Self::Avx512 => {
                 let simd = Avx2::detect().expect("an available level");
                 // SAFETY: the processor was just seen to have what `with_avx2` is compiled for.
                 unsafe { with_avx2(kernel, simd) }
@@ -143,14 +140,6 @@ impl Dispatch<8> for Level {
                 panic!("eight lanes need AVX2, not {}", level.name())
             }
         }
-    }
-
-    #[cfg(target_arch = "x86_64")]
-    #[inline]
-    fn dispatch_rare<K: Kernel<8>>(self, kernel: K) -> K::Output {
-        let simd = Avx2::detect().expect("an available level of eight lanes");
-        // SAFETY: the processor was just seen to have what `with_avx2` is compiled for.
-        unsafe { with_avx2(kernel, simd) }
     }
 }
 

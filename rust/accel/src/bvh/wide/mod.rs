@@ -6,6 +6,8 @@ mod best;
 mod bests;
 mod collapse;
 mod errand;
+#[cfg(test)]
+mod fans;
 mod few;
 mod first;
 mod gate;
@@ -221,7 +223,7 @@ where
     Level: Dispatch<N>,
 {
     fn answer<Q: Query>(&self, rays: &[Ray], query: &mut Q) {
-        self.level.dispatch_rare(All { bvh: self, rays: RayBatch::Rows(rays), query });
+        self.level.dispatch(All { bvh: self, rays: RayBatch::Rows(rays), query });
     }
 
     fn intersect(&self, rays: &[Ray], hits: &mut [Hit]) {

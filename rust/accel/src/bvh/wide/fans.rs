@@ -1,0 +1,100 @@
+//! Triangles and fans of rays that try all kernels, for the tests of this crate and of the public face.
+
+use raywright_accel::Primitives;
+use raywright_base::math::{DVec3, Ray, Vec3};
+use raywright_base::sampling::philox4x32;
+
+/// Triangles, in leaves of f32 or of f64.
+pub struct Soup {
+    /// The corners of each.
+    pub triangles: Vec<[Vec3; 3]>,
+    /// Whether leaves hold f32.
+    pub is_single: bool,
+}
+
+impl Primitives for Soup {
+    fn count(&self) -> usize {
+        self.triangles.len()
+    }
+    fn corners(&self, primitive: u32) -> [DVec3; 3] {
+        self.triangles[primitive as usize].map(Vec3::as_dvec3)
+    }
+    fn is_single(&self) -> bool {
+        self.is_single
+    }
+}
+
+/// The `i`-th of any number of triples from −1 to 1.
+fn triple(i: u32) -> DVec3 {
+    let [x, y, z, _] = philox4x32([i, 0, 0, 0], [7, 7]).map(|bits| f64::from(bits) / f64::from(1u32 << 31) - 1.0);
+    DVec3::new(x, y, z)
+}
+
+/// Triangles of all sizes, with a few planes through them so that rays meet edges and ties.
+pub fn soup() -> Vec<[Vec3; 3]> {
+    let corner = |i: u32, size: f64| (triple(i) + size * triple(i + 10_000)).as_vec3();
+    let mut all: Vec<_> = (0..1000)
+        .map(|i| {
+            let size = 0.3 * triple(i + 20_000).x.powi(4);
+            [0, 1, 2].map(|k| (triple(i) + size * triple(3 * i + k + 30_000)).as_vec3())
+        })
+        .collect();
+    all.extend((0..20).map(|i| [corner(i, 0.5), corner(i, 0.5), corner(i + 1, 0.5)]));
+    for (x, y) in (-8..8).flat_map(|x| (-8..8).map(move |y| (x as f32 / 8.0, y as f32 / 8.0))) {
+        let [a, b, c, d] =
+            [(0.0, 0.0), (0.125, 0.0), (0.125, 0.125), (0.0, 0.125)].map(|(u, v)| Vec3::new(x + u, y + v, 0.25));
+        all.extend([[a, b, c], [a, c, d], [a, c, d]]);
+    }
+    all
+}
+
+/// Fans of neighbouring rays: through the pixels of cameras near and far, parallel ones along axes, and with gaps
+/// of rays that cannot hit anything.
+pub fn fans() -> Vec<Vec<Ray>> {
+    let mut fans = Vec::new();
+    for camera in 0..12 {
+        let distance = [0.0, 0.5, 3.0, 7.0, 100.0, 1e6][camera as usize % 6];
+        let eye = triple(camera + 50_000).normalize() * distance;
+        let at = 0.3 * triple(camera + 60_000);
+        let spread = if distance > 0.0 { 1.0 / distance } else { 0.7 };
+        let fan = (0..640u32).map(|i| {
+            let (x, y) = (f64::from(i % 40) / 20.0 - 1.0, f64::from(i / 40) / 8.0 - 1.0);
+            let forward = (at - eye).normalize();
+            let side = forward.any_orthonormal_vector();
+            let direction = forward + spread * (x * side + y * forward.cross(side));
+            if i % 53 == 7 { Ray::new(eye, DVec3::NAN) } else { Ray::new(eye, direction * 10f64.powi(i as i32 % 5)) }
+        });
+        fans.push(fan.collect());
+    }
+    for axis in [DVec3::Z, -DVec3::Z, DVec3::X, DVec3::new(1.0, 1.0, 0.0)] {
+        let side = axis.normalize().any_orthonormal_vector();
+        let up = axis.normalize().cross(side);
+        let grid = (0..640u32).map(|i| {
+            let (x, y) = (f64::from(i % 32) / 16.0 - 1.0, f64::from(i / 32) / 16.0 - 0.5);
+            let mut ray = Ray::new(-3.0 * axis + side * x + up * y, axis);
+            ray.t_max = if i % 3 == 0 { f64::INFINITY } else { 3.25 };
+            ray
+        });
+        fans.push(grid.collect());
+    }
+    fans
+}
+
+/// Long thin triangles along axes of their own, and in planes at right angles to these.
+pub fn sticks() -> Vec<[Vec3; 3]> {
+    let x = DVec3::new(0.48, 0.64, 0.6);
+    let axes = [x, x.any_orthonormal_vector(), x.cross(x.any_orthonormal_vector())];
+    let stick = |i: u32| {
+        let (from, way) = (triple(i), i as usize % 3);
+        [from, from + axes[way], from + 0.02 * axes[(way + 1) % 3]].map(DVec3::as_vec3)
+    };
+    (0..600).map(stick).collect()
+}
+
+/// Soups of all sizes: many triangles, and so few that all stand in one leaf; large ones, and a part of the planes.
+pub fn soups() -> Vec<Vec<[Vec3; 3]>> {
+    let all = soup();
+    let large = |i: u32| [0, 1, 2].map(|k| (1.2 * triple(3 * i + k + 70_000)).as_vec3());
+    let few: Vec<_> = (0..12).map(large).collect();
+    vec![all.clone(), few[..1].to_vec(), few, all[all.len() - 64..].to_vec()]
+}
