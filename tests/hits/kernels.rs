@@ -1,4 +1,4 @@
-//! Every kernel at every level gives the hits of brute force: rays one by one, few at a time, side by side and scattered.
+//! Every kernel at every level gives the hits of brute force: for single rays, a few, neighbours and scattered ones.
 
 use super::super::fans::{Soup, fans, soup, soups, sticks};
 use super::triangles::levels;

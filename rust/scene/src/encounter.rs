@@ -20,6 +20,7 @@ pub trait Encounter {
     /// the density of [`Encounter::sample`] there.
     fn evaluate(&self, direction: DVec3) -> (Rgb, f64);
 
-    /// Draws where the path goes on to, in the world: `choice` and `u` as [`raywright_optics::Bsdf::sample`] takes them.
+    /// Samples the direction of the path, in the world: `choice` and `u` as [`raywright_optics::Bsdf::sample`] takes
+    /// them.
     fn sample(&self, choice: &mut dyn FnMut() -> f64, u: [f64; 2]) -> Option<BsdfSample>;
 }

@@ -265,9 +265,9 @@ impl Plan {
     }
 
     /// Whether each of few lights is asked ([`Lights::sample_one`]), and one of them gets the shadow ray, at a point
-    /// that scatters light with this roughness ([`raywright_optics::Bsdf::roughness`]). What lights bring to the eye from
-    /// a matt surface is told well enough by where they are, so that one is chosen and asked there
-    /// ([`Lights::sample`]); from a glossy one, only by asking them.
+    /// that scatters light with this roughness ([`raywright_optics::Bsdf::roughness`]). At a matt surface the positions
+    /// of lights predict their contributions well enough to choose one of them ([`Lights::sample`]); at a glossy one
+    /// only their evaluation does.
     #[inline]
     pub fn asks_each(&self, roughness: impl FnOnce() -> f64) -> bool {
         self.few > 0 && (f64::MIN_POSITIVE..=GLOSS).contains(&roughness())

@@ -129,8 +129,8 @@ impl<'a> BsdfLanes<'a> {
         }
     }
 
-    /// What [`raywright_optics::Bsdf::evaluate`] gives for directions that they were prepared for and others, in shading
-    /// frames, in the lanes that ask; 0 in the others.
+    /// [`raywright_optics::Bsdf::evaluate`] for the directions that they were prepared for and others, in shading frames,
+    /// in the lanes that ask; 0 in the others.
     pub fn evaluate(
         &self,
         level: Level,
@@ -161,7 +161,7 @@ impl<'a> BsdfLanes<'a> {
         }
     }
 
-    /// What [`raywright_optics::Bsdf::sample`] gives for directions that they were prepared for, in shading frames, in the
+    /// [`raywright_optics::Bsdf::sample`] for the directions that they were prepared for, in shading frames, in the
     /// lanes that ask; nothing in the others.
     pub fn sample(
         &self,

@@ -16,7 +16,7 @@ const FEW: usize = 8;
 struct Width<const N: usize>;
 
 impl<const N: usize> Width<N> {
-    /// On x86-64, kernels of four lanes serve processors that lack AVX2: only the single-ray kernel is compiled for them.
+    /// On x86-64, four lanes serve processors that lack AVX2: only the single-ray kernel is compiled for them.
     const SINGLE_RAYS_ONLY: bool = N == 4 && cfg!(target_arch = "x86_64");
 }
 
