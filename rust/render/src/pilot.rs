@@ -120,8 +120,8 @@ fn expose(scene: &Scene, camera: &dyn Camera, way: &Path, settings: &Settings, s
     given_back(tiles)
 }
 
-/// For each part and pixel, [`raywright_integrators::LocalGuide::rarity`] at the point behind the pixel's center; 0 where
-/// that is not matt or has no photons.
+/// For each part and pixel, [`raywright_integrators::LocalGuide::rarity`] at the point behind the pixel's center; 0
+/// where that is not matt or has no photons.
 fn rarity(scene: &Scene, camera: &dyn Camera, guide: &Guide) -> Vec<Vec<f64>> {
     let tell = |position: (u32, u32)| {
         let at = [f64::from(position.0) + 0.5, f64::from(position.1) + 0.5];

@@ -129,8 +129,8 @@ impl<'a> BsdfLanes<'a> {
         }
     }
 
-    /// [`raywright_optics::Bsdf::evaluate`] for the directions that they were prepared for and others, in shading frames,
-    /// in the lanes that ask; 0 in the others.
+    /// [`raywright_optics::Bsdf::evaluate`] for the directions that they were prepared for and others, in shading
+    /// frames, in the lanes that ask; 0 in the others.
     pub fn evaluate(
         &self,
         level: Level,
