@@ -15,7 +15,6 @@ mod house;
 mod routines;
 
 /// How many of so many cases to try: a quarter, or all of them where `RAYWRIGHT_SLOW` is set.
-/// `.ci/run` names the modules that ask.
 fn cases(all: u32) -> u32 {
-    if std::env::var_os("RAYWRIGHT_SLOW").is_some() { all } else { all.div_ceil(4) }
+    if raywright_base::cases::are_all() { all } else { all.div_ceil(4) }
 }

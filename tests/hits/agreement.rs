@@ -100,14 +100,15 @@ fn huge_and_tiny_together() {
         let soup = random.soup(8, 0.5);
         triangles.0.extend(soup.0.iter().map(|t| t.map(|c| (c.as_dvec3() * scale).as_vec3())));
     }
-    let rays: Vec<_> = (0..300)
+    let count = cases(300);
+    let rays: Vec<_> = (0..count)
         .map(|_| {
             let origin = random.target(&triangles) * random.of(&[-1.5, 1e-3, 0.5, 3.0]);
             let target = random.target(&triangles);
             Ray::new(origin, (target - origin) / (target - origin).abs().max_element())
         })
         .collect();
-    assert!(hits(&agreed(&triangles, &rays)) > 150);
+    assert!(hits(&agreed(&triangles, &rays)) > count as usize / 2);
 }
 
 #[test]

@@ -1,5 +1,8 @@
 //! Floor 0 of raywright: what all other crates use.
 
+// For the tests of all crates.
+#[doc(hidden)]
+pub mod cases;
 pub mod math;
 pub mod parallel;
 pub mod sampling;

@@ -137,6 +137,7 @@ mod tests {
     use super::super::{Beckmann, Coated, Conductor, Dielectric, Diffuse, MetallicRough, OrenNayar, Rgb};
     use super::*;
     use rayon::prelude::*;
+    use raywright_base::cases;
 
     /// A direction of a cosine, along neither axis.
     fn turned(cosine: f64) -> DVec3 {
@@ -152,10 +153,10 @@ mod tests {
 
     /// Asserts of materials by name that they give back all there is, each from all directions: an index, the width of
     /// the sharpest lobe (none to draw instead), and the name.
-    fn assert_white<S: Bsdf + Sync>(cases: Vec<(S, f64, Option<f64>, String)>) {
+    fn assert_white<S: Bsdf + Sync>(materials: Vec<(S, f64, Option<f64>, String)>) {
         // Of each material some directions, which change from one to the next; all where `RAYWRIGHT_SLOW` is set.
-        let step = if std::env::var_os("RAYWRIGHT_SLOW").is_some() { 1 } else { 5 };
-        let asked: Vec<_> = cases.iter().flat_map(|case| COSINES.map(|cosine| (case, cosine))).step_by(step).collect();
+        let all = materials.iter().flat_map(|case| COSINES.map(|cosine| (case, cosine)));
+        let asked: Vec<_> = cases::every(5, 0, all).collect();
         let wrong: Vec<String> = asked
             .par_iter()
             .flat_map_iter(|((scatter, eta, width, name), cosine)| {

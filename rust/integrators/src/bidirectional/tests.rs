@@ -2,6 +2,7 @@
 
 use super::{Alone, Bidirectional, Merge};
 use crate::{CameraSample, Integrator, Job, Splat};
+use raywright_base::cases;
 use raywright_base::math::DVec3;
 use raywright_base::sampling::Sampler;
 use raywright_base::workers::Cancel;
@@ -128,7 +129,7 @@ fn merges_alone_find_all_paths_of_their_length() {
     let merge = Some(Merge { radius: Some(radius), photons: Some(4000), mean_of: Some(1), ..Merge::default() });
     let square: f64 = radius * radius;
     let seen = ((1.0 + 15.0 * square).sqrt() - 1.0) / (7.5 * square);
-    for bounces in 2..=4u32 {
+    for bounces in cases::every(2, 1, 2..=4u32) {
         let expected = 0.5f64.powi(bounces as i32);
         for light_vertices in 3..=bounces + 1 {
             let alone = Some(Alone { vertices: [light_vertices, bounces + 3 - light_vertices], merges: true });

@@ -4,6 +4,7 @@ use super::kinds::{DOWN, floor, of};
 use super::{job, radiance, samples_of};
 use crate::{CameraSample, Direct, Distributed, Integrator, Path, RayCast, Whitted};
 use raywright_accel::BruteForce;
+use raywright_base::cases;
 use raywright_base::math::{DVec3, Frame, Hit};
 use raywright_base::sampling::Sampler;
 use raywright_base::simd::Level;
@@ -94,14 +95,14 @@ fn in_copies() -> Shape {
 fn each_light_brings_what_scattering_finds() {
     let sky = |radiance| -> Arc<dyn Light> { Arc::new(ConstantEnvironment { radiance: Rgb::splat(radiance) }) };
     let endless = || round(Plane { point: DVec3::new(0.0, 9.0, 0.0), normal: DVec3::new(0.0, -1.0, 0.1) }, 0.4);
-    for bsdf in [metal(), glaze()] {
+    for (kind, bsdf) in [metal(), glaze()].into_iter().enumerate() {
         let scenes = [
             over(bsdf, lamps(), vec![]),
             over(bsdf, lamps(), vec![map(), sky(0.3)]),
             over(bsdf, vec![], vec![map(), sky(0.3)]),
             over(bsdf, lamps().into_iter().chain([endless(), in_copies()]).collect(), vec![]),
         ];
-        for (which, scene) in scenes.into_iter().enumerate() {
+        for (which, scene) in cases::every(2, kind, scenes.into_iter().enumerate()) {
             assert!(scene.plan().asks_each(|| bsdf.roughness()) && !scene.plan().asks_each(|| 1.0));
             let (expected, error) = by_scattering(&scene, 200_000);
             let each: [&dyn Integrator; 5] = [

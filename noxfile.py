@@ -1,0 +1,103 @@
+"""Each check by itself, in the environment that runs nox; `nox --list` names them.
+
+What follows `--` goes to the tool: `nox -s rust -- -p raywright-accel`, or
+`nox -s python -- tests/python/test_cli.py`.
+`.ci/run` runs these sessions and no other checks.
+"""
+
+import shutil
+import sys
+from pathlib import Path
+
+import nox
+
+nox.options.sessions = ["lint", "rust", "python"]
+nox.options.default_venv_backend = "none"
+
+#: Rust tests that try more cases where RAYWRIGHT_SLOW is set.
+MORE_CASES = ["fuzz::", "hits::", "furnace::"]
+
+
+def run_module(session, *args, **how):
+    """Run a module by the Python that runs nox."""
+    session.run(sys.executable, "-m", *args, external=True, **how)
+
+
+def cargo(session, *args, **how):
+    """Run a command of cargo."""
+    session.run("cargo", *args, external=True, **how)
+
+
+@nox.session
+def lint(session):
+    """Check formats, style and types, and that every crate compiles without a warning."""
+    cargo(session, "fmt", "--check")
+    run_module(session, "ruff", "check", ".")
+    run_module(session, "ruff", "format", "--check", ".")
+    run_module(session, "mypy")
+    strict = ["--", "--deny", "warnings"]
+    cargo(session, "clippy", "--quiet", "--locked", "--workspace", "--all-targets", *strict)
+
+
+@nox.session
+def rust(session):
+    """Run the Rust tests, with the crates that an installation has compiled."""
+    cargo(session, "test", "--quiet", "--release", "--locked", *session.posargs)
+
+
+@nox.session
+def python(session):
+    """Run the Python tests."""
+    run_module(session, "pytest", *session.posargs)
+
+
+@nox.session
+def stubs(session):
+    """Compare the stubs with the core that is installed."""
+    run_module(session, "mypy.stubtest", "raywright._core")
+
+
+@nox.session
+def docs(session):
+    """Make the pages and the references of both languages, with warnings as errors."""
+    run_module(session, "pip", "install", "--quiet", "raywright[docs]")
+    run_module(session, "sphinx", "--fail-on-warning", "--keep-going", "--quiet", "docs", "docs/_build/html")
+    strict = {"RUSTDOCFLAGS": "--deny warnings"}
+    cargo(session, "doc", "--quiet", "--locked", "--workspace", "--no-deps", env=strict)
+
+
+@nox.session
+def slow(session):
+    """Run what a newcomer does not wait for: more cases, with checks of overflow, and slow Python tests."""
+    cargo(session, "test", "--quiet", "--locked")
+    more = {"RAYWRIGHT_SLOW": "1"}
+    cargo(session, "test", "--quiet", "--release", "--locked", "--", *MORE_CASES, env=more)
+    run_module(session, "pytest", "-m", "slow", *session.posargs, env=more)
+
+
+@nox.session
+def package(session):
+    """Build the sdist, and test that a wheel built from it alone is whole."""
+    run_module(session, "pip", "install", "--quiet", "maturin>=1.9,<2")
+    shutil.rmtree("dist", ignore_errors=True)
+    run_module(session, "maturin", "sdist", "--out", "dist")
+    (sdist,) = Path("dist").glob("*.tar.gz")
+    named = {"RAYWRIGHT_SDIST": str(sdist)}
+    run_module(session, "pytest", "tests/python/test_package.py", "-k", "sdist", env=named)
+
+
+@nox.session
+def browser(session):
+    """Test the viewer in a browser and in a notebook's cell, where there is a browser."""
+    names = ["chromium", "chromium-headless-shell", "chromium-browser", "google-chrome"]
+    if not any(map(shutil.which, names)):
+        session.skip("there is no chromium")
+    run_module(session, "pip", "install", "--quiet", "raywright[browser,widget]")
+    tests = [f"tests/python/test_viewer_{name}.py" for name in ("browser", "error", "webgpu", "widget")]
+    run_module(session, "pytest", "--numprocesses=1", *tests)
+
+
+@nox.session
+def bench(session):
+    """Time the kernels."""
+    cargo(session, "bench", "--package", "raywright-benches", *session.posargs)
