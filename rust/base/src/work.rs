@@ -23,6 +23,7 @@ impl Watch {
     }
 
     /// Whether that was asked.
+    #[inline]
     pub fn is_stopped(&self) -> bool {
         self.stopped.load(Relaxed)
     }

@@ -17,11 +17,13 @@ pub struct Cancel(AtomicBool);
 
 impl Cancel {
     /// Asks.
+    #[inline]
     pub fn raise(&self) {
         self.0.store(true, Ordering::Relaxed);
     }
 
     /// Whether it was asked.
+    #[inline]
     pub fn is_raised(&self) -> bool {
         self.0.load(Ordering::Relaxed)
     }

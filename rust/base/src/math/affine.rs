@@ -164,6 +164,7 @@ impl Affine {
     }
 
     /// Where a point goes, rounded once from twice the digits.
+    #[inline]
     pub fn point(&self, p: DVec3) -> DVec3 {
         let point = Triple::<Double>::of(p);
         DVec3::from_array(std::array::from_fn(|i| {

@@ -139,6 +139,7 @@ impl<'a> RayColumns<'a> {
     }
 
     /// How many there are.
+    #[inline]
     pub fn len(&self) -> usize {
         self.origin.len()
     }

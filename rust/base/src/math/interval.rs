@@ -137,6 +137,7 @@ impl Interval {
     }
 
     /// Sum.
+    #[inline]
     pub fn plus(self, other: Self) -> Self {
         if other.is_empty() {
             return Self::EMPTY;
@@ -145,11 +146,13 @@ impl Interval {
     }
 
     /// Difference.
+    #[inline]
     pub fn minus(self, other: Self) -> Self {
         self.plus(other.negated())
     }
 
     /// Product.
+    #[inline]
     pub fn times(self, other: Self) -> Self {
         if other.is_empty() {
             return Self::EMPTY;

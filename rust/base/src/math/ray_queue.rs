@@ -75,6 +75,7 @@ impl RayQueue {
     }
 
     /// Forgets all.
+    #[inline]
     pub fn clear(&mut self) {
         self.origin.iter_mut().chain(&mut self.direction).for_each(Vec::clear);
         [&mut self.t_min, &mut self.t_max, &mut self.time].into_iter().for_each(Vec::clear);

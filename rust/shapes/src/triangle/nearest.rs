@@ -167,6 +167,7 @@ impl Edge {
 }
 
 /// The length of a vector of any size.
+#[inline]
 pub fn length(v: DVec3) -> f64 {
     let largest = v.abs().max_element();
     if !largest.is_finite() {
