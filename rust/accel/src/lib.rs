@@ -1,5 +1,9 @@
 //! Floor 2: what finds hits.
 
+// What its functions take and return.
+pub use raywright_base::{math, simd};
+pub use raywright_shapes as shapes;
+
 // Files that tests share name the crate as its users do.
 #[cfg(test)]
 extern crate self as raywright_accel;
