@@ -122,7 +122,7 @@ def metal_index(metal: str) -> MetalIndex:
 
     `Conductor` takes it as linear between these wavelengths. The sources are the "Handbook of Optical
     Constants of Solids" (Palik, 1985 and 1991) and papers that refractiveindex.info lists, one for a metal:
-    they stand with the numbers in ``rust/optics/conductors/measured.rs``.
+    they stand with the numbers in ``rust/optics/src/conductors/measured.rs``.
 
     Parameters
     ----------

@@ -1,5 +1,5 @@
 // How wrong a picture still is, told from what its paths have brought: after error.wgsl, the rest of what
-// rust/render/error.rs does, whose comments say why.
+// rust/render/src/error.rs does, whose comments say why.
 
 const GROUPS = 256;
 const SUMS = 10;

@@ -1,4 +1,4 @@
-// How wrong a picture still is, told from what its paths have brought: what rust/render/error.rs tells of a film, whose
+// How wrong a picture still is, told from what its paths have brought: what rust/render/src/error.rs tells of a film, whose
 // comments say why, in f32. After brought.wgsl.
 
 @group(0) @binding(0) var<storage, read> brought: array<Brought>;

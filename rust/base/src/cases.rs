@@ -8,5 +8,9 @@ pub fn are_all() -> bool {
 /// Every `step`-th case, or all of them. Loops within loops start at another one each time, by an offset.
 pub fn every<T>(step: usize, offset: usize, cases: impl IntoIterator<Item = T>) -> impl Iterator<Item = T> {
     let are_all = are_all();
-    cases.into_iter().enumerate().filter(move |(i, _)| are_all || (i + offset) % step == 0).map(|(_, case)| case)
+    cases
+        .into_iter()
+        .enumerate()
+        .filter(move |(i, _)| are_all || (i + offset).is_multiple_of(step))
+        .map(|(_, case)| case)
 }
