@@ -88,10 +88,13 @@ impl<const N: usize> Kernel<N> for Met<'_, N> {
         let Full { leaves, count, rays } = self.0;
         let mut met = 0;
         for (i, (ray, edges)) in rays.iter().enumerate() {
-            leaves.meet(simd, i * *count as usize, *count, ray, edges, |_, _| {
-                met += 1;
-                false
-            });
+            let first = i * *count as usize;
+            let mut left = leaves.not_rejected(simd, ray, first, *count);
+            while left != 0 {
+                let lane = left.trailing_zeros() as usize & (N - 1);
+                left &= left - 1;
+                met += u32::from(edges.meet(leaves.corners(first, *count, lane)).is_some());
+            }
         }
         met
     }

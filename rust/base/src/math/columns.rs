@@ -53,6 +53,7 @@ pub struct HitColumns<'a> {
 }
 
 impl Vectors<'_> {
+    #[inline]
     fn len(&self) -> usize {
         match self {
             Self::Single([x, y, z]) if x.len() == y.len() && y.len() == z.len() => x.len(),
@@ -203,6 +204,7 @@ impl HitColumns<'_> {
     ///
     /// # Panics
     /// If columns differ in length.
+    #[inline]
     pub fn len(&self) -> usize {
         let count = self.t.len();
         assert!(self.uv.len() == count && self.primitive.len() == count, "columns of one length");

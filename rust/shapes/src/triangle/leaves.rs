@@ -6,7 +6,6 @@ use super::pretest::{BlockRay, BlockRays, sum};
 use super::rows::Rows;
 use super::spread::Spread;
 use super::{Column, EdgeRay, PlainRays, RAYS};
-use crate::Candidate;
 use raywright_base::math::{DVec3, Region};
 use raywright_base::simd::Lanes;
 
@@ -114,29 +113,5 @@ pub trait Leaves<const N: usize>: Send + Sync + Sized + 'static {
         let b = rows.numbers(simd, first, count, 1);
         let c = rows.numbers(simd, first, count, 2);
         if Self::EDGES { [a, sum(simd, a, b), sum(simd, a, c)] } else { [a, b, c] }
-    }
-
-    /// Calls `met` with each triangle of a leaf that the ray meets, until it says true; says whether it did.
-    #[inline(always)]
-    fn meet<S: Lanes<N>>(
-        &self,
-        simd: S,
-        first: usize,
-        count: u32,
-        lanes: &BlockRay,
-        ray: &EdgeRay,
-        mut met: impl FnMut(u32, Candidate) -> bool,
-    ) -> bool {
-        let mut left = self.not_rejected(simd, lanes, first, count);
-        while left != 0 {
-            let lane = left.trailing_zeros() as usize & (N - 1);
-            left &= left - 1;
-            if let Some(candidate) = ray.meet(self.corners(first, count, lane))
-                && met(self.primitive(first, count, lane), candidate)
-            {
-                return true;
-            }
-        }
-        false
     }
 }

@@ -123,8 +123,15 @@ impl<const N: usize, L: Leaves<N>, Q: Query> Errand<N, L> for Telling<'_, Q> {
         let Told { lanes, edges, state, .. } = flight;
         Q::visit_leaf(state, count);
         let before = Q::limit(state);
-        if bvh.leaves.meet(simd, first, count, lanes, edges, |p, candidate| self.query.offer(state, p, candidate)) {
-            return Visited::Answered;
+        let mut left = bvh.leaves.not_rejected(simd, lanes, first, count);
+        while left != 0 {
+            let lane = left.trailing_zeros() as usize & (N - 1);
+            left &= left - 1;
+            if let Some(candidate) = edges.meet(bvh.leaves.corners(first, count, lane))
+                && self.query.offer(state, bvh.leaves.primitive(first, count, lane), candidate)
+            {
+                return Visited::Answered;
+            }
         }
         let limit = Q::limit(state);
         if limit < before { Visited::Until(limit) } else { Visited::Nothing }

@@ -41,7 +41,10 @@ fn walk<const N: usize, L: Leaves<N>>(
     stack.extend((!bvh.nodes.is_empty()).then_some(0));
     while let Some(index) = stack.pop() {
         let node = &bvh.nodes[index as usize];
-        let mut left = boxes.map_or(u32::MAX >> (32 - N), |boxes| boxes.may_touch(&node.planes));
+        let mut left = match &boxes {
+            Some(boxes) => boxes.may_touch(&node.planes),
+            None => u32::MAX >> (32 - N),
+        };
         while left != 0 {
             let lane = left.trailing_zeros() as usize & (N - 1);
             left &= left - 1;
