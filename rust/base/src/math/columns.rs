@@ -53,12 +53,18 @@ pub struct HitColumns<'a> {
 }
 
 impl Vectors<'_> {
-    #[inline]
+    #[inline(always)]
     fn len(&self) -> usize {
         match self {
-            Self::Single([x, y, z]) if x.len() == y.len() && y.len() == z.len() => x.len(),
-            Self::Double([x, y, z]) if x.len() == y.len() && y.len() == z.len() => x.len(),
-            _ => panic!("three columns of one length"),
+            Self::Single([x, ..]) => x.len(),
+            Self::Double([x, ..]) => x.len(),
+        }
+    }
+
+    fn are_columns_alike(&self) -> bool {
+        match self {
+            Self::Single([x, y, z]) => x.len() == y.len() && y.len() == z.len(),
+            Self::Double([x, y, z]) => x.len() == y.len() && y.len() == z.len(),
         }
     }
 
@@ -122,6 +128,7 @@ impl<'a> RayColumns<'a> {
     /// # Panics
     /// If columns differ in length.
     pub fn new(origin: Vectors<'a>, direction: Vectors<'a>, t_min: Numbers<'a>, t_max: Numbers<'a>) -> Self {
+        assert!(origin.are_columns_alike() && direction.are_columns_alike(), "three columns of one length");
         let count = origin.len();
         assert_eq!(direction.len(), count, "a direction for each origin");
         for numbers in [t_min, t_max] {
@@ -140,7 +147,7 @@ impl<'a> RayColumns<'a> {
     }
 
     /// How many there are.
-    #[inline]
+    #[inline(always)]
     pub fn len(&self) -> usize {
         self.origin.len()
     }
@@ -167,7 +174,7 @@ impl<'a> RayColumns<'a> {
 
 impl RayBatch<'_> {
     /// How many there are.
-    #[inline]
+    #[inline(always)]
     pub fn len(&self) -> usize {
         match self {
             Self::Rows(rays) => rays.len(),
@@ -204,7 +211,7 @@ impl HitColumns<'_> {
     ///
     /// # Panics
     /// If columns differ in length.
-    #[inline]
+    #[inline(always)]
     pub fn len(&self) -> usize {
         let count = self.t.len();
         assert!(self.uv.len() == count && self.primitive.len() == count, "columns of one length");
