@@ -176,9 +176,9 @@ def slacks(corners, d, total):
     """How far `t` along the scaled direction (in units of the corners), and the weights, may be off.
 
     `t` is a mean of the corners' depths along the direction's largest axis, so it takes roundings of these
-    depths. And a weight may be off by `e` (see rust/shapes/src/triangle/edge.rs) if it is computed in f64, which
-    moves the mean by at most 3 e · range / (|total| - 3 e). Where the total is at most 6 e, some weight is
-    too small to tell its sign, and all are computed with less error, in the end with none.
+    depths. And a weight may be off by `e` (see rust/shapes/src/triangle/edge.rs) if it is computed in f64,
+    which moves the mean by at most 3 e · range / (|total| - 3 e). Where the total is at most 6 e, some weight
+    is too small to tell its sign, and all are computed with less error, in the end with none.
     """
     axis = max(range(3), key=lambda k: abs(d[k]))
     depths = [c[axis] for c in corners]
