@@ -2,13 +2,13 @@
 //! back, by quadrature. 0 is right; the table has the greatest errors over all angles, and over all indices of glass
 //! and of coats.
 
-use rayon::prelude::*;
 use raywright::math::DVec3;
 use raywright::optics::albedo::Tabulated;
 use raywright::optics::conductors::Reflectance;
 use raywright::optics::fresnel::ConductorIndex;
 use raywright::optics::furnace::{directional_albedo, drawn_albedo};
 use raywright::optics::{Beckmann, Bsdf, Coated, Conductor, Dielectric, Ggx, MetallicRough, OrenNayar, Rgb};
+use raywright::parallel;
 
 /// Roughnesses, a column each.
 const ALPHAS: [f64; 9] = [1e-4, 0.001, 0.01, 0.03, 0.1, 0.2, 0.35, 0.6, 1.0];
@@ -38,11 +38,11 @@ fn extremes(scatter: &(impl Bsdf + Sync), eta: f64, width: Option<f64>) -> [f64;
             })
         })
         .collect();
-    let off = |&wo: &DVec3| match width {
+    let off = |wo: DVec3| match width {
         Some(width) => directional_albedo(scatter, eta, wo, width, 1e-6) - 1.0,
         None => drawn_albedo(scatter, wo, 1 << 15) - 1.0,
     };
-    ways.par_iter().map(off).map(|off| [off, off]).reduce(|| [0.0; 2], wider)
+    all(parallel::map(ways.len(), |i| [off(ways[i]); 2]).into_iter())
 }
 
 fn wider(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {

@@ -6,6 +6,7 @@ use raywright::accel::kdtree::{Builder, Traversal};
 use raywright::accel::walk::{Input, Lists, Mailbox, Structure};
 use raywright::accel::{Accelerator, Cost, bsp, kdtree, octree, walked};
 use raywright::math::{DVec3, Ray, Vec3};
+use raywright::workers;
 
 type Build = Box<dyn Fn(&Input) -> (Box<dyn Structure>, Lists) + Sync>;
 
@@ -73,7 +74,7 @@ fn the_number_of_threads_does_not_matter() {
     let rays = random.aimed(&triangles, 500, 2.0);
     for (name, build) in builds() {
         let on = |threads| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            let pool = workers::pool(Some(threads)).unwrap();
             let tree = pool.install(|| over(&triangles, &build));
             let info = tree.info();
             let shape = (info.nodes, info.leaves, info.depth, info.bytes, info.sah_cost.to_bits());

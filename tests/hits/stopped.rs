@@ -8,6 +8,7 @@ use raywright::accel::walk::{Built, Input, Mailbox};
 use raywright::accel::{Accelerator, Primitives, bsp, grid, kdtree, octree, trees, walked};
 use raywright::math::DVec3;
 use raywright::work::{Watch, Work};
+use raywright::workers;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 /// Triangles whose build is stopped when somebody asks for corners so often.
@@ -86,7 +87,7 @@ fn what_is_stopped_ends_soon_and_holds_nothing() {
             .collect(),
     );
     // One thread, so that it is known what is done when it is stopped.
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    let pool = workers::pool(Some(1)).unwrap();
     for (name, over) in all() {
         // While it is found out where they lie, while boxes are made, and later.
         for most in [0, COUNT + COUNT / 3, 2 * COUNT + 500] {

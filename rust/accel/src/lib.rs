@@ -49,11 +49,12 @@ use kept::Kept;
 use parity::Parity;
 use query::{Answers, Counted};
 use rare_query::RareQuery;
-use rayon::prelude::*;
 use raywright_base::math::{DVec3, Hit, HitColumns, Ray, RayColumns, Region};
+use raywright_base::parallel::{self, CHUNK};
 use raywright_base::work::Work;
 use raywright_shapes::triangle::SolidCone;
 use raywright_shapes::{Bounds, Candidate};
+use std::ops::Range;
 use std::sync::Arc;
 
 /// What an accelerator is built from: triangles known by their numbers and corners, and objects known by their numbers
@@ -104,13 +105,13 @@ pub trait Primitives: Sync {
 
 /// Where all of so many lie that have bounds, and an end.
 pub fn region(count: usize, bounds: &(dyn Fn(u32) -> Option<Bounds> + Sync)) -> Region {
-    let nothing = || (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    let nothing = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     let join = |a: (DVec3, DVec3), b: (DVec3, DVec3)| (a.0.min(b.0), a.1.max(b.1));
-    let (min, max) = (0..count as u32)
-        .into_par_iter()
-        .filter_map(|p| bounds(p).filter(Bounds::is_finite))
-        .map(|b| (b.min, b.max))
-        .reduce(nothing, join);
+    let around = |some: Range<usize>| {
+        let all = some.filter_map(|p| bounds(p as u32).filter(Bounds::is_finite));
+        all.map(|b| (b.min, b.max)).fold(nothing, join)
+    };
+    let (min, max) = parallel::map_chunks(count, CHUNK, around).into_iter().fold(nothing, join);
     Region::new(min, max)
 }
 

@@ -10,9 +10,9 @@
 
 use super::walk::{Halves, Input, Lists, Part, Plane, Room, Structure, Walker};
 use super::{Info, NodeBox, SlabRay};
-use rayon::prelude::*;
 use raywright_base::math::Aabb;
 use raywright_base::math::robust::{greater, lesser};
+use raywright_base::parallel;
 use std::array::from_fn;
 
 /// Most levels below the root. With so many, cells are about as small as it is uncertain where a ray is.
@@ -189,7 +189,7 @@ impl Octree {
             children
         };
         let children = if parts.len() > SHARE {
-            let shares: Vec<_> = parts.par_chunks(SHARE).map(dealt).collect();
+            let shares = parallel::map_chunks(parts.len(), SHARE, |share| dealt(&parts[share]));
             from_fn(|octant| shares.iter().flat_map(|share| &share[octant]).copied().collect())
         } else {
             dealt(parts)

@@ -3,10 +3,11 @@
 use super::query::{Answers, Query, Wanted};
 use super::walk::{Build, Contents, Few, Input, Lists, Mailbox, Mailboxes, Marks, Structure, TogetherBatch};
 use super::{Accelerator, Boxes, Info, Nearest, Primitives, SlabRay, Touches, bvh};
-use rayon::prelude::*;
 use raywright_base::math::{Aabb, DVec3, LANES, Ray, Region};
+use raywright_base::parallel::{self, CHUNK};
 use raywright_base::simd::{Dispatch, Kernel, Level, Simd};
 use raywright_shapes::triangle::{DoubleLeaves, EdgeRay, Leaves, SingleLeaves, SolidCone};
+use std::ops::Range;
 use std::sync::OnceLock;
 use std::time::Instant;
 
@@ -46,16 +47,18 @@ impl<'a> Input<'a> {
     /// Looks where primitives lie. Apart from that come the numbers of those without end.
     pub(super) fn new(primitives: &'a dyn Primitives) -> (Self, Vec<u32>) {
         let region = primitives.region();
-        let all = 0..primitives.count() as u32;
         let [surround, work] = primitives.work().parts([1.0, 20.0]);
         let of = |p: usize| match primitives.bounds(p as u32) {
             Some(b) if b.is_finite() => region.aabb([b.min, b.max, b.max]),
             _ => Aabb::EMPTY,
         };
         let boxes = surround.collect(primitives.count(), of).unwrap_or_default();
-        let is_unbounded = |&p: &u32| primitives.bounds(p).is_some_and(|b| !b.is_finite());
+        let is_unbounded = |p: &u32| primitives.bounds(*p).is_some_and(|b| !b.is_finite());
+        let unbounded = |some: Range<usize>| (some.start as u32..some.end as u32).filter(is_unbounded).collect();
         let has_objects = primitives.objects().is_some();
-        let unbounded = if has_objects { all.into_par_iter().filter(is_unbounded).collect() } else { Vec::new() };
+        let count = if has_objects { primitives.count() } else { 0 };
+        let unbounded: Vec<Vec<u32>> = parallel::map_chunks(count, CHUNK, unbounded);
+        let unbounded = unbounded.concat();
         (Self { region, boxes, primitives, work }, unbounded)
     }
 }

@@ -6,7 +6,7 @@
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU32, AtomicUsize, Ordering::Relaxed};
 
-use crate::parallel;
+use crate::parallel::{self, Blocks};
 
 /// What is known of some work by those who do it, and by those who watch it.
 #[derive(Debug, Default)]
@@ -88,7 +88,7 @@ impl<'a> Work<'a> {
 
     /// So many items in rounds, for loops that end early: what is done of a round when the next is asked for is told.
     pub fn rounds(self, count: usize) -> impl Iterator<Item = Result<Range<usize>, Stopped>> {
-        let (steps, round) = (self.steps(count), Self::ROUND * rayon::current_num_threads());
+        let (steps, round) = (self.steps(count), Self::ROUND * parallel::threads());
         (0..count).step_by(round).map(move |start| {
             steps.did(if start == 0 { 0 } else { round })?;
             Ok(start..(start + round).min(count))
@@ -97,10 +97,11 @@ impl<'a> Work<'a> {
 
     /// What `make` gives for each number from 0 on, in order, by all threads.
     pub fn collect<T: Send>(self, count: usize, make: impl Fn(usize) -> T + Sync) -> Result<Vec<T>, Stopped> {
-        let mut made = Vec::with_capacity(count);
+        let mut blocks = Blocks::new(count);
         for round in self.rounds(count) {
-            parallel::extend(&mut made, round?, &make);
+            blocks.extend(round?, &make);
         }
+        let made = blocks.finish(&make);
         self.done();
         Ok(made)
     }
@@ -175,7 +176,7 @@ mod tests {
 
     #[test]
     fn what_is_collected_is_in_order_and_ends_when_it_is_stopped() {
-        let count = 5 * Work::ROUND * rayon::current_num_threads() + 7;
+        let count = 5 * Work::ROUND * parallel::threads() + 7;
         let watch = Watch::default();
         assert_eq!(Work::of(&watch).collect(count, |i| i).unwrap(), (0..count).collect::<Vec<_>>());
         assert_eq!(watch.share(), 1.0);

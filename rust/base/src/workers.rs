@@ -1,6 +1,6 @@
 //! Threads: pools by size, and work that the calling thread watches and can stop.
 
-use rayon::{ThreadPool, ThreadPoolBuilder};
+use rayon::ThreadPoolBuilder;
 use std::collections::HashMap;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -29,21 +29,49 @@ impl Cancel {
     }
 }
 
+/// Threads that wait for work.
+#[derive(Debug)]
+pub struct Pool(rayon::ThreadPool);
+
+impl Pool {
+    /// Return the number of threads.
+    pub fn threads(&self) -> usize {
+        self.0.current_num_threads()
+    }
+
+    /// Return the result of `work`, which runs on the pool; so does all that it shares with other threads.
+    pub fn install<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
+        let (mut work, mut result) = (Some(work), None);
+        self.install_once(&mut || result = work.take().map(|work| work()));
+        result.expect("work that does not panic leaves a result")
+    }
+
+    /// [`Pool::install`], compiled once for all sorts of work.
+    fn install_once(&self, work: &mut (dyn FnMut() + Send)) {
+        self.0.install(work);
+    }
+
+    /// Whether this thread is one of the pool's.
+    fn is_here(&self) -> bool {
+        self.0.current_thread_index().is_some()
+    }
+}
+
 /// The pool of so many threads, or of one a core. Made once and kept.
 ///
 /// A process that was forked has none of its parent's threads and would wait for them forever, so pools are kept by
 /// process as well; this is also why the global pool is never used.
-pub fn pool(threads: Option<usize>) -> Result<Arc<ThreadPool>, String> {
+pub fn pool(threads: Option<usize>) -> Result<Arc<Pool>, String> {
     kept(threads, false)
 }
 
 /// A pool of one thread a core for those who look at what others work on, and do not wait for these.
-pub fn onlookers() -> Result<Arc<ThreadPool>, String> {
+pub fn onlookers() -> Result<Arc<Pool>, String> {
     kept(None, true)
 }
 
-fn kept(threads: Option<usize>, looks: bool) -> Result<Arc<ThreadPool>, String> {
-    type Pools = HashMap<(u32, Option<usize>, bool), Arc<ThreadPool>>;
+fn kept(threads: Option<usize>, looks: bool) -> Result<Arc<Pool>, String> {
+    type Pools = HashMap<(u32, Option<usize>, bool), Arc<Pool>>;
     static POOLS: Mutex<Option<Pools>> = Mutex::new(None);
     let mut pools = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
     let pools = pools.get_or_insert_with(HashMap::new);
@@ -56,7 +84,7 @@ fn kept(threads: Option<usize>, looks: bool) -> Result<Arc<ThreadPool>, String> 
         .thread_name(|i| format!("raywright-{i}"))
         .build()
         .map_err(|e| format!("no pool of {threads:?} threads: {e}"))?;
-    let pool = Arc::new(pool);
+    let pool = Arc::new(Pool(pool));
     pools.insert(key, Arc::clone(&pool));
     Ok(pool)
 }
@@ -82,7 +110,7 @@ fn watched_once(
 ) -> Result<(), String> {
     let pool = pool(threads)?;
     let cancel = Cancel::default();
-    if pool.current_thread_index().is_some() {
+    if pool.is_here() {
         // One of its own threads, which must not wait for the others: they may all be here. Whoever called it is
         // watched.
         work(&cancel);
@@ -97,7 +125,7 @@ fn watched_once(
             self.1.notify_one();
         }
     }
-    pool.in_place_scope(|scope| {
+    pool.0.in_place_scope(|scope| {
         scope.spawn(|_| {
             let _tell = Tell(&done, &ended);
             work(&cancel);
@@ -127,12 +155,12 @@ pub fn unless_left<T: Send + 'static>(
     mut watch: impl FnMut() -> bool,
 ) -> Result<Option<T>, String> {
     let pool = pool(threads)?;
-    if pool.current_thread_index().is_some() {
+    if pool.is_here() {
         // As in `watched`.
         return Ok(Some(work()));
     }
     let (send, receive) = channel();
-    pool.spawn(move || {
+    pool.0.spawn(move || {
         // Whoever has left receives nothing; what was made is dropped here.
         let _ = send.send(catch_unwind(AssertUnwindSafe(work)));
     });
@@ -156,7 +184,8 @@ mod tests {
     fn pools_have_their_size_and_are_kept() {
         for threads in [1, 3] {
             let pool = pool(Some(threads)).unwrap();
-            assert_eq!(pool.current_num_threads(), threads);
+            assert_eq!(pool.threads(), threads);
+            assert_eq!(pool.install(crate::parallel::threads), threads);
             assert!(Arc::ptr_eq(&pool, &super::pool(Some(threads)).unwrap()));
         }
     }

@@ -1,7 +1,7 @@
 //! What is seen first, rather than how bright it is.
 
-use rayon::prelude::*;
 use raywright_base::math::{Hit, Ray};
+use raywright_base::parallel;
 use raywright_base::sampling::SamplerKind;
 use raywright_base::workers::Cancel;
 use raywright_optics::Bsdf;
@@ -151,7 +151,7 @@ pub fn aovs(
         }
         row
     };
-    let rows: Vec<_> = (0..height).into_par_iter().map(row_of).collect();
+    let rows = parallel::map(height, row_of);
     (0..channels.len()).map(|i| rows.iter().flat_map(|row| row[i].iter().copied()).collect()).collect()
 }
 

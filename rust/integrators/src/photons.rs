@@ -3,8 +3,8 @@
 use super::light_paths::{Arrived, Dimensions, Flying, LightWalk, Limits, Visitor};
 use super::nesting::MediumStack;
 use super::volumes::{Drifting, MediaLightWalk, MediaVisitor, Numbers, Point, Vertex};
-use rayon::prelude::*;
 use raywright_base::math::DVec3;
+use raywright_base::parallel;
 use raywright_base::sampling::Sampler;
 use raywright_base::workers::Cancel;
 use raywright_optics::Rgb;
@@ -76,7 +76,7 @@ pub fn photons(
         seen.found.photons.sort_by_key(|photon| (photon.path, photon.bounces));
         seen.found
     };
-    let chunks: Vec<Photons> = (0..count.div_ceil(TOGETHER)).into_par_iter().with_max_len(1).map(follow).collect();
+    let chunks: Vec<Photons> = parallel::map(count.div_ceil(TOGETHER) as usize, |chunk| follow(chunk as u32));
     chunks.into_iter().fold(Photons::default(), |mut all, chunk| {
         all.photons.extend(chunk.photons);
         all.emitted += chunk.emitted;

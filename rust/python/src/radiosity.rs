@@ -70,7 +70,7 @@ impl RadiosityShots {
         let lamps = self.lamps.as_ref().map(|lamps| (&lamps.get().0, light_rays));
         self.replicates = heard(py, threads, |cancel| {
             let one = |replicate| Shots::new(scene, lamps, enclosure, (seed, replicate as u32), cancel);
-            parallel::collect(replicates as usize, &one)
+            parallel::map(replicates as usize, one)
         })?;
         Ok(())
     }

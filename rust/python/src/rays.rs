@@ -234,7 +234,7 @@ pub fn each<C: Send, T: Send>(
             workers::watched(
                 threads,
                 |cancel| {
-                    let made = parallel::of_parts(chunks, |chunk| (!cancel.is_raised()).then(|| work(chunk)));
+                    let made = parallel::map_parts(chunks, |chunk| (!cancel.is_raised()).then(|| work(chunk)));
                     made.into_iter().collect::<Option<_>>()
                 },
                 || {

@@ -34,7 +34,7 @@ impl Rendering {
     /// One of a job, that has not begun.
     #[new]
     fn new(job: &Bound<'_, Job>, threads: Option<usize>, patch: u32) -> PyResult<Self> {
-        let (job, cores) = (job.get(), pool(threads).map_err(PyRuntimeError::new_err)?.current_num_threads());
+        let (job, cores) = (job.get(), pool(threads).map_err(PyRuntimeError::new_err)?.threads());
         let settings = job.settings(Until::default(), threads);
         Ok(Self(render::Rendering::new(settings.film(job.camera(), cores, patch.max(1)))))
     }

@@ -4,7 +4,7 @@ use super::bytes::{Malformed, Reader, Writer, check};
 use super::denominators::{Denominators, cross};
 use super::epoch::{Epoch, dither};
 use super::film::Film;
-use rayon::prelude::*;
+use raywright_base::parallel::{self, CHUNK};
 use raywright_optics::Rgb;
 
 /// Decides how many samples each pixel gets, such that most go where most of the error is, and no pixel is biased by
@@ -133,21 +133,23 @@ impl Adaptive {
 fn weights(film: &Film, half: usize, samples: u32) -> Vec<f64> {
     let (width, count) = (film.width() as usize, f64::from(samples));
     let evidence = film.evidence(half);
-    let means: Vec<Rgb> = evidence.par_iter().map(|&(sum, _)| sum / count).collect();
-    let errors: Vec<f64> = (0..evidence.len())
-        .into_par_iter()
-        .map(|pixel| {
-            let (sum, squares) = evidence[pixel];
-            // As of independent samples: where they are not, this is the wrong variance, and a fair guide.
-            let variance = ((squares - sum * sum / count) / (count * (count - 1.0))).at_least(Rgb::ZERO);
-            let cross = cross(&means, width, pixel % width, pixel / width);
-            variance.dot(Denominators::new(&cross, variance, count).inverse)
-        })
-        .collect();
+    let means = parallel::collect(evidence.len(), |pixel| evidence[pixel].0 / count);
+    let errors = parallel::collect(evidence.len(), |pixel| {
+        let (sum, squares) = evidence[pixel];
+        // As of independent samples: where they are not, this is the wrong variance, and a fair guide.
+        let variance = ((squares - sum * sum / count) / (count * (count - 1.0))).at_least(Rgb::ZERO);
+        let cross = cross(&means, width, pixel % width, pixel / width);
+        variance.dot(Denominators::new(&cross, variance, count).inverse)
+    });
     let mut weights = in_patches(smoothed(&errors, width), width, film.patch() as usize);
-    weights.par_iter_mut().for_each(|weight| *weight = weight.sqrt());
+    parallel::each_chunk_mut(&mut weights, CHUNK, &|_, some| {
+        some.iter_mut().for_each(|weight| *weight = weight.sqrt())
+    });
     let mean = ordered_sum(weights.len(), |i| weights[i]) / weights.len() as f64;
-    weights.par_iter_mut().for_each(|weight| *weight = if mean > 0.0 { *weight + Adaptive::LEAST * mean } else { 1.0 });
+    let known = |weight: f64| if mean > 0.0 { weight + Adaptive::LEAST * mean } else { 1.0 };
+    parallel::each_chunk_mut(&mut weights, CHUNK, &|_, some| {
+        some.iter_mut().for_each(|weight| *weight = known(*weight))
+    });
     weights
 }
 
@@ -157,20 +159,18 @@ fn smoothed(values: &[f64], width: usize) -> Vec<f64> {
     let height = values.len() / width.max(1);
     // At borders the outermost value stands in for what lies beyond.
     let at = |i: usize, k: usize, size: usize| (i + k).saturating_sub(2).min(size - 1);
-    let across: Vec<f64> = (0..values.len())
-        .into_par_iter()
-        .map(|i| (0..5).map(|k| KERNEL[k] * values[i - i % width + at(i % width, k, width)]).sum())
-        .collect();
-    (0..values.len())
-        .into_par_iter()
-        .map(|i| (0..5).map(|k| KERNEL[k] * across[at(i / width, k, height) * width + i % width]).sum())
-        .collect()
+    let across: Vec<f64> = parallel::collect(values.len(), |i| {
+        (0..5).map(|k| KERNEL[k] * values[i - i % width + at(i % width, k, width)]).sum()
+    });
+    parallel::collect(values.len(), |i| {
+        (0..5).map(|k| KERNEL[k] * across[at(i / width, k, height) * width + i % width]).sum()
+    })
 }
 
 /// The mean over each patch of so many values a side, at each of its places.
 fn in_patches(mut values: Vec<f64>, width: usize, patch: usize) -> Vec<f64> {
     if patch > 1 && width > 0 {
-        values.par_chunks_mut(patch * width).for_each(|band| {
+        parallel::each_chunk_mut(&mut values, patch * width, &|_, band| {
             for left in (0..width).step_by(patch) {
                 let columns = left..width.min(left + patch);
                 let mut sum = 0.0;
@@ -217,10 +217,7 @@ fn level(weights: &[f64], limits: &[[f64; 2]], total: f64) -> f64 {
 /// A sum of so many terms on all cores, in an order that depends on their number only.
 fn ordered_sum(count: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
     const TOGETHER: usize = 4096;
-    let parts: Vec<f64> = (0..count.div_ceil(TOGETHER))
-        .into_par_iter()
-        .map(|part| (part * TOGETHER..count.min((part + 1) * TOGETHER)).map(&term).sum())
-        .collect();
+    let parts = parallel::map_chunks(count, TOGETHER, |part| part.map(&term).sum::<f64>());
     parts.iter().sum()
 }
 
@@ -257,7 +254,7 @@ mod tests {
     /// How many standard errors the mean over seeds is off, and the mean.
     fn deviation(seeds: u64, batch: u32, decider: fn(usize) -> usize) -> (f64, f64) {
         let brightness = |seed| film(seed, 0.01, 64, batch, decider).means().iter().map(|m| m[0]).sum::<f64>() / 64.0;
-        let means: Vec<f64> = (0..seeds).into_par_iter().map(brightness).collect();
+        let means = parallel::map(seeds as usize, |seed| brightness(seed as u64));
         let count = seeds as f64;
         let mean = means.iter().sum::<f64>() / count;
         let variance = means.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / (count - 1.0) / count;
@@ -281,8 +278,7 @@ mod tests {
 
     #[test]
     fn variances_are_unbiased_too() {
-        let films: Vec<Film> =
-            (0..1000u64).into_par_iter().map(|seed| film(seed, 0.1, 64, 1, |half| 1 - half)).collect();
+        let films: Vec<Film> = parallel::map(1000, |seed| film(seed as u64, 0.1, 64, 1, |half| 1 - half));
         // Ten values for the error of a ratio of sums over all pixels.
         let ratios: Vec<f64> = films
             .chunks(100)

@@ -3,7 +3,7 @@
 use super::camera_samples::{CameraSampler, Wanted};
 use super::tile::FilmTile;
 use super::{Film, Settings};
-use rayon::prelude::*;
+use raywright_base::parallel;
 use raywright_base::workers::Cancel;
 use raywright_integrators::{FirstSeen, Integrator};
 use raywright_scene::{Camera, Scene};
@@ -35,7 +35,7 @@ pub fn cover(
         let sums = of_cells(tile, each, &sampler, &mut first, cancel);
         tile.pixels().zip(sums.chunks(cells)).map(|(position, cells)| (position, of_pixel(cells))).collect()
     };
-    let tiles: Vec<_> = film.tiles().par_iter().map(of_tile).collect();
+    let tiles = parallel::map(film.tiles().len(), |i| of_tile(&film.tiles()[i]));
     let mut all = vec![Cover::new(); film.pixel_count()];
     for ((x, y), cover) in tiles.into_iter().flatten() {
         all[y as usize * film.width() as usize + x as usize] = cover;

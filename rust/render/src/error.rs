@@ -7,7 +7,7 @@ use super::jumps::Jumps;
 use super::outliers::{Carried, Largest, beside, is_find};
 use super::patchwork::Patchwork;
 use super::sightings::{Chances, Sightings};
-use rayon::prelude::*;
+use raywright_base::parallel;
 use raywright_optics::Rgb;
 
 /// An estimate of relMSE, the mean over pixels and channels of (x − μ)² / (μ² + 0.01), where x is the picture and μ
@@ -58,42 +58,36 @@ pub(super) fn estimate(film: &Film) -> Option<ErrorEstimate> {
     let (patch, cells) = (film.patch(), film.cells());
     // Rows of patches are summed on all cores, and their sums in order, so that the estimate does not depend on the
     // threads.
-    let bands = || (0..film.height().div_ceil(patch)).into_par_iter();
-    let rows = |band: u32| band * patch..film.height().min((band + 1) * patch);
-    let row = || vec![Spread::default(); width];
-    let seen: Vec<(Sightings, Vec<f64>)> = bands()
-        .map_init(row, |spreads, band| {
-            let (mut seen, mut shown) = (Sightings::default(), Vec::new());
-            for y in rows(band) {
-                film.spreads(y, spreads);
-                let peaks = spreads.iter().flat_map(|spread| &spread.peaks[..cells]);
-                peaks.for_each(|peak| seen.add(peak.brightness, peak.again));
-                shown.extend(spreads.iter().map(|spread| spread.others.abs().max()));
-            }
-            (seen, shown)
-        })
-        .collect();
+    let (height, band) = (film.height() as usize, patch as usize);
+    let seen: Vec<(Sightings, Vec<f64>)> = parallel::map_chunks(height, band, |rows| {
+        let (mut seen, mut shown, mut spreads) = (Sightings::default(), Vec::new(), vec![Spread::default(); width]);
+        for y in rows {
+            film.spreads(y as u32, &mut spreads);
+            let peaks = spreads.iter().flat_map(|spread| &spread.peaks[..cells]);
+            peaks.for_each(|peak| seen.add(peak.brightness, peak.again));
+            shown.extend(spreads.iter().map(|spread| spread.others.abs().max()));
+        }
+        (seen, shown)
+    });
     let mut sightings = Sightings::default();
     seen.iter().for_each(|(band, _)| sightings.join(band));
     let chances = sightings.chances();
     let shown: Vec<f64> = seen.into_iter().flat_map(|(_, shown)| shown).collect();
     let picture = Picture { means: &means, shown: &shown, width, patch: patch as usize, cells, chances: &chances };
-    let sums: Vec<Sums> = bands()
-        .map_init(row, |spreads, band| {
-            let mut sums = Sums::default();
-            let mut patches = vec![Patch::default(); width.div_ceil(patch as usize)];
-            for y in rows(band) {
-                film.spreads(y, spreads);
-                for (x, spread) in spreads.iter().enumerate() {
-                    patches[x / patch as usize].add(&picture, (x, y as usize), spread, &mut sums.jumps);
-                }
+    let sums: Vec<Sums> = parallel::map_chunks(height, band, |rows| {
+        let (mut sums, mut spreads) = (Sums::default(), vec![Spread::default(); width]);
+        let mut patches = vec![Patch::default(); width.div_ceil(band)];
+        for y in rows {
+            film.spreads(y as u32, &mut spreads);
+            for (x, spread) in spreads.iter().enumerate() {
+                patches[x / band].add(&picture, (x, y), spread, &mut sums.jumps);
             }
-            for patch in &patches {
-                sums.add(patch);
-            }
-            sums
-        })
-        .collect();
+        }
+        for patch in &patches {
+            sums.add(patch);
+        }
+        sums
+    });
     let mut all = Sums::default();
     for band in &sums {
         all.join(band);
@@ -368,14 +362,11 @@ mod tests {
         });
         let kinds: [&(dyn Fn(u32, u32, f64) -> f64 + Sync); 4] = [&exponential, &rims[0], &rims[1], &rims[2]];
         for (i, draw) in kinds.into_iter().enumerate() {
-            let off: Vec<[bool; 2]> = (0..300u64)
-                .into_par_iter()
-                .map(|seed| {
-                    let film = uneven(seed, draw);
-                    let (estimate, truth) = (estimate(&film).unwrap(), truth(&film, |_, _| 1.0));
-                    [truth < estimate.low, truth > estimate.high]
-                })
-                .collect();
+            let off = parallel::map(300, |seed| {
+                let film = uneven(seed as u64, draw);
+                let (estimate, truth) = (estimate(&film).unwrap(), truth(&film, |_, _| 1.0));
+                [truth < estimate.low, truth > estimate.high]
+            });
             let [below, above] = [0, 1].map(|side| off.iter().filter(|off| off[side]).count());
             // Were it one in 40 on each side, chance would bring 15 or more of 300 once in 100 cases.
             assert!(below < 15 && above < 15, "kind {i}: {below} below, {above} above");

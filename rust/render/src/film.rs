@@ -2,7 +2,6 @@
 
 use super::bytes::{Malformed, Reader, Writer};
 use super::tile::{Cell, FilmTile};
-use rayon::prelude::*;
 use raywright_base::parallel;
 use raywright_optics::Rgb;
 
@@ -247,7 +246,7 @@ impl Film {
     /// Lets the next `count` samples of each cell be evidence: sums of their own are kept of those
     /// ([`Film::evidence`]).
     pub(super) fn take_evidence(&mut self, count: u32) {
-        self.tiles.par_iter_mut().for_each(|tile| tile.take_evidence(count));
+        parallel::each_mut(&mut self.tiles, &|_, tile| tile.take_evidence(count));
     }
 
     /// Sum and sum of squares of the samples so far that were evidence, of one half of each pixel.
@@ -274,8 +273,9 @@ impl Film {
     fn pixels<T: Clone + Default + Send>(&self, of: impl Fn(&[Cell]) -> T + Sync) -> Vec<T> {
         let mut all = vec![T::default(); self.pixel_count()];
         // Rows of no pixels would be chunks of nothing.
-        let rows: Vec<_> = (0..).zip(all.chunks_mut(self.width.max(1) as usize)).collect();
-        parallel::of_parts(rows, |(y, row)| self.row(y, row, &of));
+        // Chunks of nothing are none.
+        let width = self.width.max(1) as usize;
+        parallel::each_chunk_mut(&mut all, width, &|first, row| self.row((first / width) as u32, row, &of));
         all
     }
 

@@ -174,13 +174,13 @@ impl Request {
         let tiles = &lent[..];
         let pool = pool(settings.threads).map_err(RenderError::Threads)?;
         let job = settings.job(scene, camera);
-        let session = if pool.current_num_threads() == 1 {
+        let session = if pool.threads() == 1 {
             pool.install(|| integrator.begin(job, &stop.cancel))
         } else {
             begin(integrator, job, settings.threads, progress)?
         };
         let exposure = Exposure::new(scene, camera, integrator, &*session, settings);
-        let reached = if exposure.stays || pool.current_num_threads() == 1 {
+        let reached = if exposure.stays || pool.threads() == 1 {
             exposure.expose_here(tiles, done, goal, &stop, || {
                 if progress.poll().is_break() {
                     stop.cancel.raise();

@@ -6,8 +6,8 @@ use super::settings::Settings;
 use super::tile::FilmTile;
 use super::tiles::{Exposure, Goal, Stop};
 use super::{Film, Progress, RenderError};
-use rayon::prelude::*;
 use raywright_base::math::Hit;
+use raywright_base::parallel;
 use raywright_base::sampling::{BatchSize, SamplerKind};
 use raywright_base::workers::watched;
 use raywright_integrators::{Guide, Integrator, Path, is_matt};
@@ -46,7 +46,7 @@ pub fn pilot(
     let stop = Stop::default();
     let work = || {
         let guide = if ways.iter().any(|way| way.caustics) { Guide::of(scene, &stop.cancel) } else { None };
-        let seen = ways.par_iter().map(|way| expose(scene, camera, way, &settings, &stop)).collect();
+        let seen = parallel::map(ways.len(), |i| expose(scene, camera, &ways[i], &settings, &stop));
         Seen { ways: seen, rare: guide.map(|guide| rarity(scene, camera, &guide)) }
     };
     let mut ended = false;
@@ -141,7 +141,8 @@ fn rarity(scene: &Scene, camera: &dyn Camera, guide: &Guide) -> Vec<Vec<f64>> {
         guide.at(place).map(|local| local.rarity())
     };
     let part = |tile: &FilmTile| tile.pixels().map(|at| tell(at).unwrap_or(0.0)).collect();
-    parts(camera, None).par_iter().map(part).collect()
+    let parts = parts(camera, None);
+    parallel::map(parts.len(), |i| part(&parts[i]))
 }
 
 fn mean(tile: &FilmTile, pixel: usize) -> Rgb {

@@ -3,7 +3,7 @@
 use super::Film;
 use super::film::Spread;
 use super::student::{digamma, trigamma, trigamma_inverse};
-use rayon::prelude::*;
+use raywright_base::parallel;
 use raywright_optics::Rgb;
 
 /// How uncertain each pixel is.
@@ -45,20 +45,20 @@ pub(super) fn uncertainty(film: &Film) -> Option<Uncertainty> {
         let degrees = spreads.iter().map(own).collect();
         return Some(Uncertainty { pooled: variances.clone(), variances, degrees });
     }
-    let logs: Vec<Option<f64>> = spreads.par_iter().map(log_ratio).collect();
+    let logs = parallel::collect(spreads.len(), |i| log_ratio(&spreads[i]));
     let around = around(&logs, film.width() as usize);
     let prior = prior(&spreads, &logs, &around);
     let offset = digamma(prior / 2.0) - (prior / 2.0).ln();
-    let each = |(i, spread): (usize, &Spread)| match (around[i], logs[i]) {
-        (Some(mean), Some(_)) => {
+    let each = |i: usize| match (around[i], logs[i], &spreads[i]) {
+        (Some(mean), Some(_), spread) => {
             let ratio = spread.variance.sum() / spread.alone.sum();
             let all = own(spread) + prior;
             let likely = (own(spread) * ratio + prior * (mean + offset).exp()) / all;
             (spread.alone * likely, all.min(spread.samples - cells))
         }
-        _ => (spread.variance, own(spread)),
+        (_, _, spread) => (spread.variance, own(spread)),
     };
-    let (pooled, degrees) = spreads.par_iter().enumerate().map(each).unzip();
+    let (pooled, degrees) = parallel::collect(spreads.len(), each).into_iter().unzip();
     Some(Uncertainty { variances, pooled, degrees })
 }
 
@@ -85,7 +85,7 @@ fn around(logs: &[Option<f64>], width: usize) -> Vec<Option<f64>> {
         // Few would not tell more than the pixel itself does.
         (count >= 8.0).then(|| sum / count)
     };
-    (0..logs.len()).into_par_iter().map(mean).collect()
+    parallel::collect(logs.len(), mean)
 }
 
 /// How many degrees of freedom the mean of those around is worth.

@@ -43,7 +43,7 @@ pub fn render(
     settings: &Settings,
     progress: &mut dyn Progress,
 ) -> Result<Rendering, RenderError> {
-    let threads = pool(settings.threads).map_err(RenderError::Threads)?.current_num_threads();
+    let threads = pool(settings.threads).map_err(RenderError::Threads)?.threads();
     let mut rendering = Rendering::new(settings.film(camera, threads, integrator.patch(scene)));
     while !go_on(&mut rendering, scene, camera, integrator, settings, progress)? {}
     Ok(rendering)

@@ -6,7 +6,7 @@
 
 use super::Settings;
 use super::filter::{Edges, Filter};
-use rayon::prelude::*;
+use raywright_base::parallel;
 use raywright_base::sampling::{Sampler, SamplerKind};
 use raywright_base::workers::Cancel;
 use raywright_integrators::{LightWorker, Session, Splat};
@@ -98,7 +98,7 @@ impl<'a> LightTracer<'a> {
             let brought: Vec<Vec<Splat>> = if alone {
                 chunks.iter().map(follow).collect()
             } else {
-                chunks.par_iter().with_max_len(1).map(follow).collect()
+                parallel::map(chunks.len(), |i| follow(&chunks[i]))
             };
             if cancel.is_raised() {
                 break;

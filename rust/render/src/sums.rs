@@ -3,7 +3,7 @@
 use super::Rendering;
 use super::bytes::{Malformed, check};
 use super::tile::FilmTile;
-use rayon::prelude::*;
+use raywright_base::parallel;
 use raywright_optics::Rgb;
 
 impl Rendering {
@@ -24,7 +24,7 @@ impl Rendering {
         check(dropped <= sums.len() as u64 * u64::from(count), "there are more samples of a kind than samples")?;
         check(sums.as_flattened().iter().all(|x| x.is_finite() && *x >= 0.0), "sums are not finite and at least 0")?;
         let width = film.width() as usize;
-        self.film.tiles_mut().par_iter_mut().for_each(|tile| {
+        parallel::each_mut(self.film.tiles_mut(), &|_, tile| {
             tile.add_sums(count, |(x, y)| {
                 let [a, b, c, d, e, f, g, h, i] = sums[y as usize * width + x as usize];
                 [Rgb::new(a, b, c), Rgb::new(d, e, f), Rgb::new(g, h, i)]

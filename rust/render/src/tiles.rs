@@ -6,7 +6,7 @@ use super::lent::held;
 use super::patchwork::Patchwork;
 use super::splats::{Brought, LightTracer};
 use super::{FilmTile, Settings};
-use rayon::prelude::*;
+use raywright_base::parallel;
 use raywright_base::timing::{self, timed};
 use raywright_base::workers::Cancel;
 use raywright_integrators::{CameraSample, Integrator, Session, Worker};
@@ -172,16 +172,23 @@ impl<'a> Exposure<'a> {
     pub fn expose(&self, tiles: &[Mutex<FilmTile>], done: u32, goal: Goal, stop: &Stop) -> bool {
         self.session.before_pass(done, &stop.cancel);
         self.in_parts(tiles, goal, false, stop, |tiles, part| {
-            let reached = |(number, tile): (usize, &Mutex<FilmTile>)| {
+            let reached = |number: usize| {
                 !part.is_ended(stop) && {
                     let mut bench = self.take_bench();
-                    let reached =
-                        self.expose_tiles(slice::from_ref(tile), number, part, BATCH, &mut bench, stop, &mut || {});
+                    let reached = self.expose_tiles(
+                        slice::from_ref(&tiles[number]),
+                        number,
+                        part,
+                        BATCH,
+                        &mut bench,
+                        stop,
+                        &mut || {},
+                    );
                     self.put_bench(bench);
                     reached
                 }
             };
-            tiles.par_iter().enumerate().with_max_len(1).map(reached).reduce(|| true, |a, b| a && b)
+            !parallel::map(tiles.len(), reached).contains(&false)
         })
     }
 

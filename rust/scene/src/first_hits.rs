@@ -14,11 +14,12 @@
 use super::Scene;
 use super::cameras::{Camera, Perspective};
 use super::view::{Pixels, View};
-use rayon::prelude::*;
 use raywright_accel::Primitives;
 use raywright_base::math::{DVec3, Hit, Ray, RayBatch, Tiling};
+use raywright_base::parallel::{self, CHUNK};
 use raywright_base::simd::{Dispatch, Kernel, Level, Simd};
 use raywright_shapes::triangle::{ALL, Column, EdgeRay, EdgeRays, RAYS, bits};
+use std::ops::Range;
 
 /// Pixels on a tile's side: the rays of a row are asked together.
 const SIDE: usize = RAYS;
@@ -74,7 +75,7 @@ impl<'a> FirstHits<'a> {
             && geometry.first_other().is_none()
             && width.max(height) <= 1 << 16
             && geometry.count().saturating_mul(PIXELS) <= width * height;
-        let count = if is_plain { geometry.count() as u32 } else { 0 };
+        let count = if is_plain { geometry.count() } else { 0 };
         let project = |primitive: u32| {
             let corners = geometry.corners(primitive);
             if !corners.iter().all(|c| c.is_finite()) {
@@ -85,7 +86,9 @@ impl<'a> FirstHits<'a> {
             let pixels = view.pixels(&seen)?;
             Some(Projected { primitive, depth: (seen.depth as f32).next_down(), pixels })
         };
-        let projected: Vec<_> = (0..count).into_par_iter().filter_map(project).collect();
+        let project = |some: Range<usize>| (some.start as u32..some.end as u32).filter_map(project).collect();
+        let projected: Vec<Vec<_>> = parallel::map_chunks(count, CHUNK, project);
+        let projected: Vec<_> = projected.into_iter().flatten().collect();
         let bands = |p: &Projected| usize::from(p.pixels.y[0]) / SIDE..=usize::from(p.pixels.y[1]) / SIDE;
         let (splits, in_band) = lists(height.div_ceil(SIDE), projected.len(), |i| bands(&projected[i]));
         Self { scene, camera, offsets, view, projected, in_band, splits, is_plain, level }

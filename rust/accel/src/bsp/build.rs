@@ -12,6 +12,7 @@ use super::plane::{Plane, Side};
 use super::{Child, MAX_DEPTH, Node, Options};
 use crate::walk::{Input, Lists, Room};
 use raywright_base::math::DVec3;
+use raywright_base::parallel;
 use raywright_base::work::Steps;
 
 /// How many pieces tell how good a plane may be.
@@ -108,7 +109,7 @@ impl Builder<'_> {
         };
         let children = if count > PARALLEL {
             let mut other = Grown::default();
-            let (back, front) = rayon::join(|| child(back, 0, grown), || child(front, 1, &mut other));
+            let (back, front) = parallel::join(|| child(back, 0, grown), || child(front, 1, &mut other));
             [back, grown.append(front, other)]
         } else {
             [child(back, 0, grown), child(front, 1, grown)]

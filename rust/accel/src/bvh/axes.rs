@@ -10,8 +10,9 @@
 //! What decides is the surface of all boxes, which is how many of them a ray may be expected to meet.
 
 use super::build::reference::SHARE;
-use rayon::prelude::*;
 use raywright_base::math::{Aabb, Axes, DVec3};
+use raywright_base::parallel;
+use std::ops::Range;
 
 /// Boxes along other axes are worth their while if they have this share of the surface at most. Where sticks lie along
 /// all four diagonals, axes along one of them save a half, and cutting all of them saves more.
@@ -86,7 +87,8 @@ fn sample(boxes: &[Aabb], corners: impl Fn(u32) -> [DVec3; 3] + Sync) -> Vec<Sam
         return Vec::new();
     }
     // From which share of the boxes on there is how much of the surface.
-    let mut shares: Vec<_> = boxes.par_chunks(SHARE).map(|share| share.iter().map(area).sum::<f64>()).collect();
+    let of_share = |share: Range<usize>| boxes[share].iter().map(area).sum::<f64>();
+    let mut shares = parallel::map_chunks(boxes.len(), SHARE, of_share);
     let mut before = 0.0;
     for share in &mut shares {
         before += std::mem::replace(share, before);
@@ -95,10 +97,10 @@ fn sample(boxes: &[Aabb], corners: impl Fn(u32) -> [DVec3; 3] + Sync) -> Vec<Sam
     if step <= f64::MIN_POSITIVE {
         return Vec::new();
     }
-    let of_share = |(share, mut at): (usize, f64)| {
-        let first = share * SHARE;
+    let of_share = |share: Range<usize>| {
+        let mut at = shares[share.start / SHARE];
         let (mut of_share, mut next) = (Vec::new(), ((at / step).floor() + 1.0) * step);
-        for (p, aabb) in (first..).zip(&boxes[first..(first + SHARE).min(boxes.len())]) {
+        for (p, aabb) in share.clone().zip(&boxes[share]) {
             let own = area(aabb);
             at += own;
             while own > 0.0 && at >= next {
@@ -110,7 +112,7 @@ fn sample(boxes: &[Aabb], corners: impl Fn(u32) -> [DVec3; 3] + Sync) -> Vec<Sam
         }
         of_share
     };
-    shares.into_par_iter().enumerate().flat_map_iter(of_share).collect()
+    parallel::map_chunks(boxes.len(), SHARE, of_share).into_iter().flatten().collect()
 }
 
 #[cfg(test)]
@@ -118,6 +120,7 @@ mod tests {
     use super::*;
     use raywright_base::math::Region;
     use raywright_base::sampling::philox4x32;
+    use raywright_base::workers;
 
     /// Three numbers from −1 to 1.
     fn triple(i: u32) -> DVec3 {
@@ -140,8 +143,7 @@ mod tests {
         let region = Region::around(triangles.iter().flatten().copied());
         let boxes: Vec<_> = triangles.iter().map(|&corners| region.aabb(corners)).collect();
         let find = || find(&boxes, |p| triangles[p as usize].map(|c| region.to_box(c)));
-        let [one, three] =
-            [1, 3].map(|threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(find));
+        let [one, three] = [1, 3].map(|threads| workers::pool(Some(threads)).unwrap().install(find));
         assert_eq!(one, three);
         one
     }

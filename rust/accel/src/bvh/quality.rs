@@ -257,11 +257,11 @@ mod tests {
     fn planes_part_a_few_long_ones_among_many() {
         let (triangles, boxes) = triangles(50);
         let build = |quality: Quality, threads| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            let pool = raywright_base::workers::pool(Some(threads)).unwrap();
             pool.install(|| built(quality, &boxes, |p: u32, to: &Aabb| triangles.clip(p, to)))
         };
         let estimated = |quality: Quality, threads| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            let pool = raywright_base::workers::pool(Some(threads)).unwrap();
             let shapes = Triangles(triangles.0.clone());
             pool.install(|| built(quality, &boxes, shapes))
         };

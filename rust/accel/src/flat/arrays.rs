@@ -5,9 +5,9 @@ use crate::bvh::Options;
 use crate::bvh::traverse::{gathered, larger_first};
 use crate::walk::Input;
 use crate::{Placed, Primitives, region};
-use rayon::prelude::*;
 use raywright_base::math::robust::greater;
 use raywright_base::math::{DVec3, Region};
+use raywright_base::parallel;
 use raywright_shapes::Bounds;
 use std::collections::HashMap;
 
@@ -135,7 +135,7 @@ impl Layout {
             }
             self.nodes.push(node);
         }
-        self.triangles.par_extend(order.into_par_iter().map(|p| flat_triangle(input, p)));
+        self.triangles.extend(parallel::collect(order.len(), |i| flat_triangle(input, order[i])));
         bvh.depth()
     }
 

@@ -10,8 +10,9 @@ use super::lattice::Lattice;
 use super::overlap::Overlap;
 use super::resolution::coarser;
 use crate::walk::Input;
-use rayon::prelude::*;
 use raywright_base::math::Aabb;
+use raywright_base::parallel;
+use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 /// How much a grid may take.
@@ -41,13 +42,14 @@ impl Filled {
             cells = if input.work.is_stopped() { [1; 3] } else { cells };
             let touching = Touching { input, lattice: Lattice::around(bounds, cells) };
             let is_last = cells == [1; 3];
-            let looked_at: u64 = shared(primitives).map(|&p| touching.in_box(p)).sum();
+            let in_box = |some: Range<usize>| primitives[some].iter().map(|&p| touching.in_box(p)).sum::<u64>();
+            let looked_at: u64 = parallel::map_chunks(primitives.len(), TOGETHER, in_box).iter().sum();
             if !is_last && looked_at > budget.looked_at {
                 cells = coarser(cells);
                 continue;
             }
             let counts: Vec<AtomicU32> = (0..touching.lattice.count()).map(|_| AtomicU32::new(0)).collect();
-            shared(primitives).for_each(|&p| {
+            each(primitives, |p| {
                 touching.each(p, |cell| {
                     counts[cell].fetch_add(1, Relaxed);
                 });
@@ -73,9 +75,12 @@ impl Filled {
     }
 }
 
-/// In parallel, but no few primitives at a time.
-fn shared(primitives: &[u32]) -> impl ParallelIterator<Item = &u32> {
-    primitives.par_iter().with_min_len(512)
+/// Primitives that a thread takes at a time, and lists of them.
+const TOGETHER: usize = 512;
+
+/// Calls `work` with each primitive, in any order.
+fn each(primitives: &[u32], work: impl Fn(u32) + Sync) {
+    parallel::map_chunks(primitives.len(), TOGETHER, |some| primitives[some].iter().for_each(|&p| work(p)));
 }
 
 /// Which cells of a lattice primitives touch.
@@ -127,7 +132,7 @@ impl Touching<'_> {
             })
             .collect();
         let order: Vec<AtomicU32> = (0..references).map(|_| AtomicU32::new(0)).collect();
-        shared(primitives).for_each(|&p| {
+        each(primitives, |p| {
             self.each(p, |cell| order[places[cell].fetch_add(1, Relaxed) as usize].store(p, Relaxed));
         });
         let mut order: Vec<u32> = order.into_iter().map(AtomicU32::into_inner).collect();
@@ -140,7 +145,9 @@ impl Touching<'_> {
                 lists.push(own);
             }
         }
-        lists.into_par_iter().with_min_len(512).for_each(|own| own.sort_unstable());
+        parallel::each_chunk_mut(&mut lists, TOGETHER, &|_, lists| {
+            lists.iter_mut().for_each(|own| own.sort_unstable())
+        });
         Filled { lattice: self.lattice, counts, order }
     }
 }

@@ -137,7 +137,7 @@ mod tests {
     fn the_number_of_threads_does_not_matter() {
         let triangles = Triangles::soup(20_000, 0.05);
         let on = |threads| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            let pool = raywright_base::workers::pool(Some(threads)).unwrap();
             pool.install(|| built(&triangles).map(|(structure, lists)| (structure.info(), lists)))
         };
         assert_eq!(on(1), on(3));

@@ -14,8 +14,8 @@ use super::walk::Walk;
 use super::{Resolution, can_step};
 use crate::walk::{Input, Lists, Structure, Walker};
 use crate::{Info, SlabRay};
-use rayon::prelude::*;
 use raywright_base::math::Aabb;
+use raywright_base::parallel;
 
 /// How to build.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -117,13 +117,12 @@ fn levels(input: &Input, primitives: &[u32], options: &Options) -> (Vec<Made>, u
             lists.map(move |(cell, own)| (outer, cell, own))
         });
         let dense: Vec<_> = dense.collect();
-        let inner = dense.into_par_iter().filter_map(|(outer, cell, own)| {
+        let inner = parallel::map_parts(dense, |(outer, cell, own)| {
             let filled = inside(input, &made[outer].filled.lattice, cell, own, options)?;
             Some((outer, cell, own.len() as u64, filled))
         });
-        let inner: Vec<_> = inner.collect();
         from = made.len();
-        for (outer, cell, before, filled) in inner {
+        for (outer, cell, before, filled) in inner.into_iter().flatten() {
             let more = (filled.order.len() as u64).saturating_sub(before);
             if more > left {
                 continue;

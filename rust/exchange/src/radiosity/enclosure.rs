@@ -1,8 +1,8 @@
 //! What exchanges light: the sides of patches, what they reflect, and what they emit.
 
-use rayon::prelude::*;
 use raywright_accel::Primitives;
 use raywright_base::math::{Hit, Ray};
+use raywright_base::parallel;
 use raywright_optics::{Bsdf, Rgb};
 use raywright_scene::{Patches, Scene, SurfaceInteraction, SurfacePoint};
 use std::f64::consts::PI;
@@ -41,19 +41,19 @@ impl Enclosure {
             return Err(format!("{} faces are cut, of {}", patches.primitives(), geometry.count()));
         }
         let count = patches.count() as u32;
-        let area = |patch: u32| {
-            let primitive = patches.cell(patch).primitive;
+        let area = |patch: usize| {
+            let primitive = patches.cell(patch as u32).primitive;
             geometry.area(primitive) * patches.share(primitive)
         };
-        let areas: Vec<f64> = (0..count).into_par_iter().map(area).collect();
+        let areas = parallel::collect(patches.count(), area);
         if let Some(bad) = areas.iter().position(|area| !(area.is_finite() && *area > 0.0)) {
             let (shape, face) = geometry.locate(patches.cell(bad as u32).primitive);
             return Err(format!("face {face} of shape {shape} has no area, or no end: it cannot exchange light"));
         }
         let all = if sides == Sides::Both { 2 * count } else { count };
         let mut made = Self { patches, sides, areas, emission: Vec::new(), reflectance: Vec::new() };
-        let looks: Vec<(Rgb, Rgb)> =
-            (0..all).into_par_iter().map(|source| made.look(scene, source)).collect::<Result<_, _>>()?;
+        let looks = parallel::collect(all as usize, |source| made.look(scene, source as u32));
+        let looks: Vec<(Rgb, Rgb)> = looks.into_iter().collect::<Result<_, _>>()?;
         (made.emission, made.reflectance) = looks.into_iter().unzip();
         Ok(made)
     }

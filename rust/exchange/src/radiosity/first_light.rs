@@ -2,7 +2,7 @@
 
 use super::Enclosure;
 use super::origins::Origin;
-use rayon::prelude::*;
+use raywright_base::parallel;
 use raywright_base::sampling::{BatchSize, SamplerKind};
 use raywright_base::workers::Cancel;
 use raywright_optics::Rgb;
@@ -44,10 +44,9 @@ pub(super) fn irradiance(
         brought.iter().zip(&occluded).filter(|(_, occluded)| !**occluded).map(|(light, _)| *light).sum::<Rgb>()
     };
     let mut found = vec![Rgb::ZERO; rays.len()];
-    found.par_chunks_mut(TOGETHER).enumerate().with_max_len(1).for_each(|(chunk, found)| {
+    parallel::each_chunk_mut(&mut found, TOGETHER, &|first, found| {
         if !cancel.is_raised() {
-            for (i, found) in found.iter_mut().enumerate() {
-                let source = chunk * TOGETHER + i;
+            for (source, found) in (first..).zip(found) {
                 *found = of(source as u32, rays[source]);
             }
         }

@@ -2,8 +2,8 @@
 
 use super::origins::Origin;
 use super::{Enclosure, first_light};
-use rayon::prelude::*;
 use raywright_base::math::{DVec3, Hit, Ray};
+use raywright_base::parallel;
 use raywright_base::sampling::{BatchSize, SamplerKind, philox4x32};
 use raywright_base::workers::Cancel;
 use raywright_optics::Rgb;
@@ -129,11 +129,9 @@ impl Shots {
         for part in parts(sources, 1 << 22) {
             let (sources, carried) = (&sources[part.clone()], &carried[part]);
             let pieces = pieces(sources);
-            let targets: Vec<Vec<u32>> = pieces
-                .into_par_iter()
-                .with_max_len(1)
-                .map(|piece| if cancel.is_raised() { Vec::new() } else { follow(scene, enclosure, &piece, key) })
-                .collect();
+            let targets: Vec<Vec<u32>> = parallel::map_parts(pieces, |piece| {
+                if cancel.is_raised() { Vec::new() } else { follow(scene, enclosure, &piece, key) }
+            });
             let mut target = targets.into_iter().flatten();
             for (&(_, rays), &power) in sources.iter().zip(carried) {
                 for to in target.by_ref().take(rays as usize) {

@@ -8,11 +8,12 @@ use super::pair::pair;
 use super::partly::{Open, sampled};
 use super::shaft::{Blocker, HalfSpace, between_boxes, between_facets, hides};
 use super::{Aim, Sampled, areas, facets};
-use rayon::prelude::*;
+use raywright_base::parallel;
 use raywright_base::simd::Level;
 use raywright_base::work::{Steps, Stopped, Work};
 use raywright_scene::Scene;
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Mutex, PoisonError};
 
@@ -43,7 +44,7 @@ pub fn matrix(scene: &Scene, aim: &Aim, work: Work) -> Result<Matrix, Stopped> {
         aim,
         level: Level::current().unwrap_or(Level::Scalar),
         steps: work.steps(count * count),
-        factors: (0..count * count).into_par_iter().map(|_| AtomicU64::new(0)).collect(),
+        factors: parallel::collect(count * count, |_| AtomicU64::new(0)),
         sampled: Mutex::default(),
         counts: Default::default(),
         rays: AtomicU64::new(0),
@@ -86,8 +87,14 @@ fn blockers(scene: &Scene, facets: &[Facet], tree: &Clusters) -> Vec<Blocker> {
         }
         false
     };
-    let flat = tree.order.par_iter().map(|&i| facets[i as usize]).filter(|facet| parts(facet)).map(Blocker::Facet);
-    flat.chain(curved.par_iter().map(|&i| Blocker::Curved(i))).collect()
+    /// Facets that a thread looks at at a time.
+    const TOGETHER: usize = 16;
+    let flat = |some: Range<usize>| -> Vec<Blocker> {
+        let facets = tree.order[some].iter().map(|&i| facets[i as usize]);
+        facets.filter(parts).map(Blocker::Facet).collect()
+    };
+    let flat = parallel::map_chunks(tree.order.len(), TOGETHER, flat).into_iter().flatten();
+    flat.chain(curved.iter().map(|&i| Blocker::Curved(i))).collect()
 }
 
 /// What all threads share.
@@ -135,7 +142,7 @@ impl Everything<'_> {
             self.tree.parts(other).map(|part| (one, part)).into()
         };
         if pairs > TASK {
-            both.into_par_iter().for_each(|(one, other)| self.visit(one, other, &left));
+            parallel::each(both.len(), &|i| self.visit(both[i].0, both[i].1, &left));
         } else {
             both.into_iter().for_each(|(one, other)| self.visit(one, other, &left));
         }
@@ -277,17 +284,17 @@ impl Everything<'_> {
         let curved: Vec<u32> = (0..areas.len() as u32).filter(|&i| is_curved(i) && areas[i as usize] > 0.0).collect();
         let mut exchanged = BTreeMap::<[u32; 2], [f64; 2]>::new();
         for some in curved.chunks(ROWS) {
-            let row = |rows: &mut Rows, &i: &u32| {
-                let mut rays = 0;
+            let row = |i: usize| {
+                let (i, mut rays) = (some[i], 0);
                 if self.steps.is_stopped() {
                     return Vec::new();
                 }
+                let mut rows = Rows::new(self.scene, self.aim.seed);
                 let row = rows.row(i, &self.facets[i as usize], self.aim, &mut rays);
                 self.rays.fetch_add(rays, Relaxed);
                 row
             };
-            let rows: Vec<_> =
-                some.par_iter().with_max_len(1).map_init(|| Rows::new(self.scene, self.aim.seed), row).collect();
+            let rows = parallel::map(some.len(), row);
             self.steps.did(some.len() * areas.len())?;
             for (&i, row) in some.iter().zip(rows) {
                 let area = areas[i as usize];

@@ -2,9 +2,10 @@
 
 use super::by_rays::{Entry, Rows};
 use super::{Aim, facets};
-use rayon::prelude::*;
+use raywright_base::parallel;
 use raywright_base::work::{Stopped, Work};
 use raywright_scene::Scene;
+use std::ops::Range;
 
 /// Rows one after the other, as compressed sparse rows have it.
 #[derive(Debug, Default)]
@@ -29,27 +30,23 @@ pub fn sparse(scene: &Scene, aim: &Aim, work: Work) -> Result<Sparse, Stopped> {
     let facets = facets(scene);
     let steps = work.steps(facets.len());
     let mut all = Sparse { starts: vec![0], ..Sparse::default() };
-    let round = TOGETHER * rayon::current_num_threads() * 4;
+    let round = TOGETHER * parallel::threads() * 4;
     for start in (0..facets.len()).step_by(round) {
-        let some: Vec<usize> = (start..(start + round).min(facets.len())).collect();
-        let rows: Vec<(Vec<Entry>, u64)> = some
-            .par_iter()
-            .with_min_len(TOGETHER)
-            .map_init(
-                || Rows::new(scene, aim.seed),
-                |rows, &face| {
-                    let mut sent = 0;
-                    if steps.is_stopped() {
-                        return (Vec::new(), 0);
-                    }
-                    let mut row = rows.row(face as u32, &facets[face], aim, &mut sent);
-                    row.sort_unstable_by_key(|entry| entry.0);
-                    (row, sent)
-                },
-            )
-            .collect();
-        steps.did(rows.len())?;
-        for (row, sent) in rows {
+        let count = round.min(facets.len() - start);
+        let of_faces = |some: Range<usize>| -> Vec<(Vec<Entry>, u64)> {
+            let mut rows = Rows::new(scene, aim.seed);
+            let faces = (start + some.start..start + some.end).take_while(|_| !steps.is_stopped());
+            let row = |face: usize| {
+                let mut sent = 0;
+                let mut row = rows.row(face as u32, &facets[face], aim, &mut sent);
+                row.sort_unstable_by_key(|entry| entry.0);
+                (row, sent)
+            };
+            faces.map(row).collect()
+        };
+        let rows = parallel::map_chunks(count, TOGETHER, of_faces);
+        steps.did(count)?;
+        for (row, sent) in rows.into_iter().flatten() {
             all.rays += sent;
             all.faces.extend(row.iter().map(|entry| entry.0 as i32));
             all.values.extend(row.iter().map(|entry| entry.1));

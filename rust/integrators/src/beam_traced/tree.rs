@@ -7,13 +7,14 @@ use super::shading::Met;
 use super::shadow::Shadows;
 use super::visible::visible;
 use crate::Job;
-use rayon::prelude::*;
 use raywright_accel::Primitives;
 use raywright_base::math::convex::{Convex, area};
 use raywright_base::math::{DVec2, DVec3};
+use raywright_base::parallel;
 use raywright_base::workers::Cancel;
 use raywright_optics::Rgb;
 use raywright_scene::Perspective;
+use std::ops::Range;
 
 /// A part of the film that shows one face, by way of certain mirrors and in the light of certain lights.
 #[derive(Clone, Debug)]
@@ -44,6 +45,9 @@ struct Found {
 /// What is smaller, in pixels, is not followed further.
 const LEAST_FOLLOWED: f64 = 1e-10;
 
+/// Faces that a thread looks at at a time.
+const TOGETHER: usize = 256;
+
 impl Tree {
     /// Follows the view of a camera.
     pub fn new(job: &Job, camera: &Perspective, settings: &BeamTraced, cancel: &Cancel) -> Self {
@@ -51,8 +55,7 @@ impl Tree {
         let region = scene.region();
         let reach = region.min.abs().max(region.max.abs()).max_element();
         let places: Vec<_> = scene.lights().others().filter_map(|light| light.place()).collect();
-        let lights: Vec<Shadows> =
-            places.par_iter().map(|&place| Shadows::new(place, scene.geometry(), reach)).collect();
+        let lights: Vec<Shadows> = parallel::map(places.len(), |i| Shadows::new(places[i], scene.geometry(), reach));
         let mut tree = Self { beams: Vec::new(), pieces: Vec::new() };
         let mut next = if settings.max_depth > 0 { vec![Beam::of(camera)] } else { Vec::new() };
         while !next.is_empty() && !cancel.is_raised() {
@@ -79,8 +82,8 @@ impl Tree {
     ) -> Vec<Found> {
         let (beam, geometry) = (&self.beams[number], job.scene.geometry());
         let follows = beam.bounce + 1 < settings.max_depth;
-        let mut seen: Vec<Seen> =
-            (0..geometry.count() as u32).into_par_iter().filter_map(|face| beam.see(geometry, face)).collect();
+        let see = |faces: Range<usize>| faces.filter_map(|face| beam.see(geometry, face as u32)).collect::<Vec<_>>();
+        let mut seen: Vec<Seen> = parallel::map_chunks(geometry.count(), TOGETHER, see).into_iter().flatten().collect();
         // What is near hides most.
         seen.sort_by(|a, b| b.nearest.total_cmp(&a.nearest).then(a.primitive.cmp(&b.primitive)));
         let one = |which: usize| {
@@ -116,7 +119,7 @@ impl Tree {
             }
             found
         };
-        (0..seen.len()).into_par_iter().map(one).collect()
+        parallel::map(seen.len(), one)
     }
 
     /// The radiance that comes from a piece at a place of the film.

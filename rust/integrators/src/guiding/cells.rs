@@ -2,8 +2,8 @@
 
 use super::lobe::{Lobe, LobeLanes};
 use super::photon::Photon;
-use rayon::prelude::*;
 use raywright_base::math::{DVec3, LANES};
+use raywright_base::parallel;
 use std::ops::Range;
 
 /// Places in cells, by halving the photons at the longest side of the box around them until few are left.
@@ -95,7 +95,7 @@ impl Cells {
             all.gather(0, &photons, (min, max), &mut near);
             Leaf::told(&mut near, (min, max), usual)
         };
-        let told: Vec<(Leaf, Vec<Lobe>)> = ranges.into_par_iter().map(told).collect();
+        let told: Vec<(Leaf, Vec<Lobe>)> = parallel::map_parts(ranges, told);
         for (leaf, lobes) in told {
             let first = all.lobes.len();
             all.lobes.extend(lobes.chunks(LANES).map(LobeLanes::of));

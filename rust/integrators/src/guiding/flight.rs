@@ -2,8 +2,8 @@
 
 use super::is_matt;
 use super::photon::Photon;
-use rayon::prelude::*;
 use raywright_base::math::{DVec3, Hit, Ray};
+use raywright_base::parallel;
 use raywright_base::sampling::{AliasTable, Sampler, warp};
 use raywright_base::workers::Cancel;
 use raywright_optics::{AnyBsdf, Bsdf, BsdfSample};
@@ -32,7 +32,8 @@ pub(super) fn photons(scene: &Scene, cancel: &Cancel) -> Option<Vec<Photon>> {
     }
     let Some(targets) = Targets::new(scene) else { return Some(Vec::new()) };
     let part = |part| (!cancel.is_raised()).then(|| Flight::new(scene, &targets, part).follow(scene));
-    let parts: Option<Vec<Vec<Photon>>> = (0..SENT / TOGETHER).into_par_iter().map(part).collect();
+    let parts = parallel::map((SENT / TOGETHER) as usize, |i| part(i as u32));
+    let parts: Option<Vec<Vec<Photon>>> = parts.into_iter().collect();
     parts.map(|parts| parts.concat())
 }
 

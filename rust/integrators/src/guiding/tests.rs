@@ -148,7 +148,7 @@ fn there_are_none_where_none_can_be_found() {
 fn threads_change_no_photon() {
     let scene = room(true, 5.0, Vec::new());
     let all = |threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let pool = raywright_base::workers::pool(Some(threads)).unwrap();
         let told = |p: &Photon| (p.position.to_array(), p.target.to_array(), p.flux, p.chain);
         pool.install(|| photons(&scene, &Cancel::default()).unwrap().iter().map(told).collect::<Vec<_>>())
     };

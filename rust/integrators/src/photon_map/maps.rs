@@ -8,7 +8,7 @@ use crate::is_matt;
 use crate::light_paths::{Arrived, Dimensions, Flying, LightWalk, Limits, Times, Visitor};
 use crate::nesting::MediumStack;
 use crate::volumes::{Drifting, MediaLightWalk, MediaVisitor, Numbers, Point, Vertex};
-use rayon::prelude::*;
+use raywright_base::parallel;
 use raywright_base::sampling::Sampler;
 use raywright_base::workers::Cancel;
 use raywright_optics::Rgb;
@@ -94,8 +94,8 @@ fn chunked<V: Send>(
         }
         visitor
     };
-    let chunks = 0..flight.paths.div_ceil(TOGETHER);
-    if alone { chunks.map(follow).collect() } else { chunks.into_par_iter().with_max_len(1).map(follow).collect() }
+    let chunks = flight.paths.div_ceil(TOGETHER);
+    if alone { (0..chunks).map(follow).collect() } else { parallel::map(chunks as usize, |chunk| follow(chunk as u32)) }
 }
 
 /// Follows the paths of a flight from surface to surface, by all threads or by this one alone, each some of visitors.

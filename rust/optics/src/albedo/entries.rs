@@ -8,7 +8,7 @@ use super::variables::{alpha, alpha_of_root, effective_cosine, index, of_cosine}
 use super::{Brushed, Coat, Interface, MirrorLoss, Rough, SchlickShare, Tabulated};
 use crate::{Beckmann, Facets, Ggx, fresnel};
 use glam::DVec3;
-use rayon::prelude::*;
+use raywright_base::parallel;
 use std::f64::consts::FRAC_PI_2;
 
 /// A table with the values at its entries of a function of its variables. Where the environment variable TABLES has
@@ -31,7 +31,7 @@ fn filled<const N: usize>(name: &str, like: &Table<N>, value: impl Fn([f64; N]) 
         assert!((low - rounding..=high + rounding).contains(&value), "{value} at {variables:?}");
         (((value - low) / (high - low) * 65535.0).round() as u16).to_le_bytes()
     };
-    let bytes: Vec<[u8; 2]> = (0..like.sizes.iter().product()).into_par_iter().map(entry).collect();
+    let bytes: Vec<[u8; 2]> = parallel::map(like.sizes.iter().product(), entry);
     Table { bytes: bytes.concat().leak(), ..*like }
 }
 

@@ -3,7 +3,7 @@
 use super::super::Rgb;
 use super::{FIRST, Illuminant, LAST, Response, Waves};
 use glam::{DMat3, DVec3};
-use rayon::prelude::*;
+use raywright_base::parallel;
 use std::sync::LazyLock;
 
 /// What a colour is of.
@@ -220,7 +220,7 @@ static TABLE: LazyLock<Table> = LazyLock::new(|| {
         row.reverse();
         row
     };
-    Table(rows.par_iter().map(of_row).flatten().collect())
+    Table(parallel::map(rows.len(), |i| of_row(&rows[i])).concat())
 });
 
 impl Table {

@@ -2,7 +2,7 @@
 
 use super::planes::{Area, Size, away, blurred};
 use super::similarity::{Comparing, Guide};
-use rayon::prelude::*;
+use raywright_base::parallel;
 use raywright_base::workers::Cancel;
 
 /// Numbers that are known of a pixel besides its light: albedo, normal, and nearness.
@@ -63,7 +63,7 @@ fn filtered(guide: &Guide, planes: &[Vec<f64>], size: Size, cancel: &Cancel) -> 
         sums
     };
     let tiles = size.tiles(32);
-    let found: Vec<Vec<Vec<f64>>> = tiles.par_iter().map(of_tile).collect();
+    let found: Vec<Vec<Vec<f64>>> = parallel::map(tiles.len(), |i| of_tile(&tiles[i]));
     let mut all = vec![vec![0.0; size.pixels()]; planes.len()];
     for (area, sums) in tiles.iter().zip(found) {
         let weights = &sums[planes.len()];

@@ -1,6 +1,6 @@
 //! Pictures of one number a pixel, row by row.
 
-use rayon::prelude::*;
+use raywright_base::parallel;
 use std::ops::Range;
 
 /// Pixels of a row, and rows.
@@ -63,15 +63,17 @@ pub(super) fn away(index: usize, [dx, dy]: [isize; 2], size: Size) -> usize {
 pub(super) fn blurred(values: &[f64], size: Size, reach: usize) -> Vec<f64> {
     let mut across = vec![0.0; values.len()];
     let near = |at: usize, length: usize| at.saturating_sub(reach)..length.min(at + reach + 1);
-    across.par_chunks_mut(size.width.max(1)).zip(values.par_chunks(size.width.max(1))).for_each(|(into, row)| {
+    let width = size.width.max(1);
+    parallel::each_chunk_mut(&mut across, width, &|first, into| {
+        let row = &values[first..first + into.len()];
         for (x, into) in into.iter_mut().enumerate() {
             let near = &row[near(x, size.width)];
             *into = near.iter().sum::<f64>() / near.len() as f64;
         }
     });
     let mut all = vec![0.0; values.len()];
-    all.par_chunks_mut(size.width.max(1)).enumerate().for_each(|(y, into)| {
-        let rows = near(y, size.height);
+    parallel::each_chunk_mut(&mut all, width, &|first, into| {
+        let rows = near(first / width, size.height);
         for row in rows.clone() {
             into.iter_mut().zip(&across[row * size.width..]).for_each(|(into, value)| *into += value);
         }

@@ -3,7 +3,7 @@
 use super::features::FEATURES;
 use super::planes::{Area, Size};
 use super::similarity::{Comparing, Guide};
-use rayon::prelude::*;
+use raywright_base::parallel;
 use raywright_base::workers::Cancel;
 use raywright_optics::Rgb;
 
@@ -47,7 +47,7 @@ pub(super) fn filtered(
     let guide = Guide { channels: &channels, variance: &variance, least: LEAST };
     let tiles = size.tiles(SIDE);
     let of_tile = |area: &Area| of_tile(&guide, values, features, size, area, bandwidths, cancel);
-    let found: Vec<Vec<Vec<Rgb>>> = tiles.par_iter().map(of_tile).collect();
+    let found: Vec<Vec<Vec<Rgb>>> = parallel::map(tiles.len(), |i| of_tile(&tiles[i]));
     let mut all = vec![vec![Rgb::ZERO; size.pixels()]; bandwidths.len()];
     for (area, found) in tiles.iter().zip(found) {
         for (picture, found) in all.iter_mut().zip(found) {

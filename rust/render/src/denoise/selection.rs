@@ -2,7 +2,7 @@
 
 use super::super::denominators::{Denominators, cross};
 use super::planes::{Size, blurred};
-use rayon::prelude::*;
+use raywright_base::parallel;
 use raywright_optics::Rgb;
 
 /// Errors are compared over squares that go so far, twice one after the other.
@@ -33,7 +33,7 @@ pub(super) fn selected(
         let cross = cross(&all, size.width, i % size.width, i / size.width);
         Denominators::new(&cross, variance[i] * (2.0 / 3.0), samples * 1.5).inverse
     };
-    let weights: Vec<Rgb> = (0..count).into_par_iter().map(weight).collect();
+    let weights: Vec<Rgb> = parallel::collect(count, weight);
     let errors: Vec<Vec<f64>> = candidates
         .iter()
         .map(|candidate| {
@@ -41,7 +41,7 @@ pub(super) fn selected(
                 let (off, plain) = (candidate[i] - witness[i], plain[i] - witness[i]);
                 (off * off - plain * plain).dot(weights[i])
             };
-            let each: Vec<f64> = (0..count).into_par_iter().map(of).collect();
+            let each: Vec<f64> = parallel::collect(count, of);
             blurred(&blurred(&each, size, REACH), size, REACH)
         })
         .collect();

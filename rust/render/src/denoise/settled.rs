@@ -7,7 +7,7 @@ use super::super::patchwork::Patchwork;
 use super::halves::Halves;
 use super::planes::{Size, blurred};
 use super::selection::selected;
-use rayon::prelude::*;
+use raywright_base::parallel;
 use raywright_optics::Rgb;
 
 /// A picture that was filtered, and what is known of its error.
@@ -61,9 +61,8 @@ fn outcome(halves: &Halves, candidates: &[Vec<Vec<Rgb>>; 2], size: Size) -> Outc
     let chosen = ways.map(|(half, chooser, _)| {
         selected(&candidates[half], &quarters[chooser], &halves.variances[half], halves.samples / 2.0, size)
     });
-    let pixels = || (0..size.pixels()).into_par_iter();
-    let picture: Vec<Rgb> =
-        pixels().map(|i| (chosen[0][i] + chosen[1][i] + chosen[2][i] + chosen[3][i]) / 4.0).collect();
+    let mean = |i: usize| (chosen[0][i] + chosen[1][i] + chosen[2][i] + chosen[3][i]) / 4.0;
+    let picture: Vec<Rgb> = parallel::collect(size.pixels(), mean);
     let of = |i: usize| {
         let mut sum = Rgb::ZERO;
         for (chosen, (_, chooser, teller)) in chosen.iter().zip(ways) {
@@ -73,12 +72,12 @@ fn outcome(halves: &Halves, candidates: &[Vec<Vec<Rgb>>; 2], size: Size) -> Outc
         }
         sum / 4.0
     };
-    let errors = pixels().map(of).collect();
+    let errors = parallel::collect(size.pixels(), of);
     let apart = |i: usize| {
         let off = (chosen[0][i] + chosen[1][i] - chosen[2][i] - chosen[3][i]) / 4.0;
         off * off
     };
-    let apart = pixels().map(apart).collect();
+    let apart = parallel::collect(size.pixels(), apart);
     Outcome { picture, errors, apart }
 }
 

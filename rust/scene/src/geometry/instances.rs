@@ -4,9 +4,9 @@ use super::pose::{Pose, between, carried_by};
 use super::prototype::Prototype;
 use crate::textures::Needs;
 use crate::{ShadingPoint, SurfacePoint};
-use rayon::prelude::*;
 use raywright_accel::{Meeting, Placed, Side, Wanted};
 use raywright_base::math::{Hit, Ray, Singular};
+use raywright_base::parallel;
 use raywright_shapes::{Bounds, Candidate, Contact};
 use std::sync::Arc;
 
@@ -53,7 +53,7 @@ fn each<A: Sync, B: Send>(
     items: &[A],
     make: impl Fn(&A) -> Result<B, Singular> + Sync,
 ) -> Result<Vec<B>, BadTransform> {
-    items.par_iter().map(&make).collect::<Result<_, _>>().map_err(|_: Singular| {
+    parallel::collect(items.len(), |i| make(&items[i])).into_iter().collect::<Result<_, _>>().map_err(|_: Singular| {
         let failed = items.iter().enumerate().find_map(|(index, item)| Some((index, make(item).err()?)));
         let (index, why) = failed.unwrap_or((0, Singular::NotFinite));
         BadTransform { index, why }

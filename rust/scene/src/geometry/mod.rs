@@ -25,11 +25,12 @@ use super::SurfacePoint;
 use super::textures::Needs;
 use facets::{Facet, Facets};
 use per_vertex::PerVertex;
-use rayon::prelude::*;
 use raywright_accel::{BoxTree, Primitives, UserGeometry, region};
 use raywright_base::math::{DVec3, Hit, Ray, Region, Vec3};
+use raywright_base::parallel::{self, CHUNK};
 use raywright_base::simd::ask_for;
 use raywright_shapes::{Bounds, Shape, Site};
+use std::ops::Range;
 use std::ptr;
 use std::sync::{Arc, OnceLock};
 
@@ -257,7 +258,8 @@ impl Geometry {
             all.vertices = std::mem::take(&mut all.vertices).joined(mesh.vertices.shortened());
             let number = all.count() + mesh.faces.len();
             let names_own = |face: &[u32; 3]| face.iter().all(|&v| v < end);
-            assert!(mesh.faces.par_iter().all(names_own), "a face names a vertex that its mesh has");
+            let all_own = parallel::map_chunks(mesh.faces.len(), CHUNK, |some| mesh.faces[some].iter().all(names_own));
+            assert!(!all_own.contains(&false), "a face names a vertex that its mesh has");
             if all.faces.is_empty() && base == 0 {
                 // The only mesh of many scenes, which may be large.
                 all.faces = mesh.faces;
@@ -271,7 +273,8 @@ impl Geometry {
         all.others = (!others.is_empty()).then(|| Arc::new(others));
         let is_finite = |v: u32| all.vertices.get(v).is_finite();
         let is_dropped = |face: &&[u32; 3]| **face != NO_FACE && !face.iter().all(|&v| is_finite(v));
-        all.dropped = all.faces.par_iter().filter(is_dropped).count();
+        let dropped = |some: Range<usize>| all.faces[some].iter().filter(is_dropped).count();
+        all.dropped = parallel::map_chunks(all.faces.len(), CHUNK, dropped).into_iter().sum();
         // Instances are many, and each shall be small.
         let faces = if all.gaps.is_empty() { all.count() } else { 0 };
         all.facets = Facets::new(faces, |primitive| all.facet(primitive));

@@ -3,10 +3,10 @@
 use super::Geometry;
 use crate::textures::Needs;
 use crate::{Emission, Material, ShadingPoint, SurfacePoint};
-use rayon::prelude::*;
 use raywright_accel::{Accelerator, Primitives, Side};
 use raywright_base::math::robust::normalising_scale;
 use raywright_base::math::{DVec3, Hit, Ray, Region};
+use raywright_base::parallel::{self, CHUNK};
 use raywright_shapes::Bounds;
 use std::fmt;
 use std::sync::Arc;
@@ -58,8 +58,9 @@ impl Prototype {
         }
         let (has_instances, moves) = (geometry.has_instances(), geometry.moves());
         let region = geometry.region();
-        let is_endless = |p: u32| geometry.bounds(p).is_some_and(|b| !b.is_finite());
-        let bounds = if geometry.objects().is_some() && (0..geometry.count() as u32).into_par_iter().any(is_endless) {
+        let is_endless = |p: usize| geometry.bounds(p as u32).is_some_and(|b| !b.is_finite());
+        let any_endless = || parallel::map_chunks(geometry.count(), CHUNK, |mut some| some.any(is_endless));
+        let bounds = if geometry.objects().is_some() && any_endless().contains(&true) {
             Some(Bounds { min: DVec3::NEG_INFINITY, max: DVec3::INFINITY })
         } else {
             (!region.is_empty()).then_some(Bounds { min: region.min, max: region.max })

@@ -5,8 +5,8 @@ use super::{BsdfMix, ConductorMaterial, DielectricMaterial, FacetKind, Index, In
 use crate::ShadingPoint;
 use crate::media::Medium;
 use crate::textures::{Needs, TexturePoint, Value};
-use rayon::prelude::*;
 use raywright_base::math::DVec3;
+use raywright_base::parallel;
 use raywright_optics::conductors::{FilmedCurve, FilmedMetal, Metal, Reflectance};
 use raywright_optics::{AnyBsdf, Beckmann, Dielectric, Facets, Filmed, Ggx, Once};
 use std::sync::{Arc, PoisonError, RwLock};
@@ -83,7 +83,7 @@ impl FilmedMetals {
         } else {
             let count = (last - first) as usize + 1;
             let each = |k: usize| FilmedCurve::of(metal, (first + k as f64) * step, film, outside);
-            (0..count).into_par_iter().map(each).collect::<Vec<_>>().into()
+            parallel::map(count, each).into()
         };
         let mut ready = self.ready.write().unwrap_or_else(PoisonError::into_inner);
         find(&ready).unwrap_or_else(|| {

@@ -1,6 +1,6 @@
 //! Pictures in memory, and smaller and smaller copies of them.
 
-use rayon::prelude::*;
+use raywright_base::parallel;
 use raywright_optics::Rgb;
 use std::fmt;
 use std::sync::LazyLock;
@@ -96,11 +96,12 @@ impl Level {
                 mean
             })
         };
-        let rows = (0..height).into_par_iter().flat_map_iter(row);
         let texels = if self.texels.is_grey() {
-            Texels::Grey(rows.map(|mean| mean[0] as f32).collect())
+            let grey = |y| row(y).map(|mean| mean[0] as f32).collect();
+            Texels::Grey(parallel::map::<Vec<_>>(height, grey).concat())
         } else {
-            Texels::Colour(rows.map(|mean| mean.to_array().map(|x| x as f32)).collect())
+            let colour = |y| row(y).map(|mean| mean.to_array().map(|x| x as f32)).collect();
+            Texels::Colour(parallel::map::<Vec<_>>(height, colour).concat())
         };
         Self { width, height, texels }
     }

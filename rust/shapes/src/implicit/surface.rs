@@ -12,8 +12,8 @@
 
 use super::{Implicit, line::Along, roots::roots};
 use crate::Contact;
-use rayon::prelude::*;
 use raywright_base::math::{DVec3, Interval};
+use raywright_base::parallel;
 use raywright_base::sampling::philox4x32;
 
 /// Columns a side, and lines a side at first.
@@ -136,7 +136,7 @@ fn lattice(
             (sum, most)
         };
         // In order, so that the sum is the same for any number of threads.
-        let parts: Vec<(f64, usize)> = (0..count.div_ceil(CHUNK)).into_par_iter().map(part).collect();
+        let parts: Vec<(f64, usize)> = parallel::map(count.div_ceil(CHUNK), part);
         integral += parts.iter().map(|p| p.0).sum::<f64>() * faces[axis] / count as f64;
         most = parts.iter().map(|p| p.1).fold(most, usize::max);
     }

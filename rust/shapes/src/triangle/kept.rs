@@ -80,7 +80,7 @@ impl<const N: usize> Leaves<N> for DoubleLeaves<N> {
             let [a, b, c] = corners(p);
             [region.to_box(a).as_vec3(), ((b - a) * region.scale).as_vec3(), ((c - a) * region.scale).as_vec3()]
         });
-        Self { rows, corners: parallel::collect(order.len(), &|i| corners(order[i])) }
+        Self { rows, corners: parallel::collect(order.len(), |i| corners(order[i])) }
     }
 
     #[inline(always)]

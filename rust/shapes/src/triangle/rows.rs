@@ -51,7 +51,7 @@ impl<const N: usize> Rows<N> {
             parts.push((part, mine, counts));
             (rest, order) = (others, more);
         }
-        parallel::of_parts(parts, |(mut part, mut order, counts): (&mut [f32], &[u32], &[u32])| {
+        parallel::map_parts(parts, |(mut part, mut order, counts): (&mut [f32], &[u32], &[u32])| {
             for &count in counts {
                 let count = count as usize;
                 assert!(count <= N, "a leaf has at most {N} triangles");

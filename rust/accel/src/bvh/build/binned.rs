@@ -9,6 +9,7 @@ use super::reference::{Bounds, Extents, MANY, Reference, median, partition, refe
 use super::top_down::{Due, TASK};
 use super::{BinaryBvh, Leaves, Node, spare};
 use raywright_base::math::Aabb;
+use raywright_base::parallel;
 use raywright_base::work::{Stopped, Work};
 use std::borrow::Cow;
 
@@ -85,7 +86,7 @@ impl Task {
         let [of_left, of_right] = due.split([left.len(), right.len()])?;
         let left_task = Self { spare: self.spare.saturating_sub(1), ..self };
         let right_task = Self { first: self.first.map(|first| first + middle as u32), ..left_task };
-        let (left, right) = rayon::join(
+        let (left, right) = parallel::join(
             || left_task.build(left, Extents::around_many(left), of_left),
             || right_task.build(right, Extents::around_many(right), of_right),
         );
@@ -278,7 +279,7 @@ mod tests {
             .map(|i| point([(i * 7919 % 10_007) as f32, (i * 31 % 997) as f32, (i % 13) as f32]))
             .collect();
         let on = |threads| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            let pool = raywright_base::workers::pool(Some(threads)).unwrap();
             let options = Options { bins: 16, leaves: Leaves::for_blocks(8) };
             pool.install(|| build(&boxes, &options, Work::UNWATCHED)).unwrap().order
         };

@@ -3,7 +3,8 @@
 
 use super::reference::{Bounds, Extents, MANY, Reference, SHARE};
 use glam::Vec4;
-use rayon::prelude::*;
+use raywright_base::parallel;
+use std::ops::Range;
 
 /// Most bins that may be asked for.
 pub const MAX_BINS: usize = 64;
@@ -50,11 +51,13 @@ impl Split {
 
     fn filled_by_many(references: &[Reference], extents: &Extents, bins: usize) -> (Option<Self>, Bins) {
         let binning = Binning::new(&extents.centres, bins);
-        let add = |mut filled: Bins, share: &[Reference]| {
-            filled.add(share, &binning);
+        let fill = |share: Range<usize>| {
+            let mut filled = Bins::new();
+            filled.add(&references[share], &binning);
             filled
         };
-        let filled = references.par_chunks(SHARE).fold(Bins::new, add).reduce(Bins::new, |a, b| a.join(&b, bins));
+        let shares = parallel::map_chunks(references.len(), SHARE, fill).into_iter();
+        let filled = shares.reduce(|a, b| a.join(&b, bins)).unwrap_or_else(Bins::new);
         (filled.best(bins, binning), filled)
     }
 

@@ -10,15 +10,19 @@ use super::bins::WHOLE;
 use super::reference::{Bounds, Reference};
 use super::{Shapes, chop};
 use glam::Vec4;
-use rayon::prelude::*;
 use raywright_base::math::Aabb;
+use raywright_base::parallel;
 use raywright_base::work::Work;
+use std::ops::Range;
 
 /// From so many references on, several threads look at them.
 const MANY: usize = 1 << 13;
 
 /// So many are one thread's share then.
 const SHARE: usize = 1 << 12;
+
+/// The most shares for which bins are filled.
+const MOST_SHARES: usize = 256;
 
 /// Planes are weighed along axes along which a set is at least so long, over the longest: others hardly ever win.
 const LENGTH: f32 = 0.5;
@@ -199,17 +203,20 @@ impl Plane {
         // Half as many as for whole references, and fewer for few: planes found so are hardly worse.
         let bins = bins.div_ceil(2).min(references.len() / 256).max(bins.div_ceil(4)).max(4);
         let grid = Grid::new(around, bins);
-        let add = |mut filled: Chopped, share: &[Reference]| {
+        let fill = |share: Range<usize>| {
+            let mut filled = Chopped::new();
             if !work.is_stopped() {
-                filled.add(share, &grid, shapes);
+                filled.add(&references[share], &grid, shapes);
             }
             filled
         };
         let filled = if references.len() < MANY {
-            add(Chopped::new(), references)
+            fill(0..references.len())
         } else {
-            let shares = references.par_chunks(SHARE).fold(Chopped::new, add);
-            shares.reduce(Chopped::new, |a, b| a.join(&b, bins))
+            // Shares are few, since each has bins of its own.
+            let share = SHARE.max(references.len().div_ceil(MOST_SHARES));
+            let shares = parallel::map_chunks(references.len(), share, fill).into_iter();
+            shares.reduce(|a, b| a.join(&b, bins)).unwrap_or_else(Chopped::new)
         };
         if work.is_stopped() {
             // Some may not have been counted.
@@ -231,7 +238,8 @@ impl Plane {
         let Sorted { mut left, mut right, across } = if references.len() < MANY {
             self.sort(references, shapes)
         } else {
-            let shares: Vec<_> = references.par_chunks(SHARE).map(|share| self.sort(share, shapes)).collect();
+            let sort = |share: Range<usize>| self.sort(&references[share], shapes);
+            let shares = parallel::map_chunks(references.len(), SHARE, sort);
             shares.into_iter().fold(Sorted::default(), Sorted::then)
         };
         for Across { whole, halves: [below, above] } in across {

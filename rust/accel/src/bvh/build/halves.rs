@@ -5,10 +5,11 @@
 use super::reference::{Extents, Reference, SHARE, median, partition, references};
 use super::top_down::{self, Set};
 use super::{BinaryBvh, Leaves, spare};
-use rayon::prelude::*;
 use raywright_base::math::Aabb;
+use raywright_base::parallel;
 use raywright_base::work::{Stopped, Work};
 use std::borrow::Cow;
+use std::ops::Range;
 
 /// Where to halve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -112,7 +113,7 @@ fn middle(extents: &Extents, axis: usize) -> f32 {
 
 /// The mean of the centres along an axis; sums of shares of one size, so that it does not depend on threads.
 fn mean(references: &[Reference], axis: usize) -> f32 {
-    let sum = |share: &[Reference]| share.iter().map(|r| f64::from(r.centre_on(axis))).sum::<f64>();
-    let shares: Vec<f64> = references.par_chunks(SHARE).map(sum).collect();
+    let sum = |share: Range<usize>| references[share].iter().map(|r| f64::from(r.centre_on(axis))).sum::<f64>();
+    let shares = parallel::map_chunks(references.len(), SHARE, sum);
     (shares.iter().sum::<f64>() / references.len() as f64) as f32
 }

@@ -3,6 +3,7 @@
 use super::reference::Reference;
 use super::{BinaryBvh, Node};
 use raywright_base::math::Aabb;
+use raywright_base::parallel;
 use raywright_base::work::{Stopped, Work};
 
 /// A part of a tree.
@@ -104,7 +105,7 @@ impl Part {
                     order: right_order,
                 };
                 let left_to = Target { base: base + 2, below: left_below, first, order: left_order };
-                rayon::join(|| left.place(left_node, left_to), || right.place(right_node, right_to));
+                parallel::join(|| left.place(left_node, left_to), || right.place(right_node, right_to));
             }
         }
     }

@@ -13,10 +13,11 @@ use super::morton::{self, Bits};
 use super::reference::{Bounds, Reference, references};
 use super::slices::{self, Opened, Subtree};
 use super::{BinaryBvh, spare};
-use rayon::prelude::*;
 use raywright_base::math::Aabb;
+use raywright_base::parallel;
 use raywright_base::work::{Stopped, Work};
 use std::borrow::Cow;
+use std::ops::Range;
 
 /// How to cluster.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,13 +48,12 @@ pub fn build<'a>(boxes: impl Into<Cow<'a, [Aabb]>>, options: &Options, work: Wor
     if sorted.is_empty() {
         return Ok(BinaryBvh::default());
     }
-    sorted = morton::sorted(&sorted, Bits::SixtyThree, sort)?
-        .into_par_iter()
-        .map(|(_, place)| sorted[place as usize])
-        .collect();
+    let codes = morton::sorted(&sorted, Bits::SixtyThree, sort)?;
+    sorted = parallel::collect(codes.len(), |i| sorted[codes[i].1 as usize]);
+    drop(codes);
     let count = sorted.len();
-    let cluster = |(link, r): (u32, &Reference)| Cluster { bounds: r.bounds, link, count: 1 };
-    let mut clusters: Vec<Cluster> = (0..count as u32).into_par_iter().zip(&sorted).map(cluster).collect();
+    let cluster = |i: usize| Cluster { bounds: sorted[i].bounds, link: i as u32, count: 1 };
+    let mut clusters = parallel::collect(count, cluster);
     let mut pairs = Vec::with_capacity(count - 1);
     let (mut rounds, steps) = (spare(count), merge.steps(count));
     while clusters.len() > 1 {
@@ -106,8 +106,7 @@ impl Neighbour {
 /// For each cluster, the place of that which it makes the smallest box with. There are at least two.
 fn nearest(clusters: &[Cluster], radius: usize) -> Vec<u32> {
     let mut sought = vec![0; clusters.len()];
-    sought.par_chunks_mut(SHARE).enumerate().for_each(|(share, sought)| {
-        let start = share * SHARE;
+    parallel::each_chunk_mut(&mut sought, SHARE, &|start, sought| {
         let own = start..start + sought.len();
         let mut found = vec![Neighbour::NONE; own.len()];
         // Each pair is looked at once, unless two shares have it in common.
@@ -138,17 +137,16 @@ fn beside(count: usize) -> Vec<u32> {
 fn merged(clusters: &[Cluster], sought: &[u32], leaves: usize, pairs: &mut Vec<Pair>) -> Vec<Cluster> {
     let agree = |place: usize| sought[sought[place] as usize] as usize == place && sought[place] as usize != place;
     let is_first = |place: &usize| agree(*place) && *place < sought[*place] as usize;
-    let shares = || (0..clusters.len().div_ceil(SHARE)).into_par_iter();
-    let own = |share: usize| share * SHARE..((share + 1) * SHARE).min(clusters.len());
-    let made: Vec<usize> = shares().map(|share| own(share).filter(is_first).count()).collect();
+    let made = parallel::map_chunks(clusters.len(), SHARE, |share| share.filter(is_first).count());
     let before = made.iter().scan(leaves + pairs.len(), |next, made| {
         *next += made;
         Some(*next - made)
     });
     let before: Vec<usize> = before.collect();
-    let of_share = |share: usize| {
+    let of_share = |places: Range<usize>| {
+        let share = places.start / SHARE;
         let (mut left, mut new) = (Vec::with_capacity(SHARE), Vec::with_capacity(made[share]));
-        for place in own(share) {
+        for place in places {
             let cluster = clusters[place];
             if !agree(place) {
                 left.push(cluster);
@@ -164,7 +162,7 @@ fn merged(clusters: &[Cluster], sought: &[u32], leaves: usize, pairs: &mut Vec<P
         }
         (left, new)
     };
-    let done: Vec<_> = shares().map(of_share).collect();
+    let done = parallel::map_chunks(clusters.len(), SHARE, of_share);
     let mut left = Vec::with_capacity(clusters.len() - made.iter().sum::<usize>());
     for (of_share, new) in done {
         left.extend(of_share);

@@ -13,8 +13,8 @@
 use super::reference::SHARE;
 use super::spatial::MAX_BUDGET;
 use super::{BinaryBvh, Shapes};
-use rayon::prelude::*;
 use raywright_base::math::{Aabb, Vec3};
+use raywright_base::parallel;
 
 /// How much to cut.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -99,13 +99,15 @@ impl Pieces {
             return None;
         }
         let budget = ((f64::from(budget) * total.count as f64) as usize).min(MOST.saturating_sub(total.count));
-        let mut made = Made::of(boxes, shapes, least, budget);
+        let made = Made::of(boxes, shapes, least, budget);
         if made.saved <= wanted {
             return None;
         }
         // A primitive's pieces stay in the order in which they were made.
-        made.pieces.par_sort_by_key(|piece| piece.0);
-        let mut pieces = made.pieces.into_iter().peekable();
+        let key = |(i, piece): (usize, &(u32, Aabb))| u64::from(piece.0) << 32 | i as u64;
+        let mut keys: Vec<u64> = made.pieces.iter().enumerate().map(key).collect();
+        parallel::sort(&mut keys);
+        let mut pieces = keys.into_iter().map(|key| made.pieces[key as u32 as usize]).peekable();
         let mut all = Self { boxes: Vec::new(), primitives: Vec::new() };
         for (p, whole) in (0u32..).zip(boxes) {
             let before = all.boxes.len();
@@ -170,7 +172,7 @@ impl Total {
             })
         };
         // Sums are added up in one order, however many threads make them.
-        let shares: Vec<_> = boxes.par_chunks(SHARE).map(of_share).collect();
+        let shares = parallel::map_chunks(boxes.len(), SHARE, |share| of_share(&boxes[share]));
         shares.into_iter().fold(of_share(&[]), |a, b| Self {
             around: a.around.union(b.around),
             area: a.area + b.area,
@@ -253,7 +255,7 @@ impl Made {
 
     /// Cuts so often at most, the cuts that gain most first, to a factor of two.
     fn cut(&mut self, long: &[(u32, &Aabb)], cut: &(dyn Fn(u32, &Aabb) -> Option<Cut> + Sync), mut budget: usize) {
-        let first: Vec<_> = long.par_iter().map(|&(p, whole)| cut(p, whole)).collect();
+        let first = parallel::collect(long.len(), |i| cut(long[i].0, long[i].1));
         let greatest = first.iter().flatten().fold(0f32, |greatest, cut| greatest.max(cut.gain));
         // Those that gain more than half of the greatest, more than a quarter, and so on.
         let mut rows: Vec<Vec<Cut>> = Vec::new();
@@ -280,8 +282,11 @@ impl Made {
             budget -= batch.len();
             self.cuts += batch.len();
             self.saved += batch.iter().map(|cut| f64::from(cut.gain)).sum::<f64>();
-            let halves: Vec<_> =
-                batch.par_iter().map(|made| made.halves.each_ref().map(|half| cut(made.primitive, half))).collect();
+            let halves = |i: usize| {
+                let made: &Cut = &batch[i];
+                made.halves.each_ref().map(|half| cut(made.primitive, half))
+            };
+            let halves = parallel::collect(batch.len(), halves);
             for (made, next) in batch.iter().zip(halves) {
                 for (half, next) in made.halves.iter().zip(next) {
                     match next {
@@ -410,7 +415,7 @@ mod tests {
         let sticks = triangles(40_000, DVec3::new(0.9, 0.8, -0.9), DVec3::new(0.02, 0.0, 0.0));
         let boxes = boxes(&sticks);
         let [one, three] = [1, 3].map(|threads| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            let pool = raywright_base::workers::pool(Some(threads)).unwrap();
             pool.install(|| cut(&sticks, &boxes, 2.3, 0.0)).unwrap()
         });
         assert!(one.boxes == three.boxes && one.primitives == three.primitives);

@@ -1,8 +1,9 @@
 //! A stable parallel radix sort by whole-number keys (Zagha and Blelloch, "Radix Sort for Vector Multiprocessors",
 //! 1991).
 
-use rayon::prelude::*;
+use raywright_base::parallel;
 use raywright_base::work::{Stopped, Work};
+use std::ops::Range;
 
 /// Bits of a digit.
 const DIGIT: u32 = 8;
@@ -31,12 +32,12 @@ fn digit(key: u64, shift: u32) -> usize {
 
 /// Writes the pairs by one digit; not if all have the same.
 fn pass(from: &[(u64, u32)], to: &mut [(u64, u32)], shift: u32) -> bool {
-    let count = |share: &[(u64, u32)]| {
+    let count = |share: Range<usize>| {
         let mut counts = [0usize; DIGITS];
-        share.iter().for_each(|&(key, _)| counts[digit(key, shift)] += 1);
+        from[share].iter().for_each(|&(key, _)| counts[digit(key, shift)] += 1);
         counts
     };
-    let counts: Vec<[usize; DIGITS]> = from.par_chunks(SHARE).map(count).collect();
+    let counts = parallel::map_chunks(from.len(), SHARE, count);
     if (0..DIGITS).any(|d| counts.iter().map(|c| c[d]).sum::<usize>() == from.len()) {
         return false;
     }
@@ -51,8 +52,8 @@ fn pass(from: &[(u64, u32)], to: &mut [(u64, u32)], shift: u32) -> bool {
             rest = others;
         }
     }
-    from.par_chunks(SHARE).zip(rooms).for_each(|(share, mut room)| {
-        for &pair in share {
+    parallel::each_mut(&mut rooms, &|share, room| {
+        for &pair in &from[share * SHARE..((share + 1) * SHARE).min(from.len())] {
             let place = room[digit(pair.0, shift)].next().expect("as much room as was counted");
             *place = pair;
         }
@@ -86,7 +87,7 @@ mod tests {
         let mut wanted: Vec<(u64, u32)> = keys.iter().copied().zip(0..).collect();
         wanted.sort();
         for threads in [1, 3] {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            let pool = raywright_base::workers::pool(Some(threads)).unwrap();
             assert_eq!(pool.install(|| sorted(&keys, 30)), wanted);
         }
     }

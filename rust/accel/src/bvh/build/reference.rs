@@ -1,10 +1,11 @@
 //! What builders sort: boxes with the numbers of their primitives.
 
 use glam::{Vec4, Vec4Swizzles};
-use rayon::prelude::*;
 use raywright_base::math::{Aabb, Vec3};
+use raywright_base::parallel;
 use raywright_base::work::{Stopped, Work};
 use std::borrow::Cow;
+use std::ops::Range;
 
 /// So many references are one thread's share of a large node.
 pub const SHARE: usize = 1 << 14;
@@ -175,7 +176,8 @@ impl Extents {
         if references.len() < MANY {
             Self::around(references)
         } else {
-            references.par_chunks(SHARE).map(Self::around).reduce(|| Self::EMPTY, Self::union)
+            let shares = parallel::map_chunks(references.len(), SHARE, |share| Self::around(&references[share]));
+            shares.into_iter().fold(Self::EMPTY, Self::union)
         }
     }
 }
@@ -184,9 +186,11 @@ impl Extents {
 pub fn references<'a>(boxes: impl Into<Cow<'a, [Aabb]>>, work: Work) -> Result<Vec<Reference>, Stopped> {
     let boxes = boxes.into();
     let reference = |i: usize| Reference::new(&boxes[i], i as u32);
-    if boxes.par_iter().any(Aabb::is_empty) {
+    let counts = |share: Range<usize>| boxes[share].iter().filter(|b| !b.is_empty()).count();
+    if parallel::map_chunks(boxes.len(), SHARE, counts).iter().sum::<usize>() < boxes.len() {
         work.goes_on()?;
-        Ok((0..boxes.len()).into_par_iter().filter(|&i| !boxes[i].is_empty()).map(reference).collect())
+        let there = |share: Range<usize>| share.filter(|&i| !boxes[i].is_empty()).map(reference).collect::<Vec<_>>();
+        Ok(parallel::map_chunks(boxes.len(), SHARE, there).concat())
     } else {
         // Where each belongs is known, so it is written there at once.
         work.collect(boxes.len(), reference)

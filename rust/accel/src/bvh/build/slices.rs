@@ -3,6 +3,7 @@
 
 use super::{BinaryBvh, Node};
 use raywright_base::math::Aabb;
+use raywright_base::parallel;
 use raywright_base::work::{Steps, Stopped, Work};
 
 /// Subtrees over up to so many primitives are written by one thread.
@@ -66,7 +67,8 @@ fn subtree(tree: impl Subtree, root: &mut Node, to: Target, steps: &Steps) -> Re
             let (left_count, right_count) = (left_to.order.len(), right_to.order.len());
             let write_left = || subtree(left, left_root, left_to, steps).and_then(|()| told(left_count));
             let write_right = || subtree(right, right_root, right_to, steps).and_then(|()| told(right_count));
-            let written = if parallel { rayon::join(write_left, write_right) } else { (write_left(), write_right()) };
+            let written =
+                if parallel { parallel::join(write_left, write_right) } else { (write_left(), write_right()) };
             written.0.and(written.1)?;
             *root = Node::inner(children[0].aabb().union(children[1].aabb()), base as u32);
         }

@@ -16,6 +16,7 @@ use super::reference::{Extents, Reference, median, partition, references};
 use super::top_down::{Due, TASK};
 use super::{BinaryBvh, Leaves, Shapes, spare};
 use raywright_base::math::Aabb;
+use raywright_base::parallel;
 use raywright_base::work::{Stopped, Work};
 use std::borrow::Cow;
 
@@ -112,7 +113,7 @@ impl<S: Shapes> Parts<'_, S> {
         match self.split() {
             Ok([left, right]) => {
                 let [of_left, of_right] = due.split([&left, &right].map(|side| side.references.len()))?;
-                let (left, right) = rayon::join(|| left.build(of_left), || right.build(of_right));
+                let (left, right) = parallel::join(|| left.build(of_left), || right.build(of_right));
                 Ok(Part::pair(aabb, left?, right?))
             }
             Err(leaf) => {

@@ -9,8 +9,8 @@ use super::reference::{Bounds, Reference, references};
 use super::top_down::{self, Set};
 use super::{BinaryBvh, Leaves, spare};
 use glam::Vec4;
-use rayon::prelude::*;
 use raywright_base::math::Aabb;
+use raywright_base::parallel;
 use raywright_base::work::{Stopped, Work};
 use std::borrow::Cow;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -34,12 +34,12 @@ pub fn build<'a>(boxes: impl Into<Cow<'a, [Aabb]>>, leaves: &Leaves, work: Work)
     }
     let count = references.len();
     let sorted = |axis: usize| {
-        let mut order: Vec<u32> = (0..count as u32).collect();
-        order.par_sort_unstable_by(|&a, &b| {
-            let centre = |i: u32| references[i as usize].centre_on(axis);
-            centre(a).total_cmp(&centre(b)).then(a.cmp(&b))
-        });
-        order
+        // In the order of f32::total_cmp, and those with one centre by their numbers.
+        let rank = |x: f32| x.to_bits() ^ if x.is_sign_negative() { u32::MAX } else { 1 << 31 };
+        let key = |i: usize| u64::from(rank(references[i].centre_on(axis))) << 32 | i as u64;
+        let mut keys = parallel::collect(count, key);
+        parallel::sort(&mut keys);
+        parallel::collect(count, |i| keys[i] as u32)
     };
     let (steps, mut orders) = (sort.steps(3), [const { Vec::new() }; 3]);
     for (axis, order) in orders.iter_mut().enumerate() {
@@ -47,7 +47,7 @@ pub fn build<'a>(boxes: impl Into<Cow<'a, [Aabb]>>, leaves: &Leaves, work: Work)
         steps.did(1)?;
     }
     let mut spaces = [0, 1, 2].map(|_| vec![0; count]);
-    let right: Vec<_> = (0..count).into_par_iter().map(|_| AtomicBool::new(false)).collect();
+    let right: Vec<_> = (0..count).map(|_| AtomicBool::new(false)).collect();
     let [x, y, z] = &mut orders;
     let [u, v, w] = &mut spaces;
     let axis = |order, space| Axis { order, space };
@@ -203,7 +203,7 @@ fn each<T: Send>(axes: &mut [Axis; 3], f: impl Fn(usize, &mut Axis) -> T + Sync)
     if x.order.len() < MANY {
         return [f(0, x), f(1, y), f(2, z)];
     }
-    let (x, (y, z)) = rayon::join(|| f(0, x), || rayon::join(|| f(1, y), || f(2, z)));
+    let (x, (y, z)) = parallel::join(|| f(0, x), || parallel::join(|| f(1, y), || f(2, z)));
     [x, y, z]
 }
 
@@ -213,8 +213,8 @@ fn around(references: &[Reference], order: &[u32]) -> Bounds {
         bounds
     };
     if order.len() < MANY {
-        order.iter().fold(Bounds::EMPTY, grown)
-    } else {
-        order.par_iter().fold(|| Bounds::EMPTY, grown).reduce(|| Bounds::EMPTY, |a, b| a.union(&b))
+        return order.iter().fold(Bounds::EMPTY, grown);
     }
+    let parts = parallel::map_chunks(order.len(), MANY, |range| order[range].iter().fold(Bounds::EMPTY, grown));
+    parts.iter().fold(Bounds::EMPTY, |all, part| all.union(part))
 }

@@ -194,7 +194,7 @@ fn the_number_of_threads_does_not_matter() {
     let (triangles, all) = sticks(66_000);
     let clip = |p: u32, to: &Aabb| clipped(triangles[p as usize], to);
     let on = |threads: usize, builder: Builder| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let pool = raywright_base::workers::pool(Some(threads)).unwrap();
         // Planes are sought by several threads only in the largest nodes.
         let boxes = &all[..if builder.parts() { all.len() } else { 10_000 }];
         pool.install(|| {

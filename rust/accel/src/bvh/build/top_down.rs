@@ -3,6 +3,7 @@
 use super::part::Part;
 use super::{BinaryBvh, Node};
 use raywright_base::math::Aabb;
+use raywright_base::parallel;
 use raywright_base::work::{Steps, Stopped, Work};
 
 /// Up to so many primitives, a subtree is built by one thread.
@@ -89,7 +90,7 @@ fn part<S: Set>(set: S, due: Due) -> Result<Part, Stopped> {
     match below {
         Ok((aabb, [left, right])) => {
             let [of_left, of_right] = due.split([left.len(), right.len()])?;
-            let (left, right) = rayon::join(|| part(left, of_left), || part(right, of_right));
+            let (left, right) = parallel::join(|| part(left, of_left), || part(right, of_right));
             Ok(Part::pair(aabb, left?, right?))
         }
         Err(leaf) => {

@@ -15,8 +15,9 @@
 use super::tree::{Move, Tree, sibling};
 use crate::bvh::BinaryBvh;
 use crate::bvh::build::Bounds;
-use rayon::prelude::*;
+use raywright_base::parallel;
 use raywright_base::work::{Stopped, Work};
+use std::ops::Range;
 
 /// How long to look for better places.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,6 +38,9 @@ const REST: u32 = 5;
 /// So many pairs of nodes are seen in a search; few searches come near.
 const PATIENCE: u32 = 256;
 
+/// Subtrees that a thread seeks places for at a time.
+const TOGETHER: usize = 64;
+
 /// Moves subtrees of a tree, which is laid out depth first and is so again afterwards. Its inner nodes have no more
 /// area then, and it is no deeper than it was or than three times the logarithm of its primitives and some.
 pub fn optimise(bvh: &mut BinaryBvh, options: &Options, work: Work) -> Result<(), Stopped> {
@@ -55,15 +59,16 @@ pub fn optimise(bvh: &mut BinaryBvh, options: &Options, work: Work) -> Result<()
     let steps = improve.steps(options.rounds as usize);
     for round in 0..options.rounds {
         let seekers = largest(&tree, batch, |node| rests_until[node as usize] <= round);
-        let seek = |open: &mut Vec<Pair>, &node: &u32| match steps.is_stopped() {
-            true => None,
-            false => best_place(&tree, node, open),
+        let seek = |some: Range<usize>| -> Vec<Found> {
+            let mut open = Vec::new();
+            let seekers = seekers[some].iter().take_while(|_| !steps.is_stopped());
+            seekers.filter_map(|&node| best_place(&tree, node, &mut open)).collect()
         };
-        let mut found: Vec<Found> = seekers.par_iter().map_init(Vec::new, seek).flatten().collect();
+        let mut found: Vec<Found> = parallel::map_chunks(seekers.len(), TOGETHER, seek).into_iter().flatten().collect();
         steps.did(1)?;
         seekers.iter().for_each(|&node| rests_until[node as usize] = round + REST);
         found.iter().for_each(|found| rests_until[found.step.node as usize] = 0);
-        found.par_sort_unstable_by(|a, b| b.saved.total_cmp(&a.saved).then(a.step.node.cmp(&b.step.node)));
+        found.sort_unstable_by(|a, b| b.saved.total_cmp(&a.saved).then(a.step.node.cmp(&b.step.node)));
         let (made, saved) = tree.apply(found.iter().map(|found| found.step));
         // Moves are weighed one by one. Together they may do harm, if seldom.
         let harm = saved < 0.0 || tree.height() > deepest;
@@ -362,7 +367,7 @@ mod tests {
     fn the_number_of_threads_does_not_matter() {
         let boxes = sticks(20_000);
         let on = |threads| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            let pool = raywright_base::workers::pool(Some(threads)).unwrap();
             pool.install(|| check(&boxes, &Options { share: 0.3, block: 8, ..THOROUGH }))
         };
         let [[_, one], [_, three]] = [on(1), on(3)];

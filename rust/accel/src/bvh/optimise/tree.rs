@@ -2,8 +2,8 @@
 
 use crate::bvh::build::Bounds;
 use crate::bvh::{BinaryBvh, Node};
-use rayon::prelude::*;
 use raywright_base::math::Aabb;
+use raywright_base::parallel;
 
 /// A tree whose nodes know what is above them. Its leaves are whole subtrees of the tree that it was made of.
 ///
@@ -330,7 +330,7 @@ impl Tree {
 
     /// The whole tree, with what its leaves stand for in `from`, laid out depth first as builders do it.
     pub fn lay_out(&self, from: &BinaryBvh) -> BinaryBvh {
-        let mut nodes: Vec<Node> = from.nodes.par_iter().map(|_| Node::leaf(Aabb::EMPTY, 0, 0)).collect();
+        let mut nodes: Vec<Node> = parallel::collect(from.nodes.len(), |_| Node::leaf(Aabb::EMPTY, 0, 0));
         let mut order = vec![0; from.order.len()];
         let (root, below) = nodes.split_at_mut(1);
         self.place(from, 0, &mut root[0], Target { base: 1, below, first: 0, order: &mut order });
@@ -352,7 +352,7 @@ impl Tree {
             place_left();
             place_right();
         } else {
-            rayon::join(place_left, place_right);
+            parallel::join(place_left, place_right);
         }
     }
 }

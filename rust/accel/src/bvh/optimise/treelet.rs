@@ -10,8 +10,9 @@
 use super::tree::{Tree, Treelet};
 use crate::bvh::BinaryBvh;
 use crate::bvh::build::Bounds;
-use rayon::prelude::*;
+use raywright_base::parallel;
 use raywright_base::work::{Stopped, Work};
+use std::ops::Range;
 
 /// How much to try.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,15 +46,17 @@ pub fn optimise(bvh: &mut BinaryBvh, options: &Options, work: Work) -> Result<()
         for (depth, level) in levels(&tree).iter().enumerate().rev() {
             // What is below has changed.
             level.iter().for_each(|seen| tree.measure(seen.node));
-            let best = |seen: &Seen| {
+            let best = |place: usize| {
                 if steps.is_stopped() {
                     return None;
                 }
+                let seen = &level[place];
                 // No way down becomes longer than the longest that was there, or than all are allowed to be.
                 let highest = seen.height.max(deepest.saturating_sub(depth as u32));
                 if seen.leaves >= (LEAVES as u32) << round { best(&tree, seen.node, highest) } else { None }
             };
-            let found: Vec<_> = level.par_iter().with_min_len(16).filter_map(best).collect();
+            let best = |some: Range<usize>| some.filter_map(best).collect::<Vec<_>>();
+            let found: Vec<_> = parallel::map_chunks(level.len(), 16, best).into_iter().flatten().collect();
             for (treelet, gain) in &found {
                 tree.regrow(treelet);
                 saved += gain;

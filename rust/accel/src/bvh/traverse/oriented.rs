@@ -50,7 +50,7 @@ impl Volumes for Oriented {
     type Ready = Line;
 
     fn around(tree: &Numbered, points: &Points) -> Self {
-        let turned = parallel::collect(tree.nodes.len(), &|i| {
+        let turned = parallel::map(tree.nodes.len(), |i| {
             Turned::around(&points.below(tree, i), tree.nodes[i].aabb().half_area())
         });
         let mut count = 0;

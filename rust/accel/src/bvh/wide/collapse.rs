@@ -11,6 +11,7 @@
 use super::{Child, Info, Leaves, Options, Primitives, WideBvh, WideNode};
 use crate::bvh::{BinaryBvh, Node};
 use raywright_base::math::{Aabb, Region};
+use raywright_base::parallel;
 use raywright_base::simd::Level;
 use raywright_base::work::{Steps, Stopped, Work};
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
@@ -153,8 +154,11 @@ impl<const N: usize> Plan<N> {
             planned
         };
         let [left, right] = node.children();
-        let (left, right) =
-            if depth < PARALLEL { rayon::join(|| below(left), || below(right)) } else { (below(left), below(right)) };
+        let (left, right) = if depth < PARALLEL {
+            parallel::join(|| below(left), || below(right))
+        } else {
+            (below(left), below(right))
+        };
         let count = left.count + right.count;
         let as_block = if count <= self.block { area * options.intersection_cost } else { f32::INFINITY };
         // Half of all nodes have two leaves below, which are shared out in one way only.

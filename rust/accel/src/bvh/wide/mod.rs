@@ -39,11 +39,12 @@ use batch::{All, Firsts};
 use collapse::Outline;
 use node::{Child, WideNode};
 pub use objects::over as over_objects;
-use rayon::prelude::*;
 use raywright_base::math::{Aabb, Axes, DVec3, Hit, HitColumns, Ray, RayBatch, RayColumns, Region};
+use raywright_base::parallel::{self, CHUNK};
 use raywright_base::simd::{Dispatch, Level};
 use raywright_base::work::{Stopped, Work};
 use raywright_shapes::triangle::{Leaves, SolidCone, clipped};
+use std::ops::Range;
 use std::time::Instant;
 
 /// How to build a wide tree.
@@ -146,7 +147,8 @@ impl<const N: usize, L: Leaves<N>> WideBvh<N, L> {
         let steps = options.steps(N);
         let [surround, turn, grow, collapse] = primitives.work().parts([3.0, 1.0, 14.0, 5.0]);
         let boxes = surround.collect(primitives.count(), |p| aabb(primitives, &region, None, p as u32))?;
-        let count = boxes.par_iter().filter(|b| !b.is_empty()).count();
+        let count = |some: Range<usize>| boxes[some].iter().filter(|b| !b.is_empty()).count();
+        let count: usize = parallel::map_chunks(boxes.len(), CHUNK, count).into_iter().sum();
         let turned = if steps.may_turn { turned(primitives, &region, &boxes, turn)? } else { None };
         turn.done();
         let (axes, boxes) = turned.map_or((None, boxes), |(axes, boxes)| (Some(axes), boxes));

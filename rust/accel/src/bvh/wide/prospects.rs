@@ -9,7 +9,6 @@
 
 use super::WideBvh;
 use super::node::{Packed, WideNode};
-use rayon::prelude::*;
 use raywright_base::math::{Aabb, DVec3};
 use raywright_base::parallel;
 use raywright_shapes::triangle::Leaves;
@@ -54,7 +53,7 @@ fn arrange<const N: usize, L: Leaves<N>>(
     to_box: impl Fn(DVec3) -> DVec3 + Sync,
 ) {
     // What a node knows by itself, side by side; then what it knows from below, which is little work; then the moves.
-    let known: Vec<[Known; N]> = parallel::collect(nodes.len(), &|i| {
+    let known: Vec<[Known; N]> = parallel::collect(nodes.len(), |i| {
         let node = &nodes[i];
         let whole = node.bounds().half_area().max(f32::MIN_POSITIVE);
         from_fn(|lane| {
@@ -83,7 +82,11 @@ fn arrange<const N: usize, L: Leaves<N>>(
         }
         of_nodes[index] = Prospect { chance: 1.0 - still, cost };
     }
-    nodes.par_iter_mut().zip(&orders).for_each(|(node, lanes)| node.permute(&lanes[..node.count()]));
+    parallel::each_chunk_mut(nodes, 512, &|first, nodes| {
+        for (node, lanes) in nodes.iter_mut().zip(&orders[first..]) {
+            node.permute(&lanes[..node.count()]);
+        }
+    });
 }
 
 /// What there is to expect of a leaf in a box.

@@ -3,10 +3,11 @@
 use super::node::{Child, WideNode};
 use super::{WideBvh, aabb};
 use crate::{Info, Primitives};
-use rayon::prelude::*;
 use raywright_base::math::Aabb;
+use raywright_base::parallel::{self, CHUNK};
 use raywright_base::work::Stopped;
 use raywright_shapes::triangle::Leaves;
+use std::ops::Range;
 use std::time::Instant;
 
 impl<const N: usize, L: Leaves<N>> WideBvh<N, L> {
@@ -21,7 +22,8 @@ impl<const N: usize, L: Leaves<N>> WideBvh<N, L> {
             return Err("leaves hold parts of the primitives as they were: build the tree again".into());
         }
         let region = primitives.region();
-        let finite = (0..primitives.count() as u32).into_par_iter().filter(|&p| primitives.is_finite(p)).count();
+        let finite = |range: Range<usize>| range.filter(|&p| primitives.is_finite(p as u32)).count();
+        let finite: usize = parallel::map_chunks(primitives.count(), CHUNK, finite).into_iter().sum();
         if finite != self.info.primitives {
             return Err(format!("{finite} primitives can be hit, not {}", self.info.primitives));
         }

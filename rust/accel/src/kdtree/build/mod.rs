@@ -6,6 +6,7 @@ mod sah;
 use super::{MAX_DEPTH, Node, Traversal};
 use crate::walk::{Input, Lists, Part, Room};
 use raywright_base::math::Aabb;
+use raywright_base::parallel;
 use raywright_base::work::Steps;
 
 /// Ways to choose a plane.
@@ -163,7 +164,7 @@ impl Grown {
         self.nodes.extend([Node::EMPTY; 2]);
         let children = if many {
             let mut other = Self::default();
-            let (below, above) = rayon::join(|| below(self), || above(&mut other));
+            let (below, above) = parallel::join(|| below(self), || above(&mut other));
             let (nodes, leaves) = (self.nodes.len(), self.lists.counts.len());
             self.nodes.extend(other.nodes.into_iter().map(|node| node.moved(nodes, leaves)));
             self.lists.counts.extend(other.lists.counts);

@@ -4,9 +4,10 @@
 use super::super::area;
 use super::{Grown, Node, Options, PARALLEL, is_stopped, told};
 use crate::walk::{Halves, Input, Part, Plane, Room};
-use rayon::prelude::*;
 use raywright_base::math::Aabb;
+use raywright_base::parallel::{self, CHUNK};
 use raywright_base::work::Steps;
+use std::ops::Range;
 
 /// An end of a part along an axis. In the order of its bits are: where it lies; whether the part ends there, lies flat
 /// there, or starts there; and the part's number.
@@ -84,10 +85,11 @@ const GONE: u32 = u32::MAX;
 /// Builds what is in a cell; gives its node.
 pub fn grow(input: &Input, options: &Options, parts: Vec<Part>, cell: Aabb, room: Room, grown: &mut Grown) -> Node {
     let sorted = |axis: usize| {
-        let ends = |(i, part)| Event::of(part, i, axis).into_iter().flatten();
-        let mut events: Vec<_> = parts.par_iter().enumerate().flat_map_iter(ends).collect();
-        events.par_sort_unstable();
-        events
+        let ends = |i: usize| Event::of(&parts[i], i, axis).into_iter().flatten().map(|event| event.0);
+        let ends = |range: Range<usize>| range.flat_map(ends).collect::<Vec<_>>();
+        let mut events = parallel::map_chunks(parts.len(), CHUNK, ends).concat();
+        parallel::sort(&mut events);
+        events.into_iter().map(Event).collect()
     };
     let [sort, grow] = input.work.parts([1.0, 10.0]);
     let (steps, mut events) = (sort.steps(3), [const { Vec::new() }; 3]);
@@ -133,13 +135,7 @@ impl Builder<'_> {
 
     /// The plane of least cost: of the first of them, should there be several.
     fn best(self, set: &Set) -> Option<Split> {
-        let along = |axis: usize| self.best_across(set, axis);
-        let splits: [Option<Split>; 3] = if set.parts.len() > PARALLEL {
-            let (x, (y, z)) = rayon::join(|| along(0), || rayon::join(|| along(1), || along(2)));
-            [x, y, z]
-        } else {
-            [along(0), along(1), along(2)]
-        };
+        let splits = on_axes(set.parts.len() > PARALLEL, |axis| self.best_across(set, axis));
         splits.into_iter().flatten().reduce(|best, split| if split.cost < best.cost { split } else { best })
     }
 
@@ -219,18 +215,23 @@ impl Builder<'_> {
         }
         let rooms = set.room.shared(count, [parts[0].len(), parts[1].len()])?;
         let dealt = |axis: usize| dealt(&set.events[axis], axis, &numbers, &parts, &cut);
-        let [x, y, z] = if count > PARALLEL {
-            let (x, (y, z)) = rayon::join(|| dealt(0), || rayon::join(|| dealt(1), || dealt(2)));
-            [x, y, z]
-        } else {
-            [dealt(0), dealt(1), dealt(2)]
-        };
+        let [x, y, z] = on_axes(count > PARALLEL, dealt);
         let cells = plane.cut(&set.cell);
         let ([x_below, x_above], [y_below, y_above], [z_below, z_above]) = (x, y, z);
         let [parts_below, parts_above] = parts;
         let below = Set { parts: parts_below, events: [x_below, y_below, z_below], cell: cells[0], room: rooms[0] };
         let above = Set { parts: parts_above, events: [x_above, y_above, z_above], cell: cells[1], room: rooms[1] };
         Some([below, above])
+    }
+}
+
+/// Return the results of `work` for the three axes, by three threads if there is much to do.
+fn on_axes<T: Send>(many: bool, work: impl Fn(usize) -> T + Sync) -> [T; 3] {
+    if many {
+        let (x, (y, z)) = parallel::join(|| work(0), || parallel::join(|| work(1), || work(2)));
+        [x, y, z]
+    } else {
+        [0, 1, 2].map(work)
     }
 }
 
