@@ -177,7 +177,8 @@ mod tests {
     #[test]
     fn panics_come_through() {
         let fail = |i: usize| if i == 40 { panic!("from within") } else { i };
-        let all: [fn(&(dyn Fn(usize) -> usize + Sync)); 5] = [
+        type Loop = fn(&(dyn Fn(usize) -> usize + Sync));
+        let all: [Loop; 5] = [
             |fail| drop(collect(100, fail)),
             |fail| drop(map(100, fail)),
             |fail| drop(map_parts((0..100).collect(), fail)),
