@@ -4,6 +4,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
+from cornell_picture import cornell_picture
 
 import raywright as rw
 
@@ -112,7 +113,7 @@ def test_the_error_is_a_small_part_of_what_it_is_without():
     errors = {}
     for reuse in (1, 2, 4):
         how = {"samples": 16, "sampler": rw.Sobol()}
-        pictures = np.array([render(scene, camera, reuse, seed=seed, **how).rgb for seed in range(4)])
+        pictures = np.array([render(scene, camera, reuse, seed=seed, **how).rgb for seed in range(2)])
         spread = pictures.var(axis=0, ddof=1, dtype=np.float64)
         errors[reuse] = np.mean(spread / (np.square(pictures.mean(axis=0)) + 0.01))
     # Each is known to a few percent.
@@ -167,8 +168,7 @@ def test_nothing_is_shared_where_something_moves_or_lets_through():
 
 
 def test_intervals_hold_the_error():
-    scene, camera = box(32, 32)
-    reference = render(scene, camera, 8, samples=2048, seed=10**9).rgb.astype(float)
+    scene, camera, reference = cornell_picture(24)
     inside = 0
     for seed in range(40):
         image = render(scene, camera, 4, seed=seed)
@@ -178,8 +178,7 @@ def test_intervals_hold_the_error():
 
 
 def test_intervals_of_pixels_hold_the_reference():
-    scene, camera = box(24, 24)
-    reference = render(scene, camera, 8, samples=4096, seed=10**9).rgb.astype(float)
+    scene, camera, reference = cornell_picture(24)
     covered = []
     for seed in range(10):
         low, high = render(scene, camera, 4, samples=256, seed=seed).interval()
