@@ -30,6 +30,8 @@ SMALLER = {
         'rw.load("room.glb")\n': 'rw.load("room.glb").resized(width=72)\n',
         "(720, 480)": "(72, 48)",
         "(480, 720, 3)": "(48, 72, 3)",
+        "width=96, height=96": "width=48, height=48",
+        "(96, 96)": "(48, 48)",
         "width=120, height=90": "width=40, height=30",
         "scene.pick(camera, 60, 70)": "scene.pick(camera, 20, 23)",
         '"width": 120, "height": 90': '"width": 40, "height": 30',

@@ -25,7 +25,7 @@ WAYS = {
     "caustics by rays": rw.PhotonMap(5000, caustic=False, gather=2),
     "fixed": rw.PhotonMap(5000, nearest=None, radius=20.0),
     "progressive": rw.ProgressivePhotonMap(5000),
-    "short": rw.PhotonMap(20_000, gather=0, max_depth=2),
+    "short": rw.PhotonMap(10_000, gather=0, max_depth=2),
     "short, gathered": rw.PhotonMap(5000, max_depth=3),
 }
 
