@@ -130,13 +130,14 @@ def doubtful(triangles, origins, directions):
     """Pairs (N, T) that f64 cannot reject for certain."""
     scaled = np.ldexp(directions, -np.frexp(np.abs(directions).max(axis=1))[1][:, None])
     corners = triangles[None] - origins[:, None, None]
-    size = np.abs(corners).max(axis=(2, 3))
-    # An edge's volume takes some 20 roundings, each below 2⁻⁵³ of at most 12 size² (the direction is at most
-    # 1); 2⁻⁴⁰ is far more. What underflows is below the constant.
-    margin = 2.0**-40 * size**2 + 1e-290
-    volumes = np.einsum(
-        "nj,ntij->nti", scaled, np.cross(np.roll(corners, -1, axis=2), np.roll(corners, -2, axis=2))
-    )
+    edges = np.roll(triangles, 1, axis=1) - np.roll(triangles, -1, axis=1)
+    size, length = np.abs(corners).max(axis=(2, 3)), np.abs(edges).max(axis=(1, 2))
+    # From an edge and one corner rather than from two corners: errors of far origins grow with the distance,
+    # not with its square. An edge's volume takes some 20 roundings, each below 2⁻⁵³ of at most 12 size times
+    # length (the direction is at most 1); 2⁻⁴⁰ is far more. What underflows is below the constant.
+    margin = 2.0**-40 * size * length + 1e-290
+    planes = np.cross(np.roll(corners, -1, axis=2), edges[None])
+    volumes = np.einsum("nj,ntij->nti", scaled, planes)
     positive = (volumes > margin[..., None]).any(axis=2)
     negative = (volumes < -margin[..., None]).any(axis=2)
     return ~(positive & negative & (size < 1e100))

@@ -48,7 +48,7 @@ def coplanar():
 
 
 ONE = rw.Mesh([(0.0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)])
-COPIES = rw.Mesh(ONE.vertices, np.tile(ONE.faces, (200, 1)))
+COPIES = rw.Mesh(ONE.vertices, np.tile(ONE.faces, (60, 1)))
 SHAPES = [
     rw.Sphere((0, 0, 0), 0.5),
     rw.Plane((0, 0, -1), (0, 0, 1)),

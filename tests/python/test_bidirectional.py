@@ -6,6 +6,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
+from cornell_picture import cornell_picture
 from light_pictures import MATERIALS, SIDE, assert_same, ball, camera, lamp, square
 
 import raywright as rw
@@ -223,7 +224,8 @@ def test_chambers_that_light_each_other_through_a_hole(aperture, rho, expected, 
     second = hollow(aperture, centre=2 * rim, up=False, material=rw.Diffuse(rho[1]))
     scene = rw.Scene([first, second])
     # By photons, to each depth: of what comes to a wall after so many bounces, a share is sent on.
-    depths, runs, count = 6, 12, 400_000
+    # Of those through the small hole twice as many, or too few come there.
+    depths, runs, count = 6, 12, 200_000 if aperture > 0.1 else 400_000
     arrived = np.zeros((runs, 2, depths + 1))
     for seed in range(runs):
         found = scene.photons(count, seed=seed)
@@ -319,11 +321,10 @@ def test_a_lamp_close_to_a_surface():
 
 def test_the_error_is_as_told():
     # The interval holds the truth in 95 of 100: fewer than 31 of 36 once in 100 such tests by chance.
-    scene, look = rw.scenes.cornell_box(width=16, height=16)
-    truth = rw.render(scene, look, rw.Path(4, reuse=1), 10_000, progress=False).rgb.astype(float)
+    scene, look, truth = cornell_picture(16)
     held = 0
     for seed in range(36):
-        image = rw.render(scene, look, rw.Bidirectional(4), 16, seed=seed, progress=False)
+        image = rw.render(scene, look, rw.Bidirectional(), 16, seed=seed, progress=False)
         error = float(np.mean((image.rgb - truth) ** 2 / (truth**2 + 0.01)))
         held += image.error.low <= error <= image.error.high or not image.error.trusted
     assert held >= 31

@@ -10,16 +10,12 @@ import time
 import numpy as np
 import pytest
 import trimesh
+from command_line import run_command as shell
 from PIL import Image as Pillow
 
 import raywright as rw
 
 SMALL = ["--width", "16", "--height", "12"]
-
-
-def shell(*arguments, cwd):
-    command = [sys.executable, "-m", "raywright", *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True, cwd=cwd, timeout=60)
 
 
 @pytest.fixture
@@ -211,10 +207,21 @@ def test_version(tmp_path):
     assert done.stdout == f"raywright {rw.__version__}\n"
 
 
-def test_the_installed_command_is_the_same(tmp_path):
-    command = os.path.join(os.path.dirname(sys.executable), "raywright")
-    done = subprocess.run([command, "--version"], capture_output=True, text=True, cwd=tmp_path, timeout=60)
-    assert done.stdout == shell("--version", cwd=tmp_path).stdout != ""
+def test_processes_do_the_same(tmp_path):
+    installed = [os.path.join(os.path.dirname(sys.executable), "raywright")]
+    module = [sys.executable, "-m", "raywright"]
+    for command, arguments in (
+        (installed, ["--version"]),
+        (module, ["--version"]),
+        (installed, ["info", "gone.ply"]),
+        (module, ["info"]),
+    ):
+        done = subprocess.run(
+            [*command, *arguments], capture_output=True, text=True, cwd=tmp_path, timeout=60
+        )
+        here = shell(*arguments, cwd=tmp_path)
+        assert (done.returncode, done.stdout, done.stderr) == (here.returncode, here.stdout, here.stderr)
+        assert (done.stdout + done.stderr).startswith("raywright")
 
 
 def test_ctrl_c_ends_at_once_with_status_130(tmp_path):

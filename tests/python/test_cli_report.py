@@ -3,11 +3,10 @@
 import csv
 import io
 import re
-import subprocess
-import sys
 
 import pytest
 import trimesh
+from command_line import run_command
 from PIL import Image as Pillow
 
 from raywright.accelerators import every
@@ -16,8 +15,7 @@ QUICK = ["--rays", "100", "--repeats", "1"]
 
 
 def shell(*arguments, cwd):
-    command = [sys.executable, "-m", "raywright", "report", "accelerators", *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True, cwd=cwd, timeout=60)
+    return run_command("report", "accelerators", *arguments, cwd=cwd)
 
 
 @pytest.fixture(scope="module")
@@ -92,7 +90,6 @@ def test_wrong_use_is_one_line_and_status_2(folder, arguments, message):
 
 
 def test_a_report_has_a_name(folder):
-    command = [sys.executable, "-m", "raywright", "report"]
-    done = subprocess.run(command, capture_output=True, text=True, cwd=folder, timeout=60)
+    done = run_command("report", cwd=folder)
     told = "raywright: error: the following arguments are required: REPORT (see raywright report --help)\n"
     assert (done.returncode, done.stderr) == (2, told)

@@ -140,7 +140,9 @@ def test_nothing_is_nearer_and_the_point_is_on_the_surface(name, transform):
     dense = moved(dense, transform)
     points = moved(np.random.default_rng(1).uniform(-3, 3, (24, 3)), transform)
     closest = rw.Scene(shape).closest_point(points)
-    brute = np.linalg.norm(dense[None] - points[:, None], axis=-1).min(axis=1)
+    # Which dense point is nearest is found by products, and its distance by the difference.
+    nearest = (np.square(dense).sum(axis=1) - 2 * points @ dense.T).argmin(axis=1)
+    brute = np.linalg.norm(dense[nearest] - points, axis=1)
     assert (closest.distance <= brute + 1e-12).all()
     # Steps of the dense points are at most 0.1 long, and so is what they miss by.
     assert (closest.distance >= brute - 0.2).all()
@@ -254,7 +256,7 @@ def test_rays_that_leave_closest_points_miss_what_they_leave():
 
 
 def test_implicit_surfaces_have_their_closed_forms_where_they_have_one():
-    points = np.random.default_rng(7).uniform(-2, 2, (200, 3))
+    points = np.random.default_rng(7).uniform(-2, 2, (80, 3))
     torus = rw.Scene(IMPLICIT["implicit torus"][0]).signed_distance(points)
     tube = np.hypot(np.hypot(points[:, 0], points[:, 1]) - 1, points[:, 2]) - 0.25
     assert np.allclose(torus, tube, rtol=0, atol=4e-15)

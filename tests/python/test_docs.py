@@ -18,8 +18,30 @@ import raywright as rw
 ROOT = Path(__file__).parents[2]
 PAGES = ["README.md", *sorted(f"docs/{path.name}" for path in (ROOT / "docs").glob("*.md"))]
 
-# What README does at the size that people have, at one that tests have time for.
+# What pages do at the size that people have, at one that tests have time for; checks are made for it too.
 SMALLER = {
+    "docs/pictures.md": {
+        "width=160, height=120": "width=40, height=30",
+        'value="160"': 'value="40"',
+        'value="120"': 'value="30"',
+        "resized(width=320)": "resized(width=80)",
+        "(120, 160, 3)": "(30, 40, 3)",
+        "(240, 320, 3)": "(60, 80, 3)",
+        'rw.load("room.glb")\n': 'rw.load("room.glb").resized(width=72)\n',
+        "(720, 480)": "(72, 48)",
+        "(480, 720, 3)": "(48, 72, 3)",
+        "width=96, height=96": "width=48, height=48",
+        "(96, 96)": "(48, 48)",
+        "width=120, height=90": "width=40, height=30",
+        "scene.pick(camera, 60, 70)": "scene.pick(camera, 20, 23)",
+        '"width": 120, "height": 90': '"width": 40, "height": 30',
+        "(90, 120, 3)": "(30, 40, 3)",
+        "(90, 120, 6, 2)": "(30, 40, 6, 2)",
+        "ProgressivePhotonMap(20_000)": "ProgressivePhotonMap(4_000)",
+        "inside, way, samples=64": "inside, way, samples=16",
+    },
+    "docs/measuring.md": {"rays=4096": "rays=2048", "1_000_000": "200_000"},
+    "docs/media.md": {"ProgressivePhotonMap(20_000)": "ProgressivePhotonMap(4_000)"},
     "README.md": {
         "1_000_000": "10_000",
         "subdivisions=5": "subdivisions=3",
@@ -32,7 +54,7 @@ SMALLER = {
         "width=320, height=320": "width=32, height=32",
         "width=64, height=64": "width=8, height=8",
         "seconds=2.0": "seconds=0.05",
-    }
+    },
 }
 
 BLOCK = re.compile(

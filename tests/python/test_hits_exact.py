@@ -101,23 +101,23 @@ def test_small_integers_leave_nothing_to_rounding(dtype, seed):
     # Coordinates up to 3: many coplanar, edge-on, doubled and zero-area triangles, and many equal t.
     rng = np.random.default_rng(seed)
     mesh = rw.Mesh(rng.integers(-3, 4, (40, 3)).astype(np.float32), rng.integers(0, 40, (120, 3)))
-    origins = rng.integers(-6, 7, (700, 3)).astype(dtype)
-    directions = rng.integers(-2, 3, (700, 3)).astype(dtype)
+    origins = rng.integers(-6, 7, (400, 3)).astype(dtype)
+    directions = rng.integers(-2, 3, (400, 3)).astype(dtype)
     outcome = check(mesh, origins, directions, exact=True)
-    assert outcome.hits > 100
-    assert outcome.choices > 100
+    assert outcome.hits > 60
+    assert outcome.choices > 60
 
 
 def test_both_ends_of_the_interval_are_asked_for():
     rng = np.random.default_rng(5)
     mesh = rw.Mesh(rng.integers(-3, 4, (40, 3)).astype(np.float32), rng.integers(0, 40, (120, 3)))
-    origins = rng.integers(-4, 5, (1500, 3)).astype(np.float64)
+    origins = rng.integers(-4, 5, (700, 3)).astype(np.float64)
     # Along the axes, and lengths of a power of two, many t are small dyadic numbers, and so are the ends.
-    directions = np.eye(3)[rng.integers(3, size=1500)] * rng.choice([-2.0, -1.0, 0.5, 1.0, 4.0], (1500, 1))
-    t_min = rng.integers(-8, 9, 1500) / 2
-    t_max = t_min + rng.integers(-1, 5, 1500) / 2
+    directions = np.eye(3)[rng.integers(3, size=700)] * rng.choice([-2.0, -1.0, 0.5, 1.0, 4.0], (700, 1))
+    t_min = rng.integers(-8, 9, 700) / 2
+    t_max = t_min + rng.integers(-1, 5, 700) / 2
     outcome = check(mesh, origins, directions, t_min, t_max, exact=True)
-    assert outcome.hits > 150
+    assert outcome.hits > 70
     whole = rw.Scene(mesh).intersect(origins, directions, -np.inf, np.inf)
     hit = whole.hit
     again = rw.Scene(mesh).intersect(origins[hit], directions[hit], whole.t[hit], whole.t[hit])
@@ -194,15 +194,15 @@ def test_slivers(dtype, aspect):
 def test_grazing_rays(dtype, angle):
     rng = np.random.default_rng(8)
     mesh = soup(rng, 50)
-    chosen = corners_of(mesh)[rng.integers(50, size=1500)].astype(np.float64)
-    targets = np.einsum("ni,nij->nj", rng.dirichlet([1, 1, 1], 1500), chosen)
+    chosen = corners_of(mesh)[rng.integers(50, size=600)].astype(np.float64)
+    targets = np.einsum("ni,nij->nj", rng.dirichlet([1, 1, 1], 600), chosen)
     normals = np.cross(chosen[:, 1] - chosen[:, 0], chosen[:, 2] - chosen[:, 0])
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    flat = np.cross(normals, unit(rng, 1500))
+    flat = np.cross(normals, unit(rng, 600))
     ways = flat / np.linalg.norm(flat, axis=1, keepdims=True) - angle * normals
     origins = (targets - 2 * ways).astype(dtype)
     outcome = check(mesh, origins, (targets - origins).astype(dtype))
-    assert outcome.hits > 800
+    assert outcome.hits > 320
 
 
 @pytest.mark.parametrize("dtype", TYPES)
@@ -211,15 +211,15 @@ def test_grazing_rays(dtype, angle):
 def test_far_origins(dtype, distance, aimed_from):
     rng = np.random.default_rng(9)
     mesh = soup(rng, 60)
-    targets = points_on(rng, corners_of(mesh), 500)
-    ways = unit(rng, 500).astype(dtype).astype(np.float64)
+    targets = points_on(rng, corners_of(mesh), 300)
+    ways = unit(rng, 300).astype(dtype).astype(np.float64)
     origins = (targets - distance * ways).astype(dtype)
     if aimed_from == "afar":
         ways = targets - origins
     outcome = check(mesh, origins, ways.astype(dtype))
     # In f32 origins that far away are rounded to steps of several scenes, unless the ray is aimed after it.
     if dtype == np.float64 or (aimed_from == "afar" and distance < 1e6):
-        assert outcome.hits > 250
+        assert outcome.hits > 150
 
 
 @pytest.mark.parametrize(
@@ -229,10 +229,10 @@ def test_origins_as_far_as_numbers_go(distance):
     rng = np.random.default_rng(10)
     mesh = soup(rng, 61)
     # With a slope that counts over so long a way: from a point on an axis to anywhere in the scene.
-    targets = points_on(rng, corners_of(mesh), 300)
-    origins = np.eye(3)[rng.integers(3, size=300)] * rng.choice([-distance, distance], (300, 1))
+    targets = points_on(rng, corners_of(mesh), 150)
+    origins = np.eye(3)[rng.integers(3, size=150)] * rng.choice([-distance, distance], (150, 1))
     ways = (targets - origins) / distance
-    assert check(mesh, origins, ways).hits > (50 if distance < 1e300 else 0)
+    assert check(mesh, origins, ways).hits > (30 if distance < 1e300 else 0)
     ways = np.array([w for w in itertools.product((-1.0, 0.0, 1.0), repeat=3) if any(w)])
     # Along axes and diagonals through the origin a ray comes back to the scene without rounding, however far.
     outcome = check(mesh, -distance * ways, ways)
@@ -249,11 +249,11 @@ def test_directions_of_any_length(dtype, length):
     rng = np.random.default_rng(11)
     mesh = soup(rng, 60, scale=1e-3 if length < 1e-306 else 1.0)
     scale = np.abs(mesh.vertices).max()
-    origins = (rng.uniform(-2, 2, (600, 3)) * scale).astype(dtype)
-    ways = points_on(rng, corners_of(mesh), 600) - origins
+    origins = (rng.uniform(-2, 2, (300, 3)) * scale).astype(dtype)
+    ways = points_on(rng, corners_of(mesh), 300) - origins
     ways = (ways / np.abs(ways).max(axis=1, keepdims=True) * length).astype(dtype)
     outcome = check(mesh, origins, ways)
-    assert outcome.hits > (10 if length < 1e-40 else 200)
+    assert outcome.hits > (5 if length < 1e-40 else 100)
 
 
 def test_directions_at_the_end_of_the_range():
@@ -280,15 +280,15 @@ SCALES += [1e6, 1e12, 1e13, 1e18, 2e19, 1e20, 1e21, 4e21, 2e22, 1e30, 1e38]
 def test_coordinates_of_any_size(scale):
     rng = np.random.default_rng(12)
     mesh = soup(rng, 60, scale=scale)
-    origins = rng.uniform(-2, 2, (1200, 3)) * scale
-    ways = points_on(rng, corners_of(mesh), 1200) - origins
+    origins = rng.uniform(-2, 2, (500, 3)) * scale
+    ways = points_on(rng, corners_of(mesh), 500) - origins
     # Most rays nearly along an axis, so that huge coordinates meet small parts of the direction.
-    squeezed = np.eye(3)[rng.integers(3, size=1200)] + rng.choice([1.0, 1e-3, 1e-6], (1200, 1))
+    squeezed = np.eye(3)[rng.integers(3, size=500)] + rng.choice([1.0, 1e-3, 1e-6], (500, 1))
     origins = origins + ways * (1 - squeezed)
     ways = ways * squeezed
-    ways[:600] /= np.abs(ways[:600]).max(axis=1, keepdims=True)
+    ways[:250] /= np.abs(ways[:250]).max(axis=1, keepdims=True)
     outcome = check(mesh, origins.astype(np.float32) if scale < 1e38 else origins, ways)
-    assert outcome.hits > 100
+    assert outcome.hits > 40
 
 
 def test_sizes_mixed_in_one_scene():
@@ -319,10 +319,10 @@ def test_triangles_without_area_are_never_hit():
     flat = flat.reshape(-1, 3, 3)
     triangles = np.concatenate([flat, real]).astype(np.float32)
     mesh = rw.Mesh(triangles.reshape(-1, 3), np.arange(3 * len(triangles)).reshape(-1, 3))
-    origins = rng.integers(-16, 17, (1500, 3)) / 8
-    targets = np.concatenate([points_on(rng, flat, 1000), points_on(rng, real, 500)])
+    origins = rng.integers(-16, 17, (600, 3)) / 8
+    targets = np.concatenate([points_on(rng, flat, 400), points_on(rng, real, 200)])
     outcome = check(mesh, origins, targets - origins)
-    assert outcome.hits > 400
+    assert outcome.hits > 160
     hits = rw.Scene(mesh).intersect(origins, targets - origins)
     assert hits.primitive[hits.hit].min() >= len(flat)
 
@@ -334,11 +334,11 @@ def test_triangles_seen_edge_on_are_never_hit():
         [[(0, 0, -4), (0, 0, 4), (x, y, 0)] for x in turns for y in turns if (x, y) != (0, 0)], np.float32
     )
     rng = np.random.default_rng(15)
-    chosen = rng.integers(len(fan), size=1000)
+    chosen = rng.integers(len(fan), size=500)
     a, b, c = np.moveaxis(fan[chosen].astype(np.float64), 1, 0)
-    i, j, k, m = rng.integers(-6, 7, (4, 1000, 1)) / 4
+    i, j, k, m = rng.integers(-6, 7, (4, 500, 1)) / 4
     origins, directions = a + i * (b - a) + j * (c - a), k * (b - a) + m * (c - a)
-    for n in range(0, 1000, 25):
+    for n in range(0, 500, 25):
         single = rw.Mesh(fan[chosen[n]], [(0, 1, 2)])
         assert not rw.Scene(single).occluded(origins[n], directions[n], -np.inf).any()
     mesh = rw.Mesh(fan.reshape(-1, 3), np.arange(3 * len(fan)).reshape(-1, 3))
@@ -389,7 +389,7 @@ def point(*numbers):
     return st.tuples(*[st.one_of(*numbers)] * 3)
 
 
-@fixed(250)
+@fixed(150)
 @given(
     st.lists(st.tuples(*[point(smalls, near, beside, singles)] * 3), min_size=1, max_size=12),
     st.lists(
@@ -406,7 +406,7 @@ def test_any_triangles_and_any_rays(triangles, rays):
     check(mesh, origins, directions)
 
 
-@fixed(150)
+@fixed(100)
 @given(
     st.lists(st.tuples(*[point(smalls, near, beside)] * 3), min_size=1, max_size=30),
     st.lists(

@@ -81,7 +81,7 @@ def test_no_ray_from_inside_gets_out(name, scale, offset, dtype):
     rng = np.random.default_rng(1)
     mesh, room = placed(name, scale, offset)
     scene = rw.Scene(mesh)
-    count = 12_000
+    count = 4_000
     origins = ((inside(rng, name, room, count) + offset) * scale).astype(dtype)
     aimed = (targets(rng, mesh, count) - origins).astype(dtype)
     anyhow = rng.normal(size=(count, 3)).astype(dtype)
@@ -99,7 +99,7 @@ def test_rays_aimed_at_a_convex_mesh_stop_at_their_target(name, scale, offset, d
     rng = np.random.default_rng(2)
     mesh, room = placed(name, scale, offset)
     scene = rw.Scene(mesh)
-    goals = targets(rng, mesh, 12_000)
+    goals = targets(rng, mesh, 4_000)
     centred = goals / scale - offset
     inner = inside(rng, name, room, len(goals))
     # Outside, within about 45 degrees of a normal: seen so, a target cannot be beyond the rim.

@@ -1,12 +1,11 @@
 """Files with all that it takes to make a picture, in Python and in the shell."""
 
 import pickle
-import subprocess
-import sys
 
 import numpy as np
 import pytest
 import trimesh
+from command_line import run_command as shell
 
 import raywright as rw
 from raywright.scene_files.gltf import read_gltf
@@ -34,11 +33,6 @@ def path(tmp_path):
     (tmp_path / "ball.ply").write_bytes(ball.export(file_type="ply"))
     (tmp_path / "scene.xml").write_text(SCENE, encoding="utf-8")
     return tmp_path / "scene.xml"
-
-
-def shell(*arguments, cwd):
-    command = [sys.executable, "-m", "raywright", *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True, cwd=cwd, timeout=60)
 
 
 def test_a_shot_renders_as_its_file_says_unless_told_otherwise(path):
