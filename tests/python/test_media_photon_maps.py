@@ -1,12 +1,12 @@
 """Photon maps among media: closed forms, the light of path tracing, caustics in haze, and bias."""
 
 import math
-from functools import cache
 
 import media_scenes as media
 import numpy as np
 import pytest
 from light_pictures import assert_agree, lamp, square
+from media_references import kept
 
 import raywright as rw
 
@@ -82,14 +82,9 @@ EACH = [
 ]
 
 
-@cache
-def seen(name):
-    return rw.render(SCENES[name], camera(), rw.Path(caustics=False), 1024, progress=False)
-
-
 @pytest.mark.parametrize(("name", "way"), EACH)
 def test_pictures_are_those_of_paths(name, way):
-    assert_agree(SCENES[name], camera(), MAPS[way], seen(name), blur=0.06)
+    assert_agree(SCENES[name], camera(), MAPS[way], kept(f"maps: {name}"), blur=0.06)
 
 
 @pytest.mark.parametrize("depth", [1, pytest.param(2, marks=slow)])

@@ -2,12 +2,14 @@
 
 Of each scene the means of 16 blocks of pixels are compared, in 3 channels, with those that Mitsuba gave and
 that are kept (`mitsuba_references.py` makes them anew). A block may be off by four standard errors of both.
+Samples are placed by lattices: 128 of them leave the errors that 512 independent ones do, 0.1 to 0.4 % of most blocks.
 With normal errors all of the 2,976 comparisons hold in 83 of 100 runs; seeds are fixed, so that what holds
 once always does. Where a scene is dark or even, errors vanish, and 1e-5 is allowed for Mitsuba's single
 precision, in which 8,192 samples a pixel were added.
 """
 
 import warnings
+from dataclasses import replace
 
 import mitsuba_references as given
 import numpy as np
@@ -19,7 +21,7 @@ from mitsuba_xml import xml
 import raywright as rw
 
 SCENES = scenes()
-SAMPLES = 512
+SAMPLES, SAMPLER = 128, rw.Lattice(16)
 
 
 @pytest.fixture(scope="module")
@@ -41,7 +43,7 @@ def read(name, folder):
 
 def agree(shot, mean, error, samples):
     """How far each block is off, in standard errors of both."""
-    image = shot.render(samples=samples, progress=False, seed=1)
+    image = replace(shot, sampler=SAMPLER).render(samples=samples, progress=False, seed=1)
     assert image.samples == samples
     own = np.sqrt(given.blocks(image.standard_error.astype(np.float64) ** 2) / given.BLOCK**2)
     off = np.abs(given.blocks(image.rgb) - mean)

@@ -1,6 +1,7 @@
 """What is chosen for a render where nothing is named, and that a picture says so."""
 
 import pickle
+import threading
 import time
 from dataclasses import FrozenInstanceError, replace
 
@@ -10,6 +11,7 @@ import rare_scenes
 
 import raywright as rw
 from raywright import _core
+from raywright.rendering import ways
 from raywright.rendering.ways import StoppedError
 
 
@@ -113,6 +115,20 @@ def made(name, side=SIDE):
     return getattr(rw.scenes, name)(width=side, height=side)
 
 
+def chosen(scene, camera, path=None, samples=SAMPLES, **how):
+    """Return the plan of a render that is stopped once its pilot is back."""
+    stop = threading.Event()
+    how |= {"progress": lambda image: stop.set(), "stop": stop}
+    return rw.render(scene, camera, path or rw.Path(), samples=samples, **how).plan
+
+
+@pytest.fixture
+def eager(monkeypatch):
+    """Pilots of small pictures too: a render of as many samples as its pilot sends one."""
+    monkeypatch.setattr(ways, "_SHARE", 1)
+    assert 32 * 32 * 16 == _core.PILOT
+
+
 @pytest.mark.parametrize(
     ("name", "reuse", "caustics", "why"),
     [
@@ -123,25 +139,35 @@ def made(name, side=SIDE):
 )
 def test_paths_go_as_a_pilot_finds(name, reuse, caustics, why):
     scene, camera = made(name)
-    image = rw.render(scene, camera, samples=SAMPLES, progress=False)
-    plan = image.plan
+    plan = chosen(scene, camera)
     assert plan.path == rw.Path(reuse=reuse, caustics=caustics)
     assert (plan["reuse"].chosen, plan["caustics"].chosen) == (str(reuse), str(caustics))
     assert why[0] in plan["reuse"].why
     assert why[1] in plan["caustics"].why
-    # Neither the seed nor threads have a say, and named it is the same picture.
-    again = rw.render(scene, camera, plan.path, samples=SAMPLES, threads=3, progress=False)
+    # Neither the seed nor threads have a say.
+    assert chosen(scene, camera, seed=5, threads=3) == plan
+
+
+@pytest.mark.parametrize(
+    ("name", "plain"), [("cornell_box", False), ("veach_plates", True), ("glass_spheres", False)]
+)
+def test_what_a_pilot_finds_is_the_same_picture_when_it_is_named(eager, name, plain):
+    scene, camera = made(name, 32)
+    image = rw.render(scene, camera, samples=16, progress=False)
+    path = image.plan.path
+    assert "by a pilot" in image.plan["reuse"].why
+    assert (path == rw.Path(reuse=1, caustics=False)) is plain
+    again = rw.render(scene, camera, path, samples=16, threads=3, progress=False)
     assert np.array_equal(again.rgb, image.rgb)
-    assert rw.render(scene, camera, samples=SAMPLES, seed=5, progress=False).plan == plan
 
 
 def test_larger_patches_are_tried_where_light_is_rare():
     scene, camera = rare_scenes.keyhole(SIDE)
-    plan = rw.render(scene, camera, samples=SAMPLES, progress=False).plan
+    plan = chosen(scene, camera)
     assert plan.path == rw.Path(reuse=8, caustics=False)
     assert "error times time is 0." in plan["reuse"].why
     # What is named is used as named.
-    named = rw.render(scene, camera, rw.Path(reuse=4), samples=SAMPLES, progress=False).plan
+    named = chosen(scene, camera, rw.Path(reuse=4))
     assert named.path.reuse == 4
 
 
@@ -158,7 +184,8 @@ def test_a_pilot_tells_the_error_of_the_picture():
     # Two parts are all of it.
     box = rw.scenes.cornell_box(width=32, height=16)
     for path in (rw.Path(reuse=1, caustics=False), rw.Path(reuse=4, caustics=False)):
-        truth = render(box, integrator=path, samples=8192).rgb.astype(float)
+        # Its own error is less than an eightieth of that of 8 samples.
+        truth = render(box, integrator=path, samples=1024).rgb.astype(float)
         pictures = [
             render(box, integrator=path, samples=8, sampler=rw.Sobol(4), seed=seed).rgb for seed in range(50)
         ]
@@ -175,12 +202,16 @@ def test_pilots_stay_where_there_is_nothing_to_choose():
         (rw.Path(max_depth=1), "no paths can be shared here"),
         (rw.Path(reuse=1), "as named"),
     ):
-        plan = rw.render(scene, camera, path, samples=SAMPLES, progress=False).plan
+        plan = chosen(scene, camera, path)
         assert plan.path == replace(path, reuse=1, caustics=False)
         assert plan["reuse"].why == why
         assert plan["caustics"].why == "no light comes by way of mirrors or glass"
-    for limits in ({"samples": SAMPLES - 1}, {"seconds": 1e-3}, {"error": 10.0}):
-        plan = rw.render(scene, camera, **limits, progress=False).plan
+    for limits in (
+        {"samples": SAMPLES - 1},
+        {"seconds": 1e-3, "samples": None},
+        {"error": 10.0, "samples": None},
+    ):
+        plan = chosen(scene, camera, **limits)
         assert plan.path == rw.Path(reuse=1, caustics=False)
         assert {plan[what].why for what in ("reuse", "caustics")} == {
             "the picture has too few samples to send a pilot"
@@ -194,17 +225,17 @@ def test_what_is_no_path_has_none(box):
         plan["reuse"]
 
 
-def test_checkpoints_keep_what_was_chosen(box, tmp_path):
-    scene, camera = made("cornell_box")
-    begun = rw.render(scene, camera, samples=SAMPLES, checkpoint=tmp_path / "large", progress=False)
-    assert begun.plan.path.reuse == 8
+def test_checkpoints_keep_what_was_chosen(box, tmp_path, eager):
+    scene, camera = made("cornell_box", 32)
+    begun = rw.render(scene, camera, samples=16, checkpoint=tmp_path / "large", progress=False)
+    assert begun.plan.path.reuse == 4
     # Too few to send a pilot, had there been none.
     on = rw.render(scene, camera, samples=1, checkpoint=tmp_path / "large", progress=False)
     assert on.plan.path == begun.plan.path
     assert {on.plan[what].why for what in ("reuse", "caustics")} == {"as the checkpoint has it"}
     assert np.array_equal(on.rgb, begun.rgb)
-    with pytest.raises(ValueError, match="another integrator, reuse 8 instead of 4"):
-        render((scene, camera), integrator=rw.Path(reuse=4), checkpoint=tmp_path / "large")
+    with pytest.raises(ValueError, match="another integrator, reuse 4 instead of 8"):
+        render((scene, camera), integrator=rw.Path(reuse=8), checkpoint=tmp_path / "large")
     # What began without sharing goes on without.
     render(box, samples=16, checkpoint=tmp_path / "small")
     assert render(box, samples=20, checkpoint=tmp_path / "small").plan.path.reuse == 1

@@ -188,7 +188,7 @@ def test_spheres_and_disks() -> None:
     sphere = rw.Sphere((0, 0, 1.25), 0.8)
     found = factors(rw.Disk((0, 0, 0), (0, 0, 1), 2.0), sphere, rays=128)
     within(found, 0, 1, 0.150400339198982)
-    found = factors(rw.Sphere((0, 0, 0), 0.5), rw.Sphere((4, 0, 0), 2.0), rays=1024)
+    found = factors(rw.Sphere((0, 0, 0), 0.5), rw.Sphere((4, 0, 0), 2.0), rays=700)
     within(found, 0, 1, 0.0673688530967076)
     near = factors(rw.Disk((0, 0, 0), (0, 0, 1), 1.0), rw.Disk((0, 0, 0.1), (0, 0, -1), 1.0), rays=16)
     within(near, 0, 1, 0.9048750780274973)
@@ -207,7 +207,7 @@ def test_a_disk_between_disks() -> None:
         rw.Disk((0, 0, 0), (0, 0, 1), 1.0),
         rw.Disk((0, 0, 2), (0, 0, -1), 1.0),
         rw.Disk((0, 0, 1), (0, 0, 1), 0.5),
-        rays=512,
+        rays=256,
     )
     within(found, 0, 1, 0.081408557450239)
 
@@ -237,19 +237,20 @@ def tube(sides: int, radius: float, length: float, top: float) -> rw.Mesh:
 
 
 @pytest.mark.parametrize(
-    ("radius", "length", "top", "truth"),
+    ("radius", "length", "top", "sides", "truth"),
     [
-        (0.1, 3.0, 1.0, 0.966703621627092),
-        (5.0, 0.5, 1.0, 0.0487507802749607),
-        (1.0, 2.0, 1e-6, 0.552786404500042),
+        (0.1, 3.0, 1.0, 12, 0.966703621627092),
+        (5.0, 0.5, 1.0, 48, 0.0487507802749607),
+        (1.0, 2.0, 1e-6, 12, 0.552786404500042),
     ],
 )
 def test_the_inside_of_cylinders_and_cones_sees_itself(
-    radius: float, length: float, top: float, truth: float
+    radius: float, length: float, top: float, sides: int, truth: float
 ) -> None:
     # Of n sides the factor is off by a multiple of 1 / n^2, which two n tell.
-    found = [float(factors(tube(n, radius, length, top)).matrix[0, 0]) for n in (48, 96)]
-    assert (4 * found[1] - found[0]) / 3 == pytest.approx(truth, rel=2e-3)
+    found = [float(factors(tube(n, radius, length, top)).matrix[0, 0]) for n in (sides, 2 * sides)]
+    # The flat ring sees a twentieth of itself.
+    assert (4 * found[1] - found[0]) / 3 == pytest.approx(truth, rel=2e-3 if truth < 0.1 else 1e-4)
 
 
 def test_a_shape_of_no_area_sees_nothing() -> None:
