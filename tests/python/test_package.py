@@ -19,7 +19,7 @@ import raywright as rw
 from raywright.viewer.texts import MODULES
 
 ROOT = Path(__file__).parents[2]
-MOST_BYTES = 8_000_000
+MOST_BYTES = 6_500_000
 QEMU = shutil.which("qemu-x86_64")
 
 # Rays at corners and between them, told by a digest of the bits of their answers. No sine is in the rays:
