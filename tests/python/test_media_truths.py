@@ -322,7 +322,7 @@ def test_the_mean_way_through_a_ball_is_that_of_its_chords(g, depth):
     gas = rw.Homogeneous(0.0, depth, phase, emission=1.0)
     scene = rw.Scene([rw.Sphere((0, 0, 0), 1.0, material=rw.Boundary(gas))])
     camera = rw.Orthographic((0, 0, 3), (0, 0, 0), scale=2.0, width=32, height=32)
-    image = rw.render(scene, camera, rw.Path(), 64, progress=False)
+    image = rw.render(scene, camera, rw.Path(), 32, progress=False)
     mean = image.rgb[..., 1].mean(dtype=float) / (math.pi / 4)
     error = math.sqrt((image.standard_error[..., 1].astype(float) ** 2).sum()) / 32**2 / (math.pi / 4)
     assert error < 0.02

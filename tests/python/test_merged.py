@@ -77,8 +77,8 @@ def test_a_lamp_and_an_eye_both_behind_glass():
     look = rw.Camera((0, -3.5, 1.2), (0, 0, 0.1), up=(0, 0, 1), fov=25, width=SIDE, height=SIDE)
     assert picture(scene, look, rw.Bidirectional(), 4).rgb.max() == 0
     # Light that the block holds back by total reflection would go round for thousands of bounces.
-    ours = seeds(scene, look, rw.Bidirectional(40, merge=True, radius=0.06, photons=8000), 8, 6)
-    theirs = seeds(scene, look, rw.ProgressivePhotonMap(8000, 0.06, max_depth=40), 8, 6)
+    ours = seeds(scene, look, rw.Bidirectional(40, merge=True, radius=0.06, photons=3000), 8, 6)
+    theirs = seeds(scene, look, rw.ProgressivePhotonMap(3000, 0.06, max_depth=40), 8, 6)
     assert_agree(ours, theirs)
     # Nor is there anything else to be weighed with it: it is the same estimate by the same photons.
     np.testing.assert_allclose(ours[0], theirs[0], rtol=0.05)
@@ -94,7 +94,7 @@ def test_what_moves_is_lit_at_its_time():
     eye = (0, -2.5, 0.7)
     look = rw.Camera(eye, (0, 0, 0), up=(0, 0, 1), fov=30, width=SIDE, height=SIDE, shutter=(0.0, 1.0))
     scene = rw.Scene([floor, board, pane, lamp])
-    truth = picture(scene, look, rw.LightTraced(), 2048)
+    truth = picture(scene, look, rw.LightTraced(), 1024)
     error = np.sqrt(blocks(truth.standard_error.astype(float) ** 2) / 16)
     ours = seeds(scene, look, rw.Bidirectional(merge=True, radius=0.05, photons=3000), 32, 6)
     assert_agree(ours, (blocks(truth.rgb), error, 0.0))
@@ -126,7 +126,7 @@ def test_its_bias_is_told():
     assert image.biased
     assert np.abs(image.bias).max() > 0
     # Where the error that is asked for is less than the blur, that is told.
-    coarse = rw.Bidirectional(merge=True, radius=200.0, photons=4000)
+    coarse = rw.Bidirectional(merge=True, radius=200.0, photons=1000)
     image = rw.render(scene, look, coarse, 64, error=1e-9, progress=False)
     assert any("error=1e-09 is of noise alone" in line for line in image.warnings)
     plain = picture(scene, look, rw.Bidirectional(), 4)

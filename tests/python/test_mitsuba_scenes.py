@@ -2,10 +2,10 @@
 
 Of each scene the means of 16 blocks of pixels are compared, in 3 channels, with those that Mitsuba gave and
 that are kept (`mitsuba_references.py` makes them anew). A block may be off by four standard errors of both.
-Samples are placed by lattices: 128 of them leave the errors that 512 independent ones do, 0.1 to 0.4 % of most blocks.
-With normal errors all of the 2,976 comparisons hold in 83 of 100 runs; seeds are fixed, so that what holds
-once always does. Where a scene is dark or even, errors vanish, and 1e-5 is allowed for Mitsuba's single
-precision, in which 8,192 samples a pixel were added.
+Samples are placed by lattices: 128 of them leave the errors that 512 independent ones do, 0.1 to 0.4 % of
+most blocks. With normal errors all of the 2,976 comparisons hold in 83 of 100 runs; seeds are fixed, so that
+what holds once always does. Where a scene is dark or even, errors vanish, and 1e-5 is allowed for Mitsuba's
+single precision, in which 8,192 samples a pixel were added.
 """
 
 import warnings

@@ -238,10 +238,12 @@ def test_a_doctype_is_refused_before_any_entity(tmp_path, text):
 def test_pictures_of_a_thousand_million_pixels_are_refused_by_their_header(tmp_path, name):
     (tmp_path / name).write_bytes(PICTURES[name])
     path = tmp_path / "scene.xml"
-    for body in (
-        f'<emitter type="envmap"><string name="filename" value="{name}"/></emitter>',
+    around = f'<emitter type="envmap"><string name="filename" value="{name}"/></emitter>'
+    texture = (
         f'<shape type="sphere"><bsdf type="diffuse"><texture type="bitmap" name="reflectance">'
-        f'<string name="filename" value="{name}"/></texture></bsdf></shape>',
-    ):
+        f'<string name="filename" value="{name}"/></texture></bsdf></shape>'
+    )
+    # Both read all kinds alike, and each is a process of its own.
+    for body in (around, texture) if name == next(iter(PICTURES)) else (around,):
         path.write_text(f'<scene version="3.0.0">{EYE}{body}</scene>')
         assert f"{name} is not a picture that can be read" in run_limited(path, tmp_path)

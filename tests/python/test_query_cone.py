@@ -104,7 +104,7 @@ def nearest_by_optimiser(corners, apex, axis, angle):
 def test_distances_are_those_of_an_optimiser():
     rng = np.random.default_rng(4)
     agreed = 0
-    for _ in range(150):
+    for _ in range(75):
         corners, apex = rng.uniform(-1, 1, (3, 3)), rng.uniform(-1, 1, 3)
         axis = rng.normal(size=3)
         axis /= np.linalg.norm(axis)
@@ -114,7 +114,7 @@ def test_distances_are_those_of_an_optimiser():
         if wanted is not None:
             assert found.distance == pytest.approx([wanted], rel=1e-5, abs=1e-6)
             agreed += 1
-    assert agreed > 40
+    assert agreed > 20
 
 
 coordinates = st.tuples(*[st.integers(-4, 4).map(lambda x: x / 2) | st.floats(-2, 2, width=32)] * 3)

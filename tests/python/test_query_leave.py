@@ -29,7 +29,7 @@ def block(size=1.0, at=0.0, sides=(1.0, 1.0, 1.0)):
     return rw.Mesh(size * (box.vertices + at * np.array([1.0, -0.7, 0.3])), box.faces)
 
 
-def hits_of(scene, count=100_000, seed=1):
+def hits_of(scene, count=30_000, seed=1):
     """Hits from all around, aimed at points of the box around the scene; and the same from within."""
     low, high = scene.bounds
     middle, reach = (low + high) / 2, np.linalg.norm(high - low)

@@ -1,11 +1,9 @@
 """How files are shown that say nothing of light, or of a camera: alike, whatever their kind."""
 
-import subprocess
-import sys
-
 import numpy as np
 import pytest
 import trimesh
+from command_line import run_command
 from gltf_writer import Writer
 from obj_files import SQUARE, picture, write
 
@@ -14,11 +12,6 @@ from raywright.scene_files.shown import own_radiance, shown
 
 # What is seen of the square from straight above.
 EYE = {"type": "perspective", "perspective": {"yfov": 0.6, "aspectRatio": 1.5, "znear": 0.1}}
-
-
-def shell(*arguments, cwd):
-    command = [sys.executable, "-m", "raywright", *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True, cwd=cwd, timeout=60)
 
 
 def gltf(tmp_path, emission=0.0, camera=None, lights=(), **node):
@@ -165,10 +158,12 @@ def test_size_and_the_way_up_may_be_told(tmp_path):
 
 def test_the_shell_shows_a_lamp(tmp_path):
     write(tmp_path, "Kd 0 0 0\nKe 17 12 4\nfoo 1\nPc 1")
-    done = shell("render", "file.obj", "-o", "a.npy", "--samples", 1, "--quiet", "--width", 64, cwd=tmp_path)
+    done = run_command(
+        "render", "file.obj", "-o", "a.npy", "--samples", 1, "--quiet", "--width", 64, cwd=tmp_path
+    )
     told = "raywright: warning: file.mtl: what is not shown here is left out: foo of 'it', Pc of 'it'\n"
     assert (done.returncode, done.stdout, done.stderr) == (0, "", told)
     assert np.load(tmp_path / "a.npy").max(axis=(0, 1)).tolist() == [17, 12, 4]
-    done = shell("info", "file.obj", cwd=tmp_path)
+    done = run_command("info", "file.obj", cwd=tmp_path)
     assert (done.returncode, done.stderr) == (0, told)
     assert "faces        2" in done.stdout

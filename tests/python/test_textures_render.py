@@ -75,7 +75,7 @@ def test_a_textured_cavity_shines_by_the_mean_exitance_of_its_texture():
     seen = set()
     for direction in np.random.default_rng(2).normal(size=(12, 3)):
         camera = rw.Camera((0, 0, 0), direction, fov=1e-3, width=8, height=8)
-        value, error = mean(rw.render(rw.Scene(wall), camera, samples=64, progress=False))
+        value, error = mean(rw.render(rw.Scene(wall), camera, samples=32, progress=False))
         texel = value - 0.5 * float(TEXELS[0].mean()) / (1 - 0.5)
         nearest = float(TEXELS[0][abs(TEXELS[0] - texel).argmin()])
         # Four standard errors: chance exceeds one of these twelve once in 1,300 times.

@@ -233,8 +233,18 @@ def test_smooth_films_keep_all_light():
         )
 
 
-@pytest.mark.parametrize("distribution", ["ggx", "beckmann"])
-@pytest.mark.parametrize("roughness", [0.4, 0.7, 1.0])
+@pytest.mark.parametrize(
+    ("roughness", "distribution"),
+    [
+        (0.4, "ggx"),
+        (0.7, "beckmann"),
+        (1.0, "ggx"),
+        *(
+            pytest.param(*case, marks=pytest.mark.slow)
+            for case in ((0.4, "beckmann"), (0.7, "ggx"), (1.0, "beckmann"))
+        ),
+    ],
+)
 def test_rough_films_keep_all_light(roughness, distribution):
     # Oil on water, a lens's coat, and what reflects as strongly as the oxide of titanium does.
     for thickness, ior, glass in ((120.0, 1.38, 1.52), (300.0, 1.47, 1.33), (60.0, 2.5, 1.5)):

@@ -90,8 +90,8 @@ def hinged(kind: str, bend: float, size: float) -> tuple[Any, Any]:
     return tuple([[size * x for x in corner] for corner in of] for of in (one, other))
 
 
-# The kind, the bend and the size of each pair, and `exchanged` of it: 4e-18 of the square of the size at 1e-8,
-# of terms that are about 1.
+# The kind, the bend and the size of each pair, and `exchanged` of it. At a bend of 1e-8 that is 4e-18 of the
+# square of the size, of terms that are about 1.
 with (Path(__file__).parent / "data" / "flat_view_factors.json").open(encoding="utf-8") as file:
     PAIRS = json.load(file)
 

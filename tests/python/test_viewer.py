@@ -38,11 +38,11 @@ def is_soon(condition, seconds=2.0):
 
 
 def test_a_picture_comes_within_two_seconds_and_gets_better():
-    with rw.view(*rw.scenes.cornell_box(width=320, height=320), error=1e-12) as viewer:
+    with rw.view(*rw.scenes.cornell_box(width=200, height=200), error=1e-12) as viewer:
         began = time.monotonic()
         with page(viewer) as events:
             name, scene = next(events)
-            assert (name, scene["width"], scene["height"]) == ("scene", 320, 320)
+            assert (name, scene["width"], scene["height"]) == ("scene", 200, 200)
             assert scene["elevations"] == [-89, 89]
             first = until(events, lambda frame: True)
             assert time.monotonic() - began < 2
@@ -56,7 +56,7 @@ def test_a_picture_comes_within_two_seconds_and_gets_better():
             assert late["seconds"] > early["seconds"]
             assert late["error"][0] < 0.5 * early["error"][0]
             assert late["error"][1] < late["error"][0] < late["error"][2]
-            assert pixels(late).shape == pixels(early).shape == (320, 320, 3)
+            assert pixels(late).shape == pixels(early).shape == (200, 200, 3)
             assert viewer.rendering
 
 
@@ -143,7 +143,7 @@ def test_the_exposure_changes_without_a_new_render():
 
 def test_moving_the_camera_ends_what_is_rendered_at_once():
     # Left to itself the picture takes hours, and its next pass as long as all before it.
-    scene, camera = rw.scenes.cornell_box(width=1000, height=1000)
+    scene, camera = rw.scenes.cornell_box(width=500, height=500)
     with rw.view(scene, camera, samples=100_000) as viewer, page(viewer) as events:
         began = time.monotonic()
         until(events, lambda frame: frame["state"] == "refining" and frame["samples"] >= 2)
@@ -185,7 +185,7 @@ def test_without_a_page_nothing_is_rendered(viewer):
         assert viewer.rendering
         with page(viewer) as others:
             until(others, lambda frame: True)
-        time.sleep(1)
+        time.sleep(0.6)
         assert viewer.rendering
     # Half a second is promised, for an idle machine; tests run beside other work.
     assert is_soon(lambda: not viewer.rendering)
