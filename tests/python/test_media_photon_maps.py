@@ -83,7 +83,9 @@ EACH = [
 
 @pytest.mark.parametrize(("name", "way"), EACH)
 def test_pictures_are_those_of_paths(name, way):
-    assert_agree(SCENES[name], camera(), MAPS[way], kept(f"maps: {name}"), blur=0.06)
+    # Of a progressive map most of what is allowed is its bias.
+    samples = 4 if way == "progressive" else 8
+    assert_agree(SCENES[name], camera(), MAPS[way], kept(f"maps: {name}"), samples=samples, blur=0.06)
 
 
 @pytest.mark.parametrize("depth", [1, pytest.param(2, marks=slow)])

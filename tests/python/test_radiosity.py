@@ -234,7 +234,10 @@ def test_the_cavity_of_a_sphere_looks_blacker_than_its_wall() -> None:
 
 @pytest.mark.parametrize(
     ("emissivity", "depth", "truth"),
-    [(0.5, 2, (0.839427255751651, 0.808299030278271)), (0.9, 4, (0.993635214015189, 0.974662207708861))],
+    [
+        (0.5, 2, (0.839427255751651, 0.808299030278271)),
+        pytest.param(0.9, 4, (0.993635214015189, 0.974662207708861), marks=pytest.mark.slow),
+    ],
 )
 def test_the_cavity_of_a_cylinder(emissivity: float, depth: float, truth: tuple[float, float]) -> None:
     def scene(cuts: int) -> rw.Scene:

@@ -81,7 +81,9 @@ def test_a_lamp_lights_a_floor_alike_at_any_place(shift):
     assert_mean(image, 0.8 / math.pi * 3 * 1.740839502734206, most=0.01, slack=1e-4)
 
 
-@pytest.mark.parametrize(("reflectance", "samples"), [(0.99, 128), (0.999, 48)])
+@pytest.mark.parametrize(
+    ("reflectance", "samples"), [(0.99, 128), pytest.param(0.999, 48, marks=pytest.mark.slow)]
+)
 def test_bright_boxes_leave_no_heavy_tail(box, reflectance, samples):
     # Emission 1 over what is lost at a bounce: 100 and 1000.
     scene = rw.Scene(room(box, reflectance, 1.0))

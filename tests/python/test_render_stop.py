@@ -55,6 +55,7 @@ def test_an_error_that_was_asked_for_is_reached(request, which, adaptive):
     assert reached(*request.getfixturevalue(which), 100, adaptive) >= 95
 
 
+@pytest.mark.slow
 def test_an_error_that_was_asked_for_is_reached_in_a_small_picture():
     # Off by 3e-6 in relMSE. The .rgb of rw.render(*balls(24), samples=16384, seed=10**9, adaptive=True)
     with np.load(Path(__file__).parent / "data" / "balls_24.npz") as kept:

@@ -145,7 +145,7 @@ def test_what_it_takes_to_show_it_is_a_tenth_of_the_work_at_most(clock, threads,
         began.append(clock.now)
         clock.now += 0.05
 
-    scene = rw.scenes.cornell_box(width=1920, height=1080)
+    scene = rw.scenes.cornell_box(width=1280, height=720)
     rw.render(*scene, rw.Path(reuse=1), progress=watch, stop=clock, threads=threads)
     gaps = np.diff(began[:-1])
     assert len(gaps) >= 3

@@ -160,7 +160,9 @@ def hollow(side):
 HOLLOW = {f"{name}, {side}": one for side in ("both", "back") for name, one in hollow(side).items()}
 
 
-@pytest.mark.parametrize("kind", HOLLOW)
+@pytest.mark.parametrize(
+    "kind", [pytest.param(k, marks=pytest.mark.slow) if k == "torus, back" else k for k in HOLLOW]
+)
 def test_within_any_hollow_shape_that_shines_it_is_alike(kind):
     # What is closed, shines 1 and reflects a half: 1 / (1 - 0.5), and 1.5 where light is followed once.
     shape, centre = HOLLOW[kind]
