@@ -14,9 +14,6 @@ import nox
 nox.options.sessions = ["lint", "rust", "python"]
 nox.options.default_venv_backend = "none"
 
-#: Rust tests that try more cases where RAYWRIGHT_SLOW is set.
-MORE_CASES = ["fuzz::", "hits::", "furnace::"]
-
 
 def run_module(session, *args, **how):
     """Run a module by the Python that runs nox."""
@@ -68,11 +65,11 @@ def docs(session):
 
 @nox.session
 def slow(session):
-    """Run what a newcomer does not wait for: more cases, with checks of overflow, and slow Python tests."""
+    """Run what a newcomer does not wait for: checks of overflow, all cases, and slow Python tests."""
     cargo(session, "test", "--quiet", "--locked")
     more = {"RAYWRIGHT_SLOW": "1"}
-    cargo(session, "test", "--quiet", "--release", "--locked", "--", *MORE_CASES, env=more)
-    run_module(session, "pytest", "-m", "slow", *session.posargs, env=more)
+    cargo(session, "test", "--quiet", "--release", "--locked", env=more)
+    run_module(session, "pytest", "-m", "slow", *session.posargs)
 
 
 @nox.session
