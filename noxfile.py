@@ -74,7 +74,7 @@ def slow(session):
 
 @nox.session
 def package(session):
-    """Build the sdist, and test that a wheel built from it alone is whole."""
+    """Build the sdist, and test that it holds what the package is built and tested from."""
     run_module(session, "pip", "install", "--quiet", "maturin>=1.9,<2")
     shutil.rmtree("dist", ignore_errors=True)
     run_module(session, "maturin", "sdist", "--out", "dist")
