@@ -40,8 +40,8 @@ for line in sys.stdin:
 """
 
 
-# Seconds, on a machine that may have other things to do.
-PATIENCE = 10
+# Seconds, on a machine that may have other things to do. CPU seconds are counted, too, and must be few.
+PATIENCE = 60
 
 
 class Refusal(NamedTuple):
