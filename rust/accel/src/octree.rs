@@ -223,7 +223,7 @@ impl Octree {
             }
         }
         // Pieces with nothing in them stay so, whatever plane comes.
-        for (octant, part) in pieces.into_iter().take(count).filter(|(_, part)| !part.aabb.is_empty()) {
+        for &(octant, part) in pieces[..count].iter().filter(|(_, part)| !part.aabb.is_empty()) {
             to(octant, part);
         }
     }

@@ -27,7 +27,8 @@ pub(super) fn tell(solid: &impl Solid, ray: &Carried<'_>, met: &mut dyn FnMut(Ca
 
 #[inline(always)]
 fn tell_of_line(solid: &impl Solid, ray: &Carried<'_>, met: &mut dyn FnMut(Candidate) -> bool) -> bool {
-    let known = match solid.meets_roughly(ray) {
+    // By reference, for meetings are some hundred bytes.
+    let known = match &solid.meets_roughly(ray) {
         Some(meets) if meets.count == 0 => return false,
         Some(meets) => tell_refined(solid, ray, meets, met),
         None => Err(0),
@@ -40,11 +41,12 @@ fn tell_of_line(solid: &impl Solid, ray: &Carried<'_>, met: &mut dyn FnMut(Candi
 fn tell_refined(
     solid: &impl Solid,
     ray: &Carried<'_>,
-    meets: Meets<Bounded>,
+    meets: &Meets<Bounded>,
     met: &mut dyn FnMut(Candidate) -> bool,
 ) -> Result<bool, usize> {
     let &Ray { t_min, t_max, .. } = ray.ray();
-    let [Some(mut first), mut second, None, _] = meets.all else { return Err(0) };
+    let [Some(first), second, None, _] = &meets.all else { return Err(0) };
+    let (mut first, mut second) = (first, second.as_ref());
     let touched = meets.closed && second.is_none();
     if let Some(second) = &mut second {
         // Apart by more than their errors and their roundings, of which each error holds one: so are what they are
@@ -71,8 +73,8 @@ fn tell_refined(
         Ok(met(Candidate { t, uv, contact, inner: 0 }))
     };
     match second {
-        Some(second) => Ok(tell_one(&first, 0)? || tell_one(&second, 1)?),
-        None => tell_one(&first, 0),
+        Some(second) => Ok(tell_one(first, 0)? || tell_one(second, 1)?),
+        None => tell_one(first, 0),
     }
 }
 
@@ -206,7 +208,7 @@ mod tests {
             // At a tie between two f64 either may be told: 1 + 2⁻⁵³ + 2⁻¹⁰⁶ is a quotient of neighbours.
             prop_assert!(f == e || (f.0.abs_diff(e.0) == 1 && f.2 == e.2), "{f:?} {e:?} {ray:?}");
         }
-        let sure = known.is_some_and(|meets| tell_refined(solid, ray, meets, &mut |_| false).is_ok());
+        let sure = known.is_some_and(|meets| tell_refined(solid, ray, &meets, &mut |_| false).is_ok());
         Ok(sure || known.is_some_and(|meets| meets.count == 0))
     }
 

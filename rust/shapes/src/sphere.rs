@@ -144,12 +144,14 @@ impl Sphere {
             let bend = Bounded { value: a, error: 4.0 * UNIT * a };
             Meet { t: Bounded { value: t, error }, slope, bend, surface: 0, part: 0, contact: Contact::Inside }
         };
-        let (rise, meets) = (2.0 * root, Meets::new(true));
-        Some(if b < 0.0 {
-            meets.with(meet(inner, inner_error, -rise)).with(meet(outer, outer_error, rise))
+        let (first, second) = if b < 0.0 {
+            ((inner, inner_error), (outer, outer_error))
         } else {
-            meets.with(meet(-outer, outer_error, -rise)).with(meet(-inner, inner_error, rise))
-        })
+            ((-outer, outer_error), (-inner, inner_error))
+        };
+        let rise = 2.0 * root;
+        let all = [Some(meet(first.0, first.1, -rise)), Some(meet(second.0, second.1, rise)), None, None];
+        Some(Meets { all, count: 2, closed: true })
     }
 }
 

@@ -78,10 +78,14 @@ impl Lattice {
         let (mut from, mut to) = ([0; 3], [0; 3]);
         for axis in 0..3 {
             let (low, per_cell) = (f64::from(self.low[axis]), 1.0 / f64::from(self.width[axis]));
-            let least = ((f64::from(aabb.min[axis] - PAD) - low) * per_cell).floor() as i64;
-            let most = ((f64::from(aabb.max[axis] + PAD) - low) * per_cell).floor() as i64;
-            let last = i64::from(self.cells[axis]) - 1;
-            if most < 0 || least > last || least > most {
+            let least = (f64::from(aabb.min[axis] - PAD) - low) * per_cell;
+            let most = (f64::from(aabb.max[axis] + PAD) - low) * per_cell;
+            // Negative numbers are no cells; others are truncated, where `floor` would be a call.
+            if most < 0.0 {
+                return None;
+            }
+            let (least, most, last) = (least as i64, most as i64, i64::from(self.cells[axis]) - 1);
+            if least > last || least > most {
                 return None;
             }
             (from[axis], to[axis]) = (least.max(0) as u32, most.min(last) as u32);

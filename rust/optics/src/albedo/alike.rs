@@ -21,7 +21,7 @@ impl Alike {
     }
 
     /// Of light of a cosine from 0 to 1, as [`super::MirrorLoss::of`].
-    #[inline]
+    #[inline(always)]
     pub fn of(&self, cosine: f64) -> f64 {
         let (square, sine) = (self.alpha * self.alpha, (1.0 - cosine) * (1.0 + cosine));
         let row = Cubic::new(of_cosine(self.alpha, cosine), MIRROR[0]);

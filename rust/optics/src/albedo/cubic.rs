@@ -14,7 +14,7 @@ pub struct Cubic {
 
 impl Cubic {
     /// Of a variable from 0 to 1 in a table with `count` ≥ 4 entries for it.
-    #[inline]
+    #[inline(always)]
     pub fn new(variable: f64, count: usize) -> Self {
         let at = variable.clamp(0.0, 1.0) * (count - 1) as f64;
         // To 32 bits and back, which processors convert at once.
@@ -91,7 +91,7 @@ impl Table<1> {
 
 impl Table<2> {
     /// The value between its entries.
-    #[inline]
+    #[inline(always)]
     pub fn at(&self, a: &Cubic, b: &Cubic) -> f64 {
         let mut sum = Vec4::ZERO;
         for i in 0..4 {
