@@ -11,8 +11,8 @@ from .material import material as checked
 class Mask(Material):
     """A material with holes: leaves, lace, fences.
 
-    Where it is partly there, rays go through it in proportion. Holes are for pictures: `Scene.intersect` and
-    the like hit the shape.
+    Where it is partly there, rays go through it in proportion, and a shape that shines gives off light in
+    proportion. Holes are for pictures: `Scene.intersect` and the like hit the shape.
 
     Parameters
     ----------

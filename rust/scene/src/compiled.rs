@@ -63,7 +63,7 @@ impl Scene {
         let goes_on = || work.goes_on().map_err(|Stopped| DescriptionError::Stopped);
         let parts = description.joined()?;
         goes_on()?;
-        let lights = Lights::new(&parts.geometry, parts.emission, parts.lights);
+        let lights = Lights::new(&parts.geometry, &parts.materials, parts.emission, parts.lights);
         goes_on()?;
         let accelerator = accelerator(&Watched { geometry: &parts.geometry, work });
         goes_on()?;
@@ -77,7 +77,7 @@ impl Scene {
     /// As [`Scene::new`].
     pub fn refitted(&self, description: SceneDescription, work: Work) -> Result<Option<Self>, DescriptionError> {
         let parts = description.joined()?;
-        let lights = Lights::new(&parts.geometry, parts.emission, parts.lights);
+        let lights = Lights::new(&parts.geometry, &parts.materials, parts.emission, parts.lights);
         let accelerator = self.accelerator.refitted(&Watched { geometry: &parts.geometry, work }).ok();
         work.goes_on().map_err(|Stopped| DescriptionError::Stopped)?;
         Ok(accelerator.map(|a| Self::with(a, Some(self.built_cost), parts.geometry, parts.materials, lights)))

@@ -5,7 +5,7 @@ use super::choice::MOST;
 use super::emission_sample::PointEmission;
 use super::emission_sample::{EmissionPdf, EmissionSample, Source};
 use super::light::Place;
-use super::{Aim, Emission, LightSampleContext, Lights, Reach, Sides};
+use super::{Aim, LightSampleContext, Lights, Luminous, Reach, Sides};
 use crate::{Geometry, RayOrigin, SurfacePoint};
 use raywright_base::math::{DVec3, Frame, Hit, Ray, Region};
 use raywright_base::sampling::AliasTable;
@@ -75,15 +75,15 @@ impl<'a> Emitters<'a> {
         let drawn = if chosen == self.within {
             self.of_infinite(numbers, waves)?
         } else if let Some(&primitive) = self.lights.surfaces.get(chosen) {
-            let emission = self.lights.emission(self.geometry.locate(primitive).0);
-            self.of_primitive(emission, chosen, primitive, (numbers, waves))?
+            let luminous = self.lights.luminous(self.geometry, primitive);
+            self.of_primitive(&luminous, chosen, primitive, (numbers, waves))?
         } else {
             let number = chosen - self.lights.surfaces.len();
             match number.checked_sub(self.lights.copied.len()) {
                 None => {
-                    let (emission, surface, hit, pdf) =
+                    let (luminous, surface, hit, pdf) =
                         self.lights.copied.place(number, self.geometry, numbers.place)?;
-                    self.of_surface(emission, (chosen, &surface), hit, pdf, (numbers.direction, waves))?
+                    self.of_surface(&luminous, (chosen, &surface), hit, pdf, (numbers.direction, waves))?
                 }
                 Some(number) => self.of_point(number, numbers, waves)?,
             }
@@ -132,7 +132,7 @@ impl<'a> Emitters<'a> {
     /// From a primitive of the scene that is no instance.
     fn of_primitive(
         &self,
-        emission: &Emission,
+        luminous: &Luminous,
         light: usize,
         primitive: u32,
         (numbers, waves): (&EmissionNumbers, Option<&Waves>),
@@ -148,26 +148,27 @@ impl<'a> Emitters<'a> {
             }
         };
         let hit = Hit { t: 1.0, uv, primitive, inner: 0 };
-        self.of_surface(emission, (light, &surface), hit, pdf, (numbers.direction, waves))
+        self.of_surface(luminous, (light, &surface), hit, pdf, (numbers.direction, waves))
     }
 
     /// From a point of a surface, a light of this number, that was drawn with a density, by area; the hit is that of a
     /// ray that meets it from at distance 1.
     fn of_surface(
         &self,
-        emission: &Emission,
+        luminous: &Luminous,
         (light, surface): (usize, &SurfacePoint),
         hit: Hit,
         pdf: f64,
         ([u, v], waves): ([f64; 2], Option<&Waves>),
     ) -> Option<EmissionSample> {
+        let sides = luminous.emission.sides;
         let cones = self.aim.from(surface.position);
         let share = cones.as_ref().map_or(0.0, Cones::share);
         let (normal, direction, cosine) = match &cones {
             Some(cones) if u < share => {
                 let direction = cones.sample([u / share, v]);
                 let towards = surface.normal.dot(direction);
-                let normal = match emission.sides {
+                let normal = match sides {
                     Sides::Front => surface.normal,
                     Sides::Back => -surface.normal,
                     Sides::Both => surface.normal * 1f64.copysign(towards),
@@ -176,7 +177,7 @@ impl<'a> Emitters<'a> {
             }
             _ => {
                 let u = (u - share) / (1.0 - share);
-                let (normal, u) = match emission.sides {
+                let (normal, u) = match sides {
                     Sides::Front => (surface.normal, u),
                     Sides::Back => (-surface.normal, u),
                     Sides::Both if u < 0.5 => (surface.normal, 2.0 * u),
@@ -188,8 +189,8 @@ impl<'a> Emitters<'a> {
         };
         // What a ray back along it would see.
         let back = Ray::new(surface.position + direction, -direction);
-        let radiance = emission.sent(self.geometry, &back, &hit, surface, || waves.copied());
-        let sides = emission.sides.count();
+        let radiance = luminous.sent(self.geometry, &back, &hit, surface, || waves.copied());
+        let sides = sides.count();
         let ray = Ray { misses: [hit.primitive, Ray::NO_TRIANGLE], ..RayOrigin::new(surface).ray(direction) };
         let is_drawn = pdf > 0.0 && pdf < f64::INFINITY && cosine > 0.0;
         let own = cosine / (PI * sides);

@@ -1,14 +1,13 @@
 //! Light from surfaces in instances of prototypes.
 
 use super::choice::Strength;
-use super::light::strength;
 use super::triangle::SeenTriangle;
-use super::{Emission, LightSample, LightSampleContext, surface};
+use super::{LightSample, LightSampleContext, Luminous, surface};
 use crate::{Geometry, Instances, Prototype, SurfacePoint};
 use raywright_accel::Primitives;
 use raywright_base::math::{DVec3, Hit, Ray};
 use raywright_base::sampling::warp::uniform_triangle;
-use raywright_shapes::Bounds;
+use raywright_shapes::{Bounds, Site};
 
 /// The primitives that shine in instances of prototypes, each of every instance a light of its own: those of instances
 /// that stand still, and of what stands in a prototype itself, not in instances within it. Where there would be more
@@ -93,7 +92,7 @@ impl Copied {
         light: usize,
         geometry: &'a Geometry,
         u: [f64; 2],
-    ) -> Option<(&'a Emission, SurfacePoint, Hit, f64)> {
+    ) -> Option<(Luminous<'a>, SurfacePoint, Hit, f64)> {
         let Light { primitive, inner, .. } = self.lights[light];
         let (instances, instance) = geometry.instance(primitive)?;
         let (prototype, pose) = (instances.prototype(), instances.pose(instance, 0.0)?);
@@ -112,7 +111,7 @@ impl Copied {
         let stretch = pose.map()?.normal(point.normal).length();
         let mut surface = pose.point(&point)?;
         (surface.shape, surface.inner) = (geometry.locate(primitive).0, Some(inner));
-        Some((prototype.appearance(inner).1, surface, Hit { t: 1.0, uv, primitive, inner }, pdf / stretch))
+        Some((prototype.luminous(inner), surface, Hit { t: 1.0, uv, primitive, inner }, pdf / stretch))
     }
 
     /// Which instance one is in.
@@ -159,22 +158,20 @@ impl Copied {
         let (instances, instance) = geometry.instance(*primitive)?;
         let (prototype, pose) = (instances.prototype(), instances.pose(instance, 0.0)?);
         let (own, _) = prototype.split(*inner);
-        let emission = prototype.appearance(*inner).1;
+        let luminous = prototype.luminous(*inner);
         let place = (*primitive, *inner);
         match prototype.geometry().shape(own) {
             Some(shape) => {
                 let from = pose.enter(&Ray::new(receiver.position, DVec3::Z)).origin;
-                let (seen, uv) = surface::seen(shape, emission.needs(), from, u)?;
-                let surface = pose.point(&prototype.geometry().on_shape(own, &seen.site))?;
-                let sends = |ray: &Ray, hit: &Hit| emission.sent(geometry, ray, hit, &surface, || receiver.waves);
-                let density = |direction: DVec3, _| seen.pdf * pose.crowding(direction);
-                surface::sample(receiver, &surface, place, uv, density, sends)
+                let in_world = |site: &Site| pose.point(&prototype.geometry().on_shape(own, site));
+                let density = |direction: DVec3| pose.crowding(direction);
+                surface::sample_shape((geometry, shape), &luminous, (receiver, from), place, u, in_world, density)
             }
             None => {
                 let seen = SeenTriangle::new(*corners, receiver.position);
                 let uv = seen.sample(u);
                 let surface = pose.point(&prototype.geometry().on_triangle(own, uv))?;
-                let sends = |ray: &Ray, hit: &Hit| emission.sent(geometry, ray, hit, &surface, || receiver.waves);
+                let sends = |ray: &Ray, hit: &Hit| luminous.sent(geometry, ray, hit, &surface, || receiver.waves);
                 let density = |direction: DVec3, distance| seen.pdf(distance, direction.dot(surface.normal));
                 surface::sample(receiver, &surface, place, uv, density, sends)
             }
@@ -212,6 +209,12 @@ impl Copied {
 }
 
 impl Prototype {
+    /// How a primitive shines, by its flattened number.
+    fn luminous(&self, inner: u32) -> Luminous<'_> {
+        let (material, emission) = self.appearance(inner);
+        Luminous::new(emission, material)
+    }
+
     /// The primitives that shine, flattened, in order, without those in instances.
     fn shining(&self) -> impl Iterator<Item = u32> {
         let own = |shape: &u32| self.geometry().instances_of(*shape).is_none();
@@ -229,8 +232,8 @@ impl Prototype {
 impl Light {
     fn new(geometry: &Geometry, instances: &Instances, primitive: u32, inner: u32) -> (Self, Strength) {
         let prototype = instances.prototype();
-        let (own, emission) = (prototype.split(inner).0, prototype.appearance(inner).1);
-        let (radiance, sides) = (strength(emission.radiance.mean()), emission.sides);
+        let (own, luminous) = (prototype.split(inner).0, prototype.luminous(inner));
+        let sides = luminous.emission.sides;
         let map = geometry.instance(primitive).and_then(|(instances, instance)| instances.pose(instance, 0.0)?.map());
         let (corners, strength) = match (map, prototype.geometry().shape(own)) {
             (None, _) => ([DVec3::NAN; 3], Strength::NONE),
@@ -238,12 +241,14 @@ impl Light {
                 let bounds = Bounds::of_support(|d| shape.support(map.transposed(d)) + map.shift.dot(d));
                 let facing = shape.facing().and_then(|normal| map.normal(normal).try_normalize());
                 let area = shape.area_under(&map);
-                let strength = Strength::of_shape(area, [bounds.min, bounds.max], facing, radiance, sides);
+                let strength = luminous
+                    .strength(|radiance| Strength::of_shape(area, [bounds.min, bounds.max], facing, radiance, sides));
                 ([DVec3::NAN; 3], strength)
             }
             (Some(map), None) => {
                 let corners = prototype.geometry().corners(own).map(|corner| map.point(corner));
-                (corners, Strength::of_triangle(corners, map.determinant() < 0.0, radiance, sides))
+                let turned = map.determinant() < 0.0;
+                (corners, luminous.strength(|radiance| Strength::of_triangle(corners, turned, radiance, sides)))
             }
         };
         (Self { primitive, inner, corners }, strength)

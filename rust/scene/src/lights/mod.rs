@@ -16,6 +16,7 @@ mod light;
 mod light_lanes;
 mod light_sample;
 mod light_sample_context;
+mod luminous;
 mod map;
 mod picture;
 mod plain;
@@ -52,12 +53,13 @@ pub use tree::LightTree;
 pub use triangle::SeenTriangle;
 pub use waved::Waved;
 
+use super::materials::Material;
 use super::{Emission, Geometry, Sides};
 use choice::{Choice, Strength};
 use few::Few;
 use infinite::InfiniteLights;
 use instanced::Copied;
-use light::strength;
+use luminous::{Luminous, is_open};
 use plain::PlainLight;
 use raywright_accel::Primitives;
 use raywright_base::math::{DVec3, Hit, Ray};
@@ -75,6 +77,8 @@ pub struct Lights {
     /// How each shape shines, and whether it does.
     emission: Vec<Emission>,
     shines: Vec<bool>,
+    /// The materials of those that shine and that rays may go on through; none where there are no such shapes.
+    open: Vec<Option<Arc<dyn Material>>>,
     /// For each shape, the number of its first primitive among lights; it means nothing for one that is dark.
     first: Vec<u32>,
     /// The primitives that emit.
@@ -95,19 +99,32 @@ impl Lights {
     /// megabyte.
     const KEPT: usize = 1 << 12;
 
-    /// Numbers the lights: the emission of each shape of a geometry, and what is no surface.
-    pub(super) fn new(geometry: &Geometry, emission: Vec<Emission>, others: Vec<Arc<dyn Light>>) -> Self {
+    /// Numbers the lights: the emission of each shape of a geometry, of these materials, and what is no surface.
+    pub(super) fn new(
+        geometry: &Geometry,
+        materials: &[Arc<dyn Material>],
+        emission: Vec<Emission>,
+        others: Vec<Arc<dyn Light>>,
+    ) -> Self {
+        let open = |(material, emission): (&Arc<dyn Material>, &Emission)| {
+            (!emission.is_dark() && is_open(&**material)).then(|| Arc::clone(material))
+        };
+        let mut open: Vec<_> = materials.iter().zip(&emission).map(open).collect();
+        if open.iter().all(Option::is_none) {
+            open = Vec::new();
+        }
+        let luminous = |shape: u32| luminous(&emission, &open, shape);
         let (mut first, mut surfaces, mut strengths) = (Vec::new(), Vec::new(), Vec::new());
         let mut pairs = Vec::new();
-        for (shape, emission) in emission.iter().enumerate() {
+        for shape in 0..emission.len() as u32 {
             first.push(surfaces.len() as u32);
-            if !emission.is_dark() && geometry.instances_of(shape as u32).is_none() {
-                if geometry.primitives_of(shape as u32).len() == 2 {
+            if !emission[shape as usize].is_dark() && geometry.instances_of(shape).is_none() {
+                if geometry.primitives_of(shape).len() == 2 {
                     pairs.push(surfaces.len() as u32);
                 }
-                for primitive in geometry.primitives_of(shape as u32) {
+                for primitive in geometry.primitives_of(shape) {
                     surfaces.push(primitive);
-                    strengths.push(Self::of_primitive(geometry, primitive, emission));
+                    strengths.push(Self::of_primitive(geometry, primitive, &luminous(shape)));
                 }
             }
         }
@@ -127,28 +144,35 @@ impl Lights {
         let infinite = InfiniteLights::new(infinite, choice.is_some());
         let few = Few::new(&strengths, &pairs, infinite.lights().len());
         let few_surfaces = if surfaces.len() <= Self::KEPT { surfaces.as_slice() } else { &[] };
-        let plain =
-            |&primitive: &u32| PlainLight::new(geometry, &emission[geometry.locate(primitive).0 as usize], primitive);
+        let plain = |&primitive: &u32| PlainLight::new(geometry, &luminous(geometry.locate(primitive).0), primitive);
         let kept = few_surfaces.iter().map(plain).collect();
         let shines = emission.iter().map(|emission| !emission.is_dark()).collect();
-        Self { emission, shines, first, surfaces, copied, inside, choice, infinite, few, kept }
+        Self { emission, shines, open, first, surfaces, copied, inside, choice, infinite, few, kept }
     }
 
     /// How strong a primitive of the scene is. What no ray can hit must not shine either, and from what has no end no
     /// point can be drawn: its light is found by rays that meet it.
-    fn of_primitive(geometry: &Geometry, primitive: u32, emission: &Emission) -> Strength {
-        let radiance = strength(emission.radiance.mean());
-        let Some(shape) = geometry.shape(primitive) else {
-            return Strength::of_triangle(geometry.corners(primitive), false, radiance, emission.sides);
-        };
-        let (area, bounds) = (shape.area(), shape.bounds());
-        Strength::of_shape(area, [bounds.min, bounds.max], shape.facing(), radiance, emission.sides)
+    fn of_primitive(geometry: &Geometry, primitive: u32, luminous: &Luminous) -> Strength {
+        let sides = luminous.emission.sides;
+        luminous.strength(|radiance| match geometry.shape(primitive) {
+            Some(shape) => {
+                let bounds = shape.bounds();
+                Strength::of_shape(shape.area(), [bounds.min, bounds.max], shape.facing(), radiance, sides)
+            }
+            None => Strength::of_triangle(geometry.corners(primitive), false, radiance, sides),
+        })
+    }
+
+    /// How a primitive that is no instance shines.
+    #[inline]
+    fn luminous(&self, geometry: &Geometry, primitive: u32) -> Luminous<'_> {
+        luminous(&self.emission, &self.open, geometry.locate(primitive).0)
     }
 
     /// How strong each light within the scene is, by its number.
     fn strengths(&self, geometry: &Geometry) -> Vec<Strength> {
         let of_primitive =
-            |&primitive: &u32| Self::of_primitive(geometry, primitive, self.emission(geometry.locate(primitive).0));
+            |&primitive: &u32| Self::of_primitive(geometry, primitive, &self.luminous(geometry, primitive));
         let of_light = |light: &Arc<dyn Light>| match light.reach() {
             Reach::Finite { power, bounds } => Strength { power, bounds },
             Reach::Infinite { .. } => Strength::NONE,
@@ -166,6 +190,7 @@ impl Lights {
     pub fn bytes(&self) -> usize {
         size_of_val(self.emission.as_slice())
             + size_of_val(self.shines.as_slice())
+            + size_of_val(self.open.as_slice())
             + size_of_val(self.first.as_slice())
             + size_of_val(self.surfaces.as_slice())
             + size_of_val(self.kept.as_slice())
@@ -234,8 +259,7 @@ impl Lights {
         u: [f64; 2],
     ) -> Option<LightSample> {
         if let Some(&primitive) = self.surfaces.get(number) {
-            let emission = self.emission(geometry.locate(primitive).0);
-            return surface::sample_primitive(geometry, emission, primitive, receiver, u);
+            return surface::sample_primitive(geometry, &self.luminous(geometry, primitive), primitive, receiver, u);
         }
         let number = number - self.surfaces.len();
         if number < self.copied.len() {
@@ -273,7 +297,7 @@ impl Lights {
             return *kept;
         }
         let &primitive = self.surfaces.get(number)?;
-        PlainLight::new(geometry, self.emission(geometry.locate(primitive).0), primitive)
+        PlainLight::new(geometry, &self.luminous(geometry, primitive), primitive)
     }
 
     /// The number of the light that was hit; none if it is in instances and never drawn.
@@ -307,4 +331,11 @@ impl Lights {
     pub fn infinite_pdf(&self, receiver: &LightSampleContext, direction: DVec3) -> f64 {
         self.infinite.share() * self.infinite.pdf(receiver, direction)
     }
+}
+
+/// How a shape shines, of these emissions and open materials.
+#[inline]
+fn luminous<'a>(emission: &'a [Emission], open: &'a [Option<Arc<dyn Material>>], shape: u32) -> Luminous<'a> {
+    let shape = shape as usize;
+    Luminous { emission: &emission[shape], open: open.get(shape).and_then(|material| material.as_deref()) }
 }

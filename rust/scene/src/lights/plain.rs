@@ -1,6 +1,6 @@
 //! Surfaces that shine alike everywhere, as they are drawn from.
 
-use super::{Emission, Sides};
+use super::{Luminous, Sides};
 use crate::Geometry;
 use crate::textures::TexturePoint;
 use raywright_accel::Primitives;
@@ -25,9 +25,10 @@ pub(super) enum Figure {
 }
 
 impl PlainLight {
-    /// One of a geometry, if it is one.
+    /// One of a geometry, if it is one that no ray goes on through.
     #[inline]
-    pub fn new(geometry: &Geometry, emission: &Emission, primitive: u32) -> Option<Self> {
+    pub fn new(geometry: &Geometry, luminous: &Luminous, primitive: u32) -> Option<Self> {
+        let Luminous { emission, open: None } = luminous else { return None };
         let figure = match geometry.shape(primitive) {
             None => Figure::Triangle { corners: geometry.corners(primitive), normal: geometry.normal(primitive) },
             Some(shape) => {

@@ -40,6 +40,12 @@ impl Material for Mask {
         self.opacity.at(at).clamp(0.0, 1.0) * self.material.opacity(at)
     }
 
+    fn mean_opacity(&self) -> f64 {
+        // The mean of a texture is rough: what is there somewhere must not vanish.
+        let [_, most] = self.opacity.range();
+        self.opacity.mean().clamp(1e-3 * most.clamp(0.0, 1.0), 1.0) * self.material.mean_opacity()
+    }
+
     fn is_opaque(&self) -> bool {
         self.opacity.is_within(1.0, 1.0) && self.material.is_opaque()
     }

@@ -64,6 +64,12 @@ impl Material for MixMaterial {
         (1.0 - amount) * self.a.opacity(at) + amount * self.b.opacity(at)
     }
 
+    fn mean_opacity(&self) -> f64 {
+        let [_, most] = self.amount.range();
+        let amount = self.amount.mean().clamp(1e-3 * most.clamp(0.0, 1.0), 1.0);
+        (1.0 - amount) * self.a.mean_opacity() + amount * self.b.mean_opacity()
+    }
+
     fn is_opaque(&self) -> bool {
         self.a.is_opaque() && self.b.is_opaque()
     }

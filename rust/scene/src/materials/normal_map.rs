@@ -45,6 +45,10 @@ impl Material for NormalMap {
         self.material.opacity(at)
     }
 
+    fn mean_opacity(&self) -> f64 {
+        self.material.mean_opacity()
+    }
+
     fn is_opaque(&self) -> bool {
         self.material.is_opaque()
     }
