@@ -60,6 +60,7 @@ __all__ = [
     "spectrum_rgb",
     "student",
     "tree",
+    "triangulate_polygons",
     "view_factor_matrix",
     "view_factor_rows",
 ]
@@ -723,6 +724,9 @@ def polygon_trouble(
     outline: Sequence[Sequence[float]], holes: Sequence[Sequence[Sequence[float]]]
 ) -> str | None:
     """Say what is wrong with a polygon; None if nothing is."""
+
+def triangulate_polygons(corners: NDArray[np.float64], counts: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return the triangles of polygons with so many corners each, (T, 3) indices of corners."""
 
 def implicit_trouble(expression: str, min: Sequence[float], max: Sequence[float]) -> str | None:
     """Say what is wrong with an expression or its box; None if nothing is."""

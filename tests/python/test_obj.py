@@ -68,12 +68,32 @@ def test_numbers_may_count_back_from_where_they_stand(tmp_path):
     assert normals[:, 0].tolist() == [[0, 0, 1], [1, 0, 0]]
 
 
+@pytest.mark.parametrize("first", range(4))
+def test_concave_polygons_keep_their_area(tmp_path, first):
+    order = np.roll([1, 2, 3, 4], first)
+    text = "v 0 0 0\nv 4 1 0\nv 0 2 0\nv 1.5 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+    (mesh,) = read(tmp_path, text + "f " + " ".join(f"{k}/{k}" for k in order) + "\n")
+    corners = mesh.vertices[mesh.faces]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    assert (normals[:, 2] > 0).all()
+    assert normals[:, 2].sum() == 5
+    # Each corner keeps its coordinates.
+    own = {(0, 0): [0, 0], (4, 1): [1, 0], (0, 2): [1, 1], (1.5, 1): [0, 1]}
+    for place, uv in zip(mesh.vertices.tolist(), mesh.uv.tolist(), strict=True):
+        assert uv == own[tuple(place[:2])]
+
+
 @pytest.mark.parametrize("seed", range(6))
 def test_all_forms_of_faces_say_the_same(tmp_path, seed):
     """The same random polygons: each line in a form of its own, with other white space and line ends."""
     rng = np.random.default_rng(seed)
-    points, uv, normals = rng.normal(size=(20, 3)), rng.random((9, 2)), rng.normal(size=(7, 3))
+    # Points on a circle, so that polygons are convex.
+    angles = np.sort(rng.uniform(0, 2 * np.pi, 20))
+    points = np.stack([np.cos(angles), np.sin(angles), rng.normal() - np.sin(angles)], axis=1)
+    uv, normals = rng.random((9, 2)), rng.normal(size=(7, 3))
     faces = [rng.integers(0, (20, 9, 7), (rng.integers(3, 7), 3)) for _ in range(40)]
+    for face in faces:
+        face[:, 0] = np.sort(rng.choice(20, len(face), replace=False))
     lines = [
         f"{keyword} {' '.join(map(repr, row.tolist()))}"
         for keyword, table in (("v", points), ("vt", uv), ("vn", normals))

@@ -26,6 +26,7 @@ mod materials;
 mod media;
 mod photons;
 mod points;
+mod polygons;
 mod query;
 mod radiosity;
 mod random;
@@ -95,6 +96,8 @@ mod _core {
     use super::photons::photons;
     #[pymodule_export]
     use super::points::points;
+    #[pymodule_export]
+    use super::polygons::triangulate_polygons;
     #[pymodule_export]
     use super::query::CompiledScene;
     #[pymodule_export]

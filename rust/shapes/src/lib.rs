@@ -41,7 +41,7 @@ pub use implicit::Implicit;
 pub use line::{Carried, Line};
 pub use placed::Placed;
 pub use plane::Plane;
-pub use polygon::Polygon;
+pub use polygon::{Polygon, triangulate};
 pub use revolution::Revolution;
 pub use shape::{Ball, Bounds, Drawn, Point, Seen, Shape, Site};
 pub use sphere::Sphere;

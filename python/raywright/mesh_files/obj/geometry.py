@@ -9,6 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...io.quiet import quiet
+from ..corners import distinct
+from ..triangulation import triangulate
 from .text import name_of, told
 
 Floats = NDArray[np.float64]
@@ -28,7 +30,7 @@ class Part(NamedTuple):
         Its name; None of what stands before any is named.
     vertices : (V, 3) array
     faces : (F, 3) array
-        In the order of the file; polygons are fans of triangles.
+        In the order of the file; polygons as `triangulate` has them.
     normals, uv, colors : (V, 3), (V, 2), (V, 3) array, optional
         Those of the vertices. Colours are numbers as they stand there.
     """
@@ -103,9 +105,9 @@ class Geometry:
         for name, lines in self._faces.items():
             counts, corners = _corners(lines)
             if len(counts):
-                yield self._part(name, _fans(counts), corners)
+                yield self._part(name, counts, corners)
 
-    def _part(self, name: str | None, faces: Integers, corners: Integers) -> Part:
+    def _part(self, name: str | None, counts: Integers, corners: Integers) -> Part:
         point, uv, normal = corners.T - 1
         outside = (corners[:, 0] < 1) | (corners[:, 0] > len(self._points))
         if outside.any():
@@ -119,11 +121,11 @@ class Geometry:
             has_normals = False
             self._lose("normals")
         columns = [point, *([uv] if has_uv else []), *([normal] if has_normals else [])]
-        used, place = _distinct(columns)
+        used, place = distinct(columns)
         return Part(
             name,
             self._points[point[used]],
-            place[faces],
+            place[triangulate(self._points, point, counts)],
             self._normals[normal[used]] if has_normals else None,
             # Corners without any share the first corner of pictures.
             np.where(uv[used, None] < 0, 0.0, self._uv[uv[used]]) if has_uv else None,
@@ -210,38 +212,8 @@ def _corner(word: bytes) -> tuple[int, int, int]:
     return point, uv, normal
 
 
-def _fans(counts: Integers) -> Integers:
-    """Return triangles of polygons, (F, 3): numbers of corners, all polygons counted through."""
-    triangles = counts - 2
-    owner = np.repeat(np.arange(len(counts)), triangles)
-    within = np.arange(len(owner)) - np.repeat(np.cumsum(triangles) - triangles, triangles)
-    first = (np.cumsum(counts) - counts)[owner]
-    return np.stack([first, first + within + 1, first + within + 2], axis=1)
-
-
 def _within(index: Integers, table: Floats, least: int) -> bool:
     return bool((index >= least).all() and (index < len(table)).all())
-
-
-def _distinct(columns: list[Integers]) -> tuple[Integers, Integers]:
-    """Return where each distinct row stands first, in the order of points, and which one each row is."""
-    key = columns[0]
-    # Many programs write the same number thrice.
-    others = [column for column in columns[1:] if not np.array_equal(column, key)]
-    for column in others:
-        size = int(column.max()) + 2
-        if int(key.max()) >= 2**62 // size:
-            # Numbered anew, so that products stay below 2^63.
-            _, key = np.unique(key, return_inverse=True)
-        key = key.reshape(-1) * size + column + 1
-    if not others:
-        # As below, without sorting.
-        first = np.full(int(key.max()) + 1, -1)
-        first[key[::-1]] = np.arange(len(key))[::-1]
-        used = first >= 0
-        return first[used], (np.cumsum(used) - 1)[key]
-    _, first, place = np.unique(key, return_index=True, return_inverse=True)
-    return first, place.reshape(-1)
 
 
 def _forwards(rest: bytes, tables: dict[bytes, list[bytes]]) -> bytes:

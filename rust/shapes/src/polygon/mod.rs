@@ -1,6 +1,7 @@
 //! Planar polygons, convex or not, with holes.
 
 mod crossing;
+mod ear_clipping;
 mod outline;
 #[cfg(test)]
 mod tests;
@@ -9,6 +10,7 @@ mod trapezoids;
 use super::triangle::{nearest_point, point_of};
 use super::{Bounds, Candidate, Closest, Drawn, Point, Shape};
 use crossing::Line;
+pub use ear_clipping::triangulate;
 use glam::DVec2;
 use raywright_base::math::robust::{UNIT, normalising_scale};
 use raywright_base::math::{Affine, DVec3, DoubleDouble, Ray};

@@ -1,0 +1,28 @@
+//! Polygons to triangles.
+
+use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use super::arrays::{numbers, rows};
+use raywright::shapes::triangulate;
+
+/// Triangulate polygons with so many corners each, whose corners follow each other: (T, 3) indices of corners.
+#[pyfunction]
+pub fn triangulate_polygons<'py>(
+    py: Python<'py>,
+    corners: PyReadonlyArray2<'py, f64>,
+    counts: PyReadonlyArray1<'py, i64>,
+) -> PyResult<Bound<'py, PyArray2<i64>>> {
+    let corners: &[[f64; 3]] = rows("corners", &corners)?;
+    let counts: Vec<usize> = numbers("counts", &counts)?.iter().map(|&n| n.max(0) as usize).collect();
+    if counts.iter().sum::<usize>() != corners.len() {
+        return Err(PyValueError::new_err("polygons have other corners than there are"));
+    }
+    let found = py.detach(|| {
+        let triangles = triangulate(corners, &counts);
+        triangles.into_iter().map(|t| t.map(|i| i as i64)).collect::<Vec<_>>()
+    });
+    let count = found.len();
+    found.into_flattened().into_pyarray(py).reshape([count, 3])
+}

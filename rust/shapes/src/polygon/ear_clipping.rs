@@ -1,0 +1,290 @@
+//! Triangulation of one ring by ear clipping (Meisters, "Polygons have ears", 1975), with exact decisions.
+
+use super::outline::orientation;
+use glam::DVec2;
+use raywright_base::math::DVec3;
+
+/// Triangulates polygons with the given numbers of corners, whose corners follow each other in `corners`. A polygon of n
+/// corners yields n − 2 triangles, of indices into `corners`; one with fewer than three yields none.
+///
+/// Triangles turn as their polygon does. A polygon is looked at along the largest coordinate of its Newell normal, where
+/// two coordinates remain as they are: a simple polygon in a plane is covered exactly once, and so is one whose holes
+/// are connected to its outline by edges that are passed twice. Corners that lie on the edge between their neighbours
+/// get triangles with an area if possible. Polygons that are not finite or without area become fans.
+pub fn triangulate(corners: &[[f64; 3]], counts: &[usize]) -> Vec<[usize; 3]> {
+    let mut triangles = Vec::with_capacity(corners.len());
+    let mut first = 0;
+    for &count in counts {
+        if count >= 3 {
+            let ring = &corners[first..first + count];
+            match projected(ring) {
+                Some(points) => Ring::new(&points).clip(|ear| triangles.push(ear.map(|i| i + first))),
+                None => triangles.extend((1..count - 1).map(|i| [first, first + i, first + i + 1])),
+            }
+        }
+        first += count;
+    }
+    triangles
+}
+
+/// The corners along an axis from where they turn anticlockwise; `None` if they are not finite or have no area.
+fn projected(ring: &[[f64; 3]]) -> Option<Vec<DVec2>> {
+    let size = ring.iter().flatten().fold(0.0f64, |most, x| most.max(x.abs()));
+    if !ring.iter().flatten().all(|x| x.is_finite()) || size == 0.0 {
+        return None;
+    }
+    let anchor = DVec3::from_array(ring[0]) / size;
+    let place = |p: &[f64; 3]| DVec3::from_array(*p) / size - anchor;
+    let next = ring.iter().cycle().skip(1);
+    let normal: DVec3 = ring.iter().zip(next).map(|(p, q)| place(p).cross(place(q))).sum();
+    let axis = (0..3).max_by(|&i, &j| normal[i].abs().total_cmp(&normal[j].abs()))?;
+    let (mut x, mut y) = ((axis + 1) % 3, (axis + 2) % 3);
+    if normal[axis] == 0.0 {
+        return None;
+    }
+    if normal[axis] < 0.0 {
+        (x, y) = (y, x);
+    }
+    Some(ring.iter().map(|p| DVec2::new(p[x], p[y])).collect())
+}
+
+/// What a corner must be for its triangle to be cut off.
+#[derive(Clone, Copy, PartialEq)]
+enum Rule {
+    /// An ear: it has an area, and no other corner is in it or on its border.
+    Ear,
+    /// A triangle without area: cutting it off changes nothing.
+    Flat,
+    /// It turns the right way. Only rings that cross themselves come to this.
+    Convex,
+    /// Any.
+    Any,
+}
+
+/// The corners that are left of a ring.
+struct Ring<'a> {
+    points: &'a [DVec2],
+    before: Vec<usize>,
+    after: Vec<usize>,
+    /// Corners that do not turn anticlockwise. Only these can lie in an ear: of all that lie in one, the one that is
+    /// farthest from its base is such a corner.
+    reflex: Vec<bool>,
+    /// The corners that were reflex at first, by x, and those that became so later.
+    by_x: Vec<usize>,
+    late: Vec<usize>,
+}
+
+impl<'a> Ring<'a> {
+    fn new(points: &'a [DVec2]) -> Self {
+        let count = points.len();
+        let mut ring = Self {
+            points,
+            before: (0..count).map(|i| (i + count - 1) % count).collect(),
+            after: (0..count).map(|i| (i + 1) % count).collect(),
+            reflex: vec![false; count],
+            by_x: Vec::new(),
+            late: Vec::new(),
+        };
+        for i in 0..count {
+            ring.reflex[i] = ring.turn(i) <= 0;
+        }
+        ring.by_x = (0..count).filter(|&i| ring.reflex[i]).collect();
+        ring.by_x.sort_by(|&i, &j| points[i].x.total_cmp(&points[j].x));
+        ring
+    }
+
+    fn turn(&self, i: usize) -> i32 {
+        let [a, b, c] = self.around(i).map(|i| self.points[i]);
+        orientation(a, b, c)
+    }
+
+    fn around(&self, i: usize) -> [usize; 3] {
+        [self.before[i], i, self.after[i]]
+    }
+
+    /// Cuts off triangles until none is left.
+    fn clip(mut self, mut take: impl FnMut([usize; 3])) {
+        let mut left = self.points.len();
+        let (mut at, mut tried, mut rule) = (1, 0, Rule::Ear);
+        while left > 3 {
+            if self.allows(at, rule) {
+                take(self.around(at));
+                let [before, _, after] = self.around(at);
+                self.cut(at);
+                left -= 1;
+                // Going on behind the next corner leaves fewer slivers. A corner that spoilt the others may be gone.
+                at = if rule == Rule::Ear { self.after[after] } else { before };
+                (tried, rule) = (0, Rule::Ear);
+                continue;
+            }
+            at = self.after[at];
+            tried += 1;
+            if tried >= left {
+                tried = 0;
+                rule = match rule {
+                    Rule::Ear => Rule::Flat,
+                    Rule::Flat => Rule::Convex,
+                    Rule::Convex | Rule::Any => Rule::Any,
+                };
+            }
+        }
+        take(self.around(at));
+    }
+
+    fn allows(&self, i: usize, rule: Rule) -> bool {
+        match rule {
+            Rule::Ear => !self.reflex[i] && self.is_clear(i),
+            Rule::Flat => self.turn(i) == 0,
+            Rule::Convex => !self.reflex[i],
+            Rule::Any => true,
+        }
+    }
+
+    fn cut(&mut self, i: usize) {
+        let [before, _, after] = self.around(i);
+        (self.after[before], self.before[after]) = (after, before);
+        self.reflex[i] = false;
+        for end in [before, after] {
+            let reflex = self.turn(end) <= 0;
+            if reflex && !self.reflex[end] {
+                self.late.push(end);
+            }
+            self.reflex[end] = reflex;
+        }
+    }
+
+    /// Whether nothing of the ring lies in the triangle of a corner.
+    fn is_clear(&self, i: usize) -> bool {
+        let corners = self.around(i);
+        let [a, b, c] = corners.map(|i| self.points[i]);
+        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+        let from = self.by_x.partition_point(|&j| self.points[j].x < low.x);
+        let near = self.by_x[from..].iter().take_while(|&&j| self.points[j].x <= high.x);
+        near.chain(&self.late).all(|&j| {
+            let p = self.points[j];
+            if !self.reflex[j] || corners.contains(&j) || p.cmplt(low).any() || p.cmpgt(high).any() {
+                return true;
+            }
+            // Edges from the ends of the base cannot leave the triangle but by a corner in it.
+            if p == a || p == c {
+                return true;
+            }
+            if p == b {
+                let is_within = |q: usize| {
+                    let q = self.points[q];
+                    orientation(a, b, q) > 0 && orientation(b, c, q) > 0
+                };
+                return !is_within(self.before[j]) && !is_within(self.after[j]);
+            }
+            orientation(a, b, p) < 0 || orientation(b, c, p) < 0 || orientation(c, a, p) < 0
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use num_bigint::BigInt;
+    use proptest::prelude::*;
+
+    /// Twice the area that three points turn around, in the units of their integers.
+    fn doubled([a, b, c]: [[i64; 2]; 3]) -> BigInt {
+        let big = |x: i64| BigInt::from(x);
+        (big(b[0]) - a[0]) * (big(c[1]) - a[1]) - (big(b[1]) - a[1]) * (big(c[0]) - a[0])
+    }
+
+    /// Asserts that triangles cover a ring once: none turns the other way, all have its area together, and edges that
+    /// are not the ring's are passed once each way.
+    fn assert_covers(ring: &[[i64; 2]]) {
+        let corners: Vec<_> = ring.iter().map(|p| [p[0] as f64, p[1] as f64, 0.0]).collect();
+        let triangles = triangulate(&corners, &[ring.len()]);
+        assert_eq!(triangles.len(), ring.len() - 2);
+        let areas: Vec<_> = triangles.iter().map(|t| doubled(t.map(|i| ring[i]))).collect();
+        let area: BigInt = (1..ring.len() - 1).map(|i| doubled([ring[0], ring[i], ring[i + 1]])).sum();
+        let none = BigInt::from(0);
+        assert!(areas.iter().all(|a| if area < none { *a <= none } else { *a >= none }), "{ring:?} {triangles:?}");
+        assert_eq!(areas.iter().sum::<BigInt>(), area);
+        let mut passed = std::collections::BTreeMap::new();
+        for t in &triangles {
+            for k in 0..3 {
+                *passed.entry((t[k], t[(k + 1) % 3])).or_insert(0) += 1;
+            }
+        }
+        for (&(a, b), &times) in &passed {
+            assert_eq!(times, 1);
+            assert!(b == (a + 1) % ring.len() || passed.contains_key(&(b, a)), "edge {a} {b} of {ring:?}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn stars_are_covered_once(radii in prop::collection::vec(1i64..1000, 3..60), turned in any::<bool>()) {
+            let step = std::f64::consts::TAU / radii.len() as f64;
+            let at = |(i, r): (usize, &i64)| {
+                let p = DVec2::from_angle(i as f64 * step) * *r as f64 * 1e6;
+                [p.x as i64, p.y as i64]
+            };
+            let mut ring: Vec<_> = radii.iter().enumerate().map(at).collect();
+            if turned {
+                ring.reverse();
+            }
+            assert_covers(&ring);
+        }
+
+        #[test]
+        fn combs_of_steps_are_covered_once(heights in prop::collection::vec(0i64..4, 1..40), at in 0usize..80) {
+            // Corners on straight edges, teeth of no height, and walls that touch no other.
+            let mut ring = vec![[heights.len() as i64, -1], [0, -1]];
+            ring.reverse();
+            for (x, &height) in heights.iter().enumerate().rev() {
+                ring.extend([[x as i64 + 1, height], [x as i64, height]]);
+            }
+            ring.dedup();
+            let at = at % ring.len();
+            ring.rotate_left(at);
+            assert_covers(&ring);
+        }
+
+        #[test]
+        fn holes_on_bridges_are_left_open(count in 1i64..6, at in 0usize..80) {
+            // A row of square holes, each entered and left along one edge from the outline's lower one.
+            let mut ring = vec![[4 * count, 0], [4 * count, 4], [0, 4], [0, 0]];
+            for k in 0..count {
+                let (x, y) = (4 * k + 1, 1);
+                ring.extend([[x, 0], [x, y], [x, y + 2], [x + 2, y + 2], [x + 2, y], [x, y], [x, 0]]);
+            }
+            let at = at % ring.len();
+            ring.rotate_left(at);
+            assert_covers(&ring);
+        }
+    }
+
+    #[test]
+    fn holes_that_touch_the_outline_are_left_open() {
+        assert_covers(&[[0, 0], [8, 0], [8, 8], [0, 8], [0, 0], [2, 4], [4, 2]]);
+        assert_covers(&[[0, 0], [4, 0], [2, 2], [6, 2], [4, 0], [8, 0], [8, 8], [0, 8]]);
+        assert_covers(&[[0, 0], [4, 1], [0, 2], [1, 1]]);
+        assert_covers(&[[0, 0], [0, 0], [4, 0], [4, 4], [4, 4]]);
+    }
+
+    #[test]
+    fn every_corner_of_a_straight_edge_gets_an_area() {
+        let corners = [[0.0, 0.0, 1.0], [1.0, 0.0, 1.0], [2.0, 0.0, 1.0], [2.0, 2.0, 1.0], [1.0, 2.0, 1.0]];
+        let triangles = triangulate(&corners, &[5]);
+        let area = |t: &[usize; 3]| {
+            let [a, b, c] = t.map(|i| DVec3::from_array(corners[i]));
+            (b - a).cross(c - a).z
+        };
+        assert!(triangles.iter().all(|t| area(t) > 0.0), "{triangles:?}");
+    }
+
+    #[test]
+    fn what_crosses_itself_or_has_no_area_still_has_its_triangles() {
+        let bow = [[0.0, 0.0, 0.0], [2.0, 2.0, 0.0], [2.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+        assert_eq!(triangulate(&bow, &[4]).len(), 2);
+        let line = [[0.0; 3], [1.0; 3], [2.0; 3], [3.0; 3], [f64::NAN; 3]];
+        assert_eq!(triangulate(&line, &[2, 0, 3]), [[2, 3, 4]]);
+        assert_eq!(triangulate(&line[..4], &[4]), [[0, 1, 2], [0, 2, 3]]);
+        assert_eq!(triangulate(&[[1e308, -1e308, 0.0], [0.0; 3], [1e308, 1e308, 0.0]], &[3]).len(), 1);
+    }
+}
