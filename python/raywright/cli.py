@@ -133,7 +133,8 @@ def _shot(options: argparse.Namespace) -> Shot:
 def _how(options: argparse.Namespace, shot: Shot) -> dict[str, Any]:
     """Return what options say of a render."""
     how = {name: getattr(options, name) for name in _HOW}
-    return {**how, "seed": shot.seed if options.seed is None else options.seed}
+    own = {"seed": shot.seed, "clamp": shot.clamp}
+    return how | {name: value for name, value in own.items() if how[name] is None}
 
 
 def _check_plot(options: argparse.Namespace) -> None:

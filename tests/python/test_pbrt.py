@@ -4,29 +4,11 @@ import re
 
 import numpy as np
 import pytest
+from pbrt_files import HEAD, load, material
 from PIL import Image
 
 import raywright as rw
 from raywright.scene_files.pbrt.lights import folded, unfolded
-
-HEAD = """
-LookAt 0 0 5  0 0 0  0 1 0
-Camera "perspective" "float fov" 50
-Film "rgb" "integer xresolution" [ 40 ] "integer yresolution" 30
-Sampler "independent" "integer pixelsamples" 8
-Integrator "volpath" "integer maxdepth" 3
-"""
-
-
-def load(folder, world, head=HEAD):
-    path = folder / "scene.pbrt"
-    path.write_text(f"{head}\nWorldBegin\n{world}", encoding="utf-8")
-    return rw.load(path)
-
-
-def material(folder, text):
-    (ball,) = load(folder, f'{text}\nShape "sphere"').scene.shapes
-    return ball.material
 
 
 def seen(shot, point):
@@ -157,7 +139,7 @@ def test_textures(tmp_path):
         'Texture "b" "spectrum" "scale" "texture tex" "a" "float scale" 0.5\n'
         'Material "diffuse" "texture reflectance" "b"',
     ).reflectance
-    assert tiles == rw.ProductTexture(rw.Checker(0.1, 0.0, rw.UvTransform(2.0)), 0.5)
+    assert tiles == rw.ProductTexture(rw.Checker(0.1, 0.0, rw.UvTransform(4.0)), 0.5)
     bumps = material(
         tmp_path,
         'Texture "h" "float" "constant" "float value" 0.1\nMaterial "diffuse" "texture displacement" "h"',
@@ -206,7 +188,7 @@ def test_lamps_shine_where_their_normals_point(tmp_path, reverse):
 def test_lights(tmp_path):
     world = """
     LightSource "point" "rgb I" [1 2 3] "point3 from" [1 0 0]
-    LightSource "spot" "float scale" 2 "point3 to" [0 0 2] "float coneangle" 40
+    LightSource "spot" "float scale" 2 "point3 to" [0 0 2] "float coneangle" 40 "float conedeltaangle" 7
     LightSource "distant" "point3 from" [0 1 0] "point3 to" [0 0 0] "blackbody L" 6500
     LightSource "infinite" "rgb L" [.1 .2 .3]
     Shape "sphere"
@@ -214,7 +196,7 @@ def test_lights(tmp_path):
     scene = load(tmp_path, world).scene
     point, spot, sun = scene.lights
     assert point == rw.PointLight((-1, 0, 0), (1, 2, 3))
-    assert (spot.angle, spot.falloff, spot.intensity, spot.target) == (40, 5, (2, 2, 2), (0, 0, 2))
+    assert (spot.angle, spot.falloff, spot.intensity, spot.target) == (40, 7, (2, 2, 2), (0, 0, 2))
     assert sun.direction == (0, -1, 0)
     # A black body has a luminance of 1, and is as white at 6,500 K as D65 nearly is.
     assert np.dot(sun.irradiance, (0.212671, 0.715160, 0.072169)) == pytest.approx(1, rel=1e-12)

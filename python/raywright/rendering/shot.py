@@ -41,6 +41,8 @@ class Shot:
         What is seen first, besides the picture, as `raywright.render` takes it.
     background : {"shown", "transparent"}
         Whether what surrounds the scene is seen, as `raywright.render` takes it.
+    clamp : float, optional
+        Limit on the largest channel of a sample, as `raywright.render` takes it.
     """
 
     scene: Scene
@@ -52,6 +54,7 @@ class Shot:
     seed: int = 0
     aov: tuple[str, ...] = ()
     background: str = "shown"
+    clamp: float | None = None
 
     def render(self, **overrides: Any) -> Image:
         """Render the picture.
@@ -81,6 +84,7 @@ class Shot:
             "seed": self.seed,
             "aov": self.aov,
             "background": self.background,
+            "clamp": self.clamp,
         }
         if all(overrides.get(limit) is None for limit in _LIMITS):
             own["samples"] = self.samples

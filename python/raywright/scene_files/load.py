@@ -12,12 +12,12 @@ from .shown import shown
 
 USD = (".usd", ".usda", ".usdc", ".usdz")
 # Files that may have cameras and lights of their own.
-SCENES = (".xml", ".pbrt", ".glb", ".gltf", *USD)
+SCENES = (".xml", ".pbrt", ".pbrt.gz", ".glb", ".gltf", *USD)
 
 
 def has_camera(path: str | PathLike[str]) -> bool:
     """Whether a file is of a kind that has scenes rather than meshes only, by its suffix."""
-    return Path(path).suffix.lower() in SCENES
+    return Path(path).name.lower().endswith(SCENES)
 
 
 def load(
@@ -37,7 +37,8 @@ def load(
     Parameters
     ----------
     path : str or path
-        ``.xml``, a scene of Mitsuba 3, as `from_mitsuba` reads it; ``.pbrt``, one of pbrt-v4; ``.glb`` or
+        ``.xml``, a scene of Mitsuba 3, as `from_mitsuba` reads it; ``.pbrt`` or ``.pbrt.gz``, one of
+        pbrt-v4; ``.glb`` or
         ``.gltf``; ``.usd``, ``.usda``, ``.usdc`` or ``.usdz``, for which there is
         ``pip install 'raywright[usd]'``; or any other mesh file that trimesh reads: OBJ with its materials,
         PLY, STL, ...
@@ -83,7 +84,7 @@ def load(
         raise TypeError(
             f"{next(iter(parameters))} is no parameter of {path}: only scenes of Mitsuba have some"
         )
-    if suffix == ".pbrt":
+    if path.name.lower().endswith((".pbrt", ".pbrt.gz")):
         from .pbrt import read_pbrt
 
         return read_pbrt(path).resized(width, height)

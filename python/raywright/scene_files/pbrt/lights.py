@@ -22,7 +22,9 @@ from .spectra import colour
 from .textures import Textures
 
 
-def light(kind: str, parameters: Parameters, matrix: Floats, textures: Textures) -> Light | Environment:
+def light(
+    kind: str, parameters: Parameters, matrix: Floats, textures: Textures, imaging: Floats
+) -> Light | Environment:
     """Return a light, or what surrounds the scene.
 
     Parameters
@@ -35,13 +37,16 @@ def light(kind: str, parameters: Parameters, matrix: Floats, textures: Textures)
         To the world.
     textures : Textures
         Where files are looked for.
+    imaging : (3, 3) array
+        From radiance to what the film gets.
 
     Raises
     ------
     ValueError
         If its type, or a parameter of it, is not supported; tells which.
     """
-    parameters.ignore("power") if not parameters.has("power") else parameters.fail("power is not supported")
+    if parameters.has("power"):
+        parameters.fail("power is not supported")
     scale = parameters.number("scale", 1.0)
 
     def at(name: str, default: tuple[float, float, float]) -> Floats:
@@ -49,32 +54,55 @@ def light(kind: str, parameters: Parameters, matrix: Floats, textures: Textures)
 
     made: Light | Environment
     if kind == "point":
-        made = PointLight(at("from", (0, 0, 0)), _shine(parameters, "I", scale))
+        made = PointLight(at("from", (0, 0, 0)), _shine(parameters, "I", scale, imaging))
     elif kind == "spot":
-        angle, delta = parameters.number("coneangle", 30.0), parameters.number("conedelta", 5.0)
+        angle, delta = parameters.number("coneangle", 30.0), parameters.number("conedeltaangle", 5.0)
         place, target = at("from", (0, 0, 0)), at("to", (0, 0, 1))
-        made = SpotLight(place, target, _shine(parameters, "I", scale), angle, min(delta, angle), "smooth")
+        shine = _shine(parameters, "I", scale, imaging)
+        made = SpotLight(place, target, shine, angle, min(delta, angle), "smooth")
     elif kind == "distant":
         way = at("to", (0, 0, 1)) - at("from", (0, 0, 0))
         if parameters.has("illuminance"):
             parameters.fail("illuminance is not supported")
-        made = DirectionalLight(way, _shine(parameters, "L", scale))
+        made = DirectionalLight(way, _shine(parameters, "L", scale, imaging))
     elif kind == "projection":
-        made = _projection(parameters, matrix, textures, scale)
+        made = _projection(parameters, matrix, textures, scale * imaging)
     elif kind == "infinite":
-        made = _around(parameters, matrix, textures, scale)
+        made = _around(parameters, matrix, textures, scale * imaging)
     else:
         parameters.fail(f"a light {kind!r} is not supported")
     parameters.done()
     return made
 
 
-def _shine(parameters: Parameters, name: str, scale: float) -> tuple[float, float, float]:
-    red, green, blue = (scale * x for x in colour(parameters, name, 1.0, emits=True))
+def _shine(parameters: Parameters, name: str, scale: float, imaging: Floats) -> tuple[float, float, float]:
+    red, green, blue = (
+        float(x) for x in imaged(colour(parameters, name, 1.0, emits=True), scale * imaging, parameters)
+    )
     return red, green, blue
 
 
-def _projection(parameters: Parameters, matrix: Floats, textures: Textures, scale: float) -> ProjectorLight:
+def imaged(radiance: Any, imaging: Floats, parameters: Parameters) -> NDArray[Any]:
+    """Return light of any colour, (..., 3), as a film gets it. Negative light stays as it is."""
+    given = np.asarray(radiance)
+    factor, matrix = _factored(imaging)
+    if matrix is None:
+        return given if factor == 1 else (given * factor).astype(given.dtype)
+    balanced = given @ matrix.T
+    if balanced[given >= 0].min(initial=0.0) < 0:
+        parameters.notes.tell("whitebalance takes some light out of red, green and blue, where it is cut")
+    return np.where(given < 0, given, np.maximum(balanced, 0.0)).astype(given.dtype)
+
+
+def _factored(imaging: Floats) -> tuple[float, Floats | None]:
+    """Return a matrix as a factor if it is no more than one, or else as a factor of 1 and the matrix."""
+    factor = float(imaging[0, 0])
+    return (factor, None) if np.array_equal(imaging, factor * np.eye(3)) else (1.0, imaging)
+
+
+def _projection(
+    parameters: Parameters, matrix: Floats, textures: Textures, imaging: Floats
+) -> ProjectorLight:
     image = read_linear(textures.folder / parameters.text("filename"))
     fov = parameters.number("fov", 90.0)
     height, width = image.shape[:2]
@@ -90,19 +118,25 @@ def _projection(parameters: Parameters, matrix: Floats, textures: Textures, scal
     x = (1 - 2 * (np.arange(columns) + 0.5) / columns) * tall * width / height
     cosine = 1 / np.sqrt(1 + x[None, :] ** 2 + y[:, None] ** 2)
     angle = 2 * math.degrees(math.atan(tall))
-    return ProjectorLight(image * cosine[..., None] ** 3, place, place + ahead, up, angle, scale)
+    factor, balance = _factored(imaging)
+    if balance is not None:
+        image = imaged(image, balance, parameters)
+    return ProjectorLight(image * cosine[..., None] ** 3, place, place + ahead, up, angle, factor)
 
 
-def _around(parameters: Parameters, matrix: Floats, textures: Textures, scale: float) -> Environment:
+def _around(parameters: Parameters, matrix: Floats, textures: Textures, imaging: Floats) -> Environment:
     if parameters.has("illuminance") or parameters.has("portal"):
         parameters.fail("illuminance and portal are not supported")
     if not parameters.has("filename"):
-        return ConstantEnvironment(_shine(parameters, "L", scale))
+        return ConstantEnvironment(_shine(parameters, "L", 1.0, imaging))
     image = read_linear(textures.folder / parameters.text("filename"))
     if image.shape[0] != image.shape[1]:
         parameters.fail(f"its picture must be square, got {image.shape[1]} x {image.shape[0]}")
     linear = matrix[:3, :3] / np.linalg.norm(matrix[:3, :3], axis=0)
-    return EnvironmentMap(unfolded(image), linear, scale)
+    factor, balance = _factored(imaging)
+    if balance is not None:
+        image = imaged(image, balance, parameters)
+    return EnvironmentMap(unfolded(image), linear, factor)
 
 
 def unfolded(image: NDArray[Any]) -> NDArray[Any]:

@@ -1,7 +1,6 @@
 """Materials."""
 
 import math
-import warnings
 from collections.abc import Callable
 from typing import Any
 
@@ -24,6 +23,7 @@ from ...materials.dispersion import Dispersion
 from ...materials.glasses import glasses
 from ...textures import ImageTexture
 from ...textures.texture import Number, Texture
+from ..notes import Notes
 from .parameters import Parameters
 from .spectra import GLASS, colour
 from .textures import Textures, bounded
@@ -38,12 +38,13 @@ class Materials:
     ----------
     textures : Textures
         Those of the scene.
+    notes : Notes
+        Notes about the scene.
     """
 
-    def __init__(self, textures: Textures) -> None:
-        self._textures = textures
+    def __init__(self, textures: Textures, notes: Notes) -> None:
+        self._textures, self._notes = textures, notes
         self._named: dict[str, Material] = {}
-        self._told: set[str] = set()
 
     def add(self, name: str, parameters: Parameters) -> None:
         """Keep a material."""
@@ -96,11 +97,6 @@ class Materials:
             made = NormalMap(made, ImageTexture(path, linear=True))
         return made
 
-    def _warn(self, message: str) -> None:
-        if message not in self._told:
-            self._told.add(message)
-            warnings.warn(message, RuntimeWarning, stacklevel=2)
-
     def _colour(self, parameters: Parameters, name: str, default: float) -> Any:
         return bounded(self._textures.value(parameters, name, default), name)
 
@@ -147,8 +143,9 @@ class Materials:
         return parameters.number(name, default)
 
     def _coated_diffuse(self, parameters: Parameters) -> Material:
-        self._warn("coateddiffuse is approximated by a plastic without thickness")
-        parameters.ignore("thickness", "maxdepth", "nsamples", "g", "albedo")
+        self._notes.tell("coateddiffuse is approximated by a plastic without thickness")
+        parameters.ignore("thickness", "maxdepth", "nsamples", "g")
+        parameters.leave_out("albedo")
         u, v = self._alpha(parameters)
         if isinstance(u, Texture) or isinstance(v, Texture):
             parameters.fail("the roughness of a coat must be a number")
@@ -159,7 +156,7 @@ class Materials:
         )
 
     def _coated_conductor(self, parameters: Parameters) -> Material:
-        self._warn("coatedconductor is approximated by its metal without the coat")
+        self._notes.tell("coatedconductor is approximated by its metal without the coat")
         parameters.ignore(
             "thickness", "maxdepth", "nsamples", "g", "albedo", "interface.roughness", "interface.eta"
         )
@@ -185,6 +182,11 @@ class Materials:
             for one in (parameters.given.get(f"{prefix}{name}") for name in ("eta", "k"))
         ]
         if names[0] is not None or not parameters.has(f"{prefix}eta"):
+            metals = [
+                name and name.removesuffix(end) for name, end in zip(names, ("-eta", "-k"), strict=True)
+            ]
+            if parameters.has(f"{prefix}k") and (metals[0] is None or metals[0] != metals[1]):
+                parameters.fail("eta and k must both be of one metal, or both be numbers")
             parameters.ignore(f"{prefix}eta", f"{prefix}k")
             metal = str(names[0] or "metal-Cu-eta").removeprefix("metal-").removesuffix("-eta")
             return Conductor(metal, **rough)
@@ -201,7 +203,7 @@ class Materials:
         return ThinDielectric(self._ior(parameters, "eta", 1.5))
 
     def _transmission(self, parameters: Parameters) -> Material:
-        self._warn("diffusetransmission is approximated by the principled sheet")
+        self._notes.tell("diffusetransmission is approximated by the principled sheet")
         shares = [np.array(colour(parameters, name, 0.25)) for name in ("reflectance", "transmittance")]
         scale = parameters.number("scale", 1.0)
         total = np.minimum(scale * (shares[0] + shares[1]), 1.0)

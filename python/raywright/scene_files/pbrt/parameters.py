@@ -6,6 +6,7 @@ from typing import Any, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
+from ..notes import Notes
 from .errors import PbrtError
 
 Floats = NDArray[np.float64]
@@ -21,15 +22,19 @@ class Parameters:
         The type and the values of each, by name.
     where : str
         The file, the line and the directive.
+    what : str
+        The directive and its type, for notes.
+    notes : Notes
+        Notes about the file.
     """
 
-    def __init__(self, given: Given, where: str) -> None:
-        self.given, self.where = dict(given), where
+    def __init__(self, given: Given, where: str, what: str, notes: Notes) -> None:
+        self.given, self.where, self.what, self.notes = dict(given), where, what, notes
         self._left = set(given)
 
     def over(self, defaults: Given) -> "Parameters":
         """Return these with others for what is not among them, which need not be understood."""
-        both = Parameters({**defaults, **self.given}, self.where)
+        both = Parameters({**defaults, **self.given}, self.where, self.what, self.notes)
         both._left = set(self.given)
         return both
 
@@ -44,6 +49,19 @@ class Parameters:
     def ignore(self, *names: str) -> None:
         """Take what changes no picture here."""
         self._left.difference_update(names)
+
+    def leave_out(self, *names: str) -> None:
+        """Take what would change a picture, but is not supported, and note which of it is given."""
+        for name in names:
+            if self.has(name):
+                self.notes.tell(f"parameter {name!r} of {self.what} is left out")
+        self.ignore(*names)
+
+    def leave_out_if_true(self, *names: str) -> None:
+        """Take switches that are not supported, and note those that are on."""
+        for name in names:
+            if self.switch(name, False):
+                self.leave_out(name)
 
     def take(self, name: str) -> tuple[str, list[Any]] | None:
         """Return the type and the values of a parameter; None if it is not given."""

@@ -7,7 +7,7 @@ from typing import Any, cast, get_args
 
 import numpy as np
 
-from ...integrators import AnyIntegrator
+from ...integrators import AmbientOcclusion, AnyIntegrator
 from ...integrators import Path as PathTraced
 from ...lights import Environment, Light
 from ...materials import Diffuse, Material
@@ -17,16 +17,21 @@ from ...rendering.shot import Shot
 from ...scene.instance import Instance
 from ...scene.scene import Scene
 from ..mitsuba.transforms import rotation
+from ..notes import Notes
 from . import lights, shapes, views
 from .errors import PbrtError
+from .films import Film, exposure, film
 from .materials import Materials
 from .parameters import Floats, Given, Parameters
 from .textures import Textures
-from .tokens import Directive, directives
+from .tokens import Directive, directives, text_of
+from .versions import older
 
 _MOST_FILES, _MOST_DEPTH = 1000, 32
 # What attributes may be given to.
 _TARGETS = ("shape", "light", "material", "medium", "texture")
+# Options that change no picture here.
+_NEUTRAL = ("pixelstats", "wavefront", "rendercoordsys", "msereferenceimage", "msereferenceout", "seed")
 # Turns a left-handed world into a right-handed one, and leaves one that a file has turned itself.
 _MIRROR, _AS_IT_IS = np.diag([-1.0, 1.0, 1.0, 1.0]), np.eye(4)
 
@@ -49,11 +54,18 @@ def read_pbrt(path: Path) -> Shot:
     Warns
     -----
     RuntimeWarning
-        Of what is approximated.
+        Once of each kind of thing in the file that is approximated or left out.
     """
     reader = _Reader(path)
-    reader.file(path, 0)
-    return reader.shot()
+    try:
+        reader.file(path, 0)
+        shot = reader.shot()
+    except PbrtError as error:
+        if (version := reader.version()) is None:
+            raise
+        raise PbrtError(f"{error}; {version}") from error
+    reader.notes.warn()
+    return shot
 
 
 @dataclass(frozen=True)
@@ -64,6 +76,8 @@ class _State:
     material: Material = field(default_factory=Diffuse)
     emission: Any = None
     flipped: bool = False
+    # Whether transforms are those of the time when the shutter opens.
+    starts: bool = True
     defaults: tuple[tuple[str, Given], ...] = ()
 
 
@@ -72,21 +86,23 @@ class _Reader:
 
     def __init__(self, path: Path) -> None:
         self.path = path
+        self.notes = Notes(path)
         self._state = _State()
         self._kept: list[_State] = []
         self._named: dict[str, Floats] = {}
         self._textures = Textures(path.parent)
-        self._materials = Materials(self._textures)
+        self._materials = Materials(self._textures, self.notes)
         self._groups: dict[str, list[Any]] = {}
         self._group: str | None = None
         self._found: list[Any] = []
         self._lights: list[Light] = []
         self._around: list[Environment] = []
-        self._files = 0
+        self._files: list[Path] = []
         self._in_world = False
         self._camera: tuple[str, Parameters, Floats] | None = None
         self._mirror = _MIRROR
-        self._size = (1280, 720)
+        self._film = Film()
+        self._imaging: Floats = np.eye(3)
         self._filter: Filter = GaussianFilter(1.5, 0.5)
         self._sampler: tuple[Sampler | None, int, int] = (Sobol(), 16, 0)
         self._integrator: AnyIntegrator = PathTraced(5)
@@ -95,16 +111,23 @@ class _Reader:
 
     def file(self, path: Path, depth: int) -> None:
         """Read a file, and those that it includes."""
-        self._files += 1
-        if depth > _MOST_DEPTH or self._files > _MOST_FILES:
+        self._files.append(path)
+        if depth > _MOST_DEPTH or len(self._files) > _MOST_FILES:
             raise PbrtError(f"{path}: files include each other without end")
         if not path.exists():
             raise FileNotFoundError(errno.ENOENT, "no such file", str(path))
-        for one in directives(path):
+        for one in directives(path, self.notes):
             if one.name in ("Include", "Import"):
                 self.file(self.path.parent / one.texts[0], depth + 1)
             else:
                 self._read(one)
+
+    def version(self) -> str | None:
+        """Return what says that the files read so far are those of another version of pbrt."""
+        for path in self._files:
+            if path.exists() and (found := older(text_of(path))) is not None:
+                return f"{path} is a file of {found}: pbrt-v4 makes one of its own of it by pbrt --upgrade"
+        return None
 
     def _read(self, one: Directive) -> None:
         """Do what a directive asks for; whatever is wrong with it is told with its line."""
@@ -118,6 +141,8 @@ class _Reader:
     def _directive(self, one: Directive) -> None:
         name = one.name
         if name in ("LookAt", "Translate", "Scale", "Rotate", "Transform", "ConcatTransform", "Identity"):
+            if not self._state.starts:
+                return
             before = np.eye(4) if name in ("Transform", "Identity") else self._state.matrix
             self._set(matrix=before @ _step(one))
         elif name in ("AttributeBegin", "TransformBegin"):
@@ -138,8 +163,15 @@ class _Reader:
             self._set(defaults=(*self._state.defaults, (one.texts[0], one.parameters.given)))
         elif name == "WorldBegin":
             self._in_world = True
-            self._set(matrix=np.eye(4))
-        elif name in ("Option", "Accelerator"):
+            self._set(matrix=np.eye(4), starts=True)
+            self._imaging = self._film.imaging(1.0 if self._camera is None else exposure(self._camera[1]))
+        elif name == "ActiveTransform":
+            self.notes.tell("motion is left out: everything stands where it is when the shutter opens")
+            self._set(starts=one.texts[0] != "EndTime")
+        elif name == "Option":
+            one.parameters.ignore(*_NEUTRAL)
+            one.parameters.leave_out(*one.parameters.given)
+        elif name in ("Accelerator", "TransformTimes"):
             pass
         elif name == "ColorSpace":
             if one.texts[0] != "srgb":
@@ -160,7 +192,7 @@ class _Reader:
             # The camera's +x is to the right: a world is left-handed unless that is turned round.
             self._mirror = _MIRROR if np.linalg.det(self._state.matrix[:3, :3]) > 0 else _AS_IT_IS
         elif one.name == "Film":
-            self._size = views.film(kind, parameters)
+            self._film = film(kind, parameters)
         elif one.name == "PixelFilter":
             self._filter = views.rfilter(kind, parameters)
         elif one.name == "Sampler":
@@ -184,13 +216,14 @@ class _Reader:
         elif one.name == "AreaLightSource":
             if texts[0] != "diffuse":
                 parameters.fail(f"an area light {texts[0]!r} is not supported")
-            self._set(emission=shapes.emission(parameters.over(self._defaults("light"))))
+            self._set(emission=shapes.emission(parameters.over(self._defaults("light")), self._imaging))
         elif one.name == "LightSource":
             made = lights.light(
                 texts[0],
                 parameters.over(self._defaults("light")),
                 self._mirror @ state.matrix,
                 self._textures,
+                self._imaging,
             )
             if isinstance(made, get_args(Light)):
                 self._lights.append(cast(Light, made))
@@ -215,7 +248,9 @@ class _Reader:
     def _shape(self, kind: str, parameters: Parameters) -> None:
         state = self._state
         in_group = self._group is not None
-        # What is in a group does not shine in pbrt, and is put in the mirrored world with it.
+        if in_group and state.emission is not None:
+            self.notes.tell("area lights in objects are left out, as pbrt leaves them out")
+        # The group is put in the mirrored world as a whole.
         look = shapes.Look(state.material, None if in_group else state.emission, state.flipped)
         matrix = state.matrix if in_group else self._mirror @ state.matrix
         made = shapes.shape(kind, parameters, matrix, look, self._textures)
@@ -255,10 +290,12 @@ class _Reader:
             Instance(self._groups[name], np.stack(where)) for name, where in places.items()
         ]
         kind, parameters, matrix = self._camera
+        if isinstance(self._integrator, AmbientOcclusion) and not np.array_equal(self._imaging, np.eye(3)):
+            self.notes.tell("the film's exposure does not count in ambient occlusion")
         sampler, samples, seed = self._sampler
         around = self._around[0] if len(self._around) == 1 else self._around or None
         try:
-            eye = views.camera(kind, parameters, self._mirror @ matrix, self._size)
+            eye = views.camera(kind, parameters, self._mirror @ matrix, self._film.size)
         except PbrtError:
             raise
         except (ValueError, TypeError) as error:
@@ -271,6 +308,7 @@ class _Reader:
             sampler=sampler,
             filter=self._filter,
             seed=seed,
+            clamp=self._film.most,
         )
 
 

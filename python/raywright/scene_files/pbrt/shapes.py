@@ -1,8 +1,12 @@
 """Shapes."""
 
+import gzip
 import math
-import warnings
+import shutil
+import tempfile
+import zlib
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -13,6 +17,7 @@ from ...mesh_files.meshes import load_whole
 from ...shapes import Cylinder, Disk, Shape, Sphere
 from ...shapes.mesh import Mesh
 from ..tubes import b_spline
+from .lights import imaged
 from .parameters import Floats, Parameters
 from .spectra import colour
 from .textures import Textures
@@ -31,8 +36,15 @@ class Look(NamedTuple):
     flipped: bool
 
 
-def emission(parameters: Parameters) -> Emission:
-    """Return what an area light gives off.
+def emission(parameters: Parameters, imaging: Floats) -> Emission:
+    """Return what an area light gives off, as a film gets it.
+
+    Parameters
+    ----------
+    parameters : Parameters
+        Those of the light.
+    imaging : (3, 3) array
+        From radiance to what the film gets.
 
     Raises
     ------
@@ -43,7 +55,8 @@ def emission(parameters: Parameters) -> Emission:
         if parameters.has(name):
             parameters.fail(f"{name} is not supported")
     scale = parameters.number("scale", 1.0)
-    radiance = tuple(scale * x for x in colour(parameters, "L", 1.0, emits=True))
+    given = colour(parameters, "L", 1.0, emits=True)
+    radiance = tuple(float(x) for x in imaged(given, scale * imaging, parameters))
     side = "both" if parameters.switch("twosided", False) else "front"
     parameters.done()
     return Emission(radiance, side=side)
@@ -105,7 +118,9 @@ def _mesh(
 
 def _triangles(parameters: Parameters, matrix: Floats, look: Look, _: Textures) -> Mesh:
     vertices, faces = _corners(parameters, 3)
-    parameters.ignore("S")
+    parameters.leave_out("S")
+    # Which face of a Ptex texture each is, and there are none.
+    parameters.ignore("faceIndices")
     return _mesh(vertices, faces, matrix, look, parameters.numbers("N", 3), parameters.numbers("uv", 2))
 
 
@@ -131,8 +146,25 @@ def _ply(parameters: Parameters, matrix: Floats, look: Look, textures: Textures)
     if parameters.has("displacement"):
         parameters.fail("displacement is not supported")
     parameters.ignore("edgelength")
-    mesh = load_whole(textures.folder / parameters.text("filename"), "ply")
+    mesh = _ply_file(textures.folder / parameters.text("filename"))
     return _mesh(mesh.vertices, mesh.faces, matrix, look, mesh.normals, mesh.uv)
+
+
+def _ply_file(path: Path) -> Mesh:
+    """Read a PLY file, by way of a decompressed copy if it ends in ``.gz``."""
+    if path.suffix.lower() != ".gz" or not path.exists():
+        return load_whole(path, "ply")
+    with tempfile.TemporaryDirectory() as folder:
+        copy = Path(folder) / path.stem
+        try:
+            with gzip.open(path) as packed, open(copy, "wb") as plain:
+                shutil.copyfileobj(packed, plain)
+        except (gzip.BadGzipFile, EOFError, zlib.error) as error:
+            raise ValueError(f"{path} is not a gzip file that can be read ({error})") from error
+        try:
+            return load_whole(copy, "ply")
+        except ValueError as error:
+            raise ValueError(str(error).replace(str(copy), str(path))) from error
 
 
 def _bilinear(parameters: Parameters, matrix: Floats, look: Look, _: Textures) -> Mesh:
@@ -225,7 +257,7 @@ def _whole(parameters: Parameters, *ends: tuple[str, float]) -> None:
 
 def _curve(parameters: Parameters, matrix: Floats, look: Look, _: Textures) -> Mesh:
     if parameters.text("type", "flat") != "cylinder":
-        warnings.warn("flat curves and ribbons are approximated by round ones", RuntimeWarning, stacklevel=2)
+        parameters.notes.tell("flat curves and ribbons are approximated by round ones")
     basis = parameters.text("basis", "bezier")
     if parameters.integer("degree", 3) != 3 or basis not in ("bezier", "bspline"):
         parameters.fail("a curve must be cubic, of basis bezier or bspline")

@@ -1,10 +1,12 @@
 """Textures, and what may be a texture or the same everywhere."""
 
+import math
 import warnings
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...io.pictures import read
 from ...textures import Checker, ImageTexture, MixTexture, ProductTexture, UvTransform
@@ -13,6 +15,9 @@ from .parameters import Parameters
 from .spectra import colour
 
 _WRAPS = {"repeat": "repeat", "clamp": "clamp", "mirror": "mirror", "octahedralsphere": "clamp"}
+_FILTERS = ("point", "bilinear", "trilinear", "ewa")
+# Pictures of amounts of light, which no encoding is for.
+_LINEAR = (".exr", ".hdr", ".pfm", ".npy")
 
 
 class Textures:
@@ -84,39 +89,98 @@ class Textures:
         if kind == "checkerboard":
             if parameters.integer("dimension", 2) != 2:
                 parameters.fail("a checkerboard must have 2 dimensions")
-            place = _placed(parameters)
-            # Two cells of it are one unit here.
-            halved = UvTransform(matrix=0.5 * np.array(place.matrix))
-            return Checker(part("tex1", 1.0), part("tex2", 0.0), halved)
+            return Checker(part("tex1", 1.0), part("tex2", 0.0), _placed(parameters))
         if kind == "imagemap":
             return self._picture(coloured, parameters)
         parameters.fail(f"a texture {kind!r} is not supported")
 
     def _picture(self, coloured: bool, parameters: Parameters) -> Value:
         path = self.folder / parameters.text("filename")
-        array = read(path)
-        encoding = parameters.text("encoding", "sRGB")
         wrap = _WRAPS.get(parameters.text("wrap", "repeat"))
         if wrap is None:
             parameters.fail("wrap must be repeat, clamp or mirror")
-        nearest = parameters.text("filter", "bilinear") == "point"
+        filtered = parameters.text("filter", "bilinear")
+        if filtered.lower() not in _FILTERS:
+            parameters.fail(f"filter must be one of {', '.join(_FILTERS)}, got {filtered!r}")
         parameters.ignore("maxanisotropy")
-        if parameters.switch("invert", False):
-            if array.dtype.kind == "u":
-                shares = array[..., : 3 if array.shape[2] > 2 else 1] / np.iinfo(array.dtype).max
-                linear = shares if encoding == "linear" else _decoded(shares)
-                array = (1 - linear).astype(np.float32)
-            else:
-                array = 1 - array
+        scale, inverted = parameters.number("scale", 1.0), parameters.switch("invert", False)
+        texels, linear = image_map(read(path), self._gamma(path, parameters), coloured)
+        if inverted:
+            # The scale counts before a picture is inverted, and less than nothing is none.
+            decoded = texels if texels.dtype.kind == "f" else decode(texels, 1.0 if linear else None)
+            texels = np.maximum(1 - scale * decoded, 0.0).astype(np.float32)
         made = ImageTexture(
-            array[..., : 3 if array.shape[2] > 2 else 1],
-            linear=encoding == "linear",
-            filter="nearest" if nearest else "trilinear",
+            texels,
+            linear=linear,
+            filter="nearest" if filtered == "point" else "trilinear",
             wrap=wrap,  # type: ignore[arg-type]
             transform=_placed(parameters),
         )
-        scale = parameters.number("scale", 1.0)
-        return _scaled(made, (scale,) * 3)
+        return made if inverted else _scaled(made, (scale,) * 3)
+
+    def _gamma(self, path: Path, parameters: Parameters) -> float | None:
+        """Return the exponent by which the integers of a picture are decoded; None if they are sRGB."""
+        encoding = parameters.text("encoding", "sRGB")
+        if encoding == "sRGB":
+            return None
+        if encoding == "linear":
+            gamma = 1.0
+        else:
+            word, _, value = encoding.strip().partition(" ")
+            try:
+                gamma = float(value) if word == "gamma" else math.nan
+            except ValueError:
+                gamma = math.nan
+            if not 0 < gamma < math.inf:
+                parameters.fail(f"encoding must be sRGB, linear or gamma and a number, got {encoding!r}")
+        if path.suffix.lower() != ".png" and path.suffix.lower() not in _LINEAR:
+            parameters.notes.tell(
+                f"the encoding of {path.name} is taken as sRGB: pbrt decodes PNG alone by it"
+            )
+            return None
+        return gamma
+
+
+def image_map(picture: NDArray[Any], gamma: float | None, coloured: bool) -> tuple[NDArray[Any], bool]:
+    """Return the texels of a picture, of one channel or of three, and whether their integers are linear.
+
+    Parameters
+    ----------
+    picture : (H, W, C) array
+        The picture.
+    gamma : float, optional
+        The exponent by which integers are decoded; sRGB if not given.
+    coloured : bool
+        Whether its colours count. If not, its alpha does where it has one that is not 1 everywhere, and the
+        mean of its colours elsewhere.
+    """
+    channels = picture.shape[2]
+    if coloured or channels == 1:
+        texels = picture[..., : 3 if channels > 2 else 1]
+    elif channels == 4 and (picture[..., 3] != _one(picture.dtype)).any():
+        # Decoded as the colours are, by pbrt as well.
+        texels = picture[..., 3:]
+    else:
+        texels = picture[..., : 3 if channels > 2 else 1]
+        if (texels == texels[..., :1]).all():
+            texels = texels[..., :1]
+        else:
+            texels = decode(texels, gamma).mean(axis=2, keepdims=True).astype(np.float32)
+    if texels.dtype.kind == "u" and gamma not in (None, 1.0):
+        texels = decode(texels, gamma).astype(np.float32)
+    return texels, gamma is not None
+
+
+def decode(texels: NDArray[Any], gamma: float | None) -> NDArray[Any]:
+    """Return integers as amounts of light: by an exponent, or from sRGB. Floats stay as they are."""
+    if texels.dtype.kind != "u":
+        return texels
+    shares = texels / np.iinfo(texels.dtype).max
+    return _from_srgb(shares) if gamma is None else shares**gamma
+
+
+def _one(dtype: Any) -> float:
+    return 1.0 if dtype.kind == "f" else float(np.iinfo(dtype).max)
 
 
 def _placed(parameters: Parameters) -> UvTransform:
@@ -148,5 +212,5 @@ def bounded(given: Value, name: str) -> Value:
     return red, green, blue
 
 
-def _decoded(shares: Any) -> Any:
+def _from_srgb(shares: Any) -> Any:
     return np.where(shares <= 0.04045, shares / 12.92, ((shares + 0.055) / 1.055) ** 2.4)

@@ -1,17 +1,23 @@
 """Words of a file, and the directives that they make."""
 
+import gzip
 import re
+import zlib
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from ..notes import Notes
 from .errors import PbrtError
 from .parameters import Parameters
 
 # A text in quotes, a bracket, or anything else without spaces; what follows # is a comment.
 _WORD = re.compile(r'"((?:[^"\\\n]|\\.)*)"|(#[^\n]*)|([\[\]])|([^\s"\[\]#]+)|(\n)')
 # Numbers and texts that stand before the parameters of each directive.
-_NUMBERS = {"LookAt": 9, "Translate": 3, "Scale": 3, "Rotate": 4, "Transform": 16, "ConcatTransform": 16}
+_NUMBERS = {
+    "LookAt": 9, "Translate": 3, "Scale": 3, "Rotate": 4, "Transform": 16, "ConcatTransform": 16,
+    "TransformTimes": 2,
+}  # fmt: skip
 _TEXTS = {
     "Accelerator": 1, "AreaLightSource": 1, "Attribute": 1, "Camera": 1, "ColorSpace": 1,
     "CoordinateSystem": 1, "CoordSysTransform": 1, "Film": 1, "Import": 1, "Include": 1, "Integrator": 1,
@@ -23,6 +29,8 @@ _BARE = (
     "AttributeBegin", "AttributeEnd", "Identity", "ObjectEnd", "ReverseOrientation", "TransformBegin",
     "TransformEnd", "WorldBegin",
 )  # fmt: skip
+# Times that transforms may be limited to, words without quotes.
+_TIMES = ("All", "StartTime", "EndTime")
 
 
 class Word(NamedTuple):
@@ -43,8 +51,15 @@ class Directive(NamedTuple):
     where: str
 
 
-def directives(path: Path) -> Iterator[Directive]:
+def directives(path: Path, notes: Notes) -> Iterator[Directive]:
     """Yield the directives of a file, one after the other.
+
+    Parameters
+    ----------
+    path : Path
+        The file; one that ends in ``.gz`` is decompressed.
+    notes : Notes
+        Notes about the scene.
 
     Raises
     ------
@@ -57,10 +72,10 @@ def directives(path: Path) -> Iterator[Directive]:
     while (word := words.next()) is not None:
         where = f"{path}, line {word.line}"
         name = word.text
-        if word.quoted or not (name in _NUMBERS or name in _TEXTS or name in _BARE):
+        if word.quoted or not (name in _NUMBERS or name in _TEXTS or name in (*_BARE, "ActiveTransform")):
             raise PbrtError(f"{where}: {name[:40]!r} is no directive that is known")
         numbers = words.numbers(_NUMBERS[name], where) if name in _NUMBERS else ()
-        texts: list[str] = []
+        texts: list[str] = [words.time(where)] if name == "ActiveTransform" else []
         for _ in range(_TEXTS.get(name, 0)):
             text = words.next()
             if text is None or not text.quoted:
@@ -72,9 +87,23 @@ def directives(path: Path) -> Iterator[Directive]:
             texts.append(text.text)
         takes = name in _TEXTS and name not in ("Include", "Import", "NamedMaterial", "MediumInterface")
         given = _parameters(words) if takes else {}
-        yield Directive(
-            name, tuple(texts), numbers, Parameters(given, f"{where}: {' '.join((name, *texts))}"), where
+        # A name that the file gives is no kind of directive: notes are told once of each kind.
+        kind = "" if name.startswith("MakeNamed") else "".join(texts[-1:])
+        parameters = Parameters(
+            given, f"{where}: {' '.join((name, *texts))}", f"{name} {kind}".strip(), notes
         )
+        yield Directive(name, tuple(texts), numbers, parameters, where)
+
+
+def text_of(path: Path) -> str:
+    """Return the text of a file; one that ends in ``.gz`` is decompressed."""
+    data = path.read_bytes()
+    if path.suffix.lower() == ".gz":
+        try:
+            data = gzip.decompress(data)
+        except (OSError, EOFError, zlib.error) as error:
+            raise PbrtError(f"{path} is not a gzip file that can be read ({error})") from error
+    return data.decode("utf-8-sig", errors="replace").replace("\r\n", "\n").replace("\r", "\n")
 
 
 def _parameters(words: "_Words") -> dict[str, tuple[str, list[Any]]]:
@@ -99,7 +128,7 @@ class _Words:
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        self._text = path.read_text(encoding="utf-8-sig", errors="replace")
+        self._text = text_of(path)
         self._matches = _WORD.finditer(self._text)
         self._line = 1
         self._back: Word | None = None
@@ -130,6 +159,12 @@ class _Words:
         if len(values) != count:
             raise PbrtError(f"{where}: {count} numbers are expected, got {len(values)}")
         return tuple(values)
+
+    def time(self, where: str) -> str:
+        word = self.next()
+        if word is None or word.quoted or word.text not in _TIMES:
+            raise PbrtError(f"{where}: ActiveTransform must be one of {', '.join(_TIMES)}")
+        return word.text
 
     def values(self, where: str) -> list[Any]:
         return self._list(1, where)

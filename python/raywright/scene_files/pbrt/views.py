@@ -1,7 +1,6 @@
-"""Cameras, films, filters, samplers and integrators."""
+"""Cameras, filters, samplers and integrators."""
 
 import math
-import warnings
 from typing import Any
 
 import numpy as np
@@ -24,6 +23,7 @@ from ...rendering.filters import (
     TriangleFilter,
 )
 from ...rendering.samplers import Halton, Independent, Sampler, Sobol, Stratified
+from .films import exposure
 from .parameters import Floats, Parameters
 
 # All that goes along paths; what they differ in is how, and the picture is the same.
@@ -50,7 +50,7 @@ def camera(kind: str, parameters: Parameters, matrix: Floats, size: tuple[int, i
         If its type, or a parameter of it, is not supported; tells which.
     """
     width, height = size
-    parameters.ignore("shutteropen", "shutterclose")
+    exposure(parameters)
     for name in ("frameaspectratio", "screenwindow"):
         if parameters.has(name):
             parameters.fail(f"{name} is not supported")
@@ -74,7 +74,7 @@ def camera(kind: str, parameters: Parameters, matrix: Floats, size: tuple[int, i
         else:
             made = Camera(place, fov=fov, fov_axis="smaller", **common)
     elif kind == "orthographic":
-        parameters.ignore("lensradius", "focaldistance")
+        parameters.leave_out("lensradius", "focaldistance")
         scale = 2 * float(np.linalg.norm(matrix[:3, 0]))
         made = Orthographic(place, scale=scale, scale_axis="smaller", **common)
     elif kind == "spherical":
@@ -85,29 +85,6 @@ def camera(kind: str, parameters: Parameters, matrix: Floats, size: tuple[int, i
         parameters.fail(f"a camera {kind!r} is not supported")
     parameters.done()
     return made
-
-
-def film(kind: str, parameters: Parameters) -> tuple[int, int]:
-    """Return the size of a film in pixels."""
-    if kind not in ("rgb", "gbuffer", "spectral"):
-        parameters.fail(f"a film {kind!r} is not supported")
-    size = parameters.integer("xresolution", 1280), parameters.integer("yresolution", 720)
-    for name in ("cropwindow", "pixelbounds"):
-        if parameters.has(name):
-            parameters.fail(f"{name} is not supported")
-    if parameters.text("sensor", "cie1931") != "cie1931":
-        warnings.warn(
-            "a film's sensor is left out: colours are those that the eye sees", RuntimeWarning, stacklevel=2
-        )
-    parameters.ignore(
-        "filename", "savefp16", "diagonal", "iso", "exposuretime", "maxcomponentvalue", "whitebalance",
-        "coordinatesystem", "nbuckets", "lambdamin", "lambdamax",
-    )  # fmt: skip
-    parameters.done()
-    for side in size:
-        if not 1 <= side <= 65536:
-            parameters.fail(f"a resolution must be between 1 and 65536, got {side:g}")
-    return size
 
 
 def rfilter(kind: str, parameters: Parameters) -> Filter:
@@ -130,8 +107,9 @@ def rfilter(kind: str, parameters: Parameters) -> Filter:
     elif kind == "triangle":
         made = TriangleFilter(across)
     else:
-        parameters.ignore("tau")
         made = LanczosFilter(max(round(across), 1))
+        if parameters.number("tau", 3.0) != made.lobes or across != made.lobes:
+            parameters.notes.tell(f"the sinc filter is approximated by Lanczos' of {made.lobes} lobes")
     parameters.done()
     return made
 
@@ -155,7 +133,7 @@ def sampler(kind: str, parameters: Parameters) -> tuple[Sampler | None, int, int
     else:
         count = parameters.integer("pixelsamples", 16)
     seed = parameters.integer("seed", 0)
-    parameters.ignore("jitter", "randomization")
+    parameters.leave_out("jitter", "randomization")
     parameters.done()
     if count < 1 or not 0 <= seed < 2**64:
         parameters.fail(f"samples must be at least 1 and seed at least 0, got {count:g} and {seed:g}")
@@ -167,11 +145,12 @@ def integrator(kind: str, parameters: Parameters) -> AnyIntegrator:
     depth = parameters.integer("maxdepth", 5)
     if depth < 0:
         parameters.fail(f"maxdepth must be at least 0, got {depth}")
+    # How samples are drawn, which changes their error and not what they tend to.
     parameters.ignore(
-        "regularize", "lightsampler", "bootstrapsamples", "chains", "mutationsperpixel",
-        "largestepprobability", "sigma", "photonsperiteration", "radius", "seed", "samplelights",
-        "samplebsdf", "visualizestrategies", "visualizeweights",
+        "lightsampler", "bootstrapsamples", "chains", "mutationsperpixel", "largestepprobability", "sigma",
+        "seed", "samplelights", "samplebsdf", "photonsperiteration", "radius",
     )  # fmt: skip
+    parameters.leave_out_if_true("regularize", "visualizestrategies", "visualizeweights")
     made: AnyIntegrator
     if kind in _PATHS:
         made = Path(depth)
