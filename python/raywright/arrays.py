@@ -10,6 +10,9 @@ from numpy.typing import ArrayLike, NDArray
 
 Triple = tuple[float, float, float]
 
+# What numpy says of nested lists whose lengths differ.
+_RAGGED = ("inhomogeneous", "could not broadcast", "setting an array element with a sequence")
+
 # As many may be started on any machine, if they are asked for.
 _THREADS = 64
 
@@ -24,7 +27,8 @@ def real_array(name: str, value: ArrayLike) -> NDArray[Any]:
     Raises
     ------
     TypeError
-        If the values are not real numbers (bool, complex, text, objects).
+        If the values are not real numbers (bool, complex, text, objects), or numpy cannot read them: why, and
+        what helps.
     ValueError
         If nested sequences are ragged.
     """
@@ -33,8 +37,7 @@ def real_array(name: str, value: ArrayLike) -> NDArray[Any]:
     array = _as_array(name, value)
     _unmasked(name, value)
     if array.dtype.kind not in "iuf":
-        came = f"dtype {array.dtype}" if isinstance(value, np.ndarray) else _describe(value, array)
-        raise TypeError(f"{name} must be real numbers, got {came}")
+        raise TypeError(f"{name} must be real numbers, got {_describe(value, array)}")
     native = array.dtype.newbyteorder("=")
     return array.astype(np.float32 if native == np.float32 else np.float64, copy=False)
 
@@ -173,8 +176,50 @@ def choice(name: str, value: str, choices: tuple[str, ...]) -> None:
 def _as_array(name: str, value: ArrayLike) -> NDArray[Any]:
     try:
         return np.asarray(value)
-    except (ValueError, TypeError):
-        raise ValueError(f"{name} must be a rectangular array, got ragged {type(value).__name__}") from None
+    except MemoryError:
+        raise
+    except Exception as error:
+        # What numpy itself says of a list has no frame of Python below this one; what its entries say may.
+        is_own = isinstance(value, list | tuple) and error.__traceback__ and not error.__traceback__.tb_next
+        if is_own and isinstance(error, ValueError) and any(words in str(error) for words in _RAGGED):
+            raise ValueError(
+                f"{name} must be a rectangular array, got ragged {type(value).__name__}"
+            ) from None
+        culprit = _culprit(value)
+        within = "" if culprit is value else f" of {type(culprit).__name__}"
+        told = " ".join(str(error).split()).rstrip(".") or type(error).__name__
+        came = f"{type(value).__name__}{within}, which numpy cannot read ({told}){_cure(culprit)}"
+        kind = ValueError if isinstance(error, ValueError) else TypeError
+        raise kind(f"{name} must be an array of numbers, got {came}") from error
+
+
+def _culprit(value: object) -> object:
+    """Return what in nested lists numpy cannot read."""
+    while isinstance(value, list | tuple):
+        for entry in value:
+            try:
+                np.asarray(entry)
+            except Exception:
+                value = entry
+                break
+        else:
+            break
+    return value
+
+
+def _cure(value: object) -> str:
+    """Return what makes an array of something that numpy cannot read or finds no numbers in."""
+    if hasattr(value, "detach") and hasattr(value, "cpu"):
+        steps = [".detach()"] if getattr(value, "requires_grad", False) else []
+        steps += [".cpu()"] if str(getattr(value, "device", "cpu")).partition(":")[0] != "cpu" else []
+        return f"; pass its {''.join(steps or ['.detach().cpu()'])}.numpy()"
+    if hasattr(value, "__cuda_array_interface__"):
+        return "; pass its copy on the host" + (", .get()" if hasattr(value, "get") else "")
+    if hasattr(value, "to_numpy"):
+        return "; pass its .to_numpy(dtype=float, na_value=float('nan')), or fill what is missing first"
+    if hasattr(value, "to_pandas"):
+        return "; pass its .to_pandas().to_numpy(dtype=float)"
+    return ""
 
 
 def _unmasked(name: str, value: ArrayLike) -> None:
@@ -191,4 +236,19 @@ def _finite(name: str, array: NDArray[Any]) -> Triple:
 
 
 def _describe(value: object, array: NDArray[Any]) -> str:
-    return f"{type(value).__name__} of dtype {array.dtype}" if array.ndim else repr(value)
+    """Return what came instead of numbers and, where it is objects, the first that is none and what helps."""
+    if not array.ndim and not isinstance(value, np.ndarray):
+        return f"{value!r}{_cure(value)}"
+    came = f"dtype {array.dtype}" if isinstance(value, np.ndarray) else _of_dtype(value, array)
+    if array.dtype != object or isinstance(value, list | tuple):
+        return came
+    others = (i for i, entry in np.ndenumerate(array) if not isinstance(entry, float | int | np.number))
+    first = next(others, None)
+    if first is None:
+        return f"{came}: numbers of a type that numpy has not{_cure(value) or '; pass its .astype(float)'}"
+    at = ", ".join(map(str, first))
+    return f"{came}, with {array[first]!r} at [{at}]{_cure(value)}"
+
+
+def _of_dtype(value: object, array: NDArray[Any]) -> str:
+    return f"{type(value).__name__} of dtype {array.dtype}"
