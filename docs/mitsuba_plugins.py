@@ -41,6 +41,7 @@ NEARLY = {
     "perspective": "`near_clip` and `far_clip` are left out",
     "distant": "towards a point",
     "ldrfilm": "as `hdrfilm`",
+    "independent": "as Mitsuba's default: none is named; `load(path, sampler=)` overrules",
     "hammersley": "as `halton`",
     "volpath": "as `path`",
     "volpathmis": "as `path`",

@@ -44,17 +44,35 @@ def test_a_shot_renders_as_its_file_says_unless_told_otherwise(path):
         rw.Path(max_depth=2),
         samples=32,
         seed=5,
-        sampler=rw.Independent(),
         filter=rw.CroppedFilter(rw.GaussianFilter(2.0, 0.5)),
         progress=False,
     )
     assert np.array_equal(image.rgb, own.rgb)
+    assert image.plan.sampler == own.plan.sampler == rw.Lattice(8)
+    note = "the file's independent sampler is Mitsuba's default, and taken as not named"
+    assert image.plan["sampler"].why == f"{own.plan['sampler'].why}; {note}"
+    assert note in repr(image.plan)
     assert shot.render(samples=3, progress=False).samples == 3
     # An error or a time is a limit of its own, and the file's samples are not.
     assert shot.render(error=1e-3, progress=False).error.high <= 1e-3
     assert shot.render(samples=8, aov="depth", progress=False).aov["depth"].shape == (8, 12)
     with pytest.raises(TypeError, match="unexpected keyword argument 'sample'"):
         shot.render(sample=3)
+
+
+def test_a_sampler_that_is_named_overrules_the_file(path, tmp_path):
+    shot = rw.load(path, sampler=rw.Independent())
+    image = shot.render(progress=False)
+    assert (shot.sampler, image.plan["sampler"].why) == (rw.Independent(), "as named")
+    again = rw.load(path).render(sampler=rw.Independent(), progress=False)
+    assert np.array_equal(image.rgb, again.rgb)
+    assert again.plan["sampler"].why == "as named"
+    (tmp_path / "sobol.xml").write_text(SCENE.replace("independent", "ldsampler"), encoding="utf-8")
+    assert rw.load(tmp_path / "sobol.xml").sampler == rw.Sobol()
+    for file in (tmp_path / "sobol.xml", tmp_path / "ball.ply"):
+        assert rw.load(file, sampler=rw.Halton()).sampler == rw.Halton()
+    with pytest.raises(TypeError, match=r"^sampler must be one of raywright's, got str$"):
+        rw.load(path, sampler="halton")
 
 
 def test_shots_compare_and_pickle(path):

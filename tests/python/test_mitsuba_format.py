@@ -239,6 +239,10 @@ def test_integrators_samplers_and_filters():
     seen = read({"type": "aov", "aovs": "d:depth, n:sh_normal", "img": {"type": "direct"}})
     assert (seen.aov, seen.integrator) == (("depth", "shading_normal"), rw.Direct())
     assert read(sampler={"type": "ldsampler", "sample_count": 32, "seed": 7}).sampler == rw.Sobol()
+    default = read(sampler={"type": "independent", "sample_count": 16, "seed": 3})
+    assert (default.sampler, default.samples, default.seed) == (None, 16, 3)
+    assert "independent" in default.unnamed
+    assert (read().sampler, read().unnamed) == (None, None)
     counted = read(sampler={"type": "multijitter", "sample_count": 32, "seed": 7})
     assert (counted.sampler, counted.samples, counted.seed) == (rw.Stratified(), 32, 7)
     assert read(rfilter={"type": "tent"}).filter == rw.TriangleFilter(1.0)

@@ -1,6 +1,6 @@
 """What was chosen for a render, and why."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ..integrators import Path
 from .samplers import Sampler
@@ -48,6 +48,11 @@ class RenderPlan:
             if row.what == what:
                 return row
         raise KeyError(what)
+
+    def explained(self, what: str, why: str) -> "RenderPlan":
+        """Return the plan with one more reason in the row about something."""
+        rows = (replace(row, why=f"{row.why}; {why}") if row.what == what else row for row in self.rows)
+        return replace(self, rows=tuple(rows))
 
     def __repr__(self) -> str:
         lines = [("", "chosen", "why"), *((row.what, row.chosen, row.why) for row in self.rows)]

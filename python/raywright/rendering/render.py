@@ -28,7 +28,7 @@ from .made import doubts, made, overall
 from .notebook import display
 from .on_device import OnDevice, check_device
 from .progress import Report, bar
-from .samplers import Sampler
+from .samplers import Sampler, Unnamed
 from .snapshots import Snapshots
 from .so_far import AtRest, ImageSoFar, Sight
 from .ways import StoppedError, followed
@@ -67,7 +67,7 @@ def render(
     progress: bool | Callable[[Image], object] = True,
     adaptive: bool = False,
     clamp: float | None = None,
-    sampler: Sampler | None = None,
+    sampler: Sampler | Unnamed | None = None,
     filter: Filter = _FILTER,
     checkpoint: str | os.PathLike[str] | None = None,
     executor: "Executor | None" = None,
@@ -199,6 +199,9 @@ def render(
         scene, camera, integrator, samples, error, seconds, seed, threads, adaptive, clamp, sampler, filter
     )
     limits, seed, threads, clamp = checked
+    unnamed = sampler.why if isinstance(sampler, Unnamed) else None
+    if isinstance(sampler, Unnamed):
+        sampler = None
     if not (callable(progress) or isinstance(progress, bool)):
         raise TypeError(f"progress must be True, False or a function, got {progress!r}")
     show = progress if callable(progress) else display() if progress else None
@@ -255,6 +258,8 @@ def render(
         integrator, sampler, plan = there.plan(integrator)
     else:
         sampler, plan = chosen(sampler, limits, adaptive, begun.get("sampler"), apart)
+        if unnamed is not None:
+            plan = plan.explained("sampler", unnamed)
 
     def look() -> None:
         if stop is not None and stop.is_set():
@@ -391,7 +396,7 @@ def check(
     threads: int | None,
     adaptive: bool,
     clamp: float | None,
-    sampler: Sampler | None,
+    sampler: Sampler | Unnamed | None,
     filter: Filter,
 ) -> Checked:
     """Raise a TypeError or a ValueError unless `render` can do what it is told."""
@@ -405,7 +410,7 @@ def check(
     check_integrator("integrator", integrator)
     if not isinstance(adaptive, bool):
         raise TypeError(f"adaptive must be True or False, got {adaptive!r}")
-    if sampler is not None and not isinstance(sampler, Sampler):
+    if sampler is not None and not isinstance(sampler, Sampler | Unnamed):
         raise TypeError(f"sampler must be one of raywright's, got {type(sampler).__name__}")
     if not isinstance(filter, Filter):
         raise TypeError(f"filter must be one of raywright's, got {type(filter).__name__}")

@@ -130,6 +130,13 @@ class Lattice:
 Sampler = Independent | Stratified | Halton | Sobol | Lattice
 
 
+@dataclass(frozen=True)
+class Unnamed:
+    """No sampler, and why none is named, which the plan of a picture tells."""
+
+    why: str
+
+
 def _batch(batch: int | None) -> int | None:
     if batch is None:
         return None

@@ -10,7 +10,7 @@ from ..scene.scene import Scene
 from .filters import BoxFilter, Filter
 from .image import Image
 from .render import render
-from .samplers import Sampler
+from .samplers import Sampler, Unnamed
 
 _LIMITS = ("samples", "error", "seconds")
 
@@ -43,6 +43,8 @@ class Shot:
         Whether what surrounds the scene is seen, as `raywright.render` takes it.
     clamp : float, optional
         Limit on the largest channel of a sample, as `raywright.render` takes it.
+    unnamed : str, optional
+        Why no sampler is named although the file has one; the plan of the picture tells it.
     """
 
     scene: Scene
@@ -55,6 +57,7 @@ class Shot:
     aov: tuple[str, ...] = ()
     background: str = "shown"
     clamp: float | None = None
+    unnamed: str | None = None
 
     def render(self, **overrides: Any) -> Image:
         """Render the picture.
@@ -79,7 +82,7 @@ class Shot:
             "scene": self.scene,
             "camera": self.camera,
             "integrator": self.integrator,
-            "sampler": self.sampler,
+            "sampler": Unnamed(self.unnamed) if self.sampler is None and self.unnamed else self.sampler,
             "filter": self.filter,
             "seed": self.seed,
             "aov": self.aov,

@@ -1,11 +1,13 @@
 """Whatever a file holds, ready to be rendered."""
 
 import errno
+from dataclasses import replace
 from os import PathLike
 from pathlib import Path
 from typing import Any, Literal
 
 from ..mesh_files import meshes
+from ..rendering.samplers import Sampler
 from ..rendering.shot import Shot
 from .mitsuba import from_mitsuba
 from .shown import shown
@@ -25,6 +27,7 @@ def load(
     up: Literal["y", "z"] = "y",
     width: int | None = None,
     height: int | None = None,
+    sampler: Sampler | None = None,
     **parameters: Any,
 ) -> Shot:
     """Read a scene, or a mesh, with all that it takes to make a picture of it.
@@ -47,6 +50,9 @@ def load(
     width, height : int, optional
         Size of the picture in pixels: the file's own if not given, or for a file without a camera 640 by 480;
         if only one is given, the other keeps these proportions.
+    sampler : Independent, Stratified, Halton, Sobol or Lattice, optional
+        Where the random numbers come from, whatever the file says. If not given, the file's own; a scene of
+        Mitsuba with the sampler ``independent``, which is the default there, counts as one that names none.
     **parameters
         What ``$name`` in a scene of Mitsuba stands for, in place of its defaults: ``spp=16``. Those of the
         names above are given by ``from_mitsuba(parameters=)``.
@@ -63,9 +69,11 @@ def load(
     ValueError
         If it cannot be read, or holds something that is not supported, or a number is out of range.
     TypeError
-        If `path` is no path, a size is no integer, or there are parameters and it is no scene of Mitsuba.
+        If `path` is no path, a size is no integer, `sampler` is none, or there are parameters and it is no
+        scene of Mitsuba.
     ImportError
-        If it is a USD file and usd-core is not installed.
+        If it is a USD file and usd-core is not installed, or another that trimesh reads with a package that
+        is not: which.
 
     Warns
     -----
@@ -74,7 +82,13 @@ def load(
     """
     if not isinstance(path, str | PathLike):
         raise TypeError(f"path must be a str or a path, got {type(path).__name__}")
-    path = Path(path)
+    if sampler is not None and not isinstance(sampler, Sampler):
+        raise TypeError(f"sampler must be one of raywright's, got {type(sampler).__name__}")
+    shot = _read(Path(path), up, width, height, parameters)
+    return shot if sampler is None else replace(shot, sampler=sampler)
+
+
+def _read(path: Path, up: Literal["y", "z"], width: int | None, height: int | None, parameters: Any) -> Shot:
     if not path.exists():
         raise FileNotFoundError(errno.ENOENT, "no such file", str(path))
     suffix = path.suffix.lower()

@@ -123,7 +123,7 @@ def _read(scene: Plugin, number: int) -> Shot:
     film = _only(eye, *sensors.FILMS)
     has_border = film is not None and film.switch("sample_border", False)
     rfilter = settings.rfilter(_only(film, *settings.FILTERS) if film is not None else None, has_border)
-    sampler, samples, seed = settings.sampler(_only(eye, *settings.SAMPLERS))
+    sampling = settings.sampler(_only(eye, *settings.SAMPLERS))
     whole = Scene(
         shapes.instances(found),
         lights,
@@ -135,12 +135,13 @@ def _read(scene: Plugin, number: int) -> Shot:
         whole,
         sensors.camera(eye, film, whole),
         asked.integrator,
-        samples,
-        sampler=sampler,
+        sampling.samples,
+        sampler=sampling.sampler,
         filter=rfilter,
-        seed=seed,
+        seed=sampling.seed,
         aov=asked.aov,
         background="transparent" if asked.hidden else "shown",
+        unnamed=sampling.unnamed,
     )
 
 

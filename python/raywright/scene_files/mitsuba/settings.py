@@ -14,7 +14,7 @@ from ...rendering.filters import (
     TriangleFilter,
     WholeFilter,
 )
-from ...rendering.samplers import Halton, Independent, Sampler, Sobol, Stratified
+from ...rendering.samplers import Halton, Sampler, Sobol, Stratified
 from .plugin import Plugin
 
 # Among media or not, and forwards, these are path tracing all the same.
@@ -141,12 +141,37 @@ def _aov(plugin: Plugin) -> Asked:
     return light._replace(aov=tuple(dict.fromkeys([*names, *light.aov])))
 
 
-def sampler(plugin: Plugin | None) -> tuple[Sampler | None, int, int]:
-    """Return a sampler if one is named, how many samples a pixel it takes, and its seed."""
+class Sampling(NamedTuple):
+    """Where the samples of a pixel come from.
+
+    Attributes
+    ----------
+    sampler : Sobol or another kind, or None
+        None where none is named.
+    samples : int
+        Of a pixel.
+    seed : int
+        Picks the random numbers.
+    unnamed : str, optional
+        Why none is named although there is one.
+    """
+
+    sampler: Sampler | None = None
+    samples: int = 4
+    seed: int = 0
+    unnamed: str | None = None
+
+
+def sampler(plugin: Plugin | None) -> Sampling:
+    """Return a sampler if one is named, how many samples a pixel it takes, and its seed.
+
+    Independent samples are what Mitsuba takes where nothing is named, and what its exporters write: they are
+    no choice.
+    """
     if plugin is None:
-        return None, 4, 0
-    kinds: dict[str, Sampler] = {
-        "independent": Independent(),
+        return Sampling()
+    kinds: dict[str, Sampler | None] = {
+        "independent": None,
         "ldsampler": Sobol(),
         "sobol": Sobol(),
         "halton": Halton(),
@@ -157,7 +182,9 @@ def sampler(plugin: Plugin | None) -> tuple[Sampler | None, int, int]:
     plugin.done()
     if count < 1 or seed < 0:
         plugin.fail(f"sample_count must be at least 1 and seed at least 0, got {count} and {seed}")
-    return kinds.get(plugin.type, Stratified()), count, seed
+    unnamed = "the file's independent sampler is Mitsuba's default, and taken as not named"
+    kind = kinds.get(plugin.type, Stratified())
+    return Sampling(kind, count, seed, unnamed if kind is None else None)
 
 
 def rfilter(plugin: Plugin | None, has_border: bool) -> Filter:
