@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
-from trimesh.visual.material import PBRMaterial, SimpleMaterial
+from trimesh.visual.material import MultiMaterial, PBRMaterial, SimpleMaterial
 
 import raywright as rw
 
@@ -193,3 +193,59 @@ def test_loading_leaves_the_log_as_it_was(tmp_path, ball):
     assert not log.disabled
     rw.Scene(tmp_path / "ball.ply")
     assert not log.disabled
+
+
+def many_materials(**which):
+    box = trimesh.creation.box()
+    red, green = SimpleMaterial(diffuse=[255, 0, 0, 255]), PBRMaterial(baseColorFactor=[0, 255, 0, 255])
+    visual = trimesh.visual.TextureVisuals(uv=np.zeros((8, 2)), material=MultiMaterial([red, green]), **which)
+    return trimesh.Trimesh(box.vertices, box.faces, process=False, visual=visual)
+
+
+def test_a_trimesh_of_many_materials_is_a_mesh_of_each(ball):
+    box = many_materials(face_materials=[1] * 5 + [0] * 7)
+    plain = only(trimesh.Trimesh(box.vertices, box.faces, process=False))
+    for given in (box, trimesh.Scene({"box": box})):
+        scene = rw.Scene(given)
+        red, green = scene.shapes
+        assert red.material == rw.Diffuse((1.0, 0.0, 0.0))
+        assert green.material.base_color == (0.0, 1.0, 0.0)
+        assert np.array_equal(red.faces, box.faces[5:])
+        assert np.array_equal(green.faces, box.faces[:5])
+        rays = np.random.default_rng(5).normal(size=(2, 500, 3))
+        assert np.array_equal(scene.intersect(*rays).t, rw.Scene(plain).intersect(*rays).t)
+    with pytest.warns(
+        RuntimeWarning, match="2 materials but no face_materials: all of its faces get the first"
+    ):
+        assert only(many_materials()).material == rw.Diffuse((1.0, 0.0, 0.0))
+    ball.visual = trimesh.visual.TextureVisuals(material=MultiMaterial())
+    assert only(ball).material == only(trimesh.creation.icosphere()).material
+    for wrong, came in (([0] * 11, "got 11"), ([2] * 12, "got 2 to 2"), ([-1] * 12, "got -1 to -1")):
+        with pytest.raises(ValueError, match=f"face_materials must be 12 numbers of 2 materials.*{came}"):
+            rw.Scene(many_materials(face_materials=wrong))
+
+
+@pytest.mark.parametrize(
+    ("suffix", "packages"),
+    [("3mf", "lxml networkx"), ("3MF", "lxml networkx"), ("dae", "pycollada"), ("xaml", "lxml")],
+)
+def test_a_package_that_a_format_takes_is_named(tmp_path, monkeypatch, suffix, packages):
+    # As where none of them is installed.
+    def absent(*_, **__):
+        raise ImportError(f"No module named '{packages.split()[-1]}'")
+
+    class Absent:
+        def __getattribute__(self, name):
+            absent()
+
+    monkeypatch.setattr("raywright.mesh_files.meshes.find_spec", lambda name: None)
+    monkeypatch.setitem(trimesh.exchange.load.mesh_loaders, suffix.lower(), Absent())
+    monkeypatch.setattr(trimesh, "available_formats", lambda: {"stl", "ply"})
+    path = tmp_path / f"part.{suffix}"
+    path.write_bytes(b"PK")
+    names = " and ".join(packages.split())
+    kind = suffix.lower()
+    told = rf"part\.{suffix}: trimesh reads \.{kind} with {names}, not installed: pip install {packages}$"
+    for read in (rw.Scene, rw.load):
+        with pytest.raises(ImportError, match=told):
+            read(path)

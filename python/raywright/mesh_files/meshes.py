@@ -1,6 +1,8 @@
 """Meshes from files."""
 
 import errno
+import re
+from importlib.util import find_spec
 from os import PathLike
 from pathlib import Path
 
@@ -12,6 +14,8 @@ from .claims import check_mesh_file
 from .trimesh_objects import of_scene, of_trimesh
 
 _GLTF = (".glb", ".gltf")
+# What trimesh needs for a kind of file, where that is more than one package.
+_PACKAGES = {".3mf": ("lxml", "networkx"), ".3dxml": ("lxml", "networkx")}
 
 
 def load(path: str | PathLike[str]) -> tuple[Mesh, ...]:
@@ -29,6 +33,8 @@ def load(path: str | PathLike[str]) -> tuple[Mesh, ...]:
         If the file is missing.
     ValueError
         If the file is not a mesh that can be read, or holds no faces.
+    ImportError
+        If trimesh reads such files with a package that is not installed: which.
 
     Warns
     -----
@@ -45,6 +51,7 @@ def load(path: str | PathLike[str]) -> tuple[Mesh, ...]:
     kinds = trimesh.available_formats()
     name = path.name.lower()
     if not any(name.endswith(f".{kind}") for kind in kinds):
+        _missing(path)
         suffix = f"suffix {path.suffix}" if path.suffix else "a name without a suffix"
         raise ValueError(f"{path}: {suffix} is not a mesh format; known are {', '.join(sorted(kinds))}")
     if name.endswith(_GLTF):
@@ -90,7 +97,7 @@ def _whole_ply(path: Path) -> Mesh | None:
         check_mesh_file(path)
         with quiet(), open(path, "rb") as file:
             found = trimesh.load(file, file_type="ply", process=False)
-            parts = tuple(of_scene(found)) if hasattr(found, "geometry") else (of_trimesh(found, True),)
+            parts = tuple(of_scene(found) if hasattr(found, "geometry") else of_trimesh(found, True))
     except Exception as error:
         raise refused(path, "mesh", error) from error
     return parts[0] if len(parts) == 1 else None
@@ -106,11 +113,43 @@ def _read(path: Path) -> tuple[Mesh, ...]:
             return tuple(of_scene(found, loaded=True))
     except MemoryError:
         raise
+    except ModuleNotFoundError as error:
+        raise _needs(path, error) from error
     except Exception as error:
         # Parsers fail on bad bytes in every way there is; the caller needs one kind of error, and one line.
         if isinstance(error, OSError) and error.filename == str(path):
             raise
         raise ValueError(f"{path} is not a mesh that can be read ({reason(error)})") from error
+
+
+def _missing(path: Path) -> None:
+    """Raise an ImportError if trimesh reads such files with a package that is not installed."""
+    from trimesh.exchange.load import mesh_loaders
+
+    name = path.name.lower()
+    for kind, loader in mesh_loaders.items():
+        if not name.endswith(f".{kind}"):
+            continue
+        try:
+            # What could not be imported stands in its place, and raises whatever is asked of it.
+            loader.__name__  # noqa: B018
+        except ImportError as error:
+            raise _needs(path, error) from error
+        except Exception:
+            return
+
+
+def _needs(path: Path, error: ImportError) -> ImportError:
+    """Return what to raise where packages are missing that trimesh reads a file with."""
+    suffix = path.suffix.lower()
+    # trimesh tells the first that is missing, in words.
+    told = re.search(r"No module named '([^'.]+)|pip install ([\w-]+)", str(error))
+    first = [name for name in told.groups() if name] if told else []
+    missing = [name for name in _PACKAGES.get(suffix, ()) if find_spec(name) is None] or first
+    if not missing:
+        return ImportError(f"{path}: trimesh cannot read {suffix} here ({reason(error)})")
+    names, packages = " and ".join(missing), " ".join(missing)
+    return ImportError(f"{path}: trimesh reads {suffix} with {names}, not installed: pip install {packages}")
 
 
 def _joined(mesh: Mesh) -> Mesh:

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..io.quiet import warn_caller
 from ..shapes.mesh import Mesh
 from .looks import look_of
 
@@ -14,28 +15,65 @@ def of_scene(scene: Any, loaded: bool = False) -> Iterator[Mesh]:
     """Yield a mesh for each node of a trimesh.Scene that holds one; `loaded`: nobody has looked at it yet."""
     order = {name: i for i, name in enumerate(scene.geometry)}
     placed = [scene.graph[node] for node in scene.graph.nodes_geometry]
-    made: dict[str, Mesh] = {}
+    made: dict[str, tuple[Mesh, ...]] = {}
     for matrix, name in sorted(placed, key=lambda place: order[place[1]]):
         geometry = scene.geometry[name]
         if not hasattr(geometry, "faces"):
             continue  # points or curves
         if name not in made:
-            made[name] = of_trimesh(geometry, loaded, name)
+            made[name] = tuple(of_trimesh(geometry, loaded, name))
         moved = not np.array_equal(matrix, np.eye(4))
-        yield made[name].transformed(matrix) if moved else made[name]
+        for one in made[name]:
+            yield one.transformed(matrix) if moved else one
 
 
-def of_trimesh(mesh: Any, loaded: bool = False, name: object = None) -> Mesh:
-    """Return a trimesh.Trimesh as a mesh, with its looks."""
+def of_trimesh(mesh: Any, loaded: bool = False, name: object = None) -> Iterator[Mesh]:
+    """Yield a mesh with its looks for each material of the faces of a trimesh.Trimesh; mostly that is one."""
     vertices = np.asarray(mesh.vertices)
     faces = np.asarray(mesh.faces)
     uv = getattr(mesh.visual, "uv", None)
     if uv is not None and np.shape(uv) != (len(vertices), 2):
         uv = None
-    look = look_of(mesh.visual, len(vertices))
-    shines = (look.material, look.emission, look.colors)
+    normals = _given_normals(mesh, loaded)
     called = name if isinstance(name, str) else None
-    return Mesh(vertices, faces, _given_normals(mesh, loaded), uv, *shines, called)
+    for visual, of_it in _by_material(mesh.visual, faces):
+        look = look_of(visual, len(vertices))
+        yield Mesh(vertices, of_it, normals, uv, look.material, look.emission, look.colors, called)
+
+
+def _by_material(visual: Any, faces: NDArray[Any]) -> Iterator[tuple[Any, NDArray[Any]]]:
+    """Yield the looks of a mesh with the faces that have them, by the number of the material."""
+    materials = getattr(getattr(visual, "material", None), "materials", None)
+    if materials is None:
+        yield visual, faces
+        return
+    if not len(materials):
+        yield _Plain(), faces
+        return
+    which = getattr(visual, "face_materials", None)
+    if which is None:
+        if len(materials) > 1:
+            warn_caller(
+                f"a mesh has {len(materials)} materials but no face_materials: all of its faces get the first"
+            )
+        which = np.zeros(len(faces), np.int64)
+    which = np.asarray(which).reshape(-1)
+    if len(which) != len(faces) or (len(which) and not 0 <= which.min() <= which.max() < len(materials)):
+        raise ValueError(
+            f"face_materials must be {len(faces)} numbers of {len(materials)} materials, one a face, got "
+            + (f"{len(which)}" if len(which) != len(faces) else f"{which.min()} to {which.max()}")
+        )
+    for number in np.unique(which):
+        yield _Plain(materials[number]), faces[which == number]
+
+
+class _Plain:
+    """What trimesh calls a visual, of one material or none."""
+
+    kind = "texture"
+
+    def __init__(self, material: Any = None) -> None:
+        self.material = material
 
 
 def _given_normals(mesh: Any, loaded: bool) -> NDArray[np.float64] | None:

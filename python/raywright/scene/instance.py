@@ -289,7 +289,7 @@ def _each(shapes: Any) -> Iterator[AnyShape]:
     elif isinstance(shapes, getattr(trimesh, "Trimesh", ())):
         from ..mesh_files.trimesh_objects import of_trimesh
 
-        yield of_trimesh(shapes)
+        yield from of_trimesh(shapes)
     elif isinstance(shapes, getattr(trimesh, "Scene", ())):
         from ..mesh_files.trimesh_objects import of_scene
 
