@@ -10,7 +10,7 @@ PACKAGE = Path(raywright.__file__).parent
 # Rooms, folders or files of the root, from the ground up; those of a floor do not know of each other.
 FLOORS = [
     {"_core"},
-    {"arrays"},
+    {"arrays", "locks"},
     {"accelerators", "cameras", "io"},
     {"textures"},
     {"media"},

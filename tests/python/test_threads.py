@@ -1,6 +1,7 @@
 """Threads beside forked processes and signals."""
 
 import multiprocessing
+import os
 import signal
 import subprocess
 import sys
@@ -47,6 +48,89 @@ def test_a_forked_process_has_threads_of_its_own():
     here = hit_count(None)  # the parent's threads are running when it forks
     with multiprocessing.get_context("fork").Pool(1) as pool:
         assert pool.map_async(hit_count, [None]).get(timeout=60) == [here]
+
+
+FORKS = """
+import os
+import sys
+import threading
+import warnings
+
+import numpy as np
+import raywright as rw
+from raywright.io.quiet import quiet, warn_caller
+from raywright.rendering.worker import _lock as jobs
+from raywright.scene.arrivals import _lock as arrivals
+
+box = rw.Scene(rw.Box((0, 0, 0), (1, 1, 1)))
+within, done = threading.Event(), threading.Event()
+
+
+def watch(share):
+    within.set()
+    done.wait(20)
+
+
+def build():
+    with quiet(), jobs, arrivals:
+        box.build(progress=watch)
+
+
+builder = threading.Thread(target=build)
+builder.start()
+assert within.wait(20)
+child = os.fork()
+if child == 0:
+    hit = box.intersect((0.5, 0.5, 3), (0, 0, -1)).hit  # the very scene that is being built
+    with quiet(), jobs, arrivals:
+        pass
+    with warnings.catch_warnings(record=True) as caught:
+        warn_caller("heard again")
+    os._exit(0 if hit and len(caught) == 1 else 7 + 2 * hit + len(caught))
+for _ in range(200):
+    ended, status = os.waitpid(child, os.WNOHANG)
+    if ended:
+        break
+    threading.Event().wait(0.05)
+else:
+    os.kill(child, 9)
+done.set()
+builder.join()
+assert ended and os.waitstatus_to_exitcode(status) == 0, (ended, ended and os.waitstatus_to_exitcode(status))
+assert box.intersect((0.5, 0.5, 3), (0, 0, -1)).hit
+"""
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork")
+def test_a_process_forked_while_a_thread_builds_builds_by_itself():
+    ended = subprocess.run(
+        [sys.executable, "-W", "ignore::DeprecationWarning", "-c", FORKS],
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
+    assert ended.returncode == 0, ended.stderr
+
+
+FORK_WITHIN = """
+import os
+from raywright.locks import Lock
+
+lock, undone = Lock(lambda: undone.append(1)), []
+with lock:
+    child = os.fork()
+    if child == 0:
+        with lock:  # the thread that forked holds it still
+            pass
+    else:
+        assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
+assert not undone
+"""
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork")
+def test_a_lock_of_the_thread_that_forks_stays_its_own():
+    subprocess.run([sys.executable, "-c", FORK_WITHIN], check=True, timeout=60)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals differ there")

@@ -1,6 +1,5 @@
 """A scene on a graphics processor."""
 
-import threading
 import warnings
 from types import TracebackType
 from typing import Any
@@ -9,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .._core import FlatScene
+from ..locks import Lock
 from ..query.flats import flat_arrays
 from ..query.hits import Hits
 from ..query.queries import known_by
@@ -39,7 +39,7 @@ class GpuScene:
         self._bytes = arrays.bytes
         self._is_closed = False
         # Buffers are the scene's, one batch of rays after the other.
-        self._lock = threading.Lock()
+        self._lock = Lock()
         self._kernels: Kernels | None = Kernels(
             device, arrays.nodes, arrays.triangles, arrays.depth, most, bounds, pipelines
         )

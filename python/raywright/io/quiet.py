@@ -1,16 +1,27 @@
 """Silence for other libraries while they read: what there is to say is in our own errors."""
 
 import sys
-import threading
 import warnings
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 import numpy as np
 
+from ..locks import Lock
+
+# What a read in progress has switched off.
+_silenced: list[ExitStack] = []
+
+
+def _unsilence() -> None:
+    """Switch on again what a thread of the parent had switched off, in a forked process."""
+    while _silenced:
+        _silenced.pop().close()
+
+
 # Switching off a log and Python's warnings is for the whole process, so reads take turns.
-_lock = threading.RLock()
+_lock = Lock(abandoned=_unsilence)
 
 
 @contextmanager
@@ -20,15 +31,18 @@ def quiet(strictly: type[Warning] | None = None) -> Iterator[None]:
     import logging
 
     log = logging.getLogger("trimesh")
-    with _lock, warnings.catch_warnings(), np.errstate(all="ignore"):
+    with _lock, np.errstate(all="ignore"), ExitStack() as silence:
+        silence.enter_context(warnings.catch_warnings())
         warnings.simplefilter("ignore")
         if strictly is not None:
             warnings.simplefilter("error", strictly)
-        before, log.disabled = log.disabled, True
+        silence.callback(setattr, log, "disabled", log.disabled)
+        log.disabled = True
+        _silenced.append(silence)
         try:
             yield
         finally:
-            log.disabled = before
+            _silenced.remove(silence)
 
 
 def warn_caller(message: str) -> None:

@@ -1,6 +1,5 @@
 """What is to be rendered."""
 
-import threading
 import warnings
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -9,6 +8,7 @@ from typing import Any
 from .. import _core
 from ..cameras import AnyCamera
 from ..integrators import AnyIntegrator, Path
+from ..locks import Lock
 from ..scene.digest import digest
 from ..scene.scene import Scene
 from .filters import Filter
@@ -30,7 +30,7 @@ class Job:
     transparent: bool = False
     apart: bool = False
     told: tuple[str, ...] = ()
-    _compiling: threading.Lock = field(default_factory=threading.Lock, repr=False)
+    _compiling: Lock = field(default_factory=Lock, repr=False)
 
     def _arguments(self) -> tuple[Any, ...]:
         how = self.seed, self.adaptive, self.clamp, self.sampler, self.filter, self.transparent, self.apart

@@ -9,7 +9,6 @@ import hashlib
 import os
 import pickle
 import socket
-import threading
 import time
 import traceback
 from collections import OrderedDict
@@ -18,12 +17,13 @@ from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
 
+from ..locks import Lock
 from .job import Job
 
 # Scenes that a process keeps compiled.
 _KEPT = 4
 _jobs: OrderedDict[str, Job] = OrderedDict()
-_lock = threading.RLock()
+_lock = Lock()
 
 
 class Done(NamedTuple):

@@ -1,15 +1,15 @@
 """Scenes that come out of pickles, of which a process compiles each once."""
 
-import threading
 from collections import OrderedDict
 
 from .. import _core
+from ..locks import Lock
 from .digest import digest
 
 # More would hold the memory of scenes that nobody asks any more.
 _MOST = 2
 _kept: "OrderedDict[str, _core.CompiledScene]" = OrderedDict()
-_lock = threading.Lock()
+_lock = Lock()
 
 
 class Arrival:

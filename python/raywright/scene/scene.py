@@ -1,6 +1,6 @@
 """A scene: what can be hit, and what shines."""
 
-import threading
+import os
 import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager
@@ -14,6 +14,7 @@ from ..accelerators import BVH, Accelerator
 from ..arrays import choice
 from ..lights import Environment, Light, environments
 from ..lights import lights as checked_lights
+from ..locks import Lock
 from ..media.medium import Medium
 from ..media.medium import medium as checked_medium
 from ..query.flats import FlatArrays, flat_arrays
@@ -155,8 +156,9 @@ class Scene(Queries):
         self._alike: _core.CompiledScene | None = None
         self._is_loss_told = False
         # What watches a build runs in the thread that builds, which must not wait for itself.
-        self._lock = threading.RLock()
-        self._is_building = False
+        self._lock = Lock()
+        # Of which process: what another thread was building when a process was forked is not built there.
+        self._building = 0
 
     @property
     def shapes(self) -> tuple[AnyShape, ...]:
@@ -432,7 +434,7 @@ class Scene(Queries):
     def _unless_building(self) -> Iterator[None]:
         """Wait for whoever builds the scene, but for oneself."""
         with self._lock:
-            if self._is_building:
+            if self._building and self._building == os.getpid():
                 raise RuntimeError("the scene is being built: what watches that cannot ask it")
             yield
 
@@ -448,7 +450,7 @@ class Scene(Queries):
                     progress(1.0)
                 self._core = core
                 return core
-            self._is_building = True
+            self._building = os.getpid()
             try:
                 compiled = self._alike and self._alike.refitted(self)
                 if compiled is None:
@@ -460,7 +462,7 @@ class Scene(Queries):
                 if arrival is not None:
                     arrival.keep(compiled)
             finally:
-                self._is_building = False
+                self._building = 0
         if compiled.dropped:
             faces = sum(map(face_count, self._shapes))
             warnings.warn(

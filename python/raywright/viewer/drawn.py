@@ -1,6 +1,5 @@
 """What a page needs to draw a scene by itself: arrays for its graphics processor, and how rays spread."""
 
-import threading
 from collections.abc import Mapping
 from typing import Any
 
@@ -14,6 +13,7 @@ from ..gpu.looks import LeftError
 from ..gpu.packing import known_lit, packed
 from ..integrators import AnyIntegrator, Path
 from ..io.tone import TONES
+from ..locks import Lock
 from ..query.flats import FlatArrays, flat_arrays
 from ..rendering.filters import BoxFilter
 from ..scene.instance import AnyShape, Instance
@@ -57,7 +57,7 @@ class Drawn:
     ) -> None:
         self._scene, self._orbit, self._integrator = scene, orbit, integrator
         self._how, self._tone = how, tone
-        self._lock = threading.Lock()
+        self._lock = Lock()
         self._core: Any = None
         self._version = 0
         self._flat: FlatArrays | None = None

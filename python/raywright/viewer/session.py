@@ -14,6 +14,7 @@ from ..cameras import AnyCamera
 from ..integrators import AnyIntegrator
 from ..io import shown
 from ..io.tone import DEFAULT
+from ..locks import Lock
 from ..query.trees import TreeBoxes
 from ..rendering.image import Image
 from ..rendering.render import render
@@ -68,7 +69,7 @@ class Frame:
     exposure: float = 0.0
     tone: str = DEFAULT
     boxes: TreeBoxes | None = None
-    _lock: threading.Lock = field(default_factory=threading.Lock, repr=False, compare=False)
+    _lock: Lock = field(default_factory=Lock, repr=False, compare=False)
 
     @property
     def data(self) -> tuple[str, bytes]:
@@ -302,7 +303,7 @@ class Session:
                 number=self._count,
                 exposure=self._exposure,
                 boxes=self._boxes,
-                _lock=threading.Lock(),
+                _lock=Lock(),
             )
             self._changed.notify_all()
 
