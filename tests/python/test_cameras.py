@@ -109,6 +109,19 @@ def test_the_rays_of_a_thin_lens_meet_where_it_is_in_focus():
         assert np.abs((origins - EYE) @ camera.forward).max() < 1e-15
 
 
+def test_a_shifted_lens_sees_what_a_shifted_pinhole_does():
+    lens = np.random.default_rng(3).random((100, 2))
+    shift = {"fov": 50, "principal": (4.5, 17.0), **SIZE}
+    camera = rw.ThinLens(EYE, AT, aperture_radius=0.3, focus_distance=4.0, **shift)
+    pinhole = rw.Camera(EYE, AT, **shift)
+    for point in [(18.5, 10.5), (0, 0), (4.5, 17)]:
+        origins, directions = camera.rays_through(point, lens)
+        met = origins + directions * (4 / (directions @ camera.forward))[:, None]
+        assert np.ptp(met, axis=0).max() < 1e-12
+        assert np.abs(unit(met.mean(axis=0) - EYE) - pinhole.rays_through(point)[1]).max() < 1e-12
+    assert pinhole.rays_through((4.5, 17))[1] == pytest.approx(camera.forward, abs=1e-15)
+
+
 def test_f_stops_and_focal_lengths_are_those_of_photography():
     # 50 mm at f/2 before a sensor of 24 mm, in metres: a lens of 25 mm, and an angle of 27 degrees.
     camera = rw.ThinLens(EYE, AT, f_stop=2, focal_length=0.05)

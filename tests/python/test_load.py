@@ -84,7 +84,9 @@ def test_shots_compare_and_pickle(path):
 
 def test_shots_of_another_size_see_the_same():
     camera = rw.Camera((0, 0, 5), (0, 0, 0), focal=(20, 30), principal=(4, 5), width=12, height=8)
-    for eye in (camera, rw.Camera((0, 0, 5), (0, 0, 0), width=12, height=8)):
+    skewed = rw.Camera((0, 0, 5), (0, 0, 0), focal=(20, 30), skew=7, width=12, height=8)
+    lens = rw.ThinLens((0, 0, 5), (0, 0, 0), aperture_radius=0.0, principal=(4, 5), width=12, height=8)
+    for eye in (camera, rw.Camera((0, 0, 5), (0, 0, 0), width=12, height=8), skewed, lens):
         small = rw.Shot(rw.Scene([]), eye)
         large = small.resized(width=36)
         assert (large.camera.width, large.camera.height) == (36, 24)

@@ -1,6 +1,6 @@
 """What all cameras have: a picture, a shutter, and rays."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 import numpy as np
@@ -9,6 +9,8 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 from .. import _core
 from ..arrays import choice, integer, last_axis, number, real_array
 from .pose import Pose
+
+Pair = tuple[float, float]
 
 FOV_AXES = ("x", "y", "smaller", "larger", "diagonal")
 _CENTRE = (0.5, 0.5)
@@ -228,3 +230,27 @@ def _times(time: ArrayLike | None) -> NDArray[Any]:
 
 def _ordered(array: ArrayLike) -> NDArray[np.float64]:
     return np.asarray(array, np.float64, order="C")
+
+
+def pair(name: str, value: ArrayLike) -> Pair:
+    """Return two finite numbers."""
+    array = real_array(name, value)
+    if array.shape != (2,):
+        raise ValueError(f"{name} must be 2 numbers, got shape {array.shape}")
+    if not np.isfinite(array).all():
+        raise ValueError(f"{name} must be finite, got {tuple(array.tolist())}")
+    x, y = (float(v) for v in array)
+    return x, y
+
+
+def resized(camera: AnyCamera, width: int, height: int) -> AnyCamera:
+    """Return the camera with a picture of the same view that has so many pixels."""
+    across, down = width / camera.width, height / camera.height
+    changes: dict[str, Any] = {"width": width, "height": height}
+    # Lengths in pixels grow with their number.
+    for name in ("focal", "principal"):
+        if (lengths := getattr(camera, name, None)) is not None:
+            changes[name] = (lengths[0] * across, lengths[1] * down)
+    if hasattr(camera, "skew"):
+        changes["skew"] = camera.skew * across
+    return replace(camera, **changes)

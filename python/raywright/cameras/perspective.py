@@ -7,14 +7,12 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..arrays import number, real_array
-from .any_camera import AnyCamera, picture_axis, picture_length, view_angle
+from ..arrays import number
+from .any_camera import AnyCamera, Pair, pair, picture_axis, picture_length, view_angle
 from .matrices import of_camera_matrix, of_extrinsics, of_world
 from .pose import Pose
 
 _FOV = 40.0
-
-Pair = tuple[float, float]
 
 
 @dataclass(frozen=True, init=False, repr=False, kw_only=True)
@@ -91,14 +89,14 @@ class Camera(AnyCamera):
             raise ValueError("either fov or focal must be given, got both")
         if focal is None:
             fov = view_angle("fov", _FOV if fov is None else fov)
-        lengths = None if focal is None else _pair("focal", focal)
+        lengths = None if focal is None else pair("focal", focal)
         if lengths is not None and 0 in lengths:
             raise ValueError(f"focal must not be zero, got {lengths}")
         self._keep(
             fov=fov,
             fov_axis=picture_axis("fov_axis", fov_axis),
             focal=lengths,
-            principal=None if principal is None else _pair("principal", principal),
+            principal=None if principal is None else pair("principal", principal),
             skew=number("skew", skew),
         )
         if self.skew and focal is None:
@@ -173,13 +171,3 @@ class Camera(AnyCamera):
             across, down = self.focal
         x, y = self.principal or (0.5 * self.width, 0.5 * self.height)
         return np.array([(across, self.skew, x - 0.5), (0, down, y - 0.5), (0, 0, 1)])
-
-
-def _pair(name: str, value: ArrayLike) -> Pair:
-    array = real_array(name, value)
-    if array.shape != (2,):
-        raise ValueError(f"{name} must be 2 numbers, got shape {array.shape}")
-    if not np.isfinite(array).all():
-        raise ValueError(f"{name} must be finite, got {tuple(array.tolist())}")
-    x, y = (float(v) for v in array)
-    return x, y

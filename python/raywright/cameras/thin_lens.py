@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import Triple, integer, number, positive, triple
-from .any_camera import AnyCamera, picture_axis, picture_length, view_angle
+from .any_camera import AnyCamera, Pair, pair, picture_axis, picture_length, view_angle
 from .pose import Pose
 
 _FOV = 40.0
@@ -53,6 +53,9 @@ class ThinLens(AnyCamera):
         corner is to the right.
     fov_axis : str
         What `fov` is measured along, as `Camera` has it.
+    principal : 2 floats, optional
+        Where the middle of the view is seen, in pixels from the left and the top of the picture; its middle
+        if not given. Elsewhere the lens is shifted.
     moved_to, shutter
         As `Camera` has it. The distance in focus stays that at the shutter's opening.
 
@@ -77,6 +80,7 @@ class ThinLens(AnyCamera):
     blades: int = 0
     blade_rotation: float = 0.0
     fov_axis: str = "y"
+    principal: Pair | None = None
 
     def __init__(
         self,
@@ -97,6 +101,7 @@ class ThinLens(AnyCamera):
         blade_rotation: float = 0.0,
         direction: ArrayLike | None = None,
         fov_axis: str = "y",
+        principal: ArrayLike | None = None,
         moved_to: Pose | None = None,
         shutter: ArrayLike = (0.0, 1.0),
     ) -> None:
@@ -121,6 +126,7 @@ class ThinLens(AnyCamera):
             blades=integer("blades", blades, 0, 1024),
             blade_rotation=number("blade_rotation", blade_rotation),
             fov_axis=picture_axis("fov_axis", fov_axis),
+            principal=None if principal is None else pair("principal", principal),
         )
         if self.aperture_radius is not None and self.aperture_radius < 0:
             raise ValueError(f"aperture_radius must be at least 0, got {aperture_radius}")

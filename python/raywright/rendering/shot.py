@@ -4,7 +4,8 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from ..arrays import integer
-from ..cameras import AnyCamera, Camera
+from ..cameras import AnyCamera
+from ..cameras.any_camera import resized
 from ..integrators import AnyIntegrator, Path
 from ..scene.scene import Scene
 from .filters import BoxFilter, Filter
@@ -116,12 +117,4 @@ class Shot:
             width = max(round(before.width * integer("height", height or 0, 1) / before.height), 1)
         if height is None:
             height = max(round(before.height * integer("width", width, 1) / before.width), 1)
-        lens: dict[str, Any] = {}
-        if isinstance(before, Camera):
-            # What is given in pixels grows with them.
-            by = width / before.width, height / before.height
-            for name in ("focal", "principal"):
-                if (pair := getattr(before, name)) is not None:
-                    lens[name] = pair[0] * by[0], pair[1] * by[1]
-            lens["skew"] = before.skew * by[0] / by[1]
-        return replace(self, camera=replace(before, width=width, height=height, **lens))
+        return replace(self, camera=resized(before, width, height))

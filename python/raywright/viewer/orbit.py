@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import number
-from ..cameras import AnyCamera, Camera, Orthographic, Pose, ThinLens
+from ..cameras import AnyCamera, Orthographic, Pose, ThinLens
+from ..cameras.any_camera import resized as resized
 from .boxes import check_flat, spread
 
 # Degrees from straight above or below: nearer than that, which way is up would not be told.
@@ -160,19 +161,6 @@ class Orbit:
             own = self._camera.focus_distance is not None
             changes |= {"focus_point": None, "focus_distance": sharp if own else sharp / view.zoom}
         return replace(self._camera, **changes)
-
-
-def resized(camera: AnyCamera, width: int, height: int) -> AnyCamera:
-    """Return the camera with a picture of the same view that has so many pixels."""
-    across, down = width / camera.width, height / camera.height
-    changes: dict[str, Any] = {"width": width, "height": height}
-    # What is given in pixels has as many more of them.
-    if isinstance(camera, Camera):
-        for name, pair in (("focal", camera.focal), ("principal", camera.principal)):
-            if pair is not None:
-                changes[name] = (pair[0] * across, pair[1] * down)
-        changes["skew"] = camera.skew * across
-    return replace(camera, **changes)
 
 
 def scaled(size: tuple[int, int], factor: float) -> tuple[int, int]:

@@ -117,16 +117,16 @@ fn perspective(camera: &Bound<'_, PyAny>, body: Body) -> PyResult<Box<dyn Camera
     let size = body.size();
     let window = match (fov, focal) {
         (None, Some(focal)) => Window::of_matrix(focal, principal.unwrap_or(size.map(|n| 0.5 * n)), skew, size),
-        (Some(fov), None) => {
-            let centred = Window::of_view(fov, fov_axis.0, size);
-            match principal {
-                Some(principal) => centred.and_then(|window| window.seen_from(principal, size)),
-                None => centred,
-            }
-        }
+        (Some(fov), None) => of_view((fov, fov_axis), principal, size),
         _ => return Err(PyValueError::new_err("a camera has fov or focal, and not both")),
     };
     made(window.map(|window| Perspective::new(body, window)))
+}
+
+/// Of an angle of view, and of the point of the film at which the middle of the view is seen.
+fn of_view((fov, along): (f64, Axis), principal: Option<[f64; 2]>, size: [f64; 2]) -> Result<Window, CameraError> {
+    let centred = Window::of_view(fov, along.0, size)?;
+    principal.map_or(Ok(centred), |principal| centred.seen_from(principal, size))
 }
 
 /// `raywright.ThinLens`.
@@ -138,11 +138,12 @@ struct PyThinLens {
     focused_distance: f64,
     blades: u32,
     blade_rotation: f64,
+    principal: Option<[f64; 2]>,
 }
 
 fn thin_lens(camera: &Bound<'_, PyAny>, body: Body) -> PyResult<Box<dyn Camera>> {
     let lens: PyThinLens = camera.extract()?;
-    let window = Window::of_view(lens.view.0, lens.view.1.0, body.size()).map_err(refused)?;
+    let window = of_view(lens.view, lens.principal, body.size()).map_err(refused)?;
     let aperture = Aperture::new(lens.lens_radius, lens.blades, lens.blade_rotation.to_radians()).map_err(refused)?;
     made(ThinLens::new(body, window, aperture, lens.focused_distance))
 }
