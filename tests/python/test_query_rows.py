@@ -67,6 +67,36 @@ def test_some_hits_are_those_of_some_rays(scene, index, asked):
     assert np.array_equal(some.leave(ways).origins, hits.leave(ways).origins[tail], equal_nan=True)
 
 
+def test_one_of_many_is_as_some_that_are_one(scene):
+    """What is known, of points, closest points and all hits, of two dimensions and of one."""
+    origins, ways = RAYS[0], RAYS[1]
+    for known in (False, True):
+        for found in (
+            scene.intersect(origins, ways),
+            scene.intersect(origins, ways)[3],
+            scene.closest_point(ways),
+            scene.intersect_all(origins, ways),
+            scene.intersect_all(origins, ways)[:, 4],
+        ):
+            if known:
+                for name in ("position", "normal", "surface", "instance"):
+                    getattr(found, name)
+            for i in (0, -1, np.int32(2), len(found) - 1):
+                one, some = found[i], found[[i]]
+                assert one.shape == some.shape[1:] == found.shape[1:]
+                for name in ("shape_id", "primitive", "uv", "position", "normal", "instance", "surface"):
+                    mine, theirs = getattr(one, name), getattr(some, name)
+                    if name == "surface":
+                        mine, theirs = mine.dp_du, theirs.dp_du
+                    assert np.array_equal(
+                        mine.reshape(-1), theirs.reshape(-1), equal_nan=mine.dtype.kind == "f"
+                    )
+                    assert not mine.flags.writeable
+            for i in (len(found), -len(found) - 1):
+                with pytest.raises(IndexError, match="out of bounds for axis 0"):
+                    found[i]
+
+
 def test_hits_are_iterated_by_rays(scene):
     hits = scene.intersect(*RAYS)
     rows = list(hits)

@@ -93,10 +93,17 @@ class AllHits(SurfacePoints):
 
     def __getitem__(self, index: Any) -> "AllHits":
         """Return all hits of the rays at some places of the leading shape, which is indexed as arrays are."""
-        rays = rows.places(self.shape, index)
-        splits, which = rows.of_rays(self.ray_splits, rays.reshape(-1))
         by_ray = ("ray_splits", "ray", "count", "first", "shape")
-        own = rows.picked({name: v for name, v in vars(self).items() if name not in by_ray}, which)
+        own = {name: v for name, v in vars(self).items() if name not in by_ray}
+        one = rows.place(self.shape, index)
+        if one is None:
+            rays = rows.places(self.shape, index)
+            splits, which = rows.of_rays(self.ray_splits, rays.reshape(-1))
+            own = rows.picked(own, which)
+        else:
+            rays = rows.run(self.shape, one)
+            begins = self.ray_splits[rays.size * one :][: rays.size + 1]
+            splits, own = begins - begins[0], rows.cut(own, slice(begins[0], begins[-1]))
         return chosen(AllHits, self, {**own, "ray_splits": sealed(splits), "shape": rays.shape}, rays)
 
     def __iter__(self) -> "Iterator[AllHits]":

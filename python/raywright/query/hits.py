@@ -286,8 +286,7 @@ class Hits(SurfacePoints):
 
     def __getitem__(self, index: Any) -> "Hits":
         """Return the hits at some places of the leading shape, which is indexed as arrays are."""
-        which = rows.places(self.shape, index)
-        return chosen(Hits, self, rows.picked(vars(self), which), which)
+        return one_or_some(Hits, self, index)
 
     def __iter__(self) -> "Iterator[Hits]":
         return (self[i] for i in range(len(self)))
@@ -371,8 +370,7 @@ class ClosestPoints(SurfacePoints):
 
     def __getitem__(self, index: Any) -> "ClosestPoints":
         """Return the closest points at some places of the leading shape, which is indexed as arrays are."""
-        which = rows.places(self.shape, index)
-        return chosen(ClosestPoints, self, rows.picked(vars(self), which), which)
+        return one_or_some(ClosestPoints, self, index)
 
     def __iter__(self) -> "Iterator[ClosestPoints]":
         return (self[i] for i in range(len(self)))
@@ -430,6 +428,19 @@ def rewritten(out: Hits, shape: tuple[int, ...]) -> Iterator[tuple[Any, ...]]:
     finally:
         for array in known:
             array.setflags(write=False)
+
+
+def one_or_some(kind: type[Points], of: Any, index: Any) -> Points:
+    """Return the points at some places of the leading shape, which is indexed as arrays are."""
+    one = rows.place(of.shape, index)
+    if one is None:
+        which = rows.places(of.shape, index)
+        return chosen(kind, of, rows.picked(vars(of), which), which)
+    # Nothing is worked out for all places, so that iterating takes linear time.
+    points = kind.__new__(kind)
+    rays = None if of._rays is None else rows.rays_of(of._rays, rows.run(of.shape, one))
+    vars(points).update(rows.cut(vars(of), one), _compiled=of._compiled, _rays=rays)
+    return points
 
 
 def chosen(kind: type[Points], of: SurfacePoints, own: dict[str, Any], rays: NDArray[np.int64]) -> Points:

@@ -1,6 +1,7 @@
 """What rays and points find, picked by ray, and as columns of a table."""
 
 import copy
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -48,14 +49,58 @@ def _rows(array: NDArray[Any], lead: int, which: NDArray[np.int64]) -> NDArray[A
     return some
 
 
+def place(shape: tuple[int, ...], index: Any) -> int | None:
+    """Return which of the first dimension an index picks, counted from 0, if it is one integer; or None.
+
+    Raises
+    ------
+    IndexError
+        If there are not so many.
+    """
+    if not shape or isinstance(index, bool | np.bool_) or not isinstance(index, int | np.integer):
+        return None
+    if not -shape[0] <= index < shape[0]:
+        raise IndexError(f"index {index} is out of bounds for axis 0 with size {shape[0]}")
+    return int(index) % shape[0]
+
+
+def run(shape: tuple[int, ...], first: int) -> NDArray[np.int64]:
+    """Return by number the places of a leading shape at one of its first dimension."""
+    count = math.prod(shape[1:])
+    return np.arange(first * count, (first + 1) * count).reshape(shape[1:])
+
+
+def cut(own: dict[str, Any], which: int | slice) -> dict[str, Any]:
+    """Return what is known of all, of one place of the first dimension or of a run: read-only copies."""
+    parts = {name: value for name, value in own.items() if name not in ("_compiled", "_rays")}
+    return {name: _cut(value, which) for name, value in parts.items()}
+
+
+def _cut(value: Any, which: int | slice) -> Any:
+    if isinstance(value, Surface):
+        return Surface(*(_cut(part, which) for part in vars(value).values()))
+    if not isinstance(value, np.ndarray):
+        return value
+    some = np.array(value[which])
+    some.setflags(write=False)
+    return some
+
+
 def rays_of(rays: tuple[Any, ...] | None, which: NDArray[np.int64]) -> tuple[Any, ...] | None:
     """Return the origins, directions and times of some rays; one of any that serves for all still does."""
     if rays is None:
         return None
     starts, ways, time = rays
     if isinstance(time, np.ndarray) and time.size > 1:
-        time = time.reshape(-1)[which]
-    return (*(ends if ends.size == 3 else ends.reshape(-1, 3)[which] for ends in (starts, ways)), time)
+        time = _at(time, time.shape, which)
+    # Each has all of the leading shape, which may repeat: no copy of all of it is made.
+    return (*(ends if ends.size == 3 else _at(ends, ends.shape[:-1], which) for ends in (starts, ways)), time)
+
+
+def _at(array: NDArray[Any], lead: tuple[int, ...], which: NDArray[np.int64]) -> NDArray[Any]:
+    """Return the entries of places of a leading shape, told by number in C order."""
+    some: NDArray[Any] = array[np.unravel_index(which, lead)]
+    return some
 
 
 def of_rays(
