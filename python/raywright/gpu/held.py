@@ -157,11 +157,15 @@ class GpuScene:
 
 def _part(rays: RayArguments, count: int, start: int, stop: int) -> RayArguments:
     """Return the rays from `start` to `stop` of `count`, as the core takes them; time is not asked for."""
-    origins, directions, t_min, t_max, _, threads, _ = rays
+    origins, directions, t_min, t_max, lead, threads, _ = rays
 
-    def some(array: NDArray[Any]) -> NDArray[Any]:
-        return array[start:stop] if len(array) == count and count > 1 else array
+    def some(array: NDArray[Any], columns: tuple[int, ...]) -> NDArray[Any]:
+        if array.flags.c_contiguous:
+            array = array.reshape(-1, *columns)
+            return array[start:stop] if len(array) == count and count > 1 else array
+        # Where rays repeat, no copy of all of them is made.
+        return array[np.unravel_index(np.arange(start, stop), lead)]
 
-    starts, ways = (some(array.reshape(-1, 3)) for array in (origins, directions))
-    near, far = (some(x.reshape(-1)) if isinstance(x, np.ndarray) else x for x in (t_min, t_max))
+    starts, ways = (some(array, (3,)) for array in (origins, directions))
+    near, far = (some(x, ()) if isinstance(x, np.ndarray) else x for x in (t_min, t_max))
     return starts, ways, near, far, (stop - start,), threads, None

@@ -117,13 +117,20 @@ def cone_arguments(
         raise ValueError(f"half_angle must be at least 0 and less than 90 degrees, got {came}")
     starts, ways, _, most, lead, threads, _ = ray_arguments(origins, directions, 0.0, t_max, threads)
     if not angles.ndim:
+        starts, ways, most = _whole(starts, ways, most, lead)
         return starts, ways, float(angles), most, lead, threads
     try:
         shape = np.broadcast_shapes(lead, angles.shape)
     except ValueError:
         told = f"cones {lead}, half_angle {angles.shape}"
         raise ValueError(f"leading shapes do not broadcast: {told}") from None
-    if shape != lead:
-        starts, ways = spread(starts, shape, (3,)), spread(ways, shape, (3,))
-        most = spread(most, shape) if isinstance(most, np.ndarray) else most
+    starts, ways, most = _whole(starts, ways, most, shape)
     return starts, ways, spread(angles, shape), most, shape, threads
+
+
+def _whole(
+    starts: Floats, ways: Floats, most: float | NDArray[np.float64], shape: tuple[int, ...]
+) -> tuple[Floats, Floats, float | NDArray[np.float64]]:
+    """Return apexes, axes and distances with one row, or one for each cone."""
+    far = spread(most, shape) if isinstance(most, np.ndarray) else most
+    return spread(starts, shape, (3,)), spread(ways, shape, (3,)), far

@@ -30,7 +30,8 @@ def ray_arguments(
 ) -> RayArguments:
     """Check and broadcast rays, and give what the core's queries take.
 
-    C-contiguous float32 and float64 arrays pass as they are; each array has one row, or one for each ray.
+    C-contiguous float32 and float64 arrays pass as they are; each array has one row, or one for each ray. Of
+    what is broadcast the core is given a view of the shape of all rays, and copies a chunk of it at a time.
 
     Returns
     -------
@@ -47,9 +48,9 @@ def ray_arguments(
     if type(near) is float and type(far) is float and not isinstance(when, np.ndarray):
         # The usual rays need no broadcasting, and a few of them no more time than it takes to trace them.
         if not lead or shape == lead:
-            return _in_order(starts), _in_order(ways), near, far, shape, threads, when
+            return _view(starts, shape, 1), _view(ways, lead, 1), near, far, shape, threads, when
         if not shape:
-            return _in_order(starts), _in_order(ways), near, far, lead, threads, when
+            return _in_order(starts), _view(ways, lead, 1), near, far, lead, threads, when
     parts = {"origins": shape, "directions": lead, "t_min": np.shape(near), "t_max": np.shape(far)}
     if isinstance(when, np.ndarray):
         parts["time"] = when.shape
@@ -58,9 +59,9 @@ def ray_arguments(
     except ValueError:
         told = ", ".join(f"{name} {lead}" for name, lead in parts.items())
         raise ValueError(f"leading shapes do not broadcast: {told}") from None
-    near, far = (spread(x, shape) if isinstance(x, np.ndarray) else x for x in (near, far))
-    when = spread(when, shape) if isinstance(when, np.ndarray) else when
-    return spread(starts, shape, (3,)), spread(ways, shape, (3,)), near, far, shape, threads, when
+    near, far = (_view(x, shape) if isinstance(x, np.ndarray) else x for x in (near, far))
+    when = _view(when, shape) if isinstance(when, np.ndarray) else when
+    return _view(starts, shape, 1), _view(ways, shape, 1), near, far, shape, threads, when
 
 
 def flags(name: str, array: NDArray[np.bool_], shape: tuple[int, ...]) -> NDArray[np.bool_]:
@@ -125,6 +126,22 @@ def _in_order(array: NDArray[Any]) -> NDArray[Any]:
     """Return it C-contiguous and aligned."""
     flags = array.flags
     return array if flags.c_contiguous and flags.aligned else np.require(array, requirements=["C", "A"])
+
+
+def _view(array: NDArray[Any], lead: tuple[int, ...], columns: int = 0) -> NDArray[Any]:
+    """Return it with a row for each ray, C-contiguous but where it repeats; or one row for all."""
+    if array.flags.c_contiguous and array.flags.aligned:
+        base = array
+    else:
+        steps = array.strides[: array.ndim - columns]
+        base = _in_order(array[tuple(slice(None) if step else slice(1) for step in steps)])
+    shape = lead + base.shape[base.ndim - columns :]
+    if base.size == math.prod(shape[len(lead) :]):
+        return base
+    if base.size == math.prod(shape):
+        # Dimensions of length one are no matter.
+        return base.reshape(shape)
+    return np.broadcast_to(base, shape)
 
 
 def spread(array: NDArray[Any], lead: tuple[int, ...], columns: tuple[int, ...] = ()) -> NDArray[Any]:

@@ -9,6 +9,7 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyFloat, PyTuple};
 
+use super::broadcast::Repeats;
 use raywright::math::{DVec3, Vec3};
 use raywright::scene::Vertices;
 
@@ -74,12 +75,43 @@ impl Row for [f32; 3] {
 }
 
 impl Triples<'_> {
+    /// Its rows, and which of them each ray has if it is broadcast.
+    pub fn repeated(&self, name: &str) -> PyResult<(Rows<'_>, Option<Repeats>)> {
+        let shape = match self {
+            Self::Double(array) => array.shape(),
+            Self::Single(array) => array.shape(),
+        };
+        if shape.last() != Some(&3) {
+            return Err(PyValueError::new_err(format!("{name} has shape {shape:?}, expected (..., 3)")));
+        }
+        Ok(match self {
+            Self::Double(array) => {
+                let (rows, repeats) = Repeats::of(name, array, 3)?;
+                (Rows::Double(rows.as_chunks().0), repeats)
+            }
+            Self::Single(array) => {
+                let (rows, repeats) = Repeats::of(name, array, 3)?;
+                (Rows::Single(rows.as_chunks().0), repeats)
+            }
+        })
+    }
+
     /// Its rows; `name` is the argument's, for the error if it is not what the package promised.
     pub fn rows(&self, name: &str) -> PyResult<Rows<'_>> {
         Ok(match self {
             Self::Double(array) => Rows::Double(vectors(name, array)?),
             Self::Single(array) => Rows::Single(vectors(name, array)?),
         })
+    }
+}
+
+impl<'a> Rows<'a> {
+    /// Some of them, or the one that serves for all.
+    pub fn some(self, start: usize, count: usize) -> Self {
+        match self {
+            Rows::Single(rows) => Rows::Single(if rows.len() == 1 { rows } else { &rows[start..][..count] }),
+            Rows::Double(rows) => Rows::Double(if rows.len() == 1 { rows } else { &rows[start..][..count] }),
+        }
     }
 }
 
@@ -138,6 +170,14 @@ impl<'py> FromPyObject<'_, 'py> for Numbers<'py> {
 }
 
 impl Numbers<'_> {
+    /// All of them, or the only one, and which of them each ray has if they are broadcast.
+    pub fn repeated(&self, name: &str) -> PyResult<(&[f64], Option<Repeats>)> {
+        match self {
+            Self::One(number) => Ok((number, None)),
+            Self::Each(array) => Repeats::of(name, array, 1),
+        }
+    }
+
     /// All of them, or the only one; `name` is the argument's.
     pub fn slice(&self, name: &str) -> PyResult<&[f64]> {
         match self {

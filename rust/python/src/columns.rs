@@ -129,14 +129,6 @@ fn some<T: Clone + Default>(room: &mut Vec<T>, count: usize) -> &mut [T] {
     &mut room[..count]
 }
 
-/// Some rows, or the one that serves for all.
-fn slice(rows: Rows<'_>, start: usize, count: usize) -> Rows<'_> {
-    match rows {
-        Rows::Single(rows) => Rows::Single(if rows.len() == 1 { rows } else { &rows[start..][..count] }),
-        Rows::Double(rows) => Rows::Double(if rows.len() == 1 { rows } else { &rows[start..][..count] }),
-    }
-}
-
 fn spread(rows: Rows<'_>) -> Spread {
     match rows {
         Rows::Single(rows) => Spread::of(rows),
@@ -243,7 +235,7 @@ impl RayArrays<'_> {
         if !self.tiling.is_sequence() || count < FEW || !is_coherent(count, ray, extent) {
             return None;
         }
-        let (from, towards) = (slice(self.origins, start, count), slice(self.directions, start, count));
+        let (from, towards) = (self.origins.some(start, count), self.directions.some(start, count));
         let (origins, directions) = (spread(from), spread(towards));
         let (far, wide) = (origins.over(Some(extent)), directions.over(None));
         let (rows, spread, size) = if far >= wide { (from, origins, far) } else { (towards, directions, wide) };

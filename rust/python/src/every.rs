@@ -6,7 +6,7 @@ use std::mem::take;
 
 use super::arrays::{sealed, unwritten};
 use super::instances::located;
-use super::rays::{RayArrays, chunks, each};
+use super::rays::{RayArrays, RayBatch, chunks, each};
 use raywright::math::Hit;
 use raywright::scene::{Filter, Scene};
 
@@ -65,15 +65,15 @@ pub type AllHits<'py> = (
 pub fn intersect_all<'py>(
     py: Python<'py>,
     scene: &Scene,
-    rays: &RayArrays<'_>,
+    rays: &RayBatch<'_>,
     threads: Option<usize>,
     filter: Option<&Filter>,
 ) -> PyResult<AllHits<'py>> {
-    let mut found = each(py, threads, chunks(rays.count, rays.chunk()), |(start, count)| {
-        Chunk::of(scene, rays, start, count, filter)
+    let mut found = each(py, threads, chunks(rays.count(), rays.chunk()), |(start, count)| {
+        rays.part(start, count, |rays, start| Chunk::of(scene, rays, start, count, filter))
     })?;
     let total: usize = found.iter().map(|chunk| chunk.hits.len()).sum();
-    let (splits, t) = (unwritten(py, &[rays.count + 1], None)?, unwritten(py, &[total], None)?);
+    let (splits, t) = (unwritten(py, &[rays.count() + 1], None)?, unwritten(py, &[total], None)?);
     let (shape, primitive) = (unwritten(py, &[total], None)?, unwritten(py, &[total], None)?);
     let uv = unwritten(py, &[total], Some(2))?;
     let has_instances = scene.geometry().has_instances();

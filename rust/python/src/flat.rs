@@ -11,7 +11,7 @@ use super::hits::{HitArrays, Hits};
 use super::instances;
 use super::level;
 use super::query::{CompiledScene, write};
-use super::rays::{BATCH, RayArguments, RayArrays, answer, share};
+use super::rays::{BATCH, RayArguments, RayBatch, answer, share};
 use raywright::accel::Primitives;
 use raywright::accel::flat::{CANDIDATES, CERTAIN, Flat, NO_CANDIDATE, Settled, Settler, flat_ray};
 use raywright::math::Hit;
@@ -122,18 +122,20 @@ impl FlatScene {
     /// Rays as kernels take them: (N, 8) float32.
     fn rays<'py>(&self, py: Python<'py>, rays: RayArguments<'py>) -> PyResult<Bound<'py, PyArrayDyn<f32>>> {
         let (threads, rays) = (rays.threads, rays.rays()?);
-        let out = unwritten(py, &[rays.count], Some(8))?;
+        let out = unwritten(py, &[rays.count()], Some(8))?;
         answer(
             py,
-            rays.count,
+            rays.count(),
             rays.chunk(),
             threads,
             out.readwrite().as_slice_mut()?.as_chunks_mut().0,
             |start, out| {
-                rays.gathered(start, out.len(), |batch, places| {
-                    for (ray, &place) in batch.iter().zip(places) {
-                        out[place] = flat_ray(ray, &self.flat.region);
-                    }
+                rays.part(start, out.len(), |rays, start| {
+                    rays.gathered(start, out.len(), |batch, places| {
+                        for (ray, &place) in batch.iter().zip(places) {
+                            out[place] = flat_ray(ray, &self.flat.region);
+                        }
+                    });
                 });
             },
         )?;
@@ -155,23 +157,33 @@ impl FlatScene {
         let settler = Settler::new(scene.geometry(), &self.flat, scene.accelerator(), level()?);
         let (decided, walked) = (AtomicUsize::new(0), AtomicUsize::new(0));
         let hits = HitArrays::new(py, scene, lead, None)?.written(|parts| {
-            answer(py, rays.count, rays.chunk(), threads, parts, |start, ((t, shape, primitive, uv), mut instance)| {
-                let count = t.len();
-                let mut hits = vec![Hit::MISS; BATCH.min(count)];
-                let mut mine = Vec::with_capacity(hits.len());
-                rays.gathered(start, count, |batch, places| {
-                    let hits = &mut hits[..batch.len()];
-                    mine.clear();
-                    mine.extend(places.iter().map(|place| candidates[start + place]));
-                    let told: Settled = settler.closest(batch, &mine, hits);
-                    decided.fetch_add(told.decided, Ordering::Relaxed);
-                    walked.fetch_add(told.walked, Ordering::Relaxed);
-                    write(scene, hits, places, (t, shape, primitive, uv));
-                    if let Some(instance) = &mut instance {
-                        instances::write(scene, hits, places, instance, primitive);
-                    }
-                });
-            })
+            answer(
+                py,
+                rays.count(),
+                rays.chunk(),
+                threads,
+                parts,
+                |start, ((t, shape, primitive, uv), mut instance)| {
+                    let count = t.len();
+                    let mut hits = vec![Hit::MISS; BATCH.min(count)];
+                    let mut mine = Vec::with_capacity(hits.len());
+                    let candidates = &candidates[start..];
+                    rays.part(start, count, |rays, start| {
+                        rays.gathered(start, count, |batch, places| {
+                            let hits = &mut hits[..batch.len()];
+                            mine.clear();
+                            mine.extend(places.iter().map(|&place| candidates[place]));
+                            let told: Settled = settler.closest(batch, &mine, hits);
+                            decided.fetch_add(told.decided, Ordering::Relaxed);
+                            walked.fetch_add(told.walked, Ordering::Relaxed);
+                            write(scene, hits, places, (t, shape, primitive, uv));
+                            if let Some(instance) = &mut instance {
+                                instances::write(scene, hits, places, instance, primitive);
+                            }
+                        });
+                    });
+                },
+            )
         })?;
         Ok((hits, (decided.into_inner(), walked.into_inner())))
     }
@@ -191,19 +203,21 @@ impl FlatScene {
         let settler = Settler::new(scene.geometry(), &self.flat, scene.accelerator(), level()?);
         let out = unwritten(py, lead, None)?;
         let (decided, walked) = (AtomicUsize::new(0), AtomicUsize::new(0));
-        answer(py, rays.count, share(rays.count), threads, out.readwrite().as_slice_mut()?, |start, out| {
+        answer(py, rays.count(), share(rays.count()), threads, out.readwrite().as_slice_mut()?, |start, out| {
             // Most are answered already: only of the others is the ray wanted.
             let (mut open, mut places, mut mine) = (Vec::new(), Vec::new(), Vec::new());
             let is_open = |told: u32| told != CERTAIN && (told != NO_CANDIDATE || !self.flat.unbounded.is_empty());
-            for (i, to) in out.iter_mut().enumerate() {
-                let told = told[start + i];
-                *to = told == CERTAIN;
-                if is_open(told) {
-                    open.push(rays.ray(start + i));
-                    places.push(i);
-                    mine.push(told);
+            let (count, told) = (out.len(), &told[start..]);
+            rays.part(start, count, |rays, start| {
+                for (i, to) in out.iter_mut().enumerate() {
+                    *to = told[i] == CERTAIN;
+                    if is_open(told[i]) {
+                        open.push(rays.ray(start + i));
+                        places.push(i);
+                        mine.push(told[i]);
+                    }
                 }
-            }
+            });
             let mut found = vec![false; open.len()];
             let settled = settler.occluded(&open, &mine, &mut found);
             decided.fetch_add(settled.decided, Ordering::Relaxed);
@@ -216,10 +230,10 @@ impl FlatScene {
 
 impl FlatScene {
     /// Refuses what is told of another number of rays, so many numbers each, or of primitives that there are not.
-    fn check<const K: usize>(&self, rays: &RayArrays<'_>, told: &[[u32; K]]) -> PyResult<()> {
-        if rays.count != told.len() {
+    fn check<const K: usize>(&self, rays: &RayBatch<'_>, told: &[[u32; K]]) -> PyResult<()> {
+        if rays.count() != told.len() {
             let count = told.len();
-            return Err(PyValueError::new_err(format!("{count} rays are told of, expected {}", rays.count)));
+            return Err(PyValueError::new_err(format!("{count} rays are told of, expected {}", rays.count())));
         }
         let count = Primitives::count(self.scene.get().scene().geometry()) as u32;
         let strange = |row: &[u32; K]| row.iter().any(|&p| p >= count && p < CERTAIN);

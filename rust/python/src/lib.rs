@@ -2,6 +2,7 @@
 
 mod accelerators;
 mod arrays;
+mod broadcast;
 mod builds;
 mod cameras;
 mod columns;

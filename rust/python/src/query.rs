@@ -125,23 +125,25 @@ impl CompiledScene {
         let by_columns = scene.accelerator().by_columns().filter(|_| filter.is_none());
         let chunk = if by_columns.is_some() { rays.window() } else { rays.chunk() };
         HitArrays::new(py, scene, lead, out)?.written(|parts| {
-            answer(py, rays.count, chunk, threads, parts, |start, (parts, mut instance)| {
-                if let Some(tree) = by_columns {
-                    return rays.closest(scene.geometry(), tree, start, parts);
-                }
-                let (t, shape, primitive, uv) = parts;
-                let count = t.len();
-                let mut hits = vec![Hit::MISS; BATCH.min(count)];
-                rays.gathered(start, count, |batch, places| {
-                    let hits = &mut hits[..batch.len()];
-                    match &filter {
-                        Some(filter) => filter.intersect(scene, batch, false, hits),
-                        None => scene.intersect(batch, hits),
+            answer(py, rays.count(), chunk, threads, parts, |start, (parts, mut instance)| {
+                let count = parts.0.len();
+                rays.part(start, count, |rays, start| {
+                    if let Some(tree) = by_columns {
+                        return rays.closest(scene.geometry(), tree, start, parts);
                     }
-                    write(scene, hits, places, (t, shape, primitive, uv));
-                    if let Some(instance) = &mut instance {
-                        instances::write(scene, hits, places, instance, primitive);
-                    }
+                    let (t, shape, primitive, uv) = parts;
+                    let mut hits = vec![Hit::MISS; BATCH.min(count)];
+                    rays.gathered(start, count, |batch, places| {
+                        let hits = &mut hits[..batch.len()];
+                        match &filter {
+                            Some(filter) => filter.intersect(scene, batch, false, hits),
+                            None => scene.intersect(batch, hits),
+                        }
+                        write(scene, hits, places, (t, shape, primitive, uv));
+                        if let Some(instance) = &mut instance {
+                            instances::write(scene, hits, places, instance, primitive);
+                        }
+                    });
                 });
             })
         })
@@ -162,26 +164,28 @@ impl CompiledScene {
             let (scene, filter) = (&self.0, counted.map(scene::Filter::from));
             let by_columns = scene.accelerator().by_columns().filter(|_| filter.is_none());
             let chunk = if by_columns.is_some() { rays.window() } else { rays.chunk() };
-            answer(py, rays.count, chunk, threads, out.as_slice_mut()?, |start, out| {
-                if let Some(tree) = by_columns {
-                    return rays.occluded(tree, start, out);
-                }
+            answer(py, rays.count(), chunk, threads, out.as_slice_mut()?, |start, out| {
                 let count = out.len();
-                let mut found = vec![false; BATCH.min(count)];
-                let mut hits = vec![Hit::MISS; if filter.is_some() { found.len() } else { 0 }];
-                rays.gathered(start, count, |batch, places| {
-                    let found = &mut found[..batch.len()];
-                    match &filter {
-                        Some(filter) => {
-                            let hits = &mut hits[..batch.len()];
-                            filter.intersect(scene, batch, true, hits);
-                            found.iter_mut().zip(hits).for_each(|(found, hit)| *found = hit.is_hit());
+                rays.part(start, count, |rays, start| {
+                    if let Some(tree) = by_columns {
+                        return rays.occluded(tree, start, out);
+                    }
+                    let mut found = vec![false; BATCH.min(count)];
+                    let mut hits = vec![Hit::MISS; if filter.is_some() { found.len() } else { 0 }];
+                    rays.gathered(start, count, |batch, places| {
+                        let found = &mut found[..batch.len()];
+                        match &filter {
+                            Some(filter) => {
+                                let hits = &mut hits[..batch.len()];
+                                filter.intersect(scene, batch, true, hits);
+                                found.iter_mut().zip(hits).for_each(|(found, hit)| *found = hit.is_hit());
+                            }
+                            None => scene.occluded(batch, found),
                         }
-                        None => scene.occluded(batch, found),
-                    }
-                    for (&found, &i) in found.iter().zip(places) {
-                        out[i] = found;
-                    }
+                        for (&found, &i) in found.iter().zip(places) {
+                            out[i] = found;
+                        }
+                    });
                 });
             })?;
         }
@@ -201,8 +205,8 @@ impl CompiledScene {
     fn count<'py>(&self, py: Python<'py>, rays: RayArguments<'py>) -> PyResult<Bound<'py, PyArrayDyn<i32>>> {
         let (lead, threads, rays) = (&rays.shape, rays.threads, rays.rays()?);
         let out = unwritten(py, lead, None)?;
-        answer(py, rays.count, rays.chunk(), threads, out.readwrite().as_slice_mut()?, |start, out| {
-            every::count(&self.0, &rays, start, out);
+        answer(py, rays.count(), rays.chunk(), threads, out.readwrite().as_slice_mut()?, |start, out| {
+            rays.part(start, out.len(), |rays, start| every::count(&self.0, rays, start, out));
         })?;
         Ok(out)
     }
@@ -213,15 +217,17 @@ impl CompiledScene {
         {
             let (mut nodes, mut primitives) = (nodes.readwrite(), primitives.readwrite());
             let parts = (nodes.as_slice_mut()?, primitives.as_slice_mut()?);
-            answer(py, rays.count, rays.chunk(), threads, parts, |start, (nodes, primitives)| {
+            answer(py, rays.count(), rays.chunk(), threads, parts, |start, (nodes, primitives)| {
                 let count = nodes.len();
                 let mut costs = vec![Cost::default(); BATCH.min(count)];
-                rays.gathered(start, count, |batch, places| {
-                    let costs = &mut costs[..batch.len()];
-                    self.0.cost(batch, costs);
-                    for (cost, &i) in costs.iter().zip(places) {
-                        (nodes[i], primitives[i]) = (cost.nodes as i32, cost.primitives as i32);
-                    }
+                rays.part(start, count, |rays, start| {
+                    rays.gathered(start, count, |batch, places| {
+                        let costs = &mut costs[..batch.len()];
+                        self.0.cost(batch, costs);
+                        for (cost, &i) in costs.iter().zip(places) {
+                            (nodes[i], primitives[i]) = (cost.nodes as i32, cost.primitives as i32);
+                        }
+                    });
                 });
             })?;
         }

@@ -4,6 +4,7 @@ use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 
 use super::arrays::{Numbers, Row, Rows, Triples};
+use super::broadcast::{Held, Repeats, numbers};
 use raywright::math::gathering::WINDOW;
 use raywright::math::{Ray, Tiling, row_length};
 use raywright::{parallel, workers};
@@ -58,13 +59,21 @@ impl<'py> FromPyObject<'_, 'py> for RayArguments<'py> {
 
 impl RayArguments<'_> {
     /// The rays.
-    pub fn rays(&self) -> PyResult<RayArrays<'_>> {
-        let (origins, directions) = (self.origins.rows("origins")?, self.directions.rows("directions")?);
-        let (t_min, t_max) = (self.t_min.slice("t_min")?, self.t_max.slice("t_max")?);
-        let time = self.time.as_ref().map_or(Ok([0.0].as_slice()), |time| time.slice("time"))?;
+    pub fn rays(&self) -> PyResult<RayBatch<'_>> {
+        let (origins, some) = self.origins.repeated("origins")?;
+        let mut repeats = [some, None, None, None, None];
+        let directions;
+        (directions, repeats[1]) = self.directions.repeated("directions")?;
+        let (t_min, t_max, time);
+        (t_min, repeats[2]) = self.t_min.repeated("t_min")?;
+        (t_max, repeats[3]) = self.t_max.repeated("t_max")?;
+        (time, repeats[4]) = match &self.time {
+            Some(time) => time.repeated("time")?,
+            None => (&[0.0][..], None),
+        };
         let count = self.shape.iter().product();
         let lengths = [origins.len(), directions.len(), t_min.len(), t_max.len(), time.len()];
-        if lengths.iter().any(|&n| n != 1 && n != count) {
+        if lengths.iter().zip(&repeats).any(|(&n, repeats)| repeats.is_none() && n != 1 && n != count) {
             return Err(PyValueError::new_err(format!(
                 "origins, directions, t_min, t_max and time have lengths {lengths:?}, expected 1 or {count}"
             )));
@@ -77,7 +86,46 @@ impl RayArguments<'_> {
                 row => row,
             },
         };
-        Ok(RayArrays { origins, directions, t_min, t_max, time, count, tiling: Tiling::new(count, row) })
+        let rays = RayArrays { origins, directions, t_min, t_max, time, count, tiling: Tiling::new(count, row) };
+        Ok(RayBatch { rays, repeats: repeats.iter().any(Option::is_some).then(|| Box::new(repeats)) })
+    }
+}
+
+/// All rays of a call. What is broadcast is held once, and copied for a chunk of rays at a time, so that a call takes
+/// memory for its answer and no more.
+pub struct RayBatch<'a> {
+    rays: RayArrays<'a>,
+    repeats: Option<Box<[Option<Repeats>; 5]>>,
+}
+
+impl RayBatch<'_> {
+    /// How many rays.
+    pub fn count(&self) -> usize {
+        self.rays.count
+    }
+
+    /// Rays that a thread takes at a time.
+    pub fn chunk(&self) -> usize {
+        self.rays.chunk()
+    }
+
+    /// The same where rays are put in an order of their own.
+    pub fn window(&self) -> usize {
+        self.rays.window()
+    }
+
+    /// Gives the rays from `start` on, as arrays and where in these they begin.
+    #[inline(always)]
+    pub fn part<T>(&self, start: usize, count: usize, work: impl FnOnce(&RayArrays<'_>, usize) -> T) -> T {
+        let Some(repeats) = &self.repeats else { return work(&self.rays, start) };
+        let RayArrays { origins, directions, t_min, t_max, time, tiling, .. } = self.rays;
+        let some = |i: usize, rows| Held::of(repeats[i].as_ref(), rows, start, count);
+        let (origins, directions) = (some(0, origins), some(1, directions));
+        let some = |i: usize, all| numbers(repeats[i].as_ref(), all, start, count);
+        let (t_min, t_max, time) = (some(2, t_min), some(3, t_max), some(4, time));
+        let (origins, directions) = (origins.rows(), directions.rows());
+        let (t_min, t_max, time) = (&*t_min, &*t_max, &*time);
+        work(&RayArrays { origins, directions, t_min, t_max, time, count, tiling }, 0)
     }
 }
 

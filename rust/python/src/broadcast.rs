@@ -1,0 +1,111 @@
+//! Arrays that are broadcast to the shape of all rays, read a chunk of rays at a time: what repeats is held once.
+
+use numpy::ndarray::Axis;
+use numpy::{Element, PyReadonlyArrayDyn, PyUntypedArrayMethods};
+use pyo3::PyResult;
+use pyo3::exceptions::PyValueError;
+
+use super::arrays::Rows;
+
+/// Which row each ray has of an array that is broadcast along some dimensions.
+#[derive(Clone, Debug)]
+pub struct Repeats {
+    /// Dimensions, those next to each other that are alike as one, and how many rows farther an entry of each is: 0
+    /// where it repeats. The last is 0 or 1.
+    axes: Vec<(usize, usize)>,
+}
+
+impl Repeats {
+    /// The rows of `row` entries that an array holds in a sequence, and which of them each ray has if some repeat.
+    pub fn of<'a, T: Element>(
+        name: &str,
+        array: &'a PyReadonlyArrayDyn<'_, T>,
+        row: usize,
+    ) -> PyResult<(&'a [T], Option<Self>)> {
+        let wrong = || PyValueError::new_err(format!("{name} must be C-contiguous, or broadcast from what is"));
+        if array.is_c_contiguous() {
+            return Ok((array.as_slice().map_err(|_| wrong())?, None));
+        }
+        let mut view = array.as_array();
+        let shape = view.shape().to_vec();
+        let lead = shape.len() - usize::from(row > 1);
+        for axis in 0..lead {
+            if shape[axis] > 1 && view.strides()[axis] == 0 {
+                view.collapse_axis(Axis(axis), 0);
+            }
+        }
+        let mut axes: Vec<(usize, usize)> = Vec::with_capacity(lead);
+        let mut step = 1;
+        for axis in (0..lead).rev().filter(|&axis| shape[axis] > 1) {
+            let (length, repeats) = (shape[axis], view.shape()[axis] == 1);
+            match axes.last_mut() {
+                Some((inner, 0)) if repeats => *inner *= length,
+                Some((inner, within)) if !repeats && *within * *inner == step => *inner *= length,
+                _ => axes.push((length, if repeats { 0 } else { step })),
+            }
+            step *= view.shape()[axis];
+        }
+        axes.reverse();
+        Ok((view.to_slice().ok_or_else(wrong)?, Some(Self { axes })))
+    }
+
+    /// The rows of some rays, one after the other.
+    fn rows<T: Copy>(&self, rows: &[T], start: usize, count: usize) -> Vec<T> {
+        let mut to = Vec::with_capacity(count);
+        let Some((&(length, step), outer)) = self.axes.split_last() else { return vec![rows[0]; count] };
+        while to.len() < count {
+            let at = start + to.len();
+            let (mut rest, within) = (at / length, at % length);
+            let mut base = 0;
+            for &(length, step) in outer.iter().rev() {
+                base += rest % length * step;
+                rest /= length;
+            }
+            let some = (length - within).min(count - to.len());
+            match step {
+                0 => to.extend(std::iter::repeat_n(rows[base], some)),
+                _ => to.extend_from_slice(&rows[base + within..][..some]),
+            }
+        }
+        to
+    }
+}
+
+/// The numbers of some rays: the one that serves for all, those of an array with one for each, or as they repeat.
+pub fn numbers(repeats: Option<&Repeats>, all: &[f64], start: usize, count: usize) -> Vec<f64> {
+    match repeats {
+        Some(repeats) => repeats.rows(all, start, count),
+        None if all.len() == 1 => all.to_vec(),
+        None => all[start..][..count].to_vec(),
+    }
+}
+
+/// Rows of some rays that are held as long as they are used.
+pub enum Held<'a> {
+    /// In the array itself.
+    There(Rows<'a>),
+    /// float64, copied from where they repeat.
+    Double(Vec<[f64; 3]>),
+    /// float32, likewise.
+    Single(Vec<[f32; 3]>),
+}
+
+impl<'a> Held<'a> {
+    /// Those of some rays.
+    pub fn of(repeats: Option<&Repeats>, rows: Rows<'a>, start: usize, count: usize) -> Self {
+        match (repeats, rows) {
+            (None, rows) => Self::There(rows.some(start, count)),
+            (Some(repeats), Rows::Double(rows)) => Self::Double(repeats.rows(rows, start, count)),
+            (Some(repeats), Rows::Single(rows)) => Self::Single(repeats.rows(rows, start, count)),
+        }
+    }
+
+    /// The same as rows.
+    pub fn rows(&self) -> Rows<'_> {
+        match self {
+            Self::There(rows) => *rows,
+            Self::Double(rows) => Rows::Double(rows),
+            Self::Single(rows) => Rows::Single(rows),
+        }
+    }
+}
