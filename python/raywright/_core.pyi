@@ -725,7 +725,9 @@ def polygon_trouble(
 ) -> str | None:
     """Say what is wrong with a polygon; None if nothing is."""
 
-def triangulate_polygons(corners: NDArray[np.float64], counts: NDArray[np.int64]) -> NDArray[np.int64]:
+def triangulate_polygons(
+    points: NDArray[np.float64], corners: NDArray[np.int64], counts: NDArray[np.int64]
+) -> NDArray[np.int64]:
     """Return the triangles of polygons with so many corners each, (T, 3) indices of corners."""
 
 def implicit_trouble(expression: str, min: Sequence[float], max: Sequence[float]) -> str | None:

@@ -7,20 +7,23 @@ use pyo3::prelude::*;
 use super::arrays::{numbers, rows};
 use raywright::shapes::triangulate;
 
-/// Triangulate polygons with so many corners each, whose corners follow each other: (T, 3) indices of corners.
+/// Triangulate polygons with so many corners each: (T, 3) indices of corners, which are indices of points.
 #[pyfunction]
 pub fn triangulate_polygons<'py>(
     py: Python<'py>,
-    corners: PyReadonlyArray2<'py, f64>,
+    points: PyReadonlyArray2<'py, f64>,
+    corners: PyReadonlyArray1<'py, i64>,
     counts: PyReadonlyArray1<'py, i64>,
 ) -> PyResult<Bound<'py, PyArray2<i64>>> {
-    let corners: &[[f64; 3]] = rows("corners", &corners)?;
+    let points: &[[f64; 3]] = rows("points", &points)?;
+    let corners: &[i64] = numbers("corners", &corners)?;
     let counts: Vec<usize> = numbers("counts", &counts)?.iter().map(|&n| n.max(0) as usize).collect();
-    if counts.iter().sum::<usize>() != corners.len() {
+    let is_there = |&i: &i64| usize::try_from(i).is_ok_and(|i| i < points.len());
+    if counts.iter().sum::<usize>() != corners.len() || !corners.iter().all(is_there) {
         return Err(PyValueError::new_err("polygons have other corners than there are"));
     }
     let found = py.detach(|| {
-        let triangles = triangulate(corners, &counts);
+        let triangles = triangulate(points, corners, &counts);
         triangles.into_iter().map(|t| t.map(|i| i as i64)).collect::<Vec<_>>()
     });
     let count = found.len();

@@ -4,39 +4,51 @@ use super::outline::orientation;
 use glam::DVec2;
 use raywright_base::math::DVec3;
 
-/// Triangulates polygons with the given numbers of corners, whose corners follow each other in `corners`. A polygon of n
-/// corners yields n − 2 triangles, of indices into `corners`; one with fewer than three yields none.
+/// Triangulates polygons with the given numbers of corners, whose corners follow each other in `corners`, as indices of
+/// `points`. A polygon of n corners yields n − 2 triangles, of indices into `corners`; one with fewer than three yields
+/// none.
 ///
-/// Triangles turn as their polygon does. A polygon is looked at along the largest coordinate of its Newell normal, where
-/// two coordinates remain as they are: a simple polygon in a plane is covered exactly once, and so is one whose holes
-/// are connected to its outline by edges that are passed twice. Corners that lie on the edge between their neighbours
-/// get triangles with an area if possible. Polygons that are not finite or without area become fans.
-pub fn triangulate(corners: &[[f64; 3]], counts: &[usize]) -> Vec<[usize; 3]> {
+/// A polygon becomes a fan from its first corner if all triangles of the fan turn the way the polygon does, as those of
+/// convex ones do. All others are looked at along the largest coordinate of their Newell normal, where two coordinates
+/// remain as they are: a simple polygon in a plane is covered exactly once, and so is one whose holes are connected to
+/// its outline by edges that are passed twice. Corners that lie on the edge between their neighbours get triangles with
+/// an area if possible. Polygons that are not finite or without area become fans.
+pub fn triangulate(points: &[[f64; 3]], corners: &[i64], counts: &[usize]) -> Vec<[usize; 3]> {
     let mut triangles = Vec::with_capacity(corners.len());
+    let mut ring = Vec::new();
     let mut first = 0;
     for &count in counts {
-        if count >= 3 {
-            let ring = &corners[first..first + count];
-            match projected(ring) {
-                Some(points) => Ring::new(&points).clip(|ear| triangles.push(ear.map(|i| i + first))),
-                None => triangles.extend((1..count - 1).map(|i| [first, first + i, first + i + 1])),
-            }
+        ring.clear();
+        ring.extend(corners[first..first + count].iter().map(|&i| DVec3::from_array(points[i as usize])));
+        let clipped = if is_fan(&ring) { None } else { projected(&ring) };
+        match clipped {
+            Some(flat) => Ring::new(&flat).clip(|ear| triangles.push(ear.map(|i| i + first))),
+            None => triangles.extend((2..count).map(|i| [first, first + i - 1, first + i])),
         }
         first += count;
     }
     triangles
 }
 
+/// Whether all triangles from the first corner turn the way their sum does, which is the polygon's (Newell).
+fn is_fan(ring: &[DVec3]) -> bool {
+    if ring.len() <= 3 {
+        return true;
+    }
+    let normals = || ring[1..].windows(2).map(|pair| (pair[0] - ring[0]).cross(pair[1] - ring[0]));
+    let total: DVec3 = normals().sum();
+    normals().all(|normal| normal.dot(total) > 0.0)
+}
+
 /// The corners along an axis from where they turn anticlockwise; `None` if they are not finite or have no area.
-fn projected(ring: &[[f64; 3]]) -> Option<Vec<DVec2>> {
-    let size = ring.iter().flatten().fold(0.0f64, |most, x| most.max(x.abs()));
-    if !ring.iter().flatten().all(|x| x.is_finite()) || size == 0.0 {
+fn projected(ring: &[DVec3]) -> Option<Vec<DVec2>> {
+    let size = ring.iter().fold(0.0f64, |most, p| most.max(p.abs().max_element()));
+    if !ring.iter().all(|p| p.is_finite()) || size == 0.0 {
         return None;
     }
-    let anchor = DVec3::from_array(ring[0]) / size;
-    let place = |p: &[f64; 3]| DVec3::from_array(*p) / size - anchor;
+    let anchor = ring[0] / size;
     let next = ring.iter().cycle().skip(1);
-    let normal: DVec3 = ring.iter().zip(next).map(|(p, q)| place(p).cross(place(q))).sum();
+    let normal: DVec3 = ring.iter().zip(next).map(|(&p, &q)| (p / size - anchor).cross(q / size - anchor)).sum();
     let axis = (0..3).max_by(|&i, &j| normal[i].abs().total_cmp(&normal[j].abs()))?;
     let (mut x, mut y) = ((axis + 1) % 3, (axis + 2) % 3);
     if normal[axis] == 0.0 {
@@ -193,11 +205,16 @@ mod tests {
         (big(b[0]) - a[0]) * (big(c[1]) - a[1]) - (big(b[1]) - a[1]) * (big(c[0]) - a[0])
     }
 
+    fn alone(ring: &[[f64; 3]]) -> Vec<[usize; 3]> {
+        let all: Vec<_> = (0..ring.len() as i64).collect();
+        triangulate(ring, &all, &[ring.len()])
+    }
+
     /// Asserts that triangles cover a ring once: none turns the other way, all have its area together, and edges that
     /// are not the ring's are passed once each way.
     fn assert_covers(ring: &[[i64; 2]]) {
         let corners: Vec<_> = ring.iter().map(|p| [p[0] as f64, p[1] as f64, 0.0]).collect();
-        let triangles = triangulate(&corners, &[ring.len()]);
+        let triangles = alone(&corners);
         assert_eq!(triangles.len(), ring.len() - 2);
         let areas: Vec<_> = triangles.iter().map(|t| doubled(t.map(|i| ring[i]))).collect();
         let area: BigInt = (1..ring.len() - 1).map(|i| doubled([ring[0], ring[i], ring[i + 1]])).sum();
@@ -270,7 +287,7 @@ mod tests {
     #[test]
     fn every_corner_of_a_straight_edge_gets_an_area() {
         let corners = [[0.0, 0.0, 1.0], [1.0, 0.0, 1.0], [2.0, 0.0, 1.0], [2.0, 2.0, 1.0], [1.0, 2.0, 1.0]];
-        let triangles = triangulate(&corners, &[5]);
+        let triangles = alone(&corners);
         let area = |t: &[usize; 3]| {
             let [a, b, c] = t.map(|i| DVec3::from_array(corners[i]));
             (b - a).cross(c - a).z
@@ -281,10 +298,10 @@ mod tests {
     #[test]
     fn what_crosses_itself_or_has_no_area_still_has_its_triangles() {
         let bow = [[0.0, 0.0, 0.0], [2.0, 2.0, 0.0], [2.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
-        assert_eq!(triangulate(&bow, &[4]).len(), 2);
+        assert_eq!(alone(&bow).len(), 2);
         let line = [[0.0; 3], [1.0; 3], [2.0; 3], [3.0; 3], [f64::NAN; 3]];
-        assert_eq!(triangulate(&line, &[2, 0, 3]), [[2, 3, 4]]);
-        assert_eq!(triangulate(&line[..4], &[4]), [[0, 1, 2], [0, 2, 3]]);
-        assert_eq!(triangulate(&[[1e308, -1e308, 0.0], [0.0; 3], [1e308, 1e308, 0.0]], &[3]).len(), 1);
+        assert_eq!(triangulate(&line, &[0, 1, 2, 3, 4], &[2, 0, 3]), [[2, 3, 4]]);
+        assert_eq!(alone(&line[..4]), [[0, 1, 2], [0, 2, 3]]);
+        assert_eq!(alone(&[[1e308, -1e308, 0.0], [0.0; 3], [1e308, 1e308, 0.0], [9e307, 0.0, 0.0]]).len(), 2);
     }
 }
