@@ -172,6 +172,19 @@ def test_files_that_are_no_mesh_are_refused_in_one_line(tmp_path, caplog, capfd,
     assert capfd.readouterr() == ("", "")
 
 
+@pytest.mark.parametrize("suffix", ["dae", "zae", "3mf", "3dxml", "xaml", "step", "STP", "drc", "ctm"])
+def test_kinds_that_need_a_package_name_it(tmp_path, suffix, monkeypatch):
+    path = tmp_path / f"a.{suffix}"
+    path.write_bytes(b"x")
+    known = trimesh.available_formats() - {suffix.lower()}
+    monkeypatch.setattr(trimesh, "available_formats", lambda: known)
+    packages = {"dae": "pycollada", "zae": "pycollada", "drc": "draco_decoder", "ctm": "openctm"}
+    packages |= {"step": "cascadio", "stp": "cascadio"}
+    with pytest.raises(ImportError, match=packages.get(suffix.lower(), "lxml")) as caught:
+        rw.Scene(path)
+    assert str(path) in str(caught.value)
+
+
 def test_points_alone_are_refused(tmp_path):
     trimesh.PointCloud(np.random.default_rng(6).normal(size=(9, 3))).export(tmp_path / "points.ply")
     with pytest.raises(ValueError, match=r"points.ply holds no faces"):

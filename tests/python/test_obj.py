@@ -4,6 +4,7 @@ import warnings
 
 import numpy as np
 import pytest
+from PIL import Image
 
 import raywright as rw
 from raywright.mesh_files.meshes import load_whole
@@ -203,3 +204,31 @@ def test_files_without_faces_hold_none(tmp_path):
     (tmp_path / "file.obj").write_text(POINTS + "l 1 2\np 3\n")
     with pytest.raises(ValueError, match=r"file.obj holds no faces"):
         rw.Scene(tmp_path / "file.obj")
+
+
+@pytest.mark.parametrize(
+    ("named", "there"),
+    [
+        ("a.mtl", "A.MTL"),
+        ("A.MTL", "a.mtl"),
+        ("Parts\\\\Red.mtl", "parts/RED.MTL"),
+        ("parts/red.mtl", "Parts/red.mtl"),
+        ("C:\\\\work\\\\a.mtl", "A.mtl"),
+        ("two words.mtl", "Two Words.MTL"),
+    ],
+)
+def test_libraries_are_found_whatever_the_case_of_their_letters(tmp_path, named, there):
+    (tmp_path / there).parent.mkdir(exist_ok=True)
+    (tmp_path / there).write_text("newmtl red\nKd 1 0 0\nmap_Kd picture.png\n")
+    Image.new("RGB", (1, 1), (255, 0, 0)).save((tmp_path / there).parent / "PICTURE.PNG")
+    text = f"mtllib {named.replace(chr(92) * 2, chr(92))}\n" + "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\n"
+    (mesh,) = read(tmp_path, f"{text}usemtl red\nf 1/1 2/1 3/1\n")
+    assert isinstance(mesh.material.reflectance, rw.ImageTexture)
+
+
+def test_names_of_the_same_letters_are_told_apart_where_both_are_there(tmp_path):
+    for name, color in (("a.mtl", "1 0 0"), ("A.MTL", "0 1 0")):
+        (tmp_path / name).write_text(f"newmtl m\nKd {color}\n")
+    for name, color in (("a.mtl", (1, 0, 0)), ("A.MTL", (0, 1, 0))):
+        (mesh,) = read(tmp_path, f"mtllib {name}\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n")
+        assert mesh.material.reflectance == color

@@ -1,31 +1,38 @@
 """Meshes from files."""
 
 import errno
-import re
-from importlib.util import find_spec
+from collections.abc import Callable
 from os import PathLike
 from pathlib import Path
 
 import numpy as np
 
-from ..io.quiet import quiet, reason, refused
+from ..io.quiet import quiet, reason
 from ..shapes.mesh import Mesh
-from .claims import check_mesh_file
-from .trimesh_objects import of_scene, of_trimesh
+from .trimesh_objects import of_scene
 
-_GLTF = (".glb", ".gltf")
-# What trimesh needs for a kind of file, where that is more than one package.
-_PACKAGES = {".3mf": ("lxml", "networkx"), ".3dxml": ("lxml", "networkx")}
+# The Python package, or the program, with which trimesh reads further kinds of files.
+_NEEDED = {
+    "3dxml": "lxml and networkx",
+    "3mf": "lxml and networkx",
+    "ctm": "openctm",
+    "dae": "pycollada",
+    "drc": "the program draco_decoder",
+    "step": "cascadio",
+    "stp": "cascadio",
+    "xaml": "lxml",
+    "zae": "pycollada",
+}
 
 
 def load(path: str | PathLike[str]) -> tuple[Mesh, ...]:
     """Read a mesh file: one mesh for each node of the file that holds triangles.
 
-    glTF is read by `raywright.mesh_files.gltf`, OBJ by `raywright.mesh_files.obj`, with a mesh for each of
-    its materials, and all else by trimesh.
+    glTF, OBJ, PLY, OFF and STL are read here, OBJ with a mesh for each of its materials, and all else by
+    trimesh.
 
     Faces stay in the file's order, and vertices as they are. Only STL, which repeats every corner, has its
-    equal corners joined.
+    equal corners joined. Polygons become triangles as `triangulation.triangulate` says.
 
     Raises
     ------
@@ -34,7 +41,7 @@ def load(path: str | PathLike[str]) -> tuple[Mesh, ...]:
     ValueError
         If the file is not a mesh that can be read, or holds no faces.
     ImportError
-        If trimesh reads such files with a package that is not installed: which.
+        If it is of a kind for which trimesh needs a package that is not installed.
 
     Warns
     -----
@@ -46,27 +53,47 @@ def load(path: str | PathLike[str]) -> tuple[Mesh, ...]:
         raise FileNotFoundError(errno.ENOENT, "no such file", str(path))
     if path.is_dir():
         raise ValueError(f"{path} is a folder, not a mesh file")
+    read = _reader(path)
+    result = read(path)
+    if not any(len(mesh.faces) for mesh in result):
+        raise ValueError(f"{path} holds no faces")
+    return tuple(map(_joined, result)) if path.suffix.lower() in (".stl", ".stl_ascii") else result
+
+
+def _reader(path: Path) -> Callable[[Path], tuple[Mesh, ...]]:
+    """Return what reads files of a suffix."""
+    suffix = path.suffix.lower()
+    if suffix in (".glb", ".gltf"):
+        from .gltf import read_meshes
+
+        return read_meshes
+    if suffix == ".obj":
+        from .obj import read_obj
+
+        return read_obj
+    if suffix == ".ply":
+        from .ply import read_ply
+
+        return read_ply
+    if suffix == ".off":
+        from .off import read_off
+
+        return read_off
+    if suffix in (".stl", ".stl_ascii"):
+        from .stl import read_stl
+
+        return read_stl
     import trimesh
 
     kinds = trimesh.available_formats()
-    name = path.name.lower()
-    if not any(name.endswith(f".{kind}") for kind in kinds):
-        _missing(path)
-        suffix = f"suffix {path.suffix}" if path.suffix else "a name without a suffix"
-        raise ValueError(f"{path}: {suffix} is not a mesh format; known are {', '.join(sorted(kinds))}")
-    if name.endswith(_GLTF):
-        from .gltf import read_meshes
-
-        result = read_meshes(path)
-    elif name.endswith(".obj"):
-        from .obj import read_obj
-
-        result = read_obj(path)
-    else:
-        result = _read(path)
-    if not any(len(mesh.faces) for mesh in result):
-        raise ValueError(f"{path} holds no faces")
-    return tuple(map(_joined, result)) if name.endswith((".stl", ".stl_ascii")) else result
+    if not any(path.name.lower().endswith(f".{kind}") for kind in kinds):
+        needed = _NEEDED.get(suffix.removeprefix("."))
+        if needed is not None:
+            install = needed if needed.startswith("the ") else f"pip install {needed.replace(' and ', ' ')}"
+            raise ImportError(f"{path}: trimesh needs {needed} to read {suffix} files ({install})")
+        told = f"suffix {path.suffix}" if suffix else "a name without a suffix"
+        raise ValueError(f"{path}: {told} is not a mesh format; known are {', '.join(sorted(kinds))}")
+    return _read
 
 
 def load_whole(path: Path, kind: str) -> Mesh:
@@ -84,72 +111,28 @@ def load_whole(path: Path, kind: str) -> Mesh:
 
         mesh = read_obj_whole(path)
     else:
-        mesh = _whole_ply(path)
+        from .ply import read_ply_whole
+
+        mesh = read_ply_whole(path)
     if mesh is None or not len(mesh.faces):
         raise ValueError(f"{path} holds no faces")
     return mesh
-
-
-def _whole_ply(path: Path) -> Mesh | None:
-    import trimesh
-
-    try:
-        check_mesh_file(path)
-        with quiet(), open(path, "rb") as file:
-            found = trimesh.load(file, file_type="ply", process=False)
-            parts = tuple(of_scene(found) if hasattr(found, "geometry") else of_trimesh(found, True))
-    except Exception as error:
-        raise refused(path, "mesh", error) from error
-    return parts[0] if len(parts) == 1 else None
 
 
 def _read(path: Path) -> tuple[Mesh, ...]:
     import trimesh
 
     try:
-        check_mesh_file(path)
         with quiet():
             found = trimesh.load_scene(str(path), process=False)
             return tuple(of_scene(found, loaded=True))
     except MemoryError:
         raise
-    except ModuleNotFoundError as error:
-        raise _needs(path, error) from error
     except Exception as error:
         # Parsers fail on bad bytes in every way there is; the caller needs one kind of error, and one line.
         if isinstance(error, OSError) and error.filename == str(path):
             raise
         raise ValueError(f"{path} is not a mesh that can be read ({reason(error)})") from error
-
-
-def _missing(path: Path) -> None:
-    """Raise an ImportError if trimesh reads such files with a package that is not installed."""
-    from trimesh.exchange.load import mesh_loaders
-
-    name = path.name.lower()
-    for kind, loader in mesh_loaders.items():
-        if not name.endswith(f".{kind}"):
-            continue
-        try:
-            # What could not be imported stands in its place, and raises whatever is asked of it.
-            loader.__name__  # noqa: B018
-        except ImportError as error:
-            raise _needs(path, error) from error
-        except Exception:
-            return
-
-
-def _needs(path: Path, error: ImportError) -> ImportError:
-    """Return what to raise where packages are missing that trimesh reads a file with."""
-    suffix = path.suffix.lower()
-    # trimesh tells the first that is missing, in words.
-    told = re.search(r"No module named '([^'.]+)|pip install ([\w-]+)", str(error))
-    first = [name for name in told.groups() if name] if told else []
-    missing = [name for name in _PACKAGES.get(suffix, ()) if find_spec(name) is None] or first
-    if not missing:
-        return ImportError(f"{path}: trimesh cannot read {suffix} here ({reason(error)})")
-    names, packages = " and ".join(missing), " ".join(missing)
-    return ImportError(f"{path}: trimesh reads {suffix} with {names}, not installed: pip install {packages}")
 
 
 def _joined(mesh: Mesh) -> Mesh:

@@ -60,10 +60,10 @@ class Scene(Queries):
     Parameters
     ----------
     shapes : Mesh, Sphere or another shape, Instance, trimesh.Trimesh, trimesh.Scene, path, or list of these
-        What can be hit. A path may be of any mesh file that trimesh reads (PLY, OBJ, STL, GLB, ...). Lists
-        may be nested; all of it is laid out flat in ``scene.shapes``. A trimesh.Scene gives one mesh for each
-        node that holds one, in the order of its geometry and with the node's transform applied; points and
-        curves are left out.
+        What can be hit. A path may be of a PLY, OBJ, STL, OFF or glTF file, or any other that trimesh reads.
+        Lists may be nested; all of it is laid out flat in ``scene.shapes``. A trimesh.Scene gives one mesh
+        for each node that holds one, in the order of its geometry and with the node's transform applied;
+        points and curves are left out.
     lights : PointLight, SpotLight, DirectionalLight or ProjectorLight, or sequence of them
         Lights that are no surfaces.
     environment : ConstantEnvironment, EnvironmentMap, SunSky, list of these, float or 3 floats, optional

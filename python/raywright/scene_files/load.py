@@ -43,8 +43,8 @@ def load(
         ``.xml``, a scene of Mitsuba 3, as `from_mitsuba` reads it; ``.pbrt`` or ``.pbrt.gz``, one of
         pbrt-v4; ``.glb`` or
         ``.gltf``; ``.usd``, ``.usda``, ``.usdc`` or ``.usdz``, for which there is
-        ``pip install 'raywright[usd]'``; or any other mesh file that trimesh reads: OBJ with its materials,
-        PLY, STL, ...
+        ``pip install 'raywright[usd]'``; or a mesh file: OBJ with its materials, PLY, STL, OFF, or any other
+        that trimesh reads.
     up : {"y", "z"}
         The axis that points up in a mesh file that does not say so; in glTF it is y.
     width, height : int, optional

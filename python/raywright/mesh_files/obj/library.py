@@ -7,8 +7,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from ..beside import beside
 from ..look import Look
-from .maps import Pictures, beside
+from .maps import Pictures
 from .material import look_of_mtl
 from .mtl import Description, Written, written
 from .notes import Notes

@@ -12,6 +12,7 @@ from ...io.pictures import read
 from ...io.quiet import reason
 from ...textures import ImageTexture, UvTransform
 from ...textures.image import Channel, Wrap
+from ..beside import beside
 from ..pbr import Picture
 from .mtl import UNREADABLE, Description
 from .text import told
@@ -164,25 +165,6 @@ def _checked(pixels: NDArray[Any], most: float) -> NDArray[Any]:
     if pixels.dtype.kind == "f":
         return np.asarray(np.clip(np.nan_to_num(pixels, nan=0.0, posinf=0.0, neginf=0.0), 0.0, most))
     return pixels
-
-
-def beside(folder: Path, name: str) -> Path | None:
-    """Return a file of a folder, or of a folder within it; None if there is none of that name.
-
-    Names may be those of another machine: of a path that leads nowhere, or out of the folder, its last part
-    is looked for.
-    """
-    plain = name.strip().strip('"').replace("\\", "/")
-    root = folder.resolve()
-    for candidate in (plain, plain.rsplit("/", 1)[-1]):
-        try:
-            found = (root / candidate).resolve()
-            if candidate and found.is_relative_to(root) and found.is_file():
-                return found
-        except (OSError, ValueError, RuntimeError):
-            # No name of a file: too long, or with a character that none has.
-            continue
-    return None
 
 
 def _options(said: Description, rest: str) -> tuple[dict[str, tuple[str, ...]], str]:

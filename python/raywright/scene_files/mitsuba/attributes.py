@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...io.quiet import quiet
-from ...mesh_files.claims import check_mesh_file
+from ...mesh_files.elements import Data
+from ...mesh_files.ply import elements_of, indices_of
+from ...mesh_files.triangulation import polygon_of
 from .errors import SceneError
 from .plugin import Plugin
 
@@ -62,20 +63,15 @@ def read_attribute(path: Path, name: str) -> tuple[bool, Floats]:
     of, _, rest = name.partition("_")
     if of not in ("vertex", "face") or not rest:
         raise SceneError(f"an attribute's name must begin with vertex_ or face_, got {name!r}")
-    import trimesh
-
-    check_mesh_file(path)
-    with quiet(), open(path, "rb") as file:
-        mesh = trimesh.load(file, file_type="ply", process=False)
-    raw = mesh.metadata.get("_ply_raw", {}).get(of, {}).get("data")
-    columns = _columns(raw)
+    raw = elements_of(path).get(of)
+    columns = {} if raw is None else _columns(raw)
     for parts in ([f"{rest}_{end}" for end in ending] for ending in _ENDINGS):
         if all(part in columns for part in parts):
             return of == "face", np.stack([columns[part] for part in parts], -1)
     for parts in (["r", "g", "b"], ["red", "green", "blue"]):
         if rest == "color" and all(part in columns for part in parts):
             whole = np.stack([columns[part] for part in parts], -1)
-            return of == "face", whole / 255 if raw[parts[0]].dtype.kind in "ui" else whole
+            return of == "face", whole / 255 if raw and raw.numbers[parts[0]].dtype.kind in "ui" else whole
     for part in (f"{rest}_0", f"{rest}_1", f"{rest}_x", rest):
         if part in columns:
             return of == "face", np.repeat(columns[part][:, None], 3, axis=1)
@@ -84,12 +80,8 @@ def read_attribute(path: Path, name: str) -> tuple[bool, Floats]:
     )
 
 
-def _columns(raw: Any) -> dict[str, Floats]:
-    """Return what is one number for each vertex or face."""
-    names = raw.dtype.names or () if isinstance(raw, np.ndarray) else tuple(raw or ())
-    found = {name: np.asarray(raw[name]).squeeze() for name in names}
-    return {
-        name: one.astype(np.float64)
-        for name, one in found.items()
-        if one.ndim == 1 and one.dtype.kind in "iuf"
-    }
+def _columns(raw: Data) -> dict[str, Floats]:
+    """Return what is one number for each vertex or triangle."""
+    polygons = indices_of(raw)
+    which = slice(None) if polygons is None else polygon_of(polygons.counts)
+    return {name: one[which].astype(np.float64) for name, one in raw.numbers.items()}

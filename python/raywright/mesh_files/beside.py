@@ -1,0 +1,38 @@
+"""Files that mesh files name, found in their folder."""
+
+from pathlib import Path
+
+
+def beside(folder: Path, name: str) -> Path | None:
+    """Return a file of a folder, or of a folder within it; None if there is none of that name.
+
+    Names may be those of another machine: small and capital letters are told apart only between files that
+    are both there, and of a path that leads nowhere, or out of the folder, the last part is looked for.
+    """
+    plain = name.strip().strip('"').replace("\\", "/")
+    root = folder.resolve()
+    for candidate in (plain, plain.rsplit("/", 1)[-1]):
+        try:
+            found = _cased(root, candidate).resolve()
+            if candidate and found.is_relative_to(root) and found.is_file():
+                return found
+        except (OSError, ValueError, RuntimeError):
+            # No name of a file: too long, or with a character that none has.
+            continue
+    return None
+
+
+def _cased(root: Path, name: str) -> Path:
+    """Return a path under a folder as the file system writes it, whatever the case of its letters."""
+    whole = root / name
+    if whole.exists() or Path(name).is_absolute() or ".." in Path(name).parts:
+        return whole
+    at = root
+    for part in Path(name).parts:
+        exact = at / part
+        if exact.exists():
+            at = exact
+            continue
+        alike = [one for one in at.iterdir() if one.name.lower() == part.lower()] if at.is_dir() else []
+        at = min(alike) if alike else exact
+    return at

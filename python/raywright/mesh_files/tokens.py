@@ -1,0 +1,60 @@
+"""Text of mesh files as numbers, whatever stands between them."""
+
+import re
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..io.quiet import quiet
+
+_UTF16 = (b"\xff\xfe", b"\xfe\xff")
+_UTF8 = b"\xef\xbb\xbf"
+# ASCII's white space and separators besides spaces and line feeds.
+_NUMBER = rb"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?|[+-]?(?:inf(?:inity)?|nan)"
+_NO_NUMBER = re.compile(rb"(?<!\S)(?!(?:" + _NUMBER + rb")(?!\S))\S", re.IGNORECASE)
+_WHITE = bytes.maketrans(b"\t\v\f\x1c\x1d\x1e\x1f", b" \n\n\n\n\n ")
+
+
+def plain_text(data: bytes) -> bytes:
+    """Return text as UTF-8 without a byte-order mark, with spaces and line feeds as its only white space."""
+    if data.startswith(_UTF16):
+        data = data.decode("utf-16", "replace").encode()
+    data = data.removeprefix(_UTF8).rstrip(b"\0")
+    if b"\r" in data:
+        data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+    if not data.isascii():
+        lines = data.decode("utf-8", "replace").splitlines()
+        return "\n".join(" ".join(line.split()) for line in lines).encode()
+    return data.translate(_WHITE)
+
+
+def leading_numbers(text: bytes) -> NDArray[np.float64]:
+    """Return the numbers at the beginning of a text, up to the first word that is none."""
+    found = _numbers(text)
+    if found is None:
+        # Versions of numpy disagree on what precedes a word that is no number.
+        end = _NO_NUMBER.search(text)
+        found = _numbers(text[: end.start()]) if end else None
+    return np.empty(0) if found is None else found
+
+
+def _numbers(text: bytes) -> NDArray[np.float64] | None:
+    """Return the numbers of a text of numbers; None if there is anything else."""
+    if not text.strip():
+        return np.empty(0)  # numpy finds a number in blanks
+    try:
+        with quiet(DeprecationWarning):
+            return np.fromstring(text, np.float64, sep=" ")
+    except (ValueError, DeprecationWarning):
+        return None
+
+
+def word_at(text: bytes, index: int) -> str | None:
+    """Return a word of a text as a message shows it, such as ``'abc'``; None behind its end."""
+    words = text.split(maxsplit=index + 1)
+    return repr(words[index][:20].decode("utf-8", "replace")) if index < len(words) else None
+
+
+def lines_of(text: bytes) -> list[bytes]:
+    """Return the lines of a text that are not blank."""
+    return [line for line in text.split(b"\n") if line.strip()]
