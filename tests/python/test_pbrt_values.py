@@ -54,6 +54,36 @@ def test_the_exposure_of_a_film_counts(tmp_path, head, ratio):
     assert seen == pytest.approx(ratio * np.array((2, 3, 4)), rel=1e-3)
 
 
+@pytest.mark.parametrize(
+    ("light", "factor"),
+    [
+        ('"point" "float power" 7', 7 / (4 * np.pi)),
+        ('"point" "float power" 0', 1.0),
+        ('"distant" "float illuminance" 5', 5.0),
+        ('"infinite" "float illuminance" 5', 5 / np.pi),
+        # The cone within shines fully, and what is around it half.
+        (
+            '"spot" "float power" 7 "float coneangle" 60 "float conedeltaangle" 60',
+            7 / (np.pi * (1 - np.cos(np.pi / 3))),
+        ),
+    ],
+)
+def test_lights_have_the_power_that_they_name(tmp_path, light, factor):
+    name = "I" if "power" in light else "L"
+    text = f'LightSource {light} "rgb {name}" [1 2 3] "float scale" 2\nShape "sphere"'
+    scene = load(tmp_path, text, film('"float iso" 200')).scene
+    made = scene.environment if scene.environment is not None else scene.lights[0]
+    shine = next(getattr(made, one) for one in ("radiance", "irradiance", "intensity") if hasattr(made, one))
+    assert shine == pytest.approx(2 * 2 * factor * np.array((1, 2, 3)), rel=1e-12)
+    with pytest.raises(ValueError, match="parameter 'power' is not supported"):
+        load(tmp_path, 'LightSource "distant" "float power" 3')
+
+
+def test_boxes_may_be_wider(tmp_path):
+    head = HEAD + 'PixelFilter "box" "float xradius" 1.5 "float yradius" 1.5\n'
+    assert load(tmp_path, LIT, head).filter == rw.BoxFilter(1.5)
+
+
 def test_pictures_that_shine_are_exposed_too(tmp_path):
     np.save(tmp_path / "sky.npy", np.full((4, 4, 3), 0.5, np.float32))
     world = 'LightSource "infinite" "string filename" "sky.npy"\nShape "sphere" "float radius" 0.1'

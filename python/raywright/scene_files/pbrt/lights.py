@@ -45,8 +45,6 @@ def light(
     ValueError
         If its type, or a parameter of it, is not supported; tells which.
     """
-    if parameters.has("power"):
-        parameters.fail("power is not supported")
     scale = parameters.number("scale", 1.0)
 
     def at(name: str, default: tuple[float, float, float]) -> Floats:
@@ -54,16 +52,20 @@ def light(
 
     made: Light | Environment
     if kind == "point":
+        scale *= _total(parameters, "power", 4 * math.pi)
         made = PointLight(at("from", (0, 0, 0)), _shine(parameters, "I", scale, imaging))
     elif kind == "spot":
         angle, delta = parameters.number("coneangle", 30.0), parameters.number("conedeltaangle", 5.0)
         place, target = at("from", (0, 0, 0)), at("to", (0, 0, 1))
+        delta = min(delta, angle)
+        inner, outer = (math.cos(math.radians(one)) for one in (angle - delta, angle))
+        # Of the solid angle between the cones half counts.
+        scale *= _total(parameters, "power", 2 * math.pi * (1 - 0.5 * (inner + outer)))
         shine = _shine(parameters, "I", scale, imaging)
-        made = SpotLight(place, target, shine, angle, min(delta, angle), "smooth")
+        made = SpotLight(place, target, shine, angle, delta, "smooth")
     elif kind == "distant":
         way = at("to", (0, 0, 1)) - at("from", (0, 0, 0))
-        if parameters.has("illuminance"):
-            parameters.fail("illuminance is not supported")
+        scale *= _total(parameters, "illuminance", 1.0)
         made = DirectionalLight(way, _shine(parameters, "L", scale, imaging))
     elif kind == "projection":
         made = _projection(parameters, matrix, textures, scale * imaging)
@@ -73,6 +75,15 @@ def light(
         parameters.fail(f"a light {kind!r} is not supported")
     parameters.done()
     return made
+
+
+def _total(parameters: Parameters, name: str, of_one: float) -> float:
+    """Return the factor by which a light has a power, or an illuminance; 1 if the light names none.
+
+    What is not above 0 counts as not given, for pbrt too.
+    """
+    total = parameters.number(name, -1.0)
+    return total / of_one if total > 0 else 1.0
 
 
 def _shine(parameters: Parameters, name: str, scale: float, imaging: Floats) -> tuple[float, float, float]:
@@ -125,10 +136,14 @@ def _projection(
 
 
 def _around(parameters: Parameters, matrix: Floats, textures: Textures, imaging: Floats) -> Environment:
-    if parameters.has("illuminance") or parameters.has("portal"):
-        parameters.fail("illuminance and portal are not supported")
+    if parameters.has("portal"):
+        parameters.fail("portal is not supported")
     if not parameters.has("filename"):
-        return ConstantEnvironment(_shine(parameters, "L", 1.0, imaging))
+        return ConstantEnvironment(
+            _shine(parameters, "L", _total(parameters, "illuminance", math.pi), imaging)
+        )
+    if parameters.has("illuminance"):
+        parameters.fail("illuminance is not supported for a picture")
     image = read_linear(textures.folder / parameters.text("filename"))
     if image.shape[0] != image.shape[1]:
         parameters.fail(f"its picture must be square, got {image.shape[1]} x {image.shape[0]}")

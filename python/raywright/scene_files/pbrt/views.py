@@ -97,9 +97,7 @@ def rfilter(kind: str, parameters: Parameters) -> Filter:
         parameters.fail(f"xradius and yradius must be the same, got {across:g} and {down:g}")
     made: Filter
     if kind == "box":
-        if across != 0.5:
-            parameters.fail(f"the radius of a box must be 0.5, got {across:g}")
-        made = BoxFilter()
+        made = BoxFilter(across)
     elif kind == "gaussian":
         made = GaussianFilter(across, parameters.number("sigma", 0.5))
     elif kind == "mitchell":
