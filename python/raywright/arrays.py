@@ -37,7 +37,7 @@ def real_array(name: str, value: ArrayLike) -> NDArray[Any]:
     array = _as_array(name, value)
     _unmasked(name, value)
     if array.dtype.kind not in "iuf":
-        raise TypeError(f"{name} must be real numbers, got {_describe(value, array)}")
+        raise TypeError(f"{name} must be real numbers, got {_describe(value, array, short=True)}")
     native = array.dtype.newbyteorder("=")
     return array.astype(np.float32 if native == np.float32 else np.float64, copy=False)
 
@@ -235,11 +235,12 @@ def _finite(name: str, array: NDArray[Any]) -> Triple:
     return x, y, z
 
 
-def _describe(value: object, array: NDArray[Any]) -> str:
+def _describe(value: object, array: NDArray[Any], short: bool = False) -> str:
     """Return what came instead of numbers and, where it is objects, the first that is none and what helps."""
     if not array.ndim and not isinstance(value, np.ndarray):
         return f"{value!r}{_cure(value)}"
-    came = f"dtype {array.dtype}" if isinstance(value, np.ndarray) else _of_dtype(value, array)
+    is_named = not (short and isinstance(value, np.ndarray))
+    came = f"{type(value).__name__} of dtype {array.dtype}" if is_named else f"dtype {array.dtype}"
     if array.dtype != object or isinstance(value, list | tuple):
         return came
     others = (i for i, entry in np.ndenumerate(array) if not isinstance(entry, float | int | np.number))
@@ -248,7 +249,3 @@ def _describe(value: object, array: NDArray[Any]) -> str:
         return f"{came}: numbers of a type that numpy has not{_cure(value) or '; pass its .astype(float)'}"
     at = ", ".join(map(str, first))
     return f"{came}, with {array[first]!r} at [{at}]{_cure(value)}"
-
-
-def _of_dtype(value: object, array: NDArray[Any]) -> str:
-    return f"{type(value).__name__} of dtype {array.dtype}"
