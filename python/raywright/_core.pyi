@@ -200,9 +200,20 @@ class CompiledScene:
         """Find unit geometric normals: (N,3), NaN for misses."""
     def errors(self, shape_id: NDArray[np.int32], primitive: NDArray[np.int32]) -> NDArray[np.float64]:
         """Bound how far each coordinate of `positions` is from the surface: (N,1), NaN for misses."""
+    def tangent_balls(
+        self,
+        points: NDArray[np.float64],
+        ways: NDArray[np.float64],
+        radius: NDArray[np.float64],
+        threads: int | None,
+    ) -> NDArray[np.float64]:
+        """Shrink balls that touch meshes at (N,3) points, middles along unit ways, till empty: (N,) radii."""
     @property
     def names(self) -> tuple[str, ...]:
         """What its shapes are called, in their order; empty where one has no name."""
+    @property
+    def is_rounded(self) -> bool:
+        """Whether rounding to float32 has moved vertices."""
     @property
     def loss(self) -> tuple[float, float] | None:
         """How far rounding has moved vertices, and as a share of their mesh's extent, where it is a loss."""

@@ -70,6 +70,69 @@ def test_the_ball_in_a_wedge():
     assert np.allclose(rays, d * np.tan(angle), rtol=1e-9)
 
 
+def test_the_largest_balls_are_empty_and_touch():
+    """Of every ball that is told, nothing of the surface is inside, and none that is larger by 1e-5 is so."""
+    bodies = [
+        trimesh.creation.icosphere(subdivisions=2),
+        trimesh.creation.capsule(height=3.0, radius=0.5, count=[12, 12]),
+        trimesh.creation.cylinder(radius=0.4, height=5.0, sections=40),
+        trimesh.creation.torus(1.0, 0.3, major_sections=24, minor_sections=12),
+    ]
+    for body in bodies:
+        body.apply_transform(trimesh.transformations.rotation_matrix(0.7, (1, 2, 3), (5, -3, 1)))
+        scene = rw.Scene(body, precision="double")
+        diameters = measure.thickness(scene, method="sphere")
+        middles, normals = body.triangles_center, body.face_normals
+        assert (diameters <= measure.thickness(scene) * (1 + 1e-12)).all()
+        radius = diameters / 2
+        gap = scene.closest_point(middles - radius[:, None] * normals).distance / radius
+        assert np.allclose(gap, 1, rtol=0, atol=4e-6)
+        larger = radius * (1 + 1e-5)
+        is_whole = diameters < measure.thickness(scene) * (1 - 1e-4)
+        gap = scene.closest_point(middles - larger[:, None] * normals).distance / larger
+        assert (gap < 1)[is_whole].all()
+
+
+def test_balls_of_a_rod_are_as_thick_as_it_is():
+    """From the middle of a side of a regular prism the ball touches all of its sides at once."""
+    sections = 200
+    rod = trimesh.creation.cylinder(radius=1.0, height=20.0, sections=sections)
+    scene = rw.Scene(rod, precision="double")
+    side = np.abs(rod.face_normals[:, 2]) < 0.5
+    found = measure.thickness(scene, method="sphere")[side]
+    assert len(found) == 2 * sections
+    # A third of the way along its edge, where the middles of the triangles lie, the next side allows less.
+    flat = np.cos(np.pi / sections)
+    assert (found <= 2 * flat * (1 + 1e-6)).all()
+    off = np.tan(np.pi / sections) * flat / 3
+    ball = (flat * np.tan(np.pi / sections) - off) / np.tan(np.pi / sections)
+    assert np.allclose(found, 2 * ball, rtol=1e-6)
+
+
+def test_balls_and_rays_of_what_is_no_mesh():
+    """Between two spheres about one point the largest ball is as wide as they are apart."""
+    shell = rw.Scene([rw.Sphere((1, 2, 3), 1.0), rw.Sphere((1, 2, 3), 0.8)])
+    ways = np.random.default_rng(1).normal(size=(50, 3))
+    ways /= np.linalg.norm(ways, axis=1, keepdims=True)
+    found = measure.thickness(shell, np.array([1, 2, 3]) + ways, ways, method="sphere")
+    assert np.allclose(found, 0.2, rtol=1e-8)
+    mixed = rw.Scene([rw.Box((0, 0, 0), (4, 4, 1)), rw.Box((9, 9, 9), (10, 10, 10))])
+    assert measure.thickness(mixed, (2, 2, 1), (0, 0, 1), method="sphere") == pytest.approx(1, rel=1e-8)
+
+
+def test_a_film_in_a_large_part_is_as_thick_as_it_is():
+    """What else is in the scene, and how large that is, is no matter."""
+    film = trimesh.creation.box(bounds=[(0, 0, 0), (10, 10, 1e-6)])
+    far = trimesh.creation.icosphere(radius=1e4)
+    far.apply_translation((1e6, 0, 0))
+    for others in ([], [far]):
+        scene = rw.Scene([film, *others], precision="double")
+        for points in ((5, 5, 1e-6), [(5, 5, 1e-6), (1e6, 1e4, 0)]):
+            for method in ("ray", "sphere"):
+                found = measure.thickness(scene, points, (0, 0, 1), method=method)
+                assert np.atleast_1d(found)[0] == pytest.approx(1e-6, rel=1e-6)
+
+
 def test_no_other_side_and_no_point():
     sheet = rw.Mesh([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)])
     assert np.array_equal(measure.thickness(sheet), [np.inf])
@@ -104,6 +167,43 @@ def test_points_see_each_other_or_what_is_between():
         measure.line_of_sight(ball, np.zeros((2, 3)), np.zeros((3, 3)))
     with pytest.raises(ValueError, match=r"margin must be at least 0 and less than 0\.5, got 0\.5"):
         measure.line_of_sight(ball, *ends, margin=0.5)
+
+
+def test_what_is_near_hides_however_far_the_other_end_is():
+    """The sun is 1.5e11 away, and a leaf a hand."""
+    for far in (10.0, 1e6, 1.5e11):
+        for near in (1e-6, 0.1, 5.0):
+            leaf = rw.Mesh([(near, -1, -1), (near, 1, -1), (near, 0, 2)], [(0, 1, 2)])
+            scene = rw.Scene(leaf, precision="double")
+            found = measure.line_of_sight(scene, [(0, 0, 0), (0, 3, 0)], (far, 0.0, 0.0))
+            assert np.array_equal(found.visible, [False, True])
+            assert found.obstruction.t[0] == pytest.approx(near / far, rel=1e-12)
+            back = measure.line_of_sight(scene, (far, 0.0, 0.0), (0, 0, 0))
+            assert not back.visible
+
+
+def test_points_on_surfaces_are_not_hidden_by_these():
+    """Of a convex body a point sees what lies before its face, and nothing behind it."""
+    box = trimesh.creation.box((2.0, 2.0, 2.0))
+    box.apply_translation((1e3, -500, 20))
+    scene = rw.Scene(box, precision="double")
+    rng = np.random.default_rng(3)
+    middle = np.array((1e3, -500.0, 20))
+    on = middle + np.stack([np.ones(200), *rng.uniform(-1, 1, (2, 200))], axis=-1)
+    other = middle + np.stack([-np.ones(200), *rng.uniform(-1, 1, (2, 200))], axis=-1)
+    out = on + np.stack([rng.uniform(1e-6, 5, 200), *rng.uniform(-5, 5, (2, 200))], axis=-1)
+    for a, b, visible in ((on, out, True), (on, other, True), (out, other, False)):
+        found = measure.line_of_sight(scene, a, b)
+        assert (found.visible == visible).all()
+        assert (measure.line_of_sight(scene, b, a).visible == visible).all()
+    # Along the face, and over an edge and a corner of it.
+    assert measure.line_of_sight(scene, on, on[::-1]).visible.all()
+    edge, corner = np.add(middle, (1, 1, 0.3)), np.add(middle, (1, 1, 1))
+    for start in (edge, corner):
+        above, across = np.add(start, (0.5, 0.5, 3)), np.add(start, (-4, -3, -0.1))
+        assert measure.line_of_sight(scene, start, above).visible
+        assert measure.line_of_sight(scene, above, start).visible
+        assert not measure.line_of_sight(scene, across, start).visible
 
 
 @pytest.mark.parametrize(("z", "area"), [(-1.5, 0), (-1.0, 2), (0.5, 2), (1.5, 2), (1.6, 0)])

@@ -14,9 +14,15 @@ from ..scene.scene import Scene
 SceneLike: TypeAlias = Scene | Shapes
 Floats: TypeAlias = NDArray[np.float64]
 
-# How far from a surface rays start, as a part of the scene's size, where no more is known of the points:
-# farther than vertices are moved by being rounded to float32.
-_OFFSET = 1e-6
+# How many times the error of a point of a surface rays start off it, as `Hits.leave` has it.
+_SAFETY = 8.0
+# Up to how many times that error a point is off a surface that it is meant to lie on: 2**-40 of the largest
+# coordinate of the face, or 2**-22 where vertices were rounded to float32. Of its own where it is float32.
+_DOUBLE, _SINGLE, _NARROW = 2.0**9, 2.0**27, 2.0**-22
+# A normal that is steeper to the face nearest to its point is of another face, across an edge.
+_STEEP = 0.125
+# How far a surface is looked for that points are meant to lie on, as a part of the largest coordinate.
+_REACH = 2.0**-10
 
 
 def scene_of(scene: SceneLike) -> Scene:
@@ -75,7 +81,11 @@ class Places:
 
 
 def places(
-    scene: Scene, points: SurfacePoints | ArrayLike, normals: ArrayLike | None, offset: float | None
+    scene: Scene,
+    points: SurfacePoints | ArrayLike,
+    normals: ArrayLike | None,
+    offset: float | None,
+    threads: int | None = None,
 ) -> Places:
     """Check points and normals, and tell where rays start that leave them.
 
@@ -91,11 +101,93 @@ def places(
         raise ValueError("normals must be given, unless points are what rays have hit or closest points")
     starts, ways = vectors("points", points), units("normals", normals)
     lead = common({"points": starts.shape[:-1], "normals": ways.shape[:-1]})
-    starts, ways = np.broadcast_to(starts, (*lead, 3)), np.broadcast_to(ways, (*lead, 3))
-    away = _OFFSET * size_of(scene, starts) if offset is None else float(offset)
-    if not (np.isfinite(away) and away >= 0):
+    ways = np.broadcast_to(ways, (*lead, 3))
+    if offset is None:
+        starts = touching(scene, points, threads).spread(starts.shape[:-1], lead).off(starts, ways)
+    elif np.isfinite(away := float(offset)) and away >= 0:
+        starts = starts + away * ways
+    else:
         raise ValueError(f"offset must be finite and at least 0, got {offset}")
-    return Places((starts + away * ways).reshape(-1, 3), ways.reshape(-1, 3), lead)
+    return Places(starts.reshape(-1, 3), ways.reshape(-1, 3), lead)
+
+
+@dataclass(frozen=True)
+class Touching:
+    """How points lie to the surfaces on which they lie to within rounding; all is 0 for points on none.
+
+    Attributes
+    ----------
+    error : (...) float64
+        Bound on how far each coordinate of a surface's point is off.
+    distance : (...) float64
+        From the point to the surface.
+    away : (..., 3) float64
+        From the nearest point of the surface to the point.
+    normal : (..., 3) float64
+        Of the surface; NaN if its face has no area.
+    """
+
+    error: Floats
+    distance: Floats
+    away: Floats
+    normal: Floats
+
+    def spread(self, shape: tuple[int, ...], lead: tuple[int, ...]) -> "Touching":
+        """Return the same of points of leading shape `shape`, broadcast to another."""
+        numbers = (np.broadcast_to(part.reshape(shape), lead) for part in (self.error, self.distance))
+        each = (np.broadcast_to(part.reshape(*shape, 3), (*lead, 3)) for part in (self.away, self.normal))
+        return Touching(*numbers, *each)
+
+    def lift(self, ways: Floats) -> tuple[Floats, Floats]:
+        """Return unit normals on the side of directions, and how far points are below their safe height."""
+        side = np.where((self.normal * ways).sum(axis=-1) < 0, -1.0, 1.0)
+        normal: Floats = side[..., None] * self.normal
+        return normal, np.maximum(0.0, _SAFETY * self.error - (normal * self.away).sum(axis=-1))
+
+    def slack(self) -> Floats:
+        """Return how far along rays that leave the points hits are still of the surface that they leave."""
+        return _SAFETY / _STEEP * self.error + self.distance
+
+    def beside(self, points: Floats, ways: Floats) -> Floats:
+        """Return where rays start that go along directions, as `Hits.leave` has it."""
+        normal, lift = self.lift(ways)
+        starts: Floats = points + np.where((lift > 0)[..., None], lift[..., None] * normal, 0.0)
+        return starts
+
+    def off(self, points: Floats, ways: Floats) -> Floats:
+        """Return where rays start that leave to the side of unit vectors: beyond errors, and no farther."""
+        normal, lift = self.lift(ways)
+        cosine = (normal * ways).sum(axis=-1)
+        is_flat = cosine >= _STEEP
+        along = np.where(is_flat, lift / np.where(is_flat, cosine, 1.0), self.slack())
+        starts: Floats = points + along[..., None] * ways
+        return starts
+
+
+def touching(scene: Scene, points: ArrayLike, threads: int | None = None) -> Touching:
+    """Find how points, as they were given, lie to the surfaces that they are meant to lie on, in a row.
+
+    That depends on each point and the surface nearest to it alone, not on other points, nor on how large the
+    scene is.
+    """
+    given = last_axis("points", points, 3)
+    place = np.asarray(given, np.float64).reshape(-1, 3)
+    core = scene._compiled()
+    most = np.abs(place).max(axis=-1, initial=0.0)
+    reach = (
+        np.inf
+        if core.curved
+        else _REACH * (most + np.abs(np.zeros(1) if core.bounds is None else core.bounds).max())
+    )
+    near = scene.closest_point(place, max_distance=reach, threads=threads)
+    error = np.where(near.found, near._error, 0.0)
+    rounding = (_SINGLE if core.is_rounded else _DOUBLE) * error
+    if given.dtype == np.float32:
+        rounding = rounding + _NARROW * most
+    is_on = near.found & (near.distance <= rounding)
+    away = np.where(is_on[:, None], place - np.where(is_on[:, None], near.position, 0.0), 0.0)
+    normal = np.where(is_on[:, None], near.normal, 0.0)
+    return Touching(np.where(is_on, error, 0.0), np.where(is_on, near.distance, 0.0), away, normal)
 
 
 def _of_surface(points: SurfacePoints, normals: ArrayLike | None) -> Places:
@@ -103,14 +195,6 @@ def _of_surface(points: SurfacePoints, normals: ArrayLike | None) -> Places:
     ways = points.normal if normals is None else np.broadcast_to(units("normals", normals), (*lead, 3))
     starts = points.leave(np.where(np.isfinite(ways), ways, 1.0)).origins
     return Places(starts.reshape(-1, 3), ways.reshape(-1, 3), lead)
-
-
-def size_of(scene: Scene, points: Floats) -> float:
-    """Return the length of the diagonal of the box around a scene and points."""
-    bounds = scene.bounds
-    ends = [points.reshape(-1, 3)] + ([] if bounds is None else [bounds])
-    every = np.concatenate(ends)
-    return float(np.linalg.norm(every.max(axis=0) - every.min(axis=0))) if len(every) else 0.0
 
 
 def common(shapes: dict[str, tuple[int, ...]]) -> tuple[int, ...]:

@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import number
 from ..query.hits import Hits
-from .places import Floats, SceneLike, common, scene_of, sealed, vectors
+from .places import Floats, SceneLike, Touching, common, scene_of, sealed, touching, vectors
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -34,7 +34,7 @@ class LineOfSight:
 
 
 def line_of_sight(
-    scene: SceneLike, a: ArrayLike, b: ArrayLike, margin: float = 1e-6, threads: int | None = None
+    scene: SceneLike, a: ArrayLike, b: ArrayLike, margin: float | None = None, threads: int | None = None
 ) -> LineOfSight:
     """Find whether points see each other, and what stands in the way first.
 
@@ -44,9 +44,11 @@ def line_of_sight(
         What may stand in the way.
     a, b : (..., 3) arrays
         The points, broadcast against each other.
-    margin : float
-        The share of the way at either end that does not count, at least 0 and less than 0.5, so that points
-        on surfaces are not hidden by these. With 0, both points count.
+    margin : float, optional
+        The share of the way at either end that does not count, at least 0 and less than 0.5. With 0, both
+        points count. If not given, points that lie on a surface to within rounding are not hidden by it
+        there: the way leaves it by the bound on its error, as `Hits.leave` has it. All else counts, however
+        near.
     threads : int, optional
         How many to use; all cores if not given. The answer does not depend on it.
 
@@ -63,12 +65,22 @@ def line_of_sight(
         If an array does not hold real numbers.
     """
     starts, ends = vectors("a", a), vectors("b", b)
-    least = number("margin", margin)
-    if not 0 <= least < 0.5:
-        raise ValueError(f"margin must be at least 0 and less than 0.5, got {margin}")
     lead = common({"a": starts.shape[:-1], "b": ends.shape[:-1]})
+    scene = scene_of(scene)
     way = np.broadcast_to(ends - starts, (*lead, 3))
-    hits = scene_of(scene).intersect(
-        np.broadcast_to(starts, (*lead, 3)), way, t_min=least, t_max=1.0 - least, threads=threads
-    )
-    return LineOfSight(sealed(~hits.hit), hits, sealed(np.asarray(np.linalg.norm(way, axis=-1))))
+    far = np.linalg.norm(way, axis=-1)
+    if margin is None:
+        from_, first = _left(touching(scene, a, threads).spread(starts.shape[:-1], lead), starts, way, far)
+        to, last = _left(touching(scene, b, threads).spread(ends.shape[:-1], lead), ends, -way, far)
+        hits = scene.intersect(from_, to - from_, t_min=first, t_max=1.0 - last, threads=threads)
+    else:
+        least = number("margin", margin)
+        if not 0 <= least < 0.5:
+            raise ValueError(f"margin must be at least 0 and less than 0.5, got {margin}")
+        hits = scene.intersect(starts, way, t_min=least, t_max=1.0 - least, threads=threads)
+    return LineOfSight(sealed(~hits.hit), hits, sealed(np.asarray(far)))
+
+
+def _left(at: Touching, points: Floats, way: Floats, far: Floats) -> tuple[Floats, Floats]:
+    """Return points off the surfaces that they lie on, and the share of the way that is still of these."""
+    return at.beside(points, way), np.divide(at.slack(), far, out=np.zeros(far.shape), where=far > 0)

@@ -109,7 +109,7 @@ def solar_exposure(
     up, north : 3 floats
         The zenith, below whose horizon the sun does not count, and the north.
     offset : float, optional
-        How far from plain points along the normal rays start; a millionth of the scene's size if not given.
+        How far from plain points along the normal rays start, as for `sky_view`.
     progress : bool or callable, optional
         As for `sky_view`.
     threads : int, optional
@@ -138,7 +138,7 @@ def solar_exposure(
     if progress is not None:
         check_progress(progress)
     scene = scene_of(scene)
-    where = places(scene, points, normals, offset)
+    where = places(scene, points, normals, offset, threads)
     day = np.flatnonzero(suns @ unit("up", up) > 0)
     exposure, sunlit = np.zeros(len(where)), np.zeros(len(where))
     step = max(_TOGETHER // max(len(where), 1), 1)

@@ -1,6 +1,5 @@
 """How thick walls are."""
 
-import math
 from typing import Literal, get_args
 
 import numpy as np
@@ -11,12 +10,12 @@ from ..query.hits import ClosestPoints, SurfacePoints
 from ..scene.progress import BuildProgress, check_progress, watcher
 from ..scene.scene import Scene
 from ..shapes.mesh import Mesh
-from .places import Floats, Places, SceneLike, places, scene_of, sealed, size_of
+from .places import Floats, Places, SceneLike, places, scene_of, sealed
 
 Method = Literal["ray", "sphere"]
 # A ball shrinks towards its last size geometrically; so many steps are more than any took that was tried.
 _STEPS = 60
-# To how much of itself, or of the scene's size, a ball is found.
+# To how much of itself a ball of shapes that are no meshes is found.
 _EXACT = 1e-9
 # Points are asked so many at a time, between which progress is told.
 _TOGETHER = 1 << 17
@@ -46,7 +45,7 @@ def thickness(
         of the largest ball inside that touches the surface at the point, which is never more, does not depend
         on how the far side is tilted, and needs closest points.
     offset : float, optional
-        How far from plain points rays start; a millionth of the scene's size if not given.
+        How far from plain points rays start, as for `sky_view`.
     progress : bool or callable, optional
         As for `sky_view`.
     threads : int, optional
@@ -71,16 +70,17 @@ def thickness(
     -----
     The ball shrinks from the one that the ray allows until nothing is nearer to its centre than the point
     (Ma, Bae and Choi, "3D Medial Axis Point Approximation Using Nearest Neighbors and the Normal Field",
-    2012), to 1e-9 of itself or of the scene's size, at a convex edge to nothing. Rays and balls are exact
-    for the surface as it is: where a mesh stands for something round, its facets are what is measured.
+    2012), at a convex edge to nothing. Among meshes a tree of boxes and slabs finds what shrinks it, to 1e-6
+    of itself; of what is no mesh, closest points do. Rays and balls are those of the surface as it is: where
+    a mesh stands for something round, its facets are what is measured.
     """
     choice("method", method, get_args(Method))
     if progress is not None:
         check_progress(progress)
     scene = scene_of(scene)
     found = _middles(scene) if points is None else points
-    out = places(scene, found, normals, offset)
-    middles, starts = _inward(scene, found, out, offset)
+    out = places(scene, found, normals, offset, threads)
+    middles, starts = _inward(scene, found, out, offset, threads)
     result = np.empty(len(out))
     with watcher(progress, "thickness") as report:
         for first in range(0, len(out), _TOGETHER):
@@ -98,7 +98,7 @@ def thickness(
 
 
 def _inward(
-    scene: Scene, found: SurfacePoints | ArrayLike, out: Places, offset: float | None
+    scene: Scene, found: SurfacePoints | ArrayLike, out: Places, offset: float | None, threads: int | None
 ) -> tuple[Floats, Floats]:
     """Return the points, and where rays start that go in."""
     ways = -out.normals.reshape(*out.shape, 3)
@@ -106,7 +106,7 @@ def _inward(
         starts = found.leave(np.where(np.isfinite(ways), ways, 1.0)).origins
         return found.position.reshape(-1, 3), starts.reshape(-1, 3)
     points = np.broadcast_to(np.asarray(found, np.float64), ways.shape)
-    return points.reshape(-1, 3), places(scene, found, ways, offset).origins
+    return points.reshape(-1, 3), places(scene, found, ways, offset, threads).origins
 
 
 def _middles(scene: Scene) -> ClosestPoints:
@@ -127,25 +127,34 @@ def _middles(scene: Scene) -> ClosestPoints:
 
 def _balls(scene: Scene, points: Floats, ways: Floats, across: Floats, threads: int | None) -> Floats:
     """Return the diameters of the largest balls inside that touch the surface, from where ways go in."""
-    known = np.isfinite(points).all(axis=1)
-    least = _EXACT * size_of(scene, points[known])
-    bounds = scene.bounds
-    # A ball as large as the scene is met by all that a larger one is.
-    most = math.inf if bounds is None else float(np.linalg.norm(bounds[1] - bounds[0]))
-    radius = np.minimum(across / 2.0, most)
+    known = np.isfinite(points).all(axis=1) & np.isfinite(across)
+    radius = across / 2.0
     # Where numbers were given, the surface may be a little off: nothing touches both.
-    on = scene.closest_point(points, threads=threads).position
-    open_ = np.flatnonzero(np.isfinite(radius) & known)
+    near = scene.closest_point(points[known], threads=threads)
+    core = scene._compiled()
+    if core.curved:
+        radius[known] = _shrunk(scene, near, ways[known], radius[known], threads)
+    else:
+        radius[known] = core.tangent_balls(near.position, ways[known], radius[known], threads)
+    return 2.0 * radius
+
+
+def _shrunk(scene: Scene, touch: ClosestPoints, ways: Floats, radius: Floats, threads: int | None) -> Floats:
+    """Return the radii of balls that touch the surface at points, shrunk until nothing is inside."""
+    open_ = np.arange(len(radius))
     for _ in range(_STEPS):
         if not len(open_):
             break
-        point, r = on[open_], radius[open_]
-        near = scene.closest_point(point + r[:, None] * ways[open_], threads=threads)
-        away = near.position - point
+        point, r = touch.position[open_], radius[open_]
+        # What is not told apart from touching the ball does not count: so far it need not be looked for.
+        most = np.maximum(r - _EXACT * r - 2.0 * touch._error[open_], 0.0)
+        near = scene.closest_point(point + r[:, None] * ways[open_], max_distance=most, threads=threads)
+        is_near = near.found & (near.distance < most)
+        away = np.where(is_near[:, None], near.position - point, 0.0)
         # The ball through the point that also touches the nearest one: |q - p|^2 / 2 w·(q - p).
         depth = (away * ways[open_]).sum(axis=1)
         smaller = np.divide((away * away).sum(axis=1), 2.0 * depth, out=r.copy(), where=depth > 0)
-        is_less = (near.distance < r - least) & (smaller < r - _EXACT * r)
+        is_less = smaller < r - _EXACT * r
         radius[open_] = np.where(is_less, smaller, r)
         open_ = open_[is_less]
-    return np.where(np.isfinite(across), 2.0 * radius, across)
+    return radius

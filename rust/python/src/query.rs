@@ -14,7 +14,7 @@ use super::hits::{HitArrays, Hits};
 use super::info::AcceleratorInfo;
 use super::instances;
 use super::rays::{BATCH, RayArguments, answer, share};
-use raywright::accel::{Cost, Nearest};
+use raywright::accel::{Cost, Nearest, Primitives, TangentBalls};
 use raywright::math::{DVec3, Hit};
 use raywright::scene;
 use raywright::scene::media::Medium;
@@ -306,6 +306,37 @@ impl CompiledScene {
         Ok((sealed(distance)?, sealed(position)?, sealed(shape)?, sealed(primitive)?, sealed(uv)?, instance))
     }
 
+    /// The radii of the largest balls, of at most `radius`, that touch meshes at points, have their middles along unit
+    /// vectors from there, and no triangle inside.
+    fn tangent_balls<'py>(
+        &self,
+        py: Python<'py>,
+        points: PyReadonlyArray2<'py, f64>,
+        ways: PyReadonlyArray2<'py, f64>,
+        radius: PyReadonlyArray1<'py, f64>,
+        threads: Option<usize>,
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        let (points, ways) = (rows::<f64, 3>("points", &points)?, rows::<f64, 3>("ways", &ways)?);
+        let radius = numbers("radius", &radius)?;
+        let count = radius.len();
+        if [points.len(), ways.len()] != [count; 2] {
+            return Err(PyValueError::new_err(format!("points and ways must be {count}, one for each radius")));
+        }
+        let geometry = self.0.geometry();
+        let tree = py.detach(|| {
+            let triangles = (0..Primitives::count(geometry) as u32).map(|i| Primitives::corners(geometry, i));
+            TangentBalls::new(triangles)
+        });
+        let out = unwritten(py, &[count], None)?;
+        answer(py, count, (count / 256).clamp(16, BATCH), threads, out.readwrite().as_slice_mut()?, |start, out| {
+            for (i, to) in (start..).zip(out) {
+                let (point, way) = (DVec3::from_array(points[i]), DVec3::from_array(ways[i]));
+                *to = tree.radius(point, way, radius[i]);
+            }
+        })?;
+        Ok(out)
+    }
+
     fn positions<'py>(
         &self,
         py: Python<'py>,
@@ -383,6 +414,12 @@ impl CompiledScene {
     #[getter]
     fn dropped(&self) -> usize {
         self.0.geometry().dropped()
+    }
+
+    /// Whether rounding to f32 has moved vertices.
+    #[getter]
+    fn is_rounded(&self) -> bool {
+        self.0.geometry().is_single() && self.0.geometry().rounding().moved > 0.0
     }
 
     /// How far rounding to f32 has moved vertices, and what share of their mesh's extent that is, where it is a loss.

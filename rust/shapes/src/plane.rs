@@ -8,6 +8,9 @@ use raywright_base::math::robust::UNIT;
 use raywright_base::math::{Affine, DVec3, Frame, Number, Ray, Triple};
 use std::cmp::Ordering;
 
+/// The least error that is told of a point: far from where numbers and their products lose digits.
+const LEAST: f64 = 1e-100;
+
 /// The plane through a point, at right angles to a normal of any length but 0.
 ///
 /// Its coordinates are those along two unit axes at right angles to the normal, from the point on, less their whole
@@ -105,7 +108,8 @@ impl Shape for Plane {
         let away = Carried::Ray(ray).line().from(self.point).at(t);
         let away = away - normal * normal.dot(away);
         let position = self.point + away;
-        let error = UNIT * (position.abs().max_element() + 12.0 * away.abs().element_sum());
+        // A plane through the origin has no size of its own: there all numbers are 0, and still a ray has to leave it.
+        let error = (UNIT * (position.abs().max_element() + 12.0 * away.abs().element_sum())).max(LEAST);
         Point { position, error, normal, uv, dp: [tangent, bitangent], dn: [DVec3::ZERO; 2] }
     }
 
