@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import trimesh
 
 import raywright as rw
 
@@ -41,6 +42,7 @@ def test_a_ball_is_as_far_as_it_is():
 
 
 def test_beams_go_where_the_scanner_says():
+    """Up is y, as for the sun and everywhere in `raywright.measure`, so that left of x is -z."""
     spinning = measure.SpinningLidar(elevations=[-10, 0, 30], columns=8, forward=(0, 5, 0), up=(0, 0, 2))
     ways = spinning.directions()
     assert spinning.shape == ways.shape[:2] == (3, 8)
@@ -51,15 +53,37 @@ def test_beams_go_where_the_scanner_says():
     corners = measure.RasterLidar(columns=3, rows=3, horizontal=60, vertical=40).directions()
     turn, high = np.radians(30), np.radians(20)
     assert np.allclose(corners[1, 1], (1, 0, 0))
-    first = (np.cos(high) * np.cos(turn), np.cos(high) * np.sin(turn), np.sin(high))
+    first = (np.cos(high) * np.cos(turn), np.sin(high), -np.cos(high) * np.sin(turn))
     assert np.allclose(corners[0, 0], first)
     assert np.allclose(corners[2, 2], (first[0], -first[1], -first[2]))
+    straight = measure.SpinningLidar(elevations=[90], columns=1).directions()[0, 0]
+    noon = measure.sun_directions("2025-03-20T12:07Z", 0.0, 0.0)
+    assert straight @ noon > 0.999
+
+
+def test_a_scanner_that_stands_on_the_ground_does_not_measure_it_where_it_stands():
+    """Beams that go up return from a dome, and those that go down from a floor below."""
+    ground = trimesh.creation.box(bounds=[(-9, -1, -9), (9, 0, 9)])
+    scanner = measure.SpinningLidar(elevations=[60, 1e-3, -1e-3, -60], columns=8, position=(0.3, 0, 0.1))
+    scan = measure.lidar([ground, rw.Sphere((0.3, 0, 0.1), 5.0)], scanner)
+    assert np.array_equal(scan.count, np.ones((4, 8)))
+    assert np.allclose(scan.image()[:3], 5.0)
+    assert np.allclose(scan.image()[3], 1 / np.sin(np.radians(60)))
 
 
 def test_near_and_far_are_not_measured():
     near = measure.RasterLidar(columns=3, rows=3, horizontal=1, vertical=1, min_range=5.0)
-    # Only the far side of the ball is beyond 5.
-    assert np.allclose(measure.lidar(BALL, near).range, 7.5, atol=0.01)
+    # The near side of the ball, at 4.5, hides the far side at 7.5, and a wall behind it.
+    assert len(measure.lidar([BALL, rw.Plane((9.0, 0, 0), (1, 0, 0))], near)) == 0
+    wall = rw.Plane((9.0, 0, 0), (1, 0, 0))
+    assert np.allclose(measure.lidar(wall, near).range, 9.0, atol=0.01)
+    # Of a beam that half passes a post that is too near, half returns from the wall.
+    post = rw.Mesh([(1, -9, 0), (1, -9, 9), (1, 9, 9), (1, 9, 0)], [(0, 1, 2), (0, 2, 3)])
+    wide = measure.SpinningLidar(elevations=[0], columns=1, divergence=1.0, rays=100, min_range=2.0)
+    scan = measure.lidar([post, wall], wide)
+    assert np.allclose(scan.range, [9.0], rtol=1e-4)
+    assert np.array_equal(scan.number, [0])
+    assert np.allclose(scan.strength, 0.5, atol=0.1)
     far = measure.RasterLidar(columns=3, rows=3, horizontal=1, vertical=1, max_range=4.0)
     assert len(measure.lidar(BALL, far)) == 0
 
@@ -85,6 +109,53 @@ def test_noise_has_the_spread_that_was_asked_for():
     assert np.array_equal(lossy.range, noisy.range[np.isin(noisy.beam, lossy.beam)])
 
 
+def test_noise_stays_within_the_limits_of_the_range():
+    """Of a wall at one limit, half of the ranges would lie beyond it."""
+    for limits in ({"min_range": 10.0}, {"max_range": 10.001}):
+        scanner = measure.RasterLidar(columns=20, rows=20, horizontal=0.5, vertical=0.5, **limits)
+        scan = measure.lidar(rw.Plane((10.0, 0, 0), (1, 0, 0)), scanner, range_sigma=0.5)
+        assert len(scan) == 400
+        assert scan.range.min() >= scanner.min_range
+        assert scan.range.max() <= scanner.max_range
+        assert np.allclose(np.linalg.norm(scan.position, axis=1), scan.range)
+        assert scan.range.std() > 0.1
+
+
+@pytest.mark.parametrize("elevation", [-0.5, -1.0, -3.0, -20.0])
+@pytest.mark.parametrize(("divergence", "rays"), [(0.05, 16), (0.2, 5), (0.2, 16), (0.5, 40)])
+def test_flat_ground_returns_once(elevation, divergence, rays):
+    """However far along the ground a beam stretches, its waveform has one peak, at the mean over its disk.
+
+    The mean of h / sin(a + x) over a disk of radius d is h / sin a (1 + (d / a)^2 / 4) to the second order;
+    200 spirals of 5 points tell it to some (d / a) / 100.
+    """
+    height = 1.7
+    scanner = measure.SpinningLidar(
+        elevations=[elevation], columns=200, position=(0, height, 0), divergence=divergence, rays=rays
+    )
+    scan = measure.lidar(rw.Plane((0, 0, 0), (0, 1, 0)), scanner)
+    assert np.array_equal(scan.count, np.ones((1, 200)))
+    assert set(scan.strength) == {1.0}
+    steep = divergence / 2 / abs(elevation)
+    middle = height / np.sin(np.radians(-elevation))
+    assert scan.range.mean() / middle - 1 == pytest.approx(steep**2 / 4, abs=steep**4 + steep / 100 + 1e-6)
+
+
+@pytest.mark.parametrize("resolution", [0.1, 0.3, 1.0])
+def test_two_surfaces_are_two_returns_from_the_resolution_on(resolution):
+    """Two equal pulses a full width at half maximum apart have a dip of 1 / 17 between them."""
+    edge = rw.Mesh([(5, -9, 0), (5, -9, 9), (5, 9, 9), (5, 9, 0)], [(0, 1, 2), (0, 2, 3)])
+    scanner = measure.SpinningLidar(
+        elevations=[0], columns=1, divergence=1.0, rays=400, resolution=resolution
+    )
+    for apart, count in ((0.9, 1), (1.1, 2), (3.0, 2)):
+        behind = rw.Plane((5 + apart * resolution, 0, 0), (1, 0, 0))
+        scan = measure.lidar([edge, behind], scanner)
+        assert len(scan) == count
+        expected = [5.0, 5 + apart * resolution] if count == 2 else [5 + apart * resolution / 2]
+        assert np.allclose(scan.range, expected, rtol=0, atol=0.05 * resolution + 1e-3)
+
+
 def test_losses_are_as_likely_as_told():
     """The number of returns is within 4 deviations of the sum of their probabilities: 1e-4."""
     wall = rw.Plane((10.0, 0, 0), (1, 0, 0))
@@ -107,7 +178,7 @@ def test_a_wide_beam_returns_from_all_that_it_meets():
     """Of a beam that half passes an edge, half comes from behind: a spiral of n points tells a half-disk
     to 1 / sqrt(n).
     """
-    edge = rw.Mesh([(5, 0, -9), (5, 9, -9), (5, 9, 9), (5, 0, 9)], [(0, 1, 2), (0, 2, 3)])
+    edge = rw.Mesh([(5, -9, 0), (5, -9, 9), (5, 9, 9), (5, 9, 0)], [(0, 1, 2), (0, 2, 3)])
     scene = rw.Scene([edge, rw.Plane((8.0, 0, 0), (1, 0, 0))])
     options = {"elevations": [0.0], "columns": 1, "divergence": 1.0, "rays": 400}
     scan = measure.lidar(scene, measure.SpinningLidar(**options))
@@ -125,7 +196,7 @@ def test_a_wide_beam_returns_from_all_that_it_meets():
     coarse = measure.lidar(scene, measure.SpinningLidar(**options, resolution=4.0))
     assert coarse.range == pytest.approx(5 * scan.strength[0] + 8 * scan.strength[1], rel=1e-3)
     # All rays of a beam are within half its divergence: nothing of the edge is met from beside it.
-    aside = measure.SpinningLidar(**options, start=-0.51)
+    aside = measure.SpinningLidar(**options, start=0.51)
     assert np.allclose(measure.lidar(scene, aside).range, 8, rtol=1e-3)
 
 

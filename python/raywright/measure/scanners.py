@@ -16,7 +16,7 @@ class _Scanner:
 
     position: Triple = (0.0, 0.0, 0.0)
     forward: Triple = (1.0, 0.0, 0.0)
-    up: Triple = (0.0, 0.0, 1.0)
+    up: Triple = (0.0, 1.0, 0.0)
     min_range: float = 0.0
     max_range: float = math.inf
     divergence: float = 0.0
@@ -56,15 +56,17 @@ class SpinningLidar(_Scanner):
     position : 3 floats
         Where the scanner is.
     forward, up : 3 floats
-        Its azimuth 0 and its vertical; only what of `forward` is at right angles to `up` counts.
+        Its azimuth 0 and its vertical, y if not given as everywhere in `raywright.measure`; only what of
+        `forward` is at right angles to `up` counts.
     min_range, max_range : float
-        Between which it measures, both included.
+        Between which it measures, both included. What is nearer is not measured, and hides what is behind it.
     divergence : float
         The full angle of a beam's cone, in degrees; 0 for one that is a line.
     rays : int
         How many a beam with a divergence is sampled with.
     resolution : float
-        How far apart surfaces must be, in the scene's unit, for a beam to return from each.
+        How far apart surfaces must be, in the scene's unit, for a beam to return from each: the full width at
+        half maximum of its pulse, in range.
 
     Raises
     ------
@@ -120,8 +122,8 @@ class RasterLidar(_Scanner):
     position : 3 floats
         Where the scanner is.
     forward, up : 3 floats
-        The middle of the field's horizon, and the vertical; only what of `forward` is at right angles to `up`
-        counts.
+        The middle of the field's horizon, and the vertical, y if not given; only what of `forward` is at
+        right angles to `up` counts.
     min_range, max_range, divergence, rays, resolution
         As for `SpinningLidar`.
 

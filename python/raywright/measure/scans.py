@@ -12,13 +12,16 @@ from ..query.hits import Hits
 from ..scene.progress import BuildProgress, check_progress, watcher
 from ..scene.scene import Scene
 from .noise import beams_of, normal, uniform
-from .places import Floats, SceneLike, scene_of, sealed
+from .places import Floats, SceneLike, scene_of, sealed, touching
 from .scanners import RasterLidar, SpinningLidar
+from .waveforms import peaks
 
 Lidar: TypeAlias = SpinningLidar | RasterLidar
 Returns: TypeAlias = Literal["all", "first", "last", "strongest"]
 # Rays that are sent together.
 _TOGETHER = 1 << 19
+# The largest incidence in degrees that counts: ranges vary by 10,000 times the width of the beam there.
+_GRAZING = 89.995
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -32,7 +35,7 @@ class LidarScan:
     number : (K,) int32
         Which return of its beam, from 0 on, before any were left out.
     range : (K,) float64
-        As measured: with its noise.
+        As measured: with its noise, from the scanner's `min_range` to its `max_range`.
     position : (K, 3) float64
         Where the scanner takes it to be: on the middle of the beam, at the range.
     incidence : (K,) float64
@@ -141,10 +144,17 @@ def lidar(
 
     Notes
     -----
-    A beam with a divergence is many rays, spread evenly over its disk. What they meet is one return as long
-    as the next range is within the scanner's `resolution` of the one before, and its range is the mean.
-    Ranges are true before noise; losses are decided of true ranges. Random numbers belong to beam and return,
-    so that a scan is the same however it is cut into batches, and adding one kind of noise changes no other.
+    A beam with a divergence is many rays, spread evenly over its disk, each for the part of it around. What
+    comes back is a waveform: the sum of a normal distribution for each ray, as wide as the scanner's pulse,
+    whose full width at half maximum is its `resolution`, and as the range varies over the ray's part of the
+    surface. Each peak of it is a return, if the waveform falls by 5 % at least before the next (Wagner,
+    Ullrich, Ducic, Melzer and Studnicka, "Gaussian Decomposition and Calibration of a Novel Small-Footprint
+    Full-Waveform Digitising Airborne Laser Scanner", 2006); its range is the mean over the rays that make it
+    up. So ground that is met at a grazing angle returns once, though it stretches over many resolutions.
+
+    Ranges are true before noise; losses are decided of true ranges. Noise that leads out of the scanner's
+    limits ends at these. Random numbers belong to beam and return, so that a scan is the same however it is
+    cut into batches, and adding one kind of noise changes no other.
     """
     if not isinstance(scanner, SpinningLidar | RasterLidar):
         raise TypeError(f"scanner must be a SpinningLidar or a RasterLidar, got {type(scanner).__name__}")
@@ -174,7 +184,8 @@ def lidar(
     kept *= np.cos(np.radians(found["incidence"])) ** power
     chosen = (uniform(seed, beam, which, 1) < kept) & _chosen(returns, beam, which, found["strength"])
     spread = np.sqrt(sigmas[0] ** 2 + (sigmas[1] * true) ** 2)
-    found["range"] = np.maximum(true + spread * normal(seed, beam, which, 2), 0.0)
+    measured = true + spread * normal(seed, beam, which, 2)
+    found["range"] = np.clip(measured, scanner.min_range, scanner.max_range)
     found["position"] = np.asarray(scanner.position) + found["range"][:, None] * middles[beam]
     return LidarScan(**{k: sealed(v[chosen]) for k, v in found.items()}, shape=scanner.shape)
 
@@ -196,16 +207,18 @@ def _scanned(
 ) -> dict[str, NDArray[Any]]:
     """Return what some beams come to, without noise."""
     ways = beams_of(middles[beams], beams, scanner.divergence, scanner.rays, seed)
-    hits = scene.intersect(
-        scanner.position, ways, t_min=scanner.min_range, t_max=scanner.max_range, threads=threads
-    )
-    order = np.argsort(hits.t, axis=1, kind="stable")
-    t = np.take_along_axis(hits.t, order, axis=1)
+    place = np.asarray(scanner.position)
+    at = touching(scene, place, threads)
+    starts = place if at.error == 0 else at.spread((1, 1), ways.shape[:-1]).beside(place, ways)
+    hits = scene.intersect(starts, ways, at.slack()[0], scanner.max_range, threads)
+    # What is too near is not measured, and hides what is behind it.
+    far = np.where(hits.t >= scanner.min_range, hits.t, np.inf)
+    order = np.argsort(far, axis=1, kind="stable")
+    t = np.take_along_axis(far, order, axis=1)
+    angle = np.take_along_axis(_incidence(hits, ways), order, axis=1)
     is_met = np.isfinite(t)
-    is_new = np.ones_like(is_met)
-    with np.errstate(invalid="ignore"):
-        is_new[:, 1:] = t[:, 1:] - t[:, :-1] > scanner.resolution
-    is_new &= is_met
+    peak = peaks(t, _width(scanner, t, angle), scanner.resolution)
+    is_new = is_met & (np.diff(peak, axis=1, prepend=-1) > 0)
     number = np.cumsum(is_new, axis=1) - 1
     # Returns of all beams in a row, and which of them each ray is of.
     group = (np.cumsum(is_new.reshape(-1)) - 1)[is_met.reshape(-1)]
@@ -224,11 +237,19 @@ def _scanned(
         "beam": np.repeat(beams, t.shape[1])[first],
         "number": number.reshape(-1)[first].astype(np.int32),
         "range": mean(t),
-        "incidence": mean(np.take_along_axis(_incidence(hits, ways), order, axis=1)),
+        "incidence": mean(angle),
         "strength": members / scanner.rays,
         "shape_id": of_first(hits.shape_id),
         "primitive": of_first(hits.primitive),
     }
+
+
+def _width(scanner: Lidar, t: Floats, angle: Floats) -> Floats:
+    """Return by how much ranges differ within the part of the beam that each ray stands for."""
+    apart = math.tan(math.radians(scanner.divergence) / 2.0) / math.sqrt(scanner.rays)
+    with np.errstate(invalid="ignore"):
+        width: Floats = t * apart * np.tan(np.radians(np.minimum(angle, _GRAZING)))
+    return width
 
 
 def _incidence(hits: Hits, ways: Floats) -> Floats:
