@@ -17,7 +17,15 @@ from .packing import packed
 from .wavefront import Wavefront
 
 # What kernels for pictures know nothing of, as `Scene.plan` calls it.
-_LEFT = ("masks", "smoke and haze", "patterned lights", "motion", "instances", "normals as given")
+_LEFT = (
+    "masks",
+    "smoke and haze",
+    "patterned lights",
+    "motion",
+    "instances",
+    "normals as given",
+    "shapes in glass",
+)
 
 
 class Gpu:

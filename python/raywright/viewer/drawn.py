@@ -30,7 +30,7 @@ _FILTER = BoxFilter()
 _DEEPEST = 1 << 20
 _SAMPLES = 4096
 # What scenes may need, by their plans, that paths in a page do not know.
-_MISSING = ("masks", "smoke and haze", "patterned lights", "normals as given")
+_MISSING = ("masks", "smoke and haze", "patterned lights", "normals as given", "shapes in glass")
 # Bytes of a primitive: in the tree, with the two nodes that it takes at most, as a face, and its paint.
 _EACH = 48 + 64 + 112 + 8
 

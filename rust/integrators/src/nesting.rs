@@ -86,6 +86,11 @@ impl<F: Filling> MediumStack<F> {
         self.clear().and_then(F::ior).unwrap_or(1.0)
     }
 
+    /// The index of refraction around a hit surface that encloses nothing; 1 where that makes no difference to it.
+    pub(super) fn ior_around(&self, scene: &Scene, hit: &Hit) -> f64 {
+        if self.count > 0 && scene.material_of(hit).minds_outside() { self.ior() } else { 1.0 }
+    }
+
     /// How the index of refraction there goes with wavelength.
     pub(super) fn dispersion(&self) -> Dispersive {
         self.clear().map_or(Dispersive::NONE, F::dispersion)

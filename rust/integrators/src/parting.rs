@@ -23,10 +23,16 @@ impl Parting {
         (outside, around): (f64, Dispersive),
         waves: &Waves,
     ) -> (f64, Option<Self>) {
-        // What encloses nothing knows of nothing around it.
-        let Some(interior) = material.interior().filter(|within| around.is_any() || within.dispersion.is_any()) else {
-            return (outside, None);
+        let Some(interior) = material.interior() else {
+            // What encloses nothing has the same around it on both sides. Each wavelength has an index of its own there.
+            if !(around.is_any() && material.minds_outside()) {
+                return (outside, None);
+            }
+            return (around.at(waves.hero()).unwrap_or(outside), Some(Self { etas: None }));
         };
+        if !(around.is_any() || interior.dispersion.is_any()) {
+            return (outside, None);
+        }
         let out = waves.lanes(|wavelength| around.at(wavelength).unwrap_or(outside));
         let eta = |within: Rgb| if is_front { within / out } else { out / within };
         let within = || waves.lanes(|wavelength| interior.dispersion.at(wavelength).unwrap_or(interior.ior));
@@ -52,7 +58,7 @@ impl Parting {
 mod tests {
     use super::*;
     use raywright_optics::{Dielectric, Dispersion};
-    use raywright_scene::materials::{DielectricMaterial, DiffuseMaterial, Interior};
+    use raywright_scene::materials::{DielectricMaterial, DiffuseMaterial, Interior, ThinDielectricMaterial};
 
     #[test]
     fn mirrored_light_keeps_the_reflectance_of_each_wavelength() {
@@ -79,5 +85,9 @@ mod tests {
         assert!(!parting.unwrap().waits(&Dielectric::new(0.7, 0.0)));
         let (around, parting) = Parting::at(&DiffuseMaterial::default(), true, (1.0, dispersion), &waves);
         assert!(around == 1.0 && parting.is_none());
+        let pane = ThinDielectricMaterial { ior: 1.5, within: None };
+        let (around, parting) = Parting::at(&pane, false, (1.66, dispersion), &waves);
+        assert_eq!(around, dispersion.at(waves.hero()).unwrap());
+        assert!(!parting.unwrap().waits(&Dielectric::new(0.7, 0.0)));
     }
 }

@@ -29,7 +29,7 @@ pub(super) enum Met {
     Surface {
         /// Which hit has it.
         hit: Hit,
-        /// The index of refraction on the other side of what it encloses.
+        /// The index of refraction on the other side of what it encloses, or around what encloses nothing.
         outside: f64,
         /// What a ray that goes through is in.
         through: MediumStack,
@@ -83,7 +83,7 @@ impl Passing {
         chance: &mut f64,
         number: impl FnOnce() -> f64,
     ) -> Met {
-        let (mut hit, mut outside, mut through) = (*hit, 1.0, *media);
+        let (mut hit, mut outside, mut through) = (*hit, media.ior_around(scene, hit), *media);
         if self.of.get(self.next) == Some(&(i as u32)) {
             let window = self.next;
             self.next += 1;

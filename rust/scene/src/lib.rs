@@ -20,6 +20,7 @@ mod patches;
 mod plan;
 mod ray_origin;
 mod shading;
+mod standing;
 mod surface_interaction;
 mod surface_lanes;
 mod surface_point;

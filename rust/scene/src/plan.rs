@@ -2,6 +2,7 @@
 
 use super::materials::BsdfMix;
 use super::media::Medium;
+use super::standing::Standing;
 use super::textures::Needs;
 use super::{Emission, Geometry, Lights, Material, Rounding};
 use raywright_accel::Primitives;
@@ -21,8 +22,10 @@ pub struct SceneNeeds {
     pub masks: bool,
     /// Shapes that enclose a medium with an index of refraction of its own.
     pub interiors: bool,
-    /// Several of those, which may lie in one another.
+    /// Several of those, which may lie in one another, or one with something in it that scatters by what is around it.
     pub nested: bool,
+    /// Which of them share space, as far as their boxes tell.
+    pub standing: Standing,
     /// What dims or scatters light between surfaces.
     pub media: bool,
     /// What is the same everywhere, of that, and scatters light.
@@ -63,6 +66,7 @@ impl BitOr for SceneNeeds {
             interiors: self.interiors | other.interiors,
             // Two of what encloses something may overlap.
             nested: self.nested | other.nested | (self.interiors & other.interiors),
+            standing: self.standing | other.standing,
             media: self.media | other.media,
             even_media: self.even_media | other.even_media,
             glow: self.glow | other.glow,
@@ -163,6 +167,10 @@ impl Plan {
             }
         }
         needs.waves |= needs.points.waves;
+        if needs.interiors {
+            needs.standing = Standing::of(geometry, materials.iter().map(|material| &**material));
+            needs.nested |= needs.standing.sheets;
+        }
         let few = if needs.scattering { lights.few() } else { 0 };
         let colour = |sides: &Option<[BsdfMix; 2]>| {
             let [front, back] = sides.as_ref()?;
@@ -369,7 +377,10 @@ impl Plan {
             row("motion", needs.motion, "rays are spread over the shutter's time", "all rays at one time"),
             ("float64 vertices", needs.double, self.digits()),
         ];
-        // Said of those only who asked for it.
+        // Said of those only who have it.
+        if needs.standing.sheets || needs.standing.glass {
+            rows.push(("shapes in glass", true, "surfaces scatter by the index around them".into()));
+        }
         if self.as_given {
             rows.push(("normals as given", true, "no light fades, no normal is bent".into()));
         }

@@ -68,6 +68,12 @@ impl Integrator for BeamTraced {
                  use Whitted"
             ));
         }
+        if scene.plan().needs().standing.sheets {
+            return Some(
+                "something stands in glass or at it, and beams shade what encloses nothing as in air: use Whitted"
+                    .into(),
+            );
+        }
         if lights.others().any(|light| light.place().is_none()) {
             return Some("beams come from lights without extent alone, and an environment has one: use Whitted".into());
         }

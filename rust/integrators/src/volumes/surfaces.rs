@@ -14,7 +14,7 @@ pub(crate) enum Met {
     Surface {
         /// Which hit has it.
         hit: Hit,
-        /// The index of refraction on the other side of what it encloses.
+        /// The index of refraction on the other side of what it encloses, or around what encloses nothing.
         outside: f64,
         /// What a ray that goes through is in.
         through: MediumStack<Filled>,
@@ -32,7 +32,8 @@ pub(super) async fn come_to(
     media: &MediumStack<Filled>,
 ) -> Met {
     let Some(window) = around::<Filled>(scene, ray, hit) else {
-        return Met::Surface { hit: *hit, outside: 1.0, through: *media, beyond: hit.t.next_up() };
+        let outside = media.ior_around(scene, hit);
+        return Met::Surface { hit: *hit, outside, through: *media, beyond: hit.t.next_up() };
     };
     let beyond = window.t_max.next_up();
     asks.crossed(&window, |crossed| meet_at(scene, ray, (hit, beyond), media, crossed)).await
@@ -59,7 +60,7 @@ fn meet_at(scene: &Scene, ray: &Ray, (hit, beyond): (&Hit, f64), media: &MediumS
     };
     let is_sheet = |hit: &&Hit| Filled::of(scene, hit).is_none() && scene.material_of(hit).is_opaque();
     match crossed.iter().find(is_sheet) {
-        Some(sheet) => Met::Surface { hit: *sheet, outside: 1.0, through, beyond },
+        Some(sheet) => Met::Surface { hit: *sheet, outside: media.ior_around(scene, sheet), through, beyond },
         None => Met::Passed(beyond, through),
     }
 }

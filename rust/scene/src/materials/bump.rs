@@ -86,6 +86,10 @@ impl Material for BumpMap {
         self.material.is_opaque()
     }
 
+    fn minds_outside(&self) -> bool {
+        self.material.minds_outside()
+    }
+
     fn transmits(&self) -> bool {
         self.material.transmits()
     }

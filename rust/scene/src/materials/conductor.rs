@@ -93,6 +93,10 @@ impl Material for ConductorMaterial {
         self.roughness.validate()
     }
 
+    fn minds_outside(&self) -> bool {
+        true
+    }
+
     fn tangent(&self, at: &ShadingPoint) -> Option<DVec3> {
         self.roughness.tangent(at)
     }

@@ -50,6 +50,10 @@ impl Material for Mask {
         self.opacity.is_within(1.0, 1.0) && self.material.is_opaque()
     }
 
+    fn minds_outside(&self) -> bool {
+        self.material.minds_outside()
+    }
+
     fn transmits(&self) -> bool {
         self.material.transmits()
     }

@@ -74,6 +74,10 @@ impl Material for MixMaterial {
         self.a.is_opaque() && self.b.is_opaque()
     }
 
+    fn minds_outside(&self) -> bool {
+        self.a.minds_outside() || self.b.minds_outside()
+    }
+
     fn transmits(&self) -> bool {
         self.a.transmits() || self.b.transmits()
     }

@@ -126,6 +126,11 @@ pub trait Material: Debug + Send + Sync {
         None
     }
 
+    /// Whether it scatters otherwise in a medium of another index of refraction, though it encloses nothing.
+    fn minds_outside(&self) -> bool {
+        false
+    }
+
     /// What fills it that dims and scatters light; none of what is clear.
     fn medium(&self) -> Option<&Arc<dyn Medium>> {
         None

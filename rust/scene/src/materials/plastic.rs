@@ -63,6 +63,10 @@ impl Material for PlasticMaterial {
         self.reflectance.needs() | self.roughness.needs()
     }
 
+    fn minds_outside(&self) -> bool {
+        true
+    }
+
     fn validate(&self) -> Result<(), String> {
         within("reflectance", &self.reflectance, 0.0, 1.0)?;
         number("ior", self.ior, 1.0, f64::MAX)?;

@@ -94,9 +94,12 @@ pub struct PrincipledMaterial {
 impl PrincipledMaterial {
     fn bsdf(&self, point: &TexturePoint, outside: f64) -> AnyBsdf {
         let solid = self.is_solid();
-        // What is opaque fills nothing: what is around it does not count, and all that it mirrors has the index of
-        // yellow light.
-        let eta = if solid { self.interior.ior_at(point.waves.as_ref()) / outside } else { self.interior.ior };
+        // What is opaque mirrors by the index of yellow light, and not at all where what is around has a greater one.
+        let eta = if solid {
+            self.interior.ior_at(point.waves.as_ref()) / outside
+        } else {
+            self.interior.ior / outside.min(self.interior.ior.max(1.0))
+        };
         let coat = [self.clearcoat.at(point), self.clearcoat_gloss.at(point)];
         Principled::new(self.looks.at(point), eta, self.metallic.at(point), coat, solid).into()
     }
@@ -133,6 +136,10 @@ impl Material for PrincipledMaterial {
         within("clearcoat_gloss", &self.clearcoat_gloss, 0.0, 1.0)
     }
 
+    fn minds_outside(&self) -> bool {
+        !self.is_solid()
+    }
+
     fn transmits(&self) -> bool {
         self.is_solid()
     }
@@ -158,22 +165,22 @@ pub struct PrincipledThinMaterial {
 }
 
 impl PrincipledThinMaterial {
-    fn bsdf(&self, point: &TexturePoint) -> AnyBsdf {
-        PrincipledThin::new(self.looks.at(point), self.ior, self.diffuse_transmission.at(point)).into()
+    fn bsdf(&self, point: &TexturePoint, outside: f64) -> AnyBsdf {
+        PrincipledThin::new(self.looks.at(point), self.ior / outside, self.diffuse_transmission.at(point)).into()
     }
 }
 
 impl Material for PrincipledThinMaterial {
     fn bsdf(&self, at: &ShadingPoint) -> BsdfMix {
-        self.bsdf(&at.texture).into()
+        self.bsdf(&at.texture, at.outside).into()
     }
 
     fn constant(&self) -> Option<AnyBsdf> {
-        (!self.needs().any()).then(|| self.bsdf(&TexturePoint::default()))
+        (!self.needs().any()).then(|| self.bsdf(&TexturePoint::default(), 1.0))
     }
 
     fn kinds(&self) -> Option<[usize; 2]> {
-        Some([self.bsdf(&TexturePoint::default()).kind(); 2])
+        Some([self.bsdf(&TexturePoint::default(), 1.0).kind(); 2])
     }
 
     fn needs(&self) -> Needs {
@@ -184,6 +191,10 @@ impl Material for PrincipledThinMaterial {
         self.looks.validate()?;
         number("ior", self.ior, f64::MIN_POSITIVE, f64::MAX)?;
         within("diffuse_transmission", &self.diffuse_transmission, 0.0, 1.0)
+    }
+
+    fn minds_outside(&self) -> bool {
+        true
     }
 
     fn transmits(&self) -> bool {

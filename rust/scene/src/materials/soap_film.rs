@@ -46,6 +46,10 @@ impl Material for SoapFilmMaterial {
         number("ior", self.ior, f64::MIN_POSITIVE, f64::MAX)
     }
 
+    fn minds_outside(&self) -> bool {
+        true
+    }
+
     fn transmits(&self) -> bool {
         true
     }

@@ -38,6 +38,10 @@ impl Material for ThinDielectricMaterial {
         number("ior", self.ior, f64::MIN_POSITIVE, f64::MAX)
     }
 
+    fn minds_outside(&self) -> bool {
+        true
+    }
+
     fn transmits(&self) -> bool {
         true
     }

@@ -171,6 +171,10 @@ impl Material for ThinFilmMaterial {
         self.base.material().validate()
     }
 
+    fn minds_outside(&self) -> bool {
+        self.interior().is_none()
+    }
+
     fn transmits(&self) -> bool {
         self.base.material().transmits()
     }

@@ -82,6 +82,10 @@ impl Material for TintedMaterial {
         }
     }
 
+    fn minds_outside(&self) -> bool {
+        self.interior().is_none()
+    }
+
     fn transmits(&self) -> bool {
         true
     }

@@ -53,6 +53,10 @@ impl Material for TwoSided {
         Ok(())
     }
 
+    fn minds_outside(&self) -> bool {
+        self.front.minds_outside() || self.back.minds_outside()
+    }
+
     fn normal(&self, at: &ShadingPoint) -> Option<DVec3> {
         self.side(at).normal(at)
     }
