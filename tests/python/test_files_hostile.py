@@ -151,7 +151,7 @@ PICTURES = {
     "head.exr": (exr(4, 4)[:60], "it is cut short within its header"),
     "points.hdr": (hdr(31623, 31623), "cut short"),
     "rows.hdr": (hdr(BILLION, 0), "cut short"),
-    "less.hdr": (hdr(-5, 10), "cut short"),
+    "less.hdr": (hdr(-5, 10), "it is no Radiance picture"),
     "digits.hdr": (hdr(10**30, 10), "cut short"),
     "run.hdr": (hdr(2, 8, b"\2\2\0\x08" + b"\xff\0" * 40), "cut short"),
     "points.npy": (npy("(31623, 31623, 3)"), "greater than file size"),

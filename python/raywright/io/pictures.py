@@ -13,6 +13,8 @@ from .quiet import quiet, reason
 from .radiance_hdr import read_hdr
 from .shown import FORMATS, check_format
 
+# Tags of TIFF files: bits of a sample, and whether it has a sign.
+_BITS, _SAMPLES, _UNSIGNED = 258, 339, 1
 SUFFIXES = (*FORMATS, ".exr", ".npy")
 
 
@@ -153,6 +155,9 @@ def decode(source: Path | bytes, formats: tuple[str, ...] | None = None) -> NDAr
 def pixels_of(picture: Any) -> NDArray[Any]:
     """Return a picture of Pillow's as an (H, W, C) array: uint8, of 16 bits uint16, of floats float32.
 
+    Integers of 32 bits become 16, as shares of the most that they hold. A grey or a color that the picture says
+    is transparent becomes alpha.
+
     Raises
     ------
     ValueError
@@ -163,14 +168,60 @@ def pixels_of(picture: Any) -> NDArray[Any]:
     most = Image.MAX_IMAGE_PIXELS
     if most is not None and picture.width * picture.height > most:
         raise ValueError(_TOO_MANY.format(most))
-    if picture.mode.startswith("I"):
+    # Before pixels are read: what is read later forgets how they stand in the file.
+    key = _transparent(picture)
+    if picture.mode == "I":
+        array = _of_integers(picture)
+    elif picture.mode.startswith("I"):
         array = np.asarray(picture).astype(np.uint16)
     else:
-        if picture.mode not in ("L", "LA", "RGB", "RGBA", "F"):
+        if key is not None and picture.mode == "1":
+            picture = picture.convert("L")
+        elif picture.mode not in ("L", "LA", "RGB", "RGBA", "F"):
             clear = "A" in picture.getbands() or "transparency" in picture.info
             picture = picture.convert("RGBA" if clear else "RGB")
         array = np.array(picture)
+    if key is not None and picture.mode not in ("LA", "RGBA"):
+        array = _with_alpha(array, key)
     return array if array.ndim == 3 else array[..., np.newaxis]
+
+
+def _transparent(picture: Any) -> tuple[int, ...] | None:
+    """Return the levels of the one grey or color of a picture that is transparent, as its pixels have them."""
+    told = picture.info.get("transparency")
+    if picture.mode not in ("1", "L", "I", "I;16", "I;16B", "RGB") or not isinstance(told, int | tuple):
+        return None
+    levels = (told,) if isinstance(told, int) else told
+    form = picture.tile[0][3] if getattr(picture, "tile", None) else ""
+    form = form[0] if isinstance(form, tuple) else form
+    # PNG tells levels of as many bits as it stores; pixels are of 8 where it has 1, 2, 4, or 16 of a color.
+    bits = {"1": 1, "L;1": 1, "L;2": 2, "L;4": 4}.get(form, 8)
+    shift = 8 if str(form).startswith("RGB;16") else 0
+    most = 2**bits - 1
+    # Some versions of Pillow scale some of them.
+    return tuple((level * 255 // most if level <= most else level) >> shift for level in levels)
+
+
+def _with_alpha(array: NDArray[Any], key: tuple[int, ...]) -> NDArray[Any]:
+    """Return a picture with a last channel that is 0 where its others are all as `key` says."""
+    deep = array if array.ndim == 3 else array[..., np.newaxis]
+    alpha = np.where((deep == np.array(key)).all(axis=-1), 0, np.iinfo(array.dtype).max)
+    return np.concatenate([deep, alpha.astype(array.dtype)[..., np.newaxis]], axis=-1)
+
+
+def _of_integers(picture: Any) -> NDArray[np.uint16]:
+    """Return a picture that Pillow has in 32 bits, in 16: those of TIFF files as shares of the most they hold."""
+    array = np.asarray(picture)
+    tags = getattr(picture, "tag_v2", {})
+    if _first(tags.get(_BITS)) != 32 and array.min(initial=0) >= 0 and array.max(initial=0) <= 0xFFFF:
+        return array.astype(np.uint16)
+    if _first(tags.get(_SAMPLES)) == _UNSIGNED:
+        return np.rint(array.view(np.uint32) / (2**32 - 1) * 0xFFFF).astype(np.uint16)
+    return np.rint(np.maximum(array, 0) / (2**31 - 1) * 0xFFFF).astype(np.uint16)
+
+
+def _first(told: Any) -> Any:
+    return told[0] if isinstance(told, tuple) and told else told
 
 
 def _colours(names: list[str]) -> list[str]:

@@ -1,64 +1,139 @@
 """Radiance's picture files: .hdr, of four bytes a pixel, three mantissas and an exponent they share."""
 
+import re
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+_MAGIC = (b"#?RADIANCE", b"#?RGBE", b"#?AUTOPANO")
+_SIZE = re.compile(rb"([+-][XY])[ \t]+([0-9]+)[ \t]+([+-][XY])[ \t]+([0-9]+)[ \t\r]*\n")
+
 
 def read_hdr(path: Path) -> NDArray[np.float32]:
     """Return the linear colours of an .hdr file, (H, W, 3) from the top row on (Ward, "Real Pixels", 1991).
 
+    Colours are radiances: they are divided by the product of all lines EXPOSURE of the header, and by those of
+    COLORCORR.
+
     Raises
     ------
     ValueError
-        If it is no such file, is cut short, or is stored in another order than rows from the top.
+        If it is no such file, is cut short, or has colours other than red, green and blue.
     """
     data = path.read_bytes()
-    header, blank, rest = data.partition(b"\n\n")
-    line, newline, body = rest.partition(b"\n")
-    words = line.split()
-    if not (data.startswith((b"#?RADIANCE", b"#?RGBE")) and blank and newline and len(words) == 4):
+    header = re.match(rb".*?\n[ \t\r]*\n", data[: 2**16], re.DOTALL)
+    size = _SIZE.match(data, header.end()) if header else None
+    if not (data.startswith(_MAGIC) and header and size):
         raise ValueError("it is no Radiance picture")
-    if b"32-bit_rle_xyze" in header or (words[0], words[2]) != (b"-Y", b"+X"):
-        raise ValueError("it must hold red, green and blue in rows from the top, left to right")
+    if b"32-bit_rle_xyze" in header[0]:
+        raise ValueError("it must hold red, green and blue, and holds X, Y and Z")
+    outer, inner = (int(size[k]) if len(size[k]) < 10 else -1 for k in (2, 4))
+    if size[1][1:] == size[3][1:]:
+        raise ValueError("it is no Radiance picture")
     try:
-        height, width = int(words[1]), int(words[3])
-        rgbe = _pixels(body, width, height)
+        rgbe = _pixels(data[size.end() :], inner, outer)
     except (ValueError, IndexError):
         raise ValueError("it is cut short, or no Radiance picture") from None
     exponent = rgbe[..., 3:].astype(np.int32) - 136
     colours = np.ldexp(rgbe[..., :3].astype(np.float32), exponent)
-    return np.where(rgbe[..., 3:] > 0, colours, np.float32(0)).astype(np.float32)
+    colours = np.where(rgbe[..., 3:] > 0, colours, np.float32(0)).astype(np.float32)
+    with np.errstate(over="ignore"):
+        exposed = (colours / _exposure(header[0])).astype(np.float32)
+    return _upright(exposed, size[1], size[3])
+
+
+def _exposure(header: bytes) -> NDArray[np.float64]:
+    """Return by what red, green and blue were multiplied before they were written."""
+    total = np.ones(3)
+    for name, rest in re.findall(rb"^(EXPOSURE|COLORCORR)[ \t]*=([^\n]*)", header, re.MULTILINE):
+        try:
+            factors = np.array([float(word) for word in rest.split()])
+        except ValueError:
+            factors = np.zeros(1)
+        if len(factors) not in (1, 3) or not (np.isfinite(factors) & (factors > 0)).all():
+            raise ValueError(
+                f"its {name.decode()} must be positive numbers, got {rest[:20].decode('latin-1')!r}"
+            )
+        total *= factors
+    return total
+
+
+def _upright(image: NDArray[np.float32], rows: bytes, columns: bytes) -> NDArray[np.float32]:
+    """Return a picture from the top row on, left to right, whose rows and columns go as its size line says."""
+    if rows[1:] == b"X":
+        image, rows, columns = image.transpose(1, 0, 2), columns, rows
+    # Y counts from the bottom.
+    image = image[::-1] if rows == b"+Y" else image
+    return np.ascontiguousarray(image[:, ::-1] if columns == b"-X" else image)
 
 
 def _pixels(body: bytes, width: int, height: int) -> NDArray[np.uint8]:
-    """Return the four bytes of each pixel, of rows that are run-length encoded or not."""
-    encoded = 8 <= width <= 32767
-    # 127 times the same number takes 2 bytes, at least.
-    least = 4 + 8 * -(-width // 127) if encoded else 4 * width
-    if min(width, height) < 1 or len(body) < height * least:
+    """Return the four bytes of each pixel, in rows that are run-length encoded or not."""
+    # A run of 255 times the same number takes 4 bytes of the old encoding; of the new one, 127 take 2.
+    least = min(4 * -(-width // 255), 4 + 8 * -(-width // 127))
+    if min(width, height) < 1 or len(body) < height * min(least, 4 * width):
         raise ValueError
     result = np.empty((height, width, 4), np.uint8)
     at = 0
-    for row in result:
-        if not encoded or body[at : at + 4] != bytes((2, 2, width >> 8, width & 255)):
-            row[:] = np.frombuffer(body, np.uint8, 4 * width, at).reshape(width, 4)
-            at += 4 * width
-            continue
-        at += 4
-        for channel in range(4):
-            column = 0
-            while column < width:
-                count = body[at]
-                if count > 128:
-                    count -= 128
-                    row[column : column + count, channel] = body[at + 1]
-                    at += 2
-                else:
-                    row[column : column + count, channel] = np.frombuffer(body, np.uint8, count, at + 1)
-                    at += 1 + count
-                if count == 0 or column + count > width:
-                    raise ValueError
-                column += count
+    for number, row in enumerate(result):
+        if 8 <= width <= 32767 and body[at : at + 4] == bytes((2, 2, width >> 8, width & 255)):
+            at = _new_row(body, at + 4, row)
+        else:
+            before = None if number == 0 else result[number - 1, -1]
+            at = _old_row(body, at, row, before)
     return result
+
+
+def _new_row(body: bytes, at: int, row: NDArray[np.uint8]) -> int:
+    """Read a row whose channels have runs of their own, and return where the next one begins."""
+    width = len(row)
+    for channel in range(4):
+        column = 0
+        while column < width:
+            count = body[at]
+            if count > 128:
+                count -= 128
+                row[column : column + count, channel] = body[at + 1]
+                at += 2
+            else:
+                row[column : column + count, channel] = np.frombuffer(body, np.uint8, count, at + 1)
+                at += 1 + count
+            if count == 0 or column + count > width:
+                raise ValueError
+            column += count
+    return at
+
+
+def _old_row(body: bytes, at: int, row: NDArray[np.uint8], before: NDArray[np.uint8] | None) -> int:
+    """Read a row of pixels, of which 1, 1, 1 and n repeat the last n times, and return where the next begins.
+
+    Each further such pixel in a row counts 256 times as much as the one before it.
+    """
+    width = len(row)
+    plain = np.frombuffer(body, np.uint8, min(4 * width, (len(body) - at) // 4 * 4), at).reshape(-1, 4)
+    is_run = (plain[:, :3] == 1).all(axis=1)
+    if len(plain) == width and not is_run.any():
+        row[:] = plain
+        return at + 4 * width
+    column, shift = 0, 0
+    while column < width:
+        pixel = body[at : at + 4]
+        at += 4
+        if len(pixel) < 4:
+            raise ValueError
+        if pixel[:3] == b"\1\1\1":
+            last = row[column - 1] if column else before
+            count = pixel[3] << shift
+            if last is None or column + count > width:
+                raise ValueError
+            row[column : column + count] = last
+            column += count
+            shift += 8
+            if shift > 32:
+                raise ValueError
+        else:
+            row[column] = np.frombuffer(pixel, np.uint8)
+            column += 1
+            shift = 0
+    return at

@@ -21,7 +21,8 @@ class EnvironmentMap(Pictured):
     Parameters
     ----------
     image : (H, W, 3) or (H, W) array, or path
-        Linear radiance from the top row on, at least 0, kept as read-only float32. A path is that of an .exr,
+        Linear radiance from the top row on, at least 0, kept as read-only float32. Negative values that are a
+        thousandth of all light or less become 0, with a warning. A path is that of an .exr,
         .hdr or .npy file of linear colours, or of a picture of 8 bits, which are taken as sRGB.
     to_world : (3, 3) or (4, 4) array, optional
         A rotation, or a reflection, from the picture's space to the world.

@@ -9,8 +9,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import frozen, real_array
 from ..io.pictures import read_linear
+from ..io.quiet import warn_caller
 
 Texels = NDArray[np.float32]
+
+# The share of negative light in a picture that is taken for rounding.
+_LITTLE = 1e-3
 
 
 def texels(name: str, value: ArrayLike | str | PathLike[str]) -> Texels:
@@ -19,11 +23,17 @@ def texels(name: str, value: ArrayLike | str | PathLike[str]) -> Texels:
     Raises
     ------
     ValueError
-        If it is empty, has another shape, or holds what is negative or not finite (tells where).
+        If it is empty, has another shape, or holds what is not finite or negative by more than a thousandth
+        of all its light (tells where).
     TypeError
         If it does not hold real numbers.
     FileNotFoundError
         If a file is missing.
+
+    Warns
+    -----
+    RuntimeWarning
+        If values that are negative by less than that are taken as 0.
     """
     array = read_linear(value) if isinstance(value, str | PathLike) else real_array(name, value)
     if array.ndim == 2:
@@ -33,12 +43,27 @@ def texels(name: str, value: ArrayLike | str | PathLike[str]) -> Texels:
     # What float32 cannot hold becomes infinite, and is told.
     with np.errstate(over="ignore"):
         single = frozen(array.astype(np.float32))
-    bad = ~np.isfinite(single) | (single < 0)
-    if bad.any():
+    negative = single < 0
+    bad = ~np.isfinite(single) | negative
+    if bad.any() and np.array_equal(bad, negative) and _is_little(single):
+        # Programs that resample pictures leave these.
+        least = float(single.min())
+        single = frozen(np.maximum(single, np.float32(0)))
+        warn_caller(
+            f"{name}: {int(negative.sum())} negative values, the least of them {least:g}, are taken as 0"
+        )
+    elif bad.any():
         row, column, _ = np.argwhere(bad)[0]
         came = array[row, column].tolist()
         raise ValueError(f"{name} must be finite and at least 0, got {came} in row {row}, column {column}")
     return single
+
+
+def _is_little(single: Texels) -> bool:
+    """Return whether the negative values of a picture are a thousandth of the others at most, in all."""
+    total = single.sum(dtype=np.float64)
+    below = -np.minimum(single, 0).sum(dtype=np.float64)
+    return bool(below <= _LITTLE * (total + below))
 
 
 class Pictured:

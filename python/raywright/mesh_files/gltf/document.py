@@ -167,6 +167,8 @@ def _chunks(data: bytes) -> tuple[memoryview, memoryview | None]:
             raise ValueError(f"its first chunk must be JSON, and is {kind!r}")
         found.setdefault(kind, whole[at + 8 : at + 8 + size])
         at += 8 + size
+    if _JSON not in found:
+        raise ValueError(f"it has no chunk of JSON in the {length} bytes that its header tells of")
     return found[_JSON], found.get(_BIN)
 
 
