@@ -155,8 +155,8 @@ def decode(source: Path | bytes, formats: tuple[str, ...] | None = None) -> NDAr
 def pixels_of(picture: Any) -> NDArray[Any]:
     """Return a picture of Pillow's as an (H, W, C) array: uint8, of 16 bits uint16, of floats float32.
 
-    Integers of 32 bits become 16, as shares of the most that they hold. A grey or a color that the picture says
-    is transparent becomes alpha.
+    Integers of 32 bits become 16, as shares of the most that they hold. A grey or a color that the picture
+    says is transparent becomes alpha.
 
     Raises
     ------
@@ -187,7 +187,7 @@ def pixels_of(picture: Any) -> NDArray[Any]:
 
 
 def _transparent(picture: Any) -> tuple[int, ...] | None:
-    """Return the levels of the one grey or color of a picture that is transparent, as its pixels have them."""
+    """Return the levels of the one grey or color of a picture that is transparent, as pixels have them."""
     told = picture.info.get("transparency")
     if picture.mode not in ("1", "L", "I", "I;16", "I;16B", "RGB") or not isinstance(told, int | tuple):
         return None
@@ -210,14 +210,17 @@ def _with_alpha(array: NDArray[Any], key: tuple[int, ...]) -> NDArray[Any]:
 
 
 def _of_integers(picture: Any) -> NDArray[np.uint16]:
-    """Return a picture that Pillow has in 32 bits, in 16: those of TIFF files as shares of the most they hold."""
+    """Return integers that Pillow has in 32 bits, in 16: of TIFF files as shares of the most they hold."""
     array = np.asarray(picture)
     tags = getattr(picture, "tag_v2", {})
     if _first(tags.get(_BITS)) != 32 and array.min(initial=0) >= 0 and array.max(initial=0) <= 0xFFFF:
         return array.astype(np.uint16)
     if _first(tags.get(_SAMPLES)) == _UNSIGNED:
-        return np.rint(array.view(np.uint32) / (2**32 - 1) * 0xFFFF).astype(np.uint16)
-    return np.rint(np.maximum(array, 0) / (2**31 - 1) * 0xFFFF).astype(np.uint16)
+        shares = array.view(np.uint32) / (2**32 - 1)
+    else:
+        shares = np.maximum(array, 0) / (2**31 - 1)
+    whole: NDArray[np.uint16] = np.rint(shares * 0xFFFF).astype(np.uint16)
+    return whole
 
 
 def _first(told: Any) -> Any:

@@ -13,8 +13,8 @@ _SIZE = re.compile(rb"([+-][XY])[ \t]+([0-9]+)[ \t]+([+-][XY])[ \t]+([0-9]+)[ \t
 def read_hdr(path: Path) -> NDArray[np.float32]:
     """Return the linear colours of an .hdr file, (H, W, 3) from the top row on (Ward, "Real Pixels", 1991).
 
-    Colours are radiances: they are divided by the product of all lines EXPOSURE of the header, and by those of
-    COLORCORR.
+    Colours are radiances: they are divided by the product of all lines EXPOSURE of the header, and of all
+    lines COLORCORR.
 
     Raises
     ------
@@ -60,7 +60,7 @@ def _exposure(header: bytes) -> NDArray[np.float64]:
 
 
 def _upright(image: NDArray[np.float32], rows: bytes, columns: bytes) -> NDArray[np.float32]:
-    """Return a picture from the top row on, left to right, whose rows and columns go as its size line says."""
+    """Return a picture from the top row on, left to right, whose pixels go as its size line says."""
     if rows[1:] == b"X":
         image, rows, columns = image.transpose(1, 0, 2), columns, rows
     # Y counts from the bottom.

@@ -127,6 +127,9 @@ class Pbr(NamedTuple):
         Whether the back shines too.
     colored : bool
         Whether colours of vertices count.
+    vertex_alpha : float or str
+        Their alpha, or where it is told: ``"u"`` along the picture that stands for it, for what has no
+        others, ``"colors"`` in place of their colours, for what is blended.
     ior : float
         Index of refraction.
     transmission : float
@@ -154,6 +157,7 @@ class Pbr(NamedTuple):
     alpha_cutoff: float | None = None
     both_sides: bool = False
     colored: bool = False
+    vertex_alpha: float | str = 1.0
     ior: float = IOR
     transmission: float = 0.0
     transmission_picture: Picture | None = None
@@ -222,8 +226,8 @@ class Pbr(NamedTuple):
         if picture is None:
             return _triple(_index(factor))
         colours = picture.pixels[..., : -1 if picture.has_alpha else None]
-        levels = linear(np.arange(256) / 255)
-        shares = levels[colours] if colours.dtype == np.uint8 else colours
+        full = _full(colours)
+        shares = linear(np.arange(full + 1) / full)[colours] if colours.dtype.kind == "u" else colours
         return picture._replace(pixels=_index(shares * factor).astype(np.float32)).texture(linear=True)
 
     def _filmed(self, bare: Material, base: Dielectric | Conductor | None) -> Material:
@@ -291,15 +295,37 @@ class Pbr(NamedTuple):
         factor = 1.0 if self.color is None or len(self.color) < 4 else float(self.color[3])
         if self.alpha_mode not in ("MASK", "BLEND"):
             return 1.0
+        if self.vertex_alpha == "u":
+            pixels = np.array([[[0], [255]]], np.uint8)
+            filter: Filter = "bilinear" if self.alpha_mode == "BLEND" else "nearest"
+            return Picture(pixels, ("clamp", "clamp"), filter).texture(linear=True)
+        if self.vertex_alpha == "colors":
+            return self._blended(VertexColors(), factor)
+        factor *= float(self.vertex_alpha)
         picture = self.color_picture
         cutoff = 0.5 if self.alpha_cutoff is None else self.alpha_cutoff
         if picture is None or not picture.has_alpha:
             return float(factor >= cutoff) if self.alpha_mode == "MASK" else factor
         if self.alpha_mode == "BLEND":
-            return _scaled(picture.texture(channel="a"), factor)
-        kept = picture.pixels[..., -1] * (factor / 255) >= cutoff
+            return self._blended(None, factor)
+        kept = picture.pixels[..., -1] * (factor / _full(picture.pixels)) >= cutoff
         cut = picture._replace(pixels=(kept.astype(np.uint8) * np.uint8(255))[..., np.newaxis])
         return cut.texture(linear=True)
+
+    def _blended(self, of_vertices: Texture | None, factor: float) -> Number:
+        """Return the product of the alpha of vertices, of the picture, and a factor."""
+        picture = self.color_picture
+        of_picture = picture.texture(channel="a") if picture is not None and picture.has_alpha else None
+        made = of_vertices or of_picture
+        assert made is not None
+        if of_vertices is not None and of_picture is not None:
+            made = ProductTexture(of_vertices, of_picture)
+        return _scaled(made, factor)
+
+
+def _full(pixels: NDArray[Any]) -> int:
+    """Return the number of a picture's that is 1."""
+    return int(np.iinfo(pixels.dtype).max) if pixels.dtype.kind == "u" else 1
 
 
 def _times(texture: Texture, factor: Value) -> Texture:

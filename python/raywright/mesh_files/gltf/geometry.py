@@ -9,8 +9,10 @@ from ...shapes.mesh import Mesh
 from .accessors import Accessors
 from .deform import Deform
 from .document import Document
-from .materials import Materials
+from .materials import Materials, Surface, Vertices
 from .part import Part
+
+Floats = NDArray[np.floating[Any]]
 
 _TRIANGLES, _STRIP, _FAN = 4, 5, 6
 
@@ -60,10 +62,10 @@ class Geometry:
         if deform is not None:
             vertices, normals = deform.applied(primitive, vertices, normals)
         colors = self._accessors.vectors(attributes, "COLOR_0", 3, 4) if "COLOR_0" in attributes else None
-        if colors is not None and colors.shape[1] == 4 and (colors[:, 3] < 1).any():
-            self._document.tell("the alpha of colours of vertices is left out")
-        surface = self._materials.of(primitive, colors is not None)
-        uv = self._coordinates(attributes, f"TEXCOORD_{surface.coordinates}")
+        surface = self._materials.of(primitive, Vertices(colors is not None))
+        uv: Floats | None = self._coordinates(attributes, f"TEXCOORD_{surface.coordinates or 0}")
+        if colors is not None and surface.alpha_mode != "OPAQUE" and colors.shape[1] == 4:
+            surface, colors, uv = self._with_alpha(primitive, surface, np.clip(colors, 0, 1), uv)
         corners = self._corners(primitive, len(vertices))
         for others in (normals, uv, colors):
             if others is not None and len(others) != len(vertices):
@@ -85,6 +87,25 @@ class Geometry:
             name,
         )
 
+    def _with_alpha(
+        self, primitive: Part, surface: Surface, colors: Floats, uv: Floats | None
+    ) -> tuple[Surface, Floats | None, Floats | None]:
+        """Return a material, colours and coordinates by which the alpha of colours of vertices counts."""
+        tint, alpha = colors[0, :3], colors[:, 3]
+        plain = bool((colors[:, :3] == tint).all())
+        if (alpha == alpha[0]).all():
+            return self._materials.of(primitive, Vertices(True, alpha=float(alpha[0]))), colors, uv
+        if surface.coordinates is None:
+            # Nothing else lies on texture coordinates.
+            along = np.column_stack([u_of_alpha(surface, alpha), np.full(len(alpha), 0.5)])
+            return self._materials.of(primitive, Vertices(True, alpha="u")), colors, along
+        if plain and surface.alpha_mode == "BLEND":
+            red, green, blue = tint.tolist()
+            found = self._materials.of(primitive, Vertices(False, (red, green, blue), "colors"))
+            return found, np.repeat(alpha[:, None], 3, axis=1), uv
+        self._document.tell("alpha that varies over colours of vertices is left out of textured materials")
+        return surface, colors, uv
+
     def _corners(self, primitive: Part, count: int) -> NDArray[np.int64]:
         if "indices" not in primitive:
             return np.arange(count)
@@ -100,6 +121,12 @@ class Geometry:
         # glTF has v from the top of pictures downwards.
         uv[:, 1] = 1 - uv[:, 1]
         return uv
+
+
+def u_of_alpha(surface: Surface, alpha: Floats) -> NDArray[np.float64]:
+    """Return where the alpha of vertices lies along the picture of two texels for it."""
+    total = alpha.astype(np.float64) * surface.alpha
+    return 0.25 + total / 2 if surface.alpha_mode == "BLEND" else 0.5 + (total - surface.cutoff) / 4
 
 
 def _faces(corners: NDArray[np.int64], mode: int, primitive: Part) -> NDArray[np.int64]:

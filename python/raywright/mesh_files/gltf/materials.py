@@ -1,7 +1,10 @@
 """Materials of a glTF file (glTF 2.0, 3.9, and extensions)."""
 
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
+import numpy as np
+
+from ...arrays import Triple
 from ...lights.emission import Emitted
 from ...materials import Material
 from ..pbr import IOR, Pbr, Picture
@@ -21,13 +24,41 @@ class Surface(NamedTuple):
         How it scatters; None where nothing is said.
     emission : Emitted, optional
         What it gives off.
-    coordinates : int
-        Which set of texture coordinates its pictures lie on.
+    coordinates : int, optional
+        Which set of texture coordinates its pictures lie on; None if it has no pictures.
+    alpha_mode : str
+        ``"OPAQUE"``, or ``"MASK"`` or ``"BLEND"``, for which alpha counts.
+    alpha : float
+        Factor of the alpha of vertices and pictures.
+    cutoff : float
+        Of a mask: the least alpha that is there.
     """
 
     material: Material | None
     emission: Emitted | None
-    coordinates: int
+    coordinates: int | None = None
+    alpha_mode: str = "OPAQUE"
+    alpha: float = 1.0
+    cutoff: float = 0.5
+
+
+class Vertices(NamedTuple):
+    """What colours of vertices add to a material.
+
+    Attributes
+    ----------
+    colored : bool
+        Whether they are a colour each.
+    tint : 3 floats
+        The colour that all of them have, otherwise.
+    alpha : float or str
+        The alpha that all of them have, or where it is told: ``"u"`` in texture coordinates, ``"colors"`` in
+        place of their colours.
+    """
+
+    colored: bool = False
+    tint: Triple = (1.0, 1.0, 1.0)
+    alpha: float | Literal["u", "colors"] = 1.0
 
 
 class Materials:
@@ -37,18 +68,18 @@ class Materials:
         self._document = document
         self._all = document.root.parts("materials")
         self._pictures = Pictures(document)
-        self._made: dict[tuple[int, bool], Surface] = {}
+        self._made: dict[tuple[int, Vertices], Surface] = {}
 
-    def of(self, primitive: Part, colored: bool) -> Surface:
+    def of(self, primitive: Part, vertices: Vertices) -> Surface:
         """Return the material that a primitive names."""
         if "material" not in primitive:
-            return Surface(Pbr(colored=colored).material(), None, 0)
-        key = primitive.reference("material", "materials", len(self._all)), colored
+            return Surface(Pbr(colored=vertices.colored).material(), None)
+        key = primitive.reference("material", "materials", len(self._all)), vertices
         if key not in self._made:
-            self._made[key] = self._surface(self._all[key[0]], colored)
+            self._made[key] = self._surface(self._all[key[0]], vertices)
         return self._made[key]
 
-    def _surface(self, part: Part, colored: bool) -> Surface:
+    def _surface(self, part: Part, vertices: Vertices) -> Surface:
         unlit = part.extension("KHR_materials_unlit") is not None
         if unlit:
             self._document.tell("materials that are shown without light (unlit) are matt here")
@@ -65,7 +96,8 @@ class Materials:
             alpha_mode=_alpha_mode(part),
             alpha_cutoff=part.number("alphaCutoff", 0.5, 0),
             both_sides=part.flag("doubleSided"),
-            colored=colored,
+            colored=vertices.colored,
+            vertex_alpha=vertices.alpha,
             ior=self._ior(part),
             transmission=0.0 if clear is None else clear.number("transmissionFactor", 0.0, 0, 1),
             transmission_picture=None if clear is None else seen.picture(clear, "transmissionTexture"),
@@ -73,8 +105,19 @@ class Materials:
             film=film(part, seen.picture),
             unlit=unlit,
         )
+        if vertices.tint != (1, 1, 1):
+            color = np.ones(4) if made.color is None else made.color
+            made = made._replace(color=color * (*vertices.tint, *[1.0] * (len(color) - 3)))
         self._tell_of_glass(made)
-        return Surface(made.material(), made.emitted(), seen.coordinates or 0)
+        alpha = 1.0 if made.color is None or len(made.color) < 4 else float(made.color[3])
+        return Surface(
+            made.material(),
+            made.emitted(),
+            seen.coordinates,
+            made.alpha_mode or "OPAQUE",
+            alpha,
+            0.5 if made.alpha_cutoff is None else made.alpha_cutoff,
+        )
 
     def _ior(self, part: Part) -> float:
         given = part.extension("KHR_materials_ior")
