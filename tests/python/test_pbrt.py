@@ -118,6 +118,10 @@ def test_materials(tmp_path):
     """
     assert material(tmp_path, mixed) == rw.Mix(rw.Diffuse(0), rw.Diffuse(1), 0.25)
     assert material(tmp_path, mixed + 'NamedMaterial "b"') == rw.Diffuse(1)
+    # A name may stand before what it names.
+    early = 'NamedMaterial "b"\nShape "sphere"\n' + mixed + 'Shape "sphere"'
+    first, second = load(tmp_path, early).scene.shapes
+    assert (first.material, second.material) == (rw.Diffuse(1), rw.Mix(rw.Diffuse(0), rw.Diffuse(1), 0.25))
     defaults = 'Attribute "material" "rgb reflectance" [.2 .2 .2]\nMaterial "diffuse"'
     assert material(tmp_path, defaults) == rw.Diffuse(0.2)
 
@@ -286,7 +290,7 @@ def test_files_include_others(tmp_path):
             'Shape "trianglemesh" "point3 P" [0 0 0 1 0 0] "integer indices" [0 1 2]',
             "indices must be at least 0 and",
         ),
-        ('NamedMaterial "x"', "there is no material 'x'"),
+        ('NamedMaterial "x"', "line 9: NamedMaterial x: there is no material 'x'"),
         ('ObjectInstance "x"', "there is no object 'x'"),
         ("AttributeEnd", "AttributeEnd without its beginning"),
         ("AttributeBegin", "ends within an attribute or an object"),

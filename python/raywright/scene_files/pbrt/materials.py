@@ -50,6 +50,10 @@ class Materials:
         """Keep a material."""
         self._named[name] = self.material(parameters.text("type"), parameters)
 
+    def has(self, name: str) -> bool:
+        """Whether there is a material of that name so far."""
+        return name in self._named
+
     def named(self, name: str, parameters: Parameters) -> Material:
         """Return one that was kept."""
         if name not in self._named:

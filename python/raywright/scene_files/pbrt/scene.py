@@ -1,9 +1,10 @@
 """A whole scene."""
 
 import errno
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, cast, get_args
+from typing import Any, NamedTuple, cast, get_args
 
 import numpy as np
 
@@ -68,12 +69,19 @@ def read_pbrt(path: Path) -> Shot:
     return shot
 
 
+class _Later(NamedTuple):
+    """A material that is named before it is made."""
+
+    name: str
+    parameters: Parameters
+
+
 @dataclass(frozen=True)
 class _State:
     """What directives change, and what attributes keep."""
 
     matrix: Floats = field(default_factory=lambda: np.eye(4))
-    material: Material = field(default_factory=Diffuse)
+    material: Material | _Later = field(default_factory=Diffuse)
     emission: Any = None
     flipped: bool = False
     # Whether transforms are those of the time when the shutter opens.
@@ -106,6 +114,9 @@ class _Reader:
         self._filter: Filter = GaussianFilter(1.5, 0.5)
         self._sampler: tuple[Sampler | None, int, int] = (Sobol(), 16, 0)
         self._integrator: AnyIntegrator = PathTraced(5)
+        # Materials named before they are made. Shapes that wait for one: their place, and how they are made.
+        self._awaited: list[_Later] = []
+        self._later: list[tuple[list[Any], int, Callable[[Material], Any], _Later]] = []
         # Cameras, films and the like are read when all of their options are known.
         self._instances: list[tuple[str, Floats, Parameters]] = []
 
@@ -212,7 +223,12 @@ class _Reader:
         elif one.name == "MakeNamedMaterial":
             self._materials.add(texts[0], parameters.over(self._defaults("material")))
         elif one.name == "NamedMaterial":
-            self._set(material=self._materials.named(texts[0], parameters))
+            (name,) = texts
+            if self._materials.has(name):
+                self._set(material=self._materials.named(name, parameters))
+            else:
+                self._awaited.append(_Later(name, parameters))
+                self._set(material=self._awaited[-1])
         elif one.name == "AreaLightSource":
             if texts[0] != "diffuse":
                 parameters.fail(f"an area light {texts[0]!r} is not supported")
@@ -251,10 +267,18 @@ class _Reader:
         if in_group and state.emission is not None:
             self.notes.tell("area lights in objects are left out, as pbrt leaves them out")
         # The group is put in the mirrored world as a whole.
-        look = shapes.Look(state.material, None if in_group else state.emission, state.flipped)
         matrix = state.matrix if in_group else self._mirror @ state.matrix
-        made = shapes.shape(kind, parameters, matrix, look, self._textures)
-        (self._found if self._group is None else self._groups[self._group]).append(made)
+
+        def made(material: Material) -> Any:
+            look = shapes.Look(material, None if in_group else state.emission, state.flipped)
+            return shapes.shape(kind, parameters, matrix, look, self._textures)
+
+        target = self._found if self._group is None else self._groups[self._group]
+        if isinstance(state.material, _Later):
+            self._later.append((target, len(target), made, state.material))
+            target.append(None)
+        else:
+            target.append(made(state.material))
 
     def _defaults(self, target: str) -> Given:
         found: dict[str, tuple[str, list[Any]]] = {}
@@ -280,6 +304,10 @@ class _Reader:
             raise PbrtError(f"{self.path} has no Camera")
         if self._kept or self._group is not None:
             raise PbrtError(f"{self.path} ends within an attribute or an object")
+        for awaited in self._awaited:
+            self._materials.named(*awaited)
+        for target, place, made, awaited in self._later:
+            target[place] = made(self._materials.named(*awaited))
         places: dict[str, list[Floats]] = {}
         for name, matrix, parameters in self._instances:
             if name not in self._groups:
