@@ -167,8 +167,18 @@ class CompiledScene:
         rays: _Rays,
     ) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
         """Nodes visited and primitives tested for each ray's closest hit."""
-    def contains(self, points: _Floats, shape: tuple[int, ...], threads: int | None) -> NDArray[np.bool_]:
-        """Whether points of leading shape `shape` are inside a closed surface or on it."""
+    def contains(
+        self,
+        points: _Floats,
+        shape: tuple[int, ...],
+        threads: int | None,
+        shapes: list[bool] | None = None,
+        tolerance: float | None = None,
+        is_even_odd: bool = False,
+    ) -> NDArray[np.bool_]:
+        """Whether points of leading shape `shape` are inside something closed or on it."""
+    def inverted(self, shapes: list[bool] | None = None, tolerance: float | None = None) -> list[int]:
+        """Return the meshes whose normals point into them."""
     def nearest(
         self, points: _Floats, max_distance: _Numbers, shape: tuple[int, ...], threads: int | None
     ) -> tuple[
@@ -820,6 +830,51 @@ def points(
     Position, error, normal, shading normal, dp/du, dp/dv, dn/du and dn/dv. `ray` says which ray each is of,
     where they are not in turn.
     """
+
+class MeshTopology:
+    """How the faces of a mesh hang together."""
+
+    @property
+    def volumes(self) -> list[float]: ...
+    @property
+    def is_oriented(self) -> list[bool]: ...
+    @property
+    def cracks(self) -> list[list[int]]: ...
+    @property
+    def junctions(self) -> list[int]: ...
+    @property
+    def closed(self) -> int: ...
+    @property
+    def open(self) -> int: ...
+    @property
+    def inner(self) -> int: ...
+    @property
+    def duplicates(self) -> int: ...
+    @property
+    def degenerate(self) -> int: ...
+    @property
+    def turned(self) -> int: ...
+    @property
+    def tolerance(self) -> float: ...
+
+def mesh_topology(vertices: _Floats, faces: NDArray[np.uint32], tolerance: float | None) -> MeshTopology:
+    """Return how the faces of a mesh hang together."""
+
+def sections(
+    vertices: _Floats,
+    faces: NDArray[np.uint32],
+    origins: NDArray[np.float64],
+    normals: NDArray[np.float64],
+    even_odd: bool,
+    tolerance: float | None,
+) -> list[tuple[NDArray[np.float64], list[int], list[bool], float]]:
+    """Return points (K, 3), splits, which lines are closed, and the area, of each plane."""
+
+def weld(vertices: _Floats, faces: NDArray[np.uint32], tolerance: float) -> NDArray[np.uint32]:
+    """Return the vertex that stands for each."""
+
+def weld_rounding(vertices: _Floats, faces: NDArray[np.uint32]) -> float:
+    """Return how close corners of a mesh are that differ by rounding."""
 
 def tree(
     scene: CompiledScene,

@@ -52,11 +52,10 @@ fn ask(accelerator: &dyn Accelerator, primitives: &dyn Primitives, rays: &[Ray],
     let doubt = primitives.region().radius / (1u64 << 24) as f64;
     for rays in rays.chunks(batch) {
         let (mut hits, mut occluded) = (vec![Hit::MISS; rays.len()], vec![false; rays.len()]);
-        let mut sides = vec![Side::Outside; rays.len()];
         accelerator.intersect(rays, &mut hits);
         accelerator.occluded(rays, &mut occluded);
         let leaving: Vec<_> = rays.iter().map(|r| Ray { t_min: -doubt, ..*r }).collect();
-        accelerator.sides(primitives, &leaving, doubt, &mut sides);
+        let sides = accelerator.exits(primitives, &|_| true, &leaving, doubt).sides();
         let Crossings { splits, hits: met } = accelerator.crossings(rays);
         let before = all.crossings.hits.len();
         all.crossings.splits.extend(splits[1..].iter().map(|end| before + end));

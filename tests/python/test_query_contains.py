@@ -101,31 +101,115 @@ def test_points_next_to_faces_are_on_their_side(scale, offset):
     assert np.array_equal(rw.Scene(mesh).contains(points), truth)
 
 
-def test_a_cavity_is_outside_again(box):
-    hole = rw.Mesh(box.vertices / 4 + 0.25, box.faces)
+def test_a_cavity_is_outside_and_a_body_in_another_inside(box):
+    small = box.vertices / 4 + 0.25
     points = [(0.1, 0.1, 0.1), (0.3, 0.3, 0.3), (0.9, 0.2, 0.4), (2, 0.3, 0.3)]
-    assert np.array_equal(rw.Scene([box, hole]).contains(points), [True, False, True, False])
+    # Normals that point out: a body within another. Normals that point in: the wall of a cavity.
+    for faces, is_inside in ((box.faces, True), (box.faces[:, ::-1], False)):
+        apart = [box, rw.Mesh(small, faces)]
+        as_one = rw.Mesh(np.concatenate([box.vertices, small]), np.concatenate([box.faces, faces + 8]))
+        for shapes in (apart, apart[::-1], as_one):
+            assert np.array_equal(rw.Scene(shapes).contains(points), [True, is_inside, True, False])
+    # Within the cavity of a ball there is a ball again, and a box that reaches into both.
+    core = rw.Sphere((0.375, 0.375, 0.375), 0.05)
+    nested = rw.Scene([box, rw.Mesh(small, box.faces[:, ::-1]), core])
+    assert np.array_equal(nested.contains([(0.375, 0.375, 0.375), (0.27, 0.27, 0.27)]), [True, False])
 
 
 def test_which_way_faces_are_wound_does_not_matter(box):
-    turned = rw.Mesh(box.vertices, box.faces[:, ::-1])
-    mixed = rw.Mesh(box.vertices, [f[::-1] if i % 2 else f for i, f in enumerate(box.faces.tolist())])
+    turned = rw.Mesh(box.vertices, box.faces[:, ::-1], name="turned")
+    mixed = rw.Mesh(box.vertices, [f[::-1] if i % 3 else f for i, f in enumerate(box.faces.tolist())])
     points = np.random.default_rng(3).uniform(-0.5, 1.5, (500, 3))
     expected = rw.Scene(box).contains(points)
     assert np.array_equal(expected, ((points >= 0) & (points <= 1)).all(axis=1))
-    for mesh in (turned, mixed):
-        assert np.array_equal(rw.Scene(mesh).contains(points), expected)
+    assert np.array_equal(rw.Scene([mixed]).contains(points), expected)
+    scene = rw.Scene([rw.Mesh(box.vertices + 5, box.faces), turned])
+    with pytest.warns(RuntimeWarning, match=r"normals point into shape 1 'turned', which is taken as if"):
+        assert np.array_equal(scene.contains(points), expected)
+    # Once.
+    assert np.array_equal(scene.signed_distance(points) <= 0, expected)
 
 
-def test_a_small_hole_does_not_let_the_outside_in():
+def test_what_is_open_has_no_inside(box):
+    """Where a ground, a plane or a wall is beside a solid, and where a solid has a hole."""
     ball = trimesh.creation.icosphere(subdivisions=3)
-    scene = rw.Scene(rw.Mesh(ball.vertices, ball.faces[8:]))
     rng = np.random.default_rng(4)
-    points = rng.normal(size=(4000, 3))
-    points *= rng.uniform(0, 1.6, (4000, 1)) / np.linalg.norm(points, axis=1, keepdims=True)
-    radius = np.linalg.norm(points, axis=1)
-    clear = (radius < 0.9) | (radius > 1.0)
-    assert np.array_equal(scene.contains(points)[clear], radius[clear] < 0.9)
+    points = rng.uniform(-2, 2, (4000, 3))
+    assert not rw.Scene(rw.Mesh(ball.vertices, ball.faces[8:])).contains(points).any()
+    ground = rw.Mesh([(-9, -9, 0.5), (9, -9, 0.5), (9, 9, 0.5), (-9, 9, 0.5)], [(0, 1, 2), (0, 2, 3)])
+    flats = [
+        ground,
+        rw.Plane((0, 0, 0.25), (0, 0.1, 1)),
+        rw.Disk((0, 0, 0.5), (0, 0, 1), 3.0),
+        rw.Cylinder((0, 0, -3), (0, 0, 3), 0.5, capped=False),
+        rw.Implicit("z - sin(x)", (-3, -3, -3), (3, 3, 3)),
+        rw.Polygon([(-3, -3, 0), (3, -3, 0), (3, 3, 0)]),
+    ]
+    expected = ((points >= 0) & (points <= 1)).all(axis=1)
+    for flat in flats:
+        assert not rw.Scene(flat).contains(points).any()
+        assert np.array_equal(rw.Scene([flat, box]).contains(points), expected)
+    assert np.array_equal(rw.Scene([*flats, box]).contains(points), expected)
+    # A corner of the ground is one of the box, and its edge too.
+    sheet = np.concatenate([box.vertices, [(0, -5, 0), (1, -5, 0)]])
+    touching = rw.Mesh(sheet, np.concatenate([box.faces, [(0, 1, 8), (1, 9, 8)]]))
+    assert np.array_equal(rw.Scene(touching).contains(points), expected)
+    assert rw.Scene([flats[1], rw.Sphere((0, 0, 2), 1)]).signed_distance((0, 0, 2)) == -1
+    # On what is open is not inside.
+    assert not rw.Scene(ground).contains((0.3, 0.2, 0.5))
+
+
+def test_what_overlaps_is_inside_and_copies_count_once(box):
+    points = np.random.default_rng(5).uniform(-0.5, 2.5, (2000, 3))
+
+    def within(at):
+        return ((points >= at) & (points <= at + 1)).all(axis=1)
+
+    other = rw.Mesh(box.vertices + 0.5, box.faces)
+    both = rw.Mesh(
+        np.concatenate([box.vertices, other.vertices]), np.concatenate([box.faces, other.faces + 8])
+    )
+    place = np.eye(4)
+    place[:3, 3] = 0.5
+    for shapes in ([box, other], both, [box, rw.Instance(box, place)], [box, rw.Box((0.5,) * 3, (1.5,) * 3)]):
+        assert np.array_equal(rw.Scene(shapes).contains(points), within(0) | within(0.5))
+    turned = box.faces[:, ::-1]
+    for faces in ([box.faces, turned], [box.faces, box.faces], [turned, box.faces]):
+        doubled = rw.Mesh(box.vertices, np.concatenate([box.faces[:0], *faces]))
+        assert np.array_equal(rw.Scene([doubled, other]).contains(points), within(0) | within(0.5))
+    assert np.array_equal(rw.Scene([box, box, rw.Mesh(box.vertices, box.faces)]).contains(points), within(0))
+    # Side by side, with the wall between both in one mesh, and in the corner of it.
+    beside = rw.Mesh(
+        np.concatenate([box.vertices, box.vertices + np.array((1, 0, 0))]),
+        np.concatenate([box.faces, box.faces + 8]),
+    )
+    expected = ((points >= 0) & (points <= (2, 1, 1))).all(axis=1)
+    assert np.array_equal(rw.Scene(beside).contains(points), expected)
+    assert rw.Scene(beside).contains([(1, 0.5, 0.5), (1, 1, 1), (1, 0.3, 0.0)]).all()
+
+
+def test_only_shapes_that_are_named_count(box):
+    far = rw.Mesh(box.vertices + 3, box.faces, name="far")
+    ball = rw.Sphere((0.5, 0.5, 0.5), 0.25, name="ball")
+    scene = rw.Scene([box, far, ball])
+    points = np.array([(0.1, 0.1, 0.1), (0.5, 0.5, 0.5), (3.5, 3.5, 3.5)])
+    assert np.array_equal(scene.contains(points), [True, True, True])
+    assert np.array_equal(scene.contains(points, shapes="far"), [False, False, True])
+    assert np.array_equal(scene.contains(points, shapes=["ball", "far"]), [False, True, True])
+    assert np.array_equal(scene.contains(points, shapes=[True, False, False]), [True, True, False])
+    assert not scene.contains(points, shapes=np.zeros(3, bool)).any()
+    with pytest.raises(ValueError, match="shapes has 'near', but no shape of the scene is called so"):
+        scene.contains(points, shapes="near")
+
+
+def test_walls_that_close_together_are_one(box):
+    """As where a file has a mesh for each material."""
+    points = np.random.default_rng(6).uniform(-0.5, 1.5, (1000, 3))
+    expected = ((points >= 0) & (points <= 1)).all(axis=1)
+    walls = [rw.Mesh(box.vertices, box.faces[i : i + 2]) for i in range(0, 12, 2)]
+    assert np.array_equal(rw.Scene(walls).contains(points), expected)
+    assert not rw.Scene(walls[1:]).contains(points).any()
+    assert not rw.Scene(walls).contains(points, shapes=[True] * 5 + [False]).any()
 
 
 def test_points_that_are_not_finite_are_outside(scene):

@@ -26,8 +26,8 @@ _REACH = 2.0**-10
 
 
 def scene_of(scene: SceneLike) -> Scene:
-    """Return the scene, or one of the shapes."""
-    return scene if isinstance(scene, Scene) else Scene(scene)
+    """Return the scene, or one of the shapes, with corners welded that rounding has moved."""
+    return (scene if isinstance(scene, Scene) else Scene(scene)).welded()
 
 
 def vectors(name: str, given: ArrayLike) -> Floats:

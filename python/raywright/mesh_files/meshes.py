@@ -9,6 +9,7 @@ import numpy as np
 
 from ..io.quiet import quiet, reason
 from ..shapes.mesh import Mesh
+from ..shapes.welding import Weld, welded
 from .trimesh_objects import of_scene
 
 # The Python package, or the program, with which trimesh reads further kinds of files.
@@ -25,14 +26,15 @@ _NEEDED = {
 }
 
 
-def load(path: str | PathLike[str]) -> tuple[Mesh, ...]:
+def load(path: str | PathLike[str], weld: Weld = "auto") -> tuple[Mesh, ...]:
     """Read a mesh file: one mesh for each node of the file that holds triangles.
 
     glTF, OBJ, PLY, OFF and STL are read here, OBJ with a mesh for each of its materials, and all else by
     trimesh.
 
-    Faces stay in the file's order, and vertices as they are. Only STL, which repeats every corner, has its
-    equal corners joined. Polygons become triangles as `triangulation.triangulate` says.
+    Faces stay in the file's order, and so do vertices; corners that differ by rounding are put in one place,
+    as `welded` does. Only STL, which repeats every corner, has its equal corners joined. Polygons become
+    triangles as `triangulation.triangulate` says.
 
     Raises
     ------
@@ -57,6 +59,7 @@ def load(path: str | PathLike[str]) -> tuple[Mesh, ...]:
     result = read(path)
     if not any(len(mesh.faces) for mesh in result):
         raise ValueError(f"{path} holds no faces")
+    result = welded(result, weld)
     return tuple(map(_joined, result)) if path.suffix.lower() in (".stl", ".stl_ascii") else result
 
 
@@ -116,7 +119,7 @@ def load_whole(path: Path, kind: str) -> Mesh:
         mesh = read_ply_whole(path)
     if mesh is None or not len(mesh.faces):
         raise ValueError(f"{path} holds no faces")
-    return mesh
+    return welded([mesh])[0]
 
 
 def _read(path: Path) -> tuple[Mesh, ...]:

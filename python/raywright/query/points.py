@@ -1,10 +1,13 @@
 """The questions that points ask of a scene."""
 
+import warnings
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .._core import CompiledScene
 from .hits import ClosestPoints
+from .masks import ShapeMask, counted
 from .rays import nearest_arguments, point_arguments
 
 
@@ -12,16 +15,19 @@ class PointQueries:
     """What a compiled scene answers to points; asking compiles it."""
 
     _core: CompiledScene | None
+    _tolerance: float | None
+    _is_inverted_told = False
 
     def _compiled(self) -> CompiledScene:
         raise NotImplementedError
 
-    def contains(self, points: ArrayLike, threads: int | None = None) -> NDArray[np.bool_]:
-        """Find whether each point is inside a closed surface.
+    def contains(
+        self, points: ArrayLike, threads: int | None = None, shapes: ShapeMask | None = None
+    ) -> NDArray[np.bool_]:
+        """Find whether each point is inside a closed shape.
 
-        A point is inside if a ray from there crosses the surface an odd number of times, which is decided
-        exactly; what is on the surface counts as inside. So where closed surfaces overlap, or one is within
-        the other, what is inside two of them is outside again (the even-odd rule).
+        Decided exactly; what is on a closed surface counts as inside. Shapes that are not closed have no
+        inside: a plane, a disk, a terrain, a box without its lid. What is in two shapes at once is inside.
 
         Parameters
         ----------
@@ -29,6 +35,9 @@ class PointQueries:
             C-contiguous float32 and float64 are read without a copy.
         threads : int, optional
             How many to use; all cores if not given. The answer does not depend on it.
+        shapes : (S,) bool array, str or sequence of str, optional
+            Which of ``scene.shapes`` count, one bool for each of them or their names: as in a scene of these
+            alone. An `Instance` counts as a whole.
 
         Returns
         -------
@@ -38,16 +47,46 @@ class PointQueries:
         Raises
         ------
         ValueError
-            If the last dimension is not 3.
+            If the last dimension is not 3, a mask has the wrong shape, or no shape has a name of `shapes`.
         TypeError
-            If the array does not hold real numbers.
+            If the array does not hold real numbers, or a mask is not bool.
+
+        Warns
+        -----
+        RuntimeWarning
+            Once of meshes whose normals point into them: they enclose the same as if they pointed out.
 
         Notes
         -----
-        From a point two opposite ways out are tried, which agree if the surface is closed. Where they do not
-        there is a hole, and the majority of seven ways decides.
+        A mesh is taken apart into faces that hang together by edges, where corners that differ by rounding
+        are one (see `Scene`). Those without an open edge enclose what they wind about; where two faces run
+        along an edge the same way, so that no winding can be told, what a ray leaves through an odd number of
+        crossings. Winding numbers in one mesh add up: a cavity whose normals point into it is outside, and
+        where parts overlap is inside. A mesh whose normals point in is the wall of a cavity where it lies
+        within another shape. Faces with the same corners count once, whichever way they turn, and a wall
+        between two parts not at all. Meshes that only close together, as the walls of a room, are one.
+
+        From a point two opposite ways out are tried. Where they do not agree there is a crack that rounding
+        has left, and the majority of seven ways decides.
         """
-        return (self._core or self._compiled()).contains(*point_arguments(points, threads))
+        return self._inside(points, threads, shapes)
+
+    def _inside(self, points: ArrayLike, threads: int | None, shapes: ShapeMask | None) -> NDArray[np.bool_]:
+        core = self._core or self._compiled()
+        what = counted(shapes, None, core.names)
+        mask = None if what is None else what[0]
+        found = core.contains(*point_arguments(points, threads), mask, self._tolerance)
+        if not self._is_inverted_told and (inverted := core.inverted(mask, self._tolerance)):
+            self._is_inverted_told = True
+            names = ", ".join(f"{i} {core.names[i]!r}" if core.names[i] else str(i) for i in inverted[:5])
+            more = f" and {len(inverted) - 5} more" if len(inverted) > 5 else ""
+            warnings.warn(
+                f"normals point into shape {names}{more}, which is taken as if they pointed out; "
+                "Mesh(vertices, faces[:, ::-1]) turns them",
+                RuntimeWarning,
+                stacklevel=3,
+            )
+        return found
 
     def closest_point(
         self, points: ArrayLike, max_distance: ArrayLike = np.inf, threads: int | None = None
@@ -97,7 +136,8 @@ class PointQueries:
     def signed_distance(self, points: ArrayLike, threads: int | None = None) -> NDArray[np.float64]:
         """Find how far each point is from the surface: negative inside, positive outside, zero on it.
 
-        Inside is what `contains` finds so. (Open3D and most of CAD have this sign, trimesh has the other.)
+        Inside is what `contains` finds so, whose warnings it has. The nearest surface may be of a shape that
+        is open. (Open3D and most of CAD have this sign, trimesh has the other.)
 
         Parameters
         ----------
@@ -121,5 +161,5 @@ class PointQueries:
         """
         core = self._core or self._compiled()
         distance = core.nearest(*nearest_arguments(points, np.inf, threads))[0]
-        inside = core.contains(*point_arguments(points, threads)) & (distance > 0)
+        inside = self._inside(points, threads, None) & (distance > 0)
         return np.asarray(np.where(inside, -distance, distance))

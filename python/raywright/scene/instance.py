@@ -17,6 +17,7 @@ from ..accelerators import BVH, Accelerator
 from ..arrays import frozen, integer, label, real_array
 from ..shapes import Shape
 from ..shapes.mesh import Mesh, face_count
+from ..shapes.welding import Weld, welded
 
 if TYPE_CHECKING:
     import trimesh
@@ -242,8 +243,10 @@ def _matrices(name: str, value: ArrayLike) -> NDArray[np.float64]:
     return array
 
 
-def meshes(shapes: Any) -> tuple[AnyShape, ...]:
+def meshes(shapes: Any, weld: Weld = "auto") -> tuple[AnyShape, ...]:
     """Lay out shapes, instances, trimesh objects, paths and nested lists of them as one flat tuple.
+
+    Corners of what is converted are welded as `weld` says, and where that is a distance those of all meshes.
 
     Raises
     ------
@@ -254,7 +257,8 @@ def meshes(shapes: Any) -> tuple[AnyShape, ...]:
     TypeError
         If something is none of these.
     """
-    return tuple(_each(shapes))
+    found = tuple(_each(shapes, weld))
+    return welded(found, weld) if isinstance(weld, int | float) else found
 
 
 def only_meshes(shapes: Any) -> tuple[Mesh, ...]:
@@ -266,14 +270,14 @@ def only_meshes(shapes: Any) -> tuple[Mesh, ...]:
         If one of them is no mesh; and what `meshes` raises.
     """
     found = []
-    for shape in _each(shapes):
+    for shape in _each(shapes, "auto"):
         if not isinstance(shape, Mesh):
             raise TypeError(f"only meshes can be taken here, got {type(shape).__name__}")
         found.append(shape)
     return tuple(found)
 
 
-def _each(shapes: Any) -> Iterator[AnyShape]:
+def _each(shapes: Any, weld: Weld) -> Iterator[AnyShape]:
     # trimesh is never imported only to ask: whoever made such an object has imported it. What reads files and
     # such objects is imported where there are any.
     trimesh = sys.modules.get("trimesh")
@@ -282,18 +286,18 @@ def _each(shapes: Any) -> Iterator[AnyShape]:
     elif isinstance(shapes, str | PathLike):
         from ..mesh_files.meshes import load
 
-        yield from load(shapes)
+        yield from load(shapes, weld)
     elif isinstance(shapes, list | tuple):
         for shape in shapes:
-            yield from _each(shape)
+            yield from _each(shape, weld)
     elif isinstance(shapes, getattr(trimesh, "Trimesh", ())):
         from ..mesh_files.trimesh_objects import of_trimesh
 
-        yield from of_trimesh(shapes)
+        yield from welded(tuple(of_trimesh(shapes)), weld)
     elif isinstance(shapes, getattr(trimesh, "Scene", ())):
         from ..mesh_files.trimesh_objects import of_scene
 
-        yield from of_scene(shapes)
+        yield from welded(tuple(of_scene(shapes)), weld)
     else:
         came = f"{type(shapes).__module__}.{type(shapes).__qualname__}"
         raise TypeError(

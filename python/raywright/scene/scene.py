@@ -21,6 +21,7 @@ from ..query.flats import FlatArrays, flat_arrays
 from ..query.queries import Queries
 from ..query.trees import TreeBoxes
 from ..shapes.mesh import face_count, moved
+from ..shapes.welding import Weld, weld_tolerance, welded
 from .arrivals import Arrival
 from .instance import AnyShape, Instance, Shapes, meshes
 from .plan import Plan, PlanRow
@@ -41,6 +42,7 @@ _ARGUMENTS = (
     "quality",
     "medium",
     "shading_normals",
+    "weld",
 )
 
 
@@ -88,14 +90,17 @@ class Scene(Queries):
         bumps and of normal maps. "faded" lets it fade towards the horizon of the face, so that facets do not
         show where it grazes them, and bends towards the viewer what faces away from him. "as given" does
         neither, as other renderers: see Notes.
+    weld : "auto", float or None
+        How close corners of meshes are one, in the scene's unit: see Notes. None for those alone that are
+        equal.
 
     Raises
     ------
     FileNotFoundError
         If a file is missing.
     ValueError
-        If a file is not a mesh that can be read, or `precision`, `quality` or `shading_normals` is not one
-        of those.
+        If a file is not a mesh that can be read, `precision`, `quality` or `shading_normals` is not one
+        of those, or `weld` is negative or not finite.
     TypeError
         If something is not of the kinds above.
 
@@ -118,6 +123,15 @@ class Scene(Queries):
     are slower, ``Path(reuse=)`` shares nothing at their surfaces, and graphics processors leave them to the
     CPU.
 
+    Corners that differ by rounding leave cracks, through which rays slip, and surfaces that do not close. So
+    corners on open edges are put in one place where they are as close as `weld` says: "auto" is 2^-21 of
+    the largest coordinate of a mesh where all are float32 numbers, 2^-47 where not, and a 64th of its mean
+    edge at most; between meshes the least of all. Two corners of one face never are one, and what is closed
+    stays as it is, however thin. With "auto" that goes for files and for trimesh's objects, each by itself; a
+    `Mesh` of arrays is hit where its vertices are, and welded for `contains`, `signed_distance` and in
+    ``rw.measure``. A distance goes for all meshes, together. ``rw.measure.topology`` tells which cracks
+    remain.
+
     Faces with a corner that is NaN or infinite are left out when the scene is compiled, with one
     RuntimeWarning that tells how many. Scenes compare by what they hold, and pickle without what was
     compiled. Of what comes out of pickles a process keeps the last two that it has compiled: where a pool's
@@ -134,8 +148,10 @@ class Scene(Queries):
         quality: Quality = "balanced",
         medium: Medium | None = None,
         shading_normals: ShadingNormals = "faded",
+        weld: Weld = "auto",
     ) -> None:
-        self._shapes = meshes(shapes)
+        self._weld, self._tolerance = weld, weld_tolerance(weld)
+        self._shapes = meshes(shapes, weld)
         self._lights = checked_lights(lights)
         self._environment = environments(environment)
         if not isinstance(accelerator, Accelerator):
@@ -155,6 +171,8 @@ class Scene(Queries):
         # A compiled scene of the same shapes.
         self._alike: _core.CompiledScene | None = None
         self._is_loss_told = False
+        # The same shapes with corners welded, for what measures.
+        self._closed: tuple[tuple[AnyShape, ...], Scene] | None = None
         # What watches a build runs in the thread that builds, which must not wait for itself.
         self._lock = Lock()
         # Of which process: what another thread was building when a process was forked is not built there.
@@ -204,6 +222,11 @@ class Scene(Queries):
     def shading_normals(self) -> ShadingNormals:
         """What becomes of light under shading normals: "faded" or "as given"."""
         return self._shading_normals
+
+    @property
+    def weld(self) -> Weld:
+        """How close corners of meshes are one: "auto", a distance, or None for equal ones alone."""
+        return self._weld
 
     @property
     def wavelengths(self) -> str | None:
@@ -354,6 +377,20 @@ class Scene(Queries):
             self._alike = None
         self._compiled(progress)
 
+    def welded(self) -> "Scene":
+        """Return the scene with corners of meshes put in one place that differ by rounding, as `weld` says.
+
+        Returns
+        -------
+        Scene
+            The very same where no corner moves, as in scenes of files and of what is closed.
+        """
+        if self._closed is None or self._closed[0] is not self._shapes:
+            shapes = welded(self._shapes, self._weld)
+            is_same = all(a is b for a, b in zip(shapes, self._shapes, strict=True))
+            self._closed = self._shapes, self if is_same else Scene(shapes, *self._parts()[1:])
+        return self._closed[1]
+
     def _moved(self, vertices: ArrayLike | Sequence[ArrayLike | None]) -> tuple[AnyShape, ...]:
         count = len(self._shapes)
         if count == 1 and isinstance(self._shapes[0], Instance):
@@ -497,6 +534,7 @@ class Scene(Queries):
             self._quality,
             self._medium,
             self._shading_normals,
+            self._weld,
         )
 
     def __eq__(self, other: object) -> bool:
@@ -529,6 +567,7 @@ class Scene(Queries):
         parts += [f"quality={self._quality!r}"] if self._quality != "balanced" else []
         parts += [f"medium={self._medium!r}"] if self._medium is not None else []
         parts += [f"shading_normals={self._shading_normals!r}"] if self._shading_normals != "faded" else []
+        parts += [f"weld={self._weld!r}"] if self._weld != "auto" else []
         return f"Scene({', '.join(parts)})"
 
 

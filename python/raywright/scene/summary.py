@@ -3,7 +3,7 @@
 from .._core import simd
 from ..shapes import Shape
 from ..shapes.mesh import Mesh, face_count
-from ..shapes.topology import degenerate_faces, is_watertight
+from ..shapes.topology import degenerate_faces, is_watertight, open_edges
 from .instance import Instance
 from .scene import Scene
 
@@ -17,6 +17,7 @@ def described(name: str, scene: Scene) -> str:
     others = len(scene.shapes) - len(meshes)
     info = scene.accelerator
     size = scene.bytes
+    cracks, junctions = (sum(counts) for counts in zip((0, 0), *map(open_edges, meshes), strict=True))
     rows = [
         ("shapes", f"{len(scene.shapes)}" + (f", {others} of them no meshes" if others else "")),
         ("vertices", f"{sum(len(mesh.vertices) for mesh in meshes):,}"),
@@ -24,6 +25,7 @@ def described(name: str, scene: Scene) -> str:
         *([("copies", f"{copies:,}")] if copies else []),
         ("bounds", _bounds(scene)),
         ("watertight", "yes" if all(map(is_watertight, meshes)) else "no"),
+        ("open edges", f"{cracks:,}, and {junctions:,} T-junctions"),
         ("degenerate", f"{sum(map(degenerate_faces, meshes)):,} faces"),
         ("accelerator", info.kind),
         ("nodes", f"{info.nodes:,}, and {info.leaves:,} leaves; depth {info.depth}"),

@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from .. import _core
 from .mesh import Mesh
 
 
@@ -27,6 +28,12 @@ def is_watertight(mesh: Mesh) -> bool:
     count = int(faces.max()) + 1
     forward, backward = np.sort(starts * count + ends), np.sort(ends * count + starts)
     return bool((np.diff(forward) > 0).all() and np.array_equal(forward, backward))
+
+
+def open_edges(mesh: Mesh) -> tuple[int, int]:
+    """Return how many edges an odd number of faces share, and how many corners lie within edges of others."""
+    found = _core.mesh_topology(mesh.vertices, mesh.faces, None)
+    return len(found.cracks), len(found.junctions)
 
 
 def _welded(mesh: Mesh) -> NDArray[np.int64]:

@@ -71,6 +71,23 @@ impl BoxTree {
         self.split(first + 1, high);
     }
 
+    /// Visits the numbers of all in boxes that are met, those without end included, and maybe of some others.
+    pub fn visit(&self, is_met: impl Fn(&Bounds) -> bool, mut visit: impl FnMut(u32)) {
+        self.endless.iter().for_each(|&number| visit(number));
+        let mut open = if self.nodes.is_empty() { Vec::new() } else { vec![0] };
+        while let Some(node) = open.pop() {
+            let Node { bounds, first, count } = self.nodes[node];
+            if !is_met(&bounds) {
+                continue;
+            }
+            if count == 0 {
+                open.extend([first as usize + 1, first as usize]);
+            } else {
+                self.order[first as usize..(first + count) as usize].iter().for_each(|&number| visit(number));
+            }
+        }
+    }
+
     /// Visits what may be near enough, what is nearer by its box before what is farther: `gap` says how far what a box
     /// holds is at least, and `visit` is given a number and how far to look, and says how far to look from then on.
     pub fn nearest(&self, most: f64, gap: impl Fn(&Bounds) -> f64, mut visit: impl FnMut(u32, f64) -> f64) {

@@ -38,7 +38,7 @@ pub use brute::BruteForce;
 pub use crossings::Crossings;
 pub use kept::Counts;
 pub use nearest::Nearest;
-pub use parity::Side;
+pub use parity::{Exit, Exits, Side};
 pub use slab::SlabRay;
 pub use tangent_balls::TangentBalls;
 pub use touches::{Touch, Touches};
@@ -48,7 +48,7 @@ pub use walked::walked;
 pub use query::{Every, Meeting, Wanted};
 
 use kept::Kept;
-use parity::Parity;
+use parity::WaysOut;
 use query::{Answers, Counted};
 use rare_query::RareQuery;
 use raywright_base::math::{DVec3, Hit, HitColumns, Ray, RayColumns, Region};
@@ -159,10 +159,16 @@ pub trait Accelerator: Send + Sync {
     /// Every hit of each ray among what counts for it.
     fn crossings_kept(&self, rays: &[Ray], counts: &Counts<'_>) -> Crossings;
 
-    /// On which side of the surface that the `primitives` make, which must be those that it holds, the origin of each
-    /// ray lies: by the crossings from there on. Rays are asked from a `t_min` of minus `doubt` on; the sign of a `t`
-    /// is only believed where it is farther from 0 than `doubt`.
-    fn sides(&self, primitives: &dyn Primitives, rays: &[Ray], doubt: f64, sides: &mut [Side]);
+    /// All surfaces that the rays cross ahead of their origins, among the primitives that count. The `primitives` must
+    /// be those that it holds. Rays are asked from a `t_min` of minus `doubt` on; the sign of a `t` is only believed
+    /// where it is farther from 0 than `doubt`.
+    fn exits(
+        &self,
+        primitives: &dyn Primitives,
+        counts: &(dyn Fn(u32) -> bool + Sync),
+        rays: &[Ray],
+        doubt: f64,
+    ) -> Exits;
 
     /// The nearest point to each point, within its greatest distance, that distance included; one greatest distance for
     /// all of them, or one each. A point that is NaN or infinite has none. Of primitives as near, the lowest.
@@ -243,11 +249,17 @@ impl<A: Answers> Accelerator for A {
         Crossings::of(every)
     }
 
-    fn sides(&self, primitives: &dyn Primitives, rays: &[Ray], doubt: f64, sides: &mut [Side]) {
-        assert_eq!(rays.len(), sides.len(), "a side for each ray");
-        let mut parity = Parity { primitives, rays, doubt, sides, crossed: Vec::new() };
-        self.answer(rays, &mut parity);
-        parity.settle();
+    fn exits(
+        &self,
+        primitives: &dyn Primitives,
+        counts: &(dyn Fn(u32) -> bool + Sync),
+        rays: &[Ray],
+        doubt: f64,
+    ) -> Exits {
+        let exits = Exits { crossed: Vec::new(), on_surface: vec![false; rays.len()] };
+        let mut out = WaysOut { primitives, counts, rays, doubt, exits };
+        self.answer(rays, &mut out);
+        out.exits.in_order()
     }
 
     fn nearest(&self, points: &[DVec3], max_distances: &[f64], nearest: &mut [Nearest]) {

@@ -3,7 +3,7 @@
 use super::walk::{Build, Mailbox};
 use super::walked::walked;
 use super::{
-    Accelerator, Boxes, ByColumns, Cost, Counts, Crossings, Every, Info, Nearest, Primitives, Side, Touches,
+    Accelerator, Boxes, ByColumns, Cost, Counts, Crossings, Every, Exits, Info, Nearest, Primitives, Touches,
     UserGeometry,
 };
 use raywright_base::math::{DVec3, Hit, HitColumns, Ray, RayColumns};
@@ -235,17 +235,15 @@ impl Accelerator for Mixed {
         joined(rays.len(), &a, &b)
     }
 
-    fn sides(&self, primitives: &dyn Primitives, rays: &[Ray], doubt: f64, sides: &mut [Side]) {
-        self.triangles.sides(primitives, rays, doubt, sides);
-        let mut others = vec![Side::Outside; rays.len()];
-        self.objects.sides(primitives, rays, doubt, &mut others);
-        for (side, other) in sides.iter_mut().zip(others) {
-            *side = match (*side, other) {
-                (Side::Surface, _) | (_, Side::Surface) => Side::Surface,
-                (a, b) if a == b => Side::Outside,
-                _ => Side::Inside,
-            };
-        }
+    fn exits(
+        &self,
+        primitives: &dyn Primitives,
+        counts: &(dyn Fn(u32) -> bool + Sync),
+        rays: &[Ray],
+        doubt: f64,
+    ) -> Exits {
+        let of_triangles = self.triangles.exits(primitives, counts, rays, doubt);
+        of_triangles.joined(self.objects.exits(primitives, counts, rays, doubt))
     }
 
     fn nearest(&self, points: &[DVec3], max_distances: &[f64], nearest: &mut [Nearest]) {

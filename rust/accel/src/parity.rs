@@ -1,4 +1,4 @@
-//! On which side of a closed surface points lie: inside if a ray from there crosses it an odd number of times.
+//! What rays cross on their way out: an odd number of times a closed surface if they start inside of it.
 //!
 //! All of it is decided exactly. Which triangles the ray crosses, [`Contact`] tells, through edges and corners too; and
 //! where `t` is too small for its sign to be sure, the sign is that of the volume of the triangle and the ray's origin,
@@ -24,72 +24,110 @@ pub enum Side {
     Surface,
 }
 
-/// On which side the origins of rays lie.
-pub struct Parity<'a> {
+/// A surface that a ray crosses ahead of its origin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Exit {
+    /// The number of the ray.
+    pub ray: u32,
+    /// What is crossed.
+    pub primitive: u32,
+    /// Which primitive within that one.
+    pub inner: u32,
+    /// The bits of `t`, by which crossings of one primitive differ.
+    t: u64,
+}
+
+/// All crossings of rays ahead of their origins, each once, by ray and primitive; and the origins on a surface.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Exits {
+    /// What is crossed.
+    pub crossed: Vec<Exit>,
+    /// Whether the origin of each ray is a point of a surface.
+    pub on_surface: Vec<bool>,
+}
+
+impl Exits {
+    /// On which side of all surfaces in one the origins lie, by the even-odd rule.
+    pub fn sides(&self) -> Vec<Side> {
+        let mut sides = vec![Side::Outside; self.on_surface.len()];
+        for exits in self.crossed.chunk_by(|a, b| a.ray == b.ray) {
+            sides[exits[0].ray as usize] = if exits.len() % 2 == 1 { Side::Inside } else { Side::Outside };
+        }
+        for (side, on_surface) in sides.iter_mut().zip(&self.on_surface) {
+            *side = if *on_surface { Side::Surface } else { *side };
+        }
+        sides
+    }
+
+    /// Those of two structures together.
+    pub(crate) fn joined(mut self, other: Self) -> Self {
+        self.crossed.extend(other.crossed);
+        for (on_surface, other) in self.on_surface.iter_mut().zip(other.on_surface) {
+            *on_surface |= other;
+        }
+        self.in_order()
+    }
+
+    /// By ray and primitive, and each once: a structure may tell the same crossing more than once.
+    pub(crate) fn in_order(mut self) -> Self {
+        self.crossed.sort_unstable();
+        self.crossed.dedup();
+        self
+    }
+}
+
+/// Finds what rays cross on their way out.
+pub struct WaysOut<'a> {
     /// What the accelerator holds.
     pub primitives: &'a dyn Primitives,
+    /// Whether a primitive counts.
+    pub counts: &'a (dyn Fn(u32) -> bool + Sync),
     /// Asked from a `t_min` of minus `doubt` on.
     pub rays: &'a [Ray],
     /// A `t` of no more than this, in lengths of the scaled direction, may have the wrong sign.
     pub doubt: f64,
-    /// The answers.
-    pub sides: &'a mut [Side],
-    /// What is crossed: the number of the ray, the primitive, which primitive within that one, and where. A structure
-    /// may tell the same crossing more than once.
-    pub crossed: Vec<(u32, u32, u32, u64)>,
+    /// The answers, crossings in any order.
+    pub exits: Exits,
 }
 
-impl Parity<'_> {
-    /// Turns the sides by what was crossed, once all rays are answered.
-    pub fn settle(mut self) {
-        self.crossed.sort_unstable();
-        self.crossed.dedup();
-        for (ray, ..) in self.crossed {
-            let side = &mut self.sides[ray as usize];
-            *side = match *side {
-                Side::Outside => Side::Inside,
-                Side::Inside => Side::Outside,
-                Side::Surface => Side::Surface,
-            };
-        }
-    }
-}
-
-impl Query for Parity<'_> {
-    type State = (u32, Side);
+impl Query for WaysOut<'_> {
+    type State = (u32, bool);
     const WANTED: Wanted = Wanted::Side;
 
     #[inline(always)]
-    fn start(&self, i: usize, _: f64) -> (u32, Side) {
-        (i as u32, Side::Outside)
+    fn start(&self, i: usize, _: f64) -> (u32, bool) {
+        (i as u32, false)
     }
     #[inline(always)]
-    fn limit(_: &(u32, Side)) -> f64 {
+    fn limit(_: &(u32, bool)) -> f64 {
         f64::INFINITY
     }
     #[inline(always)]
-    fn offer(&mut self, (i, side): &mut (u32, Side), primitive: u32, met: Candidate) -> bool {
+    fn offer(&mut self, (ray, on_surface): &mut (u32, bool), primitive: u32, met: Candidate) -> bool {
+        if !(self.counts)(primitive) {
+            return false;
+        }
         let Candidate { t, contact, inner, .. } = met;
         let ahead = if t.abs() > self.doubt {
             t.total_cmp(&0.0)
         } else {
-            let (ray, corners) = (&self.rays[*i as usize], self.primitives.corners(primitive));
+            let (ray, corners) = (&self.rays[*ray as usize], self.primitives.corners(primitive));
             // What is no triangle has no corners, and tells `t` as well as can be.
             let is_triangle = corners[0].is_finite();
             if is_triangle { sign_of_t(ray.origin, ray.direction, corners) } else { (t + 0.0).total_cmp(&0.0) }
         };
         match ahead {
-            Ordering::Equal => *side = Side::Surface,
+            Ordering::Equal => *on_surface = true,
             Ordering::Greater if contact != Contact::Touching => {
-                self.crossed.push((*i, primitive, inner, t.to_bits()));
+                self.exits.crossed.push(Exit { ray: *ray, primitive, inner, t: t.to_bits() });
             }
             _ => {}
         }
         ahead == Ordering::Equal
     }
     #[inline(always)]
-    fn finish(&mut self, i: usize, answer: Option<(Along, (u32, Side))>) {
-        self.sides[i] = answer.map_or(Side::Outside, |(_, (_, side))| side);
+    fn finish(&mut self, i: usize, answer: Option<(Along, (u32, bool))>) {
+        self.exits.on_surface[i] = answer.is_some_and(|(_, (_, on_surface))| on_surface);
     }
 }
 

@@ -40,6 +40,7 @@ mod sight;
 mod signals;
 mod spectra;
 mod textures;
+mod topology;
 mod tree;
 mod view_factors;
 mod watcher;
@@ -122,6 +123,8 @@ mod _core {
     use super::simd;
     #[pymodule_export]
     use super::spectra::{daylight_power, smooth_spectrum, spectrum_luminance, spectrum_rgb};
+    #[pymodule_export]
+    use super::topology::{MeshTopology, mesh_topology, sections, weld, weld_rounding};
     #[pymodule_export]
     use super::tree::tree;
     #[pymodule_export]

@@ -234,21 +234,34 @@ impl CompiledScene {
         Ok((sealed(nodes)?, sealed(primitives)?))
     }
 
+    #[pyo3(signature = (points, shape, threads, shapes=None, tolerance=None, is_even_odd=false))]
     fn contains<'py>(
         &self,
         py: Python<'py>,
         points: Triples<'py>,
         shape: Vec<usize>,
         threads: Option<usize>,
+        shapes: Option<Vec<bool>>,
+        tolerance: Option<f64>,
+        is_even_odd: bool,
     ) -> PyResult<Bound<'py, PyArrayDyn<bool>>> {
         let points = points.rows("points")?;
         let out = unwritten(py, &shape, None)?;
         let count = shape.iter().product();
+        let enclosing = scene::Enclosing { shapes, tolerance, is_even_odd };
+        // Made once, before threads ask for it.
+        py.detach(|| self.0.solids(&enclosing));
         answer(py, count, share(count), threads, out.readwrite().as_slice_mut()?, |start, out| {
             let some: Vec<_> = (start..start + out.len()).map(|i| points.get(i)).collect();
-            self.0.contains(&some, out);
+            self.0.contains(&some, &enclosing, out);
         })?;
         Ok(out)
+    }
+
+    /// The meshes whose normals point into them.
+    #[pyo3(signature = (shapes=None, tolerance=None))]
+    fn inverted(&self, py: Python<'_>, shapes: Option<Vec<bool>>, tolerance: Option<f64>) -> Vec<u32> {
+        py.detach(|| self.0.solids(&scene::Enclosing { shapes, tolerance, is_even_odd: false }).inverted())
     }
 
     fn nearest<'py>(

@@ -3,7 +3,9 @@
 use super::geometry::Watched;
 use super::lights::{Emitters, not_drawn};
 use super::media::Medium;
-use super::{DescriptionError, Emission, Geometry, Lights, Material, Plan, SceneDescription, SurfacePoint};
+use super::{
+    DescriptionError, Emission, Enclosing, Geometry, Lights, Material, Plan, SceneDescription, Solids, SurfacePoint,
+};
 use raywright_accel::{Accelerator, Cost, Crossings, Nearest, Primitives, Side, Touches};
 use raywright_base::math::{DVec3, Hit, Ray, RayQueue, Region};
 use raywright_base::work::{Stopped, Work};
@@ -26,6 +28,13 @@ pub struct Scene {
     /// The accelerator's cost when it was built.
     built_cost: f64,
 }
+
+/// What [`Scene::solids`] has found last, the latest first.
+#[derive(Default)]
+struct LastSolids(Mutex<Vec<(Enclosing, Arc<Solids>)>>);
+
+/// How much of it is kept.
+const MOST_SOLIDS: usize = 4;
 
 /// Ways out for [`Scene::contains`]: in no special position relative to anything that people make, and with a largest
 /// coordinate between 1 and 2, so that `t` is not scaled.
@@ -158,42 +167,58 @@ impl Scene {
         self.accelerator.crossings(rays)
     }
 
-    /// Whether each point is inside the surface or on it: on the way out it is crossed an odd number of times.
+    /// Whether each point is inside of something closed or on it.
     ///
-    /// On any two ways out of a closed surface, the numbers of crossings differ by an even number, so one way and the
-    /// opposite one agree. Where they do not, there is a hole, and what most of seven ways find is told.
-    pub fn contains(&self, points: &[DVec3], inside: &mut [bool]) {
+    /// On any way out of a closed surface it is found the same, so one way and the opposite one agree. Where they do
+    /// not, rounding has left a crack, and what most of seven ways find is told.
+    pub fn contains(&self, points: &[DVec3], enclosing: &Enclosing, inside: &mut [bool]) {
         assert_eq!(points.len(), inside.len(), "an answer for each point");
         inside.fill(false);
+        let solids = self.solids(enclosing);
+        if solids.is_empty() {
+            return;
+        }
         let within = |p: &DVec3| p.cmpge(self.region.min).all() && p.cmple(self.region.max).all();
         let mut open: Vec<usize> = (0..points.len()).filter(|&i| within(&points[i])).collect();
         let mut votes = vec![0u32; points.len()];
+        let vote = |which: &[usize], ways: &[DVec3], inside: &mut [bool], votes: &mut [u32]| {
+            for &way in ways.iter().filter(|_| !which.is_empty()) {
+                let rays: Vec<Ray> = which.iter().map(|&i| Ray::new(points[i], way)).collect();
+                for (&i, side) in which.iter().zip(solids.sides(&self.geometry, self.accelerator(), rays)) {
+                    votes[i] += u32::from(side == Side::Inside);
+                    inside[i] |= side == Side::Surface;
+                }
+            }
+        };
         let (pair, others) = WAYS_OUT.split_at(2);
-        self.vote(points, &open, pair, &mut votes, inside);
+        vote(&open, pair, inside, &mut votes);
         open.retain(|&i| {
             inside[i] |= votes[i] == 2;
             votes[i] == 1 && !inside[i]
         });
-        self.vote(points, &open, others, &mut votes, inside);
+        vote(&open, others, inside, &mut votes);
         for i in open {
             inside[i] |= 2 * votes[i] as usize > WAYS_OUT.len();
         }
     }
 
-    /// Counts the ways out that find some of the points inside, and tells which are on the surface.
-    fn vote(&self, points: &[DVec3], which: &[usize], ways: &[DVec3], votes: &mut [u32], on: &mut [bool]) {
-        // The sign of a t may be wrong up to `EdgeRay::T_ERROR` of at most two radii.
-        let doubt = self.region.radius / (1u64 << 24) as f64;
-        let mut sides = vec![Side::Outside; which.len()];
-        for &way in ways.iter().filter(|_| !which.is_empty()) {
-            let leaving = |&i: &usize| Ray { t_min: -doubt, ..Ray::new(points[i], way) };
-            let rays: Vec<_> = which.iter().map(leaving).collect();
-            self.accelerator.sides(&self.geometry, &rays, doubt, &mut sides);
-            for (&i, &side) in which.iter().zip(&sides) {
-                votes[i] += u32::from(side == Side::Inside);
-                on[i] |= side == Side::Surface;
-            }
+    /// What is enclosed by what counts. The last of what was asked is kept.
+    pub fn solids(&self, enclosing: &Enclosing) -> Arc<Solids> {
+        let kept = self.kept(|| Some(LastSolids::default())).expect("it is made");
+        // Not within the lock: threads that wait for others take up work of theirs, which may come here too.
+        let find = |all: &[(Enclosing, Arc<Solids>)]| {
+            all.iter().find(|(known, _)| known == enclosing).map(|(_, solids)| solids.clone())
+        };
+        if let Some(found) = find(&kept.0.lock().unwrap_or_else(PoisonError::into_inner)) {
+            return found;
         }
+        let made = Arc::new(Solids::new(&self.geometry, self.accelerator(), enclosing));
+        let mut all = kept.0.lock().unwrap_or_else(PoisonError::into_inner);
+        find(&all).unwrap_or_else(|| {
+            all.truncate(MOST_SOLIDS - 1);
+            all.insert(0, (enclosing.clone(), made.clone()));
+            made
+        })
     }
 
     /// The nearest point to each point, within its greatest distance: one for all of them, or one each.
@@ -355,19 +380,20 @@ mod tests {
         let points: Vec<_> =
             near.iter().flat_map(|&x| near.iter().flat_map(move |&y| near.map(|z| DVec3::new(x, y, z)))).collect();
         let mut inside = vec![false; points.len()];
-        cube.contains(&points, &mut inside);
+        cube.contains(&points, &Enclosing::default(), &mut inside);
         for (p, inside) in points.iter().zip(inside) {
             assert_eq!(inside, p.abs().max_element() <= 1.0, "{p}");
         }
     }
 
     #[test]
-    fn with_a_wall_missing_most_ways_out_decide() {
+    fn with_a_wall_missing_nothing_is_inside() {
         let five = inward_box([-1.0; 3], [2.0; 3]).into_iter().take(5).map(|mesh| shape(mesh, [0.5; 3], 0.0));
         let open = scene(SceneDescription { shapes: five.collect(), ..Default::default() });
-        let mut inside = [false; 3];
-        open.contains(&[DVec3::new(0.1, 0.2, -0.5), DVec3::NAN, DVec3::new(0.0, 0.0, 1.1)], &mut inside);
-        assert_eq!(inside, [true, false, false]);
+        let mut inside = [true; 3];
+        let points = [DVec3::new(0.1, 0.2, -0.5), DVec3::NAN, DVec3::new(0.0, 0.0, 1.1)];
+        open.contains(&points, &Enclosing::default(), &mut inside);
+        assert_eq!(inside, [false; 3]);
     }
 
     #[test]

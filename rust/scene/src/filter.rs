@@ -1,9 +1,9 @@
 //! What of a scene counts for rays: some of its shapes, or what faces the ray.
 
+use super::geometry::{is_front_of, scaled};
 use super::{Geometry, Scene};
 use raywright_accel::{Crossings, Primitives};
-use raywright_base::math::robust::{UNIT, greater, normalising_scale};
-use raywright_base::math::{DVec3, Hit, Ray, exact_edges};
+use raywright_base::math::{Hit, Ray};
 use raywright_shapes::Candidate;
 
 /// What counts for rays: all goes as it would if all else were not there.
@@ -51,32 +51,6 @@ fn is_front(geometry: &Geometry, ray: &Ray, primitive: u32, met: &Candidate) -> 
     geometry.surface(ray, &hit).normal.dot(direction) < 0.0
 }
 
-/// The power of two that brings the direction's largest coordinate to between 1 and 2, and the direction there.
-fn scaled(ray: &Ray) -> (f64, DVec3) {
-    let size = ray.direction.abs();
-    let (scale, _) = normalising_scale(greater(greater(size.x, size.y), size.z));
-    (scale, ray.direction * scale)
-}
-
-/// The same of a triangle that the ray meets, by the sign of `d · ((b − a) × (c − a))`.
-fn is_front_of([a, b, c]: [DVec3; 3], ray: &Ray) -> bool {
-    let (d, v, w) = (scaled(ray).1, b - a, c - a);
-    let terms = [(0, 1, 2), (1, 2, 0), (2, 0, 1)].map(|(i, j, k)| [d[i] * v[j] * w[k], -(d[i] * v[k] * w[j])]);
-    let (mut volume, mut size) = (0.0, 0.0);
-    for term in terms.as_flattened() {
-        volume += term;
-        size += term.abs();
-    }
-    // Each term errs by four roundings, and each of five sums by one; what underflows on the way is far less where
-    // nothing is large.
-    let largest = v.abs().max(w.abs()).max_element();
-    if largest < 1e50 && size > 1e-250 && volume.abs() > 16.0 * UNIT * size {
-        return volume < 0.0;
-    }
-    // The edges' volumes add up to it, and of a triangle that is met all have one sign or are zero.
-    exact_edges(ray.origin, d, [a, b, c]).iter().any(|&volume| volume < 0.0)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -84,6 +58,7 @@ mod tests {
     use crate::{Mesh, SceneDescription};
     use raywright_accel::bvh::Options;
     use raywright_accel::trees;
+    use raywright_base::math::DVec3;
     use raywright_base::sampling::{Sampler, warp};
     use raywright_base::simd::Level;
 
@@ -96,28 +71,6 @@ mod tests {
         };
         let middle = next() * [0.0, 1.0, 1e6][seed as usize % 3];
         [0; 3].map(|_| middle + next() * [1e-6, 1.0, 1e3][(seed / 3) as usize % 3])
-    }
-
-    #[test]
-    fn a_side_is_what_the_exact_volumes_say() {
-        let mut seen = [0; 2];
-        for seed in 0..3000 {
-            let corners = corners(seed);
-            let [a, b, c] = corners;
-            // In the plane of the triangle but for rounding: where f64 alone cannot tell the side.
-            let along = if seed % 2 == 0 { b - a } else { 0.3 * (b - a) + 0.9 * (c - a) };
-            let way = along + (b - a).cross(c - a) * [0.0, 1e-18, -1e-14, -1.0, 1.0][seed as usize % 5];
-            let ray = Ray::new((a + b + c) / 3.0 - way, way);
-            let exact = exact_edges(ray.origin, way, corners);
-            if exact.iter().all(|&v| v >= 0.0) != exact.iter().all(|&v| v <= 0.0) {
-                let front = is_front_of(corners, &ray);
-                assert_eq!(front, exact.iter().all(|&v| v <= 0.0), "triangle {seed}");
-                // The same face the other way round is seen from the other side.
-                assert_ne!(front, is_front_of([a, c, b], &ray), "triangle {seed}");
-                seen[usize::from(front)] += 1;
-            }
-        }
-        assert!(seen.iter().all(|&count| count > 200), "{seen:?}");
     }
 
     #[test]

@@ -25,6 +25,7 @@ mod surface_interaction;
 mod surface_lanes;
 mod surface_point;
 pub mod textures;
+pub mod topology;
 mod view;
 
 pub use cameras::{Camera, CameraConnection, CameraError, CameraRay, CameraRayLanes, Perspective};
@@ -37,8 +38,8 @@ pub use filter::Filter;
 pub use first_hits::FirstHits;
 pub use gaze::Gaze;
 pub use geometry::{
-    BadTransform, Geometry, Instances, Matrix, Mesh, Objects, Precision, Prototype, Rounding, Surface, Vertices,
-    check_transforms, rounded,
+    BadTransform, Enclosing, Geometry, Instances, Matrix, Mesh, Objects, Precision, Prototype, Rounding, Solids,
+    Surface, Vertices, check_transforms, rounded,
 };
 pub use lights::SeenTriangle;
 pub use lights::{

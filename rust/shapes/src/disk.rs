@@ -185,6 +185,10 @@ impl Solid for Disk {
 }
 
 impl Shape for Disk {
+    fn is_closed(&self) -> bool {
+        false
+    }
+
     fn closest(&self, place: DVec3) -> Option<Closest> {
         let frame = self.frame();
         let local = frame.to_local(place - self.center);

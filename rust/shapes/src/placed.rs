@@ -105,6 +105,10 @@ impl Shape for Placed {
         self.to_world.normal(self.shape.facing()?).try_normalize()
     }
 
+    fn is_closed(&self) -> bool {
+        self.shape.is_closed()
+    }
+
     /// Drawn as the shape draws it, and so even only where the map stretches all of it alike.
     fn sample(&self, u: [f64; 2]) -> Option<Drawn> {
         let Drawn { point, pdf } = self.shape.sample(u)?;

@@ -63,6 +63,10 @@ pub(super) fn crossing<N: Number>(line: &Line<N>, normal: &Triple<N>) -> Option<
 }
 
 impl Shape for Plane {
+    fn is_closed(&self) -> bool {
+        false
+    }
+
     fn closest(&self, place: DVec3) -> Option<Closest> {
         let normal = self.frame().normal;
         let away = place - self.point;

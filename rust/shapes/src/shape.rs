@@ -195,6 +195,11 @@ pub trait Shape: Debug + Send + Sync {
         None
     }
 
+    /// Whether it encloses a part of space: what has an edge does not.
+    fn is_closed(&self) -> bool {
+        true
+    }
+
     /// A point drawn by area, from two numbers in [0, 1); `pdf` is the density there, 1 / area where it is even. None
     /// for a shape without end, or of no area.
     fn sample(&self, u: [f64; 2]) -> Option<Drawn>;

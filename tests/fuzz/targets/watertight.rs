@@ -122,8 +122,7 @@ fn holds(triangles: &Triangles, rays: &[Ray]) {
     let lines: Vec<Ray> = rays.iter().map(|ray| Ray { t_min: f64::NEG_INFINITY, ..*ray }).collect();
     for (name, accelerator) in accelerators::all(triangles, &Options::DEFAULT) {
         let crossings = accelerator.crossings(&lines);
-        let mut sides = vec![Side::Outside; rays.len()];
-        accelerator.sides(triangles, &leaving, doubt, &mut sides);
+        let sides = accelerator.exits(triangles, &|_| true, &leaving, doubt).sides();
         let mut occluded = vec![false; rays.len()];
         accelerator.occluded(&leaving, &mut occluded);
         for (i, ray) in rays.iter().enumerate() {

@@ -7,6 +7,7 @@ import trimesh
 from numpy.typing import ArrayLike, NDArray
 
 from ...arrays import integer, real_array
+from ...query.rays import point_arguments
 from ...scene.scene import Scene
 from ...shapes.mesh import Mesh
 
@@ -129,7 +130,10 @@ class RayMeshIntersector:
         return self._scene.occluded(*_rays(ray_origins, ray_directions))
 
     def contains_points(self, points: ArrayLike) -> NDArray[np.bool_]:
-        """Find whether each point is inside the mesh, decided as `Scene.contains` does: (n,) bool.
+        """Find whether each point is inside the mesh: (n,) bool.
+
+        As trimesh has it, a point is inside if a ray from there crosses the mesh an odd number of times. That
+        is decided exactly; where the mesh is open, by the majority of seven rays.
 
         Parameters
         ----------
@@ -143,7 +147,8 @@ class RayMeshIntersector:
         TypeError
             If it does not hold real numbers.
         """
-        return self._scene.contains(_triples("points", points))
+        core = self._scene._compiled()
+        return core.contains(*point_arguments(_triples("points", points), None), is_even_odd=True)
 
     @property
     def _scene(self) -> Scene:
@@ -152,7 +157,7 @@ class RayMeshIntersector:
         scene: Scene | None = self._cache["scene"]
         if scene is None:
             # Nothing of the vertices is lost; the core keeps float32 where that holds them all.
-            scene = Scene(Mesh(self.mesh.vertices, self.mesh.faces), precision="double")
+            scene = Scene(Mesh(self.mesh.vertices, self.mesh.faces), precision="double").welded()
             self._cache["scene"] = scene
         return scene
 

@@ -389,7 +389,7 @@ mod tests {
         for centre in [DVec3::new(8.0, 0.0, 0.0), DVec3::new(8.0, 0.0, 16.0)] {
             let points: Vec<_> = points.clone().map(|p| p + centre).collect();
             let mut inside = vec![false; points.len()];
-            scene.contains(&points, &mut inside);
+            scene.contains(&points, &crate::Enclosing::default(), &mut inside);
             for (p, inside) in points.iter().zip(inside) {
                 assert_eq!(inside, (*p - centre).abs().max_element() <= 2.0, "{p}");
             }

@@ -1,6 +1,7 @@
 //! The surfaces of a scene: every mesh's corners and faces, one after the other, and shapes among them.
 
 mod facets;
+mod front;
 mod instances;
 mod lanes;
 mod motion;
@@ -11,13 +12,16 @@ mod pose;
 mod prototype;
 mod rounding;
 mod shading;
+mod solids;
 mod vertices;
 mod watched;
 
+pub(crate) use front::{is_front_of, scaled};
 pub use instances::{BadTransform, Instances, Matrix, check_transforms};
 pub use objects::Objects;
 pub use prototype::Prototype;
 pub use rounding::{Precision, Rounding, rounded};
+pub use solids::{Enclosing, Solids};
 pub use vertices::Vertices;
 pub(crate) use watched::Watched;
 

@@ -1,15 +1,15 @@
 //! What is put into a scene many times: shapes in a space of their own, with an accelerator of their own.
 
-use super::Geometry;
+use super::{Enclosing, Geometry, Solids};
 use crate::textures::Needs;
 use crate::{Emission, Material, ShadingPoint, SurfacePoint};
 use raywright_accel::{Accelerator, Primitives, Side};
 use raywright_base::math::robust::normalising_scale;
-use raywright_base::math::{DVec3, Hit, Ray, Region};
+use raywright_base::math::{DVec3, Hit, Ray};
 use raywright_base::parallel::{self, CHUNK};
 use raywright_shapes::Bounds;
 use std::fmt;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Shapes that are put elsewhere together, compiled once.
 ///
@@ -25,8 +25,9 @@ pub struct Prototype {
     first: Vec<u64>,
     has_instances: bool,
     moves: bool,
-    region: Region,
     bounds: Option<Bounds>,
+    /// What is closed in it, once that was asked.
+    solids: OnceLock<Arc<Solids>>,
 }
 
 impl fmt::Debug for Prototype {
@@ -65,8 +66,8 @@ impl Prototype {
         } else {
             (!region.is_empty()).then_some(Bounds { min: region.min, max: region.max })
         };
-        let accelerator = accelerator(&geometry);
-        Ok(Self { geometry, accelerator, materials, emission, first, has_instances, moves, region, bounds })
+        let (accelerator, solids) = (accelerator(&geometry), OnceLock::new());
+        Ok(Self { geometry, accelerator, materials, emission, first, has_instances, moves, bounds, solids })
     }
 
     /// How many primitives there are, flattened.
@@ -158,19 +159,19 @@ impl Prototype {
         self.materials.iter().map(|material| &**material).zip(&self.emission)
     }
 
-    /// On which side of its surfaces the origin of a ray in its space lies, by the crossings from there on.
+    /// On which side of what is closed in it the origin of a ray in its space lies, by the crossings from there on.
     pub fn side(&self, ray: &Ray) -> Side {
         let size = ray.direction.abs().max_element();
         if !size.is_normal() {
             return Side::Outside;
         }
         let (scale, _) = normalising_scale(size);
-        // As `Scene::contains` doubts it.
-        let doubt = self.region.radius / (1u64 << 24) as f64;
-        let ray = Ray { direction: ray.direction * scale, t_min: -doubt, ..*ray };
-        let mut sides = [Side::Outside];
-        self.accelerator.sides(&self.geometry, &[ray], doubt, &mut sides);
-        sides[0]
+        let ray = Ray { direction: ray.direction * scale, ..*ray };
+        // Not within the lock: threads that wait for others take up work of theirs, which may come here too.
+        let solids = || Arc::new(Solids::new(&self.geometry, self.accelerator(), &Enclosing::default()));
+        let solids = self.solids.get().cloned().unwrap_or_else(solids);
+        let _ = self.solids.set(solids.clone());
+        solids.sides(&self.geometry, self.accelerator(), vec![ray])[0]
     }
 
     /// Memory held, without prototypes in it that were `seen`; it and they count as seen from then on.

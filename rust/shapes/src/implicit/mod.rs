@@ -1,5 +1,6 @@
 //! Surfaces `f(x, y, z) = 0` within a box.
 
+mod closed;
 mod closest;
 mod functions;
 mod jet;
@@ -40,6 +41,8 @@ pub struct Implicit {
     extent: f64,
     /// Measured when it is asked for.
     surface: OnceLock<Surface>,
+    /// Whether the box cuts it open, once that was asked.
+    closed: OnceLock<bool>,
 }
 
 impl Implicit {
@@ -64,7 +67,7 @@ impl Implicit {
         if side <= 64.0 * f64::EPSILON * extent {
             return Err(format!("min is {min} and max is {max}, expected a box wider than 64 units in the last place"));
         }
-        Ok(Self { tape, bounds: Bounds { min, max }, extent, surface: OnceLock::new() })
+        Ok(Self { tape, bounds: Bounds { min, max }, extent, surface: OnceLock::new(), closed: OnceLock::new() })
     }
 
     /// The expression's value at a point; NaN where it is not defined.
@@ -172,6 +175,10 @@ impl Implicit {
 }
 
 impl Shape for Implicit {
+    fn is_closed(&self) -> bool {
+        *self.closed.get_or_init(|| closed::is_closed(&self.tape, &self.bounds))
+    }
+
     fn closest(&self, place: DVec3) -> Option<Closest> {
         let own = closest::closest(self, &Affine::translation(DVec3::ZERO), place)?;
         Some(Closest { position: own, uv: self.uv(own, Self::main_axis(self.gradient(own).0)) })

@@ -226,6 +226,10 @@ impl Polygon {
 }
 
 impl Shape for Polygon {
+    fn is_closed(&self) -> bool {
+        false
+    }
+
     fn closest(&self, place: DVec3) -> Option<Closest> {
         let foot = place - self.normal * self.normal.dot(place - self.anchor);
         if self.holds(foot) {

@@ -65,6 +65,10 @@ fn of_parabola(rim: f64, height: f64, [across, up]: [f64; 2]) -> [f64; 2] {
 }
 
 impl Shape for Revolution {
+    fn is_closed(&self) -> bool {
+        self.capped
+    }
+
     fn closest(&self, place: DVec3) -> Option<Closest> {
         let (frame, height) = self.frame();
         let local = frame.to_local(place - self.base);

@@ -1,0 +1,252 @@
+//! The parts of space that surfaces enclose.
+
+use super::Geometry;
+use super::front::is_front_of;
+use crate::topology::{FaceKind, NONE, Topology, rounding};
+use raywright_accel::{Accelerator, Exit, Exits, Primitives, Side};
+use raywright_base::math::{DVec3, Ray};
+
+/// What is no face, and encloses a part of space by itself.
+const OBJECT: u32 = NONE - 1;
+/// How many corners are looked at to find out whether a mesh is the wall of a cavity.
+const LOOKED_AT: usize = 256;
+/// A direction in no special position relative to anything that people make, with a largest coordinate between 1 and 2.
+const WAY: DVec3 = DVec3::new(1.289_430_857_193_402_8, 0.371_920_584_301_275_66, 0.587_109_384_750_921_3);
+
+/// Which of a scene's shapes count, and how close their corners are one; [`crate::topology::rounding`] if it is none.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Enclosing {
+    /// Whether each shape counts; all do without it.
+    pub shapes: Option<Vec<bool>>,
+    /// In the unit of length.
+    pub tolerance: Option<f64>,
+    /// Whether all surfaces count as one, closed or not, of which an odd number is crossed on the way out from inside.
+    pub is_even_odd: bool,
+}
+
+/// What closed shapes enclose: a point is inside if it is in one of them.
+///
+/// A mesh is taken apart into faces that hang together, of which those without an open edge enclose what has a winding
+/// number about them, or an odd number of crossings where faces are turned; so what is within a cavity of the mesh is
+/// outside, and where parts of it overlap is inside. Meshes that close only together, as the walls of a room, are taken
+/// as one. A mesh whose normals point in is the wall of a cavity if it lies within another, and otherwise a solid.
+#[derive(Debug, Default)]
+pub struct Solids {
+    /// The body of each face, [`NONE`] of what counts for nothing, [`OBJECT`] of others.
+    of: Vec<u32>,
+    bodies: Vec<Body>,
+    groups: Vec<Group>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Body {
+    group: u32,
+    is_oriented: bool,
+    /// 1, or −1 where normals point in.
+    sign: i32,
+}
+
+/// Bodies whose winding numbers add up.
+#[derive(Clone, Debug)]
+struct Group {
+    /// The mesh; none of bodies of several.
+    shape: Option<u32>,
+    volume: f64,
+    /// Whether all of its bodies are.
+    is_oriented: bool,
+    is_cavity: bool,
+}
+
+impl Solids {
+    /// What of the geometry that the accelerator holds is closed.
+    pub fn new(geometry: &Geometry, accelerator: &dyn Accelerator, enclosing: &Enclosing) -> Self {
+        let mut solids = Self { of: vec![NONE; geometry.count()], ..Self::default() };
+        let counts = |shape: u32| {
+            enclosing.shapes.as_ref().is_none_or(|all| all.get(shape as usize).is_some_and(|&counts| counts))
+        };
+        if enclosing.is_even_odd {
+            for shape in (0..geometry.shapes() as u32).filter(|&shape| counts(shape)) {
+                let primitives = geometry.primitives_of(shape);
+                solids.of[primitives.start as usize..primitives.end as usize].fill(0);
+            }
+            solids.bodies.push(Body { group: 0, is_oriented: false, sign: 1 });
+            solids.groups.push(Group { shape: None, volume: 0.0, is_oriented: false, is_cavity: false });
+            return solids;
+        }
+        let mut open: Vec<(Mesh, Vec<bool>)> = Vec::new();
+        for shape in (0..geometry.shapes() as u32).filter(|&shape| counts(shape)) {
+            let primitives = geometry.primitives_of(shape);
+            if primitives.is_empty() {
+                continue;
+            }
+            let object = geometry.shape(primitives.start);
+            if object.is_some() || geometry.instances_of(shape).is_some() {
+                if object.is_none_or(|object| object.is_closed()) {
+                    solids.of[primitives.start as usize..primitives.end as usize].fill(OBJECT);
+                }
+                continue;
+            }
+            let mesh = Mesh::new(geometry, shape);
+            let topology = Topology::new(&mesh.points, &mesh.faces, enclosing.tolerance);
+            solids.add(&mesh.primitives, &topology, Some(shape));
+            let is_open: Vec<bool> = topology.faces.iter().map(|&kind| kind == FaceKind::Open).collect();
+            if is_open.contains(&true) {
+                open.push((mesh, is_open));
+            }
+        }
+        if open.len() > 1 {
+            let mut all = Mesh::default();
+            for (mesh, is_open) in &open {
+                all.extend(mesh, is_open);
+            }
+            // Of one mesh that is far larger than another, rounding may be larger than all of that one.
+            let least = || open.iter().map(|(mesh, _)| rounding(&mesh.points, &mesh.faces)).fold(f64::MAX, f64::min);
+            let tolerance = enclosing.tolerance.unwrap_or_else(least);
+            let topology = Topology::new(&all.points, &all.faces, Some(tolerance));
+            solids.add(&all.primitives, &topology, None);
+        }
+        solids.find_cavities(geometry, accelerator);
+        solids
+    }
+
+    /// One more group: the bodies of faces, of which the primitives are told.
+    fn add(&mut self, primitives: &[u32], topology: &Topology, shape: Option<u32>) {
+        if topology.bodies.is_empty() {
+            return;
+        }
+        let (first, group) = (self.bodies.len() as u32, self.groups.len() as u32);
+        let sign = |volume: f64| if volume < 0.0 { -1 } else { 1 };
+        self.bodies.extend(topology.bodies.iter().map(|body| Body {
+            group,
+            is_oriented: body.is_oriented,
+            sign: sign(body.volume),
+        }));
+        for (&primitive, kind) in primitives.iter().zip(&topology.faces) {
+            if let FaceKind::Closed(body) = kind {
+                self.of[primitive as usize] = first + body;
+            }
+        }
+        let volume = topology.bodies.iter().map(|body| body.volume).sum();
+        let is_oriented = topology.bodies.iter().all(|body| body.is_oriented);
+        self.groups.push(Group { shape, volume, is_oriented, is_cavity: false });
+    }
+
+    /// Finds the meshes whose normals point in and that lie within others whose normals do not.
+    fn find_cavities(&mut self, geometry: &Geometry, accelerator: &dyn Accelerator) {
+        let is_inverted: Vec<bool> = self.groups.iter().map(|group| group.volume < 0.0).collect();
+        if !is_inverted.contains(&true) || (is_inverted.iter().all(|&is| is) && !self.of.contains(&OBJECT)) {
+            return;
+        }
+        let body_counts = |body: u32| !is_inverted[self.bodies[body as usize].group as usize];
+        let outer = Self {
+            of: self.of.iter().map(|&of| if of >= OBJECT || body_counts(of) { of } else { NONE }).collect(),
+            bodies: self.bodies.clone(),
+            groups: self.groups.clone(),
+        };
+        for (group, _) in is_inverted.iter().enumerate().filter(|(_, is_inverted)| **is_inverted) {
+            let Some(shape) = self.groups[group].shape else { continue };
+            let points = Mesh::new(geometry, shape).points;
+            let points: Vec<DVec3> = points.into_iter().filter(|point| point.is_finite()).collect();
+            let step = points.len().div_ceil(LOOKED_AT).max(1);
+            let rays: Vec<Ray> = points.into_iter().step_by(step).map(|point| Ray::new(point, WAY)).collect();
+            let sides = outer.sides(geometry, accelerator, rays);
+            self.groups[group].is_cavity = sides.contains(&Side::Inside) && !sides.contains(&Side::Outside);
+        }
+    }
+
+    /// The meshes whose normals all point in, and that are no cavities of others.
+    pub fn inverted(&self) -> Vec<u32> {
+        let is_inverted = |group: &&Group| group.volume < 0.0 && group.is_oriented && !group.is_cavity;
+        self.groups.iter().filter(is_inverted).filter_map(|group| group.shape).collect()
+    }
+
+    /// Whether nothing is enclosed.
+    pub fn is_empty(&self) -> bool {
+        self.of.iter().all(|&of| of == NONE)
+    }
+
+    /// On which side of what is closed the origins of rays lie, by what is crossed from there on. The largest
+    /// coordinate of directions must be between 1 and 2.
+    pub fn sides(&self, geometry: &Geometry, accelerator: &dyn Accelerator, mut rays: Vec<Ray>) -> Vec<Side> {
+        // The sign of a t may be wrong up to `EdgeRay::T_ERROR` of at most two radii.
+        let doubt = geometry.region().radius / (1u64 << 24) as f64;
+        rays.iter_mut().for_each(|ray| ray.t_min = -doubt);
+        let counts = |primitive: u32| self.of[primitive as usize] != NONE;
+        let Exits { crossed, on_surface } = accelerator.exits(geometry, &counts, &rays, doubt);
+        let of_origin = |on_surface| if on_surface { Side::Surface } else { Side::Outside };
+        let mut sides: Vec<Side> = on_surface.into_iter().map(of_origin).collect();
+        let mut wound = Vec::new();
+        for exits in crossed.chunk_by(|a, b| a.ray == b.ray) {
+            let ray = exits[0].ray as usize;
+            if sides[ray] == Side::Outside && self.is_inside(geometry, &rays[ray], exits, &mut wound) {
+                sides[ray] = Side::Inside;
+            }
+        }
+        sides
+    }
+
+    /// Whether a ray that crosses these starts in a solid, and in fewer cavities.
+    fn is_inside(&self, geometry: &Geometry, ray: &Ray, exits: &[Exit], wound: &mut Vec<(u64, u32, i32)>) -> bool {
+        if let [exit] = exits {
+            // Most often there is one, and whichever way it is crossed matters only for which side is called inner.
+            let body = self.bodies.get(self.of[exit.primitive as usize] as usize);
+            return body.is_none_or(|body| !self.groups[body.group as usize].is_cavity);
+        }
+        wound.clear();
+        wound.extend(exits.iter().map(|exit| {
+            let of = self.of[exit.primitive as usize];
+            if of == OBJECT {
+                return (1 << 32 | u64::from(exit.primitive), NONE, 1);
+            }
+            let body = &self.bodies[of as usize];
+            let is_in = body.is_oriented && is_front_of(geometry.corners(exit.primitive), ray);
+            (u64::from(body.group), of, if is_in { -1 } else { 1 })
+        }));
+        wound.sort_unstable();
+        let mut depth = 0;
+        for group in wound.chunk_by(|a, b| a.0 == b.0) {
+            let of_body = |body: &[(u64, u32, i32)]| match self.bodies.get(body[0].1 as usize) {
+                Some(Body { is_oriented: true, .. }) => body.iter().map(|(.., crossing)| crossing).sum(),
+                Some(Body { sign, .. }) => sign * (body.len() % 2) as i32,
+                None => (body.len() % 2) as i32,
+            };
+            let number: i32 = group.chunk_by(|a, b| a.1 == b.1).map(of_body).sum();
+            if number != 0 {
+                depth += if self.groups.get(group[0].0 as usize).is_some_and(|group| group.is_cavity) { -1 } else { 1 };
+            }
+        }
+        depth > 0
+    }
+}
+
+/// Faces of meshes, with the primitive that each is.
+#[derive(Debug, Default)]
+struct Mesh {
+    points: Vec<DVec3>,
+    faces: Vec<[u32; 3]>,
+    primitives: Vec<u32>,
+}
+
+impl Mesh {
+    fn new(geometry: &Geometry, shape: u32) -> Self {
+        let primitives: Vec<u32> = geometry.primitives_of(shape).collect();
+        let faces: Vec<[u32; 3]> = primitives.iter().map(|&primitive| geometry.face(primitive)).collect();
+        let used = || faces.iter().flatten().copied();
+        let (first, end) = (used().min().unwrap_or(0), used().max().map_or(0, |last| last + 1));
+        Self {
+            points: (first..end).map(|vertex| geometry.vertices.get(vertex)).collect(),
+            faces: faces.into_iter().map(|face| face.map(|vertex| vertex - first)).collect(),
+            primitives,
+        }
+    }
+
+    /// Adds some of another's faces.
+    fn extend(&mut self, other: &Self, counts: &[bool]) {
+        let base = self.points.len() as u32;
+        self.points.extend(&other.points);
+        for ((face, &primitive), _) in other.faces.iter().zip(&other.primitives).zip(counts).filter(|(_, is)| **is) {
+            self.faces.push(face.map(|vertex| vertex + base));
+            self.primitives.push(primitive);
+        }
+    }
+}

@@ -1,0 +1,329 @@
+//! Which faces of meshes enclose space, and what keeps the others from it.
+
+mod covered;
+mod edges;
+mod junctions;
+mod outlines;
+mod patches;
+mod section;
+mod weld;
+
+pub use covered::Rule;
+pub use section::{Cut, Cutter, Section};
+pub use weld::{joined, rounding, welded};
+
+use edges::Edges;
+use raywright_base::math::DVec3;
+use std::collections::HashMap;
+
+/// No body.
+pub const NONE: u32 = u32::MAX;
+
+/// Faces that hang together by edges that an even number of them share.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Body {
+    /// What it encloses; negative where normals point in, unless each face is there from both sides, and of no use
+    /// where it is not oriented.
+    pub volume: f64,
+    /// Whether as many faces run along each edge one way as the other, so that winding numbers are whole.
+    pub is_oriented: bool,
+}
+
+/// What a face is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FaceKind {
+    /// One of a body, by its number.
+    Closed(u32),
+    /// Bounded by an edge that leads nowhere.
+    Open,
+    /// A wall that parts what a body encloses.
+    Inner,
+    /// It has the corners of another face.
+    Duplicate,
+    /// Two of its corners are one, or one is not finite.
+    Degenerate,
+}
+
+/// Faces by how they hang together.
+#[derive(Clone, Debug, Default)]
+pub struct Topology {
+    /// For each corner the number of the one that stands for it.
+    pub corners: Vec<u32>,
+    /// What each face is.
+    pub faces: Vec<FaceKind>,
+    /// What is enclosed.
+    pub bodies: Vec<Body>,
+    /// Edges that an odd number of faces share, by the corners at their ends.
+    pub cracks: Vec<[u32; 2]>,
+    /// Corners of faces within edges of others.
+    pub junctions: Vec<u32>,
+    /// Edges of two faces that run along them the same way: one of the two is turned.
+    pub turned: usize,
+    /// How close corners are one.
+    pub tolerance: f64,
+}
+
+impl Topology {
+    /// Of faces whose corners are one within a tolerance; within [`rounding`] if there is none.
+    pub fn new(points: &[DVec3], faces: &[[u32; 3]], tolerance: Option<f64>) -> Self {
+        let tolerance = tolerance.unwrap_or_else(|| rounding(points, faces));
+        let corners = welded(points, faces, tolerance);
+        let named: Vec<[u32; 3]> = faces.iter().map(|face| face.map(|v| corners[v as usize])).collect();
+        let (mut kinds, copies) = sorted_out(points, &named);
+        let is_two_sided = |f: u32| copies[f as usize].balance == 0;
+        let kept: Vec<u32> = (0..named.len() as u32).filter(|&f| kinds[f as usize] == FaceKind::Open).collect();
+        let mut edges = Edges::new(kept.iter().map(|&f| named[f as usize]), &HashMap::new());
+        let open: Vec<[u32; 2]> = edges.odd().map(|edge| edges.ends[edge as usize]).collect();
+        let within = junctions::within(points, &open, tolerance);
+        let mut junctions: Vec<u32> = within.iter().flatten().copied().collect();
+        junctions.sort_unstable();
+        junctions.dedup();
+        if !junctions.is_empty() {
+            let chains = open.into_iter().zip(within).filter(|(_, corners)| !corners.is_empty()).collect();
+            edges = Edges::new(kept.iter().map(|&f| named[f as usize]), &chains);
+        }
+        let is_copied: Vec<bool> = kept.iter().map(|&f| copies[f as usize].count % 2 == 0).collect();
+        for face in patches::doubled(&edges, &is_copied) {
+            edges.remove(face);
+            kinds[kept[face as usize] as usize] = FaceKind::Duplicate;
+        }
+        let cracks = edges.odd().map(|edge| edges.ends[edge as usize]).collect();
+        let turned = (0..edges.ends.len() as u32).filter(|&edge| edges.is_turned(edge)).count();
+        edges.peel();
+        let area = |face: u32| {
+            let [a, b, c] = named[kept[face as usize] as usize].map(|v| points[v as usize]);
+            (b - a).cross(c - a).length()
+        };
+        for face in patches::partitions(&edges, area) {
+            edges.remove(face);
+            kinds[kept[face as usize] as usize] = FaceKind::Inner;
+        }
+        let bodies = bodies(points, &named, &kept, &edges, &is_two_sided, &mut kinds);
+        Self { corners, faces: kinds, bodies, cracks, junctions, turned, tolerance }
+    }
+}
+
+/// Faces with the same corners.
+#[derive(Clone, Copy, Debug, Default)]
+struct Copies {
+    count: u32,
+    /// How many more turn one way than the other.
+    balance: i32,
+}
+
+/// What faces are by their corners alone, those that may be of a body [`FaceKind::Open`] yet; and of each of these how
+/// many have its corners.
+fn sorted_out(points: &[DVec3], faces: &[[u32; 3]]) -> (Vec<FaceKind>, Vec<Copies>) {
+    let mut kinds = vec![FaceKind::Open; faces.len()];
+    let mut order = Vec::with_capacity(faces.len());
+    for (f, &[a, b, c]) in faces.iter().enumerate() {
+        let is_finite = [a, b, c].iter().all(|&v| points[v as usize].is_finite());
+        if a == b || b == c || c == a || !is_finite {
+            kinds[f] = FaceKind::Degenerate;
+            continue;
+        }
+        let mut key = [a, b, c];
+        key.sort_unstable();
+        order.push((key, f as u32));
+    }
+    order.sort_unstable();
+    let mut copies = vec![Copies::default(); faces.len()];
+    // Whether its corners rise in turn, from whichever of them.
+    let turn = |&(_, f): &([u32; 3], u32)| {
+        let [a, b, c] = faces[f as usize];
+        if (a < b) as u32 + (b < c) as u32 + (c < a) as u32 == 2 { 1 } else { -1 }
+    };
+    for same in order.chunk_by(|a, b| a.0 == b.0) {
+        copies[same[0].1 as usize] = Copies { count: same.len() as u32, balance: same.iter().map(turn).sum() };
+        for (_, f) in &same[1..] {
+            kinds[*f as usize] = FaceKind::Duplicate;
+        }
+    }
+    (kinds, copies)
+}
+
+/// The bodies that the faces left make, which are told to the faces.
+fn bodies(
+    points: &[DVec3],
+    named: &[[u32; 3]],
+    kept: &[u32],
+    edges: &Edges,
+    is_two_sided: &dyn Fn(u32) -> bool,
+    kinds: &mut [FaceKind],
+) -> Vec<Body> {
+    let parts = edges.parts();
+    let mut is_closed = vec![true; kept.len()];
+    let mut is_oriented = vec![true; kept.len()];
+    for edge in 0..edges.ends.len() as u32 {
+        let Some(face) = edges.faces_at(edge).next() else { continue };
+        let part = parts[face as usize] as usize;
+        is_closed[part] &= edges.count(edge).is_multiple_of(2);
+        is_oriented[part] &= edges.balance(edge) == 0;
+    }
+    let (mut numbers, mut bodies) = (vec![NONE; kept.len()], Vec::new());
+    let (mut origins, mut are_two_sided): (Vec<DVec3>, Vec<bool>) = (Vec::new(), Vec::new());
+    for (i, &face) in kept.iter().enumerate() {
+        let part = parts[i] as usize;
+        if !edges.is_left(i as u32) || !is_closed[part] {
+            continue;
+        }
+        let [a, b, c] = named[face as usize].map(|v| points[v as usize]);
+        if numbers[part] == NONE {
+            numbers[part] = bodies.len() as u32;
+            bodies.push(Body { volume: 0.0, is_oriented: is_oriented[part] });
+            origins.push(a);
+            are_two_sided.push(true);
+        }
+        let number = numbers[part];
+        let origin = origins[number as usize];
+        bodies[number as usize].volume += (a - origin).dot((b - origin).cross(c - origin)) / 6.0;
+        are_two_sided[number as usize] &= is_two_sided(face);
+        kinds[face as usize] = FaceKind::Closed(number);
+    }
+    for (body, _) in bodies.iter_mut().zip(are_two_sided).filter(|(_, are)| *are) {
+        body.volume = body.volume.abs();
+    }
+    bodies
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use FaceKind::{Closed, Degenerate, Duplicate, Open};
+
+    const BOX: [[u32; 3]; 12] = [
+        [0, 2, 1],
+        [1, 2, 3],
+        [4, 5, 6],
+        [5, 7, 6],
+        [0, 1, 4],
+        [1, 5, 4],
+        [2, 6, 3],
+        [3, 6, 7],
+        [0, 4, 2],
+        [2, 4, 6],
+        [1, 3, 5],
+        [3, 7, 5],
+    ];
+
+    fn corners(from: DVec3) -> Vec<DVec3> {
+        (0..8).map(|i| from + DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2))).collect()
+    }
+
+    fn closed(topology: &Topology) -> usize {
+        topology.faces.iter().filter(|kind| matches!(kind, Closed(_))).count()
+    }
+
+    #[test]
+    fn a_box_is_a_body_whichever_way_it_is_told() {
+        let points = corners(DVec3::ZERO);
+        let turned: Vec<_> = BOX.iter().map(|&[a, b, c]| [a, c, b]).collect();
+        let both = [&BOX[..], &turned].concat();
+        let mut one_turned = BOX;
+        one_turned[3].swap(0, 1);
+        for (faces, volume) in [
+            (BOX.to_vec(), 1.0),
+            (turned, -1.0),
+            (both.clone(), 1.0),
+            (both.iter().rev().copied().collect(), 1.0),
+            ([&BOX[..], &BOX].concat(), 1.0),
+            ([&both[..], &both].concat(), 1.0),
+            ([&BOX[..], &BOX[..5]].concat(), 1.0),
+        ] {
+            let found = Topology::new(&points, &faces, None);
+            let [body] = found.bodies[..] else { panic!("{:?}", found.bodies) };
+            assert!((body.volume - volume).abs() < 1e-15 && body.is_oriented);
+            assert_eq!((closed(&found), found.cracks.len(), found.turned), (12, 0, 0));
+            assert!(found.faces[12..].iter().all(|&kind| kind == Duplicate));
+        }
+        let found = Topology::new(&points, &one_turned, None);
+        assert_eq!((found.bodies.len(), found.bodies[0].is_oriented, found.turned), (1, false, 3));
+    }
+
+    #[test]
+    fn corners_that_rounding_moved_are_one_and_no_others() {
+        // Every face with corners of its own, moved by next to nothing.
+        let moved = |by: f64, seed: u32| -> Vec<DVec3> {
+            let mut random = seed;
+            let all = corners(DVec3::ZERO);
+            let mut draw = || {
+                random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                f64::from(random >> 16) / 65536.0 - 0.5
+            };
+            BOX.iter().flatten().map(|&v| all[v as usize] + by * DVec3::new(draw(), draw(), draw())).collect()
+        };
+        let faces: Vec<[u32; 3]> = (0..12).map(|f| [3 * f, 3 * f + 1, 3 * f + 2]).collect();
+        for (by, is_closed) in [(0.0, true), (1e-17, true), (4e-15, true), (1e-12, false)] {
+            let found = Topology::new(&moved(by, 7), &faces, None);
+            assert_eq!(found.bodies.len(), usize::from(is_closed), "{by}");
+            assert_eq!(Topology::new(&moved(by, 7), &faces, Some(1e-11)).bodies.len(), 1);
+            assert_eq!(Topology::new(&moved(by, 7), &faces, Some(0.0)).bodies.len(), usize::from(by == 0.0));
+        }
+        let single: Vec<DVec3> = moved(2e-7, 3).iter().map(|v| v.as_vec3().as_dvec3()).collect();
+        assert_eq!(Topology::new(&single, &faces, None).bodies.len(), 1);
+        // A closed film stays what it is, though it is thinner than the tolerance.
+        let thin: Vec<DVec3> = corners(DVec3::ZERO).into_iter().map(|v| v * DVec3::new(1.0, 1.0, 1e-9)).collect();
+        let found = Topology::new(&thin, &BOX, Some(1e-3));
+        assert_eq!((closed(&found), found.corners.len()), (12, 8));
+    }
+
+    #[test]
+    fn what_leads_nowhere_is_open() {
+        let mut points = corners(DVec3::ZERO);
+        assert_eq!(closed(&Topology::new(&points, &BOX[..11], None)), 0);
+        // A sheet beside the box, which shares an edge with it, and a face without area.
+        points.extend([DVec3::new(0.0, -5.0, 0.0), DVec3::new(1.0, -5.0, 0.0)]);
+        let faces = [&BOX[..], &[[0, 1, 8], [1, 9, 8], [3, 3, 4]]].concat();
+        let found = Topology::new(&points, &faces, None);
+        assert_eq!(closed(&found), 12);
+        assert_eq!(found.faces[12..], [Open, Open, Degenerate]);
+        // The edge of three faces, and the three of the sheet alone.
+        assert_eq!(found.cracks.len(), 4);
+    }
+
+    #[test]
+    fn boxes_side_by_side_are_closed_with_or_without_the_wall_between() {
+        let points = [corners(DVec3::ZERO), corners(DVec3::X)].concat();
+        let other: Vec<[u32; 3]> = BOX.iter().map(|face| face.map(|v| v + 8)).collect();
+        let found = Topology::new(&points, &[&BOX[..], &other].concat(), None);
+        // What both have is on no side of the surface.
+        assert_eq!((closed(&found), found.cracks.len()), (20, 0));
+        assert!((found.bodies.iter().map(|body| body.volume).sum::<f64>() - 2.0).abs() < 1e-14);
+    }
+
+    #[test]
+    fn walls_within_a_body_are_no_part_of_its_surface() {
+        // A box of two by two chambers, with single walls between them.
+        let mut points = Vec::new();
+        for z in 0..2 {
+            points.extend((0..9).map(|i| DVec3::new(f64::from(i % 3), f64::from(i / 3), f64::from(z))));
+        }
+        let quad = |a: u32, b: u32, c: u32, d: u32| [[a, b, c], [a, c, d]];
+        let mut faces = Vec::new();
+        for corner in [0, 1, 3, 4] {
+            faces.extend(quad(corner, corner + 3, corner + 4, corner + 1));
+            faces.extend(quad(corner + 9, corner + 10, corner + 13, corner + 12));
+        }
+        let around = [(0, 1), (1, 2), (2, 5), (5, 8), (8, 7), (7, 6), (6, 3), (3, 0)];
+        around.iter().for_each(|&(a, b)| faces.extend(quad(a, b, b + 9, a + 9)));
+        let outside = faces.len();
+        [(1, 4), (4, 7), (3, 4), (4, 5)].iter().for_each(|&(a, b)| faces.extend(quad(a, b, b + 9, a + 9)));
+        let found = Topology::new(&points, &faces, None);
+        assert!(found.faces[..outside].iter().all(|&kind| kind == Closed(0)), "{:?}", found.faces);
+        assert!(found.faces[outside..].iter().all(|&kind| kind == FaceKind::Inner), "{:?}", found.faces);
+        assert!((found.bodies[0].volume - 4.0).abs() < 1e-14 && found.bodies[0].is_oriented);
+    }
+
+    #[test]
+    fn corners_within_edges_close_them_to_rounding() {
+        // The edge from 0 to 1 is cut at a third by the face below, and not by the one beside it.
+        let mut points = corners(DVec3::new(0.1, 0.2, 0.3));
+        points.push(points[0].lerp(points[1], 1.0 / 3.0));
+        let faces = [&BOX[1..], &[[0, 2, 8], [8, 2, 1]]].concat();
+        let found = Topology::new(&points, &faces, None);
+        assert_eq!((closed(&found), found.junctions.as_slice(), found.cracks.len()), (13, &[8][..], 0));
+        points[8].y += 1e-3;
+        let found = Topology::new(&points, &faces, None);
+        assert_eq!((closed(&found), found.junctions.len(), found.cracks.len()), (0, 0, 3));
+    }
+}

@@ -1,0 +1,158 @@
+//! Corners that are one but for rounding.
+
+use raywright_base::math::DVec3;
+use std::collections::HashMap;
+
+/// Units of the last place of the greatest coordinate within which corners that are float32 numbers are one.
+const SINGLE: f64 = 8.0 / (1u64 << 24) as f64;
+/// The same of others: parts are turned and moved in float64, which takes some tens of roundings.
+const DOUBLE: f64 = 64.0 * f64::EPSILON / 2.0;
+/// Of the mean edge: where coordinates are so large that rounding moves corners by as much, none are joined.
+const OF_EDGE: f64 = 1.0 / 64.0;
+
+/// For each point the number of the first that equals it. Points that are not finite equal none.
+pub fn joined(points: &[DVec3]) -> Vec<u32> {
+    let bits = (2 * points.len()).next_power_of_two().max(2).trailing_zeros();
+    let mut table = vec![u32::MAX; 1 << bits];
+    let mask = table.len() - 1;
+    let number = |(i, &point): (usize, &DVec3)| {
+        if !point.is_finite() {
+            return i as u32;
+        }
+        let mut slot = (hash(point) >> (64 - bits)) as usize;
+        loop {
+            let known = table[slot];
+            if known == u32::MAX {
+                table[slot] = i as u32;
+                return i as u32;
+            }
+            if points[known as usize] == point {
+                return known;
+            }
+            slot = (slot + 1) & mask;
+        }
+    };
+    points.iter().enumerate().map(number).collect()
+}
+
+fn hash(point: DVec3) -> u64 {
+    const ODD: u64 = 0x9E37_79B9_7F4A_7C15;
+    // Adding 0 makes −0 equal to 0 in its bits as well.
+    let mixed = (point + DVec3::ZERO)
+        .to_array()
+        .into_iter()
+        .fold(0u64, |hash, x| (hash.rotate_left(26) ^ x.to_bits()).wrapping_mul(ODD));
+    (mixed ^ (mixed >> 32)).wrapping_mul(ODD)
+}
+
+/// How close corners of a mesh are that differ by rounding: 2⁻²¹ of the greatest coordinate where all are float32
+/// numbers, and 2⁻⁴⁷ otherwise; but not more than a 64th of the mean edge.
+pub fn rounding(points: &[DVec3], faces: &[[u32; 3]]) -> f64 {
+    let (mut largest, mut is_single, mut edges, mut count) = (0.0f64, true, 0.0, 0usize);
+    for face in faces {
+        let [a, b, c] = face.map(|v| points[v as usize]);
+        if !(a.is_finite() && b.is_finite() && c.is_finite()) {
+            continue;
+        }
+        for corner in [a, b, c] {
+            largest = largest.max(corner.abs().max_element());
+            is_single &= corner.as_vec3().as_dvec3() == corner;
+        }
+        edges += a.distance(b) + b.distance(c) + c.distance(a);
+        count += 3;
+    }
+    let of_size = largest * if is_single { SINGLE } else { DOUBLE };
+    if count == 0 { 0.0 } else { of_size.min(OF_EDGE * edges / count as f64) }
+}
+
+/// For each point the number of the one that stands for it: the first that equals it, or one within a tolerance of it.
+///
+/// Only corners on open edges are joined, those in the order of their numbers to the nearest one before them that
+/// stands for itself, and never two of one face: what is closed stays as it is, however thin.
+pub fn welded(points: &[DVec3], faces: &[[u32; 3]], tolerance: f64) -> Vec<u32> {
+    let mut all = joined(points);
+    if !(tolerance > 0.0 && tolerance.is_finite()) {
+        return all;
+    }
+    let named = named(points, faces, &all);
+    let rim = rim(&named);
+    if rim.is_empty() {
+        return all;
+    }
+    let mut neighbours: Vec<(u32, u32)> = named
+        .iter()
+        .flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a), (b, a), (c, b), (a, c)])
+        .filter(|(corner, _)| rim.binary_search(corner).is_ok())
+        .collect();
+    neighbours.sort_unstable();
+    neighbours.dedup();
+    let of_rim: HashMap<u32, u32> = leaders(points, &rim, &neighbours, tolerance);
+    for number in &mut all {
+        *number = of_rim.get(number).copied().unwrap_or(*number);
+    }
+    all
+}
+
+/// The faces by the numbers that stand for their corners, without those that have no area by these or are not finite,
+/// and each once.
+fn named(points: &[DVec3], faces: &[[u32; 3]], all: &[u32]) -> Vec<[u32; 3]> {
+    let mut named: Vec<[u32; 3]> = faces
+        .iter()
+        .map(|face| face.map(|v| all[v as usize]))
+        .filter(|&[a, b, c]| a != b && b != c && c != a && [a, b, c].iter().all(|&v| points[v as usize].is_finite()))
+        .map(|mut face| {
+            face.sort_unstable();
+            face
+        })
+        .collect();
+    named.sort_unstable();
+    named.dedup();
+    named
+}
+
+/// The ends of edges that an odd number of faces share, in order. The corners of each face are in order.
+fn rim(faces: &[[u32; 3]]) -> Vec<u32> {
+    let mut edges: Vec<(u32, u32)> = faces.iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (a, c)]).collect();
+    edges.sort_unstable();
+    let odd = edges.chunk_by(|a, b| a == b).filter(|same| same.len() % 2 == 1);
+    let mut ends: Vec<u32> = odd.flat_map(|same| [same[0].0, same[0].1]).collect();
+    ends.sort_unstable();
+    ends.dedup();
+    ends
+}
+
+/// What stands for each of some corners.
+fn leaders(points: &[DVec3], corners: &[u32], neighbours: &[(u32, u32)], tolerance: f64) -> HashMap<u32, u32> {
+    let cell = 4.0 * tolerance;
+    // Popular coordinates, such as 0, are not where cells end.
+    let place = |point: DVec3| (point / cell + 0.37).floor().to_array().map(|x| x as i64);
+    let mut cells: HashMap<[i64; 3], Vec<u32>> = HashMap::new();
+    let mut found: HashMap<u32, u32> = HashMap::with_capacity(corners.len());
+    for &corner in corners {
+        let point = points[corner as usize];
+        let (low, high) = (place(point - tolerance), place(point + tolerance));
+        let from = neighbours.partition_point(|&(of, _)| of < corner);
+        let beside = || neighbours[from..].iter().take_while(|&&(of, _)| of == corner).map(|&(_, to)| to);
+        let mut best: Option<(f64, u32)> = None;
+        for x in low[0]..=high[0] {
+            for y in low[1]..=high[1] {
+                for z in low[2]..=high[2] {
+                    for &leader in cells.get(&[x, y, z]).into_iter().flatten() {
+                        let distance = points[leader as usize].distance(point);
+                        let is_nearer = best.is_none_or(|best| (distance, leader) < best);
+                        let shares_a_face = || beside().any(|to| to == leader || found.get(&to) == Some(&leader));
+                        if distance <= tolerance && is_nearer && !shares_a_face() {
+                            best = Some((distance, leader));
+                        }
+                    }
+                }
+            }
+        }
+        let leader = best.map_or(corner, |(_, leader)| leader);
+        if leader == corner {
+            cells.entry(place(point)).or_default().push(corner);
+        }
+        found.insert(corner, leader);
+    }
+    found
+}
