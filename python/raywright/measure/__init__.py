@@ -1,5 +1,6 @@
 """What people measure with rays: sky and sun, what scanners and eyes see, walls and cuts."""
 
+from .cracks import Topology, topology
 from .cuts import CrossSection, cross_section
 from .hemispheres import Estimate, ambient_visibility, sky_view
 from .scanners import RasterLidar, SpinningLidar
@@ -17,6 +18,7 @@ __all__ = [
     "RasterLidar",
     "SolarExposure",
     "SpinningLidar",
+    "Topology",
     "ambient_visibility",
     "cross_section",
     "lidar",
@@ -25,4 +27,5 @@ __all__ = [
     "solar_exposure",
     "sun_directions",
     "thickness",
+    "topology",
 ]

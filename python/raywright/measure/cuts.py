@@ -1,13 +1,17 @@
 """Cross sections."""
 
 from dataclasses import dataclass
+from typing import Literal, TypeAlias, get_args
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from ..arrays import triple
-from .places import Floats, SceneLike, frames, scene_of, sealed, unit
+from .. import _core
+from ..arrays import choice
+from .places import Floats, SceneLike, common, scene_of, sealed, units, vectors
 from .triangles import triangles
+
+AreaRule: TypeAlias = Literal["winding", "even-odd"]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -17,13 +21,13 @@ class CrossSection:
     Attributes
     ----------
     lines : tuple of (K, 3) float64
-        Polylines, read-only; the last point of a closed one is the first again. Seen against the plane's
-        normal, closed ones of a body whose normals point out turn anticlockwise, and those of its holes
-        clockwise.
+        Polylines, read-only, open ones first; the last point of a closed one is the first again. Seen against
+        the plane's normal, closed ones of a body whose normals point out turn anticlockwise, and those of its
+        holes clockwise.
     closed : tuple of bool
         Whether each is closed: all are, where meshes are.
     area : float
-        What closed lines enclose, holes subtracted; negative where normals point in.
+        What closed lines cover by the rule that was asked for; open ones cover nothing.
     length : float
         Of all lines.
     """
@@ -36,32 +40,50 @@ class CrossSection:
     def __len__(self) -> int:
         return len(self.lines)
 
+    @property
+    def is_closed(self) -> bool:
+        """Whether all lines are closed, so that `area` leaves nothing out."""
+        return all(self.closed)
+
+    @property
+    def gaps(self) -> tuple[float, ...]:
+        """How far apart the ends of each line are: 0 of closed ones."""
+        return tuple(float(np.linalg.norm(line[-1] - line[0])) for line in self.lines)
+
     def __repr__(self) -> str:
         loops = sum(self.closed)
         return f"CrossSection({loops} closed and {len(self) - loops} open lines, area={self.area:g})"
 
 
-def cross_section(scene: SceneLike, point: ArrayLike, normal: ArrayLike) -> CrossSection:
-    """Cut meshes with a plane.
+def cross_section(
+    scene: SceneLike, point: ArrayLike, normal: ArrayLike, rule: AreaRule = "winding"
+) -> CrossSection | tuple[CrossSection, ...]:
+    """Cut meshes with a plane, or with many.
 
     Parameters
     ----------
     scene : Scene, Mesh or anything else that a Scene is made of
         Meshes, and copies of them that stand still.
-    point : 3 floats
-        Through which the plane goes.
-    normal : 3 floats
-        Of the plane, of any length.
+    point : (3,) or (N, 3) array
+        Through which each plane goes.
+    normal : (3,) or (N, 3) array
+        Of each plane, of any length; broadcast against `point`.
+    rule : {"winding", "even-odd"}
+        What the closed lines cover: "winding" what they wind about, once however often, so that overlapping
+        bodies are their union and holes count by the way they turn; it is negative where normals point in.
+        "even-odd" what an odd number of lines surround, whichever way they turn, so that overlaps are left
+        out.
 
     Returns
     -------
-    CrossSection
-        Its polylines; none where the plane passes the meshes by.
+    CrossSection or tuple of CrossSection
+        Of one plane its polylines, none where it passes the meshes by; of (N, 3) planes N of these.
 
     Raises
     ------
     ValueError
-        If something in the scene is no mesh or moves, a number is not finite, or the normal has no length.
+        If something in the scene is no mesh or moves, a number is not finite, the normal has no length, the
+        planes are no (3,) or (N, 3) arrays, or `rule` is no such rule.
     TypeError
         If something is no number.
 
@@ -70,67 +92,31 @@ def cross_section(scene: SceneLike, point: ArrayLike, normal: ArrayLike) -> Cros
     On which side of the plane a corner lies is decided once for all faces that share it, and a corner exactly
     on it counts as above (Edelsbrunner and Mücke, "Simulation of Simplicity", 1990): so lines of closed
     meshes close, whatever the plane goes through, and a face that lies in the plane is cut along its edge if
-    at all. Equal corners are one. Each point is computed once, on its edge, and is right to a few units in
-    the last place of the corners. Vertices are those of the meshes, not rounded as a scene may round them.
+    at all. Each point is computed once, on its edge, and is right to a few units in the last place of the
+    corners. Vertices are those of the meshes, not rounded as a scene may round them.
+
+    Equal corners are one. Where lines do not close so, corners that differ by rounding are one too, as
+    ``Scene(weld=)`` says, and ends of lines where a corner of one face is within the edge of another.
+
+    Lines are joined whichever way the faces turn, and turn as most of their length does; where each face is
+    there from both sides, as if normals pointed out. Faces with the same corners count once. Eight planes or
+    more are cut with a tree of the faces.
     """
-    origin, way = np.array(triple("point", point)), unit("normal", normal)
-    corners, faces = triangles(scene_of(scene))
-    height = (corners - origin) @ way
-    above = height >= 0
-    sides = above[faces].sum(axis=1)
-    cut = faces[(sides == 1) | (sides == 2)]
-    # Each face is turned so that its first corner is the one that is alone on its side.
-    alone = above[cut] == (above[cut].sum(axis=1) == 1)[:, None]
-    turn = (np.argmax(alone, axis=1)[:, None] + np.arange(3)) % 3
-    a, b, c = np.take_along_axis(cut, turn, axis=1).T
-    # A line goes on with the inside on its left: from edge ab to ca if a is above, else the other way.
-    first, second = _edges(a, b), _edges(a, c)
-    is_up = above[a][:, None]
-    edges = np.concatenate([np.where(is_up, first, second), np.where(is_up, second, first)])
-    names, ends = np.unique(edges, axis=0, return_inverse=True)
-    points = _crossings(corners, height, names)
-    lines, closed = _chained(points, ends.reshape(2, -1))
-    across = np.stack(frames(way), axis=-1)
-    loops = [line for line, is_closed in zip(lines, closed, strict=True) if is_closed]
-    area = sum(_area((line - origin) @ across) for line in loops)
+    choice("rule", rule, get_args(AreaRule))
+    origins, ways = vectors("point", point), units("normal", normal)
+    lead = common({"point": origins.shape[:-1], "normal": ways.shape[:-1]})
+    if len(lead) > 1:
+        raise ValueError(f"point and normal must be of shape (3,) or (N, 3), got planes of shape {lead}")
+    corners, faces, tolerance = triangles(scene_of(scene))
+    places, normals = (
+        np.ascontiguousarray(np.broadcast_to(part, (*lead, 3)).reshape(-1, 3)) for part in (origins, ways)
+    )
+    found = _core.sections(corners, faces, places, normals, rule == "even-odd", tolerance)
+    sections = tuple(map(_section, *zip(*found, strict=True))) if found else ()
+    return sections if lead else sections[0]
+
+
+def _section(points: Floats, splits: list[int], closed: list[bool], area: float) -> CrossSection:
+    lines = tuple(sealed(line) for line in np.split(points, splits[1:-1]) if len(line))
     length = sum(float(np.linalg.norm(np.diff(line, axis=0), axis=1).sum()) for line in lines)
-    return CrossSection(lines, closed, float(area), length)
-
-
-def _edges(a: NDArray[np.int64], b: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Return the ends of edges, the lesser first, so that both faces of an edge know it by the same."""
-    return np.stack([np.minimum(a, b), np.maximum(a, b)], axis=-1)
-
-
-def _crossings(corners: Floats, height: Floats, edges: NDArray[np.int64]) -> Floats:
-    """Return where edges are cut whose ends lie on different sides."""
-    a, b = edges.T
-    share = (height[a] / (height[a] - height[b]))[:, None]
-    points: Floats = corners[a] * (1.0 - share) + corners[b] * share
-    return points
-
-
-def _chained(points: Floats, ends: NDArray[np.int64]) -> tuple[tuple[Floats, ...], tuple[bool, ...]]:
-    """Join segments, from one point to another each, to lines: open ones first."""
-    starts, stops = ends.tolist()
-    leaving: dict[int, list[int]] = {}
-    for start, stop in zip(starts, stops, strict=True):
-        leaving.setdefault(start, []).append(stop)
-    # An open line begins where more segments leave than arrive.
-    spare = np.bincount(ends[0], minlength=len(points)) - np.bincount(ends[1], minlength=len(points))
-    begins = np.repeat(np.arange(len(points)), np.maximum(spare, 0)).tolist()
-    lines, closed = [], []
-    for begin in [*begins, *starts]:
-        line = [begin]
-        while following := leaving.get(line[-1]):
-            line.append(following.pop())
-        if len(line) > 1:
-            lines.append(sealed(points[line]))
-            closed.append(line[0] == line[-1])
-    return tuple(lines), tuple(closed)
-
-
-def _area(flat: Floats) -> float:
-    """Return what a closed line in a plane encloses, by the shoelace formula about its first point."""
-    x, y = (flat - flat[0]).T
-    return 0.5 * float((x[:-1] * y[1:] - x[1:] * y[:-1]).sum())
+    return CrossSection(lines, tuple(closed), area, length)

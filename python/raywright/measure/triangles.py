@@ -8,35 +8,35 @@ from numpy.typing import NDArray
 from ..scene.instance import AnyShape, Instance
 from ..scene.scene import Scene
 from ..shapes.mesh import Mesh
+from ..shapes.welding import rounding
 from .places import Floats
 
 
-def triangles(scene: Scene) -> tuple[Floats, NDArray[np.int64]]:
-    """Return the corners of all meshes, copies included, with equal corners joined, and the faces.
-
-    Faces with a corner that is NaN or infinite are left out.
+def triangles(scene: Scene) -> tuple[Floats, NDArray[np.uint32], float]:
+    """Return the corners of all meshes, copies included, the faces, and how close corners are one.
 
     Returns
     -------
-    vertices, faces
-        (V, 3) float64, and (F, 3) int64.
+    vertices, faces, tolerance
+        (V, 3) float64, (F, 3) uint32, and a distance: the least that rounding makes of a mesh, unless the
+        scene says how close.
 
     Raises
     ------
     ValueError
         If something is no mesh, or moves; tells which shape.
     """
-    corners, faces, count = [np.zeros((0, 3))], [np.zeros((0, 3), np.int64)], 0
+    distances: list[float] = []
+    corners, faces, count = [np.zeros((0, 3))], [np.zeros((0, 3), np.uint32)], 0
     for i, shape in enumerate(scene.shapes):
         for mesh in _meshes(shape, f"shape {i}"):
             corners.append(mesh.vertices.astype(np.float64))
-            faces.append(mesh.faces.astype(np.int64) + count)
+            faces.append(mesh.faces + np.uint32(count))
             count += len(mesh.vertices)
-    every, which = np.concatenate(corners), np.concatenate(faces)
-    which = which[np.isfinite(every[which]).all(axis=(1, 2))]
-    # Adding 0 makes -0 equal to 0.
-    joined, place = np.unique(every + 0.0, axis=0, return_inverse=True)
-    return joined, place.reshape(-1)[which]
+            if scene._tolerance is None and len(mesh.faces):
+                distances.append(rounding(mesh))
+    tolerance = min(distances, default=0.0) if scene._tolerance is None else scene._tolerance
+    return np.concatenate(corners), np.concatenate(faces), tolerance
 
 
 def _meshes(shape: AnyShape, name: str) -> Iterator[Mesh]:

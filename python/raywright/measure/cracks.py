@@ -1,0 +1,95 @@
+"""What keeps meshes from being closed."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .. import _core
+from .places import Floats, SceneLike, scene_of, sealed
+from .triangles import triangles
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Topology:
+    """How the faces of meshes hang together, once corners are welded.
+
+    Attributes
+    ----------
+    tolerance : float
+        How close corners are one, in the scene's unit.
+    cracks : (K, 2, 3) float64
+        Open edges, by their ends: those that an odd number of faces share. Read-only.
+    t_junctions : (K, 3) float64
+        Corners of faces within edges of other faces that are open otherwise. Rays pass there only through
+        what rounding leaves. Read-only.
+    volumes : tuple of float
+        Of each body, which is faces that hang together without an open edge; negative where normals point in,
+        NaN where some of the faces are turned.
+    open_faces : int
+        How many faces are part of no body.
+    inner_faces : int
+        How many faces are walls within a body, as between two chambers, which enclose nothing more.
+    turned_edges : int
+        Along how many edges two faces run the same way, so that one of the two is turned.
+    duplicate_faces : int
+        How many faces have the same corners as another.
+    degenerate_faces : int
+        How many faces have two corners in one place, or one that is NaN or infinite.
+    """
+
+    tolerance: float
+    cracks: Floats
+    t_junctions: Floats
+    volumes: tuple[float, ...]
+    open_faces: int
+    inner_faces: int
+    turned_edges: int
+    duplicate_faces: int
+    degenerate_faces: int
+
+    @property
+    def is_closed(self) -> bool:
+        """Whether all faces are part of a body."""
+        return bool(self.volumes) and not self.open_faces
+
+    def __repr__(self) -> str:
+        return (
+            f"Topology({len(self.volumes)} bodies, {self.open_faces} open, {self.inner_faces} inner faces, "
+            f"{len(self.cracks)} cracks, "
+            f"{len(self.t_junctions)} T-junctions, {self.turned_edges} turned edges, "
+            f"{self.duplicate_faces} duplicate and {self.degenerate_faces} degenerate faces)"
+        )
+
+
+def topology(scene: SceneLike) -> Topology:
+    """Find what keeps meshes from being closed: cracks, T-junctions, faces that are turned or there twice.
+
+    Parameters
+    ----------
+    scene : Scene, Mesh or anything else that a Scene is made of
+        Meshes, and copies of them that stand still, all taken as one. Corners are welded as ``Scene(weld=)``
+        says.
+
+    Returns
+    -------
+    Topology
+
+    Raises
+    ------
+    ValueError
+        If something in the scene is no mesh or moves; tells which shape.
+    """
+    corners, faces, tolerance = triangles(scene_of(scene))
+    found = _core.mesh_topology(corners, faces, tolerance)
+    pairs = zip(found.volumes, found.is_oriented, strict=True)
+    return Topology(
+        tolerance=found.tolerance,
+        cracks=sealed(corners[np.array(found.cracks, np.int64).reshape(-1, 2)]),
+        t_junctions=sealed(corners[np.array(found.junctions, np.int64)]),
+        volumes=tuple(volume if is_oriented else np.nan for volume, is_oriented in pairs),
+        open_faces=found.open,
+        inner_faces=found.inner,
+        turned_edges=found.turned,
+        duplicate_faces=found.duplicates,
+        degenerate_faces=found.degenerate,
+    )
