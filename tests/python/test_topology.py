@@ -1,5 +1,7 @@
 """Meshes as files have them: corners that rounding has moved, faces turned, twice or missing."""
 
+import warnings
+
 import numpy as np
 import pytest
 import trimesh
@@ -168,6 +170,37 @@ def test_overlaps_count_once_or_not_at_all(box):
                 assert cut.area == pytest.approx(area, abs=1e-13)
     with pytest.raises(ValueError, match="rule must be one of 'winding', 'even-odd', got 'odd'"):
         measure.cross_section(box, (0, 0, 0), (0, 0, 1), rule="odd")
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_sections_and_insides_bear_all_of_it_at_once(seed):
+    """Every face with corners of its own, off by rounding, some turned, some or all there twice, in any order."""
+    rng = np.random.default_rng(seed)
+    body = trimesh.creation.annulus(0.5, 1.0, 2.0, sections=20)
+    if seed % 2:
+        body = trimesh.creation.torus(2.0, 0.5, major_sections=24, minor_sections=12)
+    body.apply_transform(trimesh.transformations.random_rotation_matrix(rng.random(3)))
+    vertices = body.vertices + rng.normal(size=3)
+    corners, faces = jittered(rw.Mesh(vertices, body.faces), 1e-15, seed)
+    turned = rng.random(len(faces)) < 0.1
+    faces[turned] = faces[turned, ::-1]
+    again = faces[:, ::-1] if seed % 3 == 0 else faces[rng.random(len(faces)) < 0.2]
+    noisy = rw.Mesh(corners, rng.permutation(np.concatenate([faces, again])))
+    clean = rw.Mesh(vertices, body.faces)
+    low, high = vertices.min(axis=0), vertices.max(axis=0)
+    points = rng.uniform(low, high, (500, 3))
+    wanted = rw.Scene(clean, precision="double").contains(points)
+    assert 50 < wanted.sum() < 450
+    with warnings.catch_warnings():
+        # Which way a body of turned faces points is chance.
+        warnings.simplefilter("ignore", RuntimeWarning)
+        assert np.array_equal(rw.Scene(noisy, precision="double").contains(points), wanted)
+    planes = rng.uniform(low, high, (5, 3)), rng.normal(size=(5, 3))
+    for rule in ("winding", "even-odd"):
+        cuts = zip(*(measure.cross_section(mesh, *planes, rule=rule) for mesh in (clean, noisy)), strict=True)
+        for one, other in cuts:
+            assert other.is_closed
+            assert other.area == pytest.approx(one.area, rel=1e-12, abs=1e-13)
 
 
 def test_open_outlines_are_told(box):

@@ -79,7 +79,8 @@ def topology(scene: SceneLike) -> Topology:
     ValueError
         If something in the scene is no mesh or moves; tells which shape.
     """
-    corners, faces, tolerance = triangles(scene_of(scene))
+    whole = scene_of(scene)
+    corners, faces, tolerance = triangles(whole, whole._tolerance)
     found = _core.mesh_topology(corners, faces, tolerance)
     pairs = zip(found.volumes, found.is_oriented, strict=True)
     return Topology(

@@ -8,7 +8,8 @@ from numpy.typing import ArrayLike
 
 from .. import _core
 from ..arrays import choice
-from .places import Floats, SceneLike, common, scene_of, sealed, units, vectors
+from ..scene.scene import Scene
+from .places import Floats, SceneLike, common, sealed, units, vectors
 from .triangles import triangles
 
 AreaRule: TypeAlias = Literal["winding", "even-odd"]
@@ -107,7 +108,9 @@ def cross_section(
     lead = common({"point": origins.shape[:-1], "normal": ways.shape[:-1]})
     if len(lead) > 1:
         raise ValueError(f"point and normal must be of shape (3,) or (N, 3), got planes of shape {lead}")
-    corners, faces, tolerance = triangles(scene_of(scene))
+    # Corners are welded where lines do not close without, which takes longer than to cut.
+    whole = scene if isinstance(scene, Scene) else Scene(scene, weld=None)
+    corners, faces, tolerance = triangles(whole, whole._tolerance if whole is scene else None)
     places, normals = (
         np.ascontiguousarray(np.broadcast_to(part, (*lead, 3)).reshape(-1, 3)) for part in (origins, ways)
     )

@@ -12,14 +12,14 @@ from ..shapes.welding import rounding
 from .places import Floats
 
 
-def triangles(scene: Scene) -> tuple[Floats, NDArray[np.uint32], float]:
+def triangles(scene: Scene, tolerance: float | None) -> tuple[Floats, NDArray[np.uint32], float]:
     """Return the corners of all meshes, copies included, the faces, and how close corners are one.
 
     Returns
     -------
     vertices, faces, tolerance
-        (V, 3) float64, (F, 3) uint32, and a distance: the least that rounding makes of a mesh, unless the
-        scene says how close.
+        (V, 3) float64, (F, 3) uint32, and the distance that was given, or the least that rounding makes of a
+        mesh.
 
     Raises
     ------
@@ -33,10 +33,10 @@ def triangles(scene: Scene) -> tuple[Floats, NDArray[np.uint32], float]:
             corners.append(mesh.vertices.astype(np.float64))
             faces.append(mesh.faces + np.uint32(count))
             count += len(mesh.vertices)
-            if scene._tolerance is None and len(mesh.faces):
+            if tolerance is None and len(mesh.faces):
                 distances.append(rounding(mesh))
-    tolerance = min(distances, default=0.0) if scene._tolerance is None else scene._tolerance
-    return np.concatenate(corners), np.concatenate(faces), tolerance
+    least = min(distances, default=0.0) if tolerance is None else tolerance
+    return np.concatenate(corners), np.concatenate(faces), least
 
 
 def _meshes(shape: AnyShape, name: str) -> Iterator[Mesh]:

@@ -51,6 +51,9 @@ pub struct Topology {
     pub corners: Vec<u32>,
     /// What each face is.
     pub faces: Vec<FaceKind>,
+    /// Of each face that is neither a duplicate nor degenerate, how many more faces with its corners turn as it does
+    /// than the other way.
+    pub votes: Vec<i32>,
     /// What is enclosed.
     pub bodies: Vec<Body>,
     /// Edges that an odd number of faces share, by the corners at their ends.
@@ -69,8 +72,7 @@ impl Topology {
         let tolerance = tolerance.unwrap_or_else(|| rounding(points, faces));
         let corners = welded(points, faces, tolerance);
         let named: Vec<[u32; 3]> = faces.iter().map(|face| face.map(|v| corners[v as usize])).collect();
-        let (mut kinds, copies) = sorted_out(points, &named);
-        let is_two_sided = |f: u32| copies[f as usize].balance == 0;
+        let (mut kinds, copies, votes) = sorted_out(points, &named);
         let kept: Vec<u32> = (0..named.len() as u32).filter(|&f| kinds[f as usize] == FaceKind::Open).collect();
         let mut edges = Edges::new(kept.iter().map(|&f| named[f as usize]), &HashMap::new());
         let open: Vec<[u32; 2]> = edges.odd().map(|edge| edges.ends[edge as usize]).collect();
@@ -82,7 +84,7 @@ impl Topology {
             let chains = open.into_iter().zip(within).filter(|(_, corners)| !corners.is_empty()).collect();
             edges = Edges::new(kept.iter().map(|&f| named[f as usize]), &chains);
         }
-        let is_copied: Vec<bool> = kept.iter().map(|&f| copies[f as usize].count % 2 == 0).collect();
+        let is_copied: Vec<bool> = kept.iter().map(|&f| copies[f as usize].is_multiple_of(2)).collect();
         for face in patches::doubled(&edges, &is_copied) {
             edges.remove(face);
             kinds[kept[face as usize] as usize] = FaceKind::Duplicate;
@@ -98,22 +100,14 @@ impl Topology {
             edges.remove(face);
             kinds[kept[face as usize] as usize] = FaceKind::Inner;
         }
-        let bodies = bodies(points, &named, &kept, &edges, &is_two_sided, &mut kinds);
-        Self { corners, faces: kinds, bodies, cracks, junctions, turned, tolerance }
+        let bodies = bodies(points, &named, &kept, &edges, &votes, &mut kinds);
+        Self { corners, faces: kinds, votes, bodies, cracks, junctions, turned, tolerance }
     }
 }
 
-/// Faces with the same corners.
-#[derive(Clone, Copy, Debug, Default)]
-struct Copies {
-    count: u32,
-    /// How many more turn one way than the other.
-    balance: i32,
-}
-
 /// What faces are by their corners alone, those that may be of a body [`FaceKind::Open`] yet; and of each of these how
-/// many have its corners.
-fn sorted_out(points: &[DVec3], faces: &[[u32; 3]]) -> (Vec<FaceKind>, Vec<Copies>) {
+/// many have its corners, and how many more of them turn as it does than the other way.
+fn sorted_out(points: &[DVec3], faces: &[[u32; 3]]) -> (Vec<FaceKind>, Vec<u32>, Vec<i32>) {
     let mut kinds = vec![FaceKind::Open; faces.len()];
     let mut order = Vec::with_capacity(faces.len());
     for (f, &[a, b, c]) in faces.iter().enumerate() {
@@ -127,19 +121,21 @@ fn sorted_out(points: &[DVec3], faces: &[[u32; 3]]) -> (Vec<FaceKind>, Vec<Copie
         order.push((key, f as u32));
     }
     order.sort_unstable();
-    let mut copies = vec![Copies::default(); faces.len()];
+    let (mut copies, mut votes) = (vec![0; faces.len()], vec![0; faces.len()]);
     // Whether its corners rise in turn, from whichever of them.
     let turn = |&(_, f): &([u32; 3], u32)| {
         let [a, b, c] = faces[f as usize];
-        if (a < b) as u32 + (b < c) as u32 + (c < a) as u32 == 2 { 1 } else { -1 }
+        if u8::from(a < b) + u8::from(b < c) + u8::from(c < a) == 2 { 1 } else { -1 }
     };
     for same in order.chunk_by(|a, b| a.0 == b.0) {
-        copies[same[0].1 as usize] = Copies { count: same.len() as u32, balance: same.iter().map(turn).sum() };
+        let first = same[0].1 as usize;
+        copies[first] = same.len() as u32;
+        votes[first] = turn(&same[0]) * same.iter().map(turn).sum::<i32>();
         for (_, f) in &same[1..] {
             kinds[*f as usize] = FaceKind::Duplicate;
         }
     }
-    (kinds, copies)
+    (kinds, copies, votes)
 }
 
 /// The bodies that the faces left make, which are told to the faces.
@@ -148,7 +144,7 @@ fn bodies(
     named: &[[u32; 3]],
     kept: &[u32],
     edges: &Edges,
-    is_two_sided: &dyn Fn(u32) -> bool,
+    votes: &[i32],
     kinds: &mut [FaceKind],
 ) -> Vec<Body> {
     let parts = edges.parts();
@@ -177,7 +173,7 @@ fn bodies(
         let number = numbers[part];
         let origin = origins[number as usize];
         bodies[number as usize].volume += (a - origin).dot((b - origin).cross(c - origin)) / 6.0;
-        are_two_sided[number as usize] &= is_two_sided(face);
+        are_two_sided[number as usize] &= votes[face as usize] == 0;
         kinds[face as usize] = FaceKind::Closed(number);
     }
     for (body, _) in bodies.iter_mut().zip(are_two_sided).filter(|(_, are)| *are) {

@@ -46,10 +46,12 @@ pub struct Cutter<'a> {
     tree: Option<BoxTree>,
 }
 
-/// Faces by the corners that stand for theirs, each with the number that it was given by.
+/// Faces by the corners that stand for theirs.
 struct Faces {
     faces: Vec<[u32; 3]>,
     is_left: Vec<bool>,
+    /// How many more faces turn as each does than the other way, where those with the same corners are left out.
+    votes: Option<Vec<i32>>,
 }
 
 impl<'a> Cutter<'a> {
@@ -61,6 +63,7 @@ impl<'a> Cutter<'a> {
         let faces = Faces {
             faces: given.iter().map(|face| face.map(|v| corners[v as usize])).collect(),
             is_left: given.iter().map(is_finite).collect(),
+            votes: None,
         };
         let around = |face: &[u32; 3]| {
             let [a, b, c] = face.map(|v| points[v as usize]);
@@ -102,6 +105,7 @@ impl<'a> Cutter<'a> {
                 let faces = Faces {
                     faces: self.given.iter().map(name).collect(),
                     is_left: topology.faces.iter().map(is_left).collect(),
+                    votes: Some(topology.votes),
                 };
                 (faces, ALONG_A_CRACK * topology.tolerance)
             });
@@ -134,8 +138,8 @@ impl Segments {
         let mut numbers: HashMap<[u32; 2], u32> = HashMap::new();
         let mut known: HashMap<[u32; 3], u32> = HashMap::new();
         let mut all = Self::default();
-        for face in which.filter(|&face| faces.is_left[face as usize]) {
-            let face = faces.faces[face as usize];
+        for number in which.filter(|&face| faces.is_left[face as usize]) {
+            let face = faces.faces[number as usize];
             let heights = face.map(height);
             let above = heights.map(|h| h >= 0.0);
             let count = above.iter().filter(|is| **is).count();
@@ -166,7 +170,8 @@ impl Segments {
                 all.votes.push(0);
                 all.ends.len() as u32 - 1
             }) as usize;
-            all.votes[segment] += if all.ends[segment] == ends { 1 } else { -1 };
+            let votes = faces.votes.as_ref().map_or(1, |votes| votes[number as usize]);
+            all.votes[segment] += if all.ends[segment] == ends { votes } else { -votes };
         }
         all
     }
