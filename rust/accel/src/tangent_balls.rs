@@ -69,11 +69,27 @@ impl Ball {
         if gap > 0.0 { gap / slope.max(f64::MIN_POSITIVE) } else { 0.0 }
     }
 
+    /// Whether a node lies on the plane that the ball touches, or behind it, to within rounding: as faces do that are
+    /// coplanar with the point's own.
+    fn is_behind(&self, node: &Node) -> bool {
+        let rise = node.normal.dot(self.way);
+        let (side, high) = if rise > 0.0 { (1.0, node.high) } else { (-1.0, -node.low) };
+        let askew = (self.way - side * node.normal).length();
+        if askew > 1e-9 {
+            return false;
+        }
+        let reach = (self.touch - node.min).abs().max((self.touch - node.max).abs()).length();
+        let depth = high - side * node.normal.dot(self.touch) + askew * reach;
+        depth <= 0.5 * ROUNDED * self.touch.abs().max_element()
+    }
+
     /// Whether it may be shrunk by what a node holds.
     fn may_meet(&self, node: &Node) -> bool {
         let middle = self.middle();
         let near = middle.clamp(node.min, node.max);
-        (near - middle).length_squared() < self.radius * self.radius && self.least(node) < self.radius * (1.0 - EXACT)
+        (near - middle).length_squared() < self.radius * self.radius
+            && self.least(node) < self.radius * (1.0 - EXACT)
+            && !self.is_behind(node)
     }
 
     /// Shrinks it until a triangle is not inside.
@@ -138,13 +154,19 @@ impl TangentBalls {
     /// The radius of the largest ball, of at most `radius`, that touches the surface at a point of it, has its middle in
     /// a direction of length one, and nothing inside: to within 1e-6 of itself.
     pub fn radius(&self, touch: DVec3, way: DVec3, radius: f64) -> f64 {
-        let mut ball = Ball { touch, way, radius };
+        self.walk(touch, way, radius).0
+    }
+
+    /// The radius, and how many nodes are visited for it.
+    fn walk(&self, touch: DVec3, way: DVec3, radius: f64) -> (f64, usize) {
+        let (mut ball, mut visits) = (Ball { touch, way, radius }, 0);
         let mut open = vec![];
         if !self.nodes.is_empty() {
             open.push(0);
         }
         while let Some(number) = open.pop() {
             let node: &Node = &self.nodes[number];
+            visits += 1;
             if !ball.may_meet(node) {
                 continue;
             }
@@ -160,7 +182,7 @@ impl TangentBalls {
             });
             open.extend(if a <= b { [first + 1, first] } else { [first, first + 1] });
         }
-        ball.radius
+        (ball.radius, visits)
     }
 }
 
@@ -173,4 +195,107 @@ fn around(triangles: &[[DVec3; 3]], first: usize) -> Node {
         .map(|corner| normal.dot(corner))
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), at| (low.min(at), high.max(at)));
     Node { min, max, normal, low, high, first: first as u32, count: triangles.len() as u32 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use raywright_base::sampling::{Sampler, warp};
+
+    /// Triangles about a ball of radius one around a point, as many as that squared times two.
+    fn globe(count: usize, middle: DVec3) -> Vec<[DVec3; 3]> {
+        let at = |i: usize, j: usize| {
+            let (high, turn) = (i as f64 / count as f64, j as f64 / count as f64);
+            let (sine, cosine) = (std::f64::consts::PI * high).sin_cos();
+            let (y, x) = (std::f64::consts::TAU * turn).sin_cos();
+            middle + DVec3::new(sine * x, sine * y, cosine)
+        };
+        let quads = (0..count).flat_map(|i| (0..count).map(move |j| (i, j)));
+        quads
+            .flat_map(|(i, j)| {
+                let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+                [[a, b, c], [a, c, d]]
+            })
+            .filter(|[a, b, c]| (*b - *a).cross(*c - *a).length() > 1e-12)
+            .collect()
+    }
+
+    #[test]
+    fn a_ball_is_the_least_that_any_triangle_allows() {
+        let triangles = globe(24, DVec3::new(3.0, -1.0, 2.0));
+        let tree = TangentBalls::new(triangles.iter().copied());
+        for [a, b, c] in triangles.iter().step_by(7) {
+            let touch = (*a + *b + *c) / 3.0;
+            let way = (*c - *a).cross(*b - *a).normalize();
+            let found = tree.radius(touch, way, 1.0);
+            let mut ball = Ball { touch, way, radius: 1.0 };
+            triangles.iter().for_each(|corners| ball.shrink(corners));
+            assert!((found / ball.radius - 1.0).abs() <= 1.1 * EXACT, "{found} {}", ball.radius);
+            let nearest = triangles.iter().map(|corners| nearest_point(*corners, touch + way * found).distance);
+            assert!(nearest.fold(f64::INFINITY, f64::min) >= found * (1.0 - 2.0 * EXACT));
+        }
+    }
+
+    #[test]
+    fn between_random_triangles_as_well() {
+        for sample in 0..200 {
+            let mut sampler = Sampler::new(3, 0, sample);
+            let mut draw = 0;
+            let mut point = || {
+                draw += 1;
+                warp::uniform_sphere(sampler.two(draw)) * sampler.one(draw + 1000)
+            };
+            let triangles: Vec<_> = (0..40)
+                .map(|_| {
+                    let place = point();
+                    [place, place + 0.2 * point(), place + 0.2 * point()]
+                })
+                .collect();
+            let (touch, way) = (point(), point().normalize());
+            let mut ball = Ball { touch, way, radius: 2.0 };
+            triangles.iter().for_each(|corners| ball.shrink(corners));
+            let found = TangentBalls::new(triangles.into_iter()).radius(touch, way, 2.0);
+            assert!((found / ball.radius - 1.0).abs() <= 1.1 * EXACT, "{found} {}", ball.radius);
+        }
+    }
+
+    #[test]
+    fn of_a_ball_few_nodes_are_visited() {
+        // All of the surface is as far from the middle as all else: boxes alone would have all nodes visited.
+        for (count, most) in [(32, 0.5), (64, 0.25), (128, 0.12)] {
+            let triangles = globe(count, DVec3::ZERO);
+            let tree = TangentBalls::new(triangles.iter().copied());
+            let points = triangles.iter().step_by(61);
+            let visits = points.clone().map(|[a, b, c]| {
+                let way = (*c - *a).cross(*b - *a).normalize();
+                tree.walk((*a + *b + *c) / 3.0, way, 1.0).1
+            });
+            let mean = visits.sum::<usize>() as f64 / points.count() as f64;
+            assert!(mean < most * tree.nodes.len() as f64, "{mean} of {}", tree.nodes.len());
+        }
+    }
+
+    #[test]
+    fn what_is_coplanar_is_passed_by() {
+        // The top of a prism is a fan about its middle, whose boxes lie upon each other.
+        let (count, turned) = (512, DVec3::new(0.6, 0.0, 0.8));
+        let (x, y) = (DVec3::Y, turned.cross(DVec3::Y));
+        let at = |i: usize| {
+            let (sine, cosine) = (std::f64::consts::TAU * i as f64 / count as f64).sin_cos();
+            x * cosine + y * sine + turned * 3.0
+        };
+        let fan = (0..count).map(|i| [turned * 3.0, at(i), at(i + 1)]);
+        let far = [[-turned, x - turned, y - turned]];
+        let tree = TangentBalls::new(fan.clone().chain(far));
+        for [a, b, c] in fan.step_by(17) {
+            let (radius, visits) = tree.walk((a + b + c) / 3.0, -turned, 5.0);
+            assert!(radius > 2.0 - 1e-5 && visits < 40, "{radius} {visits}");
+        }
+    }
+
+    #[test]
+    fn of_nothing_it_is_as_large_as_it_may_be() {
+        assert_eq!(TangentBalls::new(std::iter::empty()).radius(DVec3::ZERO, DVec3::X, 7.0), 7.0);
+        assert_eq!(TangentBalls::new([[DVec3::NAN; 3]].into_iter()).radius(DVec3::ZERO, DVec3::X, 7.0), 7.0);
+    }
 }
