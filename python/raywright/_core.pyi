@@ -38,6 +38,7 @@ __all__ = [
     "exr_integrate",
     "exr_piz",
     "exr_run_lengths",
+    "film_reflectance",
     "first_hits",
     "implicit_trouble",
     "interactions",
@@ -729,6 +730,9 @@ def metal_index(name: str) -> list[list[float]]:
 
 def daylight_power() -> list[float]:
     """Tell the power of daylight (D65) at each nm from 360 to 830, 100 at 560."""
+
+def film_reflectance(rows: Sequence[Sequence[float]]) -> list[float]:
+    """Tell the share of light that films reflect, by rows of wavelength, thickness, cosine and indices."""
 
 def smooth_spectrum(
     colour: Sequence[float], bounded: bool, looked_up: bool, wavelengths: Sequence[float]

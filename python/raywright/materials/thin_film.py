@@ -1,11 +1,17 @@
 """Films of the colours of their thickness."""
 
 from dataclasses import dataclass
+from typing import Any
 
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .. import _core
+from ..arrays import positive, real_array
 from ..textures.texture import Number, Texture, scalar
-from .conductor import Conductor
+from .conductor import Conductor, metal_index
 from .dielectric import Dielectric
-from .dispersion import one_index
+from .dispersion import Dispersion, one_index
 from .material import Material
 
 
@@ -25,7 +31,7 @@ class ThinFilm(Material):
 
     The indices of the film and of what is clear are the same at all wavelengths, those of a named metal as
     they were measured, and `eta` and `k` of others the same for all wavelengths of their channel. Of what is
-    clear, and of metals by `eta` and `k`, the share reflected is that of the integral to within 2e-5; of
+    clear, and of metals by `eta` and `k`, the share reflected is that of the integral to within 1e-5; of
     named metals, by tables over angle, to 5e-5, and where their film's thickness varies, by tables over that
     too, to 3e-4 up to 66 degrees and to 5e-3 near grazing incidence. Of films thicker than some 6 µm hardly
     any fringes are seen: of light that is more than 48 µm behind, they are left out.
@@ -71,6 +77,54 @@ class ThinFilm(Material):
             base=base,
         )
 
+    def reflectance(self, wavelength: ArrayLike, degrees: ArrayLike = 0.0, *, outside: float = 1.0) -> Any:
+        """Return the share of unpolarised light that the film on its base reflects at one wavelength.
+
+        It is Airy's sum over all reflections within the film, of both polarisations, without tables. The
+        rest goes through, or into the metal. Of a rough base it is the share of each facet.
+
+        Parameters
+        ----------
+        wavelength : array_like
+            In vacuum, nm, above 0; of a named metal, from 360 to 830.
+        degrees : array_like
+            The angle of incidence, 0 to 90. It broadcasts against `wavelength`.
+        outside : float
+            The index of refraction around the film, above 0.
+
+        Returns
+        -------
+        float or (...) float64
+            From 0 to 1.
+
+        Raises
+        ------
+        ValueError
+            If `thickness` is a texture, `eta` or `k` of the base is one or differs by channel, or a number is
+            out of range.
+        TypeError
+            If something is no number.
+        """
+        nm = _wavelengths(wavelength)
+        return _reflectance(self, nm, degrees, positive("outside", outside), self._base_index(nm))
+
+    def _base_index(self, nm: NDArray[np.float64]) -> NDArray[np.complex128]:
+        """Return the index of refraction of what the film lies on."""
+        base = self.base
+        if isinstance(base, Dielectric):
+            index = base.ior.index(nm / 1000) if isinstance(base.ior, Dispersion) else base.ior
+            return np.asarray(index, np.complex128)
+        if base.metal is not None:
+            if not ((nm >= 360) & (nm <= 830)).all():
+                raise ValueError(f"wavelength must be from 360 to 830 nm on a named metal, got {nm}")
+            measured = metal_index(base.metal)
+            eta, k = (np.interp(nm, measured.wavelengths, part) for part in (measured.eta, measured.k))
+            return np.asarray(eta + 1j * k)
+        for name, part in (("eta", base.eta), ("k", base.k)):
+            if isinstance(part, Texture) or len({*part}) != 1:  # type: ignore[misc]
+                raise ValueError(f"{name} of the base must be one number at one wavelength, got {part}")
+        return np.asarray(complex(base.eta[0], base.k[0]))  # type: ignore[index]
+
 
 @dataclass(frozen=True, init=False)
 class SoapFilm(Material):
@@ -107,3 +161,61 @@ class SoapFilm(Material):
             thickness=scalar("thickness", thickness),
             ior=one_index(ior, "films have the same for all colours"),
         )
+
+    def reflectance(self, wavelength: ArrayLike, degrees: ArrayLike = 0.0, *, outside: float = 1.0) -> Any:
+        """Return the share of unpolarised light that the film reflects at one wavelength.
+
+        It is Airy's sum over all reflections within the film, of both polarisations, without tables. The
+        rest goes through.
+
+        Parameters
+        ----------
+        wavelength : array_like
+            In vacuum, nm, above 0.
+        degrees : array_like
+            The angle of incidence, 0 to 90. It broadcasts against `wavelength`.
+        outside : float
+            The index of refraction around the film, above 0.
+
+        Returns
+        -------
+        float or (...) float64
+            From 0 to 1.
+
+        Raises
+        ------
+        ValueError
+            If `thickness` is a texture, or a number is out of range.
+        TypeError
+            If something is no number.
+        """
+        index = positive("outside", outside)
+        return _reflectance(self, _wavelengths(wavelength), degrees, index, np.asarray(index, np.complex128))
+
+
+def _wavelengths(wavelength: ArrayLike) -> NDArray[np.float64]:
+    nm = real_array("wavelength", wavelength).astype(np.float64)
+    bad = ~(np.isfinite(nm) & (nm > 0))
+    if bad.any():
+        raise ValueError(f"wavelength must be finite and greater than 0, got {nm[bad].ravel()[0]}")
+    return nm
+
+
+def _reflectance(
+    film: "ThinFilm | SoapFilm",
+    nm: NDArray[np.float64],
+    degrees: ArrayLike,
+    outside: float,
+    base: NDArray[np.complex128],
+) -> Any:
+    """Return what a film reflects, whose base has an index at each wavelength."""
+    angle = real_array("degrees", degrees).astype(np.float64)
+    bad = ~((angle >= 0) & (angle <= 90))
+    if bad.any():
+        raise ValueError(f"degrees must be between 0 and 90, got {angle[bad].ravel()[0]}")
+    if isinstance(film.thickness, Texture):
+        raise ValueError("thickness must be one number to have one reflectance, got a texture")
+    columns = (nm, film.thickness, np.cos(np.radians(angle)), outside, film.ior, base.real, base.imag)
+    rows = np.stack(np.broadcast_arrays(*columns), axis=-1)
+    found = np.reshape(_core.film_reflectance(rows.reshape(-1, 7).tolist()), rows.shape[:-1])
+    return found if found.ndim else float(found)

@@ -122,7 +122,7 @@ mod _core {
     #[pymodule_export]
     use super::simd;
     #[pymodule_export]
-    use super::spectra::{daylight_power, smooth_spectrum, spectrum_luminance, spectrum_rgb};
+    use super::spectra::{daylight_power, film_reflectance, smooth_spectrum, spectrum_luminance, spectrum_rgb};
     #[pymodule_export]
     use super::topology::{MeshTopology, mesh_topology, sections, weld, weld_rounding};
     #[pymodule_export]

@@ -5,6 +5,7 @@ use pyo3::prelude::*;
 use std::sync::Arc;
 
 use raywright::optics::spectra::{self, FIRST, Illuminant, LAST, Response, Role, Smooth, Spectrum, Table, Told};
+use raywright::optics::thin_film::{self, Complex};
 use raywright::optics::{Dispersion, Dispersive, Rgb};
 
 /// The linear Rec. 709 of values at wavelengths in nm, which rise: linear between them, and 0 outside. They say how
@@ -34,6 +35,17 @@ pub fn spectrum_luminance(rows: Vec<[f64; 2]>) -> f64 {
 #[pyfunction]
 pub fn daylight_power() -> Vec<f64> {
     (FIRST as u32..=LAST as u32).map(|nm| spectra::daylight(nm.into())).collect()
+}
+
+/// The share of unpolarised light that films reflect at one wavelength each. Rows have the wavelength and the thickness
+/// in nm, the cosine of incidence, the indices of what is around a film and within it, and the real and the imaginary
+/// part of that of what it lies on.
+#[pyfunction]
+pub fn film_reflectance(rows: Vec<[f64; 7]>) -> Vec<f64> {
+    let each = |[wavelength, thickness, cosine, outside, film, eta, k]: [f64; 7]| {
+        thin_film::reflectance(wavelength, cosine, thickness, outside, film, Complex { re: eta, im: k })
+    };
+    rows.into_iter().map(each).collect()
 }
 
 /// The smooth spectrum of a colour, a share of light at most or an amount without a bound, at wavelengths in nm.

@@ -7,6 +7,7 @@ mod black_body;
 mod daylight;
 mod linear;
 mod observer;
+mod observer_table;
 mod primaries;
 mod response;
 mod sigmoid;

@@ -9,7 +9,7 @@ use std::sync::LazyLock;
 pub const FARTHEST: f64 = 48_000.0;
 
 /// Between entries, nm.
-const STEP: f64 = 6.0;
+const STEP: f64 = 4.0;
 
 /// As many as reach one beyond [`FARTHEST`], and one before 0.
 const COUNT: usize = (FARTHEST / STEP) as usize + 4;
@@ -17,7 +17,7 @@ const COUNT: usize = (FARTHEST / STEP) as usize + 4;
 /// What daylight looks like of which a share of cos(2π x / λ), or of sin(2π x / λ), is there at each wavelength λ, by
 /// the way x that a part of the light is behind: the Fourier transforms of what the eye sees of daylight (Belcour and
 /// Barla, "A Practical Extension to Microfacet Theory for the Modeling of Varying Iridescence", 2017), with the same
-/// weights of every nm by which all spectra are seen. Cubics between entries err by at most 3e-6.
+/// weights of every nm by which all spectra are seen. Cubics between entries err by at most 1e-6.
 static FRINGES: LazyLock<[Vec<Rgb>; 2]> = LazyLock::new(|| {
     let mut all = [vec![Rgb::ZERO; COUNT], vec![Rgb::ZERO; COUNT]];
     for (wavelength, weight) in Response::new(Illuminant::Daylight, 1).weights() {
@@ -89,7 +89,7 @@ mod tests {
             let truth = [f64::cos, f64::sin].map(|wave| daylight.seen(|wavelength| wave(TAU * behind / wavelength)));
             let [cosine, sine] = fringes.both(behind);
             let off = (cosine - truth[0]).abs().max().max((sine - truth[1]).abs().max());
-            assert!(off < 3e-6 && fringes.cosine(behind) == cosine, "{behind} {off:e}");
+            assert!(off < 1e-6 && fringes.cosine(behind) == cosine, "{behind} {off:e}");
         }
         assert!((fringes.cosine(0.0) - Rgb::ONE).abs().max() < 1e-12 && fringes.both(0.0)[1].abs().max() < 1e-12);
         // What is left out.

@@ -4,15 +4,6 @@ use super::reflectance;
 use crate::spectra::matching;
 use glam::{DMat3, DVec3};
 
-/// The response at every nm, by cubics through every fifth: as close to the CIE's table of every nm as 1e-6, where
-/// lines are off by 1e-4.
-fn response(nm: u32) -> DVec3 {
-    let (before, t) = (f64::from(nm - nm % 5), f64::from(nm % 5) / 5.0);
-    let [a, b, c, d] = [-5.0, 0.0, 5.0, 10.0].map(|by| matching(before + by));
-    let (up, down, far) = (t + 1.0, 1.0 - t, 2.0 - t);
-    (b * (down * far * up) + c * (t * up * far)) * 0.5 - (a * (down * far * t) + d * (t * up * down)) / 6.0
-}
-
 /// From X, Y and Z to linear sRGB, by where its primaries and its white lie (IEC 61966-2-1).
 fn srgb() -> DMat3 {
     let primaries = DMat3::from_cols_array(&[0.64, 0.33, 0.03, 0.30, 0.60, 0.10, 0.15, 0.06, 0.79]);
@@ -45,9 +36,9 @@ fn soap_films_have_their_colours() {
     let to_srgb = srgb();
     for (thickness, xyz, rgb) in truths {
         let (mut sum, mut mirror) = (DVec3::ZERO, 0.0);
-        for nm in 360..=830 {
-            sum += response(nm) * reflectance(nm.into(), 1.0, thickness, 1.0, 1.33, 1.0.into());
-            mirror += response(nm).y;
+        for nm in (360..=830).map(f64::from) {
+            sum += matching(nm) * reflectance(nm, 1.0, thickness, 1.0, 1.33, 1.0.into());
+            mirror += matching(nm).y;
         }
         let found = sum / mirror;
         for (found, truth) in [(found, xyz), (to_srgb * found, rgb)] {
