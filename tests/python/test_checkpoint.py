@@ -210,6 +210,7 @@ def compare(folder):
             r"height 18 instead of 20.* camera",
         ),
         ({"scene": rw.Scene([], environment=1.0)}, r"another scene"),
+        ({"background": "transparent"}, r"background shown instead of transparent"),
         ({"scene": rw.Scene([], environment=1.0), "seed": 1}, r"another scene, seed 5 instead of 1"),
     ],
 )

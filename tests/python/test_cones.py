@@ -270,6 +270,10 @@ def test_any_number_of_threads_makes_the_same_bits():
     assert many.share.shape == (50,)
     assert np.array_equal(many.share, scene.cone_coverage(cones[0], cones[1], 20.0, threads=1).share)
     assert np.isnan(scene.cone_coverage((np.nan, 0, 0), (0, 0, 1), 20.0).share)
+    # Without a direction nothing is touched, as by a ray that has none.
+    nowhere = scene.cone_coverage((0, 0, 5), [(0, 0, 0), (0, 0, np.inf), (0, 0, -1)], 20.0)
+    assert nowhere.share[:2].tolist() == nowhere.solid_angle[:2].tolist() == [0, 0]
+    assert nowhere.share[2] == scene.cone_coverage((0, 0, 5), (0, 0, -1), 20.0).share
     assert scene.cone_coverage(np.zeros((0, 3)), (0, 0, 1), 20.0).share.shape == (0,)
 
 

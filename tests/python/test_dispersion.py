@@ -248,3 +248,32 @@ def test_principled_solids_disperse():
 def test_what_is_wrong_is_told(call, kind, message):
     with pytest.raises(kind, match=message):
         call()
+
+
+@pytest.mark.parametrize("ior", [1e200, 1e20, 1e7])
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda ior: rw.Dielectric(ior),
+        lambda ior: rw.Dielectric(ior, roughness=0.4),
+        lambda ior: rw.Dielectric(ior, roughness=0.4, multiple_scattering=False),
+        lambda ior: rw.Dielectric(1 / ior),
+        lambda ior: rw.ThinDielectric(ior),
+        lambda ior: rw.Plastic(0.5, ior),
+        lambda ior: rw.Plastic(0.5, ior, roughness=0.4),
+        lambda ior: rw.Plastic(0.5, ior, roughness=0.4, multiple_scattering=False),
+    ],
+)
+def test_what_bends_light_without_measure_mirrors_it(make, ior):
+    """What goes in is hardly any: what comes back of a light of 1 is no more than noise away from 1."""
+    scene = rw.Scene([rw.Plane((0, 0, 0), (0, 0, 1), material=make(ior))], environment=1.0)
+    image = rw.render(
+        scene,
+        rw.Orthographic((0, 0, 3), (0, 0, 0), up=(0, 1, 0), scale=1, width=8, height=8),
+        rw.Path(1),
+        samples=16,
+        progress=False,
+    )
+    assert not any("not finite" in line for line in image.warnings)
+    assert np.isfinite(image.rgb).all()
+    assert image.rgb.mean() == pytest.approx(1, abs=0.35)

@@ -81,7 +81,9 @@ def test_what_is_returned_is_the_picture():
     image = rw.render(scene, camera, Constant((1.0, 2.0, 0.5)), samples=4, progress=False)
     assert (image.rgb == np.float32((1.0, 2.0, 0.5))).all()
     assert (image.standard_error == 0).all()
-    bad = rw.render(scene, camera, Constant((1.0, np.nan, 0.5)), samples=4, progress=False)
+    told = r"Constant\.radiance must return finite numbers .* did not for 64 samples, which count as black"
+    with pytest.warns(RuntimeWarning, match=told):
+        bad = rw.render(scene, camera, Constant((1.0, np.nan, 0.5)), samples=4, progress=False)
     assert (bad.rgb == 0).all()
     assert "64 samples" in bad.warnings[0]
 

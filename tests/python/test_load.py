@@ -122,3 +122,9 @@ def test_the_shell_renders_and_describes_a_scene(path):
     done = shell("render", "scene.xml", "-o", "c.npy", cwd=folder)
     assert done.returncode == 1
     assert done.stderr == "raywright: error: scene: teapot 'shape 3' is not supported here\n"
+
+
+def test_up_is_one_of_two_axes():
+    for path in ("mesh.ply", "scene.glb", "scene.xml"):
+        with pytest.raises(ValueError, match="up must be one of 'y', 'z', got 'q'"):
+            rw.load(path, up="q")

@@ -200,3 +200,18 @@ def test_what_cannot_be_is_told():
         rw.Scene([trimesh.creation.box(), rw.Sphere((0, 0, 0), 1)]).refit([None, np.zeros((3, 3))])
     assert scene.refit([None]) == 1.0
     assert math.isinf(rw.Plane((0, 0, 0), (0, 0, 1)).area)
+
+
+def test_lists_may_be_nested_deep_but_not_contain_themselves():
+    ball = rw.Sphere()
+    deep = ball
+    for _ in range(5000):
+        deep = [deep]
+    assert rw.Scene([deep, (ball, [ball])]).shapes == (ball,) * 3
+    twice = [ball]
+    assert rw.Scene([twice, twice]).shapes == (ball, ball)
+    for outer in ([], [ball]):
+        inner = [outer]
+        outer.append(inner)
+        with pytest.raises(ValueError, match="shapes must not be a list that contains itself"):
+            rw.Scene(outer)

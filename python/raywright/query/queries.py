@@ -411,7 +411,8 @@ class Queries(PointQueries):
         Returns
         -------
         ConeCoverage
-            Solid angles and shares, (...) float64 each; NaN for cones with NaN, infinity or no direction.
+            Solid angles and shares, (...) float64 each; 0 for cones with infinity or no direction, which
+            touch nothing, as rays of that kind do, and NaN for cones with NaN.
 
         Raises
         ------

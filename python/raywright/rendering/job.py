@@ -82,6 +82,6 @@ class Job:
             "clamp": self.clamp,
             "sampler": repr(self.sampler),
             "filter": repr(self.filter),
-            "transparent": self.transparent,
+            "background": "transparent" if self.transparent else "shown",
             "halves": self.apart,
         }

@@ -365,6 +365,8 @@ def render(
     known = covers(rendering, job, asked, None, threads)
     found |= {name: array for name, array in known.items() if name in names}
     image = made(rendering, clamp, found, problems, plan, known["alpha"] if transparent else None)
+    if rendering.dropped and isinstance(integrator, Integrator):
+        _warn_of_written(integrator, rendering.dropped)
     if is_gathered(integrator):
         image = with_bias(image, limits[1], rendering, job, threads, looks)
     if apart:
@@ -374,6 +376,16 @@ def render(
     if show is not None:
         show(image)
     return image
+
+
+def _warn_of_written(integrator: Integrator, dropped: int) -> None:
+    """Warn of what an integrator in Python returned that is no light: there is a mistake in it."""
+    python_warnings.warn(
+        f"{type(integrator).__name__}.radiance must return finite numbers that are at least 0, and did not "
+        f"for {dropped} sample{'' if dropped == 1 else 's'}, which count as black",
+        RuntimeWarning,
+        stacklevel=3,
+    )
 
 
 class Checked(NamedTuple):

@@ -278,6 +278,24 @@ def only_meshes(shapes: Any) -> tuple[Mesh, ...]:
 
 
 def _each(shapes: Any, weld: Weld) -> Iterator[AnyShape]:
+    # Of nested lists, those that are open, by a stack of their own: they may be nested as deep as they like.
+    left, within = [iter((shapes,))], [0]
+    while left:
+        for shape in left[-1]:
+            if not isinstance(shape, list | tuple):
+                yield from _one(shape, weld)
+            elif id(shape) in within:
+                raise ValueError("shapes must not be a list that contains itself")
+            else:
+                left.append(iter(shape))
+                within.append(id(shape))
+                break
+        else:
+            left.pop()
+            within.pop()
+
+
+def _one(shapes: Any, weld: Weld) -> Iterator[AnyShape]:
     # trimesh is never imported only to ask: whoever made such an object has imported it. What reads files and
     # such objects is imported where there are any.
     trimesh = sys.modules.get("trimesh")
@@ -287,9 +305,6 @@ def _each(shapes: Any, weld: Weld) -> Iterator[AnyShape]:
         from ..mesh_files.meshes import load
 
         yield from load(shapes, weld)
-    elif isinstance(shapes, list | tuple):
-        for shape in shapes:
-            yield from _each(shape, weld)
     elif isinstance(shapes, getattr(trimesh, "Trimesh", ())):
         from ..mesh_files.trimesh_objects import of_trimesh
 

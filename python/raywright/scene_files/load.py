@@ -6,6 +6,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Any, Literal
 
+from ..arrays import choice
 from ..mesh_files import meshes
 from ..rendering.samplers import Sampler
 from ..rendering.shot import Shot
@@ -82,6 +83,7 @@ def load(
     """
     if not isinstance(path, str | PathLike):
         raise TypeError(f"path must be a str or a path, got {type(path).__name__}")
+    choice("up", up, ("y", "z"))
     if sampler is not None and not isinstance(sampler, Sampler):
         raise TypeError(f"sampler must be one of raywright's, got {type(sampler).__name__}")
     shot = _read(Path(path), up, width, height, parameters)

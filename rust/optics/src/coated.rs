@@ -43,6 +43,7 @@ impl Coated {
 impl<F: Tabulated> Coated<F> {
     /// Of facets that are alike in all directions; without them the coat reflects in one direction.
     pub fn of(reflectance: Rgb, eta: f64, facets: Option<F>) -> Self {
+        let eta = fresnel::bounded(eta);
         let rough = facets.map(|facets| Rough { facets, coat: Coat::new(facets, eta) });
         let within = fresnel::dielectric_average(1.0 / eta);
         let average = rough.as_ref().map_or_else(|| fresnel::dielectric_average(eta), |rough| rough.coat.average());

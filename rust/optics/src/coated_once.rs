@@ -26,6 +26,7 @@ impl<F: Facets> CoatedOnce<F> {
     /// Of a base's reflectance, 0 to 1, the coat's index of refraction relative to what is outside, `eta` ≥ 1, its
     /// facets, and what goes through these.
     pub fn new(reflectance: Rgb, eta: f64, facets: Once<F>, through: Through) -> Self {
+        let eta = fresnel::bounded(eta);
         let base = reflectance / (Rgb::ONE - reflectance * through.within()) / (eta * eta);
         Self { eta, facets, through, base }
     }

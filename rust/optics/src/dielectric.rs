@@ -140,6 +140,7 @@ impl<F: Lossy, S: Split> Dielectric<F, S> {
     /// or gained, what lies on a facet changes how light is divided there only as far as none of it is stopped by other
     /// facets on either way (`open::openness`): of that part as much more is reflected as less goes through.
     pub fn with(eta: f64, facets: Option<F>, split: S) -> Self {
+        let eta = fresnel::bounded(eta);
         let facets = facets.filter(|_| (eta - 1.0).abs() >= Self::INVISIBLE);
         Self { eta, rough: facets.map(|facets| Rough::new(facets, eta)), split }
     }

@@ -23,6 +23,13 @@ pub fn dielectric(cosine: f64, eta: f64) -> f64 {
     if square <= 0.0 { all } else { partial }
 }
 
+/// An index of refraction relative to another, as far as it counts: from 10⁻⁶ to 10⁶, beyond which all but some 10⁻⁵ of
+/// light is reflected, and squares of it soon overflow.
+#[inline(always)]
+pub fn bounded(eta: f64) -> f64 {
+    eta.clamp(1e-6, 1e6)
+}
+
 /// Where a ray comes from that leaves along `wo` after refraction at a facet of unit normal `h`, on the side of `wo`:
 /// `eta` is the index on the far side over that on the side of `wo`. `None` under total reflection. The direction is a
 /// unit vector as precisely as `wo` and `h` are, and it differs from −`wo` by as little as `eta` does from 1.

@@ -19,7 +19,7 @@ impl ThinDielectric {
     /// Of an index of refraction relative to that of the surroundings.
     #[inline(always)]
     pub fn new(eta: f64) -> Self {
-        Self { eta }
+        Self { eta: fresnel::bounded(eta) }
     }
 
     /// The share of light that is reflected at such a cosine to the normal, which is not negative.

@@ -26,6 +26,7 @@ const NODES: usize = 20;
 impl Through {
     /// Of facets that are alike in all directions, and the index within over that outside, `eta` ≥ 1.
     pub fn new(facets: &impl Facets, eta: f64) -> Self {
+        let eta = fresnel::bounded(eta);
         let (alpha, seen) = (facets.mean_alpha(), Seen::new(facets));
         let mut through =
             Self { alpha, weight: 0.6 * alpha.sqrt().sqrt(), shares: [0.0; NODES], average: 0.0, within: 0.0 };

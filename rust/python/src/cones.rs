@@ -58,6 +58,14 @@ impl<'a> Cones<'a> {
         let (apex, axis) = (self.apexes.get(of(self.apexes.len())), self.axes.get(of(self.axes.len())));
         SolidCone::new(apex, axis, self.angles[of(self.angles.len())], self.most[of(self.most.len())])
     }
+
+    /// Whether a part of one is NaN.
+    fn is_nan(&self, i: usize) -> bool {
+        let of = |n: usize| if n == 1 { 0 } else { i };
+        let (apex, axis) = (self.apexes.get(of(self.apexes.len())), self.axes.get(of(self.axes.len())));
+        let numbers = [self.angles[of(self.angles.len())], self.most[of(self.most.len())]];
+        apex.is_nan() || axis.is_nan() || numbers.iter().any(|number| number.is_nan())
+    }
 }
 
 /// What cones touch, nearest first. Each array has one row, or one for each cone; `half_angle` is in degrees.
@@ -103,7 +111,8 @@ pub fn cones<'py>(
     Ok((sealed(splits)?, sealed(distance)?, sealed(shape)?, sealed(primitive)?))
 }
 
-/// The share of each cone's directions that meet something, (N,), NaN for what is no cone; arguments as [`cones`].
+/// The share of each cone's directions that meet something, (N,): 0 for a cone without a direction, which touches
+/// nothing, and NaN for one with NaN. Arguments as [`cones`].
 #[pyfunction]
 #[allow(clippy::too_many_arguments)]
 pub fn cone_coverage<'py>(
@@ -122,7 +131,11 @@ pub fn cone_coverage<'py>(
     })?;
     let cones = Cones::of(&origins, &directions, &half_angle, &t_max, &shape)?;
     let found = each(py, threads, chunks(cones.count, share(cones.count)), |(start, count)| {
-        let share = |i| cones.get(i).map_or(f64::NAN, |cone| coverage.share(&cone, Counted::default()));
+        let share = |i| match cones.get(i) {
+            Some(cone) => coverage.share(&cone, Counted::default()),
+            None if cones.is_nan(i) => f64::NAN,
+            None => 0.0,
+        };
         (start..start + count).map(share).collect::<Vec<_>>()
     })?;
     let shares = unwritten(py, &shape, None)?;
