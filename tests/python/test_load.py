@@ -121,7 +121,7 @@ def test_the_shell_renders_and_describes_a_scene(path):
     path.write_text(SCENE.replace('type="ply"', 'type="teapot"'), encoding="utf-8")
     done = shell("render", "scene.xml", "-o", "c.npy", cwd=folder)
     assert done.returncode == 1
-    assert done.stderr == "raywright: error: scene: teapot 'shape 3' is not supported here\n"
+    assert done.stderr == "raywright: error: scene.xml: scene: teapot 'shape 3' is not supported here\n"
 
 
 def test_up_is_one_of_two_axes():

@@ -1,6 +1,7 @@
 """A camera that has everything in its picture."""
 
 import math
+from os import PathLike
 from typing import Any, Literal
 
 import numpy as np
@@ -12,6 +13,8 @@ from ..shapes.mesh import Mesh
 from .instance import AnyShape, Instance, meshes
 
 _FOV = 35.0
+# Squares of coordinates beyond this are not finite.
+_FARTHEST = 1e150
 # Where the camera stands, in degrees: around the upright axis, and above the ground.
 CAMERA_ANGLES = (35.0, 22.0)
 
@@ -57,8 +60,12 @@ def outline(shapes: Any) -> NDArray[np.float64]:
         As `framed`.
     """
     points = np.concatenate([np.empty((0, 3)), *map(_points, meshes(shapes))])
+    told = f" in {shapes}" if isinstance(shapes, str | PathLike) else ""
     if not len(points):
-        raise ValueError("there are no faces to show")
+        raise ValueError(f"there are no faces to show{told}")
+    farthest = float(np.abs(points).max())
+    if farthest > _FARTHEST:
+        raise ValueError(f"a coordinate{told} is {farthest:g}, and up to {_FARTHEST:g} is framed")
     return points
 
 

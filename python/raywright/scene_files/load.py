@@ -6,10 +6,13 @@ from os import PathLike
 from pathlib import Path
 from typing import Any, Literal
 
+import numpy as np
+
 from ..arrays import choice
 from ..mesh_files import meshes
 from ..rendering.samplers import Sampler
 from ..rendering.shot import Shot
+from ..scene.framing import outline
 from .mitsuba import from_mitsuba
 from .shown import shown
 
@@ -23,6 +26,8 @@ def has_camera(path: str | PathLike[str]) -> bool:
     return Path(path).name.lower().endswith(SCENES)
 
 
+# What numbers of files may lead to is told in other ways.
+@np.errstate(all="ignore")
 def load(
     path: str | PathLike[str],
     up: Literal["y", "z"] = "y",
@@ -112,4 +117,9 @@ def _read(path: Path, up: Literal["y", "z"], width: int | None, height: int | No
         from .gltf import read_gltf
 
         return read_gltf(path, width, height)
-    return shown(meshes.load(path), up=up, width=width, height=height)
+    found = meshes.load(path)
+    try:
+        outline(found)
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from error
+    return shown(found, up=up, width=width, height=height)

@@ -99,6 +99,8 @@ class Mesh:
         used &= np.isfinite(self.vertices).all(axis=1)
         return self.vertices[used].astype(np.float64)
 
+    # NaN and infinity are told when the scene is compiled.
+    @np.errstate(over="ignore", invalid="ignore")
     def transformed(self, matrix: ArrayLike) -> "Mesh":
         """Return the mesh moved by an affine matrix, computed in float64.
 

@@ -5,6 +5,8 @@ from os import PathLike
 from pathlib import Path
 from typing import Any, cast, get_args
 
+import numpy as np
+
 from ...arrays import integer
 from ...lights import Environment, Light
 from ...rendering.shot import Shot
@@ -29,6 +31,8 @@ _SHARED = (
 )
 
 
+# What numbers of files may lead to is told in other ways.
+@np.errstate(all="ignore")
 def from_mitsuba(
     scene: Mapping[str, Any] | str | PathLike[str],
     *,
@@ -79,7 +83,12 @@ def from_mitsuba(
         raise TypeError(f"scene must be a dict or a path, got {type(scene).__name__}")
     if tree.get("type") != "scene":
         raise SceneError(f"scene must have the type 'scene', got {tree.get('type')!r}")
-    return _read(Plugin(tree, "", Context(tree, folders)), sensor)
+    try:
+        return _read(Plugin(tree, "", Context(tree, folders)), sensor)
+    except SceneError as error:
+        if isinstance(scene, Mapping) or str(scene) in str(error):
+            raise
+        raise SceneError(f"{scene}: {error}") from error
 
 
 def _read(scene: Plugin, number: int) -> Shot:

@@ -29,6 +29,8 @@ _OBJECTS = (
 # As deep as Mitsuba lets files include each other; more files, and deeper elements, than any scene has.
 _MOST_INCLUDES, _MOST_FILES, _MOST_LEVELS = 15, 1000, 64
 
+_COMMENT = re.compile(rb"<!--(.*?)-->", re.DOTALL)
+
 Tree = dict[str, Any]
 
 
@@ -263,10 +265,15 @@ def elements(path: Path) -> Element:
     parser.EndElementHandler = end
     with open(path, "rb") as file:
         try:
-            parser.ParseFile(file)
+            parser.Parse(_COMMENT.sub(_undashed, file.read()), True)
         except expat.ExpatError as error:
             raise SceneError(f"{path} is not XML that can be read ({error})") from error
     return roots[0]
+
+
+def _undashed(comment: re.Match[bytes]) -> bytes:
+    """Return a comment without "--" in it, which Mitsuba reads although XML does not allow it."""
+    return b"<!--" + comment[1].replace(b"-", b" ") + b"-->"
 
 
 def resolve(name: str, folders: list[Path]) -> Path:
