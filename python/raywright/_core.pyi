@@ -42,6 +42,7 @@ __all__ = [
     "first_hits",
     "implicit_trouble",
     "interactions",
+    "leading_numbers",
     "leave",
     "matrix_trouble",
     "metal_index",
@@ -719,8 +720,8 @@ def exr_run_lengths(data: bytes, count: int) -> bytes:
 def exr_huffman(data: bytes, count: int) -> NDArray[np.uint16]:
     """Decode so many words of OpenEXR's Huffman code."""
 
-def exr_piz(data: bytes, width: int, rows: int, words: Sequence[int]) -> NDArray[np.uint16]:
-    """Decode a PIZ chunk, channel by channel, given the words of each one's samples."""
+def exr_piz(data: bytes, channels: Sequence[tuple[int, int, int]]) -> NDArray[np.uint16]:
+    """Decode a PIZ chunk, channel by channel, given the columns, rows and words a sample of each."""
 
 def metals() -> list[tuple[str, str]]:
     """Tell the metals that are known: symbol and name."""
@@ -749,6 +750,12 @@ def polygon_trouble(
     outline: Sequence[Sequence[float]], holes: Sequence[Sequence[Sequence[float]]]
 ) -> str | None:
     """Say what is wrong with a polygon; None if nothing is."""
+
+def leading_numbers(text: bytes, skipped: Sequence[bytes]) -> tuple[NDArray[np.float64], bool]:
+    """Return the numbers at the beginning of a text, and whether nothing else follows them.
+
+    Words of `skipped` may stand between them.
+    """
 
 def triangulate_polygons(
     points: NDArray[np.float64], corners: NDArray[np.int64], counts: NDArray[np.int64]

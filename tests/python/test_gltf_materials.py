@@ -400,7 +400,7 @@ def test_colours_of_vertices_tint_the_base_colour(tmp_path):
 
 
 def shown_alpha(mesh, places):
-    """How much of a mesh is there at (x, y) of each place, seen along -z: what it hides of an environment of 1."""
+    """How much of a mesh is there at (x, y): what it hides of an environment of 1, seen along -z."""
     scene = rw.Scene(mesh, environment=1.0)
     found = []
     for x, y in places:
@@ -460,7 +460,7 @@ def test_alpha_of_colors_of_vertices(tmp_path, alpha, factor, mode, wanted, colo
     vertex = np.column_stack([rgb, alpha]).astype(np.float32)
     material = {"pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, factor]}, "alphaMode": mode, **UNLIT}
     mesh = loaded(tmp_path, material, None, TOLD_UNLIT, COLOR_0=vertex)
-    # The mean of 4,096 samples has a standard deviation of .0078 at most; six of them are exceeded once in 5e8.
+    # Means of 4,096 samples have a standard deviation of .0078 at most; six are exceeded once in 5e8.
     assert shown_alpha(mesh, PLACES) == pytest.approx(wanted, abs=0.047)
     if set(wanted) <= {0, 1}:
         assert shown_alpha(mesh, PLACES) == pytest.approx(wanted, abs=1e-6)

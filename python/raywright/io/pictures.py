@@ -81,7 +81,7 @@ def read(path: str | PathLike[str]) -> NDArray[Any]:
     ----------
     path : str or path
         A PNG or any other picture that Pillow reads (uint8 or, of 16 bits, uint16), an EXR (float32; its
-        channels Y or R, G and B, and A), an HDR (float32), or an NPY.
+        channels R, G and B, or Y, RY and BY, in Rec. 709, or Y, and A), an HDR (float32), or an NPY.
 
     Returns
     -------
@@ -229,7 +229,10 @@ def _first(told: Any) -> Any:
 
 def _colours(names: list[str]) -> list[str]:
     """Return the channels of an EXR file that are its picture, of all that it has."""
-    wanted = ["R", "G", "B"] if "R" in names else ["Y"]
+    if "R" in names:
+        wanted = ["R", "G", "B"]
+    else:
+        wanted = ["Y", "RY", "BY"] if "RY" in names and "BY" in names else ["Y"]
     if missing := [name for name in wanted if name not in names]:
         raise ValueError(f"it has no channel {missing[0]}, only {', '.join(names)}")
     return [*wanted, *(["A"] if "A" in names else [])]

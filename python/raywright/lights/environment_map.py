@@ -21,9 +21,9 @@ class EnvironmentMap(Pictured):
     Parameters
     ----------
     image : (H, W, 3) or (H, W) array, or path
-        Linear radiance from the top row on, at least 0, kept as read-only float32. Negative values that are a
-        thousandth of all light or less become 0, with a warning. A path is that of an .exr,
-        .hdr or .npy file of linear colours, or of a picture of 8 bits, which are taken as sRGB.
+        Linear radiance from the top row on, at least 0, kept as read-only float32. A path is that of an .exr,
+        .hdr or .npy file of linear colours, or of a picture of 8 bits, which are taken as sRGB. Negative
+        values become 0, with a warning, in files and where they are a hundredth of all light or less.
     to_world : (3, 3) or (4, 4) array, optional
         A rotation, or a reflection, from the picture's space to the world.
     scale : float

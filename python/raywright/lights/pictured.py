@@ -13,8 +13,8 @@ from ..io.quiet import warn_caller
 
 Texels = NDArray[np.float32]
 
-# The share of negative light in a picture that is taken for rounding.
-_LITTLE = 1e-3
+# The share of negative light in a picture that is taken for rounding, or for colors outside of Rec. 709.
+_LITTLE = 1e-2
 
 
 def texels(name: str, value: ArrayLike | str | PathLike[str]) -> Texels:
@@ -23,8 +23,8 @@ def texels(name: str, value: ArrayLike | str | PathLike[str]) -> Texels:
     Raises
     ------
     ValueError
-        If it is empty, has another shape, or holds what is not finite or negative by more than a thousandth
-        of all its light (tells where).
+        If it is empty, has another shape, or holds what is not finite, or is no file and negative by more
+        than a hundredth of all its light (tells where).
     TypeError
         If it does not hold real numbers.
     FileNotFoundError
@@ -33,8 +33,9 @@ def texels(name: str, value: ArrayLike | str | PathLike[str]) -> Texels:
     Warns
     -----
     RuntimeWarning
-        If values that are negative by less than that are taken as 0.
+        If other negative values are taken as 0.
     """
+    is_file = isinstance(value, str | PathLike)
     array = read_linear(value) if isinstance(value, str | PathLike) else real_array(name, value)
     if array.ndim == 2:
         array = np.repeat(array[..., None], 3, axis=2)
@@ -45,8 +46,8 @@ def texels(name: str, value: ArrayLike | str | PathLike[str]) -> Texels:
         single = frozen(array.astype(np.float32))
     negative = single < 0
     bad = ~np.isfinite(single) | negative
-    if bad.any() and np.array_equal(bad, negative) and _is_little(single):
-        # Programs that resample pictures leave these.
+    if bad.any() and np.array_equal(bad, negative) and (is_file or _is_little(single)):
+        # Programs leave these that resample pictures, or that know colors outside of Rec. 709.
         least = float(single.min())
         single = frozen(np.maximum(single, np.float32(0)))
         warn_caller(
@@ -60,7 +61,7 @@ def texels(name: str, value: ArrayLike | str | PathLike[str]) -> Texels:
 
 
 def _is_little(single: Texels) -> bool:
-    """Return whether the negative values of a picture are a thousandth of the others at most, in all."""
+    """Return whether the negative values of a picture are a hundredth of the others at most, in all."""
     total = single.sum(dtype=np.float64)
     below = -np.minimum(single, 0).sum(dtype=np.float64)
     return bool(below <= _LITTLE * (total + below))

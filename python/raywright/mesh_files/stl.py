@@ -96,10 +96,7 @@ def _sections(text: bytes) -> Iterator[tuple[str, bytes]]:
 
 def _facets(body: bytes, count: int) -> tuple[Floats, NDArray[np.int64]]:
     """Return the corners and faces of a solid with so many facets."""
-    plain = body
-    for word in _WORDS:
-        plain = plain.replace(word, b" ")
-    numbers = leading_numbers(plain)
+    numbers = leading_numbers(body, _WORDS)
     if len(numbers) == 12 * count:
         points = numbers.reshape(-1, 4, 3)[:, 1:].reshape(-1, 3)
         return points, np.arange(len(points)).reshape(-1, 3)

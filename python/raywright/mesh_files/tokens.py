@@ -1,17 +1,15 @@
 """Text of mesh files as numbers, whatever stands between them."""
 
-import re
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..io.quiet import quiet
+from .. import _core
 
 _UTF16 = (b"\xff\xfe", b"\xfe\xff")
 _UTF8 = b"\xef\xbb\xbf"
 # ASCII's white space and separators besides spaces and line feeds.
-_NUMBER = rb"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?|[+-]?(?:inf(?:inity)?|nan)"
-_NO_NUMBER = re.compile(rb"(?<!\S)(?!(?:" + _NUMBER + rb")(?!\S))\S", re.IGNORECASE)
 _WHITE = bytes.maketrans(b"\t\v\f\x1c\x1d\x1e\x1f", b" \n\n\n\n\n ")
 
 
@@ -28,25 +26,9 @@ def plain_text(data: bytes) -> bytes:
     return data.translate(_WHITE)
 
 
-def leading_numbers(text: bytes) -> NDArray[np.float64]:
-    """Return the numbers at the beginning of a text, up to the first word that is none."""
-    found = _numbers(text)
-    if found is None:
-        # Versions of numpy disagree on what precedes a word that is no number.
-        end = _NO_NUMBER.search(text)
-        found = _numbers(text[: end.start()]) if end else None
-    return np.empty(0) if found is None else found
-
-
-def _numbers(text: bytes) -> NDArray[np.float64] | None:
-    """Return the numbers of a text of numbers; None if there is anything else."""
-    if not text.strip():
-        return np.empty(0)  # numpy finds a number in blanks
-    try:
-        with quiet(DeprecationWarning):
-            return np.fromstring(text, np.float64, sep=" ")
-    except (ValueError, DeprecationWarning):
-        return None
+def leading_numbers(text: bytes, skipped: Sequence[bytes] = ()) -> NDArray[np.float64]:
+    """Return the numbers that a text begins with; words of `skipped` may stand between them."""
+    return _core.leading_numbers(text, skipped)[0]
 
 
 def word_at(text: bytes, index: int) -> str | None:

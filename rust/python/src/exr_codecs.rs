@@ -33,18 +33,18 @@ pub fn exr_huffman<'py>(py: Python<'py>, data: &[u8], count: usize) -> PyResult<
     Ok(PyArray1::from_vec(py, found))
 }
 
-/// Decode a PIZ chunk of channels whose samples are of so many 16-bit words each: channel by channel, row by row.
+/// Decode a PIZ chunk of channels, each of so many columns and rows of samples of so many 16-bit words: channel by
+/// channel, row by row.
 ///
 /// # Errors
 /// A `ValueError` if `data` does not hold them.
 #[pyfunction]
+#[allow(clippy::needless_pass_by_value)]
 pub fn exr_piz<'py>(
     py: Python<'py>,
     data: &[u8],
-    width: usize,
-    rows: usize,
-    words: Vec<usize>,
+    channels: Vec<(usize, usize, usize)>,
 ) -> PyResult<Bound<'py, PyArray1<u16>>> {
-    let found = py.detach(|| piz(data, width, rows, &words)).map_err(PyValueError::new_err)?;
+    let found = py.detach(|| piz(data, &channels)).map_err(PyValueError::new_err)?;
     Ok(PyArray1::from_vec(py, found))
 }

@@ -39,6 +39,7 @@ mod shapes;
 mod sight;
 mod signals;
 mod spectra;
+mod text_numbers;
 mod textures;
 mod topology;
 mod tree;
@@ -125,6 +126,8 @@ mod _core {
     use super::spectra::{daylight_power, film_reflectance, smooth_spectrum, spectrum_luminance, spectrum_rgb};
     #[pymodule_export]
     use super::topology::{MeshTopology, mesh_topology, sections, weld, weld_rounding};
+    #[pymodule_export]
+    use super::text_numbers::leading_numbers;
     #[pymodule_export]
     use super::tree::tree;
     #[pymodule_export]

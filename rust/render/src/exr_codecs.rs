@@ -61,12 +61,12 @@ pub fn run_lengths(data: &[u8], count: usize) -> Result<Vec<u8>, &'static str> {
     if out.len() == count { Ok(out) } else { Err("its runs are cut short") }
 }
 
-/// Decode a PIZ chunk of channels of `width` x `rows` samples, each of so many 16-bit words: all samples of the first
-/// channel, row by row, then those of the next.
+/// Decode a PIZ chunk of channels, each of so many columns and rows of samples of so many 16-bit words: all samples of
+/// the first channel, row by row, then those of the next.
 ///
 /// # Errors
 /// If `data` does not hold them.
-pub fn piz(data: &[u8], width: usize, rows: usize, words: &[usize]) -> Result<Vec<u16>, &'static str> {
+pub fn piz(data: &[u8], channels: &[(usize, usize, usize)]) -> Result<Vec<u16>, &'static str> {
     let short = "its table of values is cut short";
     let (lowest, tail) = take_u16(data).ok_or(short)?;
     let (highest, tail) = take_u16(tail).ok_or(short)?;
@@ -86,16 +86,17 @@ pub fn piz(data: &[u8], width: usize, rows: usize, words: &[usize]) -> Result<Ve
 
     let (length, tail) = take_u32(tail).ok_or("it is cut short")?;
     let packed = tail.get(..length).ok_or("it is cut short")?;
-    let samples = width.checked_mul(rows).ok_or("it is too large")?;
-    let count = words.iter().try_fold(0, |sum: usize, &n| sum.checked_add(samples.checked_mul(n)?));
+    let size = |&(width, rows, n): &(usize, usize, usize)| width.checked_mul(rows)?.checked_mul(n);
+    let count = channels.iter().try_fold(0, |sum: usize, channel| sum.checked_add(size(channel)?));
     let mut out = huffman(packed, count.ok_or("it is too large")?)?;
     if out.is_empty() {
         return Ok(out);
     }
     let mut rest = &mut out[..];
-    for &n in words {
-        let (channel, after) = rest.split_at_mut(samples * n);
-        for word in 0..n {
+    for &(width, rows, n) in channels {
+        let (channel, after) = rest.split_at_mut(width * rows * n);
+        // A channel may have no row in a chunk.
+        for word in 0..if channel.is_empty() { 0 } else { n } {
             if is_wide {
                 inverse_wavelet(&mut channel[word..], (width, rows), n, modular_pair);
             } else {
@@ -418,7 +419,10 @@ mod tests {
             chunk.extend((data.len() as u32).to_le_bytes());
             chunk.extend(&data);
             let (width, rows) = (next() as usize % 9, next() as usize % 9);
-            assert!(piz(&chunk, width, rows, &[1, 2]).map_or(true, |found| found.len() == 3 * width * rows));
+            assert!(
+                piz(&chunk, &[(width, rows, 1), (width, rows, 2)])
+                    .map_or(true, |found| found.len() == 3 * width * rows)
+            );
             assert!(run_lengths(&data, count).map_or(true, |found| found.len() == count));
         }
     }

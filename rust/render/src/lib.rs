@@ -31,6 +31,7 @@ mod sightings;
 mod splats;
 mod student;
 mod sums;
+pub mod text_numbers;
 mod tile;
 mod tiles;
 

@@ -20,16 +20,29 @@ _FLAT = 13 << 2
 
 
 class Block(NamedTuple):
-    """Pixels that are packed together."""
+    """Pixels that are packed together; `top` is the first of their rows."""
 
     part: Part
     width: int
     rows: int
+    top: int = 0
 
     @property
     def size(self) -> int:
         """Number of bytes unpacked."""
-        return self.width * self.rows * self.part.pixel_bytes
+        if self.part.is_whole:
+            return self.width * self.rows * self.part.pixel_bytes
+        sizes = ((self.shape(channel), channel.dtype.itemsize) for channel in self.part.channels)
+        return sum(rows * width * size for (rows, width), size in sizes)
+
+    def shape(self, channel: Channel) -> tuple[int, int]:
+        """Return the numbers of rows and columns that a channel has."""
+        return len(self.rows_of(channel)), self.width // channel.sampling[0]
+
+    def rows_of(self, channel: Channel) -> range:
+        """Return the rows that a channel has, counted from the first."""
+        down = channel.sampling[1]
+        return range(-self.top % down, self.rows, down)
 
 
 def deflate(raw: Octets) -> bytes:
@@ -68,12 +81,31 @@ def unpack_stored(raw: bytes | Octets, block: Block, wanted: Sequence[Channel]) 
     """Cut bytes into channels: row by row, each row channel by channel."""
     if len(raw) != block.size:
         raise ValueError("it is not as long as it should be")
-    rows = np.frombuffer(raw, np.uint8).reshape(block.rows, -1)
-    found = []
-    for channel in wanted:
-        begin = block.width * channel.start
-        found.append(rows[:, begin : begin + block.width * channel.dtype.itemsize].view(channel.dtype))
-    return found
+    sizes = [channel.dtype.itemsize for channel in block.part.channels]
+    cut = _cut_rows(np.frombuffer(raw, np.uint8), block, sizes, wanted)
+    return [octets.view(c.dtype).reshape(block.shape(c)) for c, octets in zip(wanted, cut, strict=True)]
+
+
+def _cut_rows(raw: Octets, block: Block, sizes: Sequence[int], wanted: Sequence[Channel]) -> list[Octets]:
+    """Return the bytes of channels that come row by row, given the bytes of a sample of each channel."""
+    if block.part.is_whole:
+        rows = raw.reshape(block.rows, -1)
+        ends = block.width * np.cumsum(sizes)
+        numbers = [block.part.channels.index(channel) for channel in wanted]
+        return [rows[:, ends[k] - block.width * sizes[k] : ends[k]] for k in numbers]
+    cut: dict[str, list[Octets]] = {channel.name: [] for channel in block.part.channels}
+    has_row = [
+        (channel, block.rows_of(channel), size)
+        for channel, size in zip(block.part.channels, sizes, strict=True)
+    ]
+    at = 0
+    for row in range(block.rows):
+        for channel, own, size in has_row:
+            if row in own:
+                end = at + block.width // channel.sampling[0] * size
+                cut[channel.name].append(raw[at:end])
+                at = end
+    return [np.concatenate([np.empty(0, np.uint8), *cut[channel.name]]) for channel in wanted]
 
 
 def unpack_rle(packed: bytes, block: Block, wanted: Sequence[Channel]) -> list[Plane]:
@@ -88,30 +120,30 @@ def unpack_zip(packed: bytes, block: Block, wanted: Sequence[Channel]) -> list[P
 
 def unpack_piz(packed: bytes, block: Block, wanted: Sequence[Channel]) -> list[Plane]:
     """Undo Huffman codes and the wavelet, which the core does; channels come one after the other."""
+    shapes = [block.shape(channel) for channel in block.part.channels]
     words = [channel.dtype.itemsize // 2 for channel in block.part.channels]
-    samples = exr_piz(packed, block.width, block.rows, words).astype("<u2", copy=False)
+    sizes = [(width, rows, n) for (rows, width), n in zip(shapes, words, strict=True)]
+    samples = exr_piz(packed, sizes).astype("<u2", copy=False)
+    ends = np.cumsum([rows * width * n for rows, width, n in sizes])
     found = []
     for channel in wanted:
-        begin, end = (
-            block.width * block.rows * n // 2 for n in (channel.start, channel.start + channel.dtype.itemsize)
-        )
-        found.append(samples[begin:end].view(channel.dtype).reshape(block.rows, block.width))
+        number = block.part.channels.index(channel)
+        own = samples[ends[number] - np.prod(sizes[number]) : ends[number]]
+        found.append(own.view(channel.dtype).reshape(shapes[number]))
     return found
 
 
 def unpack_pxr24(packed: bytes, block: Block, wanted: Sequence[Channel]) -> list[Plane]:
     """Sum differences along each row. Their highest bytes come first; floats lack their lowest byte."""
-    begins = [0]
-    for channel in block.part.channels:
-        begins.append(begins[-1] + block.width * (4, 2, 3)[channel.kind])
-    raw = inflate(packed, begins[-1] * block.rows)
-    rows = np.frombuffer(raw, np.uint8).reshape(block.rows, -1)
+    sizes = [(4, 2, 3)[channel.kind] for channel in block.part.channels]
+    count = sum(np.prod(block.shape(c)) * n for c, n in zip(block.part.channels, sizes, strict=True))
+    raw = np.frombuffer(inflate(packed, int(count)), np.uint8)
     found = []
-    for channel in wanted:
-        number = block.part.channels.index(channel)
-        octets = rows[:, begins[number] : begins[number + 1]].reshape(block.rows, -1, block.width)
+    for channel, cut in zip(wanted, _cut_rows(raw, block, sizes, wanted), strict=True):
+        rows, width = block.shape(channel)
+        octets = cut.reshape(rows, (4, 2, 3)[channel.kind], width)
         # Bytes of the type from the highest to the lowest.
-        differences = np.zeros((block.rows, block.width, channel.dtype.itemsize), np.uint8)
+        differences = np.zeros((rows, width, channel.dtype.itemsize), np.uint8)
         for k in range(octets.shape[1]):
             differences[..., -1 - k] = octets[:, k]
         unsigned = f"<u{channel.dtype.itemsize}"
@@ -123,24 +155,24 @@ def unpack_pxr24(packed: bytes, block: Block, wanted: Sequence[Channel]) -> list
 def unpack_b44(packed: bytes, block: Block, wanted: Sequence[Channel]) -> list[Plane]:
     """Unpack half channels from 4 x 4 samples in 14 bytes, or in 3 where all are equal; copy the others."""
     found = {}
-    samples = block.width * block.rows
-    across, down = -(-block.width // 4), -(-block.rows // 4)
     # A block of 3 bytes may be the last, and is read as 14.
     octets = np.frombuffer(packed + bytes(11), np.uint8)
     at = 0
     for channel in block.part.channels:
+        rows, width = block.shape(channel)
+        across, down = -(-width // 4), -(-rows // 4)
         if channel.kind != 1:
-            end = at + 4 * samples
+            end = at + 4 * rows * width
             if end > len(packed):
                 raise ValueError("it is cut short")
             stored = np.frombuffer(packed[at:end], channel.dtype)
-            found[channel.name] = stored.reshape(block.rows, block.width)
+            found[channel.name] = stored.reshape(rows, width)
         else:
             starts, end = _starts_of_4x4(packed, at, across * down)
             if channel in wanted:
                 values = _values_of_4x4(octets, starts).reshape(down, across, 4, 4)
                 whole = values.transpose(0, 2, 1, 3).reshape(4 * down, 4 * across)
-                plane = whole[: block.rows, : block.width]
+                plane = whole[:rows, :width]
                 plane = _from_perceptual()[plane] if channel.is_perceptual else plane
                 found[channel.name] = np.ascontiguousarray(plane, "<u2").view(channel.dtype)
         at = end

@@ -78,6 +78,8 @@ def unpack_dwa(packed: bytes, block: Block, wanted: Sequence[Channel]) -> list[P
     ValueError
         If `packed` does not hold them.
     """
+    if not block.part.is_whole:
+        raise ValueError("channels of fewer points than the picture are not read of DWA")
     if len(packed) < _HEAD.size:
         raise ValueError("it is cut short")
     sizes = _Sizes(*_HEAD.unpack_from(packed))

@@ -13,6 +13,7 @@ TILED, LONG_NAMES, DEEP, PARTS = 0x200, 0x400, 0x800, 0x1000
 MOST_POINTS = 2**27
 _MOST_HEADER = 2**24
 _MOST_CHANNELS = 2**14
+_MOST_SAMPLING = 64
 # By the number of the compression: rows in a chunk, and a bound on the bytes that one packed byte expands to.
 # Deflate expands 2 bits to 258 bytes (1032), and PXR24 omits one byte of four before it. A run of RLE is 128
 # bytes in 2, a run of PIZ 255 words in 9 bits, a flat block of B44 32 bytes in 3. DWA deflates runs, and
@@ -22,12 +23,24 @@ _MOST_RATIO = (1, 64, 1032, 1032, 464, 1376, 11, 11, 2**17, 2**17)
 
 
 class Channel(NamedTuple):
-    """A channel of unsigned integers (0), half (1) or float (2), and the bytes of a pixel before it."""
+    """A channel of unsigned integers (0), half (1) or float (2).
+
+    Attributes
+    ----------
+    name : str
+    kind : int
+    is_perceptual : bool
+    start : int
+        The bytes of a pixel before it, where all channels have all pixels.
+    sampling : 2 ints
+        It has the pixels of every such column and row.
+    """
 
     name: str
     kind: int
     is_perceptual: bool
     start: int
+    sampling: tuple[int, int] = (1, 1)
 
     @property
     def dtype(self) -> np.dtype[np.generic]:
@@ -36,12 +49,26 @@ class Channel(NamedTuple):
 
 
 class Part(NamedTuple):
-    """A picture of the file: its size and channels, and how its pixels are cut into chunks."""
+    """A picture of the file: its size and channels, and how its pixels are cut into chunks.
+
+    Attributes
+    ----------
+    number : int
+    width, height, left, top : int
+        The window of its pixels.
+    shown : 4 ints
+        Left, top, right and bottom of the window that is the picture, black where it has no pixels.
+    chromaticities : 8 floats, optional
+        x and y of red, green, blue and white, if they are told.
+    """
 
     number: int
     width: int
     height: int
+    left: int
     top: int
+    shown: tuple[int, int, int, int]
+    chromaticities: tuple[float, ...] | None
     compression: int
     tile: tuple[int, int] | None
     channels: tuple[Channel, ...]
@@ -50,6 +77,11 @@ class Part(NamedTuple):
     def pixel_bytes(self) -> int:
         """Bytes of all channels of a pixel."""
         return self.channels[-1].start + self.channels[-1].dtype.itemsize
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether all channels have all pixels."""
+        return all(channel.sampling == (1, 1) for channel in self.channels)
 
     @property
     def block(self) -> tuple[int, int]:
@@ -142,8 +174,10 @@ def find_chunks(data: bytes, part: Part, table: int, numbered: bool) -> list[Chu
     x, y = column * width, row * rows
     widths, heights = np.minimum(width, part.width - x), np.minimum(rows, part.height - y)
     # As floats: sizes of a hostile header may exceed 64 bits.
+    # Of four pixels, subsampled channels may have one.
+    fewest = 1.0 if part.is_whole else 1 / max(a * b for a, b in (c.sampling for c in part.channels))
     _refuse(
-        widths * heights * float(part.pixel_bytes) > length * float(_MOST_RATIO[part.compression]),
+        widths * heights * float(part.pixel_bytes) * fewest > length * float(_MOST_RATIO[part.compression]),
         lambda n: f"it is cut short or broken: chunk {n} has {length[n]} bytes, too few for its points",
     )
     columns = (one.tolist() for one in (begin, length, x, y, widths, heights))
@@ -175,7 +209,35 @@ def _part(number: int, found: dict[bytes, bytes], tiled: bool) -> Part:
             raise ValueError("its header has no size of tiles")
         tile = (min(tile[0], width), min(tile[1], height))
     channels = _channels(found.get(b"channels", b""))
-    return Part(number, width, height, top, compression[0], tile, channels)
+    for channel in channels:
+        across, down = channel.sampling
+        if tiled and channel.sampling != (1, 1):
+            raise ValueError(f"its channel {channel.name} has fewer points than its tiles")
+        if left % across or top % down or width % across or height % down:
+            raise ValueError(
+                f"its channel {channel.name} has every {across} x {down} points of another window"
+            )
+    shown, colors = _shown(found, (left, top, right, bottom)), _chromaticities(found)
+    return Part(number, width, height, left, top, shown, colors, compression[0], tile, channels)
+
+
+def _shown(found: dict[bytes, bytes], data: tuple[int, int, int, int]) -> tuple[int, int, int, int]:
+    """Return the window of the picture, that of its pixels if it is not told."""
+    window = found.get(b"displayWindow", b"")
+    if len(window) != 16:
+        return data
+    left, top, right, bottom = struct.unpack("<4i", window)
+    width, height = right - left + 1, bottom - top + 1
+    if width < 1 or height < 1:
+        return data
+    if width * height > MOST_POINTS:
+        raise ValueError(f"it has {width} x {height} points by its header, and {MOST_POINTS} are read")
+    return left, top, right, bottom
+
+
+def _chromaticities(found: dict[bytes, bytes]) -> tuple[float, ...] | None:
+    told = found.get(b"chromaticities", b"")
+    return struct.unpack("<8f", told) if len(told) == 32 else None
 
 
 def _channels(data: bytes) -> tuple[Channel, ...]:
@@ -191,9 +253,9 @@ def _channels(data: bytes) -> tuple[Channel, ...]:
         kind, is_perceptual, *sampling = struct.unpack_from("<iB3x2i", data, end + 1)
         if not 0 <= kind <= 2:
             raise ValueError(f"its channel {name} is of no known type")
-        if sampling != [1, 1]:
-            raise ValueError(f"its channel {name} has fewer points than the picture")
-        found.append(Channel(name, kind, bool(is_perceptual), start))
+        if not 1 <= min(sampling) <= max(sampling) <= _MOST_SAMPLING:
+            raise ValueError(f"its channel {name} has every {sampling[0]} x {sampling[1]} points")
+        found.append(Channel(name, kind, bool(is_perceptual), start, (sampling[0], sampling[1])))
         start += found[-1].dtype.itemsize
         at = end + 17
     if not found:
