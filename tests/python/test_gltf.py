@@ -1,5 +1,6 @@
 """glTF files: where things stand, what lights them, who looks at them. All numbers are worked out by hand."""
 
+import json
 import math
 
 import numpy as np
@@ -327,3 +328,18 @@ def test_shapes_are_bent_as_they_are_at_rest(read):
     assert np.allclose(mesh.vertices, expected, rtol=0, atol=1e-12)
     assert np.allclose(mesh.normals, (0, 0, 1), rtol=0, atol=1e-12)
     assert CORNERS.size == mesh.faces.size
+
+
+def test_files_are_found_whatever_the_case_of_their_letters(tmp_path):
+    writer = Writer()
+    writer.node(mesh=writer.mesh())
+    path = tmp_path / "a.gltf"
+    (tmp_path / "Parts").mkdir()
+    (tmp_path / "Parts" / "DATA.BIN").write_bytes(writer.data)
+    writer.json["buffers"] = [{"uri": "parts/data.bin", "byteLength": len(writer.data)}]
+    path.write_text(json.dumps(writer.json))
+    assert len(read_gltf(path).scene.shapes) > 0
+    writer.json["buffers"][0]["uri"] = "parts/other.bin"
+    path.write_text(json.dumps(writer.json))
+    with pytest.raises(ValueError, match=r"there is no file 'parts/other.bin' beside it"):
+        read_gltf(path)

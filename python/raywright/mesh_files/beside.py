@@ -13,7 +13,7 @@ def beside(folder: Path, name: str) -> Path | None:
     root = folder.resolve()
     for candidate in (plain, plain.rsplit("/", 1)[-1]):
         try:
-            found = _cased(root, candidate).resolve()
+            found = cased(root, candidate).resolve()
             if candidate and found.is_relative_to(root) and found.is_file():
                 return found
         except (OSError, ValueError, RuntimeError):
@@ -22,8 +22,12 @@ def beside(folder: Path, name: str) -> Path | None:
     return None
 
 
-def _cased(root: Path, name: str) -> Path:
-    """Return a path under a folder as the file system writes it, whatever the case of its letters."""
+def cased(root: Path, name: str) -> Path:
+    """Return a path under a folder as the file system writes it, whatever the case of its letters.
+
+    Where that leads nowhere it is returned as it is. Letters of other cases count only in names that are not
+    there as they are.
+    """
     whole = root / name
     if whole.exists() or Path(name).is_absolute() or ".." in Path(name).parts:
         return whole

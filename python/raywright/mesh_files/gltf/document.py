@@ -8,6 +8,7 @@ from typing import Any, NoReturn
 from urllib.parse import unquote, unquote_to_bytes, urlsplit
 
 from ...io.quiet import warn_caller
+from ..beside import cased
 from .part import Part
 
 _MAGIC, _JSON, _BIN = b"glTF", b"JSON", b"BIN\0"
@@ -105,7 +106,7 @@ class Document:
             raise ValueError(f"{place} must be a file beside it or data, and is {shown!r}")
         folder = self.path.parent.resolve()
         try:
-            found = (folder / name).resolve()
+            found = cased(folder, name).resolve()
             there = found.is_file()
         except (OSError, RuntimeError) as error:
             raise ValueError(f"{place} leads nowhere: {shown!r}") from error
