@@ -21,6 +21,11 @@ class Notes:
         """Keep a note."""
         self._told.setdefault(what)
 
+    @property
+    def told(self) -> list[str]:
+        """All notes."""
+        return list(self._told)
+
     def warn(self) -> None:
         """Warn of all notes, in the name of whoever called the reader."""
         for what in self._told:

@@ -4,19 +4,23 @@ import errno
 from pathlib import Path
 from typing import Any, Literal
 
-import numpy as np
-
 from ...arrays import integer
+from ...cameras import AnyCamera
 from ...io.quiet import refused
 from ...rendering.shot import Shot
 from ...scene.scene import Scene
 from ..shown import shown
-from .cameras import camera
-from .lights import light
+from .cameras import camera, exposure
+from .instancers import placed
+from .lights import is_light, light
+from .meshes import UNPOSED
 from .notes import Notes, told_of
-from .shapes import shapes
+from .reading import Reading, first_time, seen
 
 __all__ = ["read_usd"]
+
+# Prims that are neither lights nor shapes, and would change a picture.
+_LEFT_OUT = {"RenderSettings": "render settings are left out", "Skeleton": UNPOSED}
 
 NO_USD = "reading USD needs usd-core: pip install 'raywright[usd]'"
 
@@ -57,84 +61,106 @@ def read_usd(path: Path, width: int | None = None, height: int | None = None) ->
     the ``exposure`` as a radiance, or over their area where they are normalised.
     """
     try:
-        from pxr import Tf, Usd, UsdGeom
+        from pxr import UsdUtils
     except ImportError as error:
         raise ImportError(NO_USD) from error
 
     for name, size in (("width", width), ("height", height)):
         if size is not None:
             integer(name, size, 1, 65536)
-    try:
-        stage = Usd.Stage.Open(str(path))
-    except Tf.ErrorException as error:
-        raise refused(path, "USD file", ValueError("its stage cannot be opened")) from error
     notes = Notes(path)
-    _composed(stage, path, notes)
-    up: Literal["y", "z"] = "z" if UsdGeom.GetStageUpAxis(stage) == UsdGeom.Tokens.z else "y"
+    # What USD would print.
+    quiet = UsdUtils.CoalescingDiagnosticDelegate()
     try:
-        found: list[Any] = []
-        lights: list[Any] = []
-        around: list[Any] = []
-        cameras: list[Any] = []
-        time = (
-            Usd.TimeCode(stage.GetStartTimeCode())
-            if stage.HasAuthoredTimeCodeRange()
-            else Usd.TimeCode.Default()
-        )
-        placed = UsdGeom.XformCache(time)
-        for prim in _seen(stage, time):
-            with told_of(prim):
-                matrix = np.array(placed.GetLocalToWorldTransform(prim), np.float64).T
-                if prim.IsA(UsdGeom.Camera):
-                    cameras.append((prim, matrix))
-                elif (made := light(prim, matrix, time, notes)) is not None:
-                    {"light": lights, "shape": found, "around": around}[made.kind].append(made.thing)
-                else:
-                    found += shapes(prim, matrix, time, notes)
-        if not found:
-            raise ValueError("it holds nothing that is seen")
-        if len(cameras) > 1:
-            notes.tell(f"the first of its {len(cameras)} cameras is taken")
-        eye = camera(cameras[0][0], cameras[0][1], time) if cameras else None
-        shot = shown(found, lights, eye, up=up, width=width, height=height)
-        if lights or around or any(getattr(one, "emission", None) is not None for one in found):
-            # It has light of its own, which surfaces that are no meshes give too.
-            shot = Shot(Scene(found, lights, around[0] if len(around) == 1 else around or None), shot.camera)
-    except (ImportError, MemoryError, FileNotFoundError):
-        raise
-    except Exception as error:
-        raise refused(path, "USD file", error) from error
+        shot, errors = _shot(path, notes, width, height)
+        told = [" ".join(str(one.commentary).split()) for one in quiet.TakeUncoalescedDiagnostics()]
+    finally:
+        del quiet
+    # What could not be put together is told already.
+    told = [line for line in dict.fromkeys(told) if not any(error in line for error in errors)]
+    if told:
+        notes.tell(f"USD warns of {told[0][:200]!r}{_more(told)}")
     notes.warn()
     return shot
 
 
-def _composed(stage: Any, path: Path, notes: Notes) -> None:
-    """Refuse a stage of which a file is missing, and note what else of it could not be put together."""
+def _shot(path: Path, notes: Notes, width: int | None, height: int | None) -> tuple[Shot, list[str]]:
+    """Return the shot of a file, and the errors by which its stage is not put together as it says."""
+    from pxr import Tf, Usd, UsdGeom
+
+    try:
+        stage = Usd.Stage.Open(str(path))
+    except Tf.ErrorException as error:
+        raise refused(path, "USD file", ValueError("its stage cannot be opened")) from error
+    errors = _composed(stage, path, notes)
+    up: Literal["y", "z"] = "z" if UsdGeom.GetStageUpAxis(stage) == UsdGeom.Tokens.z else "y"
+    reading = Reading(first_time(stage), notes)
+    try:
+        found, eye = _read(stage, reading)
+        shapes_of = found["shape"]
+        if not shapes_of:
+            raise ValueError("it holds nothing that is seen" + _why(reading))
+        shot = shown(shapes_of, found["light"], eye, up=up, width=width, height=height)
+        around = found["around"]
+        if found["light"] or around or any(getattr(one, "emission", None) is not None for one in shapes_of):
+            # It has light of its own, which surfaces that are no meshes give too.
+            sky = around[0] if len(around) == 1 else around or None
+            shot = Shot(Scene(shapes_of, found["light"], sky), shot.camera)
+    except (ImportError, MemoryError, FileNotFoundError):
+        raise
+    except Exception as error:
+        raise refused(path, "USD file", error) from error
+    return shot, errors
+
+
+def _read(stage: Any, reading: Reading) -> tuple[dict[str, list[Any]], AnyCamera | None]:
+    """Return shapes, lights and what is around, and the first camera."""
+    from pxr import UsdGeom
+
+    found: dict[str, list[Any]] = {"shape": [], "light": [], "around": []}
+    prims = list(seen(stage.GetPseudoRoot(), reading))
+    cameras = [prim for prim in prims if prim.IsA(UsdGeom.Camera)]
+    if len(cameras) > 1:
+        reading.notes.tell(f"the first of its {len(cameras)} cameras is taken")
+    eye = None
+    for prim in cameras[:1]:
+        with told_of(prim):
+            eye, reading.exposure = camera(prim, reading), exposure(prim, reading)
+    for prim in prims:
+        with told_of(prim):
+            if is_light(prim):
+                if (made := light(prim, reading)) is not None:
+                    found[made.kind].append(made.thing)
+            elif (told := _LEFT_OUT.get(str(prim.GetTypeName()))) is not None:
+                reading.notes.tell(told)
+            else:
+                found["shape"] += placed(prim, reading, reading.matrix(prim))
+    return found, eye
+
+
+def _why(reading: Reading) -> str:
+    """Return what of a stage was left out, for one of which nothing is seen."""
+    reasons = [
+        f"{count} {'prims are' if count > 1 else 'prim is'} {why}" for why, count in reading.unseen.items()
+    ]
+    reasons += reading.notes.told
+    return ": " + "; ".join(reasons) if reasons else ""
+
+
+def _composed(stage: Any, path: Path, notes: Notes) -> list[str]:
+    """Note and return what of a stage could not be put together; refuse one of which a file is missing."""
+    kinds: dict[str, list[str]] = {}
     for error in stage.GetCompositionErrors():
         line = " ".join(str(error).split())
         if "AssetPath" in type(error).__name__ or "SublayerPath" in type(error).__name__:
             name = line.partition("@")[2].partition("@")[0]
             if name and not (path.parent / name).exists():
                 raise FileNotFoundError(errno.ENOENT, "no such file", str(path.parent / name))
-        notes.tell(f"it is not put together as it says: {line.partition(':')[0][:200]}")
+        kinds.setdefault(type(error).__name__, []).append(line)
+    for lines in kinds.values():
+        notes.tell(f"it is not put together as it says: {lines[0].partition(': ')[0][:200]}{_more(lines)}")
+    return [line[:60] for lines in kinds.values() for line in lines]
 
 
-def _seen(stage: Any, time: Any) -> Any:
-    """Yield the prims that are seen, those of instances too."""
-    from pxr import Usd, UsdGeom
-
-    walk = iter(Usd.PrimRange(stage.GetPseudoRoot(), Usd.TraverseInstanceProxies()))
-    for prim in walk:
-        if prim.IsPseudoRoot():
-            continue
-        seen = UsdGeom.Imageable(prim)
-        if seen and (
-            seen.GetVisibilityAttr().Get(time) == "invisible"
-            or seen.GetPurposeAttr().Get() in ("guide", "proxy")
-        ):
-            walk.PruneChildren()
-            continue
-        yield prim
-        if prim.IsA(UsdGeom.PointInstancer):
-            # What it copies is read with it.
-            walk.PruneChildren()
+def _more(lines: list[str]) -> str:
+    return f", and {len(lines) - 1} more of the kind" if len(lines) > 1 else ""

@@ -1,182 +1,209 @@
-"""Materials of a USD stage: UsdPreviewSurface and its pictures."""
+"""Materials of a USD stage: UsdPreviewSurface."""
 
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...io.pictures import read
 from ...materials import Dielectric, Diffuse, Mask, Material, MetallicRough, Mix, NormalMap
-from ...textures import ImageTexture, MixTexture, ProductTexture, UvTransform, VertexColors
+from ...textures import ImageTexture, ProductTexture, VertexColors
 from ...textures.texture import Texture, Value
-from .notes import Notes
+from .nodes import Link, Node
+from .primvars import constant
+from .reading import Reading
+from .textures import Picture, Textures
 
-_WRAPS = {"clamp": "clamp", "mirror": "mirror", "black": "clamp", "repeat": "repeat", "useMetadata": "repeat"}
+Triple = tuple[float, float, float]
+_BLACK: Triple = (0.0, 0.0, 0.0)
+_GREY: Triple = (0.5, 0.5, 0.5)
 
 
 class Surface(NamedTuple):
-    """What a material looks like, what it gives off, and the set of coordinates of its pictures."""
+    """A material, its emission, and its primvars: of coordinates, and of colours if it needs them."""
 
     material: Material
-    emission: Value | None
-    uv: str
+    emission: Value | None = None
+    uv: str | None = None
+    colors: str | None = None
+    missing: Triple = _BLACK
 
 
-PLAIN = Surface(Diffuse(0.5), None, "st")
+PLAIN = Surface(Diffuse(_GREY))
 
 
-def bound(prim: Any, notes: Notes, kept: dict[str, Surface]) -> Surface | None:
-    """Return the surface of the material that a prim is bound to; None if it is to none."""
+def bound(prim: Any, reading: Reading, colour: Triple | None = None) -> Surface | None:
+    """Return the surface of the material that a prim is bound to; None if it is bound to none.
+
+    Parameters
+    ----------
+    prim : Usd.Prim
+        The prim.
+    reading : Reading
+        The stage.
+    colour : 3 floats, optional
+        The color of the prim, if it is the same everywhere, which is used for colors of vertices.
+    """
     from pxr import UsdShade
 
     material = UsdShade.MaterialBindingAPI(prim).ComputeBoundMaterial()[0]
     if not material:
         return None
-    key = str(material.GetPath())
-    if key not in kept:
+    key = str(material.GetPath()), colour
+    if key not in reading.surfaces:
         shader = material.ComputeSurfaceSource()[0]
-        kept[key] = PLAIN
+        reading.surfaces[key] = PLAIN
         if not shader or shader.GetShaderId() != "UsdPreviewSurface":
-            notes.tell("materials that are no UsdPreviewSurface are shown as grey ones")
+            reading.notes.tell("materials that are no UsdPreviewSurface are shown as grey ones")
         else:
-            kept[key] = _Reader(shader, notes).surface()
-    return kept[key]
+            reading.surfaces[key] = _Reader(Node(shader, reading), reading, colour).surface()
+    return reading.surfaces[key]  # type: ignore[no-any-return]
 
 
-def coloured() -> Surface:
-    """Return the surface of what has colours of its own and no material."""
-    return Surface(Diffuse(VertexColors()), None, "st")
+def own_surface(prim: Any, reading: Reading) -> Surface:
+    """Return the surface of a prim without a material, which has one color."""
+    return coloured(own_color(prim, reading), opacity(prim, reading))
+
+
+def own_color(prim: Any, reading: Reading) -> Triple:
+    """Return the displayColor of all of a prim; grey if it has none."""
+    given = constant(prim, "displayColor", reading, 3)
+    red, green, blue = (float(x) for x in (_GREY if given is None else given.clip(0, 1)))
+    return red, green, blue
+
+
+def opacity(prim: Any, reading: Reading) -> float:
+    """Return the displayOpacity of all of a prim."""
+    given = constant(prim, "displayOpacity", reading, 1)
+    return 1.0 if given is None else float(given[0].clip(0, 1))
+
+
+def coloured(colour: Triple | None, opacity: float = 1.0) -> Surface:
+    """Return the surface of a prim that has colours of its own, or one for all of it, and no material."""
+    made: Material = Diffuse(VertexColors() if colour is None else colour)
+    made = made if opacity == 1 else Mask(made, opacity)
+    return Surface(made, colors="displayColor" if colour is None else None)
 
 
 class _Reader:
     """A UsdPreviewSurface, as far as it is read."""
 
-    def __init__(self, shader: Any, notes: Notes) -> None:
-        self._shader, self._notes = shader, notes
-        self._uv = "st"
+    def __init__(self, node: Node, reading: Reading, colour: Triple | None) -> None:
+        self._node, self._reading, self._vertex = node, reading, colour
+        self._tell = reading.notes.tell
+        self._textures = Textures(reading)
+        self._uv: dict[str, None] = {}
+        self._colors: str | None = None
+        self._missing = _BLACK
 
     def surface(self) -> Surface:
-        colour = self._colour("diffuseColor", 0.18)
-        rough = self._number("roughness", 0.5)
-        if self._plain("useSpecularWorkflow", 0):
-            self._notes.tell("the specular workflow of UsdPreviewSurface is approximated by that of metals")
-        if self._plain("clearcoat", 0.0):
-            self._notes.tell("the clearcoat of UsdPreviewSurface is left out")
-        if self._plain("displacement", 0.0):
-            self._notes.tell("the displacement of UsdPreviewSurface is left out")
-        made: Material = MetallicRough(colour, self._number("metallic", 0.0), rough)
-        opacity, threshold = self._number("opacity", 1.0), float(self._plain("opacityThreshold", 0.0))
-        if isinstance(opacity, Texture):
-            made = Mask(made, opacity)
-        elif opacity < 1:
-            if threshold > 0:
-                made = Mask(made, 0.0 if opacity < threshold else 1.0)
-            elif self._mode() == "presence":
-                made = Mask(made, opacity)
-            else:
-                # Opacity says how much is not glass.
-                ior = float(self._plain("ior", 1.5))
-                glass = Dielectric(ior, rough)
-                made = glass if opacity == 0 else Mix(made, glass, 1 - opacity)
-        normal = self._texture("normal", raw=True)
-        if isinstance(normal, ImageTexture):
+        self._tell_what_is_left_out()
+        made: Material = MetallicRough(
+            self._colour("diffuseColor", 0.18, 1.0),
+            self._number("metallic", 0.0),
+            self._number("roughness", 0.5),
+        )
+        made = self._cut(made)
+        link = self._node.link("normal")
+        if link is not None and (normal := self._normal(link)) is not None:
             made = NormalMap(made, normal)
-        shine = self._colour("emissiveColor", 0.0)
-        return Surface(made, None if shine == (0.0, 0.0, 0.0) else shine, self._uv)
+        shine = self._colour("emissiveColor", 0.0, None)
+        if len(self._uv) > 1:
+            self._tell(f"textures of one material are placed by one primvar: {next(iter(self._uv))}")
+        emission = None if shine == _BLACK else _times(shine, self._reading.exposure)
+        return Surface(made, emission, next(iter(self._uv), None), self._colors, self._missing)
 
-    def _mode(self) -> str:
-        return str(self._plain("opacityMode", "transparent"))
+    def _tell_what_is_left_out(self) -> None:
+        node = self._node
+        if node.value("useSpecularWorkflow", 0):
+            self._tell("the specular workflow of UsdPreviewSurface is approximated by that of metals")
+        for name in ("clearcoat", "displacement"):
+            if node.link(name) is not None or node.value(name, 0.0):
+                self._tell(f"the {name} of UsdPreviewSurface is left out")
+        if node.link("occlusion") is not None or node.value("occlusion", 1.0) != 1:
+            self._tell("the occlusion of UsdPreviewSurface is left out: it is traced")
+        for name in ("ior", "opacityThreshold", "useSpecularWorkflow", "opacityMode"):
+            if node.link(name) is not None:
+                self._tell(f"the {name} of UsdPreviewSurface is left out where it varies")
 
-    def _plain(self, name: str, default: Any) -> Any:
-        given = self._shader.GetInput(name)
-        value = given.Get() if given else None
-        return default if value is None else value
+    def _cut(self, made: Material) -> Material:
+        """Return a material with the opacity of the surface."""
+        node = self._node
+        threshold = float(node.value("opacityThreshold", 0.0))
+        opacity = self._number("opacity", 1.0, threshold)
+        ior = float(node.value("ior", 1.5))
+        clear = not isinstance(opacity, Texture) and opacity < 1 and threshold <= 0
+        presence = str(node.value("opacityMode", "transparent")) == "presence"
+        if isinstance(opacity, Texture) or (clear and presence):
+            return Mask(made, opacity)
+        if not clear:
+            if ior != 1.5 and opacity > 0:
+                self._tell("the ior of opaque surfaces is left out")
+            return made if opacity == 1 or opacity >= threshold > 0 else Mask(made, 0.0)
+        # Opacity says how much is not glass.
+        glass = Dielectric(ior, self._number("roughness", 0.5))
+        return glass if opacity == 0 else Mix(made, glass, 1 - opacity)
 
-    def _colour(self, name: str, default: float) -> Value:
-        made = self._texture(name)
-        if made is not None:
-            return made
-        red, green, blue = (float(x) for x in np.broadcast_to(np.array(self._plain(name, default)), 3))
+    def _normal(self, link: Link) -> ImageTexture | None:
+        if link.node.kind != "UsdUVTexture":
+            self._left_out("normal")
+            return None
+        found = self._textures.normal(link)
+        return None if found is None else self._placed(found)  # type: ignore[return-value]
+
+    def _colour(self, name: str, default: float, limit: float | None) -> Value:
+        link = self._node.link(name)
+        if link is not None:
+            if link.node.kind == "UsdUVTexture":
+                return self._placed(self._textures.read(link, False, limit))
+            if link.node.kind == "UsdPrimvarReader_float3":
+                return self._of_vertices(link)
+            self._left_out(name)
+        given = np.broadcast_to(np.array(self._node.value(name, default), np.float64), 3)
+        cut = given.clip(0.0, limit)
+        if (cut != given).any() and np.isfinite(given).all():
+            self._tell(f"a {name} of {_told(given)} is taken as {_told(cut)}")
+            given = cut
+        red, green, blue = (float(x) for x in given)
         return red, green, blue
 
-    def _number(self, name: str, default: float) -> Any:
-        made = self._texture(name, number=True)
-        return float(self._plain(name, default)) if made is None else made
+    def _of_vertices(self, link: Link) -> Value:
+        if self._vertex is not None:
+            return self._vertex
+        self._colors = str(link.node.value("varname") or "displayColor")
+        red, green, blue = (float(x) for x in link.node.value("fallback", _BLACK))
+        self._missing = red, green, blue
+        return VertexColors()
 
-    def _texture(self, name: str, number: bool = False, raw: bool = False) -> Texture | None:
-        from pxr import UsdShade
+    def _number(self, name: str, default: float, threshold: float = 0.0) -> Any:
+        link = self._node.link(name)
+        if link is not None:
+            if link.node.kind == "UsdUVTexture":
+                made = self._placed(self._textures.read(link, True, 1.0, threshold))
+                return made if isinstance(made, Texture) else made[0]
+            self._left_out(name)
+        given = float(self._node.value(name, default))
+        cut = min(max(given, 0.0), 1.0)
+        if cut != given and np.isfinite(given):
+            self._tell(f"a {name} of {given:g} is taken as {cut:g}")
+            return cut
+        return given
 
-        given = self._shader.GetInput(name)
-        if not given or not given.HasConnectedSource():
-            return None
-        source, output, _ = given.GetConnectedSource()
-        shader = UsdShade.Shader(source.GetPrim())
-        kind = shader.GetShaderId() if shader else None
-        if kind == "UsdPrimvarReader_float3" and not number:
-            return VertexColors()
-        if kind != "UsdUVTexture":
-            self._notes.tell(f"what {name} is connected to is left out: it is no UsdUVTexture")
-            return None
-        file = shader.GetInput("file").Get()
-        if not file:
-            return None
-        array = read(file.resolvedPath or file.path)
-        space = shader.GetInput("sourceColorSpace")
-        space = space.Get() if space else None
-        linear = raw or space == "raw" or (space != "sRGB" and number)
-        wraps = [shader.GetInput(axis) for axis in ("wrapS", "wrapT")]
-        wrap = tuple(_WRAPS.get(str(one.Get()), "repeat") if one else "repeat" for one in wraps)
-        channel = output if number and output in ("r", "g", "b", "a") else None
-        if channel == "a" and array.shape[2] not in (2, 4):
-            return None
-        image = ImageTexture(
-            array if number or raw else array[..., : 3 if array.shape[2] > 2 else 1],
-            linear=linear,
-            channel=channel,
-            wrap=wrap,  # type: ignore[arg-type]
-            transform=self._placed(shader),
-        )
-        if raw:
-            return image
-        return self._scaled(image, shader, channel)
+    def _placed(self, picture: Picture) -> Value:
+        if picture.uv is not None:
+            self._uv.setdefault(picture.uv)
+        return picture.value
 
-    def _scaled(self, image: Texture, shader: Any, channel: str | None) -> Texture:
-        place = "rgba".index(channel) if channel else None
-        scale, bias = (
-            self._four(shader, name, place, default) for name, default in (("scale", 1.0), ("bias", 0.0))
-        )
-        if scale != (1.0, 1.0, 1.0):
-            image = ProductTexture(image, scale)
-        # A sum is twice a mean.
-        return image if bias == (0.0, 0.0, 0.0) else ProductTexture(MixTexture(image, bias, 0.5), 2.0)
+    def _left_out(self, name: str) -> None:
+        self._tell(f"what {name} is connected to is left out: it is no UsdUVTexture")
 
-    def _four(self, shader: Any, name: str, place: int | None, default: float) -> tuple[float, float, float]:
-        given = shader.GetInput(name)
-        value = given.Get() if given else None
-        four = np.full(4, default) if value is None else np.array(value, np.float64)
-        red, green, blue = (float(x) for x in (four[:3] if place is None else np.repeat(four[place], 3)))
-        return red, green, blue
 
-    def _placed(self, shader: Any) -> UvTransform:
-        """Return where coordinates come from, which are kept by the name of their set."""
-        from pxr import UsdShade
+def _times(value: Value, factor: float) -> Value:
+    if factor == 1:
+        return value
+    if isinstance(value, Texture):
+        return ProductTexture(value, factor)
+    red, green, blue = (factor * x for x in value)
+    return red, green, blue
 
-        given = shader.GetInput("st")
-        transform = UvTransform()
-        for _ in range(8):
-            if not given or not given.HasConnectedSource():
-                break
-            source = UsdShade.Shader(given.GetConnectedSource()[0].GetPrim())
-            if source.GetShaderId() == "UsdTransform2d":
-                parts = {name: source.GetInput(name) for name in ("scale", "rotation", "translation")}
-                values = {name: one.Get() if one else None for name, one in parts.items()}
-                transform = UvTransform(
-                    tuple(values["scale"] or (1.0, 1.0)),
-                    float(values["rotation"] or 0.0),
-                    tuple(values["translation"] or (0.0, 0.0)),
-                )
-                given = source.GetInput("in")
-            else:
-                name = source.GetInput("varname")
-                self._uv = str((name.Get() if name else None) or "st")
-                break
-        return transform
+
+def _told(values: Any) -> str:
+    return "(" + ", ".join(f"{x:g}" for x in values) + ")"
