@@ -590,6 +590,73 @@ def BasisCurves "Hair" {
         load(tmp_path, CAMERA + text)
 
 
+def test_what_there_is_instead_of_shapes_is_named(tmp_path):
+    with pytest.raises(
+        ValueError, match=r"nothing that is seen: its prims are 1 of Camera, 1 of Material, 1 of Sha"
+    ):
+        load(tmp_path, CAMERA + paint(""))
+    with pytest.raises(ValueError, match="nothing that is seen: it has no prims"):
+        load(tmp_path, "")
+
+
+def test_values_of_other_types_are_left_out(tmp_path):
+    """A mesh is what is left of it, and no other is lost with it."""
+    for given in (
+        "int normals = 3",
+        'string normals = "up"',
+        "float[] normals = [1, 2]",
+        "normal3f[] normals = [(nan, 0, 0)]",
+    ):
+        odd = SQUARE.replace('"Square"', '"Odd"').replace(
+            "    int[] faceVertexCounts", f"    {given}\n    int[] faceVertexCounts"
+        )
+        with pytest.warns(RuntimeWarning, match="normals that are no rows of 3 finite numbers are left out"):
+            found = shapes(tmp_path, odd + SQUARE + paint(""))
+        assert [(mesh.name, mesh.normals) for mesh in found] == [("Odd", None), ("Square", None)]
+
+
+def test_normal_maps_are_scaled(tmp_path):
+    """A normal is what is stored times the scale plus the bias, and 2 and -1 if neither is given."""
+    normal = np.array((0.6, -0.48, 0.64))
+    link = "normal3f inputs:normal.connect = </Paint/P.outputs:rgb>"
+
+    def stored(values, inputs, name="n.png"):
+        if name.endswith(".png"):
+            Image.fromarray(np.full((2, 2, 3), np.round(255 * np.array(values)), np.uint8)).save(
+                tmp_path / name
+            )
+        else:
+            np.save(tmp_path / name, np.full((2, 2, 3), values, np.float32))
+        (square,) = shapes(tmp_path, SQUARE + paint(link, picture(name, inputs)))
+        texture = square.material.normals
+        return 2 * texture.image[0, 0].astype(float) / (255 if texture.image.dtype == np.uint8 else 1) - 1
+
+    halved = 0.5 + 0.5 * normal
+    assert stored(halved, "") == pytest.approx(normal, abs=5e-3)
+    usual = "float4 inputs:scale = (2, 2, 2, 1)\nfloat4 inputs:bias = (-1, -1, -1, 0)"
+    assert stored(halved, usual) == pytest.approx(normal, abs=5e-3)
+    turned = "float4 inputs:scale = (2, -2, 1, 1)\nfloat4 inputs:bias = (-1, 1, 0, 0)"
+    assert stored((halved[0], 1 - halved[1], normal[2]), turned) == pytest.approx(normal, abs=5e-3)
+    assert stored(normal, "", "n.npy") == pytest.approx(normal, abs=1e-6)
+    assert stored(halved, usual, "n.npy") == pytest.approx(normal, abs=1e-6)
+
+
+def test_a_texture_without_coordinates_of_its_own_is_one_point_of_its_picture(tmp_path):
+    pixels = np.arange(48, dtype=np.uint8).reshape(4, 4, 3)
+    Image.fromarray(pixels).save(tmp_path / "p.png")
+    for given, texel in (("", (3, 0)), ("float2 inputs:st = (0.9, 0.6)", (1, 3))):
+        more = re.sub(
+            "float2 inputs:st.connect = .*", given, picture("p.png", 'token inputs:sourceColorSpace = "raw"')
+        )
+        ink = paint("color3f inputs:emissiveColor.connect = </Paint/P.outputs:rgb>", more)
+        scene = load(tmp_path, CAMERA + SQUARE + ink).scene
+        eye = rw.Camera((1, 1, 5), direction=(0, 0, -1), width=2, height=2, fov=5)
+        seen = rw.render(scene, eye, rw.Path(0), samples=1, progress=False).rgb
+        # Near the middle of a texel or at the corner, beyond which the picture goes on.
+        assert seen[0, 0] == pytest.approx(pixels[texel] / 255, abs=0.03)
+        assert np.ptp(seen, axis=(0, 1)).max() < 1e-6
+
+
 def test_what_usd_prints_is_told_in_one_line(tmp_path, capfd):
     """A file of broken references makes USD print some lines for each."""
     text = "".join(f'def Xform "A{k}" (\n    references = </None{k}>\n) {{\n}}\n' for k in range(9))

@@ -1,6 +1,7 @@
 """Scenes of USD: meshes with their preview surfaces, cameras and lights, by PyPI's usd-core."""
 
 import errno
+from collections import Counter
 from pathlib import Path
 from typing import Any, Literal
 
@@ -99,7 +100,7 @@ def _shot(path: Path, notes: Notes, width: int | None, height: int | None) -> tu
         found, eye = _read(stage, reading)
         shapes_of = found["shape"]
         if not shapes_of:
-            raise ValueError("it holds nothing that is seen" + _why(reading))
+            raise ValueError("it holds nothing that is seen" + _why(stage, reading))
         shot = shown(shapes_of, found["light"], eye, up=up, width=width, height=height)
         around = found["around"]
         if found["light"] or around or any(getattr(one, "emission", None) is not None for one in shapes_of):
@@ -138,13 +139,17 @@ def _read(stage: Any, reading: Reading) -> tuple[dict[str, list[Any]], AnyCamera
     return found, eye
 
 
-def _why(reading: Reading) -> str:
+def _why(stage: Any, reading: Reading) -> str:
     """Return what of a stage was left out, for one of which nothing is seen."""
     reasons = [
         f"{count} {'prims are' if count > 1 else 'prim is'} {why}" for why, count in reading.unseen.items()
     ]
     reasons += reading.notes.told
-    return ": " + "; ".join(reasons) if reasons else ""
+    if not reasons:
+        types = Counter(str(prim.GetTypeName()) or "no type" for prim in stage.TraverseAll())
+        reasons = [f"{count} of {name}" for name, count in sorted(types.items())]
+        return f": its prims are {', '.join(reasons)}" if reasons else ": it has no prims"
+    return ": " + "; ".join(reasons)
 
 
 def _composed(stage: Any, path: Path, notes: Notes) -> list[str]:

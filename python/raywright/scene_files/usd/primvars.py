@@ -54,19 +54,18 @@ class Corners:
         primvar = found(self._prim, name)
         if primvar is None:
             return None
-        return self._at_corners(
-            name, _values(primvar, self._reading, columns), str(primvar.GetInterpolation())
-        )
+        values = _values(primvar, self._reading, columns)
+        return self._at_corners(name, values, str(primvar.GetInterpolation())) if len(values) else None
 
     def normals(self, mesh: Any) -> Floats | None:
         """Return the normal at each corner, (C, 3); None if there is none, or if they do not fit."""
         primvar = found(self._prim, "normals")
         if primvar is not None:
             return self.primvar("normals", 3)
-        values = self._reading.value(mesh.GetNormalsAttr())
-        if values is None or not len(values):
-            return None
-        return self._at_corners("normals", np.array(values, np.float64), str(mesh.GetNormalsInterpolation()))
+        values = rows("normals", self._reading.value(mesh.GetNormalsAttr()), self._reading, 3)
+        return (
+            self._at_corners("normals", values, str(mesh.GetNormalsInterpolation())) if len(values) else None
+        )
 
     def _at_corners(self, name: str, values: Floats, how: str) -> Floats | None:
         if how == "constant":
@@ -84,5 +83,19 @@ class Corners:
 
 
 def _values(primvar: Any, reading: Reading, columns: int) -> Floats:
-    given = primvar.ComputeFlattened(reading.time)
-    return np.array(() if given is None else given, np.float64).reshape(-1, columns)
+    return rows(str(primvar.GetPrimvarName()), primvar.ComputeFlattened(reading.time), reading, columns)
+
+
+def rows(name: str, given: Any, reading: Reading, columns: int) -> Floats:
+    """Return values as rows of numbers, (N, columns); none, which is noted, if they are something else."""
+    try:
+        values = np.array(() if given is None else given, np.float64)
+    except (TypeError, ValueError):
+        values = np.full(1, np.nan)
+    # One value is as good as an array of one.
+    if values.shape == (columns,) or (columns == 1 and values.ndim < 2):
+        values = values.reshape(-1, columns)
+    if values.size and (values.ndim != 2 or values.shape[1] != columns or not np.isfinite(values).all()):
+        reading.notes.tell(f"{name} that are no rows of {columns} finite numbers are left out")
+        return np.zeros((0, columns))
+    return values.reshape(-1, columns)

@@ -14,6 +14,8 @@ _WRAPS = {"clamp": "clamp", "mirror": "mirror", "repeat": "repeat", "useMetadata
 # A picture that cannot be read, and has no fallback of its own.
 _BLACK = (0.0, 0.0, 0.0, 1.0)
 _Four = tuple[float, float, float, float]
+# From what is stored of a normal to the normal.
+_HALVED, _LOWERED = (2.0, 2.0, 2.0), (-1.0, -1.0, -1.0)
 
 
 class Picture(NamedTuple):
@@ -36,17 +38,23 @@ class Textures:
         self._reading = reading
 
     def normal(self, link: Link) -> Picture | None:
-        """Return a normal map as it is stored; None if it cannot be read, which is noted."""
+        """Return a normal map, from 0 to 1; None if it cannot be read, which is noted."""
         node = link.node
         if (array := self._array(node)) is None:
             return None
-        scale, bias = _four(node, "scale", 1.0), _four(node, "bias", 0.0)
-        if (scale[:3], bias[:3]) not in (((2, 2, 2), (-1, -1, -1)), ((1, 1, 1), (0, 0, 0))):
-            self._reading.notes.tell(
-                "the scale and bias of normal maps are left out: they are taken as 2 and -1"
-            )
         transform, uv = self._placed(node)
-        return Picture(self._image(node, array, True, None, transform), uv)
+        given = node.is_given("scale") or node.is_given("bias")
+        scale, bias = _four(node, "scale", 1.0)[:3], _four(node, "bias", 0.0)[:3]
+        if (
+            (scale, bias) == (_HALVED, _LOWERED)
+            or array.shape[2] < 3
+            or not (given or array.dtype.kind == "f")
+        ):
+            # Stored as it is to be. Integers are never from -1 to 1, so they are if nothing is said.
+            return Picture(self._image(node, array, True, None, transform), uv)
+        values = _decoded(array[..., :3], True, None) * scale + bias
+        stored = (0.5 + 0.5 * values).clip(0, 1).astype(np.float32)
+        return Picture(self._image(node, stored, True, None, transform, ("normal", scale, bias)), uv)
 
     def read(self, link: Link, number: bool, limit: float | None, threshold: float = 0.0) -> Picture:
         """Return a texture, or a constant where its picture cannot be read.
@@ -154,25 +162,27 @@ class Textures:
             self._reading.textures[key] = made
         return made
 
-    def _placed(self, node: Node) -> tuple[UvTransform, str]:
-        """Return where coordinates come from, and the primvar that has them."""
-        transform, link = UvTransform(), node.link("st")
+    def _placed(self, node: Node) -> tuple[UvTransform, str | None]:
+        """Return where coordinates come from, and the primvar that has them; None if there is one point."""
+        transform, source, name = UvTransform(), node, "st"
         for _ in range(8):
+            link = source.link(name)
             if link is None:
-                break
-            source = link.node
+                # One point of the picture, which is its lower left if there is nothing else.
+                across, up = (float(x) for x in source.value(name, (0.0, 0.0)))
+                return _after(transform, UvTransform(matrix=((0, 0, across), (0, 0, up)))), None
+            source, name = link.node, "in"
             if source.kind != "UsdTransform2d":
                 if not source.kind.startswith("UsdPrimvarReader"):
-                    self._reading.notes.tell(
-                        f"coordinates of textures by {source.kind or 'no shader'} are left out"
-                    )
+                    kind = source.kind or "no shader"
+                    self._reading.notes.tell(f"coordinates of textures by {kind} are left out")
                 return transform, str(source.value("varname") or "st")
             own = UvTransform(
                 tuple(source.value("scale", (1.0, 1.0))),
                 float(source.value("rotation", 0.0)),
                 tuple(source.value("translation", (0.0, 0.0))),
             )
-            transform, link = _after(transform, own), source.link("in")
+            transform = _after(transform, own)
         return transform, "st"
 
 
