@@ -599,20 +599,21 @@ def test_what_there_is_instead_of_shapes_is_named(tmp_path):
         load(tmp_path, "")
 
 
-def test_values_of_other_types_are_left_out(tmp_path):
-    """A mesh is what is left of it, and no other is lost with it."""
-    for given in (
-        "int normals = 3",
-        'string normals = "up"',
-        "float[] normals = [1, 2]",
-        "normal3f[] normals = [(nan, 0, 0)]",
-    ):
-        odd = SQUARE.replace('"Square"', '"Odd"').replace(
-            "    int[] faceVertexCounts", f"    {given}\n    int[] faceVertexCounts"
+@pytest.mark.parametrize(
+    ("given", "told"),
+    [
+        ("int normals = 3", "/Square: normals has type int, expected normal3f[]"),
+        ('string normals = "up"', "/Square: normals has type string, expected normal3f[]"),
+        ("float[] normals = [1, 2]", "/Square: normals has type float[], expected normal3f[]"),
+        ("float[] primvars:st = [1, 2, 3]", "/Square: st must be rows of 2 numbers, got shape (3,)"),
+    ],
+)
+def test_values_of_other_types_are_told(tmp_path, given, told):
+    text = re.sub(".*primvars:st.*", "", SQUARE) + paint("")
+    with pytest.raises(ValueError, match=re.escape(told)):
+        shapes(
+            tmp_path, text.replace("    int[] faceVertexCounts", f"    {given}\n    int[] faceVertexCounts")
         )
-        with pytest.warns(RuntimeWarning, match="normals that are no rows of 3 finite numbers are left out"):
-            found = shapes(tmp_path, odd + SQUARE + paint(""))
-        assert [(mesh.name, mesh.normals) for mesh in found] == [("Odd", None), ("Square", None)]
 
 
 def test_normal_maps_are_scaled(tmp_path):

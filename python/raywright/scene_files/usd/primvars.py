@@ -62,7 +62,7 @@ class Corners:
         primvar = found(self._prim, "normals")
         if primvar is not None:
             return self.primvar("normals", 3)
-        values = rows("normals", self._reading.value(mesh.GetNormalsAttr()), self._reading, 3)
+        values = rows("normals", self._reading.value(mesh.GetNormalsAttr()), 3)
         return (
             self._at_corners("normals", values, str(mesh.GetNormalsInterpolation())) if len(values) else None
         )
@@ -83,19 +83,24 @@ class Corners:
 
 
 def _values(primvar: Any, reading: Reading, columns: int) -> Floats:
-    return rows(str(primvar.GetPrimvarName()), primvar.ComputeFlattened(reading.time), reading, columns)
+    return rows(str(primvar.GetPrimvarName()), primvar.ComputeFlattened(reading.time), columns)
 
 
-def rows(name: str, given: Any, reading: Reading, columns: int) -> Floats:
-    """Return values as rows of numbers, (N, columns); none, which is noted, if they are something else."""
+def rows(name: str, given: Any, columns: int) -> Floats:
+    """Return values as rows of numbers, (N, columns).
+
+    Raises
+    ------
+    ValueError
+        If they are something else.
+    """
     try:
         values = np.array(() if given is None else given, np.float64)
-    except (TypeError, ValueError):
-        values = np.full(1, np.nan)
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"{name} must be rows of {columns} numbers") from error
     # One value is as good as an array of one.
     if values.shape == (columns,) or (columns == 1 and values.ndim < 2):
         values = values.reshape(-1, columns)
-    if values.size and (values.ndim != 2 or values.shape[1] != columns or not np.isfinite(values).all()):
-        reading.notes.tell(f"{name} that are no rows of {columns} finite numbers are left out")
-        return np.zeros((0, columns))
+    if values.size and (values.ndim != 2 or values.shape[1] != columns):
+        raise ValueError(f"{name} must be rows of {columns} numbers, got shape {values.shape}")
     return values.reshape(-1, columns)
