@@ -47,9 +47,10 @@ def quiet(strictly: type[Warning] | None = None) -> Iterator[None]:
 
 def warn_caller(message: str) -> None:
     """Warn at the line outside of this package from where it was called."""
-    package = __name__.partition(".")[0]
+    # Decorators of numpy stand between.
+    packages = __name__.partition(".")[0], "numpy"
     frame, level = sys._getframe(1), 2
-    while frame.f_back is not None and frame.f_globals.get("__name__", "").partition(".")[0] == package:
+    while frame.f_back is not None and frame.f_globals.get("__name__", "").partition(".")[0] in packages:
         frame, level = frame.f_back, level + 1
     warnings.warn(message, RuntimeWarning, stacklevel=level)
 

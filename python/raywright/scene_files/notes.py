@@ -1,7 +1,8 @@
 """Notes about a scene file: what of it is not shown as it says."""
 
-import warnings
 from pathlib import Path
+
+from ..io.quiet import warn_caller
 
 
 class Notes:
@@ -27,6 +28,6 @@ class Notes:
         return list(self._told)
 
     def warn(self) -> None:
-        """Warn of all notes, in the name of whoever called the reader."""
+        """Warn of all notes, where the library was called."""
         for what in self._told:
-            warnings.warn(f"{self.path}: {what}", RuntimeWarning, stacklevel=4)
+            warn_caller(f"{self.path}: {what}")
