@@ -9,7 +9,16 @@ from numpy.typing import NDArray
 _Floats: TypeAlias = NDArray[np.floating[Any]]
 _Numbers: TypeAlias = float | NDArray[np.float64]
 # Origins, directions, t_min, t_max, the leading shape of all, threads, time.
-_Rays: TypeAlias = tuple[_Floats, _Floats, _Numbers, _Numbers, tuple[int, ...], int | None, _Numbers | None]
+_Rays: TypeAlias = tuple[
+    _Floats,
+    _Floats,
+    _Numbers,
+    _Numbers,
+    tuple[int, ...],
+    int | None,
+    _Numbers | None,
+    NDArray[np.bool_] | None,
+]
 
 __all__ = [
     "PILOT",

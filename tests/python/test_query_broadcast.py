@@ -61,11 +61,13 @@ def test_every_call_answers_as_if_nothing_were_broadcast(name, shapes, kind):
     parts = rays(shapes, kind)
     full = whole(parts)
     time = RNG.uniform(0, 1, parts[1].shape[:-1])
-    mask = RNG.random(full[2].shape) < 0.8
+    mask, some = (RNG.random(shape) < 0.8 for shape in (full[2].shape, parts[1].shape[:-1]))
     for options, expanded in (
         ({}, {}),
         ({"time": time}, {"time": np.array(np.broadcast_to(time, full[2].shape))}),
         ({"mask": mask}, {"mask": mask}),
+        ({"mask": some}, {"mask": np.array(np.broadcast_to(some, full[2].shape))}),
+        ({"mask": False}, {"mask": np.zeros(full[2].shape, np.bool_)}),
         ({"cull": "back"}, {"cull": "back"}),
     ):
         hits, wanted = scene.intersect(*parts, **options), scene.intersect(*full, **expanded)
@@ -106,7 +108,7 @@ scene = rw.Scene(rw.scenes.torus_knot(along=20, around=6))
 points = np.random.default_rng(1).normal(0, 2, (2000, 3))
 scene.occluded(points, (0, 0, 1.0))
 before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-hidden = scene.occluded(points[None], points[:, None])
+hidden = scene.occluded(points[None], points[:, None], mask=points[:, :1] < 9)
 counts = scene.count(points[None], points[:, None], t_max=np.full((2000, 1), 9.0))
 after = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 assert np.array_equal(hidden, counts > 0) or (hidden >= (counts > 0)).all()

@@ -11,8 +11,9 @@ from .._core import FlatScene
 from ..locks import Lock
 from ..query.flats import flat_arrays
 from ..query.hits import Hits
+from ..query.masks import asked
 from ..query.queries import known_by
-from ..query.rays import RayArguments, ray_arguments
+from ..query.rays import AskedRays, ray_arguments
 from ..scene.scene import Scene
 from .kernels import Kernels
 from .stats import GpuStats
@@ -72,7 +73,7 @@ class GpuScene:
         RuntimeError
             If the ``with`` block has ended.
         """
-        rays = ray_arguments(origins, directions, t_min, t_max, threads, time)
+        rays = asked(ray_arguments(origins, directions, t_min, t_max, threads, time), None)
         with self._lock:
             told = self._ask("closest", rays)
         hits, (decided, walked) = self._flat.intersect(rays, told)
@@ -99,7 +100,7 @@ class GpuScene:
         RuntimeError
             If the ``with`` block has ended.
         """
-        rays = ray_arguments(origins, directions, t_min, t_max, threads, time)
+        rays = asked(ray_arguments(origins, directions, t_min, t_max, threads, time), None)
         with self._lock:
             told = self._ask("occluded", rays)
         found, (decided, walked) = self._flat.occluded(rays, told)
@@ -108,7 +109,7 @@ class GpuScene:
         self._stats.any_walked += walked
         return found
 
-    def _ask(self, kernel: str, rays: RayArguments) -> NDArray[np.uint32]:
+    def _ask(self, kernel: str, rays: AskedRays) -> NDArray[np.uint32]:
         """Return what a kernel says of all rays; what it does not say is left open."""
         if self._is_closed:
             raise RuntimeError("the scene is on the device no more: its with block has ended")
@@ -155,9 +156,9 @@ class GpuScene:
         return f"GpuScene({self._core.accelerator.primitives} primitives on {self._name!r})"
 
 
-def _part(rays: RayArguments, count: int, start: int, stop: int) -> RayArguments:
+def _part(rays: AskedRays, count: int, start: int, stop: int) -> AskedRays:
     """Return the rays from `start` to `stop` of `count`, as the core takes them; time is not asked for."""
-    origins, directions, t_min, t_max, lead, threads, _ = rays
+    origins, directions, t_min, t_max, lead, threads, *_ = rays
 
     def some(array: NDArray[Any], columns: tuple[int, ...]) -> NDArray[Any]:
         if array.flags.c_contiguous:
@@ -168,4 +169,4 @@ def _part(rays: RayArguments, count: int, start: int, stop: int) -> RayArguments
 
     starts, ways = (some(array, (3,)) for array in (origins, directions))
     near, far = (some(x, ()) if isinstance(x, np.ndarray) else x for x in (t_min, t_max))
-    return starts, ways, near, far, (stop - start,), threads, None
+    return starts, ways, near, far, (stop - start,), threads, None, None

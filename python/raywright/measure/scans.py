@@ -231,7 +231,8 @@ def _scanned(
         return means
 
     def of_first(values: ArrayLike) -> NDArray[Any]:
-        return np.take_along_axis(np.asarray(values), order, axis=1).reshape(-1)[first]
+        chosen: NDArray[Any] = np.take_along_axis(np.asarray(values), order, axis=1).reshape(-1)[first]
+        return chosen
 
     return {
         "beam": np.repeat(beams, t.shape[1])[first],

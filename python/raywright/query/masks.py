@@ -6,7 +6,7 @@ from typing import Literal, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .rays import RayArguments, spread
+from .rays import AskedRays, RayArguments, view
 
 ShapeMask: TypeAlias = str | Sequence[str] | ArrayLike
 Cull: TypeAlias = Literal["back"]
@@ -49,8 +49,8 @@ def _each(shapes: ShapeMask, names: tuple[str, ...]) -> list[bool]:
     return kept
 
 
-def asked(rays: RayArguments, mask: ArrayLike | None) -> RayArguments:
-    """Return the rays, of which those without a True in `mask` meet nothing.
+def asked(rays: RayArguments, mask: ArrayLike | None) -> AskedRays:
+    """Return rays as the core takes them: those without a True in `mask`, if there is one, meet nothing.
 
     Raises
     ------
@@ -60,19 +60,15 @@ def asked(rays: RayArguments, mask: ArrayLike | None) -> RayArguments:
         If it is not bool.
     """
     if mask is None:
-        return rays
-    starts, ways, near, far, shape, threads, time = rays
+        return *rays, None
     which: NDArray[np.bool_] = np.asarray(mask)
     if which.dtype != np.bool_:
         raise TypeError(f"mask must be bool, one for each ray, got dtype {which.dtype}")
+    shape = rays[4]
     try:
-        which = np.broadcast_to(which, shape)
+        np.broadcast_to(which, shape)
     except ValueError:
         raise ValueError(
             f"mask has shape {which.shape}, which does not broadcast to rays of {shape}"
         ) from None
-    # No t lies before minus infinity.
-    ends = np.where(
-        which, far.reshape(shape) if isinstance(far, np.ndarray) and far.size > 1 else far, -np.inf
-    )
-    return starts, ways, near, spread(ends, shape), shape, threads, time
+    return *rays, view(which, shape)

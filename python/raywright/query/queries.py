@@ -16,7 +16,7 @@ from .interactions import Interactions, Rays
 from .masks import Cull, ShapeMask, asked, counted
 from .photons import Photons, photon_arguments
 from .points import PointQueries
-from .rays import RayArguments, flags, ray_arguments
+from .rays import AskedRays, flags, ray_arguments
 
 
 class Queries(PointQueries):
@@ -82,11 +82,9 @@ class Queries(PointQueries):
         Rays with NaN, infinity or a zero direction (or one shorter than the least normal number) hit nothing.
         Hits are watertight: no ray passes between two faces that share an edge or a corner and count.
         """
-        rays = ray_arguments(origins, directions, t_min, t_max, threads, time)
+        rays = asked(ray_arguments(origins, directions, t_min, t_max, threads, time), mask)
         core = self._core or self._compiled()
-        what = None
-        if not (mask is None and shapes is None and cull is None):
-            rays, what = asked(rays, mask), counted(shapes, cull, core.names)
+        what = None if shapes is None and cull is None else counted(shapes, cull, core.names)
         if out is None:
             return Hits(*core.intersect(rays, None, what), core, known_by(core, rays))
         with rewritten(out, rays[4]) as arrays:
@@ -210,7 +208,7 @@ class Queries(PointQueries):
         (...) int32
             With the leading shape of the rays.
         """
-        rays = ray_arguments(origins, directions, t_min, t_max, threads, time)
+        rays = asked(ray_arguments(origins, directions, t_min, t_max, threads, time), None)
         return (self._core or self._compiled()).count(rays)
 
     def cost(
@@ -232,7 +230,7 @@ class Queries(PointQueries):
         QueryCost
             With the leading shape of the rays.
         """
-        rays = ray_arguments(origins, directions, t_min, t_max, threads, time)
+        rays = asked(ray_arguments(origins, directions, t_min, t_max, threads, time), None)
         return QueryCost(*(self._core or self._compiled()).cost(rays))
 
     def pick(
@@ -474,6 +472,6 @@ class Queries(PointQueries):
         return Photons.of(*_core.photons(self._core or self._compiled(), *arguments))
 
 
-def known_by(core: CompiledScene, rays: RayArguments) -> tuple[Any, ...] | None:
+def known_by(core: CompiledScene, rays: AskedRays) -> tuple[Any, ...] | None:
     """Return what hits have to keep of their rays to know their points: nothing of meshes."""
     return (*rays[:2], 0.0 if rays[6] is None else rays[6]) if core.curved else None

@@ -18,6 +18,17 @@ RayArguments: TypeAlias = tuple[
     int | None,
     float | NDArray[np.float64] | None,
 ]
+# As the core takes them: with the mask of those that are asked, or None for all.
+AskedRays: TypeAlias = tuple[
+    Floats,
+    Floats,
+    float | NDArray[np.float64],
+    float | NDArray[np.float64],
+    tuple[int, ...],
+    int | None,
+    float | NDArray[np.float64] | None,
+    NDArray[np.bool_] | None,
+]
 
 
 def ray_arguments(
@@ -36,7 +47,8 @@ def ray_arguments(
     Returns
     -------
     origins, directions, t_min, t_max, shape, threads, time
-        `shape` is the leading shape of the rays; `time` may be None, which is 0 for all.
+        `shape` is the leading shape of the rays; `time` may be None, which is 0 for all. With a mask, as
+        `masks.asked` has it, they are what the core takes.
     """
     starts = last_axis("origins", origins, 3)
     ways = last_axis("directions", directions, 3)
@@ -48,9 +60,9 @@ def ray_arguments(
     if type(near) is float and type(far) is float and not isinstance(when, np.ndarray):
         # The usual rays need no broadcasting, and a few of them no more time than it takes to trace them.
         if not lead or shape == lead:
-            return _view(starts, shape, 1), _view(ways, lead, 1), near, far, shape, threads, when
+            return view(starts, shape, 1), view(ways, lead, 1), near, far, shape, threads, when
         if not shape:
-            return _in_order(starts), _view(ways, lead, 1), near, far, lead, threads, when
+            return _in_order(starts), view(ways, lead, 1), near, far, lead, threads, when
     parts = {"origins": shape, "directions": lead, "t_min": np.shape(near), "t_max": np.shape(far)}
     if isinstance(when, np.ndarray):
         parts["time"] = when.shape
@@ -59,9 +71,9 @@ def ray_arguments(
     except ValueError:
         told = ", ".join(f"{name} {lead}" for name, lead in parts.items())
         raise ValueError(f"leading shapes do not broadcast: {told}") from None
-    near, far = (_view(x, shape) if isinstance(x, np.ndarray) else x for x in (near, far))
-    when = _view(when, shape) if isinstance(when, np.ndarray) else when
-    return _view(starts, shape, 1), _view(ways, shape, 1), near, far, shape, threads, when
+    near, far = (view(x, shape) if isinstance(x, np.ndarray) else x for x in (near, far))
+    when = view(when, shape) if isinstance(when, np.ndarray) else when
+    return view(starts, shape, 1), view(ways, shape, 1), near, far, shape, threads, when
 
 
 def flags(name: str, array: NDArray[np.bool_], shape: tuple[int, ...]) -> NDArray[np.bool_]:
@@ -128,7 +140,7 @@ def _in_order(array: NDArray[Any]) -> NDArray[Any]:
     return array if flags.c_contiguous and flags.aligned else np.require(array, requirements=["C", "A"])
 
 
-def _view(array: NDArray[Any], lead: tuple[int, ...], columns: int = 0) -> NDArray[Any]:
+def view(array: NDArray[Any], lead: tuple[int, ...], columns: int = 0) -> NDArray[Any]:
     """Return it with a row for each ray, C-contiguous but where it repeats; or one row for all."""
     if array.flags.c_contiguous and array.flags.aligned:
         base = array

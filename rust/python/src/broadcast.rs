@@ -71,8 +71,8 @@ impl Repeats {
     }
 }
 
-/// The numbers of some rays: the one that serves for all, those of an array with one for each, or as they repeat.
-pub fn numbers(repeats: Option<&Repeats>, all: &[f64], start: usize, count: usize) -> Vec<f64> {
+/// What some rays have each: the one that serves for all, that of an array with one for each, or as they repeat.
+pub fn some_of<T: Copy>(repeats: Option<&Repeats>, all: &[T], start: usize, count: usize) -> Vec<T> {
     match repeats {
         Some(repeats) => repeats.rows(all, start, count),
         None if all.len() == 1 => all.to_vec(),

@@ -1,10 +1,11 @@
 //! Batches of rays as they come, and their answers shared out among threads.
 
+use numpy::PyReadonlyArrayDyn;
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 
 use super::arrays::{Numbers, Row, Rows, Triples};
-use super::broadcast::{Held, Repeats, numbers};
+use super::broadcast::{Held, Repeats, some_of};
 use raywright::math::gathering::WINDOW;
 use raywright::math::{Ray, Tiling, row_length};
 use raywright::{parallel, workers};
@@ -46,14 +47,16 @@ pub struct RayArguments<'py> {
     pub threads: Option<usize>,
     /// None is 0 for all.
     pub time: Option<Numbers<'py>>,
+    /// Which of them are asked, or all: the others meet nothing.
+    pub mask: Option<PyReadonlyArrayDyn<'py, bool>>,
 }
 
 impl<'py> FromPyObject<'_, 'py> for RayArguments<'py> {
     type Error = PyErr;
 
     fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
-        let (origins, directions, t_min, t_max, shape, threads, time) = object.extract()?;
-        Ok(Self { origins, directions, t_min, t_max, shape, threads, time })
+        let (origins, directions, t_min, t_max, shape, threads, time, mask) = object.extract()?;
+        Ok(Self { origins, directions, t_min, t_max, shape, threads, time, mask })
     }
 }
 
@@ -87,7 +90,14 @@ impl RayArguments<'_> {
             },
         };
         let rays = RayArrays { origins, directions, t_min, t_max, time, count, tiling: Tiling::new(count, row) };
-        Ok(RayBatch { rays, repeats: repeats.iter().any(Option::is_some).then(|| Box::new(repeats)) })
+        let mask = self.mask.as_ref().map(|mask| Repeats::of("mask", mask, 1)).transpose()?;
+        if let Some((asked, None)) = mask
+            && ![1, count].contains(&asked.len())
+        {
+            return Err(PyValueError::new_err(format!("mask has {} entries, expected {count}", asked.len())));
+        }
+        let is_whole = mask.is_none() && repeats.iter().all(Option::is_none);
+        Ok(RayBatch { rays, mask, repeats: (!is_whole).then(|| Box::new(repeats)) })
     }
 }
 
@@ -95,6 +105,8 @@ impl RayArguments<'_> {
 /// memory for its answer and no more.
 pub struct RayBatch<'a> {
     rays: RayArrays<'a>,
+    mask: Option<(&'a [bool], Option<Repeats>)>,
+    /// Of origins, directions, `t_min`, `t_max` and time; none if no array repeats and there is no mask.
     repeats: Option<Box<[Option<Repeats>; 5]>>,
 }
 
@@ -121,8 +133,20 @@ impl RayBatch<'_> {
         let RayArrays { origins, directions, t_min, t_max, time, tiling, .. } = self.rays;
         let some = |i: usize, rows| Held::of(repeats[i].as_ref(), rows, start, count);
         let (origins, directions) = (some(0, origins), some(1, directions));
-        let some = |i: usize, all| numbers(repeats[i].as_ref(), all, start, count);
-        let (t_min, t_max, time) = (some(2, t_min), some(3, t_max), some(4, time));
+        let some = |i: usize, all| some_of(repeats[i].as_ref(), all, start, count);
+        let (t_min, mut t_max, time) = (some(2, t_min), some(3, t_max), some(4, time));
+        if let Some((asked, repeats)) = &self.mask {
+            let asked = some_of(repeats.as_ref(), asked, start, count);
+            if asked.len().max(t_max.len()) > 1 && t_max.len() == 1 {
+                t_max = vec![t_max[0]; count];
+            }
+            for (i, far) in t_max.iter_mut().enumerate() {
+                // No t lies before minus infinity.
+                if !asked[if asked.len() == 1 { 0 } else { i }] {
+                    *far = f64::NEG_INFINITY;
+                }
+            }
+        }
         let (origins, directions) = (origins.rows(), directions.rows());
         let (t_min, t_max, time) = (&*t_min, &*t_max, &*time);
         work(&RayArrays { origins, directions, t_min, t_max, time, count, tiling }, 0)
