@@ -1,7 +1,6 @@
 //! Threads: pools by size, and work that the calling thread watches and can stop.
 
 use rayon::ThreadPoolBuilder;
-use std::collections::HashMap;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
@@ -57,7 +56,8 @@ impl Pool {
     }
 }
 
-/// The pool of so many threads, or of one a core. Made once and kept.
+/// The pool of so many threads, or of one a core. Made when it is first used and kept: the latter for ever, others as
+/// long as those used since have no more than [`MOST_KEPT`] threads.
 ///
 /// A process that was forked has none of its parent's threads and would wait for them forever, so pools are kept by
 /// process as well; this is also why the global pool is never used.
@@ -70,23 +70,57 @@ pub fn onlookers() -> Result<Arc<Pool>, String> {
     kept(None, true)
 }
 
+/// Threads of the pools of a given number of threads that are kept, or of one such pool.
+const MOST_KEPT: usize = 64;
+
+/// A process, the number of threads that was given, and whether they are onlookers.
+type Key = (u32, Option<usize>, bool);
+
 fn kept(threads: Option<usize>, looks: bool) -> Result<Arc<Pool>, String> {
-    type Pools = HashMap<(u32, Option<usize>, bool), Arc<Pool>>;
-    static POOLS: Mutex<Option<Pools>> = Mutex::new(None);
-    let mut pools = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
-    let pools = pools.get_or_insert_with(HashMap::new);
-    let key = (std::process::id(), threads, looks);
-    if let Some(pool) = pools.get(&key) {
-        return Ok(Arc::clone(pool));
+    static POOLS: Mutex<Pools> = Mutex::new(Pools(Vec::new()));
+    POOLS.lock().unwrap_or_else(PoisonError::into_inner).get((std::process::id(), threads, looks))
+}
+
+/// Pools that are kept, of which the one used last comes last.
+struct Pools(Vec<(Key, Arc<Pool>)>);
+
+impl Pools {
+    /// That of a key, which is made if it is not there.
+    fn get(&mut self, key: Key) -> Result<Arc<Pool>, String> {
+        if let Some(at) = self.0.iter().position(|(of, _)| *of == key) {
+            self.0[at..].rotate_left(1);
+            return Ok(Arc::clone(&self.0[self.0.len() - 1].1));
+        }
+        let (_, threads, _) = key;
+        let pool = ThreadPoolBuilder::new()
+            .num_threads(threads.unwrap_or(0))
+            .thread_name(|i| format!("raywright-{i}"))
+            .build()
+            .map_err(|e| format!("no pool of {threads:?} threads: {e}"))?;
+        let pool = Arc::new(Pool(pool));
+        self.0.push((key, Arc::clone(&pool)));
+        self.forget_old();
+        Ok(pool)
     }
-    let pool = ThreadPoolBuilder::new()
-        .num_threads(threads.unwrap_or(0))
-        .thread_name(|i| format!("raywright-{i}"))
-        .build()
-        .map_err(|e| format!("no pool of {threads:?} threads: {e}"))?;
-    let pool = Arc::new(Pool(pool));
-    pools.insert(key, Arc::clone(&pool));
-    Ok(pool)
+
+    /// Drops pools of this process that were not used for long, while there are too many threads. These end once the
+    /// work is done that they still have. Those of a process that this one was forked from are not its own to end.
+    fn forget_old(&mut self) {
+        let (own, mut left) = (std::process::id(), MOST_KEPT);
+        for at in (0..self.0.len()).rev() {
+            let ((process, threads, _), pool) = &self.0[at];
+            if *process != own || threads.is_none() {
+                continue;
+            }
+            let (count, is_last) = (pool.threads(), at + 1 == self.0.len());
+            if count <= left || is_last {
+                left = left.saturating_sub(count);
+            } else {
+                left = 0;
+                self.0.remove(at);
+            }
+        }
+    }
 }
 
 /// Does `work` on the pool of so many threads while the calling thread calls `watch` 50 times a second; when that
@@ -188,6 +222,38 @@ mod tests {
             assert_eq!(pool.install(crate::parallel::threads), threads);
             assert!(Arc::ptr_eq(&pool, &super::pool(Some(threads)).unwrap()));
         }
+    }
+
+    #[test]
+    fn pools_that_were_not_used_for_long_are_dropped() {
+        let mut pools = Pools(Vec::new());
+        let weak = |pools: &mut Pools, threads: Option<usize>| {
+            let pool = pools.get((std::process::id(), threads, false)).unwrap();
+            (pool.threads(), Arc::downgrade(&pool))
+        };
+        let whole = weak(&mut pools, None);
+        // Of a process that this one was forked from.
+        pools.get((0, Some(3), false)).unwrap();
+        let all: Vec<_> = (2..=40).chain([5]).map(|threads| weak(&mut pools, Some(threads))).collect();
+        let alive = |all: &[(usize, std::sync::Weak<Pool>)]| -> usize {
+            all.iter().filter(|(_, pool)| pool.strong_count() > 0).map(|(threads, _)| threads).sum()
+        };
+        assert!((5..=MOST_KEPT).contains(&alive(&all)));
+        assert!(all.last().unwrap().1.strong_count() == 1);
+        // What one is at work on that is dropped goes on to its end.
+        let ((release, held), (done, ended)) = (channel::<()>(), channel());
+        let three = pools.get((std::process::id(), Some(3), false)).unwrap();
+        three.0.spawn(move || {
+            held.recv().unwrap();
+            done.send(crate::parallel::threads()).unwrap();
+        });
+        drop(three);
+        weak(&mut pools, Some(MOST_KEPT + 1));
+        assert_eq!(alive(&all), 0);
+        release.send(()).unwrap();
+        assert_eq!(ended.recv(), Ok(3));
+        assert_eq!(pools.0.len(), 3);
+        assert!(whole.1.strong_count() == 1);
     }
 
     #[test]
