@@ -232,3 +232,23 @@ def test_names_of_the_same_letters_are_told_apart_where_both_are_there(tmp_path)
     for name, color in (("a.mtl", (1, 0, 0)), ("A.MTL", (0, 1, 0))):
         (mesh,) = read(tmp_path, f"mtllib {name}\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n")
         assert mesh.material.reflectance == color
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda text: "\ufeff" + text,
+        lambda text: text.replace("\n", "\r"),
+        lambda text: text.replace("\n", "\f\n"),
+        lambda text: text.replace(" ", " \t "),
+        lambda text: text.replace("\n", " # Größe\n"),
+        lambda text: text + "\0\0\0",
+        lambda text: text + "\x1a",
+        lambda text: "g Größe\n" + text,
+    ],
+)
+def test_white_space_and_ends_of_files_may_be_any(tmp_path, change):
+    text = "v 0 0 0\nv 4 1 0\nv 0 2 0\nv 1.5 1 0\nf 1 2 3 4\n"
+    (mesh,) = read(tmp_path, change(text))
+    a, b, c = np.moveaxis(mesh.vertices[mesh.faces], 1, 0)
+    assert np.cross(b - a, c - a)[:, 2].sum() == 5

@@ -224,6 +224,7 @@ def test_strips_of_triangles(tmp_path, form):
     "change",
     [
         lambda data: b"\xef\xbb\xbf" + data,
+        lambda data: data.decode().encode("utf-16"),
         lambda data: data + b"\n\n1 2 3 extra\n",
         lambda data: data + bytes(7),
         lambda data: data.replace(b"ply\n", b"PLY\n", 1),

@@ -69,8 +69,6 @@ class Geometry:
     def __init__(self, text: bytes, whole: bool = False) -> None:
         if b"\0" in text:
             raise ValueError("it is no text")
-        if b"\t" in text:
-            text = text.replace(b"\t", b" ")
         tables: dict[bytes, list[bytes]] = {b"v": [], b"vt": [], b"vn": []}
         self.libraries: list[bytes] = []
         self._faces: dict[str | None, list[bytes]] = {}

@@ -2,19 +2,15 @@
 
 import re
 
-_UTF16 = (b"\xff\xfe", b"\xfe\xff")
-_UTF8 = b"\xef\xbb\xbf"
+from ..tokens import plain_text
+
 _KEYWORD = re.compile(r"[\w.-]{1,24}", re.ASCII)
 _JOINED = re.compile(rb"\\[ \t]*\n")
 
 
 def text_of(data: bytes) -> bytes:
-    """Return a file's text with one kind of line end, and lines joined where a backslash ends one."""
-    if data.startswith(_UTF16):
-        data = data.decode("utf-16", "replace").encode()
-    if b"\r" in data:
-        data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
-    return _JOINED.sub(b" ", data.removeprefix(_UTF8))
+    """Return a file's text as `plain_text` does, and lines joined where a backslash ends one."""
+    return _JOINED.sub(b" ", plain_text(data, names=True))
 
 
 def name_of(words: bytes) -> str:

@@ -9,7 +9,7 @@ from pathlib import Path
 from ...io.quiet import refused
 from ...shapes.mesh import Mesh
 from ..elements import Data, read_bytes, read_text
-from ..tokens import plain_text
+from ..tokens import plain_text, without_mark
 from .faces import faces_of, indices_of
 from .header import Header, read_header
 from .looks import columns, coordinates, look_of
@@ -68,7 +68,7 @@ def read_ply_whole(path: Path) -> Mesh | None:
 
 
 def _read(path: Path) -> tuple[Header, dict[str, Data]]:
-    data = path.read_bytes().removeprefix(b"\xef\xbb\xbf")
+    data = without_mark(path.read_bytes())
     header = read_header(data)
     # What has no properties takes no place.
     elements = [element for element in header.elements if element.properties]
