@@ -4,6 +4,7 @@ import pickle
 
 import numpy as np
 import pytest
+import trimesh
 
 import raywright as rw
 
@@ -217,6 +218,43 @@ def test_instances_are_values(box: rw.Mesh) -> None:
     np.testing.assert_array_equal(again.instance, hits.instance)
 
 
+def sheared(by: float) -> np.ndarray:
+    matrix = np.eye(4)
+    matrix[:2, :2] = [[1, 1], [1, 1 + by]]
+    return matrix
+
+
+def test_rays_that_must_hit_do_up_to_the_condition_that_is_refused() -> None:
+    rng = np.random.default_rng(9)
+    ball = trimesh.creation.icosphere(subdivisions=1)
+    mesh = rw.Mesh(ball.vertices, ball.faces)
+    inside = 0.85 * ball.vertices[rng.integers(len(ball.vertices), size=500)]
+    taken = []
+    for power in (0, 2, 4, 5, 7, 9, 12, 16):
+        turns = [np.linalg.qr(rng.normal(size=(3, 3)))[0] for _ in range(2)]
+        for turned in (turns[1], np.eye(3)):
+            matrix = np.eye(4)
+            matrix[:3, :3] = turns[0] @ np.diag((1, 1, 10.0**-power)) @ turned
+            matrix[:3, 3] = rng.normal(size=3)
+            linear = matrix[:3, :3]
+            condition = (abs(linear) @ abs(np.linalg.inv(linear))).sum(axis=1).max()
+            if condition > 1.1 * 2**20:
+                with pytest.raises(ValueError, match="badly conditioned"):
+                    rw.Instance(mesh, matrix)
+                continue
+            if condition > 0.9 * 2**20:
+                continue
+            scene = rw.Scene(rw.Instance(mesh, matrix))
+            taken.append(power)
+            for far in (3.0, 100.0):
+                origins = rng.normal(size=(500, 3)) * far
+                targets = inside @ matrix[:3, :3].T + matrix[:3, 3]
+                assert scene.intersect(origins, targets - origins).hit.all()
+    # What is scaled along its own axes and turned is well conditioned, whatever the scale.
+    assert taken.count(4) == 2
+    assert taken.count(16) == 1
+
+
 @pytest.mark.parametrize(
     ("transform", "told"),
     [
@@ -231,6 +269,12 @@ def test_instances_are_values(box: rw.Mesh) -> None:
             np.diag((1e-320, 1, 1, 1)),
             "transform must have an inverse: its inverse is more than float64 holds",
         ),
+        (
+            np.stack([np.eye(4), sheared(1e-15)]),
+            r"transform\[1\] must have an inverse that keeps its digits: "
+            r"it is too badly conditioned, by 3\.6e15 where 1\.0e6 is the most",
+        ),
+        (sheared(1e-7), r"it is too badly conditioned, by 4\.0e7 where 1\.0e6 is the most"),
     ],
 )
 def test_a_transform_that_cannot_be_says_why(box: rw.Mesh, transform: np.ndarray, told: str) -> None:

@@ -81,8 +81,9 @@ class Instance:
     Raises
     ------
     ValueError
-        If a matrix has the wrong shape, is not finite, has another last row or no inverse (tells which and
-        why), or there are 2^31 primitives or more, all copies within counted.
+        If a matrix has the wrong shape, is not finite, has another last row or no inverse, or is too badly
+        conditioned for rays to keep their digits (tells which and why), or there are 2^31 primitives or more,
+        all copies within counted.
     TypeError
         If something is not of the kinds above.
 
@@ -95,6 +96,9 @@ class Instance:
     A ray is taken to the space of the shapes by the inverse of the matrix, rounded to float64, and hits are
     exact for it as it is taken there. Compared with shapes that are moved themselves, hits differ by what
     rounding moved vertices makes, and not at all where neither rounds, as with integers and powers of two.
+    By how much depends on the condition of the matrix, the greatest row sum of ``|L| |L⁻¹|`` of its linear
+    part ``L``. It is at most 3 for a scaling along the axes of the shapes and a turn after it; matrices of
+    more than 2^20 are refused.
 
     Closed surfaces in copies count for ``contains``, and all that is in them for ``closest_point``.
     """
@@ -239,7 +243,8 @@ def _matrices(name: str, value: ArrayLike) -> NDArray[np.float64]:
     array = frozen(array)
     if (singular := _core.singular_transform(array)) is not None:
         index, why = singular
-        raise ValueError(f"{which(index)} must have an inverse: {why}")
+        kept = " that keeps its digits" if "conditioned" in why else ""
+        raise ValueError(f"{which(index)} must have an inverse{kept}: {why}")
     return array
 
 

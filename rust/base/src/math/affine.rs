@@ -28,15 +28,20 @@ pub enum Singular {
     ZeroDeterminant,
     /// The inverse is more than f64 holds.
     OutOfRange,
+    /// Rounding is amplified by the first number, where no more than by the second is allowed.
+    IllConditioned(f64, f64),
 }
 
 impl std::fmt::Display for Singular {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
-            Self::NotFinite => "a number of it is not finite",
-            Self::ZeroDeterminant => "its determinant is 0",
-            Self::OutOfRange => "its inverse is more than float64 holds",
-        })
+        match self {
+            Self::NotFinite => f.write_str("a number of it is not finite"),
+            Self::ZeroDeterminant => f.write_str("its determinant is 0"),
+            Self::OutOfRange => f.write_str("its inverse is more than float64 holds"),
+            Self::IllConditioned(condition, most) => {
+                write!(f, "it is too badly conditioned, by {condition:.1e} where {most:.1e} is the most")
+            }
+        }
     }
 }
 

@@ -32,6 +32,12 @@ pub struct Pose {
 /// Up to here the quick inverse is as good as any.
 const WELL_CONDITIONED: f64 = 64.0;
 
+/// The greatest κ of a map that rays are taken through: from up to 2⁷ sizes of an instance away they meet its box where
+/// they hit it ([`Pose::around`]), and are off by less than 2⁻³¹ of that distance.
+///
+/// κ does not depend on how the axes of the prototype are scaled: it is at most 3 for a scaling and a turn after it.
+pub const MOST_CONDITION: f64 = (1 << 20) as f64;
+
 #[inline(always)]
 fn times(rows: &Rows, v: DVec3) -> DVec3 {
     DVec3::new(rows[0].dot(v), rows[1].dot(v), rows[2].dot(v))
@@ -79,14 +85,19 @@ impl Pose {
     /// Of a map by its rows, each of three numbers of the linear part and one of the shift.
     ///
     /// # Errors
-    /// If it has no inverse, or a number is not finite.
+    /// If it has no inverse, a number is not finite, or κ is more than [`MOST_CONDITION`].
     #[inline]
     pub fn new(matrix: &[[f64; 4]; 3]) -> Result<Self, Singular> {
         let (rows, shift) = parts(matrix);
         if !shift.is_finite() || !rows.iter().all(|row| row.is_finite()) {
             return Err(Singular::NotFinite);
         }
-        Ok(Self { inverse: inverse(&rows)?, shift })
+        let inverse = inverse(&rows)?;
+        let kappa = condition(&rows, &inverse);
+        if kappa > MOST_CONDITION {
+            return Err(Singular::IllConditioned(kappa, MOST_CONDITION));
+        }
+        Ok(Self { inverse, shift })
     }
 
     /// A ray as the prototype's space has it.
@@ -354,5 +365,14 @@ mod tests {
         let flat = [[1.0, 2.0, 3.0, 0.0], [2.0, 4.0, 6.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
         assert_eq!(Pose::new(&flat), Err(Singular::ZeroDeterminant));
         assert_eq!(Pose::new(&flat.map(|row| row.map(|x| x / 0.0))), Err(Singular::NotFinite));
+        // Sheared by as much: κ is some 4 over what is left of the determinant. Scaled by as much, it is 1.
+        let sheared = |by: f64| Pose::new(&[[1.0, 1.0, 0.0, 0.0], [1.0, 1.0 + by, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]]);
+        assert!(sheared(1e-5).is_ok());
+        for by in [1e-6, 1e-12, 1e-15] {
+            let Err(Singular::IllConditioned(kappa, most)) = sheared(by) else { panic!("{by} is too little") };
+            assert!((kappa * by / 4.0 - 1.0).abs() < 0.2 && most == MOST_CONDITION, "{kappa}");
+        }
+        let scaled = [[1e-15, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1e15, 0.0]];
+        assert!(Pose::new(&scaled).is_ok());
     }
 }
