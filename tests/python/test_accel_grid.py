@@ -147,7 +147,7 @@ def test_memory_is_bounded_whatever_is_given(accelerator):
     one = np.array([(0.0, 0, 0), (1, 0, 0), (0, 1, 1)])
     coincident = rw.Mesh(np.tile(one, (20_000, 1)), np.arange(60_000).reshape(-1, 3))
     rng = np.random.default_rng(8)
-    huge = rw.Mesh(rng.normal(size=(60_000, 3)), np.arange(60_000).reshape(-1, 3))
+    huge = rw.Mesh(rng.normal(size=(60_000, 3)).astype(np.float32), np.arange(60_000).reshape(-1, 3))
     for mesh in (coincident, huge):
         info = rw.Scene(mesh, accelerator=accelerator).accelerator
         # A dozen references of forty bytes and a word, and what a resolution that is given may take.

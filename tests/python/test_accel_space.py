@@ -99,7 +99,7 @@ def test_few_faces(choice, count):
     ],
 )
 def test_what_it_is_is_told(choice, kind):
-    told = rw.Scene(KNOT, accelerator=choice).accelerator
+    told = rw.Scene(KNOT, accelerator=choice, precision="single").accelerator
     assert told.kind == kind
     assert told.leaves > told.nodes > 0
     assert 0 < told.depth <= 8 + 1.3 * np.log2(len(KNOT.faces))

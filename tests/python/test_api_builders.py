@@ -132,7 +132,9 @@ def test_diagonals_are_cut_where_quality_decides(quality):
 def test_boxes_turn_where_all_stands_askew_and_quality_decides(quality):
     (room,) = rw.scenes.turned(rw.scenes.room(3000), 33, (1, 2, 3))
     for mesh, straight in ((sticks(3000)[0], None), (room, rw.scenes.room(3000)[0])):
-        scene, plain = (rw.Scene(mesh, quality=wanted) for wanted in (quality, "fast build"))
+        scene, plain = (
+            rw.Scene(mesh, quality=wanted, precision="single") for wanted in (quality, "fast build")
+        )
         rng = np.random.default_rng(7)
         origins = mesh.vertices[rng.integers(len(mesh.vertices), size=4000)] + rng.normal(size=(4000, 3))
         directions = rng.normal(size=(4000, 3))

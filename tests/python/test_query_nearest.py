@@ -14,7 +14,7 @@ KNOT = rw.scenes.torus_knot(along=40, around=6)
 
 def brute_force(mesh, points):
     """Distances by trimesh's formula, of each point to every face: (P, F)."""
-    triangles = mesh.vertices[mesh.faces].astype(np.float32).astype(np.float64)
+    triangles = mesh.vertices[mesh.faces].astype(np.float64)
     pairs = np.repeat(points, len(triangles), axis=0), np.tile(triangles, (len(points), 1, 1))
     closest = trimesh.triangles.closest_point(pairs[1], pairs[0])
     return np.linalg.norm(closest - pairs[0], axis=1).reshape(len(points), -1)
@@ -29,7 +29,7 @@ def test_distances_are_the_least_of_all_faces(accelerator):
     told = distances[np.arange(300), closest.primitive]
     assert np.allclose(told, closest.distance, rtol=1e-12, atol=1e-14)
     assert np.allclose(np.linalg.norm(points - closest.position, axis=1), closest.distance, atol=1e-14)
-    corners = KNOT.vertices[KNOT.faces[closest.primitive]].astype(np.float32).astype(np.float64)
+    corners = KNOT.vertices[KNOT.faces[closest.primitive]]
     u, v = closest.uv.T[..., None]
     assert (closest.uv >= 0).all()
     assert (closest.uv.sum(axis=1) <= 1 + 1e-15).all()

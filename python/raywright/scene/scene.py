@@ -74,9 +74,9 @@ class Scene(Queries):
         The structure that finds hits.
     precision : {"auto", "single", "double"}
         What vertices are rounded to: "single" to float32, which takes the least memory and is the fastest,
-        "double" not at all, "auto" to float32 where that moves no vertex by more than 1e-7 of the extent of
-        its mesh. Either way hits are exact for the vertices as they then are. "double" costs nothing where
-        all vertices are float32 numbers anyway.
+        "double" not at all. "auto" loses no digit: vertices are kept as float32 where all of them are float32
+        numbers, as those of most binary files are, and as float64 otherwise. Either way hits are exact for
+        the vertices as they then are. "double" costs nothing where all vertices are float32 numbers anyway.
     quality : {"balanced", "fast build", "fast rays"}
         How long the accelerator may take to build for the sake of rays. Unless it is "fast build", what
         stands askew as a whole has boxes turned as it is, and what else is long and diagonal may be parted,
@@ -106,12 +106,11 @@ class Scene(Queries):
 
     Notes
     -----
-    With "auto", rounding is measured along each axis, and against the longest side of the box around the
-    vertices that faces of the mesh use. Meshes of float32 stay so. One mesh that loses by it keeps the
-    digits of all meshes of the scene, so that vertices which they share stay shared; the shapes of an
-    `Instance` are a group of their own in this. `plan` tells the figure, ``accelerator.precision`` what
-    became of it. "single" where "auto" would keep the digits gives one RuntimeWarning, with the figure, when
-    the scene is compiled.
+    With "auto", only vertices that faces use count. One mesh that has digits beyond float32 keeps the digits
+    of all meshes of the scene, so that vertices which they share stay shared; the shapes of an `Instance` are
+    a group of their own in this. `plan` tells how far rounding would move a vertex, and
+    ``accelerator.precision`` what became of it. Where "single" moves a vertex by more than 1e-7 of the extent
+    of its mesh, it gives one RuntimeWarning, with the figure, when the scene is compiled.
 
     By shading normals "as given", light counts by its cosine to them alone, and what is seen is the side that
     they show the viewer: where he sees one from behind, a `TwoSided` has its back. What is on one side of

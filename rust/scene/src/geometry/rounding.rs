@@ -6,7 +6,7 @@ use raywright_base::math::{DVec3, Vec3};
 /// How precisely vertices are kept.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Precision {
-    /// As f32 where that is no loss to any mesh ([`Rounding::is_loss`]), with all of their digits otherwise.
+    /// As f32 where that moves no vertex of any mesh, with all of their digits otherwise.
     #[default]
     Auto,
     /// As f32.
@@ -19,7 +19,7 @@ impl Precision {
     /// Whether meshes keep all of their digits where rounding does this to one of them.
     pub fn is_double(self, rounding: Rounding) -> bool {
         match self {
-            Self::Auto => rounding.is_loss(),
+            Self::Auto => rounding.moved > 0.0,
             Self::Single => false,
             Self::Double => true,
         }
@@ -36,11 +36,11 @@ pub struct Rounding {
 }
 
 impl Rounding {
-    /// The share of its extent by which a mesh may change without loss. f32 rounds by 2⁻²⁵ to 2⁻²⁴ of a number: by 6e-8
+    /// The share of its extent by which a mesh that is to be kept as f32 may change without a warning. f32 rounds by 2⁻²⁵ to 2⁻²⁴ of a number: by 6e-8
     /// of the extent of what reaches the origin, and by more than this of what stands two or three of its extents away.
     pub const MOST: f64 = 1e-7;
 
-    /// Whether that is a loss.
+    /// Whether that is worth a warning.
     pub fn is_loss(self) -> bool {
         self.share() > Self::MOST
     }
@@ -52,7 +52,8 @@ impl Rounding {
 
     /// The greater of two by their shares.
     pub fn worst(self, other: Self) -> Self {
-        if other.share() > self.share() { other } else { self }
+        // A share may be too small for an f64.
+        if (other.share(), other.moved) > (self.share(), self.moved) { other } else { self }
     }
 }
 
@@ -102,7 +103,7 @@ mod tests {
             let near = far - step / 2.0 / Rounding::MOST * factor;
             let rounding = rounded(&[[far, 0.0, 0.0], [near, 0.0, 0.0], [3.0, 1.0, 0.0]], &FACE).1;
             assert_eq!((rounding.moved, rounding.is_loss()), (step / 2.0, is_loss));
-            assert_eq!(Precision::Auto.is_double(rounding), is_loss);
+            assert!(Precision::Auto.is_double(rounding));
             assert!(Precision::Double.is_double(rounding) && !Precision::Single.is_double(rounding));
         }
     }
@@ -113,6 +114,10 @@ mod tests {
         assert_eq!(off(4.0, ulp / 2.0), Rounding { moved: ulp / 2.0, extent: 4.0 });
         assert_eq!(off(4.0, ulp / 4.0).moved, ulp / 4.0);
         assert_eq!(off(4.0, ulp), Rounding { moved: 0.0, extent: 4.0 });
+        assert!(!Precision::Auto.is_double(off(4.0, ulp)) && Precision::Auto.is_double(off(4.0, ulp / 4.0)));
+        // Not even in a mesh so large that this is no share of it.
+        let tiny = Rounding { moved: f64::from_bits(1), extent: 1e300 };
+        assert!(Precision::Auto.is_double(Rounding::default().worst(tiny)));
     }
 
     #[test]
