@@ -13,19 +13,36 @@ import numpy as np
 import raywright as rw
 
 UNIT = Fraction(1, 2**53)
-LARGEST = Fraction(np.finfo(np.float64).max)
+TINY = Fraction(1, 2**1022)
 SMALLEST = Fraction(1, 2**1074)
 
 
 @dataclass(frozen=True)
 class Candidate:
-    """A triangle that a ray's line meets, at an exact `t`, and how far a computed answer may be off."""
+    """A triangle that a ray's line meets, at an exact `t`, and how far computed weights may be off.
+
+    `length` turns lengths of the direction scaled to a largest coordinate in [1, 2) into those of `t`.
+    """
 
     primitive: int
     t: Fraction
     uv: tuple[Fraction, Fraction]
-    t_slack: Fraction
     uv_slack: Fraction
+    length: Fraction
+
+    @property
+    def is_subnormal(self):
+        """Whether `t` has less digits in an f64, as it is or along the scaled direction."""
+        return 0 < abs(self.t) < TINY * max(1, self.length)
+
+    @property
+    def nearest(self):
+        """The f64 nearest to `t`, but on its side of 0: Python rounds a quotient of integers correctly."""
+        try:
+            nearest = self.t.numerator / self.t.denominator
+        except OverflowError:
+            nearest = np.inf if self.t > 0 else -np.inf
+        return nearest or (5e-324 if self.t > 0 else -5e-324 if self.t < 0 else 0.0)
 
 
 @dataclass
@@ -36,12 +53,11 @@ class Outcome:
     choices: int = 0
 
 
-def check(mesh, origins, directions, t_min=0.0, t_max=np.inf, exact=False, precision="single"):
-    """Hold the answers of both accelerators against the oracle; `exact` allows for no rounding at all.
+def check(mesh, origins, directions, t_min=0.0, t_max=np.inf, precision="single"):
+    """Hold the answers of both accelerators against the oracle.
 
-    Small integers, whose products and sums an f64 holds exactly, give a correctly rounded `t` and the lowest
-    primitive of equal ones; otherwise a `t` may be off by its error bound, and so may the choice of the
-    closest.
+    `t` is the f64 nearest to the exact one, that is what the ends of a ray are compared with, and of equal
+    ones the lowest primitive counts.
     """
     scene = rw.Scene(mesh, precision=precision)
     brute = rw.Scene(mesh, accelerator=rw.BruteForce(), precision=precision)
@@ -59,7 +75,7 @@ def check(mesh, origins, directions, t_min=0.0, t_max=np.inf, exact=False, preci
     outcome = Outcome()
     for i, found in enumerate(candidates(triangles, starts.astype(np.float64), ways.astype(np.float64))):
         answer = (float(hits.t[i]), int(hits.primitive[i]), hits.uv[i])
-        check_ray(found, answer, float(nears[i]), float(fars[i]), exact)
+        check_ray(found, answer, float(nears[i]), float(fars[i]))
         outcome.hits += answer[1] >= 0
         outcome.choices += len(found) > 1
     return outcome
@@ -71,42 +87,24 @@ def rounded(mesh, precision="single"):
     return (vertices if precision == "double" else vertices.astype(np.float32).astype(np.float64))[mesh.faces]
 
 
-def check_ray(found, answer, t_min, t_max, exact):
+def check_ray(found, answer, t_min, t_max):
     t, primitive, uv = answer
-
-    def slack(candidate):
-        return 0 if exact else candidate.t_slack
-
-    def surely_asked_for(c):
-        return at_least(c.t - slack(c), t_min) and at_most(c.t + slack(c), t_max)
-
+    asked_for = [c for c in found if t_min <= c.nearest <= t_max and np.isfinite(c.nearest)]
     if primitive < 0:
         assert (t, primitive, *uv) == (np.inf, -1, 0.0, 0.0)
-        assert not [c for c in found if surely_asked_for(c)], "a miss, but these are hit"
+        assert all(c.is_subnormal for c in asked_for), "a miss, but these are hit"
         return
-    mine = next((c for c in found if c.primitive == primitive), None)
-    assert mine is not None, f"primitive {primitive} is not hit"
+    first = min(asked_for, key=lambda c: (c.nearest, c.primitive), default=None)
+    assert first is not None, f"primitive {primitive} is not hit"
+    mine = next(c for c in found if c.primitive == primitive)
+    if not mine.is_subnormal and not first.is_subnormal:
+        assert (t, primitive) == (first.nearest, first.primitive)
+    else:
+        # Less digits of it are left.
+        assert max(abs(Fraction(t) - c.t) for c in (mine, first)) <= 2 * SMALLEST * (1 + mine.length)
     assert t_min <= t <= t_max
-    assert np.isfinite(t)
-    if exact:
-        # Python rounds a quotient of integers correctly.
-        assert t == mine.t.numerator / mine.t.denominator
-    assert abs(Fraction(t) - mine.t) <= (abs(mine.t) * UNIT if exact else mine.t_slack)
     for computed, wanted in zip(uv, mine.uv, strict=True):
         assert abs(Fraction(float(computed)) - wanted) <= mine.uv_slack
-    for c in filter(surely_asked_for, found):
-        if exact:
-            assert (mine.t, primitive) <= (c.t, c.primitive)
-        else:
-            assert t <= c.t + c.t_slack, f"{c.primitive} is nearer than {primitive}"
-
-
-def at_least(t, bound):
-    return bound != np.inf and t >= (-LARGEST if bound == -np.inf else Fraction(bound))
-
-
-def at_most(t, bound):
-    return bound != -np.inf and t <= (LARGEST if bound == np.inf else Fraction(bound))
 
 
 def candidates(triangles, origins, directions):
@@ -159,30 +157,18 @@ def candidate(primitive, triangle, origin, direction):
     normal = cross(minus(b, a), minus(c, a))
     assert dot(normal, d) == total
     t = Fraction(dot(normal, a) * d_scale, total * point_scale)
-    t_slack, uv_slack = slacks([a, b, c], d, total)
-    # From lengths of the direction scaled to a largest coordinate in [1, 2), to lengths of it as it was
-    # given.
-    length = Fraction(2) ** (max(map(abs, d)).bit_length() - 1) / d_scale
-    # Coming back to f64 costs nothing but where t is subnormal.
-    return Candidate(
-        primitive,
-        t,
-        (Fraction(volumes[1], total), Fraction(volumes[2], total)),
-        t_slack / point_scale / length + SMALLEST,
-        uv_slack,
-    )
+    weights = Fraction(volumes[1], total), Fraction(volumes[2], total)
+    length = Fraction(d_scale) / Fraction(2) ** (max(map(abs, d)).bit_length() - 1)
+    return Candidate(primitive, t, weights, slack_of_weights([a, b, c], d, total), length)
 
 
-def slacks(corners, d, total):
-    """How far `t` along the scaled direction (in units of the corners), and the weights, may be off.
+def slack_of_weights(corners, d, total):
+    """How far the weights of corners may be off.
 
-    `t` is a mean of the corners' depths along the direction's largest axis, so it takes roundings of these
-    depths. And a weight may be off by `e` (see rust/shapes/src/triangle/edge.rs) if it is computed in f64,
-    which moves the mean by at most 3 e · range / (|total| - 3 e). Where the total is at most 6 e, some weight
-    is too small to tell its sign, and all are computed with less error, in the end with none.
+    A weight may be off by `e` (see rust/shapes/src/triangle/edge.rs) if it is computed in f64, and its share
+    of the total by 4 e / (|total| - 3 e). Where the total is at most 6 e, some weight is too small to tell
+    its sign, and all are computed with less error, in the end with none.
     """
-    axis = max(range(3), key=lambda k: abs(d[k]))
-    depths = [c[axis] for c in corners]
     size = max(abs(x) for c in corners for x in c)
     # d relative to its power of two is below 2; the total is to be seen so too.
     power = 1 << (max(map(abs, d)).bit_length() - 1)
@@ -192,15 +178,7 @@ def slacks(corners, d, total):
         # Then they are computed from the edges themselves, which errs less.
         edges = [minus(p, q) for p, q in itertools.combinations(corners, 2)]
         e = 184 * UNIT * size * max(abs(x) for edge in edges for x in edge)
-    # Each depth: 1 rounding, its product 2 (with its weight's), sums 2 each above and below, times d,
-    # quotient: 9.
-    rounding = 16 * UNIT * max(map(abs, depths))
-    if scaled_total <= 6 * e:
-        return rounding, 8 * UNIT
-    spread = 3 * e / (scaled_total - 3 * e)
-    # A weight's share of the total moves by its own error and by its share of the total's: 4 e / (|total| - 3
-    # e).
-    return rounding + spread * (max(depths) - min(depths)), 8 * UNIT + 4 * spread / 3
+    return 8 * UNIT + (4 * e / (scaled_total - 3 * e) if scaled_total > 6 * e else 0)
 
 
 def integers(values):

@@ -1,9 +1,11 @@
 """Hits are those of exact arithmetic: which rays hit, what they hit, and where to within a proven bound."""
 
 import itertools
+import warnings
 
 import numpy as np
 import pytest
+import trimesh
 from exact_hits import check
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
@@ -75,9 +77,9 @@ def test_rays_that_start_on_vertices_and_leave_along_edges(dtype):
     a, b, c = np.moveaxis(corners_of(mesh).astype(np.float64), 1, 0)
     origins = np.concatenate([a, a, a - 2 * (b - a), a])
     ways = np.concatenate([b - a, rng.normal(size=a.shape), b - a, (b + c) / 2 - a])
-    # From t = -10, so that the start itself is not at an end of what counts, where rounding decides.
-    outcome = check(mesh, origins.astype(dtype), ways.astype(dtype), t_min=-10.0)
-    assert outcome.hits > 150
+    for t_min in (-10.0, 0.0, 5e-324):
+        outcome = check(mesh, origins.astype(dtype), ways.astype(dtype), t_min=t_min)
+        assert outcome.hits > 150
 
 
 @pytest.mark.parametrize("dtype", TYPES)
@@ -103,7 +105,7 @@ def test_small_integers_leave_nothing_to_rounding(dtype, seed):
     mesh = rw.Mesh(rng.integers(-3, 4, (40, 3)).astype(np.float32), rng.integers(0, 40, (120, 3)))
     origins = rng.integers(-6, 7, (400, 3)).astype(dtype)
     directions = rng.integers(-2, 3, (400, 3)).astype(dtype)
-    outcome = check(mesh, origins, directions, exact=True)
+    outcome = check(mesh, origins, directions)
     assert outcome.hits > 60
     assert outcome.choices > 60
 
@@ -116,13 +118,81 @@ def test_both_ends_of_the_interval_are_asked_for():
     directions = np.eye(3)[rng.integers(3, size=700)] * rng.choice([-2.0, -1.0, 0.5, 1.0, 4.0], (700, 1))
     t_min = rng.integers(-8, 9, 700) / 2
     t_max = t_min + rng.integers(-1, 5, 700) / 2
-    outcome = check(mesh, origins, directions, t_min, t_max, exact=True)
+    outcome = check(mesh, origins, directions, t_min, t_max)
     assert outcome.hits > 70
     whole = rw.Scene(mesh).intersect(origins, directions, -np.inf, np.inf)
     hit = whole.hit
     again = rw.Scene(mesh).intersect(origins[hit], directions[hit], whole.t[hit], whole.t[hit])
     assert np.array_equal(again.t, whole.t[hit])
     assert np.array_equal(again.primitive, whole.primitive[hit])
+
+
+STRUCTURES = [
+    rw.BVH(),
+    rw.BVH(traversal="stack"),
+    rw.KdTree(),
+    rw.Grid(),
+    rw.Octree(),
+    rw.BSP(),
+    rw.BruteForce(),
+]
+
+
+def repr_of(accelerator):
+    return f"{type(accelerator).__name__}-{getattr(accelerator, 'traversal', '')}"
+
+
+@pytest.mark.parametrize("accelerator", STRUCTURES, ids=repr_of)
+@pytest.mark.parametrize("scale", [1.0, 0.3, 1e-7])
+def test_a_hit_at_an_end_of_a_ray_counts(accelerator, scale):
+    # Over a flat face at 1, whose t is the height less 1, exactly.
+    square = rw.Mesh([(0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)], [(0, 1, 2), (0, 2, 3)])
+    scene = rw.Scene(square, accelerator=accelerator)
+    heights = np.random.default_rng(0).integers(2**20, 2**27, 3000) / 2**20
+    origins = np.c_[np.random.default_rng(1).uniform(0.01, 0.99, (3000, 2)), heights]
+    way = (0, 0, -(2.0 ** round(np.log2(scale))))
+    t = (heights - 1) / -way[2]
+    for t_min, t_max, is_met in (
+        (0, t, True),
+        (t, np.inf, True),
+        (t, t, True),
+        (0, np.nextafter(t, 0), False),
+        (np.nextafter(t, np.inf), np.inf, False),
+    ):
+        hits = scene.intersect(origins, way, t_min, t_max)
+        assert np.array_equal(hits.t, t if is_met else np.full(3000, np.inf))
+        assert (scene.occluded(origins, way, t_min, t_max) == is_met).all()
+        # On the diagonal both faces are met, and count once.
+        assert (scene.count(origins, way, t_min, t_max) == is_met).all()
+        every = scene.intersect_all(origins, way, t_min, t_max)
+        assert np.array_equal(every.t, t if is_met else [])
+        assert (scene.intersect(origins, way, t_min, t_max, shapes=[True]).hit == is_met).all()
+
+
+@pytest.mark.parametrize("precision", ["single", "double"])
+@pytest.mark.parametrize("accelerator", STRUCTURES, ids=repr_of)
+def test_what_a_ray_is_told_it_meets_it_meets_at_either_end(accelerator, precision):
+    rng = np.random.default_rng(2)
+    ball = trimesh.creation.icosphere(subdivisions=2)
+    far = rng.choice([0.1, 3.0, 300.0, 1e5], (3000, 1))
+    origins = rng.normal(size=(3000, 3)) * far
+    ways = (rng.normal(size=(3000, 3)) * 0.5 - origins) * 10.0 ** rng.integers(-8, 8, (3000, 1))
+    mesh = rw.Mesh(ball.vertices + np.array((0.1, 0.2, 0.3)), ball.faces)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        scene = rw.Scene(mesh, accelerator=accelerator, precision=precision)
+        hits = scene.intersect(origins, ways)
+    origins, ways, t = origins[hits.hit], ways[hits.hit], hits.t[hits.hit]
+    assert len(t) > 1000
+    for t_min, t_max in ((0, t), (t, np.inf), (t, t)):
+        again = scene.intersect(origins, ways, t_min, t_max)
+        assert np.array_equal(again.t, t)
+        assert np.array_equal(again.primitive, hits.primitive[hits.hit])
+        assert scene.occluded(origins, ways, t_min, t_max).all()
+    assert not scene.occluded(origins, ways, 0, np.nextafter(t, 0)).any()
+    # From the next number on it is met no more: what is left is the other side of the ball.
+    beyond = scene.intersect(origins, ways, np.nextafter(t, np.inf), np.inf)
+    assert (beyond.primitive != hits.primitive[hits.hit]).all()
 
 
 @pytest.mark.parametrize("dtype", TYPES)
@@ -164,7 +234,7 @@ def test_rays_in_the_faces_and_along_the_edges_of_a_box(zero):
     grid = np.array(list(itertools.product((-1.0, 0.0, 0.5, 1.0, 2.0), repeat=3)))
     ways = np.array([w for w in itertools.product((-1.0, zero, 1.0), repeat=3) if any(w)])
     origins, directions = np.repeat(grid, len(ways), axis=0), np.tile(ways, (len(grid), 1))
-    outcome = check(box(2), origins, directions, exact=True)
+    outcome = check(box(2), origins, directions)
     assert outcome.hits > 1000
     assert outcome.choices > 1000
 
@@ -342,7 +412,7 @@ def test_triangles_seen_edge_on_are_never_hit():
         single = rw.Mesh(fan[chosen[n]], [(0, 1, 2)])
         assert not rw.Scene(single).occluded(origins[n], directions[n], -np.inf).any()
     mesh = rw.Mesh(fan.reshape(-1, 3), np.arange(3 * len(fan)).reshape(-1, 3))
-    check(mesh, origins, directions, -np.inf, exact=True)
+    check(mesh, origins, directions, -np.inf)
 
 
 @pytest.mark.parametrize("dtype", TYPES)

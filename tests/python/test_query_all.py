@@ -64,14 +64,14 @@ def check(mesh, origins, directions, t_min=0.0, t_max=np.inf):
         origins, directions, t_min, t_max
     )
     assert np.array_equal(hits.count, scene.count(origins, directions, t_min, t_max))
-    triangles, shared = exact_hits.rounded(mesh), 0
+    triangles, shared = exact_hits.rounded(mesh, "double"), 0
     for i, found in enumerate(exact_hits.candidates(triangles, origins, directions)):
         t, primitive, uv = (array[row(hits, i)] for array in (hits.t, hits.primitive, hits.uv))
         assert list(zip(t, primitive, strict=True)) == sorted(zip(t, primitive, strict=True))
-        known = {c.primitive: c for c in found if c.t >= t_min and (t_max == np.inf or c.t <= t_max)}
+        known = {c.primitive: c for c in found if t_min <= c.nearest <= t_max}
         for one, its_t, its_uv in zip(primitive, t, uv, strict=True):
             candidate = known[one]
-            assert abs(Fraction(float(its_t)) - candidate.t) <= candidate.t_slack
+            assert its_t == candidate.nearest
             for computed, wanted in zip(its_uv, candidate.uv, strict=True):
                 assert abs(Fraction(float(computed)) - wanted) <= candidate.uv_slack
         points = {}

@@ -46,15 +46,50 @@ pub fn exact_turn(direction: DVec3, v: DVec3, w: DVec3) -> i32 {
     0
 }
 
+/// A number of some 128 bits, `(high + low) · 2^exponent` with |high| in [1/2, 1]; or zero.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Long {
+    high: f64,
+    low: f64,
+    /// Of both parts.
+    pub exponent: i32,
+}
+
+impl Long {
+    /// The number over its power of two: an f64, and what is left.
+    pub fn parts(&self) -> (f64, f64) {
+        (self.high, self.low)
+    }
+}
+
+/// What `t` is the quotient of where a line meets the plane of a triangle: `n · (a − o)` and `n · d` with
+/// `n = (b − a) × (c − a)`, both zero only if they are exactly.
+///
+/// All coordinates must be finite.
+#[cold]
+#[inline(never)]
+pub fn exact_depth(origin: DVec3, direction: DVec3, corners: [DVec3; 3]) -> [Long; 2] {
+    let [o, d, a, b, c] = [origin, direction, corners[0], corners[1], corners[2]].map(|x| x.to_array().map(Float::new));
+    let (mut over, mut under) = (Terms::new(), Terms::new());
+    // Of the determinant of three differences, what has the origin in it twice vanishes: four are left of eight.
+    for (x, y, z) in [(a, b, c), (b, a, o), (c, b, o), (a, c, o)] {
+        over.push_product(x, y, z);
+    }
+    for (y, z) in [(b, c), (c, a), (a, b)] {
+        under.push_product(d, y, z);
+    }
+    [over.long_sum(), under.long_sum()]
+}
+
 /// Products of three numbers, to be summed exactly.
 struct Terms {
-    factors: [([Float; 3], bool); 18],
+    factors: [([Float; 3], bool); 24],
     count: usize,
 }
 
 impl Terms {
     fn new() -> Self {
-        Self { factors: [([Float::ZERO; 3], false); 18], count: 0 }
+        Self { factors: [([Float::ZERO; 3], false); 24], count: 0 }
     }
 
     fn push(&mut self, factors: [Float; 3], negative: bool) {
@@ -64,19 +99,41 @@ impl Terms {
         }
     }
 
+    /// `x · (y × z)`.
+    fn push_product(&mut self, x: [Float; 3], y: [Float; 3], z: [Float; 3]) {
+        for (i, &along) in x.iter().enumerate() {
+            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+            self.push([along, y[j], z[k]], false);
+            self.push([along, y[k], z[j]], true);
+        }
+    }
+
     /// The sum as a mantissa, zero or in [1/2, 1] in magnitude, and an exponent.
     fn sum(&self) -> (f64, i32) {
+        let Some((sum, low)) = self.accumulated() else { return (0.0, 0) };
+        let (mantissa, exponent) = sum.value();
+        (mantissa, exponent + low)
+    }
+
+    /// The same to some 128 bits.
+    fn long_sum(&self) -> Long {
+        let Some((sum, low)) = self.accumulated() else { return Long::default() };
+        let long = sum.long_value();
+        Long { exponent: long.exponent + low, ..long }
+    }
+
+    /// The sum over a power of two; none of no terms.
+    fn accumulated(&self) -> Option<(Accumulator, i32)> {
         let terms = &self.factors[..self.count];
         let exponent = |f: &[Float; 3]| f[0].exponent + f[1].exponent + f[2].exponent;
-        let Some(low) = terms.iter().map(|(f, _)| exponent(f)).min() else { return (0.0, 0) };
+        let low = terms.iter().map(|(f, _)| exponent(f)).min()?;
         let high = terms.iter().map(|(f, _)| exponent(f)).max().unwrap_or(low);
         let mut sum = Accumulator::new((high - low) as u32);
         for (f, negative) in terms {
             let negative = f.iter().fold(*negative, |n, f| n ^ f.negative);
             sum.add(f.map(|f| f.mantissa), (exponent(f) - low) as u32, negative);
         }
-        let (mantissa, exponent) = sum.value();
-        (mantissa, exponent + low)
+        Some((sum, low))
     }
 }
 
@@ -92,11 +149,7 @@ impl Volume {
         // (v − o) × (w − o) = v × w + w × o + o × v.
         let mut terms = Terms::new();
         for (x, y) in [(v, w), (w, o), (o, v)] {
-            for (i, &along) in d.iter().enumerate() {
-                let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-                terms.push([along, x[j], y[k]], false);
-                terms.push([along, x[k], y[j]], true);
-            }
+            terms.push_product(d, x, y);
         }
         let (mantissa, exponent) = terms.sum();
         Self { mantissa, exponent }
@@ -145,7 +198,7 @@ struct Accumulator {
 }
 
 impl Accumulator {
-    /// Three exponents span at most 3 · (1023 + 1074) bits, a product has 159 bits, and 18 terms carry into 5 more.
+    /// Three exponents span at most 3 · (1023 + 1074) bits, a product has 159 bits, and 24 terms carry into 5 more.
     const WORDS: usize = (3 * 2097 + 159 + 5 + 1) / 64 + 2;
 
     /// Room for terms whose exponents differ by up to `span`.
@@ -184,7 +237,25 @@ impl Accumulator {
     }
 
     /// The sum as a mantissa in [1/2, 1] and an exponent.
-    fn value(mut self) -> (f64, i32) {
+    fn value(self) -> (f64, i32) {
+        let Some((negative, bits, exponent)) = self.leading() else { return (0.0, 0) };
+        // A sticky bit for all that lies below; only an exact tie could round the other way without it.
+        let bits = (bits >> 64) as u64 | u64::from(bits as u64 != 0);
+        let mantissa = bits as f64 / 2f64.powi(64);
+        (if negative { -mantissa } else { mantissa }, exponent)
+    }
+
+    /// The sum to some 128 bits.
+    fn long_value(self) -> Long {
+        let Some((negative, bits, exponent)) = self.leading() else { return Long::default() };
+        let high = (bits >> 75) as f64 / 2f64.powi(53);
+        let low = (bits & ((1 << 75) - 1)) as f64 / 2f64.powi(128);
+        if negative { Long { high: -high, low: -low, exponent } } else { Long { high, low, exponent } }
+    }
+
+    /// The sign, the first 128 bits, the last of which is set for all that lies below, and the exponent of the bit
+    /// above them; none if the sum is zero.
+    fn leading(mut self) -> Option<(bool, u128, i32)> {
         let words = &mut self.words[..self.used];
         let negative = words[words.len() - 1] >> 63 == 1;
         if negative {
@@ -193,14 +264,13 @@ impl Accumulator {
                 (*w, carry) = (!*w).overflowing_add(u64::from(carry));
             }
         }
-        let Some(top) = words.iter().rposition(|&w| w != 0) else { return (0.0, 0) };
+        let top = words.iter().rposition(|&w| w != 0)?;
         let zeros = words[top].leading_zeros();
-        let below = if top > 0 { words[top - 1] } else { 0 };
-        let mut bits = words[top] << zeros | if zeros > 0 { below >> (64 - zeros) } else { 0 };
-        // A sticky bit for all that lies below; only an exact tie could round the other way without it.
-        bits |= u64::from(words[..top].iter().any(|&w| w != 0));
-        let mantissa = bits as f64 / 2f64.powi(64);
-        (if negative { -mantissa } else { mantissa }, 64 * (top as i32 + 1) - zeros as i32)
+        let word = |below: usize| if below > top { 0 } else { words[top - below] };
+        let next = if zeros > 0 { word(2) >> (64 - zeros) } else { 0 };
+        let bits = (u128::from(word(0)) << 64 | u128::from(word(1))) << zeros | u128::from(next);
+        let is_cut = words[..top.saturating_sub(1)].iter().any(|&w| w != 0);
+        Some((negative, bits | u128::from(is_cut), 64 * (top as i32 + 1) - zeros as i32))
     }
 }
 

@@ -36,7 +36,7 @@ pub use double::Double;
 pub use double_double::DoubleDouble;
 pub use dyadic::Dyadic;
 pub use elliptic::ellipsoid_area;
-pub use exact::{exact_edges, exact_turn};
+pub use exact::{exact_depth, exact_edges, exact_turn};
 pub use frame::Frame;
 pub use glam::{DVec2, DVec3, Vec3};
 pub use interval::Interval;

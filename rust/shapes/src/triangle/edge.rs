@@ -14,14 +14,13 @@
 //! computed. What underflows is no part of it: coordinates so small, or so large that products overflow, are decided
 //! exactly.
 //!
-//! With each weight off by e, and S their sum, the mean of the corners' depths, which `t` is, moves by at most 3e ·
-//! range / (|S| − 3e). For slivers, and for what is grazed, that is more than a ray starts off the surface that it
-//! leaves. So a `t` that is not negative but may be by this is computed from exact weights: what a ray meets lies ahead
-//! of it.
+//! Where the weights decide, `t` is computed to the nearest f64 ([`super::depth`]), and so are its comparisons with the
+//! ends of the ray; where that leaves it open, from exact integers.
 
+use super::depth::{Depth, quotient};
 use crate::{Candidate, Contact};
 use raywright_base::math::robust::{UNIT, greater, lesser, normalising_scale};
-use raywright_base::math::{DVec3, Ray, Region, exact_edges, exact_turn};
+use raywright_base::math::{DVec3, Ray, Region, exact_depth, exact_edges, exact_turn};
 
 /// A ray made ready for edge tests: the direction scaled by a power of two so that its largest coordinate lies in
 /// [1, 2), and what is known beforehand about errors.
@@ -57,6 +56,9 @@ pub struct EdgeRay {
     /// Whether the origin is so far that the ray is moved up to the scene before boxes are tested.
     pub is_far: bool,
 }
+
+/// The least f64 above 0.
+pub(super) const LEAST: f64 = f64::from_bits(1);
 
 /// How `t` along a scaled direction is to be read.
 #[derive(Clone, Copy, Debug)]
@@ -99,6 +101,15 @@ impl EdgeRay {
         }
     }
 
+    /// An end of a ray along its scaled direction. Where that is subnormal it may be rounded, but never so that what lies
+    /// beyond the end counts: it moves by `inwards` then.
+    #[inline(always)]
+    pub(super) fn scaled_end(t: f64, inverse: f64, scale: f64, inwards: f64) -> f64 {
+        let end = t * inverse;
+        let is_beyond = if inwards > 0.0 { end * scale < t } else { end * scale > t };
+        end + if is_beyond { inwards } else { 0.0 }
+    }
+
     /// Makes a ray ready for the triangles of a region. None if it cannot hit anything: something is NaN or infinite,
     /// the direction is zero (or has no coordinate that is a normal number), or `t_min > t_max`.
     #[inline(always)]
@@ -127,8 +138,8 @@ impl EdgeRay {
             direction: ray.direction * scale,
             unscaled: ray.direction,
             scale,
-            t_min: ray.t_min * inverse,
-            t_max: ray.t_max * inverse,
+            t_min: Self::scaled_end(ray.t_min, inverse, scale, LEAST),
+            t_max: Self::scaled_end(ray.t_max, inverse, scale, -LEAST),
             axis,
             sign_error: Self::sign_error(largest),
             t_error: Self::T_ERROR * reach,
@@ -156,20 +167,22 @@ impl EdgeRay {
         let sum = w[0] + w[1] + w[2];
         let range = greater(greater(z[0], z[1]), z[2]) - lesser(lesser(z[0], z[1]), z[2]);
         if least > self.sign_error && 6.0 * self.sign_error * range <= self.t_error * sum.abs() {
-            let t = (w[0] * z[0] + w[1] * z[1] + w[2] * z[2]) / (sum * self.direction[k]);
-            if !Self::may_be_behind(t, self.t_min, sum, range, self.sign_error) {
-                return self.accept(w, sum, t, Contact::Inside);
+            let depth = self.depth(corners);
+            if depth.is_known() {
+                return self.accept(w, sum, depth.t, Contact::Inside);
+            }
+            if depth.is_beyond(self.t_min, self.t_max) {
+                return None;
             }
         }
         self.meet_closely(corners)
     }
 
-    /// Whether a `t` that is not negative may be in truth, with weights of this sum off by this error each, and corners
-    /// whose depths have this range; of what lies before `t_min` for certain nobody needs to know.
     #[inline(always)]
-    pub(super) fn may_be_behind(t: f64, t_min: f64, sum: f64, range: f64, error: f64) -> bool {
-        let (share, doubt) = (sum.abs() - 3.0 * error, 3.0 * error * range);
-        (t >= 0.0) & (t * share <= doubt) & ((t_min - t) * share <= doubt)
+    fn depth(&self, [a, b, c]: [DVec3; 3]) -> Depth {
+        let of = [[a.x, a.y, a.z], [b.x, b.y, b.z], [c.x, c.y, c.z]];
+        let (o, d) = (self.origin, self.direction);
+        Depth::new([o.x, o.y, o.z], [d.x, d.y, d.z], of)
     }
 
     /// The same where that is not enough, as it is from far away. With edges taken from the corners themselves, and E a
@@ -179,13 +192,13 @@ impl EdgeRay {
     /// 256uEM is allowed.
     #[cold]
     #[inline(never)]
-    fn meet_closely(&self, corners: [DVec3; 3]) -> Option<Candidate> {
-        let [a, b, c] = corners;
+    fn meet_closely(&self, original: [DVec3; 3]) -> Option<Candidate> {
+        let [a, b, c] = original;
         let edges = [b - c, c - a, a - b];
         let largest = edges[0].abs().max(edges[1].abs()).max(edges[2].abs()).max_element();
         // What underflows in t is then less than a rounding.
         if self.sign_error == f64::INFINITY || largest * self.largest * self.largest < 1e-270 {
-            return self.meet_exactly(corners);
+            return self.meet_exactly(original);
         }
         let error = 256.0 * UNIT * largest * self.largest;
         let [a, b, c] = [a - self.origin, b - self.origin, c - self.origin];
@@ -199,12 +212,15 @@ impl EdgeRay {
         let sum = w[0] + w[1] + w[2];
         let range = z[0].max(z[1]).max(z[2]) - z[0].min(z[1]).min(z[2]);
         if w.iter().all(|x| x.abs() > error) && 6.0 * error * range <= self.t_error * sum.abs() {
-            let t = (w[0] * z[0] + w[1] * z[1] + w[2] * z[2]) / (sum * self.direction[k]);
-            if !Self::may_be_behind(t, self.t_min, sum, range, error) {
-                return self.accept(w, sum, t, Contact::Inside);
+            let depth = self.depth(original);
+            if depth.is_known() {
+                return self.accept(w, sum, depth.t, Contact::Inside);
+            }
+            if depth.is_beyond(self.t_min, self.t_max) {
+                return None;
             }
         }
-        self.meet_exactly(corners)
+        self.meet_exactly(original)
     }
 
     /// The same where rounding leaves the sign of a weight open, or `t` uncertain.
@@ -217,11 +233,13 @@ impl EdgeRay {
             // Passed by; or without area as the ray sees it.
             return None;
         }
-        let k = self.axis;
-        // An eighth of everything, lest a difference of huge numbers overflow.
-        let z = corners.map(|c| c[k] / 8.0 - self.origin[k] / 8.0);
-        let t = 8.0 * ((w[0] * z[0] + w[1] * z[1] + w[2] * z[2]) / (sum * self.direction[k]));
-        self.accept(w, sum, t, self.contact(w, sum, corners))
+        let [over, under] = exact_depth(self.origin, self.unscaled, corners);
+        // Along the scaled direction, in steps that leave the range of f64 only where `t` does.
+        let power = over.exponent - under.exponent - exponent(self.scale);
+        let half = power.clamp(-2000, 2000) / 2;
+        let t = quotient(over.parts(), under.parts()) * 2f64.powi(half) * 2f64.powi(power.clamp(-2000, 2000) - half);
+        // Zero is always the positive one.
+        self.accept(w, sum, t + 0.0, self.contact(w, sum, corners))
     }
 
     /// How a triangle with these exact weights is met.
@@ -255,4 +273,10 @@ impl EdgeRay {
             inner: 0,
         })
     }
+}
+
+/// That of a power of two, which may be subnormal.
+fn exponent(x: f64) -> i32 {
+    let biased = (x.to_bits() >> 52) as i32 & 0x7ff;
+    if biased == 0 { 52 - 1074 - x.to_bits().leading_zeros() as i32 + 11 } else { biased - 1023 }
 }

@@ -2,6 +2,7 @@
 
 mod bracket;
 mod clip;
+mod depth;
 mod edge;
 mod in_cone;
 mod kept;

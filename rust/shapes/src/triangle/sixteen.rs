@@ -4,6 +4,8 @@
 //! order and with the same roundings: so the compiler makes vectors of it, and the bits are the same.
 
 use super::EdgeRay;
+use super::depth::Depth;
+use super::edge::LEAST;
 use raywright_base::math::robust::{greater, lesser};
 use raywright_base::math::{DVec3, Ray, RayBatch, Region};
 
@@ -129,8 +131,8 @@ impl EdgeRays {
             self.direction[2][i] = dz * scale;
             self.scale[i] = scale;
             let ordered = self.t_min[i] <= self.t_max[i];
-            self.t_min[i] *= inverse;
-            self.t_max[i] *= inverse;
+            self.t_min[i] = EdgeRay::scaled_end(self.t_min[i], inverse, scale, LEAST);
+            self.t_max[i] = EdgeRay::scaled_end(self.t_max[i], inverse, scale, -LEAST);
             let (lx, ly, lz) = (ox - region.centre.x, oy - region.centre.y, oz - region.centre.z);
             self.local[0][i] = lx;
             self.local[1][i] = ly;
@@ -221,21 +223,16 @@ impl EdgeRays {
         } else {
             cz
         };
-        let d = if is_x {
-            dx
-        } else if is_y {
-            dy
-        } else {
-            dz
-        };
         let least = lesser(lesser(u.abs(), v.abs()), w.abs());
         let sum = u + v + w;
         let range = greater(greater(za, zb), zc) - lesser(lesser(za, zb), zc);
-        let t = (u * za + v * zb + w * zc) / (sum * d);
+        let depth = Depth::new([ox, oy, oz], [dx, dy, dz], corners);
+        let t = depth.t;
+        let is_beyond = !WON & depth.is_beyond(self.t_min[i], self.t_max[i]);
         let is_certain = (least > above)
             & (6.0 * above * range <= EdgeRay::T_ERROR * largest * sum.abs())
-            & !EdgeRay::may_be_behind(t, self.t_min[i], sum, range, above);
-        let counts = (t >= self.t_min[i]) & (t <= self.t_max[i]) & ((t * self.scale[i]).abs() <= f64::MAX);
+            & (depth.is_known() | is_beyond);
+        let counts = (t >= self.t_min[i]) & (t <= self.t_max[i]) & ((t * self.scale[i]).abs() <= f64::MAX) & !is_beyond;
         (u32::from(!passed & is_certain & counts), u32::from(!passed & !is_certain), t, v / sum, w / sum)
     }
 }

@@ -1,0 +1,257 @@
+//! `t` where a line meets the plane of a triangle: the f64 nearest to it.
+//!
+//! With edges e = b − a and f = c − a, s = a − o and n = e × f, it is s · n over d · n. Both are computed as unevaluated
+//! sums of two f64 (Dekker, "A Floating-Point Technique for Extending the Available Precision", 1971), and so is their
+//! quotient, which is rounded once. So `t` is the exact one where an f64 holds that, and never on the other side of an
+//! f64 than the exact one: to compare it with the ends of a ray decides as exact arithmetic would, a hit at either end
+//! counts, a ray that is asked up to the `t` of a hit still meets it, and one that is asked from the next f64 on no
+//! longer does.
+//!
+//! The bound. Let u = 2⁻⁵³, E bound every coordinate of e and f, L those of s, and D < 2 those of d. The differences
+//! are exact as sums of two. A product in n errs by 8u²E², and n by 2·8u²E² + (6 + 8)u²E² = 30u²E²; its low part is at
+//! most 8uE². A product in s · n errs by (8 + 2 + 10 + 12 + 8)u²LE² and 30u²LE² for n; three of them by 210u²LE², and
+//! their sum by (24 + 36 + 10 + 46)u²LE² more: 512u²LE² is allowed where 326 are needed. In the same way d · n errs by
+//! 490u²E², of which 768 are allowed. The quotient adds less than 16u² of itself. What underflows is less than the
+//! constants that are added, where coordinates are below 1e101.
+
+use raywright_base::math::robust::{UNIT, greater};
+
+/// A coordinate each.
+type Vector = [f64; 3];
+
+/// Where a line meets a plane.
+#[derive(Clone, Copy)]
+pub(super) struct Depth {
+    /// Rounded once from what was computed.
+    pub t: f64,
+    /// What was computed errs by no more than this; infinite or NaN where nothing is known.
+    error: f64,
+}
+
+impl Depth {
+    /// Of a line from `o` along `d`, scaled to below 2, and a triangle.
+    #[inline(always)]
+    pub fn new(o: Vector, d: Vector, [a, b, c]: [Vector; 3]) -> Self {
+        const OF_NUMERATOR: f64 = 512.0 * UNIT * UNIT;
+        const OF_DENOMINATOR: f64 = 768.0 * UNIT * UNIT;
+        let (e, e_low) = difference(b, a);
+        let (f, f_low) = difference(c, a);
+        let (s, s_low) = difference(a, o);
+        let (e_split, f_split) = (split(e), split(f));
+        let (x, x_low) = minor(1, 2, (e, e_low, e_split), (f, f_low, f_split));
+        let (y, y_low) = minor(2, 0, (e, e_low, e_split), (f, f_low, f_split));
+        let (z, z_low) = minor(0, 1, (e, e_low, e_split), (f, f_low, f_split));
+        let (n, n_low) = ([x, y, z], [x_low, y_low, z_low]);
+        let n_split = split(n);
+        let numerator = dot((s, s_low, split(s)), (n, n_low, n_split));
+        let denominator = dot((d, [0.0; 3], split(d)), (n, n_low, n_split));
+        let t = quotient(numerator, denominator);
+        let edge = greater(largest(e), largest(f));
+        let square = edge * edge;
+        let numerator_error = OF_NUMERATOR * square * largest(s) + 1e-210;
+        let denominator_error = OF_DENOMINATOR * square + 1e-290;
+        let size = denominator.0.abs();
+        let error = 2.0 * (numerator_error + t.abs() * denominator_error) / size;
+        Self { t, error: if size >= 4.0 * denominator_error { error } else { f64::INFINITY } }
+    }
+
+    /// Whether `t` is the f64 nearest to the exact one, but within 2⁻³ of a unit in its last place of a tie.
+    #[inline(always)]
+    pub fn is_known(&self) -> bool {
+        const SHARE: f64 = UNIT / 16.0;
+        self.error <= SHARE * self.t.abs()
+    }
+
+    /// Whether the f64 nearest to the exact `t` certainly lies before `t_min` or beyond `t_max`.
+    #[inline(always)]
+    pub fn is_beyond(&self, t_min: f64, t_max: f64) -> bool {
+        let room = self.error + 4.0 * UNIT * self.t.abs();
+        (self.t + room < t_min) | (self.t - room > t_max)
+    }
+}
+
+/// The quotient of two sums, rounded.
+#[inline(always)]
+pub(super) fn quotient((n, n_low): (f64, f64), (d, d_low): (f64, f64)) -> f64 {
+    let first = n / d;
+    let (product, rest) = product(first, halves(first), d, halves(d));
+    let left = ((n - product) - rest) + (n_low - first * d_low);
+    first + left / d
+}
+
+/// The differences of coordinates, and what rounding took from them (Knuth, 1969).
+#[inline(always)]
+fn difference(v: Vector, w: Vector) -> (Vector, Vector) {
+    let (x, x_low) = sum(v[0], -w[0]);
+    let (y, y_low) = sum(v[1], -w[1]);
+    let (z, z_low) = sum(v[2], -w[2]);
+    ([x, y, z], [x_low, y_low, z_low])
+}
+
+#[inline(always)]
+fn sum(a: f64, b: f64) -> (f64, f64) {
+    let sum = a + b;
+    let of_b = sum - a;
+    (sum, (a - (sum - of_b)) + (b - of_b))
+}
+
+/// A number as a sum of two of half the length (Veltkamp, 1968).
+#[inline(always)]
+fn halves(x: f64) -> (f64, f64) {
+    let c = 134_217_729.0 * x;
+    let high = c - (c - x);
+    (high, x - high)
+}
+
+#[inline(always)]
+fn split(v: Vector) -> [(f64, f64); 3] {
+    [halves(v[0]), halves(v[1]), halves(v[2])]
+}
+
+/// The product of two numbers, given with their halves, and what rounding took from it.
+#[inline(always)]
+fn product(a: f64, (ah, al): (f64, f64), b: f64, (bh, bl): (f64, f64)) -> (f64, f64) {
+    let product = a * b;
+    (product, al * bl - (((product - ah * bh) - al * bh) - ah * bl))
+}
+
+/// Three numbers, what they leave out, and the halves of them.
+type Long = (Vector, Vector, [(f64, f64); 3]);
+
+/// The product of a coordinate of one and one of another.
+#[inline(always)]
+fn times((v, v_low, v_split): Long, i: usize, (w, w_low, w_split): Long, j: usize) -> (f64, f64) {
+    let (high, low) = product(v[i], v_split[i], w[j], w_split[j]);
+    (high, low + (v[i] * w_low[j] + v_low[i] * w[j]))
+}
+
+/// `e_i f_j − e_j f_i`.
+#[inline(always)]
+fn minor(i: usize, j: usize, e: Long, f: Long) -> (f64, f64) {
+    let (p, p_low) = times(e, i, f, j);
+    let (q, q_low) = times(e, j, f, i);
+    let (high, low) = sum(p, -q);
+    (high, low + (p_low - q_low))
+}
+
+/// The inner product; the second part is at most half a unit in the last place of the first, unless all but nothing is
+/// left of it.
+#[inline(always)]
+fn dot(v: Long, w: Long) -> (f64, f64) {
+    let (x, x_low) = times(v, 0, w, 0);
+    let (y, y_low) = times(v, 1, w, 1);
+    let (z, z_low) = times(v, 2, w, 2);
+    let (xy, first) = sum(x, y);
+    let (all, second) = sum(xy, z);
+    let low = ((x_low + y_low) + z_low) + (first + second);
+    let high = all + low;
+    (high, low - (high - all))
+}
+
+#[inline(always)]
+fn largest(v: Vector) -> f64 {
+    greater(greater(v[0].abs(), v[1].abs()), v[2].abs())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{EdgeRay, EdgeRays};
+    use super::*;
+    use crate::oracle::{Exact, cross, dot, minus, vector};
+    use proptest::prelude::*;
+    use raywright_base::math::{DVec3, Ray, RayBatch, Region};
+
+    fn exact(ray: &Ray, corners: [DVec3; 3]) -> Exact {
+        let [a, b, c] = corners.map(vector);
+        let n = cross(&minus(&b, &a), &minus(&c, &a));
+        dot(&n, &minus(&a, &vector(ray.origin))).over(&dot(&n, &vector(ray.direction)))
+    }
+
+    fn point(size: f64) -> impl Strategy<Value = DVec3> {
+        let grid = prop::array::uniform3(-8i32..=8).prop_map(|p| DVec3::from_array(p.map(|x| f64::from(x) / 8.0)));
+        let any = prop::array::uniform3(-1.0..1.0f64).prop_map(DVec3::from_array);
+        prop_oneof![grid, any].prop_map(move |p| p * size)
+    }
+
+    /// A triangle of any shape, and a ray to a point of it from any distance, even none.
+    fn aimed() -> impl Strategy<Value = (Ray, [DVec3; 3])> {
+        let triangle = (point(1.0), [point(1.0), point(1.0), point(1.0)], 0i32..20, 0i32..20);
+        let ray = (point(1.0), 0.0..1.0f64, 0.0..1.0f64, -60i32..20, -300i32..300);
+        let scale = prop_oneof![Just(0), -90i32..90, -330i32..330];
+        (triangle, ray, scale).prop_map(|((at, ways, small, thin), (way, v, w, far, length), scale)| {
+            let mut corners = ways.map(|way| at + way * 2f64.powi(-small));
+            corners[2] = corners[1] + (corners[2] - corners[1]) * 2f64.powi(-thin);
+            let (v, w) = (v, w * (1.0 - v));
+            let target = corners[0] * (1.0 - v - w) + corners[1] * v + corners[2] * w;
+            let origin = target - way * 2f64.powi(far);
+            let scale = 2f64.powi(scale);
+            let ray = Ray::new(origin * scale, way * 2f64.powi(length));
+            (Ray { t_min: f64::NEG_INFINITY, ..ray }, corners.map(|c| c * scale))
+        })
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(10_000))]
+        #[test]
+        fn t_is_the_nearest_f64_and_both_ends_are_closed((ray, corners) in aimed()) {
+            let region = Region::around(corners);
+            let meet = |ray: &Ray| {
+                let ready = EdgeRay::new(ray, &region)?;
+                ready.meet(corners).map(|met| met.t * ready.scale)
+            };
+            let Some(t) = meet(&ray) else { return Ok(()) };
+            let wanted = exact(&ray, corners);
+            // To the nearest but for ties, and where it is subnormal for a second rounding.
+            let off = (&wanted - &Exact::new(t)).abs();
+            let most = if t.abs() > 1e-300 { (t.abs().next_up() - t.abs()) * 0.625 } else { f64::MIN_POSITIVE };
+            prop_assert!(!Exact::new(most).less(&off), "{t} {ray:?}");
+            prop_assert_eq!(t == 0.0, wanted.sign().is_eq() || t.abs() < f64::MIN_POSITIVE && t == 0.0);
+            let asked = |t_min: f64, t_max: f64| meet(&Ray { t_min, t_max, ..ray });
+            prop_assert_eq!(asked(t, t), Some(t));
+            prop_assert_eq!(asked(t, f64::INFINITY), Some(t));
+            prop_assert_eq!(asked(f64::NEG_INFINITY, t), Some(t));
+            prop_assert_eq!(asked(t.next_up(), f64::INFINITY), None);
+            prop_assert_eq!(asked(f64::NEG_INFINITY, t.next_down()), None);
+        }
+
+        #[test]
+        fn sixteen_rays_have_the_bits_of_one((ray, corners) in aimed(), past in -2i32..=2) {
+            let region = Region::around(corners);
+            let Some(ready) = EdgeRay::new(&ray, &region) else { return Ok(()) };
+            let Some(met) = ready.meet(corners) else { return Ok(()) };
+            let t = (0..past.abs()).fold(met.t * ready.scale, |t, _| if past > 0 { t.next_up() } else { t.next_down() });
+            for (t_min, t_max) in [(f64::NEG_INFINITY, f64::INFINITY), (t, f64::INFINITY), (f64::NEG_INFINITY, t)] {
+                let ray = Ray { t_min, t_max, ..ray };
+                let wanted = EdgeRay::new(&ray, &region).and_then(|ready| ready.meet(corners));
+                let mut rays = EdgeRays::default();
+                rays.take(&RayBatch::Rows(&[ray]), 0);
+                let plain = rays.prepare(&region) & 1;
+                let found = rays.meet(corners, plain);
+                match wanted {
+                    Some(met) if found.met == 1 => {
+                        prop_assert_eq!((found.t[0], [found.uv[0][0], found.uv[1][0]]), (met.t, met.uv));
+                    }
+                    Some(_) => prop_assert_eq!(found.open, plain),
+                    None => prop_assert_eq!(found.met, 0),
+                }
+            }
+        }
+    }
+
+    /// Of a thousand rays that have nothing particular about them `t` is known of all without exact arithmetic.
+    #[test]
+    fn most_rays_need_no_exact_arithmetic() {
+        let corners = [[0.1, 0.2, 0.3], [1.1, 0.3, 0.2], [0.2, 1.3, 0.4]];
+        for i in 0..1000 {
+            let (sin, cos) = (f64::from(i) * 0.7).sin_cos();
+            let far = 10f64.powi(i % 7 - 2);
+            let depth = Depth::new([0.4 + cos * far, 0.5 + sin * far, 0.3 + 1.7 * far], [-cos, -sin, -1.7], corners);
+            assert!(depth.is_known() && (depth.t / far - 1.0).abs() < 0.5 + 0.1 / far, "{far} {}", depth.t);
+        }
+        // Nor to tell that the surface which a ray has left lies behind it.
+        for off in [1e-15, 1e-20] {
+            let depth = Depth::new([0.5, 0.5, off], [0.3, 0.2, 1.0], [[0.0; 3], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0]]);
+            assert!(!depth.is_known() && depth.is_beyond(0.0, f64::INFINITY));
+        }
+    }
+}
