@@ -137,11 +137,14 @@ impl TangentBalls {
         if end - start <= LEAF {
             return;
         }
-        let size = self.nodes[node].max - self.nodes[node].min;
-        let axis = size.max_position();
-        let middle = (start + end) / 2;
-        let at = |corners: &[DVec3; 3]| corners[0][axis] + corners[1][axis] + corners[2][axis];
-        self.triangles[start..end].select_nth_unstable_by(middle - start, |a, b| at(a).total_cmp(&at(b)));
+        // Where middles lie, not how large triangles are: those of a rod's side are as long as it is.
+        let at = |[a, b, c]: &[DVec3; 3]| *a + *b + *c;
+        let (min, max) = self.triangles[start..end]
+            .iter()
+            .map(at)
+            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(min, max), at| (min.min(at), max.max(at)));
+        let (axis, middle) = ((max - min).max_position(), (start + end) / 2);
+        self.triangles[start..end].select_nth_unstable_by(middle - start, |a, b| at(a)[axis].total_cmp(&at(b)[axis]));
         let first = self.nodes.len();
         (self.nodes[node].first, self.nodes[node].count) = (first as u32, 0);
         for (from, to) in [(start, middle), (middle, end)] {
@@ -272,6 +275,26 @@ mod tests {
             });
             let mean = visits.sum::<usize>() as f64 / points.count() as f64;
             assert!(mean < most * tree.nodes.len() as f64, "{mean} of {}", tree.nodes.len());
+        }
+    }
+
+    #[test]
+    fn of_a_rod_few_nodes_are_visited() {
+        // Its side are triangles as long as it is.
+        let at = |i: usize, z: f64| {
+            let (y, x) = (std::f64::consts::TAU * i as f64 / 1024.0).sin_cos();
+            DVec3::new(x, y, z)
+        };
+        let side = |i: usize| {
+            let [a, b, c, d] = [at(i, -9.0), at(i + 1, -9.0), at(i + 1, 9.0), at(i, 9.0)];
+            [[a, b, c], [a, c, d]]
+        };
+        let triangles: Vec<_> = (0..1024).flat_map(side).collect();
+        let tree = TangentBalls::new(triangles.iter().copied());
+        for [a, b, c] in triangles.iter().step_by(61) {
+            let way = (*c - *a).cross(*b - *a).normalize();
+            let (radius, visits) = tree.walk((*a + *b + *c) / 3.0, way, 1.0);
+            assert!((radius - 2.0 / 3.0).abs() < 1e-4 && visits < 400, "{radius} {visits}");
         }
     }
 
