@@ -152,6 +152,8 @@ class CompiledScene:
         counted: tuple[list[bool] | None, bool] | None = None,
     ) -> NDArray[np.bool_]:
         """Whether each ray hits anything. Arguments as `intersect`."""
+    def optical_depth(self, rays: _Rays) -> NDArray[np.float64]:
+        """Return the optical depths of the media along rays, (..., 3)."""
     def intersect_all(
         self,
         rays: _Rays,

@@ -30,14 +30,14 @@ def scene(medium, by="colours", **arguments):
     return found
 
 
-def assert_looks(scene, samples, expected, integrator=None, most=0.004):
+def assert_looks(scene, samples, expected, integrator=None, most=0.004, slack=1e-4):
     """Seen from above, each colour within four standard errors, which chance exceeds once in 16,000, and a
-    ten-thousandth for tables and float32; errors of at most 0.4 % of the brightest."""
+    ten-thousandth for tables and float32 (`slack`); errors of at most 0.4 % of the brightest."""
     image = rw.render(scene, media.looking(side=16), integrator or rw.Path(), samples, seed=5, progress=False)
     values = image.rgb.reshape(-1, 3).astype(float)
     mean, error = values.mean(axis=0), values.std(axis=0, ddof=1) / math.sqrt(len(values))
     print(mean, error, expected, (mean - expected) / (error + 1e-300))
-    assert (np.abs(mean - expected) <= 4 * error + 1e-4 * np.max(expected)).all(), (mean, error, expected)
+    assert (np.abs(mean - expected) <= 4 * error + slack * np.max(expected)).all(), (mean, error, expected)
     assert (error <= most * np.max(expected)).all(), error / np.max(expected)
 
 
@@ -61,7 +61,9 @@ def test_albedos_on_a_grid_colour_what_is_scattered_once(by):
     dimmed = mpmath.quad(lambda z: mpmath.exp(-2 * sigma * (1 - z)) * sigma, [0, 1]) / 4
     rising = mpmath.quad(lambda z: z * mpmath.exp(-2 * sigma * (1 - z)) * sigma, [0, 1]) / 4
     expected = [float(a * dimmed + b * rising) for a, b in ((0, 0.9), (0.2, 0.3), (0.5, -0.5))]
-    assert_looks(scene(smoke, by, lights=[sun]), 256, expected, rw.Path(1))
+    # Orange without any blue has no smooth spectrum: the nearest is a little off.
+    slack = 1e-4 if by == "colours" else 2.5e-3
+    assert_looks(scene(smoke, by, lights=[sun]), 256, expected, rw.Path(1), slack=slack)
 
 
 def test_an_albedo_that_is_the_same_everywhere_is_what_absorption_and_scattering_say():

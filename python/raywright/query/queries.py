@@ -127,6 +127,78 @@ class Queries(PointQueries):
         what = None if shapes is None and cull is None else counted(shapes, cull, core.names)
         return core.occluded(rays, None if out is None else flags("out", out, rays[4]), what)
 
+    def optical_depth(
+        self,
+        origins: ArrayLike,
+        directions: ArrayLike,
+        t_max: ArrayLike = np.inf,
+        threads: int | None = None,
+        time: ArrayLike | None = None,
+    ) -> NDArray[np.float64]:
+        """Compute the optical depth of the media along each ray: the integral of their extinction.
+
+        Rays go straight through all surfaces; only what these enclose counts, and what fills the scene.
+        Whether a surface is in the way, `occluded` tells.
+
+        Parameters
+        ----------
+        origins, directions, t_max, threads, time
+            As for `intersect`.
+
+        Returns
+        -------
+        (..., 3) float64
+            Of red, green and blue; 0 where there is nothing, and infinite along a ray without end in a medium
+            without end.
+
+        Raises
+        ------
+        ValueError
+            As `intersect` does.
+        TypeError
+            As `intersect` does.
+
+        Notes
+        -----
+        It is exact but for rounding, on a `GridMedium` too: its density is a polynomial along a ray in each
+        of its cells. Where a medium is given by spectra, it is that of its colors.
+        """
+        rays = ray_arguments(origins, directions, 0.0, t_max, threads, time)
+        core = self._core or self._compiled()
+        return core.optical_depth(rays)
+
+    def transmittance(
+        self,
+        origins: ArrayLike,
+        directions: ArrayLike,
+        t_max: ArrayLike = np.inf,
+        threads: int | None = None,
+        time: ArrayLike | None = None,
+    ) -> NDArray[np.float64]:
+        """Compute the share of light that media leave along each ray: exp(-`optical_depth`).
+
+        Rays go straight through all surfaces, as for `optical_depth`, which keeps its digits where next to
+        nothing gets through.
+
+        Parameters
+        ----------
+        origins, directions, t_max, threads, time
+            As for `intersect`.
+
+        Returns
+        -------
+        (..., 3) float64
+            Of red, green and blue, from 0 to 1.
+
+        Raises
+        ------
+        ValueError
+            As `intersect` does.
+        TypeError
+            As `intersect` does.
+        """
+        return np.exp(-self.optical_depth(origins, directions, t_max, threads, time))
+
     def interactions(self, rays: Rays) -> Interactions:
         """Find what each ray of a batch meets, and all that shading needs of it.
 

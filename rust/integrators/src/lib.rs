@@ -43,6 +43,7 @@ pub use radiosity::Radiosity;
 pub use ray_cast::RayCast;
 pub use transparent::Transparent;
 pub use transport::FirstSeen;
+pub use volumes::optical_depths;
 pub use whitted::Whitted;
 
 use raywright_base::math::Ray;

@@ -153,7 +153,7 @@ impl<F: Filling> MediumStack<F> {
 
     /// Goes through what a ray hits, along it or back. Returns the medium that it enters or leaves, and whether it
     /// enters it.
-    fn pass(&mut self, scene: &Scene, ray: &Ray, hit: &Hit, back: bool) -> Option<(F, bool)> {
+    pub(super) fn pass(&mut self, scene: &Scene, ray: &Ray, hit: &Hit, back: bool) -> Option<(F, bool)> {
         let interior = F::of(scene, hit)?;
         let surface = scene.geometry().surface(ray, hit);
         let enters = (ray.direction.dot(surface.normal) < 0.0) != back;
@@ -167,7 +167,7 @@ impl<F: Filling> MediumStack<F> {
 }
 
 /// What a ray crosses, of all that it is told to; not what it only touches, which is told twice.
-fn crossed(hits: &[Hit]) -> impl DoubleEndedIterator<Item = &Hit> {
+pub(super) fn crossed(hits: &[Hit]) -> impl DoubleEndedIterator<Item = &Hit> {
     let is_twice = move |i: usize| {
         let same = |j: usize| hits.get(j).is_some_and(|other| *other == hits[i]);
         same(i + 1) || (i > 0 && same(i - 1))

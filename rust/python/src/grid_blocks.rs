@@ -68,8 +68,8 @@ impl GridBlocks {
     /// The greatest number.
     fn greatest(&self) -> f32 {
         match &self.0 {
-            Kept::Grey(blocks) => blocks.greatest(blocks.size().map(|n| 0..n))[0],
-            Kept::Coloured(blocks) => blocks.greatest(blocks.size().map(|n| 0..n)).into_iter().fold(0.0, f32::max),
+            Kept::Grey(blocks) => blocks.range(blocks.size().map(|n| 0..n))[1][0],
+            Kept::Coloured(blocks) => blocks.range(blocks.size().map(|n| 0..n))[1].into_iter().fold(0.0, f32::max),
         }
     }
 

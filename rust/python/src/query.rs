@@ -15,7 +15,9 @@ use super::info::AcceleratorInfo;
 use super::instances;
 use super::rays::{BATCH, RayArguments, answer, share};
 use raywright::accel::{Cost, Nearest, Primitives, TangentBalls};
+use raywright::integrators::optical_depths;
 use raywright::math::{DVec3, Hit};
+use raywright::optics::Rgb;
 use raywright::scene;
 use raywright::scene::media::Medium;
 use raywright::work::{Watch, Work};
@@ -186,6 +188,27 @@ impl CompiledScene {
                             out[i] = found;
                         }
                     });
+                });
+            })?;
+        }
+        Ok(out)
+    }
+
+    fn optical_depth<'py>(&self, py: Python<'py>, rays: RayArguments<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        let (lead, threads, rays) = (&rays.shape, rays.threads, rays.rays()?);
+        let out = unwritten::<f64>(py, lead, Some(3))?;
+        {
+            let mut out = out.readwrite();
+            let rows: &mut [[f64; 3]] = out.as_slice_mut()?.as_chunks_mut().0;
+            answer(py, rays.count, rays.chunk(), threads, rows, |start, rows| {
+                let count = rows.len();
+                let mut depths = vec![Rgb::ZERO; BATCH.min(count)];
+                rays.gathered(start, count, |batch, places| {
+                    let depths = &mut depths[..batch.len()];
+                    optical_depths(&self.0, batch, depths);
+                    for (depth, &i) in depths.iter().zip(places) {
+                        rows[i] = depth.to_array();
+                    }
                 });
             })?;
         }

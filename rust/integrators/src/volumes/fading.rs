@@ -15,7 +15,7 @@ impl Flight<'_> {
     /// Dims light on its way, and tells with which densities a path would have come along it; `hero` is drawn where it
     /// is needed, unless it is there.
     ///
-    /// Where the medium is even, that is closed; elsewhere it is estimated from the shares of nothing in what light
+    /// Where the medium is even or its extinction is a cubic, that is closed; elsewhere it is estimated from the shares of nothing in what light
     /// meets at random, as often as in the densest medium that it could be (Novák, Selle and Jarosz, "Residual Ratio
     /// Tracking for Estimating Attenuation in Participating Media", 2014, 3.2).
     pub fn fade(&self, weights: &mut Weights, hero: &mut Option<usize>, numbers: &mut Numbers, cancel: &Cancel) {
@@ -27,6 +27,10 @@ impl Flight<'_> {
                     let left = here.left((stretch.end - start) * self.length);
                     let drawn = if self.scatters && !here.scattering.is_black() { left } else { Rgb::ONE };
                     weights.times(left, drawn, Rgb::ONE);
+                }
+                Content::Cubic => {
+                    let left = (self.cubic_depth([start, stretch.end]) * -1.0).map(f64::exp);
+                    weights.times(left, if scatters { left } else { Rgb::ONE }, Rgb::ONE);
                 }
                 Content::Varies(most) => {
                     let hero = *hero.get_or_insert_with(|| numbers.hero());

@@ -54,21 +54,30 @@ impl Flight<'_> {
         }
     }
 
+    /// The extinction there.
+    #[inline]
+    pub(super) fn extinction(&self, t: f64) -> Rgb {
+        match &self.waves {
+            Some(waves) => self.medium.at_waves(self.ray.at(t), waves).extinction,
+            None => self.medium.extinction(self.ray.at(t)),
+        }
+    }
+
     /// What is in a stretch of it.
     #[inline]
     pub(super) fn content(&self, stretch: &Stretch) -> Content {
         match (stretch.content, &self.waves) {
             (Content::Even(here), Some(waves)) => Content::Even(self.medium.by_waves(here, waves)),
             (Content::Varies(most), Some(waves)) => Content::Varies(self.medium.most_by_waves(most, waves)),
-            (content, None) => content,
+            (content, _) => content,
         }
     }
 
     /// Draws how far it gets: where it is scattered, or none if it gets to its end. `depth` is the optical depth that
     /// it is still to get through before that, for its hero; `light` is added what it comes by that glows.
     ///
-    /// Where the medium is even, that is closed; elsewhere it meets, as often as in the densest medium that it could
-    /// be, things of which so many are nothing as the medium is thinner (Woodcock et al., "Techniques Used in the GEM
+    /// Where the medium is even or its extinction is a cubic, that is closed; elsewhere it meets, as often as in the
+    /// densest medium that it could be, things of which so many are nothing as the medium is thinner (Woodcock et al., "Techniques Used in the GEM
     /// Code", 1965). Where nothing is scattered, it is not drawn, but dimmed.
     pub fn fly(
         &self,
@@ -83,6 +92,7 @@ impl Flight<'_> {
             let span = [start, stretch.end];
             let found = match self.content(&stretch) {
                 Content::Even(here) => self.fly_evenly(&here, span, weights, (hero, depth), light),
+                Content::Cubic => self.fly_through_cell(span, weights, (hero, depth), numbers, light),
                 Content::Varies(most) => self.track(most, span, weights, (hero, depth), numbers, cancel, light),
             };
             if found.is_some() || weights.carried.is_black() {
@@ -113,12 +123,14 @@ impl Flight<'_> {
         if extinction > 0.0 && extinction * way > *depth {
             let way = *depth / extinction;
             let left = here.left(way);
-            let density = (weights.drawn * here.extinction * left).mean() / weights.drawn.mean();
+            let density = || (weights.drawn * here.extinction * left).mean() / weights.drawn.mean();
+            // Of parts of what is not even, nobody asks.
+            let density = self.medium.is_even().then(density);
             let by = left / (extinction * left[hero]);
             let came = weights.carried * by;
             weights.times(here.scattering * by, here.extinction * by, Rgb::ONE);
             let t = (start + way / self.length).min(end);
-            return Some(Collision { t, density: Some(density), here: *here, came });
+            return Some(Collision { t, density, here: *here, came });
         }
         if extinction > 0.0 {
             *depth -= extinction * way;

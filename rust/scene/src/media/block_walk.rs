@@ -7,18 +7,22 @@ use raywright_optics::Rgb;
 
 /// The most that there is in each of many equal blocks of a grid.
 ///
-/// Rays go through it block by block, each with the greatest density in it (after Amanatides and Woo, "A Fast Voxel
-/// Traversal Algorithm for Ray Tracing", 1987), so that what is empty costs nothing and what is thin next to nothing.
+/// Rays go through it block by block (after Amanatides and Woo, "A Fast Voxel Traversal Algorithm for Ray Tracing",
+/// 1987), so that what is empty costs nothing, and what is the same throughout a block next to nothing. In others they
+/// go cell by cell, where densities are polynomials along them.
 #[derive(Clone, Debug)]
 pub(super) struct Majorants {
     blocks: [usize; 3],
     /// The greatest density in each, the last axis fastest.
     densest: Vec<[f32; 3]>,
+    /// Whether the medium is the same throughout each.
+    even: Vec<bool>,
+    /// Along each axis, the steps of the grid at 0 and at 1, and the last number.
+    steps: [([f64; 2], f64); 3],
     /// Whether anything glows in each whatever the density; none where nothing does.
     bright: Vec<bool>,
-    /// The extinction at unit density, and whether what glows goes with the density.
-    extinction: Rgb,
-    is_glowing: bool,
+    /// What the medium does to light at unit density.
+    coefficients: Coefficients,
     /// How long a block is across at most, in the space of the grid.
     across: f64,
 }
@@ -27,21 +31,27 @@ impl Majorants {
     /// How many numbers a block has along an axis, about.
     const BLOCK: usize = 8;
 
-    /// Of a density, of what glows beside it, and of what the medium does to light at unit density, whether it glows
-    /// along with it. `place` takes the unit cube to the grid.
+    /// Of a density, of what glows beside it, and of what the medium does to light at unit density; `has_albedo` if the
+    /// share that is scattered has a grid. `place` takes the unit cube to the grid.
     pub fn new(
         density: &Field,
         glow: Option<&Glow>,
         coefficients: &Coefficients,
-        is_glowing: bool,
+        has_albedo: bool,
         place: &Affine,
     ) -> Self {
         let blocks = density.size().map(|n| n.div_ceil(Self::BLOCK));
-        let densest = density.greatest(blocks);
         let bright = glow.map_or_else(Vec::new, |glow| glow.bright(blocks));
+        let (mut densest, mut even) = (Vec::new(), Vec::new());
+        for (block, [least, most]) in density.ranges(blocks).into_iter().enumerate() {
+            let glows = bright.get(block).is_some_and(|&glows| glows);
+            even.push(least == most && !glows && (!has_albedo || most == [0.0; 3]));
+            densest.push(most);
+        }
+        let steps = [0, 1, 2].map(|axis| (density.steps(axis), (density.size()[axis] - 1) as f64));
         let sides = [0, 1, 2].map(|axis| DVec3::from_array(place.rows.map(|row| row[axis])) / blocks[axis] as f64);
         let across = sides.iter().map(|side| side.length()).sum();
-        Self { blocks, densest, bright, extinction: coefficients.extinction, is_glowing, across }
+        Self { blocks, densest, even, steps, bright, coefficients: *coefficients, across }
     }
 
     /// The greatest density of each colour.
@@ -60,28 +70,59 @@ impl Majorants {
     }
 
     pub fn bytes(&self) -> usize {
-        size_of_val(self.densest.as_slice()) + size_of_val(self.bright.as_slice())
+        size_of_val(self.densest.as_slice()) + size_of_val(self.even.as_slice()) + size_of_val(self.bright.as_slice())
     }
 
     /// What there is in a block.
     #[inline]
-    fn content(&self, block: usize) -> Content {
-        let density = self.densest[block];
-        let glows = self.bright.get(block).is_some_and(|&glows| glows);
-        if density == [0.0; 3] && !glows {
-            return Content::Even(Coefficients::NONE);
+    fn content(&self, block: usize, spectra: Spectra) -> Content {
+        let density = Rgb::from_array(self.densest[block].map(f64::from));
+        if self.even[block] && (spectra == Spectra::Linear || density.is_black()) {
+            return Content::Even(self.coefficients.times(density));
         }
-        let majorant = self.extinction * Rgb::from_array(density.map(f64::from));
+        if spectra != Spectra::OfColours {
+            return Content::Cubic;
+        }
+        let majorant = self.coefficients.extinction * density;
         // Where it glows, it is asked for about once in a block, however thin it is.
-        let glows = glows || self.is_glowing;
+        let glows = !self.coefficients.emission.is_black() || self.bright.get(block).is_some_and(|&glows| glows);
         Content::Varies(if glows { majorant.at_least(Rgb::splat(1.0 / self.across)) } else { majorant })
     }
+}
+
+/// How what a medium does to light follows from its coefficients at a point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Spectra {
+    /// They are that, or in proportion to that.
+    Linear,
+    /// It is in proportion to the density.
+    OfDensity,
+    /// It follows from spectra of their colours, which are in no proportion to them.
+    OfColours,
+}
+
+/// A ray on its way through the cells of a block.
+#[derive(Clone, Copy, Debug)]
+struct CellWalk {
+    /// Where the cell begins and the block ends.
+    t: f64,
+    end: f64,
+    /// The next border of a cell along each axis, and the `t` at which it is met.
+    next: [f64; 3],
+    at: [f64; 3],
 }
 
 /// A ray on its way through the blocks of a grid.
 #[derive(Clone, Debug)]
 pub(super) struct BlockWalk<'m> {
     majorants: &'m Majorants,
+    spectra: Spectra,
+    /// Its steps of the grid along each axis where `t` is 0, and how many they are in a unit of it.
+    origin: [f64; 3],
+    rate: [f64; 3],
+    /// The `t` that it has come to, and the cells that it goes through there.
+    t: f64,
+    cells: Option<CellWalk>,
     /// Whether there is nothing left but what lies outside.
     is_past: bool,
     /// Where it enters the grid, if it has not yet.
@@ -97,7 +138,13 @@ pub(super) struct BlockWalk<'m> {
 }
 
 impl<'m> BlockWalk<'m> {
-    pub fn new(majorants: &'m Majorants, origin: DVec3, direction: DVec3, [start, end]: [f64; 2]) -> Self {
+    pub fn new(
+        majorants: &'m Majorants,
+        spectra: Spectra,
+        origin: DVec3,
+        direction: DVec3,
+        [start, end]: [f64; 2],
+    ) -> Self {
         let (mut first, mut last) = (start, end);
         for axis in 0..3 {
             if direction[axis] == 0.0 {
@@ -111,8 +158,15 @@ impl<'m> BlockWalk<'m> {
             last = last.min(a.max(b));
         }
         let is_past = first >= last;
+        let steps = |axis: usize| majorants.steps[axis].0;
+        let per = |axis: usize| steps(axis)[1] - steps(axis)[0];
         let mut walk = Self {
             majorants,
+            spectra,
+            origin: [0, 1, 2].map(|axis| steps(axis)[0] + per(axis) * origin[axis]),
+            rate: [0, 1, 2].map(|axis| per(axis) * direction[axis]),
+            t: first,
+            cells: None,
             is_past,
             enters: (first > start).then_some(first),
             leaves: last,
@@ -139,13 +193,58 @@ impl<'m> BlockWalk<'m> {
         }
         walk
     }
-}
 
-impl Iterator for BlockWalk<'_> {
-    type Item = Stretch;
+    /// Enters the cells of a block that ends at a `t`.
+    fn enter(&self, end: f64) -> CellWalk {
+        let mut cells = CellWalk { t: self.t, end, next: [f64::NAN; 3], at: [f64::INFINITY; 3] };
+        for axis in 0..3 {
+            let (here, last) = (self.origin[axis] + self.rate[axis] * self.t, self.majorants.steps[axis].1);
+            if self.rate[axis] > 0.0 {
+                cells.next[axis] = (here.floor() + 1.0).max(0.0);
+            } else if self.rate[axis] < 0.0 {
+                cells.next[axis] = (here.ceil() - 1.0).min(last);
+            }
+            self.find(axis, &mut cells);
+        }
+        cells
+    }
 
+    /// Finds where the next border along an axis is met.
+    fn find(&self, axis: usize, cells: &mut CellWalk) {
+        let next = cells.next[axis];
+        let is_within = (0.0..=self.majorants.steps[axis].1).contains(&next);
+        cells.at[axis] = if is_within { (next - self.origin[axis]) / self.rate[axis] } else { f64::INFINITY };
+    }
+
+    /// The end of the next cell, and whether that is the block's.
     #[inline]
-    fn next(&mut self) -> Option<Stretch> {
+    fn cell(&self, cells: &mut CellWalk) -> (f64, bool) {
+        loop {
+            let [a, b, c] = cells.at;
+            let axis = if a <= b && a <= c {
+                0
+            } else if b <= c {
+                1
+            } else {
+                2
+            };
+            let end = cells.at[axis];
+            if end >= cells.end {
+                return (cells.end, true);
+            }
+            cells.next[axis] += 1f64.copysign(self.rate[axis]);
+            self.find(axis, cells);
+            // What rounding puts before where it has come to is no cell.
+            if end > cells.t {
+                cells.t = end;
+                return (end, false);
+            }
+        }
+    }
+
+    /// The next block.
+    #[inline]
+    fn block(&mut self) -> Option<Stretch> {
         let nothing = Content::Even(Coefficients::NONE);
         if let Some(end) = self.enters.take() {
             return Some(Stretch { end, content: nothing });
@@ -155,7 +254,7 @@ impl Iterator for BlockWalk<'_> {
             return (!end.is_nan()).then_some(Stretch { end, content: nothing });
         }
         let [_, y, z] = self.majorants.blocks;
-        let content = self.majorants.content((self.block[0] * y + self.block[1]) * z + self.block[2]);
+        let content = self.majorants.content((self.block[0] * y + self.block[1]) * z + self.block[2], self.spectra);
         let [a, b, c] = self.next;
         let axis = if a <= b && a <= c {
             0
@@ -174,5 +273,25 @@ impl Iterator for BlockWalk<'_> {
         // What rounding puts a hair's breadth beyond the last block is in it still.
         self.block[axis] = if self.is_up[axis] { (block + 1).min(count - 1) } else { block.saturating_sub(1) };
         Some(Stretch { end, content })
+    }
+}
+
+impl Iterator for BlockWalk<'_> {
+    type Item = Stretch;
+
+    #[inline]
+    fn next(&mut self) -> Option<Stretch> {
+        if let Some(mut cells) = self.cells {
+            let (end, is_last) = self.cell(&mut cells);
+            (self.t, self.cells) = (end, (!is_last).then_some(cells));
+            return Some(Stretch { end, content: Content::Cubic });
+        }
+        let stretch = self.block()?;
+        if matches!(stretch.content, Content::Cubic) {
+            self.cells = Some(self.enter(stretch.end));
+            return self.next();
+        }
+        self.t = stretch.end;
+        Some(stretch)
     }
 }

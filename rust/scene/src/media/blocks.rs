@@ -93,22 +93,24 @@ impl<const C: usize> Blocks<C> {
         Some(found)
     }
 
-    /// The greatest of each of `C` in a part.
-    pub fn greatest(&self, part: [Range<usize>; 3]) -> [f32; C] {
-        let mut most = [0.0f32; C];
+    /// The least and the greatest of each of `C` in a part.
+    pub fn range(&self, part: [Range<usize>; 3]) -> [[f32; C]; 2] {
+        let [mut least, mut most] = [[f32::INFINITY; C], [0.0f32; C]];
         self.parts(&part, |place, rows| {
-            if place != 0 {
-                for row in rows {
-                    let start = place * self.length();
-                    for numbers in &self.numbers[start + row.start..start + row.end] {
-                        for (most, &number) in most.iter_mut().zip(numbers) {
-                            *most = most.max(number);
-                        }
+            if place == 0 {
+                least = [0.0; C];
+                return;
+            }
+            for row in rows {
+                let start = place * self.length();
+                for numbers in &self.numbers[start + row.start..start + row.end] {
+                    for (i, &number) in numbers.iter().enumerate() {
+                        (least[i], most[i]) = (least[i].min(number), most[i].max(number));
                     }
                 }
             }
         });
-        most
+        [least, most]
     }
 
     /// Goes through the blocks of a part: which of the kept each is, and which rows of it lie in the part.
@@ -315,10 +317,10 @@ mod tests {
         }
         assert_eq!(blocks.cell([1; 3], [2; 3]), None);
         let most = all.iter().map(|[number]| *number).fold(0.0, f32::max);
-        assert_eq!(blocks.greatest([0..19, 0..9, 0..30]), [most]);
+        assert_eq!(blocks.range([0..19, 0..9, 0..30]), [[0.0], [most]]);
         let part = blocks.part([7..12, 6..9, 13..20]).into_iter().map(|[number]| number).fold(0.0, f32::max);
-        assert_eq!(blocks.greatest([7..12, 6..9, 13..20]), [part]);
-        assert_eq!(blocks.greatest([0..8, 0..8, 0..30]), [0.0]);
+        assert_eq!(blocks.range([7..12, 6..9, 13..20])[1], [part]);
+        assert_eq!(blocks.range([0..8, 0..8, 0..30]), [[0.0]; 2]);
     }
 
     #[test]

@@ -36,11 +36,21 @@ impl Field {
         }
     }
 
-    /// The greatest number of each colour in each of so many equal blocks of the unit cube, the last axis fastest.
-    pub fn greatest(&self, blocks: [usize; 3]) -> Vec<[f32; 3]> {
+    /// The least and the greatest number of each colour in each of so many equal blocks of the unit cube, the last axis
+    /// fastest.
+    pub fn ranges(&self, blocks: [usize; 3]) -> Vec<[[f32; 3]; 2]> {
         match self {
-            Self::Grey(values) => values.greatest(blocks).into_iter().map(|[most]| [most; 3]).collect(),
-            Self::Coloured(values) => values.greatest(blocks),
+            Self::Grey(values) => values.ranges(blocks).map(|range| range.map(|[one]| [one; 3])).collect(),
+            Self::Coloured(values) => values.ranges(blocks).collect(),
+        }
+    }
+
+    /// Steps of the grid along an axis as a linear function of a coordinate of the unit cube: its value at 0 and at 1.
+    /// Cells end where it is a whole number, from 0 to that of the last number.
+    pub fn steps(&self, axis: usize) -> [f64; 2] {
+        match self {
+            Self::Grey(values) => values.line(axis),
+            Self::Coloured(values) => values.line(axis),
         }
     }
 

@@ -51,10 +51,10 @@ impl Glow {
     /// Whether there is any of it in each of so many equal blocks of the unit cube, the last axis fastest.
     pub fn bright(&self, blocks: [usize; 3]) -> Vec<bool> {
         match self {
-            Self::Radiance(field) => field.greatest(blocks).into_iter().map(|most| most != [0.0; 3]).collect(),
+            Self::Radiance(field) => field.ranges(blocks).into_iter().map(|[_, most]| most != [0.0; 3]).collect(),
             Self::Heat { kelvin, brightness } => {
-                let is_hot = |[most]: [f32; 1]| f64::from(most) >= COLDEST && *brightness > 0.0;
-                kelvin.greatest(blocks).into_iter().map(is_hot).collect()
+                let is_hot = |[_, [most]]: [[f32; 1]; 2]| f64::from(most) >= COLDEST && *brightness > 0.0;
+                kelvin.ranges(blocks).map(is_hot).collect()
             }
         }
     }

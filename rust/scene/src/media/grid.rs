@@ -1,6 +1,6 @@
 //! A medium that differs from place to place, by numbers on a grid.
 
-use super::block_walk::{BlockWalk, Majorants};
+use super::block_walk::{BlockWalk, Majorants, Spectra};
 use super::{Coefficients, Field, Glow, Medium, Stretches};
 use raywright_base::math::{Affine, DVec3, Ray};
 use raywright_optics::{Phase, Rgb};
@@ -48,10 +48,9 @@ impl GridMedium {
         }
         let place = Affine::from_matrix(matrix);
         let into = place.inverse().map_err(|why| format!("transform has no inverse: {why}"))?;
-        let is_glowing = !coefficients.emission.is_black();
-        let majorants = Majorants::new(&density, glow.as_ref(), &coefficients, is_glowing, &place);
         let scattering = if albedo.is_some() { coefficients.extinction } else { coefficients.scattering };
         let coefficients = Coefficients { scattering, ..coefficients };
+        let majorants = Majorants::new(&density, glow.as_ref(), &coefficients, albedo.is_some(), &place);
         let medium = Self { density, albedo, glow, coefficients, phase, into, majorants };
         if !(coefficients.extinction * medium.majorants.densest()).is_finite() {
             return Err("density times a coefficient must be finite".into());
@@ -85,6 +84,12 @@ impl GridMedium {
         self.into.point(point)
     }
 
+    /// What lies on a ray between two `t`, where what the medium does to light follows from its coefficients in a way.
+    pub(super) fn stretches_by(&self, spectra: Spectra, ray: &Ray, span: [f64; 2]) -> Stretches<'_> {
+        let (origin, direction) = (self.into.point(ray.origin), self.into.vector(ray.direction));
+        Stretches::blocks(BlockWalk::new(&self.majorants, spectra, origin, direction, span))
+    }
+
     /// What it gives off by itself, if that does not go with the density.
     pub(super) fn glow(&self) -> Option<&Glow> {
         self.glow.as_ref()
@@ -105,8 +110,12 @@ impl Medium for GridMedium {
     }
 
     fn stretches(&self, ray: &Ray, span: [f64; 2]) -> Stretches<'_> {
-        let (origin, direction) = (self.into.point(ray.origin), self.into.vector(ray.direction));
-        Stretches::blocks(BlockWalk::new(&self.majorants, origin, direction, span))
+        self.stretches_by(Spectra::Linear, ray, span)
+    }
+
+    #[inline]
+    fn extinction(&self, point: DVec3) -> Rgb {
+        self.coefficients.extinction * self.density.at(self.into.point(point))
     }
 
     #[inline]
@@ -192,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn stretches_follow_on_one_another_and_nothing_in_one_is_denser_than_it_says() {
+    fn stretches_follow_on_one_another_and_are_even_or_cubic() {
         let size = [19, 33, 8];
         let numbers = (0..19 * 33 * 8).map(|i| Sampler::new(5, 0, i).one(0));
         let dense = |u: f64| if u < 0.6 { 0.0 } else { u as f32 };
@@ -203,30 +212,55 @@ mod tests {
                 let mut sampler = Sampler::new(6, 0, draw);
                 let origin = DVec3::new(2.0, 0.5, 0.6) + warp::uniform_sphere(sampler.two(0)) * 4.0 * sampler.one(1);
                 let ray = Ray::new(origin, warp::uniform_sphere(sampler.two(2)));
-                let (mut start, mut in_blocks) = (0.25, 0.0);
+                let mut start = 0.25;
                 for stretch in medium.stretches(&ray, [0.25, 9.0]) {
                     assert!(stretch.end >= start - 1e-12 && stretch.end <= 9.0);
-                    for step in 0..8 {
-                        let t = start + (stretch.end - start) * (f64::from(step) + 0.5) / 8.0;
+                    let inside = |t: f64| {
                         let within = medium.into.point(ray.at(t));
-                        let is_inside = within.cmpge(DVec3::ZERO).all() && within.cmple(DVec3::ONE).all();
-                        match stretch.content {
-                            Content::Varies(most) => {
-                                assert!(medium.at(ray.at(t)).extinction[0] <= most[0] + 1e-12);
-                                in_blocks += (stretch.end - start) / 8.0;
-                            }
-                            Content::Even(nothing) => {
-                                assert_eq!(nothing, Coefficients::NONE);
-                                assert!(!is_inside || medium.at(ray.at(t)).extinction.is_black());
-                            }
+                        within.cmpge(DVec3::ZERO).all() && within.cmple(DVec3::ONE).all()
+                    };
+                    let at = |step: i32| start + (stretch.end - start) * (f64::from(step) + 0.5) / 5.0;
+                    let density = |step: i32| medium.at(ray.at(at(step))).extinction[0];
+                    match stretch.content {
+                        // The fourth differences of a polynomial of the third degree are none.
+                        Content::Cubic => {
+                            let [a, b, c, d, e] = [0, 1, 2, 3, 4].map(density);
+                            assert!((a - 4.0 * b + 6.0 * c - 4.0 * d + e).abs() < 1e-11);
+                            assert!((0..5).all(|step| inside(at(step))));
                         }
+                        Content::Even(nothing) => {
+                            assert_eq!(nothing, Coefficients::NONE);
+                            assert!((0..5).all(|step| !inside(at(step)) || density(step) == 0.0));
+                        }
+                        Content::Varies(_) => panic!("it is told by density"),
                     }
                     start = stretch.end;
                 }
                 assert_eq!(start, 9.0);
-                assert!(in_blocks <= 8.75);
+                // Where what it does to light is in no proportion to the density, the most of each block is known.
+                start = 0.25;
+                for stretch in medium.stretches_by(Spectra::OfColours, &ray, [0.25, 9.0]) {
+                    let middle = medium.at(ray.at(0.5 * (start + stretch.end))).extinction[0];
+                    let Content::Varies(most) = stretch.content else { continue };
+                    assert!(middle <= most[0] + 1e-12);
+                    start = stretch.end;
+                }
             }
         }
+    }
+
+    #[test]
+    fn what_is_the_same_throughout_a_block_is_even() {
+        let mut numbers = vec![0.5f32; 24 * 8 * 8];
+        numbers[23 * 64] = 0.75;
+        let medium = grid([24, 8, 8], At::Centres, numbers, UNIT);
+        let ray = Ray::new(DVec3::new(-1.0, 0.3, 0.4), DVec3::X);
+        let contents: Vec<_> = medium.stretches(&ray, [0.0, 9.0]).collect();
+        let even = |stretch: &Stretch, sigma: f64| matches!(stretch.content, Content::Even(here) if here.extinction == Rgb::splat(sigma));
+        assert!(even(&contents[0], 0.0) && even(&contents[1], 0.5) && even(&contents[2], 0.5));
+        assert!(matches!(contents[3].content, Content::Cubic) && even(contents.last().unwrap(), 0.0));
+        // Numbers stand in the middles of 24 cells, of which the last block has eight.
+        assert_eq!(contents.len(), 4 + 9);
     }
 
     #[test]

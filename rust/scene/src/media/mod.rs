@@ -54,6 +54,11 @@ pub trait Medium: Debug + Send + Sync {
     /// What there is at a point.
     fn at(&self, point: DVec3) -> Coefficients;
 
+    /// The extinction at a point.
+    fn extinction(&self, point: DVec3) -> Rgb {
+        self.at(point).extinction
+    }
+
     /// What there is at a point, at a path's wavelengths, where it is told by wavelength.
     fn at_waves(&self, point: DVec3, waves: &Waves) -> Coefficients {
         self.by_waves(self.at(point), waves)

@@ -17,6 +17,9 @@ pub struct Stretch {
 pub enum Content {
     /// The same everywhere.
     Even(Coefficients),
+    /// Something that must be asked for at each point, with an extinction that is a polynomial of the third degree along
+    /// the ray, as numbers are that are interpolated along each axis of a cell.
+    Cubic,
     /// Something that must be asked for at each point, with an extinction that is nowhere above this. Where it glows
     /// without dimming light, this is above 0 too, so that points there are asked for.
     Varies(Rgb),

@@ -42,6 +42,15 @@ impl<const C: usize> Values<C> {
         }
     }
 
+    /// The same at 0 and at 1, without the ends.
+    pub fn line(&self, axis: usize) -> [f64; 2] {
+        let count = self.size()[axis] as f64;
+        match self.at {
+            At::Corners => [0.0, count - 1.0],
+            At::Centres => [-0.5, count - 0.5],
+        }
+    }
+
     /// What is at a point of the unit cube, of which one outside counts as the nearest within.
     #[inline]
     pub fn value(&self, point: DVec3) -> [f64; C] {
@@ -70,25 +79,21 @@ impl<const C: usize> Values<C> {
         sum
     }
 
-    /// The greatest number of each kind in each of so many equal blocks of the unit cube, the last axis fastest.
-    pub fn greatest(&self, blocks: [usize; 3]) -> Vec<[f32; C]> {
-        let mut greatest = Vec::with_capacity(blocks.iter().product());
+    /// The least and the greatest number of each kind in each of so many equal blocks of the unit cube, the last axis
+    /// fastest.
+    pub fn ranges(&self, blocks: [usize; 3]) -> impl Iterator<Item = [[f32; C]; 2]> + '_ {
         // Which numbers count in a part of the cube: those within, and the next on either side.
-        let counting = |axis: usize, block: usize| -> Range<usize> {
+        let counting = move |axis: usize, block: usize| -> Range<usize> {
             let [from, to] = [block, block + 1].map(|b| self.steps(axis, b as f64 / blocks[axis] as f64));
             // What rounding may have moved to the other side of a number counts too.
             let last = (self.size()[axis] - 1) as f64;
             let [from, to] = [from * (1.0 - 1e-12), (to * (1.0 + 1e-12)).min(last)];
             from.floor() as usize..to.ceil() as usize + 1
         };
-        for x in 0..blocks[0] {
-            for y in 0..blocks[1] {
-                for z in 0..blocks[2] {
-                    greatest.push(self.blocks.greatest([counting(0, x), counting(1, y), counting(2, z)]));
-                }
-            }
-        }
-        greatest
+        (0..blocks.iter().product()).map(move |block| {
+            let [x, y, z] = [block / blocks[2] / blocks[1], block / blocks[2] % blocks[1], block % blocks[2]];
+            self.blocks.range([counting(0, x), counting(1, y), counting(2, z)])
+        })
     }
 
     /// The memory held.

@@ -1,5 +1,6 @@
 //! Media on grids by wavelength, where they have other colours at other points.
 
+use super::block_walk::Spectra;
 use super::grid::Here;
 use super::{Coefficients, GridMedium, Medium, Stretches};
 use raywright_base::math::{DVec3, Ray};
@@ -52,7 +53,8 @@ impl Medium for WavedGrid {
     }
 
     fn stretches(&self, ray: &Ray, span: [f64; 2]) -> Stretches<'_> {
-        self.grid.stretches(ray, span)
+        let spectra = if self.grid.is_coloured() { Spectra::OfColours } else { Spectra::OfDensity };
+        self.grid.stretches_by(spectra, ray, span)
     }
 
     fn at(&self, point: DVec3) -> Coefficients {
