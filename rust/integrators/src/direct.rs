@@ -23,10 +23,10 @@ impl Default for Direct {
 
 impl Integrator for Direct {
     fn begin<'a>(&'a self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a> {
-        if job.scene.plan().needs().media {
-            return Volumes::dimmed(1).begin(job);
-        }
         let (light_samples, splits) = (self.light_samples.max(1), self.surface_samples.max(1));
+        if job.scene.plan().needs().media {
+            return Volumes { light_samples, splits, ..Volumes::dimmed(1) }.begin(job);
+        }
         Settings { light_samples, splits, ..Settings::path(Some(1), u32::MAX) }.begin(job, cancel)
     }
 

@@ -33,7 +33,9 @@ impl Integrator for Whitted {
     fn begin<'a>(&'a self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a> {
         if job.scene.plan().needs().media {
             let (onwards, ambient, least) = (Onwards::DeltaLobes, self.ambient, self.contribution);
-            return Volumes { onwards, ambient, least, ..Volumes::dimmed(self.max_depth) }.begin(job);
+            let light_samples = self.light_samples.max(1);
+            let settings = Volumes::dimmed(self.max_depth);
+            return Volumes { onwards, ambient, least, light_samples, ..settings }.begin(job);
         }
         Settings {
             follow: Follow::DeltaLobes,

@@ -106,7 +106,7 @@ loops! {
 
 /// The choice of one of several draws: each makes its own in a share of all.
 #[inline]
-fn share(choice: f64, (number, asked): (u32, u32)) -> f64 {
+pub(crate) fn share(choice: f64, (number, asked): (u32, u32)) -> f64 {
     if asked == 1 { choice } else { ((choice + f64::from(number)) / f64::from(asked)).min(1f64.next_down()) }
 }
 

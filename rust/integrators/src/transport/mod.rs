@@ -27,6 +27,7 @@ mod worker;
 
 use super::{Guide, Job, Session, Worker};
 pub(super) use dimensions::Dimensions;
+pub(super) use direct_light::share;
 use features::{Features, General, Open, Plain, Sharing};
 pub use first_seen::FirstSeen;
 pub(super) use known::{Gather, MattLight, Visit};

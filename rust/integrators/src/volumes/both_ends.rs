@@ -14,13 +14,13 @@ use super::weights::Weights;
 use crate::light_paths::{self, Arrived, Limits, Onward, Partial, of_asked, weight};
 use crate::nesting::MediumStack;
 use crate::parting::Parting;
-use crate::transport::Dimensions;
+use crate::transport::{Dimensions, widened};
 use crate::{CameraSample, Job, Worker, roulette};
 use raywright_base::math::{DVec3, Ray};
 use raywright_base::workers::Cancel;
 use raywright_optics::Rgb;
 use raywright_optics::spectra::Waves;
-use raywright_scene::{EmissionSample, Emitters, Encounter, LightSampleContext};
+use raywright_scene::{EmissionSample, Emitters, Encounter, Footprint, Gaze, LightSampleContext, SurfaceInteraction};
 
 /// What one thread works with.
 pub(crate) struct BothEnds<'a> {
@@ -33,6 +33,8 @@ pub(crate) struct BothEnds<'a> {
     paths: f64,
     /// Whether the camera's samples are spread over time.
     moves: bool,
+    /// Whether textures are looked at by how wide rays are.
+    widths: bool,
     light: Option<(MediaLightWalk<'a>, LightVertices<'a>)>,
 }
 
@@ -66,6 +68,8 @@ struct EyePath {
     /// Its wavelengths; none for red, green and blue. And whether the first is all that it carries.
     waves: Option<Waves>,
     single: bool,
+    /// The bundle of its neighbours where its ray starts.
+    footprint: Footprint,
 }
 
 /// What a sample has besides its path.
@@ -151,6 +155,7 @@ impl<'a> BothEnds<'a> {
             alone,
             paths: f64::from(camera.width()) * f64::from(camera.height()),
             moves: scene.geometry().moves() || camera.uses_time(),
+            widths: scene.plan().needs().points.width,
             light: emitters.filter(|_| limits.max_depth.is_none_or(|depth| depth > 1)).map(light),
         }
     }
@@ -184,7 +189,9 @@ impl<'a> BothEnds<'a> {
         let going = Going { ray: sample.ray, weights: Weights::START, media, passed: 0 };
         let partial = Partial::of_camera(self.paths, 0.0);
         let (normal, single) = (DVec3::ZERO, false);
-        let mut path = EyePath { going, scale: 1.0, bounce: 0, gilded: false, partial, normal, waves, single };
+        let footprint = self.job.footprint;
+        let mut path =
+            EyePath { going, scale: 1.0, bounce: 0, gilded: false, partial, normal, waves, single, footprint };
         let mut light = Rgb::ZERO;
         let mut sample = Sample { hero, numbers: &mut numbers, cancel, lens, time };
         while self.advance(&mut path, &mut sample, &mut light) {}
@@ -208,6 +215,7 @@ impl<'a> BothEnds<'a> {
                 return false;
             }
             Some(Place::Medium { here, collision, .. }) => {
+                path.footprint = path.footprint.at(collision.t);
                 Vertex::of_medium(self.job.scene, here, &collision, (ray, media), path.waves.as_ref())
             }
             Some(Place::Surface { hit, outside, through }) => {
@@ -219,11 +227,18 @@ impl<'a> BothEnds<'a> {
                         Arrived::by_waves(self.job.scene, (ray, hit), (outside, around), waves)
                     }
                 };
-                *light += path.throughput() * self.emitted(&arrived, path);
+                path.footprint = path.footprint.at(hit.t);
+                let width = if self.widths { path.footprint.width } else { 0.0 };
+                let gaze = Gaze { width, waves: path.waves };
+                let seen = (width > 0.0).then(|| {
+                    let surface = *arrived.here.surface();
+                    SurfaceInteraction::new(self.job.scene, &ray, &hit, surface, gaze, arrived.outside)
+                });
+                *light += path.throughput() * self.emitted(&arrived, path, gaze);
                 if parting.is_some_and(|parting| !parting.waits(arrived.here.bsdf())) {
                     path.end_all_but_first();
                 }
-                Vertex::of_surface(arrived, through, media)
+                Vertex::of_surface(arrived, through, media).seen(seen)
             }
         };
         if self.limits.max_depth.is_some_and(|most| path.bounce >= most) {
@@ -274,14 +289,14 @@ impl<'a> BothEnds<'a> {
     }
 
     /// What a surface sends back that a path has come upon.
-    fn emitted(&self, arrived: &Arrived, path: &EyePath) -> Rgb {
+    fn emitted(&self, arrived: &Arrived, path: &EyePath, gaze: Gaze) -> Rgb {
         let (scene, Arrived { ray, hit, .. }) = (self.job.scene, arrived);
         let (geometry, surface) = (scene.geometry(), arrived.here.surface());
         let emission = scene.emission_at(surface);
         if emission.is_dark() {
             return Rgb::ZERO;
         }
-        let sent = emission.sent(geometry, ray, hit, surface, || path.waves);
+        let sent = emission.sent(geometry, ray, hit, surface, || gaze);
         if sent.is_black() || path.bounce == 0 && self.alone.is_none() {
             return sent;
         }
@@ -384,7 +399,10 @@ impl<'a> BothEnds<'a> {
         let ray = sample.numbers.ray;
         let (u, choice) = (sample.numbers.two(ray.direction()), ray.scattering_choice());
         let next = match &at.point {
-            Point::Surface { arrived, .. } => arrived.here.sample(&mut || sample.numbers.one(choice), u),
+            Point::Surface { arrived, wide, .. } => {
+                let here = wide.as_deref().unwrap_or(&arrived.here);
+                here.sample(&mut || sample.numbers.one(choice), u)
+            }
             Point::Medium { here, .. } => here.sample(&mut || 0.0, u),
         };
         let Some(next) = next else { return false };
@@ -419,8 +437,12 @@ impl<'a> BothEnds<'a> {
         path.partial = if next.is_delta() {
             path.partial.scattered_singly(cosine)
         } else {
-            path.partial.scattered(cosine, next.pdf, at.light_back_pdf(next.wi))
+            let forward = if at.is_wide() { at.evaluate(next.wi).1 } else { next.pdf };
+            path.partial.scattered(cosine, forward, at.light_back_pdf(next.wi))
         };
+        if self.widths {
+            path.footprint = widened(&path.footprint, path.footprint.width, at.curvature(), &next);
+        }
         path.normal = at.receiver().normal;
         path.going.media = at.media_after(next.is_through);
         path.going.ray = at.leaving(at.origin().ray(next.wi), Ray::NO_TRIANGLE);

@@ -7,29 +7,33 @@ use super::path_state::PathState;
 use super::walker::Walker;
 use super::weights::Weights;
 use crate::nesting::MediumStack;
-use crate::transport::power_heuristic;
+use crate::transport::{power_heuristic, share};
 use raywright_base::math::Ray;
 use raywright_base::workers::Cancel;
 use raywright_optics::Rgb;
 use raywright_scene::{Encounter, LightSample, LightSampleContext};
 
+/// The one draw of those who ask once.
+pub(super) const ONCE: (u32, u32) = (0, 1);
+
 impl<A: Asks> Walker<'_, A> {
     /// Next-event estimation: draws light where a path is, and tells what arrives of it. `through` is what rays start
-    /// in that leave to the other side, if they do.
+    /// in that leave to the other side, if they do. The draw is one of so many, each in a share of the lights.
     pub(super) async fn direct_light(
         &self,
         here: &impl Encounter,
         path: &PathState,
         media: impl FnOnce(&LightSample) -> MediumStack<Filled>,
-        hero: usize,
+        (hero, draw): (usize, (u32, u32)),
         numbers: &mut Numbers<'_>,
         cancel: &Cancel,
     ) -> Option<(LightSample, Rgb)> {
-        let choice = numbers.ray.light_choice(0);
-        let (choice, u) = (numbers.one(choice), numbers.two(choice + 1));
+        let choice = numbers.ray.light_choice(draw.0);
+        let (choice, u) = (share(numbers.one(choice), draw), numbers.two(choice + 1));
         let (lights, geometry) = (self.scene.lights(), self.scene.geometry());
-        let light =
-            lights.sample(geometry, &LightSampleContext { waves: path.waves, ..here.light_context() }, choice, u)?;
+        let receiver = LightSampleContext { waves: path.waves, ..here.light_context() };
+        // As if all draws were one, which finds each direction so many times as often.
+        let light = lights.sample(geometry, &receiver, choice, u)?.chosen(f64::from(draw.1));
         let arrives = self.arriving(here, path, &light, media(&light), hero, numbers, cancel).await?;
         Some((light, arrives))
     }

@@ -48,8 +48,8 @@ use super::transport::Gather;
 use super::{Job, Session, Worker};
 use raywright_base::math::DVec3;
 use raywright_optics::Rgb;
-use raywright_scene::Scene;
 use raywright_scene::lights::{Light, Place as LightPlace};
+use raywright_scene::{Footprint, Scene};
 use std::sync::Arc;
 use walker::Walkers;
 
@@ -71,6 +71,9 @@ pub(super) struct Volumes {
     pub roulette_depth: u32,
     /// Whether what media scatter comes back to the path; if not, they only dim.
     pub scatters: bool,
+    /// How often light is asked at the first surface, and into how many a path is split there.
+    pub light_samples: u32,
+    pub splits: u32,
     /// Which directions are followed.
     pub onwards: Onwards,
     /// Radiance that arrives from everywhere in place of what is not followed, where it is scattered diffusely.
@@ -87,9 +90,18 @@ pub(super) struct Volumes {
 impl Volumes {
     /// Those of a path tracer.
     pub fn path(max_depth: Option<u32>, roulette_depth: u32) -> Self {
-        let (onwards, ambient) = (Onwards::All, Rgb::ZERO);
-        let scatters = true;
-        Self { max_depth, roulette_depth, scatters, onwards, ambient, least: 0.0, gather: None, shares: false }
+        Self {
+            max_depth,
+            roulette_depth,
+            scatters: true,
+            light_samples: 1,
+            splits: 1,
+            onwards: Onwards::All,
+            ambient: Rgb::ZERO,
+            least: 0.0,
+            gather: None,
+            shares: false,
+        }
     }
 
     /// Those of what follows light among surfaces alone, to so many of them, and is dimmed between.
@@ -113,7 +125,7 @@ impl Volumes {
             _ => None,
         };
         let points = job.scene.lights().others().filter_map(point).collect();
-        Box::new(Among { settings: self, scene: job.scene, points, known })
+        Box::new(Among { settings: self, scene: job.scene, footprint: job.footprint, points, known })
     }
 }
 
@@ -121,6 +133,8 @@ impl Volumes {
 struct Among<'a> {
     settings: Volumes,
     scene: &'a Scene,
+    /// How wide cameras' rays are.
+    footprint: Footprint,
     /// Lights that are points.
     points: Vec<(DVec3, &'a dyn Light)>,
     /// What is known of light where paths are scattered.
@@ -129,6 +143,6 @@ struct Among<'a> {
 
 impl Session for Among<'_> {
     fn worker(&self) -> Box<dyn Worker + '_> {
-        Box::new(Walkers::new(self.settings, self.scene, &self.points, self.known.as_deref()))
+        Box::new(Walkers::new(self.settings, (self.scene, self.footprint), &self.points, self.known.as_deref()))
     }
 }

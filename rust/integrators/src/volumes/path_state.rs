@@ -7,7 +7,7 @@ use crate::parting::Parting;
 use raywright_base::math::{DVec3, Ray};
 use raywright_optics::spectra::Waves;
 use raywright_optics::{BsdfSample, Rgb};
-use raywright_scene::{Scene, SurfacePoint};
+use raywright_scene::{Footprint, Scene, SurfacePoint};
 
 /// A path on its way.
 #[derive(Clone, Copy, Debug)]
@@ -43,6 +43,10 @@ pub(super) struct PathState {
     /// ([`super::reuse`]).
     pub is_first: bool,
     pub is_shared: bool,
+    /// The bundle of its neighbours where its ray starts, as far as anybody looks at a texture by its width; and the
+    /// mean curvature of the surface there.
+    pub footprint: Footprint,
+    pub curvature: f64,
     /// How many ends of media its ray has passed ([`super::course::Going::passed`]).
     pub passed: u32,
 }
@@ -68,8 +72,15 @@ impl PathState {
             is_sharp_since: false,
             is_first: false,
             is_shared: false,
+            footprint: Footprint::default(),
+            curvature: 0.0,
             passed: 0,
         }
+    }
+
+    /// It has come to a `t` of its ray, to a surface of mean curvature `curvature` or to none.
+    pub fn come_to(&mut self, t: f64, curvature: f64) {
+        (self.footprint, self.curvature) = (self.footprint.at(t), curvature);
     }
 
     /// It comes to a surface, beyond which it would be in other media: what parts its wavelengths there, if anything

@@ -1,6 +1,7 @@
 //! Where paths come to what they share.
 
 use super::asking::Asks;
+use super::direct_light::ONCE;
 use super::numbers::Numbers;
 use super::path_state::PathState;
 use super::reuse::{First, Second};
@@ -57,7 +58,7 @@ impl<A: Asks> Walker<'_, A> {
         }
         path.share();
         let (here, media) = (AllWays(*here), path.media);
-        let asked = self.direct_light(&here, path, |_| media, hero, numbers, cancel).await;
+        let asked = self.direct_light(&here, path, |_| media, (hero, ONCE), numbers, cancel).await;
         let (to_light, lit) = asked.map_or((DVec3::X, Rgb::ZERO), |(light, arrives)| (light.direction, arrives));
         let u = numbers.ray.direction();
         let next = here.sample(&mut || 0.0, numbers.two(u))?;

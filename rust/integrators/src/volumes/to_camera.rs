@@ -105,7 +105,7 @@ impl<'a> MediaVisitor<'a> for Connections<'a> {
         if at.is_single() {
             return;
         }
-        let Job { scene, camera, .. } = self.job;
+        let Job { scene, camera, footprint, .. } = self.job;
         let lens = if camera.uses_lens() { numbers.two(dimensions.lens()) } else { [0.5; 2] };
         let Some(seen) = camera.connect(at.position(), lens, path.time) else { return };
         let way = seen.origin - at.position();
@@ -114,7 +114,8 @@ impl<'a> MediaVisitor<'a> for Connections<'a> {
         if direction.is_nan() || at.is_hidden_from(direction) {
             return;
         }
-        let mut light = path.flux() * at.met_from(direction, distance).sent * seen.density;
+        let width = if scene.plan().needs().points.width { footprint.at(distance).width } else { 0.0 };
+        let mut light = path.flux() * at.towards(direction, distance, width) * seen.density;
         if light.is_black() || !light.is_finite() {
             return;
         }

@@ -16,7 +16,7 @@ use raywright_base::math::{DVec3, Ray};
 use raywright_optics::spectra::Waves;
 use raywright_optics::{Bsdf, Rgb};
 use raywright_scene::media::Coefficients;
-use raywright_scene::{Encounter, LightSampleContext, RayOrigin, Scene};
+use raywright_scene::{Encounter, LightSampleContext, RayOrigin, Scene, SurfaceInteraction};
 
 /// Where a path has come to.
 #[derive(Clone)]
@@ -33,7 +33,10 @@ pub(crate) struct Vertex<'a> {
 #[derive(Clone)]
 pub(crate) enum Point<'a> {
     Surface {
+        /// As rays without width meet it: densities that are compared are those.
         arrived: Box<Arrived<'a>>,
+        /// As a path from a camera sees it, if that differs.
+        wide: Option<Box<SurfaceInteraction>>,
         /// What a ray that goes through is in.
         through: MediumStack<Filled>,
     },
@@ -61,7 +64,15 @@ pub(crate) struct Met {
 impl<'a> Vertex<'a> {
     pub fn of_surface(arrived: Arrived<'a>, through: MediumStack<Filled>, media: MediumStack<Filled>) -> Self {
         let (ray, t) = (arrived.ray, arrived.hit.t);
-        Self { point: Point::Surface { arrived: Box::new(arrived), through }, ray, t, media }
+        Self { point: Point::Surface { arrived: Box::new(arrived), wide: None, through }, ray, t, media }
+    }
+
+    /// The same as a path from a camera sees it, where that differs.
+    pub fn seen(mut self, seen: Option<SurfaceInteraction>) -> Self {
+        if let Point::Surface { wide, .. } = &mut self.point {
+            *wide = seen.map(Box::new);
+        }
+        self
     }
 
     pub fn of_medium(
@@ -128,7 +139,10 @@ impl<'a> Vertex<'a> {
     /// As [`Encounter::evaluate`].
     pub fn evaluate(&self, direction: DVec3) -> (Rgb, f64) {
         match &self.point {
-            Point::Surface { arrived, .. } => arrived.here.evaluate(direction),
+            Point::Surface { arrived, wide: None, .. } => arrived.here.evaluate(direction),
+            Point::Surface { arrived, wide: Some(wide), .. } => {
+                (wide.evaluate(direction).0, arrived.here.evaluate(direction).1)
+            }
             Point::Medium { here, .. } => here.evaluate(direction),
         }
     }
@@ -164,6 +178,15 @@ impl<'a> Vertex<'a> {
         }
     }
 
+    /// Of a path of light, the share that is sent into a solid angle in a direction, seen from such a distance by what is
+    /// so wide.
+    pub fn towards(&self, direction: DVec3, distance: f64, width: f64) -> Rgb {
+        match &self.point {
+            Point::Surface { arrived, .. } => arrived.towards(direction, distance, width),
+            Point::Medium { here, .. } => here.evaluate(direction).0,
+        }
+    }
+
     /// Draws where light goes on to.
     pub fn onward(&self, choice: &mut dyn FnMut() -> f64, u: [f64; 2]) -> Option<Onward> {
         match &self.point {
@@ -179,7 +202,7 @@ impl<'a> Vertex<'a> {
     /// What a ray that leaves in a direction is in.
     pub fn media(&self, direction: DVec3) -> MediumStack<Filled> {
         match &self.point {
-            Point::Surface { arrived, through } if arrived.here.is_through(direction) => *through,
+            Point::Surface { arrived, through, .. } if arrived.here.is_through(direction) => *through,
             _ => self.media,
         }
     }
@@ -189,6 +212,19 @@ impl<'a> Vertex<'a> {
         match &self.point {
             Point::Surface { through, .. } if is_through => *through,
             _ => self.media,
+        }
+    }
+
+    /// Whether a path from a camera sees it in another way than rays without width.
+    pub fn is_wide(&self) -> bool {
+        matches!(&self.point, Point::Surface { wide: Some(_), .. })
+    }
+
+    /// Mean curvature, as a path from a camera sees it.
+    pub fn curvature(&self) -> f64 {
+        match &self.point {
+            Point::Surface { wide: Some(wide), .. } => wide.curvature(),
+            _ => 0.0,
         }
     }
 

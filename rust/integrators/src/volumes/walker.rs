@@ -2,6 +2,7 @@
 
 use super::asking::Asks;
 use super::course::{Course, Going, Place};
+use super::direct_light::ONCE;
 use super::filled::Filled;
 use super::known::KnownLight;
 use super::numbers::{Numbers, depth};
@@ -12,13 +13,13 @@ use super::together::{Lane, lanes, together};
 use super::{Onwards, Volumes};
 use crate::nesting::MediumStack;
 use crate::parting::Parting;
-use crate::transport::{Dimensions, power_heuristic};
+use crate::transport::{Dimensions, power_heuristic, widened};
 use crate::{CameraSample, Worker, roulette};
 use raywright_base::math::{DVec3, Hit, Ray};
 use raywright_base::workers::Cancel;
 use raywright_optics::spectra::Waves;
 use raywright_optics::{Bsdf, BsdfSample, Rgb};
-use raywright_scene::{Encounter, Light, LightSample, LightSampleContext, Scene, SurfaceInteraction};
+use raywright_scene::{Encounter, Footprint, Gaze, Light, LightSample, LightSampleContext, Scene, SurfaceInteraction};
 use std::cell::{Cell, RefCell};
 
 /// Who follows paths, and asks what their rays hit.
@@ -26,6 +27,8 @@ use std::cell::{Cell, RefCell};
 pub(super) struct Walker<'a, A> {
     pub(super) settings: Volumes,
     pub(super) scene: &'a Scene,
+    /// How wide cameras' rays are, if anybody asks.
+    footprint: Option<Footprint>,
     /// Lights that are points.
     pub(super) points: &'a [(DVec3, &'a dyn Light)],
     /// What is known of light where paths are scattered, if anything is.
@@ -52,11 +55,12 @@ struct Part {
 impl<'a> Walkers<'a> {
     pub fn new(
         settings: Volumes,
-        scene: &'a Scene,
+        (scene, footprint): (&'a Scene, Footprint),
         points: &'a [(DVec3, &'a dyn Light)],
         known: Option<&'a dyn KnownLight>,
     ) -> Self {
-        let walker = Walker { settings, scene, points, known, asks: () };
+        let footprint = scene.plan().needs().points.width.then_some(footprint);
+        let walker = Walker { settings, scene, footprint, points, known, asks: () };
         Self { walker, reuse: Reuse::default(), parts: Vec::new() }
     }
 }
@@ -94,7 +98,8 @@ impl<'a, A: Asks> Walker<'a, A> {
         };
         let path = PathState::of_camera(sample.ray, media, waves);
         waiting.clear();
-        waiting.push(PathState { shares_waves: self.known.is_some(), ..path });
+        let footprint = self.footprint.unwrap_or_default();
+        waiting.push(PathState { shares_waves: self.known.is_some(), footprint, ..path });
         while let Some(mut path) = waiting.pop() {
             while !cancel.is_raised() {
                 numbers.ray = Dimensions::of(path.bounce, path.branch);
@@ -111,13 +116,15 @@ impl<'a, A: Asks> Walker<'a, A> {
                         false
                     }
                     // Nothing but the medium lies between.
-                    Place::Medium { here, .. } if was_first && path.passed == 0 => {
+                    Place::Medium { here, collision, .. } if was_first && path.passed == 0 => {
+                        path.come_to(collision.t, 0.0);
                         let met = self.scatter_shared(&mut path, &here, hero, &mut numbers, cancel).await;
                         let Some((second, goes_on)) = met else { break };
                         parts.second = Some(second);
                         goes_on
                     }
                     Place::Medium { here, collision, span } => {
+                        path.come_to(collision.t, 0.0);
                         let takes =
                             self.settings.shares && parts.first.is_none() && !path.gilded && First::may_be(&here);
                         if takes && collision.density.is_some() {
@@ -203,7 +210,8 @@ impl<'a, A: Asks> Walker<'a, A> {
         if path.pdf == f64::INFINITY {
             return 1.0;
         }
-        let asked = asked();
+        let often = if path.bounce == 1 { f64::from(self.settings.light_samples) } else { 1.0 };
+        let asked = asked() * often;
         if asked == 0.0 {
             1.0
         } else {
@@ -227,7 +235,7 @@ impl<'a, A: Asks> Walker<'a, A> {
             return false;
         }
         let media = path.media;
-        let asked = self.direct_light(here, path, |_| media, hero, numbers, cancel).await;
+        let asked = self.direct_light(here, path, |_| media, (hero, ONCE), numbers, cancel).await;
         if let Some((drawn, arrives)) = asked {
             let place = drawn.source.filter(|_| drawn.pdf == f64::INFINITY).map(|source| source.position());
             let weight = match (part, place) {
@@ -261,8 +269,12 @@ impl<'a, A: Asks> Walker<'a, A> {
         let (scene, geometry) = (self.scene, self.scene.geometry());
         let surface = geometry.surface(&ray, &hit);
         let emission = scene.emission_at(&surface);
+        // What is shared is seen by paths of other widths as well.
+        let is_wide = self.footprint.is_some() && shared.is_none() && !path.is_shared;
+        let width = if is_wide { path.footprint.at(hit.t).width } else { 0.0 };
+        let gaze = Gaze { width, waves: path.waves };
         if !emission.is_dark() && !self.is_shining_known(path) {
-            let sent = emission.sent(geometry, &ray, &hit, &surface, || path.waves);
+            let sent = emission.sent(geometry, &ray, &hit, &surface, || gaze);
             let cosine = -ray.direction.dot(surface.normal);
             let receiver = LightSampleContext { position: ray.origin, normal: path.normal, waves: path.waves };
             let asked = || scene.lights().surface_pdf(geometry, &receiver, &ray, &hit, cosine);
@@ -272,7 +284,8 @@ impl<'a, A: Asks> Walker<'a, A> {
             return false;
         }
         let (outside, parting) = path.parting(scene, &surface, &through, outside);
-        let here = SurfaceInteraction::new(scene, &ray, &hit, surface, path.waves, outside);
+        let here = SurfaceInteraction::new(scene, &ray, &hit, surface, gaze, outside);
+        path.come_to(hit.t, here.curvature());
         let later = parting.filter(|parting| parting.waits(here.bsdf()));
         if parting.is_some() && later.is_none() {
             path.end_all_but_hero();
@@ -285,22 +298,28 @@ impl<'a, A: Asks> Walker<'a, A> {
             light = &mut shared.insert(second).found;
         }
         if !self.settings.ambient.is_black() {
-            let share = here.ambient(scene, &ray, &hit, path.waves, outside);
+            let share = here.ambient(scene, &ray, &hit, gaze, outside);
             *light += path.weights.throughput() * share * self.settings.ambient;
         }
         let arrival = self.arrive(path, &here, number, light);
-        path.splits = arrival.splits();
+        let is_first = path.bounce == 0 && !here.bsdf().is_delta();
+        let splits = if is_first { f64::from(self.settings.splits) } else { 1.0 };
+        path.splits = arrival.splits() * splits;
         if !here.bsdf().is_delta() && !arrival.is_lit() {
             let now = path.media;
             let side = |drawn: &LightSample| if here.is_through(drawn.direction) { through } else { now };
-            if let Some((_, arrives)) = self.direct_light(&here, path, side, hero, numbers, cancel).await {
-                *light += arrives;
+            let often = if path.bounce == 0 { self.settings.light_samples } else { 1 };
+            for number in 0..often {
+                let draw = (hero, (number, often));
+                if let Some((_, arrives)) = self.direct_light(&here, path, side, draw, numbers, cancel).await {
+                    *light += arrives;
+                }
             }
         }
         if !self.follows_all() {
             return self.split(path, &here, through, later.as_ref(), waiting);
         }
-        if path.splits > 0.0 && arrival.is_known() {
+        if path.splits > 0.0 && arrival.is_known() || splits > 1.0 {
             self.look_about(path, &here, through, waiting, numbers);
             return false;
         }
@@ -394,6 +413,9 @@ impl<'a, A: Asks> Walker<'a, A> {
         path.weights.carried *= next.weight;
         path.weights.asked = path.weights.drawn;
         (path.pdf, path.normal, path.media) = (next.pdf, receiver.normal, media);
+        if self.footprint.is_some() {
+            path.footprint = widened(&path.footprint, path.footprint.width, path.curvature, next);
+        }
         path.scale *= next.eta * next.eta;
         path.bounce = path.bounce.saturating_add(1);
         path.ray = Ray { time: path.ray.time, ..ray };
@@ -422,7 +444,7 @@ impl Walkers<'_> {
     /// Follows the paths of some samples to their ends.
     fn follow(&mut self, samples: &mut [CameraSample], cancel: &Cancel, radiance: &mut [Rgb]) {
         assert_eq!(samples.len(), radiance.len());
-        let Walker { settings, scene, points, known, .. } = self.walker;
+        let Walker { settings, scene, footprint, points, known, .. } = self.walker;
         let rays: Vec<Ray> = samples.iter().map(|sample| sample.ray).collect();
         let mut media = Vec::new();
         MediumStack::at(scene, &rays, &mut media);
@@ -433,7 +455,7 @@ impl Walkers<'_> {
         let left = Cell::from_mut(&mut self.parts[..]).as_slice_of_cells();
         let to_do = RefCell::new(samples.iter_mut().zip(media).zip(radiance).enumerate());
         together(scene, &lanes, |lane: &Lane| {
-            let (walker, to_do) = (Walker { settings, scene, points, known, asks: lane }, &to_do);
+            let (walker, to_do) = (Walker { settings, scene, footprint, points, known, asks: lane }, &to_do);
             async move {
                 let mut waiting = Vec::new();
                 while !cancel.is_raised() {

@@ -49,9 +49,9 @@ impl LightSample {
         (!weight.is_black()).then_some(one)
     }
 
-    /// The same, when its light is one of several and was chosen with a probability.
+    /// The same, when its light is one of several and was chosen with a probability; above 1, one of so many draws.
     #[inline]
-    pub(super) fn chosen(self, probability: f64) -> Self {
+    pub fn chosen(self, probability: f64) -> Self {
         Self { weight: self.weight / probability, pdf: self.pdf * probability, ..self }
     }
 }
