@@ -174,7 +174,7 @@ def test_overlaps_count_once_or_not_at_all(box):
 
 @pytest.mark.parametrize("seed", range(6))
 def test_sections_and_insides_bear_all_of_it_at_once(seed):
-    """Every face with corners of its own, off by rounding, some turned, some or all there twice, in any order."""
+    """Every face has corners of its own, off by rounding; some are turned, some or all there twice."""
     rng = np.random.default_rng(seed)
     body = trimesh.creation.annulus(0.5, 1.0, 2.0, sections=20)
     if seed % 2:

@@ -163,7 +163,7 @@ class Queries(PointQueries):
         It is exact but for rounding, on a `GridMedium` too: its density is a polynomial along a ray in each
         of its cells. Where a medium is given by spectra, it is that of its colors.
         """
-        rays = ray_arguments(origins, directions, 0.0, t_max, threads, time)
+        rays = asked(ray_arguments(origins, directions, 0.0, t_max, threads, time), None)
         core = self._core or self._compiled()
         return core.optical_depth(rays)
 

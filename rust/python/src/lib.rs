@@ -125,9 +125,9 @@ mod _core {
     #[pymodule_export]
     use super::spectra::{daylight_power, film_reflectance, smooth_spectrum, spectrum_luminance, spectrum_rgb};
     #[pymodule_export]
-    use super::topology::{MeshTopology, mesh_topology, sections, weld, weld_rounding};
-    #[pymodule_export]
     use super::text_numbers::leading_numbers;
+    #[pymodule_export]
+    use super::topology::{MeshTopology, mesh_topology, sections, weld, weld_rounding};
     #[pymodule_export]
     use super::tree::tree;
     #[pymodule_export]

@@ -200,15 +200,17 @@ impl CompiledScene {
         {
             let mut out = out.readwrite();
             let rows: &mut [[f64; 3]] = out.as_slice_mut()?.as_chunks_mut().0;
-            answer(py, rays.count, rays.chunk(), threads, rows, |start, rows| {
+            answer(py, rays.count(), rays.chunk(), threads, rows, |start, rows| {
                 let count = rows.len();
                 let mut depths = vec![Rgb::ZERO; BATCH.min(count)];
-                rays.gathered(start, count, |batch, places| {
-                    let depths = &mut depths[..batch.len()];
-                    optical_depths(&self.0, batch, depths);
-                    for (depth, &i) in depths.iter().zip(places) {
-                        rows[i] = depth.to_array();
-                    }
+                rays.part(start, count, |rays, start| {
+                    rays.gathered(start, count, |batch, places| {
+                        let depths = &mut depths[..batch.len()];
+                        optical_depths(&self.0, batch, depths);
+                        for (depth, &i) in depths.iter().zip(places) {
+                            rows[i] = depth.to_array();
+                        }
+                    });
                 });
             })?;
         }
