@@ -38,6 +38,7 @@ __all__ = [
     "camera_rays",
     "camera_rays_through",
     "chances",
+    "coincident_faces",
     "cone_coverage",
     "cones",
     "daylight_power",
@@ -636,6 +637,8 @@ class RadiosityShots:
     @property
     def arrived(self) -> NDArray[np.float64]: ...
     @property
+    def unshot(self) -> NDArray[np.float64]: ...
+    @property
     def books(self) -> NDArray[np.float64]: ...
     @property
     def rays(self) -> int: ...
@@ -903,10 +906,18 @@ def tree(
 ) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.float64]] | None:
     """Return depth (K,), primitives (K,), -1 of what is no leaf, and corners (K, 24) of a tree's boxes."""
 
+def coincident_faces(
+    scene: CompiledScene,
+) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.bool_], NDArray[np.float64]]:
+    """Return pairs of triangles that share a part of one plane (K,2), and what they share.
+
+    The areas in common (K,), whether both look the same way (K,), and the areas of all faces (N,).
+    """
+
 def view_factor_matrix(
     scene: CompiledScene,
     rays: tuple[int, int],
-    error: float | None,
+    errors: tuple[float | None, float | None],
     seed: int,
     threads: int | None,
     progress: Callable[[float], object] | None,
@@ -916,12 +927,15 @@ def view_factor_matrix(
     tuple[NDArray[np.int64], NDArray[np.float64]],
     tuple[int, int, int],
     int,
+    NDArray[np.bool_],
 ]:
     """Return areas (N,), view factors (N,N), what is sampled, and numbers of pairs.
 
     Those are the pairs that are closed, hidden and sampled. What is sampled: pairs of faces (K,2), and
     standard errors (K,) of the area of each times its view factor to the other. Last, the number of
-    rays. ``rays`` are those between two faces, and those of a row.
+    rays, and which rows are sampled and add up to one (N,). ``errors`` are the greatest standard error of a
+    factor, and that as a share of the greatest factor of its rows. ``rays`` are those between two faces,
+    and those of a row.
     """
 
 def view_factor_rows(

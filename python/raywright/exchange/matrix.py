@@ -7,7 +7,7 @@ from ..scene.scene import Scene
 from ..shapes.mesh import Mesh
 from .problem import EMITTED, ESCAPED, REPLICATES, Problem
 from .solution import Floats, RadiositySolution
-from .view_factors import view_factors
+from .view_factors import ViewFactors, view_factors
 
 # The matrix and its factors take 24 bytes an entry: 1.6 GB.
 _MOST = 8192
@@ -35,9 +35,7 @@ def solve(problem: Problem, error: float | None, rays: int | None) -> RadiosityS
         threads=problem.threads,
         progress=False,
     )
-    matrix, spread = (
-        np.asarray(_dense(part), np.float64) for part in (factors.matrix, factors.standard_error)
-    )
+    matrix = np.asarray(factors.matrix)
     light, light_error, books = _first_light(problem, rays)
     emission, reflectance = problem.emission, problem.reflectance
     irradiance, errors = np.empty_like(light), np.empty_like(light)
@@ -47,26 +45,33 @@ def solve(problem: Problem, error: float | None, rays: int | None) -> RadiosityS
         radiosity = np.linalg.solve(system, emission[:, channel] + rho * light[:, channel])
         irradiance[:, channel] = matrix @ radiosity + light[:, channel]
         books[ESCAPED, channel] = (problem.areas * radiosity * np.asarray(factors.rest)).sum()
-        # What is off in a row of the matrix, and in its first light, comes to all by what they reflect.
-        own = spread**2 @ radiosity**2 + light_error[:, channel] ** 2
-        if own.any():
-            carried = matrix @ np.linalg.solve(system, np.diag(rho)) + np.eye(count)
-            errors[:, channel] = np.sqrt(carried**2 @ own)
-        else:
-            errors[:, channel] = 0.0
+        errors[:, channel] = _error(factors, radiosity, light_error[:, channel], system, rho)
     problem.note_end(problem.core.rays if problem.has_lamps else 0)
     return problem.solved("matrix", irradiance, errors, books)
 
 
-def _dense(part: object) -> object:
-    return part.toarray() if hasattr(part, "toarray") else part
+def _error(
+    factors: ViewFactors, radiosity: Floats, light_error: Floats, system: Floats, rho: Floats
+) -> Floats:
+    """Return the standard error of the irradiance.
+
+    What is off in a row of the matrix, and in its first light, comes to all by what they reflect. What two
+    faces exchange is one estimate, by which both of their rows are off.
+    """
+    own, both = factors._centered(radiosity)
+    squares = (own**2).sum(axis=1) + light_error**2
+    if not squares.any():
+        return np.zeros(len(rho))
+    carried = np.asarray(factors.matrix) @ np.linalg.solve(system, np.diag(rho)) + np.eye(len(rho))
+    variance: Floats = carried**2 @ squares + ((carried @ both) * carried).sum(axis=1)
+    return np.asarray(np.sqrt(np.maximum(variance, 0.0)), np.float64)
 
 
 def _first_light(problem: Problem, rays: int | None) -> tuple[Floats, Floats, Floats]:
     """Return the irradiance by lights that are no surfaces, its error, and the books so far."""
     mine = _LIGHT_RAYS * len(problem.areas) if rays is None else max(rays // REPLICATES, 1)
     problem.begin(0, mine)
-    arrived = problem.core.arrived / problem.areas[:, None]
+    arrived = problem.per_area(problem.core.arrived)
     books = np.zeros((4, 3))
     books[EMITTED] = problem.core.books.mean(axis=0)[EMITTED]
     return arrived.mean(axis=0), arrived.std(axis=0, ddof=1) / np.sqrt(REPLICATES), books

@@ -70,7 +70,7 @@ def cut(scene: Scene, patch_size: float | None) -> NDArray[np.uint32]:
         corners = shape.vertices[shape.faces].astype(np.float64)
         sides = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1, initial=0.0)
         # A side that is a whole number of sizes long is cut into as many, whatever rounding says.
-        strips = np.ceil(sides / size * (1.0 - 1e-9))
+        strips = np.ceil(np.where(np.isfinite(sides), sides, 0.0) / size * (1.0 - 1e-9))
         if strips.size and not strips.max() < _MOST:
             raise ValueError(
                 f"patch_size {size:g} cuts a side into more than {_MOST} parts: give a larger one"

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from .. import _core
 from ..scene.scene import Scene
+from .coincident import NOTHING, Covered, merged
 from .copies import LaidOut, laid_out
 from .patches import named
 from .solution import Floats, Method, Per, RadiositySolution, RadiosityStep
@@ -41,6 +42,7 @@ class Problem:
     emission: Floats
     reflectance: Floats
     areas: Floats
+    covered: Covered = NOTHING
     began: float = field(default_factory=time.monotonic)
     history: list[RadiosityStep] = field(default_factory=list)
 
@@ -55,17 +57,25 @@ class Problem:
         threads: int | None,
         lamps: Scene | None,
         looks: tuple[Floats, Floats] | None = None,
+        covered: Covered = NOTHING,
     ) -> "Problem":
         """Return that of a scene, or of one that is laid out, lit by the lights of another without shapes.
 
-        `looks` are emission and reflectance in place of the scene's own.
+        `looks` are emission and reflectance in place of the scene's own, and `covered` the faces of what is
+        laid out that coincide with others.
         """
         light = None if lamps is None else lamps._compiled()
-        laid = laid_out(scene) if isinstance(scene, Scene) else scene
+        if isinstance(scene, Scene):
+            laid, covered = merged(laid_out(scene))
+        else:
+            laid = scene
         core = _core.RadiosityShots(laid.scene._compiled(), light, cuts, both, looks, threads)
         areas = np.tile(core.areas, 2 if both else 1)
         parts = core.emission, core.reflectance, areas
-        return cls(laid, core, cuts, both, lamps is not None, per, seed, threads, *parts)
+        made = cls(laid, core, cuts, both, lamps is not None, per, seed, threads, *parts, covered)
+        if looks is None:
+            made.emission, made.reflectance = map(made._with_covered, (core.emission, core.reflectance))
+        return made
 
     def check(self) -> None:
         """Refuse what has no solution that could be bounded.
@@ -109,14 +119,33 @@ class Problem:
         short = unshot / (1.0 - self.reflectance.max(axis=0))
         return float(np.max(short[whole > 0] / whole[whole > 0], initial=0.0))
 
-    def solution(self, method: Method, arrived: Floats, books: Floats) -> RadiositySolution:
+    def solution(self, method: Method, arrived: Floats, books: Floats, unshot: Floats) -> RadiositySolution:
         """Return the mean of replicates of what has arrived, (R, N, 3) W, with its standard error.
 
-        `books` are what set out, is unshot, has left and has come to black backs, (R, 4, 3) W.
+        `books` are what set out, is unshot, has left and has come to black backs, (R, 4, 3) W, and `unshot`
+        is what each patch has not shot, (R, N, 3) W.
         """
-        irradiance = arrived.mean(axis=0) / self.areas[:, None]
-        spread = arrived.std(axis=0, ddof=1) / np.sqrt(len(arrived)) / self.areas[:, None]
-        return self.solved(method, irradiance, spread, books.mean(axis=0))
+        irradiance = self.per_area(arrived.mean(axis=0))
+        spread = self.per_area(arrived.std(axis=0, ddof=1) / np.sqrt(len(arrived)))
+        short = self.shortfall(unshot.mean(axis=0))
+        return self.solved(method, irradiance, np.hypot(spread, short), books.mean(axis=0))
+
+    def per_area(self, power: Floats) -> Floats:
+        """Return power, (..., N, 3) W, over the area of each patch; 0 where there is none."""
+        areas = np.broadcast_to(self.areas[:, None], power.shape)
+        return np.divide(power, areas, out=np.zeros_like(power), where=areas > 0)
+
+    def shortfall(self, unshot: Floats) -> Floats:
+        """Return a bound on the irradiance that unshot power may add to each patch, (N, 3) W/m².
+
+        What arrives in the end by unshot radiosities u is (F + F R F + ...) u, with the reflectances R. Rows
+        of F add up to 1 at most, so that no irradiance is more than max u / (1 - max R); nor is any power
+        more than all that is unshot over (1 - max R).
+        """
+        room = 1.0 - self.reflectance.max(axis=0)
+        greatest = self.per_area(unshot).max(axis=0) / room
+        whole = np.broadcast_to(unshot.sum(axis=0) / room, unshot.shape)
+        return np.where(self.areas[:, None] > 0, np.minimum(greatest, self.per_area(whole)), 0.0)
 
     def solved(
         self, method: Method, irradiance: Floats, irradiance_error: Floats, books: Floats
@@ -125,6 +154,7 @@ class Problem:
         absorbed = ((1.0 - self.reflectance) * irradiance * self.areas[:, None]).sum(axis=0)
         escaped = books[ESCAPED] + books[BEHIND]
         corners = self.core.corners
+        irradiance, irradiance_error = (self._with_covered(of) for of in (irradiance, irradiance_error))
         return RadiositySolution(
             radiosity=self.emission + self.reflectance * irradiance,
             irradiance=irradiance,
@@ -144,7 +174,37 @@ class Problem:
             escaped=_triple(escaped),
             unshot=_triple(books[UNSHOT]),
             history=tuple(self.history),
+            dropped=int(np.count_nonzero(self._face_areas() == 0)),
+            surface_area=self._surface_area(),
         )
+
+    def _starts(self) -> NDArray[np.int64]:
+        """Return the number of the first patch of each face."""
+        counts = self.cuts.astype(np.int64) ** 2
+        return np.cumsum(counts) - counts
+
+    def _face_areas(self) -> Floats:
+        starts = self._starts()
+        return np.add.reduceat(self.areas[: len(self.areas) // (2 if self.both else 1)], starts)
+
+    def _surface_area(self) -> float:
+        """Return the area of all that stands in no copy, faces that coincide counted each."""
+        is_own = self.laid.copy < 0
+        covered = self.covered.areas[is_own[self.covered.faces]]
+        return float(self._face_areas()[is_own].sum() + covered.sum())
+
+    def _with_covered(self, values: Floats) -> Floats:
+        """Return values of patches, (N, K), in which faces that coincide with others have means of these."""
+        if not len(self.covered):
+            return values
+        values, starts = values.copy(), self._starts()
+        count = len(self.areas) // (2 if self.both else 1)
+        whole = np.maximum(self._face_areas(), np.finfo(np.float64).tiny)
+        for side in range(0, len(values), count):
+            part = slice(side, side + count)
+            means = np.add.reduceat(values[part] * self.areas[part, None], starts) / whole[:, None]
+            values[side + starts[self.covered.faces]] = self.covered.means(means)
+        return values
 
 
 def _triple(values: Floats) -> tuple[float, float, float]:

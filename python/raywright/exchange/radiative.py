@@ -11,9 +11,10 @@ from ..arrays import choice, integer, number, real_array, thread_limit
 from ..lights import ConstantEnvironment
 from ..scene.progress import BuildProgress, check_progress, watcher
 from ..scene.scene import Scene
+from .coincident import Covered, merged
 from .copies import LaidOut, laid_out
 from .patches import check_exchanging
-from .problem import Problem, lamps_of
+from .problem import BEHIND, ESCAPED, REPLICATES, Problem, lamps_of
 from .shooting import to_the_end
 from .solution import Floats, RadiositySolution
 
@@ -26,6 +27,8 @@ STEFAN_BOLTZMANN = 5.670374419184429e-8
 _BIAS = 1e-5
 # Kelvin: of what is hotter the heat would be no finite number.
 _HOTTEST = 1e70
+# Rays of a replicate that look for a way out of a room: of a face on average, and at least.
+_LOOKS, _LEAST_LOOKS = 8, 2**13
 # Up to so many faces the matrix is the default.
 _SMALL = 2048
 
@@ -43,19 +46,22 @@ class RadiativeExchange:
     power : (N,) float64
         The same of all its area, W.
     standard_error : (N,) float64
-        That of `flux`; 0 where nothing is drawn.
+        That of `flux`; 0 where nothing is drawn. In a room that nothing leaves it is next to nothing at one
+        temperature.
     radiosity, irradiance : (N,) float64
         What leaves and what arrives by heat, W/m²; light of the scene is in `absorbed_light`.
     absorbed_light : (N,) float64
         What is absorbed of the scene's lights, environment and emission, W/m²; `flux` is less by it.
     areas : (N,) float64
-        In m².
+        In m²; 0 for a face that coincides with one before it, which counts for both.
     patches : (N,) structured
         Which "shape", "copy", "face" and "side" each row is of, as of `RadiositySolution`.
     temperature, emissivity : (N,) float64
         As given.
     escaped : float
         The power that leaves the scene by heat, W, or comes to black backs.
+    dropped : int
+        How many faces exchange nothing of their own: without area, not finite, or coincident with another.
     """
 
     flux: Floats
@@ -69,6 +75,7 @@ class RadiativeExchange:
     temperature: Floats
     emissivity: Floats
     escaped: float
+    dropped: int
 
     def __post_init__(self) -> None:
         for field in fields(self):
@@ -154,14 +161,19 @@ def radiative_exchange(
     Raises
     ------
     ValueError
-        If a number is out of its range, there are too few or too many of them, a face has no area, or the
+        If a number is out of its range, there are too few or too many of them, a surface has no end, or the
         scene has a medium.
     TypeError
         If something is of the wrong kind.
+
+    Warns
+    -----
+    RuntimeWarning
+        If faces coincide: they are one, which exchanges heat once, by what is given for the first of them.
     """
     check_exchanging(scene, diffuse=False)
     choice("sides", sides, ("front", "both"))
-    laid = laid_out(scene)
+    laid, covered = merged(laid_out(scene))
     faces = laid.counts.tolist()
     both = sides == "both"
     if method is None:
@@ -195,7 +207,7 @@ def radiative_exchange(
 
     def solve(lamps: Scene | None, emission: Floats, absorbing: Floats) -> RadiositySolution:
         looks = _three(emission), _three(1.0 - absorbing)
-        problem = Problem.of(laid, cuts, both, "face", seed, workers, lamps, looks)
+        problem = Problem.of(laid, cuts, both, "face", seed, workers, lamps, looks, covered)
         if method == "matrix":
             from .matrix import solve as by_matrix
 
@@ -203,11 +215,22 @@ def radiative_exchange(
         with watcher(progress, "exchange") as report:
             return to_the_end(problem, "stochastic", wanted, limit, report, _BIAS)
 
-    heat = solve(sky, sent, grey)
-    arrives, off = heat.irradiance[:, 0], heat.irradiance_error[:, 0]
-    absorbed, light_off = _light(laid, cuts, both, light, solve)
-    leaves = heat.radiosity[:, 0]
-    flux = sent - grey * arrives - absorbed
+    coldest, doubt = 0.0, 0.0
+    if method == "stochastic":
+        looks = _three(np.ones(len(grey))), _three(1.0 - grey)
+        problem = Problem.of(laid, cuts, both, "face", seed, workers, None, looks, covered)
+        share = _lost(problem)
+        if share is not None:
+            coldest = STEFAN_BOLTZMANN * float(kelvin[problem.areas > 0].min(initial=_HOTTEST)) ** 4
+            doubt = coldest * share
+    heat = solve(sky, np.maximum(sent - grey * coldest, 0.0), grey)
+    arrives, off = heat.irradiance[:, 0] + coldest, np.hypot(heat.irradiance_error[:, 0], doubt)
+    absorbed, light_off = _light(laid, covered, cuts, both, light, solve)
+    leaves = heat.radiosity[:, 0] + coldest
+    # What has no area loses nothing; what coincides with another face has its irradiance.
+    is_own = heat.areas > 0
+    is_own.reshape(-1, sum(faces))[:, covered.faces] = True
+    flux = np.where(is_own, sent - grey * arrives - absorbed, 0.0)
     return RadiativeExchange(
         flux=flux,
         power=flux * heat.areas,
@@ -220,11 +243,32 @@ def radiative_exchange(
         temperature=kelvin,
         emissivity=grey,
         escaped=heat.escaped[0],
+        dropped=heat.dropped,
     )
 
 
+def _lost(problem: Problem) -> float | None:
+    """Return the standard error of the share that a room loses, if no ray leaves it; None if one does.
+
+    In a room that nothing leaves, surfaces of one temperature exchange nothing, whatever their emissivities.
+    Only what others have beyond the coldest is then shot, and errors are shares of that.
+    """
+    rays = max(_LOOKS * len(problem.areas), _LEAST_LOOKS)
+    problem.begin(0, 1)
+    problem.core.shoot_all(rays, problem.threads)
+    if problem.core.books[:, [ESCAPED, BEHIND]].any():
+        return None
+    # The rule of three.
+    return 1.5 / (REPLICATES * rays)
+
+
 def _light(
-    laid: LaidOut, cuts: NDArray[np.uint32], both: bool, absorbing: Floats, solve: Any
+    laid: LaidOut,
+    covered: Covered,
+    cuts: NDArray[np.uint32],
+    both: bool,
+    absorbing: Floats,
+    solve: Any,
 ) -> tuple[Floats, Floats]:
     """Return what is absorbed of the scene's own light, W/m², and its error."""
     shines = any(getattr(shape, "emission", None) is not None for shape in laid.scene.shapes)
@@ -233,7 +277,7 @@ def _light(
         return np.zeros(len(absorbing)), np.zeros(len(absorbing))
     emission = np.zeros(len(absorbing))
     if shines:
-        own = Problem.of(laid, cuts, both, "face", 0, None, None)
+        own = Problem.of(laid, cuts, both, "face", 0, None, None, covered=covered)
         emission = own.emission.mean(axis=1)
     found = solve(lamps, emission, absorbing)
     return absorbing * found.irradiance.mean(axis=1), absorbing * found.irradiance_error.mean(axis=1)

@@ -6,6 +6,7 @@ from typing import Any, Literal, get_args, overload
 from ..arrays import choice, integer, number, thread_limit
 from ..scene.progress import BuildProgress, check_progress, watcher
 from ..scene.scene import Scene
+from .coincident import merged
 from .copies import laid_out
 from .patches import check_exchanging, cut
 from .problem import Problem, lamps_of
@@ -109,14 +110,20 @@ def radiosity(
     Raises
     ------
     ValueError
-        If something is out of its range, a surface is not diffuse, reflects all of a channel or has no area,
+        If something is out of its range, a surface is not diffuse, reflects all of a channel or has no end,
         the scene has a medium, or nothing shines.
     TypeError
         If something is of the wrong kind.
 
+    Warns
+    -----
+    RuntimeWarning
+        If faces coincide: they are one, which exchanges light once.
+
     Notes
     -----
-    Eight replicates, each of rays of its own, give the standard error. Within each, what is emitted is
+    Faces without area exchange nothing. Eight replicates, each of rays of its own, give the standard error;
+    the most that unshot power may add is a part of it. Within each, what is emitted is
     absorbed, has left or is unshot, to rounding. Iterations end by ‖unshot‖ / (1 - the greatest reflectance).
 
     The error of "stochastic" is the root mean square over the area, of patches each by itself: what comes to
@@ -143,8 +150,9 @@ def radiosity(
         raise ValueError(f"states are those of method='progressive', got {method!r}")
     check_exchanging(scene)
     both = method != "matrix" and sides != "front"
-    laid = laid_out(scene)
-    problem = Problem.of(laid, cut(laid.scene, patch_size), both, per, seed, threads, lamps_of(scene))
+    laid, covered = merged(laid_out(scene))
+    cuts, lamps = cut(laid.scene, patch_size), lamps_of(scene)
+    problem = Problem.of(laid, cuts, both, per, seed, threads, lamps, covered=covered)
     problem.check()
     if states:
         return shooting_states(problem, wanted or 0.01, limit)

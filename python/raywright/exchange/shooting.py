@@ -35,14 +35,14 @@ def to_the_end(
     if method == "progressive":
         for _ in _shots(problem, error or _ERROR, rays, tell):
             pass
-        return problem.solution(method, problem.core.arrived, problem.core.books)
+        return problem.solution(method, problem.core.arrived, problem.core.books, problem.core.unshot)
     return _rounds(problem, error, rays, bias, tell)
 
 
 def states(problem: Problem, error: float, rays: int | None) -> Iterator[RadiositySolution]:
     """Give the solution as it is after each shot of each replicate."""
     for _ in _shots(problem, error, rays, _Teller(None), at_once=1):
-        yield problem.solution("progressive", problem.core.arrived, problem.core.books)
+        yield problem.solution("progressive", problem.core.arrived, problem.core.books, problem.core.unshot)
 
 
 class _Teller:
@@ -87,6 +87,7 @@ def _rounds(
         mine = limit if wanted is None else min(mine, limit)
     arrived: Floats | None = None
     books: Floats | None = None
+    unshot: Floats | None = None
     done = spent = number = 0
     while True:
         problem.begin(number, mine)
@@ -97,11 +98,13 @@ def _rounds(
             if wanted is None:
                 tell(_way(first, bound, least))
         spent += problem.core.rays
-        new, share = (problem.core.arrived, problem.core.books), mine / (done + mine)
+        core = problem.core
+        new, share = (core.arrived, core.books, core.unshot), mine / (done + mine)
         arrived = new[0] if arrived is None else arrived + share * (new[0] - arrived)
         books = new[1] if books is None else books + share * (new[1] - books)
+        unshot = new[2] if unshot is None else unshot + share * (new[2] - unshot)
         done, number = done + mine, number + 1
-        solution = problem.solution("stochastic", arrived, books)
+        solution = problem.solution("stochastic", arrived, books, unshot)
         off = solution.error
         if wanted is None or off <= wanted or (rays is not None and done >= limit):
             return solution

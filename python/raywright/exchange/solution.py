@@ -51,14 +51,15 @@ class RadiositySolution:
     irradiance : (N, 3) float64
         The flux that arrives, W/m².
     standard_error : (N, 3) float64
-        That of `radiosity`, from independent replicates; 0 where nothing is drawn. What patches of one value
-        each cannot show, as an edge of a shadow within one, is no part of it.
+        That of `radiosity`: the spread of independent replicates, and the most that unshot power may add to
+        it; 0 where nothing is drawn. What patches of one value each cannot show, as an edge of a shadow
+        within one, is no part of it.
     irradiance_error : (N, 3) float64
         The standard error of `irradiance`.
     emission, reflectance : (N, 3) float64
         What each emits, W/m², and which share of what arrives it reflects: the means of four points.
     areas : (N,) float64
-        In m².
+        In m²; 0 for a face that coincides with one before it, which counts for both and whose light it has.
     patches : (N,) structured
         Of which "shape" and "face" each is, which "cell" of that, and which "side": 1 for the front, -1 for
         the back. Of an `Instance`, "copy" is which of its copies, and "face" is numbered as
@@ -78,6 +79,10 @@ class RadiositySolution:
         comes to black backs, and what was not shot in the end. The first is the sum of the others.
     history : tuple of RadiosityStep
         How far it was, from time to time.
+    dropped : int
+        How many faces exchange nothing of their own: without area, not finite, or coincident with another.
+    surface_area : float
+        The area of all faces but those of copies, coincident ones counted each, m².
     """
 
     radiosity: Floats
@@ -98,6 +103,8 @@ class RadiositySolution:
     escaped: Triple
     unshot: Triple
     history: tuple[RadiosityStep, ...]
+    dropped: int
+    surface_area: float
 
     def __post_init__(self) -> None:
         for field in fields(self):

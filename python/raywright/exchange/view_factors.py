@@ -1,6 +1,6 @@
 """View factors: which share of the light that leaves one surface comes to another."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias, get_args
 
@@ -13,6 +13,7 @@ from ..scene.progress import BuildProgress, check_progress, watcher
 from ..scene.scene import Scene
 from ..shapes import Plane
 from ..shapes.mesh import Mesh
+from .coincident import Covered, merged
 from .copies import LaidOut, laid_out
 from .reciprocal import reciprocal
 
@@ -22,7 +23,9 @@ if TYPE_CHECKING:
 Per: TypeAlias = Literal["face", "shape"]
 # Of more faces than this, the matrix of all pairs takes more than 0.8 GB, and is sparse instead.
 _MOST_DENSE = 10_000
+# Of a pair, at first; and the error that is aimed at, as a share of the greatest factor of either row.
 _RAYS = 16
+_RELATIVE = 0.006
 # A row by rays holds all that a face sees, so it takes more of them than a pair does.
 _CURVED_RAYS = 4096
 _FACE_RAYS = 16
@@ -39,7 +42,8 @@ class ViewFactors:
         Row i, column j: from i to j, 0 to 1. Sparse where the scene has more than 10,000 faces and `per` is
         "face".
     areas : (N,) float64 array
-        The area of each, in the square of the scene's unit.
+        The area of each, in the square of the scene's unit; 0 for a face that coincides with one before it,
+        which counts for both. Its row is that of the other face, and its column is 0.
     per : {"face", "shape"}
         Whether a row is a face or a shape. Faces are numbered shape after shape, and a shape that is no mesh
         is one face. An `Instance` is one shape, whose faces are those of all copies, one copy after the
@@ -49,6 +53,8 @@ class ViewFactors:
         certain, and sampled by rays.
     rays : int
         How many rays were sent.
+    dropped : int
+        How many faces exchange nothing of their own: without area, not finite, or coincident with another.
     """
 
     matrix: "NDArray[np.float64] | csr_array"
@@ -58,8 +64,11 @@ class ViewFactors:
     hidden: int
     sampled: int
     rays: int
+    dropped: int
     # The squares of errors: rows, columns and values of those that are not 0, or as the matrix is.
     _variance: Any
+    # Which rows were sampled and are known to add up to one.
+    _closed: NDArray[np.bool_]
 
     @cached_property
     def standard_error(self) -> "NDArray[np.float64] | csr_array":
@@ -106,6 +115,22 @@ class ViewFactors:
         found = np.zeros(squares.shape)
         np.add.at(found, rows, (values * squares[columns].T).T)
         return np.sqrt(found)
+
+    def _centered(self, x: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Return (N, N) errors of x as each row weights it, and the covariance of rows and columns.
+
+        Errors of a row that adds up to one cancel where x is the same everywhere, so that x is taken relative
+        to its mean over what the row samples. The first is s_ij (x_j - c_i), with the standard error s. What
+        two faces exchange is one estimate: the second is the product of the first and its transpose.
+        """
+        spread = np.asarray(self.standard_error)
+        weights = spread**2
+        whole = weights.sum(axis=1)
+        mean = np.divide(weights @ x, whole, out=np.zeros(len(x)), where=self._closed & (whole > 0))
+        own = spread * (x[None, :] - mean[:, None])
+        both = own * own.T
+        np.fill_diagonal(both, 0.0)
+        return own, both
 
     def rmatvec(self, x: ArrayLike) -> NDArray[np.float64]:
         """Return ``matrix.T @ x``: of powers x that leave each, (N,) or (N, K), the powers that arrive.
@@ -158,12 +183,14 @@ def view_factors(
     per : {"face", "shape"}
         What a row is: a face, or a shape with all of its faces.
     rays : int, optional
-        How many go between two faces that something may lie between, up to 2**20; 16 if not given. A shape
-        that is no mesh sends 4096 times as many, up to 2**26. In a scene of more than 10,000 faces each face
-        sends 16 times as many.
+        How many go between two faces that something may lie between, up to 2**20. A shape that is no mesh
+        sends 4096 times as many, up to 2**26. In a scene of more than 10,000 faces each face sends 16 times
+        as many. If neither this nor `error` is given, 16, and then as many as bring the standard error below
+        1 % of the greatest factor of either row, unless all together would be more than 33 million; a shape
+        that is no mesh sends up to 2**20.
     error : float, optional
-        The standard error that no view factor between faces should exceed. Rays are doubled until it is met,
-        or a pair has had a thousand batches of them.
+        The standard error that no view factor between faces should exceed. More rays are sent until it is
+        met, up to 2**20 for a pair.
     seed : int
         Picks the random numbers, 0 to 2**64 - 1.
     threads : int, optional
@@ -185,11 +212,19 @@ def view_factors(
     KeyboardInterrupt
         At once, when Ctrl-C is pressed.
 
+    Warns
+    -----
+    RuntimeWarning
+        If faces coincide: they are one, which exchanges light once.
+
     Notes
     -----
-    Of each pair A_i F_ij is found once, so that A_i F_ij = A_j F_ji to the last digit but one. In a closed
-    room each row adds up to 1: to 1e-9 where nothing hides anything, and within the standard errors
-    elsewhere. What has no area sees nothing.
+    Of each pair A_i F_ij is found once, so that A_i F_ij = A_j F_ji to the last digit but one. What has no
+    area sees nothing. In a closed room each row adds up to 1 within 1e-9: estimates are moved, as little as
+    their errors allow, until they do (weighted least squares within 0 and the factor of an unblocked pair).
+    A room is closed if none of at least 65,536 rays from its sampled faces meets a back or nothing. If some
+    do, the share that each row loses is estimated too. Standard errors are those before estimates are moved,
+    and so are upper bounds.
 
     More than 10,000 faces have a sparse matrix (scipy is needed), all of it by rays, however little is
     hidden: of both rows that tell what two faces exchange, one number is made, and rows are scaled so that
@@ -210,14 +245,16 @@ def view_factors(
     check_progress(progress)
     laid = laid_out(scene)
     first = _first_faces(laid)
-    exact = _exact(laid.scene)
-    core = exact._compiled()
+    laid, covered = merged(replace(laid, scene=_exact(laid.scene)))
+    core = laid.scene._compiled()
     with watcher(progress) as report:
         if first[-1] > _MOST_DENSE:
-            found = _by_rows(core, start * _FACE_RAYS, aim, number, workers, report)
+            found = _by_rows(core, covered, start * _FACE_RAYS, aim, number, workers, report)
         else:
-            found = _dense(core, (start, min(start * _CURVED_RAYS, _MOST_RAYS)), aim, number, workers, report)
-    return found if per == "face" else _of_shapes(found, first)
+            aims = aim, _RELATIVE if rays is None and aim is None else None
+            each = start, min(start * _CURVED_RAYS, _MOST_RAYS)
+            found = _dense(core, covered, each, aims, number, workers, report)
+    return found if per == "face" else _of_shapes(found, covered, first)
 
 
 def _first_faces(laid: LaidOut) -> NDArray[np.int64]:
@@ -229,16 +266,23 @@ def _first_faces(laid: LaidOut) -> NDArray[np.int64]:
         start += len(shape.faces) if isinstance(shape, Mesh) else 1
         if isinstance(shape, Plane):
             raise ValueError(f"shapes[{i}] is a Plane, which has no end and so no area: give a Mesh that has")
-        if isinstance(shape, Mesh):
-            finite = np.isfinite(shape.vertices).all(axis=1)[shape.faces].all(axis=1)
-            if not finite.all():
-                raise ValueError(
-                    f"face {int(np.argmin(finite))} of shapes[{i}] has a corner that is not finite"
-                )
     first = np.cumsum([0, *laid.counts])
     if first[-1] == 0:
         raise ValueError("the scene has no faces, and so no view factors")
+    _check_finite(laid)
     return first
+
+
+def _check_finite(laid: LaidOut) -> None:
+    """Refuse a scene of which no face has finite corners; where some have, the others are dropped."""
+    for shape in laid.scene.shapes:
+        if (
+            not isinstance(shape, Mesh)
+            or np.isfinite(shape.vertices).all(axis=1)[shape.faces].all(axis=1).any()
+        ):
+            return
+    i = int(laid.shape[0])
+    raise ValueError(f"face {int(laid.face[0])} of shapes[{i}] has a corner that is not finite")
 
 
 def _exact(scene: Scene) -> Scene:
@@ -254,19 +298,31 @@ def _exact(scene: Scene) -> Scene:
     return scene
 
 
-def _dense(core: _core.CompiledScene, rays: tuple[int, int], *how: Any) -> ViewFactors:
-    areas, matrix, (pairs, errors), counts, sent = _core.view_factor_matrix(core, rays, *how)
+def _dense(core: _core.CompiledScene, covered: Covered, rays: tuple[int, int], *how: Any) -> ViewFactors:
+    areas, matrix, (pairs, errors), counts, sent, closed = _core.view_factor_matrix(core, rays, *how)
     one, other = pairs.T
     with np.errstate(divide="ignore", invalid="ignore"):
         there, back = (np.nan_to_num((errors / areas[of]) ** 2) for of in (one, other))
     two = one != other
-    variance = tuple(
+    rows, columns, values = (
         np.concatenate(both) for both in ((one, other[two]), (other, one[two]), (there, back[two]))
     )
-    return ViewFactors(frozen(matrix), frozen(areas), "face", *counts, sent, variance)
+    if len(covered):
+        matrix[covered.faces] = covered.means(matrix)
+        closed[covered.faces] = covered.means(closed.astype(np.float64)) > 1.0 - 1e-9
+        squares = np.zeros(matrix.shape)
+        squares[rows, columns] = values
+        squares[covered.faces] = covered.means(squares, 2)
+        rows, columns = np.nonzero(squares)
+        values = squares[rows, columns]
+    dropped = int(np.count_nonzero(areas == 0))
+    variance = rows, columns, values
+    return ViewFactors(
+        frozen(matrix), frozen(areas), "face", *counts, sent, dropped, variance, frozen(closed)
+    )
 
 
-def _by_rows(core: _core.CompiledScene, rays: int, *how: Any) -> ViewFactors:
+def _by_rows(core: _core.CompiledScene, covered: Covered, rays: int, *how: Any) -> ViewFactors:
     sparse = _sparse()
     areas, (starts, faces, factors, errors), sent = _core.view_factor_rows(core, rays, *how)
     shape = (len(areas), len(areas))
@@ -274,7 +330,19 @@ def _by_rows(core: _core.CompiledScene, rays: int, *how: Any) -> ViewFactors:
     variance = sparse((errors.astype(np.float64) ** 2, faces.copy(), starts.copy()), shape=shape)
     del factors, faces, starts, errors
     matrix, variance = reciprocal(matrix, variance, areas)
-    return ViewFactors(matrix, frozen(areas), "face", 0, 0, (matrix.nnz + len(areas)) // 2, sent, variance)
+    if len(covered):
+        kept = np.setdiff1d(np.arange(len(areas)), covered.faces)
+        sizes = np.diff(np.append(covered.starts, len(covered.by)))
+        rows, columns = (
+            np.concatenate(of) for of in ((kept, np.repeat(covered.faces, sizes)), (kept, covered.by))
+        )
+        shares = np.concatenate([np.ones(len(kept)), covered.shares])
+        matrix = sparse((shares, (rows, columns)), shape=shape) @ matrix
+        variance = sparse((shares**2, (rows, columns)), shape=shape) @ variance
+    count = (matrix.nnz + len(areas)) // 2
+    dropped = int(np.count_nonzero(areas == 0))
+    closed = frozen(np.zeros(len(areas), np.bool_))
+    return ViewFactors(matrix, frozen(areas), "face", 0, 0, count, sent, dropped, variance, closed)
 
 
 def _sparse() -> Any:
@@ -285,14 +353,19 @@ def _sparse() -> Any:
     return csr_array
 
 
-def _of_shapes(faces: ViewFactors, first: NDArray[np.int64]) -> ViewFactors:
+def _of_shapes(faces: ViewFactors, covered: Covered, first: NDArray[np.int64]) -> ViewFactors:
     """Add up the faces of each shape, weighted by area."""
     count = len(first) - 1
     of = np.repeat(np.arange(count), np.diff(first))
     areas = np.bincount(of, faces.areas, count)
+    # A shape all of whose faces coincide with others has their row, by their areas.
+    weights = faces.areas.copy()
+    if len(covered):
+        weights[covered.faces] = np.where(areas[of[covered.faces]] > 0, 0.0, covered.means(faces.areas))
+    whole = np.bincount(of, weights, count)
     with np.errstate(divide="ignore", invalid="ignore"):
-        shares = np.nan_to_num(faces.areas / areas[of])
-    counts = faces.closed, faces.hidden, faces.sampled, faces.rays
+        shares = np.nan_to_num(weights / whole[of])
+    counts = faces.closed, faces.hidden, faces.sampled, faces.rays, faces.dropped
     if isinstance(faces._variance, tuple):
         used = np.flatnonzero(np.diff(first))
         from_faces = np.add.reduceat(faces.matrix, first[used], axis=1) * shares[:, None]
@@ -312,4 +385,7 @@ def _of_shapes(faces: ViewFactors, first: NDArray[np.int64]) -> ViewFactors:
     # Within a shape, both entries of a pair are one estimate: they err together.
     summed[np.diag_indices(count)] *= 2.0
     where = np.nonzero(summed)
-    return ViewFactors(frozen(matrix), frozen(areas), "shape", *counts, (*where, summed[where]))
+    closed = np.ones(count, np.bool_)
+    np.logical_and.at(closed, of[faces.areas > 0], faces._closed[faces.areas > 0])
+    variance = *where, summed[where]
+    return ViewFactors(frozen(matrix), frozen(areas), "shape", *counts, variance, frozen(closed))

@@ -41,13 +41,19 @@ class Radiosity:
         solution = self.solution
         patches = solution.patches
         is_front = patches["side"] == 1
-        area = float(solution.areas[is_front & (patches["copy"] < 0)].sum())
         # A patch of each face, in their order, and where each primitive of the scene starts among them.
         faces = patches[is_front & (patches["cell"] == 0)]
         starts = np.flatnonzero((faces["copy"] < 0) | (faces["face"] == 0))
         first = np.append(starts, len(faces)).astype(np.uint32)
         has_backs = not bool(is_front.all())
-        return solution.cuts, first, solution.mirrored, solution.corner_irradiance, has_backs, area
+        return (
+            solution.cuts,
+            first,
+            solution.mirrored,
+            solution.corner_irradiance,
+            has_backs,
+            solution.surface_area,
+        )
 
     def __getstate__(self) -> dict[str, Any]:
         return {"solution": self.solution}

@@ -4,4 +4,6 @@ mod radiosity;
 mod view_factors;
 
 pub use radiosity::{Enclosure, Shots, Sides};
-pub use view_factors::{Aim, Facet, Matrix, Quadrature, Sampled, Sparse, areas, matrix, pair, sparse};
+pub use view_factors::{
+    Aim, Facet, Matrix, Overlap, Quadrature, Sampled, Sparse, areas, coincident, matrix, pair, sparse,
+};

@@ -48,7 +48,9 @@ impl Integrator for Radiosity {
             if next - first != inside.unwrap_or(1) {
                 return Some(format!("the radiosity is of a scene whose shape {shape} is another one: solve it anew"));
             }
-            area += if inside.is_none() { geometry.area(primitive) } else { 0.0 };
+            // What is not finite is never hit, and has no area in the solution.
+            let own = if inside.is_none() { geometry.area(primitive) } else { 0.0 };
+            area += if own.is_finite() { own } else { 0.0 };
         }
         let is_same = (area - self.area).abs() <= 1e-9 * self.area;
         (!is_same).then(|| {

@@ -131,7 +131,7 @@ mod _core {
     #[pymodule_export]
     use super::tree::tree;
     #[pymodule_export]
-    use super::view_factors::{view_factor_matrix, view_factor_rows};
+    use super::view_factors::{coincident_faces, view_factor_matrix, view_factor_rows};
     /// The most samples that a pilot takes of each way.
     #[pymodule_export]
     const PILOT: u32 = raywright::render::PILOT;

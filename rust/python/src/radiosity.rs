@@ -132,6 +132,13 @@ impl RadiosityShots {
         PyArray1::from_vec(py, all.collect()).reshape([self.replicates.len(), self.enclosure.sources(), 3])
     }
 
+    /// The power that each side has not shot, (R,S,3), W.
+    #[getter]
+    fn unshot<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
+        let all = self.replicates.iter().flat_map(|one| one.unshot().iter().flat_map(|power| power.to_array()));
+        PyArray1::from_vec(py, all.collect()).reshape([self.replicates.len(), self.enclosure.sources(), 3])
+    }
+
     /// The power that set out, is unshot, has left, and has come to black sides, (R,4,3), W.
     #[getter]
     fn books<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {

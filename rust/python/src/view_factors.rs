@@ -5,18 +5,19 @@ use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 
 use super::query::CompiledScene;
-use raywright::exchange::{Aim, areas, matrix, sparse};
+use raywright::exchange::{Aim, areas, coincident, matrix, sparse};
 use raywright::work::{Stopped, Watch, Work};
 use raywright::workers::watched;
 
-/// Areas, factors by row, pairs that are sampled and their errors, how many pairs are closed, hidden and sampled, and
-/// rays.
+/// Areas, factors by row, pairs that are sampled and their errors, how many pairs are closed, hidden and sampled, rays,
+/// and which rows are sampled and of a room that nothing leaves.
 type Dense<'py> = (
     Bound<'py, PyArray1<f64>>,
     Bound<'py, PyArray2<f64>>,
     (Bound<'py, PyArray2<i64>>, Bound<'py, PyArray1<f64>>),
     (u64, u64, u64),
     u64,
+    Bound<'py, PyArray1<bool>>,
 );
 
 /// Areas; where rows start, faces, factors and their errors; and rays.
@@ -32,13 +33,13 @@ pub fn view_factor_matrix<'py>(
     py: Python<'py>,
     scene: &Bound<'py, CompiledScene>,
     rays: (u32, u32),
-    error: Option<f64>,
+    errors: (Option<f64>, Option<f64>),
     seed: u64,
     threads: Option<usize>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Dense<'py>> {
     let scene = &scene.get().0;
-    let aim = Aim { rays: rays.0, row_rays: rays.1, error, seed };
+    let aim = Aim { rays: rays.0, row_rays: rays.1, error: errors.0, relative: errors.1, seed };
     let found = told(py, threads, progress, |work| matrix(scene, &aim, work))?;
     let areas = areas(scene);
     let count = areas.len();
@@ -53,6 +54,7 @@ pub fn view_factor_matrix<'py>(
         ),
         (closed, hidden, sampled),
         found.rays,
+        PyArray1::from_vec(py, found.closed),
     ))
 }
 
@@ -68,7 +70,7 @@ pub fn view_factor_rows<'py>(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<ByRays<'py>> {
     let scene = &scene.get().0;
-    let aim = Aim { rays: 0, row_rays: rays, error, seed };
+    let aim = Aim { rays: 0, row_rays: rays, error, relative: None, seed };
     let found = told(py, threads, progress, |work| sparse(scene, &aim, work))?;
     let rows = (
         PyArray1::from_vec(py, found.starts),
@@ -77,6 +79,25 @@ pub fn view_factor_rows<'py>(
         PyArray1::from_vec(py, found.errors),
     );
     Ok((PyArray1::from_vec(py, areas(scene)), rows, found.rays))
+}
+
+/// Pairs of triangles that share a part of one plane, the areas in common, and whether both look the same way; and the
+/// areas of all faces.
+type Coincident<'py> =
+    (Bound<'py, PyArray2<i64>>, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<bool>>, Bound<'py, PyArray1<f64>>);
+
+/// Triangles that share a part of one plane.
+#[pyfunction]
+pub fn coincident_faces<'py>(py: Python<'py>, scene: &Bound<'py, CompiledScene>) -> PyResult<Coincident<'py>> {
+    let scene = &scene.get().0;
+    let (found, areas) = py.detach(|| (coincident(scene), areas(scene)));
+    let faces = found.iter().flat_map(|overlap| overlap.faces.map(i64::from)).collect();
+    Ok((
+        PyArray1::from_vec(py, faces).reshape([found.len(), 2])?,
+        PyArray1::from_iter(py, found.iter().map(|overlap| overlap.area)),
+        PyArray1::from_iter(py, found.iter().map(|overlap| overlap.is_same)),
+        PyArray1::from_vec(py, areas),
+    ))
 }
 
 /// Does work on the pool of so many threads without the interpreter. Signals are heard, and `progress` is called with

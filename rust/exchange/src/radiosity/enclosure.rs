@@ -1,7 +1,8 @@
 //! What exchanges light: the sides of patches, what they reflect, and what they emit.
 
+use crate::view_factors::Fronts;
 use raywright_accel::Primitives;
-use raywright_base::math::{Hit, Ray};
+use raywright_base::math::{DVec3, Hit, Ray};
 use raywright_base::parallel;
 use raywright_optics::{Bsdf, Rgb};
 use raywright_scene::{Patches, Scene, SurfaceInteraction, SurfacePoint};
@@ -25,6 +26,7 @@ pub struct Enclosure {
     pub(super) areas: Vec<f64>,
     pub(super) emission: Vec<Rgb>,
     pub(super) reflectance: Vec<Rgb>,
+    fronts: Fronts,
 }
 
 /// Points of a patch, by the weights of its second and third corner: the middles of the four that it would be cut into.
@@ -32,9 +34,10 @@ const LOOKS: [[f64; 2]; 4] = [[1.0 / 3.0, 1.0 / 3.0], [2.0 / 3.0, 1.0 / 6.0], [1
 
 impl Enclosure {
     /// The patches of a scene. What is not diffuse counts as black; textures have their mean of four points of a patch.
+    /// Triangles without area, or with a corner that is not finite, are never hit: they have no area, and are black.
     ///
     /// # Errors
-    /// If something has no area that could be told, or no points that could be drawn evenly.
+    /// If something has no end, or no points that could be drawn evenly.
     pub fn new(scene: &Scene, patches: Patches, sides: Sides) -> Result<Self, String> {
         let geometry = scene.geometry();
         if patches.primitives() != geometry.count() {
@@ -43,15 +46,22 @@ impl Enclosure {
         let count = patches.count() as u32;
         let area = |patch: usize| {
             let primitive = patches.cell(patch as u32).primitive;
-            geometry.area(primitive) * patches.share(primitive)
+            let is_dropped =
+                geometry.shape(primitive).is_none() && !geometry.corners(primitive).iter().all(|c| c.is_finite());
+            if is_dropped { 0.0 } else { geometry.area(primitive) * patches.share(primitive) }
         };
         let areas = parallel::collect(patches.count(), area);
-        if let Some(bad) = areas.iter().position(|area| !(area.is_finite() && *area > 0.0)) {
+        let is_bad = |(patch, area): (usize, &f64)| {
+            let is_curved = geometry.shape(patches.cell(patch as u32).primitive).is_some();
+            !area.is_finite() || (is_curved && *area <= 0.0)
+        };
+        if let Some(bad) = areas.iter().enumerate().position(is_bad) {
             let (shape, face) = geometry.locate(patches.cell(bad as u32).primitive);
             return Err(format!("face {face} of shape {shape} has no area, or no end: it cannot exchange light"));
         }
         let all = if sides == Sides::Both { 2 * count } else { count };
-        let mut made = Self { patches, sides, areas, emission: Vec::new(), reflectance: Vec::new() };
+        let fronts = if sides == Sides::Front { Fronts::new(scene) } else { Fronts::default() };
+        let mut made = Self { patches, sides, areas, emission: Vec::new(), reflectance: Vec::new(), fronts };
         let looks = parallel::collect(all as usize, |source| made.look(scene, source as u32));
         let looks: Vec<(Rgb, Rgb)> = looks.into_iter().collect::<Result<_, _>>()?;
         (made.emission, made.reflectance) = looks.into_iter().unzip();
@@ -73,6 +83,9 @@ impl Enclosure {
     /// What a source emits and what it reflects.
     fn look(&self, scene: &Scene, source: u32) -> Result<(Rgb, Rgb), String> {
         let (patch, side) = self.side(source);
+        if self.areas[patch as usize] == 0.0 {
+            return Ok((Rgb::ZERO, Rgb::ZERO));
+        }
         let (geometry, cell) = (scene.geometry(), self.patches.cell(patch));
         let mut sums = (Rgb::ZERO, Rgb::ZERO);
         for look in LOOKS {
@@ -112,9 +125,16 @@ impl Enclosure {
         if source < count { (source, 1.0) } else { (source - count, -1.0) }
     }
 
-    /// The source that a ray meets; none if it meets what is black.
+    /// The source that a ray from a place on a face meets; none if it meets what is black, or nothing.
     #[inline]
-    pub(super) fn met(&self, scene: &Scene, ray: &Ray, hit: &Hit) -> Option<u32> {
+    pub(super) fn met(&self, scene: &Scene, from: (u32, DVec3), ray: &Ray, hit: &Hit) -> Option<u32> {
+        if !self.fronts.is_empty() {
+            let (face, uv) = self.fronts.met(scene, from, ray, hit)?;
+            return Some(self.patches.find(face, uv).0);
+        }
+        if !hit.is_hit() {
+            return None;
+        }
         let (patch, _) = self.patches.find(hit.primitive, hit.uv);
         let geometry = scene.geometry();
         let normal = match geometry.shape(hit.primitive) {

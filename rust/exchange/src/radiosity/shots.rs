@@ -47,7 +47,7 @@ pub struct Shots {
 
 impl Shots {
     /// What patches emit, and what they reflect of lights that are no surfaces, where there are such: of these so many
-    /// rays are drawn in all, each source at least one.
+    /// rays are drawn in all, each source that has an area at least one.
     pub fn new(
         scene: &Scene,
         lamps: Option<(&Scene, u64)>,
@@ -60,7 +60,10 @@ impl Shots {
         let mut drawn = 0;
         if let Some((lamps, rays)) = lamps {
             let whole: f64 = sources.clone().map(|source| enclosure.area(source)).sum();
-            let rays_of = |source: u32| (rays as f64 * enclosure.area(source) / whole).ceil().clamp(1.0, 1e9) as u32;
+            let rays_of = |source: u32| match enclosure.area(source) {
+                0.0 => 0,
+                area => (rays as f64 * area / whole).ceil().clamp(1.0, 1e9) as u32,
+            };
             let rays: Vec<u32> = sources.clone().map(rays_of).collect();
             drawn = rays.iter().map(|&rays| u64::from(rays)).sum();
             let light = first_light::irradiance(scene, lamps, enclosure, &rays, key(seed, replicate, 0), cancel);
@@ -222,20 +225,22 @@ fn pieces(sources: &[(u32, u32)]) -> Vec<Vec<(u32, u32, u32)>> {
 fn follow(scene: &Scene, enclosure: &Enclosure, piece: &[(u32, u32, u32)], key: u64) -> Vec<u32> {
     let kind = SamplerKind::Sobol(BatchSize::new(64).unwrap_or_default());
     let mut rays = Vec::with_capacity(TOGETHER as usize);
+    let mut places = Vec::with_capacity(TOGETHER as usize);
     for &(source, from, count) in piece {
         for number in from..from + count {
             let mut sampler = kind.sampler(key, source, number);
             let origin = Origin::draw(scene, enclosure, source, sampler.two(0));
+            places.push(origin.as_ref().map_or((Ray::NO_TRIANGLE, DVec3::ZERO), |o| (o.triangle, o.surface.position)));
             rays.push(origin.map_or(NOWHERE, |origin| origin.leave(sampler.two(1))));
         }
     }
     let mut hits = vec![Hit::MISS; rays.len()];
     scene.intersect(&rays, &mut hits);
-    let to = |(ray, hit): (&Ray, &Hit)| match hit.is_hit() {
-        true => enclosure.met(scene, ray, hit).unwrap_or(BEHIND),
-        false => ESCAPED,
+    let to = |((ray, hit), &from): ((&Ray, &Hit), &(u32, DVec3))| {
+        let lost = if hit.is_hit() { BEHIND } else { ESCAPED };
+        enclosure.met(scene, from, ray, hit).unwrap_or(lost)
     };
-    rays.iter().zip(&hits).map(to).collect()
+    rays.iter().zip(&hits).zip(&places).map(to).collect()
 }
 
 #[cfg(test)]

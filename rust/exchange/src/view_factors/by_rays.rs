@@ -3,16 +3,19 @@
 
 use super::Aim;
 use super::facet::Facet;
+use super::fronts::Fronts;
+use super::told::Counts;
 use raywright_accel::Primitives;
 use raywright_base::math::{DVec3, Frame, Hit, Ray};
-use raywright_base::sampling::{BatchSize, SamplerKind, warp};
+use raywright_base::sampling::{BatchSize, Sampler, SamplerKind, warp};
 use raywright_scene::{RayOrigin, Scene};
 
 /// Rays that are asked together.
 const TOGETHER: u32 = 1 << 12;
 
-/// No row takes more rays.
+/// No row takes more rays; nor, where nobody names an error, more than the second number.
 const MOST: u32 = 1 << 26;
+const MOST_UNASKED: u32 = 1 << 20;
 
 /// One face in a row: to which, the view factor, and its standard error.
 pub type Entry = (u32, f64, f64);
@@ -20,6 +23,7 @@ pub type Entry = (u32, f64, f64);
 /// What a thread makes rows with.
 pub struct Rows<'a> {
     scene: &'a Scene,
+    fronts: &'a Fronts,
     seed: u64,
     /// By face: what its hits count in this batch, in all, and the sum of the squares of batches.
     batch: Vec<f64>,
@@ -28,17 +32,19 @@ pub struct Rows<'a> {
     fresh: Vec<u32>,
     touched: Vec<u32>,
     rays: Vec<Ray>,
-    /// What each ray counts.
+    /// What each ray counts, and where it starts.
     weights: Vec<f64>,
+    places: Vec<DVec3>,
     hits: Vec<Hit>,
 }
 
 impl<'a> Rows<'a> {
     /// Of a scene.
-    pub fn new(scene: &'a Scene, seed: u64) -> Self {
+    pub fn new(scene: &'a Scene, fronts: &'a Fronts, seed: u64) -> Self {
         let count = scene.geometry().count();
         Self {
             scene,
+            fronts,
             seed,
             batch: vec![0.0; count],
             sums: vec![[0.0; 2]; count],
@@ -46,13 +52,21 @@ impl<'a> Rows<'a> {
             touched: Vec::new(),
             rays: Vec::new(),
             weights: Vec::new(),
+            places: Vec::new(),
             hits: Vec::new(),
         }
     }
 
     /// The row of a face, by rays that leave even by area and by the cosine, each counted where it lands first, if it
-    /// does so on a front. Doubled until no error is larger than is asked for.
-    pub fn row(&mut self, primitive: u32, facet: &Facet, aim: &Aim, sent: &mut u64) -> Vec<Entry> {
+    /// does so on a front. Doubled until no error is larger than `wanted` has it for a face, its factor, and the greatest
+    /// factor of the row. Also returns the number of rays.
+    pub fn row(
+        &mut self,
+        primitive: u32,
+        facet: &Facet,
+        aim: &Aim,
+        wanted: impl Fn(u32, f64, f64) -> f64,
+    ) -> (Vec<Entry>, u32) {
         let rays = aim.row_rays;
         let size = BatchSize::for_budget(Some(rays));
         let (mut done, mut target) = (0, rays.next_multiple_of(size.samples()).max(2 * size.samples()));
@@ -66,56 +80,36 @@ impl<'a> Rows<'a> {
             let entry = |&face: &u32| {
                 let [sum, squares] = self.sums[face as usize];
                 let mean = sum / batches;
-                let variance = (squares / batches - mean * mean).max(0.0) / (batches - 1.0);
+                let between = (squares / batches - mean * mean).max(0.0) / (batches - 1.0);
                 let each = f64::from(size.samples());
-                (face, mean / each, variance.sqrt() / each)
+                let counts = Counts::of(mean / each, f64::from(done));
+                (face, mean / each, counts.variance((between / (each * each), batches)).sqrt())
             };
             let row: Vec<Entry> = self.touched.iter().map(entry).collect();
-            let is_met = aim.error.is_none_or(|error| row.iter().all(|entry| entry.2 <= error));
+            let most = row.iter().fold(0.0f64, |most, entry| most.max(entry.1));
+            let is_met = row.iter().all(|&(face, factor, error)| error <= wanted(face, factor, most))
+                || (aim.error.is_none() && target > MOST_UNASKED / 2);
             if is_met || target > MOST / 2 {
-                *sent += u64::from(done);
                 for face in self.touched.drain(..) {
                     self.sums[face as usize] = [0.0; 2];
                 }
-                return row;
+                return (row, done);
             }
             target *= 2;
         }
     }
 
     fn send(&mut self, primitive: u32, facet: &Facet, size: BatchSize, samples: std::ops::Range<u32>) {
-        let geometry = self.scene.geometry();
         let kind = SamplerKind::Sobol(size);
-        let shape = geometry.shape(primitive);
         self.rays.clear();
         self.weights.clear();
+        self.places.clear();
         for sample in samples {
             let mut sampler = kind.sampler(self.seed, primitive, sample);
-            let (u, v) = (sampler.two(1), sampler.two(3));
-            let direction = warp::cosine_hemisphere(v);
-            let (origin, normal, weight) = match shape {
-                Some(shape) => match shape.sample(u) {
-                    Some(drawn) => {
-                        let site = drawn.point.site();
-                        let point = geometry.on_shape(primitive, &site);
-                        (RayOrigin::new(&point), point.normal, 1.0 / (drawn.pdf * shape.area()))
-                    }
-                    None => (RayOrigin::free(facet.centre), facet.normal, 0.0),
-                },
-                None => {
-                    let place = geometry.position(primitive, warp::uniform_triangle(u));
-                    (RayOrigin::off(place, geometry.error(primitive), facet.normal), facet.normal, 1.0)
-                }
-            };
-            if weight > 0.0 {
-                let misses = [primitive, Ray::NO_TRIANGLE];
-                self.rays.push(Ray { misses, ..origin.ray(Frame::new(normal).to_world(direction)) });
-                self.weights.push(weight);
-            } else {
-                // A ray that counts nothing keeps its place in its batch.
-                self.rays.push(Ray::new(facet.centre, DVec3::Z));
-                self.weights.push(0.0);
-            }
+            let (ray, weight, place) = leaving(self.scene, primitive, facet, &mut sampler);
+            self.rays.push(ray);
+            self.weights.push(weight);
+            self.places.push(place);
         }
         self.hits.resize(self.rays.len(), Hit::MISS);
         self.scene.intersect(&self.rays, &mut self.hits);
@@ -123,8 +117,9 @@ impl<'a> Rows<'a> {
         for start in (0..self.rays.len()).step_by(each) {
             for i in start..start + each {
                 let (ray, hit) = (&self.rays[i], &self.hits[i]);
-                if self.weights[i] > 0.0 && hit.is_hit() && geometry.surface(ray, hit).is_front(ray) {
-                    let face = hit.primitive;
+                if self.weights[i] > 0.0
+                    && let Some((face, _)) = self.fronts.met(self.scene, (primitive, self.places[i]), ray, hit)
+                {
                     if self.batch[face as usize] == 0.0 {
                         self.fresh.push(face);
                     }
@@ -141,5 +136,34 @@ impl<'a> Rows<'a> {
                 sums[1] += value * value;
             }
         }
+    }
+}
+
+/// A ray that leaves a face even by area and by the cosine, what it counts, and where it starts. One that counts nothing
+/// keeps its place in its batch.
+pub fn leaving(scene: &Scene, primitive: u32, facet: &Facet, sampler: &mut Sampler) -> (Ray, f64, DVec3) {
+    let geometry = scene.geometry();
+    let (u, v) = (sampler.two(1), sampler.two(3));
+    let direction = warp::cosine_hemisphere(v);
+    let (origin, normal, weight, place) = match geometry.shape(primitive) {
+        Some(shape) => match shape.sample(u) {
+            Some(drawn) => {
+                let site = drawn.point.site();
+                let point = geometry.on_shape(primitive, &site);
+                let weight = 1.0 / (drawn.pdf * shape.area());
+                (RayOrigin::new(&point), point.normal, weight, point.position)
+            }
+            None => (RayOrigin::free(facet.centre), facet.normal, 0.0, facet.centre),
+        },
+        None => {
+            let place = geometry.position(primitive, warp::uniform_triangle(u));
+            (RayOrigin::off(place, geometry.error(primitive), facet.normal), facet.normal, 1.0, place)
+        }
+    };
+    if weight > 0.0 {
+        let misses = [primitive, Ray::NO_TRIANGLE];
+        (Ray { misses, ..origin.ray(Frame::new(normal).to_world(direction)) }, weight, place)
+    } else {
+        (Ray::new(facet.centre, DVec3::Z), 0.0, place)
     }
 }

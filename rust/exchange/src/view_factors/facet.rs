@@ -28,6 +28,9 @@ const FLAT: f64 = 1.0 / (1u64 << 18) as f64;
 /// What makes as much of the roundings of coordinates: of a height that is more, they are no part that counts.
 const STEEP: f64 = (1u64 << 31) as f64;
 
+/// What is no farther outside of a triangle, as a part of its radius, counts as within.
+const NEXT: f64 = 1e-9;
+
 impl Facet {
     /// Of these corners.
     pub fn new(corners: [DVec3; 3]) -> Self {
@@ -117,6 +120,23 @@ impl Facet {
     pub fn heights(&self, other: &Self) -> [f64; 3] {
         let [a, b, c] = other.corners;
         [self.height(a), self.height(b), self.height(c)]
+    }
+
+    /// Whether a point of the plane is within, or next to it.
+    pub fn covers(&self, point: DVec3) -> bool {
+        (0..3).all(|i| {
+            let (from, edge) = (self.corners[i], self.corners[(i + 1) % 3] - self.corners[i]);
+            self.normal.cross(edge).dot(point - from) >= -NEXT * self.radius * edge.length()
+        })
+    }
+
+    /// The weights of the second and third corner of a point of the plane.
+    pub fn weights(&self, point: DVec3) -> [f64; 2] {
+        let [a, b, c] = self.corners;
+        let share = |one: DVec3, other: DVec3| self.normal.dot(one.cross(other)) / (2.0 * self.area);
+        let (second, third) = (share(point - a, c - a).max(0.0), share(b - a, point - a).max(0.0));
+        let whole = (second + third).max(1.0);
+        [second / whole, third / whole]
     }
 
     /// The four parts that halved edges make, all alike.

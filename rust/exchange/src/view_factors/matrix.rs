@@ -1,12 +1,17 @@
 //! The whole matrix: pairs of clusters, and what may lie between them, down to pairs of faces.
 
-use super::by_rays::Rows;
+use super::balance::Balance;
+use super::by_rays::{Entry, Rows};
 use super::clusters::{Cluster, Clusters};
+use super::coincident::overlap;
 use super::distant::Quadrature;
 use super::facet::Facet;
+use super::fronts::Fronts;
 use super::pair::pair;
-use super::partly::{Open, sampled};
+use super::partly::Open;
+use super::rounds::{FAINT, Rounds};
 use super::shaft::{Blocker, HalfSpace, between_boxes, between_facets, hides};
+use super::told::Counts;
 use super::{Aim, Sampled, areas, facets};
 use raywright_base::parallel;
 use raywright_base::simd::Level;
@@ -28,6 +33,8 @@ pub struct Matrix {
     pub counts: [u64; 3],
     /// Rays that were sent.
     pub rays: u64,
+    /// Which rows were sampled and belong to a room that nothing leaves.
+    pub closed: Vec<bool>,
 }
 
 /// All view factors of a scene. What has no area sees nothing.
@@ -36,16 +43,18 @@ pub fn matrix(scene: &Scene, aim: &Aim, work: Work) -> Result<Matrix, Stopped> {
     let count = facets.len();
     let sending = (0..count as u32).filter(|&i| facets[i as usize].area > 0.0).collect();
     let tree = Clusters::new(&facets, sending);
+    let [visits, rays] = work.parts([3.0, 2.0]);
     let all = Everything {
         scene,
         facets: &facets,
         tree: &tree,
         blockers: blockers(scene, &facets, &tree),
+        fronts: Fronts::new(scene),
         aim,
         level: Level::current().unwrap_or(Level::Scalar),
-        steps: work.steps(count * count),
+        steps: visits.steps(count * count),
         factors: parallel::collect(count * count, |_| AtomicU64::new(0)),
-        sampled: Mutex::default(),
+        open: Mutex::default(),
         counts: Default::default(),
         rays: AtomicU64::new(0),
     };
@@ -53,17 +62,42 @@ pub fn matrix(scene: &Scene, aim: &Aim, work: Work) -> Result<Matrix, Stopped> {
         let may_hide: Vec<u32> = (0..all.blockers.len() as u32).collect();
         all.visit(root, root, &may_hide);
     }
-    all.curved(&areas(scene))?;
+    let areas = areas(scene);
+    let mut sampled = all.curved(&areas)?;
+    visits.goes_on()?;
+    all.sampled(&mut sampled, &areas, rays)?;
+    sampled.sort_unstable_by_key(|sampled| sampled.faces);
+    let [closed, hidden, _] = all.counts.map(AtomicU64::into_inner);
+    let mut made = Matrix {
+        factors: all.factors.into_iter().map(|bits| f64::from_bits(bits.into_inner())).collect(),
+        counts: [closed, hidden, sampled.len() as u64],
+        rays: all.rays.into_inner(),
+        ..Matrix::default()
+    };
+    for estimate in &sampled {
+        made.write(estimate, &areas);
+    }
+    if !sampled.is_empty() {
+        let (facets, fronts, areas, seed) = (&facets[..], &all.fronts, &areas[..], aim.seed);
+        let balanced = Balance { scene, fronts, facets, areas, factors: &made.factors, seed }.apply(&mut sampled);
+        made.rays += balanced.rays;
+        made.closed = balanced.closed;
+        sampled.iter().for_each(|estimate| made.write(estimate, areas));
+    }
+    made.closed.resize(count, false);
+    made.sampled = sampled;
     work.goes_on()?;
     work.done();
-    let mut sampled = all.sampled.into_inner().unwrap_or_else(PoisonError::into_inner);
-    sampled.sort_unstable_by_key(|sampled| sampled.faces);
-    Ok(Matrix {
-        factors: all.factors.into_iter().map(|bits| f64::from_bits(bits.into_inner())).collect(),
-        sampled,
-        counts: all.counts.map(AtomicU64::into_inner),
-        rays: all.rays.into_inner(),
-    })
+    Ok(made)
+}
+
+impl Matrix {
+    /// Writes an estimate into both rows.
+    fn write(&mut self, estimate: &Sampled, areas: &[f64]) {
+        let [i, j] = estimate.faces.map(|face| face as usize);
+        self.factors[i * areas.len() + j] = estimate.value / areas[i];
+        self.factors[j * areas.len() + i] = estimate.value / areas[j];
+    }
 }
 
 /// What may hide anything: all but those whose plane has the whole scene on one side, as every face of a convex room.
@@ -103,12 +137,14 @@ struct Everything<'a> {
     facets: &'a [Facet],
     tree: &'a Clusters,
     blockers: Vec<Blocker>,
+    fronts: Fronts,
     aim: &'a Aim,
     level: Level,
     steps: Steps<'a>,
     /// The bits of the view factors, each of which is written once.
     factors: Vec<AtomicU64>,
-    sampled: Mutex<Vec<Sampled>>,
+    /// Pairs that something may lie between.
+    open: Mutex<Vec<Open>>,
     counts: [AtomicU64; 3],
     rays: AtomicU64,
 }
@@ -187,7 +223,10 @@ impl Everything<'_> {
                         }
                     }
                     None => {
-                        let whole = pair(&mut quadrature, from, to);
+                        let mut whole = pair(&mut quadrature, from, to);
+                        if whole == 0.0 && self.fronts.touch(faces) {
+                            whole = overlap(from, to).map_or(0.0, |shared| shared.0);
+                        }
                         if whole > 0.0 {
                             counts[0] += 1;
                             self.store(faces, whole);
@@ -197,14 +236,7 @@ impl Everything<'_> {
             }
         }
         if !open.is_empty() {
-            let mut rays = 0;
-            let found = sampled(self.scene, self.facets, &open, self.aim, &mut rays);
-            for sampled in &found {
-                self.store(sampled.faces, sampled.value);
-            }
-            counts[2] += found.len() as u64;
-            self.rays.fetch_add(rays, Relaxed);
-            self.sampled.lock().unwrap_or_else(PoisonError::into_inner).extend(found);
+            self.open.lock().unwrap_or_else(PoisonError::into_inner).extend(open);
         }
         for (all, count) in self.counts.iter().zip(counts) {
             all.fetch_add(count, Relaxed);
@@ -276,23 +308,63 @@ impl Everything<'_> {
         self.factors[row * self.facets.len() + column].store(factor.to_bits(), Relaxed);
     }
 
-    /// The rows and columns of all that is no triangle. Of two such surfaces both rows tell what they exchange, A F,
-    /// with a variance of about A² F / n, so that the one of the smaller area counts more.
-    fn curved(&self, areas: &[f64]) -> Result<(), Stopped> {
+    /// The greatest factor in closed form of each row.
+    fn greatest(&self) -> Vec<f64> {
+        let count = self.facets.len();
+        let of = |i: usize| {
+            let row = &self.factors[i * count..][..count];
+            row.iter().fold(0.0f64, |most, bits| most.max(f64::from_bits(bits.load(Relaxed))))
+        };
+        parallel::collect(count, of)
+    }
+
+    /// The error that a factor from one face to another may have, by the greatest factors of both rows.
+    fn wanted(&self, [i, j]: [u32; 2], [factor, most]: [f64; 2], areas: &[f64], greatest: &[f64]) -> f64 {
+        let larger = areas[j as usize] / areas[i as usize];
+        let absolute = self.aim.error.map_or(f64::INFINITY, |error| error * larger.min(1.0));
+        let back = greatest[j as usize].max(factor / larger).max(FAINT);
+        let relative = self.aim.relative.map_or(f64::INFINITY, |share| share * most.max(FAINT).min(larger * back));
+        absolute.min(relative)
+    }
+
+    /// Estimates all pairs that something may lie between, beside those there are.
+    fn sampled(&self, sampled: &mut Vec<Sampled>, areas: &[f64], work: Work) -> Result<(), Stopped> {
+        let mut open = std::mem::take(&mut *self.open.lock().unwrap_or_else(PoisonError::into_inner));
+        if open.is_empty() {
+            return Ok(());
+        }
+        open.sort_unstable_by_key(|open| open.faces);
+        let mut greatest = self.greatest();
+        for Sampled { faces, value, .. } in &*sampled {
+            for row in faces.map(|face| face as usize) {
+                greatest[row] = greatest[row].max(value / areas[row]);
+            }
+        }
+        let rounds = Rounds { scene: self.scene, facets: self.facets, aim: self.aim, greatest };
+        let (found, rays) = rounds.estimate(&open, work)?;
+        self.rays.fetch_add(rays, Relaxed);
+        sampled.extend(found.iter().map(|estimate| estimate.sampled));
+        Ok(())
+    }
+
+    /// What all that is no triangle exchanges. Of two such surfaces both rows tell what they exchange, A F, with a
+    /// variance of about A² F / n, so that the one of the smaller area counts more.
+    fn curved(&self, areas: &[f64]) -> Result<Vec<Sampled>, Stopped> {
         let geometry = self.scene.geometry();
         let is_curved = |i: u32| geometry.shape(i).is_some();
         let curved: Vec<u32> = (0..areas.len() as u32).filter(|&i| is_curved(i) && areas[i as usize] > 0.0).collect();
+        let greatest = if curved.is_empty() { Vec::new() } else { self.greatest() };
         let mut exchanged = BTreeMap::<[u32; 2], [f64; 2]>::new();
         for some in curved.chunks(ROWS) {
             let row = |i: usize| {
-                let (i, mut rays) = (some[i], 0);
                 if self.steps.is_stopped() {
                     return Vec::new();
                 }
-                let mut rows = Rows::new(self.scene, self.aim.seed);
-                let row = rows.row(i, &self.facets[i as usize], self.aim, &mut rays);
-                self.rays.fetch_add(rays, Relaxed);
-                row
+                let (i, mut rows) = (some[i], Rows::new(self.scene, &self.fronts, self.aim.seed));
+                let wanted = |j: u32, factor: f64, most: f64| self.wanted([i, j], [factor, most], areas, &greatest);
+                let (row, sent) = rows.row(i, &self.facets[i as usize], self.aim, wanted);
+                self.rays.fetch_add(u64::from(sent), Relaxed);
+                self.with_unmet(i, row, sent, areas)
             };
             let rows = parallel::map(some.len(), row);
             self.steps.did(some.len() * areas.len())?;
@@ -307,15 +379,30 @@ impl Everything<'_> {
                 }
             }
         }
-        self.counts[2].fetch_add(exchanged.len() as u64, Relaxed);
-        let mut sampled = self.sampled.lock().unwrap_or_else(PoisonError::into_inner);
-        for (faces, [value, variance]) in exchanged {
-            let [i, j] = faces.map(|face| face as usize);
-            self.write(i, j, value / areas[i]);
-            self.write(j, i, value / areas[j]);
-            sampled.push(Sampled { faces, value, error: variance.sqrt() });
-        }
-        Ok(())
+        let sampled = exchanged.into_iter().map(|(faces, [value, variance])| {
+            let most = areas[faces[0] as usize].min(areas[faces[1] as usize]);
+            Sampled { faces, value: value.min(most), error: variance.sqrt(), most }
+        });
+        Ok(sampled.collect())
+    }
+
+    /// A row by rays, with what no ray has met and yet may be seen: it is not known to be nothing.
+    fn with_unmet(&self, i: u32, mut row: Vec<Entry>, rays: u32, areas: &[f64]) -> Vec<Entry> {
+        let geometry = self.scene.geometry();
+        let mut is_met = vec![false; areas.len()];
+        row.iter().for_each(|entry| is_met[entry.0 as usize] = true);
+        let error = Counts::of(0.0, f64::from(rays)).variance((0.0, 1.0)).sqrt();
+        let faces_it = |j: u32| match geometry.shape(j) {
+            Some(_) => j != i,
+            None => {
+                let facet = &self.facets[j as usize];
+                let most = geometry.shape(i).map_or(f64::INFINITY, |shape| shape.support(facet.normal));
+                most > facet.normal.dot(facet.centre)
+            }
+        };
+        let unmet = (0..areas.len() as u32).filter(|&j| areas[j as usize] > 0.0 && !is_met[j as usize] && faces_it(j));
+        row.extend(unmet.map(|j| (j, 0.0, error)));
+        row
     }
 }
 

@@ -1,21 +1,30 @@
 //! View factors: which share of the light that leaves one face, even and from its front, comes to the front of another.
 
+mod balance;
 mod by_rays;
 mod clusters;
+mod coincident;
 mod contour;
 mod distant;
 mod facet;
+mod fronts;
 mod hinge;
 mod matrix;
 mod pair;
 mod partly;
+mod pieces;
+mod reconcile;
+mod rounds;
 mod shaft;
 mod sparse;
 #[cfg(test)]
 mod tests;
+mod told;
 
+pub use coincident::{Overlap, coincident};
 pub use distant::Quadrature;
 pub use facet::Facet;
+pub use fronts::Fronts;
 pub use matrix::{Matrix, matrix};
 pub use pair::pair;
 pub use sparse::{Sparse, sparse};
@@ -32,6 +41,8 @@ pub struct Aim {
     pub row_rays: u32,
     /// The standard error that no view factor exceeds, if rays can do it.
     pub error: Option<f64>,
+    /// The same as a share of the greatest factor of either row, as far as a number of rays can do it.
+    pub relative: Option<f64>,
     /// Picks the random numbers.
     pub seed: u64,
 }
@@ -45,6 +56,8 @@ pub struct Sampled {
     pub value: f64,
     /// Its standard error.
     pub error: f64,
+    /// An upper bound.
+    pub most: f64,
 }
 
 /// All primitives as triangles that send; those that are none have no area here.

@@ -24,32 +24,75 @@ const FLAT: f64 = 1.0 / 16.0;
 /// is less than 10⁻²⁴ of the square of the radius, and to find it takes long.
 const LEVEL: f64 = 1e-12;
 
-/// The area of one triangle times its view factor to another, which is the other's times that to the one.
-pub fn pair(quadrature: &mut Quadrature, one: &Facet, other: &Facet) -> f64 {
-    let mut heights = [one.heights(other), other.heights(one)];
-    if heights.iter().any(|of| of.iter().all(|&h| h <= 0.0)) {
-        return 0.0;
+/// Parts of two triangles that lie wholly in front of each other.
+#[derive(Clone, Copy, Debug)]
+pub struct Facing {
+    /// A part of the first, and one of the second.
+    pub facets: [Facet; 2],
+    /// How far the corners of the second are in front of the first, and those of the first in front of the second.
+    heights: [[f64; 3]; 2],
+}
+
+impl Facing {
+    /// What both exchange if nothing lies between.
+    pub fn exchanged(&self, quadrature: &mut Quadrature) -> f64 {
+        before(quadrature, &self.facets[0], &self.facets[1], self.heights, MOST_CUTS)
     }
+
+    /// Whether the distance between both is less than this many times the sum of their radii.
+    pub fn is_within(&self, times: f64) -> bool {
+        let [one, other] = &self.facets;
+        one.centre.distance(other.centre) < times * (one.radius + other.radius)
+    }
+
+    /// Whether both lie nearly in one plane, where it takes long to find what they exchange.
+    pub fn is_flat(&self) -> bool {
+        let most = FLAT * self.facets[0].radius.max(self.facets[1].radius);
+        self.heights.as_flattened().iter().all(|&height| height <= most)
+    }
+
+    /// The quarters of the larger one, each with the smaller one.
+    pub fn quarters(&self) -> [Self; 4] {
+        let [one, other] = &self.facets;
+        let larger = usize::from(one.radius <= other.radius);
+        let quarters = self.facets[larger].quarters();
+        let [a, b, c] = self.heights[1 - larger];
+        let [ab, bc, ca] = [0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)];
+        let of_quarters = [[a, ab, ca], [ab, b, bc], [ca, bc, c], [bc, ca, ab]];
+        std::array::from_fn(|i| {
+            let mut part = *self;
+            part.facets[larger] = quarters[i];
+            part.heights[1 - larger] = of_quarters[i];
+            part
+        })
+    }
+}
+
+/// The parts of two triangles that lie in front of each other, up to four pairs.
+pub fn facing(one: &Facet, other: &Facet) -> impl Iterator<Item = Facing> {
+    let mut heights = [one.heights(other), other.heights(one)];
+    let mut is_any = heights.iter().all(|of| of.iter().any(|&h| h > 0.0));
     // Where all heights are low, the least of them count.
     let flat = FLAT * one.radius.max(other.radius);
-    if heights.as_flattened().iter().all(|h| h.abs() <= flat) && heights.as_flattened().contains(&0.0) {
+    if is_any && heights.as_flattened().iter().all(|h| h.abs() <= flat) && heights.as_flattened().contains(&0.0) {
         heights = [one.exact_heights(other), other.exact_heights(one)];
         let level = LEVEL * one.radius.max(other.radius);
-        if heights.as_flattened().iter().all(|h| h.abs() <= level) {
-            return 0.0;
-        }
+        is_any = !heights.as_flattened().iter().all(|h| h.abs() <= level);
     }
-    if heights.iter().flatten().all(|&h| h >= 0.0) {
-        return before(quadrature, one, other, heights, MOST_CUTS);
-    }
-    let (parts, others) = (in_front(one, heights[1]), in_front(other, heights[0]));
-    let mut sum = 0.0;
-    for (part, to_other) in parts.iter().flatten() {
-        for (other_part, to_one) in others.iter().flatten() {
-            sum += before(quadrature, part, other_part, [*to_one, *to_other], MOST_CUTS);
-        }
-    }
-    sum
+    let (parts, others) = if !is_any {
+        ([None; 2], [None; 2])
+    } else if heights.as_flattened().iter().all(|&h| h >= 0.0) {
+        ([Some((*one, heights[1])), None], [Some((*other, heights[0])), None])
+    } else {
+        (in_front(one, heights[1]), in_front(other, heights[0]))
+    };
+    let both = parts.into_iter().flatten().flat_map(move |part| others.into_iter().flatten().map(move |o| (part, o)));
+    both.map(|((part, to_other), (other, to_one))| Facing { facets: [part, other], heights: [to_one, to_other] })
+}
+
+/// The area of one triangle times its view factor to another, which is the other's times that to the one.
+pub fn pair(quadrature: &mut Quadrature, one: &Facet, other: &Facet) -> f64 {
+    facing(one, other).fold(0.0, |sum, part| sum + part.exchanged(quadrature))
 }
 
 /// The same of two that lie wholly in front of each other.
@@ -67,12 +110,8 @@ fn before(quadrature: &mut Quadrature, one: &Facet, other: &Facet, heights: [[f6
         }
         return hinge(one, other, heights).unwrap_or(found.max(0.0));
     }
-    let [above_larger, above_smaller] = if is_larger { heights } else { [heights[1], heights[0]] };
-    let [a, b, c] = above_smaller;
-    let [ab, bc, ca] = [0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)];
-    let of_quarters = [[a, ab, ca], [ab, b, bc], [ca, bc, c], [bc, ca, ab]];
-    let quarters = larger.quarters();
-    // `heights[0]` is of the second's corners above the first.
-    let mut part = |i: usize| before(quadrature, &quarters[i], smaller, [above_larger, of_quarters[i]], cuts - 1);
-    (0..4).map(&mut part).sum()
+    let ordered = if is_larger { heights } else { [heights[1], heights[0]] };
+    let facing = Facing { facets: [*larger, *smaller], heights: ordered };
+    let mut part = |part: Facing| before(quadrature, &part.facets[0], &part.facets[1], part.heights, cuts - 1);
+    facing.quarters().into_iter().map(&mut part).sum()
 }

@@ -1,13 +1,17 @@
-//! Pairs that something may lie between, by rays.
+//! Pairs of faces that something may lie between, by rays.
 
+use super::Sampled;
+use super::distant::Quadrature;
 use super::facet::Facet;
-use super::{Aim, Sampled};
+use super::pieces::{Piece, Pieces};
+use super::told::Counts;
 use raywright_base::math::{DVec3, Ray};
-use raywright_base::sampling::{BatchSize, SamplerKind, warp};
+use raywright_base::sampling::{BatchSize, Sampler, SamplerKind, warp};
 use raywright_scene::{RayOrigin, Scene, SeenTriangle};
 use std::f64::consts::PI;
 
 /// Two faces, by number, and what they would exchange if nothing lay between.
+#[derive(Clone, Copy, Debug)]
 pub struct Open {
     /// The one and the other.
     pub faces: [u32; 2],
@@ -15,127 +19,143 @@ pub struct Open {
     pub whole: f64,
 }
 
-/// No pair takes more batches.
-const MOST_BATCHES: u32 = 1 << 10;
+/// The samples of a pair: how many, and the number of the first.
+#[derive(Clone, Copy, Debug)]
+pub struct Round {
+    pub first: u32,
+    pub rays: u32,
+}
 
-/// What of a batch would be exchanged if nothing lay between, and what is.
+/// An estimate, by how many rays, and whether all of them agree.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Estimate {
+    pub sampled: Sampled,
+    pub rays: u32,
+    pub agrees: bool,
+}
+
+/// Rays that are traced together.
+const TOGETHER: usize = 1 << 12;
+
+/// What estimates share.
+pub struct Pairs<'a> {
+    pub scene: &'a Scene,
+    pub facets: &'a [Facet],
+    pub seed: u64,
+}
+
+/// The sums of a batch: of weights, and of weights of points that see each other.
 type Batch = [f64; 2];
 
-/// The estimates of some pairs, one each.
-///
-/// A sample is a point x of the smaller triangle, drawn by area, and a direction from there to the other, drawn by
-/// solid angle; it counts w = A cos θ / (π p), V times that where it is seen. Of a batch the estimate is
-///
-/// mean(w V) + β (whole − mean(w)),
-///
-/// with the share β that the *other* batches have seen. As β does not depend on the batch, the estimate has no bias
-/// (control variates: Hammersley and Handscomb 1964). What is hidden wholly is 0, and what is seen wholly is exact.
-pub fn sampled(scene: &Scene, facets: &[Facet], pairs: &[Open], aim: &Aim, rays: &mut u64) -> Vec<Sampled> {
-    let size = BatchSize::for_budget(Some(aim.rays));
-    let first = aim.rays.div_ceil(size.samples()).max(2);
-    let mut batches: Vec<Vec<Batch>> = pairs.iter().map(|_| Vec::new()).collect();
-    let mut found = vec![Sampled::default(); pairs.len()];
-    let mut open: Vec<usize> = (0..pairs.len()).collect();
-    let mut target = first;
-    while !open.is_empty() {
-        for some in open.chunks(64) {
-            *rays += ask(scene, facets, pairs, some, target, size, aim.seed, &mut batches);
-        }
-        for &i in &open {
-            found[i] = estimate(pairs[i].whole, &batches[i], size);
-        }
-        let Some(error) = aim.error else { break };
-        open.retain(|&i| found[i].error > error * facets_area(facets, &pairs[i]) && target < MOST_BATCHES);
-        target *= 2;
-    }
-    for (found, pair) in found.iter_mut().zip(pairs) {
-        found.faces = pair.faces;
-    }
-    found
-}
-
-/// The smaller area of a pair: of its two view factors the larger one is over that.
-fn facets_area(facets: &[Facet], pair: &Open) -> f64 {
-    let [one, other] = pair.faces.map(|face| facets[face as usize].area);
-    one.min(other)
-}
-
-/// Has some pairs have so many batches.
-#[allow(clippy::too_many_arguments)]
-fn ask(
-    scene: &Scene,
-    facets: &[Facet],
-    pairs: &[Open],
-    some: &[usize],
-    target: u32,
+/// A pair on its way.
+struct Tally {
+    open: Open,
     size: BatchSize,
-    seed: u64,
-    batches: &mut [Vec<Batch>],
-) -> u64 {
-    let kind = SamplerKind::Sobol(size);
-    let (mut rays, mut of) = (Vec::new(), Vec::new());
-    for &i in some {
-        let [mut from, mut to] = pairs[i].faces;
-        let pixel = (u64::from(from) * facets.len() as u64 + u64::from(to)) as u32;
-        if facets[from as usize].area > facets[to as usize].area {
-            (from, to) = (to, from);
-        }
-        let (one, other) = (&facets[from as usize], &facets[to as usize]);
-        let errors = [from, to].map(|face| scene.geometry().error(face));
-        let done = batches[i].len() as u32;
-        batches[i].resize(target as usize, [0.0; 2]);
-        for sample in done * size.samples()..target * size.samples() {
-            let mut sampler = kind.sampler(seed, pixel, sample);
-            let start = point(one, warp::uniform_triangle(sampler.two(1)));
-            let seen = SeenTriangle::new(other.corners, start);
-            let end = point(other, seen.sample(sampler.two(3)));
-            let way = end - start;
-            let distance = way.length();
-            let (leaves, arrives) = (one.normal.dot(way) / distance, -other.normal.dot(way) / distance);
-            if !(leaves > 0.0 && arrives > 0.0) {
-                continue;
+    batches: Vec<Batch>,
+    counts: Counts,
+}
+
+/// A ray on its way: of which pair and which batch, and its weight.
+type Sent = (usize, usize, f64);
+
+impl Pairs<'_> {
+    /// Estimates some pairs, each by as many rays as its round says.
+    ///
+    /// A sample is a piece of the pair, drawn by its exchange w₀, a point x of its smaller part, drawn by area, and a
+    /// direction from there to the larger part, drawn by solid angle. It has the weight w = A cos θ / (π p w₀), whose
+    /// mean is 1, and V is 1 where both points see each other. The estimate of a batch is
+    ///
+    /// whole · (mean(w V) + β (1 − mean(w))),
+    ///
+    /// with the share β that the *other* batches have seen. As β does not depend on the batch, the estimate has no bias
+    /// (control variates: Hammersley and Handscomb 1964), before it is held within 0 and the whole.
+    pub fn estimate(&self, quadrature: &mut Quadrature, pairs: &[(Open, Round)], sent: &mut u64) -> Vec<Estimate> {
+        let tally = |&(open, round): &(Open, Round)| {
+            let size = BatchSize::for_budget(Some(round.rays));
+            let batches = round.rays.div_ceil(size.samples()).max(2) as usize;
+            Tally { open, size, batches: vec![[0.0; 2]; batches], counts: Counts::default() }
+        };
+        let mut tallies: Vec<Tally> = pairs.iter().map(tally).collect();
+        let (mut rays, mut of) = (Vec::with_capacity(TOGETHER), Vec::with_capacity(TOGETHER));
+        for (i, (open, round)) in pairs.iter().enumerate() {
+            let [one, other] = open.faces.map(|face| &self.facets[face as usize]);
+            let pieces = Pieces::new(quadrature, one, other, open.whole);
+            let (size, batches) = (tallies[i].size, tallies[i].batches.len() as u32);
+            let kind = SamplerKind::Sobol(size);
+            let pixel = (u64::from(open.faces[0]) * self.facets.len() as u64 + u64::from(open.faces[1])) as u32;
+            for number in 0..batches * size.samples() {
+                let mut sampler = kind.sampler(self.seed, pixel, round.first + number);
+                let Some(piece) = pieces.at(sampler.one(0)) else { continue };
+                let Some((ray, weight)) = self.draw(&mut sampler, piece, open.faces) else { continue };
+                rays.push(ray);
+                of.push((i, (number / size.samples()) as usize, weight));
+                if rays.len() == TOGETHER {
+                    *sent += self.trace(&mut tallies, &mut rays, &mut of);
+                }
             }
-            let weight = one.area * leaves / (PI * seen.pdf(distance, arrives));
-            if !weight.is_finite() {
-                continue;
-            }
-            let batch = sample / size.samples();
-            batches[i][batch as usize][0] += weight;
-            let origin = RayOrigin::off(start, errors[0], one.normal);
-            let segment = origin.segment(&RayOrigin::off(end, errors[1], other.normal));
-            rays.push(Ray { misses: [from, to], ..segment });
-            of.push((i, batch as usize, weight));
         }
+        *sent += self.trace(&mut tallies, &mut rays, &mut of);
+        tallies.iter().map(Tally::estimate).collect()
     }
-    let mut hidden = vec![false; rays.len()];
-    scene.occluded(&rays, &mut hidden);
-    for ((i, batch, weight), hidden) in of.into_iter().zip(hidden) {
-        batches[i][batch][1] += if hidden { 0.0 } else { weight };
+
+    /// A segment between both parts of a piece, and its weight.
+    fn draw(&self, sampler: &mut Sampler, piece: &Piece, faces: [u32; 2]) -> Option<(Ray, f64)> {
+        let [one, other] = &piece.facets;
+        let start = point(one, warp::uniform_triangle(sampler.two(1)));
+        let seen = SeenTriangle::new(other.corners, start);
+        let end = point(other, seen.sample(sampler.two(3)));
+        let way = end - start;
+        let distance = way.length();
+        let (leaves, arrives) = (one.normal.dot(way) / distance, -other.normal.dot(way) / distance);
+        let weight = one.area * leaves / (PI * seen.pdf(distance, arrives) * piece.whole);
+        if !(leaves > 0.0 && arrives > 0.0 && weight.is_finite()) {
+            return None;
+        }
+        let misses = [faces[piece.from], faces[1 - piece.from]];
+        let errors = misses.map(|face| self.scene.geometry().error(face));
+        let origin = RayOrigin::off(start, errors[0], one.normal);
+        let segment = origin.segment(&RayOrigin::off(end, errors[1], other.normal));
+        Some((Ray { misses, ..segment }, weight))
     }
-    rays.len() as u64
+
+    fn trace(&self, tallies: &mut [Tally], rays: &mut Vec<Ray>, of: &mut Vec<Sent>) -> u64 {
+        let mut hidden = vec![false; rays.len()];
+        self.scene.occluded(rays, &mut hidden);
+        for ((i, batch, weight), hidden) in of.drain(..).zip(hidden) {
+            let tally = &mut tallies[i];
+            tally.batches[batch][0] += weight;
+            tally.batches[batch][1] += if hidden { 0.0 } else { weight };
+            tally.counts.add(weight, !hidden);
+        }
+        let sent = rays.len() as u64;
+        rays.clear();
+        sent
+    }
+}
+
+impl Tally {
+    fn estimate(&self) -> Estimate {
+        let (count, each) = (self.batches.len() as f64, f64::from(self.size.samples()));
+        let all = self.batches.iter().fold([0.0; 2], |sum, batch| [sum[0] + batch[0], sum[1] + batch[1]]);
+        let mut sums = [0.0; 2];
+        for [drawn, seen] in &self.batches {
+            let others = [all[0] - drawn, all[1] - seen];
+            let share = if others[0] > 0.0 { (others[1] / others[0]).clamp(0.0, 1.0) } else { 0.5 };
+            let value = seen / each + share * (1.0 - drawn / each);
+            sums[0] += value;
+            sums[1] += value * value;
+        }
+        let mean = sums[0] / count;
+        let between = (sums[1] / count - mean * mean).max(0.0) / (count - 1.0);
+        let agrees = self.counts.agree();
+        let share = if agrees { f64::from(self.counts.hits > 0.0) } else { mean.clamp(0.0, 1.0) };
+        let error = self.open.whole * self.counts.variance((between, count)).sqrt();
+        let sampled = Sampled { faces: self.open.faces, value: self.open.whole * share, error, most: self.open.whole };
+        Estimate { sampled, rays: self.batches.len() as u32 * self.size.samples(), agrees }
+    }
 }
 
 fn point(facet: &Facet, [second, third]: [f64; 2]) -> DVec3 {
     let [a, b, c] = facet.corners;
     a + (b - a) * second + (c - a) * third
-}
-
-fn estimate(whole: f64, batches: &[Batch], size: BatchSize) -> Sampled {
-    let (count, each) = (batches.len() as f64, f64::from(size.samples()));
-    let all = batches.iter().fold([0.0; 2], |sum, batch| [sum[0] + batch[0], sum[1] + batch[1]]);
-    let mut sums = [0.0; 2];
-    for [drawn, seen] in batches {
-        let others = [all[0] - drawn, all[1] - seen];
-        let share = if others[0] > 0.0 { (others[1] / others[0]).clamp(0.0, 1.0) } else { 1.0 };
-        let value = seen / each + share * (whole - drawn / each);
-        sums[0] += value;
-        sums[1] += value * value;
-    }
-    let mean = sums[0] / count;
-    let variance = (sums[1] / count - mean * mean).max(0.0) / (count - 1.0);
-    // Where all rays agree, the share of those that would not is still not known to be 0: after n of them it is on
-    // average 1 / (n + 2), and so is its spread (Laplace's rule of succession).
-    let doubt = if all[1] == 0.0 || all[1] == all[0] { whole / (count * each + 2.0) } else { 0.0 };
-    let exact = if all[1] == 0.0 { Some(0.0) } else { (all[1] == all[0]).then_some(whole) };
-    Sampled { value: exact.unwrap_or(mean), error: variance.sqrt().max(doubt), ..Sampled::default() }
 }

@@ -1,6 +1,7 @@
 //! The matrix of scenes with many faces: rows by rays, of which only what is hit is kept.
 
 use super::by_rays::{Entry, Rows};
+use super::fronts::Fronts;
 use super::{Aim, facets};
 use raywright_base::parallel;
 use raywright_base::work::{Stopped, Work};
@@ -28,19 +29,20 @@ const TOGETHER: usize = 64;
 /// All rows of a scene by rays.
 pub fn sparse(scene: &Scene, aim: &Aim, work: Work) -> Result<Sparse, Stopped> {
     let facets = facets(scene);
+    let fronts = Fronts::new(scene);
     let steps = work.steps(facets.len());
     let mut all = Sparse { starts: vec![0], ..Sparse::default() };
     let round = TOGETHER * parallel::threads() * 4;
     for start in (0..facets.len()).step_by(round) {
         let count = round.min(facets.len() - start);
         let of_faces = |some: Range<usize>| -> Vec<(Vec<Entry>, u64)> {
-            let mut rows = Rows::new(scene, aim.seed);
+            let mut rows = Rows::new(scene, &fronts, aim.seed);
             let faces = (start + some.start..start + some.end).take_while(|_| !steps.is_stopped());
             let row = |face: usize| {
-                let mut sent = 0;
-                let mut row = rows.row(face as u32, &facets[face], aim, &mut sent);
+                let (mut row, sent) =
+                    rows.row(face as u32, &facets[face], aim, |_, _, _| aim.error.unwrap_or(f64::INFINITY));
                 row.sort_unstable_by_key(|entry| entry.0);
-                (row, sent)
+                (row, u64::from(sent))
             };
             faces.map(row).collect()
         };

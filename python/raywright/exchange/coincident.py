@@ -1,0 +1,168 @@
+"""Faces that lie where others do: they are one surface, of which the first listed counts."""
+
+import warnings
+from dataclasses import dataclass, fields, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import _core
+from ..scene.instance import AnyShape
+from ..shapes import Shape
+from ..shapes.mesh import Mesh
+from .copies import LaidOut
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+# A face of which others leave a smaller share lies where they do.
+_LEFT = 1e-3
+# What does not tell where a shape is.
+_LOOKS = {"material", "emission", "name"}
+
+
+@dataclass(frozen=True)
+class Covered:
+    """Faces that lie where others do, and by which shares each of these stands for them.
+
+    Attributes
+    ----------
+    faces : (D,) int64
+        The faces, in rising order.
+    starts : (D,) int64
+        Where the part of each starts in `by` and `shares`.
+    by, shares : (K,)
+        Faces in whose places they lie, and the shares of their areas; each face's add up to 1.
+    areas : (D,) float64
+        How large they are.
+    """
+
+    faces: Integers
+    starts: Integers
+    by: Integers
+    shares: Floats
+    areas: Floats
+
+    def __len__(self) -> int:
+        return len(self.faces)
+
+    def means(self, values: Floats, power: int = 1) -> Floats:
+        """Return for each face the sum of shares, to a power, times values (F, ...) of others, (D, ...)."""
+        weights = self.shares.reshape(-1, *[1] * (values.ndim - 1)) ** power
+        return np.asarray(np.add.reduceat(values[self.by] * weights, self.starts))
+
+    @classmethod
+    def of(cls, parts: dict[int, list[tuple[int, float]]], own: Floats) -> "Covered":
+        """Return faces by the areas that each has in common with others, and the areas of all faces."""
+        faces = sorted(parts)
+        sizes = [len(parts[face]) for face in faces]
+        by = [other for face in faces for other, _ in parts[face]]
+        areas = [[area for _, area in parts[face]] for face in faces]
+        shares = [area / sum(of) for of in areas for area in of]
+        starts = np.cumsum([0, *sizes])[:-1]
+        rows = np.array(faces, np.int64)
+        return cls(rows, starts, np.array(by, np.int64), np.array(shares, np.float64), own[rows])
+
+
+NOTHING = Covered.of({}, np.zeros(0))
+
+
+def merged(laid: LaidOut, stacklevel: int = 3) -> tuple[LaidOut, Covered]:
+    """Return a scene in which each place has one face that exchanges light, and the faces that do not.
+
+    A face all of whose area lies in faces before it, which look the same way, is shrunk to a point.
+
+    Warns
+    -----
+    RuntimeWarning
+        If faces coincide, in part or as a whole.
+    """
+    curved = _same_shapes(laid)
+    pairs, areas, same, own = _core.coincident_faces(laid.scene._compiled())
+    order = np.lexsort((pairs[:, 0], pairs[:, 1]))
+    parts: dict[int, list[tuple[int, float]]] = {face: [(twin, 1.0)] for face, twin in curved.items()}
+    partly: set[int] = set()
+    for face, found in _by_second(pairs[order[same[order]]], areas[order[same[order]]]):
+        before = [(other, area) for other, area in found if other not in parts]
+        if sum(area for _, area in before) >= (1.0 - _LEFT) * own[face]:
+            parts[face] = before
+        elif before:
+            partly.add(face)
+    if partly:
+        warnings.warn(
+            f"{len(partly)} of {len(own)} faces overlap others in a part of one plane, "
+            f"{_named(laid, min(partly))} first: what they exchange there counts twice",
+            RuntimeWarning,
+            stacklevel=stacklevel,
+        )
+    if not parts:
+        return laid, NOTHING
+    covered = Covered.of(parts, own)
+    warnings.warn(
+        f"{len(covered)} of {len(own)} faces coincide with others and count once with them: "
+        f"{_named(laid, covered.faces[0])} first, with {_named(laid, covered.by[0])}",
+        RuntimeWarning,
+        stacklevel=stacklevel,
+    )
+    gone = np.zeros(len(own), np.bool_)
+    gone[covered.faces] = True
+    shapes: list[AnyShape] = []
+    start = 0
+    for shape in laid.scene.shapes:
+        count = len(shape.faces) if isinstance(shape, Mesh) else 1
+        shapes.append(_shrunk(shape, gone[start : start + count]))
+        start += count
+    return replace(laid, scene=laid.scene.replace(shapes=shapes)), covered
+
+
+def _named(laid: LaidOut, face: int | np.int64) -> str:
+    return f"face {laid.face[face]} of shapes[{laid.shape[face]}]"
+
+
+def _by_second(pairs: Integers, areas: Floats) -> list[tuple[int, list[tuple[int, float]]]]:
+    """Return for each second face of sorted pairs the first ones, and the areas in common."""
+    ends = np.flatnonzero(np.diff(pairs[:, 1])) + 1
+    groups = zip(np.split(pairs, ends), np.split(areas, ends), strict=True)
+    return [
+        (int(some[0, 1]), list(zip(some[:, 0].tolist(), of.tolist(), strict=True)))
+        for some, of in groups
+        if len(some)
+    ]
+
+
+def _same_shapes(laid: LaidOut) -> dict[int, int]:
+    """Return faces of shapes that are no meshes and are listed before, and which these are."""
+    places: dict[Any, int] = {}
+    found, start = {}, 0
+    for shape in laid.scene.shapes:
+        if isinstance(shape, Shape):
+            first = places.setdefault(_place(shape), start)
+            if first != start:
+                found[start] = first
+        start += len(shape.faces) if isinstance(shape, Mesh) else 1
+    return found
+
+
+def _place(shape: Shape) -> tuple[Any, ...]:
+    values = {part.name: getattr(shape, part.name) for part in fields(shape) if part.name not in _LOOKS}
+    return type(shape), *((name, np.asarray(value).tobytes()) for name, value in values.items())
+
+
+def _shrunk(shape: AnyShape, gone: NDArray[np.bool_]) -> AnyShape:
+    """Return a shape some of whose faces are points."""
+    if not gone.any():
+        return shape
+    if not isinstance(shape, Mesh):
+        return Mesh(np.zeros((1, 3)), [[0, 0, 0]])
+    faces = np.where(gone[:, None], shape.faces[:, :1], shape.faces)
+    return Mesh(
+        shape.vertices,
+        faces,
+        shape.normals,
+        shape.uv,
+        shape.material,
+        shape.emission,
+        shape.colors,
+        shape.name,
+    )

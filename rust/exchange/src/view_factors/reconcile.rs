@@ -1,0 +1,213 @@
+//! Estimates that are to have given sums, moved as little as their errors allow.
+
+/// A number that was estimated, and counts in the sums of one row or of two.
+#[derive(Clone, Copy, Debug)]
+pub struct Term {
+    /// Both rows; the same twice for one.
+    pub rows: [u32; 2],
+    pub value: f64,
+    pub variance: f64,
+    /// It lies between 0 and this.
+    pub most: f64,
+}
+
+/// Steps of Newton's method, and those of conjugate gradients within each.
+const STEPS: usize = 40;
+const INNER: usize = 100;
+
+/// Sums are right when they are off by no more than this share of their rows' scales.
+const ENOUGH: f64 = 1e-14;
+
+/// Steps that do not halve what sums are off by before they are left as they are.
+const PATIENCE: u32 = 2;
+
+/// Moves terms so that rows have the sums that are wanted, and each term stays within its bounds.
+///
+/// Of all such numbers x it finds those next to the estimates x̂ by Σ (x − x̂)² / variance: weighted least squares,
+/// which lower the error of every term if variances are right. With a multiplier λ for each row,
+/// x = x̂ + variance (λᵢ + λⱼ), held within the bounds; the sums are solved for λ by Newton's method, which takes one step
+/// where no bound is met. Rows without a sum wanted are left alone, and so are terms of which no row has one.
+pub fn reconcile(terms: &mut [Term], wanted: &[Option<f64>], scales: &[f64]) {
+    let mut lambda = vec![0.0; wanted.len()];
+    let mut best = f64::INFINITY;
+    let mut waited = 0;
+    let mut residual = residuals(terms, wanted, &lambda);
+    for _ in 0..STEPS {
+        let off = residual.iter().zip(scales).fold(0.0f64, |most, (r, scale)| most.max(r.abs() / scale));
+        waited = if off < 0.5 * best { 0 } else { waited + 1 };
+        best = best.min(off);
+        if off <= ENOUGH || waited == PATIENCE {
+            break;
+        }
+        let step = newton(terms, wanted, &lambda, &residual);
+        let rise = dot(&residual, &step);
+        let mut share = 1.0;
+        // Past the top of the dual along the step, half of it is tried.
+        loop {
+            let next: Vec<f64> = lambda.iter().zip(&step).map(|(l, s)| l + share * s).collect();
+            let left = residuals(terms, wanted, &next);
+            if dot(&left, &step).abs() <= 0.9 * rise.abs() || share < 1e-3 {
+                (lambda, residual) = (next, left);
+                break;
+            }
+            share *= 0.5;
+        }
+    }
+    for term in terms {
+        term.value = moved(term, &lambda).0;
+    }
+}
+
+/// A term with these multipliers, and whether it is free to move.
+fn moved(term: &Term, lambda: &[f64]) -> (f64, bool) {
+    let [i, j] = term.rows.map(|row| row as usize);
+    let by = lambda[i] + if i == j { 0.0 } else { lambda[j] };
+    let free = term.value + term.variance * by;
+    // A term at a bound counts as free: it may move away from there.
+    (free.clamp(0.0, term.most), free >= 0.0 && free <= term.most && term.variance > 0.0)
+}
+
+/// What sums are short by; 0 of rows that may have any.
+fn residuals(terms: &[Term], wanted: &[Option<f64>], lambda: &[f64]) -> Vec<f64> {
+    let mut left: Vec<f64> = wanted.iter().map(|wanted| wanted.unwrap_or(0.0)).collect();
+    for term in terms {
+        let [i, j] = term.rows.map(|row| row as usize);
+        let value = moved(term, lambda).0;
+        left[i] -= value;
+        if i != j {
+            left[j] -= value;
+        }
+    }
+    left.iter().zip(wanted).map(|(left, wanted)| if wanted.is_some() { *left } else { 0.0 }).collect()
+}
+
+/// Newton's step, by conjugate gradients with the diagonal as preconditioner.
+fn newton(terms: &[Term], wanted: &[Option<f64>], lambda: &[f64], residual: &[f64]) -> Vec<f64> {
+    let is_held = |row: usize| wanted[row].is_some();
+    let free: Vec<([usize; 2], f64)> = terms
+        .iter()
+        .filter(|term| moved(term, lambda).1)
+        .map(|term| (term.rows.map(|row| row as usize), term.variance))
+        .filter(|([i, j], _)| is_held(*i) || is_held(*j))
+        .collect();
+    let mut diagonal = vec![0.0; wanted.len()];
+    for &([i, j], variance) in &free {
+        diagonal[i] += if is_held(i) { variance } else { 0.0 };
+        diagonal[j] += if i != j && is_held(j) { variance } else { 0.0 };
+    }
+    let share: Vec<f64> = diagonal.iter().map(|&d| if d > 0.0 { 1.0 / d } else { 0.0 }).collect();
+    let times = |x: &[f64]| {
+        let mut y = vec![0.0; x.len()];
+        for &([i, j], variance) in &free {
+            let of = variance * (x[i] + if i == j { 0.0 } else { x[j] });
+            y[i] += of;
+            if i != j {
+                y[j] += of;
+            }
+        }
+        y
+    };
+    let scaled = |x: &[f64]| -> Vec<f64> { x.iter().zip(&share).map(|(x, s)| x * s).collect() };
+    let mut step = vec![0.0; residual.len()];
+    let mut rest: Vec<f64> = residual.iter().zip(&share).map(|(r, s)| if *s > 0.0 { *r } else { 0.0 }).collect();
+    let mut way = scaled(&rest);
+    let mut along = way.clone();
+    let mut length = dot(&rest, &way);
+    let least = 1e-26 * length;
+    for _ in 0..INNER {
+        if length <= least {
+            break;
+        }
+        let mut turned = times(&along);
+        turned.iter_mut().zip(&share).for_each(|(t, s)| *t = if *s > 0.0 { *t } else { 0.0 });
+        let curve = dot(&along, &turned);
+        if curve <= 0.0 {
+            break;
+        }
+        let much = length / curve;
+        for i in 0..step.len() {
+            step[i] += much * along[i];
+            rest[i] -= much * turned[i];
+        }
+        way = scaled(&rest);
+        let next = dot(&rest, &way);
+        let share = next / length;
+        length = next;
+        along.iter_mut().zip(&way).for_each(|(a, w)| *a = w + share * *a);
+    }
+    step
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).fold(0.0, |sum, (a, b)| sum + a * b)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use raywright_base::sampling::Sampler;
+
+    /// Every pair of so many rows, each with a truth, an estimate of it, and its variance.
+    fn terms(rows: u32, seed: u64) -> (Vec<Term>, Vec<f64>) {
+        let mut terms = Vec::new();
+        let mut truths = Vec::new();
+        for i in 0..rows {
+            for j in i..rows {
+                let mut sampler = Sampler::new(seed, i, j);
+                let truth = sampler.one(0).powi(4);
+                let error = 0.3 * sampler.one(1).powi(3);
+                let off = (0..12).map(|d| sampler.one(2 + d)).sum::<f64>() - 6.0;
+                let value = (truth + error * off).clamp(0.0, 1.0);
+                terms.push(Term { rows: [i, j], value, variance: error * error, most: 1.0 });
+                truths.push(truth);
+            }
+        }
+        (terms, truths)
+    }
+
+    fn sums(terms: &[Term], values: impl Iterator<Item = f64>, rows: usize) -> Vec<f64> {
+        let mut sums = vec![0.0; rows];
+        for (term, value) in terms.iter().zip(values) {
+            let [i, j] = term.rows.map(|row| row as usize);
+            sums[i] += value;
+            sums[j] += if i == j { 0.0 } else { value };
+        }
+        sums
+    }
+
+    #[test]
+    fn sums_are_as_wanted_within_bounds_and_errors_fall() {
+        for seed in 0..4 {
+            let rows = 20;
+            let (mut terms, truths) = terms(rows as u32, seed);
+            let whole = sums(&terms, truths.iter().copied(), rows);
+            let mut wanted: Vec<Option<f64>> = whole.iter().copied().map(Some).collect();
+            wanted[3] = None;
+            let before = terms.clone();
+            reconcile(&mut terms, &wanted, &vec![1.0; rows]);
+            let found = sums(&terms, terms.iter().map(|term| term.value), rows);
+            for row in (0..rows).filter(|&row| row != 3) {
+                assert!((found[row] - whole[row]).abs() < 1e-13, "{row}: {} {}", found[row], whole[row]);
+            }
+            assert!(terms.iter().all(|term| (0.0..=1.0).contains(&term.value)));
+            let off = |of: &[Term]| {
+                of.iter().zip(&truths).map(|(t, truth)| (t.value - truth).powi(2) / t.variance).sum::<f64>()
+            };
+            // The truth is within the bounds and has the sums, so that no such numbers nearest are farther from it.
+            assert!(off(&terms) < off(&before), "{} {}", off(&terms), off(&before));
+        }
+    }
+
+    #[test]
+    fn what_has_no_error_or_no_row_stays_and_what_cannot_be_ends() {
+        let term = |rows, value, variance| Term { rows, value, variance, most: 1.0 };
+        let mut terms = [term([0, 1], 0.3, 0.0), term([0, 2], 0.3, 0.1), term([1, 2], 0.3, 0.1)];
+        reconcile(&mut terms, &[Some(0.5), None, None], &[1.0; 3]);
+        assert_eq!((terms[0].value, terms[2].value), (0.3, 0.3));
+        assert!((terms[1].value - 0.2).abs() < 1e-15);
+        // Two rows of one term that want different sums.
+        let mut alone = [term([0, 1], 0.3, 0.1)];
+        reconcile(&mut alone, &[Some(0.4), Some(0.5)], &[1.0; 2]);
+        assert!((0.2..=0.7).contains(&alone[0].value), "{}", alone[0].value);
+    }
+}

@@ -1,0 +1,145 @@
+//! How many rays each pair takes: a pilot tells how many its error needs.
+
+use super::Aim;
+use super::distant::Quadrature;
+use super::facet::Facet;
+use super::partly::{Estimate, Open, Pairs, Round};
+use raywright_base::parallel;
+use raywright_base::simd::Level;
+use raywright_base::work::{Steps, Stopped, Work};
+use raywright_scene::Scene;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+
+/// Rounds after the pilot.
+const ROUNDS: u32 = 6;
+
+/// No pair takes more rays in a round, and none that had so many takes part in another.
+const MOST: u32 = 1 << 20;
+
+/// Pairs that a thread takes at a time: the first time, and when each takes many rays.
+const PILOTS: usize = 64;
+const PAIRS: usize = 4;
+
+/// Rows whose factors all are smaller need no better errors than if one were as large as this.
+pub const FAINT: f64 = 0.01;
+
+/// Where nobody names an error, rounds after the pilot send no more rays than this in all.
+const BUDGET: f64 = (1u32 << 25) as f64;
+
+/// The pilot tells roughly what an error needs, so that this many times as much is sent.
+const RESERVE: f64 = 1.4;
+
+/// Estimates pairs by rays until their errors are as is aimed at.
+///
+/// Each round sends new rays, whose number follows from those before. Its estimates thus do not depend on when it
+/// ended, as those of rays that are added up until they seem to agree would.
+pub struct Rounds<'a> {
+    pub scene: &'a Scene,
+    pub facets: &'a [Facet],
+    pub aim: &'a Aim,
+    /// The greatest factor of each row so far.
+    pub greatest: Vec<f64>,
+}
+
+impl Rounds<'_> {
+    /// The estimates of all pairs, and how many rays were sent.
+    pub fn estimate(mut self, pairs: &[Open], work: Work) -> Result<(Vec<Estimate>, u64), Stopped> {
+        let steps = work.steps(2 * pairs.len());
+        let pilot: Vec<usize> = (0..pairs.len()).collect();
+        let mut found = vec![Estimate::default(); pairs.len()];
+        let rays = vec![self.aim.rays; pairs.len()];
+        let mut sent = self.send(pairs, &pilot, &rays, 0, &mut found, (PILOTS, &steps))?;
+        for round in 1..=ROUNDS {
+            self.note(&found);
+            let wanted: Vec<f64> = pairs.iter().map(|pair| self.wanted(pair)).collect();
+            let budget = if self.aim.error.is_some() { f64::INFINITY } else { BUDGET - sent as f64 };
+            let rays = rays_for(&found, &wanted, budget);
+            let open: Vec<usize> = (0..pairs.len()).filter(|&i| rays[i] > 0).collect();
+            if open.is_empty() {
+                break;
+            }
+            sent += self.send(pairs, &open, &rays, round, &mut found, (PAIRS, &steps))?;
+        }
+        work.done();
+        Ok((found, sent))
+    }
+
+    /// The error that a pair may have of what it exchanges.
+    fn wanted(&self, pair: &Open) -> f64 {
+        let [i, j] = pair.faces.map(|face| face as usize);
+        let areas = [self.facets[i].area, self.facets[j].area];
+        let absolute = self.aim.error.map_or(f64::INFINITY, |error| error * areas[0].min(areas[1]));
+        let share = self.aim.relative.unwrap_or(f64::INFINITY);
+        let greatest = |row: usize| self.greatest[row].max(FAINT) * self.facets[row].area;
+        absolute.min(share * greatest(i).min(greatest(j)))
+    }
+
+    /// Keeps the greatest factor of each row.
+    fn note(&mut self, found: &[Estimate]) {
+        for estimate in found {
+            for face in estimate.sampled.faces.map(|face| face as usize) {
+                let factor = estimate.sampled.value / self.facets[face].area;
+                self.greatest[face] = self.greatest[face].max(factor);
+            }
+        }
+    }
+
+    fn send(
+        &self,
+        pairs: &[Open],
+        some: &[usize],
+        rays: &[u32],
+        round: u32,
+        found: &mut [Estimate],
+        (together, steps): (usize, &Steps),
+    ) -> Result<u64, Stopped> {
+        let sent = AtomicU64::new(0);
+        let level = Level::current().unwrap_or(Level::Scalar);
+        let of = Pairs { scene: self.scene, facets: self.facets, seed: self.aim.seed };
+        let estimates = parallel::map_chunks(some.len(), together, |chunk| {
+            if steps.is_stopped() {
+                return Vec::new();
+            }
+            let first = round << 24;
+            let chunk: Vec<_> = some[chunk].iter().map(|&i| (pairs[i], Round { first, rays: rays[i] })).collect();
+            let mut rays = 0;
+            let found = of.estimate(&mut Quadrature::new(level), &chunk, &mut rays);
+            sent.fetch_add(rays, Relaxed);
+            let _ = steps.did(chunk.len());
+            found
+        });
+        if steps.is_stopped() {
+            return Err(Stopped);
+        }
+        for (&i, estimate) in some.iter().zip(estimates.into_iter().flatten()) {
+            found[i] = estimate;
+        }
+        Ok(sent.into_inner())
+    }
+}
+
+/// How many rays each pair needs: none where its error is as wanted. If all together are more than a budget, pairs whose
+/// errors are too large by the least factors stay as they are, or get fewer.
+fn rays_for(found: &[Estimate], wanted: &[f64], budget: f64) -> Vec<u32> {
+    let needed = |slack: f64| {
+        found.iter().zip(wanted).map(move |(estimate, wanted)| {
+            let over = estimate.sampled.error / (wanted * slack);
+            // 0 over 0 is not known to be too much.
+            if over.is_nan() || over <= 1.0 || estimate.rays >= MOST {
+                return 0;
+            }
+            // Where all rays agree, the error falls as one over their number.
+            let times = if estimate.agrees { over } else { over * over };
+            let rays = f64::from(estimate.rays) * times * RESERVE;
+            (rays.min(f64::from(MOST)) as u32).next_multiple_of(64)
+        })
+    };
+    let sum = |slack: f64| needed(slack).map(f64::from).sum::<f64>();
+    let mut slack = 1.0;
+    if budget.is_finite() {
+        while sum(slack) > budget.max(0.0) {
+            slack *= 1.25;
+        }
+    }
+    needed(slack).collect()
+}

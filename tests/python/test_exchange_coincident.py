@@ -1,0 +1,159 @@
+"""Faces that exchange nothing of their own: without area, not finite, or where others are."""
+
+import numpy as np
+import pytest
+from radiosity_scenes import room
+from test_view_factors_estimates import block
+
+import raywright as rw
+
+SIZE = (6, 5, 3)
+CLOSED = block((0, 0, 0), SIZE, inwards=True)
+FLOOR = np.array([(0, 0, 0), (6, 0, 0), (6, 5, 0), (0, 5, 0)], float)
+# The floor once more: as it is, cut along the other diagonal, in four parts, and turned.
+TWICE = {
+    "the same": rw.Mesh(FLOOR, [(0, 1, 2), (0, 2, 3)]),
+    "other diagonal": rw.Mesh(FLOOR, [(0, 1, 3), (1, 2, 3)]),
+    "finer": rw.Mesh([*FLOOR, (3, 2.5, 0)], [(0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)]),
+    "turned": rw.Mesh(FLOOR, [(1, 2, 0), (3, 0, 2)]),
+}
+
+
+@pytest.mark.parametrize("how", TWICE)
+def test_a_wall_listed_twice_is_one(how: str) -> None:
+    scene = rw.Scene([CLOSED, TWICE[how]])
+    once = rw.view_factors(rw.Scene([CLOSED]), progress=False)
+    count = len(TWICE[how].faces)
+    with pytest.warns(RuntimeWarning, match=rf"{count} of {12 + count} faces coincide with others"):
+        found = rw.view_factors(scene, progress=False)
+    np.testing.assert_allclose(found.matrix[:12, :12], once.matrix, rtol=1e-12)
+    np.testing.assert_allclose(found.rest, 0, atol=1e-9)
+    assert found.dropped == count
+    assert not found.areas[12:].any()
+    assert not found.matrix[:, 12:].any()
+    with pytest.warns(RuntimeWarning, match="coincide"):
+        shapes = rw.view_factors(scene, per="shape", progress=False)
+    np.testing.assert_allclose(shapes.rest, 0, atol=1e-9)
+    for method in ("matrix", "stochastic"):
+        with pytest.warns(RuntimeWarning, match="coincide"):
+            even = rw.radiative_exchange(scene, 300.0, 0.9, method=method, rays=2**12, progress=False)  # type: ignore[arg-type]
+        assert even.dropped == count
+        assert np.abs(even.flux).max() < 1e-6 + 5 * even.standard_error.max()
+    with pytest.warns(RuntimeWarning, match="coincide"):
+        warm = rw.radiative_exchange(scene, [300.0, 300.0], [0.9, 0.5], method="matrix", progress=False)
+    assert np.abs(warm.flux).max() < 1e-6
+
+
+def test_shapes_listed_twice_are_one() -> None:
+    ball = rw.Sphere((3, 2, 1.5), 0.5)
+    once = rw.view_factors(rw.Scene([CLOSED, ball]), per="shape", progress=False)
+    with pytest.warns(RuntimeWarning, match=r"shapes\[2\] first, with face 0 of shapes\[1\]"):
+        twice = rw.view_factors(
+            rw.Scene([CLOSED, ball, rw.Sphere((3, 2, 1.5), 0.5, material=rw.Diffuse(0.1))]),
+            per="shape",
+            progress=False,
+        )
+    np.testing.assert_allclose(twice.matrix[:2, :2], once.matrix, atol=1e-12)
+    np.testing.assert_allclose(twice.matrix[2], twice.matrix[1])
+
+
+def test_faces_that_overlap_in_part_are_told() -> None:
+    beside = rw.Mesh(FLOOR + np.array((3, 0, 0)), [(0, 1, 2), (0, 2, 3)])
+    with pytest.warns(RuntimeWarning, match=r"2 of 14 faces overlap others in a part of one plane"):
+        rw.view_factors(rw.Scene([CLOSED, beside]), progress=False)
+
+
+def test_neighbours_and_the_other_side_do_not_coincide() -> None:
+    back = rw.Mesh(CLOSED.vertices, CLOSED.faces[:, ::-1])
+    found = rw.view_factors(rw.Scene([CLOSED, back]), progress=False)
+    np.testing.assert_allclose(found.rest[:12], 0, atol=1e-9)
+    assert not found.matrix[12:].any()
+    assert found.dropped == 0
+
+
+@pytest.mark.parametrize("is_first", [True, False])
+def test_rays_meet_the_front_of_a_sheet_whichever_side_is_listed_first(is_first: bool) -> None:
+    back = rw.Mesh(CLOSED.vertices, CLOSED.faces[:, ::-1])
+    walls = [CLOSED, back] if is_first else [back, CLOSED]
+    inside = 0 if is_first else 1
+    even = rw.radiative_exchange(
+        rw.Scene(walls), [300.0, 300.0], 0.9, method="stochastic", rays=2**14, progress=False
+    )
+    # Nothing that is inside is lost, and all that is outside.
+    sent = 5.670374419184429e-8 * 300.0**4
+    outer = even.areas[even.patches["shape"] != inside].sum()
+    assert even.escaped == pytest.approx(0.9 * sent * outer, rel=1e-9)
+    assert abs(even.of(inside)) < 1e-4 * sent
+    found = rw.view_factors(rw.Scene([*walls, rw.Sphere((3, 2, 1.5), 0.5)]), per="shape", progress=False)
+    np.testing.assert_allclose(found.rest[[inside, 2]], 0, atol=1e-9)
+
+
+def test_shots_from_faces_that_touch_come_to_each_other() -> None:
+    scene = rw.Scene([CLOSED, block((1, 1, 0), (1, 1, 1))])
+    even = rw.radiative_exchange(scene, 300.0, 0.9, method="stochastic", rays=2**14, progress=False)
+    assert abs(even.escaped) < 1e-9
+    assert np.abs(even.flux).max() < 1e-6
+    # With a warm block, what it loses the room gains: nothing leaves where it stands.
+    warm = rw.radiative_exchange(scene, [300.0, 350.0], 0.9, method="stochastic", rays=2**14, progress=False)
+    matrix = rw.radiative_exchange(scene, [300.0, 350.0], 0.9, method="matrix", progress=False)
+    assert abs(warm.power.sum()) < 1e-4 * warm.of(1)
+    assert warm.of(1) == pytest.approx(matrix.of(1), rel=0.03)
+
+
+def test_radiosity_of_a_wall_listed_twice_is_that_of_one() -> None:
+    scene = room(0.6, (1, 0, 0, 0, 0, 0))
+    doubled = rw.Scene([*scene.shapes, scene.shapes[0], scene.shapes[3]])
+    once = rw.radiosity(scene, method="matrix", patch_size=0.8, progress=False)
+    with pytest.warns(RuntimeWarning, match="4 of 16 faces coincide"):
+        twice = rw.radiosity(doubled, method="matrix", patch_size=0.8, progress=False)
+    assert twice.dropped == 4
+    np.testing.assert_allclose(twice.radiosity[: len(once)], once.radiosity, rtol=1e-9)
+    mean = np.average(once.radiosity[once.patches["shape"] == 3], axis=0)
+    np.testing.assert_allclose(twice.radiosity[twice.patches["shape"] == 7].mean(axis=0), mean, rtol=1e-9)
+    np.testing.assert_allclose(twice.emitted, once.emitted)
+    with pytest.warns(RuntimeWarning, match="coincide"):
+        rays = rw.radiosity(doubled, rays=2**14, progress=False)
+    assert rays.surface_area == pytest.approx(8)
+    camera = rw.Camera((0.5, 0.5, 0.5), (0, 0.5, 0.5), fov=60.0, width=8, height=8)
+    image = rw.render(doubled, camera, rw.Radiosity(rays), 4, progress=False)
+    assert (image.rgb > 0).all()
+
+
+def test_faces_without_area_are_dropped_everywhere() -> None:
+    scene = room(0.6, (1, 0, 0, 0, 0, 0))
+    wall = scene.shapes[2]
+    corners = [*wall.vertices, (0.5, 0.5, 0.5)]
+    count = len(wall.vertices)
+    bad = rw.Mesh(
+        corners,
+        [*wall.faces, (0, 1, 1), (count, count, count)],
+        material=wall.material,
+        emission=wall.emission,
+    )
+    flawed = rw.Scene([*scene.shapes[:2], bad, *scene.shapes[3:]])
+    assert rw.view_factors(flawed, progress=False).dropped == 2
+    for method in ("matrix", "stochastic", "progressive"):
+        clean, found = (
+            rw.radiosity(of, method=method, rays=2**14, sides="front", progress=False)  # type: ignore[arg-type]
+            for of in (scene, flawed)
+        )
+        assert found.dropped == 2
+        assert np.isfinite(found.radiosity).all()
+        assert not found.areas[found.areas == 0].any()
+        np.testing.assert_allclose(found.emitted, clean.emitted, rtol=1e-9)
+    for method in ("matrix", "stochastic"):
+        exchange = rw.radiative_exchange(
+            flawed, [400.0] + [300.0] * 5, 0.8, method=method, rays=2**12, progress=False
+        )  # type: ignore[arg-type]
+        assert exchange.dropped == 2
+        assert np.isfinite(exchange.flux).all()
+        assert not exchange.flux[exchange.areas == 0].any()
+
+
+def test_faces_that_are_not_finite_are_dropped_with_the_scene_s_warning() -> None:
+    wall = CLOSED
+    bad = rw.Mesh([*wall.vertices, (np.nan, 0, 0)], [*wall.faces, (0, 1, 8)])
+    for call in (rw.view_factors, lambda of, **how: rw.radiative_exchange(of, 300.0, **how)):
+        with pytest.warns(RuntimeWarning, match="1 of 13 faces were dropped"):
+            found = call(rw.Scene([bad]), progress=False)
+        assert found.dropped == 1
