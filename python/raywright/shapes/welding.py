@@ -23,7 +23,7 @@ def weld_tolerance(weld: Weld) -> float | None:
     TypeError
         If it is no number.
     """
-    if weld is None:
+    if weld is None or weld is False:
         return 0.0
     if isinstance(weld, str):
         if weld != "auto":
