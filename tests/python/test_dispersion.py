@@ -262,6 +262,9 @@ def test_what_is_wrong_is_told(call, kind, message):
         lambda ior: rw.Plastic(0.5, ior),
         lambda ior: rw.Plastic(0.5, ior, roughness=0.4),
         lambda ior: rw.Plastic(0.5, ior, roughness=0.4, multiple_scattering=False),
+        lambda ior: rw.Principled(0.5, ior=ior),
+        lambda ior: rw.Principled(0.5, ior=ior, transmission=0.5),
+        lambda ior: rw.PrincipledThin(0.5, ior=ior, transmission=0.5),
     ],
 )
 def test_what_bends_light_without_measure_mirrors_it(make, ior):

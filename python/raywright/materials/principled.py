@@ -19,17 +19,18 @@ class Principled(Material):
     """The principled model: many looks by a few numbers, from plastic to metal to glass, under a clear coat.
 
     Burley's ("Physically Based Shading at Disney", 2012, and "Extending the Disney BRDF to a BSDF with
-    Integrated Subsurface Scattering", 2015), as Mitsuba 3 has it. Its facets are GGX's and scatter once, so
-    that what is rough loses light. What is white and matt gives up to 15 % more than it gets, and at 85
-    degrees 45 %, for nothing takes from its base what its facets reflect.
+    Integrated Subsurface Scattering", 2015), with lobes that together give back what comes, to 0.2 %: white
+    is white from every direction, whatever the other numbers are. It is a mixture of metal, of a matt base
+    under a dielectric, and of clear dielectric, of GGX's facets. What facets throw on facets goes on, the
+    base gets what the facets above it leave, and both get what the coat leaves. The base spreads its light
+    over azimuths as Burley's does. All parts are reciprocal.
 
-    What lets no light through is the same on both sides. What does is a solid: its normals point out, and
-    seen from within it reflects and refracts only.
+    What lets no light through is the same on both sides. What does is a solid, whose normals point out.
 
     Parameters
     ----------
     base_color : float, 3 floats or Texture
-        Colour of what is matt, of what metal reflects, and twice over of what goes through, in [0, 1].
+        Colour of what is matt, of what metal reflects, and of what has gone through two surfaces, in [0, 1].
     roughness : float or Texture
         From 0, smooth, to 1. Its square is the alpha of the facets, 0.001 at least.
     metallic : float or Texture
@@ -41,17 +42,22 @@ class Principled(Material):
     transmission : float or Texture
         The share of what is no metal that is clear, in [0, 1].
     anisotropic : float or Texture
-        How much longer highlights are along u than along v, in [0, 1].
+        How much longer highlights of metal are along u than along v, in [0, 1].
     specular_tint : float or Texture
-        How much of the colour highlights of what is no metal have, in [0, 1].
+        How much of the colour highlights of what is neither metal nor clear have, in [0, 1].
     sheen, sheen_tint : float or Texture
         Light along the edges, as of cloth, and how much of the colour it has, in [0, 1].
     flatness : float or Texture
         How much of what is matt is as flat as if light got deep into it, in [0, 1].
     clearcoat, clearcoat_gloss : float or Texture
-        How much of a coat there is, and how glossy it is, in [0, 1].
+        How much of a coat there is on what is not clear, and how glossy it is, in [0, 1].
     priority : int
         Where solids overlap, as `Dielectric` has it.
+    energy_conserving : bool
+        Whether no light is gained or lost. If not, it is the model as it was published, and as Mitsuba 3 has
+        it: rough facets lose light, as nothing takes from the base what the facets above reflect white and
+        matt surfaces give up to 15 % more than they get, and at 85 degrees 45 %, all highlights are stretched
+        and tinted, and what lets light through reflects and refracts only, seen from within.
 
     Raises
     ------
@@ -74,6 +80,7 @@ class Principled(Material):
     clearcoat: Number
     clearcoat_gloss: Number
     priority: int
+    energy_conserving: bool
 
     def __init__(
         self,
@@ -91,6 +98,7 @@ class Principled(Material):
         clearcoat: "float | Texture" = 0.0,
         clearcoat_gloss: "float | Texture" = 0.0,
         priority: int = 0,
+        energy_conserving: bool = True,
     ) -> None:
         given = locals()
         shares = (*_SHARES, "metallic", "clearcoat", "clearcoat_gloss")
@@ -98,6 +106,7 @@ class Principled(Material):
             base_color=value("base_color", base_color, most=1.0),
             ior=ior if isinstance(ior, Dispersion) else positive("ior", ior),
             priority=integer("priority", priority, -(2**31), 2**31 - 1),
+            energy_conserving=_flag(energy_conserving),
             **{name: scalar(name, given[name], most=1.0) for name in shares},
         )
 
@@ -122,7 +131,9 @@ class PrincipledThin(Material):
     diffuse_transmission : float or Texture
         The share of what is matt that is scattered on the other side, in [0, 1].
     anisotropic, specular_tint, sheen, sheen_tint, flatness : float or Texture
-        As `Principled` has them.
+        As `Principled` has them; highlights are not stretched, but of the published model.
+    energy_conserving : bool
+        As `Principled` has it.
 
     Raises
     ------
@@ -142,6 +153,7 @@ class PrincipledThin(Material):
     sheen: Number
     sheen_tint: Number
     flatness: Number
+    energy_conserving: bool
 
     def __init__(
         self,
@@ -156,10 +168,18 @@ class PrincipledThin(Material):
         sheen: "float | Texture" = 0.0,
         sheen_tint: "float | Texture" = 0.0,
         flatness: "float | Texture" = 0.0,
+        energy_conserving: bool = True,
     ) -> None:
         given = locals()
         self._set(
             base_color=value("base_color", base_color, most=1.0),
             ior=one_index(ior, "a sheet sends all colours straight on"),
+            energy_conserving=_flag(energy_conserving),
             **{name: scalar(name, given[name], most=1.0) for name in (*_SHARES, "diffuse_transmission")},
         )
+
+
+def _flag(given: bool) -> bool:
+    if not isinstance(given, bool):
+        raise TypeError(f"energy_conserving must be True or False, got {given!r}")
+    return given

@@ -2,8 +2,9 @@
 
 use super::one_of::one_of;
 use super::{
-    Beckmann, BlinnPhong, Coated, CoatedOnce, Conductor, Dielectric, Diffuse, Faceted, Filmed, Ggx, MetallicRough,
-    Mirror, Null, Once, OrenNayar, Phong, Principled, PrincipledThin, SoapFilm, ThinDielectric, Tinted, Transparent,
+    Beckmann, BlinnPhong, Coated, CoatedOnce, Conductor, Dielectric, Diffuse, Faceted, Filmed, Ggx, LayeredPrincipled,
+    LayeredPrincipledThin, MetallicRough, Mirror, Null, Once, OrenNayar, Phong, Principled, PrincipledThin, SoapFilm,
+    ThinDielectric, Tinted, Transparent,
 };
 
 one_of! {
@@ -81,6 +82,8 @@ faceted! {
     Dielectric<Once<Beckmann>>,
     CoatedOnce<Ggx>,
     CoatedOnce<Beckmann>,
+    LayeredPrincipled,
+    LayeredPrincipledThin,
     Principled,
     PrincipledThin,
     SoapFilm,

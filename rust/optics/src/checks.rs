@@ -303,8 +303,10 @@ fn principled() -> Vec<AnyBsdf> {
         flatness: 0.2,
     };
     let all = [0.0, 0.2, 0.7, 1.0].into_iter().flat_map(|roughness| [0.0, 0.6, 1.0].map(|share| (roughness, share)));
-    let made = |(roughness, share): (f64, f64)| -> [AnyBsdf; 3] {
+    let made = |(roughness, share): (f64, f64)| -> [AnyBsdf; 5] {
         [
+            LayeredPrincipled::new(look(roughness, share), 1.5, 0.3, [share, roughness]).into(),
+            LayeredPrincipledThin::new(look(roughness, share), 1.5, roughness).into(),
             Principled::new(look(roughness, share), 1.5, 0.3, [share, roughness], true).into(),
             Principled::new(look(roughness, 0.0), 1.33, share, [1.0 - share, 0.9], false).into(),
             PrincipledThin::new(look(roughness, share), 1.5, roughness).into(),

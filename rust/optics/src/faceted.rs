@@ -2,8 +2,8 @@
 
 use super::one_of::one_of;
 use super::{
-    Beckmann, Coated, CoatedOnce, Conductor, Dielectric, Filmed, Ggx, Once, Principled, PrincipledThin, SoapFilm,
-    ThinDielectric, Tinted,
+    Beckmann, Coated, CoatedOnce, Conductor, Dielectric, Filmed, Ggx, LayeredPrincipled, LayeredPrincipledThin, Once,
+    Principled, PrincipledThin, SoapFilm, ThinDielectric, Tinted,
 };
 
 one_of! {
@@ -33,6 +33,10 @@ one_of! {
         /// Plastic with a coat of Beckmann's facets, scattering once.
         BeckmannCoatedOnce(CoatedOnce<Beckmann>),
         /// The principled model.
+        LayeredPrincipled(LayeredPrincipled),
+        /// That of a sheet.
+        LayeredPrincipledThin(LayeredPrincipledThin),
+        /// The principled model as it was published, with what it gains and loses.
         Principled(Principled),
         /// That of a sheet.
         PrincipledThin(PrincipledThin),

@@ -134,7 +134,10 @@ mod tests {
     use super::super::albedo::Tabulated;
     use super::super::conductors::Reflectance;
     use super::super::fresnel::ConductorIndex;
-    use super::super::{Beckmann, Coated, Conductor, Dielectric, Diffuse, MetallicRough, OrenNayar, Rgb};
+    use super::super::{
+        AnyBsdf, Beckmann, Coated, Conductor, Dielectric, Diffuse, LayeredPrincipled, LayeredPrincipledThin, Look,
+        MetallicRough, OrenNayar, Rgb,
+    };
     use super::*;
     use raywright_base::{cases, parallel};
 
@@ -254,6 +257,60 @@ mod tests {
             (MetallicRough::new(Rgb::ONE, metallic, alpha.sqrt()), 1.0, Some(alpha), name)
         };
         assert_white(all.map(gltf).collect());
+    }
+
+    /// White, of a roughness, and of numbers that should not matter.
+    fn white(roughness: f64, transmission: f64, other: f64, anisotropic: f64) -> Look {
+        Look {
+            base_color: Rgb::ONE,
+            luminance: 1.0,
+            roughness,
+            anisotropic,
+            transmission,
+            specular_tint: other,
+            sheen: other,
+            sheen_tint: 0.5 * other,
+            flatness: 1.0 - other,
+        }
+    }
+
+    /// As [`assert_white`], by draws: of as many numbers as these have, quadrature would take long.
+    fn assert_principled(made: impl Fn(f64, usize) -> Vec<(AnyBsdf, f64, String)>) {
+        let all = ALPHAS.iter().enumerate().flat_map(|(k, &alpha)| made(alpha, k));
+        assert_white(all.map(|(scatter, eta, name)| (scatter, eta, None, name)).collect());
+    }
+
+    #[test]
+    fn principled_surfaces_lose_and_gain_nothing() {
+        let shares = [(0.0, 0.0), (0.4, 0.0), (1.0, 0.0), (0.0, 1.0), (0.3, 0.6)];
+        let others = [
+            (1.5, 0.0, 0.0, [0.0; 2]),
+            (1.33, 1.0, 0.0, [0.0; 2]),
+            (2.4, 0.3, 0.9, [1.0, 0.0]),
+            (0.7, 0.7, 0.5, [0.6, 0.9]),
+        ];
+        assert_principled(|alpha, k| {
+            // A few of all combinations, others for each roughness.
+            let case = |n: usize| {
+                let ((metallic, through), (eta, other, stretch, coat)) = (shares[(n + k) % 5], others[(n + k / 5) % 4]);
+                let name = format!("alpha {alpha}, {metallic} {through}, {eta} {other} {stretch} {coat:?}");
+                let look = white(alpha.sqrt(), through, other, stretch);
+                (LayeredPrincipled::new(look, eta, metallic, coat).into(), eta, name)
+            };
+            (0..4).map(case).collect()
+        });
+    }
+
+    #[test]
+    fn principled_sheets_lose_and_gain_nothing() {
+        assert_principled(|alpha, _| {
+            let case = |(sharp, eta): (f64, f64)| {
+                let look = white(alpha.sqrt(), sharp, 1.0 - sharp, 0.5);
+                let name = format!("sheet, alpha {alpha}, {sharp} {eta}");
+                (LayeredPrincipledThin::new(look, eta, 0.3).into(), 1.0, name)
+            };
+            [(0.0, 1.5), (0.6, 1.33), (1.0, 2.4)].map(case).into()
+        });
     }
 
     #[test]

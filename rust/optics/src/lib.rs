@@ -69,7 +69,7 @@ pub use once::Once;
 pub use oren_nayar::OrenNayar;
 pub use phase::{HenyeyGreenstein, Phase, PhaseTerms};
 pub use phong::Phong;
-pub use principled::{Look, Principled, PrincipledThin};
+pub use principled::{LayeredPrincipled, LayeredPrincipledThin, Look, Principled, PrincipledThin};
 pub use sample_lanes::BsdfSampleLanes;
 pub use soap_film::SoapFilm;
 pub use spectrum::{Rgb, RgbLanes};

@@ -1,14 +1,22 @@
 //! The principled models of the film studios: many looks by a few numbers.
 
+mod coat;
+mod layered;
+mod layered_thin;
+mod matt;
+mod shares;
+
+use coat::Gtr1;
+pub use layered::LayeredPrincipled;
+pub use layered_thin::LayeredPrincipledThin;
+
 use super::bsdf_columns::LaneBsdf;
 use super::conductor::above;
 use super::lobes::diffuse;
 use super::straight::Straight;
 use super::{Bsdf, BsdfSample, Facets, Ggx, Once, Rgb, fresnel};
-use raywright_base::math::exponential::exp;
-use raywright_base::math::turn::sin_cos_turn;
 use raywright_base::math::{DVec3, in_lanes, select};
-use std::f64::consts::{FRAC_1_PI, PI};
+use std::f64::consts::FRAC_1_PI;
 
 /// What the principled models are told of a point, each number 0 to 1 unless it says otherwise.
 #[derive(Clone, Copy, Debug)]
@@ -49,10 +57,21 @@ in_lanes! {
 }
 
 impl Look {
+    /// The α along x and y of a roughness, stretched.
+    fn slopes(&self, roughness: f64) -> [f64; 2] {
+        let (alpha, aspect) = (roughness * roughness, (1.0 - 0.9 * self.anisotropic).sqrt());
+        [(alpha / aspect).max(0.001), (alpha * aspect).max(0.001)]
+    }
+
     /// Facets of a roughness, stretched.
     fn facets(&self, roughness: f64) -> Once<Ggx> {
-        let (alpha, aspect) = (roughness * roughness, (1.0 - 0.9 * self.anisotropic).sqrt());
-        Once::new([(alpha / aspect).max(0.001), (alpha * aspect).max(0.001)])
+        Once::new(self.slopes(roughness))
+    }
+
+    /// The roughness of what goes through a sheet, which is spread the more the higher the index (Burley, 2015, figure
+    /// 15).
+    fn roughness_through(&self, eta: f64) -> f64 {
+        (0.65 * eta - 0.35).max(0.0) * self.roughness
     }
 
     /// The colour at a luminance of 1.
@@ -117,16 +136,12 @@ pub struct Principled {
 }
 
 impl Principled {
-    /// The coat's reflectance at normal incidence, and the roughness by which it is masked.
-    const COAT: f64 = 0.04;
-    const MASKED: f64 = 0.25;
-
     /// Of a look, the index of refraction below over that above, a metalness, a coat and its gloss. `solid`: whether
     /// light goes through anywhere.
     pub fn new(look: Look, eta: f64, metallic: f64, [coat, gloss]: [f64; 2], solid: bool) -> Self {
         // At an index of 1 there would be no surface.
-        let eta = if (eta - 1.0).abs() < 1e-3 { 1.001 } else { eta };
-        let gloss = Gtr1::new(0.1 + (0.001 - 0.1) * gloss);
+        let eta = if (eta - 1.0).abs() < 1e-3 { 1.001 } else { fresnel::bounded(eta) };
+        let gloss = Gtr1::of_gloss(gloss);
         Self { look, facets: look.facets(look.roughness), eta, metallic, coat, gloss, solid }
     }
 
@@ -201,8 +216,8 @@ impl Principled {
             if self.coat > 0.0 {
                 let half = (o + i).normalize_or(DVec3::Z);
                 let (density, cosine) = (self.gloss.density(half), o.dot(half));
-                let masked = Ggx::new([Self::MASKED; 2]);
-                let fresnel = schlick(Rgb::splat(Self::COAT), cosine, self.eta);
+                let masked = Ggx::new([Gtr1::MASKED; 2]);
+                let fresnel = schlick(Rgb::splat(Gtr1::COAT), cosine, self.eta);
                 value += fresnel * (0.25 * self.coat * density * masked.masking(o) * masked.masking(i) * i.z);
                 pdf += coat * density * half.z / (4.0 * cosine);
             }
@@ -312,8 +327,8 @@ pub struct PrincipledThin {
 impl PrincipledThin {
     /// Of a look, the index of refraction, and the share of what is matt that goes through, 0 to 1.
     pub fn new(look: Look, eta: f64, diffuse_transmission: f64) -> Self {
-        // Light that goes through a rough sheet is spread the more the higher the index (Burley, 2015, figure 15).
-        let through = look.facets((0.65 * eta - 0.35).max(0.0) * look.roughness);
+        let eta = fresnel::bounded(eta);
+        let through = look.facets(look.roughness_through(eta));
         Self { look, facets: [look.facets(look.roughness), through], eta, diffuse_transmission }
     }
 
@@ -391,41 +406,6 @@ impl Bsdf for PrincipledThin {
 
     fn roughness(&self) -> f64 {
         self.facets[0].mean_alpha()
-    }
-}
-
-/// Facets of tails so long that they glow, for coats: Burley's (2012) generalisation of GGX with an exponent of 1.
-#[derive(Clone, Copy, Debug)]
-struct Gtr1 {
-    /// α², and its logarithm.
-    square: f64,
-    log: f64,
-}
-
-in_lanes! {
-    /// Such facets, a lane each.
-    Gtr1Lanes of Gtr1 { square: f64, log: f64 }
-}
-
-impl Gtr1 {
-    fn new(alpha: f64) -> Self {
-        let square = alpha * alpha;
-        Self { square, log: square.ln() }
-    }
-
-    #[inline(always)]
-    fn density(&self, h: DVec3) -> f64 {
-        let square = self.square;
-        (square - 1.0) / (PI * self.log * (1.0 + (square - 1.0) * h.z * h.z))
-    }
-
-    /// Draws a normal with density D cos θ.
-    #[inline(always)]
-    fn sample(&self, u: [f64; 2]) -> DVec3 {
-        let height = ((1.0 - exp(self.log * (1.0 - u[1]))) / (1.0 - self.square)).clamp(0.0, 1.0);
-        let [sin, cos] = sin_cos_turn(u[0]);
-        let radius = (1.0 - height).sqrt();
-        DVec3::new(radius * cos, radius * sin, height.sqrt())
     }
 }
 

@@ -192,6 +192,7 @@ impl Appearances {
             sheen: number("sheen")?,
             sheen_tint: number("sheen_tint")?,
             flatness: number("flatness")?,
+            conserves: given.getattr("energy_conserving")?.extract()?,
         })
     }
 

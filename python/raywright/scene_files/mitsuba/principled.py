@@ -43,6 +43,7 @@ def principled(plugin: Plugin, uv: Uv) -> tuple[Material, bool]:
         ior=ior,
         clearcoat=scalar(plugin, "clearcoat", 0.0, uv),
         clearcoat_gloss=scalar(plugin, "clearcoat_gloss", 0.0, uv),
+        energy_conserving=False,
         **_common(plugin, uv),
     )
     return made, ends(_wide(made.transmission))[1][0] == 0
@@ -59,7 +60,8 @@ def principled_thin(plugin: Plugin, uv: Uv) -> Material:
     # From 0 to 2 there.
     across = scalar(plugin, "diff_trans", 0.0, uv)
     half: Number = ProductTexture(across, 0.5) if isinstance(across, Texture) else 0.5 * across
-    return PrincipledThin(ior=plugin.number("eta", 1.5), diffuse_transmission=half, **_common(plugin, uv))
+    eta = plugin.number("eta", 1.5)
+    return PrincipledThin(ior=eta, diffuse_transmission=half, energy_conserving=False, **_common(plugin, uv))
 
 
 def _common(plugin: Plugin, uv: Uv) -> dict[str, Any]:

@@ -1,6 +1,8 @@
 use super::super::AnyBsdf;
 use super::*;
+use raywright_base::math::turn::sin_cos_turn;
 use raywright_base::sampling::Sampler;
+use std::f64::consts::PI;
 
 fn look() -> Look {
     Look {
@@ -16,8 +18,8 @@ fn look() -> Look {
     }
 }
 
-/// Of metal under a coat, of coated glass and of a sheet.
-fn kinds() -> [AnyBsdf; 3] {
+/// Of metal under a coat, of coated glass and of a sheet, as published, and with all of their light.
+fn kinds() -> [AnyBsdf; 6] {
     let metal = Look {
         roughness: 0.4,
         anisotropic: 0.6,
@@ -41,6 +43,9 @@ fn kinds() -> [AnyBsdf; 3] {
         Principled::new(metal, 1.4, 0.3, [0.8, 0.2], false).into(),
         Principled::new(glass, 1.6, 0.2, [0.5, 0.0], true).into(),
         PrincipledThin::new(sheet, 1.33, 0.4).into(),
+        LayeredPrincipled::new(metal, 1.4, 0.3, [0.8, 0.2]).into(),
+        LayeredPrincipled::new(glass, 1.6, 0.2, [0.5, 0.0]).into(),
+        LayeredPrincipledThin::new(sheet, 1.33, 0.4).into(),
     ]
 }
 
@@ -85,6 +90,7 @@ const MITSUBA: [Told; 15] = [
 #[test]
 fn values_and_densities_are_those_of_mitsuba() {
     let kinds = kinds();
+    // Those that conserve energy are others.
     for (which, wo, wi, value, density) in MITSUBA {
         let [wo, wi] = [wo, wi].map(|w| DVec3::from_array(w).normalize());
         let (found, pdf) = kinds[which].evaluate(wo, wi);
@@ -108,10 +114,12 @@ fn directions() -> Vec<DVec3> {
 
 #[test]
 fn light_can_go_either_way() {
-    let [metal, glass, sheet] = kinds();
+    let [metal, glass, sheet, layered, clear, thin] = kinds();
     for a in directions() {
         for b in directions() {
-            for (bsdf, eta) in [(&metal, 1.0), (&glass, 1.6f64), (&sheet, 1.0)] {
+            for (bsdf, eta) in
+                [(&metal, 1.0), (&glass, 1.6f64), (&sheet, 1.0), (&layered, 1.0), (&clear, 1.6), (&thin, 1.0)]
+            {
                 // Coats and colours of glass are on its front alone: what it reflects behind is its facets' only, and
                 // both ways of a reflection are on the same side.
                 let square = |w: DVec3| if w.z > 0.0 { 1.0 } else { eta * eta };
@@ -157,6 +165,66 @@ fn draws_are_as_dense_as_they_say() {
             let error = ((sums[1] / count - mean * mean + share * (1.0 - share)) / count).sqrt();
             assert!((share - mean).abs() < 5.0 * error, "{bsdf:?} {wo}: {share} {mean} {error}");
         }
+    }
+}
+
+/// Of a colour, no channel gives more than it gets: neither tints nor sheen are brighter than what comes.
+#[test]
+fn colours_gain_nothing() {
+    for (base_color, specular_tint) in
+        [(Rgb::new(0.0, 0.0, 1.0), 1.0), (Rgb::new(1.0, 0.2, 0.0), 0.5), (Rgb::ZERO, 0.0)]
+    {
+        let colored = Look {
+            base_color,
+            luminance: base_color.luminance(),
+            specular_tint,
+            sheen: 1.0,
+            sheen_tint: 1.0,
+            transmission: 0.3,
+            ..look()
+        };
+        for eta in [1.5, 2.5] {
+            let solid: AnyBsdf = LayeredPrincipled::new(colored, eta, 0.2, [1.0, 0.5]).into();
+            let sheet: AnyBsdf = LayeredPrincipledThin::new(colored, eta, 0.3).into();
+            for (bsdf, wo) in [solid, sheet].iter().flat_map(|bsdf| directions().into_iter().map(move |wo| (bsdf, wo)))
+            {
+                let mut sum = Rgb::ZERO;
+                for i in 0..4000 {
+                    let mut numbers = Sampler::new(3, 0, i);
+                    let (choice, u) = (numbers.one(2), numbers.two(0));
+                    sum += bsdf.sample(wo, &mut || choice, u).map_or(Rgb::ZERO, |s| s.weight * (s.eta * s.eta));
+                }
+                assert!((sum / 4000.0).max() < 1.02, "{bsdf:?} {wo} {sum}");
+            }
+        }
+    }
+}
+
+/// A coat's share of light is that of the integral, and its mean that of the share.
+#[test]
+fn coats_reflect_what_they_are_taken_to() {
+    for gloss in [0.0, 0.3, 0.8, 1.0] {
+        let coat = Gtr1::of_gloss(gloss);
+        let mut mean = 0.0;
+        for k in 0..40 {
+            let cosine = (f64::from(k) + 0.5) / 40.0;
+            let wo = DVec3::new((1.0 - cosine * cosine).sqrt(), 0.0, cosine);
+            let mut sum = 0.0;
+            for at in 0..64 * 256 {
+                let half = coat.sample([(f64::from(at % 64) + 0.5) / 64.0, (f64::from(at / 64) + 0.5) / 256.0]);
+                let wi = half * (2.0 * wo.dot(half)) - wo;
+                if wi.z > 0.0 && wo.dot(half) > 0.0 {
+                    let density = coat.density(half);
+                    let pdf = density * half.z / (4.0 * wo.dot(half));
+                    sum += coat.reflected(density, wo.dot(half), [wo, wi]) / pdf;
+                }
+            }
+            let (found, truth) = (coat.albedo(cosine), sum / (64.0 * 256.0));
+            assert!((found - truth).abs() < 0.002, "{gloss} {cosine} {found} {truth}");
+            assert!(found <= coat.albedo(1.0));
+            mean += 2.0 * cosine * found / 40.0;
+        }
+        assert!((coat.albedo_average() - mean).abs() < 2e-4);
     }
 }
 

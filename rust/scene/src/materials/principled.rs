@@ -5,7 +5,7 @@ use super::{BsdfMix, Interior, Material};
 use crate::ShadingPoint;
 use crate::textures::{Needs, TexturePoint, Value};
 use raywright_base::math::DVec3;
-use raywright_optics::{AnyBsdf, Look, Principled, PrincipledThin};
+use raywright_optics::{AnyBsdf, LayeredPrincipled, LayeredPrincipledThin, Look, Principled, PrincipledThin};
 
 /// What the principled models have in common, each 0 to 1: see [`Look`].
 #[derive(Clone, Debug)]
@@ -26,6 +26,8 @@ pub struct LookTextures {
     pub sheen_tint: Value<f64>,
     /// How much is as flat as what light gets deep into.
     pub flatness: Value<f64>,
+    /// Whether what is white gives back all of its light, neither more nor less.
+    pub conserves: bool,
 }
 
 impl LookTextures {
@@ -101,7 +103,12 @@ impl PrincipledMaterial {
             self.interior.ior / outside.min(self.interior.ior.max(1.0))
         };
         let coat = [self.clearcoat.at(point), self.clearcoat_gloss.at(point)];
-        Principled::new(self.looks.at(point), eta, self.metallic.at(point), coat, solid).into()
+        let (look, metallic) = (self.looks.at(point), self.metallic.at(point));
+        if self.looks.conserves {
+            LayeredPrincipled::new(look, eta, metallic, coat).into()
+        } else {
+            Principled::new(look, eta, metallic, coat, solid).into()
+        }
     }
 
     /// Whether light goes through anywhere.
@@ -166,7 +173,13 @@ pub struct PrincipledThinMaterial {
 
 impl PrincipledThinMaterial {
     fn bsdf(&self, point: &TexturePoint, outside: f64) -> AnyBsdf {
-        PrincipledThin::new(self.looks.at(point), self.ior / outside, self.diffuse_transmission.at(point)).into()
+        let (look, across) = (self.looks.at(point), self.diffuse_transmission.at(point));
+        let eta = self.ior / outside;
+        if self.looks.conserves {
+            LayeredPrincipledThin::new(look, eta, across).into()
+        } else {
+            PrincipledThin::new(look, eta, across).into()
+        }
     }
 }
 
