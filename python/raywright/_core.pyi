@@ -384,8 +384,8 @@ class Rendering:
         scene: CompiledScene,
         threads: int | None,
         look: Callable[[], None] | None,
-    ) -> NDArray[np.float32] | None:
-        """Bias of each pixel (H,W,3) by how far light is gathered from; None where it is not."""
+    ) -> list[NDArray[np.float32]] | None:
+        """Bias of each pixel (H,W,3) by how far light is gathered from, and its standard error; or None."""
     @property
     def halves(self) -> tuple[NDArray[np.float32], NDArray[np.float32]] | None:
         """Independent quarters of the samples (4,H,W,3), and variances (2,H,W,3) of the halves they make.

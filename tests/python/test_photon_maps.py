@@ -146,6 +146,38 @@ def test_progress_takes_the_bias_away(caustic):
     assert 0.1 < off[2] / off[0] < 0.45
 
 
+@pytest.mark.parametrize("samples", [16, 64, 256])
+def test_the_error_of_a_single_pixel_is_as_it_says(caustic, samples):
+    # Pixels of many pictures are off by their told errors: were these told by the spread of four batches, the
+    # mean square of that would be three.
+    look = rw.Orthographic((0, 0, 0.4), (0, 0, 0), up=(0, 1, 0), width=4, height=4, scale=1.6)
+    way = rw.ProgressivePhotonMap(200)
+    images = [picture(caustic, look, way, samples, seed=seed) for seed in range(24)]
+    light = np.array([image.rgb[..., 0].astype(float) for image in images])
+    told = np.array([image.standard_error[..., 0].astype(float) for image in images])
+    off = (light - light.mean(0)) / told * math.sqrt(24 / 23)
+    # Sixteen batches or more: 15/13 of one at most, for Student's t of 15 degrees. Pixels of one picture
+    # share their maps; the mean of 24 such squares is off by a half in less than one of 10,000 cases.
+    assert np.mean(off**2) < 15 / 13 + 0.5
+
+
+def test_bias_has_an_error_of_its_own(caustic):
+    # One pixel by few photons: what is told of its bias is mostly noise, and the error of that says so.
+    look = rw.Orthographic((0, 0, 0.4), (0, 0, 0), up=(0, 1, 0), width=1, height=1, scale=1e-3)
+    way = rw.ProgressivePhotonMap(3000)
+    images = [picture(caustic, look, way, 32, seed=seed) for seed in range(40)]
+    assert all(image.bias_error.shape == (1, 1, 3) for image in images)
+    told = np.array([float(image.bias.mean()) for image in images])
+    errors = np.array([float(image.bias_error.mean()) for image in images])
+    # The true bias is -0.04 of a light of 1 / (2 pi), by the law of the radius.
+    off = told + 0.04 / (2 * math.pi)
+    # Of groups of eight, five standard errors are exceeded once in 600 times; of forty pictures the spread
+    # that is told and that there is agree to a third, four standard deviations of their ratio.
+    assert (np.abs(off) < 5 * errors).mean() > 0.9
+    assert 0.6 < np.sqrt(np.mean(errors**2)) / told.std(ddof=1) < 1.6
+    assert abs(off.mean()) < 5 * told.std(ddof=1) / math.sqrt(len(told))
+
+
 def test_standard_errors_hold_for_what_maps_tend_to(caustic):
     # What the estimator tends to is told by many seeds. Intervals of 95 % hold it in 93 to 97 % of pixels of
     # all pictures: those of one picture share their maps, so that many pictures are asked.

@@ -43,8 +43,9 @@ class PhotonMap:
     photons that came to be scattered about there tell all of its light (Jensen and Christensen 1998).
 
     Light that is gathered from about a point is blurred: the picture is biased, however many samples it has,
-    and ``image.bias`` tells about how much, ``image.standard_error`` how much noise there is besides. Each
-    batch of samples (``image.plan.sampler``) has maps of its own, so the noise of maps is told as well.
+    and ``image.bias`` tells about how much, give or take ``image.bias_error``;
+    ``image.standard_error`` tells how much noise there is besides. Each batch of samples
+    (``image.plan.sampler``) has maps of its own, so the noise of maps is told as well.
 
     Parameters
     ----------

@@ -46,10 +46,9 @@ def with_bias(
         told = done.bias(job.core, job.scene._compiled(), threads, look)
     except StoppedError:
         told = None
-    if told is None:
-        told = np.full(done.rgb.shape, np.nan, np.float32)
-    image = replace(image, biased=True, bias=told)
-    blur = _relative(image.rgb, told)
+    bias, bias_error = told if told is not None else [np.full(done.rgb.shape, np.nan, np.float32)] * 2
+    image = replace(image, biased=True, bias=bias, bias_error=bias_error)
+    blur = _relative(image.rgb, bias, bias_error)
     if error is None or not blur > error:
         return image
     line = (
@@ -59,8 +58,8 @@ def with_bias(
     return replace(image, warnings=(*image.warnings, line))
 
 
-def _relative(picture: NDArray[np.float32], off: NDArray[np.float32]) -> float:
-    """Return the relMSE of a picture that is so much off."""
+def _relative(picture: NDArray[np.float32], off: NDArray[np.float32], noise: NDArray[np.float32]) -> float:
+    """Return the relMSE of a picture that is so much off, as far as it is more than noise."""
     off = off.astype(np.float64)
     truth = picture.astype(np.float64) - off
-    return float(np.mean(off**2 / (truth**2 + 0.01)))
+    return max(0.0, float(np.mean((off**2 - noise.astype(np.float64) ** 2) / (truth**2 + 0.01))))

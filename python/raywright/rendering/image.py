@@ -114,8 +114,10 @@ class Image:
         None where it is not. It is no part of `standard_error` and `error`. It is told by at most 16 samples,
         each taken of disks of the radius r, of r/√2 and of r/2 about the same points in the same photons (see
         `PhotonMap`): twice the difference of the first two, as a bias that goes by r² has it, or four times
-        that of the last two, if it is more and they do not agree. It has noise of its own, and what is alike
+        that of the last two, if it is more and they differ by more than four standard errors. What is alike
         in all three disks, such as a shadow's edge through the point, is not in it.
+    bias_error : (H, W, 3) float32, optional
+        Standard error of `bias`, told by groups of its samples: it is often more than the bias itself.
     halves : Halves, optional
         The picture in two halves of its samples, by which `denoise` filters it; ``halves`` of `render` keeps
         them.
@@ -135,13 +137,14 @@ class Image:
     degrees: NDArray[np.float32] | None = None
     alpha: NDArray[np.float32] | None = None
     bias: NDArray[np.float32] | None = None
+    bias_error: NDArray[np.float32] | None = None
     halves: Halves | None = None
 
     def __post_init__(self) -> None:
         for name in ("rgb", "standard_error", "history"):
             object.__setattr__(self, name, frozen(getattr(self, name)))
         object.__setattr__(self, "aov", {name: frozen(array) for name, array in self.aov.items()})
-        for name in ("pooled_error", "degrees", "alpha", "bias"):
+        for name in ("pooled_error", "degrees", "alpha", "bias", "bias_error"):
             if getattr(self, name) is not None:
                 object.__setattr__(self, name, frozen(getattr(self, name)))
 
@@ -245,6 +248,7 @@ class Image:
             pooled_error=None,
             degrees=None,
             bias=None,
+            bias_error=None,
             halves=None,
         )
 
@@ -363,6 +367,7 @@ class Image:
             and _same(self.degrees, other.degrees)
             and _same(self.alpha, other.alpha)
             and _same(self.bias, other.bias)
+            and _same(self.bias_error, other.bias_error)
             and self.halves == other.halves
             and self.aov.keys() == other.aov.keys()
             and all(
@@ -390,6 +395,7 @@ class Image:
             self.degrees,
             self.alpha,
             self.bias,
+            self.bias_error,
             self.halves,
         )
         return Image, parts

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from .. import _core
 from ..arrays import integer, positive, thread_limit
 from ..cameras import AnyCamera
-from ..integrators import AnyIntegrator, Path, check_integrator
+from ..integrators import AnyIntegrator, Path, ProgressivePhotonMap, check_integrator
 from ..integrators.base import Integrator
 from ..scene.scene import Scene
 from .aovs import covers, names_of, seen
@@ -257,7 +257,8 @@ def render(
     if there is not None and there.works:
         integrator, sampler, plan = there.plan(integrator)
     else:
-        sampler, plan = chosen(sampler, limits, adaptive, begun.get("sampler"), apart)
+        photons = isinstance(integrator, ProgressivePhotonMap)
+        sampler, plan = chosen(sampler, limits, adaptive, begun.get("sampler"), apart, photons)
         if unnamed is not None:
             plan = plan.explained("sampler", unnamed)
 

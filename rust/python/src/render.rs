@@ -276,7 +276,7 @@ impl Rendering {
         result.map_err(|error| watcher.error(error))
     }
 
-    /// The bias of each pixel where light is gathered from about it, else `None`. `look` is called whenever signals are
+    /// The bias of each pixel where light is gathered from about it and its standard error, else `None`. `look` is called whenever signals are
     /// heard, and may raise to end it.
     fn bias<'py>(
         &self,
@@ -285,7 +285,7 @@ impl Rendering {
         scene: &Bound<'_, CompiledScene>,
         threads: Option<usize>,
         look: Option<Py<PyAny>>,
-    ) -> PyResult<Option<Bound<'py, PyArray3<f32>>>> {
+    ) -> PyResult<Option<[Bound<'py, PyArray3<f32>>; 2]>> {
         let (job, scene) = (job.get(), &scene.get().0);
         let (integrator, settings) = (job.integrator(py), job.settings(Until::default(), threads));
         let mut watcher =
@@ -293,8 +293,8 @@ impl Rendering {
         let (camera, samples) = (job.camera(), self.0.film.samples());
         let told = py.detach(|| render::bias(scene, camera, integrator.get(), &settings, samples, &mut watcher));
         let Some(told) = told.map_err(|error| watcher.error(error))? else { return Ok(None) };
-        let pixels = told.into_iter().map(|bias| bias.to_array().map(|x| x as f32)).collect();
-        self.picture(py, pixels).map(Some)
+        let pixels = |k: usize| told.iter().map(|of| of[k].to_array().map(|x| x as f32)).collect();
+        Ok(Some([self.picture(py, pixels(0))?, self.picture(py, pixels(1))?]))
     }
 }
 

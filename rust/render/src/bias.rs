@@ -5,16 +5,19 @@ use raywright_integrators::Integrator;
 use raywright_optics::Rgb;
 use raywright_scene::{Camera, Scene};
 
-/// Samples by which it is told, at most.
-const SAMPLES: u32 = 16;
+/// Samples by which it is told, at most and at least.
+const SAMPLES: [u32; 2] = [16, 4];
 
-/// The bias of each pixel of a picture of so many samples, told by a few of them; `None` of an integrator that gathers
-/// no light from about.
+/// Groups of them, at most, each with photons of its own: their spread tells the noise.
+const GROUPS: u32 = 8;
+
+/// The bias of each pixel of a picture of so many samples and its standard error, told by a few of them; `None` of an
+/// integrator that gathers no light from about.
 ///
 /// The same samples by the same photons are taken of disks of the radius r, of r/√2 and of r/2: noise that they share
 /// falls out of their differences. Where the law of the bias is r², the first two tell it, E − 2 E(r/√2) + E(r) less
-/// than E; and so do the last two, of a quarter of it. Where they do not agree, the law is another, and the larger is
-/// told.
+/// than E; and so do the last two, of a quarter of it, with some three times the noise. Where they do not agree, beyond
+/// what noise explains, the law is another, and the larger is told.
 pub fn bias(
     scene: &Scene,
     camera: &dyn Camera,
@@ -22,28 +25,64 @@ pub fn bias(
     settings: &Settings,
     samples: u32,
     progress: &mut dyn Progress,
-) -> Result<Option<Vec<Rgb>>, RenderError> {
-    let few = samples.div_ceil(4).clamp(1, SAMPLES);
-    let until = Until { samples: Some(few.min(samples.max(1))), ..Until::default() };
-    let settings = Settings { until, ..settings.clone() };
-    let mut means = Vec::new();
-    for scale in [1.0, std::f64::consts::FRAC_1_SQRT_2, 0.5] {
-        let Some(narrowed) = integrator.narrowed(scale, samples) else { return Ok(None) };
-        means.push(render(scene, camera, &*narrowed, &settings, progress)?.film.means());
+) -> Result<Option<Vec<[Rgb; 2]>>, RenderError> {
+    let [most, least] = SAMPLES;
+    let few = samples.div_ceil(4).clamp(least, most);
+    let groups = few.min(GROUPS);
+    let mut sums = Vec::new();
+    for group in 0..groups {
+        // As far from other seeds as can be, which may be those of other pictures.
+        let seed = settings.seed.wrapping_add(u64::from(group).wrapping_mul(0x9e37_79b9_7f4a_7c15));
+        let until = Until { samples: Some(few / groups), ..Until::default() };
+        let settings = Settings { until, seed, ..settings.clone() };
+        let mut means = Vec::new();
+        for scale in [1.0, std::f64::consts::FRAC_1_SQRT_2, 0.5] {
+            let Some(narrowed) = integrator.narrowed(scale, samples) else { return Ok(None) };
+            means.push(render(scene, camera, &*narrowed, &settings, progress)?.film.means());
+        }
+        sums.resize(means[0].len(), Sums::default());
+        for (i, sums) in sums.iter_mut().enumerate() {
+            sums.add(means[0][i], means[1][i], means[2][i]);
+        }
     }
-    let told = |i: usize| told(means[0][i], means[1][i], means[2][i]);
-    Ok(Some((0..means[0].len()).map(told).collect()))
+    Ok(Some(sums.iter().map(|sums| sums.told(f64::from(groups))).collect()))
 }
 
-/// The bias of the first of three estimates, of disks of which each has half the area of the one before.
-fn told(whole: Rgb, half: Rgb, quarter: Rgb) -> Rgb {
-    let (first, second) = (2.0 * (whole - half), 4.0 * (half - quarter));
-    let larger = |a: f64, b: f64| {
-        let agree = (a - b).abs() <= 0.25 * a.abs().max(b.abs());
-        if agree || a.abs() >= b.abs() { a } else { b }
-    };
-    let ([a, b, c], [d, e, f]) = (first.to_array(), second.to_array());
-    Rgb::new(larger(a, d), larger(b, e), larger(c, f))
+/// What groups of samples tell of a pixel: by the first two of three disks of which each has half the area of the one
+/// before, by the last two, and by how much more these do.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sums {
+    sums: [Rgb; 3],
+    squares: [Rgb; 3],
+}
+
+impl Sums {
+    /// The disagreement that counts, in standard errors.
+    const APART: f64 = 4.0;
+
+    /// Adds a group's estimates by the three disks.
+    fn add(&mut self, whole: Rgb, half: Rgb, quarter: Rgb) {
+        let (first, second) = (2.0 * (whole - half), 4.0 * (half - quarter));
+        for (k, told) in [first, second, second - first].into_iter().enumerate() {
+            self.sums[k] += told;
+            self.squares[k] += told * told;
+        }
+    }
+
+    /// The bias and its standard error.
+    fn told(&self, groups: f64) -> [Rgb; 2] {
+        let channel = |c: usize| {
+            let [first, second, more] = [0, 1, 2].map(|k| {
+                let (mean, square) = (self.sums[k][c] / groups, self.squares[k][c] / groups);
+                (mean, ((square - mean * mean).max(0.0) / (groups - 1.0)).sqrt())
+            });
+            let (a, b) = (first.0.abs(), second.0.abs());
+            let differ = more.0.abs() > 0.25 * a.max(b) && more.0.abs() > Self::APART * more.1;
+            if differ && b > a { second } else { first }
+        };
+        let [(red, e), (green, f), (blue, g)] = [0, 1, 2].map(channel);
+        [Rgb::new(red, green, blue), Rgb::new(e, f, g)]
+    }
 }
 
 #[cfg(test)]
@@ -59,9 +98,27 @@ mod tests {
         // r² exactly; r⁴ and r, which is nearer to half of it, by the larger.
         for (power, expected) in [(2.0, 1.0), (4.0, 1.5), (1.0, 0.828_427_124_746_19)] {
             let [whole, half, quarter] = law(power);
-            assert!((told(whole, half, quarter).mean() - expected).abs() < 1e-12);
+            let mut sums = Sums::default();
+            (0..4).for_each(|_| sums.add(whole, half, quarter));
+            let [told, error] = sums.told(4.0);
+            assert!((told.mean() - expected).abs() < 1e-12 && error.max() < 1e-7);
         }
-        assert!(told(Rgb::ONE, Rgb::ONE, Rgb::ONE).is_black());
+        let mut sums = Sums::default();
+        (0..4).for_each(|_| sums.add(Rgb::ONE, Rgb::ONE, Rgb::ONE));
+        assert!(sums.told(4.0)[0].is_black());
+    }
+
+    #[test]
+    fn noise_is_told_and_not_taken_for_another_law() {
+        // The smaller disks' noise is more than what they tell.
+        let mut sums = Sums::default();
+        for noise in [0.3, -0.2, 0.1, -0.3] {
+            sums.add(Rgb::splat(2.0), Rgb::splat(1.9 + 0.1 * noise), Rgb::splat(1.8 + noise));
+        }
+        let [told, error] = sums.told(4.0);
+        assert!((told.mean() - 0.205).abs() < 1e-12);
+        // 0.2 of the standard deviation of the four, over the root of their number.
+        assert!((error.mean() - 0.2 * 0.275_378_527_364_305 / 2.0).abs() < 1e-12);
     }
 
     #[test]
@@ -72,7 +129,8 @@ mod tests {
         assert!(of(&Path::default()).is_none());
         let progressive = ProgressivePhotonMap { photons: Some(2000), ..Default::default() };
         let found = of(&progressive).unwrap();
-        assert!(found.len() == 36 && found.iter().any(|bias| !bias.is_black()));
+        assert!(found.len() == 36 && found.iter().all(|[bias, error]| bias.is_black() || error.max() > 0.0));
+        assert!(found.iter().any(|[bias, _]| !bias.is_black()));
         assert!(of(&PhotonMap { photons: 2000, ..Default::default() }).is_some());
     }
 }
