@@ -3,6 +3,14 @@
 use super::outline::orientation;
 use glam::DVec2;
 use raywright_base::math::DVec3;
+use std::collections::VecDeque;
+
+/// How many corners are compared with ears, in all and for each corner, before ears are no longer looked into: the
+/// square of the corners of a huge polygon is too much.
+const EFFORT: u64 = 1 << 30;
+const EFFORT_PER_CORNER: u64 = 1 << 16;
+/// After so many corners that are no ears any will do, as the ring crosses itself.
+const MOST_CROSSINGS: u32 = 64;
 
 /// Triangulates polygons with the given numbers of corners, whose corners follow each other in `corners`, as indices of
 /// `points`. A polygon of n corners yields n − 2 triangles, of indices into `corners`; one with fewer than three yields
@@ -16,13 +24,14 @@ use raywright_base::math::DVec3;
 pub fn triangulate(points: &[[f64; 3]], corners: &[i64], counts: &[usize]) -> Vec<[usize; 3]> {
     let mut triangles = Vec::with_capacity(corners.len());
     let mut ring = Vec::new();
+    let mut effort = EFFORT + EFFORT_PER_CORNER * corners.len() as u64;
     let mut first = 0;
     for &count in counts {
         ring.clear();
         ring.extend(corners[first..first + count].iter().map(|&i| DVec3::from_array(points[i as usize])));
         let clipped = if is_fan(&ring) { None } else { projected(&ring) };
         match clipped {
-            Some(flat) => Ring::new(&flat).clip(|ear| triangles.push(ear.map(|i| i + first))),
+            Some(flat) => Ring::new(&flat).clip(&mut effort, |ear| triangles.push(ear.map(|i| i + first))),
             None => triangles.extend((2..count).map(|i| [first, first + i - 1, first + i])),
         }
         first += count;
@@ -60,17 +69,14 @@ fn projected(ring: &[DVec3]) -> Option<Vec<DVec2>> {
     Some(ring.iter().map(|p| DVec2::new(p[x], p[y])).collect())
 }
 
-/// What a corner must be for its triangle to be cut off.
+/// Whether a corner waits to be looked at.
 #[derive(Clone, Copy, PartialEq)]
-enum Rule {
-    /// An ear: it has an area, and no other corner is in it or on its border.
-    Ear,
-    /// A triangle without area: cutting it off changes nothing.
-    Flat,
-    /// It turns the right way. Only rings that cross themselves come to this.
-    Convex,
-    /// Any.
-    Any,
+enum Waits {
+    No,
+    Queued,
+    /// It goes to the end of the queue once more.
+    Postponed,
+    Gone,
 }
 
 /// The corners that are left of a ring.
@@ -114,41 +120,76 @@ impl<'a> Ring<'a> {
         [self.before[i], i, self.after[i]]
     }
 
-    /// Cuts off triangles until none is left.
-    fn clip(mut self, mut take: impl FnMut([usize; 3])) {
-        let mut left = self.points.len();
-        let (mut at, mut tried, mut rule) = (1, 0, Rule::Ear);
+    /// Cuts off ears until none is left. Whether a corner is one changes only with those beside it: a corner within its
+    /// triangle that no longer turns the other way has left another there that does.
+    fn clip(mut self, effort: &mut u64, mut take: impl FnMut([usize; 3])) {
+        let count = self.points.len();
+        let mut queue: VecDeque<usize> = (1..count).chain([0]).collect();
+        let mut waits = vec![Waits::Queued; count];
+        let mut left = count;
+        // A corner that is left, and how many were cut off that are no ears.
+        let (mut at, mut crossings) = (0, 0);
         while left > 3 {
-            if self.allows(at, rule) {
-                take(self.around(at));
-                let [before, _, after] = self.around(at);
-                self.cut(at);
-                left -= 1;
-                // Going on behind the next corner leaves fewer slivers. A corner that spoilt the others may be gone.
-                at = if rule == Rule::Ear { self.after[after] } else { before };
-                (tried, rule) = (0, Rule::Ear);
-                continue;
-            }
-            at = self.after[at];
-            tried += 1;
-            if tried >= left {
-                tried = 0;
-                rule = match rule {
-                    Rule::Ear => Rule::Flat,
-                    Rule::Flat => Rule::Convex,
-                    Rule::Convex | Rule::Any => Rule::Any,
-                };
+            let (i, was_flat) = match queue.pop_front() {
+                Some(i) if waits[i] == Waits::Postponed => {
+                    waits[i] = Waits::Queued;
+                    queue.push_back(i);
+                    continue;
+                }
+                Some(i) if waits[i] == Waits::Gone => continue,
+                Some(i) => {
+                    waits[i] = Waits::No;
+                    if self.reflex[i] || !self.is_clear(i, effort) {
+                        continue;
+                    }
+                    (i, false)
+                }
+                None if crossings < MOST_CROSSINGS => {
+                    let found = self.forced(at);
+                    crossings += u32::from(!found.1);
+                    found
+                }
+                None => (at, false),
+            };
+            take(self.around(i));
+            self.cut(i);
+            left -= 1;
+            at = self.before[i];
+            waits[i] = Waits::Gone;
+            // Going on elsewhere leaves fewer slivers. What had no area may have kept any other from being an ear.
+            let ends = [self.before[i], self.after[i]];
+            let again = if was_flat { count } else { 0 };
+            for j in ends.into_iter().chain(0..again) {
+                match waits[j] {
+                    Waits::No => {
+                        waits[j] = Waits::Queued;
+                        queue.push_back(j);
+                    }
+                    Waits::Queued if !was_flat => waits[j] = Waits::Postponed,
+                    _ => {}
+                }
             }
         }
         take(self.around(at));
     }
 
-    fn allows(&self, i: usize, rule: Rule) -> bool {
-        match rule {
-            Rule::Ear => !self.reflex[i] && self.is_clear(i),
-            Rule::Flat => self.turn(i) == 0,
-            Rule::Convex => !self.reflex[i],
-            Rule::Any => true,
+    /// The corner to cut off where none is an ear, and whether its triangle has no area, so that nothing changes by
+    /// that. Where there is no such corner, the ring crosses itself, and any that turns anticlockwise will do.
+    fn forced(&self, start: usize) -> (usize, bool) {
+        let mut convex = start;
+        let mut i = start;
+        loop {
+            let turn = self.turn(i);
+            if turn == 0 {
+                return (i, true);
+            }
+            if turn > 0 {
+                convex = i;
+            }
+            i = self.after[i];
+            if i == start {
+                return (convex, false);
+            }
         }
     }
 
@@ -166,13 +207,17 @@ impl<'a> Ring<'a> {
     }
 
     /// Whether nothing of the ring lies in the triangle of a corner.
-    fn is_clear(&self, i: usize) -> bool {
+    fn is_clear(&self, i: usize, effort: &mut u64) -> bool {
         let corners = self.around(i);
         let [a, b, c] = corners.map(|i| self.points[i]);
         let (low, high) = (a.min(b).min(c), a.max(b).max(c));
         let from = self.by_x.partition_point(|&j| self.points[j].x < low.x);
         let near = self.by_x[from..].iter().take_while(|&&j| self.points[j].x <= high.x);
+        if *effort == 0 {
+            return true;
+        }
         near.chain(&self.late).all(|&j| {
+            *effort = effort.saturating_sub(1);
             let p = self.points[j];
             if !self.reflex[j] || corners.contains(&j) || p.cmplt(low).any() || p.cmpgt(high).any() {
                 return true;
@@ -293,6 +338,15 @@ mod tests {
             (b - a).cross(c - a).z
         };
         assert!(triangles.iter().all(|t| area(t) > 0.0), "{triangles:?}");
+    }
+
+    #[test]
+    fn rings_that_cross_themselves_everywhere_end() {
+        let place = |i: u64| ((i * 7919 % 3001) as f64, (i * i * 104_729 % 2999) as f64);
+        let ring: Vec<_> = (0..3000).map(|i| [place(i).0, place(i).1, 0.0]).collect();
+        let triangles = alone(&ring);
+        assert_eq!(triangles.len(), 2998);
+        assert!((0..3000).all(|i| triangles.iter().any(|t| t.contains(&i))));
     }
 
     #[test]
