@@ -48,7 +48,6 @@ class Lists(NamedTuple):
 class Data(NamedTuple):
     """What a file tells of its elements of one kind, by the names of properties."""
 
-    length: int
     numbers: dict[str, Numbers]
     lists: dict[str, Lists]
 
@@ -247,7 +246,7 @@ def _alike(cells: _Cells, element: Element, lengths: list[int]) -> Data | None:
             lists[one.name] = Lists(np.full(count, length), rows.reshape(-1))
         at += head + width
     cells.at += stride * count
-    return Data(count, numbers, lists)
+    return Data(numbers, lists)
 
 
 def _scanned(cells: _Cells, element: Element) -> tuple[Integers, dict[str, Integers]]:
@@ -299,7 +298,7 @@ def _gathered(cells: _Cells, element: Element, starts: Integers, counts: dict[st
         within = np.arange(own.sum()) - np.repeat(np.cumsum(own) - own, own)
         lists[one.name] = Lists(own, cells.take(np.repeat(at, own) + within * width, one.type))
         at += own * width
-    return Data(element.length, numbers, lists)
+    return Data(numbers, lists)
 
 
 def _by_line(cells: _Words, elements: Sequence[Element]) -> dict[str, Data] | None:

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from ..corners import distinct
 from ..elements import Data, Lists
-from ..triangulation import polygon_of, triangulate
+from ..triangulation import triangulate
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -22,8 +22,6 @@ class Faces(NamedTuple):
     ----------
     faces : (F, 3) array
         Indices of `used`.
-    face_of : (F,) array
-        The element that each triangle is of.
     used : (V,) array
         The vertex of the file that each vertex is.
     uv : (V, 2) array, optional
@@ -31,7 +29,6 @@ class Faces(NamedTuple):
     """
 
     faces: Integers
-    face_of: Integers
     used: Integers
     uv: Floats | None = None
 
@@ -48,17 +45,16 @@ def faces_of(elements: dict[str, Data], points: Floats) -> Faces | None:
     if "face" in elements and (polygons := indices_of(elements["face"])) is not None:
         corners = _checked(polygons.values, len(points))
         triangles = triangulate(points, corners, polygons.counts)
-        face_of = polygon_of(polygons.counts)
         uv = _corner_uv(elements["face"], polygons.counts)
         if uv is None:
-            return Faces(corners[triangles], face_of, everything)
+            return Faces(corners[triangles], everything)
         _, which = np.unique(uv, axis=0, return_inverse=True)
         used, place = distinct([corners, which.reshape(-1)])
-        return Faces(place[triangles], face_of, corners[used], uv[used])
+        return Faces(place[triangles], corners[used], uv[used])
     if "tristrips" in elements and (strips := indices_of(elements["tristrips"])) is not None:
         faces = _strips(strips)
         _checked(faces, len(points))
-        return Faces(faces, np.arange(len(faces)), everything)
+        return Faces(faces, everything)
     return None
 
 
