@@ -5,9 +5,10 @@
 //! for a ball is passed by for smaller ones (Ma, Bae and Choi, "3D Medial Axis Point Approximation Using Nearest
 //! Neighbors and the Normal Field", 2012, shrink the ball by one nearest point after the other).
 //!
-//! From the middle of a ball or a rod all of its surface is about as far, and boxes tell nothing of it apart: the box of
-//! a slanted patch reaches inwards by half of the patch's size. The slab between two planes that holds a patch reaches
-//! by its sagitta only, the square of that. So each node has a slab too, across the mean normal of its triangles.
+//! From the middle of a ball or a rod all of its surface is about as far, and boxes tell nothing of it apart: the box
+//! of a slanted patch reaches inwards by half of the patch's size. The slab between two planes that holds a patch
+//! reaches by its sagitta only, the square of that. So each node has a slab too, across the mean normal of its
+//! triangles.
 
 use raywright_base::math::DVec3;
 use raywright_shapes::triangle::{nearest_point, point_of};
@@ -154,8 +155,8 @@ impl TangentBalls {
         self.split(first + 1, middle, end);
     }
 
-    /// The radius of the largest ball, of at most `radius`, that touches the surface at a point of it, has its middle in
-    /// a direction of length one, and nothing inside: to within 1e-6 of itself.
+    /// The radius of the largest ball, of at most `radius`, that touches the surface at a point of it, has its middle
+    /// in a direction of length one, and nothing inside: to within 1e-6 of itself.
     pub fn radius(&self, touch: DVec3, way: DVec3, radius: f64) -> f64 {
         self.walk(touch, way, radius).0
     }
