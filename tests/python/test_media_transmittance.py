@@ -97,6 +97,33 @@ def test_media_in_one_another_and_around_all():
     np.testing.assert_allclose(copy.optical_depth((0, 0, 9), (0, 0, -1)), 3.0, rtol=1e-12)
 
 
+def test_scenes_by_wavelength_tell_what_those_in_colours_do():
+    aside = rw.Sphere((500, 0, 0), 1.0, material=rw.Diffuse(rw.Spectrum([360, 830], [0.2, 0.6])))
+    ray = (0.1, 0.2, 5), (0, 0.05, -1)
+    for how in (
+        {"absorption": (0.5, 1.0, 2.0), "scattering": 0.5},
+        {"extinction": (1.5, 0.5, 1.0), "albedo": np.full((2, 2, 2), 0.5)},
+    ):
+        medium = rw.GridMedium(BLOBS, BOX, **how)
+        box = rw.Box(*BOX, material=rw.Boundary(medium))
+        plain, waved = rw.Scene(box), rw.Scene([box, aside])
+        assert waved.wavelengths is not None
+        np.testing.assert_allclose(waved.optical_depth(*ray), plain.optical_depth(*ray), rtol=1e-12)
+
+
+@pytest.mark.parametrize("noise", [0.0, 1e-3, 0.3])
+def test_shadows_of_thin_blocks_are_near_enough(noise):
+    # 14 in all, of blocks that vary too little to be gone through cell by cell.
+    density = 14 / 3 + noise * np.random.default_rng(1).uniform(-1, 1, (64, 64, 64))
+    box = smoke(density)
+    sun = rw.DirectionalLight((0, 0, -1), math.pi)
+    found, error = lit_through(box, rw.Direct(), samples=256, lights=[sun])
+    expected = rw.Scene(box).transmittance((0, 0, 5), (0, 0, -1), 9.0)[1]
+    # Five standard errors, which chance exceeds once in a million.
+    assert abs(found - expected) <= 5 * error + 2e-6 * expected
+    assert error <= (1e-6 if noise == 0 else 0.1) * expected
+
+
 def lit_through(medium, integrator, samples=64, **lights):
     """Radiance of a white plate below a medium that it is lit through, seen from beside, and its error."""
     plate = rw.Mesh(

@@ -92,7 +92,7 @@ fn read_grid(given: &Bound<'_, PyAny>, waves: bool, told: Told, phase: Phase) ->
         let [absorbs, scatters] = told;
         let coefficients = Coefficients { extinction: Rgb::ONE, scattering: one(scatters.1), emission: one(emission) };
         let grid = GridMedium::new(density, albedo, glow, coefficients, phase, matrix).map_err(of)?;
-        return Ok(Arc::new(WavedGrid::new(grid, [absorbs.0, scatters.0], shines.map(|shines| shines.0))));
+        return Ok(Arc::new(WavedGrid::new(grid, [absorbs, scatters], shines.map(|shines| shines.0))));
     }
     let coefficients = Coefficients::new(told[0].1, told[1].1, emission);
     let medium = Arc::new(GridMedium::new(density, albedo, glow, coefficients, phase, matrix).map_err(of)?);

@@ -32,9 +32,9 @@ impl Flight<'_> {
                     let left = (self.cubic_depth([start, stretch.end]) * -1.0).map(f64::exp);
                     weights.times(left, if scatters { left } else { Rgb::ONE }, Rgb::ONE);
                 }
-                Content::Varies(most) => {
+                Content::Varies(range) => {
                     let hero = *hero.get_or_insert_with(|| numbers.hero());
-                    self.fade_by_chance(most, [start, stretch.end], scatters, weights, hero, numbers, cancel);
+                    self.fade_between(range, [start, stretch.end], scatters, weights, hero, numbers, cancel);
                 }
             }
             if weights.carried.is_black() {
@@ -44,10 +44,12 @@ impl Flight<'_> {
         }
     }
 
+    /// Dims light on a part of its way where the extinction lies between two: by what is there at least, and by chance
+    /// by what there is beside.
     #[allow(clippy::too_many_arguments)]
-    fn fade_by_chance(
+    pub(super) fn fade_between(
         &self,
-        most: Rgb,
+        [least, most]: [Rgb; 2],
         [mut t, end]: [f64; 2],
         scatters: bool,
         weights: &mut Weights,
@@ -55,20 +57,23 @@ impl Flight<'_> {
         numbers: &mut Numbers,
         cancel: &Cancel,
     ) {
+        let left = (least * (-(end - t) * self.length)).map(f64::exp);
+        weights.times(left, if scatters { left } else { Rgb::ONE }, Rgb::ONE);
         let before = weights.carried.max();
+        let spread = (most - least).at_least(Rgb::ZERO);
         while !cancel.is_raised() {
             let (rest, depth) = ((end - t) * self.length, numbers.depth());
-            if most[hero] * rest <= depth {
-                let left = (most * -rest).map(f64::exp);
+            if spread[hero] * rest <= depth {
+                let left = (spread * -rest).map(f64::exp);
                 let by = left / left[hero];
                 return weights.times(by, by, by);
             }
-            let way = depth / most[hero];
+            let way = depth / spread[hero];
             t = (t + way / self.length).min(end);
-            let left = (most * -way).map(f64::exp);
-            let met = left / (most[hero] * left[hero]);
-            let nothing = (most - self.at(t).extinction).at_least(Rgb::ZERO);
-            weights.times(nothing * met, if scatters { nothing * met } else { most * met }, most * met);
+            let left = (spread * -way).map(f64::exp);
+            let met = left / (spread[hero] * left[hero]);
+            let nothing = (most - self.extinction(t)).at_least(Rgb::ZERO);
+            weights.times(nothing * met, if scatters { nothing * met } else { spread * met }, spread * met);
             if weights.carried.max() < FAINT * before {
                 if numbers.next() >= SURVIVAL {
                     weights.carried = Rgb::ZERO;

@@ -68,7 +68,10 @@ impl Flight<'_> {
     pub(super) fn content(&self, stretch: &Stretch) -> Content {
         match (stretch.content, &self.waves) {
             (Content::Even(here), Some(waves)) => Content::Even(self.medium.by_waves(here, waves)),
-            (Content::Varies(most), Some(waves)) => Content::Varies(self.medium.most_by_waves(most, waves)),
+            (Content::Varies([least, most]), Some(waves)) if self.medium.has_waves() => {
+                let least = self.medium.least_by_waves(least, waves);
+                Content::Varies([least, self.medium.most_by_waves(most, waves).at_least(least)])
+            }
             (content, _) => content,
         }
     }
@@ -93,7 +96,11 @@ impl Flight<'_> {
             let found = match self.content(&stretch) {
                 Content::Even(here) => self.fly_evenly(&here, span, weights, (hero, depth), light),
                 Content::Cubic => self.fly_through_cell(span, weights, (hero, depth), numbers, light),
-                Content::Varies(most) => self.track(most, span, weights, (hero, depth), numbers, cancel, light),
+                Content::Varies(range) if !(self.scatters && self.medium.scatters() || self.medium.glows()) => {
+                    self.fade_between(range, span, false, weights, hero, numbers, cancel);
+                    None
+                }
+                Content::Varies(range) => self.track(range, span, weights, (hero, depth), numbers, cancel, light),
             };
             if found.is_some() || weights.carried.is_black() {
                 return found;
@@ -144,7 +151,7 @@ impl Flight<'_> {
     #[allow(clippy::too_many_arguments)]
     fn track(
         &self,
-        most: Rgb,
+        [least, most]: [Rgb; 2],
         [mut t, end]: [f64; 2],
         weights: &mut Weights,
         (hero, depth): (usize, &mut f64),
@@ -153,13 +160,16 @@ impl Flight<'_> {
         light: &mut Rgb,
     ) -> Option<Collision> {
         let scatters = self.scatters && self.medium.scatters();
+        // What asking for light meets in its place ([`Flight::fade`]).
+        let spread = (most - least).at_least(Rgb::ZERO);
         while !cancel.is_raised() {
             let rest = self.way(t, end);
             if most[hero] * rest <= *depth {
                 *depth -= most[hero] * rest;
                 let left = (most * -rest).map(f64::exp);
                 let by = left / left[hero];
-                weights.times(by, by, by);
+                let asked = if scatters { (spread * -rest).map(f64::exp) / left[hero] } else { by };
+                weights.times(by, by, asked);
                 return None;
             }
             let way = *depth / most[hero];
@@ -181,7 +191,8 @@ impl Flight<'_> {
                 return Some(Collision { t, density: None, here, came });
             } else {
                 let by = left / (nothing[hero] * left[hero]);
-                weights.times(nothing * by, nothing * by, most * by);
+                let asked = (spread * -way).map(f64::exp) / (nothing[hero] * left[hero]);
+                weights.times(nothing * by, nothing * by, spread * asked);
             }
             if weights.carried.is_black() {
                 return None;

@@ -42,16 +42,16 @@ impl Flight<'_> {
     fn optical_depth(&self) -> Rgb {
         let mut start = self.span[0];
         let mut sum = Rgb::ZERO;
-        for stretch in self.medium.stretches(&self.ray, self.span) {
+        for stretch in self.medium.closed_stretches(&self.ray, self.span) {
             let span = [start, stretch.end];
-            sum += match self.content(&stretch) {
+            sum += match stretch.content {
                 Content::Even(here) => {
                     let way = (stretch.end - start) * self.length;
                     // 0 times infinity is no number.
                     here.extinction.map(|sigma| if sigma == 0.0 { 0.0 } else { sigma * way })
                 }
                 Content::Cubic => self.cubic_depth(span),
-                Content::Varies(most) => self.summed(most, span),
+                Content::Varies([_, most]) => self.summed(most, span),
             };
             start = stretch.end;
         }

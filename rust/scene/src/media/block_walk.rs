@@ -13,8 +13,8 @@ use raywright_optics::Rgb;
 #[derive(Clone, Debug)]
 pub(super) struct Majorants {
     blocks: [usize; 3],
-    /// The greatest density in each, the last axis fastest.
-    densest: Vec<[f32; 3]>,
+    /// The least and the greatest density in each, the last axis fastest.
+    ranges: Vec<[[f32; 3]; 2]>,
     /// Whether the medium is the same throughout each.
     even: Vec<bool>,
     /// Along each axis, the steps of the grid at 0 and at 1, and the last number.
@@ -42,22 +42,21 @@ impl Majorants {
     ) -> Self {
         let blocks = density.size().map(|n| n.div_ceil(Self::BLOCK));
         let bright = glow.map_or_else(Vec::new, |glow| glow.bright(blocks));
-        let (mut densest, mut even) = (Vec::new(), Vec::new());
-        for (block, [least, most]) in density.ranges(blocks).into_iter().enumerate() {
+        let (ranges, mut even) = (density.ranges(blocks), Vec::new());
+        for (block, &[least, most]) in ranges.iter().enumerate() {
             let glows = bright.get(block).is_some_and(|&glows| glows);
             even.push(least == most && !glows && (!has_albedo || most == [0.0; 3]));
-            densest.push(most);
         }
         let steps = [0, 1, 2].map(|axis| (density.steps(axis), (density.size()[axis] - 1) as f64));
         let sides = [0, 1, 2].map(|axis| DVec3::from_array(place.rows.map(|row| row[axis])) / blocks[axis] as f64);
         let across = sides.iter().map(|side| side.length()).sum();
-        Self { blocks, densest, even, steps, bright, coefficients: *coefficients, across }
+        Self { blocks, ranges, even, steps, bright, coefficients: *coefficients, across }
     }
 
     /// The greatest density of each colour.
     pub fn densest(&self) -> Rgb {
-        let most = |a: [f32; 3], b: &[f32; 3]| [0, 1, 2].map(|i: usize| a[i].max(b[i]));
-        Rgb::from_array(self.densest.iter().fold([0.0; 3], most).map(f64::from))
+        let most = |a: [f32; 3], [_, b]: &[[f32; 3]; 2]| [0, 1, 2].map(|i: usize| a[i].max(b[i]));
+        Rgb::from_array(self.ranges.iter().fold([0.0; 3], most).map(f64::from))
     }
 
     /// Whether anything glows anywhere whatever the density.
@@ -70,23 +69,30 @@ impl Majorants {
     }
 
     pub fn bytes(&self) -> usize {
-        size_of_val(self.densest.as_slice()) + size_of_val(self.even.as_slice()) + size_of_val(self.bright.as_slice())
+        size_of_val(self.ranges.as_slice()) + size_of_val(self.even.as_slice()) + size_of_val(self.bright.as_slice())
     }
+
+    /// Blocks across which the optical depth varies by more than this are gone through cell by cell. In others, so few
+    /// points tell of their extinction that residual ratio tracking takes a fraction of the time, and leaves an error
+    /// that hardly counts.
+    const DEEP: f64 = 4.0;
 
     /// What there is in a block.
     #[inline]
     fn content(&self, block: usize, spectra: Spectra) -> Content {
-        let density = Rgb::from_array(self.densest[block].map(f64::from));
-        if self.even[block] && (spectra == Spectra::Linear || density.is_black()) {
-            return Content::Even(self.coefficients.times(density));
+        let range = self.ranges[block].map(|density| Rgb::from_array(density.map(f64::from)));
+        if self.even[block] && (spectra == Spectra::Linear || range[1].is_black()) {
+            return Content::Even(self.coefficients.times(range[1]));
         }
-        if spectra != Spectra::OfColours {
+        let [least, most] = range.map(|density| self.coefficients.extinction * density);
+        let is_deep = spectra == Spectra::Closed || (most - least).max() * self.across > Self::DEEP;
+        if spectra != Spectra::OfColours && is_deep {
             return Content::Cubic;
         }
-        let majorant = self.coefficients.extinction * density;
         // Where it glows, it is asked for about once in a block, however thin it is.
         let glows = !self.coefficients.emission.is_black() || self.bright.get(block).is_some_and(|&glows| glows);
-        Content::Varies(if glows { majorant.at_least(Rgb::splat(1.0 / self.across)) } else { majorant })
+        let most = if glows { most.at_least(Rgb::splat(1.0 / self.across)) } else { most };
+        Content::Varies([if spectra == Spectra::OfColours { Rgb::ZERO } else { least }, most])
     }
 }
 
@@ -97,6 +103,8 @@ pub(super) enum Spectra {
     Linear,
     /// It is in proportion to the density.
     OfDensity,
+    /// The same, and all of it is to be closed.
+    Closed,
     /// It follows from spectra of their colours, which are in no proportion to them.
     OfColours,
 }

@@ -51,6 +51,11 @@ pub trait Medium: Debug + Send + Sync {
     /// What lies on a ray, one stretch after the other, between two `t` of it.
     fn stretches(&self, ray: &Ray, span: [f64; 2]) -> Stretches<'_>;
 
+    /// The same in red, green and blue, where that may be in more and shorter stretches with closed forms.
+    fn closed_stretches(&self, ray: &Ray, span: [f64; 2]) -> Stretches<'_> {
+        self.stretches(ray, span)
+    }
+
     /// What there is at a point.
     fn at(&self, point: DVec3) -> Coefficients;
 
@@ -67,6 +72,11 @@ pub trait Medium: Debug + Send + Sync {
     /// What there is at a point is this, at a path's wavelengths, where it is told by wavelength.
     fn by_waves(&self, here: Coefficients, _waves: &Waves) -> Coefficients {
         here
+    }
+
+    /// The same of the least extinction in a stretch, or less.
+    fn least_by_waves(&self, _least: Rgb, _waves: &Waves) -> Rgb {
+        Rgb::ZERO
     }
 
     /// The same of the greatest extinction in a stretch.

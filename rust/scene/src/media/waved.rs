@@ -68,6 +68,10 @@ impl Medium for WavedMedium {
         self.medium.stretches(ray, span)
     }
 
+    fn closed_stretches(&self, ray: &Ray, span: [f64; 2]) -> Stretches<'_> {
+        self.medium.closed_stretches(ray, span)
+    }
+
     fn at(&self, point: DVec3) -> Coefficients {
         self.medium.at(point)
     }
@@ -91,6 +95,11 @@ impl Medium for WavedMedium {
         } else {
             most
         }
+    }
+
+    fn least_by_waves(&self, least: Rgb, waves: &Waves) -> Rgb {
+        // A little less, for rounding.
+        self.most_by_waves(least, waves) * (1.0 - 1e-11)
     }
 
     fn has_waves(&self) -> bool {

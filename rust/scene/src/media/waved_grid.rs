@@ -19,16 +19,20 @@ pub struct WavedGrid {
     absorption: Arc<Spectrum>,
     scattering: Arc<Spectrum>,
     emission: Option<Arc<Spectrum>>,
+    /// The colour of all that is dimmed.
+    colour: Rgb,
 }
 
 impl WavedGrid {
-    /// Of a medium that does at unit density 1 to all light, as far as it does anything, and what that 1 stands for.
+    /// Of a medium that does at unit density 1 to all light, as far as it does anything, and what that 1 stands for, each
+    /// as a spectrum and in its colour.
     pub fn new(
         grid: GridMedium,
-        [absorption, scattering]: [Arc<Spectrum>; 2],
+        [absorption, scattering]: [(Arc<Spectrum>, Rgb); 2],
         emission: Option<Arc<Spectrum>>,
     ) -> Self {
-        Self { grid, absorption, scattering, emission }
+        let colour = absorption.1 + scattering.1;
+        Self { grid, absorption: absorption.0, scattering: scattering.0, emission, colour }
     }
 
     /// What is dimmed and scattered at unit density.
@@ -55,6 +59,14 @@ impl Medium for WavedGrid {
     fn stretches(&self, ray: &Ray, span: [f64; 2]) -> Stretches<'_> {
         let spectra = if self.grid.is_coloured() { Spectra::OfColours } else { Spectra::OfDensity };
         self.grid.stretches_by(spectra, ray, span)
+    }
+
+    fn closed_stretches(&self, ray: &Ray, span: [f64; 2]) -> Stretches<'_> {
+        self.grid.closed_stretches(ray, span)
+    }
+
+    fn extinction(&self, point: DVec3) -> Rgb {
+        self.grid.extinction(point) * self.colour
     }
 
     fn at(&self, point: DVec3) -> Coefficients {
