@@ -113,7 +113,7 @@ def test_bits_stay_on_threads_elsewhere_and_after_a_break(tmp_path):
             (whole.aov["cryptomatte"], other.aov["cryptomatte"]),
         ):
             assert np.array_equal(one, same)
-    with pytest.raises(ValueError, match="it has transparent True instead of False"):
+    with pytest.raises(ValueError, match="it has background transparent instead of shown"):
         rw.render(scene, CAMERA, rw.Path(), **{**how, "background": "shown"}, **kept)
 
 

@@ -173,7 +173,7 @@ def test_plan_tells_what_is_left_out():
     scene, _ = rw.scenes.cornell_box()
     plan = scene.plan()
     assert plan.kernel == "plain"
-    assert plan.needed == ("light",)
+    assert plan.needed == ("light", "float64 vertices")
     assert "motion" in plan.left_out
     lines = str(plan).splitlines()
     assert len(lines) == 1 + len(plan.rows)

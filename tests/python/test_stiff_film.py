@@ -27,7 +27,8 @@ class Spoilt(rw.Integrator):
 def test_what_is_no_radiance_counts_as_black_and_is_counted(value):
     scene, camera = rw.scenes.cornell_box(width=8, height=8)
     spoilt = Spoilt(value, 0.1)
-    image = rw.render(scene, camera, spoilt, samples=16, progress=False)
+    with pytest.warns(RuntimeWarning, match=r"Spoilt\.radiance must return finite .* for \d+ samples"):
+        image = rw.render(scene, camera, spoilt, samples=16, progress=False)
     assert 50 < spoilt.spoilt < 150
     assert image.warnings[0].startswith(f"{spoilt.spoilt} samples were not finite or negative")
     # All of such a sample is black, the others are as they are.
@@ -38,7 +39,8 @@ def test_what_is_no_radiance_counts_as_black_and_is_counted(value):
 
 def test_one_sample_that_is_no_radiance_is_told_as_one():
     scene, camera = rw.scenes.cornell_box(width=1, height=1)
-    image = rw.render(scene, camera, Spoilt(np.nan, 1.0), samples=1, progress=False)
+    with pytest.warns(RuntimeWarning, match="did not for 1 sample, which count"):
+        image = rw.render(scene, camera, Spoilt(np.nan, 1.0), samples=1, progress=False)
     assert image.warnings[0] == "1 sample was not finite or negative, and counts as black"
 
 

@@ -44,8 +44,9 @@ def texels(name: str, value: ArrayLike | str | PathLike[str]) -> Texels:
     # What float32 cannot hold becomes infinite, and is told.
     with np.errstate(over="ignore"):
         single = frozen(array.astype(np.float32))
-    negative = single < 0
-    bad = ~np.isfinite(single) | negative
+    finite = np.isfinite(single)
+    negative = finite & (single < 0)
+    bad = ~finite | negative
     if bad.any() and np.array_equal(bad, negative) and (is_file or _is_little(single)):
         # Programs leave these that resample pictures, or that know colors outside of Rec. 709.
         least = float(single.min())
