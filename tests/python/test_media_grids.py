@@ -48,7 +48,7 @@ def black_body(kelvin, brightness=1.0):
 
 
 def seen(colour, by):
-    """The colour of an albedo as rendered: its spectrum comes from a table, a little off near the gamut's edge."""
+    """The colour of an albedo as rendered: from a table of spectra, a little off at the edge of the gamut."""
     if by == "colours":
         return colour
     nm = np.arange(360.0, 831.0)
