@@ -3,8 +3,8 @@
 use super::nesting::{Boundary, MediumStack, around};
 use raywright_base::math::{Hit, Ray, RayLanes, RayQueue};
 use raywright_optics::Rgb;
-use raywright_scene::Scene;
 use raywright_scene::materials::Interior;
+use raywright_scene::{Scene, opacity_at};
 
 /// Shadow rays of a batch, and what arrives along each if nothing lies on the way.
 #[derive(Default)]
@@ -131,5 +131,5 @@ pub(super) fn opacity(scene: &Scene, ray: &Ray, hit: &Hit) -> f64 {
     if material.is_opaque() {
         return 1.0;
     }
-    material.opacity_of(scene.geometry(), ray, hit, &scene.geometry().surface(ray, hit))
+    opacity_at(material, scene.geometry(), ray, hit, &scene.geometry().surface(ray, hit))
 }

@@ -5,8 +5,6 @@ use numpy::{Element, PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::PyResult;
 use pyo3::exceptions::PyValueError;
 
-use super::arrays::Rows;
-
 /// Which row each ray has of an array that is broadcast along some dimensions.
 #[derive(Clone, Debug)]
 pub struct Repeats {
@@ -50,7 +48,7 @@ impl Repeats {
     }
 
     /// The rows of some rays, one after the other.
-    fn rows<T: Copy>(&self, rows: &[T], start: usize, count: usize) -> Vec<T> {
+    pub fn rows<T: Copy>(&self, rows: &[T], start: usize, count: usize) -> Vec<T> {
         let mut to = Vec::with_capacity(count);
         let Some((&(length, step), outer)) = self.axes.split_last() else { return vec![rows[0]; count] };
         while to.len() < count {
@@ -77,35 +75,5 @@ pub fn some_of<T: Copy>(repeats: Option<&Repeats>, all: &[T], start: usize, coun
         Some(repeats) => repeats.rows(all, start, count),
         None if all.len() == 1 => all.to_vec(),
         None => all[start..][..count].to_vec(),
-    }
-}
-
-/// Rows of some rays that are held as long as they are used.
-pub enum Held<'a> {
-    /// In the array itself.
-    There(Rows<'a>),
-    /// float64, copied from where they repeat.
-    Double(Vec<[f64; 3]>),
-    /// float32, likewise.
-    Single(Vec<[f32; 3]>),
-}
-
-impl<'a> Held<'a> {
-    /// Those of some rays.
-    pub fn of(repeats: Option<&Repeats>, rows: Rows<'a>, start: usize, count: usize) -> Self {
-        match (repeats, rows) {
-            (None, rows) => Self::There(rows.some(start, count)),
-            (Some(repeats), Rows::Double(rows)) => Self::Double(repeats.rows(rows, start, count)),
-            (Some(repeats), Rows::Single(rows)) => Self::Single(repeats.rows(rows, start, count)),
-        }
-    }
-
-    /// The same as rows.
-    pub fn rows(&self) -> Rows<'_> {
-        match self {
-            Self::There(rows) => *rows,
-            Self::Double(rows) => Rows::Double(rows),
-            Self::Single(rows) => Rows::Single(rows),
-        }
     }
 }

@@ -15,6 +15,7 @@ mod first_hits;
 mod flat;
 mod freeform;
 mod grid_blocks;
+mod held_rows;
 mod hits;
 mod info;
 mod instances;

@@ -5,7 +5,8 @@ use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 
 use super::arrays::{Numbers, Row, Rows, Triples};
-use super::broadcast::{Held, Repeats, some_of};
+use super::broadcast::{Repeats, some_of};
+use super::held_rows::Held;
 use raywright::math::gathering::WINDOW;
 use raywright::math::{Ray, Tiling, row_length};
 use raywright::{parallel, workers};

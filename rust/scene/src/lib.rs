@@ -16,6 +16,7 @@ mod geometry;
 pub mod lights;
 pub mod materials;
 pub mod media;
+mod opacity;
 mod patches;
 mod plan;
 mod ray_origin;
@@ -48,6 +49,7 @@ pub use lights::{
     Lights, Picture, Place, PointEmission, PointLight, Profile, Projector, Reach, Source, SpotLight, SunSky, Waved,
 };
 pub use materials::{DiffuseMaterial, Material};
+pub use opacity::opacity_at;
 pub use patches::{Cell, Patches};
 pub use plan::{Plan, PlanRow, SceneNeeds, ShadingVariant};
 pub use ray_origin::RayOrigin;

@@ -13,9 +13,6 @@ use raywright_base::workers::Cancel;
 use raywright_optics::Rgb;
 use raywright_scene::{Encounter, LightSample, LightSampleContext};
 
-/// The one draw of those who ask once.
-pub(super) const ONCE: (u32, u32) = (0, 1);
-
 impl<A: Asks> Walker<'_, A> {
     /// Next-event estimation: draws light where a path is, and tells what arrives of it. `through` is what rays start
     /// in that leave to the other side, if they do. The draw is one of so many, each in a share of the lights.

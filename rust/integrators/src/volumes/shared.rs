@@ -1,12 +1,11 @@
 //! Where paths come to what they share.
 
 use super::asking::Asks;
-use super::direct_light::ONCE;
 use super::numbers::Numbers;
 use super::path_state::PathState;
 use super::reuse::{First, Second};
 use super::scattering::Scattering;
-use super::walker::Walker;
+use super::walker::{ONCE, Walker};
 use raywright_base::math::DVec3;
 use raywright_base::workers::Cancel;
 use raywright_optics::{BsdfSample, Rgb};

@@ -2,7 +2,6 @@
 
 use super::asking::Asks;
 use super::course::{Course, Going, Place};
-use super::direct_light::ONCE;
 use super::filled::Filled;
 use super::known::KnownLight;
 use super::numbers::{Numbers, depth};
@@ -21,6 +20,9 @@ use raywright_optics::spectra::Waves;
 use raywright_optics::{Bsdf, BsdfSample, Rgb};
 use raywright_scene::{Encounter, Footprint, Gaze, Light, LightSample, LightSampleContext, Scene, SurfaceInteraction};
 use std::cell::{Cell, RefCell};
+
+/// The number and the count of the draws of those who draw once.
+pub(super) const ONCE: (u32, u32) = (0, 1);
 
 /// Who follows paths, and asks what their rays hit.
 #[derive(Clone, Copy)]

@@ -54,7 +54,7 @@ impl<'a> Luminous<'a> {
     ) -> Rgb {
         let sent = self.emission.sent(geometry, ray, hit, surface, gaze);
         match self.open {
-            Some(material) if !sent.is_black() => sent * material.opacity_of(geometry, ray, hit, surface),
+            Some(material) if !sent.is_black() => sent * crate::opacity_at(material, geometry, ray, hit, surface),
             _ => sent,
         }
     }

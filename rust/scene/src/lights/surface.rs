@@ -94,7 +94,7 @@ pub(super) fn sample_shape(
         let distance = way.length();
         let ray = Ray::new(receiver.position, way / distance);
         let hit = Hit { t: distance, uv: point.uv, primitive: place.0, inner: place.1 };
-        let opacity = material.opacity_of(geometry, &ray, &hit, &surface);
+        let opacity = crate::opacity_at(material, geometry, &ray, &hit, &surface);
         Some((luminous.emission.sent(geometry, &ray, &hit, &surface, || receiver.waves) * opacity, opacity))
     };
     let (point, share) = along(shape, (from, seen.site.position - from), fine_digits(u[1]), sends)?;

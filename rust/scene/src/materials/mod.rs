@@ -53,10 +53,10 @@ pub use thin_film::{FilmBase, FilmedMetals, ThinFilmMaterial};
 pub use tinted::{TintedBase, TintedMaterial};
 pub use two_sided::TwoSided;
 
+use super::ShadingPoint;
 use super::media::Medium;
 use super::textures::{Needs, TexturePoint};
-use super::{Geometry, ShadingPoint, SurfacePoint};
-use raywright_base::math::{DVec3, Hit, Ray};
+use raywright_base::math::DVec3;
 use raywright_optics::spectra::Waves;
 use raywright_optics::{AnyBsdf, Dispersive, Rgb};
 use std::fmt::Debug;
@@ -163,17 +163,6 @@ pub trait Material: Debug + Send + Sync {
     /// light from everywhere that it scatters into other than single directions.
     fn ambient(&self, at: &ShadingPoint) -> Rgb {
         self.bsdf(at).matt_albedo()
-    }
-}
-
-impl dyn Material + '_ {
-    /// The share of rays like this one that meet it where it is hit.
-    pub fn opacity_of(&self, geometry: &Geometry, ray: &Ray, hit: &Hit, surface: &SurfacePoint) -> f64 {
-        if self.is_opaque() {
-            return 1.0;
-        }
-        let here: TexturePoint = ShadingPoint::new(geometry, ray, hit, *surface, self.needs(), 0.0).texture;
-        self.opacity(&here).clamp(0.0, 1.0)
     }
 }
 

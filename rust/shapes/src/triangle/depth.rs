@@ -1,7 +1,7 @@
 //! `t` where a line meets the plane of a triangle: the f64 nearest to it.
 //!
-//! With edges e = b − a and f = c − a, s = a − o and n = e × f, it is s · n over d · n. Both are computed as unevaluated
-//! sums of two f64 (Dekker, "A Floating-Point Technique for Extending the Available Precision", 1971), and so is their
+//! With edges e = b − a and f = c − a, s = a − o and n = e × f, it is s · n over d · n. Both are computed as sums of
+//! two f64 (Dekker, "A Floating-Point Technique for Extending the Available Precision", 1971), and so is their
 //! quotient, which is rounded once. So `t` is the exact one where an f64 holds that, and never on the other side of an
 //! f64 than the exact one: to compare it with the ends of a ray decides as exact arithmetic would, a hit at either end
 //! counts, a ray that is asked up to the `t` of a hit still meets it, and one that is asked from the next f64 on no
