@@ -5,7 +5,7 @@ use super::shares::DielectricShares;
 use crate::albedo::MirrorLoss;
 use crate::bsdf_columns::LaneBsdf;
 use crate::conductor::above;
-use crate::lobes::diffuse;
+use crate::lobes::{Grazing, diffuse};
 use crate::looped::Looped;
 use crate::{Bsdf, BsdfSample, Facets, Ggx, Rgb, fresnel};
 use raywright_base::math::DVec3;
@@ -60,21 +60,27 @@ impl LayeredPrincipledThin {
         (through + Rgb::splat(lost) - reflected).at_least(Rgb::ZERO)
     }
 
-    /// The choices up to the end of each lobe: of facets and of what is matt, of each what is reflected and what goes
-    /// through.
+    /// The probability of each lobe: facets, what these give back, and what is matt; of each what is reflected and what
+    /// goes through.
     #[inline(always)]
-    fn ends(&self, left: Rgb) -> [f64; 4] {
-        let sharp = self.look.transmission;
+    fn shares_of_lobes(&self, left: Rgb) -> [[f64; 2]; 3] {
+        let (sharp, across) = (self.look.transmission, self.diffuse_transmission);
         let facets = sharp * (1.0 - left.max().min(0.9));
-        let across = (1.0 - sharp) * self.diffuse_transmission + 0.5 * (sharp - facets);
-        [0.5 * facets, facets, 1.0 - across, 1.0]
+        let matt = 1.0 - sharp;
+        [[0.5 * facets; 2], [0.5 * (sharp - facets); 2], [matt * (1.0 - across), matt * across]]
+    }
+
+    /// Directions in which light is given back.
+    #[inline(always)]
+    fn grazing(&self) -> Grazing {
+        Grazing::new(self.shares(1).facets.mean_alpha())
     }
 
     #[inline(always)]
     fn scattered(&self, wo: DVec3, wi: DVec3, left: Rgb) -> (Rgb, f64) {
         let (look, is_through) = (&self.look, wo.z * wi.z < 0.0);
         let (o, i, sharp) = (above(wo), above(wi), look.transmission);
-        let [mirrored, facets, matt, _] = self.ends(left);
+        let [facets, given_back, matt] = self.shares_of_lobes(left).map(|lobe| lobe[usize::from(is_through)]);
         let tint = if is_through { look.base_color } else { Rgb::ONE };
         let (mut value, mut pdf) = (Rgb::ZERO, 0.0);
         if sharp > 0.0 {
@@ -84,12 +90,12 @@ impl LayeredPrincipledThin {
             let share = if is_through { Rgb::ONE - reflected } else { reflected };
             let once = share * (density * shares.facets.reflection_geometry(o, i));
             value += tint * (once + left * self.left(i) * self.given_back * i.z) * sharp;
-            pdf += if is_through { facets - mirrored } else { mirrored } * shares.facets.reflected_pdf(o, density);
+            pdf += facets * shares.facets.reflected_pdf(o, density) + given_back * self.grazing().pdf(i.z);
         }
         let across = self.diffuse_transmission;
         value += if is_through { look.base_color * across } else { look.spread(o, i) * (1.0 - across) }
             * ((1.0 - sharp) * FRAC_1_PI * i.z);
-        pdf += if is_through { 1.0 - matt } else { matt - facets } * i.z * FRAC_1_PI;
+        pdf += matt * i.z * FRAC_1_PI;
         (value, pdf)
     }
 }
@@ -110,9 +116,18 @@ impl Bsdf for LayeredPrincipledThin {
         }
         let (choice, up) = (choice(), above(wo));
         let left = self.left(up);
-        let ends = self.ends(left);
-        let lobe = ends.iter().position(|&end| choice < end).unwrap_or(3);
-        let mut wi = if lobe < 2 { self.shares(lobe).facets.sample_reflection(up, u) } else { diffuse(up, u) };
+        let mut ends = [0.0; 6];
+        let mut sum = 0.0;
+        for (end, share) in ends.iter_mut().zip(self.shares_of_lobes(left).as_flattened()) {
+            sum += share;
+            *end = sum;
+        }
+        let lobe = ends.iter().position(|&end| choice < end).unwrap_or(5);
+        let mut wi = match lobe {
+            0 | 1 => self.shares(lobe).facets.sample_reflection(up, u),
+            2 | 3 => self.grazing().sample(u),
+            _ => diffuse(up, u),
+        };
         if !(wi.z > 0.0 && Ggx::sees(wi)) {
             return None;
         }
