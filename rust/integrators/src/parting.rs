@@ -24,7 +24,8 @@ impl Parting {
         waves: &Waves,
     ) -> (f64, Option<Self>) {
         let Some(interior) = material.interior() else {
-            // What encloses nothing has the same around it on both sides. Each wavelength has an index of its own there.
+            // What encloses nothing has the same around it on both sides. Each wavelength has an index of its own
+            // there.
             if !(around.is_any() && material.minds_outside()) {
                 return (outside, None);
             }

@@ -276,8 +276,8 @@ impl Rendering {
         result.map_err(|error| watcher.error(error))
     }
 
-    /// The bias of each pixel where light is gathered from about it and its standard error, else `None`. `look` is called whenever signals are
-    /// heard, and may raise to end it.
+    /// The bias of each pixel where light is gathered from about it and its standard error, else `None`. `look` is
+    /// called whenever signals are heard, and may raise to end it.
     fn bias<'py>(
         &self,
         py: Python<'py>,

@@ -26,7 +26,10 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_is_written_is_read(values in prop::collection::vec(any::<f64>(), 0..20), gap in "[ \t\r\n\u{b}\u{c}]{1,3}") {
+        fn what_is_written_is_read(
+            values in prop::collection::vec(any::<f64>(), 0..20),
+            gap in "[ \t\r\n\u{b}\u{c}]{1,3}",
+        ) {
             let text = values.iter().map(|x| format!("{x:e}{gap}")).collect::<String>();
             let (found, whole) = leading_numbers(text.as_bytes(), &[]);
             let bits = |all: &[f64]| all.iter().map(|x| if x.is_nan() { 1 } else { x.to_bits() }).collect::<Vec<_>>();

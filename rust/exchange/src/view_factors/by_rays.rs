@@ -58,8 +58,8 @@ impl<'a> Rows<'a> {
     }
 
     /// The row of a face, by rays that leave even by area and by the cosine, each counted where it lands first, if it
-    /// does so on a front. Doubled until no error is larger than `wanted` has it for a face, its factor, and the greatest
-    /// factor of the row. Also returns the number of rays.
+    /// does so on a front. Doubled until no error is larger than `wanted` has it for a face, its factor, and the
+    /// greatest factor of the row. Also returns the number of rays.
     pub fn row(
         &mut self,
         primitive: u32,
@@ -139,8 +139,8 @@ impl<'a> Rows<'a> {
     }
 }
 
-/// A ray that leaves a face even by area and by the cosine, what it counts, and where it starts. One that counts nothing
-/// keeps its place in its batch.
+/// A ray that leaves a face even by area and by the cosine, what it counts, and where it starts. One that counts
+/// nothing keeps its place in its batch.
 pub fn leaving(scene: &Scene, primitive: u32, facet: &Facet, sampler: &mut Sampler) -> (Ray, f64, DVec3) {
     let geometry = scene.geometry();
     let (u, v) = (sampler.two(1), sampler.two(3));

@@ -89,8 +89,8 @@ impl Fronts {
         self.opposite.get(&one).is_some_and(|all| all.iter().any(|found| found.face == other && found.touches))
     }
 
-    /// The face to whose front a ray from a place on a face comes, and the weights of its second and third corner there;
-    /// `None` if it meets a back alone, or nothing.
+    /// The face to whose front a ray from a place on a face comes, and the weights of its second and third corner
+    /// there; `None` if it meets a back alone, or nothing.
     #[inline]
     pub fn met(&self, scene: &Scene, (from, place): (u32, DVec3), ray: &Ray, hit: &Hit) -> Option<(u32, [f64; 2])> {
         if let Some(found) = self.at(from, place).filter(|found| found.touches) {

@@ -36,8 +36,9 @@ pub struct Pieces {
 impl Pieces {
     /// Cuts what two triangles show each other until no near piece holds much of the exchange.
     ///
-    /// Nearly coplanar triangles are left whole. With points drawn evenly over whole triangles, a few samples near a common edge would carry most of the weight,
-    /// and could all be missed. What both exchange in all is given: it is that of most pairs' only piece.
+    /// Nearly coplanar triangles are left whole. With points drawn evenly over whole triangles, a few samples near a
+    /// common edge would carry most of the weight, and could all be missed. What both exchange in all is given: it is
+    /// that of most pairs' only piece.
     pub fn new(quadrature: &mut Quadrature, one: &Facet, other: &Facet, total: f64) -> Self {
         let mut parts: Vec<(Facing, f64)> = facing(one, other).map(|part| (part, total)).collect();
         if parts.len() > 1 {

@@ -25,8 +25,8 @@ const PATIENCE: u32 = 2;
 ///
 /// Of all such numbers x it finds those next to the estimates x̂ by Σ (x − x̂)² / variance: weighted least squares,
 /// which lower the error of every term if variances are right. With a multiplier λ for each row,
-/// x = x̂ + variance (λᵢ + λⱼ), held within the bounds; the sums are solved for λ by Newton's method, which takes one step
-/// where no bound is met. Rows without a sum wanted are left alone, and so are terms of which no row has one.
+/// x = x̂ + variance (λᵢ + λⱼ), held within the bounds; the sums are solved for λ by Newton's method, which takes one
+/// step where no bound is met. Rows without a sum wanted are left alone, and so are terms of which no row has one.
 pub fn reconcile(terms: &mut [Term], wanted: &[Option<f64>], scales: &[f64]) {
     let mut lambda = vec![0.0; wanted.len()];
     let mut best = f64::INFINITY;

@@ -118,8 +118,8 @@ impl Rounds<'_> {
     }
 }
 
-/// How many rays each pair needs: none where its error is as wanted. If all together are more than a budget, pairs whose
-/// errors are too large by the least factors stay as they are, or get fewer.
+/// How many rays each pair needs: none where its error is as wanted. If all together are more than a budget, pairs
+/// whose errors are too large by the least factors stay as they are, or get fewer.
 fn rays_for(found: &[Estimate], wanted: &[f64], budget: f64) -> Vec<u32> {
     let needed = |slack: f64| {
         found.iter().zip(wanted).map(move |(estimate, wanted)| {

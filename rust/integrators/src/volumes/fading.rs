@@ -15,9 +15,9 @@ impl Flight<'_> {
     /// Dims light on its way, and tells with which densities a path would have come along it; `hero` is drawn where it
     /// is needed, unless it is there.
     ///
-    /// Where the medium is even or its extinction is a cubic, that is closed; elsewhere it is estimated from the shares of nothing in what light
-    /// meets at random, as often as in the densest medium that it could be (Novák, Selle and Jarosz, "Residual Ratio
-    /// Tracking for Estimating Attenuation in Participating Media", 2014, 3.2).
+    /// Where the medium is even or its extinction is a cubic, that is closed; elsewhere it is estimated from the shares
+    /// of nothing in what light meets at random, as often as in the densest medium that it could be (Novák, Selle and
+    /// Jarosz, "Residual Ratio Tracking for Estimating Attenuation in Participating Media", 2014, 3.2).
     pub fn fade(&self, weights: &mut Weights, hero: &mut Option<usize>, numbers: &mut Numbers, cancel: &Cancel) {
         let scatters = self.scatters && self.medium.scatters();
         let mut start = self.span[0];

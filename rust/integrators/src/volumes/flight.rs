@@ -80,8 +80,8 @@ impl Flight<'_> {
     /// it is still to get through before that, for its hero; `light` is added what it comes by that glows.
     ///
     /// Where the medium is even or its extinction is a cubic, that is closed; elsewhere it meets, as often as in the
-    /// densest medium that it could be, things of which so many are nothing as the medium is thinner (Woodcock et al., "Techniques Used in the GEM
-    /// Code", 1965). Where nothing is scattered, it is not drawn, but dimmed.
+    /// densest medium that it could be, things of which so many are nothing as the medium is thinner (Woodcock et al.,
+    /// "Techniques Used in the GEM Code", 1965). Where nothing is scattered, it is not drawn, but dimmed.
     pub fn fly(
         &self,
         weights: &mut Weights,

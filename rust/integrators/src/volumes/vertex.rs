@@ -178,8 +178,8 @@ impl<'a> Vertex<'a> {
         }
     }
 
-    /// Of a path of light, the share that is sent into a solid angle in a direction, seen from such a distance by what is
-    /// so wide.
+    /// Of a path of light, the share that is sent into a solid angle in a direction, seen from such a distance by what
+    /// is so wide.
     pub fn towards(&self, direction: DVec3, distance: f64, width: f64) -> Rgb {
         match &self.point {
             Point::Surface { arrived, .. } => arrived.towards(direction, distance, width),

@@ -36,8 +36,9 @@ pub struct Rounding {
 }
 
 impl Rounding {
-    /// The share of its extent by which a mesh that is to be kept as f32 may change without a warning. f32 rounds by 2⁻²⁵ to 2⁻²⁴ of a number: by 6e-8
-    /// of the extent of what reaches the origin, and by more than this of what stands two or three of its extents away.
+    /// The share of its extent by which a mesh that is to be kept as f32 may change without a warning. f32 rounds by
+    /// 2⁻²⁵ to 2⁻²⁴ of a number: by 6e-8 of the extent of what reaches the origin, and by more than this of what stands
+    /// two or three of its extents away.
     pub const MOST: f64 = 1e-7;
 
     /// Whether that is worth a warning.

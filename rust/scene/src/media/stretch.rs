@@ -17,8 +17,8 @@ pub struct Stretch {
 pub enum Content {
     /// The same everywhere.
     Even(Coefficients),
-    /// Something that must be asked for at each point, with an extinction that is a polynomial of the third degree along
-    /// the ray, as numbers are that are interpolated along each axis of a cell.
+    /// Something that must be asked for at each point, with an extinction that is a polynomial of the third degree
+    /// along the ray, as numbers are that are interpolated along each axis of a cell.
     Cubic,
     /// Something that must be asked for at each point, with an extinction that is nowhere below the first of these and
     /// nowhere above the second. Where it glows without dimming light, the second is above 0 too, so that points there

@@ -24,8 +24,8 @@ pub struct WavedGrid {
 }
 
 impl WavedGrid {
-    /// Of a medium that does at unit density 1 to all light, as far as it does anything, and what that 1 stands for, each
-    /// as a spectrum and in its colour.
+    /// Of a medium that does at unit density 1 to all light, as far as it does anything, and what that 1 stands for,
+    /// each as a spectrum and in its colour.
     pub fn new(
         grid: GridMedium,
         [absorption, scattering]: [(Arc<Spectrum>, Rgb); 2],

@@ -219,7 +219,8 @@ mod tests {
             let region = Region::around(corners);
             let Some(ready) = EdgeRay::new(&ray, &region) else { return Ok(()) };
             let Some(met) = ready.meet(corners) else { return Ok(()) };
-            let t = (0..past.abs()).fold(met.t * ready.scale, |t, _| if past > 0 { t.next_up() } else { t.next_down() });
+            let step = |t: f64, _| if past > 0 { t.next_up() } else { t.next_down() };
+            let t = (0..past.abs()).fold(met.t * ready.scale, step);
             for (t_min, t_max) in [(f64::NEG_INFINITY, f64::INFINITY), (t, f64::INFINITY), (f64::NEG_INFINITY, t)] {
                 let ray = Ray { t_min, t_max, ..ray };
                 let wanted = EdgeRay::new(&ray, &region).and_then(|ready| ready.meet(corners));

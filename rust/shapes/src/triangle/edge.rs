@@ -101,8 +101,8 @@ impl EdgeRay {
         }
     }
 
-    /// An end of a ray along its scaled direction. Where that is subnormal it may be rounded, but never so that what lies
-    /// beyond the end counts: it moves by `inwards` then.
+    /// An end of a ray along its scaled direction. Where that is subnormal it may be rounded, but never so that what
+    /// lies beyond the end counts: it moves by `inwards` then.
     #[inline(always)]
     pub(super) fn scaled_end(t: f64, inverse: f64, scale: f64, inwards: f64) -> f64 {
         let end = t * inverse;
