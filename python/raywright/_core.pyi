@@ -30,6 +30,7 @@ __all__ = [
     "Interactions",
     "Job",
     "KernelContest",
+    "MeshTopology",
     "RadiosityShots",
     "Rendering",
     "Sight",
@@ -55,6 +56,7 @@ __all__ = [
     "leading_numbers",
     "leave",
     "matrix_trouble",
+    "mesh_topology",
     "metal_index",
     "metals",
     "photons",
@@ -63,6 +65,7 @@ __all__ = [
     "points",
     "polygon_trouble",
     "random_numbers",
+    "sections",
     "shape_area",
     "shape_bounds",
     "simd",
@@ -75,6 +78,8 @@ __all__ = [
     "triangulate_polygons",
     "view_factor_matrix",
     "view_factor_rows",
+    "weld",
+    "weld_rounding",
 ]
 
 def simd() -> str:
@@ -856,6 +861,7 @@ def points(
     where they are not in turn.
     """
 
+@final
 class MeshTopology:
     """How the faces of a mesh hang together."""
 

@@ -57,7 +57,7 @@ impl Pool {
 }
 
 /// The pool of so many threads, or of one a core. Made when it is first used and kept: the latter for ever, others as
-/// long as those used since have no more than [`MOST_KEPT`] threads.
+/// long as those used since have no more than 64 threads in all.
 ///
 /// A process that was forked has none of its parent's threads and would wait for them forever, so pools are kept by
 /// process as well; this is also why the global pool is never used.
