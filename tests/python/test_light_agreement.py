@@ -108,12 +108,15 @@ def _blocks(values):
 
 
 def _told(scene, camera, way, samples):
-    """Means of blocks, and half of the 95 % interval of each, bias included."""
+    """Means of blocks, and half of the 95 % interval of each, with its bias and the error of that."""
+
+    def half(error):
+        return 1.96 * np.sqrt(_blocks(error.astype(float) ** 2) / 64)
+
     image = rw.render(scene, camera, way, samples, progress=False)
-    bar = 1.96 * np.sqrt(_blocks(image.standard_error.astype(float) ** 2) / 64)
-    bias = getattr(image, "bias", None)
-    if bias is not None:
-        bar += np.abs(_blocks(bias))
+    bar = half(image.standard_error)
+    if image.bias is not None:
+        bar += np.abs(_blocks(image.bias)) + half(image.bias_error)
     return _blocks(image.rgb), bar
 
 
