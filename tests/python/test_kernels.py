@@ -41,6 +41,8 @@ CALLED = {
     "Few::ask", "Touches::push", "Telling::finish",
     # Lanes that are looked up one by one.
     "halton::coordinate", "beckmann::leaning", "Filmed::reflectance",
+    "LayeredPrincipled::evaluate", "LayeredPrincipled::sample",
+    "LayeredPrincipledThin::evaluate", "LayeredPrincipledThin::sample",
 }  # fmt: skip
 
 #: Data, which is no call.
