@@ -11,61 +11,42 @@ use crate::{Bsdf, BsdfSample, Facets, Ggx, Rgb, fresnel};
 use raywright_base::math::DVec3;
 use std::f64::consts::FRAC_1_PI;
 
-/// The principled model of a sheet (Burley, 2015) without gain or loss. What facets neither reflect nor let through,
-/// 1 − R(ω) − T(ω) = D(ω), is given back on both sides alike, D(wo) D(wi) / (2π D̄); what is matt spreads its light
-/// over azimuths as Burley's does, and keeps it. Both sides are alike.
+/// The principled model of a sheet (Burley, 2015) without gain or loss. Facets of one roughness reflect and let
+/// through; what they lose, D(ω), is given back on both sides alike, D(wo) D(wi) / (2π D̄). What is matt spreads its
+/// light over azimuths as Burley's does, and keeps it. Both sides are alike.
 #[derive(Clone, Copy, Debug)]
 pub struct LayeredPrincipledThin {
     look: Look,
-    /// Of what is reflected, and of what goes through.
-    roughness: [f64; 2],
-    eta: f64,
+    /// What facets reflect.
+    shares: DielectricShares,
     /// The share of what is matt that is scattered on the other side.
     diffuse_transmission: f64,
-    /// One over 2π and the mean of what is neither reflected nor let through; 0 where that is nothing.
-    given_back: Rgb,
+    /// One over 2π and the mean of what facets lose; 0 where that is nothing.
+    given_back: f64,
 }
 
 impl LayeredPrincipledThin {
     /// Of a look, the index of refraction, and the share of what is matt that goes through, 0 to 1.
     pub fn new(look: Look, eta: f64, diffuse_transmission: f64) -> Self {
         let eta = fresnel::bounded(eta);
-        // What goes through rougher facets than reflect would be more, at grazing angles, than these leave.
-        let roughness = [look.roughness, look.roughness_through(eta).min(look.roughness)];
-        let mut made = Self { look, roughness, eta: eta.max(1.0 / eta), diffuse_transmission, given_back: Rgb::ZERO };
-        if look.transmission > 0.0 {
-            let [reflected, through] = [0, 1].map(|k| made.shares(k).average());
-            let lost = MirrorLoss::new(made.shares(1).facets).average();
-            let left = through + Rgb::splat(lost) - reflected;
-            let of = |left: f64| if left > 1e-9 { 0.5 * FRAC_1_PI / left } else { 0.0 };
-            made.given_back = Rgb::new(of(left[0]), of(left[1]), of(left[2]));
-        }
-        made
+        let shares = DielectricShares::new(&look, look.roughness, eta.max(1.0 / eta));
+        let lost = if look.transmission > 0.0 { MirrorLoss::new(shares.facets).average() } else { 0.0 };
+        let given_back = if lost > 0.0 { 0.5 * FRAC_1_PI / lost } else { 0.0 };
+        Self { look, shares, diffuse_transmission, given_back }
     }
 
-    /// What facets of what is reflected, or of what goes through, reflect.
+    /// What facets lose of light from `w`, above.
     #[inline(always)]
-    fn shares(&self, which: usize) -> DielectricShares {
-        DielectricShares::new(&self.look, self.roughness[which], self.eta)
-    }
-
-    /// What facets neither reflect nor let through of light from `w`, above.
-    #[inline(always)]
-    fn left(&self, w: DVec3) -> Rgb {
-        if self.look.transmission == 0.0 {
-            return Rgb::ZERO;
-        }
-        let lost = MirrorLoss::new(self.shares(1).facets).of(w);
-        let [reflected, through] = [0, 1].map(|k| self.shares(k).of(w.z));
-        (through + Rgb::splat(lost) - reflected).at_least(Rgb::ZERO)
+    fn lost(&self, w: DVec3) -> f64 {
+        if self.look.transmission > 0.0 { MirrorLoss::new(self.shares.facets).of(w) } else { 0.0 }
     }
 
     /// The probability of each lobe: facets, what these give back, and what is matt; of each what is reflected and what
     /// goes through.
     #[inline(always)]
-    fn shares_of_lobes(&self, left: Rgb) -> [[f64; 2]; 3] {
+    fn shares_of_lobes(&self, lost: f64) -> [[f64; 2]; 3] {
         let (sharp, across) = (self.look.transmission, self.diffuse_transmission);
-        let facets = sharp * (1.0 - left.max().min(0.9));
+        let facets = sharp * (1.0 - lost.min(0.9));
         let matt = 1.0 - sharp;
         [[0.5 * facets; 2], [0.5 * (sharp - facets); 2], [matt * (1.0 - across), matt * across]]
     }
@@ -73,23 +54,24 @@ impl LayeredPrincipledThin {
     /// Directions in which light is given back.
     #[inline(always)]
     fn grazing(&self) -> Grazing {
-        Grazing::new(self.shares(1).facets.mean_alpha())
+        Grazing::new(self.shares.facets.mean_alpha())
     }
 
     #[inline(always)]
-    fn scattered(&self, wo: DVec3, wi: DVec3, left: Rgb) -> (Rgb, f64) {
+    fn scattered(&self, wo: DVec3, wi: DVec3, lost: f64) -> (Rgb, f64) {
         let (look, is_through) = (&self.look, wo.z * wi.z < 0.0);
         let (o, i, sharp) = (above(wo), above(wi), look.transmission);
-        let [facets, given_back, matt] = self.shares_of_lobes(left).map(|lobe| lobe[usize::from(is_through)]);
+        let [facets, given_back, matt] = self.shares_of_lobes(lost).map(|lobe| lobe[usize::from(is_through)]);
         let tint = if is_through { look.base_color } else { Rgb::ONE };
         let (mut value, mut pdf) = (Rgb::ZERO, 0.0);
         if sharp > 0.0 {
-            let shares = self.shares(usize::from(is_through));
+            let shares = &self.shares;
             let (density, cosine) = shares.facets.mirroring(o, i);
             let reflected = shares.fresnel(cosine);
             let share = if is_through { Rgb::ONE - reflected } else { reflected };
             let once = share * (density * shares.facets.reflection_geometry(o, i));
-            value += tint * (once + left * self.left(i) * self.given_back * i.z) * sharp;
+            let again = lost * self.lost(i) * self.given_back * i.z;
+            value += tint * (once + Rgb::splat(again)) * sharp;
             pdf += facets * shares.facets.reflected_pdf(o, density) + given_back * self.grazing().pdf(i.z);
         }
         let across = self.diffuse_transmission;
@@ -106,7 +88,7 @@ impl Bsdf for LayeredPrincipledThin {
         if !Ggx::sees(wo) || !Ggx::sees(wi) {
             return (Rgb::ZERO, 0.0);
         }
-        self.scattered(wo, wi, self.left(above(wo)))
+        self.scattered(wo, wi, self.lost(above(wo)))
     }
 
     #[inline]
@@ -115,16 +97,16 @@ impl Bsdf for LayeredPrincipledThin {
             return None;
         }
         let (choice, up) = (choice(), above(wo));
-        let left = self.left(up);
+        let lost = self.lost(up);
         let mut ends = [0.0; 6];
         let mut sum = 0.0;
-        for (end, share) in ends.iter_mut().zip(self.shares_of_lobes(left).as_flattened()) {
+        for (end, share) in ends.iter_mut().zip(self.shares_of_lobes(lost).as_flattened()) {
             sum += share;
             *end = sum;
         }
         let lobe = ends.iter().position(|&end| choice < end).unwrap_or(5);
         let mut wi = match lobe {
-            0 | 1 => self.shares(lobe).facets.sample_reflection(up, u),
+            0 | 1 => self.shares.facets.sample_reflection(up, u),
             2 | 3 => self.grazing().sample(u),
             _ => diffuse(up, u),
         };
@@ -133,7 +115,7 @@ impl Bsdf for LayeredPrincipledThin {
         }
         let is_through = lobe % 2 == 1;
         wi.z = wi.z.copysign(if is_through { -wo.z } else { wo.z });
-        let (value, pdf) = self.scattered(wo, wi, left);
+        let (value, pdf) = self.scattered(wo, wi, lost);
         let choices = [if lobe == 0 { 0.0 } else { ends[lobe - 1] }, ends[lobe]];
         let drawn = BsdfSample::new(wi, value / pdf, pdf).of_lobe(choices);
         (pdf > 0.0).then(|| if is_through { drawn.through(1.0) } else { drawn })
@@ -148,7 +130,7 @@ impl Bsdf for LayeredPrincipledThin {
     }
 
     fn roughness(&self) -> f64 {
-        self.shares(0).facets.mean_alpha()
+        self.shares.facets.mean_alpha()
     }
 }
 
