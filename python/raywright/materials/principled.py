@@ -133,7 +133,8 @@ class PrincipledThin(Material):
     anisotropic, specular_tint, sheen, sheen_tint, flatness : float or Texture
         As `Principled` has them; highlights are not stretched, but of the published model.
     energy_conserving : bool
-        As `Principled` has it.
+        As `Principled` has it. The published model also lets light through by a roughness of its own,
+        which goes with the index; otherwise `roughness` serves for both.
 
     Raises
     ------
