@@ -68,13 +68,13 @@ def test_stopping_at_an_error_does_not_darken_the_picture():
     scene, camera = rw.scenes.cornell_box(width=16, height=16)
     # Of rw.render(scene, camera, samples=65536, seed=10**9, sampler=rw.Lattice(64)): mean and standard error.
     truth, doubt = 0.11368074172435172, 1.94e-5
-    stopped = [render(scene, camera, error=0.04, seed=seed) for seed in range(300)]
+    stopped = [render(scene, camera, error=0.04, seed=seed) for seed in range(150)]
     assert len({image.samples for image in stopped}) > 1
     means = np.array([image.rgb.mean(dtype=float) for image in stopped])
     error = means.std(ddof=1) / np.sqrt(len(means))
     off = means.mean() - truth
-    # Within four standard errors, which chance exceeds once in 16,000 cases. Over 300 pictures that is
-    # less than a quarter of what one picture differs from another by.
+    # Within four standard errors, which chance exceeds once in 16,000 cases. Over 150 pictures that is
+    # less than a third of what one picture differs from another by.
     assert abs(off) < 4 * np.hypot(error, 2 * doubt)
 
 
