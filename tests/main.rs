@@ -14,7 +14,7 @@ mod hits;
 mod house;
 mod routines;
 
-/// How many of so many cases to try: a quarter, or all of them where `RAYWRIGHT_SLOW` is set.
+/// How many of so many cases to try: an eighth, or all of them where `RAYWRIGHT_SLOW` is set.
 fn cases(all: u32) -> u32 {
-    if raywright_base::cases::are_all() { all } else { all.div_ceil(4) }
+    if raywright_base::cases::are_all() { all } else { all.div_ceil(8) }
 }
