@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..lights.emission import Emitted
-from ..materials import Material
+from ..materials import Diffuse, Material
+from ..textures import VertexColors
 
 
 class Look(NamedTuple):
@@ -15,6 +16,22 @@ class Look(NamedTuple):
     material: Material | None = None
     emission: Emitted | None = None
     colors: NDArray[np.float64] | None = None
+
+
+def shares_of(colors: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return colors of a text, (N, 3), as shares from 0 to 1: some programs write integers up to 255."""
+    shares = colors / 255 if (colors > 1).any() else colors
+    return np.clip(np.nan_to_num(shares), 0, 1)
+
+
+def colored(shares: NDArray[np.float64] | None) -> Look:
+    """Return the look of vertices with these shares of sRGB, (N, 3): of one color if all have the same."""
+    if shares is None or not len(shares):
+        return Look()
+    if (shares != shares[0]).any():
+        return Look(Diffuse(VertexColors()), colors=linear(shares))
+    red, green, blue = linear(shares[0]).tolist()
+    return Look(Diffuse((red, green, blue)))
 
 
 def linear(rgb: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -11,11 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..io.quiet import refused
-from ..materials import Diffuse
 from ..shapes.mesh import Mesh
-from ..textures import VertexColors
 from .elements import Data, Element, Property, read_bytes, read_text
-from .look import Look, linear
+from .look import colored, shares_of
 from .tokens import lines_of, plain_text
 from .triangulation import triangulate
 
@@ -82,7 +80,9 @@ def _mesh(path: Path) -> Mesh:
     if outside.any():
         raise ValueError(f"a face has vertex {corners[outside][0]}, but there are {len(points)} vertices")
     faces = corners[triangulate(points, corners, polygons.counts)]
-    look = _colored(columns("red", "green", "blue"))
+    colors = columns("red", "green", "blue")
+    # Taken as sRGB.
+    look = colored(None if colors is None else shares_of(colors))
     normals, uv = columns("nx", "ny", "nz"), columns("u", "v")
     return Mesh(points, faces, normals, uv, look.material, None, look.colors, path.name)
 
@@ -155,15 +155,3 @@ def _binary(data: bytes, start: int, kind: _Kind) -> dict[str, Data]:
         Element("face", faces, (_FACE, Property("colors", "f4", "i4"))),
     )
     return read_bytes(data, ">", start + 12, elements)
-
-
-def _colored(colors: Floats | None) -> Look:
-    """Return the colors of vertices, which are taken as sRGB; some programs write them as integers."""
-    if colors is None or not len(colors):
-        return Look()
-    shares = colors / 255 if (colors > 1).any() else colors
-    shown = linear(np.clip(np.nan_to_num(shares), 0, 1))
-    if (shown == shown[0]).all():
-        red, green, blue = shown[0].tolist()
-        return Look(Diffuse((red, green, blue)))
-    return Look(Diffuse(VertexColors()), colors=shown)

@@ -2,13 +2,9 @@
 
 from pathlib import Path
 
-import numpy as np
-
 from ...io.quiet import refused
-from ...materials import Diffuse
 from ...shapes.mesh import Mesh
-from ...textures import VertexColors
-from ..look import Look, linear
+from ..look import colored, shares_of
 from .geometry import Geometry, Part
 from .library import Library, span_of
 from .notes import Notes
@@ -64,20 +60,9 @@ def read_obj_whole(path: Path) -> Mesh | None:
 
 def _mesh(part: Part, library: Library) -> Mesh:
     span = None if part.uv is None else span_of(part.vertices, part.faces, part.uv)
-    look = library.look(part.material, span) or _colored(part)
+    look = library.look(part.material, span)
+    # Colors of vertices are taken as sRGB: those of pictures and of scanners are.
+    look = look or colored(None if part.colors is None else shares_of(part.colors))
     shines = (look.material, look.emission, look.colors)
     # What is parted by materials is called after them.
     return Mesh(part.vertices, part.faces, part.normals, part.uv, *shines, part.material)
-
-
-def _colored(part: Part) -> Look:
-    """Return the colours of vertices, which are taken as sRGB: those of pictures and of scanners are."""
-    if part.colors is None:
-        return Look()
-    # Some programs write them as integers.
-    shares = part.colors / 255 if (part.colors > 1).any() else part.colors
-    colors = linear(np.clip(np.nan_to_num(shares), 0, 1))
-    if (colors == colors[0]).all():
-        red, green, blue = colors[0].tolist()
-        return Look(Diffuse((red, green, blue)))
-    return Look(Diffuse(VertexColors()), colors=colors)

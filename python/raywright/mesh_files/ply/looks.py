@@ -1,7 +1,6 @@
 """Colors and pictures of PLY files."""
 
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,10 +8,10 @@ from numpy.typing import NDArray
 from ...io.pictures import read
 from ...io.quiet import reason, warn_caller
 from ...materials import Diffuse
-from ...textures import ImageTexture, VertexColors
+from ...textures import ImageTexture
 from ..beside import beside
 from ..elements import Data
-from ..look import Look, linear
+from ..look import Look, colored
 
 Floats = NDArray[np.float64]
 
@@ -79,16 +78,9 @@ def look_of(path: Path, elements: dict[str, Data], pictures: tuple[str, ...], ha
         warn_caller(f"{path.name}: its picture {pictures[-1]!r} is left out ({why})")
     colors = color_shares(elements.get("vertex"))
     if colors is not None:
-        if (colors != colors[0]).any():
-            return Look(Diffuse(VertexColors()), colors=linear(colors))
-        return Look(_plain(colors[0]))
+        return colored(colors)
     colors = color_shares(elements.get("face"))
     if colors is None:
         return Look()
     rows, counts = np.unique(colors, axis=0, return_counts=True)
-    return Look(_plain(rows[counts.argmax()]))
-
-
-def _plain(color: NDArray[np.floating[Any]]) -> Diffuse:
-    red, green, blue = linear(color.astype(np.float64)).tolist()
-    return Diffuse((red, green, blue))
+    return colored(rows[[counts.argmax()]])
