@@ -1,5 +1,6 @@
 """Inside or outside: against exact arithmetic."""
 
+import warnings
 from fractions import Fraction
 
 import numpy as np
@@ -200,6 +201,32 @@ def test_only_shapes_that_are_named_count(box):
     assert not scene.contains(points, shapes=np.zeros(3, bool)).any()
     with pytest.raises(ValueError, match="shapes has 'near', but no shape of the scene is called so"):
         scene.contains(points, shapes="near")
+
+
+@pytest.mark.parametrize("mirror", [1.0, -1.0])
+@pytest.mark.parametrize("nested", [False, True])
+def test_inverted_meshes_in_instances_are_told_by_the_normals_that_hits_have(box, mirror, nested):
+    place = np.diag([mirror, 2.0, 1.0, 1.0])
+    rays = (0.1, 0.2, 9), (0, 0, -1)
+    for faces, is_inverted in ((box.faces, False), (box.faces[:, ::-1], True)):
+        mesh = rw.Mesh(box.vertices - 0.5, faces)
+        inner = rw.Instance(mesh, np.diag([1.0, mirror, 1.0, 1.0])) if nested else mesh
+        scene = rw.Scene([box, rw.Instance([inner, rw.Sphere((0, 0, 3), 0.1)], place, name="copies")])
+        assert (scene.intersect(*rays, shapes="copies", t_min=6.5).normal[2] < 0) == is_inverted
+        with warnings.catch_warnings(record=True) as told:
+            warnings.simplefilter("always")
+            assert scene.contains((0.0, 0.9, 0.0), shapes="copies")
+            assert not scene.contains((0.0, 1.1, 0.0), shapes="copies")
+            scene.contains((0.0, 0.0, 0.0))
+        assert len(told) == is_inverted
+        assert all("normals point into shape 1 'copies'" in str(one.message) for one in told)
+    # The wall of a cavity is none that is inverted.
+    shell = [rw.Mesh(4 * (box.vertices - 0.5), box.faces), mesh]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        copies = rw.Scene(rw.Instance(shell, place))
+        assert np.array_equal(copies.contains([(0, 0, 0.9), (0, 0, 0.1)]), [True, False])
+        assert not rw.Scene([box, rw.Instance(mesh, place)]).contains((0, 9, 0), shapes=[True, False])
 
 
 def test_walls_that_close_together_are_one(box):

@@ -54,7 +54,8 @@ class PointQueries:
         Warns
         -----
         RuntimeWarning
-            Once of meshes whose normals point into them: they enclose the same as if they pointed out.
+            Once of meshes whose normals point into them, and of instances of such: they enclose the same as
+            if they pointed out. A transform that mirrors turns no normals, as for hits.
 
         Notes
         -----
@@ -66,8 +67,9 @@ class PointQueries:
         within another shape. Faces with the same corners count once, whichever way they turn, and a wall
         between two parts not at all. Meshes that only close together, as the walls of a room, are one.
 
-        From a point two opposite ways out are tried. Where they do not agree there is a crack that rounding
-        has left, and the majority of seven ways decides.
+        From a point one way out is tried where all that is closed are meshes with equal corners at shared
+        edges, and two opposite ones otherwise. Where these do not agree there is a crack that rounding has
+        left, and the majority of seven ways decides.
         """
         return self._inside(points, threads, shapes)
 

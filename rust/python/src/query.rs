@@ -286,7 +286,7 @@ impl CompiledScene {
     /// The meshes whose normals point into them.
     #[pyo3(signature = (shapes=None, tolerance=None))]
     fn inverted(&self, py: Python<'_>, shapes: Option<Vec<bool>>, tolerance: Option<f64>) -> Vec<u32> {
-        py.detach(|| self.0.solids(&scene::Enclosing { shapes, tolerance, is_even_odd: false }).inverted())
+        py.detach(|| self.0.solids(&scene::Enclosing { shapes, tolerance, is_even_odd: false }).inverted().to_vec())
     }
 
     fn nearest<'py>(

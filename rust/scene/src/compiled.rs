@@ -169,8 +169,9 @@ impl Scene {
 
     /// Whether each point is inside of something closed or on it.
     ///
-    /// On any way out of a closed surface it is found the same, so one way and the opposite one agree. Where they do
-    /// not, rounding has left a crack, and what most of seven ways find is told.
+    /// On any way out of a closed surface it is found the same: one way will do where all surfaces close to the last
+    /// bit. Where they do so to rounding alone, one way and the opposite one agree unless it has left a crack there, and
+    /// then what most of seven ways find is told.
     pub fn contains(&self, points: &[DVec3], enclosing: &Enclosing, inside: &mut [bool]) {
         assert_eq!(points.len(), inside.len(), "an answer for each point");
         inside.fill(false);
@@ -190,6 +191,11 @@ impl Scene {
                 }
             }
         };
+        if solids.is_exact() {
+            vote(&open, &WAYS_OUT[..1], inside, &mut votes);
+            open.iter().for_each(|&i| inside[i] |= votes[i] == 1);
+            return;
+        }
         let (pair, others) = WAYS_OUT.split_at(2);
         vote(&open, pair, inside, &mut votes);
         open.retain(|&i| {

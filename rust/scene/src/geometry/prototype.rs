@@ -167,11 +167,16 @@ impl Prototype {
         }
         let (scale, _) = normalising_scale(size);
         let ray = Ray { direction: ray.direction * scale, ..*ray };
+        self.solids().sides(&self.geometry, self.accelerator(), vec![ray])[0]
+    }
+
+    /// What is enclosed in it.
+    pub fn solids(&self) -> Arc<Solids> {
         // Not within the lock: threads that wait for others take up work of theirs, which may come here too.
         let solids = || Arc::new(Solids::new(&self.geometry, self.accelerator(), &Enclosing::default()));
         let solids = self.solids.get().cloned().unwrap_or_else(solids);
         let _ = self.solids.set(solids.clone());
-        solids.sides(&self.geometry, self.accelerator(), vec![ray])[0]
+        solids
     }
 
     /// Memory held, without prototypes in it that were `seen`; it and they count as seen from then on.

@@ -36,6 +36,10 @@ pub struct Solids {
     of: Vec<u32>,
     bodies: Vec<Body>,
     groups: Vec<Group>,
+    /// The shapes whose normals all point in, and that are no cavities of others.
+    inverted: Vec<u32>,
+    /// Whether all of it closes to the last bit.
+    is_exact: bool,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -60,7 +64,7 @@ struct Group {
 impl Solids {
     /// What of the geometry that the accelerator holds is closed.
     pub fn new(geometry: &Geometry, accelerator: &dyn Accelerator, enclosing: &Enclosing) -> Self {
-        let mut solids = Self { of: vec![NONE; geometry.count()], ..Self::default() };
+        let mut solids = Self { of: vec![NONE; geometry.count()], is_exact: true, ..Self::default() };
         let counts = |shape: u32| {
             enclosing.shapes.as_ref().is_none_or(|all| all.get(shape as usize).is_some_and(|&counts| counts))
         };
@@ -71,6 +75,7 @@ impl Solids {
             }
             solids.bodies.push(Body { group: 0, is_oriented: false, sign: 1 });
             solids.groups.push(Group { shape: None, volume: 0.0, is_oriented: false, is_cavity: false });
+            solids.is_exact = false;
             return solids;
         }
         let mut open: Vec<(Mesh, Vec<bool>)> = Vec::new();
@@ -83,6 +88,7 @@ impl Solids {
             if object.is_some() || geometry.instances_of(shape).is_some() {
                 if object.is_none_or(|object| object.is_closed()) {
                     solids.of[primitives.start as usize..primitives.end as usize].fill(OBJECT);
+                    solids.is_exact = false;
                 }
                 continue;
             }
@@ -106,6 +112,7 @@ impl Solids {
             solids.add(&all.primitives, &topology, None);
         }
         solids.find_cavities(geometry, accelerator);
+        solids.find_inverted(geometry);
         solids
     }
 
@@ -114,6 +121,7 @@ impl Solids {
         if topology.bodies.is_empty() {
             return;
         }
+        self.is_exact &= topology.is_exact;
         let (first, group) = (self.bodies.len() as u32, self.groups.len() as u32);
         let sign = |volume: f64| if volume < 0.0 { -1 } else { 1 };
         self.bodies.extend(topology.bodies.iter().map(|body| Body {
@@ -142,6 +150,7 @@ impl Solids {
             of: self.of.iter().map(|&of| if of >= OBJECT || body_counts(of) { of } else { NONE }).collect(),
             bodies: self.bodies.clone(),
             groups: self.groups.clone(),
+            ..Self::default()
         };
         for (group, _) in is_inverted.iter().enumerate().filter(|(_, is_inverted)| **is_inverted) {
             let Some(shape) = self.groups[group].shape else { continue };
@@ -154,10 +163,30 @@ impl Solids {
         }
     }
 
-    /// The meshes whose normals all point in, and that are no cavities of others.
-    pub fn inverted(&self) -> Vec<u32> {
+    /// Finds the meshes, and the instances of such, whose normals point in.
+    fn find_inverted(&mut self, geometry: &Geometry) {
         let is_inverted = |group: &&Group| group.volume < 0.0 && group.is_oriented && !group.is_cavity;
-        self.groups.iter().filter(is_inverted).filter_map(|group| group.shape).collect()
+        self.inverted = self.groups.iter().filter(is_inverted).filter_map(|group| group.shape).collect();
+        for shape in 0..geometry.shapes() as u32 {
+            let primitives = geometry.primitives_of(shape);
+            let counts = !primitives.is_empty() && self.of[primitives.start as usize] == OBJECT;
+            // Transforms that mirror keep normals on their side of the surface.
+            let instances = if counts { geometry.instances_of(shape) } else { None };
+            if instances.is_some_and(|instances| !instances.prototype().solids().inverted.is_empty()) {
+                self.inverted.push(shape);
+            }
+        }
+        self.inverted.sort_unstable();
+    }
+
+    /// The shapes whose normals all point in, and that are no cavities of others; instances with such a shape in them.
+    pub fn inverted(&self) -> &[u32] {
+        &self.inverted
+    }
+
+    /// Whether each way out finds the same to the last bit: surfaces are triangles whose edges have equal ends.
+    pub fn is_exact(&self) -> bool {
+        self.is_exact
     }
 
     /// Whether nothing is enclosed.
@@ -191,6 +220,13 @@ impl Solids {
             // Most often there is one, and whichever way it is crossed matters only for which side is called inner.
             let body = self.bodies.get(self.of[exit.primitive as usize] as usize);
             return body.is_none_or(|body| !self.groups[body.group as usize].is_cavity);
+        }
+        let first = self.of[exits[0].primitive as usize];
+        if exits.len() % 2 == 1 && exits.iter().all(|exit| self.of[exit.primitive as usize] == first) {
+            // An odd number of ones of either sign is not zero. Of objects there are many, and one body.
+            if let Some(body) = self.bodies.get(first as usize) {
+                return !self.groups[body.group as usize].is_cavity;
+            }
         }
         wound.clear();
         wound.extend(exits.iter().map(|exit| {

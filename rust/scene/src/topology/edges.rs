@@ -152,7 +152,8 @@ impl Edges {
     }
 }
 
-fn root(parents: &mut [u32], mut face: u32) -> u32 {
+/// The first face of those that hang together with one, by parents that are shortened on the way.
+pub fn root(parents: &mut [u32], mut face: u32) -> u32 {
     while parents[face as usize] != face {
         let above = parents[parents[face as usize] as usize];
         parents[face as usize] = above;

@@ -3,6 +3,7 @@
 mod covered;
 mod edges;
 mod junctions;
+mod manifold;
 mod outlines;
 mod patches;
 mod section;
@@ -15,6 +16,7 @@ pub use weld::{joined, rounding, welded};
 use edges::Edges;
 use raywright_base::math::DVec3;
 use std::collections::HashMap;
+use weld::welded_among;
 
 /// No body.
 pub const NONE: u32 = u32::MAX;
@@ -64,13 +66,33 @@ pub struct Topology {
     pub turned: usize,
     /// How close corners are one.
     pub tolerance: f64,
+    /// Whether bodies close to the last bit: by corners that are equal, without junctions.
+    pub is_exact: bool,
 }
 
 impl Topology {
     /// Of faces whose corners are one within a tolerance; within [`rounding`] if there is none.
     pub fn new(points: &[DVec3], faces: &[[u32; 3]], tolerance: Option<f64>) -> Self {
         let tolerance = tolerance.unwrap_or_else(|| rounding(points, faces));
-        let corners = welded(points, faces, tolerance);
+        let equal = joined(points);
+        let named: Vec<[u32; 3]> = faces.iter().map(|face| face.map(|v| equal[v as usize])).collect();
+        let is_finite = || faces.iter().flatten().all(|&v| points[v as usize].is_finite());
+        let parts = if is_finite() { manifold::parts(&named, points.len()) } else { None };
+        match parts {
+            Some(parts) => Self::of_manifold(points, equal, &named, &parts, tolerance),
+            None => Self::of_any(points, welded_among(equal, points, faces, tolerance), faces, tolerance),
+        }
+    }
+
+    /// Of faces of which all are of bodies.
+    fn of_manifold(points: &[DVec3], corners: Vec<u32>, faces: &[[u32; 3]], parts: &[u32], tolerance: f64) -> Self {
+        let (mut kinds, votes) = (vec![FaceKind::Open; faces.len()], vec![1; faces.len()]);
+        let kept: Vec<u32> = (0..faces.len() as u32).collect();
+        let bodies = bodies(points, faces, &kept, |part| Some((parts[part], true)), &votes, &mut kinds);
+        Self { corners, faces: kinds, votes, bodies, tolerance, is_exact: true, ..Self::default() }
+    }
+
+    fn of_any(points: &[DVec3], corners: Vec<u32>, faces: &[[u32; 3]], tolerance: f64) -> Self {
         let named: Vec<[u32; 3]> = faces.iter().map(|face| face.map(|v| corners[v as usize])).collect();
         let (mut kinds, copies, votes) = sorted_out(points, &named);
         let kept: Vec<u32> = (0..named.len() as u32).filter(|&f| kinds[f as usize] == FaceKind::Open).collect();
@@ -100,8 +122,16 @@ impl Topology {
             edges.remove(face);
             kinds[kept[face as usize] as usize] = FaceKind::Inner;
         }
-        let bodies = bodies(points, &named, &kept, &edges, &votes, &mut kinds);
-        Self { corners, faces: kinds, votes, bodies, cracks, junctions, turned, tolerance }
+        let (parts, whole) = closed_parts(&edges);
+        let part = |i: usize| {
+            let part = parts[i];
+            if edges.is_left(i as u32) { Some((part, whole[part as usize]?)) } else { None }
+        };
+        let bodies = bodies(points, &named, &kept, part, &votes, &mut kinds);
+        let is_in_place = |&v: &u32| points[corners[v as usize] as usize] == points[v as usize];
+        let closed = || faces.iter().zip(&kinds).filter(|(_, kind)| matches!(kind, FaceKind::Closed(_)));
+        let is_exact = junctions.is_empty() && closed().all(|(face, _)| face.iter().all(is_in_place));
+        Self { corners, faces: kinds, votes, bodies, cracks, junctions, turned, tolerance, is_exact }
     }
 }
 
@@ -138,39 +168,42 @@ fn sorted_out(points: &[DVec3], faces: &[[u32; 3]]) -> (Vec<FaceKind>, Vec<u32>,
     (kinds, copies, votes)
 }
 
-/// The bodies that the faces left make, which are told to the faces.
+/// For each face the first of those that hang together with it; and by that one whether they are oriented, `None` if
+/// they are not closed.
+fn closed_parts(edges: &Edges) -> (Vec<u32>, Vec<Option<bool>>) {
+    let parts = edges.parts();
+    let mut whole = vec![Some(true); parts.len()];
+    for edge in 0..edges.ends.len() as u32 {
+        let Some(face) = edges.faces_at(edge).next() else { continue };
+        let whole = &mut whole[parts[face as usize] as usize];
+        let is_even = edges.count(edge).is_multiple_of(2);
+        *whole = whole.filter(|_| is_even).map(|is_oriented| is_oriented && edges.balance(edge) == 0);
+    }
+    (parts, whole)
+}
+
+/// The bodies that the faces kept make, which are told to the faces. For each of these `part` tells the first of those
+/// that hang together with it and whether they are oriented; `None` of what is of no body.
 fn bodies(
     points: &[DVec3],
     named: &[[u32; 3]],
     kept: &[u32],
-    edges: &Edges,
+    part: impl Fn(usize) -> Option<(u32, bool)>,
     votes: &[i32],
     kinds: &mut [FaceKind],
 ) -> Vec<Body> {
-    let parts = edges.parts();
-    let mut is_closed = vec![true; kept.len()];
-    let mut is_oriented = vec![true; kept.len()];
-    for edge in 0..edges.ends.len() as u32 {
-        let Some(face) = edges.faces_at(edge).next() else { continue };
-        let part = parts[face as usize] as usize;
-        is_closed[part] &= edges.count(edge).is_multiple_of(2);
-        is_oriented[part] &= edges.balance(edge) == 0;
-    }
     let (mut numbers, mut bodies) = (vec![NONE; kept.len()], Vec::new());
     let (mut origins, mut are_two_sided): (Vec<DVec3>, Vec<bool>) = (Vec::new(), Vec::new());
     for (i, &face) in kept.iter().enumerate() {
-        let part = parts[i] as usize;
-        if !edges.is_left(i as u32) || !is_closed[part] {
-            continue;
-        }
+        let Some((part, is_oriented)) = part(i) else { continue };
         let [a, b, c] = named[face as usize].map(|v| points[v as usize]);
-        if numbers[part] == NONE {
-            numbers[part] = bodies.len() as u32;
-            bodies.push(Body { volume: 0.0, is_oriented: is_oriented[part] });
+        if numbers[part as usize] == NONE {
+            numbers[part as usize] = bodies.len() as u32;
+            bodies.push(Body { volume: 0.0, is_oriented });
             origins.push(a);
             are_two_sided.push(true);
         }
-        let number = numbers[part];
+        let number = numbers[part as usize];
         let origin = origins[number as usize];
         bodies[number as usize].volume += (a - origin).dot((b - origin).cross(c - origin)) / 6.0;
         are_two_sided[number as usize] &= votes[face as usize] == 0;
@@ -321,5 +354,43 @@ mod tests {
         points[8].y += 1e-3;
         let found = Topology::new(&points, &faces, None);
         assert_eq!((closed(&found), found.junctions.len(), found.cracks.len()), (0, 0, 3));
+    }
+
+    #[test]
+    fn closed_meshes_are_told_in_linear_time_what_any_mesh_is_told() {
+        let mut points =
+            [corners(DVec3::ZERO), corners(DVec3::splat(0.5)), corners(DVec3::new(0.2, 3.0, 0.1))].concat();
+        let shifted = |by: u32| BOX.map(|face| face.map(|v| v + by));
+        let turned = shifted(8).map(|[a, b, c]| [a, c, b]);
+        let faces = [BOX, turned, shifted(16)].concat();
+        for by in [1.0, 0.1] {
+            points.iter_mut().for_each(|point| *point *= by);
+            let (quick, any) = (
+                Topology::new(&points, &faces, None),
+                Topology::of_any(&points, joined(&points), &faces, rounding(&points, &faces)),
+            );
+            assert_eq!((&quick.faces, &quick.bodies, &quick.votes), (&any.faces, &any.bodies, &any.votes));
+            assert_eq!((quick.bodies.len(), quick.is_exact, any.is_exact), (3, true, true));
+            assert!(manifold::parts(&faces, 24).is_some());
+        }
+        // A face missing, twice, or turned; a corner twice; a sheet of two faces back to back.
+        let mut one_turned = BOX.to_vec();
+        one_turned[0].swap(0, 1);
+        let both = |extra: [u32; 3]| [&BOX[..], &[extra]].concat();
+        let sheet = [&shifted(8)[..], &[[0, 1, 2], [0, 2, 1]]].concat();
+        for faces in [BOX[1..].to_vec(), one_turned, both(BOX[4]), both([1, 1, 2]), sheet] {
+            assert!(manifold::parts(&faces, 24).is_none());
+        }
+    }
+
+    #[test]
+    fn bodies_that_close_by_rounding_alone_are_not_exact() {
+        let mut points = corners(DVec3::ZERO);
+        points.push(points[7] + DVec3::splat(1e-16));
+        let mut faces = BOX.to_vec();
+        assert!(Topology::new(&points, &faces, None).is_exact);
+        faces[11] = faces[11].map(|v| if v == 7 { 8 } else { v });
+        let found = Topology::new(&points, &faces, None);
+        assert_eq!((found.bodies.len(), found.is_exact), (1, points[7] == points[8]));
     }
 }

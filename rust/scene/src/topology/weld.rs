@@ -1,5 +1,6 @@
 //! Corners that are one but for rounding.
 
+use super::manifold;
 use raywright_base::math::DVec3;
 use std::collections::HashMap;
 
@@ -70,7 +71,13 @@ pub fn rounding(points: &[DVec3], faces: &[[u32; 3]]) -> f64 {
 /// Only corners on open edges are joined, those in the order of their numbers to the nearest one before them that
 /// stands for itself, and never two of one face: what is closed stays as it is, however thin.
 pub fn welded(points: &[DVec3], faces: &[[u32; 3]], tolerance: f64) -> Vec<u32> {
-    let mut all = joined(points);
+    let all = joined(points);
+    let named: Vec<[u32; 3]> = faces.iter().map(|face| face.map(|v| all[v as usize])).collect();
+    if manifold::parts(&named, points.len()).is_some() { all } else { welded_among(all, points, faces, tolerance) }
+}
+
+/// The same, of points of which it is known which are equal.
+pub fn welded_among(mut all: Vec<u32>, points: &[DVec3], faces: &[[u32; 3]], tolerance: f64) -> Vec<u32> {
     if !(tolerance > 0.0 && tolerance.is_finite()) {
         return all;
     }
