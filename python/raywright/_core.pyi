@@ -199,7 +199,12 @@ class CompiledScene:
     def inverted(self, shapes: list[bool] | None = None, tolerance: float | None = None) -> list[int]:
         """Return the meshes whose normals point into them."""
     def nearest(
-        self, points: _Floats, max_distance: _Numbers, shape: tuple[int, ...], threads: int | None
+        self,
+        points: _Floats,
+        max_distance: _Numbers,
+        shape: tuple[int, ...],
+        threads: int | None,
+        shapes: list[bool] | None = None,
     ) -> tuple[
         NDArray[np.float64],
         NDArray[np.float64],

@@ -167,3 +167,40 @@ def test_bad_points_are_refused_in_one_line(scene, arguments, error, message):
     with pytest.raises(error, match=message) as caught:
         scene.closest_point(*arguments)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("accelerator", [rw.BVH(), rw.BruteForce(), rw.KdTree()])
+def test_only_shapes_that_are_named_count(accelerator):
+    """As in a scene of these alone: meshes, what is no mesh, and instances."""
+    rng = np.random.default_rng(11)
+    box = trimesh.creation.box()
+    shapes = [
+        rw.Mesh(box.vertices, box.faces, name="box"),
+        rw.Sphere((0.8, 0, 0), 0.6, name="ball"),
+        KNOT,
+        rw.Instance(rw.Mesh(box.vertices, box.faces), np.diag([0.5, 2, 0.5, 1]), name="pillar"),
+        rw.Mesh(box.vertices + np.array((0, 0, 1)), box.faces[2:], name="open"),
+    ]
+    scene = rw.Scene(shapes, accelerator=accelerator, precision="double")
+    points = rng.uniform(-2, 2, (300, 3))
+    for mask in (*np.eye(5, dtype=bool), [True, True, False, False, False], [False, False, True, True, True]):
+        kept = [shape for shape, counts in zip(shapes, mask, strict=True) if counts]
+        alone = rw.Scene(kept, accelerator=accelerator, precision="double")
+        found, wanted = scene.closest_point(points, shapes=mask), alone.closest_point(points)
+        assert np.array_equal(found.distance, wanted.distance)
+        assert np.array_equal(found.position, wanted.position)
+        assert np.array_equal(found.primitive, wanted.primitive)
+        assert np.array_equal(found.shape_id, np.flatnonzero(mask)[wanted.shape_id])
+        assert np.allclose(found.normal, wanted.normal)
+        assert np.array_equal(scene.signed_distance(points, shapes=mask), alone.signed_distance(points))
+    near = scene.closest_point(points, max_distance=0.3, shapes=["ball", "pillar"])
+    assert set(np.unique(near.shape_id)) == {-1, 1, 3}
+    assert np.isinf(scene.signed_distance(points, shapes=np.zeros(5, bool))).all()
+    # The ball beside the box is outside of it, though the scene has it inside.
+    assert scene.signed_distance((1.2, 0, 0)) < 0
+    assert scene.signed_distance((1.2, 0, 0), shapes="box") == pytest.approx(0.7)
+    for ask in (scene.closest_point, scene.signed_distance):
+        with pytest.raises(ValueError, match="shapes has 'near', but no shape of the scene is called so"):
+            ask(points, shapes="near")
+        with pytest.raises(TypeError, match="shapes must be bool"):
+            ask(points, shapes=np.ones(5))

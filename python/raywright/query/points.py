@@ -75,8 +75,7 @@ class PointQueries:
 
     def _inside(self, points: ArrayLike, threads: int | None, shapes: ShapeMask | None) -> NDArray[np.bool_]:
         core = self._core or self._compiled()
-        what = counted(shapes, None, core.names)
-        mask = None if what is None else what[0]
+        mask = _mask(shapes, core)
         found = core.contains(*point_arguments(points, threads), mask, self._tolerance)
         if not self._is_inverted_told and (inverted := core.inverted(mask, self._tolerance)):
             self._is_inverted_told = True
@@ -91,7 +90,11 @@ class PointQueries:
         return found
 
     def closest_point(
-        self, points: ArrayLike, max_distance: ArrayLike = np.inf, threads: int | None = None
+        self,
+        points: ArrayLike,
+        max_distance: ArrayLike = np.inf,
+        threads: int | None = None,
+        shapes: ShapeMask | None = None,
     ) -> ClosestPoints:
         """Find the closest point of any surface to each point.
 
@@ -103,6 +106,8 @@ class PointQueries:
             How far to look, this distance included; the less, the faster.
         threads : int, optional
             How many to use; all cores if not given. The answer does not depend on it.
+        shapes : (S,) bool array, str or sequence of str, optional
+            Which of ``scene.shapes`` count, as for `contains`.
 
         Returns
         -------
@@ -113,9 +118,10 @@ class PointQueries:
         Raises
         ------
         ValueError
-            If the last dimension is not 3, shapes do not broadcast, or `max_distance` is negative or NaN.
+            If the last dimension is not 3, shapes do not broadcast, `max_distance` is negative or NaN, a mask
+            has the wrong shape, or no shape has a name of `shapes`.
         TypeError
-            If an array does not hold real numbers.
+            If an array does not hold real numbers, or a mask is not bool.
 
         Notes
         -----
@@ -133,9 +139,12 @@ class PointQueries:
         out; where all of it is about as far, as from the middle of a sphere, it is a close one.
         """
         core = self._core or self._compiled()
-        return ClosestPoints(*core.nearest(*nearest_arguments(points, max_distance, threads)), core)
+        arguments = nearest_arguments(points, max_distance, threads)
+        return ClosestPoints(*core.nearest(*arguments, _mask(shapes, core)), core)
 
-    def signed_distance(self, points: ArrayLike, threads: int | None = None) -> NDArray[np.float64]:
+    def signed_distance(
+        self, points: ArrayLike, threads: int | None = None, shapes: ShapeMask | None = None
+    ) -> NDArray[np.float64]:
         """Find how far each point is from the surface: negative inside, positive outside, zero on it.
 
         Inside is what `contains` finds so, whose warnings it has. The nearest surface may be of a shape that
@@ -147,21 +156,29 @@ class PointQueries:
             C-contiguous float32 and float64 are read without a copy.
         threads : int, optional
             How many to use; all cores if not given. The answer does not depend on it.
+        shapes : (S,) bool array, str or sequence of str, optional
+            Which of ``scene.shapes`` count, as for `contains`.
 
         Returns
         -------
         (...) float64
-            With the leading shape of the points; inf for points that are NaN or infinite, and for all if the
-            scene is empty. On shapes that are no meshes it is 0 to within the rounding of the point.
+            With the leading shape of the points; inf for points that are NaN or infinite, and for all if no
+            shape counts. On shapes that are no meshes it is 0 to within the rounding of the point.
 
         Raises
         ------
         ValueError
-            If the last dimension is not 3.
+            If the last dimension is not 3, a mask has the wrong shape, or no shape has a name of `shapes`.
         TypeError
-            If the array does not hold real numbers.
+            If the array does not hold real numbers, or a mask is not bool.
         """
         core = self._core or self._compiled()
-        distance = core.nearest(*nearest_arguments(points, np.inf, threads))[0]
-        inside = self._inside(points, threads, None) & (distance > 0)
+        distance = core.nearest(*nearest_arguments(points, np.inf, threads), _mask(shapes, core))[0]
+        inside = self._inside(points, threads, shapes) & (distance > 0)
         return np.asarray(np.where(inside, -distance, distance))
+
+
+def _mask(shapes: ShapeMask | None, core: CompiledScene) -> list[bool] | None:
+    """Return whether each shape counts, None if all do."""
+    what = counted(shapes, None, core.names)
+    return None if what is None else what[0]

@@ -3,7 +3,7 @@
 use super::nearest::{Search, of};
 use super::query::{Answers, Query};
 use super::walk::{Contents, Input, Lists};
-use super::{Accelerator, Info, Nearest, Primitives, Touch, Touches};
+use super::{Accelerator, Info, Nearest, PrimitiveFilter, Primitives, Touch, Touches};
 use raywright_base::math::{DVec3, Ray, Region};
 use raywright_base::simd::{Dispatch, Kernel, Level, Simd};
 use raywright_shapes::triangle::{DoubleLeaves, EdgeRay, Leaves, SingleLeaves, SolidCone};
@@ -63,11 +63,12 @@ impl<L: Leaves<LANES>> Answers for BruteForce<L> {
         self.level.dispatch(Batch { brute: self, rays, query });
     }
 
-    fn nearest(&self, points: &[DVec3], max_distances: &[f64], nearest: &mut [Nearest]) {
+    fn nearest(&self, points: &[DVec3], max_distances: &[f64], counts: PrimitiveFilter<'_>, nearest: &mut [Nearest]) {
         let triangles = self.contents.triangles();
         for (i, (&point, nearest)) in points.iter().zip(nearest).enumerate() {
             *nearest = Search::new(point, of(max_distances, i), &self.region).map_or(Nearest::MISS, |mut search| {
-                for &(primitive, corners) in &triangles {
+                let counts = |&&(primitive, _): &&(u32, _)| counts.is_none_or(|counts| counts(primitive));
+                for &(primitive, corners) in triangles.iter().filter(counts) {
                     search.offer(primitive, corners);
                 }
                 search.finish()

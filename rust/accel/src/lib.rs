@@ -36,7 +36,7 @@ pub use box_tree::BoxTree;
 pub use boxes::{Boxes, NodeBox};
 pub use brute::BruteForce;
 pub use crossings::Crossings;
-pub use kept::Counts;
+pub use kept::{Counts, PrimitiveFilter};
 pub use nearest::Nearest;
 pub use parity::{Exit, Exits, Side};
 pub use slab::SlabRay;
@@ -172,7 +172,18 @@ pub trait Accelerator: Send + Sync {
 
     /// The nearest point to each point, within its greatest distance, that distance included; one greatest distance for
     /// all of them, or one each. A point that is NaN or infinite has none. Of primitives as near, the lowest.
-    fn nearest(&self, points: &[DVec3], max_distances: &[f64], nearest: &mut [Nearest]);
+    fn nearest(&self, points: &[DVec3], max_distances: &[f64], nearest: &mut [Nearest]) {
+        self.nearest_kept(points, max_distances, None, nearest);
+    }
+
+    /// The same among the primitives that count.
+    fn nearest_kept(
+        &self,
+        points: &[DVec3],
+        max_distances: &[f64],
+        counts: PrimitiveFilter<'_>,
+        nearest: &mut [Nearest],
+    );
 
     /// The triangles that each cone touches, nearest first: those that share a point with it, within the bounds that
     /// [`SolidCone`] states. None of what is no cone.
@@ -262,10 +273,16 @@ impl<A: Answers> Accelerator for A {
         out.exits.in_order()
     }
 
-    fn nearest(&self, points: &[DVec3], max_distances: &[f64], nearest: &mut [Nearest]) {
+    fn nearest_kept(
+        &self,
+        points: &[DVec3],
+        max_distances: &[f64],
+        counts: PrimitiveFilter<'_>,
+        nearest: &mut [Nearest],
+    ) {
         assert_eq!(points.len(), nearest.len(), "an answer for each point");
         assert!(matches!(max_distances.len(), n if n == 1 || n == points.len()), "a distance for each point");
-        Answers::nearest(self, points, max_distances, nearest);
+        Answers::nearest(self, points, max_distances, counts, nearest);
     }
 
     fn touched(&self, cones: &[Option<SolidCone>]) -> Touches {

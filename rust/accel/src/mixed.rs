@@ -3,8 +3,8 @@
 use super::walk::{Build, Mailbox};
 use super::walked::walked;
 use super::{
-    Accelerator, Boxes, ByColumns, Cost, Counts, Crossings, Every, Exits, Info, Nearest, Primitives, Touches,
-    UserGeometry,
+    Accelerator, Boxes, ByColumns, Cost, Counts, Crossings, Every, Exits, Info, Nearest, PrimitiveFilter, Primitives,
+    Touches, UserGeometry,
 };
 use raywright_base::math::{DVec3, Hit, HitColumns, Ray, RayColumns};
 use raywright_base::simd::Level;
@@ -246,8 +246,14 @@ impl Accelerator for Mixed {
         of_triangles.joined(self.objects.exits(primitives, counts, rays, doubt))
     }
 
-    fn nearest(&self, points: &[DVec3], max_distances: &[f64], nearest: &mut [Nearest]) {
-        self.triangles.nearest(points, max_distances, nearest);
+    fn nearest_kept(
+        &self,
+        points: &[DVec3],
+        max_distances: &[f64],
+        counts: PrimitiveFilter<'_>,
+        nearest: &mut [Nearest],
+    ) {
+        self.triangles.nearest_kept(points, max_distances, counts, nearest);
     }
 
     fn touched(&self, cones: &[Option<SolidCone>]) -> Touches {

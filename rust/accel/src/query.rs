@@ -1,6 +1,6 @@
 //! What is asked of each ray: a type each, so that each question has kernels of its own.
 
-use super::{Boxes, ByColumns, Cost, Info, Nearest, Primitives, Touches};
+use super::{Boxes, ByColumns, Cost, Info, Nearest, PrimitiveFilter, Primitives, Touches};
 use raywright_base::math::{DVec3, Hit, Ray};
 use raywright_shapes::triangle::{Along, SolidCone};
 use raywright_shapes::{Candidate, Contact};
@@ -230,8 +230,8 @@ pub trait Answers: Send + Sync + Sized + 'static {
         None
     }
 
-    /// See [`super::Accelerator::nearest`].
-    fn nearest(&self, points: &[DVec3], max_distances: &[f64], nearest: &mut [Nearest]);
+    /// See [`super::Accelerator::nearest_kept`].
+    fn nearest(&self, points: &[DVec3], max_distances: &[f64], counts: PrimitiveFilter<'_>, nearest: &mut [Nearest]);
 
     /// See [`super::Accelerator::touched`].
     fn touched(&self, cones: &[Option<SolidCone>]) -> Touches;

@@ -2,7 +2,7 @@
 
 use super::query::{Answers, Query, Wanted};
 use super::walk::{Build, Contents, Few, Input, Lists, Mailbox, Mailboxes, Marks, Structure, TogetherBatch};
-use super::{Accelerator, Boxes, Info, Nearest, Primitives, SlabRay, Touches, bvh};
+use super::{Accelerator, Boxes, Info, Nearest, PrimitiveFilter, Primitives, SlabRay, Touches, bvh};
 use raywright_base::math::{Aabb, DVec3, LANES, Ray, Region};
 use raywright_base::parallel::{self, CHUNK};
 use raywright_base::simd::{Dispatch, Kernel, Level, Simd};
@@ -125,8 +125,8 @@ where
         }
     }
 
-    fn nearest(&self, points: &[DVec3], max_distances: &[f64], nearest: &mut [Nearest]) {
-        self.tree().nearest(points, max_distances, nearest);
+    fn nearest(&self, points: &[DVec3], max_distances: &[f64], counts: PrimitiveFilter<'_>, nearest: &mut [Nearest]) {
+        self.tree().nearest_kept(points, max_distances, counts, nearest);
     }
 
     fn touched(&self, cones: &[Option<SolidCone>]) -> Touches {

@@ -289,6 +289,7 @@ impl CompiledScene {
         py.detach(|| self.0.solids(&scene::Enclosing { shapes, tolerance, is_even_odd: false }).inverted().to_vec())
     }
 
+    #[pyo3(signature = (points, max_distance, shape, threads, shapes=None))]
     fn nearest<'py>(
         &self,
         py: Python<'py>,
@@ -296,6 +297,7 @@ impl CompiledScene {
         max_distance: Numbers<'py>,
         shape: Vec<usize>,
         threads: Option<usize>,
+        shapes: Option<Vec<bool>>,
     ) -> PyResult<ClosestPoints<'py>> {
         let (points, most) = (points.rows("points")?, max_distance.slice("max_distance")?);
         let (count, lead) = (shape.iter().product(), &shape);
@@ -328,7 +330,7 @@ impl CompiledScene {
                 let places: Vec<_> = some.clone().map(|i| points.get(of(points.len(), i))).collect();
                 let within: Vec<_> = some.map(|i| most[of(most.len(), i)]).collect();
                 let mut found = vec![Nearest::MISS; places.len()];
-                scene.nearest(&places, &within, &mut found);
+                scene.nearest(&places, &within, shapes.as_deref(), &mut found);
                 for (i, nearest) in found.iter().enumerate() {
                     (distance[i], position[i], uv[i]) = (nearest.distance, nearest.position.to_array(), nearest.uv);
                     (shape[i], primitive[i]) = located(scene, nearest.primitive);

@@ -6,7 +6,7 @@ use super::media::Medium;
 use super::{
     DescriptionError, Emission, Enclosing, Geometry, Lights, Material, Plan, SceneDescription, Solids, SurfacePoint,
 };
-use raywright_accel::{Accelerator, Cost, Crossings, Nearest, Primitives, Side, Touches};
+use raywright_accel::{Accelerator, Cost, Crossings, Nearest, PrimitiveFilter, Primitives, Side, Touches};
 use raywright_base::math::{DVec3, Hit, Ray, RayQueue, Region};
 use raywright_base::work::{Stopped, Work};
 use raywright_shapes::triangle::SolidCone;
@@ -227,14 +227,20 @@ impl Scene {
         })
     }
 
-    /// The nearest point to each point, within its greatest distance: one for all of them, or one each.
-    pub fn nearest(&self, points: &[DVec3], max_distances: &[f64], nearest: &mut [Nearest]) {
+    /// The nearest point to each point, within its greatest distance: one for all of them, or one each; of the shapes
+    /// that count, which all do without `shapes`.
+    pub fn nearest(&self, points: &[DVec3], max_distances: &[f64], shapes: Option<&[bool]>, nearest: &mut [Nearest]) {
+        let of_shapes = |primitive: u32| {
+            let shape = self.geometry.locate(primitive).0 as usize;
+            shapes.is_none_or(|shapes| shapes.get(shape).is_some_and(|&counts| counts))
+        };
+        let counts: PrimitiveFilter<'_> = if shapes.is_some() { Some(&of_shapes) } else { None };
         if self.geometry.has_vertices() {
-            self.accelerator.nearest(points, max_distances, nearest);
+            self.accelerator.nearest_kept(points, max_distances, counts, nearest);
         } else {
             nearest.fill(Nearest::MISS);
         }
-        self.geometry.nearest_of_others(points, max_distances, nearest);
+        self.geometry.nearest_of_others(points, max_distances, counts, nearest);
     }
 
     /// The triangles that each cone touches, nearest first.

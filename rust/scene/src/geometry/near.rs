@@ -5,7 +5,7 @@
 //! in the prototype's own space would do.
 
 use super::Geometry;
-use raywright_accel::{BoxTree, Nearest, Primitives};
+use raywright_accel::{BoxTree, Nearest, PrimitiveFilter, Primitives};
 use raywright_base::math::{Affine, DVec3, Hit};
 use raywright_shapes::gap_under;
 use raywright_shapes::triangle::{length, nearest_point, point_of};
@@ -36,15 +36,21 @@ impl Quest {
 
 impl Geometry {
     /// Puts the nearest points of shapes that are no meshes, and of instances, in the place of what was found on meshes
-    /// and is farther. What moves is where it is as the shutter opens.
-    pub(crate) fn nearest_of_others(&self, points: &[DVec3], most: &[f64], found: &mut [Nearest]) {
+    /// and is farther, if they count. What moves is where it is as the shutter opens.
+    pub(crate) fn nearest_of_others(
+        &self,
+        points: &[DVec3],
+        most: &[f64],
+        counts: PrimitiveFilter<'_>,
+        found: &mut [Nearest],
+    ) {
         let Some(tree) = self.tree_of_others() else { return };
         for (i, (&place, found)) in points.iter().zip(found).enumerate() {
             // One for all, or one a point.
             let most = most[if most.len() == 1 { 0 } else { i }];
             if place.is_finite() && most >= 0.0 {
                 let mut quest = Quest { place, most, found: *found };
-                self.look(tree, None, &mut quest);
+                self.look(tree, None, counts, &mut quest);
                 *found = quest.found;
             }
         }
@@ -62,11 +68,12 @@ impl Geometry {
     }
 
     /// Looks through a tree of what stands here, under a map.
-    fn look(&self, tree: &BoxTree, map: Option<&Affine>, quest: &mut Quest) {
+    fn look(&self, tree: &BoxTree, map: Option<&Affine>, counts: PrimitiveFilter<'_>, quest: &mut Quest) {
         let place = quest.place;
         let gap = |bounds: &_| gap_under(map, bounds, place);
         tree.nearest(quest.left(), gap, |primitive, _| {
-            if let Some(found) = self.nearest_on(primitive, map, quest) {
+            let is_asked = counts.is_none_or(|counts| counts(primitive));
+            if is_asked && let Some(found) = self.nearest_on(primitive, map, quest) {
                 quest.offer(found);
             }
             quest.left()
@@ -85,7 +92,7 @@ impl Geometry {
             let prototype = instances.prototype();
             let (inside, most) = (prototype.geometry(), quest.left());
             let mut within = Quest { place, most, found: Nearest::MISS };
-            inside.look(inside.tree_of_all(), Some(&map), &mut within);
+            inside.look(inside.tree_of_all(), Some(&map), None, &mut within);
             let found = within.found;
             let (own, inner) = (found.primitive, found.inner);
             return found.is_hit().then(|| {

@@ -33,7 +33,7 @@ use super::optimise::Optimisers;
 use super::parts::cover;
 use super::{Cuts, Quality, Steps};
 use crate::query::{Answers, Query};
-use crate::{Boxes, ByColumns, Info, Nearest, Primitives, Touches};
+use crate::{Boxes, ByColumns, Info, Nearest, PrimitiveFilter, Primitives, Touches};
 use answer::Closest;
 use batch::{All, Firsts};
 use collapse::Outline;
@@ -240,8 +240,8 @@ where
         Some(self)
     }
 
-    fn nearest(&self, points: &[DVec3], max_distances: &[f64], nearest: &mut [Nearest]) {
-        self.level.dispatch(nearest::Points { bvh: self, points, max_distances, nearest });
+    fn nearest(&self, points: &[DVec3], max_distances: &[f64], counts: PrimitiveFilter<'_>, nearest: &mut [Nearest]) {
+        self.level.dispatch(nearest::Points { bvh: self, points, max_distances, counts, nearest });
     }
 
     fn touched(&self, cones: &[Option<SolidCone>]) -> Touches {

@@ -3,6 +3,7 @@
 
 use super::WideBvh;
 use super::node::Child;
+use crate::kept::PrimitiveFilter;
 use crate::nearest::{LeafTest, Nearest, Search, of};
 use raywright_base::math::DVec3;
 use raywright_base::simd::{Kernel, Simd};
@@ -13,6 +14,7 @@ pub struct Points<'a, const N: usize, L> {
     pub bvh: &'a WideBvh<N, L>,
     pub points: &'a [DVec3],
     pub max_distances: &'a [f64],
+    pub counts: PrimitiveFilter<'a>,
     pub nearest: &'a mut [Nearest],
 }
 
@@ -28,7 +30,7 @@ impl<const N: usize, L: Leaves<N>> Kernel<N> for Points<'_, N, L> {
 
     #[inline(always)]
     fn run<S: Simd<N>>(self, simd: S) {
-        let Self { bvh, points, max_distances, nearest } = self;
+        let Self { bvh, points, max_distances, counts, nearest } = self;
         let mut stack = vec![Entry { square: 0.0, child: Child::None }; bvh.stack];
         // Where the last point ended is a good place for the next to begin: neighbours then pass most of the tree by.
         let mut last = None;
@@ -36,9 +38,9 @@ impl<const N: usize, L: Leaves<N>> Kernel<N> for Points<'_, N, L> {
             *nearest = match Search::along(bvh.axes.as_ref(), point, of(max_distances, i), &bvh.region) {
                 Some(mut search) => {
                     if let Some((first, count, lane)) = last {
-                        offer(bvh, &mut search, first, count, lane);
+                        offer(bvh, counts, &mut search, (first, count, lane));
                     }
-                    walk(simd, bvh, &mut search, &mut last, &mut stack);
+                    walk(simd, bvh, counts, &mut search, &mut last, &mut stack);
                     search.finish()
                 }
                 None => Nearest::MISS,
@@ -52,6 +54,7 @@ impl<const N: usize, L: Leaves<N>> Kernel<N> for Points<'_, N, L> {
 fn walk<const N: usize, L: Leaves<N>, S: Simd<N>>(
     simd: S,
     bvh: &WideBvh<N, L>,
+    counts: PrimitiveFilter<'_>,
     search: &mut Search,
     last: &mut Option<(usize, u32, usize)>,
     stack: &mut [Entry],
@@ -88,7 +91,7 @@ fn walk<const N: usize, L: Leaves<N>, S: Simd<N>>(
                 while left != 0 {
                     let lane = left.trailing_zeros() as usize & (N - 1);
                     left &= left - 1;
-                    if offer(bvh, search, first, count, lane) {
+                    if offer(bvh, counts, search, (first, count, lane)) {
                         *last = Some((first, count, lane));
                         (limit, leaf_limit) = (search.limit(), test.limit(search));
                     }
@@ -108,14 +111,14 @@ fn walk<const N: usize, L: Leaves<N>, S: Simd<N>>(
     }
 }
 
-/// Offers a search the triangle in a lane of a leaf; true if it is nearer than what was found.
+/// Offers a search the triangle in a lane of a leaf, if it counts; true if it is nearer than what was found.
 #[inline(always)]
 fn offer<const N: usize, L: Leaves<N>>(
     bvh: &WideBvh<N, L>,
+    counts: PrimitiveFilter<'_>,
     search: &mut Search,
-    first: usize,
-    count: u32,
-    lane: usize,
+    (first, count, lane): (usize, u32, usize),
 ) -> bool {
-    search.offer(bvh.leaves.primitive(first, count, lane), bvh.leaves.corners(first, count, lane))
+    let primitive = bvh.leaves.primitive(first, count, lane);
+    counts.is_none_or(|counts| counts(primitive)) && search.offer(primitive, bvh.leaves.corners(first, count, lane))
 }
