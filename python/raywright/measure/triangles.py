@@ -7,8 +7,7 @@ from numpy.typing import NDArray
 
 from ..scene.instance import AnyShape, Instance
 from ..scene.scene import Scene
-from ..shapes.mesh import Mesh
-from ..shapes.welding import rounding
+from ..shapes.mesh import Mesh, rounding
 from .places import Floats
 
 

@@ -119,7 +119,7 @@ def load_whole(path: Path, kind: str) -> Mesh:
         mesh = read_ply_whole(path)
     if mesh is None or not len(mesh.faces):
         raise ValueError(f"{path} holds no faces")
-    return welded([mesh])[0]
+    return mesh
 
 
 def _read(path: Path) -> tuple[Mesh, ...]:

@@ -21,6 +21,10 @@ class PointQueries:
     def _compiled(self) -> CompiledScene:
         raise NotImplementedError
 
+    def _enclosing(self) -> CompiledScene:
+        """Return the scene by which it is decided what is closed."""
+        raise NotImplementedError
+
     def contains(
         self, points: ArrayLike, threads: int | None = None, shapes: ShapeMask | None = None
     ) -> NDArray[np.bool_]:
@@ -74,7 +78,7 @@ class PointQueries:
         return self._inside(points, threads, shapes)
 
     def _inside(self, points: ArrayLike, threads: int | None, shapes: ShapeMask | None) -> NDArray[np.bool_]:
-        core = self._core or self._compiled()
+        core = self._enclosing()
         mask = _mask(shapes, core)
         found = core.contains(*point_arguments(points, threads), mask, self._tolerance)
         if not self._is_inverted_told and (inverted := core.inverted(mask, self._tolerance)):

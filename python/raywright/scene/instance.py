@@ -16,7 +16,7 @@ from .. import _core
 from ..accelerators import BVH, Accelerator
 from ..arrays import frozen, integer, label, real_array
 from ..shapes import Shape
-from ..shapes.mesh import Mesh, face_count
+from ..shapes.mesh import Mesh, face_count, stretched
 from ..shapes.welding import Weld, welded
 
 if TYPE_CHECKING:
@@ -263,7 +263,36 @@ def meshes(shapes: Any, weld: Weld = "auto") -> tuple[AnyShape, ...]:
         If something is none of these.
     """
     found = tuple(_each(shapes, weld))
-    return welded(found, weld) if isinstance(weld, int | float) else found
+    return closed(found, weld) if isinstance(weld, int | float) else found
+
+
+def closed(shapes: Sequence[AnyShape], weld: Weld) -> tuple[AnyShape, ...]:
+    """Return shapes with corners of meshes welded, as `welded` does, and those in instances among themselves.
+
+    A distance is that in the scene, in each of the copies.
+    """
+    return _closed(shapes, weld, {})
+
+
+def _closed(shapes: Sequence[AnyShape], weld: Weld, known: dict[Any, Any]) -> tuple[AnyShape, ...]:
+    result = list(shapes)
+    for i, shape in enumerate(shapes):
+        if isinstance(shape, Instance):
+            own = _weld_within(shape, weld)
+            # Instances of the same shapes share what is compiled.
+            key = (tuple(map(id, shape.shapes)), own)
+            if key not in known:
+                known[key] = _closed(shape.shapes, own, known)
+            if any(a is not b for a, b in zip(known[key], shape.shapes, strict=True)):
+                result[i] = Instance(known[key], *shape._parts()[1:])
+    return welded(result, weld)
+
+
+def _weld_within(instance: Instance, weld: Weld) -> Weld:
+    if isinstance(weld, str | bool) or weld is None or not len(instance):
+        return weld
+    ends = (instance.transform, instance.transform_end)
+    return weld / max(stretched(1.0, end[..., :3, :3]) for end in ends if end is not None)
 
 
 def only_meshes(shapes: Any) -> tuple[Mesh, ...]:

@@ -20,10 +20,10 @@ from ..media.medium import medium as checked_medium
 from ..query.flats import FlatArrays, flat_arrays
 from ..query.queries import Queries
 from ..query.trees import TreeBoxes
-from ..shapes.mesh import face_count, moved
-from ..shapes.welding import Weld, weld_tolerance, welded
+from ..shapes.mesh import face_count, has_noise, moved
+from ..shapes.welding import Weld, weld_tolerance
 from .arrivals import Arrival
-from .instance import AnyShape, Instance, Shapes, meshes
+from .instance import AnyShape, Instance, Shapes, closed, meshes
 from .plan import Plan, PlanRow
 from .progress import BuildProgress, check_progress, watcher
 from .wavelengths import reason
@@ -125,10 +125,11 @@ class Scene(Queries):
     Corners that differ by rounding leave cracks, through which rays slip, and surfaces that do not close. So
     corners on open edges are put in one place where they are as close as `weld` says: "auto" is 2^-21 of
     the largest coordinate of a mesh where all are float32 numbers, 2^-47 where not, and a 64th of its mean
-    edge at most; between meshes the least of all. Two corners of one face never are one, and what is closed
-    stays as it is, however thin. With "auto" that goes for files and for trimesh's objects, each by itself; a
-    `Mesh` of arrays is hit where its vertices are, and welded for `contains`, `signed_distance` and in
-    ``rw.measure``. A distance goes for all meshes, together. ``rw.measure.topology`` tells which cracks
+    edge at most, before it was transformed; between meshes the least of all. Two corners of one face never
+    are one, and what is closed stays as it is, however thin. With "auto" that goes for files and for
+    trimesh's objects, each by itself; a `Mesh` of arrays is hit where its vertices are, and welded for
+    `contains`, `signed_distance` and in ``rw.measure``. A distance goes for all meshes, together; those of an
+    `Instance` are a group of their own. ``rw.measure.topology`` tells which cracks
     remain.
 
     Faces with a corner that is NaN or infinite are left out when the scene is compiled, with one
@@ -151,6 +152,7 @@ class Scene(Queries):
     ) -> None:
         self._weld, self._tolerance = weld, weld_tolerance(weld)
         self._shapes = meshes(shapes, weld)
+        self._has_noise = any(map(has_noise, self._shapes))
         self._lights = checked_lights(lights)
         self._environment = environments(environment)
         if not isinstance(accelerator, Accelerator):
@@ -385,10 +387,15 @@ class Scene(Queries):
             The very same where no corner moves, as in scenes of files and of what is closed.
         """
         if self._closed is None or self._closed[0] is not self._shapes:
-            shapes = welded(self._shapes, self._weld)
+            shapes = closed(self._shapes, self._weld)
             is_same = all(a is b for a, b in zip(shapes, self._shapes, strict=True))
             self._closed = self._shapes, self if is_same else Scene(shapes, *self._parts()[1:])
         return self._closed[1]
+
+    def _enclosing(self) -> _core.CompiledScene:
+        # What is compiled does not know how many digits vertices had before they were transformed.
+        scene = self.welded() if self._has_noise and self._tolerance is None else self
+        return scene._core or scene._compiled()
 
     def _moved(self, vertices: ArrayLike | Sequence[ArrayLike | None]) -> tuple[AnyShape, ...]:
         count = len(self._shapes)

@@ -13,6 +13,7 @@ from ..mesh_files import meshes
 from ..rendering.samplers import Sampler
 from ..rendering.shot import Shot
 from ..scene.framing import outline
+from ..shapes.welding import Weld, weld_tolerance
 from .mitsuba import from_mitsuba
 from .shown import shown
 
@@ -34,6 +35,7 @@ def load(
     width: int | None = None,
     height: int | None = None,
     sampler: Sampler | None = None,
+    weld: Weld = "auto",
     **parameters: Any,
 ) -> Shot:
     """Read a scene, or a mesh, with all that it takes to make a picture of it.
@@ -59,6 +61,10 @@ def load(
     sampler : Independent, Stratified, Halton, Sobol or Lattice, optional
         Where the random numbers come from, whatever the file says. If not given, the file's own; a scene of
         Mitsuba with the sampler ``independent``, which is the default there, counts as one that names none.
+    weld : "auto", float or None
+        How close corners of meshes are one, in the scene's unit. "auto" is the rounding of the file's own
+        precision, as for `Scene`; None for those alone that are equal. Only positions are made equal: corners
+        with other normals, coordinates or colors stay vertices of their own.
     **parameters
         What ``$name`` in a scene of Mitsuba stands for, in place of its defaults: ``spp=16``. Those of the
         names above are given by ``from_mitsuba(parameters=)``.
@@ -73,7 +79,8 @@ def load(
     FileNotFoundError
         If the file, or one that it names, is missing.
     ValueError
-        If it cannot be read, or holds something that is not supported, or a number is out of range.
+        If it cannot be read, or holds something that is not supported, or a number is out of range; if `weld`
+        is negative or not finite.
     TypeError
         If `path` is no path, a size is no integer, `sampler` is none, or there are parameters and it is no
         scene of Mitsuba.
@@ -91,16 +98,24 @@ def load(
     choice("up", up, ("y", "z"))
     if sampler is not None and not isinstance(sampler, Sampler):
         raise TypeError(f"sampler must be one of raywright's, got {type(sampler).__name__}")
-    shot = _read(Path(path), up, width, height, parameters)
+    weld_tolerance(weld)
+    shot = _read(Path(path), up, width, height, weld, parameters)
     return shot if sampler is None else replace(shot, sampler=sampler)
 
 
-def _read(path: Path, up: Literal["y", "z"], width: int | None, height: int | None, parameters: Any) -> Shot:
+def _read(
+    path: Path,
+    up: Literal["y", "z"],
+    width: int | None,
+    height: int | None,
+    weld: Weld,
+    parameters: dict[str, Any],
+) -> Shot:
     if not path.exists():
         raise FileNotFoundError(errno.ENOENT, "no such file", str(path))
     suffix = path.suffix.lower()
     if suffix == ".xml":
-        return from_mitsuba(path, parameters=parameters).resized(width, height)
+        return from_mitsuba(path, parameters=parameters, weld=weld).resized(width, height)
     if parameters:
         raise TypeError(
             f"{next(iter(parameters))} is no parameter of {path}: only scenes of Mitsuba have some"
@@ -108,18 +123,24 @@ def _read(path: Path, up: Literal["y", "z"], width: int | None, height: int | No
     if path.name.lower().endswith((".pbrt", ".pbrt.gz")):
         from .pbrt import read_pbrt
 
-        return read_pbrt(path).resized(width, height)
+        return _welded(read_pbrt(path).resized(width, height), weld)
     if suffix in USD:
         from .usd import read_usd
 
-        return read_usd(path, width, height)
+        return _welded(read_usd(path, width, height), weld)
     if suffix in SCENES:
         from .gltf import read_gltf
 
-        return read_gltf(path, width, height)
-    found = meshes.load(path)
+        return _welded(read_gltf(path, width, height), weld)
+    found = meshes.load(path, weld)
     try:
         outline(found)
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from error
-    return shown(found, up=up, width=width, height=height)
+    shot = shown(found, up=up, width=width, height=height)
+    return replace(shot, scene=shot.scene.replace(weld=weld))
+
+
+def _welded(shot: Shot, weld: Weld) -> Shot:
+    """Return the shot with corners of meshes put in one place that differ by rounding."""
+    return replace(shot, scene=shot.scene.replace(weld=weld).welded())

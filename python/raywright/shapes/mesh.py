@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .. import _core
 from ..arrays import label, last_axis, rows, triangles
 from ..lights.emission import EmissionLike, Emitted
 from ..lights.emission import emission as checked_emission
@@ -55,6 +56,8 @@ class Mesh:
     emission: Emitted | None
     colors: NDArray[np.floating[Any]] | None
     name: str | None
+    # How far rounding has parted corners that are one, where that is more than vertices tell by their digits.
+    _noise = 0.0
 
     def __init__(
         self,
@@ -131,7 +134,7 @@ class Mesh:
             normals = (normals.astype(np.float64) @ cofactors.T) * (-1.0 if mirrors else 1.0)
             length = np.linalg.norm(normals, axis=1, keepdims=True)
             normals = np.divide(normals, length, out=np.zeros_like(normals), where=length > 0)
-        return Mesh(
+        result = Mesh(
             self.vertices.astype(np.float64) @ linear.T + shift,
             self.faces[:, [0, 2, 1]] if mirrors else self.faces,
             normals,
@@ -141,6 +144,7 @@ class Mesh:
             self.colors,
             self.name,
         )
+        return noisy(result, stretched(rounding(self), linear))
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Mesh):
@@ -163,7 +167,8 @@ class Mesh:
     def __reduce__(self) -> tuple[Any, ...]:
         # Through the constructor, because unpickled arrays would be writeable.
         look = (self.material, self.emission, self.colors, self.name)
-        return Mesh, (self.vertices, self.faces, self.normals, self.uv, *look)
+        parts = (self.vertices, self.faces, self.normals, self.uv, *look)
+        return (Mesh, parts, {"_noise": self._noise}) if self._noise else (Mesh, parts)
 
     def __repr__(self) -> str:
         parts = [f"{len(self.vertices)} vertices", f"{len(self.faces)} faces", repr(self.material)]
@@ -197,6 +202,38 @@ def moved(mesh: object, name: str, vertices: ArrayLike) -> Mesh:
     # The other arrays are checked and cannot change: they are shared.
     vars(result).update(vars(mesh), vertices=rows(name, vertices, 3, len(mesh.vertices)))
     return result
+
+
+def wound(mesh: Mesh, faces: ArrayLike, normals: ArrayLike | None) -> Mesh:
+    """Return the mesh with other faces and normals of the same vertices, and all else as it is."""
+    count = len(mesh.vertices)
+    pointing = None if normals is None else rows("normals", normals, 3, count)
+    result = object.__new__(Mesh)
+    vars(result).update(vars(mesh), faces=triangles("faces", faces, count), normals=pointing)
+    return result
+
+
+def rounding(mesh: Mesh) -> float:
+    """Return how close corners of a mesh are that differ by rounding."""
+    return max(_core.weld_rounding(mesh.vertices, mesh.faces), mesh._noise)
+
+
+def stretched(distance: float, linear: NDArray[np.float64]) -> float:
+    """Return how far apart points may be that were so close before one of some linear maps, (..., 3, 3)."""
+    if not np.isfinite(linear).all():
+        return 0.0
+    return distance * float(np.max(np.linalg.norm(linear, 2, axis=(-2, -1)), initial=0.0))
+
+
+def noisy(mesh: Mesh, noise: float) -> Mesh:
+    """Return the mesh, which is told how far rounding has parted its corners before it was transformed."""
+    object.__setattr__(mesh, "_noise", noise)
+    return mesh
+
+
+def has_noise(shape: object) -> bool:
+    """Return whether rounding may have parted corners of a shape by more than its digits tell."""
+    return isinstance(shape, Mesh) and shape._noise > 0
 
 
 def _same(a: NDArray[Any] | None, b: NDArray[Any] | None) -> bool:

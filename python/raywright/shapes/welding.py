@@ -7,7 +7,7 @@ import numpy as np
 
 from .. import _core
 from ..arrays import number
-from .mesh import Mesh, moved
+from .mesh import Mesh, moved, rounding
 
 Weld: TypeAlias = float | Literal["auto"] | None
 _Shape = TypeVar("_Shape")
@@ -35,11 +35,6 @@ def weld_tolerance(weld: Weld) -> float | None:
     return distance
 
 
-def rounding(mesh: Mesh) -> float:
-    """Return how close corners of a mesh are that differ by rounding."""
-    return _core.weld_rounding(mesh.vertices, mesh.faces)
-
-
 def welded(shapes: Sequence[_Shape], weld: Weld = "auto") -> tuple[_Shape, ...]:
     """Return shapes with corners of meshes that differ by rounding put in one place.
 
@@ -52,7 +47,8 @@ def welded(shapes: Sequence[_Shape], weld: Weld = "auto") -> tuple[_Shape, ...]:
         What is no mesh stays as it is, and so are meshes of which no corner moves: the same objects.
     weld : "auto", float or None
         How close; "auto" is 2^-21 of the largest coordinate of a mesh where all are float32 numbers and 2^-47
-        where not, and a 64th of its mean edge at most; between meshes the least of all. None for not at all.
+        where not, and a 64th of its mean edge at most, all before it was transformed; between meshes the
+        least of all. None for not at all.
     """
     tolerance = weld_tolerance(weld)
     result = list(shapes)

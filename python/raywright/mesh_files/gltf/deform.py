@@ -28,6 +28,11 @@ class Deform(NamedTuple):
     weights: tuple[float, ...]
     joints: NDArray[np.float64] | None
 
+    @property
+    def linear(self) -> NDArray[np.float64]:
+        """The linear maps that vertices are taken through, (..., 3, 3)."""
+        return np.eye(3) if self.joints is None else self.joints[:, :3, :3]
+
     def applied(self, primitive: Part, vertices: Array, normals: Array | None) -> tuple[Array, Array | None]:
         """Return vertices and normals as they are when bent."""
         for target, weight in zip(primitive.parts("targets"), self.weights, strict=False):

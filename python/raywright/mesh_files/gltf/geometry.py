@@ -5,7 +5,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...shapes.mesh import Mesh
+from ... import _core
+from ...shapes.mesh import Mesh, noisy, stretched
 from .accessors import Accessors
 from .deform import Deform
 from .document import Document
@@ -57,7 +58,7 @@ class Geometry:
         attributes = primitive.part("attributes")
         if mode < _TRIANGLES or "POSITION" not in attributes:
             return None
-        vertices = self._accessors.vectors(attributes, "POSITION", 3)
+        given = vertices = self._accessors.vectors(attributes, "POSITION", 3)
         normals = self._accessors.vectors(attributes, "NORMAL", 3) if "NORMAL" in attributes else None
         if deform is not None:
             vertices, normals = deform.applied(primitive, vertices, normals)
@@ -75,7 +76,7 @@ class Geometry:
         if 2 * len(corners) < len(vertices):
             # Few of the vertices that it shares with others.
             used, corners = np.unique(corners, return_inverse=True)
-        return Mesh(
+        made = Mesh(
             vertices[used],
             _faces(corners.reshape(-1), mode, primitive),
             None if normals is None else normals[used],
@@ -86,6 +87,9 @@ class Geometry:
             None if colors is None else np.clip(colors[used, :3], 0, 1),
             name,
         )
+        if deform is None:
+            return made
+        return noisy(made, stretched(_core.weld_rounding(given[used], made.faces), deform.linear))
 
     def _with_alpha(
         self, primitive: Part, surface: Surface, colors: Floats, uv: Floats | None

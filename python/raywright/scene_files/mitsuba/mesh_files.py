@@ -5,8 +5,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ... import _core
 from ...mesh_files.meshes import load_whole
-from ...shapes.mesh import Mesh
+from ...shapes.mesh import Mesh, stretched
 from .plugin import Plugin
 from .serialized import Stored, read_serialized
 from .transforms import Matrix
@@ -46,6 +47,11 @@ class Triangles(NamedTuple):
             turned = flipped != bool(np.linalg.det(linear) < 0)
             normals = -normals if flipped else normals
         return Triangles(vertices, self.faces[:, [0, 2, 1]] if turned else self.faces, normals, self.uv)
+
+    def noise(self, matrix: Matrix) -> float:
+        """Return how far apart corners may be, where a matrix puts them, that rounding has parted before."""
+        faces = np.ascontiguousarray(self.faces, np.uint32)
+        return stretched(_core.weld_rounding(np.ascontiguousarray(self.vertices), faces), matrix[:3, :3])
 
     @property
     def box(self) -> Floats:

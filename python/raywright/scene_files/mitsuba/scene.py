@@ -11,6 +11,7 @@ from ...arrays import integer
 from ...lights import Environment, Light
 from ...rendering.shot import Shot
 from ...scene.scene import Scene
+from ...shapes.welding import Weld, weld_tolerance
 from . import bsdfs, emitters, media, sensors, settings, shapes, textures
 from .errors import SceneError
 from .plugin import Context, Plugin
@@ -39,6 +40,7 @@ def from_mitsuba(
     folder: str | PathLike[str] | None = None,
     sensor: int = 0,
     parameters: Mapping[str, Any] | None = None,
+    weld: Weld = "auto",
 ) -> Shot:
     """Read a scene in the format of Mitsuba 3.
 
@@ -57,6 +59,8 @@ def from_mitsuba(
         Which of the scene's sensors looks.
     parameters : dict, optional
         What ``$name`` in an XML file stands for, in place of its defaults: numbers, texts or bools by name.
+    weld : "auto", float or None
+        How close corners of meshes are one, as `load` has it.
 
     Returns
     -------
@@ -68,11 +72,13 @@ def from_mitsuba(
     FileNotFoundError
         If a file is missing.
     ValueError
-        If something is not supported, or is not as it must be (tells which plugin, or which line).
+        If something is not supported, or is not as it must be (tells which plugin, or which line), or `weld`
+        is negative or not finite.
     TypeError
         If `scene` is no dict and no path, or `sensor` is no integer.
     """
     sensor = integer("sensor", sensor, 0)
+    weld_tolerance(weld)
     if isinstance(scene, Mapping):
         if parameters:
             raise ValueError("parameters are of an XML file; a dict has none")
@@ -84,14 +90,14 @@ def from_mitsuba(
     if tree.get("type") != "scene":
         raise SceneError(f"scene must have the type 'scene', got {tree.get('type')!r}")
     try:
-        return _read(Plugin(tree, "", Context(tree, folders)), sensor)
+        return _read(Plugin(tree, "", Context(tree, folders)), sensor, weld)
     except SceneError as error:
         if isinstance(scene, Mapping) or str(scene) in str(error):
             raise
         raise SceneError(f"{scene}: {error}") from error
 
 
-def _read(scene: Plugin, number: int) -> Shot:
+def _read(scene: Plugin, number: int, weld: Weld) -> Shot:
     found: list[Any] = []
     copies = shapes.Copies()
     lights: list[Light] = []
@@ -139,7 +145,8 @@ def _read(scene: Plugin, number: int) -> Shot:
         around[0] if len(around) == 1 else around or None,
         medium=media.around(scene, eye),
         shading_normals="as given",
-    )
+        weld=weld,
+    ).welded()
     return Shot(
         whole,
         sensors.camera(eye, film, whole),

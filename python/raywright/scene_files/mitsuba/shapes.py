@@ -11,7 +11,7 @@ from ...materials import Diffuse, Material, TwoSided
 from ...media.files import read_vol
 from ...scene.instance import AnyShape, Instance
 from ...shapes import Cylinder, Disk, Shape, Sphere
-from ...shapes.mesh import Mesh
+from ...shapes.mesh import Mesh, noisy
 from .. import tubes
 from . import attributes, bsdfs, curves, height_fields, media, mesh_files, sdf_grids, solid
 from .errors import SceneError
@@ -47,25 +47,33 @@ def shapes_of(plugin: Plugin) -> tuple[Mesh | Shape, ...]:
     return result if isinstance(result, tuple) else (result,)
 
 
-def _mesh(plugin: Plugin) -> Mesh | tuple[Mesh, ...]:
+def _mesh(plugin: Plugin) -> tuple[Mesh, ...]:
     own = {"rectangle": mesh_files.rectangle, "cube": mesh_files.cube}
     names = attributes.named_within(plugin)
     if len(names) > 1:
         plugin.fail(f"one mesh_attribute of a mesh is read, got {', '.join(sorted(names))}")
     triangles, smooth = (own[plugin.type](), False) if plugin.type in own else mesh_files.of_file(plugin)
-    vertices, faces, normals, uv = triangles.placed(plugin.to_world(), plugin.switch("flip_normals", False))
+    matrix = plugin.to_world()
+    vertices, faces, normals, uv = triangles.placed(matrix, plugin.switch("flip_normals", False))
     if smooth:
         normals = mesh_files.smooth_normals(vertices, faces)
     elif plugin.type in own:
         # All corners of each face have its own normal.
         normals = None
-    placed = mesh_files.Triangles(vertices, faces, normals, uv)
+    noise = triangles.noise(matrix)
+    found = _colored(plugin, mesh_files.Triangles(vertices, faces, normals, uv), names)
+    return tuple(noisy(mesh, noise) for mesh in found)
+
+
+def _colored(plugin: Plugin, placed: mesh_files.Triangles, names: set[str]) -> tuple[Mesh, ...]:
+    """Return a mesh with the volume or the attribute that colors it, if there is one."""
+    vertices, faces, normals, uv = placed
     solids = solid.grids_within(plugin)
     if len(solids) + len(names) > 1:
         plugin.fail("one volume or mesh_attribute of a mesh is read")
     if solids:
         fine, colours = solid.coloured(placed, solids[0])
-        return Mesh(*fine, *_look(plugin, SAME, box=placed.box), colours)
+        return (Mesh(*fine, *_look(plugin, SAME, box=placed.box), colours),)
     if not names:
         return _by_hand(plugin, placed)
     if plugin.type != "ply":
@@ -77,10 +85,10 @@ def _mesh(plugin: Plugin) -> Mesh | tuple[Mesh, ...]:
         vertices, colours = vertices[corners], np.repeat(colours, 3, axis=0)
         normals, uv = (None if one is None else one[corners] for one in (normals, uv))
         faces = np.arange(len(corners)).reshape(-1, 3)
-    return Mesh(vertices, faces, normals, uv, *_look(plugin, SAME), colours)
+    return (Mesh(vertices, faces, normals, uv, *_look(plugin, SAME), colours),)
 
 
-def _by_hand(plugin: Plugin, triangles: mesh_files.Triangles) -> Mesh | tuple[Mesh, ...]:
+def _by_hand(plugin: Plugin, triangles: mesh_files.Triangles) -> tuple[Mesh, ...]:
     """Return a mesh; where it has a map of normals, in two if only some of its faces are mirrored.
 
     Along v Mitsuba has what is at right angles to u and the normal, whichever way v goes.
@@ -89,7 +97,7 @@ def _by_hand(plugin: Plugin, triangles: mesh_files.Triangles) -> Mesh | tuple[Me
     mirrored = triangles.mirrored() if attributes.has_within(plugin, "normalmap") else np.zeros(1, bool)
     if mirrored.all() or not mirrored.any():
         look = _look(plugin, MIRRORED if mirrored.all() else SAME, box=triangles.box)
-        return Mesh(vertices, faces, normals, uv, *look)
+        return (Mesh(vertices, faces, normals, uv, *look),)
     again = Plugin(plugin.values, plugin.where, plugin.context)
     return (
         Mesh(vertices, faces[~mirrored], normals, uv, *_look(plugin, SAME)),
@@ -128,7 +136,7 @@ def _distance_grid(plugin: Plugin) -> Mesh:
     return Mesh(vertices, faces, None if plain else normals, corner, *_look(plugin, SAME))
 
 
-def _height_field(plugin: Plugin) -> Mesh | tuple[Mesh, ...]:
+def _height_field(plugin: Plugin) -> tuple[Mesh, ...]:
     inner = list(plugin.children("bitmap"))
     if len(inner) + plugin.has("filename") != 1:
         plugin.fail("either filename or one texture of type bitmap must be given")

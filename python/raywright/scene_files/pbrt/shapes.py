@@ -15,7 +15,7 @@ from ...lights import Emission
 from ...materials import Mask, Material
 from ...mesh_files.meshes import load_whole
 from ...shapes import Cylinder, Disk, Shape, Sphere
-from ...shapes.mesh import Mesh
+from ...shapes.mesh import Mesh, wound
 from ..tubes import b_spline
 from .lights import imaged
 from .parameters import Floats, Parameters
@@ -105,7 +105,7 @@ def _mesh(
     uv: Any = None,
 ) -> Mesh:
     """Return a mesh in the world. The outside is where faces turn anticlockwise, or where normals point."""
-    mesh = Mesh(vertices, faces, normals, uv).transformed(matrix)
+    mesh = Mesh(vertices, faces, normals, uv, look.material, look.emission).transformed(matrix)
     faces, pointing = mesh.faces, mesh.normals
     if pointing is not None:
         a, b, c = (mesh.vertices[faces[:, k]] for k in range(3))
@@ -113,7 +113,7 @@ def _mesh(
         faces = np.where(against[:, None], faces[:, ::-1], faces)
     if look.flipped:
         faces, pointing = faces[:, ::-1], None if pointing is None else -pointing
-    return Mesh(mesh.vertices, faces, pointing, mesh.uv, look.material, look.emission)
+    return wound(mesh, faces, pointing)
 
 
 def _triangles(parameters: Parameters, matrix: Floats, look: Look, _: Textures) -> Mesh:
