@@ -906,7 +906,7 @@ def sections(
 ) -> list[tuple[NDArray[np.float64], list[int], list[bool], float]]:
     """Return points (K, 3), splits, which lines are closed, and the area, of each plane."""
 
-def weld(vertices: _Floats, faces: NDArray[np.uint32], tolerance: float) -> NDArray[np.uint32]:
+def weld(vertices: _Floats, faces: NDArray[np.uint32], tolerances: NDArray[np.float64]) -> NDArray[np.uint32]:
     """Return the vertex that stands for each."""
 
 def weld_rounding(vertices: _Floats, faces: NDArray[np.uint32]) -> float:

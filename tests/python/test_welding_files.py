@@ -14,6 +14,7 @@ import raywright as rw
 PLACE = trimesh.transformations.rotation_matrix(0.7, (1, 2, 3))
 PLACE[:3, :3] *= 30.0
 PLACE[:3, 3] = 1.0, 2.0, 3.0
+TURNS = [trimesh.transformations.rotation_matrix(angle, (1, 1, 0)) for angle in (0.1, 0.4)]
 
 
 def cracked(seed=0):
@@ -218,3 +219,51 @@ def test_files_without_cracks_keep_every_bit(tmp_path):
         assert mesh_of(rw.load(tmp_path / "box.gltf", weld=weld)) == mesh_of(
             rw.load(tmp_path / "box.gltf", weld=None)
         )
+
+
+def parted(**node):
+    """Return a glTF document of the cube in two parts at one node."""
+    writer, (corners, _) = Writer(), cracked()
+    primitives = []
+    for some in (corners[:15], corners[15:]):
+        index = writer.mesh(indices=None, POSITION=some)
+        primitives += writer.json["meshes"][index]["primitives"]
+    writer.json["meshes"] = [{"primitives": primitives}]
+    writer.node(mesh=0, **node)
+    return writer
+
+
+def corners_of(shot):
+    parts = [shape for shape in shot.scene.shapes if len(getattr(shape, "faces", ())) in (5, 7)]
+    assert [len(part.faces) for part in parts] == [5, 7]
+    return np.concatenate([part.vertices for part in parts])
+
+
+def test_meshes_are_welded_to_each_other_by_the_lesser_of_their_roundings(tmp_path):
+    """Whatever else is in the scene: the floor that a file without a light is put on has all digits."""
+    path = tmp_path / "parts.gltf"
+    path.write_bytes(parted(matrix=PLACE.T.reshape(-1).tolist()).gltf())
+    assert len(np.unique(corners_of(rw.load(path)), axis=0)) == 8
+    assert len(np.unique(corners_of(rw.load(path, weld=None)), axis=0)) > 20
+    shapes = rw.load(path, weld=None).scene.shapes
+    # One of all digits stays apart from the others.
+    corners, faces = cracked()
+    double = rw.Mesh(corners[:15].astype(np.float64) + 1e-9, faces[:5])
+    single = rw.Mesh(corners[15:], faces[:7])
+    closed = rw.Scene([double, single, *shapes]).welded().shapes
+    places = [set(map(tuple, mesh.vertices.tolist())) for mesh in closed[:2]]
+    assert not places[0] & places[1]
+
+
+def test_skins_do_not_keep_corners_apart(tmp_path):
+    writer, (corners, _) = Writer(), cracked()
+    share = np.tile(np.float32([0.25, 0.75, 0, 0]), (36, 1))
+    joints = np.tile(np.uint8([0, 1, 0, 0]), (36, 1))
+    index = writer.mesh(indices=None, POSITION=corners, JOINTS_0=joints, WEIGHTS_0=share)
+    writer.node(mesh=index, skin=0)
+    bones = [writer.node(matrix=(PLACE @ turn).T.reshape(-1).tolist()) for turn in TURNS]
+    writer.json["skins"] = [{"joints": bones}]
+    path = tmp_path / "bent.gltf"
+    path.write_bytes(writer.gltf())
+    assert len(np.unique(mesh_of(rw.load(path)).vertices, axis=0)) == 8
+    assert len(np.unique(mesh_of(rw.load(path, weld=None)).vertices, axis=0)) > 20

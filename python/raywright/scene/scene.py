@@ -123,14 +123,13 @@ class Scene(Queries):
     CPU.
 
     Corners that differ by rounding leave cracks, through which rays slip, and surfaces that do not close. So
-    corners on open edges are put in one place where they are as close as `weld` says: "auto" is 2^-21 of
-    the largest coordinate of a mesh where all are float32 numbers, 2^-47 where not, and a 64th of its mean
-    edge at most, before it was transformed; between meshes the least of all. Two corners of one face never
-    are one, and what is closed stays as it is, however thin. With "auto" that goes for files and for
-    trimesh's objects, each by itself; a `Mesh` of arrays is hit where its vertices are, and welded for
-    `contains`, `signed_distance` and in ``rw.measure``. A distance goes for all meshes, together; those of an
-    `Instance` are a group of their own. ``rw.measure.topology`` tells which cracks
-    remain.
+    corners on open edges are put in one place where they are as close as `weld` says: "auto" is 2^-21 of the
+    largest coordinate of a mesh where all are float32 numbers, 2^-47 where not, and a 64th of its mean edge
+    at most, before it was transformed; between two meshes the lesser. Two corners of one face never are one,
+    and what is closed stays as it is, however thin. With "auto" that goes for files and for trimesh's
+    objects, each by itself; a `Mesh` of arrays is hit where its vertices are, and welded for `contains`,
+    `signed_distance` and in ``rw.measure``. A distance goes for all meshes, together; those of an `Instance`
+    are a group of their own. ``rw.measure.topology`` tells which cracks remain.
 
     Faces with a corner that is NaN or infinite are left out when the scene is compiled, with one
     RuntimeWarning that tells how many. Scenes compare by what they hold, and pickle without what was

@@ -47,8 +47,8 @@ def welded(shapes: Sequence[_Shape], weld: Weld = "auto") -> tuple[_Shape, ...]:
         What is no mesh stays as it is, and so are meshes of which no corner moves: the same objects.
     weld : "auto", float or None
         How close; "auto" is 2^-21 of the largest coordinate of a mesh where all are float32 numbers and 2^-47
-        where not, and a 64th of its mean edge at most, all before it was transformed; between meshes the
-        least of all. None for not at all.
+        where not, and a 64th of its mean edge at most, all before it was transformed; between two meshes
+        the lesser. None for not at all.
     """
     tolerance = weld_tolerance(weld)
     result = list(shapes)
@@ -56,22 +56,22 @@ def welded(shapes: Sequence[_Shape], weld: Weld = "auto") -> tuple[_Shape, ...]:
     meshes = [cast(Mesh, shapes[i]) for i in which]
     if tolerance == 0 or not meshes:
         return tuple(shapes)
+    distances = [rounding(mesh) if tolerance is None else tolerance for mesh in meshes]
     if tolerance is None:
-        distances = list(map(rounding, meshes))
-        meshes = [_welded([mesh], by)[0] for mesh, by in zip(meshes, distances, strict=True)]
-        tolerance = min(distances)
-    if len(meshes) > 1 or weld != "auto":
-        meshes = _welded(meshes, tolerance)
+        meshes = [_welded([mesh], [by])[0] for mesh, by in zip(meshes, distances, strict=True)]
+    if len(meshes) > 1 or tolerance is not None:
+        meshes = _welded(meshes, distances)
     for i, mesh in zip(which, meshes, strict=True):
         result[i] = cast(_Shape, mesh)
     return tuple(result)
 
 
-def _welded(meshes: list[Mesh], tolerance: float) -> list[Mesh]:
-    starts = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes)])
+def _welded(meshes: list[Mesh], distances: list[float]) -> list[Mesh]:
+    counts = [len(mesh.vertices) for mesh in meshes]
+    starts = np.cumsum([0, *counts])
     corners = np.concatenate([mesh.vertices.astype(np.float64) for mesh in meshes])
     faces = np.concatenate([mesh.faces + np.uint32(at) for mesh, at in zip(meshes, starts, strict=False)])
-    places = corners[_core.weld(corners, faces, tolerance)]
+    places = corners[_core.weld(corners, faces, np.repeat(distances, counts))]
     is_moved = (places != corners).any(axis=1) & np.isfinite(corners).all(axis=1)
     result = list(meshes)
     for i, (mesh, start) in enumerate(zip(meshes, starts, strict=False)):

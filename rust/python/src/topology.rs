@@ -1,6 +1,6 @@
 //! How faces hang together, and where planes cut them, from arrays to arrays.
 
-use numpy::{PyArray1, PyArray2, PyReadonlyArray2};
+use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -19,16 +19,21 @@ fn read<'a>(vertices: &'a Triples<'_>, faces: &'a PyReadonlyArray2<'_, u32>) -> 
     }
 }
 
-/// For each corner the number of the one that stands for it.
+/// For each corner the number of the one that stands for it, within one tolerance for all or one for each corner.
 #[pyfunction]
 pub fn weld<'py>(
     py: Python<'py>,
     vertices: Triples<'py>,
     faces: PyReadonlyArray2<'py, u32>,
-    tolerance: f64,
+    tolerances: PyReadonlyArray1<'py, f64>,
 ) -> PyResult<Bound<'py, PyArray1<u32>>> {
     let (points, faces) = read(&vertices, &faces)?;
-    Ok(PyArray1::from_vec(py, py.detach(|| topology::welded(&points, faces, tolerance))))
+    let tolerances = tolerances.as_slice()?;
+    if tolerances.len() != 1 && tolerances.len() != points.len() {
+        let told = format!("tolerances must have length 1 or {}, got {}", points.len(), tolerances.len());
+        return Err(PyValueError::new_err(told));
+    }
+    Ok(PyArray1::from_vec(py, py.detach(|| topology::welded(&points, faces, tolerances))))
 }
 
 /// How close corners of a mesh are that differ by rounding.

@@ -80,7 +80,7 @@ impl Topology {
         let parts = if is_finite() { manifold::parts(&named, points.len()) } else { None };
         match parts {
             Some(parts) => Self::of_manifold(points, equal, &named, &parts, tolerance),
-            None => Self::of_any(points, welded_among(equal, points, faces, tolerance), faces, tolerance),
+            None => Self::of_any(points, welded_among(equal, points, faces, &[tolerance]), faces, tolerance),
         }
     }
 

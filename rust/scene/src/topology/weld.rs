@@ -66,19 +66,20 @@ pub fn rounding(points: &[DVec3], faces: &[[u32; 3]]) -> f64 {
     if count == 0 { 0.0 } else { of_size.min(OF_EDGE * edges / count as f64) }
 }
 
-/// For each point the number of the one that stands for it: the first that equals it, or one within a tolerance of it.
+/// For each point the number of the one that stands for it: the first that equals it, or one within the tolerances of
+/// both: one for all points, or one each.
 ///
 /// Only corners on open edges are joined, those in the order of their numbers to the nearest one before them that
 /// stands for itself, and never two of one face: what is closed stays as it is, however thin.
-pub fn welded(points: &[DVec3], faces: &[[u32; 3]], tolerance: f64) -> Vec<u32> {
+pub fn welded(points: &[DVec3], faces: &[[u32; 3]], tolerances: &[f64]) -> Vec<u32> {
     let all = joined(points);
     let named: Vec<[u32; 3]> = faces.iter().map(|face| face.map(|v| all[v as usize])).collect();
-    if manifold::parts(&named, points.len()).is_some() { all } else { welded_among(all, points, faces, tolerance) }
+    if manifold::parts(&named, points.len()).is_some() { all } else { welded_among(all, points, faces, tolerances) }
 }
 
 /// The same, of points of which it is known which are equal.
-pub fn welded_among(mut all: Vec<u32>, points: &[DVec3], faces: &[[u32; 3]], tolerance: f64) -> Vec<u32> {
-    if !(tolerance > 0.0 && tolerance.is_finite()) {
+pub fn welded_among(mut all: Vec<u32>, points: &[DVec3], faces: &[[u32; 3]], tolerances: &[f64]) -> Vec<u32> {
+    if !tolerances.iter().any(|&tolerance| is_some(tolerance)) {
         return all;
     }
     let named = named(points, faces, &all);
@@ -93,7 +94,7 @@ pub fn welded_among(mut all: Vec<u32>, points: &[DVec3], faces: &[[u32; 3]], tol
         .collect();
     neighbours.sort_unstable();
     neighbours.dedup();
-    let of_rim: HashMap<u32, u32> = leaders(points, &rim, &neighbours, tolerance);
+    let of_rim: HashMap<u32, u32> = leaders(points, &rim, &neighbours, tolerances);
     for number in &mut all {
         *number = of_rim.get(number).copied().unwrap_or(*number);
     }
@@ -128,28 +129,47 @@ fn rim(faces: &[[u32; 3]]) -> Vec<u32> {
     ends
 }
 
+fn is_some(tolerance: f64) -> bool {
+    tolerance > 0.0 && tolerance.is_finite()
+}
+
 /// What stands for each of some corners.
-fn leaders(points: &[DVec3], corners: &[u32], neighbours: &[(u32, u32)], tolerance: f64) -> HashMap<u32, u32> {
-    let cell = 4.0 * tolerance;
+///
+/// Those that stand for themselves are in cells some times as large as their tolerance, in a grid for each power of
+/// two, so that there are few of them in any, however tolerances differ.
+fn leaders(points: &[DVec3], corners: &[u32], neighbours: &[(u32, u32)], tolerances: &[f64]) -> HashMap<u32, u32> {
     // Popular coordinates, such as 0, are not where cells end.
-    let place = |point: DVec3| (point / cell + 0.37).floor().to_array().map(|x| x as i64);
-    let mut cells: HashMap<[i64; 3], Vec<u32>> = HashMap::new();
+    let place = |point: DVec3, size: i32| {
+        let cell = (point / (4.0 * f64::from(size).exp2()) + 0.37).floor().to_array();
+        cell.map(|x| x as i64)
+    };
+    let mut sizes: Vec<i32> = Vec::new();
+    let mut cells: HashMap<(i32, [i64; 3]), Vec<u32>> = HashMap::new();
     let mut found: HashMap<u32, u32> = HashMap::with_capacity(corners.len());
+    let tolerance_of = |corner: u32| tolerances[if tolerances.len() == 1 { 0 } else { corner as usize }];
     for &corner in corners {
-        let point = points[corner as usize];
-        let (low, high) = (place(point - tolerance), place(point + tolerance));
+        let (point, own) = (points[corner as usize], tolerance_of(corner));
+        if !is_some(own) {
+            found.insert(corner, corner);
+            continue;
+        }
         let from = neighbours.partition_point(|&(of, _)| of < corner);
         let beside = || neighbours[from..].iter().take_while(|&&(of, _)| of == corner).map(|&(_, to)| to);
         let mut best: Option<(f64, u32)> = None;
-        for x in low[0]..=high[0] {
-            for y in low[1]..=high[1] {
-                for z in low[2]..=high[2] {
-                    for &leader in cells.get(&[x, y, z]).into_iter().flatten() {
-                        let distance = points[leader as usize].distance(point);
-                        let is_nearer = best.is_none_or(|best| (distance, leader) < best);
-                        let shares_a_face = || beside().any(|to| to == leader || found.get(&to) == Some(&leader));
-                        if distance <= tolerance && is_nearer && !shares_a_face() {
-                            best = Some((distance, leader));
+        for &size in &sizes {
+            let reach = own.min(f64::from(size).exp2());
+            let (low, high) = (place(point - reach, size), place(point + reach, size));
+            for x in low[0]..=high[0] {
+                for y in low[1]..=high[1] {
+                    for z in low[2]..=high[2] {
+                        for &leader in cells.get(&(size, [x, y, z])).into_iter().flatten() {
+                            let distance = points[leader as usize].distance(point);
+                            let is_near = distance <= own.min(tolerance_of(leader));
+                            let is_nearer = best.is_none_or(|best| (distance, leader) < best);
+                            let shares_a_face = || beside().any(|to| to == leader || found.get(&to) == Some(&leader));
+                            if is_near && is_nearer && !shares_a_face() {
+                                best = Some((distance, leader));
+                            }
                         }
                     }
                 }
@@ -157,9 +177,50 @@ fn leaders(points: &[DVec3], corners: &[u32], neighbours: &[(u32, u32)], toleran
         }
         let leader = best.map_or(corner, |(_, leader)| leader);
         if leader == corner {
-            cells.entry(place(point)).or_default().push(corner);
+            let size = own.log2().ceil() as i32;
+            if !sizes.contains(&size) {
+                sizes.push(size);
+            }
+            cells.entry((size, place(point, size))).or_default().push(corner);
         }
         found.insert(corner, leader);
     }
     found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn corners_are_one_within_the_lesser_of_their_tolerances() {
+        // Two strips of triangles side by side, of which each has a tolerance of its own.
+        let strip = |x: f64, off: f64| (0..4).map(move |i| DVec3::new(x + off * f64::from(i), f64::from(i / 2), 0.0));
+        let gap = 1e-6;
+        let points: Vec<DVec3> = [(0.0, 0.0), (1.0, 0.0)]
+            .into_iter()
+            .flat_map(|(x, off)| strip(x, off).enumerate().map(move |(i, p)| p + DVec3::X * f64::from(i as u32 & 1)))
+            .enumerate()
+            .map(|(i, p)| if i >= 4 { p + DVec3::X * gap } else { p })
+            .collect();
+        let faces = [[0, 1, 2], [1, 3, 2], [4, 5, 6], [5, 7, 6]];
+        let of = |coarse: f64, fine: f64| {
+            let tolerances: Vec<f64> = (0..8).map(|i| if i < 4 { coarse } else { fine }).collect();
+            welded(&points, &faces, &tolerances)
+        };
+        let (apart, joined): (Vec<u32>, Vec<u32>) = ((0..8).collect(), vec![0, 1, 2, 3, 1, 5, 3, 7]);
+        for (coarse, fine, wanted) in [
+            (1e-5, 1e-5, &joined),
+            (1e-2, 2e-6, &joined),
+            (2e-6, 1e-2, &joined),
+            (1e-2, 1e-7, &apart),
+            (1e-7, 1e-2, &apart),
+            (1e-2, 0.0, &apart),
+            (f64::NAN, 1e-2, &apart),
+        ] {
+            assert_eq!(&of(coarse, fine), wanted, "{coarse} {fine}");
+        }
+        assert_eq!(welded(&points, &faces, &[1e-5]), joined);
+        assert_eq!(welded(&points, &faces, &[1e-7]), apart);
+    }
 }
