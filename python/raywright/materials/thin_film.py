@@ -15,8 +15,64 @@ from .dispersion import Dispersion, one_index
 from .material import Material
 
 
+class _Film(Material):
+    """What reflects by a film, whatever that lies on."""
+
+    thickness: Number
+    ior: float
+
+    def reflectance(self, wavelength: ArrayLike, degrees: ArrayLike = 0.0, *, outside: float = 1.0) -> Any:
+        """Return the share of unpolarised light that the film reflects at one wavelength.
+
+        It is Airy's sum over all reflections within the film, of both polarisations, without tables. The
+        rest goes through, or into the metal. Of a rough base it is the share of each facet.
+
+        Parameters
+        ----------
+        wavelength : array_like
+            In vacuum, nm, above 0; of a named metal, from 360 to 830.
+        degrees : array_like
+            The angle of incidence, 0 to 90. It broadcasts against `wavelength`.
+        outside : float
+            The index of refraction around the film, above 0.
+
+        Returns
+        -------
+        float or (...) float64
+            From 0 to 1.
+
+        Raises
+        ------
+        ValueError
+            If `thickness` is a texture, `eta` or `k` of the base is one or differs by channel, or a number is
+            out of range.
+        TypeError
+            If something is no number.
+        """
+        nm = real_array("wavelength", wavelength).astype(np.float64)
+        bad = ~(np.isfinite(nm) & (nm > 0))
+        if bad.any():
+            raise ValueError(f"wavelength must be finite and greater than 0, got {nm[bad].ravel()[0]}")
+        angle = real_array("degrees", degrees).astype(np.float64)
+        bad = ~((angle >= 0) & (angle <= 90))
+        if bad.any():
+            raise ValueError(f"degrees must be between 0 and 90, got {angle[bad].ravel()[0]}")
+        outside = positive("outside", outside)
+        if isinstance(self.thickness, Texture):
+            raise ValueError("thickness must be one number to have one reflectance, got a texture")
+        base = self._base_index(nm, outside)
+        columns = (nm, self.thickness, np.cos(np.radians(angle)), outside, self.ior, base.real, base.imag)
+        rows = np.stack(np.broadcast_arrays(*columns), axis=-1)
+        found = np.reshape(_core.film_reflectance(rows.reshape(-1, 7).tolist()), rows.shape[:-1])
+        return found if found.ndim else float(found)
+
+    def _base_index(self, nm: NDArray[np.float64], outside: float) -> NDArray[np.complex128]:
+        """Return the index of refraction of what is below the film, which has `outside` above it."""
+        raise NotImplementedError
+
+
 @dataclass(frozen=True, init=False)
-class ThinFilm(Material):
+class ThinFilm(_Film):
     """A film on glass, water or metal, of the colours of its thickness: oil on water, a lens's coat, oxide.
 
     What both faces of the film reflect interferes: Airy's sum over all reflections within it, of both
@@ -77,39 +133,7 @@ class ThinFilm(Material):
             base=base,
         )
 
-    def reflectance(self, wavelength: ArrayLike, degrees: ArrayLike = 0.0, *, outside: float = 1.0) -> Any:
-        """Return the share of unpolarised light that the film on its base reflects at one wavelength.
-
-        It is Airy's sum over all reflections within the film, of both polarisations, without tables. The
-        rest goes through, or into the metal. Of a rough base it is the share of each facet.
-
-        Parameters
-        ----------
-        wavelength : array_like
-            In vacuum, nm, above 0; of a named metal, from 360 to 830.
-        degrees : array_like
-            The angle of incidence, 0 to 90. It broadcasts against `wavelength`.
-        outside : float
-            The index of refraction around the film, above 0.
-
-        Returns
-        -------
-        float or (...) float64
-            From 0 to 1.
-
-        Raises
-        ------
-        ValueError
-            If `thickness` is a texture, `eta` or `k` of the base is one or differs by channel, or a number is
-            out of range.
-        TypeError
-            If something is no number.
-        """
-        nm = _wavelengths(wavelength)
-        return _reflectance(self, nm, degrees, positive("outside", outside), self._base_index(nm))
-
-    def _base_index(self, nm: NDArray[np.float64]) -> NDArray[np.complex128]:
-        """Return the index of refraction of what the film lies on."""
+    def _base_index(self, nm: NDArray[np.float64], outside: float) -> NDArray[np.complex128]:
         base = self.base
         if isinstance(base, Dielectric):
             index = base.ior.index(nm / 1000) if isinstance(base.ior, Dispersion) else base.ior
@@ -127,7 +151,7 @@ class ThinFilm(Material):
 
 
 @dataclass(frozen=True, init=False)
-class SoapFilm(Material):
+class SoapFilm(_Film):
     """The skin of a soap bubble: a film with the same around it on both sides, of its thickness's colours.
 
     Light goes through it straight, as through a `ThinDielectric`, and it encloses nothing. Its colours are
@@ -162,60 +186,5 @@ class SoapFilm(Material):
             ior=one_index(ior, "films have the same for all colours"),
         )
 
-    def reflectance(self, wavelength: ArrayLike, degrees: ArrayLike = 0.0, *, outside: float = 1.0) -> Any:
-        """Return the share of unpolarised light that the film reflects at one wavelength.
-
-        It is Airy's sum over all reflections within the film, of both polarisations, without tables. The
-        rest goes through.
-
-        Parameters
-        ----------
-        wavelength : array_like
-            In vacuum, nm, above 0.
-        degrees : array_like
-            The angle of incidence, 0 to 90. It broadcasts against `wavelength`.
-        outside : float
-            The index of refraction around the film, above 0.
-
-        Returns
-        -------
-        float or (...) float64
-            From 0 to 1.
-
-        Raises
-        ------
-        ValueError
-            If `thickness` is a texture, or a number is out of range.
-        TypeError
-            If something is no number.
-        """
-        index = positive("outside", outside)
-        return _reflectance(self, _wavelengths(wavelength), degrees, index, np.asarray(index, np.complex128))
-
-
-def _wavelengths(wavelength: ArrayLike) -> NDArray[np.float64]:
-    nm = real_array("wavelength", wavelength).astype(np.float64)
-    bad = ~(np.isfinite(nm) & (nm > 0))
-    if bad.any():
-        raise ValueError(f"wavelength must be finite and greater than 0, got {nm[bad].ravel()[0]}")
-    return nm
-
-
-def _reflectance(
-    film: "ThinFilm | SoapFilm",
-    nm: NDArray[np.float64],
-    degrees: ArrayLike,
-    outside: float,
-    base: NDArray[np.complex128],
-) -> Any:
-    """Return what a film reflects, whose base has an index at each wavelength."""
-    angle = real_array("degrees", degrees).astype(np.float64)
-    bad = ~((angle >= 0) & (angle <= 90))
-    if bad.any():
-        raise ValueError(f"degrees must be between 0 and 90, got {angle[bad].ravel()[0]}")
-    if isinstance(film.thickness, Texture):
-        raise ValueError("thickness must be one number to have one reflectance, got a texture")
-    columns = (nm, film.thickness, np.cos(np.radians(angle)), outside, film.ior, base.real, base.imag)
-    rows = np.stack(np.broadcast_arrays(*columns), axis=-1)
-    found = np.reshape(_core.film_reflectance(rows.reshape(-1, 7).tolist()), rows.shape[:-1])
-    return found if found.ndim else float(found)
+    def _base_index(self, nm: NDArray[np.float64], outside: float) -> NDArray[np.complex128]:
+        return np.asarray(outside, np.complex128)
