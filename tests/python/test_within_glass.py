@@ -78,6 +78,81 @@ def test_coats_and_panes_vanish_in_what_has_their_index(integrator, haze):
             np.testing.assert_allclose(of(pane, 1.5, integrator, **how), share, atol=5 * 0.27 / 64)
 
 
+def test_what_is_not_metal_in_gltf_has_an_index_of_its_own():
+    # Of 1.5, by the specification: Fresnel at normal incidence, and nothing where that is around it.
+    for integrator in INTEGRATORS:
+        for index in (1.0, 1.2, 1.33):
+            found = mirrored(rw.MetallicRough(0.0, 0.0, 0.0), index, integrator, samples=16)
+            np.testing.assert_allclose(found, bare(1.5, 0, index), rtol=1e-5)
+        for index in (1.5, 2.0):
+            assert mirrored(rw.MetallicRough(0.0, 0.0, 0.0), index, integrator, samples=16).max() < 1e-12
+        # A metal's colour is given as it is.
+        metal = mirrored(rw.MetallicRough((0.9, 0.6, 0.3), 1.0, 0.0), 1.33, integrator, samples=16)
+        np.testing.assert_allclose(metal, (0.9, 0.6, 0.3), rtol=1e-6)
+
+
+def met(material, index, cosine=1.0):
+    """What rays meet on a sheet in a medium of an index of refraction."""
+    to = np.array([[np.sqrt(1 - cosine**2), 0, -cosine]])
+    around = [rw.Sphere((0, 0, 0), 20.0, material=rw.Dielectric(index))] if index != 1 else []
+    scene = rw.Scene([sheet(0, material, half=5.0), *around])
+    return scene.interactions(rw.Rays((0.01, 0.02, 0) - to, to, np.zeros(1)))
+
+
+@pytest.mark.parametrize("index", [1.0, 1.33, 1.5])
+def test_interactions_scatter_by_the_index_around_them(index):
+    for cosine in (1.0, 0.3):
+        found = met(rw.Conductor(eta=0.2, k=3.9), index, cosine).reflected().weight
+        # Only the ratios count.
+        expected = met(rw.Conductor(eta=0.2 / index, k=3.9 / index), 1.0, cosine).reflected().weight
+        np.testing.assert_allclose(found, expected, rtol=1e-12)
+        for kind in (rw.Plastic(0.0, ior=1.5), rw.ThinDielectric(1.5), rw.MetallicRough(0.0, 0.0, 0.0)):
+            found = met(kind, index, cosine).reflected().weight
+            if index == 1.5:
+                assert (found < 1e-12).all()
+            elif cosine == 1:
+                single = bare(1.5, 0, index)
+                pane = 2 * single / (1 + single)
+                expected = pane if isinstance(kind, rw.ThinDielectric) else single
+                np.testing.assert_allclose(found, expected, rtol=1e-12)
+    # Glass within glass refracts by the ratio of both: Snell, and radiance with its square.
+    scene = rw.Scene(
+        [
+            rw.Box((-5, -5, -5), (5, 5, 0), material=rw.Dielectric(1.8, priority=1)),
+            rw.Sphere((0, 0, 0), 20.0, material=rw.Dielectric(index)),
+        ]
+    )
+    to = np.array([[0.6, 0, -0.8]])
+    through = scene.interactions(rw.Rays((0.01, 0.02, 0) - to, to, np.zeros(1))).refracted()
+    np.testing.assert_allclose(through.direction[0, 0], 0.6 * index / 1.8, rtol=1e-12)
+
+
+def test_albedos_that_are_seen_are_those_of_the_index_around():
+    camera = rw.Camera((0.01, 0.02, 1), (0.01, 0.02, 0), up=(0, 1, 0), fov=0.01, width=2, height=2)
+    for kind in (rw.MetallicRough(0.0, 0.0, 0.3), rw.Plastic(0.0, ior=1.5)):
+        for index in (1.33, 1.5):
+            around = rw.Sphere((0, 0, 0), 20.0, material=rw.Dielectric(index))
+            found = rw.aovs(rw.Scene([sheet(0, kind), around]), camera, "albedo", samples=2)["albedo"]
+            np.testing.assert_allclose(found[0, 0], met(kind, index).albedo[0], rtol=1e-6)
+            air = rw.aovs(rw.Scene(sheet(0, kind)), camera, "albedo", samples=2)["albedo"]
+            assert (found < 0.5 * air).all()
+            assert index != 1.5 or (found < 1e-12).all()
+
+
+def test_a_clear_coat_vanishes_in_what_has_its_index():
+    towards = np.array([[0.1, 0, np.sqrt(0.99)]])
+    coated, plain = (
+        rw.Principled(0.5, roughness=0.5, clearcoat=coat, clearcoat_gloss=0.9) for coat in (1.0, 0.0)
+    )
+    values = {}
+    for index in (1.0, 1.33, 1.5):
+        with_coat, without = (met(kind, index).evaluate(towards)[0] for kind in (coated, plain))
+        values[index] = np.abs(with_coat - without).max()
+    assert values[1.0] > 0.01
+    assert values[1.5] < 1e-12
+    assert 0.01 * values[1.0] < values[1.33] < 0.2 * values[1.0]
+
+
 CUBE = [
     (0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1),
     (2, 3, 7), (2, 7, 6), (0, 2, 6), (0, 6, 4), (1, 5, 7), (1, 7, 3),

@@ -12,7 +12,8 @@ from .material import Material
 class MetallicRough(Material):
     """The metallic-roughness model of glTF 2.0: from plastic to metal.
 
-    Both sides reflect. Emission is the shape's.
+    Both sides reflect. What is not metal has an index of refraction of 1.5, and reflects by that relative to
+    what is around it. Emission is the shape's.
 
     Parameters
     ----------

@@ -50,7 +50,7 @@ class Principled(Material):
     flatness : float or Texture
         How much of what is matt is as flat as if light got deep into it, in [0, 1].
     clearcoat, clearcoat_gloss : float or Texture
-        How much of a coat there is on what is not clear, and how glossy it is, in [0, 1].
+        How much of a coat of index 1.5 there is on what is not clear, and how glossy it is, in [0, 1].
     priority : int
         Where solids overlap, as `Dielectric` has it.
     energy_conserving : bool

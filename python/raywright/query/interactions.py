@@ -233,7 +233,7 @@ class Interactions:
         -------
         Scattered
             As `reflected` has it, on the other side. Weights are those of radiance, which has the square of
-            the index of refraction in it. What is around a shape is taken for air.
+            the index of refraction in it.
         """
         return Scattered(*self._core.single(True))
 

@@ -1,5 +1,6 @@
 //! What is seen first, rather than how bright it is.
 
+use super::nesting::indices_outside;
 use raywright_base::math::{Hit, Ray};
 use raywright_base::parallel;
 use raywright_base::sampling::SamplerKind;
@@ -88,7 +89,13 @@ impl Channel {
     }
 
     /// Its numbers at a hit.
-    fn observe(self, scene: &Scene, camera: &dyn Camera, (ray, hit): (&Ray, &Hit), width: f64) -> [f64; 3] {
+    fn observe(
+        self,
+        scene: &Scene,
+        camera: &dyn Camera,
+        (ray, hit, outside): (&Ray, &Hit, f64),
+        width: f64,
+    ) -> [f64; 3] {
         let geometry = scene.geometry();
         let number = |n: u32| [f64::from(n), 0.0, 0.0];
         let ends = || geometry.positions(ray, hit, [0.0, 1.0].map(|time| camera.body().scene_time(time)));
@@ -112,7 +119,7 @@ impl Channel {
             Self::Primitive => number(geometry.locate(hit.primitive).1),
             Self::Albedo => {
                 let surface = geometry.surface(ray, hit);
-                SurfaceInteraction::new(scene, ray, hit, surface, width, 1.0).bsdf().albedo().to_array()
+                SurfaceInteraction::new(scene, ray, hit, surface, width, outside).bsdf().albedo().to_array()
             }
             Self::Motion => {
                 let [start, end] = ends();
@@ -183,7 +190,7 @@ fn expose_row(
         let found = trace(&mut |_| ([0.5; 2], [0.5; 2], 0.0), &mut rays);
         for i in (0..channels.len()).filter(is_id) {
             for x in (0..width).filter(|&x| found[x].is_hit()) {
-                row[i][x] = channels[i].observe(scene, camera, (&rays[x], &found[x]), 0.0)[0];
+                row[i][x] = channels[i].observe(scene, camera, (&rays[x], &found[x], 1.0), 0.0)[0];
             }
         }
     }
@@ -191,6 +198,7 @@ fn expose_row(
         return;
     }
     let mut seen = vec![0u32; width];
+    let shades = channels.contains(&Channel::Albedo);
     let moves = scene.geometry().moves() || camera.uses_time();
     for number in 0..samples.max(1) {
         let mut film = |x: u32| {
@@ -200,10 +208,11 @@ fn expose_row(
             (sampler.two(0), sampler.two(1), time)
         };
         let found = trace(&mut film, &mut rays);
+        let outside = shades.then(|| indices_outside(scene, &rays, &found));
         for x in (0..width).filter(|&x| found[x].is_hit()) {
             seen[x] += 1;
             for i in (0..channels.len()).filter(|i| !is_id(i)) {
-                let met = (&rays[x], &found[x]);
+                let met = (&rays[x], &found[x], outside.as_ref().map_or(1.0, |outside| outside[x]));
                 let values = channels[i].observe(scene, camera, met, footprint.at(found[x].t).width);
                 let n = channels[i].width();
                 for (value, mean) in values.iter().zip(&mut row[i][x * n..(x + 1) * n]) {

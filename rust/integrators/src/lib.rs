@@ -36,6 +36,7 @@ pub use direct::Direct;
 pub use distributed::Distributed;
 pub use guiding::{Guide, LocalGuide, is_matt};
 pub use light_traced::LightTraced;
+pub use nesting::indices_outside;
 pub use path::Path;
 pub use photon_map::{Kernel, PhotonMap, ProgressivePhotonMap};
 pub use photons::{Photon, Photons, photons};

@@ -166,6 +166,33 @@ impl<F: Filling> MediumStack<F> {
     }
 }
 
+/// The index of refraction around what each ray hits: on the side that is not its own medium's, if it encloses one. 1
+/// for rays that hit nothing, and where it makes no difference. Rays start in whatever their origins lie in.
+pub fn indices_outside(scene: &Scene, rays: &[Ray], hits: &[Hit]) -> Vec<f64> {
+    let mut found = vec![1.0; rays.len()];
+    if !scene.plan().needs().nested {
+        return found;
+    }
+    let met: Vec<usize> = (0..rays.len()).filter(|&i| hits[i].is_hit()).collect();
+    let whole: Vec<Ray> = met.iter().map(|&i| Ray { t_max: f64::INFINITY, ..rays[i] }).collect();
+    let mut media = Vec::new();
+    MediumStack::<Interior>::at(scene, &whole, &mut media);
+    let windows: Vec<_> = met.iter().map(|&i| around::<Interior>(scene, &rays[i], &hits[i])).collect();
+    let crossings = scene.crossings(&windows.iter().flatten().copied().collect::<Vec<_>>());
+    let mut next = 0;
+    for ((&i, media), window) in met.iter().zip(&media).zip(&windows) {
+        if window.is_none() {
+            found[i] = media.ior_around(scene, &hits[i]);
+            continue;
+        }
+        if let Boundary::Between { outside, .. } = Boundary::new(scene, &rays[i], media, crossings.of_ray(next)) {
+            found[i] = outside;
+        }
+        next += 1;
+    }
+    found
+}
+
 /// What a ray crosses, of all that it is told to; not what it only touches, which is told twice.
 pub(super) fn crossed(hits: &[Hit]) -> impl DoubleEndedIterator<Item = &Hit> {
     let is_twice = move |i: usize| {

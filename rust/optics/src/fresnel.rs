@@ -160,7 +160,13 @@ pub fn schlick_weight(cosine: f64) -> f64 {
 /// Schlick's approximation for a reflectance `f0` at normal incidence.
 #[inline(always)]
 pub fn schlick(cosine: f64, f0: Rgb) -> Rgb {
-    f0 + (Rgb::ONE - f0) * schlick_weight(cosine)
+    schlick_between(cosine, f0, 1.0)
+}
+
+/// The same with a reflectance `f90` at grazing incidence.
+#[inline(always)]
+pub fn schlick_between(cosine: f64, f0: Rgb, f90: f64) -> Rgb {
+    f0 + (Rgb::splat(f90) - f0) * schlick_weight(cosine)
 }
 
 #[cfg(test)]

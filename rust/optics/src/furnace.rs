@@ -257,6 +257,13 @@ mod tests {
             (MetallicRough::new(Rgb::ONE, metallic, alpha.sqrt()), 1.0, Some(alpha), name)
         };
         assert_white(all.map(gltf).collect());
+        // In water, and in what has its index.
+        let all = ALPHAS.iter().flat_map(|&alpha| [(0.0, 1.33), (0.4, 1.33), (0.0, 1.5)].map(|of| (alpha, of)));
+        let within = |(alpha, (metallic, outside)): (f64, (f64, f64))| {
+            let name = format!("glTF's, alpha {alpha}, metallic {metallic} in {outside}");
+            (MetallicRough::within(Rgb::ONE, metallic, alpha.sqrt(), outside), 1.0, Some(alpha), name)
+        };
+        assert_white(all.map(within).collect());
     }
 
     /// White, of a roughness, and of numbers that should not matter.

@@ -17,6 +17,8 @@ use std::f64::consts::FRAC_1_PI;
 /// Where the specification leaves the coupling open, this is reciprocal and conserves energy: the base gets what the
 /// facets of a dielectric leave, (1 − R(wo)) (1 − R(wi)) / (π (1 − R̄)), and what facets of metal lose is made up for.
 /// A white base is white at every roughness and metalness. Both sides reflect.
+///
+/// What is not metal has the index 1.5 of the specification, and reflects by that relative to what is around it.
 #[derive(Clone, Copy, Debug)]
 pub struct MetallicRough {
     rough: Option<Rough>,
@@ -27,8 +29,25 @@ pub struct MetallicRough {
     /// The base colour.
     color: Rgb,
     metallic: f64,
+    dielectric: Ends,
     /// Where what metal scatters more than once goes to.
     grazing: Grazing,
+}
+
+/// A reflectance at normal and at grazing incidence, between which Schlick's weight leads.
+#[derive(Clone, Copy, Debug)]
+struct Ends {
+    normal: f64,
+    grazing: f64,
+}
+
+impl Ends {
+    /// The share of light that facets reflect once, by what they do if the reflectance is Schlick's weight, and if it
+    /// is 1.
+    #[inline(always)]
+    fn once(self, (schlick, kept): (f64, f64)) -> f64 {
+        self.normal * kept + (self.grazing - self.normal) * schlick
+    }
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -45,23 +64,46 @@ impl Rough {
 }
 
 impl MetallicRough {
-    /// The reflectance of what is not metal at normal incidence, that of index 1.5.
-    const DIELECTRIC: f64 = 0.04;
+    /// The reflectance of what is not metal in air, that of this index.
+    const DIELECTRIC: Ends = Ends { normal: 0.04, grazing: 1.0 };
+    const IOR: f64 = 1.5;
 
     /// Of a base colour, a metalness and a roughness, each 0 to 1. Where roughness² is below [`Ggx::SMOOTH`] facets
     /// reflect in one direction.
     pub fn new(base_color: Rgb, metallic: f64, roughness: f64) -> Self {
+        Self::of(base_color, metallic, roughness, Self::DIELECTRIC)
+    }
+
+    /// The same in a medium of index `outside`. What is not metal is not to be seen where that is its own or greater.
+    pub fn within(base_color: Rgb, metallic: f64, roughness: f64, outside: f64) -> Self {
+        if outside == 1.0 {
+            return Self::new(base_color, metallic, roughness);
+        }
+        Self::of(base_color, metallic, roughness, Self::dielectric((Self::IOR / outside).max(1.0)))
+    }
+
+    /// The reflectance of a relative index, at least 1: at normal incidence Fresnel's. At grazing incidence his is 1
+    /// for any, but rises to that the later the nearer the index is to 1, which Schlick's weight cannot. What it adds
+    /// is so much of what it adds in air as the mean over even light has it.
+    fn dielectric(eta: f64) -> Ends {
+        let normal = |eta: f64| ((eta - 1.0) / (eta + 1.0)).powi(2);
+        let added = |eta: f64| fresnel::dielectric_average(eta) - normal(eta);
+        let Ends { normal: air, grazing } = Self::DIELECTRIC;
+        Ends { normal: normal(eta), grazing: normal(eta) + (grazing - air) * added(eta) / added(Self::IOR) }
+    }
+
+    fn of(base_color: Rgb, metallic: f64, roughness: f64, dielectric: Ends) -> Self {
         let metallic = metallic.clamp(0.0, 1.0);
         let rough = Ggx::rough([roughness * roughness; 2]).map(Rough::new);
         // Schlick's (1 − cos)⁵ has the mean 1/21 over even light.
         let lost = rough.as_ref().map_or(0.0, |rough| rough.loss.average());
         let schlick = rough.as_ref().map_or(1.0 / 21.0, |rough| rough.schlick.average());
-        let average = Self::dielectric((schlick, 1.0 - lost));
+        let average = dielectric.once((schlick, 1.0 - lost));
         let metal = base_color + (Rgb::ONE - base_color) / 21.0;
         let multiple = if lost > 0.0 { made_up(lost, metal) * metallic } else { Rgb::ZERO };
         let base = base_color * ((1.0 - metallic) * FRAC_1_PI / (1.0 - average));
         let grazing = Grazing::new(rough.as_ref().map_or(1.0, |rough| rough.ggx.alpha()[0]));
-        Self { rough, base, multiple, color: base_color, metallic, grazing }
+        Self { rough, base, multiple, color: base_color, metallic, dielectric, grazing }
     }
 
     /// What the base and metal scatter widely of light from `wi`, above, by what facets reflect once of light to and
@@ -69,12 +111,12 @@ impl MetallicRough {
     /// ([`MetallicRough::shares`]).
     #[inline(always)]
     fn wide(
-        (base, multiple, grazing): (Rgb, Rgb, &Grazing),
+        (base, multiple, grazing, dielectric): (Rgb, Rgb, &Grazing, Ends),
         [facets, metal]: [f64; 2],
         wi: DVec3,
         [once_o, once_i]: [(f64, f64); 2],
     ) -> (Rgb, [f64; 2]) {
-        let reaching = (1.0 - Self::dielectric(once_o)) * (1.0 - Self::dielectric(once_i));
+        let reaching = (1.0 - dielectric.once(once_o)) * (1.0 - dielectric.once(once_i));
         let lost = (1.0 - once_o.1) * (1.0 - once_i.1);
         let densities = [metal * grazing.pdf(wi.z), (1.0 - facets - metal).max(0.0) * wi.z * FRAC_1_PI];
         ((base * reaching + multiple * lost) * wi.z, densities)
@@ -83,16 +125,22 @@ impl MetallicRough {
     /// What facets reflect between two directions above, and the density of the draw, by what [`Facets::mirroring`]
     /// tells of them.
     #[inline(always)]
-    fn glossy((ggx, f0): (&Ggx, Rgb), facets: f64, [wo, wi]: [DVec3; 2], told: (f64, f64)) -> (Rgb, f64) {
+    fn glossy((ggx, f0, f90): (&Ggx, Rgb, f64), facets: f64, [wo, wi]: [DVec3; 2], told: (f64, f64)) -> (Rgb, f64) {
         let (density, cosine) = told;
-        let once = fresnel::schlick(cosine, f0) * (density * ggx.reflection_geometry(wo, wi));
+        let once = fresnel::schlick_between(cosine, f0, f90) * (density * ggx.reflection_geometry(wo, wi));
         (once, facets * ggx.reflected_pdf(wo, density))
     }
 
     /// Reflectance at normal incidence.
     #[inline]
     fn f0(&self) -> Rgb {
-        self.color * self.metallic + Self::DIELECTRIC * (1.0 - self.metallic)
+        self.color * self.metallic + self.dielectric.normal * (1.0 - self.metallic)
+    }
+
+    /// Reflectance at grazing incidence.
+    #[inline]
+    fn f90(&self) -> f64 {
+        1.0 - (1.0 - self.dielectric.grazing) * (1.0 - self.metallic)
     }
 
     /// What facets reflect once of light from `w` whose reflectance is Schlick's term, and if it is 1.
@@ -104,19 +152,15 @@ impl MetallicRough {
         }
     }
 
-    /// The share of light that facets of a dielectric reflect once.
-    #[inline(always)]
-    fn dielectric((schlick, kept): (f64, f64)) -> f64 {
-        Self::DIELECTRIC * kept + (1.0 - Self::DIELECTRIC) * schlick
-    }
-
     /// The probabilities with which a draw is one reflection by a facet, and what metal scatters more than once.
     #[inline]
     fn shares(&self, once: (f64, f64)) -> [f64; 2] {
-        let facets = (self.f0() * once.1 + (Rgb::ONE - self.f0()) * once.0).max();
+        let facets = (self.f0() * once.1 + (Rgb::splat(self.f90()) - self.f0()) * once.0).max();
         let color = self.color.max();
-        let (metal, base) =
-            (color * self.metallic * (1.0 - once.1), color * (1.0 - self.metallic) * (1.0 - Self::dielectric(once)));
+        let (metal, base) = (
+            color * self.metallic * (1.0 - once.1),
+            color * (1.0 - self.metallic) * (1.0 - self.dielectric.once(once)),
+        );
         let sum = facets + metal + base;
         if sum > 0.0 { [facets / sum, metal / sum] } else { [0.0; 2] }
     }
@@ -131,9 +175,10 @@ impl Bsdf for MetallicRough {
         let (wo, wi) = (above(wo), above(wi));
         let once = [self.once(wo), self.once(wi)];
         let shares = self.shares(once[0]);
-        let (wide, [spread, matt]) = Self::wide((self.base, self.multiple, &self.grazing), shares, wi, once);
+        let (wide, [spread, matt]) =
+            Self::wide((self.base, self.multiple, &self.grazing, self.dielectric), shares, wi, once);
         let Some(Rough { ggx, .. }) = &self.rough else { return (wide, spread + matt) };
-        let (glossy, facet) = Self::glossy((ggx, self.f0()), shares[0], [wo, wi], ggx.mirroring(wo, wi));
+        let (glossy, facet) = Self::glossy((ggx, self.f0(), self.f90()), shares[0], [wo, wi], ggx.mirroring(wo, wi));
         (wide + glossy, facet + spread + matt)
     }
 
@@ -155,7 +200,7 @@ impl Bsdf for MetallicRough {
         };
         let mut wi = match &self.rough {
             None if facet => {
-                let weight = fresnel::schlick(up.z, self.f0()) / facets;
+                let weight = fresnel::schlick_between(up.z, self.f0(), self.f90()) / facets;
                 return Some(BsdfSample::delta(mirrored(wo), weight).of_lobe([0.0, facets]));
             }
             Some(rough) if facet => rough.ggx.sample_reflection(up, u),

@@ -7,6 +7,7 @@ use pyo3::prelude::*;
 use super::arrays::{Numbers, Triples, numbers, sealed, unwritten};
 use super::query::CompiledScene;
 use super::rays::{Parts, answer, chunks, each, share};
+use raywright::integrators::indices_outside;
 use raywright::math::{DVec3, Hit, Ray};
 use raywright::optics::{Bsdf, BsdfSample, Rgb};
 use raywright::scene::{Encounter, Scene, ShadingPoint, SurfaceInteraction};
@@ -34,7 +35,7 @@ struct Entry {
 }
 
 impl Entry {
-    fn new(scene: &Scene, ray: Ray, hit: Hit) -> Self {
+    fn new(scene: &Scene, ray: Ray, hit: Hit, outside: f64) -> Self {
         if !hit.is_hit() {
             let emission = scene.lights().infinite_radiance(ray.direction);
             return Self { ray, hit, here: None, emission, cosine: 0.0 };
@@ -44,7 +45,7 @@ impl Entry {
         let emission = scene.emission_at(&surface);
         let point = ShadingPoint::new(scene.geometry(), &ray, &hit, surface, emission.needs(), 0.0);
         let emission = emission.towards(cosine, &point.texture);
-        let here = SurfaceInteraction::new(scene, &ray, &hit, surface, 0.0, 1.0);
+        let here = SurfaceInteraction::new(scene, &ray, &hit, surface, 0.0, outside);
         Self { ray, hit, here: Some(Box::new(here)), emission, cosine }
     }
 }
@@ -136,7 +137,9 @@ pub fn interactions<'py>(
         let rays: Vec<_> = (start..start + count).map(ray).collect();
         let mut hits = vec![Hit::MISS; count];
         compiled.intersect(&rays, &mut hits);
-        rays.into_iter().zip(hits).map(|(ray, hit)| Entry::new(compiled, ray, hit)).collect::<Vec<_>>()
+        let outside = indices_outside(compiled, &rays, &hits);
+        let met = rays.into_iter().zip(hits).zip(outside);
+        met.map(|((ray, hit), outside)| Entry::new(compiled, ray, hit, outside)).collect::<Vec<_>>()
     })?;
     Ok(Interactions { scene: scene.unbind(), entries: made.into_iter().flatten().collect() })
 }

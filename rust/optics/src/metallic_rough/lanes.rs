@@ -1,6 +1,6 @@
 //! The material of glTF by lane.
 
-use super::{MetallicRough, above, diffuse, mirrored, mirrors};
+use super::{Ends, MetallicRough, above, diffuse, mirrored, mirrors};
 use crate::bsdf_columns::{BsdfColumns, LaneBsdf};
 use crate::lobes::{Grazing, GrazingLanes};
 use crate::{BsdfSampleLanes, Facets, Ggx, Rgb, RgbLanes, fresnel};
@@ -17,6 +17,9 @@ pub struct MetallicRoughLanes {
     base: RgbLanes,
     multiple: RgbLanes,
     f0: RgbLanes,
+    f90: [f64; LANES],
+    /// What is not metal reflects at normal and at grazing incidence.
+    dielectric: [[f64; LANES]; 2],
     grazing: GrazingLanes,
     wo: VectorLanes,
     /// What facets reflect once of light to `wo`, and how often a draw is that, and what metal scatters more than once.
@@ -64,10 +67,12 @@ loops! {
             let (o, w, shares) = (above(o), above(w), [of.shares[0][i], of.shares[1][i]]);
             let once = [(of.once[0][i], of.once[1][i]), (schlick[i], kept[i])];
             let grazing = of.grazing(i);
-            let parts = (of.base.get(i), of.multiple.get(i), &grazing);
+            let dielectric = Ends { normal: of.dielectric[0][i], grazing: of.dielectric[1][i] };
+            let parts = (of.base.get(i), of.multiple.get(i), &grazing, dielectric);
             let (wide, [spread, matt]) = MetallicRough::wide(parts, shares, w, once);
             let told = (density[i], cosine[i]);
-            let (glossy, facet) = MetallicRough::glossy((&of.facets(i), of.f0.get(i)), shares[0], [o, w], told);
+            let facets = (&of.facets(i), of.f0.get(i), of.f90[i]);
+            let (glossy, facet) = MetallicRough::glossy(facets, shares[0], [o, w], told);
             let scattered = Rgb::select(of.is_rough[i], wide + glossy, wide);
             let drawn = if of.is_rough[i] { facet + spread + matt } else { spread + matt };
             value.set(i, Rgb::select(is_seen, scattered, Rgb::ZERO));
@@ -111,7 +116,7 @@ loops! {
     /// From what is scattered to what a throughput is multiplied by; of single directions it is the facets'.
     fn weigh(of: &MetallicRoughLanes, is_single: &[bool; LANES], pdf: &mut [f64; LANES], value: &mut RgbLanes) {
         for i in 0..LANES {
-            let single = fresnel::schlick(of.wo.get(i).z.abs(), of.f0.get(i)) / of.shares[0][i];
+            let single = fresnel::schlick_between(of.wo.get(i).z.abs(), of.f0.get(i), of.f90[i]) / of.shares[0][i];
             value.set(i, Rgb::select(is_single[i], single, value.get(i) / pdf[i]));
             pdf[i] = if is_single[i] { f64::INFINITY } else { pdf[i] };
         }
@@ -137,6 +142,8 @@ impl BsdfColumns<MetallicRough> for MetallicRoughLanes {
         base: RgbLanes::ZERO,
         multiple: RgbLanes::ZERO,
         f0: RgbLanes::ZERO,
+        f90: [1.0; LANES],
+        dielectric: [[0.0; LANES]; 2],
         grazing: Grazing::EMPTY,
         wo: VectorLanes::ZERO,
         once: [[0.0; LANES]; 2],
@@ -152,6 +159,8 @@ impl BsdfColumns<MetallicRough> for MetallicRoughLanes {
         self.base.set(lane, of.base);
         self.multiple.set(lane, of.multiple);
         self.f0.set(lane, of.f0());
+        self.f90[lane] = of.f90();
+        [self.dielectric[0][lane], self.dielectric[1][lane]] = [of.dielectric.normal, of.dielectric.grazing];
         of.grazing.put(&mut self.grazing, lane);
         self.wo.set(lane, wo);
         let once = of.once(above(wo));

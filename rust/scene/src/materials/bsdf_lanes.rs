@@ -270,7 +270,7 @@ mod tests {
                 2 => Dielectric::new(1.5, [0.0, 0.3][lane % 2]).into(),
                 3 => ThinDielectric::new(1.5).into(),
                 4 => Coated::new(colour, 1.5, [0.0, 0.1][lane % 2]).into(),
-                5 => MetallicRough::new(colour, 0.4, 0.5).into(),
+                5 => MetallicRough::within(colour, 0.4, 0.5, [1.0, 1.33][lane % 2]).into(),
                 _ => OrenNayar::new(colour, 0.6).into(),
             }
         };

@@ -18,26 +18,31 @@ pub struct MetallicRoughMaterial {
 }
 
 impl MetallicRoughMaterial {
-    fn bsdf(&self, point: &TexturePoint) -> MetallicRough {
-        MetallicRough::new(self.base_colour.at(point), self.metallic.at(point), self.roughness.at(point))
+    fn bsdf(&self, point: &TexturePoint, outside: f64) -> AnyBsdf {
+        let [metallic, roughness] = [self.metallic.at(point), self.roughness.at(point)];
+        MetallicRough::within(self.base_colour.at(point), metallic, roughness, outside).into()
     }
 }
 
 impl Material for MetallicRoughMaterial {
     fn bsdf(&self, at: &ShadingPoint) -> BsdfMix {
-        self.bsdf(&at.texture).into()
+        self.bsdf(&at.texture, at.outside).into()
     }
 
     fn constant(&self) -> Option<AnyBsdf> {
-        (!self.needs().any()).then(|| self.bsdf(&TexturePoint::default()).into())
+        (!self.needs().any()).then(|| self.bsdf(&TexturePoint::default(), 1.0))
     }
 
     fn kinds(&self) -> Option<[usize; 2]> {
-        Some([AnyBsdf::from(self.bsdf(&TexturePoint::default())).kind(); 2])
+        Some([self.bsdf(&TexturePoint::default(), 1.0).kind(); 2])
     }
 
     fn needs(&self) -> Needs {
         self.base_colour.needs() | self.metallic.needs() | self.roughness.needs()
+    }
+
+    fn minds_outside(&self) -> bool {
+        true
     }
 
     fn validate(&self) -> Result<(), String> {

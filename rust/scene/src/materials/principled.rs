@@ -102,7 +102,9 @@ impl PrincipledMaterial {
         } else {
             self.interior.ior / outside.min(self.interior.ior.max(1.0))
         };
-        let coat = [self.clearcoat.at(point), self.clearcoat_gloss.at(point)];
+        // A coat has the index 1.5, and mirrors by that relative to what is around as it does head-on.
+        let coating = (5.0 * (1.5 - outside) / (1.5 + outside)).clamp(0.0, 1.0).powi(2);
+        let coat = [self.clearcoat.at(point) * coating, self.clearcoat_gloss.at(point)];
         let (look, metallic) = (self.looks.at(point), self.metallic.at(point));
         if self.looks.conserves {
             LayeredPrincipled::new(look, eta, metallic, coat).into()
