@@ -7,7 +7,10 @@ use raywright::optics::albedo::Tabulated;
 use raywright::optics::conductors::Reflectance;
 use raywright::optics::fresnel::ConductorIndex;
 use raywright::optics::furnace::{directional_albedo, drawn_albedo};
-use raywright::optics::{Beckmann, Bsdf, Coated, Conductor, Dielectric, Ggx, MetallicRough, OrenNayar, Rgb};
+use raywright::optics::{
+    Beckmann, Bsdf, Coated, Conductor, Dielectric, Ggx, LayeredPrincipled, LayeredPrincipledThin, Look, MetallicRough,
+    OrenNayar, Rgb,
+};
 use raywright::parallel;
 
 /// Roughnesses, a column each.
@@ -66,10 +69,39 @@ fn plastic<F: Tabulated + Send + Sync>(alpha: f64) -> [f64; 2] {
     all(COATS.iter().map(|&eta| extremes(&Coated::of(Rgb::ONE, eta, F::rough([alpha; 2])), 1.0, Some(alpha))))
 }
 
+/// A white look whose other numbers should not matter.
+fn white(alpha: f64, transmission: f64, other: f64) -> Look {
+    Look {
+        base_color: Rgb::ONE,
+        luminance: 1.0,
+        roughness: alpha.sqrt(),
+        anisotropic: 0.0,
+        transmission,
+        specular_tint: other,
+        sheen: other,
+        sheen_tint: 0.5 * other,
+        flatness: 1.0 - other,
+    }
+}
+
+fn principled(alpha: f64) -> [f64; 2] {
+    let kinds = [(0.0, 0.0, [0.0; 2]), (0.5, 0.0, [0.6, 0.9]), (1.0, 0.0, [1.0, 0.0]), (0.0, 1.0, [0.0; 2])];
+    all(kinds.into_iter().flat_map(|(metallic, through, coat)| {
+        [1.33, 1.5, 2.4]
+            .map(|eta| extremes(&LayeredPrincipled::new(white(alpha, through, 0.5), eta, metallic, coat), eta, None))
+    }))
+}
+
+fn principled_sheet(alpha: f64) -> [f64; 2] {
+    all([0.0, 0.5, 1.0]
+        .into_iter()
+        .map(|through| extremes(&LayeredPrincipledThin::new(white(alpha, through, 0.5), 1.5, 0.3), 1.0, None)))
+}
+
 /// A name, and what is gained and lost at a roughness.
 type Row = (&'static str, fn(f64) -> [f64; 2]);
 
-const ROWS: [Row; 10] = [
+const ROWS: [Row; 12] = [
     ("`Dielectric`, index 0.5 to 3", glass::<Ggx>),
     ("`Dielectric`, Beckmann's facets", glass::<Beckmann>),
     ("`Conductor`", |alpha| metal::<Ggx>(alpha, alpha)),
@@ -83,6 +115,8 @@ const ROWS: [Row; 10] = [
             .into_iter()
             .map(|metallic| extremes(&MetallicRough::new(Rgb::ONE, metallic, alpha.sqrt()), 1.0, Some(alpha))))
     }),
+    ("`Principled`, index 1.33 to 2.4", principled),
+    ("`PrincipledThin`", principled_sheet),
     ("`OrenNayar`", |alpha| extremes(&OrenNayar::new(Rgb::ONE, alpha), 1.0, Some(1.0))),
 ];
 

@@ -306,7 +306,7 @@ def materials():
     ]
     places = [(2.3 * (i % 4) - 3.45, 0, -2.6 * (i // 4)) for i in range(8)]
     balls = [rw.Sphere(place, 1.0, material=kind) for place, kind in zip(places, kinds, strict=True)]
-    floor = rw.Plane((0, -1, 0), (0, 1, 0), material=rw.Diffuse(rw.Checker(0.3, 0.4)))
+    floor = rw.Plane((0, -1, 0), (0, 1, 0), material=rw.Diffuse(rw.Checker(0.3, 0.4, 2)))
     lamp = rw.Disk((-6, 9, 6), (6, -9, -6), 4.5, emission=3.4)
     camera = rw.Camera((0, 4.2, 10), (0, -0.2, -1.1), fov=28, width=1000, height=560)
     image = rw.render(rw.Scene([*balls, floor, lamp], environment=0.55), camera, samples=32, adaptive=True)
