@@ -1,11 +1,12 @@
 //! A prototype put to many places.
 
+use super::instance_ray::InstanceRay;
 use super::pose::{Pose, between, carried_by};
 use super::prototype::Prototype;
 use crate::textures::Needs;
 use crate::{ShadingPoint, SurfacePoint};
-use raywright_accel::{Meeting, Placed, Side, Wanted};
-use raywright_base::math::{Hit, Ray, Singular};
+use raywright_accel::{Placed, Side, Wanted};
+use raywright_base::math::{DVec3, Hit, Ray, Singular};
 use raywright_base::parallel;
 use raywright_shapes::{Bounds, Candidate, Contact};
 use std::sync::Arc;
@@ -13,11 +14,12 @@ use std::sync::Arc;
 /// An affine map of points (x, y, z, 1) by its first three rows.
 pub type Matrix = [[f64; 4]; 3];
 
-/// Instances of a prototype, each of them a primitive: 96 bytes for one that stands still.
+/// Instances of a prototype, each of them a primitive: 168 bytes for one that stands still, or 24 if all are
+/// only shifted.
 ///
-/// A ray is taken to the prototype's space and asked of the prototype's accelerator there, with the same `t`. So what
-/// is hit is what is hit in the prototype by the ray as it is taken there, and that is decided exactly, whatever finds
-/// the instances.
+/// A ray is taken to the prototype's space and asked of the prototype's accelerator there. So what is hit is what is
+/// hit in the prototype by the ray as it is taken there, and that is decided exactly, whatever finds the instances. Its
+/// `t` is told, and compared with the ends of the ray, as the ray and the map are given ([`InstanceRay`]).
 #[derive(Clone, Debug)]
 pub struct Instances {
     prototype: Arc<Prototype>,
@@ -26,6 +28,8 @@ pub struct Instances {
 
 #[derive(Debug)]
 enum Places {
+    /// Still, and neither turned nor scaled.
+    Shifted(Vec<DVec3>),
     Still(Vec<Pose>),
     /// As the shutter opens, and as it closes; between, matrices are interpolated number by number.
     Moving(Vec<[Matrix; 2]>),
@@ -85,7 +89,9 @@ impl Instances {
     /// If a matrix has no inverse.
     pub fn new(prototype: Arc<Prototype>, matrices: &[Matrix]) -> Result<Self, BadTransform> {
         let poses = each(matrices, Pose::new)?;
-        Ok(Self { prototype, places: Arc::new(Places::Still(poses)) })
+        let shifts: Option<Vec<DVec3>> = poses.iter().map(Pose::shift_alone).collect();
+        let places = shifts.map_or_else(|| Places::Still(poses), Places::Shifted);
+        Ok(Self { prototype, places: Arc::new(places) })
     }
 
     /// Instances that move while the shutter is open: the matrix of each at its opening and at its closing. Every point
@@ -107,6 +113,7 @@ impl Instances {
     /// How many there are.
     pub fn count(&self) -> usize {
         match &*self.places {
+            Places::Shifted(shifts) => shifts.len(),
             Places::Still(poses) => poses.len(),
             Places::Moving(matrices) => matrices.len(),
         }
@@ -119,12 +126,13 @@ impl Instances {
 
     /// Whether none of them moves as a whole.
     pub(crate) fn stand_still(&self) -> bool {
-        matches!(&*self.places, Places::Still(_))
+        !matches!(&*self.places, Places::Moving(_))
     }
 
     /// Memory held without the prototype's.
     pub fn bytes(&self) -> usize {
         match &*self.places {
+            Places::Shifted(shifts) => size_of_val(shifts.as_slice()),
             Places::Still(poses) => size_of_val(poses.as_slice()),
             Places::Moving(matrices) => size_of_val(matrices.as_slice()),
         }
@@ -134,6 +142,7 @@ impl Instances {
     #[inline]
     pub(crate) fn pose(&self, instance: u32, time: f64) -> Option<Pose> {
         match &*self.places {
+            Places::Shifted(shifts) => Some(Pose::shifted(shifts[instance as usize])),
             Places::Still(poses) => Some(poses[instance as usize]),
             Places::Moving(matrices) => {
                 let [start, end] = &matrices[instance as usize];
@@ -147,8 +156,8 @@ impl Instances {
     pub fn ends(&self, instance: u32) -> Option<[Bounds; 2]> {
         let inside = self.prototype.bounds()?;
         match &*self.places {
-            Places::Still(poses) => poses[instance as usize].around(&inside).map(|b| [b, b]),
             Places::Moving(matrices) => Some(matrices[instance as usize].map(|matrix| carried_by(&matrix, &inside))),
+            _ => self.pose(instance, 0.0).map(|pose| [pose.around(&inside); 2]),
         }
     }
 
@@ -170,31 +179,29 @@ impl Instances {
 
     /// As [`raywright_accel::UserGeometry::meet`] has it.
     pub fn meet(&self, instance: u32, wanted: Wanted, ray: &Ray, met: &mut dyn FnMut(Candidate) -> bool) -> bool {
-        let Some(pose) = self.pose(instance, ray.time) else { return false };
-        let ray = pose.enter(ray);
-        let accelerator = self.prototype.accelerator();
-        let told = |hit: &Hit, contact| Candidate { t: hit.t, uv: hit.uv, contact, inner: self.prototype.flatten(hit) };
-        match wanted {
-            Wanted::Closest => {
-                let hit = accelerator.intersect_one(&ray);
-                hit.is_hit() && met(told(&hit, Contact::Inside))
+        let place;
+        let pose = match &*self.places {
+            Places::Still(poses) => &poses[instance as usize],
+            _ => {
+                place = self.pose(instance, ray.time);
+                let Some(pose) = &place else { return false };
+                pose
             }
-            Wanted::Any => accelerator.occluded_one(&ray) && met(anywhere(some_t(&ray))),
+        };
+        let ray = InstanceRay::new(self, pose, ray);
+        match wanted {
+            Wanted::Closest => ray.closest().is_some_and(met),
+            Wanted::Any => ray.is_occluded() && met(anywhere(some_t(ray.inside()))),
             Wanted::Every => {
-                let hits = accelerator.crossings(&[ray]).hits;
+                let hits = self.prototype.accelerator().crossings(&[ray.widened()]).hits;
                 // What is only touched is told twice there, and has to be here.
                 let twice = hits.chunk_by(|a, b| a == b);
-                let mut each =
+                let each =
                     twice.map(|same| (&same[0], if same.len() == 1 { Contact::Inside } else { Contact::Touching }));
-                each.any(|(hit, contact)| met(told(hit, contact)))
+                each.filter_map(|(hit, contact)| ray.told(hit, contact)).any(met)
             }
-            Wanted::Met => {
-                let all = accelerator.met(&[ray]);
-                let scale = all.rays[0].0;
-                let own = |meeting: &Meeting| Hit { t: meeting.hit.t * scale, ..meeting.hit };
-                all.met.iter().any(|(_, meeting)| met(told(&own(meeting), meeting.contact)))
-            }
-            Wanted::Side => match self.prototype.side(&ray) {
+            Wanted::Met => ray.met(&ray.widened()).filter_map(|(hit, contact)| ray.told(&hit, contact)).any(met),
+            Wanted::Side => match self.prototype.side(ray.inside()) {
                 Side::Outside => false,
                 Side::Inside => met(anywhere(f64::MAX)),
                 Side::Surface => met(anywhere(0.0)),
@@ -209,7 +216,7 @@ impl Instances {
     pub fn surface(&self, instance: u32, ray: &Ray, hit: &Hit) -> SurfacePoint {
         let pose = self.pose(instance, ray.time).expect("what is hit has a place");
         let inside = self.prototype.surface(&pose.enter(ray), hit);
-        pose.point(&inside).expect("what is hit has a place")
+        pose.point(&inside)
     }
 
     /// What is needed of the point where a ray hits an instance.
@@ -236,7 +243,7 @@ mod tests {
     use crate::{Mesh, RayOrigin, Scene, SceneDescription, Shape};
     use raywright_accel::bvh::Options;
     use raywright_accel::{Accelerator, BruteForce, Primitives, trees};
-    use raywright_base::math::{DVec3, Vec3};
+    use raywright_base::math::Vec3;
     use raywright_base::sampling::{Sampler, warp};
     use raywright_base::simd::Level;
     use raywright_base::work::Work;

@@ -2,6 +2,7 @@
 
 mod facets;
 mod front;
+mod instance_ray;
 mod instances;
 mod lanes;
 mod motion;

@@ -24,7 +24,7 @@ impl Geometry {
         let Some(now) = pose(ray.time) else { return [self.surface(ray, hit); 2] };
         let (primitive, inner) = prototype.split(hit.inner);
         let within = prototype.geometry().points(&now.enter(ray), &Hit { primitive, inner, ..*hit }, times);
-        let outside = |time: f64, point: &SurfacePoint| pose(time).and_then(|pose| pose.point(point));
+        let outside = |time: f64, point: &SurfacePoint| pose(time).map(|pose| pose.point(point));
         match (outside(times[0], &within[0]), outside(times[1], &within[1])) {
             (Some(start), Some(end)) => [start, end],
             _ => [self.surface(ray, hit); 2],

@@ -84,7 +84,7 @@ impl Geometry {
     fn nearest_on(&self, primitive: u32, map: Option<&Affine>, quest: &Quest) -> Option<Nearest> {
         let place = quest.place;
         if let Some((instances, number)) = self.instance(primitive) {
-            let pose = instances.pose(number, 0.0)?.map()?;
+            let pose = instances.pose(number, 0.0)?.map();
             let map = match map {
                 Some(map) => map.compose(&pose),
                 None => pose,
@@ -119,7 +119,7 @@ impl Geometry {
     pub fn site(&self, primitive: u32, inner: u32, position: DVec3, uv: [f64; 2]) -> (DVec3, f64) {
         if let Some((instances, number)) = self.instance(primitive) {
             let none = (DVec3::NAN, f64::NAN);
-            let Some(map) = instances.pose(number, 0.0).and_then(|pose| pose.map()) else { return none };
+            let Some(map) = instances.pose(number, 0.0).map(|pose| pose.map()) else { return none };
             let Ok(inverse) = map.inverse() else { return none };
             let prototype = instances.prototype();
             let (own, within) = prototype.split(inner);

@@ -2,16 +2,17 @@
 //! it.
 //!
 //! A ray is taken to the prototype's space by a matrix `M` and the shift `s` of the map: `o' = M (o − s)`, `d' = M d`,
-//! with its direction as long as it comes out, so that `t` is the same on both sides. `M` is the inverse of the map's
-//! linear part `L`, rounded once; the instance is where `M`, as rounded, says that it is. The difference from what `L`
-//! says is that of a vertex rounded to f64.
+//! with its direction as long as it comes out, so that `t` is the same on both sides but for rounding. `M` is the
+//! inverse of the map's linear part `L`, rounded once. What a ray hits is decided by the ray as it is taken over; `t`
+//! is then told as `L` has it ([`super::instance_ray`]).
 //!
 //! The bounds, with u = 2⁻⁵³ and κ the greatest row sum of |L| |M|, at least 1, and for a turn at most 3. A coordinate
 //! of `o'` errs by less than 4u (|M| |o − s|), of which the world sees 4uκ |o − s|, and so for `d'`; three products and
-//! their sum are five roundings, and the difference one. A point `p` of the prototype is at `L p + s`, where `L`, if it
-//! is not that of which `M` is the inverse but the inverse of `M`, is known by its residual `R = 1 − L M`: the point is
-//! off by `|R| |L p|`, and `R` is computed to within 4uκ.
+//! their sum are five roundings, and the difference one. A point `p` of the prototype is at `L p + s`. How far `M` is
+//! from the inverse of `L` is known by the residual `R = 1 − L M`: for rays the point is off by `|R| |L p|`, and `R` is
+//! computed to within 4uκ.
 
+use super::instance_ray::PlanePoint;
 use crate::{ShadingPoint, SurfacePoint};
 use raywright_base::math::robust::UNIT;
 use raywright_base::math::{Affine, DVec3, Ray, Singular};
@@ -22,11 +23,14 @@ pub type Rows = [DVec3; 3];
 
 /// A map from a prototype's space to another, ready for rays.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct Pose {
     /// The inverse of the linear part.
     inverse: Rows,
     /// Where the prototype's origin is.
     shift: DVec3,
+    /// The linear part, which only hits are asked for.
+    linear: Rows,
 }
 
 /// Up to here the quick inverse is as good as any.
@@ -97,7 +101,18 @@ impl Pose {
         if kappa > MOST_CONDITION {
             return Err(Singular::IllConditioned(kappa, MOST_CONDITION));
         }
-        Ok(Self { inverse, shift })
+        Ok(Self { linear: rows, inverse, shift })
+    }
+
+    /// Of a map that only moves.
+    #[inline(always)]
+    pub const fn shifted(shift: DVec3) -> Self {
+        Self { linear: DVec3::AXES, inverse: DVec3::AXES, shift }
+    }
+
+    /// Where the map is to, if it only moves.
+    pub fn shift_alone(&self) -> Option<DVec3> {
+        (self.linear == DVec3::AXES).then_some(self.shift)
     }
 
     /// A ray as the prototype's space has it.
@@ -112,14 +127,15 @@ impl Pose {
         }
     }
 
+    /// A point of a plane of the prototype in the space that it is put into.
+    #[inline]
+    pub fn plane_point(&self, plane: &PlanePoint) -> PlanePoint {
+        plane.under(&self.linear, &self.inverse, self.shift)
+    }
+
     /// The linear map that takes points to the prototype's space, once the shift is taken off.
     pub fn to_prototype(self) -> (Rows, DVec3) {
         (self.inverse, self.shift)
-    }
-
-    /// The linear part: the inverse of the inverse. None if f64 does not hold it, though it held the original.
-    fn rows(&self) -> Option<Rows> {
-        inverse(&self.inverse).ok()
     }
 
     /// The box around a box that is put there, with room: it is larger by 2⁻²² of itself.
@@ -129,18 +145,18 @@ impl Pose {
     /// whatever a ray hits as it is taken back, it meets in the box too, if κ is at most 16, of which box tests take
     /// care at any distance, or κ times the distance at most 2²⁷ times the size of the instance. Beyond, what it grazes
     /// within its roundings may be found by one accelerator and not by another.
-    pub fn around(&self, bounds: &Bounds) -> Option<Bounds> {
-        Some(carried(&self.rows()?, self.shift, bounds))
+    pub fn around(&self, bounds: &Bounds) -> Bounds {
+        carried(&self.linear, self.shift, bounds)
     }
 
-    /// A point of the prototype's surface in the space that it is put into; none if there is none to be told.
+    /// A point of the prototype's surface in the space that it is put into.
     ///
     /// With M the size of what it stands on, which the error of a point tells (8ε M of a triangle, as much as the
     /// coordinates of a point itself at least), the point errs by what it was off before, by the residual, and by the
     /// roundings here. A ray that leaves is taken back with an error of 8uκ |L| M along the surface's extent: 32uκ |L|
     /// M are allowed for all of it.
-    pub fn point(&self, point: &SurfacePoint) -> Option<SurfacePoint> {
-        let rows = self.rows()?;
+    pub fn point(&self, point: &SurfacePoint) -> SurfacePoint {
+        let rows = self.linear;
         let kappa = condition(&rows, &self.inverse);
         let residual = (0..3).fold(0.0f64, |most, i| {
             let product: DVec3 = (0..3).map(|k| self.inverse[k] * rows[i][k]).sum();
@@ -160,7 +176,7 @@ impl Pose {
         };
         let (normal, shading) = (turned(point.normal), point.shading_normal);
         let shading_normal = if shading == point.normal { normal } else { turned(shading) };
-        Some(SurfacePoint { position, error, normal, shading_normal, ..*point })
+        SurfacePoint { position, error, normal, shading_normal, ..*point }
     }
 }
 
@@ -185,14 +201,14 @@ impl Pose {
         a.dot(b.cross(c)).abs() / times(&self.inverse, direction).length().powi(3)
     }
 
-    /// The map itself; none if f64 does not hold it, though it held the original.
-    pub(crate) fn map(&self) -> Option<Affine> {
-        Some(Affine::new(self.rows()?, self.shift))
+    /// The map itself.
+    pub(crate) fn map(&self) -> Affine {
+        Affine::new(self.linear, self.shift)
     }
 
     /// How the surface of the prototype lies in the space that it is put into, of which there is `point` there.
     pub(super) fn shading_point(&self, within: ShadingPoint, point: SurfacePoint) -> ShadingPoint {
-        let Some(rows) = self.rows() else { return ShadingPoint { point, ..within } };
+        let rows = self.linear;
         let volume = rows[0].dot(rows[1].cross(rows[2])).abs();
         ShadingPoint {
             point,
@@ -301,7 +317,7 @@ mod tests {
                 position: p, error: 16.0 * UNIT * 3.0, normal: DVec3::X, shading_normal: DVec3::X,
                 shape: 0, inner: None,
             };
-            let world = pose.point(&own).unwrap();
+            let world = pose.point(&own);
             // Exactly where it is, by twice the digits.
             let map = Affine::new(pose.inverse, DVec3::ZERO).inverse().unwrap();
             let exact = Affine::new(map.rows, pose.shift).point(p);
@@ -323,7 +339,7 @@ mod tests {
         ) {
             let bounds = Bounds { min: a.min(b), max: a.max(b) };
             let Ok(pose) = Pose::new(&matrix) else { return Err(TestCaseError::reject("singular")) };
-            let around = pose.around(&bounds).unwrap();
+            let around = pose.around(&bounds);
             let (rows, shift) = parts(&matrix);
             for u in [DVec3::from_array(u), DVec3::ZERO, DVec3::ONE] {
                 let p = inside(&bounds, u);
@@ -331,7 +347,7 @@ mod tests {
                 prop_assert!(holds(&around, exact) && holds(&carried_by(&matrix, &bounds), exact), "{point}");
             }
             // Of a point nothing is left but roundings.
-            let least = pose.around(&Bounds { min: a, max: a }).unwrap();
+            let least = pose.around(&Bounds { min: a, max: a });
             let size = times(&abs(&rows), a.abs()) + shift.abs();
             prop_assert!((least.max - least.min).cmple(size * 1e-12 * condition(&rows, &pose.inverse)).all());
         }
@@ -355,7 +371,6 @@ mod tests {
         let matrix = [[0.0, -4.0, 0.0, 3.0], [0.25, 0.0, 0.0, -7.0], [0.0, 0.0, -2.0, 1e6]];
         let pose = Pose::new(&matrix).unwrap();
         assert_eq!(pose.inverse, [DVec3::new(0.0, 4.0, 0.0), DVec3::new(-0.25, 0.0, 0.0), DVec3::new(0.0, 0.0, -0.5)]);
-        assert_eq!(pose.rows().unwrap().map(|row| row.to_array()), matrix.map(|[x, y, z, _]| [x, y, z]));
         assert_eq!(between(&matrix, &matrix, 0.3), matrix);
         assert_eq!(between(&matrix, &matrix.map(|row| row.map(|x| x + 1e17)), 1.0)[0][3], 1e17 + 3.0);
     }

@@ -1,5 +1,6 @@
 //! What is put into a scene many times: shapes in a space of their own, with an accelerator of their own.
 
+use super::instance_ray::PlanePoint;
 use super::{Enclosing, Geometry, Solids};
 use crate::textures::Needs;
 use crate::{Emission, Material, ShadingPoint, SurfacePoint};
@@ -142,6 +143,17 @@ impl Prototype {
         let (primitive, inner) = self.split(hit.inner);
         let hit = Hit { primitive, inner, ..*hit };
         self.geometry.shading_point(ray, &hit, self.geometry.surface(ray, &hit), needs)
+    }
+
+    /// A point of the triangle of a flattened number, by the weights of its corners; none of what is no triangle.
+    pub(super) fn plane_point(&self, flat: u32, uv: [f64; 2], time: f64) -> Option<PlanePoint> {
+        let (primitive, inner) = self.split(flat);
+        if let Some((instances, instance)) = self.geometry.instance(primitive) {
+            let plane = instances.prototype().plane_point(inner, uv, time)?;
+            return Some(instances.pose(instance, time)?.plane_point(&plane));
+        }
+        let corners = self.geometry.corners(primitive);
+        corners[0].is_finite().then(|| PlanePoint::of(corners, uv))
     }
 
     /// What the primitive of a flattened number is made of, and how it shines.

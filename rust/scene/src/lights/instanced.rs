@@ -108,8 +108,8 @@ impl Copied {
             }
         };
         // An area there is so many times as large in the world.
-        let stretch = pose.map()?.normal(point.normal).length();
-        let mut surface = pose.point(&point)?;
+        let stretch = pose.map().normal(point.normal).length();
+        let mut surface = pose.point(&point);
         (surface.shape, surface.inner) = (geometry.locate(primitive).0, Some(inner));
         Some((prototype.luminous(inner), surface, Hit { t: 1.0, uv, primitive, inner }, pdf / stretch))
     }
@@ -129,7 +129,7 @@ impl Copied {
         let Some(shape) = prototype.geometry().shape(own) else {
             return Some((sides, 0.5 * (*b - *a).cross(*c - *a).length()));
         };
-        let stretch = instances.pose(instance, 0.0)?.map()?.determinant().abs().cbrt();
+        let stretch = instances.pose(instance, 0.0)?.map().determinant().abs().cbrt();
         Some((sides, shape.area() * stretch * stretch))
     }
 
@@ -163,14 +163,14 @@ impl Copied {
         match prototype.geometry().shape(own) {
             Some(shape) => {
                 let from = pose.enter(&Ray::new(receiver.position, DVec3::Z)).origin;
-                let in_world = |site: &Site| pose.point(&prototype.geometry().on_shape(own, site));
+                let in_world = |site: &Site| Some(pose.point(&prototype.geometry().on_shape(own, site)));
                 let density = |direction: DVec3| pose.crowding(direction);
                 surface::sample_shape((geometry, shape), &luminous, (receiver, from), place, u, in_world, density)
             }
             None => {
                 let seen = SeenTriangle::new(*corners, receiver.position);
                 let uv = seen.sample(u);
-                let surface = pose.point(&prototype.geometry().on_triangle(own, uv))?;
+                let surface = pose.point(&prototype.geometry().on_triangle(own, uv));
                 let sends = |ray: &Ray, hit: &Hit| luminous.sent(geometry, ray, hit, &surface, || receiver.waves);
                 let density = |direction: DVec3, distance| seen.pdf(distance, direction.dot(surface.normal));
                 surface::sample(receiver, &surface, place, uv, density, sends)
@@ -234,7 +234,8 @@ impl Light {
         let prototype = instances.prototype();
         let (own, luminous) = (prototype.split(inner).0, prototype.luminous(inner));
         let sides = luminous.emission.sides;
-        let map = geometry.instance(primitive).and_then(|(instances, instance)| instances.pose(instance, 0.0)?.map());
+        let map =
+            geometry.instance(primitive).and_then(|(instances, instance)| Some(instances.pose(instance, 0.0)?.map()));
         let (corners, strength) = match (map, prototype.geometry().shape(own)) {
             (None, _) => ([DVec3::NAN; 3], Strength::NONE),
             (Some(map), Some(shape)) => {

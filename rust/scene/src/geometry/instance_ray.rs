@@ -1,0 +1,200 @@
+//! A ray in an instance: `t` as the world has it, and the ends of the ray, which are compared with that `t`.
+//!
+//! The ray as it is taken to the prototype's space ([`super::pose`]) decides what is hit and in which order. Its `t` is
+//! off by those roundings, so that of a triangle is computed anew from the ray as given and the map as given: with q
+//! the point of the triangle that the weights of the hit tell, x = L q + s − o − t d, and n the triangle's normal in
+//! the world, the plane lies at t + n · x / n · d. Of x nearly all cancels: it is summed up in twice the digits (Ogita,
+//! Rump and Oishi, "Accurate Sum and Dot Product", 2005), errs by some u² of its terms, and is itself some u of them.
+//! So `n` may be rounded, and the last addition leaves the f64 nearest to the exact `t`, but for ties within some u of
+//! a unit in its last place. What is no triangle keeps its `t`.
+//!
+//! The new `t` differs from the old by no more than [`InstanceRay::room`], and has its sign; where it would not, as at
+//! grazing angles, the old one stays. So it depends on nothing but the ray and what is hit; what lies farther than that
+//! from an end of the ray need not be compared anew; and an end at 0 is the same for both.
+
+use super::instances::Instances;
+use super::pose::{Pose, Rows};
+use raywright_accel::Meeting;
+use raywright_base::math::robust::{two_product, two_sum};
+use raywright_base::math::{DVec3, Hit, Ray};
+use raywright_shapes::{Candidate, Contact};
+
+/// A sum of two f64, the second of which holds what rounding took from the first.
+#[derive(Clone, Copy, Default)]
+struct Sum {
+    high: f64,
+    low: f64,
+}
+
+impl Sum {
+    #[inline]
+    fn add(self, x: f64) -> Self {
+        let (high, rest) = two_sum(self.high, x);
+        Self { high, low: self.low + rest }
+    }
+
+    #[inline]
+    fn add_product(self, x: f64, y: f64) -> Self {
+        let (product, rest) = two_product(x, y);
+        let sum = self.add(product);
+        Self { low: sum.low + rest, ..sum }
+    }
+}
+
+/// A point of a triangle's plane to twice the digits, and a normal of the plane of any length.
+#[derive(Clone, Copy)]
+pub struct PlanePoint {
+    point: [Sum; 3],
+    normal: DVec3,
+}
+
+impl PlanePoint {
+    /// The point of a triangle that the weights of its second and third corner tell.
+    pub fn of([a, b, c]: [DVec3; 3], [v, w]: [f64; 2]) -> Self {
+        let point = [0, 1, 2].map(|i| {
+            let ((e, e_low), (f, f_low)) = (two_sum(b[i], -a[i]), two_sum(c[i], -a[i]));
+            let sum = Sum::default().add(a[i]).add_product(e, v).add_product(f, w);
+            Sum { low: sum.low + (e_low * v + f_low * w), ..sum }
+        });
+        Self { point, normal: (b - a).cross(c - a) }
+    }
+
+    /// The same under a map, given with the inverse of its linear part.
+    pub fn under(&self, linear: &Rows, inverse: &Rows, shift: DVec3) -> Self {
+        let [x, y, z] = self.point;
+        let point = [0, 1, 2].map(|i| {
+            let row = linear[i];
+            let sum = Sum::default().add(shift[i]).add_product(row.x, x.high).add_product(row.y, y.high);
+            let sum = sum.add_product(row.z, z.high);
+            Sum { low: sum.low + (row.x * x.low + row.y * y.low + row.z * z.low), ..sum }
+        });
+        let n = self.normal;
+        Self { point, normal: inverse[0] * n.x + inverse[1] * n.y + inverse[2] * n.z }
+    }
+
+    /// How much farther than `t` a ray comes to the plane.
+    fn beyond(&self, ray: &Ray, t: f64) -> f64 {
+        let from = [0, 1, 2].map(|i| {
+            let sum = self.point[i].add(-ray.origin[i]).add_product(-t, ray.direction[i]);
+            sum.high + sum.low
+        });
+        self.normal.dot(DVec3::from_array(from)) / self.normal.dot(ray.direction)
+    }
+}
+
+/// A ray asked of one instance.
+pub struct InstanceRay<'a> {
+    instances: &'a Instances,
+    pose: &'a Pose,
+    /// As given.
+    outside: &'a Ray,
+    /// As the prototype's space has it, with the ends of the ray as given.
+    inside: Ray,
+}
+
+impl<'a> InstanceRay<'a> {
+    /// A ray that is asked of an instance which stands so.
+    #[inline]
+    pub fn new(instances: &'a Instances, pose: &'a Pose, ray: &'a Ray) -> Self {
+        Self { instances, pose, outside: ray, inside: pose.enter(ray) }
+    }
+
+    /// The ray as the prototype's space has it.
+    pub fn inside(&self) -> &Ray {
+        &self.inside
+    }
+
+    /// How far apart `t` as found and as told may lie, about a `t`.
+    fn room(&self, t: f64) -> f64 {
+        const ROOM: f64 = 1.0 / (1u64 << 36) as f64;
+        let reach = self.inside.origin.abs().max_element() / self.inside.direction.abs().max_element();
+        ROOM * (t.abs() + if reach.is_finite() { reach } else { 0.0 })
+    }
+
+    /// An end of the ray, moved by `steps` times the room. An end at 0 or at infinity is the same for both, and stays.
+    fn end(&self, t: f64, steps: f64) -> f64 {
+        if t == 0.0 || t.is_infinite() { t } else { t + steps * self.room(t) }
+    }
+
+    /// The ray as the prototype's space has it, with ends between which lies all whose `t` as told counts.
+    // With R the share of the room, |t' − t| ≤ R (reach + |t'|) is at most R / (1 − R) of reach + |t|.
+    pub fn widened(&self) -> Ray {
+        Ray { t_min: self.end(self.inside.t_min, -2.0), t_max: self.end(self.inside.t_max, 2.0), ..self.inside }
+    }
+
+    /// A hit by the prototype's ray as it is told, with its flattened number; none if it lies beyond an end of the ray.
+    pub fn told(&self, hit: &Hit, contact: Contact) -> Option<Candidate> {
+        let prototype = self.instances.prototype();
+        let inner = prototype.flatten(hit);
+        let Hit { mut t, uv, .. } = *hit;
+        if let Some(plane) = prototype.plane_point(inner, uv, self.outside.time) {
+            let beyond = self.pose.plane_point(&plane).beyond(self.outside, t);
+            let is_alike = (t + beyond).partial_cmp(&0.0) == t.partial_cmp(&0.0);
+            t += if is_alike && beyond.abs() <= self.room(t) { beyond } else { 0.0 };
+        }
+        let counts = t >= self.inside.t_min && t <= self.inside.t_max;
+        counts.then_some(Candidate { t, uv, contact, inner })
+    }
+
+    /// Whether the ray may meet something within a few times the room of a `t`.
+    fn may_meet_about(&self, t: f64) -> bool {
+        let Some(bounds) = self.instances.prototype().bounds() else { return false };
+        let Ray { origin, direction, .. } = self.inside;
+        let (point, room) = (origin + direction * t, direction.abs() * (8.0 * self.room(t)));
+        (point + room).cmpge(bounds.min).all() && (point - room).cmple(bounds.max).all()
+    }
+
+    /// All that a ray in the prototype's space meets.
+    pub fn met(&self, ray: &Ray) -> impl Iterator<Item = (Hit, Contact)> + use<> {
+        let all = self.instances.prototype().accelerator().met(std::slice::from_ref(ray));
+        let scale = all.rays[0].0;
+        let own = move |meeting: Meeting| (Hit { t: meeting.hit.t * scale, ..meeting.hit }, meeting.contact);
+        all.met.into_iter().map(move |(_, meeting)| own(meeting))
+    }
+
+    /// The closest hit.
+    pub fn closest(&self) -> Option<Candidate> {
+        let accelerator = self.instances.prototype().accelerator();
+        let mut ray = self.widened();
+        loop {
+            let hit = accelerator.intersect_one(&ray);
+            if !hit.is_hit() {
+                return None;
+            }
+            let told = self.told(&hit, Contact::Inside);
+            if told.is_some() {
+                return told;
+            }
+            // It lies within the room of an end, where its neighbours may lie between them.
+            let last = hit.t + 2.0 * self.room(hit.t);
+            let near = self.met(&Ray { t_min: hit.t, t_max: last.min(ray.t_max), ..ray });
+            let first = near.filter_map(|(hit, _)| Some((hit.t, self.told(&hit, Contact::Inside)?)));
+            let first = first.min_by(|(s, a), (t, b)| s.total_cmp(t).then(a.inner.cmp(&b.inner)));
+            if let Some((_, told)) = first {
+                return Some(told);
+            }
+            ray.t_min = last.next_up();
+        }
+    }
+
+    /// Whether anything is hit.
+    pub fn is_occluded(&self) -> bool {
+        let accelerator = self.instances.prototype().accelerator();
+        let (all, Ray { t_min, t_max, .. }) = (self.widened(), self.inside);
+        let (first, last) = (self.end(t_min, 2.0), self.end(t_max, -2.0));
+        if first <= last && accelerator.occluded_one(&Ray { t_min: first, t_max: last, ..all }) {
+            return true;
+        }
+        // About the ends it has to be seen what `t` is told.
+        let about = |t_min: f64, t_max: f64| {
+            let ray = Ray { t_min, t_max, ..all };
+            (first > last || self.may_meet_about(t_min))
+                && accelerator.occluded_one(&ray)
+                && self.met(&ray).any(|(hit, contact)| self.told(&hit, contact).is_some())
+        };
+        if first > last {
+            return about(all.t_min, all.t_max);
+        }
+        t_min != first && about(all.t_min, first) || t_max != last && about(last, all.t_max)
+    }
+}
