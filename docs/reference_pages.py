@@ -13,10 +13,15 @@ from types import ModuleType
 from typing import Any
 
 import raywright
-from raywright.compat import trimesh_ray
+from raywright.compat import open3d, pyvista, trimesh_proximity, trimesh_ray
 
 # Modules that users import by themselves.
-_APART = {"trimesh_ray": trimesh_ray}
+_APART = {
+    "open3d": open3d,
+    "pyvista": pyvista,
+    "trimesh_proximity": trimesh_proximity,
+    "trimesh_ray": trimesh_ray,
+}
 # Where members of a class come from that is not the package's own business.
 _STRANGERS = "tuple, dict, object, Exception, ABC, Generic"
 _CORE = "the core"

@@ -7,7 +7,7 @@ from types import ModuleType
 import pytest
 
 import raywright as rw
-from raywright.compat import trimesh_ray
+from raywright.compat import open3d, pyvista, trimesh_proximity, trimesh_ray
 
 # In the order that they have.
 SECTIONS = ("Parameters", "Attributes", "Returns", "Yields", "Raises", "Warns", "Notes", "References")
@@ -30,9 +30,10 @@ def members(name, value):
             yield from members(f"{name}.{own}", getattr(value, own))
 
 
+APART = {module.__name__: module for module in (open3d, pyvista, trimesh_proximity, trimesh_ray)}
 PUBLIC = {
     full: value
-    for name, top in [*((name, getattr(rw, name)) for name in rw.__all__), ("trimesh_ray", trimesh_ray)]
+    for name, top in [*((name, getattr(rw, name)) for name in rw.__all__), *APART.items()]
     for full, value in members(name, top)
     if getattr(value, "__doc__", None) and getattr(type(value), "__doc__", None) != value.__doc__
 }

@@ -5,7 +5,8 @@ is decided exactly, and all hits of a ray are found in one pass, so that none is
 edge is told once, however small, large or far from the origin a mesh is.
 """
 
-from .installation import Installation, install, uninstall
+from ..switch import Installation
+from .installation import install, uninstall
 from .intersector import RayMeshIntersector
 
 __all__ = ["Installation", "RayMeshIntersector", "install", "uninstall"]

@@ -1,5 +1,6 @@
 """Ray queries on one trimesh mesh."""
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -148,18 +149,26 @@ class RayMeshIntersector:
             If it does not hold real numbers.
         """
         core = self._scene._compiled()
-        return core.contains(*point_arguments(_triples("points", points), None), is_even_odd=True)
+        return core.contains(*point_arguments(triples("points", points), None), is_even_odd=True)
 
     @property
     def _scene(self) -> Scene:
         """The mesh as it is now."""
-        # The cache empties itself when the mesh has another hash.
-        scene: Scene | None = self._cache["scene"]
-        if scene is None:
+
+        def make() -> Scene:
             # Nothing of the vertices is lost; the core keeps float32 where that holds them all.
-            scene = Scene(Mesh(self.mesh.vertices, self.mesh.faces), precision="double").welded()
-            self._cache["scene"] = scene
+            return Scene(Mesh(self.mesh.vertices, self.mesh.faces), precision="double").welded()
+
+        scene: Scene = self._kept("scene", make)
         return scene
+
+    def _kept(self, name: str, make: Callable[[], Any]) -> Any:
+        """Return what was made of the mesh as it is now, and make it if that has not been done."""
+        # The cache empties itself when the mesh has another hash.
+        value = self._cache[name]
+        if value is None:
+            value = self._cache[name] = make()
+        return value
 
     def _hits(
         self,
@@ -206,7 +215,8 @@ class RayMeshIntersector:
         return f"RayMeshIntersector({len(self.mesh.faces)} faces)"
 
 
-def _triples(name: str, value: ArrayLike) -> NDArray[Any]:
+def triples(name: str, value: ArrayLike) -> NDArray[Any]:
+    """Return an array of shape (n, 3); an empty list is one of shape (0, 3)."""
     array = real_array(name, value)
     if array.shape == (0,):
         array = array.reshape(0, 3)
@@ -216,7 +226,7 @@ def _triples(name: str, value: ArrayLike) -> NDArray[Any]:
 
 
 def _rays(origins: ArrayLike, directions: ArrayLike) -> tuple[NDArray[Any], NDArray[Any]]:
-    starts, ways = _triples("ray_origins", origins), _triples("ray_directions", directions)
+    starts, ways = triples("ray_origins", origins), triples("ray_directions", directions)
     if starts.shape != ways.shape:
         raise ValueError(f"ray_origins and ray_directions differ in shape: {starts.shape} and {ways.shape}")
     return starts, ways

@@ -1,0 +1,336 @@
+"""Ray and point queries on triangle meshes, as Open3D has them."""
+
+import inspect
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...arrays import integer, last_axis
+from ...query.rays import point_arguments
+from ...scene.scene import Scene
+from ...shapes.mesh import Mesh
+from .pinhole import rays_of_matrices, rays_of_view
+from .tensors import array_of, is_tensor, tensor_of
+
+_INVALID = 2**32 - 1
+
+
+class RaycastingScene:
+    """Triangle meshes for rays and points; meshes can be added between queries.
+
+    Arrays of numpy and whatever becomes one are taken, of any real type, beside tensors of Open3D. Results
+    are tensors if what is passed, or a mesh of the scene, is of Open3D, and arrays otherwise.
+
+    Parameters
+    ----------
+    nthreads : int
+        Changes nothing: the accelerator is built on all cores, at the first query.
+    device : open3d.core.Device or str
+        A CPU.
+
+    Raises
+    ------
+    ValueError
+        If the device is no CPU.
+
+    Notes
+    -----
+    All results have the dtypes of Open3D: float32 for numbers and uint32 for ids. Vertices and rays are not
+    rounded before.
+    """
+
+    INVALID_ID: ClassVar[int] = _INVALID
+    """The id of a miss."""
+
+    _returns_tensors: ClassVar[bool] = False
+
+    def __init__(self, nthreads: int = 0, device: Any = "CPU:0") -> None:
+        integer("nthreads", nthreads, 0)
+        if not str(device).upper().startswith("CPU"):
+            raise ValueError(f"device must be a CPU, got {device}")
+        self._meshes: list[Mesh] = []
+        self._has_tensors = self._returns_tensors
+        self._scene: Scene | None = None
+
+    def add_triangles(
+        self, vertex_positions: Any = None, triangle_indices: Any = None, mesh: Any = None
+    ) -> int:
+        """Add a mesh: ``add_triangles(vertex_positions, triangle_indices)`` or ``add_triangles(mesh)``.
+
+        Parameters
+        ----------
+        vertex_positions : (V, 3) array or Tensor
+            The vertices.
+        triangle_indices : (F, 3) integer array or Tensor
+            Three vertices for each triangle.
+        mesh : open3d.t.geometry.TriangleMesh
+            In place of the two; or anything else with vertices, and triangles or faces.
+
+        Returns
+        -------
+        int
+            The id of the mesh: 0 for the first, 1 for the second, ...
+
+        Raises
+        ------
+        ValueError
+            If an array has the wrong shape, an index has no vertex, or a tensor is not on the CPU.
+        TypeError
+            If an array has the wrong type, or the arguments are others.
+        """
+        vertices, faces = vertex_positions, triangle_indices
+        if faces is None:
+            if (vertices is None) == (mesh is None):
+                raise TypeError("add_triangles takes vertex_positions and triangle_indices, or a mesh")
+            vertices, faces = _parts(vertices if mesh is None else mesh)
+        made = Mesh(array_of("vertex_positions", vertices), array_of("triangle_indices", faces))
+        self._has_tensors |= is_tensor(vertices) or is_tensor(faces)
+        self._meshes.append(made)
+        self._scene = None
+        return len(self._meshes) - 1
+
+    def cast_rays(self, rays: Any, nthreads: int = 0) -> dict[str, Any]:
+        """Find the first hit of each ray.
+
+        Parameters
+        ----------
+        rays : (..., 6) array or Tensor
+            Origin and direction of each ray, which need not be unit.
+        nthreads : int
+            How many threads to use; 0 for all cores.
+
+        Returns
+        -------
+        dict
+            ``t_hit`` (...) float32, inf for a miss; ``geometry_ids`` and ``primitive_ids`` (...) uint32,
+            `INVALID_ID` for a miss; ``primitive_uvs`` (..., 2) float32 and ``primitive_normals`` (..., 3)
+            float32, 0 for a miss.
+
+        Raises
+        ------
+        ValueError
+            If the last dimension is not 6, or a tensor is not on the CPU.
+        TypeError
+            If the array does not hold real numbers.
+        """
+        hits = self._compiled.intersect(*_ends(rays), threads=_threads(nthreads))
+        answer = {
+            "t_hit": _single(hits.t),
+            "geometry_ids": _ids(hits.shape_id),
+            "primitive_ids": _ids(hits.primitive),
+            "primitive_uvs": _single(hits.uv),
+            "primitive_normals": _single(np.where(hits.hit[..., np.newaxis], hits.normal, 0)),
+        }
+        return self._all_told(answer, rays)
+
+    def test_occlusions(self, rays: Any, tnear: float = 0.0, tfar: float = np.inf, nthreads: int = 0) -> Any:
+        """Find whether each ray hits anything between `tnear` and `tfar`: (...) bool.
+
+        Takes and raises what `cast_rays` does. Both ends count, in lengths of the direction.
+        """
+        ends = float(tnear), float(tfar)
+        return self._told(self._compiled.occluded(*_ends(rays), *ends, threads=_threads(nthreads)), rays)
+
+    def count_intersections(self, rays: Any, nthreads: int = 0) -> Any:
+        """Count how often each ray crosses the meshes: (...) int32.
+
+        Takes and raises what `cast_rays` does.
+        """
+        count = self._compiled.count(*_ends(rays), threads=_threads(nthreads))
+        return self._told(count.astype(np.int32), rays)
+
+    def list_intersections(self, rays: Any, nthreads: int = 0) -> dict[str, Any]:
+        """Find every hit of each ray, by ray and then along it.
+
+        Takes and raises what `cast_rays` does.
+
+        Returns
+        -------
+        dict
+            ``ray_splits`` (N + 1,) uint32, between which the K hits of each of the N rays are; ``ray_ids``,
+            ``geometry_ids`` and ``primitive_ids`` (K,) uint32; ``t_hit`` (K,) and ``primitive_uvs`` (K, 2)
+            float32.
+        """
+        hits = self._compiled.intersect_all(*_ends(rays), threads=_threads(nthreads))
+        answer = {
+            "ray_splits": hits.ray_splits.astype(np.uint32),
+            "ray_ids": hits.ray.astype(np.uint32),
+            "t_hit": _single(hits.t),
+            "geometry_ids": _ids(hits.shape_id),
+            "primitive_ids": _ids(hits.primitive),
+            "primitive_uvs": _single(hits.uv),
+        }
+        return self._all_told(answer, rays)
+
+    def compute_closest_points(self, query_points: Any, nthreads: int = 0) -> dict[str, Any]:
+        """Find the closest point of the meshes to each point.
+
+        Parameters
+        ----------
+        query_points : (..., 3) array or Tensor
+            The points.
+        nthreads : int
+            How many threads to use; 0 for all cores.
+
+        Returns
+        -------
+        dict
+            ``points`` and ``primitive_normals`` (..., 3) float32, ``primitive_uvs`` (..., 2) float32,
+            ``geometry_ids`` and ``primitive_ids`` (...) uint32. Without any mesh, and for points that are
+            not finite, they are 0 and `INVALID_ID`.
+
+        Raises
+        ------
+        ValueError
+            If the last dimension is not 3, or a tensor is not on the CPU.
+        TypeError
+            If the array does not hold real numbers.
+        """
+        found = self._compiled.closest_point(_points(query_points), threads=_threads(nthreads))
+        has = found.found[..., np.newaxis]
+        answer = {
+            "points": _single(np.where(has, found.position, 0)),
+            "geometry_ids": _ids(found.shape_id),
+            "primitive_ids": _ids(found.primitive),
+            "primitive_uvs": _single(np.where(has, found.uv, 0)),
+            "primitive_normals": _single(np.where(has, found.normal, 0)),
+        }
+        return self._all_told(answer, query_points)
+
+    def compute_distance(self, query_points: Any, nthreads: int = 0) -> Any:
+        """Compute how far each point is from the meshes: (...) float32.
+
+        Takes and raises what `compute_closest_points` does. It is inf without any mesh.
+        """
+        found = self._compiled.closest_point(_points(query_points), threads=_threads(nthreads))
+        return self._told(_single(found.distance), query_points)
+
+    def compute_signed_distance(self, query_points: Any, nthreads: int = 0, nsamples: int = 1) -> Any:
+        """Compute how far each point is from the meshes, less than 0 for those inside: (...) float32.
+
+        Takes and raises what `compute_occupancy` does, which decides what is inside.
+        """
+        inside = self._inside(query_points, nthreads, nsamples)
+        found = self._compiled.closest_point(_points(query_points), threads=_threads(nthreads))
+        signed = np.where(inside & (found.distance > 0), -found.distance, found.distance)
+        return self._told(_single(signed), query_points)
+
+    def compute_occupancy(self, query_points: Any, nthreads: int = 0, nsamples: int = 1) -> Any:
+        """Find whether each point is inside the meshes: (...) float32, 1 inside and 0 outside.
+
+        A point is inside if a ray from there crosses all meshes together an odd number of times. That is
+        decided exactly, with points on a surface inside; where meshes are open, by the majority of seven
+        rays.
+
+        Parameters
+        ----------
+        query_points : (..., 3) array or Tensor
+            The points.
+        nthreads : int
+            How many threads to use; 0 for all cores.
+        nsamples : int
+            An odd number, which changes nothing: no ray is lost on an edge.
+
+        Raises
+        ------
+        ValueError
+            If the last dimension is not 3, a tensor is not on the CPU, or `nsamples` is not odd.
+        TypeError
+            If the array does not hold real numbers.
+        """
+        return self._told(_single(self._inside(query_points, nthreads, nsamples)), query_points)
+
+    @classmethod
+    def create_rays_pinhole(cls, *args: Any, **kwargs: Any) -> Any:
+        """Return the rays through the centers of a pinhole camera's pixels: (height_px, width_px, 6) float32.
+
+        Parameters
+        ----------
+        *args, **kwargs
+            In one of two forms. Either ``intrinsic_matrix``, (3, 3), from the camera to pixels,
+            ``extrinsic_matrix``, (4, 4), from the world to the camera, ``width_px`` and ``height_px``. Or
+            ``fov_deg``, the horizontal field of view in degrees, ``center``, the point that the camera looks
+            at, ``eye``, its place, ``up``, the direction in which rows of pixels follow each other, as Open3D
+            has it, ``width_px`` and ``height_px``.
+
+        Returns
+        -------
+        array or Tensor
+            A tensor if a tensor is passed. Directions reach as far as the plane at a depth of 1.
+
+        Raises
+        ------
+        ValueError
+            If a matrix or vector has the wrong shape, the intrinsic matrix has no inverse, the field of view
+            is not between 0 and 180, `up` points along the view, or a size is less than 1.
+        TypeError
+            If arguments are missing or of the wrong type.
+        """
+        given = (*args, *kwargs.values())
+        form = rays_of_view if len(given) == 6 or "fov_deg" in kwargs else rays_of_matrices
+        names = (*inspect.signature(form).parameters, *args)
+        plain = [array_of(name, value) for name, value in zip(names, args, strict=False)]
+        rays = form(*plain, **{name: array_of(name, value) for name, value in kwargs.items()})
+        return tensor_of(rays) if cls._returns_tensors or any(map(is_tensor, given)) else rays
+
+    @property
+    def _compiled(self) -> Scene:
+        """The meshes as they are now."""
+        if self._scene is None:
+            self._scene = Scene(self._meshes, precision="double")
+        return self._scene
+
+    def _inside(self, query_points: Any, nthreads: int, nsamples: int) -> NDArray[np.bool_]:
+        if integer("nsamples", nsamples, 1) % 2 == 0:
+            raise ValueError(f"nsamples must be odd, got {nsamples}")
+        core = self._compiled._compiled()
+        arguments = point_arguments(_points(query_points), _threads(nthreads))
+        return core.contains(*arguments, is_even_odd=True)
+
+    def _all_told(self, answer: dict[str, Any], given: Any) -> dict[str, Any]:
+        return {name: self._told(array, given) for name, array in answer.items()}
+
+    def _told(self, array: NDArray[Any], given: Any) -> Any:
+        """Return an array as a tensor where one is due."""
+        return tensor_of(array) if self._has_tensors or is_tensor(given) else array
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**vars(self), "_scene": None}
+
+    def __repr__(self) -> str:
+        faces = sum(len(mesh.faces) for mesh in self._meshes)
+        return f"RaycastingScene({len(self._meshes)} meshes, {faces} triangles)"
+
+
+def _parts(mesh: Any) -> tuple[Any, Any]:
+    """Return the vertices and triangles of a mesh."""
+    if hasattr(mesh, "vertex") and hasattr(mesh, "triangle"):
+        return mesh.vertex["positions"], mesh.triangle["indices"]
+    faces = getattr(mesh, "triangles", None) if not hasattr(mesh, "faces") else mesh.faces
+    if not hasattr(mesh, "vertices") or faces is None:
+        raise TypeError(f"mesh must have vertices and triangles, got {type(mesh).__name__}")
+    return mesh.vertices, faces
+
+
+def _ends(rays: Any) -> tuple[NDArray[Any], NDArray[Any]]:
+    array = last_axis("rays", array_of("rays", rays), 6)
+    return array[..., :3], array[..., 3:]
+
+
+def _points(query_points: Any) -> NDArray[Any]:
+    return last_axis("query_points", array_of("query_points", query_points), 3)
+
+
+def _threads(nthreads: int) -> int | None:
+    return integer("nthreads", nthreads, 0) or None
+
+
+def _single(array: NDArray[Any]) -> NDArray[np.float32]:
+    with np.errstate(over="ignore"):
+        return array.astype(np.float32)
+
+
+def _ids(numbers: NDArray[np.int32]) -> NDArray[np.uint32]:
+    # Of -1 it is INVALID_ID.
+    return numbers.astype(np.uint32)

@@ -1,0 +1,11 @@
+"""Rays for pyvista: three of its filters, and `install` to put them into its meshes.
+
+`ray_trace`, `multi_ray_trace` and `select_interior_points` take and return what the methods of
+``pyvista.PolyData`` do. Hits are decided exactly, come in their order along the ray, and need neither embree
+nor meshes of triangles alone.
+"""
+
+from .filters import multi_ray_trace, ray_trace, select_interior_points
+from .installation import install, uninstall
+
+__all__ = ["install", "multi_ray_trace", "ray_trace", "select_interior_points", "uninstall"]

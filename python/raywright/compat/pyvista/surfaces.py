@@ -1,0 +1,65 @@
+"""Surfaces of pyvista as triangles."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+import trimesh
+from numpy.typing import NDArray
+
+from ..switch import Kept
+from ..trimesh_ray.intersector import RayMeshIntersector
+
+# Where a surface keeps its triangles.
+_OWN = "_raywright_surface"
+
+
+class Surface(NamedTuple):
+    """A surface as triangles.
+
+    Attributes
+    ----------
+    intersector : RayMeshIntersector
+        Of the triangles.
+    cells : (F,) int64
+        The cell of each triangle.
+    """
+
+    intersector: RayMeshIntersector
+    cells: NDArray[np.int64]
+
+
+def surface_of(name: str, mesh: Any) -> Surface:
+    """Return the triangles of a ``pyvista.PolyData`` as it is now.
+
+    Raises
+    ------
+    TypeError
+        If it is something else.
+    """
+    import pyvista
+
+    if not isinstance(mesh, pyvista.PolyData):
+        raise TypeError(f"{name} must be a pyvista.PolyData, got {type(mesh).__name__}")
+    parts = (mesh.GetPoints(), mesh.GetVerts(), mesh.GetLines(), mesh.GetPolys(), mesh.GetStrips())
+    # Times of modification count all changes of all objects, so that no two are the same.
+    key = tuple(part.GetMTime() for part in parts if part is not None)
+    own = vars(mesh).get(_OWN)
+    if own is None or own.key != key:
+        faces, cells = _triangles(mesh, pyvista)
+        made = trimesh.Trimesh(np.asarray(mesh.points), faces, process=False, validate=False)
+        own = vars(mesh)[_OWN] = Kept(Surface(RayMeshIntersector(made), cells), key)
+    surface: Surface = own.value
+    return surface
+
+
+def _triangles(mesh: Any, pyvista: Any) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return the corners of triangles, (F, 3), and the cell of each."""
+    if mesh.is_all_triangles and mesh.n_cells:
+        return np.asarray(mesh.regular_faces, np.int64), np.arange(mesh.n_cells)
+    structure = pyvista.PolyData()
+    structure.copy_structure(mesh)
+    structure.cell_data["cell"] = np.arange(mesh.n_cells)
+    parts = structure.triangulate()
+    if not parts.n_cells:
+        return np.empty((0, 3), np.int64), np.empty(0, np.int64)
+    return np.asarray(parts.regular_faces, np.int64), np.asarray(parts.cell_data["cell"], np.int64)
