@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .. import _core
-from ..arrays import last_axis
+from ..arrays import last_axis, real_array
 
 Floats = NDArray[np.float64]
 
@@ -47,7 +47,7 @@ class Rays:
 
     def __post_init__(self) -> None:
         for name, tail in (("origins", (3,)), ("directions", (3,)), ("time", ())):
-            array = np.ascontiguousarray(getattr(self, name), np.float64)
+            array = _numbers(name, getattr(self, name))
             object.__setattr__(self, name, array)
             if array.shape[1:] != tail or array.ndim != 1 + len(tail) or len(array) != len(self.origins):
                 shapes = [np.shape(getattr(self, part)) for part in ("origins", "directions", "time")]
@@ -264,7 +264,7 @@ class Interactions:
         u : (N, 2) array
             Pairs of numbers in (0, 1) for the direction.
         """
-        return Scattered(*self._core.sample(_numbers(choice), _numbers(u)))
+        return Scattered(*self._core.sample(_numbers("choice", choice), _numbers("u", u)))
 
     def light(self, choice: Floats, u: Floats) -> LightSamples:
         """Draw light that reaches the points from the scene's lights.
@@ -276,7 +276,9 @@ class Interactions:
         u : (N, 2) array
             Pairs of numbers in (0, 1) for the point on the light.
         """
-        (direction, weight, origins, ways), most, pdf = self._core.light(_numbers(choice), _numbers(u))
+        (direction, weight, origins, ways), most, pdf = self._core.light(
+            _numbers("choice", choice), _numbers("u", u)
+        )
         return LightSamples(direction, weight, pdf, (origins, ways, most), self.rays.time)
 
     def light_pdf(self, before: "Interactions") -> Floats:
@@ -304,7 +306,7 @@ def power_heuristic(pdf: ArrayLike, other: ArrayLike) -> Floats:
     That of Veach and Guibas (1995) with the exponent 2; infinite densities get the weight 1, and 0 the weight
     0.
     """
-    mine, others = np.broadcast_arrays(np.asarray(pdf, np.float64), np.asarray(other, np.float64))
+    mine, others = np.broadcast_arrays(_numbers("pdf", pdf), _numbers("other", other))
     with np.errstate(over="ignore"):
         ratio = np.divide(others, mine, out=np.full(mine.shape, np.inf), where=mine > 0)
         return np.asarray(1.0 / (1.0 + ratio * ratio))
@@ -317,5 +319,5 @@ def _vectors(name: str, value: ArrayLike) -> Floats:
     return array
 
 
-def _numbers(value: ArrayLike) -> Floats:
-    return np.ascontiguousarray(value, np.float64)
+def _numbers(name: str, value: ArrayLike) -> Floats:
+    return np.ascontiguousarray(real_array(name, value), np.float64)

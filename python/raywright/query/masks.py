@@ -4,8 +4,9 @@ from collections.abc import Sequence
 from typing import Literal, TypeAlias
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import bools
 from .rays import AskedRays, RayArguments, view
 
 ShapeMask: TypeAlias = str | Sequence[str] | ArrayLike
@@ -40,9 +41,7 @@ def _each(shapes: ShapeMask, names: tuple[str, ...]) -> list[bool]:
                 told = f"its names are {', '.join(map(repr, sorted(known)))}" if known else "none has a name"
                 raise ValueError(f"shapes has {name!r}, but no shape of the scene is called so: {told}")
         return [name in wanted for name in names]
-    mask = np.asarray(wanted)
-    if mask.dtype != np.bool_:
-        raise TypeError(f"shapes must be bool, one for each shape, or names, got dtype {mask.dtype}")
+    mask = bools("shapes", wanted, "one for each shape, or names")
     if mask.shape != (len(names),):
         raise ValueError(f"shapes must have shape ({len(names)},), one bool a shape, got {mask.shape}")
     kept: list[bool] = mask.tolist()
@@ -61,9 +60,7 @@ def asked(rays: RayArguments, mask: ArrayLike | None) -> AskedRays:
     """
     if mask is None:
         return *rays, None
-    which: NDArray[np.bool_] = np.asarray(mask)
-    if which.dtype != np.bool_:
-        raise TypeError(f"mask must be bool, one for each ray, got dtype {which.dtype}")
+    which = bools("mask", mask, "one for each ray")
     shape = rays[4]
     try:
         np.broadcast_to(which, shape)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..arrays import integer, positive
+from ..arrays import integer, positive, real_array
 from ..cameras import AnyCamera
 from ..rendering.image import Image
 from ..rendering.render import render
@@ -197,7 +197,7 @@ def _reference(
     if isinstance(reference, Image):
         doubt = 0.0 if math.isnan(reference.error.estimate) else reference.error.estimate
         reference = reference.rgb
-    picture = np.asarray(reference, np.float64)
+    picture = real_array("reference", reference).astype(np.float64, copy=False)
     wanted = (camera.height, camera.width, 3)
     if picture.shape != wanted:
         raise ValueError(f"reference must have shape {wanted} as the picture has, got {picture.shape}")

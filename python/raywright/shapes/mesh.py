@@ -15,7 +15,7 @@ from ..materials import Diffuse, Material
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
 class Mesh:
-    """A mesh of triangles. All arrays are kept as read-only copies.
+    """A mesh of triangles. All arrays are kept read-only: as copies, unless nobody can write to them anyway.
 
     Parameters
     ----------
