@@ -45,17 +45,16 @@ struct Answers {
 }
 
 /// Asks all rays, so many at a time.
-fn ask(accelerator: &dyn Accelerator, primitives: &dyn Primitives, rays: &[Ray], batch: usize) -> Answers {
+fn ask(accelerator: &dyn Accelerator, rays: &[Ray], batch: usize) -> Answers {
     let none = Answers { hits: vec![], occluded: vec![], crossings: Crossings::default(), sides: vec![] };
     let mut all = none;
     all.crossings.splits.push(0);
-    let doubt = primitives.region().radius / (1u64 << 24) as f64;
     for rays in rays.chunks(batch) {
         let (mut hits, mut occluded) = (vec![Hit::MISS; rays.len()], vec![false; rays.len()]);
         accelerator.intersect(rays, &mut hits);
         accelerator.occluded(rays, &mut occluded);
-        let leaving: Vec<_> = rays.iter().map(|r| Ray { t_min: -doubt, ..*r }).collect();
-        let sides = accelerator.exits(primitives, &|_| true, &leaving, doubt).sides();
+        let leaving: Vec<_> = rays.iter().map(|r| Ray { t_min: 0.0, ..*r }).collect();
+        let sides = accelerator.exits(&|_| true, &leaving).sides();
         let Crossings { splits, hits: met } = accelerator.crossings(rays);
         let before = all.crossings.hits.len();
         all.crossings.splits.extend(splits[1..].iter().map(|end| before + end));
@@ -69,10 +68,10 @@ fn ask(accelerator: &dyn Accelerator, primitives: &dyn Primitives, rays: &[Ray],
 
 /// The answers of brute force, after seeing that all trees give them, to batches of several sizes.
 fn agreed(primitives: &dyn Primitives, rays: &[Ray]) -> Answers {
-    let wanted = ask(BruteForce::over(primitives, best()).as_ref(), primitives, rays, rays.len());
+    let wanted = ask(BruteForce::over(primitives, best()).as_ref(), rays, rays.len());
     for (i, tree) in trees(primitives).iter().enumerate() {
         let batch = [rays.len(), 65, 3][i % 3];
-        assert_eq!(ask(tree.as_ref(), primitives, rays, batch), wanted, "{}, {batch} rays", tree.info().kind);
+        assert_eq!(ask(tree.as_ref(), rays, batch), wanted, "{}, {batch} rays", tree.info().kind);
     }
     wanted
 }
@@ -210,12 +209,12 @@ fn trees_are_fitted_to_what_moves_unless_they_hold_parts() {
     let mut random = Random(44);
     let (before, after) = (sticks(&mut random, 300), sticks(&mut random, 300));
     let rays = some_of_one_mind(&mut random, &after);
-    let wanted = ask(BruteForce::over(&after, best()).as_ref(), &after, &rays, 100);
+    let wanted = ask(BruteForce::over(&after, best()).as_ref(), &rays, 100);
     for traversal in Traversal::ALL {
         let tree = over(&before, traversal);
         let moved = tree.refitted(&after).unwrap();
         moved.validate(&after).unwrap();
-        assert_eq!(ask(moved.as_ref(), &after, &rays, 100), wanted, "{traversal:?}");
+        assert_eq!(ask(moved.as_ref(), &rays, 100), wanted, "{traversal:?}");
         let told = |a: &dyn Accelerator| (a.info().nodes, a.info().leaves, a.info().kind.clone());
         assert_eq!(told(moved.as_ref()), told(tree.as_ref()));
         let parts = trees::binary(&before, &Options { builder: SPATIAL, ..Options::DEFAULT }, traversal, best());

@@ -159,16 +159,9 @@ pub trait Accelerator: Send + Sync {
     /// Every hit of each ray among what counts for it.
     fn crossings_kept(&self, rays: &[Ray], counts: &Counts<'_>) -> Crossings;
 
-    /// All surfaces that the rays cross ahead of their origins, among the primitives that count. The `primitives` must
-    /// be those that it holds. Rays are asked from a `t_min` of minus `doubt` on; the sign of a `t` is only believed
-    /// where it is farther from 0 than `doubt`.
-    fn exits(
-        &self,
-        primitives: &dyn Primitives,
-        counts: &(dyn Fn(u32) -> bool + Sync),
-        rays: &[Ray],
-        doubt: f64,
-    ) -> Exits;
+    /// All surfaces that the rays, asked from a `t_min` of 0 on, cross ahead of their origins, among the primitives
+    /// that count.
+    fn exits(&self, counts: &(dyn Fn(u32) -> bool + Sync), rays: &[Ray]) -> Exits;
 
     /// The nearest point to each point, within its greatest distance, that distance included; one greatest distance for
     /// all of them, or one each. A point that is NaN or infinite has none. Of primitives as near, the lowest.
@@ -260,15 +253,9 @@ impl<A: Answers> Accelerator for A {
         Crossings::of(every)
     }
 
-    fn exits(
-        &self,
-        primitives: &dyn Primitives,
-        counts: &(dyn Fn(u32) -> bool + Sync),
-        rays: &[Ray],
-        doubt: f64,
-    ) -> Exits {
+    fn exits(&self, counts: &(dyn Fn(u32) -> bool + Sync), rays: &[Ray]) -> Exits {
         let exits = Exits { crossed: Vec::new(), on_surface: vec![false; rays.len()] };
-        let mut out = WaysOut { primitives, counts, rays, doubt, exits };
+        let mut out = WaysOut { counts, exits };
         self.answer(rays, &mut out);
         out.exits.in_order()
     }

@@ -235,15 +235,8 @@ impl Accelerator for Mixed {
         joined(rays.len(), &a, &b)
     }
 
-    fn exits(
-        &self,
-        primitives: &dyn Primitives,
-        counts: &(dyn Fn(u32) -> bool + Sync),
-        rays: &[Ray],
-        doubt: f64,
-    ) -> Exits {
-        let of_triangles = self.triangles.exits(primitives, counts, rays, doubt);
-        of_triangles.joined(self.objects.exits(primitives, counts, rays, doubt))
+    fn exits(&self, counts: &(dyn Fn(u32) -> bool + Sync), rays: &[Ray]) -> Exits {
+        self.triangles.exits(counts, rays).joined(self.objects.exits(counts, rays))
     }
 
     fn nearest_kept(

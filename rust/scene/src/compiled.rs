@@ -185,7 +185,7 @@ impl Scene {
         let vote = |which: &[usize], ways: &[DVec3], inside: &mut [bool], votes: &mut [u32]| {
             for &way in ways.iter().filter(|_| !which.is_empty()) {
                 let rays: Vec<Ray> = which.iter().map(|&i| Ray::new(points[i], way)).collect();
-                for (&i, side) in which.iter().zip(solids.sides(&self.geometry, self.accelerator(), rays)) {
+                for (&i, side) in which.iter().zip(solids.sides(&self.geometry, self.accelerator(), &rays)) {
                     votes[i] += u32::from(side == Side::Inside);
                     inside[i] |= side == Side::Surface;
                 }

@@ -115,14 +115,11 @@ fn place(triangles: &Triangles, point: DVec3) -> Place {
 
 fn holds(triangles: &Triangles, rays: &[Ray]) {
     let places: Vec<Place> = rays.iter().map(|ray| place(triangles, ray.origin)).collect();
-    let region = triangles.region();
-    // As `Scene::contains` asks.
-    let doubt = region.radius / (1u64 << 24) as f64;
-    let leaving: Vec<Ray> = rays.iter().map(|ray| Ray { t_min: -doubt, ..*ray }).collect();
+    let leaving: Vec<Ray> = rays.iter().map(|ray| Ray { t_min: 0.0, ..*ray }).collect();
     let lines: Vec<Ray> = rays.iter().map(|ray| Ray { t_min: f64::NEG_INFINITY, ..*ray }).collect();
     for (name, accelerator) in accelerators::all(triangles, &Options::DEFAULT) {
         let crossings = accelerator.crossings(&lines);
-        let sides = accelerator.exits(triangles, &|_| true, &leaving, doubt).sides();
+        let sides = accelerator.exits(&|_| true, &leaving).sides();
         let mut occluded = vec![false; rays.len()];
         accelerator.occluded(&leaving, &mut occluded);
         for (i, ray) in rays.iter().enumerate() {

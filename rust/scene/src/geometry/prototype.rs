@@ -5,7 +5,6 @@ use super::{Enclosing, Geometry, Solids};
 use crate::textures::Needs;
 use crate::{Emission, Material, ShadingPoint, SurfacePoint};
 use raywright_accel::{Accelerator, Primitives, Side};
-use raywright_base::math::robust::normalising_scale;
 use raywright_base::math::{DVec3, Hit, Ray};
 use raywright_base::parallel::{self, CHUNK};
 use raywright_shapes::Bounds;
@@ -173,13 +172,7 @@ impl Prototype {
 
     /// On which side of what is closed in it the origin of a ray in its space lies, by the crossings from there on.
     pub fn side(&self, ray: &Ray) -> Side {
-        let size = ray.direction.abs().max_element();
-        if !size.is_normal() {
-            return Side::Outside;
-        }
-        let (scale, _) = normalising_scale(size);
-        let ray = Ray { direction: ray.direction * scale, ..*ray };
-        self.solids().sides(&self.geometry, self.accelerator(), vec![ray])[0]
+        self.solids().sides(&self.geometry, self.accelerator(), std::slice::from_ref(ray))[0]
     }
 
     /// What is enclosed in it.

@@ -158,7 +158,7 @@ impl Solids {
             let points: Vec<DVec3> = points.into_iter().filter(|point| point.is_finite()).collect();
             let step = points.len().div_ceil(LOOKED_AT).max(1);
             let rays: Vec<Ray> = points.into_iter().step_by(step).map(|point| Ray::new(point, WAY)).collect();
-            let sides = outer.sides(geometry, accelerator, rays);
+            let sides = outer.sides(geometry, accelerator, &rays);
             self.groups[group].is_cavity = sides.contains(&Side::Inside) && !sides.contains(&Side::Outside);
         }
     }
@@ -194,14 +194,10 @@ impl Solids {
         self.of.iter().all(|&of| of == NONE)
     }
 
-    /// On which side of what is closed the origins of rays lie, by what is crossed from there on. The largest
-    /// coordinate of directions must be between 1 and 2.
-    pub fn sides(&self, geometry: &Geometry, accelerator: &dyn Accelerator, mut rays: Vec<Ray>) -> Vec<Side> {
-        // The sign of a t may be wrong up to `EdgeRay::T_ERROR` of at most two radii.
-        let doubt = geometry.region().radius / (1u64 << 24) as f64;
-        rays.iter_mut().for_each(|ray| ray.t_min = -doubt);
+    /// On which side of what is closed the origins of rays lie, by what is crossed from there on.
+    pub fn sides(&self, geometry: &Geometry, accelerator: &dyn Accelerator, rays: &[Ray]) -> Vec<Side> {
         let counts = |primitive: u32| self.of[primitive as usize] != NONE;
-        let Exits { crossed, on_surface } = accelerator.exits(geometry, &counts, &rays, doubt);
+        let Exits { crossed, on_surface } = accelerator.exits(&counts, rays);
         let of_origin = |on_surface| if on_surface { Side::Surface } else { Side::Outside };
         let mut sides: Vec<Side> = on_surface.into_iter().map(of_origin).collect();
         let mut wound = Vec::new();
