@@ -290,7 +290,7 @@ impl Kernel<4> for Rasterise<'_, '_> {
                 let rays = &rays[at * across..];
                 let hits = &mut hits[at * across..];
                 if left.count_ones() > FEW && row.is_plain {
-                    let all = row.edges.meet(corners, left);
+                    let all = row.edges.meet(S::FUSED, corners, left);
                     left = all.open;
                     let mut met = all.met;
                     while met != 0 {

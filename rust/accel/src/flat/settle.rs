@@ -196,7 +196,7 @@ loops! {
     /// Where sixteen rays meet triangles that they are known to meet.
     fn won(edges: &mut EdgeRays, corners: &[[Column<f64>; 3]; 3], region: &Region, here: u32, all: &mut Met) {
         let plain = edges.prepare(region) & here;
-        *all = edges.won(corners, plain);
+        *all = edges.won(false, corners, plain);
     }
 }
 

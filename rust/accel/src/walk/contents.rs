@@ -181,7 +181,7 @@ impl<const N: usize, L: Leaves<N>> Contents<N, L> {
                 {
                     continue;
                 }
-                if let Some(candidate) = ray.edges.meet(self.triangles.corners(first, count, lane))
+                if let Some(candidate) = ray.edges.meet_in(S::FUSED, self.triangles.corners(first, count, lane))
                     && query.offer(state, primitive, candidate)
                 {
                     return true;

@@ -40,6 +40,7 @@ macro_rules! lanes {
 
 impl Lanes<4> for Neon {
     type F32 = float32x4_t;
+    const FUSED: bool = true;
 
     lanes! {
         splat(x: f32) -> float32x4_t = vdupq_n_f32(x);

@@ -43,6 +43,10 @@ pub trait Lanes<const N: usize>: Copy + Send + Sync {
     /// `N` lanes of f32.
     type F32: Copy;
 
+    /// Whether the processor has instructions that multiply and add with one rounding, to which `f64::mul_add` is
+    /// compiled in a kernel; elsewhere that is a call.
+    const FUSED: bool;
+
     /// The same number in every lane.
     fn splat(self, x: f32) -> Self::F32;
     /// Lanes from memory.

@@ -11,6 +11,7 @@ macro_rules! halves {
     ($half:literal, $whole:literal) => {
         impl<S: Lanes<$half>> Lanes<$whole> for Pair<S> {
             type F32 = [S::F32; 2];
+            const FUSED: bool = S::FUSED;
 
             #[inline(always)]
             fn splat(self, x: f32) -> [S::F32; 2] {

@@ -38,6 +38,7 @@ pub(super) fn pick_by_lane<const N: usize>(
 
 impl<const N: usize> Lanes<N> for Scalar {
     type F32 = [f32; N];
+    const FUSED: bool = false;
 
     #[cfg_attr(test, inline(never))]
     #[cfg_attr(not(test), inline(always))]

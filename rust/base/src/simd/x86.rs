@@ -101,6 +101,7 @@ macro_rules! lanes {
 
 impl Lanes<4> for Sse2 {
     type F32 = __m128;
+    const FUSED: bool = false;
 
     lanes! {
         splat(x: f32) -> __m128 = _mm_set1_ps(x);
@@ -163,6 +164,7 @@ impl Simd<4> for Sse2 {
 
 impl Lanes<8> for Avx2 {
     type F32 = __m256;
+    const FUSED: bool = true;
 
     lanes! {
         splat(x: f32) -> __m256 = _mm256_set1_ps(x);
@@ -236,6 +238,7 @@ impl Simd<8> for Avx2 {
 
 impl Lanes<8> for Avx512 {
     type F32 = __m256;
+    const FUSED: bool = true;
 
     lanes! {
         splat(x: f32) -> __m256 = _mm256_set1_ps(x);
@@ -263,6 +266,7 @@ impl Lanes<8> for Avx512 {
 
 impl Lanes<16> for Avx512 {
     type F32 = __m512;
+    const FUSED: bool = true;
 
     lanes! {
         splat(x: f32) -> __m512 = _mm512_set1_ps(x);

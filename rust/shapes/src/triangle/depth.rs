@@ -29,23 +29,24 @@ pub(super) struct Depth {
 }
 
 impl Depth {
-    /// Of a line from `o` along `d`, scaled to below 2, and a triangle.
+    /// Of a line from `o` along `d`, scaled to below 2, and a triangle. With or without `fused` multiplication
+    /// ([`raywright_base::simd::Lanes::FUSED`]) what rounding takes from a product is the same number.
     #[inline(always)]
-    pub fn new(o: Vector, d: Vector, [a, b, c]: [Vector; 3]) -> Self {
+    pub fn new(fused: bool, o: Vector, d: Vector, [a, b, c]: [Vector; 3]) -> Self {
         const OF_NUMERATOR: f64 = 512.0 * UNIT * UNIT;
         const OF_DENOMINATOR: f64 = 768.0 * UNIT * UNIT;
         let (e, e_low) = difference(b, a);
         let (f, f_low) = difference(c, a);
         let (s, s_low) = difference(a, o);
         let (e_split, f_split) = (split(e), split(f));
-        let (x, x_low) = minor(1, 2, (e, e_low, e_split), (f, f_low, f_split));
-        let (y, y_low) = minor(2, 0, (e, e_low, e_split), (f, f_low, f_split));
-        let (z, z_low) = minor(0, 1, (e, e_low, e_split), (f, f_low, f_split));
+        let (x, x_low) = minor(fused, 1, 2, (e, e_low, e_split), (f, f_low, f_split));
+        let (y, y_low) = minor(fused, 2, 0, (e, e_low, e_split), (f, f_low, f_split));
+        let (z, z_low) = minor(fused, 0, 1, (e, e_low, e_split), (f, f_low, f_split));
         let (n, n_low) = ([x, y, z], [x_low, y_low, z_low]);
         let n_split = split(n);
-        let numerator = dot((s, s_low, split(s)), (n, n_low, n_split));
-        let denominator = dot((d, [0.0; 3], split(d)), (n, n_low, n_split));
-        let t = quotient(numerator, denominator);
+        let numerator = dot(fused, (s, s_low, split(s)), (n, n_low, n_split));
+        let denominator = dot(fused, (d, [0.0; 3], split(d)), (n, n_low, n_split));
+        let t = quotient(fused, numerator, denominator);
         let edge = greater(largest(e), largest(f));
         let square = edge * edge;
         let numerator_error = OF_NUMERATOR * square * largest(s) + 1e-210;
@@ -72,9 +73,9 @@ impl Depth {
 
 /// The quotient of two sums, rounded.
 #[inline(always)]
-pub(super) fn quotient((n, n_low): (f64, f64), (d, d_low): (f64, f64)) -> f64 {
+pub(super) fn quotient(fused: bool, (n, n_low): (f64, f64), (d, d_low): (f64, f64)) -> f64 {
     let first = n / d;
-    let (product, rest) = product(first, halves(first), d, halves(d));
+    let (product, rest) = product(fused, first, halves(first), d, halves(d));
     let left = ((n - product) - rest) + (n_low - first * d_low);
     first + left / d
 }
@@ -110,9 +111,10 @@ fn split(v: Vector) -> [(f64, f64); 3] {
 
 /// The product of two numbers, given with their halves, and what rounding took from it.
 #[inline(always)]
-fn product(a: f64, (ah, al): (f64, f64), b: f64, (bh, bl): (f64, f64)) -> (f64, f64) {
+fn product(fused: bool, a: f64, (ah, al): (f64, f64), b: f64, (bh, bl): (f64, f64)) -> (f64, f64) {
     let product = a * b;
-    (product, al * bl - (((product - ah * bh) - al * bh) - ah * bl))
+    let rest = if fused { a.mul_add(b, -product) } else { al * bl - (((product - ah * bh) - al * bh) - ah * bl) };
+    (product, rest)
 }
 
 /// Three numbers, what they leave out, and the halves of them.
@@ -120,16 +122,16 @@ type Long = (Vector, Vector, [(f64, f64); 3]);
 
 /// The product of a coordinate of one and one of another.
 #[inline(always)]
-fn times((v, v_low, v_split): Long, i: usize, (w, w_low, w_split): Long, j: usize) -> (f64, f64) {
-    let (high, low) = product(v[i], v_split[i], w[j], w_split[j]);
+fn times(fused: bool, (v, v_low, v_split): Long, i: usize, (w, w_low, w_split): Long, j: usize) -> (f64, f64) {
+    let (high, low) = product(fused, v[i], v_split[i], w[j], w_split[j]);
     (high, low + (v[i] * w_low[j] + v_low[i] * w[j]))
 }
 
 /// `e_i f_j − e_j f_i`.
 #[inline(always)]
-fn minor(i: usize, j: usize, e: Long, f: Long) -> (f64, f64) {
-    let (p, p_low) = times(e, i, f, j);
-    let (q, q_low) = times(e, j, f, i);
+fn minor(fused: bool, i: usize, j: usize, e: Long, f: Long) -> (f64, f64) {
+    let (p, p_low) = times(fused, e, i, f, j);
+    let (q, q_low) = times(fused, e, j, f, i);
     let (high, low) = sum(p, -q);
     (high, low + (p_low - q_low))
 }
@@ -137,10 +139,10 @@ fn minor(i: usize, j: usize, e: Long, f: Long) -> (f64, f64) {
 /// The inner product; the second part is at most half a unit in the last place of the first, unless all but nothing is
 /// left of it.
 #[inline(always)]
-fn dot(v: Long, w: Long) -> (f64, f64) {
-    let (x, x_low) = times(v, 0, w, 0);
-    let (y, y_low) = times(v, 1, w, 1);
-    let (z, z_low) = times(v, 2, w, 2);
+fn dot(fused: bool, v: Long, w: Long) -> (f64, f64) {
+    let (x, x_low) = times(fused, v, 0, w, 0);
+    let (y, y_low) = times(fused, v, 1, w, 1);
+    let (z, z_low) = times(fused, v, 2, w, 2);
     let (xy, first) = sum(x, y);
     let (all, second) = sum(xy, z);
     let low = ((x_low + y_low) + z_low) + (first + second);
@@ -227,13 +229,15 @@ mod tests {
                 let mut rays = EdgeRays::default();
                 rays.take(&RayBatch::Rows(&[ray]), 0);
                 let plain = rays.prepare(&region) & 1;
-                let found = rays.meet(corners, plain);
-                match wanted {
-                    Some(met) if found.met == 1 => {
-                        prop_assert_eq!((found.t[0], [found.uv[0][0], found.uv[1][0]]), (met.t, met.uv));
+                for fused in [false, true] {
+                    let found = rays.meet(fused, corners, plain);
+                    match wanted {
+                        Some(met) if found.met == 1 => {
+                            prop_assert_eq!((found.t[0], [found.uv[0][0], found.uv[1][0]]), (met.t, met.uv));
+                        }
+                        Some(_) => prop_assert_eq!(found.open, plain),
+                        None => prop_assert_eq!(found.met, 0),
                     }
-                    Some(_) => prop_assert_eq!(found.open, plain),
-                    None => prop_assert_eq!(found.met, 0),
                 }
             }
         }
@@ -246,12 +250,14 @@ mod tests {
         for i in 0..1000 {
             let (sin, cos) = (f64::from(i) * 0.7).sin_cos();
             let far = 10f64.powi(i % 7 - 2);
-            let depth = Depth::new([0.4 + cos * far, 0.5 + sin * far, 0.3 + 1.7 * far], [-cos, -sin, -1.7], corners);
+            let depth =
+                Depth::new(false, [0.4 + cos * far, 0.5 + sin * far, 0.3 + 1.7 * far], [-cos, -sin, -1.7], corners);
             assert!(depth.is_known() && (depth.t / far - 1.0).abs() < 0.5 + 0.1 / far, "{far} {}", depth.t);
         }
         // Nor to tell that the surface which a ray has left lies behind it.
         for off in [1e-15, 1e-20] {
-            let depth = Depth::new([0.5, 0.5, off], [0.3, 0.2, 1.0], [[0.0; 3], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0]]);
+            let depth =
+                Depth::new(false, [0.5, 0.5, off], [0.3, 0.2, 1.0], [[0.0; 3], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0]]);
             assert!(!depth.is_known() && depth.is_beyond(0.0, f64::INFINITY));
         }
     }

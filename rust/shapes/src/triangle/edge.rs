@@ -57,6 +57,26 @@ pub struct EdgeRay {
     pub is_far: bool,
 }
 
+/// What f64 says of a ray and a triangle where its bounds leave no doubt.
+enum Weighed {
+    /// It is passed by.
+    Passed,
+    /// It is met, with these weights of its corners, which lie so far along the direction's largest coordinate.
+    Met([f64; 3], [f64; 3]),
+    Open,
+}
+
+/// Between which `t` along the scaled direction a triangle is met, as far as f64 says it without effort.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum About {
+    /// It is not met.
+    Missed,
+    /// It is met between these.
+    Between(f64, f64),
+    /// More has to be known.
+    Open,
+}
+
 /// The least f64 above 0.
 pub(super) const LEAST: f64 = f64::from_bits(1);
 
@@ -153,12 +173,55 @@ impl EdgeRay {
     /// Where a triangle is met, if it is: decided for certain. Every kernel ends here, so that all give the same bits.
     #[inline(always)]
     pub fn meet(&self, corners: [DVec3; 3]) -> Option<Candidate> {
+        self.meet_in(false, corners)
+    }
+
+    /// The same in a kernel, where multiplication may be `fused`.
+    #[inline(always)]
+    pub fn meet_in(&self, fused: bool, corners: [DVec3; 3]) -> Option<Candidate> {
+        match self.weigh(corners) {
+            Weighed::Passed => return None,
+            Weighed::Met(w, _) => {
+                let depth = self.depth(fused, corners);
+                if depth.is_known() {
+                    return self.accept(w, w[0] + w[1] + w[2], depth.t, Contact::Inside);
+                }
+                if depth.is_beyond(self.t_min, self.t_max) {
+                    return None;
+                }
+            }
+            Weighed::Open => {}
+        }
+        self.meet_closely(corners)
+    }
+
+    /// Whether a triangle is met, and about where, if that is far enough from the ends of the ray to be sure.
+    #[inline(always)]
+    pub fn meet_about(&self, corners: [DVec3; 3]) -> About {
+        let (w, z) = match self.weigh(corners) {
+            Weighed::Passed => return About::Missed,
+            Weighed::Open => return About::Open,
+            Weighed::Met(w, z) => (w, z),
+        };
+        // The mean of the corners' depths, off by no more than `t_error`.
+        let sum = w[0] + w[1] + w[2];
+        let t = (w[0] * z[0] + w[1] * z[1] + w[2] * z[2]) / (sum * self.direction[self.axis]);
+        let (low, high) = (t - 2.0 * self.t_error, t + 2.0 * self.t_error);
+        if high < self.t_min || low > self.t_max {
+            return About::Missed;
+        }
+        let is_between = low > self.t_min && high < self.t_max && (high * self.scale).is_finite();
+        if is_between { About::Between(low, high) } else { About::Open }
+    }
+
+    #[inline(always)]
+    fn weigh(&self, corners: [DVec3; 3]) -> Weighed {
         let [a, b, c] = [corners[0] - self.origin, corners[1] - self.origin, corners[2] - self.origin];
         let volume = |v: DVec3, w: DVec3| self.direction.dot((v - w).cross(v + w));
         let w = [volume(b, c), volume(c, a), volume(a, b)];
         let above = self.sign_error;
         if (w[0] > above || w[1] > above || w[2] > above) && (w[0] < -above || w[1] < -above || w[2] < -above) {
-            return None;
+            return Weighed::Passed;
         }
         let k = self.axis;
         let z = [a[k], b[k], c[k]];
@@ -166,23 +229,15 @@ impl EdgeRay {
         let least = lesser(lesser(w[0].abs(), w[1].abs()), w[2].abs());
         let sum = w[0] + w[1] + w[2];
         let range = greater(greater(z[0], z[1]), z[2]) - lesser(lesser(z[0], z[1]), z[2]);
-        if least > self.sign_error && 6.0 * self.sign_error * range <= self.t_error * sum.abs() {
-            let depth = self.depth(corners);
-            if depth.is_known() {
-                return self.accept(w, sum, depth.t, Contact::Inside);
-            }
-            if depth.is_beyond(self.t_min, self.t_max) {
-                return None;
-            }
-        }
-        self.meet_closely(corners)
+        let is_certain = least > self.sign_error && 6.0 * self.sign_error * range <= self.t_error * sum.abs();
+        if is_certain { Weighed::Met(w, z) } else { Weighed::Open }
     }
 
     #[inline(always)]
-    fn depth(&self, [a, b, c]: [DVec3; 3]) -> Depth {
+    fn depth(&self, fused: bool, [a, b, c]: [DVec3; 3]) -> Depth {
         let of = [[a.x, a.y, a.z], [b.x, b.y, b.z], [c.x, c.y, c.z]];
         let (o, d) = (self.origin, self.direction);
-        Depth::new([o.x, o.y, o.z], [d.x, d.y, d.z], of)
+        Depth::new(fused, [o.x, o.y, o.z], [d.x, d.y, d.z], of)
     }
 
     /// The same where that is not enough, as it is from far away. With edges taken from the corners themselves, and E a
@@ -212,7 +267,7 @@ impl EdgeRay {
         let sum = w[0] + w[1] + w[2];
         let range = z[0].max(z[1]).max(z[2]) - z[0].min(z[1]).min(z[2]);
         if w.iter().all(|x| x.abs() > error) && 6.0 * error * range <= self.t_error * sum.abs() {
-            let depth = self.depth(original);
+            let depth = self.depth(false, original);
             if depth.is_known() {
                 return self.accept(w, sum, depth.t, Contact::Inside);
             }
@@ -237,7 +292,8 @@ impl EdgeRay {
         // Along the scaled direction, in steps that leave the range of f64 only where `t` does.
         let power = over.exponent - under.exponent - exponent(self.scale);
         let half = power.clamp(-2000, 2000) / 2;
-        let t = quotient(over.parts(), under.parts()) * 2f64.powi(half) * 2f64.powi(power.clamp(-2000, 2000) - half);
+        let t =
+            quotient(false, over.parts(), under.parts()) * 2f64.powi(half) * 2f64.powi(power.clamp(-2000, 2000) - half);
         // Zero is always the positive one.
         self.accept(w, sum, t + 0.0, self.contact(w, sum, corners))
     }

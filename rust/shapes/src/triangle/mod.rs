@@ -17,7 +17,7 @@ mod spread;
 
 pub use bracket::Bracket;
 pub use clip::clipped;
-pub use edge::{Along, EdgeRay};
+pub use edge::{About, Along, EdgeRay};
 pub use in_cone::SolidCone;
 pub use kept::{DoubleLeaves, SingleLeaves};
 pub use leaves::{Leaves, Real};

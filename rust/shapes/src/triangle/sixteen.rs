@@ -147,14 +147,14 @@ impl EdgeRays {
         bits(&plain)
     }
 
-    /// Tests all rays against a triangle; only the answers of those in `asked` count.
+    /// Tests all rays against a triangle; only the answers of those in `asked` count. Multiplication may be `fused`.
     #[inline(always)]
-    pub fn meet(&self, [a, b, c]: [DVec3; 3], asked: u32) -> Met {
+    pub fn meet(&self, fused: bool, [a, b, c]: [DVec3; 3], asked: u32) -> Met {
         let mut met = Met::NONE;
         let (mut certain, mut open) = ([0u32; RAYS], [0u32; RAYS]);
         for i in 0..RAYS {
             let corners = [[a.x, a.y, a.z], [b.x, b.y, b.z], [c.x, c.y, c.z]];
-            (certain[i], open[i], met.t[i], met.uv[0][i], met.uv[1][i]) = self.meet_one::<false>(i, corners);
+            (certain[i], open[i], met.t[i], met.uv[0][i], met.uv[1][i]) = self.meet_one::<false>(fused, i, corners);
         }
         met.met = bits(&certain) & asked;
         met.open = bits(&open) & asked;
@@ -163,8 +163,9 @@ impl EdgeRays {
 
     /// Where each ray meets a triangle of its own, given by corner and axis, of which it is known to meet it between
     /// its `t_min` and `t_max`. Open are those for which f64 does not say where; only those in `asked` count.
+    /// Multiplication may be `fused`.
     #[inline(always)]
-    pub fn won<T: Copy + Into<f64>>(&self, [a, b, c]: &[[Column<T>; 3]; 3], asked: u32) -> Met {
+    pub fn won<T: Copy + Into<f64>>(&self, fused: bool, [a, b, c]: &[[Column<T>; 3]; 3], asked: u32) -> Met {
         /// No closure: those are not always inlined.
         #[inline(always)]
         fn of<T: Copy + Into<f64>>(corner: &[Column<T>; 3], i: usize) -> [f64; 3] {
@@ -173,7 +174,7 @@ impl EdgeRays {
         let mut met = Met::NONE;
         let mut certain = [0u32; RAYS];
         for i in 0..RAYS {
-            let (_, is_open, t, v, w) = self.meet_one::<true>(i, [of(a, i), of(b, i), of(c, i)]);
+            let (_, is_open, t, v, w) = self.meet_one::<true>(fused, i, [of(a, i), of(b, i), of(c, i)]);
             let t = t * self.scale[i];
             certain[i] = u32::from((is_open == 0) & (t.abs() <= f64::MAX));
             (met.t[i], met.uv[0][i], met.uv[1][i]) = (t, v, w);
@@ -186,7 +187,7 @@ impl EdgeRays {
     /// Whether a ray meets a triangle for certain, whether that is open, and where it does: `t`, and the weights of the
     /// second and the third corner. Where it is known to, nobody asks for the first.
     #[inline(always)]
-    fn meet_one<const WON: bool>(&self, i: usize, corners: [[f64; 3]; 3]) -> (u32, u32, f64, f64, f64) {
+    fn meet_one<const WON: bool>(&self, fused: bool, i: usize, corners: [[f64; 3]; 3]) -> (u32, u32, f64, f64, f64) {
         let [[ax, ay, az], [bx, by, bz], [cx, cy, cz]] = corners;
         let (ox, oy, oz) = (self.origin[0][i], self.origin[1][i], self.origin[2][i]);
         let (dx, dy, dz) = (self.direction[0][i], self.direction[1][i], self.direction[2][i]);
@@ -226,7 +227,7 @@ impl EdgeRays {
         let least = lesser(lesser(u.abs(), v.abs()), w.abs());
         let sum = u + v + w;
         let range = greater(greater(za, zb), zc) - lesser(lesser(za, zb), zc);
-        let depth = Depth::new([ox, oy, oz], [dx, dy, dz], corners);
+        let depth = Depth::new(fused, [ox, oy, oz], [dx, dy, dz], corners);
         let t = depth.t;
         let is_beyond = !WON & depth.is_beyond(self.t_min[i], self.t_max[i]);
         let is_certain = (least > above)

@@ -4,7 +4,7 @@ use super::node::Packed;
 use raywright_base::math::robust::{greater, lesser};
 use raywright_base::simd::Lanes;
 use raywright_shapes::Candidate;
-use raywright_shapes::triangle::{EdgeRay, Leaves};
+use raywright_shapes::triangle::{About, EdgeRay, Leaves};
 
 /// The best that is known, in the units of leaves ([`Leaves::unit`]).
 #[derive(Clone, Copy, Debug)]
@@ -69,6 +69,16 @@ impl Best {
         leaf: Packed,
         lane: u32,
     ) {
+        // Most often nothing else is met there, and `t` need not be known to its last digit.
+        match about(leaves, ray, leaf, lane) {
+            About::Missed => return,
+            About::Between(low, _) if low * unit > f64::from(self.high) => return,
+            About::Between(low, high) if high * unit < f64::from(self.low) => {
+                *self = Self { low: between(low * unit).0, high: between(high * unit).1, leaf, lane };
+                return;
+            }
+            _ => {}
+        }
         let Some(new) = meet(leaves, ray, leaf, lane) else { return };
         if self.leaf != Packed::NONE
             && let Some(old) = meet(leaves, ray, self.leaf, self.lane)
@@ -86,6 +96,23 @@ impl Best {
 pub fn primitive<const N: usize, L: Leaves<N>>(leaves: &L, leaf: Packed, lane: u32) -> u32 {
     let (first, count) = leaf.leaf();
     leaves.primitive(first, count, lane as usize & (N - 1))
+}
+
+/// Whether a ray meets the triangle in a lane of a leaf.
+#[inline(always)]
+pub fn is_met<const N: usize, L: Leaves<N>>(leaves: &L, ray: &EdgeRay, leaf: Packed, lane: u32) -> bool {
+    match about(leaves, ray, leaf, lane) {
+        About::Missed => false,
+        About::Between(..) => true,
+        About::Open => meet(leaves, ray, leaf, lane).is_some(),
+    }
+}
+
+/// About where it does.
+#[inline(always)]
+fn about<const N: usize, L: Leaves<N>>(leaves: &L, ray: &EdgeRay, leaf: Packed, lane: u32) -> About {
+    let (first, count) = leaf.leaf();
+    ray.meet_about(leaves.corners(first, count, lane as usize & (N - 1)))
 }
 
 /// Where a ray meets the triangle in a lane of a leaf.

@@ -1,7 +1,7 @@
 //! The best that is known of sixteen rays together, and triangles that are tested against all of them.
 
 use super::WideBvh;
-use super::best::{Best, meet, primitive};
+use super::best::{Best, is_met, primitive};
 use super::looking::Looking;
 use super::node::Packed;
 use super::sixteen::Sixteen;
@@ -203,7 +203,7 @@ impl Bests {
         }
         let Some(ray) = EdgeRay::new(&rays.get(start + i), &bvh.region) else { return false };
         if ANY {
-            return meet(&bvh.leaves, &ray, leaf, lane).is_some();
+            return is_met(&bvh.leaves, &ray, leaf, lane);
         }
         let before = best.high;
         best.decide(&bvh.leaves, L::unit(&bvh.region), &ray, leaf, lane);

@@ -50,14 +50,14 @@ pub trait Errand<const N: usize, L: Leaves<N>>: Sized {
     fn visit<S: Simd<N>>(&mut self, simd: S, bvh: &WideBvh<N, L>, flight: &mut Self::Flight, at: Packed) -> Visited;
 
     /// A ray has seen all that it has to.
-    fn finish(&mut self, bvh: &WideBvh<N, L>, flight: &Self::Flight);
+    fn finish<S: Simd<N>>(&mut self, simd: S, bvh: &WideBvh<N, L>, flight: &Self::Flight);
 
     /// Ray `i` hits nothing.
     fn miss(&mut self, i: usize);
 
     /// All rays have.
     #[inline(always)]
-    fn end(&mut self, _: &WideBvh<N, L>) {}
+    fn end<S: Simd<N>>(&mut self, _: S, _: &WideBvh<N, L>) {}
 }
 
 /// A ray tests the children of a node, in the order that suits its errand.
@@ -127,7 +127,7 @@ impl<const N: usize, L: Leaves<N>, Q: Query> Errand<N, L> for Telling<'_, Q> {
         while left != 0 {
             let lane = left.trailing_zeros() as usize & (N - 1);
             left &= left - 1;
-            if let Some(candidate) = edges.meet(bvh.leaves.corners(first, count, lane))
+            if let Some(candidate) = edges.meet_in(S::FUSED, bvh.leaves.corners(first, count, lane))
                 && self.query.offer(state, bvh.leaves.primitive(first, count, lane), candidate)
             {
                 return Visited::Answered;
@@ -138,7 +138,7 @@ impl<const N: usize, L: Leaves<N>, Q: Query> Errand<N, L> for Telling<'_, Q> {
     }
 
     #[inline(always)]
-    fn finish(&mut self, _: &WideBvh<N, L>, flight: &Told<Q::State>) {
+    fn finish<S: Simd<N>>(&mut self, _: S, _: &WideBvh<N, L>, flight: &Told<Q::State>) {
         self.query.finish(flight.ray, Some((flight.edges.along(), flight.state)));
     }
 

@@ -90,5 +90,5 @@ pub fn answer<const N: usize, L: Leaves<N>, S: Simd<N>, A: Answer>(
         }
     }
     lone.put_away();
-    errand.winners.settle(bvh, batch, errand.answer);
+    errand.winners.settle(sixteen, bvh, batch, errand.answer);
 }

@@ -23,13 +23,19 @@ pub struct First<'a, A, W = Winners> {
 impl<A: Answer, W: Settling> First<'_, A, W> {
     /// Nothing better is to be found for ray `i`.
     #[inline(always)]
-    pub fn conclude<const N: usize, L: Leaves<N>>(&mut self, bvh: &WideBvh<N, L>, i: usize, best: &Best) {
+    pub fn conclude<const N: usize, L: Leaves<N>, S: Simd<N>>(
+        &mut self,
+        simd: S,
+        bvh: &WideBvh<N, L>,
+        i: usize,
+        best: &Best,
+    ) {
         if best.leaf == Packed::NONE {
             self.answer.miss(i);
         } else if A::ANY {
             self.answer.hit(i, 0.0, [0.0; 2], 0);
         } else {
-            self.winners.add(bvh, self.rays, i, best, self.answer);
+            self.winners.add(simd.sixteen(), bvh, self.rays, i, best, self.answer);
         }
     }
 }
@@ -75,8 +81,8 @@ impl<const N: usize, L: Leaves<N>, A: Answer, W: Settling> Errand<N, L> for Firs
     }
 
     #[inline(always)]
-    fn finish(&mut self, bvh: &WideBvh<N, L>, flight: &Looking) {
-        self.conclude(bvh, flight.ray, &flight.best);
+    fn finish<S: Simd<N>>(&mut self, simd: S, bvh: &WideBvh<N, L>, flight: &Looking) {
+        self.conclude(simd, bvh, flight.ray, &flight.best);
     }
 
     #[inline(always)]
@@ -85,7 +91,7 @@ impl<const N: usize, L: Leaves<N>, A: Answer, W: Settling> Errand<N, L> for Firs
     }
 
     #[inline(always)]
-    fn end(&mut self, bvh: &WideBvh<N, L>) {
-        self.winners.settle(bvh, self.rays, self.answer);
+    fn end<S: Simd<N>>(&mut self, simd: S, bvh: &WideBvh<N, L>) {
+        self.winners.settle(simd.sixteen(), bvh, self.rays, self.answer);
     }
 }

@@ -1,7 +1,7 @@
 //! A ray that looks for its first hit, or for any: f32 says between which two numbers the `t` of a triangle lies, and
 //! decides wherever that is enough; f64 decides the rest.
 
-use super::best::{Best, meet, primitive};
+use super::best::{Best, is_met, primitive};
 use super::node::Packed;
 use super::sixteen::Sixteen;
 use raywright_base::math::{Ray, RayBatch, Region};
@@ -113,5 +113,5 @@ fn decide<const N: usize, L: Leaves<N>>(
 #[inline(never)]
 fn decide_any<const N: usize, L: Leaves<N>>(leaves: &L, region: &Region, ray: &Ray, leaf: Packed, lane: u32) -> bool {
     !ray.misses.contains(&primitive(leaves, leaf, lane))
-        && EdgeRay::new(ray, region).is_some_and(|ray| meet(leaves, &ray, leaf, lane).is_some())
+        && EdgeRay::new(ray, region).is_some_and(|ray| is_met(leaves, &ray, leaf, lane))
 }

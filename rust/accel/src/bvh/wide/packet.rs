@@ -100,7 +100,7 @@ pub fn answer<const N: usize, L: Leaves<N>, S: Simd<N>, A: Answer>(
         }
         start += count;
     }
-    errand.winners.settle(bvh, batch, errand.answer);
+    errand.winners.settle(simd.sixteen(), bvh, batch, errand.answer);
 }
 
 impl Bounds {

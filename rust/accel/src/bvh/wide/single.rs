@@ -22,7 +22,7 @@ pub fn answer<const N: usize, L: Leaves<N>, S: Simd<N>, E: Errand<N, L>>(
         ask(simd, bvh, rays, i, errand, &mut stacks);
     }
     stacks.put_away();
-    errand.end(bvh);
+    errand.end(simd, bvh);
 }
 
 /// Answers ray `i` of a batch.
@@ -42,7 +42,7 @@ pub fn ask<const N: usize, L: Leaves<N>, S: Simd<N>, E: Errand<N, L>>(
     let mut flight = errand.start(bvh, i, &edges);
     let boxes = Boxes::new(&slabs, slabs.limit(E::limit(bvh, &flight)), Packed::ROOT, 0);
     walk(simd, bvh, boxes, errand, &mut flight, stacks);
-    errand.finish(bvh, &flight);
+    errand.finish(simd, bvh, &flight);
 }
 
 /// Visits all from where a ray is, with an empty stack at the front of `stacks`; true if the question is answered.

@@ -100,7 +100,7 @@ pub fn answer<const N: usize, L: Leaves<N>, S: Simd<N>, E: Errand<N, L>>(
                 }
             }
             if done {
-                errand.finish(bvh, flight);
+                errand.finish(simd, bvh, flight);
                 if let Some((b, new)) = gate.launch(simd, bvh, bottom, errand) {
                     boxes[place & (WAVE - 1)] = b;
                     *flight = new;
@@ -113,7 +113,7 @@ pub fn answer<const N: usize, L: Leaves<N>, S: Simd<N>, E: Errand<N, L>>(
             }
         }
     }
-    errand.end(bvh);
+    errand.end(simd, bvh);
 }
 
 /// Asks for what a reference stands for.

@@ -12,8 +12,9 @@ use raywright_shapes::triangle::{Column, EdgeRay, EdgeRays, Leaves, Met, RAYS, R
 /// What computes the triangles that have won.
 pub trait Settling {
     /// One more, of ray `i`.
-    fn add<const N: usize, L: Leaves<N>, A: Answer>(
+    fn add<const N: usize, L: Leaves<N>, A: Answer, S: Lanes<RAYS>>(
         &mut self,
+        simd: S,
         bvh: &WideBvh<N, L>,
         rays: &RayBatch<'_>,
         i: usize,
@@ -22,8 +23,9 @@ pub trait Settling {
     );
 
     /// Answers all that there are.
-    fn settle<const N: usize, L: Leaves<N>, A: Answer>(
+    fn settle<const N: usize, L: Leaves<N>, A: Answer, S: Lanes<RAYS>>(
         &mut self,
+        simd: S,
         bvh: &WideBvh<N, L>,
         rays: &RayBatch<'_>,
         answer: &mut A,
@@ -35,8 +37,9 @@ pub struct Alone;
 
 impl Settling for Alone {
     #[inline(always)]
-    fn add<const N: usize, L: Leaves<N>, A: Answer>(
+    fn add<const N: usize, L: Leaves<N>, A: Answer, S: Lanes<RAYS>>(
         &mut self,
+        _: S,
         bvh: &WideBvh<N, L>,
         rays: &RayBatch<'_>,
         i: usize,
@@ -47,7 +50,14 @@ impl Settling for Alone {
     }
 
     #[inline(always)]
-    fn settle<const N: usize, L: Leaves<N>, A: Answer>(&mut self, _: &WideBvh<N, L>, _: &RayBatch<'_>, _: &mut A) {}
+    fn settle<const N: usize, L: Leaves<N>, A: Answer, S: Lanes<RAYS>>(
+        &mut self,
+        _: S,
+        _: &WideBvh<N, L>,
+        _: &RayBatch<'_>,
+        _: &mut A,
+    ) {
+    }
 }
 
 /// Rays that are done, each with the triangle that it hits. While one sixteen fill up, the sixteen before wait: what is
@@ -78,8 +88,9 @@ impl Winners {
 
 impl Settling for Winners {
     #[inline(always)]
-    fn add<const N: usize, L: Leaves<N>, A: Answer>(
+    fn add<const N: usize, L: Leaves<N>, A: Answer, S: Lanes<RAYS>>(
         &mut self,
+        simd: S,
         bvh: &WideBvh<N, L>,
         rays: &RayBatch<'_>,
         i: usize,
@@ -90,19 +101,20 @@ impl Settling for Winners {
         filling.put(bvh, rays, i, best);
         if filling.len == RAYS {
             self.filling ^= 1;
-            self.sixteens[self.filling & 1].settle(bvh, rays, answer);
+            self.sixteens[self.filling & 1].settle(simd, bvh, rays, answer);
         }
     }
 
     #[inline(always)]
-    fn settle<const N: usize, L: Leaves<N>, A: Answer>(
+    fn settle<const N: usize, L: Leaves<N>, A: Answer, S: Lanes<RAYS>>(
         &mut self,
+        simd: S,
         bvh: &WideBvh<N, L>,
         rays: &RayBatch<'_>,
         answer: &mut A,
     ) {
         for sixteen in &mut self.sixteens {
-            sixteen.settle(bvh, rays, answer);
+            sixteen.settle(simd, bvh, rays, answer);
         }
     }
 }
@@ -135,8 +147,9 @@ impl Sixteen {
 
     /// Answers those that there are, and is empty then.
     #[inline(always)]
-    fn settle<const N: usize, L: Leaves<N>, A: Answer>(
+    fn settle<const N: usize, L: Leaves<N>, A: Answer, S: Lanes<RAYS>>(
         &mut self,
+        _: S,
         bvh: &WideBvh<N, L>,
         rays: &RayBatch<'_>,
         answer: &mut A,
@@ -147,7 +160,7 @@ impl Sixteen {
         }
         let here = !(u32::MAX << count);
         let plain = self.edges.prepare(&bvh.region) & here;
-        let all = self.edges.won(&self.corners, plain);
+        let all = self.edges.won(S::FUSED, &self.corners, plain);
         let mut met = all.met;
         while met != 0 {
             let i = met.trailing_zeros() as usize & (RAYS - 1);
@@ -230,7 +243,7 @@ pub fn settle<const N: usize, L: Leaves<N>, A: Answer, S: Lanes<RAYS>>(
     let mut edges = EdgeRays::default();
     edges.take(rays, start);
     let plain = edges.prepare(&bvh.region) & hits;
-    let all = edges.won(&triangles.corners, plain);
+    let all = edges.won(S::FUSED, &triangles.corners, plain);
     answer.some(start, count, all.met, &all, &triangles.primitives);
     let mut rest = hits & !all.met;
     while rest != 0 {
