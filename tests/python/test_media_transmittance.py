@@ -161,7 +161,9 @@ def test_what_is_seen_through_smoke_that_only_absorbs_is_exact():
 
 
 @pytest.mark.parametrize("integrator", [rw.Path(), rw.Bidirectional()], ids=["path", "bidirectional"])
-@pytest.mark.parametrize("density", [np.full((4, 4, 4), 0.6), BLOBS * 0.4], ids=["even", "uneven"])
+@pytest.mark.parametrize(
+    "density", [np.full((4, 4, 4), 0.6), BLOBS * 0.4, BLOBS * 4], ids=["even", "uneven", "deep"]
+)
 def test_white_smoke_in_an_even_light_is_not_seen(integrator, density):
     # Its single scattering and all further ones give back what it takes.
     scene = rw.Scene(smoke(density, absorption=0.0, scattering=1.0), environment=1.0)

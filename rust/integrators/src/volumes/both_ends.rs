@@ -336,7 +336,7 @@ impl<'a> BothEnds<'a> {
             None => at.origin().ray(light.direction),
         };
         let ray = at.leaving(ray, light.primitive);
-        self.arriving(arriving * weight, ray, (at, path.waves_with(false)), sample)
+        self.arriving(arriving * weight, ray, (at, path.waves_with(false)), at.is_in_medium(), sample)
     }
 
     /// What comes of a point that light has come to.
@@ -381,16 +381,25 @@ impl<'a> BothEnds<'a> {
             }
         };
         let segment = at.leaving(at.origin().segment(&there.origin()), there.primitive());
-        self.arriving(arriving * weight, segment, (at, path.waves_with(light.single)), sample)
+        let roulette = at.is_in_medium() || there.is_in_medium();
+        self.arriving(arriving * weight, segment, (at, path.waves_with(light.single)), roulette, sample)
     }
 
-    /// What of some light gets to a vertex.
-    fn arriving(&self, light: Rgb, ray: Ray, (at, waves): (&Vertex, Option<Waves>), sample: &mut Sample) -> Rgb {
+    /// What of some light gets to a vertex, on a way that has an end which was drawn in a medium, or has not.
+    fn arriving(
+        &self,
+        light: Rgb,
+        ray: Ray,
+        (at, waves): (&Vertex, Option<Waves>),
+        roulette: bool,
+        sample: &mut Sample,
+    ) -> Rgb {
         if light.is_black() || !light.is_finite() {
             return Rgb::ZERO;
         }
         let media = at.media(ray.direction);
-        let light = at_once(self.course(waves).through(light, ray, media, sample.numbers, sample.cancel));
+        let course = Course { roulette, ..self.course(waves) };
+        let light = at_once(course.through(light, ray, media, sample.numbers, sample.cancel));
         if light.is_finite() { light } else { Rgb::ZERO }
     }
 

@@ -24,6 +24,9 @@ pub(crate) struct Course<'a, A = Alone<'a>> {
     pub asks: A,
     /// Whether what media scatter counts; if not, they only dim.
     pub scatters: bool,
+    /// Whether faint light is ended by roulette on straight ways whatever they lead through: where an end of them was
+    /// drawn in a medium.
+    pub roulette: bool,
     /// The wavelengths of what is on the way; none for red, green and blue.
     pub waves: Option<Waves>,
 }
@@ -66,7 +69,7 @@ impl OnTheWay for Nobody {
 impl<'a> Course<'a> {
     /// That of a path that is followed by itself.
     pub fn alone(scene: &'a Scene, waves: Option<Waves>) -> Self {
-        Self { scene, asks: Alone(scene), scatters: true, waves }
+        Self { scene, asks: Alone(scene), scatters: true, roulette: false, waves }
     }
 }
 
@@ -87,7 +90,7 @@ impl<A: Asks> Course<'_, A> {
         while !cancel.is_raised() {
             let around = filled::around(self.scene, &path.media, &path.ray);
             let scattering = around.as_ref().filter(|(medium, _)| self.scatters && medium.is_even());
-            let waves = self.waves;
+            let Self { scatters, roulette, waves, .. } = *self;
             let even = scattering.map(|(medium, within)| {
                 let here = medium.at(within.origin);
                 waves.as_ref().map_or(here, |waves| medium.by_waves(here, waves))
@@ -106,7 +109,7 @@ impl<A: Asks> Course<'_, A> {
                 if let (Some(here), Some(lit)) = (even, on_the_way) {
                     *light += lit.add(path, span, (&here, medium.phase()), numbers).await;
                 }
-                let flight = Flight { medium, ray: within, span, length: 1.0, scatters: self.scatters, waves };
+                let flight = Flight { medium, ray: within, span, length: 1.0, scatters, roulette, waves };
                 let weights = &mut path.weights;
                 if let Some(collision) = flight.fly(weights, (hero, &mut way), numbers, cancel, light) {
                     let (position, before) = (path.ray.at(collision.t), path.ray.direction);
@@ -174,7 +177,8 @@ impl<A: Asks> Course<'_, A> {
             let end = if hit.is_hit() { hit.t } else { ray.t_max };
             if let Some((medium, within)) = filled::around(self.scene, &media, &ray) {
                 let span = [start, end];
-                let flight = Flight { medium, ray: within, span, length, scatters: self.scatters, waves: self.waves };
+                let Self { scatters, roulette, waves, .. } = *self;
+                let flight = Flight { medium, ray: within, span, length, scatters, roulette, waves };
                 flight.fade(weights, hero, numbers, cancel);
             }
             weights.carried *= left;

@@ -1,49 +1,62 @@
 //! Parts of rays along which the extinction of a medium is a polynomial of the third degree, as in the cells of a grid.
 //!
-//! Optical depths are closed there: by the rule of Gauss and Legendre for two points, which is exact for such
-//! polynomials.
+//! Optical depths are closed there.
 
 use super::flight::{Collision, Flight};
 use super::numbers::Numbers;
 use super::weights::Weights;
 use raywright_optics::Rgb;
-
-/// Where the rule has its points, from −1 to 1: ± 1/√3.
-const POINT: f64 = 0.577_350_269_189_625_8;
+use raywright_scene::media::Cubic;
 
 impl Flight<'_> {
+    /// The extinction between two `t` of such a part.
+    #[inline]
+    fn cubic(&self, [start, end]: [f64; 2]) -> Cubic {
+        match &self.waves {
+            None => self.medium.cubic([self.ray.at(start), self.ray.at(end)]),
+            Some(_) => {
+                let at = |share: f64| self.extinction(start + (end - start) * share);
+                Cubic::through([at(0.0), at(1.0 / 3.0), at(2.0 / 3.0), at(1.0)])
+            }
+        }
+    }
+
     /// The optical depth between two `t` of such a part.
     #[inline]
     pub(super) fn cubic_depth(&self, [start, end]: [f64; 2]) -> Rgb {
-        let (middle, half) = (0.5 * (start + end), 0.5 * (end - start));
-        let sum = self.extinction(middle - POINT * half) + self.extinction(middle + POINT * half);
-        sum * (half * self.length)
+        self.cubic([start, end]).mean() * self.way(start, end)
     }
 
-    /// Draws how far it gets in such a part, as [`Flight::fly`] does.
+    /// Draws how far it gets in such a part, as [`Flight::fly`] does. The optical depth of all parts that it has gone
+    /// through since it last was in another is `passed`, which the weights have not been told yet.
     pub(super) fn fly_through_cell(
         &self,
         span: [f64; 2],
+        passed: &mut Rgb,
         weights: &mut Weights,
         (hero, depth): (usize, &mut f64),
         numbers: &mut Numbers,
         light: &mut Rgb,
     ) -> Option<Collision> {
         let [start, end] = span;
+        let (cubic, way) = (self.cubic(span), self.way(start, end));
         if self.medium.glows() {
             // What glows at a point drawn evenly, dimmed on its way from the start.
-            let t = start + (end - start) * numbers.next();
-            let left = (self.cubic_depth([start, t]) * -1.0).map(f64::exp);
-            *light += weights.throughput() * self.at(t).emission * left * ((end - start) * self.length);
+            self.leave_cells(passed, weights, hero);
+            let share = numbers.next();
+            let left = (cubic.up_to(share) * -way).map(f64::exp);
+            *light += weights.throughput() * self.at(start + (end - start) * share).emission * left * way;
         }
-        let whole = self.cubic_depth(span);
+        let whole = cubic.mean() * way;
         if !(self.scatters && self.medium.scatters()) {
-            weights.carried *= (whole * -1.0).map(f64::exp);
+            *passed += whole;
             return None;
         }
         if whole[hero] > *depth {
-            let t = self.reach(span, hero, *depth);
-            let (here, left) = (self.at(t), (self.cubic_depth([start, t]) * -1.0).map(f64::exp));
+            self.leave_cells(passed, weights, hero);
+            let share = cubic.reach(hero, *depth / way);
+            let t = (start + (end - start) * share).min(end);
+            let (here, left) = (self.at(t), (cubic.up_to(share) * -way).map(f64::exp));
             if here.extinction[hero] <= 0.0 {
                 // Rounding has put it beside what it meets, into nothing.
                 weights.carried = Rgb::ZERO;
@@ -55,35 +68,22 @@ impl Flight<'_> {
             return Some(Collision { t, density: None, here, came });
         }
         *depth -= whole[hero];
-        let left = (whole * -1.0).map(f64::exp);
-        let by = left / left[hero];
-        weights.times(by, by, Rgb::splat(1.0 / left[hero]));
+        *passed += whole;
         None
     }
 
-    /// Where an optical depth is reached that is less than that of all of such a part: by Newton's method, kept between
-    /// bounds that close in on it.
-    fn reach(&self, [start, end]: [f64; 2], hero: usize, depth: f64) -> f64 {
-        /// Far more than are ever needed: from the 60th halving on nothing is left between the bounds.
-        const MOST: u32 = 100;
-        let (mut low, mut high) = (start, end);
-        let mut t = 0.5 * (low + high);
-        for _ in 0..MOST {
-            let off = self.cubic_depth([start, t])[hero] - depth;
-            if off < 0.0 {
-                low = t;
-            } else {
-                high = t;
-            }
-            let slope = self.extinction(t)[hero] * self.length;
-            let newton = t - off / slope;
-            let next = if (low..=high).contains(&newton) { newton } else { 0.5 * (low + high) };
-            let is_found = (next - t).abs() <= 1e-14 * (end - start);
-            t = next;
-            if is_found && self.extinction(t)[hero] > 0.0 {
-                break;
-            }
+    /// Tells the weights the optical depth of all such parts that it has gone through.
+    pub(super) fn leave_cells(&self, passed: &mut Rgb, weights: &mut Weights, hero: usize) {
+        let passed = std::mem::replace(passed, Rgb::ZERO);
+        if passed.is_black() {
+            return;
         }
-        t
+        let left = (passed * -1.0).map(f64::exp);
+        if self.scatters && self.medium.scatters() {
+            let by = left / left[hero];
+            weights.times(by, by, Rgb::splat(1.0 / left[hero]));
+        } else {
+            weights.carried *= left;
+        }
     }
 }

@@ -1,6 +1,7 @@
 //! Light that is asked for where paths are scattered.
 
 use super::asking::Asks;
+use super::course::Course;
 use super::filled::Filled;
 use super::numbers::Numbers;
 use super::path_state::PathState;
@@ -61,7 +62,8 @@ impl<A: Asks> Walker<'_, A> {
         // Running into a light that is a point or of a single direction never happens.
         let by_chance = path.weights.drawn * if self.follows_all() { path.splits * pdf / light.pdf } else { 0.0 };
         let mut weights = Weights { carried, drawn: by_chance, asked: path.weights.drawn };
-        self.course(path.waves).shadow(ray, media, &mut weights, &mut Some(hero), numbers, cancel).await;
+        let course = Course { roulette: here.light_context().is_free(), ..self.course(path.waves) };
+        course.shadow(ray, media, &mut weights, &mut Some(hero), numbers, cancel).await;
         let asked = weights.asked.mean();
         Some(weights.carried / asked * power_heuristic(asked, weights.drawn.mean()))
     }

@@ -19,6 +19,8 @@ pub(super) struct Flight<'a> {
     pub length: f64,
     /// Whether what is scattered counts; if not, it is lost.
     pub scatters: bool,
+    /// Whether faint light is ended by roulette on its way through cells, too.
+    pub roulette: bool,
     /// The wavelengths of what is on the way; none for red, green and blue.
     pub waves: Option<Waves>,
 }
@@ -40,7 +42,7 @@ pub(crate) struct Collision {
 impl Flight<'_> {
     /// A length in the world, between two `t`.
     #[inline]
-    fn way(&self, from: f64, to: f64) -> f64 {
+    pub(super) fn way(&self, from: f64, to: f64) -> f64 {
         (to - from) * self.length
     }
 
@@ -91,11 +93,17 @@ impl Flight<'_> {
         light: &mut Rgb,
     ) -> Option<Collision> {
         let mut start = self.span[0];
+        let mut passed = Rgb::ZERO;
         for stretch in self.medium.stretches(&self.ray, self.span) {
             let span = [start, stretch.end];
-            let found = match self.content(&stretch) {
+            start = stretch.end;
+            let content = self.content(&stretch);
+            if !matches!(content, Content::Cubic) {
+                self.leave_cells(&mut passed, weights, hero);
+            }
+            let found = match content {
                 Content::Even(here) => self.fly_evenly(&here, span, weights, (hero, depth), light),
-                Content::Cubic => self.fly_through_cell(span, weights, (hero, depth), numbers, light),
+                Content::Cubic => self.fly_through_cell(span, &mut passed, weights, (hero, depth), numbers, light),
                 Content::Varies(range) if !(self.scatters && self.medium.scatters() || self.medium.glows()) => {
                     self.fade_between(range, span, false, weights, hero, numbers, cancel);
                     None
@@ -105,8 +113,8 @@ impl Flight<'_> {
             if found.is_some() || weights.carried.is_black() {
                 return found;
             }
-            start = stretch.end;
         }
+        self.leave_cells(&mut passed, weights, hero);
         None
     }
 

@@ -34,7 +34,7 @@ pub fn optical_depths(scene: &Scene, rays: &[Ray], depths: &mut [Rgb]) {
 fn along(scene: &Scene, ray: &Ray, media: &MediumStack<Filled>, span: [f64; 2]) -> Rgb {
     let Some((medium, within)) = around(scene, media, ray).filter(|_| span[0] < span[1]) else { return Rgb::ZERO };
     let length = ray.direction.length();
-    Flight { medium, ray: within, span, length, scatters: false, waves: None }.optical_depth()
+    Flight { medium, ray: within, span, length, scatters: false, roulette: false, waves: None }.optical_depth()
 }
 
 impl Flight<'_> {

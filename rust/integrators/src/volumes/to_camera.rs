@@ -124,7 +124,7 @@ impl<'a> MediaVisitor<'a> for Connections<'a> {
             return;
         }
         let segment = at.leaving(at.origin().segment(&RayOrigin::free(seen.origin)), Ray::NO_TRIANGLE);
-        let course = Course::alone(scene, path.waves());
+        let course = Course { roulette: at.is_in_medium(), ..Course::alone(scene, path.waves()) };
         let light = at_once(course.through(light, segment, at.media(direction), numbers, cancel));
         let light = path.waves().map_or(light, |waves| waves.seen(light));
         if light != Rgb::ZERO && light.is_finite() {

@@ -107,6 +107,11 @@ impl<'a> Vertex<'a> {
         }
     }
 
+    /// Whether a medium scatters there.
+    pub fn is_in_medium(&self) -> bool {
+        matches!(self.point, Point::Medium { .. })
+    }
+
     /// Whether it scatters in single directions alone.
     pub fn is_single(&self) -> bool {
         matches!(&self.point, Point::Surface { arrived, .. } if arrived.here.bsdf().is_delta())

@@ -161,7 +161,7 @@ impl<'a, A: Asks> Walker<'a, A> {
 
     /// What lies on the way of paths.
     pub(super) fn course(&self, waves: Option<Waves>) -> Course<'a, A> {
-        Course { scene: self.scene, asks: self.asks, scatters: self.settings.scatters, waves }
+        Course { scene: self.scene, asks: self.asks, scatters: self.settings.scatters, roulette: false, waves }
     }
 
     /// Takes a path along its ray to where it is scattered next; none if it leaves the scene, and with what arrives

@@ -49,48 +49,36 @@ impl<const C: usize> Blocks<C> {
         self.places[(x * self.count[1] + y) * self.count[2] + z] as usize
     }
 
-    /// Where in its block a point is.
+    /// Which block a point is in, and where in that.
     #[inline]
-    fn within(&self, point: [usize; 3]) -> [usize; 3] {
-        let [x, y, z] = [0, 1, 2].map(|axis| point[axis] & ((1 << self.shift[axis]) - 1));
-        [x << (self.shift[1] + self.shift[2]), y << self.shift[2], z]
+    fn split(&self, [x, y, z]: [usize; 3]) -> [[usize; 3]; 2] {
+        let [a, b, c] = self.shift;
+        let within = |of: usize, shift: u32| of & ((1 << shift) - 1);
+        [[x >> a, y >> b, z >> c], [within(x, a) << (b + c), within(y, b) << c, within(z, c)]]
     }
 
     /// The numbers at the corners of a cell, the last axis fastest; none where all are 0.
     #[inline]
     pub fn cell(&self, low: [usize; 3], high: [usize; 3]) -> Option<[[f32; C]; 8]> {
-        let block = |point: [usize; 3]| [0, 1, 2].map(|axis| point[axis] >> self.shift[axis]);
-        let (from, to) = (block(low), block(high));
-        let (near, far) = (self.within(low), self.within(high));
-        let corner = |i: usize| [i >> 2 & 1, i >> 1 & 1, i & 1];
-        let pick = |i: usize, low: [usize; 3], high: [usize; 3]| {
-            let of = corner(i);
-            [0, 1, 2].map(|axis| if of[axis] == 0 { low[axis] } else { high[axis] })
-        };
-        let mut found = [[0.0; C]; 8];
+        // Written out, for calls of closures over arrays take most of the time.
+        let ([from, [a, b, c]], [to, [d, e, f]]) = (self.split(low), self.split(high));
         if from == to {
             let place = self.place(from);
-            if place == 0 {
-                return None;
-            }
             let block = &self.numbers[place * self.length()..][..self.length()];
-            for (i, found) in found.iter_mut().enumerate() {
-                let [x, y, z] = pick(i, near, far);
-                *found = block[x + y + z];
-            }
-        } else {
-            let mut any = 0;
-            for (i, found) in found.iter_mut().enumerate() {
-                let place = self.place(pick(i, from, to));
-                let [x, y, z] = pick(i, near, far);
-                any |= place;
-                *found = self.numbers[place * self.length() + x + y + z];
-            }
-            if any == 0 {
-                return None;
-            }
+            let at = |x: usize, y: usize, z: usize| block[x + y + z];
+            let all = || {
+                [at(a, b, c), at(a, b, f), at(a, e, c), at(a, e, f), at(d, b, c), at(d, b, f), at(d, e, c), at(d, e, f)]
+            };
+            return (place != 0).then(all);
         }
-        Some(found)
+        let (steps, mut found, mut any) = ([[a, d], [b, e], [c, f]], [[0.0; C]; 8], 0);
+        for (i, found) in found.iter_mut().enumerate() {
+            let [x, y, z] = [i >> 2 & 1, i >> 1 & 1, i & 1];
+            let place = self.place([[from, to][x][0], [from, to][y][1], [from, to][z][2]]);
+            any |= place;
+            *found = self.numbers[place * self.length() + steps[0][x] + steps[1][y] + steps[2][z]];
+        }
+        (any != 0).then_some(found)
     }
 
     /// The least and the greatest of each of `C` in a part.
@@ -147,9 +135,8 @@ impl<const C: usize> Blocks<C> {
             for j in y.clone() {
                 for k in z.clone() {
                     let point = [i, j, k];
-                    let place = self.place([0, 1, 2].map(|axis| point[axis] >> self.shift[axis]));
-                    let [x, y, z] = self.within(point);
-                    found.push(self.numbers[place * self.length() + x + y + z]);
+                    let [block, [x, y, z]] = self.split(point);
+                    found.push(self.numbers[self.place(block) * self.length() + x + y + z]);
                 }
             }
         }
@@ -253,7 +240,7 @@ impl<const C: usize> Building<C> {
         let start = self.0.places[index] as usize * self.0.length();
         for i in x {
             for j in y.clone() {
-                let [a, b, c] = self.0.within([i, j, z.start]);
+                let [_, [a, b, c]] = self.0.split([i, j, z.start]);
                 let source = &numbers[((i - from[0]) * size[1] + (j - from[1])) * size[2] + z.start - from[2]..];
                 self.0.numbers[start + a + b + c..][..z.len()].copy_from_slice(&source[..z.len()]);
             }

@@ -1,6 +1,6 @@
 //! Numbers on a grid, for all colours alike or for each of its own.
 
-use super::Values;
+use super::{Cubic, Values};
 use raywright_base::math::DVec3;
 use raywright_optics::Rgb;
 
@@ -33,6 +33,21 @@ impl Field {
         match self {
             Self::Grey(values) => Rgb::splat(values.value(point)[0]),
             Self::Coloured(values) => Rgb::from_array(values.value(point)),
+        }
+    }
+
+    /// What is between two points of the unit cube that lie in one cell.
+    #[inline]
+    pub fn cubic(&self, ends: [DVec3; 2]) -> Cubic {
+        match self {
+            Self::Grey(values) => {
+                let [[a], [b], [c], [d]] = values.cubic(ends);
+                Cubic([Rgb::splat(a), Rgb::splat(b), Rgb::splat(c), Rgb::splat(d)])
+            }
+            Self::Coloured(values) => {
+                let [a, b, c, d] = values.cubic(ends);
+                Cubic([Rgb::from_array(a), Rgb::from_array(b), Rgb::from_array(c), Rgb::from_array(d)])
+            }
         }
     }
 

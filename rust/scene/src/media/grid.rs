@@ -1,7 +1,7 @@
 //! A medium that differs from place to place, by numbers on a grid.
 
 use super::block_walk::{BlockWalk, Majorants, Spectra};
-use super::{Coefficients, Field, Glow, Medium, Stretches};
+use super::{Coefficients, Cubic, Field, Glow, Medium, Stretches};
 use raywright_base::math::{Affine, DVec3, Ray};
 use raywright_optics::{Phase, Rgb};
 
@@ -123,6 +123,14 @@ impl Medium for GridMedium {
     }
 
     #[inline]
+    fn cubic(&self, [from, to]: [DVec3; 2]) -> Cubic {
+        // In plain f64: rounding moves points by no more than the ray's own does, and what is between numbers hardly
+        // changes by that.
+        let within = |point: DVec3| self.into.vector(point) + self.into.shift;
+        self.density.cubic([within(from), within(to)]).times(self.coefficients.extinction)
+    }
+
+    #[inline]
     fn at(&self, point: DVec3) -> Coefficients {
         let within = self.into.point(point);
         let mut here = self.coefficients.times(self.density.at(within));
@@ -230,6 +238,11 @@ mod tests {
                         Content::Cubic => {
                             let [a, b, c, d, e] = [0, 1, 2, 3, 4].map(density);
                             assert!((a - 4.0 * b + 6.0 * c - 4.0 * d + e).abs() < 1e-11);
+                            // By the rule of Gauss and Legendre, which is exact of those.
+                            let cubic = medium.cubic([start, stretch.end].map(|t| ray.at(t)));
+                            let point = |side: f64| start + (stretch.end - start) * 0.5 * (1.0 + side / 3f64.sqrt());
+                            let [a, b] = [-1.0, 1.0].map(|side| medium.at(ray.at(point(side))).extinction[0]);
+                            assert!((cubic.mean()[0] - 0.5 * (a + b)).abs() < 1e-11);
                             assert!((0..5).all(|step| inside(at(step), 1e-12)));
                         }
                         Content::Even(nothing) => {

@@ -3,6 +3,7 @@
 mod block_walk;
 mod blocks;
 mod coefficients;
+mod cubic;
 mod field;
 mod glow;
 mod grid;
@@ -14,6 +15,7 @@ mod waved_grid;
 
 pub use blocks::{Blocks, Building};
 pub use coefficients::Coefficients;
+pub use cubic::Cubic;
 pub use field::Field;
 pub use glow::Glow;
 pub use grid::GridMedium;
@@ -62,6 +64,12 @@ pub trait Medium: Debug + Send + Sync {
     /// The extinction at a point.
     fn extinction(&self, point: DVec3) -> Rgb {
         self.at(point).extinction
+    }
+
+    /// The extinction between two points where that is a polynomial of the third degree.
+    fn cubic(&self, [from, to]: [DVec3; 2]) -> Cubic {
+        let at = |share: f64| self.extinction(from + (to - from) * share);
+        Cubic::through([at(0.0), at(1.0 / 3.0), at(2.0 / 3.0), at(1.0)])
     }
 
     /// What there is at a point, at a path's wavelengths, where it is told by wavelength.

@@ -79,6 +79,43 @@ impl<const C: usize> Values<C> {
         sum
     }
 
+    /// What is between two points of the unit cube that lie in one cell: the coefficients of a polynomial in the share
+    /// of the way, the constant first.
+    #[inline]
+    pub fn cubic(&self, ends: [DVec3; 2]) -> [[f64; C]; 4] {
+        let (mut low, mut high) = ([0; 3], [0; 3]);
+        // Where in the cell it begins, and how far it goes from there.
+        let (mut from, mut by) = ([0.0; 3], [0.0; 3]);
+        for axis in 0..3 {
+            let (start, end) = (self.steps(axis, ends[0][axis]), self.steps(axis, ends[1][axis]));
+            // Rounding may put an end a hair's breadth beyond a border, but not the middle.
+            low[axis] = (0.5 * (start + end)) as usize;
+            high[axis] = (low[axis] + 1).min(self.size()[axis] - 1);
+            (from[axis], by[axis]) = (start - low[axis] as f64, end - start);
+        }
+        let mut terms = [[0.0; C]; 4];
+        let Some(corners) = self.blocks.cell(low, high) else { return terms };
+        for channel in 0..C {
+            let value = |corner: usize| f64::from(corners[corner][channel]);
+            // Interpolated along the last axis it is of the first degree, and of one more with each further axis.
+            let line = |i: usize| {
+                let slope = value(i + 1) - value(i);
+                [value(i) + slope * from[2], slope * by[2]]
+            };
+            let square = |i: usize| {
+                let ([a, b], [c, d]) = (line(i), line(i + 2));
+                [a + (c - a) * from[1], b + (d - b) * from[1] + (c - a) * by[1], (d - b) * by[1]]
+            };
+            let ([a, b, c], [d, e, f]) = (square(0), square(4));
+            let (p, q, r) = (d - a, e - b, f - c);
+            terms[0][channel] = a + p * from[0];
+            terms[1][channel] = b + q * from[0] + p * by[0];
+            terms[2][channel] = c + r * from[0] + q * by[0];
+            terms[3][channel] = r * by[0];
+        }
+        terms
+    }
+
     /// The least and the greatest number of each kind in each of so many equal blocks of the unit cube, the last axis
     /// fastest.
     pub fn ranges(&self, blocks: [usize; 3]) -> impl Iterator<Item = [[f32; C]; 2]> + '_ {

@@ -1,6 +1,6 @@
 //! Media by wavelength.
 
-use super::{Coefficients, Medium, Stretches};
+use super::{Coefficients, Cubic, Medium, Stretches};
 use raywright_base::math::{DVec3, Ray};
 use raywright_optics::spectra::{Role, Smooth, Spectrum, Waves};
 use raywright_optics::{Phase, Rgb};
@@ -70,6 +70,10 @@ impl Medium for WavedMedium {
 
     fn closed_stretches(&self, ray: &Ray, span: [f64; 2]) -> Stretches<'_> {
         self.medium.closed_stretches(ray, span)
+    }
+
+    fn cubic(&self, ends: [DVec3; 2]) -> Cubic {
+        self.medium.cubic(ends)
     }
 
     fn at(&self, point: DVec3) -> Coefficients {

@@ -2,7 +2,7 @@
 
 use super::block_walk::Spectra;
 use super::grid::Here;
-use super::{Coefficients, GridMedium, Medium, Stretches};
+use super::{Coefficients, Cubic, GridMedium, Medium, Stretches};
 use raywright_base::math::{DVec3, Ray};
 use raywright_optics::spectra::{Role, Smooth, Spectrum, Waves};
 use raywright_optics::{Phase, Rgb};
@@ -67,6 +67,10 @@ impl Medium for WavedGrid {
 
     fn extinction(&self, point: DVec3) -> Rgb {
         self.grid.extinction(point) * self.colour
+    }
+
+    fn cubic(&self, ends: [DVec3; 2]) -> Cubic {
+        self.grid.cubic(ends).times(self.colour)
     }
 
     fn at(&self, point: DVec3) -> Coefficients {
