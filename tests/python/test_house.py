@@ -9,7 +9,7 @@ import raywright
 PACKAGE = Path(raywright.__file__).parent
 # Rooms, folders or files of the root, from the ground up; those of a floor do not know of each other.
 FLOORS = [
-    {"_core", "foreign_arrays"},
+    {"_core", "debug_log", "foreign_arrays", "html_tables"},
     {"arrays", "locks"},
     {"accelerators", "cameras", "io"},
     {"textures"},

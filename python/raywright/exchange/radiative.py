@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import choice, integer, number, real_array, thread_limit
 from ..lights import ConstantEnvironment
+from ..query.tabular import Tabular
 from ..scene.progress import BuildProgress, check_progress, watcher
 from ..scene.scene import Scene
 from .coincident import Covered, merged
@@ -34,7 +35,7 @@ _SMALL = 2048
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class RadiativeExchange:
+class RadiativeExchange(Tabular):
     """The heat that surfaces exchange by radiation; all arrays are read-only. Made by `radiative_exchange`.
 
     There is a row a face of the scene, or a row a side: all fronts, and after them all backs.
@@ -97,6 +98,15 @@ class RadiativeExchange:
         """
         last = int(self.patches["shape"].max())
         return float(self.power[self.patches["shape"] == integer("shape", shape, 0, last)].sum())
+
+    def to_dict(self) -> dict[str, NDArray[Any]]:
+        """Return flat arrays by name, an entry for each row, with what `patches` says of it."""
+        columns = {name: self.patches[name] for name in ("shape", "copy", "face", "side")}
+        columns["area"] = self.areas
+        for name in ("temperature", "emissivity", "flux", "power", "standard_error"):
+            columns[name] = getattr(self, name)
+        heat = ("radiosity", "irradiance", "absorbed_light")
+        return columns | {name: getattr(self, name) for name in heat}
 
     def __len__(self) -> int:
         return len(self.flux)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Triple, choice, number
+from ..query.tabular import Tabular
 
 if TYPE_CHECKING:
     import trimesh
@@ -38,7 +39,7 @@ class RadiosityStep(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class RadiositySolution:
+class RadiositySolution(Tabular):
     """The light that diffuse patches send each other; all arrays are read-only. Made by `radiosity`.
 
     There is a row a side of a patch: all fronts, to which the normals point, and after them all backs, where
@@ -227,6 +228,19 @@ class RadiositySolution:
             if isinstance(value, np.ndarray):
                 value.setflags(write=False)
         vars(self).update(state)
+
+    def to_dict(self) -> dict[str, NDArray[Any]]:
+        """Return flat arrays by name, an entry for each side of a patch, with what `patches` says of it.
+
+        Colors are apart, as ``radiosity_red``, ``radiosity_green``, ``radiosity_blue``, and so on.
+        """
+        columns = {name: self.patches[name] for name in ("shape", "copy", "face", "cell", "side")}
+        columns["area"] = self.areas
+        of_light = ("radiosity", "standard_error", "irradiance", "irradiance_error")
+        for name in (*of_light, "emission", "reflectance"):
+            values = getattr(self, name)
+            columns |= {f"{name}_{one}": values[:, i] for i, one in enumerate(("red", "green", "blue"))}
+        return columns
 
     def __getstate__(self) -> dict[str, Any]:
         # What is computed from the rest need not travel.

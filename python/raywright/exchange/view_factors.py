@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .. import _core
 from ..arrays import choice, frozen, integer, positive, real_array, thread_limit
+from ..query.tabular import Tabular
 from ..scene.progress import BuildProgress, check_progress, watcher
 from ..scene.scene import Scene
 from ..shapes import Plane
@@ -33,7 +34,7 @@ _MOST_RAYS = 2**26
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ViewFactors:
+class ViewFactors(Tabular):
     """Which share of the light that leaves each surface, even and from its front, comes to each.
 
     Attributes
@@ -147,6 +148,18 @@ class ViewFactors:
         if values.ndim not in (1, 2) or len(values) != len(self.areas):
             raise ValueError(f"x must be ({len(self.areas)},) or ({len(self.areas)}, K), got {values.shape}")
         return values
+
+    def to_dict(self) -> dict[str, NDArray[Any]]:
+        """Return flat arrays by name, an entry for each view factor that is not 0, row by row.
+
+        ``from`` and ``to`` are its row and column, ``factor`` and ``standard_error`` what it is.
+        """
+        matrix: Any = self.matrix
+        row, column = matrix.nonzero()
+        order = np.lexsort((column, row))
+        row, column = row[order].astype(np.int64), column[order].astype(np.int64)
+        factor, error = (np.asarray(of[row, column]).reshape(-1) for of in (matrix, self.standard_error))
+        return {"from": row, "to": column, "factor": factor, "standard_error": error}
 
     def __len__(self) -> int:
         return len(self.areas)

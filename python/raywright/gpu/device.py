@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..cameras import AnyCamera
+from ..debug_log import debug
 from ..scene.scene import Scene
 from .adapters import chosen, name_of
 from .arithmetic import pairs, trouble
@@ -84,6 +85,7 @@ class Gpu:
         """
         if not isinstance(scene, Scene):
             raise TypeError(f"scene must be a Scene, got {type(scene).__name__}")
+        debug("device: scene held by %s", self._name)
         return GpuScene(self._device, self._name, scene, self._most, self._bounds, self._pipelines)
 
     def _paths(

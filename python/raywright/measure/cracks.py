@@ -1,16 +1,19 @@
 """What keeps meshes from being closed."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .. import _core
+from ..query.tabular import Tabular
 from .places import Floats, SceneLike, scene_of, sealed
 from .triangles import triangles
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Topology:
+class Topology(Tabular):
     """How the faces of meshes hang together, once corners are welded.
 
     Attributes
@@ -51,6 +54,15 @@ class Topology:
     def is_closed(self) -> bool:
         """Whether all faces are part of a body."""
         return bool(self.volumes) and not self.open_faces
+
+    def to_dict(self) -> dict[str, NDArray[Any]]:
+        """Return the counts by name, and the tolerance, as arrays of one entry."""
+        counts = {"bodies": len(self.volumes), "cracks": len(self.cracks)}
+        counts["t_junctions"] = len(self.t_junctions)
+        for kind in ("open_faces", "inner_faces", "turned_edges", "duplicate_faces", "degenerate_faces"):
+            counts[kind] = getattr(self, kind)
+        columns: dict[str, NDArray[Any]] = {name: np.array([count]) for name, count in counts.items()}
+        return columns | {"tolerance": np.array([self.tolerance])}
 
     def __repr__(self) -> str:
         return (

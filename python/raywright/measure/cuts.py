@@ -1,13 +1,14 @@
 """Cross sections."""
 
 from dataclasses import dataclass
-from typing import Literal, TypeAlias, get_args
+from typing import Any, Literal, TypeAlias, get_args
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from .. import _core
 from ..arrays import choice
+from ..query.tabular import Tabular
 from ..scene.scene import Scene
 from .places import Floats, SceneLike, common, sealed, units, vectors
 from .triangles import triangles
@@ -16,7 +17,7 @@ AreaRule: TypeAlias = Literal["winding", "even-odd"]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class CrossSection:
+class CrossSection(Tabular):
     """Where a plane cuts meshes.
 
     Attributes
@@ -50,6 +51,16 @@ class CrossSection:
     def gaps(self) -> tuple[float, ...]:
         """How far apart the ends of each line are: 0 of closed ones."""
         return tuple(float(np.linalg.norm(line[-1] - line[0])) for line in self.lines)
+
+    def to_dict(self) -> dict[str, NDArray[Any]]:
+        """Return flat arrays by name, an entry for each point of each line: its line, and x, y and z."""
+        counts = [len(line) for line in self.lines]
+        points = np.concatenate([np.empty((0, 3)), *self.lines])
+        columns = {
+            "line": np.repeat(np.arange(len(self)), counts),
+            "closed": np.repeat(np.array(self.closed, np.bool_), counts),
+        }
+        return columns | dict(zip("xyz", points.T, strict=True))
 
     def __repr__(self) -> str:
         loops = sum(self.closed)

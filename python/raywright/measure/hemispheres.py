@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -9,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from .. import _core
 from ..arrays import integer, positive
 from ..query.hits import SurfacePoints
+from ..query.tabular import Tabular
 from ..scene.progress import BuildProgress, check_progress, watcher
 from ..scene.scene import Scene
 from .places import Floats, Places, SceneLike, frames, places, scene_of, sealed, unit
@@ -21,7 +23,7 @@ _GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Estimate:
+class Estimate(Tabular):
     """Numbers found by sampling, and how far off they may be; arrays of the points' leading shape, read-only.
 
     Attributes
@@ -40,6 +42,10 @@ class Estimate:
     value: Floats
     standard_error: Floats
     rays: int
+
+    def to_dict(self) -> dict[str, NDArray[Any]]:
+        """Return flat arrays by name, an entry for each point, in C order."""
+        return {"value": self.value.reshape(-1), "standard_error": self.standard_error.reshape(-1)}
 
     def __repr__(self) -> str:
         return f"Estimate(shape={self.value.shape}, {self.rays} rays a point)"

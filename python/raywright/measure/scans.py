@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import choice, integer, number, positive
 from ..query.hits import Hits
+from ..query.tabular import Tabular
 from ..scene.progress import BuildProgress, check_progress, watcher
 from ..scene.scene import Scene
 from .noise import beams_of, normal, uniform
@@ -25,7 +26,7 @@ _GRAZING = 89.995
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class LidarScan:
+class LidarScan(Tabular):
     """What a scanner has measured: K returns in all, by beam and then by range. Arrays are read-only.
 
     Attributes
@@ -84,6 +85,12 @@ class LidarScan:
         first = np.flatnonzero(np.diff(self.beam, prepend=-1))
         whole[self.beam[first]] = getattr(self, name)[first]
         return whole.reshape(self.shape)
+
+    def to_dict(self) -> dict[str, NDArray[Any]]:
+        """Return flat arrays by name, an entry for each return; its place as x, y and z."""
+        names = ("beam", "number", "range", "incidence", "strength", "shape_id", "primitive")
+        columns = {name: getattr(self, name) for name in names}
+        return columns | dict(zip("xyz", self.position.T, strict=True))
 
     def __len__(self) -> int:
         return len(self.beam)

@@ -1,17 +1,19 @@
 """Whether points see each other."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import number
 from ..query.hits import Hits
+from ..query.tabular import Tabular
 from .places import Floats, SceneLike, Touching, common, scene_of, sealed, touching, vectors
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class LineOfSight:
+class LineOfSight(Tabular):
     """Whether points see each other; arrays of the leading shape of the pairs, read-only.
 
     Attributes
@@ -27,6 +29,16 @@ class LineOfSight:
     visible: NDArray[np.bool_]
     obstruction: Hits
     distance: Floats
+
+    def to_dict(self) -> dict[str, NDArray[Any]]:
+        """Return flat arrays by name, an entry for each pair, in C order.
+
+        Of the obstruction there are its share of the way, ``t``, its shape and its face.
+        """
+        first = self.obstruction
+        columns = {"visible": self.visible, "distance": self.distance, "t": first.t}
+        columns |= {"shape_id": first.shape_id, "primitive": first.primitive}
+        return {name: column.reshape(-1) for name, column in columns.items()}
 
     def __repr__(self) -> str:
         seen = int(np.count_nonzero(self.visible))

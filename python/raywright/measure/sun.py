@@ -1,15 +1,17 @@
 """How much sun there is on surfaces."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import real_array
 from ..lights.sun_position import sun_directions as directions_at
 from ..lights.sun_position import way
 from ..lights.times import Time, Times, one_or_many
 from ..query.hits import SurfacePoints
+from ..query.tabular import Tabular
 from ..scene.progress import BuildProgress, check_progress, watcher
 from .places import Floats, SceneLike, places, scene_of, sealed, unit, units
 
@@ -17,7 +19,7 @@ _TOGETHER = 1 << 20
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class SolarExposure:
+class SolarExposure(Tabular):
     """What the sun sends to points; arrays of their leading shape, read-only. NaN where there is no point.
 
     Attributes
@@ -35,6 +37,10 @@ class SolarExposure:
     exposure: Floats
     sunlit: Floats
     day: float
+
+    def to_dict(self) -> dict[str, NDArray[Any]]:
+        """Return flat arrays by name, an entry for each point, in C order."""
+        return {"exposure": self.exposure.reshape(-1), "sunlit": self.sunlit.reshape(-1)}
 
     def __repr__(self) -> str:
         return f"SolarExposure(shape={self.exposure.shape}, day={self.day:g})"

@@ -109,6 +109,13 @@ class AllHits(SurfacePoints):
     def __iter__(self) -> "Iterator[AllHits]":
         return (self[i] for i in range(len(self)))
 
+    def _first_rows(self, count: int) -> tuple[int, dict[str, NDArray[Any]]]:
+        first = np.arange(min(count, self.t.size))
+        rays = np.searchsorted(self.ray_splits, first, side="right") - 1
+        some = self[np.unravel_index(np.unique(rays), self.shape)] if self.shape else self
+        columns = {name: column[: len(first)] for name, column in rows.flat(some).items()}
+        return self.t.size, columns | {"ray": rays}
+
     def _more(self) -> dict[str, Any]:
         return {"shape": self.shape}
 

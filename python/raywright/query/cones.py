@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..arrays import real_array
 from .hits import same, sealed
 from .rays import Floats, ray_arguments, spread
+from .tabular import Tabular
 
 ConeArguments: TypeAlias = tuple[
     Floats,
@@ -22,7 +23,7 @@ ConeArguments: TypeAlias = tuple[
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ConeTouches:
+class ConeTouches(Tabular):
     """What each cone touches, one after the other: by cone, then distance, then (shape_id, primitive).
 
     There are K touches of N cones in all, and those of cone i, counted along the cones in C order, are from
@@ -57,6 +58,11 @@ class ConeTouches:
     def count(self) -> NDArray[np.int64]:
         """How many faces each cone touches: (...) int64."""
         return sealed(np.diff(self.cone_splits).reshape(self.shape))
+
+    def to_dict(self) -> dict[str, NDArray[Any]]:
+        """Return flat arrays by name, an entry for each touch, with the cone that it is of."""
+        names = ("cone", "shape_id", "primitive", "distance")
+        return {name: getattr(self, name) for name in names}
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, ConeTouches):

@@ -13,6 +13,7 @@ from .. import _core
 from . import rows
 from .leaving import LeavingRays, leaving
 from .surface import Surface
+from .tabular import Tabular
 
 # What is asked of the compiled scene when it is wanted. A pickle keeps it if it was.
 _ASKED = ("position", "normal", "_error", "surface", "names")
@@ -37,7 +38,7 @@ class Known:
 
 
 @dataclass(frozen=True, eq=False, repr=False, init=False)
-class SurfacePoints(Known):
+class SurfacePoints(Known, Tabular):
     """Points on the surfaces of a scene; all arrays are read-only.
 
     Attributes
@@ -177,15 +178,12 @@ class SurfacePoints(Known):
         """
         return rows.flat(self)
 
-    def to_dataframe(self) -> Any:
-        """Return what `to_dict` does as a ``pandas.DataFrame``.
-
-        Raises
-        ------
-        ImportError
-            If pandas is not installed.
-        """
-        return rows.frame(self.to_dict())
+    def _first_rows(self, count: int) -> tuple[int, dict[str, NDArray[Any]]]:
+        # Nothing is worked out for the others.
+        shape = self.primitive.shape
+        first = np.arange(min(count, self.primitive.size))
+        of: Any = self
+        return self.primitive.size, rows.flat(of[np.unravel_index(first, shape)] if shape else of)
 
     def __eq__(self, other: object) -> bool:
         if type(other) is not type(self):

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, replace
 
+from ..html_tables import html_table
 from ..integrators import Path
 from .samplers import Sampler
 
@@ -53,6 +54,10 @@ class RenderPlan:
         """Return the plan with one more reason in the row about something."""
         rows = (replace(row, why=f"{row.why}; {why}") if row.what == what else row for row in self.rows)
         return replace(self, rows=tuple(rows))
+
+    def _repr_html_(self) -> str:
+        rows = [(row.what, row.chosen, row.why) for row in self.rows]
+        return html_table("How the picture was rendered", ("", "chosen", "why"), rows)
 
     def __repr__(self) -> str:
         lines = [("", "chosen", "why"), *((row.what, row.chosen, row.why) for row in self.rows)]

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from .. import _core
 from ..arrays import integer, positive, thread_limit
 from ..cameras import AnyCamera
+from ..debug_log import debug
 from ..integrators import AnyIntegrator, Path, ProgressivePhotonMap, check_integrator
 from ..integrators.base import Integrator
 from ..scene.scene import Scene
@@ -274,6 +275,8 @@ def render(
     if there is not None and not there.works:
         plan = replace(plan, rows=(there.row(), *plan.rows))
     plan = replace(plan, rows=plan.rows + waves(scene))
+    for row in plan.rows:
+        debug("render: %s: %s (%s)", row.what, row.chosen, row.why)
     transparent = background == "transparent"
     job = Job(scene, camera, integrator, seed, adaptive, clamp, sampler, filter, transparent, apart)
     if checkpoint is not None:

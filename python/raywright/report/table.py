@@ -5,6 +5,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
+from ..html_tables import html_table
 from ..query.rows import frame
 from .plots import plotted
 
@@ -251,6 +252,10 @@ class Table(Generic[Row]):
     def _grouped(self) -> bool:
         first = [row[0] for row in self.rows]
         return len(set(first)) < len(first)
+
+    def _repr_html_(self) -> str:
+        headings, *rows = self._texts()
+        return html_table(self.title, headings, rows, self.notes)
 
     def _repr_markdown_(self) -> str:
         parts = [f"**{self.title}**", self.markdown(), *self.notes]

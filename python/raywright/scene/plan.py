@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from ..html_tables import html_table
+
 
 @dataclass(frozen=True)
 class PlanRow:
@@ -38,6 +40,10 @@ class Plan:
     def left_out(self) -> tuple[str, ...]:
         """What it does without."""
         return tuple(row.what for row in self.rows if not row.needed)
+
+    def _repr_html_(self) -> str:
+        rows = [(row.what, "yes" if row.needed else "no", row.meaning) for row in self.rows]
+        return html_table(f"kernel: {self.kernel}", ("", "needed", ""), rows)
 
     def __repr__(self) -> str:
         lines = [("", "needed", f"kernel: {self.kernel}")]

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from .. import _core
 from ..accelerators import BVH, Accelerator
 from ..arrays import choice
+from ..debug_log import debug
 from ..lights import Environment, Light, environments
 from ..lights import lights as checked_lights
 from ..locks import Lock
@@ -26,6 +27,7 @@ from .arrivals import Arrival
 from .instance import AnyShape, Instance, Shapes, closed, meshes
 from .plan import Plan, PlanRow
 from .progress import BuildProgress, check_progress, watcher
+from .shown import scene_html
 from .wavelengths import reason
 
 Precision: TypeAlias = Literal["auto", "single", "double"]
@@ -501,6 +503,7 @@ class Scene(Queries):
                 elif callable(progress):
                     progress(1.0)
                 self._core, self._alike = compiled, None
+                _log_build(compiled)
                 if arrival is not None:
                     arrival.keep(compiled)
             finally:
@@ -560,6 +563,9 @@ class Scene(Queries):
         # Nothing that it holds can change.
         return Scene(*self._parts())
 
+    def _repr_html_(self) -> str:
+        return scene_html(self)
+
     def __repr__(self) -> str:
         faces = sum(map(face_count, self._shapes))
         parts = [f"{_counted(len(self._shapes), 'shape')}", _counted(faces, "face")]
@@ -580,6 +586,12 @@ def _arrived(*parts: Any) -> Scene:
     scene = Scene(*parts)
     scene._has_arrived = True
     return scene
+
+
+def _log_build(compiled: _core.CompiledScene) -> None:
+    info = compiled.accelerator
+    what = info.kind, info.primitives, info.build_seconds, info.nodes, info.precision, compiled.bytes
+    debug("scene built: %s of %d primitives in %.4f s, %d nodes, %s precision, %d bytes", *what)
 
 
 def _elsewhere(shape: AnyShape, name: str, to: Any) -> AnyShape:

@@ -1,0 +1,52 @@
+"""A scene as a table that notebooks show."""
+
+from collections.abc import Iterator
+from typing import Any
+
+from ..html_tables import html_table
+from ..shapes.mesh import Mesh, face_count
+from .instance import Instance
+
+# A scene of so many faces is compiled in some 50 ms, so that it can be for a look.
+_QUICK = 100_000
+
+
+def scene_html(scene: Any) -> str:
+    """Return what a scene holds, its accelerator and its plan as a table in HTML.
+
+    A large scene that is not compiled is not compiled for that.
+    """
+    return html_table(
+        f"Scene of {len(scene.shapes)} shape{'' if len(scene.shapes) == 1 else 's'}", (), _rows(scene)
+    )
+
+
+def _rows(scene: Any) -> Iterator[tuple[str, str]]:
+    meshes = [shape for shape in scene.shapes if isinstance(shape, Mesh)]
+    copies = sum(len(shape) for shape in scene.shapes if isinstance(shape, Instance))
+    faces = sum(map(face_count, meshes))
+    yield "vertices", f"{sum(len(mesh.vertices) for mesh in meshes):,}"
+    yield "faces", f"{faces:,}"
+    if len(meshes) < len(scene.shapes):
+        yield "no meshes", f"{len(scene.shapes) - len(meshes):,}"
+    if copies:
+        yield "copies", f"{copies:,}"
+    if scene.lights:
+        yield "lights", f"{len(scene.lights):,}"
+    for name in ("environment", "medium"):
+        if getattr(scene, name) is not None:
+            yield name, repr(getattr(scene, name))
+    if scene._core is None and (faces > _QUICK or copies):
+        yield "accelerator", f"{scene.accelerator_choice!r}, built by the first query or .build()"
+        return
+    info, bounds = scene.accelerator, scene.bounds
+    if bounds is not None:
+        yield "bounds", " to ".join(f"({', '.join(f'{x:.6g}' for x in corner)})" for corner in bounds)
+    yield "precision", info.precision
+    yield "accelerator", info.kind
+    size = f"{info.nodes:,} nodes, {info.leaves:,} leaves, depth {info.depth}"
+    yield "tree", f"{size}, SAH cost {info.sah_cost:.4g}"
+    yield "built in", f"{info.build_seconds:.4f} s"
+    yield "memory", f"{scene.bytes:,} bytes"
+    plan = scene.plan()
+    yield "plan", f"kernel {plan.kernel}; needs {', '.join(plan.needed) or 'nothing more'}"
