@@ -78,6 +78,8 @@ def test_cells_are_those_of_the_caller():
     )
     at = np.array([[0.5, 0.25, 1], [0.25, 0.5, 1], [1.5, 0.25, 1]])
     assert mixed.multi_ray_trace(at, np.tile([0.0, 0, -1], (3, 1)))[2].tolist() == [2, 2, 3]
+    flagged = pyvista.PolyData(corners, verts=np.array([1, 0, 1, 3]), faces=np.array([3, 0, 1, 2]))
+    assert flagged.ray_trace([0.5, 0.25, 1], [0.5, 0.25, -1])[1].tolist() == [2]
     strip = pyvista.PolyData(corners[[0, 1, 3, 2]], strips=np.array([4, 0, 1, 2, 3]))
     assert strip.ray_trace(at[0], at[0] - [0, 0, 2])[1].tolist() == [0]
     assert pyvista.PolyData(corners).ray_trace(at[0], at[0] - [0, 0, 2])[1].tolist() == []

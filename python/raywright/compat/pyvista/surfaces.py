@@ -54,12 +54,17 @@ def surface_of(name: str, mesh: Any) -> Surface:
 
 def _triangles(mesh: Any, pyvista: Any) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Return the corners of triangles, (F, 3), and the cell of each."""
-    if mesh.is_all_triangles and mesh.n_cells:
+    # Cells are numbered points first, then lines, polygons and strips.
+    before = mesh.GetNumberOfVerts() + mesh.GetNumberOfLines()
+    if mesh.is_all_triangles and not before and not mesh.n_strips and mesh.n_cells:
         return np.asarray(mesh.regular_faces, np.int64), np.arange(mesh.n_cells)
-    structure = pyvista.PolyData()
-    structure.copy_structure(mesh)
-    structure.cell_data["cell"] = np.arange(mesh.n_cells)
-    parts = structure.triangulate()
+    areas = pyvista.PolyData()
+    if mesh.n_points:
+        areas.SetPoints(mesh.GetPoints())
+        areas.SetPolys(mesh.GetPolys())
+        areas.SetStrips(mesh.GetStrips())
+    areas.cell_data["cell"] = np.arange(before, mesh.n_cells)
+    parts = areas.triangulate()
     if not parts.n_cells:
         return np.empty((0, 3), np.int64), np.empty(0, np.int64)
     return np.asarray(parts.regular_faces, np.int64), np.asarray(parts.cell_data["cell"], np.int64)
