@@ -36,6 +36,10 @@ class Covered:
         Faces in whose places they lie, and the shares of their areas; each face's add up to 1.
     areas : (D,) float64
         How large they are.
+    turned : (D,) bool
+        Whether they look the other way: the front of each is the back of those in whose places it lies.
+    before : LaidOut, optional
+        The scene with them, where some are turned.
     """
 
     faces: Integers
@@ -43,6 +47,8 @@ class Covered:
     by: Integers
     shares: Floats
     areas: Floats
+    turned: NDArray[np.bool_]
+    before: LaidOut | None = None
 
     def __len__(self) -> int:
         return len(self.faces)
@@ -52,8 +58,43 @@ class Covered:
         weights = self.shares.reshape(-1, *[1] * (values.ndim - 1)) ** power
         return np.asarray(np.add.reduceat(values[self.by] * weights, self.starts))
 
+    def sides(self, values: list[Floats]) -> list[Floats]:
+        """Return for each face and side the means of values of the faces that stand for it.
+
+        `values` are those of all fronts, (F, ...), and of all backs, if these take part.
+        """
+        means = [self.means(of) for of in values]
+        turned = self.turned.reshape(-1, *[1] * (values[0].ndim - 1))
+        return [np.where(turned, other, own) for own, other in zip(means, means[::-1], strict=True)]
+
+    def with_backs(self, values: Floats) -> Floats:
+        """Return values of all fronts and then all backs, (2 F, ...), as one face with two sides has them.
+
+        The back of a face that stands for turned ones has the mean of their fronts.
+        """
+        if not self.turned.any():
+            return values
+        fronts, backs = np.split(values.astype(np.float64), 2)
+        sizes = np.diff(np.append(self.starts, len(self.by)))
+        turned = np.repeat(self.turned, sizes)
+        one, other = self.by[turned], np.repeat(self.faces, sizes)[turned]
+        weights = self.shares[turned] * np.repeat(self.areas, sizes)[turned]
+        sums, whole = np.zeros_like(fronts), np.zeros(len(fronts))
+        np.add.at(sums, one, (fronts[other].T * weights).T)
+        np.add.at(whole, one, weights)
+        stands = whole > 0
+        backs[stands] = (sums[stands].T / whole[stands]).T
+        gone = self.faces[self.turned]
+        fronts[gone], backs[gone] = (of[self.turned] for of in self.sides([fronts, backs]))
+        return np.concatenate([fronts, backs])
+
     @classmethod
-    def of(cls, parts: dict[int, list[tuple[int, float]]], own: Floats) -> "Covered":
+    def of(
+        cls,
+        parts: dict[int, list[tuple[int, float]]],
+        own: Floats,
+        turned: set[int] | frozenset[int] = frozenset(),
+    ) -> "Covered":
         """Return faces by the areas that each has in common with others, and the areas of all faces."""
         faces = sorted(parts)
         sizes = [len(parts[face]) for face in faces]
@@ -62,21 +103,24 @@ class Covered:
         shares = [area / sum(of) for of in areas for area in of]
         starts = np.cumsum([0, *sizes])[:-1]
         rows = np.array(faces, np.int64)
-        return cls(rows, starts, np.array(by, np.int64), np.array(shares, np.float64), own[rows])
+        is_turned = np.array([face in turned for face in faces], np.bool_)
+        return cls(rows, starts, np.array(by, np.int64), np.array(shares, np.float64), own[rows], is_turned)
 
 
 NOTHING = Covered.of({}, np.zeros(0))
 
 
-def merged(laid: LaidOut, stacklevel: int = 3) -> tuple[LaidOut, Covered]:
+def merged(laid: LaidOut, both: bool = False, stacklevel: int = 3) -> tuple[LaidOut, Covered]:
     """Return a scene in which each place has one face that exchanges light, and the faces that do not.
 
-    A face all of whose area lies in faces before it, which look the same way, is shrunk to a point.
+    A face all of whose area lies in faces before it, which look the same way, is shrunk to a point. If both
+    sides of faces take part, so are faces that look the other way, where these and those before them cover
+    each other: they are the backs of those.
 
     Warns
     -----
     RuntimeWarning
-        If faces coincide, in part or as a whole.
+        If faces that look the same way coincide, in part or as a whole.
     """
     curved = _same_shapes(laid)
     pairs, areas, same, own = _core.coincident_faces(laid.scene._compiled())
@@ -96,15 +140,20 @@ def merged(laid: LaidOut, stacklevel: int = 3) -> tuple[LaidOut, Covered]:
             RuntimeWarning,
             stacklevel=stacklevel,
         )
-    if not parts:
+    if parts:
+        first = min(parts)
+        warnings.warn(
+            f"{len(parts)} of {len(own)} faces coincide with others and count once with them: "
+            f"{_named(laid, first)} first, with {_named(laid, parts[first][0][0])}",
+            RuntimeWarning,
+            stacklevel=stacklevel,
+        )
+    turned = _backs(pairs[~same], areas[~same], own, set(parts)) if both else {}
+    if not parts and not turned:
         return laid, NOTHING
-    covered = Covered.of(parts, own)
-    warnings.warn(
-        f"{len(covered)} of {len(own)} faces coincide with others and count once with them: "
-        f"{_named(laid, covered.faces[0])} first, with {_named(laid, covered.by[0])}",
-        RuntimeWarning,
-        stacklevel=stacklevel,
-    )
+    covered = Covered.of(parts | turned, own, set(turned))
+    if turned:
+        covered = replace(covered, before=laid)
     gone = np.zeros(len(own), np.bool_)
     gone[covered.faces] = True
     shapes: list[AnyShape] = []
@@ -114,6 +163,36 @@ def merged(laid: LaidOut, stacklevel: int = 3) -> tuple[LaidOut, Covered]:
         shapes.append(_shrunk(shape, gone[start : start + count]))
         start += count
     return replace(laid, scene=laid.scene.replace(shapes=shapes)), covered
+
+
+def _backs(pairs: Integers, areas: Floats, own: Floats, gone: set[int]) -> dict[int, list[tuple[int, float]]]:
+    """Return faces that are backs of others, and which these are, with the areas in common.
+
+    Groups of faces that look one way or the other, and that all lie in each other, are sheets: those that
+    look as the first of them does remain.
+    """
+    opposed: dict[int, list[tuple[int, float]]] = {}
+    for (one, other), area in zip(pairs.tolist(), areas.tolist(), strict=True):
+        if one not in gone and other not in gone:
+            opposed.setdefault(one, []).append((other, area))
+            opposed.setdefault(other, []).append((one, area))
+    backs: dict[int, list[tuple[int, float]]] = {}
+    seen: set[int] = set()
+    for first in sorted(opposed):
+        if first in seen:
+            continue
+        seen.add(first)
+        group, waiting = {first: False}, [first]
+        while waiting:
+            face = waiting.pop()
+            for other, _ in opposed[face]:
+                if other not in seen:
+                    seen.add(other)
+                    group[other] = not group[face]
+                    waiting.append(other)
+        if all(sum(area for _, area in opposed[face]) >= (1.0 - _LEFT) * own[face] for face in group):
+            backs |= {face: opposed[face] for face, is_back in group.items() if is_back}
+    return backs
 
 
 def _named(laid: LaidOut, face: int | np.int64) -> str:

@@ -66,10 +66,13 @@ class Problem:
         """
         light = None if lamps is None else lamps._compiled()
         if isinstance(scene, Scene):
-            laid, covered = merged(laid_out(scene))
+            laid, covered = merged(laid_out(scene), both)
         else:
             laid = scene
         core = _core.RadiosityShots(laid.scene._compiled(), light, cuts, both, looks, threads)
+        if looks is None and covered.before is not None:
+            own = _looks_of_sides(core, covered, cuts, threads)
+            core = _core.RadiosityShots(laid.scene._compiled(), light, cuts, both, own, threads)
         areas = np.tile(core.areas, 2 if both else 1)
         parts = core.emission, core.reflectance, areas
         made = cls(laid, core, cuts, both, lamps is not None, per, seed, threads, *parts, covered)
@@ -200,11 +203,32 @@ class Problem:
         values, starts = values.copy(), self._starts()
         count = len(self.areas) // (2 if self.both else 1)
         whole = np.maximum(self._face_areas(), np.finfo(np.float64).tiny)
-        for side in range(0, len(values), count):
-            part = slice(side, side + count)
-            means = np.add.reduceat(values[part] * self.areas[part, None], starts) / whole[:, None]
-            values[side + starts[self.covered.faces]] = self.covered.means(means)
+        means = [
+            np.add.reduceat(part * self.areas[:count, None], starts) / whole[:, None]
+            for part in np.split(values, len(values) // count)
+        ]
+        for number, of_covered in enumerate(self.covered.sides(means)):
+            values[number * count + starts[self.covered.faces]] = of_covered
         return values
+
+
+def _looks_of_sides(
+    core: _core.RadiosityShots, covered: Covered, cuts: NDArray[np.uint32], threads: int | None
+) -> tuple[Floats, Floats]:
+    """Return emission and reflectance of all sides, where turned faces stand for the backs of others."""
+    assert covered.before is not None
+    ones = np.ones(len(cuts), np.uint32)
+    whole = _core.RadiosityShots(covered.before.scene._compiled(), None, ones, True, None, threads)
+    faces = np.repeat(np.arange(len(cuts)), cuts.astype(np.int64) ** 2)
+    backs = np.isin(faces, covered.by[np.repeat(covered.turned, np.diff([*covered.starts, len(covered.by)]))])
+    rows = len(faces) + np.flatnonzero(backs)
+
+    def of(mine: Floats, before: Floats) -> Floats:
+        values = mine.copy()
+        values[rows] = covered.with_backs(before)[len(cuts) + faces[backs]]
+        return values
+
+    return of(core.emission, whole.emission), of(core.reflectance, whole.reflectance)
 
 
 def _triple(values: Floats) -> tuple[float, float, float]:

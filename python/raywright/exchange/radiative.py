@@ -164,7 +164,9 @@ def radiative_exchange(
     error, rays : optional
         As of `radiosity`.
     sides : {"front", "both"}
-        Whether backs take part, as those of fins do, or are black and cold. Both are for "stochastic".
+        Whether backs take part, as those of fins do, or are black and cold. Both are for "stochastic", where
+        two faces that lie in each other and look opposite ways are the two sides of one, each with what is
+        given for the face whose front it is.
     seed, threads, progress
         As of `radiosity`.
 
@@ -183,9 +185,9 @@ def radiative_exchange(
     """
     check_exchanging(scene, diffuse=False)
     choice("sides", sides, ("front", "both"))
-    laid, covered = merged(laid_out(scene))
-    faces = laid.counts.tolist()
     both = sides == "both"
+    laid, covered = merged(laid_out(scene), both)
+    faces = laid.counts.tolist()
     if method is None:
         method = "matrix" if sum(faces) <= _SMALL and not both else "stochastic"
     choice("method", method, get_args(ExchangeMethod))
@@ -211,7 +213,9 @@ def radiative_exchange(
     integer("seed", seed, 0, 2**64 - 1)
     workers = thread_limit(threads)
     check_progress(progress)
-    kelvin, grey, light = (np.tile(part, 2 if both else 1) for part in (kelvin, grey, light))
+    kelvin, grey, light = (
+        covered.with_backs(np.tile(part, 2)) if both else part for part in (kelvin, grey, light)
+    )
     cuts = np.ones(sum(faces), np.uint32)
     sent = grey * STEFAN_BOLTZMANN * kelvin**4
 

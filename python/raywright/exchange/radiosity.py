@@ -96,7 +96,8 @@ def radiosity(
         not cut.
     sides : {"front", "both"}, optional
         Which sides of faces take part: those that normals point to, with black backs, or both, as `Path` has
-        them. By default both, and for "matrix", which knows fronts only, these.
+        them. By default both, and for "matrix", which knows fronts only, these. With both, two faces that lie
+        in each other and look opposite ways are the two sides of one, each as the front of its face is.
     seed : int
         Which random numbers; the same seed gives the same bits.
     threads : int, optional
@@ -150,7 +151,7 @@ def radiosity(
         raise ValueError(f"states are those of method='progressive', got {method!r}")
     check_exchanging(scene)
     both = method != "matrix" and sides != "front"
-    laid, covered = merged(laid_out(scene))
+    laid, covered = merged(laid_out(scene), both)
     cuts, lamps = cut(laid.scene, patch_size), lamps_of(scene)
     problem = Problem.of(laid, cuts, both, per, seed, threads, lamps, covered=covered)
     problem.check()
