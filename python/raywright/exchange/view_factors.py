@@ -73,7 +73,11 @@ class ViewFactors(Tabular):
 
     @cached_property
     def standard_error(self) -> "NDArray[np.float64] | csr_array":
-        """The standard error of each view factor, as `matrix`; 0 where it is in closed form."""
+        """The standard error of each view factor, as `matrix`; 0 where it is in closed form.
+
+        Sparse ones have no entry where no ray from either face has met the other: of n rays the factor is
+        then below 3 / n in 19 of 20 cases.
+        """
         if not isinstance(self._variance, tuple):
             return self._variance.sqrt()
         rows, columns, values = self._variance
@@ -200,7 +204,8 @@ def view_factors(
         sends 4096 times as many, up to 2**26. In a scene of more than 10,000 faces each face sends 16 times
         as many. If neither this nor `error` is given, 16, and then as many as bring the standard error below
         1 % of the greatest factor of either row, unless all together would be more than 33 million; a shape
-        that is no mesh sends up to 2**20.
+        that is no mesh sends up to 2**20, and a face of more than 10,000 sends 256, whatever error these
+        leave.
     error : float, optional
         The standard error that no view factor between faces should exceed. More rays are sent until it is
         met, up to 2**20 for a pair.
