@@ -156,6 +156,17 @@ def test_a_mesh_copies_what_is_written_to_elsewhere():
     np.testing.assert_array_equal(mesh.vertices, CORNERS)
 
 
+def test_pictures_too():
+    pixels = np.arange(24, dtype=np.uint8).reshape(2, 4, 3)
+    np.testing.assert_array_equal(rw.ImageTexture(Capsule(pixels)).image, pixels)
+    with pytest.raises(ValueError, match="image must have no masked entries, got 3"):
+        rw.ImageTexture(np.ma.masked_less(pixels, 3))
+    with pytest.raises(TypeError, match="image must be numbers without a unit, got Quantity in lux"):
+        rw.ImageTexture(Quantity(pixels, "lux"))
+    with pytest.raises(TypeError, match=r"on CUDA:0; pass its \.cpu\(\)"):
+        rw.ImageTexture(Capsule(pixels, (2, 0)))
+
+
 ML = Quantity(POINTS, "meter")
 
 

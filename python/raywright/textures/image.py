@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Triple, choice, frozen
+from ..foreign_arrays import as_array
 from .texture import Texture
 from .transform import UvTransform
 
@@ -177,11 +178,11 @@ def _index(channel: str, count: int) -> int | None:
 
 def _pixels(image: Any, linear: bool) -> NDArray[Any]:
     """Return a read-only copy of a picture as (H, W, C), uint8 or float32."""
-    array = np.asarray(image)
+    array = given = as_array("image", image)
     if array.ndim == 2:
         array = array[..., np.newaxis]
     if array.ndim != 3 or not 1 <= array.shape[2] <= 4 or 0 in array.shape:
-        raise ValueError(f"image must have shape (H, W) or (H, W, 1 to 4), got {np.shape(image)}")
+        raise ValueError(f"image must have shape (H, W) or (H, W, 1 to 4), got {given.shape}")
     if array.dtype.newbyteorder("=") == np.uint16:
         colours = array.shape[2] - (array.shape[2] in (2, 4))
         shares = array / 65535
