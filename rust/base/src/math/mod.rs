@@ -32,7 +32,7 @@ pub use aabb::Aabb;
 pub use affine::{Affine, Singular};
 pub use axes::Axes;
 pub use columns::{HitColumns, Numbers, RayBatch, RayColumns, Vectors, read_column};
-pub use double::Double;
+pub use double::{Double, two_product, two_sum};
 pub use double_double::DoubleDouble;
 pub use dyadic::Dyadic;
 pub use elliptic::ellipsoid_area;

@@ -1,7 +1,5 @@
 //! Steps of one unit in the last place, powers of two, and the constants that error bounds are made of.
 
-pub use super::double::{two_product, two_sum};
-
 /// Half the distance from 1 to the next f64: the largest relative error of one rounding.
 pub const UNIT: f64 = f64::EPSILON / 2.0;
 

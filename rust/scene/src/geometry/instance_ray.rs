@@ -12,79 +12,15 @@
 //! grazing angles, the old one stays. So it depends on nothing but the ray and what is hit; what lies farther than that
 //! from an end of the ray need not be compared anew; and an end at 0 is the same for both.
 
-use super::instances::Instances;
-use super::pose::{Pose, Rows};
+use super::pose::Pose;
+use super::prototype::Prototype;
 use raywright_accel::Meeting;
-use raywright_base::math::robust::{two_product, two_sum};
-use raywright_base::math::{DVec3, Hit, Ray};
+use raywright_base::math::{Hit, Ray};
 use raywright_shapes::{Candidate, Contact};
-
-/// A sum of two f64, the second of which holds what rounding took from the first.
-#[derive(Clone, Copy, Default)]
-struct Sum {
-    high: f64,
-    low: f64,
-}
-
-impl Sum {
-    #[inline]
-    fn add(self, x: f64) -> Self {
-        let (high, rest) = two_sum(self.high, x);
-        Self { high, low: self.low + rest }
-    }
-
-    #[inline]
-    fn add_product(self, x: f64, y: f64) -> Self {
-        let (product, rest) = two_product(x, y);
-        let sum = self.add(product);
-        Self { low: sum.low + rest, ..sum }
-    }
-}
-
-/// A point of a triangle's plane to twice the digits, and a normal of the plane of any length.
-#[derive(Clone, Copy)]
-pub struct PlanePoint {
-    point: [Sum; 3],
-    normal: DVec3,
-}
-
-impl PlanePoint {
-    /// The point of a triangle that the weights of its second and third corner tell.
-    pub fn of([a, b, c]: [DVec3; 3], [v, w]: [f64; 2]) -> Self {
-        let point = [0, 1, 2].map(|i| {
-            let ((e, e_low), (f, f_low)) = (two_sum(b[i], -a[i]), two_sum(c[i], -a[i]));
-            let sum = Sum::default().add(a[i]).add_product(e, v).add_product(f, w);
-            Sum { low: sum.low + (e_low * v + f_low * w), ..sum }
-        });
-        Self { point, normal: (b - a).cross(c - a) }
-    }
-
-    /// The same under a map, given with the inverse of its linear part.
-    pub fn under(&self, linear: &Rows, inverse: &Rows, shift: DVec3) -> Self {
-        let [x, y, z] = self.point;
-        let point = [0, 1, 2].map(|i| {
-            let row = linear[i];
-            let sum = Sum::default().add(shift[i]).add_product(row.x, x.high).add_product(row.y, y.high);
-            let sum = sum.add_product(row.z, z.high);
-            Sum { low: sum.low + (row.x * x.low + row.y * y.low + row.z * z.low), ..sum }
-        });
-        let n = self.normal;
-        Self { point, normal: inverse[0] * n.x + inverse[1] * n.y + inverse[2] * n.z }
-    }
-
-    /// How much farther than `t` a ray comes to the plane.
-    fn beyond(&self, ray: &Ray, t: f64) -> f64 {
-        let from = [0, 1, 2].map(|i| {
-            let sum = self.point[i].add(-ray.origin[i]).add_product(-t, ray.direction[i]);
-            sum.high + sum.low
-        });
-        self.normal.dot(DVec3::from_array(from)) / self.normal.dot(ray.direction)
-    }
-}
 
 /// A ray asked of one instance.
 pub struct InstanceRay<'a> {
-    instances: &'a Instances,
+    prototype: &'a Prototype,
     pose: &'a Pose,
     /// As given.
     outside: &'a Ray,
@@ -95,8 +31,8 @@ pub struct InstanceRay<'a> {
 impl<'a> InstanceRay<'a> {
     /// A ray that is asked of an instance which stands so.
     #[inline]
-    pub fn new(instances: &'a Instances, pose: &'a Pose, ray: &'a Ray) -> Self {
-        Self { instances, pose, outside: ray, inside: pose.enter(ray) }
+    pub fn new(prototype: &'a Prototype, pose: &'a Pose, ray: &'a Ray) -> Self {
+        Self { prototype, pose, outside: ray, inside: pose.enter(ray) }
     }
 
     /// The ray as the prototype's space has it.
@@ -124,10 +60,9 @@ impl<'a> InstanceRay<'a> {
 
     /// A hit by the prototype's ray as it is told, with its flattened number; none if it lies beyond an end of the ray.
     pub fn told(&self, hit: &Hit, contact: Contact) -> Option<Candidate> {
-        let prototype = self.instances.prototype();
-        let inner = prototype.flatten(hit);
+        let inner = self.prototype.flatten(hit);
         let Hit { mut t, uv, .. } = *hit;
-        if let Some(plane) = prototype.plane_point(inner, uv, self.outside.time) {
+        if let Some(plane) = self.prototype.plane_point(inner, uv, self.outside.time) {
             let beyond = self.pose.plane_point(&plane).beyond(self.outside, t);
             let is_alike = (t + beyond).partial_cmp(&0.0) == t.partial_cmp(&0.0);
             t += if is_alike && beyond.abs() <= self.room(t) { beyond } else { 0.0 };
@@ -138,7 +73,7 @@ impl<'a> InstanceRay<'a> {
 
     /// Whether the ray may meet something within a few times the room of a `t`.
     fn may_meet_about(&self, t: f64) -> bool {
-        let Some(bounds) = self.instances.prototype().bounds() else { return false };
+        let Some(bounds) = self.prototype.bounds() else { return false };
         let Ray { origin, direction, .. } = self.inside;
         let (point, room) = (origin + direction * t, direction.abs() * (8.0 * self.room(t)));
         (point + room).cmpge(bounds.min).all() && (point - room).cmple(bounds.max).all()
@@ -146,7 +81,7 @@ impl<'a> InstanceRay<'a> {
 
     /// All that a ray in the prototype's space meets.
     pub fn met(&self, ray: &Ray) -> impl Iterator<Item = (Hit, Contact)> + use<> {
-        let all = self.instances.prototype().accelerator().met(std::slice::from_ref(ray));
+        let all = self.prototype.accelerator().met(std::slice::from_ref(ray));
         let scale = all.rays[0].0;
         let own = move |meeting: Meeting| (Hit { t: meeting.hit.t * scale, ..meeting.hit }, meeting.contact);
         all.met.into_iter().map(move |(_, meeting)| own(meeting))
@@ -154,7 +89,7 @@ impl<'a> InstanceRay<'a> {
 
     /// The closest hit.
     pub fn closest(&self) -> Option<Candidate> {
-        let accelerator = self.instances.prototype().accelerator();
+        let accelerator = self.prototype.accelerator();
         let mut ray = self.widened();
         loop {
             let hit = accelerator.intersect_one(&ray);
@@ -179,7 +114,7 @@ impl<'a> InstanceRay<'a> {
 
     /// Whether anything is hit.
     pub fn is_occluded(&self) -> bool {
-        let accelerator = self.instances.prototype().accelerator();
+        let accelerator = self.prototype.accelerator();
         let (all, Ray { t_min, t_max, .. }) = (self.widened(), self.inside);
         let (first, last) = (self.end(t_min, 2.0), self.end(t_max, -2.0));
         if first <= last && accelerator.occluded_one(&Ray { t_min: first, t_max: last, ..all }) {

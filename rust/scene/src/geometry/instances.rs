@@ -188,7 +188,7 @@ impl Instances {
                 pose
             }
         };
-        let ray = InstanceRay::new(self, pose, ray);
+        let ray = InstanceRay::new(&self.prototype, pose, ray);
         match wanted {
             Wanted::Closest => ray.closest().is_some_and(met),
             Wanted::Any => ray.is_occluded() && met(anywhere(some_t(ray.inside()))),

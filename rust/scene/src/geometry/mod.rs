@@ -9,6 +9,7 @@ mod motion;
 mod near;
 mod objects;
 mod per_vertex;
+mod plane_point;
 mod pose;
 mod prototype;
 mod rounding;

@@ -12,7 +12,7 @@
 //! from the inverse of `L` is known by the residual `R = 1 − L M`: for rays the point is off by `|R| |L p|`, and `R` is
 //! computed to within 4uκ.
 
-use super::instance_ray::PlanePoint;
+use super::plane_point::PlanePoint;
 use crate::{ShadingPoint, SurfacePoint};
 use raywright_base::math::robust::UNIT;
 use raywright_base::math::{Affine, DVec3, Ray, Singular};

@@ -1,6 +1,6 @@
 //! What is put into a scene many times: shapes in a space of their own, with an accelerator of their own.
 
-use super::instance_ray::PlanePoint;
+use super::plane_point::PlanePoint;
 use super::{Enclosing, Geometry, Solids};
 use crate::textures::Needs;
 use crate::{Emission, Material, ShadingPoint, SurfacePoint};

@@ -157,7 +157,7 @@ fn largest(v: Vector) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{EdgeRay, EdgeRays};
+    use super::super::{About, EdgeRay, EdgeRays};
     use super::*;
     use crate::oracle::{Exact, cross, dot, minus, vector};
     use proptest::prelude::*;
@@ -214,6 +214,24 @@ mod tests {
             prop_assert_eq!(asked(f64::NEG_INFINITY, t), Some(t));
             prop_assert_eq!(asked(t.next_up(), f64::INFINITY), None);
             prop_assert_eq!(asked(f64::NEG_INFINITY, t.next_down()), None);
+        }
+
+        #[test]
+        fn what_is_said_about_t_holds((ray, corners) in aimed(), past in -2i32..=2) {
+            let Some(ready) = EdgeRay::new(&ray, &Region::around(corners)) else { return Ok(()) };
+            let far = ready.meet(corners).map_or(0.0, |met| met.t * ready.scale);
+            let shift = far.abs() * 1e-8 * f64::from(past);
+            let line = (f64::NEG_INFINITY, f64::INFINITY);
+            for (t_min, t_max) in [line, (far + shift, f64::INFINITY), (far, far + shift)] {
+                let asked = Ray { t_min, t_max, ..ray };
+                let Some(ready) = EdgeRay::new(&asked, &Region::around(corners)) else { continue };
+                let met = ready.meet(corners);
+                match ready.meet_about(corners) {
+                    About::Missed => prop_assert!(met.is_none()),
+                    About::Between(low, high) => prop_assert!(met.is_some_and(|met| low <= met.t && met.t <= high)),
+                    About::Open => {}
+                }
+            }
         }
 
         #[test]
