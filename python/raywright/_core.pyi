@@ -243,8 +243,8 @@ class CompiledScene:
     ) -> NDArray[np.float64]:
         """Shrink balls that touch meshes at (N,3) points, middles along unit ways, till empty: (N,) radii."""
     @property
-    def names(self) -> tuple[str, ...]:
-        """What its shapes are called, in their order; empty where one has no name."""
+    def shapes(self) -> tuple[Any, ...]:
+        """The shapes that it was compiled from, in their order."""
     @property
     def is_rounded(self) -> bool:
         """Whether rounding to float32 has moved vertices."""

@@ -85,9 +85,13 @@ def test_scene_nodes_become_meshes_with_their_transforms(ball, tmp_path):
     scene.graph.update(frame_to="second", matrix=moved, geometry="ball", geometry_flags={"visible": True})
     scene.add_geometry(trimesh.PointCloud(np.zeros((3, 3))))
     for source in (scene, tmp_path / "scene.glb"):
-        if source is not scene:
+        if source is scene:
+            with pytest.warns(RuntimeWarning, match=r"left out of trimesh.Scene: '.*', a PointCloud") as told:
+                shapes = rw.Scene([source]).shapes
+            assert len(told) == 1
+        else:
             scene.export(source)
-        shapes = rw.Scene([source]).shapes
+            shapes = rw.Scene([source]).shapes
         assert sorted(len(shape.faces) for shape in shapes) == [12, 320, 320]
         spans = sorted(tuple(shape.bounds[:, 0].round(6)) for shape in shapes)
         assert spans == [(-1.0, 1.0), (-0.5, 0.5), (3.0, 7.0)]

@@ -67,6 +67,7 @@ def reason(error: Exception, most: int = 120) -> str:
 
 def refused(path: Path, what: str, error: Exception) -> Exception:
     """Return what to raise for a file of which `error` says that it cannot be read as `what`."""
-    if isinstance(error, OSError | MemoryError):
+    # A package that is missing is named already, but where it is another library that misses it.
+    if isinstance(error, OSError | MemoryError) or type(error) is ImportError:
         return error
     return ValueError(f"{path} is not a {what} that can be read ({reason(error, 160)})")

@@ -1,6 +1,6 @@
 """How a mesh looks, by what a file or an object of trimesh says of it."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,3 +37,10 @@ def colored(shares: NDArray[np.float64] | None) -> Look:
 def linear(rgb: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return shares of sRGB as linear ones (IEC 61966-2-1)."""
     return np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
+
+
+def color_look(colors: NDArray[Any]) -> Look:
+    """Return the look of a mesh with sRGB colors of vertices: shares of 1, or integers of the full range."""
+    if colors.dtype.kind == "u":
+        colors = colors / np.iinfo(colors.dtype).max
+    return colored(np.clip(np.nan_to_num(colors[:, :3].astype(np.float64)), 0, 1))

@@ -5,7 +5,7 @@ They are read here since trimesh reads text by lines, takes polygons for fans, a
 
 import re
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,8 +14,8 @@ from ..io.quiet import refused
 from ..shapes.mesh import Mesh
 from .elements import Data, Element, Property, read_bytes, read_text
 from .look import colored, shares_of
+from .polygons import mesh_of_polygons
 from .tokens import lines_of, plain_text
-from .triangulation import triangulate
 
 Floats = NDArray[np.float64]
 
@@ -79,12 +79,12 @@ def _mesh(path: Path) -> Mesh:
     outside = (corners < 0) | (corners >= len(points))
     if outside.any():
         raise ValueError(f"a face has vertex {corners[outside][0]}, but there are {len(points)} vertices")
-    faces = corners[triangulate(points, corners, polygons.counts)]
     colors = columns("red", "green", "blue")
     # Taken as sRGB.
     look = colored(None if colors is None else shares_of(colors))
     normals, uv = columns("nx", "ny", "nz"), columns("u", "v")
-    return Mesh(points, faces, normals, uv, look.material, None, look.colors, path.name)
+    looks: dict[str, Any] = {"material": look.material, "colors": look.colors, "name": path.name}
+    return mesh_of_polygons(points, corners, polygons.counts, normals=normals, uv=uv, **looks)
 
 
 def _elements(data: bytes) -> tuple[dict[str, Data], _Kind]:

@@ -9,17 +9,31 @@ from numpy.typing import NDArray
 from ..io.quiet import warn_caller
 from ..shapes.mesh import Mesh
 from .looks import look_of
+from .polygons import LeftOut
 
 
 def of_scene(scene: Any, loaded: bool = False) -> Iterator[Mesh]:
-    """Yield a mesh for each node of a trimesh.Scene that holds one; `loaded`: nobody has looked at it yet."""
+    """Yield a mesh for each node of a trimesh.Scene that holds one; `loaded`: nobody has looked at it yet.
+
+    Points and curves are left out.
+
+    Warns
+    -----
+    RuntimeWarning
+        Once, for all that is left out.
+    """
     order = {name: i for i, name in enumerate(scene.geometry)}
     placed = [scene.graph[node] for node in scene.graph.nodes_geometry]
     made: dict[str, tuple[Mesh, ...]] = {}
+    left_out = LeftOut("trimesh.Scene")
+    for _, name in placed:
+        if not hasattr(scene.geometry[name], "faces"):
+            left_out.add(f"{name!r}, a {type(scene.geometry[name]).__name__}")
+    left_out.warn()
     for matrix, name in sorted(placed, key=lambda place: order[place[1]]):
         geometry = scene.geometry[name]
         if not hasattr(geometry, "faces"):
-            continue  # points or curves
+            continue
         if name not in made:
             made[name] = tuple(of_trimesh(geometry, loaded, name))
         moved = not np.array_equal(matrix, np.eye(4))
@@ -36,19 +50,35 @@ def of_trimesh(mesh: Any, loaded: bool = False, name: object = None) -> Iterator
         uv = None
     normals = _given_normals(mesh, loaded)
     called = name if isinstance(name, str) else None
-    for visual, of_it in _by_material(mesh.visual, faces):
+    left_out = LeftOut("trimesh.Trimesh")
+    of_vertices = left_out.values(mesh.vertex_attributes, len(vertices), "vertex attribute")
+    of_faces = left_out.values(mesh.face_attributes, len(faces), "face attribute")
+    left_out.warn()
+    for visual, which in _by_material(mesh.visual, len(faces)):
         look = look_of(visual, len(vertices))
-        yield Mesh(vertices, of_it, normals, uv, look.material, look.emission, look.colors, called)
+        yield Mesh(
+            vertices,
+            faces[which],
+            normals,
+            uv,
+            look.material,
+            look.emission,
+            look.colors,
+            called,
+            of_vertices,
+            {key: array[which] for key, array in of_faces.items()},
+            which if isinstance(which, np.ndarray) and len(which) < len(faces) else None,
+        )
 
 
-def _by_material(visual: Any, faces: NDArray[Any]) -> Iterator[tuple[Any, NDArray[Any]]]:
-    """Yield the looks of a mesh with the faces that have them, by the number of the material."""
+def _by_material(visual: Any, count: int) -> Iterator[tuple[Any, NDArray[np.int64] | slice]]:
+    """Yield the looks of a mesh with which faces have them, by the number of the material."""
     materials = getattr(getattr(visual, "material", None), "materials", None)
     if materials is None:
-        yield visual, faces
+        yield visual, slice(None)
         return
     if not len(materials):
-        yield _Plain(), faces
+        yield _Plain(), slice(None)
         return
     which = getattr(visual, "face_materials", None)
     if which is None:
@@ -56,15 +86,15 @@ def _by_material(visual: Any, faces: NDArray[Any]) -> Iterator[tuple[Any, NDArra
             warn_caller(
                 f"a mesh has {len(materials)} materials but no face_materials: all of its faces get the first"
             )
-        which = np.zeros(len(faces), np.int64)
+        which = np.zeros(count, np.int64)
     which = np.asarray(which).reshape(-1)
-    if len(which) != len(faces) or (len(which) and not 0 <= which.min() <= which.max() < len(materials)):
+    if len(which) != count or (len(which) and not 0 <= which.min() <= which.max() < len(materials)):
         raise ValueError(
-            f"face_materials must be {len(faces)} numbers of {len(materials)} materials, one a face, got "
-            + (f"{len(which)}" if len(which) != len(faces) else f"{which.min()} to {which.max()}")
+            f"face_materials must be {count} numbers of {len(materials)} materials, one a face, got "
+            + (f"{len(which)}" if len(which) != count else f"{which.min()} to {which.max()}")
         )
     for number in np.unique(which):
-        yield _Plain(materials[number]), faces[which == number]
+        yield _Plain(materials[number]), np.flatnonzero(which == number)
 
 
 class _Plain:

@@ -12,11 +12,13 @@ from numpy.typing import ArrayLike, NDArray
 from .. import _core
 from . import rows
 from .leaving import LeavingRays, leaving
+from .masks import names_of
 from .surface import Surface
 from .tabular import Tabular
+from .values import cells, interpolated
 
 # What is asked of the compiled scene when it is wanted. A pickle keeps it if it was.
-_ASKED = ("position", "normal", "_error", "surface", "names")
+_ASKED = ("position", "normal", "_error", "surface", "names", "cell")
 
 
 Points = TypeVar("Points", bound="SurfacePoints")
@@ -66,7 +68,41 @@ class SurfacePoints(Known, Tabular):
     def names(self) -> NDArray[np.str_]:
         """What the shape is called that the point is on: (...) str; "" for none, and where it has no name."""
         # The last is that of shape -1.
-        return sealed(np.asarray(np.array([*self._known("names").names, ""])[self.shape_id]))
+        known = names_of(self._known("names").shapes)
+        return sealed(np.asarray(np.array([*known, ""])[self.shape_id]))
+
+    @cached_property
+    def cell(self) -> NDArray[np.int64]:
+        """Cell of the mesh as it was given, such as a polygon or a volume cell: (...) int64; -1 for none.
+
+        The face where ``Mesh.cells`` is None, and 0 on a shape that is no mesh.
+        """
+        return sealed(cells(self._known("cell").shapes, self.shape_id, self.primitive))
+
+    def interpolate(self, name: str) -> NDArray[np.float64]:
+        """Return a vertex or face attribute of the meshes at the points.
+
+        Parameters
+        ----------
+        name : str
+            Of ``Mesh.vertex_attributes``, which are linear on each face, or else of ``Mesh.face_attributes``.
+
+        Returns
+        -------
+        (..., *S) float64 array
+            S is the shape of one value. NaN for none, and on shapes without the attribute.
+
+        Raises
+        ------
+        ValueError
+            If no shape of the scene has the attribute, or its values have different shapes.
+        TypeError
+            If `name` is no str.
+        """
+        if self._compiled is None:
+            raise ValueError("attributes are not kept in a pickle: interpolate them before")
+        shapes = self._compiled.shapes
+        return interpolated(shapes, name, self.shape_id, self.primitive, self.uv)
 
     def _known(self, name: str) -> _core.CompiledScene:
         """Return the scene that knows what is asked."""

@@ -1,7 +1,7 @@
 """Which rays are asked, and what of a scene counts for them."""
 
 from collections.abc import Sequence
-from typing import Literal, TypeAlias
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,8 +15,13 @@ Cull: TypeAlias = Literal["back"]
 Counted: TypeAlias = tuple[list[bool] | None, bool] | None
 
 
-def counted(shapes: ShapeMask | None, cull: Cull | None, names: tuple[str, ...]) -> Counted:
-    """Check what counts, and give what the core takes of it.
+def names_of(shapes: Sequence[Any]) -> tuple[str, ...]:
+    """Return the name of each shape, "" where it has none."""
+    return tuple(shape.name or "" for shape in shapes)
+
+
+def counted(shapes: ShapeMask | None, cull: Cull | None, all_shapes: Sequence[Any]) -> Counted:
+    """Check which of all shapes count, and give what the core takes of it.
 
     Raises
     ------
@@ -29,12 +34,13 @@ def counted(shapes: ShapeMask | None, cull: Cull | None, names: tuple[str, ...])
         raise ValueError(f'cull must be "back" or None, got {cull!r}')
     if shapes is None:
         return None if cull is None else (None, True)
-    return _each(shapes, names), cull is not None
+    return _each(shapes, all_shapes), cull is not None
 
 
-def _each(shapes: ShapeMask, names: tuple[str, ...]) -> list[bool]:
+def _each(shapes: ShapeMask, all_shapes: Sequence[Any]) -> list[bool]:
     wanted = [shapes] if isinstance(shapes, str) else shapes
     if isinstance(wanted, list | tuple | set | frozenset) and all(isinstance(name, str) for name in wanted):
+        names = names_of(all_shapes)
         known = {name for name in names if name}
         for name in wanted:
             if name not in known:
@@ -42,8 +48,9 @@ def _each(shapes: ShapeMask, names: tuple[str, ...]) -> list[bool]:
                 raise ValueError(f"shapes has {name!r}, but no shape of the scene is called so: {told}")
         return [name in wanted for name in names]
     mask = bools("shapes", wanted, "one for each shape, or names")
-    if mask.shape != (len(names),):
-        raise ValueError(f"shapes must have shape ({len(names)},), one bool a shape, got {mask.shape}")
+    count = len(all_shapes)
+    if mask.shape != (count,):
+        raise ValueError(f"shapes must have shape ({count},), one bool a shape, got {mask.shape}")
     kept: list[bool] = mask.tolist()
     return kept
 

@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .._core import CompiledScene
 from .hits import ClosestPoints
-from .masks import ShapeMask, counted
+from .masks import ShapeMask, counted, names_of
 from .rays import nearest_arguments, point_arguments
 
 
@@ -83,7 +83,8 @@ class PointQueries:
         found = core.contains(*point_arguments(points, threads), mask, self._tolerance)
         if not self._is_inverted_told and (inverted := core.inverted(mask, self._tolerance)):
             self._is_inverted_told = True
-            names = ", ".join(f"{i} {core.names[i]!r}" if core.names[i] else str(i) for i in inverted[:5])
+            known = names_of(core.shapes)
+            names = ", ".join(f"{i} {known[i]!r}" if known[i] else str(i) for i in inverted[:5])
             more = f" and {len(inverted) - 5} more" if len(inverted) > 5 else ""
             warnings.warn(
                 f"normals point into shape {names}{more}, which is taken as if they pointed out; "
@@ -184,5 +185,5 @@ class PointQueries:
 
 def _mask(shapes: ShapeMask | None, core: CompiledScene) -> list[bool] | None:
     """Return whether each shape counts, None if all do."""
-    what = counted(shapes, None, core.names)
+    what = counted(shapes, None, core.shapes)
     return None if what is None else what[0]

@@ -84,7 +84,7 @@ class Queries(PointQueries):
         """
         rays = asked(ray_arguments(origins, directions, t_min, t_max, threads, time), mask)
         core = self._core or self._compiled()
-        what = None if shapes is None and cull is None else counted(shapes, cull, core.names)
+        what = None if shapes is None and cull is None else counted(shapes, cull, core.shapes)
         if out is None:
             return Hits(*core.intersect(rays, None, what), core, known_by(core, rays))
         with rewritten(out, rays[4]) as arrays:
@@ -124,7 +124,7 @@ class Queries(PointQueries):
         """
         rays = asked(ray_arguments(origins, directions, t_min, t_max, threads, time), mask)
         core = self._core or self._compiled()
-        what = None if shapes is None and cull is None else counted(shapes, cull, core.names)
+        what = None if shapes is None and cull is None else counted(shapes, cull, core.shapes)
         return core.occluded(rays, None if out is None else flags("out", out, rays[4]), what)
 
     def optical_depth(
@@ -259,7 +259,7 @@ class Queries(PointQueries):
         """
         rays = asked(ray_arguments(origins, directions, t_min, t_max, threads, time), mask)
         core = self._core or self._compiled()
-        what = None if shapes is None and cull is None else counted(shapes, cull, core.names)
+        what = None if shapes is None and cull is None else counted(shapes, cull, core.shapes)
         return AllHits(*core.intersect_all(rays, what), rays[4], core, known_by(core, rays))
 
     def count(

@@ -1,13 +1,12 @@
 """Shapes put in many places."""
 
 import bisect
-import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import accumulate
 from os import PathLike
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias, Union
+from typing import Any, NamedTuple, TypeAlias, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,15 +16,13 @@ from ..accelerators import BVH, Accelerator
 from ..arrays import frozen, integer, label, real_array
 from ..shapes import Shape
 from ..shapes.mesh import Mesh, face_count, stretched
+from ..shapes.sources import EXPECTED, described, hint, leaves, meshes_of, named
 from ..shapes.welding import Weld, welded
 
-if TYPE_CHECKING:
-    import trimesh
-
 AnyShape = Union[Mesh, Shape, "Instance"]
-Shapes: TypeAlias = Union[
-    Mesh, Shape, "Instance", "trimesh.Trimesh", "trimesh.Scene", str, PathLike[str], "Sequence[Shapes]"
-]
+# Objects of other libraries have no type here, since none of these need be installed.
+Shapes: TypeAlias = Union[AnyShape, str, PathLike[str], "Sequence[Shapes]", "Mapping[str, Shapes]", Any]
+Places: TypeAlias = NDArray[np.integer[Any]]
 _BVH = BVH()
 _MOST = 2**31
 
@@ -63,8 +60,9 @@ class Instance:
 
     Parameters
     ----------
-    shapes : Mesh or another shape, Instance, trimesh.Trimesh, trimesh.Scene, path, or list or tuple of these
-        What is copied. Instances of the same shapes, the very same objects, share what is compiled.
+    shapes : Mesh or another shape, Instance, path, object of another library, or list or dict of these
+        What is copied: all that a `Scene` takes. Instances of the same shapes, the very same objects, share
+        what is compiled.
     transform : (4, 4) or (N, 4, 4) array
         Where the copies are: affine matrices that act on column vectors (x, y, z, 1), each with (0, 0, 0, 1)
         as its last row, and invertible.
@@ -178,6 +176,17 @@ class Instance:
             path.append((shape_id, copy))
             within = shape
 
+    def parts(self, primitive: NDArray[np.integer[Any]]) -> Iterator[tuple[AnyShape, Places, Places]]:
+        """Yield each of the shapes that primitives are of, which of them are, and their numbers in it.
+
+        Those of an instance within are numbered as its own `parts` takes them.
+        """
+        shape_id = np.searchsorted(self._first, primitive, "right") - 1
+        for i in np.unique(shape_id):
+            which = np.flatnonzero(shape_id == i)
+            shape, own = self.shapes[i], primitive[which] - self._first[i]
+            yield shape, which, own % shape.primitives if isinstance(shape, Instance) else own
+
     def moved(self, transform: ArrayLike, transform_end: ArrayLike | None = None) -> "Instance":
         """Return as many copies of the same shapes elsewhere; they share what is compiled."""
         result = Instance(self.shapes, transform, transform_end, self.accelerator, self.name)
@@ -249,7 +258,7 @@ def _matrices(name: str, value: ArrayLike) -> NDArray[np.float64]:
 
 
 def meshes(shapes: Any, weld: Weld = "auto") -> tuple[AnyShape, ...]:
-    """Lay out shapes, instances, trimesh objects, paths and nested lists of them as one flat tuple.
+    """Lay out all that `Scene` takes, nested lists and dicts of it too, as one flat tuple.
 
     Corners of what is converted are welded as `weld` says, and where that is a distance those of all meshes.
 
@@ -258,7 +267,7 @@ def meshes(shapes: Any, weld: Weld = "auto") -> tuple[AnyShape, ...]:
     FileNotFoundError
         If a file is missing.
     ValueError
-        If a file is not a mesh that can be read.
+        If a file or an object is not a mesh that can be read.
     TypeError
         If something is none of these.
     """
@@ -312,50 +321,11 @@ def only_meshes(shapes: Any) -> tuple[Mesh, ...]:
 
 
 def _each(shapes: Any, weld: Weld) -> Iterator[AnyShape]:
-    # Of nested lists, those that are open, by a stack of their own: they may be nested as deep as they like.
-    left, within = [iter((shapes,))], [0]
-    while left:
-        for shape in left[-1]:
-            if not isinstance(shape, list | tuple):
-                yield from _one(shape, weld)
-            elif id(shape) in within:
-                raise ValueError("shapes must not be a list that contains itself")
-            else:
-                left.append(iter(shape))
-                within.append(id(shape))
-                break
-        else:
-            left.pop()
-            within.pop()
-
-
-def _one(shapes: Any, weld: Weld) -> Iterator[AnyShape]:
-    # trimesh is never imported only to ask: whoever made such an object has imported it. What reads files and
-    # such objects is imported where there are any.
-    trimesh = sys.modules.get("trimesh")
-    if isinstance(shapes, Mesh | Shape | Instance):
-        yield shapes
-    elif isinstance(shapes, str | PathLike):
-        from ..mesh_files.meshes import load
-
-        yield from load(shapes, weld)
-    elif isinstance(shapes, getattr(trimesh, "Trimesh", ())):
-        from ..mesh_files.trimesh_objects import of_trimesh
-
-        yield from welded(tuple(of_trimesh(shapes)), weld)
-    elif isinstance(shapes, getattr(trimesh, "Scene", ())):
-        from ..mesh_files.trimesh_objects import of_scene
-
-        yield from welded(tuple(of_scene(shapes)), weld)
-    else:
-        came = f"{type(shapes).__module__}.{type(shapes).__qualname__}"
-        raise TypeError(
-            "shapes must be a Mesh, another raywright shape, an Instance, a trimesh.Trimesh, "
-            f"a trimesh.Scene, a path, or a list of these, got {came}{_hint(shapes)}"
-        )
-
-
-def _hint(given: Any) -> str:
-    """Return how arrays become a shape, if that is what came."""
-    is_array = isinstance(given, np.ndarray | np.generic | int | float)
-    return "; of vertices and faces make a mesh: raywright.Mesh(vertices, faces)" if is_array else ""
+    for name, one in leaves(shapes):
+        if isinstance(one, Mesh | Shape | Instance):
+            yield named(one, name)
+            continue
+        found = meshes_of(one, weld, name=name)
+        if found is None:
+            raise TypeError(f"shapes must be {EXPECTED}, got {described(one)}{hint(one)}")
+        yield from found

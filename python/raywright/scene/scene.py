@@ -19,6 +19,7 @@ from ..locks import Lock
 from ..media.medium import Medium
 from ..media.medium import medium as checked_medium
 from ..query.flats import FlatArrays, flat_arrays
+from ..query.masks import names_of
 from ..query.queries import Queries
 from ..query.trees import TreeBoxes
 from ..shapes.mesh import face_count, has_noise, moved
@@ -63,11 +64,14 @@ class Scene(Queries):
 
     Parameters
     ----------
-    shapes : Mesh, Sphere or another shape, Instance, trimesh.Trimesh, trimesh.Scene, path, or list of these
+    shapes : Mesh, another shape, Instance, path, object of another library, or list or dict of these
         What can be hit. A path may be of a PLY, OBJ, STL, OFF or glTF file, or any other that trimesh reads.
-        Lists may be nested; all of it is laid out flat in ``scene.shapes``. A trimesh.Scene gives one mesh
-        for each node that holds one, in the order of its geometry and with the node's transform applied;
-        points and curves are left out.
+        Objects are meshes and scenes of trimesh, data sets of pyvista and VTK, meshes of Open3D, meshio,
+        manifold3d and Blender, shapes of CadQuery and build123d, and ``(vertices, faces)`` pairs of arrays
+        or tensors; see `Mesh.of`. Lists and dicts may be nested; all of it is laid out flat in
+        ``scene.shapes``, and keys of dicts are the names. A trimesh.Scene gives one mesh for each node that
+        holds one, in the order of its geometry and with the node's transform applied. Points and curves are
+        left out, with a warning.
     lights : PointLight, SpotLight, DirectionalLight or ProjectorLight, or sequence of them
         Lights that are no surfaces.
     environment : ConstantEnvironment, EnvironmentMap, SunSky, list of these, float or 3 floats, optional
@@ -128,10 +132,11 @@ class Scene(Queries):
     corners on open edges are put in one place where they are as close as `weld` says: "auto" is 2^-21 of the
     largest coordinate of a mesh where all are float32 numbers, 2^-47 where not, and a 64th of its mean edge
     at most, before it was transformed; between two meshes the lesser. Two corners of one face never are one,
-    and what is closed stays as it is, however thin. With "auto" that goes for files and for trimesh's
-    objects, each by itself; a `Mesh` of arrays is hit where its vertices are, and welded for `contains`,
-    `signed_distance` and in ``rw.measure``. A distance goes for all meshes, together; those of an `Instance`
-    are a group of their own. ``rw.measure.topology`` tells which cracks remain.
+    and what is closed stays as it is, however thin. With "auto" that goes for files, for trimesh's objects
+    and for CAD shapes, each by itself; a `Mesh` of arrays, or an object of another library, is hit where its
+    vertices are, and welded for `contains`, `signed_distance` and in ``rw.measure``. A distance goes for all
+    meshes, together; those of an `Instance` are a group of their own. ``rw.measure.topology`` tells which
+    cracks remain.
 
     Faces with a corner that is NaN or infinite are left out when the scene is compiled, with one
     RuntimeWarning that tells how many. Scenes compare by what they hold, and pickle without what was
@@ -188,7 +193,7 @@ class Scene(Queries):
     @property
     def names(self) -> tuple[str, ...]:
         """What each of the shapes is called, "" where it has no name."""
-        return tuple(shape.name or "" for shape in self._shapes)
+        return names_of(self._shapes)
 
     @property
     def lights(self) -> tuple[Light, ...]:

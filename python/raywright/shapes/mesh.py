@@ -1,16 +1,25 @@
 """Triangle meshes."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from importlib import import_module
+from os import PathLike
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .. import _core
-from ..arrays import label, last_axis, rows, triangles
+from ..arrays import frozen, label, last_axis, positive, rows, triangles
 from ..lights.emission import EmissionLike, Emitted
 from ..lights.emission import emission as checked_emission
 from ..materials import Diffuse, Material
+from .attributes import Attributes, attributes, cell_numbers, same_attributes
+
+if TYPE_CHECKING:
+    import open3d
+    import pyvista
+    import trimesh
 
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
@@ -38,12 +47,19 @@ class Mesh:
         has `VertexColors`.
     name : str, optional
         What `Hits.names` tells of it.
+    vertex_attributes : dict of (V, ...) arrays, optional
+        Values of vertices by name; `Hits.interpolate` reads them.
+    face_attributes : dict of (F, ...) arrays, optional
+        Values of faces by name; `Hits.interpolate` reads them where no vertex attribute has the name.
+    cells : (F,) integer array, optional
+        Number of the cell that each face is part of, such as the polygon that was cut into triangles;
+        `Hits.cell` tells it. None if each face is a cell.
 
     Raises
     ------
     ValueError
-        If an array has the wrong shape, a face index is negative or not below V (tells which face), or a
-        colour is not between 0 and 1 (tells which vertex).
+        If an array has the wrong shape, a face index is negative or not below V (tells which face), a
+        colour is not between 0 and 1 (tells which vertex), or a cell is negative.
     TypeError
         If an array has the wrong type, such as float faces.
     """
@@ -56,6 +72,9 @@ class Mesh:
     emission: Emitted | None
     colors: NDArray[np.floating[Any]] | None
     name: str | None
+    vertex_attributes: Attributes
+    face_attributes: Attributes
+    cells: NDArray[np.int64] | None
     # How far rounding has parted corners that are one, where that is more than vertices tell by their digits.
     _noise = 0.0
 
@@ -69,6 +88,9 @@ class Mesh:
         emission: EmissionLike | None = None,
         colors: ArrayLike | None = None,
         name: str | None = None,
+        vertex_attributes: Mapping[str, ArrayLike] | None = None,
+        face_attributes: Mapping[str, ArrayLike] | None = None,
+        cells: ArrayLike | None = None,
     ) -> None:
         if material is None:
             material = Diffuse()
@@ -76,18 +98,132 @@ class Mesh:
             raise TypeError(f"material must be a raywright material, got {type(material).__name__}")
         corners = rows("vertices", vertices, 3)
         count = len(corners)
+        triples = triangles("faces", faces, count)
         values = {
             "vertices": corners,
-            "faces": triangles("faces", faces, count),
+            "faces": triples,
             "normals": None if normals is None else rows("normals", normals, 3, count),
             "uv": None if uv is None else rows("uv", uv, 2, count),
             "material": material,
             "emission": checked_emission(emission),
             "colors": None if colors is None else _shares("colors", colors, count),
             "name": label("name", name),
+            "vertex_attributes": attributes("vertex_attributes", vertex_attributes, count),
+            "face_attributes": attributes("face_attributes", face_attributes, len(triples)),
+            "cells": None if cells is None else cell_numbers("cells", cells, len(triples)),
         }
         for field, kept in values.items():
             object.__setattr__(self, field, kept)
+
+    @classmethod
+    def of(cls, source: Any, tolerance: float | None = None) -> "Mesh":
+        """Return a file, an object of another library, or several of these, as one mesh.
+
+        Vertices stay where they are, polygons become triangles, and attributes keep their names.
+
+        Parameters
+        ----------
+        source : object
+            All that a `Scene` makes meshes of: a path; a mesh of trimesh, pyvista, VTK, Open3D, meshio,
+            manifold3d or Blender; a shape of CadQuery or build123d; a ``(vertices, faces)`` pair of arrays or
+            tensors; a list of these, or a dict by name. Several meshes are joined, with the attributes that
+            all have.
+        tolerance : float, optional
+            Distance that triangles keep to the curved faces of CAD shapes, in their unit, as far as Open
+            CASCADE does: it may be twice that in a few places, such as poles of spheres. A thousandth of the
+            diagonal of the shape's box if not given.
+
+        Returns
+        -------
+        Mesh
+            Its `cells` are those of `source`, where they are other than its faces: polygons, volume cells of
+            which it is the surface, faces of a CAD shape.
+
+        Raises
+        ------
+        TypeError
+            If `source` is nothing that meshes are made of.
+        ValueError
+            If `source` cannot be read, has no mesh in it, or `tolerance` is not greater than 0.
+        FileNotFoundError
+            If a file is missing.
+
+        Warns
+        -----
+        RuntimeWarning
+            Once for what is left out, such as points and curves, and where materials differ.
+        """
+        # What makes meshes of things stands above meshes, and is imported where there are any.
+        sources = import_module(".sources", __package__)
+        made: Mesh = sources.only_mesh(
+            source, None if tolerance is None else positive("tolerance", tolerance)
+        )
+        return made
+
+    def to_trimesh(self) -> "trimesh.Trimesh":
+        """Return the mesh as trimesh has it, with vertices, faces, normals, attributes, and colors or uv.
+
+        `cells` are the face attribute "cell". Of the material, a plain diffuse color is kept.
+        """
+        from .exported import to_trimesh
+
+        made: trimesh.Trimesh = to_trimesh(self)
+        return made
+
+    def to_pyvista(self) -> "pyvista.PolyData":
+        """Return the mesh as pyvista has it, with attributes as point and cell data.
+
+        `cells` are the cell data "cell"; normals, uv and colors are point data of these names.
+
+        Raises
+        ------
+        ImportError
+            If pyvista is not installed.
+        """
+        from .exported import to_pyvista
+
+        return to_pyvista(self)
+
+    def to_open3d(self) -> "open3d.t.geometry.TriangleMesh":
+        """Return the mesh as Open3D has it, with attributes as vertex and triangle attributes.
+
+        `cells` are the triangle attribute "cell". Its ``to_legacy()`` has no attributes.
+
+        Raises
+        ------
+        ImportError
+            If Open3D is not installed.
+        """
+        from .exported import to_open3d
+
+        return to_open3d(self)
+
+    def save(self, path: str | PathLike[str]) -> None:
+        """Write the mesh to a file.
+
+        Parameters
+        ----------
+        path : path
+            Its suffix says how. ``.ply`` holds everything but the material: float64 as it is, attributes as
+            properties by name (those with more than one number a row as ``name_0``, ``name_1``, ...), and
+            `cells` as the face property "cell". ``.vtp`` and ``.vtk`` hold what `to_pyvista` does.
+            ``.glb``, ``.obj``, ``.off`` and ``.stl`` hold no attributes.
+
+        Raises
+        ------
+        ValueError
+            If the suffix is none of these, or an attribute cannot be written to a PLY file.
+        ImportError
+            If pyvista is needed and not installed.
+
+        Warns
+        -----
+        RuntimeWarning
+            If the format holds no attributes, and the mesh has some.
+        """
+        from .saved import save
+
+        save(self, path)
 
     @property
     def bounds(self) -> NDArray[np.float64] | None:
@@ -134,15 +270,11 @@ class Mesh:
             normals = (normals.astype(np.float64) @ cofactors.T) * (-1.0 if mirrors else 1.0)
             length = np.linalg.norm(normals, axis=1, keepdims=True)
             normals = np.divide(normals, length, out=np.zeros_like(normals), where=length > 0)
-        result = Mesh(
-            self.vertices.astype(np.float64) @ linear.T + shift,
-            self.faces[:, [0, 2, 1]] if mirrors else self.faces,
-            normals,
-            self.uv,
-            self.material,
-            self.emission,
-            self.colors,
-            self.name,
+        result = replaced(
+            self,
+            vertices=frozen(self.vertices.astype(np.float64) @ linear.T + shift),
+            faces=frozen(self.faces[:, [0, 2, 1]]) if mirrors else self.faces,
+            normals=None if normals is None else frozen(normals),
         )
         return noisy(result, stretched(rounding(self), linear))
 
@@ -158,6 +290,9 @@ class Mesh:
             and self.material == other.material
             and self.emission == other.emission
             and self.name == other.name
+            and _same(self.cells, other.cells)
+            and same_attributes(self.vertex_attributes, other.vertex_attributes)
+            and same_attributes(self.face_attributes, other.face_attributes)
         )
 
     def __hash__(self) -> int:
@@ -167,13 +302,16 @@ class Mesh:
     def __reduce__(self) -> tuple[Any, ...]:
         # Through the constructor, because unpickled arrays would be writeable.
         look = (self.material, self.emission, self.colors, self.name)
-        parts = (self.vertices, self.faces, self.normals, self.uv, *look)
+        values = (dict(self.vertex_attributes), dict(self.face_attributes), self.cells)
+        parts = (self.vertices, self.faces, self.normals, self.uv, *look, *values)
         return (Mesh, parts, {"_noise": self._noise}) if self._noise else (Mesh, parts)
 
     def __repr__(self) -> str:
         parts = [f"{len(self.vertices)} vertices", f"{len(self.faces)} faces", repr(self.material)]
         parts += [name for name in ("normals", "uv", "colors") if getattr(self, name) is not None]
         parts += [] if self.name is None else [f"name={self.name!r}"]
+        for name in ("vertex_attributes", "face_attributes"):
+            parts += [f"{name}={list(found)}"] if (found := getattr(self, name)) else []
         if self.emission is not None:
             parts.append(f"emission={self.emission}")
         return f"Mesh({', '.join(parts)})"
@@ -198,9 +336,14 @@ def moved(mesh: object, name: str, vertices: ArrayLike) -> Mesh:
     """Return the mesh with its vertices elsewhere, and all else as it is, given normals too."""
     if not isinstance(mesh, Mesh):
         raise ValueError(f"{name} must be None for what is no mesh, which is a {type(mesh).__name__} here")
+    return replaced(mesh, vertices=rows(name, vertices, 3, len(mesh.vertices)))
+
+
+def replaced(mesh: Mesh, **fields: Any) -> Mesh:
+    """Return the mesh with other values of some fields, which are checked already."""
     result = object.__new__(Mesh)
     # The other arrays are checked and cannot change: they are shared.
-    vars(result).update(vars(mesh), vertices=rows(name, vertices, 3, len(mesh.vertices)))
+    vars(result).update(vars(mesh), **fields)
     return result
 
 

@@ -27,8 +27,9 @@ pub struct Scene<'py> {
     precision: String,
     /// Why paths are to carry wavelengths; none for red, green and blue.
     wavelengths: Option<String>,
-    /// What each of the shapes is called.
-    pub names: Py<PyAny>,
+    /// The tuple of `shapes` itself.
+    #[pyo3(attribute("shapes"))]
+    pub all_shapes: Py<PyAny>,
     /// How much the build may take for rays to be fast.
     pub quality: String,
     /// What becomes of shading normals.

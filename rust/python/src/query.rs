@@ -31,7 +31,7 @@ pub struct CompiledScene(
     /// What prototypes in it are known by: see `instances`.
     #[expect(dead_code, reason = "it is only held")]
     Vec<Py<PyAny>>,
-    /// What its shapes are called, in their order.
+    /// The shapes that it was compiled from, as Python has them.
     Py<PyAny>,
 );
 
@@ -85,16 +85,16 @@ impl CompiledScene {
     ) -> PyResult<Self> {
         let build = accelerators::read(accelerator, &scene.quality)?;
         let builds = Builds::new(progress, scene.size()?);
-        let names = scene.names.clone_ref(py);
+        let shapes = scene.all_shapes.clone_ref(py);
         let around = Around { medium: scene.surrounding()?, as_given: scene.normals_as_given() };
         let (description, kept) = scene.describe(&builds)?;
         let size = builds::size(&description.shapes);
         let scene = builds.build(py, size, |work| scene::Scene::watched(description, build, work))?;
-        Ok(Self(around.put(scene), kept, names))
+        Ok(Self(around.put(scene), kept, shapes))
     }
 
     fn refitted(&self, py: Python<'_>, scene: Scene<'_>) -> PyResult<Option<Self>> {
-        let names = scene.names.clone_ref(py);
+        let shapes = scene.all_shapes.clone_ref(py);
         let around = Around { medium: scene.surrounding()?, as_given: scene.normals_as_given() };
         let (description, kept) = scene.describe(&Builds::new(None, 0))?;
         let (watch, mut signal) = (Watch::default(), Ok(()));
@@ -110,7 +110,7 @@ impl CompiledScene {
             .map_err(PyRuntimeError::new_err)?;
         signal?;
         compiled
-            .map(|scene| scene.map(|scene| Self(around.put(scene), kept, names)))
+            .map(|scene| scene.map(|scene| Self(around.put(scene), kept, shapes)))
             .map_err(|e| PyValueError::new_err(e.to_string()))
     }
 
@@ -429,9 +429,9 @@ impl CompiledScene {
         self.of_primitives(py, &shape_id, &primitive, |geometry, p, _| [geometry.error(p)])
     }
 
-    /// What its shapes are called, in their order.
+    /// The shapes that it was compiled from, as Python has them.
     #[getter]
-    fn names(&self, py: Python<'_>) -> Py<PyAny> {
+    fn shapes(&self, py: Python<'_>) -> Py<PyAny> {
         self.2.clone_ref(py)
     }
 

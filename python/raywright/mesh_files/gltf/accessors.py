@@ -22,6 +22,15 @@ class Accessors:
         self._document = document
         self._all = document.root.parts("accessors")
         self._read: dict[int, NDArray[Any]] = {}
+        self._decompressed: dict[int, NDArray[Any]] = {}
+
+    def hold(self, part: Part, name: str, array: NDArray[Any]) -> None:
+        """Take the numbers of the accessor that a part names from elsewhere: an (N, columns) array."""
+        accessor = self._named(part, name)
+        expected = (accessor.integer("count", least=1), _columns(accessor))
+        if array.shape != expected:
+            raise ValueError(f"{accessor.place} has {expected} numbers, and {array.shape} are compressed")
+        self._decompressed[accessor.index] = array.astype(_kind(accessor), copy=False)
 
     def vectors(self, part: Part, name: str, *columns: int) -> NDArray[np.floating[Any]]:
         """Return the (N, columns) finite numbers of the accessor that a part names.
@@ -60,7 +69,9 @@ class Accessors:
     def _array(self, accessor: Part) -> NDArray[Any]:
         kind, columns = _kind(accessor), _columns(accessor)
         count = accessor.integer("count", least=1)
-        if "bufferView" in accessor:
+        if accessor.index in self._decompressed:
+            array = self._decompressed[accessor.index]
+        elif "bufferView" in accessor:
             array = self._elements(accessor, kind, columns, count)
         elif count * columns * kind.itemsize > _MOST_ZEROS:
             raise ValueError(f"{accessor.place} has {count} elements that are nowhere in the file")

@@ -18,6 +18,7 @@ _KNOWN = frozenset(
     {
         "EXT_mesh_gpu_instancing",
         "EXT_texture_webp",
+        "KHR_draco_mesh_compression",
         "KHR_lights_punctual",
         "KHR_materials_dispersion",
         "KHR_materials_emissive_strength",
@@ -141,6 +142,9 @@ class Document:
 
     def _check_extensions(self) -> None:
         for name in self.root.texts("extensionsRequired"):
+            if "meshopt_compression" in name:
+                told = "no package on PyPI reads it on all platforms; save the file without it"
+                raise ValueError(f"it is compressed by meshopt ({name[:60]}), which is not supported: {told}")
             if name not in _KNOWN:
                 raise ValueError(f"it needs the extension {name[:60]}, which is not supported")
 

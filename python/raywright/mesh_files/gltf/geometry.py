@@ -10,6 +10,7 @@ from ...shapes.mesh import Mesh, noisy, stretched
 from .accessors import Accessors
 from .deform import Deform
 from .document import Document
+from .draco import decompressed
 from .materials import Materials, Surface, Vertices
 from .part import Part
 
@@ -58,6 +59,8 @@ class Geometry:
         attributes = primitive.part("attributes")
         if mode < _TRIANGLES or "POSITION" not in attributes:
             return None
+        for part, of, array in decompressed(self._document, primitive):
+            self._accessors.hold(part, of, array)
         given = vertices = self._accessors.vectors(attributes, "POSITION", 3)
         normals = self._accessors.vectors(attributes, "NORMAL", 3) if "NORMAL" in attributes else None
         if deform is not None:

@@ -65,4 +65,4 @@ def _mesh(part: Part, library: Library) -> Mesh:
     look = look or colored(None if part.colors is None else shares_of(part.colors))
     shines = (look.material, look.emission, look.colors)
     # What is parted by materials is called after them.
-    return Mesh(part.vertices, part.faces, part.normals, part.uv, *shines, part.material)
+    return Mesh(part.vertices, part.faces, part.normals, part.uv, *shines, part.material, cells=part.cells)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ...io.quiet import quiet
 from ..corners import distinct
-from ..triangulation import triangulate
+from ..triangulation import polygon_of, triangulate
 from .text import name_of, told
 
 Floats = NDArray[np.float64]
@@ -33,6 +33,8 @@ class Part(NamedTuple):
         In the order of the file; polygons as `triangulate` has them.
     normals, uv, colors : (V, 3), (V, 2), (V, 3) array, optional
         Those of the vertices. Colours are numbers as they stand there.
+    cells : (F,) array, optional
+        Which face of the file each is part of; None if they are the same.
     """
 
     material: str | None
@@ -41,6 +43,7 @@ class Part(NamedTuple):
     normals: Floats | None = None
     uv: Floats | None = None
     colors: Floats | None = None
+    cells: Integers | None = None
 
 
 class Geometry:
@@ -72,6 +75,8 @@ class Geometry:
         tables: dict[bytes, list[bytes]] = {b"v": [], b"vt": [], b"vn": []}
         self.libraries: list[bytes] = []
         self._faces: dict[str | None, list[bytes]] = {}
+        # Where each run of faces of one material begins among those of the material.
+        self._runs: list[tuple[str | None, int]] = [(None, 0)]
         name: str | None = None
         faces: list[bytes] | None = None
         for line in text.split(b"\n"):
@@ -87,6 +92,7 @@ class Geometry:
             elif word == b"usemtl" and not whole:
                 name = name_of(rest) or None
                 faces = self._faces.get(name)
+                self._runs.append((name, len(faces or ())))
             elif word == b"mtllib":
                 self.libraries.append(rest)
         points = _table(tables[b"v"], "vertices", 3)
@@ -100,12 +106,32 @@ class Geometry:
 
     def parts(self) -> Iterator[Part]:
         """Yield the triangles of each material, in the order in which faces have them first."""
+        numbers = self._numbers()
         for name, lines in self._faces.items():
-            counts, corners = _corners(lines)
+            kept, counts, corners = _corners(lines)
             if len(counts):
-                yield self._part(name, counts, corners)
+                yield self._part(name, counts, corners, numbers[name][kept])
 
-    def _part(self, name: str | None, counts: Integers, corners: Integers) -> Part:
+    def _numbers(self) -> dict[str | None, Integers]:
+        """Return which faces of the file those of each material are."""
+        ends = {name: len(lines) for name, lines in self._faces.items()}
+        runs: dict[str | None, list[int]] = {}
+        lengths = []
+        for name, start in reversed(self._runs):
+            lengths.append(max(ends.get(name, 0) - start, 0))
+            ends[name] = start
+        first = 0
+        for (name, _), length in zip(self._runs, reversed(lengths), strict=True):
+            runs.setdefault(name, []).extend((first, length))
+            first += length
+        return {
+            name: np.concatenate([np.arange(a, a + n) for a, n in zip(own[::2], own[1::2], strict=True)])
+            for name, own in runs.items()
+        }
+
+    def _part(self, name: str | None, counts: Integers, corners: Integers, numbers: Integers) -> Part:
+        cells = numbers[polygon_of(counts)]
+        is_plain = np.array_equal(cells, np.arange(len(cells)))
         point, uv, normal = corners.T - 1
         outside = (corners[:, 0] < 1) | (corners[:, 0] > len(self._points))
         if outside.any():
@@ -128,6 +154,7 @@ class Geometry:
             # Corners without any share the first corner of pictures.
             np.where(uv[used, None] < 0, 0.0, self._uv[uv[used]]) if has_uv else None,
             None if self._colors is None else self._colors[point[used]],
+            None if is_plain else cells,
         )
 
     def _lose(self, what: str) -> None:
@@ -174,12 +201,16 @@ def _uncommented(lines: list[bytes]) -> list[bytes]:
     return [line.split(b"#")[0] for line in lines] if any(b"#" in line for line in lines) else lines
 
 
-def _corners(lines: list[bytes]) -> tuple[Integers, Integers]:
-    """Return how many corners each face has, and what each corner refers to: (C, 3), 0 where nothing."""
+def _corners(lines: list[bytes]) -> tuple[NDArray[np.bool_], Integers, Integers]:
+    """Return which faces have three corners or more, how many these have, and what each corner refers to.
+
+    The last is (C, 3), 0 where nothing.
+    """
     lines = _uncommented(lines)
     counts = np.fromiter((len(line.split()) for line in lines), np.int64, len(lines))
-    if (counts < 3).any():
-        lines, counts = list(compress(lines, counts >= 3)), counts[counts >= 3]
+    kept = counts >= 3
+    if not kept.all():
+        lines, counts = list(compress(lines, kept)), counts[kept]
     slashes = np.fromiter((line.count(b"/") for line in lines), np.int64, len(lines))
     result = np.zeros((int(counts.sum()), 3), np.int64)
     # Corners of a face are all of one form, with none, one or two slashes; others are read one by one.
@@ -196,7 +227,7 @@ def _corners(lines: list[bytes]) -> tuple[Integers, Integers]:
             result[rows, :columns] = np.reshape(found, (-1, columns))
         else:
             result[rows] = [_corner(word) for word in text.split()]
-    return counts, result
+    return kept, counts, result
 
 
 def _corner(word: bytes) -> tuple[int, int, int]:

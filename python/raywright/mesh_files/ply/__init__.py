@@ -6,10 +6,13 @@ They are read here since trimesh refuses bytes with polygons of several sizes, a
 import re
 from pathlib import Path
 
+import numpy as np
+
 from ...io.quiet import refused
 from ...shapes.mesh import Mesh
 from ..elements import Data, read_bytes, read_text
 from ..tokens import plain_text, without_mark
+from .attributes import attributes
 from .faces import faces_of, indices_of
 from .header import Header, read_header
 from .looks import columns, coordinates, look_of
@@ -34,7 +37,8 @@ def read_ply(path: Path) -> tuple[Mesh, ...]:
     """Read a PLY file as one mesh with its picture or colors; no mesh if it has no faces.
 
     Vertices are those of the file, in its order, unless faces have texture coordinates for their corners.
-    Faces are in the order of the file; polygons as `triangulate` has them.
+    Faces are in the order of the file; polygons as `triangulate` has them. Numbers of vertices and faces that
+    are neither places, normals, coordinates nor colors are attributes.
 
     Raises
     ------
@@ -100,4 +104,21 @@ def _mesh(path: Path, looks: bool) -> Mesh | None:
         return Mesh(points[used], found.faces, normals, uv)
     look = look_of(path, elements, header.pictures, uv is not None)
     colors = None if look.colors is None else look.colors[used]
-    return Mesh(points[used], found.faces, normals, uv, look.material, look.emission, colors, path.name)
+    of_vertices = {name: array[used] for name, array in attributes(vertices).items()}
+    polygon = found.polygon
+    of_faces = {} if polygon is None else attributes(elements["face"])
+    # Where each polygon is a triangle, they are told apart by the face.
+    is_plain = polygon is None or np.array_equal(polygon, np.arange(len(polygon)))
+    return Mesh(
+        points[used],
+        found.faces,
+        normals,
+        uv,
+        look.material,
+        look.emission,
+        colors,
+        path.name,
+        of_vertices,
+        {name: array[polygon] for name, array in of_faces.items()},
+        None if is_plain else polygon,
+    )

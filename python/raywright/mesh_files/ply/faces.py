@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from ..corners import distinct
 from ..elements import Data, Lists
-from ..triangulation import triangulate
+from ..triangulation import polygon_of, triangulate
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -24,12 +24,15 @@ class Faces(NamedTuple):
         Indices of `used`.
     used : (V,) array
         The vertex of the file that each vertex is.
+    polygon : (F,) array, optional
+        The polygon of the file that each face is part of; None for strips.
     uv : (V, 2) array, optional
         Texture coordinates, if faces rather than vertices have them.
     """
 
     faces: Integers
     used: Integers
+    polygon: Integers | None
     uv: Floats | None = None
 
 
@@ -45,16 +48,17 @@ def faces_of(elements: dict[str, Data], points: Floats) -> Faces | None:
     if "face" in elements and (polygons := indices_of(elements["face"])) is not None:
         corners = _checked(polygons.values, len(points))
         triangles = triangulate(points, corners, polygons.counts)
+        polygon = polygon_of(polygons.counts)
         uv = _corner_uv(elements["face"], polygons.counts)
         if uv is None:
-            return Faces(corners[triangles], everything)
+            return Faces(corners[triangles], everything, polygon)
         _, which = np.unique(uv, axis=0, return_inverse=True)
         used, place = distinct([corners, which.reshape(-1)])
-        return Faces(place[triangles], corners[used], uv[used])
+        return Faces(place[triangles], corners[used], polygon, uv[used])
     if "tristrips" in elements and (strips := indices_of(elements["tristrips"])) is not None:
         faces = _strips(strips)
         _checked(faces, len(points))
-        return Faces(faces, everything)
+        return Faces(faces, everything, None)
     return None
 
 

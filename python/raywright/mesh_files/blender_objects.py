@@ -1,0 +1,113 @@
+"""Meshes from the objects of Blender."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..shapes.mesh import Mesh
+from ..shapes.sources import named
+from .polygons import LeftOut, mesh_of_polygons
+
+# Kinds of objects that have surfaces.
+_SURFACES = ("MESH", "CURVE", "SURFACE", "META", "FONT")
+# Of attributes, the property that holds a value, and how many numbers it has.
+_VALUES = {
+    "FLOAT": ("value", 1),
+    "INT": ("value", 1),
+    "BOOLEAN": ("value", 1),
+    "INT8": ("value", 1),
+    "FLOAT2": ("vector", 2),
+    "FLOAT_VECTOR": ("vector", 3),
+    "FLOAT_COLOR": ("color", 4),
+    "BYTE_COLOR": ("color", 4),
+}
+_DTYPES = {"INT": np.int32, "INT8": np.int32, "BOOLEAN": np.bool_}
+
+
+def of_objects(given: Any) -> Iterator[Mesh]:
+    """Yield the meshes of a collection of Blender, of a scene of it, or of ``bpy.data.objects``.
+
+    Lights, cameras and other objects without a surface are left out.
+
+    Warns
+    -----
+    RuntimeWarning
+        Once, for all that is left out.
+    """
+    objects = next(
+        (getattr(given, name) for name in ("all_objects", "objects") if hasattr(given, name)), given
+    )
+    left_out = LeftOut("the objects of Blender")
+    found = [mesh for one in objects for mesh in _evaluated(one, left_out)]
+    left_out.warn()
+    yield from found
+
+
+def of_object(given: Any) -> Iterator[Mesh]:
+    """Yield the mesh of an object of Blender with its modifiers, named, and in its place in the world.
+
+    Warns
+    -----
+    RuntimeWarning
+        If it is a light, a camera or another object without a surface, and left out.
+    """
+    left_out = LeftOut("the objects of Blender")
+    found = list(_evaluated(given, left_out))
+    left_out.warn()
+    yield from found
+
+
+def _evaluated(given: Any, left_out: LeftOut) -> Iterator[Mesh]:
+    kind = getattr(given, "type", "MESH")
+    if kind not in _SURFACES:
+        left_out.add(f"{given.name!r}, a {kind.lower()}")
+        return
+    import bpy
+
+    evaluated = given.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    mesh = evaluated.to_mesh()
+    try:
+        if mesh is None:
+            return
+        [found] = of_mesh(mesh)
+    finally:
+        evaluated.to_mesh_clear()
+    matrix = np.array(evaluated.matrix_world, np.float64).reshape(4, 4)
+    placed = found if np.array_equal(matrix, np.eye(4)) else found.transformed(matrix)
+    yield named(placed, given.name)
+
+
+def of_mesh(mesh: Any) -> Iterator[Mesh]:
+    """Yield the mesh of a bpy.types.Mesh, with attributes of points and faces."""
+    points = _numbers(mesh.vertices, "co", 3, np.float32)
+    corners = _numbers(mesh.loops, "vertex_index", 1, np.int32)
+    counts = _numbers(mesh.polygons, "loop_total", 1, np.int32)
+    starts = _numbers(mesh.polygons, "loop_start", 1, np.int32)
+    if not np.array_equal(starts, np.cumsum(counts) - counts):
+        corners = np.concatenate([corners[s : s + n] for s, n in zip(starts, counts, strict=True)])
+    of_points, of_faces = _attributes(mesh, "POINT"), _attributes(mesh, "FACE")
+    yield mesh_of_polygons(points, corners, counts, None, of_faces, of_points, name=mesh.name)
+
+
+def _attributes(mesh: Any, domain: str) -> dict[str, NDArray[Any]]:
+    """Return the values of points or of faces by name, without those of Blender's own use."""
+    found = {}
+    for one in getattr(mesh, "attributes", ()):
+        is_own = one.name.startswith(".") or one.name in ("position", "sharp_face", "material_index")
+        if one.domain == domain and one.data_type in _VALUES and not is_own:
+            found[one.name] = _numbers(
+                one.data, *_VALUES[one.data_type], _DTYPES.get(one.data_type, np.float32)
+            )
+    return found
+
+
+def _numbers(sequence: Any, name: str, columns: int, dtype: Any) -> NDArray[Any]:
+    """Return a property of each of a sequence of Blender's: (N,), or (N, columns) if it is a vector."""
+    array = np.empty(len(sequence) * columns, dtype)
+    if hasattr(sequence, "foreach_get"):
+        sequence.foreach_get(name, array)
+    else:
+        array[:] = np.array([getattr(one, name) for one in sequence], dtype).reshape(-1)
+    return array if columns == 1 else array.reshape(-1, columns)
