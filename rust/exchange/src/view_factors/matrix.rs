@@ -214,7 +214,23 @@ impl Everything<'_> {
                 // In the order of their numbers, whatever that of the tree.
                 let [one, other] = if i < j { [face(0, k, i), face(1, l, j)] } else { [face(1, l, j), face(0, k, i)] };
                 let (from, to, faces) = (one.facet, other.facet, [i.min(j), i.max(j)]);
-                match self.hidden(&one, &other, may_hide) {
+                // All that leaves a face where another touches it comes to that, whatever roundings lie between.
+                if self.fronts.touch(faces) {
+                    if let Some((area, _)) = overlap(from, to) {
+                        counts[0] += 1;
+                        self.store(faces, area);
+                    }
+                    continue;
+                }
+                if self.fronts.are_flat(faces) {
+                    continue;
+                }
+                let mut hidden = self.hidden(&one, &other, may_hide);
+                // What touches a face hides a part of it from all others, and may lie in no shaft.
+                if hidden.is_none() && faces.iter().any(|&face| self.fronts.is_touched(face)) {
+                    hidden = Some(Hidden::Partly);
+                }
+                match hidden {
                     Some(Hidden::Wholly) => counts[1] += 1,
                     Some(Hidden::Partly) => {
                         let whole = pair(&mut quadrature, from, to);
@@ -223,10 +239,7 @@ impl Everything<'_> {
                         }
                     }
                     None => {
-                        let mut whole = pair(&mut quadrature, from, to);
-                        if whole == 0.0 && self.fronts.touch(faces) {
-                            whole = overlap(from, to).map_or(0.0, |shared| shared.0);
-                        }
+                        let whole = pair(&mut quadrature, from, to);
                         if whole > 0.0 {
                             counts[0] += 1;
                             self.store(faces, whole);
@@ -340,7 +353,7 @@ impl Everything<'_> {
                 greatest[row] = greatest[row].max(value / areas[row]);
             }
         }
-        let rounds = Rounds { scene: self.scene, facets: self.facets, aim: self.aim, greatest };
+        let rounds = Rounds { scene: self.scene, fronts: &self.fronts, facets: self.facets, aim: self.aim, greatest };
         let (found, rays) = rounds.estimate(&open, work)?;
         self.rays.fetch_add(rays, Relaxed);
         sampled.extend(found.iter().map(|estimate| estimate.sampled));

@@ -24,6 +24,9 @@ const FLAT: f64 = 1.0 / 16.0;
 /// is less than 10⁻²⁴ of the square of the radius, and to find it takes long.
 const LEVEL: f64 = 1e-12;
 
+/// Parts in front of another triangle that are a smaller share of their own do not count.
+const DROPPED: f64 = 1e-11;
+
 /// Parts of two triangles that lie wholly in front of each other.
 #[derive(Clone, Copy, Debug)]
 pub struct Facing {
@@ -84,7 +87,10 @@ pub fn facing(one: &Facet, other: &Facet) -> impl Iterator<Item = Facing> {
     } else if heights.as_flattened().iter().all(|&h| h >= 0.0) {
         ([Some((*one, heights[1])), None], [Some((*other, heights[0])), None])
     } else {
-        (in_front(one, heights[1]), in_front(other, heights[0]))
+        // As a share of the whole, what is dropped sends no more than this, and may take millions of quarters of the other.
+        let counts = |whole: &Facet, part: &Facet| part.area >= DROPPED * whole.area;
+        let of_one = in_front(one, heights[1]).map(|part| part.filter(|(part, _)| counts(one, part)));
+        (of_one, in_front(other, heights[0]).map(|part| part.filter(|(part, _)| counts(other, part))))
     };
     let both = parts.into_iter().flatten().flat_map(move |part| others.into_iter().flatten().map(move |o| (part, o)));
     both.map(|((part, to_other), (other, to_one))| Facing { facets: [part, other], heights: [to_one, to_other] })

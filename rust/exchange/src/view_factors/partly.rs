@@ -3,6 +3,7 @@
 use super::Sampled;
 use super::distant::Quadrature;
 use super::facet::Facet;
+use super::fronts::Fronts;
 use super::pieces::{Piece, Pieces};
 use super::told::Counts;
 use raywright_base::math::{DVec3, Ray};
@@ -40,6 +41,7 @@ const TOGETHER: usize = 1 << 12;
 /// What estimates share.
 pub struct Pairs<'a> {
     pub scene: &'a Scene,
+    pub fronts: &'a Fronts,
     pub facets: &'a [Facet],
     pub seed: u64,
 }
@@ -87,8 +89,13 @@ impl Pairs<'_> {
                 let mut sampler = kind.sampler(self.seed, pixel, round.first + number);
                 let Some(piece) = pieces.at(sampler.one(0)) else { continue };
                 let Some((ray, weight)) = self.draw(&mut sampler, piece, open.faces) else { continue };
+                let batch = (number / size.samples()) as usize;
+                let Some(ray) = ray else {
+                    tallies[i].add(batch, weight, false);
+                    continue;
+                };
                 rays.push(ray);
-                of.push((i, (number / size.samples()) as usize, weight));
+                of.push((i, batch, weight));
                 if rays.len() == TOGETHER {
                     *sent += self.trace(&mut tallies, &mut rays, &mut of);
                 }
@@ -98,8 +105,8 @@ impl Pairs<'_> {
         tallies.iter().map(Tally::estimate).collect()
     }
 
-    /// A segment between both parts of a piece, and its weight.
-    fn draw(&self, sampler: &mut Sampler, piece: &Piece, faces: [u32; 2]) -> Option<(Ray, f64)> {
+    /// A segment between both parts of a piece, and its weight; no segment if another face touches one of its ends.
+    fn draw(&self, sampler: &mut Sampler, piece: &Piece, faces: [u32; 2]) -> Option<(Option<Ray>, f64)> {
         let [one, other] = &piece.facets;
         let start = point(one, warp::uniform_triangle(sampler.two(1)));
         let seen = SeenTriangle::new(other.corners, start);
@@ -112,20 +119,20 @@ impl Pairs<'_> {
             return None;
         }
         let misses = [faces[piece.from], faces[1 - piece.from]];
+        if self.fronts.is_touched_at(misses[0], start) || self.fronts.is_touched_at(misses[1], end) {
+            return Some((None, weight));
+        }
         let errors = misses.map(|face| self.scene.geometry().error(face));
         let origin = RayOrigin::off(start, errors[0], one.normal);
         let segment = origin.segment(&RayOrigin::off(end, errors[1], other.normal));
-        Some((Ray { misses, ..segment }, weight))
+        Some((Some(Ray { misses, ..segment }), weight))
     }
 
     fn trace(&self, tallies: &mut [Tally], rays: &mut Vec<Ray>, of: &mut Vec<Sent>) -> u64 {
         let mut hidden = vec![false; rays.len()];
         self.scene.occluded(rays, &mut hidden);
         for ((i, batch, weight), hidden) in of.drain(..).zip(hidden) {
-            let tally = &mut tallies[i];
-            tally.batches[batch][0] += weight;
-            tally.batches[batch][1] += if hidden { 0.0 } else { weight };
-            tally.counts.add(weight, !hidden);
+            tallies[i].add(batch, weight, !hidden);
         }
         let sent = rays.len() as u64;
         rays.clear();
@@ -134,6 +141,12 @@ impl Pairs<'_> {
 }
 
 impl Tally {
+    fn add(&mut self, batch: usize, weight: f64, is_seen: bool) {
+        self.batches[batch][0] += weight;
+        self.batches[batch][1] += if is_seen { weight } else { 0.0 };
+        self.counts.add(weight, is_seen);
+    }
+
     fn estimate(&self) -> Estimate {
         let (count, each) = (self.batches.len() as f64, f64::from(self.size.samples()));
         let all = self.batches.iter().fold([0.0; 2], |sum, batch| [sum[0] + batch[0], sum[1] + batch[1]]);

@@ -24,6 +24,11 @@ const PATIENCE: u32 = 2;
 const MORE_PATIENCE: u32 = 16;
 const GOOD: f64 = 1e-12;
 
+/// Standard deviation that a sum itself may be off by, as a share of its row's scale. Only rows whose terms have less
+/// room than that, by their errors and bounds, make use of it: their sums cannot be had, as where rounding has moved
+/// the corners of faces that touch.
+const SLACK: f64 = 1e-12;
+
 /// Curvature of a row all of whose terms are at their bounds, as a share of what it is if none are: careful steps then
 /// lead back to where some are free.
 const DAMPING: f64 = 1e-10;
@@ -35,11 +40,12 @@ const DAMPING: f64 = 1e-10;
 /// x = x̂ + variance (λᵢ + λⱼ), held within the bounds; the sums are solved for λ by Newton's method, which takes one
 /// step where no bound is met. Rows without a sum wanted are left alone, and so are terms of which no row has one.
 pub fn reconcile(terms: &mut [Term], wanted: &[Option<f64>], scales: &[f64]) {
+    let slack: Vec<f64> = scales.iter().map(|scale| (SLACK * scale) * (SLACK * scale)).collect();
     let mut lambda = vec![0.0; wanted.len()];
     let mut best = (f64::INFINITY, lambda.clone());
     let mut waited = 0;
     let mut is_careful = false;
-    let mut residual = residuals(terms, wanted, &lambda);
+    let mut residual = residuals(terms, wanted, &slack, &lambda);
     for _ in 0..STEPS {
         let off = residual.iter().zip(scales).fold(0.0f64, |most, (r, scale)| most.max(r.abs() / scale));
         waited = if off < 0.5 * best.0 { 0 } else { waited + 1 };
@@ -55,14 +61,14 @@ pub fn reconcile(terms: &mut [Term], wanted: &[Option<f64>], scales: &[f64]) {
         } else if waited == MORE_PATIENCE {
             break;
         }
-        let step = newton(terms, wanted, &lambda, &residual, if is_careful { DAMPING } else { 0.0 });
+        let step = newton(terms, wanted, &slack, &lambda, &residual, if is_careful { DAMPING } else { 0.0 });
         let rise = dot(&residual, &step);
         let mut share = 1.0;
         // A step that leads past the top of the concave dual has a slope below 0 at its end, and is halved. At first so
         // is one that hardly changes the slope, which ends sooner where few bounds are met, but may end too soon.
         loop {
             let next: Vec<f64> = lambda.iter().zip(&step).map(|(l, s)| l + share * s).collect();
-            let left = residuals(terms, wanted, &next);
+            let left = residuals(terms, wanted, &slack, &next);
             let (slope, most) = (dot(&left, &step), 0.9 * rise.abs());
             let is_taken =
                 if is_careful { slope >= -most || share < 1e-12 } else { slope.abs() <= most || share < 1e-3 };
@@ -88,8 +94,9 @@ fn moved(term: &Term, lambda: &[f64]) -> (f64, bool) {
 }
 
 /// What sums are short by; 0 of rows that may have any.
-fn residuals(terms: &[Term], wanted: &[Option<f64>], lambda: &[f64]) -> Vec<f64> {
-    let mut left: Vec<f64> = wanted.iter().map(|wanted| wanted.unwrap_or(0.0)).collect();
+fn residuals(terms: &[Term], wanted: &[Option<f64>], slack: &[f64], lambda: &[f64]) -> Vec<f64> {
+    let mut left: Vec<f64> =
+        (0..wanted.len()).map(|row| wanted[row].unwrap_or(0.0) - slack[row] * lambda[row]).collect();
     for term in terms {
         let [i, j] = term.rows.map(|row| row as usize);
         let value = moved(term, lambda).0;
@@ -102,7 +109,14 @@ fn residuals(terms: &[Term], wanted: &[Option<f64>], lambda: &[f64]) -> Vec<f64>
 }
 
 /// Newton's step, by conjugate gradients with the diagonal as preconditioner.
-fn newton(terms: &[Term], wanted: &[Option<f64>], lambda: &[f64], residual: &[f64], damped: f64) -> Vec<f64> {
+fn newton(
+    terms: &[Term],
+    wanted: &[Option<f64>],
+    slack: &[f64],
+    lambda: &[f64],
+    residual: &[f64],
+    damped: f64,
+) -> Vec<f64> {
     let is_held = |row: usize| wanted[row].is_some();
     let free: Vec<([usize; 2], f64)> = terms
         .iter()
@@ -118,6 +132,9 @@ fn newton(terms: &[Term], wanted: &[Option<f64>], lambda: &[f64], residual: &[f6
     let mut damping = vec![0.0; wanted.len()];
     for (term, row) in terms.iter().flat_map(|term| term.rows.map(|row| (term, row as usize))) {
         damping[row] += if is_held(row) && diagonal[row] == 0.0 { damped * term.variance } else { 0.0 };
+    }
+    for row in (0..wanted.len()).filter(|&row| is_held(row)) {
+        damping[row] += slack[row];
     }
     diagonal.iter_mut().zip(&damping).for_each(|(diagonal, damping)| *diagonal += damping);
     let share: Vec<f64> = diagonal.iter().map(|&d| if d > 0.0 { 1.0 / d } else { 0.0 }).collect();

@@ -3,6 +3,7 @@
 use super::Aim;
 use super::distant::Quadrature;
 use super::facet::Facet;
+use super::fronts::Fronts;
 use super::partly::{Estimate, Open, Pairs, Round};
 use raywright_base::parallel;
 use raywright_base::simd::Level;
@@ -35,6 +36,7 @@ const RESERVE: f64 = 1.4;
 /// ended, as those of rays that are added up until they seem to agree would.
 pub struct Rounds<'a> {
     pub scene: &'a Scene,
+    pub fronts: &'a Fronts,
     pub facets: &'a [Facet],
     pub aim: &'a Aim,
     /// The greatest factor of each row so far.
@@ -95,7 +97,7 @@ impl Rounds<'_> {
     ) -> Result<u64, Stopped> {
         let sent = AtomicU64::new(0);
         let level = Level::current().unwrap_or(Level::Scalar);
-        let of = Pairs { scene: self.scene, facets: self.facets, seed: self.aim.seed };
+        let of = Pairs { scene: self.scene, fronts: self.fronts, facets: self.facets, seed: self.aim.seed };
         let estimates = parallel::map_chunks(some.len(), together, |chunk| {
             if steps.is_stopped() {
                 return Vec::new();
