@@ -8,9 +8,6 @@ use raywright_shapes::triangle::Along;
 /// Whether a primitive counts for ray `i` of a batch, which meets it so; `t` is along the scaled direction.
 pub type Counts<'a> = dyn Fn(usize, u32, &Candidate) -> bool + Sync + 'a;
 
-/// Whether a primitive counts; all do without it.
-pub type PrimitiveFilter<'a> = Option<&'a (dyn Fn(u32) -> bool + Sync)>;
-
 /// The closest hit that counts or, if any will do, one that does.
 ///
 /// All goes as it would if what does not count were not there: it neither shortens a ray nor ends it.

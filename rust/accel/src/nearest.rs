@@ -16,6 +16,9 @@ use raywright_base::math::{Axes, DVec3, Region};
 use raywright_base::simd::Simd;
 use raywright_shapes::triangle::{length, nearest_point, point_of};
 
+/// Whether a primitive counts; all do without it.
+pub type PrimitiveFilter<'a> = Option<&'a (dyn Fn(u32) -> bool + Sync)>;
+
 /// The nearest point of a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Nearest {

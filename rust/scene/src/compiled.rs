@@ -169,9 +169,9 @@ impl Scene {
 
     /// Whether each point is inside of something closed or on it.
     ///
-    /// On any way out of a closed surface it is found the same: one way will do where all surfaces close to the last
-    /// bit. Where they do so to rounding alone, one way and the opposite one agree unless it has left a crack there, and
-    /// then what most of seven ways find is told.
+    /// Any way out of a closed surface tells the same: one will do where all surfaces close to the last bit. Where they
+    /// do so to rounding alone, one way and the opposite one agree unless it has left a crack there, and then most of
+    /// seven ways decide.
     pub fn contains(&self, points: &[DVec3], enclosing: &Enclosing, inside: &mut [bool]) {
         assert_eq!(points.len(), inside.len(), "an answer for each point");
         inside.fill(false);

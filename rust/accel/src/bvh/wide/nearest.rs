@@ -3,7 +3,7 @@
 
 use super::WideBvh;
 use super::node::Child;
-use crate::kept::PrimitiveFilter;
+use crate::nearest::PrimitiveFilter;
 use crate::nearest::{LeafTest, Nearest, Search, of};
 use raywright_base::math::DVec3;
 use raywright_base::simd::{Kernel, Simd};
