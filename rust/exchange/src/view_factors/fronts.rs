@@ -102,8 +102,8 @@ impl Fronts {
         self.at(face, place).is_some_and(|found| found.touches)
     }
 
-    /// Whether two faces share a part of one plane and do not touch. Where roundings part their planes, their exchange is
-    /// theirs, and would take long to compute.
+    /// Whether two faces share a part of one plane and do not touch. They exchange what roundings leave of that, which
+    /// would take long to compute.
     pub fn are_flat(&self, faces: [u32; 2]) -> bool {
         self.flat.contains(&faces)
     }

@@ -87,7 +87,7 @@ pub fn facing(one: &Facet, other: &Facet) -> impl Iterator<Item = Facing> {
     } else if heights.as_flattened().iter().all(|&h| h >= 0.0) {
         ([Some((*one, heights[1])), None], [Some((*other, heights[0])), None])
     } else {
-        // As a share of the whole, what is dropped sends no more than this, and may take millions of quarters of the other.
+        // What is dropped sends no more than this share of the whole, and might take millions of quarters of the other.
         let counts = |whole: &Facet, part: &Facet| part.area >= DROPPED * whole.area;
         let of_one = in_front(one, heights[1]).map(|part| part.filter(|(part, _)| counts(one, part)));
         (of_one, in_front(other, heights[0]).map(|part| part.filter(|(part, _)| counts(other, part))))
