@@ -40,7 +40,22 @@ const DAMPING: f64 = 1e-10;
 /// x = x̂ + variance (λᵢ + λⱼ), held within the bounds; the sums are solved for λ by Newton's method, which takes one
 /// step where no bound is met. Rows without a sum wanted are left alone, and so are terms of which no row has one.
 pub fn reconcile(terms: &mut [Term], wanted: &[Option<f64>], scales: &[f64]) {
-    let slack: Vec<f64> = scales.iter().map(|scale| (SLACK * scale) * (SLACK * scale)).collect();
+    let without = multipliers(terms, wanted, scales, 0.0);
+    let best = if without.0 <= GOOD {
+        without
+    } else {
+        let with = multipliers(terms, wanted, scales, SLACK);
+        if with.0 < without.0 { with } else { without }
+    };
+    for term in terms {
+        term.value = moved(term, &best.1).0;
+    }
+}
+
+/// The multipliers, and by which share of its row's scale a sum is off at most. Sums themselves have this error, as a
+/// share of the scale.
+fn multipliers(terms: &[Term], wanted: &[Option<f64>], scales: &[f64], error: f64) -> (f64, Vec<f64>) {
+    let slack: Vec<f64> = scales.iter().map(|scale| (error * scale) * (error * scale)).collect();
     let mut lambda = vec![0.0; wanted.len()];
     let mut best = (f64::INFINITY, lambda.clone());
     let mut waited = 0;
@@ -63,6 +78,10 @@ pub fn reconcile(terms: &mut [Term], wanted: &[Option<f64>], scales: &[f64]) {
         }
         let step = newton(terms, wanted, &slack, &lambda, &residual, if is_careful { DAMPING } else { 0.0 });
         let rise = dot(&residual, &step);
+        // Where no term of a row is free enough, steps may leave the range of f64.
+        if !rise.is_finite() {
+            break;
+        }
         let mut share = 1.0;
         // A step that leads past the top of the concave dual has a slope below 0 at its end, and is halved. At first so
         // is one that hardly changes the slope, which ends sooner where few bounds are met, but may end too soon.
@@ -79,9 +98,8 @@ pub fn reconcile(terms: &mut [Term], wanted: &[Option<f64>], scales: &[f64]) {
             share *= 0.5;
         }
     }
-    for term in terms {
-        term.value = moved(term, &best.1).0;
-    }
+    let sums = residuals(terms, wanted, &vec![0.0; wanted.len()], &best.1);
+    (sums.iter().zip(scales).fold(0.0f64, |most, (r, scale)| most.max(r.abs() / scale)), best.1)
 }
 
 /// A term with these multipliers, and whether it is free to move.
