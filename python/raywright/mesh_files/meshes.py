@@ -12,6 +12,8 @@ from ..shapes.mesh import Mesh
 from ..shapes.welding import Weld, welded
 from .trimesh_objects import of_scene
 
+# The formats that a message names.
+_COMMON = ("3mf", "dae", "glb", "gltf", "obj", "off", "ply", "stl")
 # The Python package, or the program, with which trimesh reads further kinds of files.
 _NEEDED = {
     "3dxml": "lxml and networkx",
@@ -95,7 +97,9 @@ def _reader(path: Path) -> Callable[[Path], tuple[Mesh, ...]]:
             install = needed if needed.startswith("the ") else f"pip install {needed.replace(' and ', ' ')}"
             raise ImportError(f"{path}: trimesh needs {needed} to read {suffix} files ({install})")
         told = f"suffix {path.suffix}" if suffix else "a name without a suffix"
-        raise ValueError(f"{path}: {told} is not a mesh format; known are {', '.join(sorted(kinds))}")
+        # With meshio, trimesh reads dozens.
+        known = ", ".join(kind for kind in _COMMON if kind in kinds)
+        raise ValueError(f"{path}: {told} is not a mesh format; known are {known} and {len(kinds)} in all")
     return _read
 
 
