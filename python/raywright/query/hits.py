@@ -89,7 +89,7 @@ class SurfacePoints(Known, Tabular):
 
         Returns
         -------
-        (..., *S) float64 array
+        (..., S) float64 array
             S is the shape of one value. NaN for none, and on shapes without the attribute.
 
         Raises
