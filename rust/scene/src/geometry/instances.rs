@@ -19,7 +19,7 @@ pub type Matrix = [[f64; 4]; 3];
 ///
 /// A ray is taken to the prototype's space and asked of the prototype's accelerator there. So what is hit is what is
 /// hit in the prototype by the ray as it is taken there, and that is decided exactly, whatever finds the instances. Its
-/// `t` is told, and compared with the ends of the ray, as the ray and the map are given ([`InstanceRay`]).
+/// `t` is told, and compared with the ends of the ray, as the ray and the map are given (`instance_ray.rs`).
 #[derive(Clone, Debug)]
 pub struct Instances {
     prototype: Arc<Prototype>,
