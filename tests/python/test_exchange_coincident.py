@@ -283,3 +283,12 @@ def test_rounded_solids_that_overlap_are_done_soon() -> None:
     with pytest.warns(RuntimeWarning, match="overlap others in a part of one plane"):
         found = rw.view_factors(rw.Scene(turned), rays=16, progress=False)
     assert ((found.matrix >= 0) & (found.matrix <= 1)).all()
+
+
+def test_faces_that_rounding_alone_could_part_still_see_each_other() -> None:
+    # Two sheets face each other, closer than float32 numbers of their size are told apart from touching ones.
+    square = np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], np.float32)
+    above = square + np.array([0, 0, 1e-7], np.float32)
+    sheets = [rw.Mesh(square, [(0, 1, 2), (0, 2, 3)]), rw.Mesh(above, [(0, 2, 1), (0, 3, 2)])]
+    found = rw.view_factors(rw.Scene(sheets), per="shape", progress=False)
+    np.testing.assert_allclose(found.matrix, [(0, 1), (1, 0)], atol=1e-6)

@@ -7,7 +7,7 @@ use raywright_base::math::{DVec3, Frame, Hit, Ray};
 use raywright_base::parallel;
 use raywright_base::sampling::{BatchSize, SamplerKind, warp};
 use raywright_scene::{RayOrigin, Scene};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 /// A face in the plane of another that looks the other way.
 #[derive(Clone, Debug)]
@@ -25,27 +25,20 @@ struct Opposite {
 #[derive(Clone, Debug, Default)]
 pub struct Fronts {
     opposite: BTreeMap<u32, Vec<Opposite>>,
-    /// Pairs that share a part of one plane but do not touch: they see nothing of each other.
-    flat: BTreeSet<[u32; 2]>,
 }
 
 impl Fronts {
     /// Those of a scene.
     pub fn new(scene: &Scene) -> Self {
-        let (same, pairs): (Vec<Overlap>, Vec<Overlap>) =
-            coincident(scene).into_iter().partition(|overlap| overlap.is_same);
+        let pairs: Vec<Overlap> = coincident(scene).into_iter().filter(|overlap| !overlap.is_same).collect();
         let mut opposite = BTreeMap::<u32, Vec<Opposite>>::new();
         let facet = |face| Facet::new(scene.geometry().corners(face));
         for [i, j] in pairs.iter().flat_map(|pair| [pair.faces, [pair.faces[1], pair.faces[0]]]) {
             opposite.entry(i).or_default().push(Opposite { face: j, facet: facet(j), touches: false });
         }
-        let mut found = Self { opposite, flat: same.iter().map(|overlap| overlap.faces).collect() };
+        let mut found = Self { opposite };
         let touches = parallel::map(pairs.len(), |i| found.is_touching(scene, &pairs[i]));
-        for (pair, touches) in pairs.iter().zip(touches) {
-            if !touches {
-                found.flat.insert(pair.faces);
-                continue;
-            }
+        for (pair, _) in pairs.iter().zip(touches).filter(|(_, touches)| *touches) {
             for [i, j] in [pair.faces, [pair.faces[1], pair.faces[0]]] {
                 let all = found.opposite.get_mut(&i).into_iter().flatten();
                 all.filter(|opposite| opposite.face == j).for_each(|opposite| opposite.touches = true);
@@ -100,12 +93,6 @@ impl Fronts {
     #[inline]
     pub fn is_touched_at(&self, face: u32, place: DVec3) -> bool {
         self.at(face, place).is_some_and(|found| found.touches)
-    }
-
-    /// Whether two faces share a part of one plane and do not touch. They exchange what roundings leave of that, which
-    /// would take long to compute.
-    pub fn are_flat(&self, faces: [u32; 2]) -> bool {
-        self.flat.contains(&faces)
     }
 
     /// Whether two faces touch front to front.

@@ -222,9 +222,6 @@ impl Everything<'_> {
                     }
                     continue;
                 }
-                if self.fronts.are_flat(faces) {
-                    continue;
-                }
                 let mut hidden = self.hidden(&one, &other, may_hide);
                 // What touches a face hides a part of it from all others, and may lie in no shaft.
                 if hidden.is_none() && faces.iter().any(|&face| self.fronts.is_touched(face)) {
