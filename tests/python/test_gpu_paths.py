@@ -346,8 +346,16 @@ LEFT = {
     "the reflectance of the Diffuse of shape 0 is a Checker": {
         "scene": rw.Scene(floor(rw.Diffuse(rw.Checker())))
     },
-    "shapes of glass are next to each other": {
+    "the scene has shapes in glass": {
         "scene": rw.Scene([ball((0, 0, 0), rw.Dielectric()), ball((0, 0, 0), rw.Dielectric(1.3), 0.5)])
+    },
+    "several shapes of glass, and not all are closed": {
+        "scene": rw.Scene(
+            [
+                ball((-2, 0, 0), rw.Dielectric()),
+                quad((1, 0, 0), (1, 0, 0), (0, 1, 0), material=rw.Dielectric(1.3)),
+            ]
+        )
     },
     "a SpotLight shines": {"scene": rw.Scene([lamp()], lights=rw.SpotLight((0, 2, 0), (0, 0, 0), 1.0))},
     "the environment is a SunSky": {"scene": rw.Scene([lamp()], environment=rw.SunSky((0, 1, 1)))},

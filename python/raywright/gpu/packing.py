@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..lights import ConstantEnvironment, DirectionalLight, Emission, EnvironmentMap, PointLight
-from ..materials import Conductor, Dielectric, Plastic
+from ..materials import Dielectric
 from ..query.flats import FlatArrays
 from ..scene.scene import Scene
 from ..shapes.mesh import Mesh
@@ -134,7 +134,6 @@ def packed(scene: Scene, flat: FlatArrays) -> Packed:
     faces["light"] = NO
     lamps: list[NDArray[np.void]] = []
     glasses: list[Mesh] = []
-    coated: list[Mesh] = []
     for number, shape in enumerate(scene.shapes):
         first, end = int(flat.first[number]), int(flat.first[number + 1])
         if not isinstance(shape, Mesh):
@@ -148,12 +147,10 @@ def packed(scene: Scene, flat: FlatArrays) -> Packed:
         _lay(some, shape, flat)
         if isinstance(shape.material, Dielectric):
             glasses.append(shape)
-        elif isinstance(shape.material, Conductor | Plastic):
-            coated.append(shape)
         some["material"] = looks.number(shape.material, f"shape {number}")
         if shape.emission is not None:
             lamps.append(_shining(shape, some, first, f"shape {number}"))
-    _check_apart(glasses, coated)
+    _check_closed(glasses)
     lights = np.concatenate([*lamps, _delta(scene, flat)])
     lit = np.zeros((), LIT)
     _sky(scene, lit, looks)
@@ -161,25 +158,10 @@ def packed(scene: Scene, flat: FlatArrays) -> Packed:
     return Packed(faces, looks.array(), lights, looks.numbers(), lit)
 
 
-def _check_apart(glasses: list[Mesh], coated: list[Mesh]) -> None:
-    """Raise a LeftError if paths have to know what they are in: of one shape of glass they never do."""
-    if len(glasses) < 2:
-        return
-    boxes, others = ([mesh.bounds for mesh in some] for some in (glasses, coated))
-    for i, box in enumerate(boxes):
-        if any(_overlap(box, other) for other in boxes[:i]):
-            raise LeftError("shapes of glass are next to each other, or in one another")
-        if any(_overlap(box, other) for other in others):
-            raise LeftError("there are several shapes of glass, and metal or plastic next to one")
-    if not all(map(_is_closed, glasses)):
+def _check_closed(glasses: list[Mesh]) -> None:
+    """Raise a LeftError if paths may need their medium, which only closed shapes that are apart rule out."""
+    if len(glasses) > 1 and not all(map(_is_closed, glasses)):
         raise LeftError("there are several shapes of glass, and not all are closed")
-
-
-def _overlap(box: NDArray[np.float64] | None, other: NDArray[np.float64] | None) -> bool:
-    """Return whether two boxes have a point in common; None is that of nothing."""
-    if box is None or other is None:
-        return False
-    return bool((box[0] <= other[1]).all() and (other[0] <= box[1]).all())
 
 
 def _is_closed(mesh: Mesh) -> bool:
