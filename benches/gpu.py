@@ -1,27 +1,41 @@
-"""The same tree as pointers, as arrays and in a compute kernel: who asks a million rays of it, and how soon.
+"""Compare a graphics processor with the CPU: bits and rates of rays, and the error of pictures against time.
 
-    python benches/gpu.py [--triangles 60000] [--rays 1000000] [--repeats 5] [--adapter NAME] [--mesh FILE]
-                          [--seconds 10] [--size 256]
+    python benches/gpu.py [--adapter NAME] [--rays 10000000] [--seconds 10] [--size 512] [--repeats 3]
+                          [--triangles 60000] [--walks 1000000] [--mesh FILE]
 
-Prints Markdown: a row a way, with the bytes of its tree, the boxes that a ray tests, million rays a second
-from numpy to numpy for closest hits and for any hit, and of kernels the share of rays that were left to the
-CPU. The walks in Python are asked few rays. Every answer is held against the default tree's, to the bit
-where it is the core's. A second table is of pictures: how many samples the CPU takes of each in a second, and
-how many the device, each with its name, and how wrong the picture is after so many seconds, by the same
-estimator and independent samples. Without a driver for Vulkan, Metal or Direct3D 12 the last row says so.
+Prints Markdown in four parts, each row as soon as it is known:
+
+1. The adapters that wgpu finds, the one that is used, and the CPU.
+2. Bits: `--rays` rays of four kinds, traced by the CPU and by the device. A row has million rays a second
+   from numpy to numpy, for closest hits and for any hit, the share of rays that the device left to the CPU,
+   and how many answers differ from the CPU's in any bit.
+3. Pictures: relMSE against seconds. The CPU renders each twice, by the integrator and sampler that it chooses
+   and by those of the device. The device's picture is compared with the latter by blocks of 16 by 16 pixels:
+   the mean square of their differences in standard errors, z², is 1 where the device is unbiased.
+4. Trees: one BVH as objects, as arrays and in a compute kernel, with `--walks` random rays.
+
+With 16 cores and a graphics processor the defaults take about three minutes. Without a driver for Vulkan,
+Metal or Direct3D 12 the device's rows are missing. The exit status is 1 if an answer or a picture is wrong.
 """
 
 import argparse
+import math
 import os
+import platform
 import statistics
+import sys
 import time
 
 import numpy as np
 
 import raywright as rw
 
-# What walks in Python are asked.
+# Rays for the walks in Python.
 FEW = 300
+# Seconds at which the error of a picture is printed.
+TIMES = (0.5, 1, 2, 4, 8, 16, 32)
+# Pixels a side of the blocks by which pictures are compared.
+BLOCK = 16
 
 
 class Node:
@@ -149,12 +163,10 @@ def in_core(shapes, rays, wanted, repeats):
         )
 
 
-def in_compute(scene, rays, wanted, repeats, adapter):
+def in_compute(scene, rays, wanted, repeats, gpu):
     """Yield the row of a device."""
-    try:
-        gpu = rw.Gpu(adapter)
-    except (ImportError, RuntimeError) as missing:
-        yield "compute", "", "", "", "", str(missing)
+    if gpu is None:
+        yield "compute, no device", "", "", "", "", ""
         return
     with scene.on(gpu) as there:
         closest, hits = seconds(lambda: there.intersect(*rays), repeats)
@@ -163,8 +175,110 @@ def in_compute(scene, rays, wanted, repeats, adapter):
         assert np.array_equal(found, wanted.hit)
         stats, count = there.stats, len(rays[0])
         left = f"{100 * stats.closest_share:.2g} % of closest, {100 * stats.any_share:.2g} % of any"
-        row = (f"compute, {gpu.name}", f"{there.bytes / 1e6:.2f}", "")
-        yield *row, rate(count, closest), rate(count, any_hit), left
+        yield (
+            *(f"compute, {gpu.name}", f"{there.bytes / 1e6:.2f}", ""),
+            *(rate(count, closest), rate(count, any_hit), left),
+        )
+
+
+def device(name):
+    """Print which adapters there are, and return the device that is used, or None."""
+    try:
+        import wgpu
+
+        for one in wgpu.gpu.enumerate_adapters_sync():
+            info = one.info
+            keys = "device", "description", "adapter_type", "backend_type"
+            told = [info[key] for key in keys if info[key]]
+            print("adapter: " + ", ".join(map(str, told)))
+        gpu = rw.Gpu(name)
+        print(f"device: {gpu.name}, {gpu.backend}")
+    except (ImportError, RuntimeError) as missing:
+        print(f"device: none, {missing}")
+        gpu = None
+    print(f"CPU: {processor()}, {os.cpu_count()} threads, raywright {rw.__version__}\n", flush=True)
+    return gpu
+
+
+def processor():
+    """Return the name of the CPU."""
+    try:
+        with open("/proc/cpuinfo") as lines:
+            return next(line.split(":")[1].strip() for line in lines if line.startswith("model name"))
+    except (OSError, StopIteration):
+        return platform.processor() or platform.machine()
+
+
+def random_rays(scene, count, random):
+    """Return rays from anywhere about a scene in any direction."""
+    low, high = scene.bounds
+    middle, size = (low + high) / 2, high - low
+    origins = middle + 1.5 * size * (random.random((count, 3)) - 0.5)
+    directions = random.normal(size=origins.shape)
+    return origins, directions / np.linalg.norm(directions, axis=1, keepdims=True)
+
+
+def kinds_of_rays(scene, count):
+    """Yield four kinds of rays, each with its name, as arguments of `intersect`."""
+    random = np.random.default_rng(1)
+    low, high = scene.bounds
+    middle, size = (low + high) / 2, np.linalg.norm(high - low)
+    side = max(math.isqrt(count), 1)
+    camera = rw.Camera(middle + size * np.array([0, -0.4, 0.9]), middle, width=side, height=side)
+    yield "camera", [np.reshape(part, (-1, 3)) for part in camera.rays()]
+    origins, directions = random_rays(scene, count, random)
+    yield "random", [origins, directions]
+    hits = scene.intersect(origins, directions)
+    points = (origins + np.where(hits.hit, hits.t, 0)[:, None] * directions)[hits.hit]
+    points = np.resize(points, (count, 3)) if len(points) else origins
+    yield "shadow", [points, middle + size * np.array([0, 1, 0]) - points, 1e-4, 1.0]
+    meshes = [shape for shape in scene.shapes if isinstance(shape, rw.Mesh)]
+    corners = np.concatenate([np.asarray(mesh.vertices, float)[mesh.faces] for mesh in meshes])
+    ends = corners[random.integers(len(corners), size=count)]
+    along = random.choice([0, 0.5, 1], size=(count, 1))
+    yield "at edges and corners", [origins, ends[:, 0] + along * (ends[:, 1] - ends[:, 0]) - origins]
+
+
+def differing(hits, wanted):
+    """Count rays of which the answer differs in any bit."""
+    wrong = np.zeros(hits.t.shape, bool)
+    for name in ("t", "shape_id", "primitive", "uv"):
+        one, other = (np.ascontiguousarray(getattr(each, name)) for each in (hits, wanted))
+        parts = one.view(np.uint8) != other.view(np.uint8)
+        wrong |= parts.reshape(len(wrong), -1).any(axis=1)
+    return int(wrong.sum())
+
+
+def in_bits(shapes, count, repeats, gpu):
+    """Print the table of rays, and return how many answers of the device differ from the CPU's."""
+    scene = rw.Scene(shapes)
+    faces = sum(len(shape.faces) for shape in scene.shapes if isinstance(shape, rw.Mesh))
+    print(f"bits of {count} rays, {faces} faces\n")
+    print("| rays | | by | closest, M rays/s | any, M rays/s | left to the CPU: closest, any | differ |")
+    print("|---|---|---|---|---|---|---|")
+    wrong = asked = 0
+    for kind, rays in kinds_of_rays(scene, count // 4):
+        closest, wanted = seconds(lambda rays=rays: scene.intersect(*rays), repeats)
+        any_hit, shadowed = seconds(lambda rays=rays: scene.occluded(*rays), repeats)
+        number = len(rays[0])
+        said = f"{number}, {100 * wanted.hit.mean():.0f} % hit"
+        print(row(kind, said, "CPU", rate(number, closest), rate(number, any_hit), "", ""), flush=True)
+        if gpu is None:
+            continue
+        with scene.on(gpu) as there:
+            closest, hits = seconds(lambda rays=rays, there=there: there.intersect(*rays), repeats)
+            any_hit, found = seconds(lambda rays=rays, there=there: there.occluded(*rays), repeats)
+            left = f"{100 * there.stats.closest_share:.2g} %, {100 * there.stats.any_share:.2g} %"
+        off = differing(hits, wanted) + int(np.count_nonzero(found != shadowed))
+        print(row("", "", gpu.name, rate(number, closest), rate(number, any_hit), left, off), flush=True)
+        wrong, asked = wrong + off, asked + 2 * number
+    print(f"\n{wrong} of {asked} answers of the device differ from the CPU's\n", flush=True)
+    return wrong
+
+
+def row(*cells):
+    """Return a row of a table."""
+    return "| " + " | ".join(map(str, cells)) + " |"
 
 
 def pictures(size):
@@ -184,75 +298,112 @@ def pictures(size):
     )
 
 
-def in_pictures(size, seconds, adapter):
-    """Yield rows of pictures: by the CPU, and by a device if there is one."""
-    devices = [(f"CPU, {os.cpu_count()} threads", None)]
-    try:
-        gpu = rw.Gpu(adapter)
-        devices.append((gpu.name, gpu))
-    except (ImportError, RuntimeError) as missing:
-        yield "", "compute", "", str(missing)
+def at_times(history, times):
+    """Return the relMSE of a picture at some seconds, between its passes by powers of time."""
+    known = history[np.isfinite(history["error"]) & (history["error"] > 0)]
+    if not len(known):
+        return ["" for _ in times]
+    when, error = np.log(known["seconds"]), np.log(known["error"])
+    return [
+        f"{math.exp(np.interp(math.log(t), when, error)):.3g}" if when[0] <= math.log(t) <= when[-1] else ""
+        for t in times
+    ]
+
+
+def difference(one, other):
+    """Return mean square and maximum of the differences of two pictures' blocks, in standard errors."""
+
+    def in_blocks(array):
+        rows, columns = (n // BLOCK * BLOCK for n in array.shape[:2])
+        blocks = array[:rows, :columns].astype(float)
+        return blocks.reshape(rows // BLOCK, BLOCK, columns // BLOCK, BLOCK, -1).mean(axis=(1, 3))
+
+    variance = sum(in_blocks(each.standard_error.astype(float) ** 2) for each in (one, other)) / BLOCK**2
+    # Where all samples agree, pictures are of float32.
+    error = np.sqrt(variance) + 3e-6 * (1e-3 + in_blocks(other.rgb))
+    z = (in_blocks(one.rgb) - in_blocks(other.rgb)) / error
+    return float(np.mean(z**2)), float(np.abs(z).max())
+
+
+def in_pictures(size, seconds, gpu):
+    """Print the table of pictures, and return how many of the device's are wrong."""
+    times = [t for t in TIMES if t < seconds]
+    print(f"pictures of {size} by {size} pixels, {seconds:g} s each: relMSE after so many seconds\n")
+    columns = ("first pass, s", "M samples/s", *(f"{t:g} s" for t in times), f"{seconds:g} s", "z²")
+    print(row("picture", "by", *columns))
+    print("|---" * (len(columns) + 2) + "|")
+    path, same, wrong = rw.Path(reuse=1, caustics=False), rw.Independent(), 0
+    cpu = f"CPU, {os.cpu_count()} threads"
+    ways = [(f"{cpu}, its own choice", None, rw.Path(), None), (cpu, None, path, same)]
+    if gpu is not None:
+        ways.append((gpu.name, gpu, path, same))
     for name, scene, camera in pictures(size):
-        path = rw.Path(reuse=1, caustics=False)
-        for told, device in devices:
-            image = rw.render(
-                scene,
-                camera,
-                path,
-                seconds=seconds,
-                sampler=rw.Independent(),
-                progress=False,
-                device=device,
-            )
+        images = []
+        for told, device, integrator, sampler in ways:
+            options = {"sampler": sampler, "device": device, "seed": len(images), "progress": False}
+            image = rw.render(scene, camera, integrator, seconds=seconds, **options)
             assert device is None or image.plan["device"].chosen == told
+            images.append(image)
+            history = image.history
             # From the first pass on: before, kernels are compiled.
-            taken = np.ptp(image.history["samples"]) * size * size
-            spent = max(np.ptp(image.history["seconds"]), 1e-9)
-            yield name, told, rate(taken, spent), f"{image.error.estimate:.3g}"
+            taken = np.ptp(history["samples"]) * size * size
+            spent = max(np.ptp(history["seconds"]), 1e-9)
+            z = ""
+            if device is not None:
+                square, largest = difference(image, images[1])
+                z = f"{square:.2f}, at most {largest:.1f}²"
+                # Channels may be one and the same; eight deviations of chi square leave room for tails.
+                wrong += not (square < 1 + 8 * math.sqrt(2 / (size // BLOCK) ** 2) and largest < 7)
+            first = f"{history['seconds'][0]:.2g}"
+            errors = (*at_times(history, times), f"{image.error.estimate:.3g}")
+            print(row(name, told, first, rate(taken, spent), *errors, z), flush=True)
+    print(flush=True)
+    return wrong
+
+
+def in_trees(shapes, count, repeats, gpu):
+    """Print the table of trees."""
+    scene = rw.Scene(shapes)
+    rays = random_rays(scene, count, np.random.default_rng(0))
+    wanted = scene.intersect(*rays)
+    print(f"trees, {count} random rays, {100 * wanted.hit.mean():.0f} % of which hit\n")
+    print("| the tree | MB | boxes a ray | closest, M rays/s | any, M rays/s | |")
+    print("|---|---|---|---|---|---|")
+    for rows in (
+        in_python(scene, rays, wanted),
+        in_core(shapes, rays, wanted, repeats),
+        in_compute(scene, rays, wanted, repeats, gpu),
+    ):
+        for cells in rows:
+            print(row(*cells), flush=True)
 
 
 def main():
-    """Measure, and print a table."""
+    """Measure, print tables, and return the exit status."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--triangles", type=int, default=60_000)
-    parser.add_argument("--rays", type=int, default=1_000_000)
-    parser.add_argument("--repeats", type=int, default=5)
+    parser.add_argument("--rays", type=int, default=10_000_000, help="of which bits are compared")
+    parser.add_argument("--walks", type=int, default=1_000_000, help="rays for the table of trees")
+    parser.add_argument("--repeats", type=int, default=3)
     parser.add_argument("--adapter")
     parser.add_argument("--seconds", type=float, default=10.0)
-    parser.add_argument("--size", type=int, default=256, help="of pictures, in pixels a side")
+    parser.add_argument("--size", type=int, default=512, help="of pictures, in pixels a side")
     parser.add_argument("--mesh", help="an .npz with vertices and faces, or a mesh file")
     arguments = parser.parse_args()
+    start = time.perf_counter()
+    gpu = device(arguments.adapter)
     if arguments.mesh and arguments.mesh.endswith(".npz"):
         with np.load(arguments.mesh) as arrays:
             shapes = rw.Mesh(arrays["vertices"], arrays["faces"])
     else:
         around = max(round((arguments.triangles / 60) ** 0.5), 3)
         shapes = arguments.mesh or rw.scenes.torus_knot(along=30 * around, around=around)
-    scene = rw.Scene(shapes)
-    low, high = scene.bounds
-    random = np.random.default_rng(0)
-    middle, size = (low + high) / 2, high - low
-    origins = middle + 1.5 * size * (random.random((arguments.rays, 3)) - 0.5)
-    directions = random.normal(size=origins.shape)
-    rays = origins, directions / np.linalg.norm(directions, axis=1, keepdims=True)
-    wanted = scene.intersect(*rays)
-    faces = sum(len(shape.faces) for shape in scene.shapes if isinstance(shape, rw.Mesh))
-    print(f"{faces} faces, {arguments.rays} random rays, {100 * wanted.hit.mean():.0f} % of which hit\n")
-    print("| the tree | MB | boxes a ray | closest, M rays/s | any, M rays/s | |")
-    print("|---|---|---|---|---|---|")
-    for rows in (
-        in_python(scene, rays, wanted),
-        in_core(shapes, rays, wanted, arguments.repeats),
-        in_compute(scene, rays, wanted, arguments.repeats, arguments.adapter),
-    ):
-        for row in rows:
-            print("| " + " | ".join(row) + " |", flush=True)
-    print(f"\npictures of {arguments.size} by {arguments.size} pixels, {arguments.seconds:g} s each\n")
-    print("| picture | by | M samples/s | relMSE |")
-    print("|---|---|---|---|")
-    for row in in_pictures(arguments.size, arguments.seconds, arguments.adapter):
-        print("| " + " | ".join(row) + " |", flush=True)
+    wrong = in_bits(shapes, arguments.rays, arguments.repeats, gpu)
+    wrong += in_pictures(arguments.size, arguments.seconds, gpu)
+    in_trees(shapes, arguments.walks, arguments.repeats, gpu)
+    print(f"\n{time.perf_counter() - start:.0f} s in all, {wrong} wrong")
+    return int(wrong > 0)
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())
