@@ -2,6 +2,7 @@
 
 import sys
 from importlib.metadata import version as version_of
+from importlib.util import find_spec
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent))
@@ -11,7 +12,7 @@ author = "the raywright authors"
 release = version_of("raywright")
 version = release
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "numpydoc", "reference_pages"]
+extensions = ["myst_nb", "sphinx.ext.autodoc", "numpydoc", "reference_pages"]
 exclude_patterns = ["_build"]
 html_theme = "furo"
 html_title = "raywright"
@@ -25,3 +26,12 @@ autodoc_member_order = "bysource"
 numpydoc_show_class_members = False
 
 myst_heading_anchors = 3
+
+# Recipes are notebooks, run when their code has changed. The one for torch is shown as it is without torch.
+nb_execution_mode = "cache"
+nb_execution_timeout = 120
+nb_execution_raise_on_error = True
+nb_execution_excludepatterns = [] if find_spec("torch") else ["recipes/torch_tensors.md"]
+nb_execution_show_tb = True
+# Bars of progress.
+nb_output_stderr = "remove"
