@@ -4,13 +4,7 @@ Each picture is a function, and the page shows its very lines. It is saved in ``
 of it stands in ``docs/gallery/record.json`` and on the page. Those that are not named keep what they have.
 """
 
-import inspect
-import json
-import os
-import re
 import sys
-import textwrap
-import time
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +15,9 @@ from PIL import Image, ImageDraw
 import raywright as rw
 
 HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE))
+import gallery_page  # noqa: E402
+
 # How the page begins.
 HEAD = """# Gallery
 
@@ -406,24 +403,11 @@ PICTURES = {
 
 def main(names: list[str]) -> None:
     """Make the pictures of these names, or all, and write the page."""
-    unknown = set(names) - set(PICTURES)
-    if unknown:
-        raise SystemExit(f"no such picture: {', '.join(sorted(unknown))}; there are {', '.join(PICTURES)}")
-    os.makedirs(HERE / "gallery", exist_ok=True)
-    os.chdir(HERE / "gallery")
-    kept = Path("record.json")
-    for name in names or PICTURES:
-        start = time.process_time()
-        made = PICTURES[name]()
-        told = seen(made, time.process_time() - start)
-        print(f"{name}: {told}", flush=True)
-        record = json.loads(kept.read_text()) if kept.exists() else {}
-        record[name] = told
-        kept.write_text(json.dumps({key: record[key] for key in PICTURES if key in record}, indent=1) + "\n")
-    (HERE / "gallery.md").write_text(page(json.loads(kept.read_text())))
+    record = gallery_page.make(names, PICTURES, HERE / "gallery", seen)
+    (HERE / "gallery.md").write_text(page(record))
 
 
-def seen(made: Any, seconds: float) -> str:
+def seen(_name: str, made: Any, seconds: float) -> str:
     """Tell what is to be known of a picture."""
     parts = [f"{seconds:.0f} s of one core"]
     if not isinstance(made, rw.Image):
@@ -435,25 +419,9 @@ def seen(made: Any, seconds: float) -> str:
     return "; ".join([*parts, *made.warnings])
 
 
-def lines(name: str) -> str:
-    """Return the lines that make a picture: all of its function but what it returns."""
-    body = inspect.getsource(PICTURES[name]).split('"""', 2)[2].strip("\n")
-    body = textwrap.dedent(body).rsplit("\nreturn ", 1)[0]
-    # What is defined at the left margin has two empty lines around it.
-    body = re.sub(r"\n\n+(?=def )", "\n\n\n", body)
-    return re.sub(r"(\n    .*)\n\n+(?=\S)", r"\1\n\n\n", body)
-
-
 def page(record: dict[str, str]) -> str:
     """Return the page, of what was seen of each picture."""
-    parts = [HEAD]
-    for name, picture in PICTURES.items():
-        if name in record:
-            parts += [f"## {name.capitalize()}\n", f"{inspect.getdoc(picture)}\n"]
-            suffix = "png" if f"{name}.png" in lines(name) else "jpg"
-            parts += [f"![{name}](gallery/{name}.{suffix})\n", f"{record[name]}.\n"]
-            parts += [f"<!-- shown -->\n```python\n{lines(name)}\n```\n"]
-    return "\n".join(parts)
+    return gallery_page.page(HEAD, PICTURES, record, "gallery")
 
 
 if __name__ == "__main__":

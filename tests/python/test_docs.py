@@ -104,18 +104,26 @@ def test_every_block_of_a_page_is_either_run_or_marked():
         assert len(re.findall(BLOCK, text)) == fences + text.count("<!-- check\n"), page
 
 
-def test_gallery_shows_the_lines_that_made_its_pictures():
-    script = ROOT / "docs" / "gallery.py"
+@pytest.mark.parametrize(("name", "wide", "most"), [("gallery", 1000, 10**6), ("measured", 800, 40_000)])
+def test_gallery_shows_the_lines_that_made_its_pictures(name, wide, most, monkeypatch):
+    script = ROOT / "docs" / f"{name}.py"
     if not script.exists():
         pytest.skip("only the repository has the script and its pictures")
+    if name == "measured":
+        pytest.importorskip("matplotlib")
+    monkeypatch.syspath_prepend(str(script.parent))
     gallery = runpy.run_path(str(script))
-    record = json.loads((script.parent / "gallery" / "record.json").read_text(encoding="utf-8"))
+    record = json.loads((script.parent / name / "record.json").read_text(encoding="utf-8"))
     assert list(record) == list(gallery["PICTURES"])
-    page = read("docs/gallery.md")
+    page = read(f"docs/{name}.md")
     assert page == gallery["page"](record)
-    for link in re.findall(r"\]\((gallery/[^)]+)\)", page):
-        with Pillow.open(script.parent / link) as picture:
-            assert picture.width == 1000, link
+    links = re.findall(rf"\]\(({name}/[^)]+)\)", page)
+    assert len(links) == len(record)
+    for link in links:
+        file = script.parent / link
+        with Pillow.open(file) as picture:
+            assert picture.width == wide, link
+        assert file.stat().st_size <= most, link
 
 
 def test_pages_name_what_is_there():
