@@ -127,8 +127,11 @@ def test_gallery_shows_the_lines_that_made_its_pictures(name, wide, most, monkey
 
 
 def test_pages_name_what_is_there():
-    """Whatever pages write as ``rw.name``, in text and in tables too, is public."""
+    """Whatever pages write as ``rw.name`` or ``rw.measure.name``, in text and in tables too, is public."""
     for page in PAGES:
         text = read(page)
-        for name in re.findall(r"\brw\.(\w+)", text):
-            assert hasattr(rw, name), f"{page}: rw.{name}"
+        for name in re.findall(r"\brw((?:\.[A-Za-z]\w*)+)", text):
+            there = rw
+            for part in name.split(".")[1:]:
+                assert hasattr(there, part), f"{page}: rw{name}"
+                there = getattr(there, part)

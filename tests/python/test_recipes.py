@@ -12,6 +12,8 @@ from pathlib import Path
 
 import pytest
 
+import raywright as rw
+
 DOCS = Path(__file__).parents[2] / "docs"
 RECIPES = sorted((DOCS / "recipes").glob("*.md"))
 PAGES = [page for page in RECIPES if page.stem != "index"]
@@ -90,6 +92,24 @@ def test_every_recipe_is_in_the_list_of_recipes():
     index = (DOCS / "recipes" / "index.md").read_text(encoding="utf-8")
     linked = re.findall(r"\]\((\w+)\.md\)", index)
     assert sorted(linked) == [page.stem for page in PAGES]
+
+
+@pytest.mark.parametrize("page", ["words.md", "which_call.md"])
+def test_tables_name_calls_that_are_there(page):
+    text = (DOCS / page).read_text(encoding="utf-8")
+    short = {
+        "s": rw.Scene,
+        "scene": rw.Scene,
+        "m": rw.measure,
+        "hits": rw.Hits,
+        "mesh": rw.Mesh,
+        "image": rw.Image,
+    }
+    for code in re.findall(r"`([^`]+)`", text):
+        for name, part in re.findall(r"(?<![\w./])(\w+)\.(\w+)", code):
+            if name in short:
+                fields = getattr(short[name], "__dataclass_fields__", {})
+                assert hasattr(short[name], part) or part in fields, f"{page}: {name}.{part}"
 
 
 @pytest.mark.parametrize("page", ["recipes/index.md", "words.md", "which_call.md"])
