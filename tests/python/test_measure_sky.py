@@ -229,3 +229,22 @@ def test_wrong_input_gets_one_line(box, arguments, error, told):
         measure.sky_view(box, **given)
     with pytest.raises(ValueError, match="radius must be greater than 0"):
         measure.ambient_visibility(box, (0.5, 0.5, 1.0), (0, 0, 1), radius=0)
+
+
+def test_without_points_it_is_measured_at_the_middle_of_every_face():
+    floor = [(-1, 0, 1), (1, 0, 1), (1, 0, -1), (-1, 0, -1)]
+    faces = [(0, 1, 2), (0, 2, 3)]
+    shapes = [rw.Mesh(floor, faces), rw.Mesh(np.array(floor) + np.array([0, 1, 0]), faces)]
+    scene = rw.Scene(shapes)
+    middles = np.concatenate([mesh.vertices[mesh.faces].mean(axis=1) for mesh in shapes])
+    under = scene.intersect(middles + np.array([0, 0.5, 0]), (0, -1, 0))
+    for measure in (rw.measure.sky_view, rw.measure.ambient_visibility):
+        found, expected = measure(shapes), measure(scene, under)
+        assert found.value.shape == (4,)
+        # Directions are the same, and places but for rounding, so that a ray along an edge may differ.
+        assert np.allclose(found.value, expected.value, rtol=0, atol=1 / 256)
+    sun = [(0, 1, 0), (0, 1, 1)]
+    lit = rw.measure.solar_exposure(shapes, sun=sun)
+    assert np.array_equal(lit.sunlit, rw.measure.solar_exposure(scene, under, sun=sun).sunlit)
+    with pytest.raises(ValueError, match="points must be given: shape 0 is no mesh but a Sphere"):
+        rw.measure.sky_view(rw.Sphere((0, 0, 0), 1))

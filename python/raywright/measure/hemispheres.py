@@ -53,7 +53,7 @@ class Estimate(Tabular):
 
 def sky_view(
     scene: SceneLike,
-    points: SurfacePoints | ArrayLike,
+    points: SurfacePoints | ArrayLike | None = None,
     normals: ArrayLike | None = None,
     rays: int = 256,
     up: ArrayLike | None = None,
@@ -71,8 +71,9 @@ def sky_view(
     ----------
     scene : Scene, Mesh or anything else that a Scene is made of
         What hides the sky.
-    points : Hits, ClosestPoints or (..., 3) array
-        Where. Rays leave what was hit exactly as `Hits.leave` has it, and plain points as `offset` tells.
+    points : Hits, ClosestPoints or (..., 3) array, optional
+        Where. Rays leave what was hit exactly as `Hits.leave` has it, and plain points as `offset` tells. The
+        middle of every face if not given, which only meshes have.
     normals : (..., 3) array, optional
         Of any length; those of the surfaces if not given, which only what was hit has.
     rays : int
@@ -96,7 +97,7 @@ def sky_view(
     Returns
     -------
     Estimate
-        Of the leading shape of the points.
+        Of the leading shape of the points, or (F,) of all faces of all shapes in order.
 
     Raises
     ------
@@ -121,7 +122,7 @@ def sky_view(
 
 def ambient_visibility(
     scene: SceneLike,
-    points: SurfacePoints | ArrayLike,
+    points: SurfacePoints | ArrayLike | None = None,
     normals: ArrayLike | None = None,
     radius: float | None = None,
     rays: int = 256,
@@ -145,7 +146,7 @@ def ambient_visibility(
     Returns
     -------
     Estimate
-        Of the leading shape of the points.
+        Of the leading shape of the points, or (F,) of all faces of all shapes in order.
 
     Raises
     ------

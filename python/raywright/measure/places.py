@@ -7,9 +7,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import last_axis
-from ..query.hits import SurfacePoints
+from ..query.hits import ClosestPoints, SurfacePoints
 from ..scene.instance import Shapes
 from ..scene.scene import Scene
+from ..shapes.mesh import Mesh
 
 SceneLike: TypeAlias = Scene | Shapes
 Floats: TypeAlias = NDArray[np.float64]
@@ -82,12 +83,12 @@ class Places:
 
 def places(
     scene: Scene,
-    points: SurfacePoints | ArrayLike,
+    points: SurfacePoints | ArrayLike | None,
     normals: ArrayLike | None,
     offset: float | None,
     threads: int | None = None,
 ) -> Places:
-    """Check points and normals, and tell where rays start that leave them.
+    """Check points and normals, and tell where rays start that leave them; the middles of all faces if None.
 
     Raises
     ------
@@ -95,6 +96,8 @@ def places(
         If shapes do not fit, a number is not finite, a normal has no length, or there is none where points
         are numbers.
     """
+    if points is None:
+        points = middles(scene)
     if isinstance(points, SurfacePoints):
         return _of_surface(points, normals)
     if normals is None:
@@ -109,6 +112,28 @@ def places(
     else:
         raise ValueError(f"offset must be finite and at least 0, got {offset}")
     return Places(starts.reshape(-1, 3), ways.reshape(-1, 3), lead)
+
+
+def middles(scene: Scene) -> ClosestPoints:
+    """Return the middle of every face of all shapes, in order, as points of the surface.
+
+    Raises
+    ------
+    ValueError
+        If a shape is no mesh.
+    """
+    for i, shape in enumerate(scene.shapes):
+        if not isinstance(shape, Mesh):
+            raise ValueError(f"points must be given: shape {i} is no mesh but a {type(shape).__name__}")
+    counts = [len(shape.faces) for shape in scene.shapes if isinstance(shape, Mesh)]
+    shape_id = np.repeat(np.arange(len(counts), dtype=np.int32), counts)
+    primitive = np.concatenate(
+        [np.arange(0, dtype=np.int32), *(np.arange(n, dtype=np.int32) for n in counts)]
+    )
+    uv = np.full((len(primitive), 2), 1 / 3)
+    core = scene._compiled()
+    position = core.positions(shape_id, primitive, uv)
+    return ClosestPoints(np.zeros(len(primitive)), position, shape_id, primitive, uv, None, core)
 
 
 @dataclass(frozen=True)

@@ -83,7 +83,7 @@ def sun_directions(
 
 def solar_exposure(
     scene: SceneLike,
-    points: SurfacePoints | ArrayLike,
+    points: SurfacePoints | ArrayLike | None = None,
     normals: ArrayLike | None = None,
     sun: ArrayLike | None = None,
     times: Times | None = None,
@@ -102,8 +102,9 @@ def solar_exposure(
     ----------
     scene : Scene, Mesh or anything else that a Scene is made of
         What casts shadows.
-    points : Hits, ClosestPoints or (..., 3) array
-        Where. Rays leave what was hit exactly as `Hits.leave` has it, and plain points as `offset` tells.
+    points : Hits, ClosestPoints or (..., 3) array, optional
+        Where. Rays leave what was hit exactly as `Hits.leave` has it, and plain points as `offset` tells. The
+        middle of every face if not given, which only meshes have.
     normals : (..., 3) array, optional
         Of any length; those of the surfaces if not given, which only what was hit has.
     sun : (T, 3) array, optional
@@ -124,7 +125,7 @@ def solar_exposure(
     Returns
     -------
     SolarExposure
-        Of the leading shape of the points.
+        Of the leading shape of the points, or (F,) of all faces of all shapes in order.
 
     Raises
     ------

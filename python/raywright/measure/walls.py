@@ -9,8 +9,7 @@ from ..arrays import choice
 from ..query.hits import ClosestPoints, SurfacePoints
 from ..scene.progress import BuildProgress, check_progress, watcher
 from ..scene.scene import Scene
-from ..shapes.mesh import Mesh
-from .places import Floats, Places, SceneLike, places, scene_of, sealed
+from .places import Floats, Places, SceneLike, middles, places, scene_of, sealed
 
 Method = Literal["ray", "sphere"]
 # A ball shrinks towards its last size geometrically; so many steps are more than any took that was tried.
@@ -78,14 +77,14 @@ def thickness(
     if progress is not None:
         check_progress(progress)
     scene = scene_of(scene)
-    found = _middles(scene) if points is None else points
+    found = middles(scene) if points is None else points
     out = places(scene, found, normals, offset, threads)
-    middles, starts = _inward(scene, found, out, offset, threads)
+    sites, starts = _inward(scene, found, out, offset, threads)
     result = np.empty(len(out))
     with watcher(progress, "thickness") as report:
         for first in range(0, len(out), _TOGETHER):
             some = slice(first, first + _TOGETHER)
-            points, ways = middles[some], -out.normals[some]
+            points, ways = sites[some], -out.normals[some]
             # Rays start a little inside.
             skipped = np.linalg.norm(starts[some] - points, axis=1)
             across = scene.intersect(starts[some], ways, threads=threads).t + skipped
@@ -107,22 +106,6 @@ def _inward(
         return found.position.reshape(-1, 3), starts.reshape(-1, 3)
     points = np.broadcast_to(np.asarray(found, np.float64), ways.shape)
     return points.reshape(-1, 3), places(scene, found, ways, offset, threads).origins
-
-
-def _middles(scene: Scene) -> ClosestPoints:
-    """Return the middle of every face as a point of the surface."""
-    for i, shape in enumerate(scene.shapes):
-        if not isinstance(shape, Mesh):
-            raise ValueError(f"points must be given: shape {i} is no mesh but a {type(shape).__name__}")
-    counts = [len(shape.faces) for shape in scene.shapes if isinstance(shape, Mesh)]
-    shape_id = np.repeat(np.arange(len(counts), dtype=np.int32), counts)
-    primitive = np.concatenate(
-        [np.arange(0, dtype=np.int32), *(np.arange(n, dtype=np.int32) for n in counts)]
-    )
-    uv = np.full((len(primitive), 2), 1 / 3)
-    core = scene._compiled()
-    position = core.positions(shape_id, primitive, uv)
-    return ClosestPoints(np.zeros(len(primitive)), position, shape_id, primitive, uv, None, core)
 
 
 def _balls(scene: Scene, points: Floats, ways: Floats, across: Floats, threads: int | None) -> Floats:

@@ -1,0 +1,335 @@
+"""``raywright sky``, ``thickness``, ``visibility`` and ``lidar``: `raywright.measure` for mesh files."""
+
+import argparse
+import sys
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..io.pictures import check_writable
+from ..materials import Diffuse
+from ..mesh_files.meshes import load
+from ..scene.scene import Scene
+from ..shapes.joined import joined
+from ..shapes.mesh import Mesh, replaced
+from .options import finite, number
+from .places import Sites, of_faces, of_file, of_vertices
+from .tables import SUFFIXES, write
+
+_UP = {"y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
+_RAYS = 256
+_MESH = "any mesh file: PLY, OBJ, STL, GLB, ..."
+
+
+def add(verbs: Any) -> None:
+    """Add the verbs to a parser."""
+    sky = verbs.add_parser(
+        "sky",
+        help="sky view factor of faces, vertices or points",
+        epilog="example: raywright sky city.obj --up z --points ground.csv --normal 0 0 1 -o sky.csv",
+    )
+    sky.set_defaults(run=_sky)
+    _add_sites(sky)
+    sky.add_argument(
+        "--up", choices=tuple(_UP), help="the zenith, below whose horizon is no sky (default: none)"
+    )
+    _add_rays(sky)
+
+    thickness = verbs.add_parser(
+        "thickness",
+        help="how thick a body is below its faces, vertices or points",
+        epilog="example: raywright thickness part.stl --method sphere -o part.ply",
+    )
+    thickness.set_defaults(run=_thickness)
+    _add_sites(thickness)
+    thickness.add_argument(
+        "--method",
+        choices=("ray", "sphere"),
+        default="ray",
+        help="straight in, or the largest ball inside (default: %(default)s)",
+    )
+    _add_threads(thickness)
+
+    visibility = verbs.add_parser(
+        "visibility",
+        help="how open it is around faces, vertices or points: 1 less ambient occlusion",
+        epilog="example: raywright visibility statue.ply --at vertices --radius 0.5 -o statue_ao.ply",
+    )
+    visibility.set_defaults(run=_visibility)
+    _add_sites(visibility)
+    visibility.add_argument(
+        "--radius",
+        metavar="R",
+        type=number(float),
+        help="how far what stands in the way counts (default: all)",
+    )
+    _add_rays(visibility)
+    _add_lidar(verbs)
+
+
+def _add_lidar(verbs: Any) -> None:
+    told = " (default: %(default)s)"
+    verb = verbs.add_parser(
+        "lidar",
+        help="what a laser scanner measures: a cloud of points",
+        epilog="example: raywright lidar street.obj --position 0 1.8 0 --beams 32 --noise 0.02 -o scan.ply",
+    )
+    verb.set_defaults(run=_lidar)
+    _add_mesh(verb)
+    three = {"nargs": 3, "metavar": ("X", "Y", "Z"), "type": finite}
+    verb.add_argument("--position", **three, default=(0.0, 0.0, 0.0), help="of the scanner (default: 0 0 0)")
+    verb.add_argument("--forward", **three, help="its azimuth 0 (default: 1 0 0)", default=(1.0, 0.0, 0.0))
+    verb.add_argument("--up", choices=tuple(_UP), default="y", help="axis about which it turns" + told)
+    whole = number(int, 1, 10**6)
+    verb.add_argument("--beams", metavar="N", type=whole, default=16, help="beams above each other" + told)
+    verb.add_argument("--columns", metavar="N", type=whole, default=1800, help="times a turn" + told)
+    verb.add_argument(
+        "--elevations",
+        nargs=2,
+        metavar=("LOW", "HIGH"),
+        type=finite,
+        default=(-15.0, 15.0),
+        help="of the lowest and the highest beam, in degrees (default: -15 15)",
+    )
+    verb.add_argument(
+        "--min-range", metavar="R", type=number(float, 0), default=0.0, help="least range" + told
+    )
+    verb.add_argument("--max-range", metavar="R", type=number(float), help="largest range (default: none)")
+    verb.add_argument(
+        "--divergence",
+        metavar="D",
+        type=number(float, 0),
+        default=0.0,
+        help="full angle of a beam in degrees" + told,
+    )
+    verb.add_argument(
+        "--returns",
+        choices=("all", "first", "last", "strongest"),
+        default="all",
+        help="which of a beam are kept" + told,
+    )
+    verb.add_argument(
+        "--noise", metavar="S", type=number(float, 0), default=0.0, help="standard deviation of ranges" + told
+    )
+    verb.add_argument(
+        "--dropout",
+        metavar="P",
+        type=number(float, 0, 1),
+        default=0.0,
+        help="share of returns that are lost" + told,
+    )
+    _add_seed(verb)
+    _add_threads(verb)
+
+
+def _add_mesh(verb: argparse.ArgumentParser) -> None:
+    verb.set_defaults(refuse=verb.error)
+    verb.add_argument("mesh", metavar="MESH", help=_MESH)
+    verb.add_argument(
+        "-o", "--output", metavar="FILE", help=f"{', '.join(SUFFIXES)} (default: CSV to standard output)"
+    )
+    verb.add_argument("--quiet", action="store_true", help="print nothing but results and errors")
+
+
+def _add_sites(verb: argparse.ArgumentParser) -> None:
+    _add_mesh(verb)
+    where = verb.add_mutually_exclusive_group()
+    where.add_argument(
+        "--at", choices=("faces", "vertices"), default="faces", help="of the mesh (default: %(default)s)"
+    )
+    where.add_argument(
+        "--points",
+        metavar="FILE",
+        help="points instead: .csv with columns x, y, z and perhaps nx, ny, nz, or .npy of (N, 3) or (N, 6)",
+    )
+    verb.add_argument(
+        "--normal",
+        nargs=3,
+        metavar=("X", "Y", "Z"),
+        type=finite,
+        help="of all points (default: those of the file, or of the nearest faces)",
+    )
+    verb.add_argument(
+        "--offset",
+        metavar="D",
+        type=number(float, 0),
+        help="how far from vertices and points rays start (default: off the surface by its rounding)",
+    )
+
+
+def _add_rays(verb: argparse.ArgumentParser) -> None:
+    verb.add_argument(
+        "--rays",
+        metavar="N",
+        type=number(int, 16, 2**24),
+        default=_RAYS,
+        help="directions a point (default: %(default)s)",
+    )
+    _add_seed(verb)
+    _add_threads(verb)
+
+
+def _add_seed(verb: argparse.ArgumentParser) -> None:
+    verb.add_argument(
+        "--seed", metavar="N", type=number(int, 0, 2**64 - 1), default=0, help="seed (default: 0)"
+    )
+
+
+def _add_threads(verb: argparse.ArgumentParser) -> None:
+    verb.add_argument("--threads", metavar="N", type=number(int, 1), help="threads (default: all cores)")
+
+
+def _sky(options: argparse.Namespace) -> None:
+    from ..measure import sky_view
+
+    up = None if options.up is None else _UP[options.up]
+    _sampled(options, "sky view factor", partial(sky_view, up=up))
+
+
+def _visibility(options: argparse.Namespace) -> None:
+    from ..measure import ambient_visibility
+
+    _sampled(options, "visibility", partial(ambient_visibility, radius=options.radius))
+
+
+def _sampled(options: argparse.Namespace, what: str, measure: Callable[..., Any]) -> None:
+    _measured(options, what, partial(measure, rays=options.rays, seed=options.seed))
+
+
+def _thickness(options: argparse.Namespace) -> None:
+    from ..measure import thickness
+
+    _measured(options, "thickness", partial(thickness, method=options.method))
+
+
+def _measured(options: argparse.Namespace, what: str, measure: Callable[..., Any]) -> None:
+    """Measure where the options say, and write it."""
+    output = _output(options)
+    if options.normal is not None and options.points is None:
+        options.refuse("argument --normal: is for --points")
+    if options.normal is not None and not any(options.normal):
+        options.refuse("argument --normal: must have a length, got 0 0 0")
+    mesh = _mesh(options.mesh)
+    scene = Scene(mesh).welded()
+    sites = _sites(options, mesh, scene)
+    known = sites.known
+    how = {"threads": options.threads, "progress": False if options.quiet else None}
+    if sites.exact is not None and options.offset is None:
+        where: tuple[Any, ...] = (scene, sites.exact)
+        found = _columns(measure(*where, **how))
+    else:
+        where = scene, sites.position[known], sites.normal[known]
+        some = _columns(measure(*where, offset=options.offset, **how))
+        found = {name: np.full(len(known), np.nan) for name in some}
+        for name, column in some.items():
+            found[name][known] = column
+    columns = dict(zip("xyz", sites.position.T, strict=True)) | found
+    write(output, columns, found["value"], _valued(mesh, sites, found, options))
+    if not options.quiet and output is not None:
+        _tell(what, found, output)
+
+
+def _columns(result: Any) -> dict[str, NDArray[Any]]:
+    return {"value": result} if isinstance(result, np.ndarray) else result.to_dict()
+
+
+def _sites(options: argparse.Namespace, mesh: Mesh, scene: Scene) -> Sites:
+    if options.points is None:
+        return of_faces(scene) if options.at == "faces" else of_vertices(mesh)
+    try:
+        return of_file(Path(options.points), scene, options.normal)
+    except ValueError as error:
+        options.refuse(f"argument --points: {error}")
+        raise
+
+
+def _valued(mesh: Mesh, sites: Sites, found: dict[str, NDArray[Any]], options: argparse.Namespace) -> Mesh:
+    """Return the mesh with what was found as attributes, or the points alone."""
+    if options.points is not None:
+        return Mesh(sites.position, [], vertex_attributes=found)
+    of_faces, of_vertices = dict(mesh.face_attributes), dict(mesh.vertex_attributes)
+    (of_faces if options.at == "faces" else of_vertices).update(found)
+    return Mesh(
+        mesh.vertices,
+        mesh.faces,
+        mesh.normals,
+        mesh.uv,
+        vertex_attributes=of_vertices,
+        face_attributes=of_faces,
+        cells=mesh.cells,
+    )
+
+
+def _lidar(options: argparse.Namespace) -> None:
+    from ..measure import SpinningLidar, lidar
+
+    output = _output(options)
+    low, high = options.elevations
+    limits = {} if options.max_range is None else {"max_range": options.max_range}
+    scene = Scene(_mesh(options.mesh))
+    try:
+        scanner = SpinningLidar(
+            elevations=np.linspace(low, high, options.beams) if options.beams > 1 else [(low + high) / 2],
+            columns=options.columns,
+            position=tuple(options.position),
+            forward=tuple(options.forward),
+            up=_UP[options.up],
+            min_range=options.min_range,
+            divergence=options.divergence,
+            **limits,
+        )
+        scan = lidar(
+            scene,
+            scanner,
+            options.returns,
+            options.noise,
+            dropout=options.dropout,
+            seed=options.seed,
+            progress=False if options.quiet else None,
+            threads=options.threads,
+        )
+    except ValueError as error:
+        options.refuse(str(error))
+        raise
+    columns = scan.to_dict()
+    values = {name: column for name, column in columns.items() if name not in "xyz"}
+    first = dict(zip("xyz", scan.position.T, strict=True))
+    write(output, first | values, scan.position, Mesh(scan.position, [], vertex_attributes=values))
+    if not options.quiet and output is not None:
+        print(f"{len(scan)} returns of {scan.count.size} beams\nfile: {output}")
+
+
+def _output(options: argparse.Namespace) -> Path | None:
+    """Return where results go, having found out that they can."""
+    if options.output in (None, "-"):
+        return None
+    try:
+        return check_writable(options.output, SUFFIXES, "a result")
+    except ValueError as error:
+        options.refuse(f"argument -o/--output: {error}")
+        raise
+
+
+def _mesh(path: str) -> Mesh:
+    """Return all of a file as one mesh, whatever its materials."""
+    meshes = [replaced(mesh, material=Diffuse(), emission=None) for mesh in load(path)]
+    return joined(meshes) if len(meshes) > 1 else meshes[0]
+
+
+def _tell(what: str, found: dict[str, NDArray[Any]], output: Path) -> None:
+    value = found["value"]
+    known = value[~np.isnan(value)]
+    told = f"{what} of {len(value)}"
+    if len(known):
+        told += f": least {known.min():.6g}, median {np.median(known):.6g}, largest {known.max():.6g}"
+    if "standard_error" in found and len(known):
+        told += f"; standard error up to {np.nanmax(found['standard_error']):.2g}"
+    print(told)
+    if len(known) < len(value):
+        lost = f"{len(value) - len(known)} of {len(value)} have no normal, and no value"
+        print(f"raywright: warning: {lost}", file=sys.stderr)
+    print(f"file: {output}")
