@@ -53,7 +53,7 @@ def _report_convergence(options: argparse.Namespace) -> None:
 
 
 def _check_plot(options: argparse.Namespace) -> None:
-    from ..report.plots import NO_MATPLOTLIB
+    from ..io.plots import NO_MATPLOTLIB
 
     if options.plot is not None:
         check_writable(options.plot, (".png",), "a plot")

@@ -9,6 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Triple, choice, number
+from ..io.plots import plotted
+from ..io.value_plots import AXES, COLORS, Axis, bar, draw_faces, frame, scale
 from ..query.tabular import Tabular
 
 if TYPE_CHECKING:
@@ -17,6 +19,9 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 Per = Literal["face", "vertex"]
 Method = Literal["stochastic", "progressive", "matrix"]
+
+
+_LUMINANCE = (0.2126, 0.7152, 0.0722)
 
 
 class RadiosityStep(NamedTuple):
@@ -176,11 +181,7 @@ class RadiositySolution(Tabular):
 
         from ..io.shown import srgb
 
-        choice("side", side, ("front", "back"))
-        rows = self.patches["side"] == (1 if side == "front" else -1)
-        rows &= np.isfinite(self.corners).all(axis=(1, 2))
-        if not rows.any():
-            raise ValueError(f"the solution has no {side} of a mesh to draw")
+        rows = self._drawn(side)
         radiance = self.corner_radiosity[rows] / np.pi
         if exposure is None:
             reflecting = radiance[~self.emission[rows].any(axis=1)]
@@ -193,6 +194,68 @@ class RadiositySolution(Tabular):
         if side == "back":
             faces = faces[:, ::-1]
         return trimesh.Trimesh(self.corners[rows].reshape(-1, 3), faces, vertex_colors=colours, process=False)
+
+    def plot(
+        self,
+        ax: Any = None,
+        name: Literal["radiosity", "irradiance", "standard_error", "irradiance_error"] = "radiosity",
+        side: Literal["front", "back"] = "front",
+        up: Axis = "y",
+        cmap: Any = COLORS,
+    ) -> Any:
+        """Draw patches in the color of their luminance with matplotlib. What is no mesh is left out.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, str or path, optional
+            Where to draw: a new figure if not given, axes with three dimensions, or a file, .png, .svg or
+            .pdf.
+        name : {"radiosity", "irradiance", "standard_error", "irradiance_error"}
+            Which array; red, green and blue are weighted as ITU-R BT.709 weights them.
+        side : {"front", "back"}
+            Which side.
+        up : {"x", "y", "z"}
+            The axis that points up.
+        cmap : str or matplotlib.colors.Colormap
+            The colors, from the least value to the largest.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+
+        Raises
+        ------
+        ImportError
+            If matplotlib is not installed (``pip install 'raywright[plot]'``).
+        ValueError
+            If there is no such name, the solution has no such side, the scene is of no meshes, a file has
+            another suffix, or axes have two dimensions.
+        TypeError
+            If `ax` is something else.
+        OSError
+            If the file cannot be written.
+        """
+        choice("name", name, ("radiosity", "irradiance", "standard_error", "irradiance_error"))
+        choice("up", up, AXES)
+        rows = self._drawn(side)
+        values = (getattr(self, name)[rows] * _LUMINANCE).sum(axis=1)
+
+        def draw(ax: Any) -> None:
+            mapped = scale(values, cmap)
+            draw_faces(ax, self.corners[rows], mapped, up)
+            frame(ax, self.corners[rows], up)
+            bar(ax, mapped, f"{name.replace('_', ' ')} in W/m²")
+
+        return plotted(ax, draw, solid=True)
+
+    def _drawn(self, side: Literal["front", "back"]) -> NDArray[np.bool_]:
+        """Return which patches are those of a side that are triangles."""
+        choice("side", side, ("front", "back"))
+        rows = self.patches["side"] == (1 if side == "front" else -1)
+        rows &= np.isfinite(self.corners).all(axis=(1, 2))
+        if not rows.any():
+            raise ValueError(f"the solution has no {side} of a mesh to draw")
+        return np.asarray(rows)
 
     def save(
         self,

@@ -9,6 +9,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from .. import _core
 from ..arrays import choice, frozen, integer, positive, real_array, thread_limit
+from ..io.plots import plotted
+from ..io.value_plots import COLORS
 from ..query.tabular import Tabular
 from ..scene.progress import BuildProgress, check_progress, watcher
 from ..scene.scene import Scene
@@ -16,6 +18,7 @@ from ..shapes import Plane
 from ..shapes.mesh import Mesh
 from .coincident import Covered, merged
 from .copies import LaidOut, laid_out
+from .matrix_plot import draw_matrix
 from .reciprocal import reciprocal
 
 if TYPE_CHECKING:
@@ -89,6 +92,37 @@ class ViewFactors(Tabular):
     def rest(self) -> NDArray[np.float64]:
         """What comes to no front, (N,): 1 less the sum of each row."""
         return frozen(1.0 - np.asarray(self.matrix.sum(axis=1)))
+
+    def plot(self, ax: Any = None, name: str = "matrix", cmap: Any = COLORS) -> Any:
+        """Draw the matrix with matplotlib, a pixel an entry, or a block of entries where there are many.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, str or path, optional
+            Where to draw: a new figure if not given, or a file, .png, .svg or .pdf.
+        name : {"matrix", "standard_error"}
+            Which. Zeros are grey.
+        cmap : str or matplotlib.colors.Colormap
+            The colors, from the least entry to the largest.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+
+        Raises
+        ------
+        ImportError
+            If matplotlib is not installed (``pip install 'raywright[plot]'``).
+        ValueError
+            If there is no such name, or a file has another suffix.
+        TypeError
+            If `ax` is something else.
+        OSError
+            If the file cannot be written.
+        """
+        choice("name", name, ("matrix", "standard_error"))
+        label = "view factor" if name == "matrix" else "standard error"
+        return plotted(ax, lambda ax: draw_matrix(ax, getattr(self, name), label, cmap))
 
     def matvec(self, x: ArrayLike) -> NDArray[np.float64]:
         """Return ``matrix @ x``: of radiosities x, (N,) or (N, K), the irradiances.

@@ -3,6 +3,7 @@
 from .cracks import Topology, topology
 from .cuts import CrossSection, cross_section
 from .hemispheres import Estimate, ambient_visibility, sky_view
+from .plots import plot
 from .scanners import RasterLidar, SpinningLidar
 from .scans import Lidar, LidarScan, lidar
 from .sight import LineOfSight, line_of_sight
@@ -23,6 +24,7 @@ __all__ = [
     "cross_section",
     "lidar",
     "line_of_sight",
+    "plot",
     "sky_view",
     "solar_exposure",
     "sun_directions",

@@ -10,10 +10,10 @@ from numpy.typing import ArrayLike, NDArray
 from .. import _core
 from ..arrays import integer, positive
 from ..query.hits import SurfacePoints
-from ..query.tabular import Tabular
 from ..scene.progress import BuildProgress, check_progress, watcher
 from ..scene.scene import Scene
 from .places import Floats, Places, SceneLike, frames, places, scene_of, sealed, unit
+from .plots import Plotted
 
 # Rays that are sent together: few enough to stay in some ten megabytes.
 _TOGETHER = 1 << 19
@@ -23,7 +23,7 @@ _GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Estimate(Tabular):
+class Estimate(Plotted):
     """Numbers found by sampling, and how far off they may be; arrays of the points' leading shape, read-only.
 
     Attributes
@@ -42,6 +42,7 @@ class Estimate(Tabular):
     value: Floats
     standard_error: Floats
     rays: int
+    _drawn = ("value", "standard_error")
 
     def to_dict(self) -> dict[str, NDArray[Any]]:
         """Return flat arrays by name, an entry for each point, in C order."""
@@ -117,7 +118,9 @@ def sky_view(
     zenith = None if up is None else unit("up", up)
     scene = scene_of(scene)
     where = places(scene, points, normals, offset, threads)
-    return _open_share(scene, where, rays, math.inf, zenith, seed, progress, threads, "sky view")
+    found = _open_share(scene, where, rays, math.inf, zenith, seed, progress, threads, "sky view")
+    found._at(scene, points)
+    return found
 
 
 def ambient_visibility(
@@ -156,7 +159,9 @@ def ambient_visibility(
     most = math.inf if radius is None else positive("radius", radius)
     scene = scene_of(scene)
     where = places(scene, points, normals, offset, threads)
-    return _open_share(scene, where, rays, most, None, seed, progress, threads, "visibility")
+    found = _open_share(scene, where, rays, most, None, seed, progress, threads, "visibility")
+    found._at(scene, points)
+    return found
 
 
 def _open_share(

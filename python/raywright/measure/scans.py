@@ -8,12 +8,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import choice, integer, number, positive
+from ..io.value_plots import COLORS, Axis
 from ..query.hits import Hits
 from ..query.tabular import Tabular
 from ..scene.progress import BuildProgress, check_progress, watcher
 from ..scene.scene import Scene
 from .noise import beams_of, normal, uniform
 from .places import Floats, SceneLike, scene_of, sealed, touching
+from .plots import plot
 from .scanners import RasterLidar, SpinningLidar
 from .waveforms import peaks
 
@@ -85,6 +87,33 @@ class LidarScan(Tabular):
         first = np.flatnonzero(np.diff(self.beam, prepend=-1))
         whole[self.beam[first]] = getattr(self, name)[first]
         return whole.reshape(self.shape)
+
+    def plot(self, ax: Any = None, name: str = "range", up: Axis = "y", cmap: Any = COLORS) -> Any:
+        """Draw the returns in space with matplotlib.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, str or path, optional
+            Where to draw: a new figure if not given, axes with three dimensions, or a file, .png, .svg or
+            .pdf.
+        name : {"range", "incidence", "strength"}
+            What they are colored by.
+        up : {"x", "y", "z"}
+            The axis that points up.
+        cmap : str or matplotlib.colors.Colormap
+            The colors, from the least value to the largest.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+
+        Raises
+        ------
+        ImportError, ValueError, TypeError, OSError
+            As `raywright.measure.plot` does, and if there is no such name.
+        """
+        choice("name", name, ("range", "incidence", "strength"))
+        return plot((), getattr(self, name), self.position, ax, name, up, cmap)
 
     def to_dict(self) -> dict[str, NDArray[Any]]:
         """Return flat arrays by name, an entry for each return; its place as x, y and z."""

@@ -8,12 +8,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import number
 from ..query.hits import Hits
-from ..query.tabular import Tabular
 from .places import Floats, SceneLike, Touching, common, scene_of, sealed, touching, vectors
+from .plots import Plotted
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class LineOfSight(Tabular):
+class LineOfSight(Plotted):
     """Whether points see each other; arrays of the leading shape of the pairs, read-only.
 
     Attributes
@@ -29,6 +29,7 @@ class LineOfSight(Tabular):
     visible: NDArray[np.bool_]
     obstruction: Hits
     distance: Floats
+    _drawn = ("visible", "distance")
 
     def to_dict(self) -> dict[str, NDArray[Any]]:
         """Return flat arrays by name, an entry for each pair, in C order.
@@ -90,7 +91,10 @@ def line_of_sight(
         if not 0 <= least < 0.5:
             raise ValueError(f"margin must be at least 0 and less than 0.5, got {margin}")
         hits = scene.intersect(starts, way, t_min=least, t_max=1.0 - least, threads=threads)
-    return LineOfSight(sealed(~hits.hit), hits, sealed(np.asarray(far)))
+    found = LineOfSight(sealed(~hits.hit), hits, sealed(np.asarray(far)))
+    # Of one viewer and many points, the points tell more.
+    found._at(scene, starts if ends.size < starts.size else ends)
+    return found
 
 
 def _left(at: Touching, points: Floats, way: Floats, far: Floats) -> tuple[Floats, Floats]:

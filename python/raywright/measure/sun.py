@@ -11,15 +11,15 @@ from ..lights.sun_position import sun_directions as directions_at
 from ..lights.sun_position import way
 from ..lights.times import Time, Times, one_or_many
 from ..query.hits import SurfacePoints
-from ..query.tabular import Tabular
 from ..scene.progress import BuildProgress, check_progress, watcher
 from .places import Floats, SceneLike, places, scene_of, sealed, unit, units
+from .plots import Plotted
 
 _TOGETHER = 1 << 20
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class SolarExposure(Tabular):
+class SolarExposure(Plotted):
     """What the sun sends to points; arrays of their leading shape, read-only. NaN where there is no point.
 
     Attributes
@@ -37,6 +37,7 @@ class SolarExposure(Tabular):
     exposure: Floats
     sunlit: Floats
     day: float
+    _drawn = ("exposure", "sunlit")
 
     def to_dict(self) -> dict[str, NDArray[Any]]:
         """Return flat arrays by name, an entry for each point, in C order."""
@@ -160,11 +161,13 @@ def solar_exposure(
             sunlit += counted[some] @ shines
             if report is not None:
                 report(min(1.0, (start + step) / len(day)))
-    for found in (exposure, sunlit):
-        found[~np.isfinite(where.origins).all(axis=1)] = np.nan
+    for sums in (exposure, sunlit):
+        sums[~np.isfinite(where.origins).all(axis=1)] = np.nan
     lead = where.shape
     total = float(counted[day].sum())
-    return SolarExposure(sealed(exposure.reshape(lead)), sealed(sunlit.reshape(lead)), total)
+    found = SolarExposure(sealed(exposure.reshape(lead)), sealed(sunlit.reshape(lead)), total)
+    found._at(scene, points)
+    return found
 
 
 def _suns(

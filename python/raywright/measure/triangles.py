@@ -28,7 +28,7 @@ def triangles(scene: Scene, tolerance: float | None) -> tuple[Floats, NDArray[np
     distances: list[float] = []
     corners, faces, count = [np.zeros((0, 3))], [np.zeros((0, 3), np.uint32)], 0
     for i, shape in enumerate(scene.shapes):
-        for mesh in _meshes(shape, f"shape {i}"):
+        for mesh in meshes_in(shape, f"shape {i}"):
             corners.append(mesh.vertices.astype(np.float64))
             faces.append(mesh.faces + np.uint32(count))
             count += len(mesh.vertices)
@@ -38,14 +38,21 @@ def triangles(scene: Scene, tolerance: float | None) -> tuple[Floats, NDArray[np
     return np.concatenate(corners), np.concatenate(faces), least
 
 
-def _meshes(shape: AnyShape, name: str) -> Iterator[Mesh]:
+def meshes_in(shape: AnyShape, name: str) -> Iterator[Mesh]:
+    """Yield the meshes that a shape is made of, where they stand.
+
+    Raises
+    ------
+    ValueError
+        If something in it is no mesh, or moves.
+    """
     if isinstance(shape, Mesh):
         yield shape
     elif isinstance(shape, Instance):
         if shape.transform_end is not None:
             raise ValueError(f"{name} moves: it has no one cross section")
         for i, inner in enumerate(shape.shapes):
-            for mesh in _meshes(inner, f"{name}, shape {i} in it,"):
+            for mesh in meshes_in(inner, f"{name}, shape {i} in it,"):
                 for matrix in shape.transform.reshape(-1, 4, 4):
                     yield mesh.transformed(matrix)
     else:

@@ -13,6 +13,7 @@ from .. import _core
 from . import rows
 from .leaving import LeavingRays, leaving
 from .masks import names_of
+from .plotted import PlottedPoints
 from .surface import Surface
 from .tabular import Tabular
 from .values import cells, interpolated
@@ -40,7 +41,7 @@ class Known:
 
 
 @dataclass(frozen=True, eq=False, repr=False, init=False)
-class SurfacePoints(Known, Tabular):
+class SurfacePoints(Known, Tabular, PlottedPoints):
     """Points on the surfaces of a scene; all arrays are read-only.
 
     Attributes

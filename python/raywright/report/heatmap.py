@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from ..arrays import choice, integer
 from ..cameras import AnyCamera
 from ..io.pictures import check_writable
+from ..io.plots import plotted
 from ..scene.scene import Scene
-from .plots import plotted
 from .table import Column, Table
 from .time_share import TimeShare, time_share
 

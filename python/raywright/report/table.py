@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from ..html_tables import html_table
+from ..io.plots import plotted
 from ..query.rows import frame
-from .plots import plotted
 
 if TYPE_CHECKING:
     from typing_extensions import Self

@@ -5,9 +5,9 @@ from typing import Any, Literal, TypeAlias, get_args
 import numpy as np
 
 from ..arrays import choice, integer
+from ..io.plots import plotted
 from ..scene.scene import Scene
 from .heatmap import COLOURS
-from .plots import plotted
 
 Plane: TypeAlias = Literal["xy", "xz", "yz"]
 

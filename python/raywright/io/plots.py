@@ -4,13 +4,13 @@ from collections.abc import Callable
 from os import PathLike
 from typing import Any
 
-from ..io.pictures import check_writable
+from .pictures import check_writable
 
 NO_MATPLOTLIB = "plots need matplotlib: pip install 'raywright[plot]'"
 _SUFFIXES = (".png", ".svg", ".pdf")
 
 
-def plotted(where: Any, draw: Callable[[Any], object], **figure: Any) -> Any:
+def plotted(where: Any, draw: Callable[[Any], object], solid: bool = False, **figure: Any) -> Any:
     """Draw on axes and return them.
 
     Parameters
@@ -19,6 +19,8 @@ def plotted(where: Any, draw: Callable[[Any], object], **figure: Any) -> Any:
         Where to: a new figure of `matplotlib.pyplot` if None, and with a path one that goes to that file.
     draw : callable
         Takes axes and draws on them.
+    solid : bool
+        Whether the axes have three dimensions.
     **figure
         What a new figure is like, as `matplotlib.figure.Figure` takes it.
 
@@ -27,7 +29,8 @@ def plotted(where: Any, draw: Callable[[Any], object], **figure: Any) -> Any:
     ImportError
         If matplotlib is not installed.
     ValueError
-        If the suffix of the file is not .png, .svg or .pdf.
+        If the suffix of the file is not .png, .svg or .pdf, or axes have two dimensions and not three, or the
+        other way round.
     OSError
         If the file cannot be written.
     TypeError
@@ -35,19 +38,23 @@ def plotted(where: Any, draw: Callable[[Any], object], **figure: Any) -> Any:
     """
     file = check_writable(where, _SUFFIXES, "a plot") if isinstance(where, str | PathLike) else None
     figure["layout"] = "constrained"
+    kind = {"projection": "3d"} if solid else {}
     try:
         if where is None:
             import matplotlib.pyplot as plt
 
-            _, ax = plt.subplots(**figure)
+            _, ax = plt.subplots(**figure, subplot_kw=kind)
         else:
             from matplotlib.axes import Axes
             from matplotlib.figure import Figure
 
             # Without pyplot, which would keep the figure and may want a screen.
-            ax = where if file is None else Figure(**figure).subplots()
+            ax = where if file is None else Figure(**figure).subplots(subplot_kw=kind)
             if not isinstance(ax, Axes):
                 raise TypeError(f"ax must be matplotlib axes or a path, got {type(ax).__name__}")
+            if (ax.name == "3d") != solid:
+                told = "three dimensions: plt.subplots(subplot_kw={'projection': '3d'})" if solid else "two"
+                raise ValueError(f"ax must have {told}{'' if solid else ' dimensions'}")
     except ImportError as error:
         raise ImportError(NO_MATPLOTLIB) from error
     draw(ax)
