@@ -6,9 +6,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..shapes.mesh import Mesh
+from ..shapes.mesh import Mesh, continued
 from ..shapes.sources import named
+from .blender_materials import pbr_of
+from .pbr import Pbr
 from .polygons import LeftOut, mesh_of_polygons
+from .textured import by_number, split_corners
 
 # Kinds of objects that have surfaces.
 _SURFACES = ("MESH", "CURVE", "SURFACE", "META", "FONT")
@@ -29,7 +32,8 @@ _DTYPES = {"INT": np.int32, "INT8": np.int32, "BOOLEAN": np.bool_}
 def of_objects(given: Any) -> Iterator[Mesh]:
     """Yield the meshes of a collection of Blender, of a scene of it, or of ``bpy.data.objects``.
 
-    Lights, cameras and other objects without a surface are left out.
+    Lights, cameras and other objects without a surface are left out, and so are nodes of materials that are
+    not known.
 
     Warns
     -----
@@ -46,12 +50,13 @@ def of_objects(given: Any) -> Iterator[Mesh]:
 
 
 def of_object(given: Any) -> Iterator[Mesh]:
-    """Yield the mesh of an object of Blender with its modifiers, named, and in its place in the world.
+    """Yield a mesh for each material of an object of Blender, with modifiers, named, and in its place.
 
     Warns
     -----
     RuntimeWarning
-        If it is a light, a camera or another object without a surface, and left out.
+        Once, if it is a light, a camera or another object without a surface, and left out, and of parts of
+        its materials without an effect.
     """
     left_out = LeftOut("the objects of Blender")
     found = list(_evaluated(given, left_out))
@@ -71,16 +76,30 @@ def _evaluated(given: Any, left_out: LeftOut) -> Iterator[Mesh]:
     try:
         if mesh is None:
             return
-        [found] = of_mesh(mesh)
+        found = list(_by_material(mesh, left_out))
     finally:
         evaluated.to_mesh_clear()
     matrix = np.array(evaluated.matrix_world, np.float64).reshape(4, 4)
-    placed = found if np.array_equal(matrix, np.eye(4)) else found.transformed(matrix)
-    yield named(placed, given.name)
+    is_moved = not np.array_equal(matrix, np.eye(4))
+    for one in found:
+        yield named(one.transformed(matrix) if is_moved else one, given.name)
 
 
 def of_mesh(mesh: Any) -> Iterator[Mesh]:
-    """Yield the mesh of a bpy.types.Mesh, with attributes of points and faces."""
+    """Yield a mesh for each material of a bpy.types.Mesh, with attributes of points and faces.
+
+    Warns
+    -----
+    RuntimeWarning
+        Once, for parts of materials without an effect.
+    """
+    left_out = LeftOut("the objects of Blender")
+    found = list(_by_material(mesh, left_out))
+    left_out.warn()
+    yield from found
+
+
+def _by_material(mesh: Any, left_out: LeftOut) -> Iterator[Mesh]:
     points = _numbers(mesh.vertices, "co", 3, np.float32)
     corners = _numbers(mesh.loops, "vertex_index", 1, np.int32)
     counts = _numbers(mesh.polygons, "loop_total", 1, np.int32)
@@ -88,7 +107,40 @@ def of_mesh(mesh: Any) -> Iterator[Mesh]:
     if not np.array_equal(starts, np.cumsum(counts) - counts):
         corners = np.concatenate([corners[s : s + n] for s, n in zip(starts, counts, strict=True)])
     of_points, of_faces = _attributes(mesh, "POINT"), _attributes(mesh, "FACE")
-    yield mesh_of_polygons(points, corners, counts, None, of_faces, of_points, name=mesh.name)
+    slots = [None if one is None else pbr_of(one, left_out) for one in getattr(mesh, "materials", ())]
+    uv = _uv(mesh, len(corners)) if any(map(_has_picture, slots)) else None
+    if uv is not None:
+        sources, corners, uv = split_corners(corners, uv, len(points))
+        points, of_points = points[sources], {name: array[sources] for name, array in of_points.items()}
+    numbers = _numbers(mesh.polygons, "material_index", 1, np.int32) if len(slots) > 1 else 0 * counts
+    for i, (number, which) in enumerate(by_number(numbers, len(slots))):
+        pbr = slots[number] if number >= 0 else None
+        is_all = isinstance(which, slice)
+        made = mesh_of_polygons(
+            points,
+            corners if is_all else corners[np.repeat(np.isin(np.arange(len(counts)), which), counts)],
+            counts[which],
+            None if is_all else which,
+            {name: array[which] for name, array in of_faces.items()},
+            of_points,
+            uv=uv,
+            material=None if pbr is None else pbr.material(),
+            emission=None if pbr is None else pbr.emitted(),
+            name=mesh.name,
+        )
+        yield continued(made) if i else made
+
+
+def _uv(mesh: Any, count: int) -> NDArray[Any] | None:
+    """Return the active texture coordinates of corners; None if there are none."""
+    layer = getattr(getattr(mesh, "uv_layers", None), "active", None)
+    return None if layer is None or len(layer.data) != count else _numbers(layer.data, "uv", 2, np.float32)
+
+
+def _has_picture(pbr: Pbr | None) -> bool:
+    return pbr is not None and any(
+        one is not None for one in (pbr.color_picture, pbr.normal_picture, pbr.emission_picture)
+    )
 
 
 def _attributes(mesh: Any, domain: str) -> dict[str, NDArray[Any]]:

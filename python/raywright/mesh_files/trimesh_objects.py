@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..io.quiet import warn_caller
-from ..shapes.mesh import Mesh
+from ..shapes.mesh import Mesh, continued
 from .looks import look_of
 from .polygons import LeftOut
 
@@ -53,10 +53,12 @@ def of_trimesh(mesh: Any, loaded: bool = False, name: object = None) -> Iterator
     left_out = LeftOut("trimesh.Trimesh")
     of_vertices = left_out.values(mesh.vertex_attributes, len(vertices), "vertex attribute")
     of_faces = left_out.values(mesh.face_attributes, len(faces), "face attribute")
+    if getattr(mesh.visual, "kind", None) == "face" and _differ(mesh.visual.face_colors):
+        left_out.add("colors of faces, for which the main one stands")
     left_out.warn()
-    for visual, which in _by_material(mesh.visual, len(faces)):
+    for i, (visual, which) in enumerate(_by_material(mesh.visual, len(faces))):
         look = look_of(visual, len(vertices))
-        yield Mesh(
+        made = Mesh(
             vertices,
             faces[which],
             normals,
@@ -69,6 +71,13 @@ def of_trimesh(mesh: Any, loaded: bool = False, name: object = None) -> Iterator
             {key: array[which] for key, array in of_faces.items()},
             which if isinstance(which, np.ndarray) and len(which) < len(faces) else None,
         )
+        yield continued(made) if i else made
+
+
+def _differ(colors: Any) -> bool:
+    """Return whether some faces have other colors than the first."""
+    rows = np.asarray(colors)
+    return bool(len(rows)) and bool((rows != rows[0]).any())
 
 
 def _by_material(visual: Any, count: int) -> Iterator[tuple[Any, NDArray[np.int64] | slice]]:

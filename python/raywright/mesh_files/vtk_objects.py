@@ -6,7 +6,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..materials import Diffuse
 from ..shapes.mesh import Mesh
+from ..textures import ImageTexture
+from .look import Look, color_look
 from .polygons import LeftOut, mesh_of_polygons
 
 Integers = NDArray[np.integer[Any]]
@@ -14,6 +17,8 @@ Integers = NDArray[np.integer[Any]]
 # The name of the numbers that the surface filter adds, and of what VTK itself adds.
 _CELLS = "raywright cells"
 _OWN = (_CELLS, "vtkGhostType")
+# Point data that are colors by their names, as readers of VTK call them, and `Mesh.to_pyvista`.
+_COLORS = ("RGB", "RGBA", "Colors", "colors")
 
 
 def of_vtk(data: Any) -> Iterator[Mesh]:
@@ -78,17 +83,37 @@ def _mesh(data: Any, name: str | None, left_out: LeftOut) -> Mesh | None:
         # None where all cells are polygons.
         cells = None if len(counts) == count and isinstance(ids, slice) else np.arange(count)[ids]
     normals, uv = of_points.GetNormals(), of_points.GetTCoords()
+    of_vertices = _values(of_points, len(points), left_out)
+    look = _look(data, of_vertices)
     return mesh_of_polygons(
         points,
         corners,
         counts,
         cells,
         of_polygons,
-        _values(of_points, len(points), left_out),
+        of_vertices,
         normals=None if normals is None else _array(normals),
         uv=None if uv is None or uv.GetNumberOfComponents() != 2 else _array(uv),
+        material=look.material,
+        colors=look.colors,
         name=name,
     )
+
+
+def _look(data: Any, of_vertices: dict[str, NDArray[Any]]) -> Look:
+    """Return the look by the texture that pyvista has kept with a mesh, or by colors among point data."""
+    # Versions before 0.43 had them; to_array has rows from the top.
+    textures = list(dict(getattr(data, "textures", None) or {}).values())
+    if textures:
+        return Look(Diffuse(ImageTexture(np.asarray(textures[0].to_array()))))
+    for name in _COLORS:
+        array = of_vertices.get(name)
+        if array is None or array.ndim != 2 or array.shape[1] not in (3, 4) or not len(array):
+            continue
+        is_share = array.dtype.kind == "f" and float(array.min()) >= 0 and float(array.max()) <= 1
+        if array.dtype == np.uint8 or is_share:
+            return color_look(array)
+    return Look()
 
 
 def _surface(data: Any) -> Any:

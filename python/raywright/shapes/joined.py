@@ -15,7 +15,7 @@ def joined(meshes: Sequence[Mesh]) -> Mesh:
     """Return one mesh with the vertices and faces of several, one after the other.
 
     It has the normals, coordinates, colors and attributes that all of them have, and the material and the
-    emission of the first. Cells are counted on from mesh to mesh.
+    emission of the first. Cells are counted on from object to object.
 
     Warns
     -----
@@ -61,9 +61,10 @@ def _common(each: Sequence[Attributes]) -> dict[str, NDArray[Any]]:
 def _cells(meshes: Sequence[Mesh]) -> NDArray[np.int64] | None:
     if all(mesh.cells is None for mesh in meshes):
         return None
-    found, start = [], 0
+    found, start, end = [], 0, 0
     for mesh in meshes:
         own = np.arange(len(mesh.faces)) if mesh.cells is None else mesh.cells
+        start = start if mesh._continues else end
         found.append(own + start)
-        start += int(own.max()) + 1 if len(own) else 0
+        end = max(end, start + int(own.max(initial=-1)) + 1)
     return np.concatenate(found)

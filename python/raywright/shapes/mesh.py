@@ -77,6 +77,8 @@ class Mesh:
     cells: NDArray[np.int64] | None
     # How far rounding has parted corners that are one, where that is more than vertices tell by their digits.
     _noise = 0.0
+    # Whether it is of the same object as the mesh before it, so that both count the cells of that.
+    _continues = False
 
     def __init__(
         self,
@@ -371,6 +373,12 @@ def stretched(distance: float, linear: NDArray[np.float64]) -> float:
 def noisy(mesh: Mesh, noise: float) -> Mesh:
     """Return the mesh, which is told how far rounding has parted its corners before it was transformed."""
     object.__setattr__(mesh, "_noise", noise)
+    return mesh
+
+
+def continued(mesh: Mesh) -> Mesh:
+    """Return the mesh, which is told that it is a part of the object that the mesh before it is of."""
+    object.__setattr__(mesh, "_continues", True)
     return mesh
 
 
