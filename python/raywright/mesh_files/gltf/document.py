@@ -9,6 +9,7 @@ from urllib.parse import unquote, unquote_to_bytes, urlsplit
 
 from ...io.quiet import warn_caller
 from ..beside import cased
+from .meshopt import NAMES, compressed, decompressed
 from .part import Part
 
 _MAGIC, _JSON, _BIN = b"glTF", b"JSON", b"BIN\0"
@@ -16,6 +17,7 @@ _MAGIC, _JSON, _BIN = b"glTF", b"JSON", b"BIN\0"
 # What is read, or changes nothing that is seen.
 _KNOWN = frozenset(
     {
+        *NAMES,
         "EXT_mesh_gpu_instancing",
         "EXT_texture_webp",
         "KHR_draco_mesh_compression",
@@ -60,6 +62,7 @@ class Document:
         self._check_extensions()
         self._told: list[str] = []
         self._buffers: dict[int, memoryview] = {}
+        self._decompressed: dict[int, memoryview | None] = {}
         self._all_buffers = self.root.parts("buffers")
         self._all_views = self.root.parts("bufferViews")
 
@@ -79,13 +82,33 @@ class Document:
 
     def view(self, part: Part, name: str = "bufferView") -> tuple[memoryview, int | None]:
         """Return the bytes of the view that a part names, and how far apart its elements are if it says."""
-        view = self._all_views[part.reference(name, "bufferViews", len(self._all_views))]
-        buffer = self._buffer(view.reference("buffer", "buffers", len(self._all_buffers)))
-        start, length = view.integer("byteOffset", 0), view.integer("byteLength", least=1)
-        if start + length > len(buffer):
-            raise ValueError(f"{view.place} ends at byte {start + length} of a buffer of {len(buffer)}")
+        index = part.reference(name, "bufferViews", len(self._all_views))
+        view = self._all_views[index]
         stride = view.integer("byteStride", least=4, most=252) if "byteStride" in view else None
-        return buffer[start : start + length], stride
+        if index not in self._decompressed:
+            self._decompressed[index] = self._decompress(view)
+        whole = self._decompressed[index]
+        return (self._bytes_of(view) if whole is None else whole), stride
+
+    def _bytes_of(self, part: Part) -> memoryview:
+        """Return the bytes of a buffer that a view tells, or the compressed form of one."""
+        buffer = self._buffer(part.reference("buffer", "buffers", len(self._all_buffers)))
+        start, length = part.integer("byteOffset", 0), part.integer("byteLength", least=1)
+        if start + length > len(buffer):
+            raise ValueError(f"{part.place} ends at byte {start + length} of a buffer of {len(buffer)}")
+        return buffer[start : start + length]
+
+    def _decompress(self, view: Part) -> memoryview | None:
+        """Return the bytes of a view that is compressed; None if it is not, or need not be read so."""
+        told = compressed(view)
+        if told is None:
+            return None
+        is_required = any(name in self.root.texts("extensionsRequired") for name in NAMES)
+        found = decompressed(self.path, told, self._bytes_of(told), is_required)
+        length = view.integer("byteLength", least=1)
+        if found is not None and len(found) < length:
+            raise ValueError(f"{told.place} holds {len(found)} bytes, and its view {length}")
+        return found if found is None else found[:length]
 
     def bytes_at(self, part: Part, length: int | None = None) -> bytes | memoryview:
         """Return what the ``uri`` of a part leads to, and of a file no more than `length` bytes."""
@@ -142,9 +165,6 @@ class Document:
 
     def _check_extensions(self) -> None:
         for name in self.root.texts("extensionsRequired"):
-            if "meshopt_compression" in name:
-                told = "no package on PyPI reads it on all platforms; save the file without it"
-                raise ValueError(f"it is compressed by meshopt ({name[:60]}), which is not supported: {told}")
             if name not in _KNOWN:
                 raise ValueError(f"it needs the extension {name[:60]}, which is not supported")
 
