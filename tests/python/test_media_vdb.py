@@ -10,9 +10,13 @@ import pytest
 import vdb_files as given
 
 import raywright as rw
-from raywright.media.vdb import _Numbers, _Reader
+from raywright.media.vdb import _blosc, _Numbers, _Reader
 
-blosc = pytest.importorskip("blosc")
+numcodecs = pytest.importorskip("numcodecs")
+
+
+def chunk_of_blosc(data, **how):
+    return numcodecs.Blosc(**how).encode(np.frombuffer(data, "<f4"))
 
 
 def test_numbers_are_where_openvdb_has_them():
@@ -65,7 +69,7 @@ def test_half_precision_and_a_place_that_is_turned():
 def test_numbers_that_are_left_out_and_how_the_others_are_packed(said, rest, expected, compression):
     """Of a node of eight, of which the last four are not active: as `writeCompressedValues` has them."""
     numbers = np.array([1.5, 2.5], "<f4").tobytes()
-    pack = {2: lambda data: data, 3: zlib.compress, 6: lambda data: blosc.compress(data, 4)}[compression]
+    pack = {2: lambda data: data, 3: zlib.compress, 6: chunk_of_blosc}[compression]
     packed = pack(numbers)
     length = b"" if compression == 2 else struct.pack("<q", len(packed))
     file = _Reader(bytes([said]) + rest + length + packed)
@@ -74,6 +78,29 @@ def test_numbers_that_are_left_out_and_how_the_others_are_packed(said, rest, exp
     # And as they are, where that is shorter.
     plain = _Reader(bytes([6]) + (b"" if compression == 2 else struct.pack("<q", -32)) + bytes(range(32)))
     assert _Numbers(plain, compression, False).read(8, b"\0").tobytes() == bytes(range(32))
+
+
+@pytest.mark.parametrize("cname", ["lz4", "lz4hc", "blosclz", "zlib", "zstd"])
+@pytest.mark.parametrize("shuffle", [0, 1, 2])
+def test_every_codec_within_blosc_is_read(cname, shuffle):
+    numbers = np.arange(512, dtype="<f4").tobytes()
+    assert _blosc(chunk_of_blosc(numbers, cname=cname, shuffle=shuffle), len(numbers)) == numbers
+
+
+def test_chunks_of_blosc_that_lie_about_their_size_are_refused():
+    """A decoder that believes the header reads beyond the chunk, and writes beyond the node."""
+    numbers = np.arange(512, dtype="<f4").tobytes()
+    chunk = chunk_of_blosc(numbers)
+    for place, said in [(4, 4096), (4, 2**31 - 1), (12, len(chunk) + 1), (12, 2**31 - 1), (12, 16)]:
+        lie = bytearray(chunk)
+        struct.pack_into("<I", lie, place, said)
+        with pytest.raises(ValueError, match="no chunk of Blosc of 2048 bytes"):
+            _blosc(bytes(lie), len(numbers))
+    for cut in (chunk[:15], chunk[:-1], chunk + b"\0"):
+        with pytest.raises(ValueError, match="no chunk of Blosc of 2048 bytes"):
+            _blosc(cut, len(numbers))
+    with pytest.raises(ValueError, match="cannot be decompressed"):
+        _blosc(chunk[:16] + b"\xff" * (len(chunk) - 16), len(numbers))
 
 
 @pytest.mark.parametrize(
@@ -119,6 +146,7 @@ def test_damaged_files_are_refused(tmp_path):
 
 
 def test_without_blosc_it_says_what_to_install(monkeypatch):
-    monkeypatch.setitem(sys.modules, "blosc", None)
+    monkeypatch.setitem(sys.modules, "numcodecs", None)
+    monkeypatch.delitem(sys.modules, "numcodecs.blosc", raising=False)
     with pytest.raises(ImportError, match=r"pip install 'raywright\[vdb\]'"):
         rw.GridMedium.load(given.SMOKE)

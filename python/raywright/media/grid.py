@@ -157,7 +157,7 @@ class GridMedium(Medium):
         FileNotFoundError
             If there is no such file.
         ImportError
-            If it is compressed by Blosc, and the package blosc is not installed.
+            If it is compressed by Blosc, and the package numcodecs is not installed.
         ValueError
             If it cannot be read, and why; and as `GridMedium` does.
         TypeError

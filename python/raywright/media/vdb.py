@@ -43,7 +43,7 @@ def read_vdb(path: Path, names: tuple[str, ...]) -> tuple[dict[str, SparseGrid],
     FileNotFoundError
         If there is no such file.
     ImportError
-        If it is compressed by Blosc, and the package blosc is not installed.
+        If it is compressed by Blosc, and the package numcodecs is not installed.
     ValueError
         If it is no such file, has no such grid or one of another kind, or is damaged.
     """
@@ -271,17 +271,20 @@ def _unzipped(data: bytes, size: int) -> bytes:
 
 
 def _blosc(data: bytes, size: int) -> bytes:
+    """Decompress one chunk of Blosc 1, whose header states `size` bytes."""
     try:
-        blosc = importlib.import_module("blosc")
+        codec = importlib.import_module("numcodecs.blosc").Blosc()
     except ImportError as error:
         raise ImportError(
             "this OpenVDB file is compressed by Blosc, which wants: pip install 'raywright[vdb]'"
         ) from error
-    # The header says how much there will be.
-    if len(data) < 16 or struct.unpack_from("<I", data, 4)[0] != size:
+    # Sizes before and after; the decoder takes both from the header and would read and write that far.
+    if len(data) < 16 or struct.unpack_from("<I4xI", data, 4) != (size, len(data)):
         raise ValueError(f"a node is no chunk of Blosc of {size} bytes")
+    if size == 0:
+        # OpenVDB writes such chunks, which the decoder takes for an error.
+        return b""
     try:
-        found: bytes = blosc.decompress(data)
+        return bytes(codec.decode(data))
     except Exception as error:
         raise ValueError(f"a node cannot be decompressed: {error}") from error
-    return found
