@@ -233,7 +233,7 @@ def test_images_keep_their_shape(gpu):
     np.testing.assert_array_equal(hits.normal, wanted.normal)
 
 
-def test_scenes_larger_than_a_binding_are_split(gpu):
+def test_scenes_larger_than_a_binding_are_split(gpu, monkeypatch):
     scene, rays = rw.Scene(KNOT), random_rays(KNOT, 500)
     most, gpu._most = gpu._most, 1 << 15
     try:
@@ -241,8 +241,10 @@ def test_scenes_larger_than_a_binding_are_split(gpu):
             assert there.bytes > 2 * gpu._most
             assert there.intersect(*rays) == scene.intersect(*rays)
             np.testing.assert_array_equal(there.occluded(*rays), scene.occluded(*rays))
+        # Some devices have a million bindings.
+        monkeypatch.setitem(gpu._device.limits, "max-storage-buffers-per-shader-stage", 8)
         gpu._most = 256
-        with pytest.raises(MemoryError, match="bindings, and the device has"):
+        with pytest.raises(MemoryError, match="bindings, and the device has 8"):
             scene.on(gpu)
     finally:
         gpu._most = most

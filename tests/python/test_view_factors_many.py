@@ -26,6 +26,13 @@ def uneven_room() -> rw.Scene:
     return rw.Scene([*coarse[:3], *fine[3:], rw.Mesh(block.vertices, block.faces)])
 
 
+def test_without_scipy_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "_MOST_DENSE", 10)
+    monkeypatch.setitem(sys.modules, "scipy.sparse", None)
+    with pytest.raises(ImportError, match=r"need scipy: pip install 'raywright\[sparse\]'"):
+        rw.view_factors(uneven_room(), progress=False)
+
+
 def test_rows_by_rays_are_reciprocal_and_add_up(monkeypatch: pytest.MonkeyPatch) -> None:
     found = by_rays(uneven_room(), monkeypatch, rays=64)
     exchanged = found.areas[:, None] * found.matrix.toarray()

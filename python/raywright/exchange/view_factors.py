@@ -278,11 +278,11 @@ def view_factors(
     do, the share that each row loses is estimated too. Standard errors are those before estimates are moved,
     and so are upper bounds.
 
-    More than 10,000 faces have a sparse matrix (scipy is needed), all of it by rays, however little is
-    hidden: of both rows that tell what two faces exchange, one number is made, and rows are scaled so that
-    they add up to 1 in a closed room. It has at most about twice as many entries in a row as a face has
-    rays, of 12 bytes each, and as many of its errors: 100,000 faces of 256 rays take some 1.2 GB, and twice
-    that while they are made.
+    More than 10,000 faces have a sparse matrix (``pip install 'raywright[sparse]'``), all of it by rays,
+    however little is hidden: of both rows that tell what two faces exchange, one number is made, and rows
+    are scaled so that they add up to 1 in a closed room. It has at most about twice as many entries in a row
+    as a face has rays, of 12 bytes each, and as many of its errors: 100,000 faces of 256 rays take some 1.2
+    GB, and twice that while they are made.
 
     Closed forms: contour integrals, Schröder and Hanrahan (1993), Mitalas and Stephenson (1966). Shafts:
     Haines and Wallace (1991).
@@ -401,7 +401,7 @@ def _sparse() -> Any:
     try:
         from scipy.sparse import csr_array
     except ImportError as missing:
-        raise ImportError("sparse view factors need scipy: pip install scipy") from missing
+        raise ImportError("sparse view factors need scipy: pip install 'raywright[sparse]'") from missing
     return csr_array
 
 

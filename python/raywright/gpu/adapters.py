@@ -2,8 +2,9 @@
 
 from typing import Any
 
+from .wgpu_api import imported_wgpu
+
 _FIT = ("Vulkan", "Metal", "D3D12")
-_MISSING = "raywright.Gpu needs wgpu, which is not installed: pip install 'raywright[gpu]'"
 _NONE = (
     "no Vulkan, Metal or D3D12 driver was found: install that of the graphics processor, "
     "or on Linux mesa-vulkan-drivers, which works in software"
@@ -16,7 +17,7 @@ def chosen(adapter: Any) -> Any:
     Raises
     ------
     ImportError
-        If wgpu is not installed.
+        If wgpu is not installed, or lacks something that is called.
     RuntimeError
         If there is no driver that is fit.
     ValueError
@@ -24,10 +25,7 @@ def chosen(adapter: Any) -> Any:
     TypeError
         If `adapter` is anything else.
     """
-    try:
-        import wgpu
-    except ImportError as missing:
-        raise ImportError(_MISSING) from missing
+    wgpu = imported_wgpu()
     if adapter is None:
         try:
             found = wgpu.gpu.request_adapter_sync(power_preference="high-performance")

@@ -16,6 +16,7 @@ from .kernels import limits_of, probed
 from .looks import LeftError
 from .packing import packed
 from .wavefront import Wavefront
+from .wgpu_api import changes_named
 
 # What kernels for pictures know nothing of, as `Scene.plan` calls it.
 _LEFT = (
@@ -43,7 +44,7 @@ class Gpu:
     Raises
     ------
     ImportError
-        If wgpu is not installed.
+        If wgpu is not installed, or lacks something that is called.
     RuntimeError
         If there is no such driver, or the device does not compute as WGSL promises.
     ValueError
@@ -54,15 +55,18 @@ class Gpu:
 
     def __init__(self, adapter: Any = None) -> None:
         found = chosen(adapter)
-        self._limits = limits_of(found)
-        self._name, self._backend = name_of(found), str(found.info["backend_type"])
-        self._device = found.request_device_sync(required_limits=self._limits)
+        given = pairs()
+        # The first use of nearly all that is called.
+        with changes_named():
+            self._limits = limits_of(found)
+            self._name, self._backend = name_of(found), str(found.info["backend_type"])
+            self._device = found.request_device_sync(required_limits=self._limits)
+            computed = probed(self._device, given)
         # What bounds are multiplied by, and what a binding holds: tests change these.
         self._bounds = 1.0
         self._most = min(self._limits["max-storage-buffer-binding-size"], self._limits["max-buffer-size"])
         self._pipelines: dict[str, Any] = {}
-        given = pairs()
-        if wrong := trouble(given, probed(self._device, given)):
+        if wrong := trouble(given, computed):
             raise RuntimeError(f"{self._name} does not compute as WGSL promises: {wrong}")
 
     @property
