@@ -13,10 +13,22 @@ release = version_of("raywright")
 version = release
 
 extensions = ["myst_nb", "sphinx.ext.autodoc", "numpydoc", "reference_pages"]
-exclude_patterns = ["_build"]
+exclude_patterns = ["_build", "_templates"]
 html_theme = "furo"
 html_title = "raywright"
 html_static_path: list[str] = []
+templates_path = ["_templates"]
+# Furo's own, and below them the versions beside this one.
+html_sidebars = {
+    "**": [
+        "sidebar/brand.html",
+        "sidebar/search.html",
+        "sidebar/scroll-start.html",
+        "sidebar/navigation.html",
+        "versions.html",
+        "sidebar/scroll-end.html",
+    ]
+}
 
 # One backtick names a thing in docstrings: it becomes a link where there is such a thing, and code where not.
 default_role = "py:obj"

@@ -9,6 +9,7 @@ import platform
 import shutil
 import subprocess
 import sys
+import sysconfig
 import tarfile
 import zipfile
 from pathlib import Path
@@ -56,8 +57,11 @@ def test_wheel_is_small(tmp_path):
 
 @pytest.mark.skipif("RAYWRIGHT_WHEEL" not in os.environ, reason="no wheel is named")
 def test_wheel_is_for_all_pythons_from_3_10_and_holds_the_package_alone():
+    """A free-threaded Python has a wheel of its own: it cannot load the stable interface."""
     wheel = Path(os.environ["RAYWRIGHT_WHEEL"])
-    assert "-cp310-abi3-" in wheel.name
+    own = "cp{}{}".format(*sys.version_info)
+    is_free = sysconfig.get_config_var("Py_GIL_DISABLED")
+    assert (f"-{own}-{own}t-" if is_free else "-cp310-abi3-") in wheel.name
     names = zipfile.ZipFile(wheel).namelist()
     assert {"raywright/__init__.py", "raywright/_core.pyi", "raywright/py.typed"} <= set(names)
     assert {f"raywright/viewer/page.{kind}" for kind in ("html", "css", "js")} <= set(names)

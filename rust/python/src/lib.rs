@@ -64,7 +64,9 @@ fn simd() -> PyResult<&'static str> {
     Ok(level()?.name())
 }
 
-#[pymodule]
+// Free-threaded interpreters keep their lock off: what threads share is frozen, behind a mutex, or borrowed at run time,
+// and no unsafe code relies on the lock.
+#[pymodule(gil_used = false)]
 mod _core {
     #[pymodule_export]
     use super::cameras::{camera_rays, camera_rays_through};
