@@ -28,7 +28,7 @@ import os
 import platform
 import statistics
 import time
-from importlib.metadata import version
+from importlib.metadata import packages_distributions, version
 from pathlib import Path
 
 # trimesh's arithmetic would have threads of its own otherwise; to be set before numpy is loaded.
@@ -62,6 +62,13 @@ def installed(names):
     return engines
 
 
+def version_of(package):
+    """Return the version of what is imported by a name: open3d may be of the distribution open3d-cpu."""
+    if package == "raywright":
+        return rw.__version__
+    return version(packages_distributions().get(package, [package])[0])
+
+
 def build(engines, subject, times):
     """Give each engine the mesh, several times in turns, and return a record of what that costs each."""
     seconds = {engine.name: [] for engine in engines}
@@ -80,7 +87,7 @@ def build(engines, subject, times):
                 "mesh": subject.name,
                 "triangles": len(subject.faces),
                 "engine": engine.name,
-                "version": version(engine.package),
+                "version": version_of(engine.package),
                 "build_seconds": statistics.median(seconds[engine.name]),
                 "bytes_per_triangle": None if grown is None else grown / len(subject.faces),
             }
@@ -172,7 +179,7 @@ def main():
     add("--json", type=Path, help="a file for all figures, turn by turn")
     options = parser.parse_args()
     machine = {"simd": rw.simd(), "machine": platform.machine(), "cores": os.cpu_count()}
-    print(f"raywright {version('raywright')} at {rw.simd()}, {platform.machine()}, {os.cpu_count()} cores")
+    print(f"raywright {rw.__version__} at {rw.simd()}, {platform.machine()}, {os.cpu_count()} cores")
     engines = installed(["raywright", *(name for name in options.engines if name != "raywright")])
     figures = machine | {"side": options.side, "repeat": options.repeat, "engines": [], "rays": []}
     for mesh in options.mesh or MADE:

@@ -56,12 +56,16 @@ def validate():
 
 
 def peer(cuts):
-    """Time pyViewFactor on the squares of the empty box, and tell how far rows and entries are off."""
-    try:
-        import pyvista
-        from pyviewfactor import compute_viewfactor, get_visibility
-    except ImportError as missing:
-        return f"skipped: {missing}"
+    """Return what pyViewFactor and raywright take on the squares of the empty box, and how they differ.
+
+    Raises
+    ------
+    ImportError
+        If pyViewFactor is not installed.
+    """
+    import pyvista
+    from pyviewfactor import compute_viewfactor, get_visibility
+
     squares = []
     for mesh in room(cuts):
         for pair in mesh.faces.reshape(-1, 6):
@@ -78,13 +82,54 @@ def peer(cuts):
     seconds = time.perf_counter() - start
     start = time.perf_counter()
     ours = rw.view_factors(rw.Scene(room(cuts)), progress=False).matrix
+    own_seconds = time.perf_counter() - start
     ours = ours.reshape(count, 2, count, 2).sum(axis=3).mean(axis=1)
-    rows, own = (np.abs(of.sum(axis=1) - 1).max() for of in (matrix, ours))
+    rows, own_rows = (float(np.abs(of.sum(axis=1) - 1).max()) for of in (matrix, ours))
+    return {
+        "squares": count,
+        "peer_seconds": seconds,
+        "raywright_seconds": own_seconds,
+        "peer_rows_off": rows,
+        "raywright_rows_off": own_rows,
+        "greatest_difference": float(np.abs(matrix - ours).max()),
+    }
+
+
+def with_peer(cuts):
+    """Tell in a line what `peer` returns."""
+    try:
+        r = peer(cuts)
+    except ImportError as missing:
+        return f"skipped: {missing}"
     return (
-        f"{seconds:.1f} s, rows within {rows:.1e}; ours, of twice as many triangles: "
-        f"{time.perf_counter() - start:.2f} s, rows within {own:.1e}; "
-        f"apart by {np.abs(matrix - ours).max():.1e}"
+        f"{r['peer_seconds']:.1f} s, rows within {r['peer_rows_off']:.1e}; ours, of twice as many triangles: "
+        f"{r['raywright_seconds']:.2f} s, rows within {r['raywright_rows_off']:.1e}; "
+        f"apart by {r['greatest_difference']:.1e}"
     )
+
+
+def alone(cuts, rays):
+    """Return a record for the empty box and one for that with a block in it."""
+    records = []
+    for name, shapes in (("empty", room(cuts)), ("with a block", room(cuts) + block())):
+        scene = rw.Scene(shapes)
+        start = time.perf_counter()
+        found = rw.view_factors(scene, rays=rays, progress=False)
+        seconds = time.perf_counter() - start
+        records.append(
+            {
+                "room": name,
+                "triangles": len(found),
+                "seconds": seconds,
+                "closed": found.closed,
+                "hidden": found.hidden,
+                "sampled": found.sampled,
+                "rays": found.rays,
+                "rows_off": float(np.abs(found.rest).max()),
+                "error_of_rows": float(np.sqrt((found.standard_error**2).sum(axis=1)).max()),
+            }
+        )
+    return records
 
 
 def main():
@@ -99,21 +144,16 @@ def main():
     validate()
     print("box and block are as the catalogue has them, and rows add up", flush=True)
     for cuts in arguments.cuts:
-        for name, shapes in (("empty", room(cuts)), ("with a block", room(cuts) + block())):
-            scene = rw.Scene(shapes)
-            start = time.perf_counter()
-            found = rw.view_factors(scene, rays=arguments.rays, progress=False)
-            seconds = time.perf_counter() - start
-            error = np.sqrt((found.standard_error**2).sum(axis=1)).max()
+        for r in alone(cuts, arguments.rays):
             print(
-                f"{len(found)} triangles, {name}: {seconds:.2f} s; pairs: {found.closed} closed, "
-                f"{found.hidden} hidden, {found.sampled} sampled, {found.rays} rays; "
-                f"rows within {np.abs(found.rest).max():.1e}, "
-                f"errors of rows up to {error:.1e}",
+                f"{r['triangles']} triangles, {r['room']}: {r['seconds']:.2f} s; "
+                f"pairs: {r['closed']} closed, {r['hidden']} hidden, {r['sampled']} sampled, "
+                f"{r['rays']} rays; rows within {r['rows_off']:.1e}, "
+                f"errors of rows up to {r['error_of_rows']:.1e}",
                 flush=True,
             )
         if arguments.peer:
-            print(f"{6 * cuts * cuts} squares, empty, pyViewFactor: {peer(cuts)}", flush=True)
+            print(f"{6 * cuts * cuts} squares, empty, pyViewFactor: {with_peer(cuts)}", flush=True)
 
 
 if __name__ == "__main__":
