@@ -104,3 +104,37 @@ def test_what_has_no_area_or_is_not_finite_still_has_its_triangles():
     assert len(triangles) == 8
     assert len(triangulate(points, np.array([], int), np.array([], int))) == 0
     assert len(triangulate(points, np.array([0, 1]), np.array([2]))) == 0
+
+
+def test_quads_become_the_fans_that_their_corners_allow():
+    """From the first corner where both triangles turn as the quad does, and from the second elsewhere."""
+    rng = np.random.default_rng(8)
+    points = rng.normal(size=(400, 3)) * (1, 1, 0)
+    corners = rng.integers(0, 400, 4000)
+    counts = np.full(1000, 4)
+    quads = points[corners.reshape(-1, 4)]
+    sides = quads[:, 1:] - quads[:, :1]
+    turns = np.cross(sides[:, :2], sides[:, 1:])[..., 2]
+    is_fan = (turns > 0).all(axis=1) | (turns < 0).all(axis=1)
+    assert 200 < is_fan.sum() < 800
+    found = triangulate(points, corners, counts).reshape(1000, 2, 3) - 4 * np.arange(1000)[:, None, None]
+    assert (found[is_fan] == [(0, 1, 2), (0, 2, 3)]).all()
+    # What is no fan is cut along the other diagonal, unless it crosses itself or repeats a corner.
+    is_simple = ~is_fan & np.array([_is_simple(quad[:, :2]) for quad in quads])
+    assert is_simple.sum() > 50
+    assert all(
+        {tuple(sorted(t)) for t in pair.tolist()} == {(0, 1, 3), (1, 2, 3)} for pair in found[is_simple]
+    )
+
+
+def _is_simple(quad):
+    """Whether no two sides of a quad that are no neighbours meet, and no corner is there twice."""
+
+    def side(a, b, p):
+        return np.sign((b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]))
+
+    def meet(a, b, c, d):
+        return side(a, b, c) != side(a, b, d) and side(c, d, a) != side(c, d, b)
+
+    a, b, c, d = quad
+    return len({tuple(p) for p in quad}) == 4 and not meet(a, b, c, d) and not meet(b, c, d, a)

@@ -3,6 +3,8 @@
 from collections.abc import Iterator
 from typing import Any
 
+import numpy as np
+
 from ..arrays import indices, real_array
 from ..shapes.mesh import Mesh
 from .polygons import mesh_of_polygons
@@ -25,4 +27,4 @@ def of_pair(vertices: Any, faces: Any) -> Iterator[Mesh]:
     if corners.ndim != 2 or corners.shape[1] < 3:
         told = f"(F, 3), or (F, N) for polygons of N corners, got {corners.shape}"
         raise ValueError(f"faces of a (vertices, faces) pair must have shape {told}")
-    yield mesh_of_polygons(points, corners.reshape(-1), [corners.shape[1]] * len(corners))
+    yield mesh_of_polygons(points, corners.reshape(-1), np.full(len(corners), corners.shape[1]))

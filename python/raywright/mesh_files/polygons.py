@@ -42,14 +42,21 @@ def mesh_of_polygons(
     if (counts == 3).all():
         faces = np.asarray(corners).reshape(-1, 3)
         return Mesh(points, faces, **looks, **_values(vertex_data, polygon_data, cells))
-    if len(corners) and not 0 <= int(corners.min()) <= int(corners.max()) < len(points):
-        at = int(np.argmax((corners < 0) | (corners >= len(points))))
+    corners = np.asarray(corners)
+    try:
+        places = triangulate(np.asarray(points, np.float64), corners.astype(np.int64, copy=False), counts)
+    except ValueError:
+        is_out = (corners < 0) | (corners >= len(points))
+        if not is_out.any():
+            raise
+        at = int(np.argmax(is_out))
         which = int(np.searchsorted(np.cumsum(counts), at, "right"))
-        raise ValueError(f"face {which} has vertex {corners[at]}, but there are {len(points)} vertices")
-    places = triangulate(np.asarray(points, np.float64), np.asarray(corners, np.int64), counts)
-    # As meshes keep them, so that they are not converted once more.
-    faces = np.asarray(corners).astype(np.uint32)[places]
-    polygon = polygon_of(counts)
+        told = f"face {which} has vertex {corners[at]}, but there are {len(points)} vertices"
+        raise ValueError(told) from None
+    # As meshes keep them, so that they are neither converted nor copied once more.
+    faces, polygon = corners.astype(np.uint32)[places], polygon_of(counts)
+    for array in (faces, polygon):
+        array.setflags(write=False)
     data = {name: array[polygon] for name, array in (polygon_data or {}).items()}
     owner = polygon if cells is None else cells[polygon]
     return Mesh(points, faces, **looks, **_values(vertex_data, data, owner))

@@ -22,10 +22,7 @@ pub fn triangulate_polygons<'py>(
     if counts.iter().sum::<usize>() != corners.len() || !corners.iter().all(is_there) {
         return Err(PyValueError::new_err("polygons have other corners than there are"));
     }
-    let found = py.detach(|| {
-        let triangles = triangulate(points, corners, &counts);
-        triangles.into_iter().map(|t| t.map(|i| i as i64)).collect::<Vec<_>>()
-    });
+    let found = py.detach(|| triangulate(points, corners, &counts));
     let count = found.len();
     found.into_flattened().into_pyarray(py).reshape([count, 3])
 }

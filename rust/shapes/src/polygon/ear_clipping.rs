@@ -21,18 +21,33 @@ const MOST_CROSSINGS: u32 = 64;
 /// remain as they are: a simple polygon in a plane is covered exactly once, and so is one whose holes are connected to
 /// its outline by edges that are passed twice. Corners that lie on the edge between their neighbours get triangles with
 /// an area if possible. Polygons that are not finite or without area become fans.
-pub fn triangulate(points: &[[f64; 3]], corners: &[i64], counts: &[usize]) -> Vec<[usize; 3]> {
+pub fn triangulate(points: &[[f64; 3]], corners: &[i64], counts: &[usize]) -> Vec<[i64; 3]> {
+    let corner = |i: usize| DVec3::from_array(points[corners[i] as usize]);
     let mut triangles = Vec::with_capacity(corners.len());
     let mut ring = Vec::new();
     let mut effort = EFFORT + EFFORT_PER_CORNER * corners.len() as u64;
     let mut first = 0;
     for &count in counts {
+        let start = first as i64;
+        // Most polygons are quads, which need no ring of their own.
+        if count == 4 {
+            let (a, b, c, d) = (corner(first), corner(first + 1), corner(first + 2), corner(first + 3));
+            let (front, back) = ((b - a).cross(c - a), (c - a).cross(d - a));
+            let total = front + back;
+            if front.dot(total) > 0.0 && back.dot(total) > 0.0 {
+                triangles.push([start, start + 1, start + 2]);
+                triangles.push([start, start + 2, start + 3]);
+                first += 4;
+                continue;
+            }
+        }
         ring.clear();
-        ring.extend(corners[first..first + count].iter().map(|&i| DVec3::from_array(points[i as usize])));
+        ring.extend((first..first + count).map(corner));
         let clipped = if is_fan(&ring) { None } else { projected(&ring) };
         match clipped {
-            Some(flat) => Ring::new(&flat).clip(&mut effort, |ear| triangles.push(ear.map(|i| i + first))),
-            None => triangles.extend((2..count).map(|i| [first, first + i - 1, first + i])),
+            Some(flat) => Ring::new(&flat)
+                .clip(&mut effort, |[a, b, c]| triangles.push([start + a as i64, start + b as i64, start + c as i64])),
+            None => triangles.extend((2..count as i64).map(|i| [start, start + i - 1, start + i])),
         }
         first += count;
     }
@@ -252,7 +267,7 @@ mod tests {
 
     fn alone(ring: &[[f64; 3]]) -> Vec<[usize; 3]> {
         let all: Vec<_> = (0..ring.len() as i64).collect();
-        triangulate(ring, &all, &[ring.len()])
+        triangulate(ring, &all, &[ring.len()]).into_iter().map(|t| t.map(|i| i as usize)).collect()
     }
 
     /// Asserts that triangles cover a ring once: none turns the other way, all have its area together, and edges that
