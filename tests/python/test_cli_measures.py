@@ -150,6 +150,23 @@ def test_a_scan_is_a_cloud_of_points(folder):
     assert np.array_equal(np.load(folder / "scan.npy"), place)
 
 
+def test_a_place_sees_what_nothing_hides(folder):
+    corner = ["--from", 5, 0, 0]
+    found = table(run("visibility", "box.ply", *corner, cwd=folder))
+    assert list(found) == ["x", "y", "z", "value", "distance"]
+    # Of a box, the side that faces it.
+    assert np.array_equal(found["value"], (found["x"] == 1.0).astype(float))
+    place = np.stack([found[k] for k in "xyz"], axis=-1)
+    assert np.allclose(found["distance"], np.linalg.norm(place - (5, 0, 0), axis=1), rtol=1e-14)
+    # Before it, and behind it.
+    np.save(folder / "p.npy", [(2.0, 0, 0), (-2.0, 0, 0)])
+    found = table(run("visibility", "box.ply", *corner, "--points", "p.npy", cwd=folder))
+    assert found["value"].tolist() == [1, 0]
+    run("visibility", "box.ply", *corner, "--at", "vertices", "-o", "seen.ply", "--quiet", cwd=folder)
+    seen = rw.Mesh.of(folder / "seen.ply")
+    assert np.array_equal(seen.vertex_attributes["value"], seen.vertices[:, 0] == 1.0)
+
+
 @pytest.mark.parametrize("verb", VERBS)
 def test_help_has_an_example_that_is_parsed(verb, tmp_path):
     done = shell(verb, "--help", cwd=tmp_path)
@@ -211,6 +228,10 @@ def test_wrong_use_is_one_line_and_status_2(folder, verb, arguments, message):
             r"argument --points: t\.npy must hold real numbers of shape .*, got float64 of \(2, 2\)",
         ),
         (["visibility", "box.ply", "--radius", "0"], r"argument --radius: must be greater than 0, got 0"),
+        (
+            ["visibility", "box.ply", "--radius", "1", "--from", "0", "0", "0"],
+            "argument --radius: not allowed with argument --from",
+        ),
         (["thickness", "box.ply", "--method", "x"], r"argument --method: invalid choice: .*"),
         (["lidar", "box.ply", "--dropout", "2"], r"argument --dropout: must be between 0 and 1, got 2"),
         (["lidar", "box.ply", "--forward", "0", "1", "0"], r"forward must not be along up, .*"),

@@ -2,7 +2,7 @@
 
 import argparse
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from ..io.pictures import check_writable
 from ..materials import Diffuse
 from ..mesh_files.meshes import load
+from ..query.hits import SurfacePoints
 from ..scene.scene import Scene
 from ..shapes.joined import joined
 from ..shapes.mesh import Mesh, replaced
@@ -56,7 +57,8 @@ def add(verbs: Any) -> None:
 
     visibility = verbs.add_parser(
         "visibility",
-        help="how open it is around faces, vertices or points: 1 less ambient occlusion",
+        help="how open it is around faces, vertices or points, or which of them a place sees",
+        description="Without --from: 1 less ambient occlusion. With it: 1 for what is seen from there, or 0.",
         epilog="example: raywright visibility statue.ply --at vertices --radius 0.5 -o statue_ao.ply",
     )
     visibility.set_defaults(run=_visibility)
@@ -66,6 +68,9 @@ def add(verbs: Any) -> None:
         metavar="R",
         type=number(float),
         help="how far what stands in the way counts (default: all)",
+    )
+    visibility.add_argument(
+        "--from", dest="viewer", nargs=3, metavar=("X", "Y", "Z"), type=finite, help="a place to see from"
     )
     _add_rays(visibility)
     _add_lidar(verbs)
@@ -193,7 +198,31 @@ def _sky(options: argparse.Namespace) -> None:
 def _visibility(options: argparse.Namespace) -> None:
     from ..measure import ambient_visibility
 
+    if options.viewer is not None:
+        if options.radius is not None:
+            options.refuse("argument --radius: not allowed with argument --from")
+        _measured(options, "visibility", partial(_seen, options.viewer))
+        return
     _sampled(options, "visibility", partial(ambient_visibility, radius=options.radius))
+
+
+def _seen(
+    viewer: Sequence[float],
+    scene: Scene,
+    points: Any,
+    normals: Any = None,
+    offset: float | None = None,
+    progress: Any = None,
+    threads: int | None = None,
+) -> dict[str, NDArray[Any]]:
+    """Return which points are seen from a place, and how far away they are."""
+    from ..measure import line_of_sight
+
+    where = points.position if isinstance(points, SurfacePoints) else points
+    if offset:
+        where = where + offset * normals / np.linalg.norm(normals, axis=1, keepdims=True)
+    found = line_of_sight(scene, viewer, where, threads=threads)
+    return {"value": found.visible.astype(np.float64), "distance": found.distance}
 
 
 def _sampled(options: argparse.Namespace, what: str, measure: Callable[..., Any]) -> None:
@@ -234,6 +263,8 @@ def _measured(options: argparse.Namespace, what: str, measure: Callable[..., Any
 
 
 def _columns(result: Any) -> dict[str, NDArray[Any]]:
+    if isinstance(result, dict):
+        return result
     return {"value": result} if isinstance(result, np.ndarray) else result.to_dict()
 
 
