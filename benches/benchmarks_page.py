@@ -61,14 +61,9 @@ def read(out):
     return {name: json.loads(file.read_text("utf-8")) for name, file in files.items() if file.exists()}
 
 
-def measure(name, sizes, out):
-    """Measure a section, and keep its figures."""
+def measure(name, sizes, out, state):
+    """Measure a section on a machine in such a state, and keep its figures."""
     today = datetime.datetime.now(datetime.timezone.utc).date().isoformat()
-    state = machine()
-    if state["load"] > _BUSY:
-        print(
-            f"{name}: the machine is busy, its load is {state['load']:.2f}: figures will be wrong", flush=True
-        )
     records, seconds = timed(name, sizes)
     print(f"{name}: {seconds:.0f} s", flush=True)
     found = {"date": today, "machine": state, "seconds": round(seconds, 1), "records": _short(records)}
@@ -114,7 +109,11 @@ def main():
     today = datetime.datetime.now(datetime.timezone.utc).date().isoformat()
     done = {name for name, found in read(options.out).items() if options.resume and found["date"] == today}
     wanted = [] if options.write else [name for name in options.section or SECTIONS if name not in done]
-    seconds = sum(measure(name, sizes, options.out) for name in wanted)
+    # Once, since sections load the machine themselves.
+    state = machine()
+    if wanted and state["load"] > _BUSY:
+        print(f"The machine is busy, its load is {state['load']:.2f}: figures will be wrong", flush=True)
+    seconds = sum(measure(name, sizes, options.out, state) for name in wanted)
     write(options.out)
     print(f"{options.out / 'benchmarks.md'}: {seconds:.0f} s in all")
 
