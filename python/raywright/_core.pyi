@@ -919,10 +919,12 @@ def tree(
 
 def coincident_faces(
     scene: CompiledScene,
-) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.bool_], NDArray[np.float64]]:
-    """Return pairs of triangles that share a part of one plane (K,2), and what they share.
+    touching: bool,
+) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_], NDArray[np.float64]]:
+    """Return pairs of faces that share a part of one plane (K,2), and what they share.
 
-    The areas in common (K,), whether both look the same way (K,), and the areas of all faces (N,).
+    The areas in common (K,), whether both look the same way (K,), whether they touch front to front (K,), if
+    `touching`, and the areas of all faces (N,).
     """
 
 def view_factor_matrix(

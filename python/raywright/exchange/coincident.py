@@ -123,7 +123,11 @@ def merged(laid: LaidOut, both: bool = False, stacklevel: int = 3) -> tuple[Laid
         If faces that look the same way coincide, in part or as a whole.
     """
     curved = _same_shapes(laid)
-    pairs, areas, same, own = _core.coincident_faces(laid.scene._compiled())
+    pairs, areas, same, touch, own = _core.coincident_faces(laid.scene._compiled(), both)
+    is_mesh = np.concatenate([np.zeros(0, np.bool_), *(_is_mesh(shape) for shape in laid.scene.shapes)])
+    flat = is_mesh[pairs].all(axis=1)
+    shapes_too = pairs[same & ~flat]
+    pairs, areas, same, touch = pairs[flat], areas[flat], same[flat], touch[flat]
     order = np.lexsort((pairs[:, 0], pairs[:, 1]))
     parts: dict[int, list[tuple[int, float]]] = {face: [(twin, 1.0)] for face, twin in curved.items()}
     partly: set[int] = set()
@@ -133,6 +137,7 @@ def merged(laid: LaidOut, both: bool = False, stacklevel: int = 3) -> tuple[Laid
             parts[face] = before
         elif before:
             partly.add(face)
+    partly |= {other for one, other in shapes_too.tolist() if one not in parts and other not in parts}
     if partly:
         warnings.warn(
             f"{len(partly)} of {len(own)} faces overlap others in a part of one plane, "
@@ -148,7 +153,8 @@ def merged(laid: LaidOut, both: bool = False, stacklevel: int = 3) -> tuple[Laid
             RuntimeWarning,
             stacklevel=stacklevel,
         )
-    turned = _backs(pairs[~same], areas[~same], own, set(parts)) if both else {}
+    sheets = ~same & ~touch
+    turned = _backs(pairs[sheets], areas[sheets], own, set(parts)) if both else {}
     if not parts and not turned:
         return laid, NOTHING
     covered = Covered.of(parts | turned, own, set(turned))
@@ -226,6 +232,11 @@ def _same_shapes(laid: LaidOut) -> dict[int, int]:
 def _place(shape: Shape) -> tuple[Any, ...]:
     values = {part.name: getattr(shape, part.name) for part in fields(shape) if part.name not in _LOOKS}
     return type(shape), *((name, np.asarray(value).tobytes()) for name, value in values.items())
+
+
+def _is_mesh(shape: AnyShape) -> NDArray[np.bool_]:
+    """Return for each face of a shape whether it is one of a mesh."""
+    return np.ones(len(shape.faces), np.bool_) if isinstance(shape, Mesh) else np.zeros(1, np.bool_)
 
 
 def _shrunk(shape: AnyShape, gone: NDArray[np.bool_]) -> AnyShape:

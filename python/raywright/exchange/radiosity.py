@@ -123,9 +123,11 @@ def radiosity(
 
     Notes
     -----
-    Faces without area exchange nothing. Eight replicates, each of rays of its own, give the standard error;
-    the most that unshot power may add is a part of it. Within each, what is emitted is
-    absorbed, has left or is unshot, to rounding. Iterations end by ‖unshot‖ / (1 - the greatest reflectance).
+    Where flat faces touch front to front, as a box and the floor beneath do, the covered part of each
+    exchanges light with the other alone. Faces without area exchange nothing. Eight replicates, each of
+    rays of its own, give the standard error; the most that unshot power may add is a part of it. Within
+    each, what is emitted is absorbed, has left or is unshot, to rounding. Iterations end by ‖unshot‖ / (1
+    - the greatest reflectance).
 
     The error of "stochastic" is the root mean square over the area, of patches each by itself: what comes to
     a patch is known by the rays that land there, so that N patches take about N / `error`² rays for the light

@@ -267,7 +267,8 @@ def view_factors(
     Warns
     -----
     RuntimeWarning
-        If faces coincide: they are one, which exchanges light once.
+        If faces coincide: they are one, which exchanges light once. If they overlap in a part, or one is no
+        mesh, what they exchange there counts twice.
 
     Notes
     -----
@@ -277,6 +278,10 @@ def view_factors(
     A room is closed if none of at least 65,536 rays from its sampled faces meets a back or nothing. If some
     do, the share that each row loses is estimated too. Standard errors are those before estimates are moved,
     and so are upper bounds.
+
+    Where flat faces touch front to front, as a box or the cap of a cylinder and the floor beneath do, all
+    that leaves the covered part of one comes to the other. Two triangles exchange the area in common; the
+    share of a shape that is no mesh is sampled, as its row is. An `Implicit` is taken to have no flat parts.
 
     More than 10,000 faces have a sparse matrix (``pip install 'raywright[sparse]'``), all of it by rays,
     however little is hidden: of both rows that tell what two faces exchange, one number is made, and rows

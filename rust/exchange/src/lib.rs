@@ -5,5 +5,5 @@ mod view_factors;
 
 pub use radiosity::{Enclosure, Shots, Sides};
 pub use view_factors::{
-    Aim, Facet, Matrix, Overlap, Quadrature, Sampled, Sparse, areas, coincident, matrix, pair, sparse,
+    Aim, Facet, Fronts, Matrix, Quadrature, Sampled, SharedPlane, Sparse, areas, matrix, pair, shared_planes, sparse,
 };

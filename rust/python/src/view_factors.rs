@@ -5,7 +5,7 @@ use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 
 use super::query::CompiledScene;
-use raywright::exchange::{Aim, areas, coincident, matrix, sparse};
+use raywright::exchange::{Aim, Fronts, areas, matrix, shared_planes, sparse};
 use raywright::work::{Stopped, Watch, Work};
 use raywright::workers::watched;
 
@@ -81,21 +81,36 @@ pub fn view_factor_rows<'py>(
     Ok((PyArray1::from_vec(py, areas(scene)), rows, found.rays))
 }
 
-/// Pairs of triangles that share a part of one plane, the areas in common, and whether both look the same way; and the
-/// areas of all faces.
-type Coincident<'py> =
-    (Bound<'py, PyArray2<i64>>, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<bool>>, Bound<'py, PyArray1<f64>>);
+/// Pairs of faces that share a part of one plane, the areas in common, whether both look the same way, and whether they
+/// touch front to front, if that is wanted; and the areas of all faces.
+type Coincident<'py> = (
+    Bound<'py, PyArray2<i64>>,
+    Bound<'py, PyArray1<f64>>,
+    Bound<'py, PyArray1<bool>>,
+    Bound<'py, PyArray1<bool>>,
+    Bound<'py, PyArray1<f64>>,
+);
 
-/// Triangles that share a part of one plane.
+/// Faces that share a part of one plane.
 #[pyfunction]
-pub fn coincident_faces<'py>(py: Python<'py>, scene: &Bound<'py, CompiledScene>) -> PyResult<Coincident<'py>> {
+pub fn coincident_faces<'py>(
+    py: Python<'py>,
+    scene: &Bound<'py, CompiledScene>,
+    touching: bool,
+) -> PyResult<Coincident<'py>> {
     let scene = &scene.get().0;
-    let (found, areas) = py.detach(|| (coincident(scene), areas(scene)));
-    let faces = found.iter().flat_map(|overlap| overlap.faces.map(i64::from)).collect();
+    let (found, touch, areas) = py.detach(|| {
+        let found = shared_planes(scene);
+        let fronts = if touching { Fronts::among(scene, &found) } else { Fronts::default() };
+        let touch: Vec<bool> = found.iter().map(|shared| fronts.touch(shared.faces)).collect();
+        (found, touch, areas(scene))
+    });
+    let faces = found.iter().flat_map(|shared| shared.faces.map(i64::from)).collect();
     Ok((
         PyArray1::from_vec(py, faces).reshape([found.len(), 2])?,
-        PyArray1::from_iter(py, found.iter().map(|overlap| overlap.area)),
-        PyArray1::from_iter(py, found.iter().map(|overlap| overlap.is_same)),
+        PyArray1::from_iter(py, found.iter().map(|shared| shared.area)),
+        PyArray1::from_iter(py, found.iter().map(|shared| shared.is_same)),
+        PyArray1::from_vec(py, touch),
         PyArray1::from_vec(py, areas),
     ))
 }

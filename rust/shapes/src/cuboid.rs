@@ -4,7 +4,7 @@ use super::line::Line;
 use super::meeting::tell;
 use super::solid::{Meet, Meets, Solid};
 use super::triangle::{nearest_point, point_of};
-use super::{Bounds, Candidate, Carried, Closest, Contact, Drawn, Point, Shape};
+use super::{Bounds, Candidate, Carried, Closest, Contact, Drawn, Flat, Point, Shape};
 use raywright_base::math::robust::UNIT;
 use raywright_base::math::{Affine, Bounded, DVec3, Number, Ray, Triple};
 use std::cmp::Ordering;
@@ -21,6 +21,22 @@ pub struct Cuboid {
     /// The greatest corner, nowhere less.
     pub max: DVec3,
 }
+
+/// Two triangles a face, of corners numbered by x + 2 y + 4 z, anticlockwise as seen from outside.
+const FACES: [[usize; 3]; 12] = [
+    [0, 2, 1],
+    [1, 2, 3],
+    [4, 5, 6],
+    [5, 7, 6],
+    [0, 1, 4],
+    [1, 5, 4],
+    [2, 6, 3],
+    [3, 6, 7],
+    [0, 4, 2],
+    [2, 4, 6],
+    [1, 3, 5],
+    [3, 7, 5],
+];
 
 /// Within a cell, so that rounding leads into no other.
 const WITHIN: f64 = 1.0 / (1u64 << 50) as f64;
@@ -214,6 +230,12 @@ impl Solid for Cuboid {
 }
 
 impl Shape for Cuboid {
+    fn flats(&self) -> Vec<Flat> {
+        let pick = |number: usize, axis: usize| (if number >> axis & 1 == 0 { self.min } else { self.max })[axis];
+        let corner = |number: usize| DVec3::new(pick(number, 0), pick(number, 1), pick(number, 2));
+        FACES.iter().map(|face| Flat::Triangle(face.map(corner))).collect()
+    }
+
     fn closest(&self, place: DVec3) -> Option<Closest> {
         let (below, above) = (self.min - place, place - self.max);
         // By face, how far the place is beyond it; of a place inside all are 0 at most, and the greatest is nearest.

@@ -5,7 +5,7 @@ use super::line::Line;
 use super::meeting::tell;
 use super::plane::crossing;
 use super::solid::{Meets, Solid};
-use super::{Bounds, Candidate, Carried, Closest, Drawn, Point, Shape};
+use super::{Bounds, Candidate, Carried, Closest, Drawn, Flat, Point, Shape};
 use raywright_base::math::robust::UNIT;
 use raywright_base::math::{Affine, DVec3, Frame, Number, Ray, Triple};
 use raywright_base::sampling::warp::uniform_disk;
@@ -185,6 +185,12 @@ impl Solid for Disk {
 }
 
 impl Shape for Disk {
+    fn flats(&self) -> Vec<Flat> {
+        let Frame { tangent, bitangent, .. } = self.frame();
+        let axes = [tangent * self.radius, bitangent * self.radius];
+        vec![Flat::Ellipse { center: self.center, axes, inner: self.inner_radius / self.radius }]
+    }
+
     fn is_closed(&self) -> bool {
         false
     }

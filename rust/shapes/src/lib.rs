@@ -10,6 +10,7 @@ mod disk;
 mod ellipsoid;
 #[cfg(test)]
 mod exact_hits;
+mod flat;
 mod gap;
 mod implicit;
 mod line;
@@ -36,6 +37,7 @@ pub use contact::{Candidate, Contact};
 pub use cuboid::Cuboid;
 pub use disk::Disk;
 pub use ellipsoid::Ellipsoid;
+pub use flat::Flat;
 pub use gap::gap_under;
 pub use implicit::Implicit;
 pub use line::{Carried, Line};

@@ -1,6 +1,6 @@
 //! Any shape, moved by an affine map.
 
-use super::{Bounds, Candidate, Carried, Closest, Drawn, Point, Shape};
+use super::{Bounds, Candidate, Carried, Closest, Drawn, Flat, Point, Shape};
 use raywright_base::math::robust::UNIT;
 use raywright_base::math::{Affine, DVec3, Ray, Singular};
 use std::sync::Arc;
@@ -103,6 +103,10 @@ impl Shape for Placed {
 
     fn facing(&self) -> Option<DVec3> {
         self.to_world.normal(self.shape.facing()?).try_normalize()
+    }
+
+    fn flats(&self) -> Vec<Flat> {
+        self.shape.flats().iter().map(|flat| flat.mapped(&self.to_world)).collect()
     }
 
     fn is_closed(&self) -> bool {

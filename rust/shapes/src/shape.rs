@@ -1,6 +1,6 @@
 //! What every shape that is no triangle can be asked.
 
-use super::{Candidate, Carried, Closest};
+use super::{Candidate, Carried, Closest, Flat};
 use raywright_base::math::robust::UNIT;
 use raywright_base::math::{Affine, DVec3, Ray};
 use std::fmt::Debug;
@@ -193,6 +193,11 @@ pub trait Shape: Debug + Send + Sync {
     /// The unit normal that all of its points have; none where they differ.
     fn facing(&self) -> Option<DVec3> {
         None
+    }
+
+    /// The parts of its surface that are flat.
+    fn flats(&self) -> Vec<Flat> {
+        Vec::new()
     }
 
     /// Whether it encloses a part of space: what has an edge does not.

@@ -60,7 +60,11 @@ impl Enclosure {
             return Err(format!("face {face} of shape {shape} has no area, or no end: it cannot exchange light"));
         }
         let all = if sides == Sides::Both { 2 * count } else { count };
-        let fronts = if sides == Sides::Front { Fronts::new(scene) } else { Fronts::default() };
+        let fronts = match sides {
+            Sides::Front => Fronts::new(scene),
+            // Of a sheet each side is met as the other side's back.
+            Sides::Both => Fronts::of_touching(scene),
+        };
         let mut made = Self { patches, sides, areas, emission: Vec::new(), reflectance: Vec::new(), fronts };
         let looks = parallel::collect(all as usize, |source| made.look(scene, source as u32));
         let looks: Vec<(Rgb, Rgb)> = looks.into_iter().collect::<Result<_, _>>()?;
@@ -125,27 +129,54 @@ impl Enclosure {
         if source < count { (source, 1.0) } else { (source - count, -1.0) }
     }
 
-    /// The source that a ray from a place on a face meets; none if it meets what is black, or nothing.
+    /// The source that a ray from a place on a side of a face meets; none if it meets what is black, or nothing.
+    ///
+    /// Where two faces touch front to front, what leaves the one comes to the other, and within their solids rays meet
+    /// backs.
     #[inline]
-    pub(super) fn met(&self, scene: &Scene, from: (u32, DVec3), ray: &Ray, hit: &Hit) -> Option<u32> {
-        if !self.fronts.is_empty() {
-            let (face, uv) = self.fronts.met(scene, from, ray, hit)?;
+    pub(super) fn met(
+        &self,
+        scene: &Scene,
+        (from, side, place): (u32, f64, DVec3),
+        ray: &Ray,
+        hit: &Hit,
+    ) -> Option<u32> {
+        if self.sides == Sides::Front && !self.fronts.is_empty() {
+            let (face, uv) = self.fronts.met(scene, (from, place), ray, hit)?;
+            return Some(self.patches.find(face, uv).0);
+        }
+        if side > 0.0
+            && let Some((face, uv)) = self.fronts.touching(from, place)
+        {
             return Some(self.patches.find(face, uv).0);
         }
         if !hit.is_hit() {
             return None;
         }
-        let (patch, _) = self.patches.find(hit.primitive, hit.uv);
         let geometry = scene.geometry();
+        let (mut patch, _) = self.patches.find(hit.primitive, hit.uv);
         let normal = match geometry.shape(hit.primitive) {
             None => geometry.normal(hit.primitive),
             Some(_) => geometry.surface(ray, hit).normal,
         };
-        match (ray.direction.dot(normal) <= 0.0, self.sides) {
+        let mut is_front = ray.direction.dot(normal) <= 0.0;
+        if is_front && self.fronts.is_touched(hit.primitive) {
+            let place = geometry.surface(ray, hit).position;
+            if let Some((face, uv)) = self.fronts.touching(hit.primitive, place) {
+                (patch, is_front) = (self.patches.find(face, uv).0, false);
+            }
+        }
+        match (is_front, self.sides) {
             (true, _) => Some(patch),
             (false, Sides::Both) => Some(patch + self.patches.count() as u32),
             (false, Sides::Front) => None,
         }
+    }
+
+    /// Whether another face touches a side of a face at a place, so that no light comes to it.
+    #[inline]
+    pub(super) fn is_touched(&self, (face, side, place): (u32, f64, DVec3)) -> bool {
+        side > 0.0 && self.fronts.touching(face, place).is_some()
     }
 
     /// The area of a source.

@@ -27,6 +27,9 @@ pub(super) fn irradiance(
         for number in 0..count {
             let mut sampler = kind.sampler(seed, source, number);
             let Some(origin) = Origin::draw(scene, enclosure, source, sampler.two(0)) else { continue };
+            if enclosure.is_touched(origin.place()) {
+                continue;
+            }
             let normal = origin.surface.normal * origin.side;
             let from = RayOrigin::new(&origin.surface);
             let receiver = LightSampleContext { position: from.ray(normal).origin, normal, waves: None };

@@ -1,7 +1,7 @@
 //! Where the rays of a patch start.
 
 use super::Enclosure;
-use raywright_base::math::{Frame, Ray};
+use raywright_base::math::{DVec3, Frame, Ray};
 use raywright_base::sampling::warp::{cosine_hemisphere, uniform_triangle};
 use raywright_scene::{RayOrigin, Scene, SurfacePoint};
 
@@ -10,7 +10,9 @@ pub(super) struct Origin {
     pub surface: SurfacePoint,
     /// 1 for the side of the normal, −1 for the other.
     pub side: f64,
-    /// The triangle that rays leave, which is flat and so does not see itself.
+    /// The face that rays leave.
+    pub face: u32,
+    /// The same if it is a triangle, which is flat and so does not see itself.
     pub triangle: u32,
 }
 
@@ -22,11 +24,17 @@ impl Origin {
         let (geometry, cell) = (scene.geometry(), enclosure.patches.cell(patch));
         let Some(shape) = geometry.shape(cell.primitive) else {
             let surface = geometry.on_triangle(cell.primitive, cell.at(uniform_triangle(u)));
-            return Some(Self { surface, side, triangle: cell.primitive });
+            return Some(Self { surface, side, face: cell.primitive, triangle: cell.primitive });
         };
         let drawn = shape.sample(u)?;
         let surface = geometry.on_shape(cell.primitive, &drawn.point.site());
-        Some(Self { surface, side, triangle: Ray::NO_TRIANGLE })
+        Some(Self { surface, side, face: cell.primitive, triangle: Ray::NO_TRIANGLE })
+    }
+
+    /// Its face, the side of that, and where it is.
+    #[inline]
+    pub fn place(&self) -> (u32, f64, DVec3) {
+        (self.face, self.side, self.surface.position)
     }
 
     /// The ray that leaves it into the direction that two numbers draw by the cosine.

@@ -230,13 +230,13 @@ fn follow(scene: &Scene, enclosure: &Enclosure, piece: &[(u32, u32, u32)], key: 
         for number in from..from + count {
             let mut sampler = kind.sampler(key, source, number);
             let origin = Origin::draw(scene, enclosure, source, sampler.two(0));
-            places.push(origin.as_ref().map_or((Ray::NO_TRIANGLE, DVec3::ZERO), |o| (o.triangle, o.surface.position)));
+            places.push(origin.as_ref().map_or((Ray::NO_TRIANGLE, 1.0, DVec3::ZERO), Origin::place));
             rays.push(origin.map_or(NOWHERE, |origin| origin.leave(sampler.two(1))));
         }
     }
     let mut hits = vec![Hit::MISS; rays.len()];
     scene.intersect(&rays, &mut hits);
-    let to = |((ray, hit), &from): ((&Ray, &Hit), &(u32, DVec3))| {
+    let to = |((ray, hit), &from): ((&Ray, &Hit), &(u32, f64, DVec3))| {
         let lost = if hit.is_hit() { BEHIND } else { ESCAPED };
         enclosure.met(scene, from, ray, hit).unwrap_or(lost)
     };

@@ -138,7 +138,8 @@ impl Balance<'_> {
         let of = |face: u32| {
             let facet = &self.facets[face as usize];
             let count = rays(face);
-            let draw = |number| leaving(self.scene, face, facet, &mut kind.sampler(self.seed ^ SALT, face, number));
+            let from = (face, self.areas[face as usize]);
+            let draw = |number| leaving(self.scene, from, facet, &mut kind.sampler(self.seed ^ SALT, face, number));
             let drawn: Vec<(Ray, f64, DVec3)> = (0..count).map(draw).collect();
             let rays: Vec<Ray> = drawn.iter().map(|drawn| drawn.0).collect();
             let mut hits = vec![Hit::MISS; rays.len()];

@@ -68,12 +68,14 @@ impl<'a> Rows<'a> {
         wanted: impl Fn(u32, f64, f64) -> f64,
     ) -> (Vec<Entry>, u32) {
         let rays = aim.row_rays;
+        // Of a stretched shape it takes an integral.
+        let from = (primitive, self.scene.geometry().area(primitive));
         let size = BatchSize::for_budget(Some(rays));
         let (mut done, mut target) = (0, rays.next_multiple_of(size.samples()).max(2 * size.samples()));
         loop {
             while done < target {
                 let to = target.min(done + TOGETHER.max(size.samples()));
-                self.send(primitive, facet, size, done..to);
+                self.send(from, facet, size, done..to);
                 done = to;
             }
             let batches = f64::from(done / size.samples());
@@ -99,14 +101,15 @@ impl<'a> Rows<'a> {
         }
     }
 
-    fn send(&mut self, primitive: u32, facet: &Facet, size: BatchSize, samples: std::ops::Range<u32>) {
+    fn send(&mut self, from: (u32, f64), facet: &Facet, size: BatchSize, samples: std::ops::Range<u32>) {
+        let primitive = from.0;
         let kind = SamplerKind::Sobol(size);
         self.rays.clear();
         self.weights.clear();
         self.places.clear();
         for sample in samples {
             let mut sampler = kind.sampler(self.seed, primitive, sample);
-            let (ray, weight, place) = leaving(self.scene, primitive, facet, &mut sampler);
+            let (ray, weight, place) = leaving(self.scene, from, facet, &mut sampler);
             self.rays.push(ray);
             self.weights.push(weight);
             self.places.push(place);
@@ -139,9 +142,14 @@ impl<'a> Rows<'a> {
     }
 }
 
-/// A ray that leaves a face even by area and by the cosine, what it counts, and where it starts. One that counts
-/// nothing keeps its place in its batch.
-pub fn leaving(scene: &Scene, primitive: u32, facet: &Facet, sampler: &mut Sampler) -> (Ray, f64, DVec3) {
+/// A ray that leaves a face of an area even by area and by the cosine, what it counts, and where it starts. One that
+/// counts nothing keeps its place in its batch.
+pub fn leaving(
+    scene: &Scene,
+    (primitive, area): (u32, f64),
+    facet: &Facet,
+    sampler: &mut Sampler,
+) -> (Ray, f64, DVec3) {
     let geometry = scene.geometry();
     let (u, v) = (sampler.two(1), sampler.two(3));
     let direction = warp::cosine_hemisphere(v);
@@ -150,7 +158,7 @@ pub fn leaving(scene: &Scene, primitive: u32, facet: &Facet, sampler: &mut Sampl
             Some(drawn) => {
                 let site = drawn.point.site();
                 let point = geometry.on_shape(primitive, &site);
-                let weight = 1.0 / (drawn.pdf * shape.area());
+                let weight = 1.0 / (drawn.pdf * area);
                 (RayOrigin::new(&point), point.normal, weight, point.position)
             }
             None => (RayOrigin::free(facet.centre), facet.normal, 0.0, facet.centre),

@@ -20,7 +20,7 @@ pub struct Overlap {
 }
 
 /// Of coordinates that all are numbers of single precision, what their roundings may make of a plane, and of others.
-const SINGLE: f64 = 1.0 / (1u64 << 22) as f64;
+pub const SINGLE: f64 = 1.0 / (1u64 << 22) as f64;
 const DOUBLE: f64 = 1.0 / (1u64 << 48) as f64;
 
 /// A smaller share of the smaller triangle is what roundings make of neighbours.
@@ -71,12 +71,16 @@ fn visit(facets: &[Facet], tree: &Clusters, one: &Cluster, other: &Cluster, foun
 
 /// The area that two triangles of one plane have in common, and its middle; `None` if they are not of one plane.
 pub fn overlap(one: &Facet, other: &Facet) -> Option<(f64, DVec3)> {
+    overlap_within(one, other, rounding(one).min(rounding(other)))
+}
+
+/// The same of planes that are no farther apart than this.
+pub fn overlap_within(one: &Facet, other: &Facet, room: f64) -> Option<(f64, DVec3)> {
     // Normals tell quickly; of slender triangles they are not known well.
     if one.normal.dot(other.normal).abs() < 0.99 || one.centre.distance(other.centre) >= one.radius + other.radius {
         return None;
     }
     let (larger, smaller) = if one.area >= other.area { (one, other) } else { (other, one) };
-    let room = rounding(one).min(rounding(other));
     let is_flat = smaller.corners.iter().all(|&corner| larger.normal.dot(corner - larger.centre).abs() <= room);
     if !is_flat {
         return None;
@@ -106,7 +110,7 @@ pub fn overlap(one: &Facet, other: &Facet) -> Option<(f64, DVec3)> {
 }
 
 /// How far roundings of its corners may move a triangle's plane.
-fn rounding(facet: &Facet) -> f64 {
+pub fn rounding(facet: &Facet) -> f64 {
     let coordinates = facet.corners.map(|corner| corner.to_array());
     let is_single = coordinates.as_flattened().iter().all(|&x| f64::from(x as f32) == x);
     let most = coordinates.as_flattened().iter().fold(0.0f64, |most, x| most.max(x.abs()));

@@ -124,9 +124,14 @@ impl Facet {
 
     /// Whether a point of the plane is within, or next to it.
     pub fn covers(&self, point: DVec3) -> bool {
+        self.covers_by(point, -NEXT)
+    }
+
+    /// Whether a point of the plane is within, and by so many radii away from its border.
+    pub fn covers_by(&self, point: DVec3, margin: f64) -> bool {
         (0..3).all(|i| {
             let (from, edge) = (self.corners[i], self.corners[(i + 1) % 3] - self.corners[i]);
-            self.normal.cross(edge).dot(point - from) >= -NEXT * self.radius * edge.length()
+            self.normal.cross(edge).dot(point - from) >= margin * self.radius * edge.length()
         })
     }
 

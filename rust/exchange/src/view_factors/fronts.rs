@@ -1,19 +1,19 @@
 //! Which front a ray meets, also where two faces lie back to back, or touch front to front.
 
-use super::coincident::{Overlap, coincident};
-use super::facet::Facet;
-use raywright_accel::Primitives;
+use super::flats::{Part, SharedPlane, shared_planes};
 use raywright_base::math::{DVec3, Frame, Hit, Ray};
 use raywright_base::parallel;
 use raywright_base::sampling::{BatchSize, SamplerKind, warp};
 use raywright_scene::{RayOrigin, Scene};
 use std::collections::BTreeMap;
 
-/// A face in the plane of another that looks the other way.
+/// A face, a flat part of which lies in the plane of another and looks the other way.
 #[derive(Clone, Debug)]
 struct Opposite {
     face: u32,
-    facet: Facet,
+    part: Part,
+    /// How far from its plane places of the other are at most that lie in it: of a triangle all do.
+    room: f64,
     /// Whether both touch front to front; else they lie back to back, as both sides of a sheet do.
     touches: bool,
 }
@@ -27,17 +27,33 @@ pub struct Fronts {
     opposite: BTreeMap<u32, Vec<Opposite>>,
 }
 
+impl Opposite {
+    /// Whether it lies at a place of the other.
+    #[inline]
+    fn holds(&self, place: DVec3) -> bool {
+        self.part.covers(place) && (self.room == f64::INFINITY || self.part.height(place).abs() <= self.room)
+    }
+}
+
 impl Fronts {
     /// Those of a scene.
     pub fn new(scene: &Scene) -> Self {
-        let pairs: Vec<Overlap> = coincident(scene).into_iter().filter(|overlap| !overlap.is_same).collect();
+        Self::among(scene, &shared_planes(scene))
+    }
+
+    /// Those among all faces of a scene that share planes.
+    pub fn among(scene: &Scene, shared: &[SharedPlane]) -> Self {
+        let pairs: Vec<&SharedPlane> = shared.iter().filter(|shared| !shared.is_same).collect();
         let mut opposite = BTreeMap::<u32, Vec<Opposite>>::new();
-        let facet = |face| Facet::new(scene.geometry().corners(face));
-        for [i, j] in pairs.iter().flat_map(|pair| [pair.faces, [pair.faces[1], pair.faces[0]]]) {
-            opposite.entry(i).or_default().push(Opposite { face: j, facet: facet(j), touches: false });
+        for SharedPlane { faces, parts, room, .. } in &pairs {
+            for (one, other) in [(0, 1), (1, 0)] {
+                let room = if scene.geometry().shape(faces[one]).is_some() { *room } else { f64::INFINITY };
+                let found = Opposite { face: faces[other], part: parts[other], room, touches: false };
+                opposite.entry(faces[one]).or_default().push(found);
+            }
         }
         let mut found = Self { opposite };
-        let touches = parallel::map(pairs.len(), |i| found.is_touching(scene, &pairs[i]));
+        let touches = parallel::map(pairs.len(), |i| found.is_touching(scene, pairs[i]));
         for (pair, _) in pairs.iter().zip(touches).filter(|(_, touches)| *touches) {
             for [i, j] in [pair.faces, [pair.faces[1], pair.faces[0]]] {
                 let all = found.opposite.get_mut(&i).into_iter().flatten();
@@ -47,18 +63,33 @@ impl Fronts {
         found
     }
 
+    /// Those alone that touch front to front.
+    pub fn of_touching(scene: &Scene) -> Self {
+        let mut found = Self::new(scene);
+        found.opposite.retain(|_, all| {
+            all.retain(|opposite| opposite.touches);
+            !all.is_empty()
+        });
+        found
+    }
+
     /// Whether two faces touch front to front.
     ///
     /// Where they do, at least one is of a solid, and the front of the other looks into that: most rays from there meet
-    /// backs. Those that meet a sheet, or faces that touch, tell nothing.
-    fn is_touching(&self, scene: &Scene, pair: &Overlap) -> bool {
+    /// backs. Those that meet a sheet, or faces that touch, tell nothing. Closed shapes are solids whose flat parts
+    /// look outwards.
+    fn is_touching(&self, scene: &Scene, pair: &SharedPlane) -> bool {
         /// Rays from each of both.
         const RAYS: u32 = 32;
         let geometry = scene.geometry();
+        if pair.faces.iter().any(|&face| geometry.shape(face).is_some_and(|shape| shape.is_closed())) {
+            return true;
+        }
         let kind = SamplerKind::Sobol(BatchSize::for_budget(Some(4 * RAYS)));
-        let looks_into = |face: u32| {
-            let normal = Facet::new(geometry.corners(face)).normal;
-            let origin = RayOrigin::off(pair.middle, geometry.error(face), normal);
+        let looks_into = |(face, part): (u32, &Part)| {
+            let normal = part.normal();
+            let error = if geometry.shape(face).is_some() { pair.room } else { geometry.error(face) };
+            let origin = RayOrigin::off(pair.middle, error, normal);
             let way = |number| warp::cosine_hemisphere(kind.sampler(0, face, number).two(1));
             let ray = |number| Ray { misses: pair.faces, ..origin.ray(Frame::new(normal).to_world(way(number))) };
             let rays: Vec<Ray> = (0..RAYS).map(ray).collect();
@@ -75,7 +106,7 @@ impl Fronts {
             }
             backs > fronts
         };
-        pair.faces.iter().any(|&face| looks_into(face))
+        pair.faces.into_iter().zip(&pair.parts).any(looks_into)
     }
 
     /// Whether no face has another in its plane that looks the other way.
@@ -89,10 +120,12 @@ impl Fronts {
         self.opposite.get(&face).is_some_and(|all| all.iter().any(|found| found.touches))
     }
 
-    /// Whether another face touches this one at a place, so that nothing else is seen from there.
+    /// The face that touches this one at a place, so that nothing else is seen from there, and the weights of its
+    /// second and third corner.
     #[inline]
-    pub fn is_touched_at(&self, face: u32, place: DVec3) -> bool {
-        self.at(face, place).is_some_and(|found| found.touches)
+    pub fn touching(&self, face: u32, place: DVec3) -> Option<(u32, [f64; 2])> {
+        let found = self.at(face, place).filter(|found| found.touches)?;
+        Some((found.face, found.part.weights(place)))
     }
 
     /// Whether two faces touch front to front.
@@ -104,18 +137,27 @@ impl Fronts {
     /// there; `None` if it meets a back alone, or nothing.
     #[inline]
     pub fn met(&self, scene: &Scene, (from, place): (u32, DVec3), ray: &Ray, hit: &Hit) -> Option<(u32, [f64; 2])> {
-        if let Some(found) = self.at(from, place).filter(|found| found.touches) {
-            return Some((found.face, found.facet.weights(place)));
+        if let Some(found) = self.touching(from, place) {
+            return Some(found);
         }
         if !hit.is_hit() {
             return None;
         }
         let surface = scene.geometry().surface(ray, hit);
         if surface.is_front(ray) {
-            return Some((hit.primitive, hit.uv));
+            return (!self.lies_under(hit.primitive, surface.position)).then_some((hit.primitive, hit.uv));
         }
         let found = self.at(hit.primitive, surface.position).filter(|found| !found.touches)?;
-        Some((found.face, found.facet.weights(surface.position)))
+        Some((found.face, found.part.weights(surface.position)))
+    }
+
+    /// Whether a ray that meets the front of a face at a place has met the back of another there, which touches it.
+    /// Next to the borders of solids, which rays from outside do not get under, roundings may seem to say so.
+    #[inline]
+    fn lies_under(&self, face: u32, place: DVec3) -> bool {
+        /// As a share of the other's size.
+        const BORDER: f64 = 1e-6;
+        self.at(face, place).is_some_and(|found| found.touches && found.part.covers_by(place, BORDER))
     }
 
     /// The face that lies at a place of another and looks the other way.
@@ -124,6 +166,6 @@ impl Fronts {
         if self.opposite.is_empty() {
             return None;
         }
-        self.opposite.get(&face)?.iter().find(|found| found.facet.covers(place))
+        self.opposite.get(&face)?.iter().find(|found| found.holds(place))
     }
 }

@@ -7,6 +7,7 @@ mod coincident;
 mod contour;
 mod distant;
 mod facet;
+mod flats;
 mod fronts;
 mod hinge;
 mod matrix;
@@ -21,9 +22,9 @@ mod sparse;
 mod tests;
 mod told;
 
-pub use coincident::{Overlap, coincident};
 pub use distant::Quadrature;
 pub use facet::Facet;
+pub use flats::{SharedPlane, shared_planes};
 pub use fronts::Fronts;
 pub use matrix::{Matrix, matrix};
 pub use pair::pair;

@@ -119,7 +119,8 @@ impl Pairs<'_> {
             return None;
         }
         let misses = [faces[piece.from], faces[1 - piece.from]];
-        if self.fronts.is_touched_at(misses[0], start) || self.fronts.is_touched_at(misses[1], end) {
+        let touching = |side: usize, place| self.fronts.touching(misses[side], place);
+        if touching(0, start).or_else(|| touching(1, end)).is_some() {
             return Some((None, weight));
         }
         let errors = misses.map(|face| self.scene.geometry().error(face));

@@ -8,7 +8,7 @@ mod tests;
 mod trapezoids;
 
 use super::triangle::{nearest_point, point_of};
-use super::{Bounds, Candidate, Closest, Drawn, Point, Shape};
+use super::{Bounds, Candidate, Closest, Drawn, Flat, Point, Shape};
 use crossing::Line;
 pub use ear_clipping::triangulate;
 use glam::DVec2;
@@ -210,6 +210,16 @@ impl Polygon {
 }
 
 impl Polygon {
+    /// A point of the plane by the coordinates that are kept, relative to where u and v are 0.
+    fn relative_to_corner(&self, flat: DVec2) -> DVec3 {
+        let mut relative = [0.0; 3];
+        let (i, j) = (self.kept[0], self.kept[1]);
+        let k = 3 - i - j;
+        (relative[i], relative[j]) = (flat.x - self.corner[i], flat.y - self.corner[j]);
+        relative[k] = -(relative[i] * self.normal[i] + relative[j] * self.normal[j]) / self.normal[k];
+        DVec3::from_array(relative)
+    }
+
     /// Its edges, as the rings go.
     fn edges(&self) -> impl Iterator<Item = (DVec3, DVec3)> {
         self.rings.iter().flat_map(|ring| ring.iter().copied().zip(ring.iter().copied().cycle().skip(1)))
@@ -226,6 +236,18 @@ impl Polygon {
 }
 
 impl Shape for Polygon {
+    fn flats(&self) -> Vec<Flat> {
+        let triangles = self.parts.iter().flat_map(|part| {
+            let [a, b, c, d] = part.corners().map(|corner| self.corner + self.relative_to_corner(corner));
+            [[a, b, c], [a, c, d]]
+        });
+        let outwards = triangles.map(|[a, b, c]| {
+            let is_turned = (b - a).cross(c - a).dot(self.normal) < 0.0;
+            Flat::Triangle(if is_turned { [a, c, b] } else { [a, b, c] })
+        });
+        outwards.collect()
+    }
+
     fn is_closed(&self) -> bool {
         false
     }
@@ -296,13 +318,7 @@ impl Shape for Polygon {
         let before = if part > 0 { self.shares[part - 1] } else { 0.0 };
         // The number that chose is stretched over what it chose, so that near numbers stay near points.
         let rest = ((u[0] - before) / (self.shares[part] - before)).clamp(0.0, 1.0);
-        let flat = self.parts[part].sample([rest, u[1]]);
-        let mut relative = [0.0; 3];
-        let (i, j) = (self.kept[0], self.kept[1]);
-        let k = 3 - i - j;
-        (relative[i], relative[j]) = (flat.x - self.corner[i], flat.y - self.corner[j]);
-        relative[k] = -(relative[i] * self.normal[i] + relative[j] * self.normal[j]) / self.normal[k];
-        let point = self.point_at(self.uv(DVec3::from_array(relative)));
+        let point = self.point_at(self.uv(self.relative_to_corner(self.parts[part].sample([rest, u[1]]))));
         Some(Drawn { point, pdf: 1.0 / self.area })
     }
 }

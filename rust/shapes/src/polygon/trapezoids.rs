@@ -19,6 +19,13 @@ impl Trapezoid {
         0.5 * (low + high) * (self.top - self.bottom)
     }
 
+    /// Its corners: left and right at the bottom, right and left at the top.
+    pub fn corners(&self) -> [DVec2; 4] {
+        let [[left, right], [top_left, top_right]] = self.spans;
+        let (low, high) = (self.bottom, self.top);
+        [DVec2::new(left, low), DVec2::new(right, low), DVec2::new(top_right, high), DVec2::new(top_left, high)]
+    }
+
     /// A point of it, even by area.
     pub fn sample(&self, u: [f64; 2]) -> DVec2 {
         let [low, high] = self.widths();

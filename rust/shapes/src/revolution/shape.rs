@@ -6,8 +6,8 @@ use crate::closest::of_segment;
 use crate::line::Line;
 use crate::meeting::tell;
 use crate::solid::{Meets, Solid};
-use crate::{Bounds, Candidate, Carried, Closest, Drawn, Point, Shape};
-use raywright_base::math::{Affine, Bounded, DVec3, Number, Ray, Triple};
+use crate::{Bounds, Candidate, Carried, Closest, Drawn, Flat, Point, Shape};
+use raywright_base::math::{Affine, Bounded, DVec3, Frame, Number, Ray, Triple};
 
 impl Solid for Revolution {
     fn meets<N: Number>(&self, line: &Line<N>) -> Option<Meets<N>> {
@@ -65,6 +65,15 @@ fn of_parabola(rim: f64, height: f64, [across, up]: [f64; 2]) -> [f64; 2] {
 }
 
 impl Shape for Revolution {
+    fn flats(&self) -> Vec<Flat> {
+        let Frame { tangent, bitangent, .. } = self.frame().0;
+        let [base, tip] = self.radii();
+        // The outside of the base lies before it.
+        let caps = [(self.base, bitangent * base, tangent * base), (self.tip, tangent * tip, bitangent * tip)];
+        let caps = caps.into_iter().filter(|cap| self.capped && cap.1 != DVec3::ZERO);
+        caps.map(|(center, a, b)| Flat::Ellipse { center, axes: [a, b], inner: 0.0 }).collect()
+    }
+
     fn is_closed(&self) -> bool {
         self.capped
     }
