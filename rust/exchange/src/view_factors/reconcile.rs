@@ -62,7 +62,7 @@ fn multipliers(terms: &[Term], wanted: &[Option<f64>], scales: &[f64], error: f6
     let mut is_careful = false;
     let mut residual = residuals(terms, wanted, &slack, &lambda);
     for _ in 0..STEPS {
-        let off = residual.iter().zip(scales).fold(0.0f64, |most, (r, scale)| most.max(r.abs() / scale));
+        let off = worst(&residual, scales);
         waited = if off < 0.5 * best.0 { 0 } else { waited + 1 };
         if off < best.0 {
             best = (off, lambda.clone());
@@ -99,7 +99,13 @@ fn multipliers(terms: &[Term], wanted: &[Option<f64>], scales: &[f64], error: f6
         }
     }
     let sums = residuals(terms, wanted, &vec![0.0; wanted.len()], &best.1);
-    (sums.iter().zip(scales).fold(0.0f64, |most, (r, scale)| most.max(r.abs() / scale)), best.1)
+    (worst(&sums, scales), best.1)
+}
+
+/// By which share of its row's scale a sum is off at most; infinitely where one is no number.
+fn worst(residual: &[f64], scales: &[f64]) -> f64 {
+    let shares = residual.iter().zip(scales).map(|(r, scale)| r.abs() / scale);
+    shares.fold(0.0f64, |most, share| if share.is_nan() { f64::INFINITY } else { most.max(share) })
 }
 
 /// A term with these multipliers, and whether it is free to move.
@@ -293,6 +299,16 @@ mod tests {
         }
         // Newton's method may come to rest at a bound: of 3,000 such problems it does so in 5.
         assert!(stuck <= 2, "{stuck}");
+    }
+
+    #[test]
+    fn a_sum_that_is_no_number_is_never_right() {
+        assert_eq!(worst(&[0.0, f64::NAN, 1.0], &[1.0; 3]), f64::INFINITY);
+        let term = |rows, value| Term { rows, value, variance: 0.1, most: 1.0 };
+        let mut terms = [term([0, 0], f64::NAN), term([1, 1], 0.3)];
+        reconcile(&mut terms, &[Some(0.5), Some(0.4)], &[1.0; 2]);
+        // Other rows are no worse than before.
+        assert!(terms[0].value.is_nan() && (0.3..=0.4).contains(&terms[1].value), "{terms:?}");
     }
 
     #[test]
