@@ -1,6 +1,6 @@
 //! Vectors by lane: each coordinate in an array of its own, so that a loop over lanes becomes vectors.
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use std::fmt::Debug;
 
 /// Lanes that go together.
@@ -36,10 +36,53 @@ impl VectorLanes {
         [&self.x, &self.y, &self.z]
     }
 
+    /// One coordinate of all lanes.
+    #[inline(always)]
+    pub fn axis_mut(&mut self, axis: usize) -> &mut [f64; LANES] {
+        [&mut self.x, &mut self.y, &mut self.z][axis]
+    }
+
     /// Sets that of a lane.
     #[inline(always)]
     pub fn set(&mut self, lane: usize, v: DVec3) {
         (self.x[lane], self.y[lane], self.z[lane]) = (v.x, v.y, v.z);
+    }
+}
+
+/// Vectors of f32, a lane each.
+#[derive(Clone, Copy, Debug)]
+pub struct SingleLanes(pub [[f32; LANES]; 3]);
+
+impl SingleLanes {
+    /// Zero in every lane.
+    pub const ZERO: Self = Self([[0.0; LANES]; 3]);
+
+    /// That of a lane.
+    #[inline(always)]
+    pub fn get(&self, lane: usize) -> Vec3 {
+        Vec3::new(self.0[0][lane], self.0[1][lane], self.0[2][lane])
+    }
+
+    /// Sets that of a lane.
+    #[inline(always)]
+    pub fn set(&mut self, lane: usize, v: Vec3) {
+        (self.0[0][lane], self.0[1][lane], self.0[2][lane]) = (v.x, v.y, v.z);
+    }
+}
+
+/// Sixteen of a column, in its order; the last may be the same. Where they are neighbours, as survivors of a stage mostly
+/// are, they are read as vectors.
+#[inline(always)]
+pub fn gather<T: Copy>(column: &[T], which: &[u32; LANES], to: &mut [T; LANES]) {
+    let (first, end) = (which[0] as usize, which[LANES - 1] as usize);
+    let are_neighbours = end == first + LANES - 1 && which[LANES - 2] as usize + 1 == end;
+    match column.get(first..first + LANES) {
+        Some(neighbours) if are_neighbours => to.copy_from_slice(neighbours),
+        _ => {
+            for (to, &i) in to.iter_mut().zip(which) {
+                *to = column[i as usize];
+            }
+        }
     }
 }
 

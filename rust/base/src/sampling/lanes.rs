@@ -12,12 +12,12 @@ use crate::timing::{Part, timed};
 /// Samples of one picture, a lane each.
 #[derive(Clone, Debug)]
 pub struct SamplerLanes {
-    kind: SamplerKind,
+    pub(super) kind: SamplerKind,
     key: [u32; 2],
-    pixel: [u32; LANES],
-    sample: [u32; LANES],
+    pub(super) pixel: [u32; LANES],
+    pub(super) sample: [u32; LANES],
     /// Where each batch's stream starts; nothing where numbers are independent.
-    words: [[u32; 4]; LANES],
+    pub(super) words: [[u32; 4]; LANES],
 }
 
 /// A pair a lane, each number in an array of its own.
@@ -90,7 +90,7 @@ impl SamplerLanes {
     }
 
     #[inline(always)]
-    fn block(&self, lane: usize, dimension: u32) -> [u32; 4] {
+    pub(super) fn block(&self, lane: usize, dimension: u32) -> [u32; 4] {
         philox4x32([dimension / 2, self.sample[lane], self.pixel[lane], 0], self.key)
     }
 
@@ -133,7 +133,7 @@ loops! {
 }
 
 #[inline(always)]
-fn joined(low: u32, high: u32) -> u64 {
+pub(super) fn joined(low: u32, high: u32) -> u64 {
     u64::from(high) << 32 | u64::from(low)
 }
 

@@ -4,6 +4,7 @@ mod bits;
 // For the tests of all crates: what is not called is not linked.
 #[doc(hidden)]
 pub mod chi_square;
+mod columns;
 mod discrete;
 mod halton;
 mod kind;
@@ -21,6 +22,7 @@ pub mod warp;
 #[cfg(test)]
 mod tests;
 
+pub use columns::SamplerColumns;
 pub use discrete::AliasTable;
 pub use kind::{BatchSize, SamplerKind};
 pub use lanes::{Pairs, SamplerLanes};

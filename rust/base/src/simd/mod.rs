@@ -8,6 +8,7 @@
 mod arm;
 mod level;
 mod loops;
+mod pack;
 mod pair;
 mod scalar;
 mod transpose;
@@ -18,6 +19,7 @@ mod x86;
 pub use arm::Neon;
 pub use level::{Dispatch, Kernel, Level};
 pub use loops::loops;
+pub use pack::{Column, Word, pack};
 pub use pair::Pair;
 pub use scalar::Scalar;
 pub use transpose::columns_of_four;

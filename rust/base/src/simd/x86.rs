@@ -22,6 +22,7 @@ pub struct Avx2(());
 
 impl Avx2 {
     /// Some on a processor that has it.
+    #[inline]
     pub fn detect() -> Option<Self> {
         // Every processor with AVX2 has the others, and kernels are compiled for them.
         let has = is_x86_feature_detected!("avx2")
@@ -40,6 +41,7 @@ pub struct Avx512(());
 
 impl Avx512 {
     /// Some on a processor that has it.
+    #[inline]
     pub fn detect() -> Option<Self> {
         let has = is_x86_feature_detected!("avx512f")
             && is_x86_feature_detected!("avx512vl")

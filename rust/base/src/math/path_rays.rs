@@ -1,0 +1,70 @@
+//! Rays of a wavefront of paths, by columns.
+
+use super::{DVec3, LANES, Numbers, Ray, RayColumns, Vectors};
+
+/// Rays that leave surfaces, by columns. Origins keep the digits of f64: what leaves a surface must not be rounded.
+/// Directions are unit vectors, and f32 has enough of their digits for light.
+///
+/// Every column has room for sixteen more than there are rays, so that loops of sixteen lanes need no end of their own.
+#[derive(Clone, Debug, Default)]
+pub struct PathRays {
+    /// Number of rays.
+    pub len: usize,
+    /// Origins, by axis.
+    pub origin: [Vec<f64>; 3],
+    /// Unit directions, by axis.
+    pub direction: [Vec<f32>; 3],
+    /// The greatest `t` that counts, in lengths of the direction. Empty if all rays are endless.
+    pub t_max: Vec<f64>,
+    /// The triangle that each ray leaves and, of those that end, the triangle that it goes to, or
+    /// [`Ray::NO_TRIANGLE`]: it misses both.
+    pub misses: Vec<[u32; 2]>,
+}
+
+impl PathRays {
+    /// Room for so many rays, endless or not.
+    pub fn with_room(most: usize, are_endless: bool) -> Self {
+        let room = most + LANES;
+        Self {
+            len: 0,
+            origin: [const { Vec::new() }; 3].map(|_: Vec<f64>| vec![0.0; room]),
+            direction: [const { Vec::new() }; 3].map(|_: Vec<f32>| vec![0.0; room]),
+            t_max: vec![f64::INFINITY; if are_endless { 0 } else { room }],
+            misses: vec![[Ray::NO_TRIANGLE; 2]; room],
+        }
+    }
+
+    /// The greatest `t` of a ray.
+    #[inline(always)]
+    pub fn end(&self, i: usize) -> f64 {
+        self.t_max.get(i).copied().unwrap_or(f64::INFINITY)
+    }
+
+    /// The direction of a ray.
+    #[inline(always)]
+    pub fn direction(&self, i: usize) -> DVec3 {
+        DVec3::new(self.direction[0][i].into(), self.direction[1][i].into(), self.direction[2][i].into())
+    }
+
+    /// The origin of a ray.
+    #[inline(always)]
+    pub fn origin(&self, i: usize) -> DVec3 {
+        DVec3::new(self.origin[0][i], self.origin[1][i], self.origin[2][i])
+    }
+
+    /// One ray, all in f64.
+    #[inline(always)]
+    pub fn get(&self, i: usize) -> Ray {
+        Ray { t_max: self.end(i), misses: self.misses[i], ..Ray::new(self.origin(i), self.direction(i)) }
+    }
+
+    /// All of them.
+    pub fn columns(&self) -> RayColumns<'_> {
+        let some = self.len;
+        let origin = Vectors::Double(self.origin.each_ref().map(|column| &column[..some]));
+        let direction = Vectors::Single(self.direction.each_ref().map(|column| &column[..some]));
+        let t_max =
+            if self.t_max.is_empty() { Numbers::One(f64::INFINITY) } else { Numbers::Each(&self.t_max[..some]) };
+        RayColumns::new(origin, direction, Numbers::One(0.0), t_max).missing(&self.misses[..some])
+    }
+}

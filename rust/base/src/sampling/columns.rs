@@ -1,0 +1,155 @@
+//! The numbers of a batch of samples, by columns.
+
+use super::bits::number;
+use super::lanes::joined;
+use super::{Sampler, SamplerKind, SamplerLanes};
+use crate::math::single::lesser;
+use crate::math::{LANES, gather};
+use crate::simd::{Level, loops};
+
+/// Samples of one picture, whose numbers are asked for sixteen at a time.
+#[derive(Clone, Debug)]
+pub struct SamplerColumns {
+    /// Which numbers they have.
+    all: SamplerLanes,
+    pixel: Vec<u32>,
+    sample: Vec<u32>,
+    /// Where each batch's stream starts; nothing where numbers are independent.
+    words: Vec<[u32; 4]>,
+}
+
+/// The greatest f32 below 1.
+const BELOW_ONE: f32 = 1.0 - f32::EPSILON / 2.0;
+
+/// 32 bits as the middle of one of 2²³ steps in (0, 1).
+#[inline(always)]
+fn step(word: u32) -> f32 {
+    ((word >> 9) as i32 as f32 + 0.5) * (1.0 / (1u32 << 23) as f32)
+}
+
+impl SamplerColumns {
+    /// With samples of the picture that one is of.
+    pub fn new(sampler: &Sampler) -> Self {
+        Self { all: SamplerLanes::new(sampler), pixel: Vec::new(), sample: Vec::new(), words: Vec::new() }
+    }
+
+    /// Takes samples of the same picture in place of those before.
+    pub fn take<'a>(&mut self, samplers: impl Iterator<Item = &'a Sampler>) {
+        self.pixel.clear();
+        self.sample.clear();
+        self.words.clear();
+        let has_words = self.all.kind != SamplerKind::Independent;
+        for sampler in samplers {
+            self.pixel.push(sampler.pixel);
+            self.sample.push(sampler.sample);
+            if has_words {
+                self.words.push(sampler.words);
+            }
+        }
+    }
+
+    /// Those of some samples, a lane each.
+    #[inline]
+    pub fn gather(&self, which: &[u32; LANES], to: &mut SamplerLanes) {
+        gather(&self.pixel, which, &mut to.pixel);
+        gather(&self.sample, which, &mut to.sample);
+        if !self.words.is_empty() {
+            gather(&self.words, which, &mut to.words);
+        }
+    }
+
+    /// Lanes to gather into.
+    pub fn lanes(&self) -> SamplerLanes {
+        self.all.clone()
+    }
+}
+
+impl SamplerLanes {
+    /// What [`SamplerLanes::one_and_two`] gives for a dimension of all lanes, the pair in f32.
+    #[inline]
+    pub fn choice_and_pair(&self, level: Level, dimension: u32, one: &mut [f64; LANES], two: &mut [[f32; LANES]; 2]) {
+        if self.kind == SamplerKind::Independent {
+            return independent(level, self, dimension, one, two);
+        }
+        let mut pair = [[0.0; LANES]; 2];
+        self.one_and_two(level, &[dimension; LANES], one, &mut pair);
+        for (to, from) in two.iter_mut().zip(pair) {
+            *to = from.map(|x| lesser(x as f32, BELOW_ONE));
+        }
+    }
+}
+
+impl SamplerLanes {
+    /// The same with all three numbers in f32.
+    #[inline]
+    pub fn chance_and_pair(&self, level: Level, dimension: u32, one: &mut [f32; LANES], two: &mut [[f32; LANES]; 2]) {
+        if self.kind == SamplerKind::Independent {
+            return independent_singles(level, self, dimension, one, two);
+        }
+        let mut choice = [0.0; LANES];
+        self.choice_and_pair(level, dimension, &mut choice, two);
+        *one = choice.map(|x| lesser(x as f32, BELOW_ONE));
+    }
+}
+
+loops! {
+    /// Three of the words of a block of independent numbers.
+    fn independent_singles(
+        lanes: &SamplerLanes,
+        dimension: u32,
+        one: &mut [f32; LANES],
+        two: &mut [[f32; LANES]; 2],
+    ) {
+        for i in 0..LANES {
+            let [_, b, c, d] = lanes.block(i, dimension);
+            one[i] = step(b);
+            two[0][i] = step(c);
+            two[1][i] = step(d);
+        }
+    }
+}
+
+loops! {
+    /// Both halves of a block of independent numbers.
+    fn independent(lanes: &SamplerLanes, dimension: u32, one: &mut [f64; LANES], two: &mut [[f32; LANES]; 2]) {
+        for i in 0..LANES {
+            let [a, b, c, d] = lanes.block(i, dimension);
+            one[i] = number(joined(a, b));
+            two[0][i] = step(c);
+            two[1][i] = step(d);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::BatchSize;
+    use super::*;
+
+    #[test]
+    fn numbers_are_those_of_samplers_as_f32() {
+        let size = BatchSize::new(16).unwrap();
+        let kinds = [SamplerKind::Independent, SamplerKind::Stratified(size), SamplerKind::Sobol(size)];
+        for kind in kinds {
+            let mut samplers: Vec<Sampler> = (0..40).map(|i| kind.sampler(77, 100 * i, 3 * i)).collect();
+            let mut columns = SamplerColumns::new(&samplers[0]);
+            columns.take(samplers.iter());
+            let which = std::array::from_fn(|lane| (lane as u32 * 7) % 40);
+            for level in Level::ALL.into_iter().filter(|level| level.is_available()) {
+                let mut lanes = columns.lanes();
+                columns.gather(&which, &mut lanes);
+                let (mut one, mut two) = ([0.0; LANES], [[0.0; LANES]; 2]);
+                lanes.choice_and_pair(level, 6, &mut one, &mut two);
+                for lane in 0..LANES {
+                    let sampler = &mut samplers[which[lane] as usize];
+                    assert_eq!(one[lane], sampler.one(6), "{kind:?} {level:?}");
+                    let [a, b] = sampler.two(7);
+                    for (single, double) in [(two[0][lane], a), (two[1][lane], b)] {
+                        assert!((f64::from(single) - double).abs() <= 1.2e-7 && single > 0.0 && single < 1.0);
+                    }
+                }
+            }
+        }
+        assert_eq!((step(0), step(u32::MAX)), (f32::EPSILON / 2.0, BELOW_ONE));
+    }
+}
