@@ -5,7 +5,7 @@
 
 #[path = "extending/main.rs"]
 mod extending;
-#[path = "../rust/accel/src/bvh/wide/fans.rs"]
+#[path = "../rust/accel/src/fans.rs"]
 mod fans;
 #[path = "fuzz/main.rs"]
 mod fuzz;

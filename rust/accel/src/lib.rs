@@ -14,6 +14,9 @@ mod brute;
 pub mod bsp;
 pub mod bvh;
 mod crossings;
+#[cfg(test)]
+mod fans;
+mod few_triangles;
 pub mod flat;
 pub mod grid;
 pub mod kdtree;
@@ -36,6 +39,7 @@ pub use box_tree::BoxTree;
 pub use boxes::{Boxes, NodeBox};
 pub use brute::BruteForce;
 pub use crossings::Crossings;
+pub use few_triangles::FewTriangles;
 pub use kept::Counts;
 pub use nearest::{Nearest, PrimitiveFilter};
 pub use parity::{Exit, Exits, Side};
@@ -206,6 +210,15 @@ pub trait ByColumns: Send + Sync {
 
     /// The closest hit of each ray, one after the other.
     fn first_hits(&self, rays: &RayColumns<'_>, hits: &mut [Hit]);
+
+    /// The primitive that each ray hits first, or [`Ray::NO_TRIANGLE`].
+    fn first_primitives(&self, rays: &RayColumns<'_>, primitives: &mut [u32]) {
+        let mut hits = vec![Hit::MISS; rays.len()];
+        self.first_hits(rays, &mut hits);
+        for (to, hit) in primitives.iter_mut().zip(hits) {
+            *to = if hit.is_hit() { hit.primitive } else { Ray::NO_TRIANGLE };
+        }
+    }
 
     /// Whether each ray hits anything.
     fn occluded(&self, rays: &RayColumns<'_>, occluded: &mut [bool]);

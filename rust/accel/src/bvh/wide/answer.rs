@@ -1,12 +1,18 @@
 //! Where first hits are written.
 
-use raywright_base::math::{Hit, HitColumns};
+use raywright_base::math::{Hit, HitColumns, Ray};
 use raywright_shapes::triangle::{Column, Met, RAYS};
 
 /// Where answers go.
 pub trait Answer {
     /// Whether any hit will do, whatever it is.
     const ANY: bool;
+
+    /// Where primitives are written, if nothing else is told of hits: then nobody computes the rest.
+    #[inline(always)]
+    fn primitives(&mut self) -> Option<&mut [u32]> {
+        None
+    }
 
     /// Ray `i` hits nothing.
     fn miss(&mut self, i: usize);
@@ -68,21 +74,32 @@ impl Answer for HitColumns<'_> {
     }
 }
 
-/// Closest hits, in rows or in columns: which of them is decided where a hit is written, so that kernels are compiled
-/// once for both.
+/// Closest hits, in rows or in columns, or the primitives that are hit: which of them is decided where a hit is
+/// written, so that kernels are compiled once for all.
 pub enum Closest<'a> {
     Rows(&'a mut [Hit]),
     Columns(HitColumns<'a>),
+    /// [`Ray::NO_TRIANGLE`] for a miss.
+    Primitives(&'a mut [u32]),
 }
 
 impl Answer for Closest<'_> {
     const ANY: bool = false;
 
     #[inline(always)]
+    fn primitives(&mut self) -> Option<&mut [u32]> {
+        match self {
+            Self::Primitives(primitives) => Some(primitives),
+            _ => None,
+        }
+    }
+
+    #[inline(always)]
     fn miss(&mut self, i: usize) {
         match self {
             Self::Rows(hits) => hits.miss(i),
             Self::Columns(hits) => hits.miss(i),
+            Self::Primitives(primitives) => primitives[i] = Ray::NO_TRIANGLE,
         }
     }
 
@@ -91,6 +108,7 @@ impl Answer for Closest<'_> {
         match self {
             Self::Rows(hits) => hits.hit(i, t, uv, primitive),
             Self::Columns(hits) => hits.hit(i, t, uv, primitive),
+            Self::Primitives(primitives) => primitives[i] = primitive,
         }
     }
 
@@ -99,6 +117,11 @@ impl Answer for Closest<'_> {
         match self {
             Self::Rows(rows) => rows.some(start, count, hits, all, primitives),
             Self::Columns(columns) => columns.some(start, count, hits, all, primitives),
+            Self::Primitives(to) => {
+                for (i, to) in to[start..][..count].iter_mut().enumerate() {
+                    *to = if hits >> i & 1 == 1 { primitives[i] } else { Ray::NO_TRIANGLE };
+                }
+            }
         }
     }
 }

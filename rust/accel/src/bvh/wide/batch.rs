@@ -106,11 +106,11 @@ fn miss<const N: usize, L: Leaves<N>, E: Errand<N, L>>(_: &WideBvh<N, L>, rays: 
 #[cfg(test)]
 mod tests {
     use super::super::answer::Closest;
-    use super::super::fans::{Soup, fans, soups, sticks};
     use super::*;
     use crate::BruteForce;
     use crate::bvh::Options;
-    use raywright_base::math::Hit;
+    use crate::fans::{Soup, fans, soups, sticks};
+    use raywright_base::math::{Hit, Ray};
     use raywright_base::simd::{Level, Scalar};
     use raywright_shapes::triangle::{DoubleLeaves, SingleLeaves};
 
@@ -169,6 +169,10 @@ mod tests {
                 let mut hits = vec![Hit::MISS; wanted.len()];
                 run(which, Firsts { bvh, rays, answer: Closest::Rows(&mut hits) });
                 assert_eq!(hits, wanted, "{which:?}");
+                let mut primitives = vec![0; wanted.len()];
+                run(which, Firsts { bvh, rays, answer: Closest::Primitives(&mut primitives) });
+                let of = |hit: &Hit| if hit.is_hit() { hit.primitive } else { Ray::NO_TRIANGLE };
+                assert!(primitives.iter().zip(wanted).all(|(&primitive, hit)| primitive == of(hit)), "{which:?}");
             });
             kernels_agree::<DoubleLeaves<4>>(&soup, is_turned, |which, bvh, rays, wanted| {
                 let mut any = vec![false; wanted.len()];

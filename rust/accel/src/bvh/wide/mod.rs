@@ -6,8 +6,6 @@ mod best;
 mod bests;
 mod collapse;
 mod errand;
-#[cfg(test)]
-mod fans;
 mod few;
 mod first;
 mod gate;
@@ -207,6 +205,12 @@ where
     fn first_hits(&self, rays: &RayColumns<'_>, hits: &mut [Hit]) {
         assert_eq!(rays.len(), hits.len(), "a hit for each ray");
         let answer = Closest::Rows(hits);
+        self.level.dispatch(Firsts { bvh: self, rays: RayBatch::Columns(*rays), answer });
+    }
+
+    fn first_primitives(&self, rays: &RayColumns<'_>, primitives: &mut [u32]) {
+        assert_eq!(rays.len(), primitives.len(), "a primitive for each ray");
+        let answer = Closest::Primitives(primitives);
         self.level.dispatch(Firsts { bvh: self, rays: RayBatch::Columns(*rays), answer });
     }
 

@@ -5,7 +5,7 @@ use super::answer::Answer;
 use super::best::{Best, meet, primitive};
 use super::bests::Bests;
 use super::node::Packed;
-use raywright_base::math::RayBatch;
+use raywright_base::math::{Ray, RayBatch};
 use raywright_base::simd::Lanes;
 use raywright_shapes::triangle::{Column, EdgeRay, EdgeRays, Leaves, Met, RAYS, Real};
 
@@ -97,6 +97,10 @@ impl Settling for Winners {
         best: &Best,
         answer: &mut A,
     ) {
+        if let Some(primitives) = answer.primitives() {
+            primitives[i] = primitive(&bvh.leaves, best.leaf, best.lane);
+            return;
+        }
         let filling = &mut self.sixteens[self.filling & 1];
         filling.put(bvh, rays, i, best);
         if filling.len == RAYS {
@@ -236,6 +240,13 @@ pub fn settle<const N: usize, L: Leaves<N>, A: Answer, S: Lanes<RAYS>>(
     let hits = bests.hits(simd);
     if hits == 0 {
         answer.some(start, count, 0, &Met::NONE, &[0; RAYS]);
+        return;
+    }
+    if let Some(primitives) = answer.primitives() {
+        for (i, to) in primitives[start..][..count].iter_mut().enumerate() {
+            let best = bests.get(i);
+            *to = if hits >> i & 1 == 1 { primitive(&bvh.leaves, best.leaf, best.lane) } else { Ray::NO_TRIANGLE };
+        }
         return;
     }
     // Before the rays, so that what is written number by number is there when it is read as vectors.

@@ -1,0 +1,501 @@
+//! Scenes of few triangles, tested one by one against columns of rays.
+//!
+//! With a few dozen triangles, sixteen rays against every triangle take less time than a tree. Two triangles that make a
+//! convex quadrilateral are one test. Each test is done in f32 with a bound on its error; what the bound leaves open is decided
+//! in f64 by the triangles themselves ([`EdgeRay`]), so that a hit or miss is as exact as everywhere else.
+
+use super::Primitives;
+use raywright_base::math::single::{choose, greater, lesser, mask};
+use raywright_base::math::{DVec3, LANES, PathRays, Ray, Region};
+use raywright_base::simd::{Dispatch, Kernel, Level, Simd, loops};
+use raywright_shapes::triangle::EdgeRay;
+
+/// Half of the distance between neighbouring f32 numbers in [1, 2).
+const UNIT: f32 = 1.0 / (1u32 << 24) as f32;
+
+/// A line in a plane of two coordinates: how far beyond it a point lies is its product with the point, less an offset.
+type Line = ([f32; 2], f32);
+
+/// A triangle, or a flat and convex quadrilateral of two, as it is seen along an axis.
+#[derive(Clone, Debug)]
+struct Patch {
+    /// The other axes, and the axis that the plane faces most.
+    axes: [usize; 3],
+    /// The plane: where the sum of these two times its coordinates along the other axes and of the one along the third
+    /// is the last.
+    slopes: [f32; 2],
+    height: f32,
+    /// Its edges, as lines that it lies on the near side of. A triangle has three.
+    edges: [Line; 4],
+    /// The diagonal of a quadrilateral: the first triangle lies on its near side.
+    diagonal: Line,
+    /// The triangles.
+    halves: [Option<Half>; 2],
+}
+
+/// One of the triangles of a patch.
+#[derive(Clone, Copy, Debug)]
+struct Half {
+    primitive: u32,
+    corners: [DVec3; 3],
+}
+
+/// Few triangles, ready for columns of rays.
+#[derive(Clone, Debug)]
+pub struct FewTriangles {
+    patches: Vec<Patch>,
+    /// The primitives of each patch; of a triangle, twice the same.
+    halves: Vec<[u32; 2]>,
+    /// The patch of each primitive.
+    patch_of: Vec<u32>,
+    region: Region,
+}
+
+/// Sixteen rays, and the patches that each leaves and goes to.
+struct Rays {
+    origin: [[f32; LANES]; 3],
+    direction: [[f32; LANES]; 3],
+    t_max: [f32; LANES],
+    /// The largest coordinate of the scene and of the origin, added.
+    size: [f32; LANES],
+    misses: [[u32; LANES]; 2],
+}
+
+/// The closest hits of sixteen rays.
+struct Best {
+    /// Between `low` and `high` lies `t`.
+    low: [f32; LANES],
+    high: [f32; LANES],
+    /// Whether the second half of the patch is hit: all bits or none.
+    is_second: [u32; LANES],
+    patch: [u32; LANES],
+    /// The patches, by bits, that were open when they were tested.
+    open: [[u32; LANES]; 2],
+}
+
+/// The greatest `t` that is told from infinity. No hit lies as far.
+const MOST_T: f32 = 1e30;
+
+/// Of a lane with nothing.
+const NONE: u32 = u32::MAX;
+
+/// `a · b + c`, rounded once where the processor can: what follows is within its bounds either way.
+#[inline(always)]
+fn fused<const FUSED: bool>(a: f32, b: f32, c: f32) -> f32 {
+    if FUSED { a.mul_add(b, c) } else { a * b + c }
+}
+
+/// How far beyond a line a point lies.
+#[inline(always)]
+fn beyond<const FUSED: bool>(([x, y], offset): Line, p: [f32; 2]) -> f32 {
+    fused::<FUSED>(x, p[0], fused::<FUSED>(y, p[1], -offset))
+}
+
+/// Tests one patch, which is number `index`. Where `ANY` hit will do, it is noted as patch 0.
+///
+/// With ε = 2⁻²⁴ and S the sum of the largest coordinates of scene and origin, the numerator of `t` errs by at most
+/// 15εS: sums of numbers up to S, and the roundings of the plane and the origin. The denominator errs by 7ε. So `t` errs
+/// by (15εS + 8ε|t|)/|n·d| to first order, for a normal `n` of largest coordinate 1, the position by that and 2ε(S + |t|),
+/// and its distances across edges by 6ε(S + |t|) more. The far corner of a quadrilateral may lie off its plane by 2εS
+/// ([`outline`]), which moves it and its edges by no more than twice that. 64ε(S + |t|)/|n·d| covers the sum where |n·d|,
+/// which is at most √3, is at least 64ε, and nothing is certain below.
+#[inline(always)]
+fn test<const FUSED: bool, const TRIANGLE: bool, const ANY: bool>(
+    patch: &Patch,
+    index: u32,
+    rays: &Rays,
+    best: &mut Best,
+) {
+    let bit = 1 << (index & 31);
+    let word = usize::from(index >= 32);
+    let [x, y, z] = patch.axes;
+    for i in 0..LANES {
+        let o = [rays.origin[x][i], rays.origin[y][i], rays.origin[z][i]];
+        let d = [rays.direction[x][i], rays.direction[y][i], rays.direction[z][i]];
+        let size = rays.size[i];
+        let above = fused::<FUSED>(patch.slopes[0], o[0], fused::<FUSED>(patch.slopes[1], o[1], o[2] - patch.height));
+        let slope = fused::<FUSED>(patch.slopes[0], d[0], fused::<FUSED>(patch.slopes[1], d[1], d[2]));
+        let inverse = 1.0 / slope;
+        let t = -above * inverse;
+        let p = [fused::<FUSED>(t, d[0], o[0]), fused::<FUSED>(t, d[1], o[1])];
+        let outside = greater(beyond::<FUSED>(patch.edges[0], p), beyond::<FUSED>(patch.edges[1], p));
+        let outside = greater(outside, beyond::<FUSED>(patch.edges[2], p));
+        let outside = if TRIANGLE { outside } else { greater(outside, beyond::<FUSED>(patch.edges[3], p)) };
+        let error = (64.0 * UNIT) * (size + t.abs()) * inverse.abs();
+        let (nearest, farthest) = (t - error, t + error);
+        // Comparisons with NaN are false, and leave the test open. So do those of slopes below 64ε: the error is more
+        // than t then, unless the plane is left by more than the scene is large.
+        let is_out = mask(outside > error)
+            | mask(farthest < 0.0)
+            | mask(nearest > best.high[i])
+            | mask(above.abs() > 8.0 * size * slope.abs() + 64.0 * UNIT * size);
+        // Only those that end go to a triangle.
+        let is_known = mask(index == rays.misses[0][i]) | if ANY { mask(index == rays.misses[1][i]) } else { 0 };
+        let is_possible = !(is_known | is_out);
+        let is_certain = mask(outside < -error) & mask(nearest > 0.0) & mask(farthest < best.low[i]);
+        if ANY {
+            let is_hit = is_possible & is_certain;
+            best.patch[i] &= !is_hit;
+            best.open[word][i] |= bit & is_possible & !is_hit;
+            continue;
+        }
+        let half = if TRIANGLE { -1.0 } else { beyond::<FUSED>(patch.diagonal, p) };
+        let is_hit = is_possible & is_certain & if TRIANGLE { NONE } else { mask(half.abs() > error) };
+        best.low[i] = choose(is_hit, nearest, best.low[i]);
+        best.high[i] = choose(is_hit, farthest, best.high[i]);
+        if !TRIANGLE {
+            best.is_second[i] = mask(half > 0.0) & is_hit | best.is_second[i] & !is_hit;
+        }
+        best.patch[i] = index & is_hit | best.patch[i] & !is_hit;
+        best.open[word][i] |= bit & is_possible & !is_hit;
+    }
+}
+
+/// All patches, to be tested against sixteen rays.
+struct TestAll<'a, const ANY: bool> {
+    patches: &'a [Patch],
+    rays: &'a Rays,
+    best: &'a mut Best,
+}
+
+impl<const N: usize, const ANY: bool> Kernel<N> for TestAll<'_, ANY> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd<N>>(self, _: S) {
+        for (index, patch) in (0u32..).zip(self.patches) {
+            match (S::FUSED, patch.halves[1].is_none()) {
+                (true, true) => test::<true, true, ANY>(patch, index, self.rays, self.best),
+                (true, false) => test::<true, false, ANY>(patch, index, self.rays, self.best),
+                (false, true) => test::<false, true, ANY>(patch, index, self.rays, self.best),
+                (false, false) => test::<false, false, ANY>(patch, index, self.rays, self.best),
+            }
+        }
+    }
+}
+
+loops! {
+    /// Takes sixteen rays.
+    fn take(from: &PathRays, start: usize, extent: f32, patch_of: &[u32], rays: &mut Rays, best: &mut Best) {
+        let end = start + LANES;
+        for axis in 0..3 {
+            for (to, &from) in rays.origin[axis].iter_mut().zip(&from.origin[axis][start..end]) {
+                *to = from as f32;
+            }
+            rays.direction[axis].copy_from_slice(&from.direction[axis][start..end]);
+        }
+        rays.t_max = [MOST_T; LANES];
+        if let Some(from) = from.t_max.get(start..end) {
+            for (to, &from) in rays.t_max.iter_mut().zip(from) {
+                *to = lesser(from as f32, MOST_T);
+            }
+        }
+        let patch = |primitive: u32| patch_of.get(primitive as usize).copied().unwrap_or(NONE);
+        for (to, &[left, _]) in rays.misses[0].iter_mut().zip(&from.misses[start..end]) {
+            *to = patch(left);
+        }
+        // Only those that end go to a triangle.
+        if !from.t_max.is_empty() {
+            for (to, &[_, reached]) in rays.misses[1].iter_mut().zip(&from.misses[start..end]) {
+                *to = patch(reached);
+            }
+        }
+        for i in 0..LANES {
+            let (x, y, z) = (rays.origin[0][i].abs(), rays.origin[1][i].abs(), rays.origin[2][i].abs());
+            rays.size[i] = extent + greater(greater(x, y), z);
+            // What ends within an error of the ray's end is open.
+            let end = rays.t_max[i];
+            let room = (4.0 * UNIT) * end;
+            best.low[i] = end - room;
+            best.high[i] = end + room;
+            best.patch[i] = NONE;
+            best.is_second[i] = 0;
+            best.open = [[0; LANES]; 2];
+        }
+    }
+}
+
+impl FewTriangles {
+    /// The greatest number of triangles. Trees take less time for more.
+    pub const MOST: usize = 64;
+
+    /// Prepares all primitives, if they are few triangles whose sizes f32 can hold.
+    pub fn new(primitives: &dyn Primitives) -> Option<Self> {
+        /// The least and the greatest size of a scene: their squares stay in range.
+        const SIZES: [f64; 2] = [1e-12, 1e12];
+        let count = primitives.count();
+        if count > Self::MOST || primitives.objects().is_some() {
+            return None;
+        }
+        let region = primitives.region();
+        let halves = (0..count as u32).filter(|&p| primitives.bounds(p).is_some());
+        let mut rest: Vec<_> = halves.map(|p| Half { primitive: p, corners: primitives.corners(p) }).collect();
+        let (mut patches, mut patch_of) = (Vec::new(), vec![NONE; count]);
+        rest.reverse();
+        while let Some(first) = rest.pop() {
+            let quadrilateral = |second: &Half| outline(&[first, *second], region.extent).is_some();
+            let partner = rest.iter().enumerate().rev().find(|(_, second)| quadrilateral(second));
+            let halves = match partner.map(|(i, _)| i) {
+                Some(i) => [Some(first), Some(rest.remove(i))],
+                None => [Some(first), None],
+            };
+            for half in halves.iter().flatten() {
+                patch_of[half.primitive as usize] = patches.len() as u32;
+            }
+            // Without area, nothing hits it.
+            let Some(patch) = Patch::new(halves, region.extent) else { continue };
+            if !(SIZES[0]..SIZES[1]).contains(&region.extent) {
+                return None;
+            }
+            patches.push(patch);
+        }
+        let halves = patches.iter().map(|patch| patch.halves.map(|half| half.map_or(NONE, |half| half.primitive)));
+        let halves = halves.map(|[first, second]| [first, if second == NONE { first } else { second }]).collect();
+        Some(Self { patches, halves, patch_of, region })
+    }
+
+    /// Finds the triangle that each ray hits first, or [`Ray::NO_TRIANGLE`].
+    pub fn closest(&self, level: Level, rays: &PathRays, primitives: &mut [u32]) {
+        self.ask::<false>(level, rays, |start, best| {
+            for (i, to) in primitives[start..][..LANES].iter_mut().enumerate() {
+                let halves = self.halves.get(best.patch[i] as usize);
+                *to = halves.map_or(NONE, |halves| halves[(best.is_second[i] & 1) as usize]);
+            }
+        });
+    }
+
+    /// Tells which rays hit anything.
+    pub fn occluded(&self, level: Level, rays: &PathRays, occluded: &mut [bool]) {
+        self.ask::<true>(level, rays, |start, best| {
+            for (i, to) in occluded[start..][..LANES].iter_mut().enumerate() {
+                *to = best.patch[i] != NONE;
+            }
+        });
+    }
+
+    /// Tests all patches against all rays.
+    fn ask<const ANY: bool>(&self, level: Level, from: &PathRays, mut answer: impl FnMut(usize, &Best)) {
+        let mut rays = Rays {
+            origin: [[0.0; LANES]; 3],
+            direction: [[0.0; LANES]; 3],
+            t_max: [0.0; LANES],
+            size: [0.0; LANES],
+            misses: [[NONE; LANES]; 2],
+        };
+        let zero = [0.0; LANES];
+        let mut best =
+            Best { low: zero, high: zero, is_second: [0; LANES], patch: [NONE; LANES], open: [[0; LANES]; 2] };
+        for start in (0..from.len).step_by(LANES) {
+            take(level, from, start, self.region.extent as f32, &self.patch_of, &mut rays, &mut best);
+            let test = TestAll::<ANY> { patches: &self.patches, rays: &rays, best: &mut best };
+            if level.lanes() >= 8 {
+                Dispatch::<8>::dispatch(level, test);
+            } else {
+                Dispatch::<4>::dispatch(level, test);
+            }
+            let some_open = best.open.iter().flatten().fold(0, |all, open| all | open);
+            let end = if some_open == 0 { 0 } else { LANES.min(from.len - start) };
+            for i in 0..end {
+                let mut open = u64::from(best.open[1][i]) << 32 | u64::from(best.open[0][i]);
+                while open != 0 && !(ANY && best.patch[i] != NONE) {
+                    let patch = open.trailing_zeros() as usize;
+                    open &= open - 1;
+                    self.decide(&self.patches[patch], &from.get(start + i), i, &mut best);
+                }
+            }
+            answer(start, &best);
+        }
+    }
+
+    /// Decides in f64 whether a ray hits a patch before all that it has hit.
+    #[cold]
+    #[inline(never)]
+    fn decide(&self, patch: &Patch, ray: &Ray, lane: usize, best: &mut Best) {
+        let Some(edges) = EdgeRay::new(ray, &self.region) else { return };
+        let meet = |patch: &Patch| {
+            let halves = patch.halves.iter().enumerate().filter_map(|(i, half)| Some((i, (*half)?)));
+            let met = halves.filter_map(|(i, half)| Some((edges.meet(half.corners)?, i, half)));
+            met.min_by(|a, b| a.0.t.total_cmp(&b.0.t).then(a.2.primitive.cmp(&b.2.primitive)))
+        };
+        let Some((new, which, half)) = meet(patch) else { return };
+        if let Some((old, _, other)) = self.patches.get(best.patch[lane] as usize).and_then(meet)
+            && (old.t, other.primitive) <= (new.t, half.primitive)
+        {
+            return;
+        }
+        let t = (new.t * edges.scale) as f32;
+        let room = 4.0 * UNIT * t;
+        (best.low[lane], best.high[lane]) = (t - room, t + room);
+        best.is_second[lane] = mask(which == 1);
+        best.patch[lane] = self.patch_of[half.primitive as usize];
+    }
+}
+
+/// The corners of the quadrilateral that two triangles make, one after the other: the first and the third are of one
+/// triangle each. `None` if it is not convex, or not flat to within what f32 would round.
+fn outline([first, second]: &[Half; 2], extent: f64) -> Option<[DVec3; 4]> {
+    let (a, b) = (first.corners, second.corners);
+    let [own, other] = shared(a, b)?;
+    let all = [a[own], a[(own + 1) % 3], b[other], a[(own + 2) % 3]];
+    let normal = (a[1] - a[0]).cross(a[2] - a[0]).try_normalize()?;
+    let is_flat = normal.dot(b[other] - a[own]).abs() <= 2.0 * f64::from(UNIT) * extent;
+    let turns = |i: usize| (all[(i + 1) % 4] - all[i]).cross(all[(i + 2) % 4] - all[(i + 1) % 4]).dot(normal) > 0.0;
+    (is_flat && (0..4).all(turns)).then_some(all)
+}
+
+/// The corner of each of two triangles that the other has not, if they share the other two.
+fn shared(a: [DVec3; 3], b: [DVec3; 3]) -> Option<[usize; 2]> {
+    let own = |of: [DVec3; 3], other: [DVec3; 3]| {
+        let mut own = (0..3).filter(|&i| !other.contains(&of[i]));
+        own.next().filter(|_| own.next().is_none())
+    };
+    Some([own(a, b)?, own(b, a)?])
+}
+
+impl Patch {
+    /// `None` without area.
+    fn new(halves: [Option<Half>; 2], extent: f64) -> Option<Self> {
+        let [a, b, c] = halves[0]?.corners;
+        let normal = (b - a).cross(c - a).try_normalize()?;
+        let z = if normal.x.abs() == normal.abs().max_element() {
+            0
+        } else {
+            if normal.y.abs() > normal.z.abs() { 1 } else { 2 }
+        };
+        let [x, y] = [(z + 1) % 3, (z + 2) % 3];
+        // Seen from the side that the normal points to, or mirrored.
+        let turn = 1f64.copysign(normal[z]);
+        let line = |from: DVec3, to: DVec3| -> Line {
+            let along = to - from;
+            let (across_x, across_y) = (turn * along[y], -turn * along[x]);
+            let length = across_x.hypot(across_y);
+            let (across_x, across_y) = (across_x / length, across_y / length);
+            ([across_x as f32, across_y as f32], (across_x * from[x] + across_y * from[y]) as f32)
+        };
+        let (edges, diagonal) = match halves {
+            [Some(first), Some(second)] => {
+                let all = outline(&[first, second], extent)?;
+                ([0, 1, 2, 3].map(|i| line(all[i], all[(i + 1) % 4])), line(all[1], all[3]))
+            }
+            _ => ([line(a, b), line(b, c), line(c, a), line(c, a)], line(a, b)),
+        };
+        let slopes = [normal[x] / normal[z], normal[y] / normal[z]];
+        let height = slopes[0] * a[x] + slopes[1] * a[y] + a[z];
+        let slopes = slopes.map(|slope| slope as f32);
+        Some(Self { axes: [x, y, z], slopes, height: height as f32, edges, diagonal, halves })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::BruteForce;
+    use crate::fans::{Soup, fans};
+    use raywright_base::math::{Hit, Vec3};
+    use raywright_base::sampling::philox4x32;
+
+    fn number(i: u32) -> f32 {
+        philox4x32([i, 0, 0, 0], [3, 9])[0] as f32 / (1u32 << 31) as f32 - 1.0
+    }
+
+    /// A room with a box in it, of parallelograms, and some triangles; on a grid, so that rays meet corners and edges.
+    fn room(scale: f32) -> Vec<[Vec3; 3]> {
+        let mut all = Vec::new();
+        for (low, high) in [([-1.0, -1.0, -1.0], [1.0, 1.0, 1.0]), ([-0.5, -1.0, -0.5], [0.25, 0.0, 0.25])] {
+            for axis in 0..3 {
+                for side in [low, high] {
+                    let corner = |u: bool, v: bool| {
+                        let mut p = low;
+                        p[axis] = side[axis];
+                        let (a, b) = ((axis + 1) % 3, (axis + 2) % 3);
+                        (p[a], p[b]) = (if u { high[a] } else { low[a] }, if v { high[b] } else { low[b] });
+                        Vec3::from_array(p) * scale
+                    };
+                    let [a, b, c, d] =
+                        [(false, false), (true, false), (true, true), (false, true)].map(|(u, v)| corner(u, v));
+                    all.extend([[a, b, c], [c, d, a]]);
+                }
+            }
+        }
+        for i in 0..20 {
+            all.push([0, 1, 2].map(|k| Vec3::from_array([0, 1, 2].map(|x| scale * number(9 * i + 3 * k + x)))));
+        }
+        all
+    }
+
+    fn rays(scale: f32) -> PathRays {
+        let of_fans = fans().into_iter().flatten().map(|ray| (ray.origin.as_vec3(), ray.direction.as_vec3()));
+        // From points of the grid to points of the grid.
+        let grid = |i: u32| Vec3::from_array([0, 1, 2].map(|x| (4.0 * number(3 * i + x)).round() / 4.0));
+        let of_grid = (0..4000).map(|i| (grid(i), grid(i + 5000) - grid(i)));
+        let all: Vec<_> = of_fans.chain(of_grid).filter(|(_, d)| d.length() > 0.0).collect();
+        let mut rays = PathRays::with_room(all.len(), false);
+        rays.len = all.len();
+        for (i, (origin, direction)) in all.into_iter().enumerate() {
+            let (origin, direction) = (origin * scale, direction.normalize());
+            for axis in 0..3 {
+                rays.origin[axis][i] = origin[axis].into();
+                rays.direction[axis][i] = direction[axis];
+            }
+            rays.t_max[i] = if i % 3 == 0 { scale.into() } else { f64::INFINITY };
+        }
+        rays
+    }
+
+    #[test]
+    fn hits_are_those_of_brute_force() {
+        for (scale, is_single) in [(1.0, true), (1e-6, false), (3.7e5, true)] {
+            let soup = Soup { triangles: room(scale), is_single };
+            let rays = rays(scale);
+            let few = FewTriangles::new(&soup).expect("few triangles");
+            assert_eq!(few.patches.len(), 32, "parallelograms and triangles");
+            let exact: Vec<_> = (0..rays.len).map(|i| rays.get(i)).collect();
+            let mut wanted = vec![Hit::MISS; rays.len];
+            BruteForce::over(&soup, Level::current().unwrap()).intersect(&exact, &mut wanted);
+            let mut first = None;
+            for level in Level::ALL.into_iter().filter(|level| level.is_available()) {
+                let mut hits = vec![0; rays.len + LANES];
+                few.closest(level, &rays, &mut hits);
+                let mut occluded = vec![false; rays.len + LANES];
+                few.occluded(level, &rays, &mut occluded);
+                for (i, wanted) in wanted.iter().enumerate() {
+                    assert_eq!(occluded[i], wanted.is_hit(), "{i} at {scale}: {:?} {wanted:?}", exact[i]);
+                    assert_eq!(hits[i] != NONE, wanted.is_hit(), "{i} at {scale}");
+                    if wanted.is_hit() {
+                        // On the diagonal of a quadrilateral, one triangle is as good as the other.
+                        let patch = |primitive: u32| few.patch_of[primitive as usize];
+                        assert_eq!(patch(hits[i]), patch(wanted.primitive), "{i} at {scale}: {:?}", exact[i]);
+                    }
+                }
+                let bits = hits[..rays.len].to_vec();
+                assert!(*first.get_or_insert(bits.clone()) == bits, "{level:?} at {scale}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_ray_misses_what_it_leaves_and_what_it_goes_to() {
+        let soup = Soup { triangles: room(1.0), is_single: true };
+        let few = FewTriangles::new(&soup).unwrap();
+        let (mut rays, mut hits) = (PathRays::with_room(1, false), [0; 1 + LANES]);
+        rays.len = 1;
+        // From the floor of the room straight up, past the box.
+        for (axis, (origin, direction)) in [(0.8, 0.0), (-1.0, 1.0), (0.8, 0.0)].into_iter().enumerate() {
+            (rays.origin[axis][0], rays.direction[axis][0]) = (origin, direction);
+        }
+        let level = Level::current().unwrap();
+        few.closest(level, &rays, &mut hits);
+        let floor = hits[0];
+        rays.misses[0][0] = floor;
+        few.closest(level, &rays, &mut hits);
+        let ceiling = hits[0];
+        assert_eq!(soup.corners(floor).map(|corner| corner.y), [-1.0; 3]);
+        assert_eq!(soup.corners(ceiling).map(|corner| corner.y), [1.0; 3]);
+        let mut occluded = [false; 1 + LANES];
+        few.occluded(level, &rays, &mut occluded);
+        assert!(occluded[0]);
+        rays.misses[0][1] = ceiling;
+        few.occluded(level, &rays, &mut occluded);
+        assert!(!occluded[0]);
+    }
+}
