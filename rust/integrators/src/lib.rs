@@ -25,6 +25,7 @@ mod tests;
 mod transparent;
 mod transport;
 mod volumes;
+mod wavefront;
 mod whitted;
 
 pub use ambient_occlusion::AmbientOcclusion;

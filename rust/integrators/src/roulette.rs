@@ -7,7 +7,7 @@ pub(super) const AT_LATEST: u32 = 4096;
 
 /// The greatest probability to survive a round: a path in a closed box of albedo 1 ends after some four thousand
 /// bounces.
-const SURVIVAL: f64 = 1.0 - 1.0 / 4096.0;
+pub(super) const SURVIVAL: f64 = 1.0 - 1.0 / 4096.0;
 
 /// The probability that a path of this throughput survives a round of Russian roulette (Arvo and Kirk, 1990). `scale`
 /// is how much less radiance is where the path is than where it started, because of the index of refraction alone:

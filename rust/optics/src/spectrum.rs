@@ -1,6 +1,6 @@
 //! Amounts of light.
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use raywright_base::math::{InLanes, VectorLanes};
 use std::fmt;
 use std::iter::Sum;
@@ -16,6 +16,12 @@ impl Rgb {
     pub const ZERO: Self = Self::splat(0.0);
     /// All of it.
     pub const ONE: Self = Self::splat(1.0);
+
+    /// In f32, as a vector.
+    #[inline(always)]
+    pub fn as_vec3(self) -> Vec3 {
+        self.0.as_vec3()
+    }
 
     /// Of its channels.
     #[inline(always)]

@@ -6,8 +6,11 @@ use super::media::Medium;
 use super::{
     DescriptionError, Emission, Enclosing, Geometry, Lights, Material, Plan, SceneDescription, Solids, SurfacePoint,
 };
-use raywright_accel::{Accelerator, Cost, Crossings, Nearest, PrimitiveFilter, Primitives, Side, Touches};
-use raywright_base::math::{DVec3, Hit, Ray, RayQueue, Region};
+use raywright_accel::{
+    Accelerator, Cost, Crossings, FewTriangles, Nearest, PrimitiveFilter, Primitives, Side, Touches,
+};
+use raywright_base::math::{DVec3, Hit, PathRays, Ray, RayQueue, Region};
+use raywright_base::simd::Level;
 use raywright_base::work::{Stopped, Work};
 use raywright_shapes::triangle::SolidCone;
 use std::any::Any;
@@ -22,6 +25,8 @@ pub struct Scene {
     /// What others have made of it, each of a type of its own.
     kept: Mutex<Vec<Arc<dyn Any + Send + Sync>>>,
     accelerator: Box<dyn Accelerator>,
+    /// Where there are few triangles and nothing else, what rays of paths are tested against.
+    few: Option<FewTriangles>,
     region: Region,
     /// What fills the space in which nothing else is.
     surrounding: Option<Arc<dyn Medium>>,
@@ -103,7 +108,8 @@ impl Scene {
         let plan = Plan::new(&geometry, &materials, &lights);
         let built_cost = built_cost.unwrap_or(cost);
         let kept = Mutex::default();
-        Self { geometry, materials, lights, plan, kept, accelerator, region, surrounding: None, built_cost }
+        let few = accelerator.by_columns().and_then(|_| FewTriangles::new(&geometry));
+        Self { geometry, materials, lights, plan, kept, accelerator, few, region, surrounding: None, built_cost }
     }
 
     /// The same with a medium in all space in which nothing else is.
@@ -144,6 +150,37 @@ impl Scene {
     /// Whether each ray hits anything.
     pub fn occluded(&self, rays: &[Ray], occluded: &mut [bool]) {
         self.accelerator.occluded(rays, occluded);
+    }
+
+    /// The primitive that each of the rays of paths hits first, or [`Ray::NO_TRIANGLE`]. Both have room for sixteen
+    /// more than there are rays.
+    pub fn first_primitives(&self, level: Level, rays: &PathRays, primitives: &mut [u32]) {
+        if let Some(few) = &self.few {
+            return few.closest(level, rays, primitives);
+        }
+        let primitives = &mut primitives[..rays.len];
+        match self.accelerator.by_columns() {
+            Some(tree) => tree.first_primitives(&rays.columns(), primitives),
+            None => {
+                let mut hits = vec![Hit::MISS; rays.len];
+                self.accelerator.intersect(&(0..rays.len).map(|i| rays.get(i)).collect::<Vec<_>>(), &mut hits);
+                for (to, hit) in primitives.iter_mut().zip(hits) {
+                    *to = if hit.is_hit() { hit.primitive } else { Ray::NO_TRIANGLE };
+                }
+            }
+        }
+    }
+
+    /// Whether each of the rays of paths hits anything.
+    pub fn are_occluded(&self, level: Level, rays: &PathRays, occluded: &mut [bool]) {
+        if let Some(few) = &self.few {
+            return few.occluded(level, rays, occluded);
+        }
+        let occluded = &mut occluded[..rays.len];
+        match self.accelerator.by_columns() {
+            Some(tree) => tree.occluded(&rays.columns(), occluded),
+            None => self.accelerator.occluded(&(0..rays.len).map(|i| rays.get(i)).collect::<Vec<_>>(), occluded),
+        }
     }
 
     /// The closest hit of each ray of a queue.

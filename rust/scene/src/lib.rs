@@ -38,10 +38,12 @@ pub use encounter::Encounter;
 pub use filter::Filter;
 pub use first_hits::FirstHits;
 pub use gaze::Gaze;
+pub use geometry::SurfaceBlock;
 pub use geometry::{
     BadTransform, Enclosing, Geometry, Instances, Matrix, Mesh, Objects, Precision, Prototype, Rounding, Solids,
     Surface, Vertices, check_transforms, rounded,
 };
+pub use lights::LightBlock;
 pub use lights::SeenTriangle;
 pub use lights::{
     Aim, ConstantEnvironment, DirectionalLight, EmissionDensity, EmissionNumbers, EmissionPdf, EmissionSample,

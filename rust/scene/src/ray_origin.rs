@@ -81,6 +81,12 @@ impl RayOrigin {
         self.position + offset
     }
 
+    /// Where rays start that leave on the side of the normal.
+    #[inline(always)]
+    pub(super) fn outside(&self) -> DVec3 {
+        self.position + self.offset
+    }
+
     /// The ray that leaves along a direction.
     #[inline(always)]
     pub fn ray(&self, direction: DVec3) -> Ray {

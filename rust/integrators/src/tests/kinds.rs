@@ -160,7 +160,8 @@ fn a_point_light_is_asked_by_all() {
         [&Path::default(), &Direct::default(), &RayCast::default(), &Whitted::default(), &Distributed::default()];
     for integrator in each {
         let (mean, _) = radiance(&lit, integrator, DOWN, 10);
-        assert!((mean / expected - 1.0).abs() < 1e-9, "{mean}, not {expected}");
+        // Stages compute in f32.
+        assert!((mean / expected - 1.0).abs() < 4.0 * f64::from(f32::EPSILON), "{mean}, not {expected}");
     }
 }
 

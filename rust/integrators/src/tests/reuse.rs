@@ -82,8 +82,7 @@ fn a_group_of_one_is_a_path_on_its_own() {
     let samples = groups(&camera, 8, 20);
     let alone = shared(&scene, &path(4), &samples, 1, 100);
     let mut plain = vec![Rgb::ZERO; samples.len()];
-    let single = path(1);
-    let session = single.begin(job(&scene), &Cancel::default());
+    let session = path(1).begin_as(job(&scene), ShadingVariant::Plain, &Cancel::default());
     session.worker().radiance(&mut samples.clone(), &Cancel::default(), &mut plain);
     assert!(alone.iter().zip(&plain).all(|(a, b)| (*a - *b).abs().max() <= 1e-12 * b.max()));
     assert!(plain.iter().filter(|v| v.max() > 0.0).count() > 1000);

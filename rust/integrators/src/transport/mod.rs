@@ -25,6 +25,7 @@ mod weights;
 mod widths;
 mod worker;
 
+use super::wavefront::Wavefront;
 use super::{Guide, Job, Session, Worker};
 pub(super) use dimensions::Dimensions;
 pub(super) use direct_light::share;
@@ -110,8 +111,12 @@ impl Settings {
             && self.gather.is_none()
     }
 
-    /// Begins with the variant that has what the scene and these settings need.
+    /// Begins with stages over columns where they have what the scene and these settings need, and otherwise with the
+    /// variant that has it.
     pub fn begin<'a>(self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a> {
+        if self.are_plain() && !self.shares && !self.guided && Wavefront::takes(job.scene) {
+            return Box::new(Wavefront::new(job, self.max_depth, self.roulette_depth));
+        }
         self.begin_as(job, job.scene.plan().variant(), cancel)
     }
 

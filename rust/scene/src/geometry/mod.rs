@@ -15,6 +15,7 @@ mod prototype;
 mod rounding;
 mod shading;
 mod solids;
+mod surface_block;
 mod vertices;
 mod watched;
 
@@ -24,6 +25,7 @@ pub use objects::Objects;
 pub use prototype::Prototype;
 pub use rounding::{Precision, Rounding, rounded};
 pub use solids::{Enclosing, Solids};
+pub use surface_block::SurfaceBlock;
 pub use vertices::Vertices;
 pub(crate) use watched::Watched;
 
@@ -151,6 +153,8 @@ pub struct Geometry {
     first: Vec<u32>,
     /// What is asked of a face at every hit, where there are few.
     facets: Facets,
+    /// Corners of the same faces, if vertices have more digits than facets hold.
+    few_corners: Vec<[DVec3; 3]>,
     dropped: usize,
     /// Of the mesh that it does most to.
     rounding: Rounding,
@@ -284,6 +288,9 @@ impl Geometry {
         // Instances are many, and each shall be small.
         let faces = if all.gaps.is_empty() { all.count() } else { 0 };
         all.facets = Facets::new(faces, |primitive| all.facet(primitive));
+        if matches!(all.vertices, Vertices::Double(_)) && !all.facets.is_empty() {
+            all.few_corners = (0..faces as u32).map(|primitive| all.corners(primitive)).collect();
+        }
         all
     }
 
@@ -386,6 +393,7 @@ impl Geometry {
             + self.first.capacity() * size_of::<u32>()
             + self.gaps.capacity() * size_of::<Gap>()
             + self.facets.bytes()
+            + size_of_val(self.few_corners.as_slice())
             + [&self.near_others, &self.near_all]
                 .iter()
                 .filter_map(|tree| tree.get())

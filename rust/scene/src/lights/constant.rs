@@ -80,6 +80,10 @@ impl Light for ConstantEnvironment {
         self.radiance
     }
 
+    fn constant_radiance(&self) -> Option<Rgb> {
+        Some(self.radiance)
+    }
+
     #[inline]
     fn infinite_pdf(&self, receiver: &LightSampleContext, direction: DVec3) -> f64 {
         if receiver.is_free() { UNIFORM_SPHERE_PDF } else { arriving_pdf(receiver.normal, direction) }

@@ -61,6 +61,11 @@ pub trait Light: Debug + Send + Sync {
         Rgb::ZERO
     }
 
+    /// That radiance, if it is the same from everywhere.
+    fn constant_radiance(&self) -> Option<Rgb> {
+        None
+    }
+
     /// The same at some wavelengths, if it is asked for those.
     fn infinite_radiance_at(&self, direction: DVec3, _waves: Option<&Waves>) -> Rgb {
         self.infinite_radiance(direction)

@@ -13,6 +13,7 @@ mod infinite;
 mod instanced;
 mod lanes;
 mod light;
+mod light_block;
 mod light_lanes;
 mod light_sample;
 mod light_sample_context;
@@ -40,6 +41,7 @@ pub use directional::DirectionalLight;
 pub use emission_sample::{EmissionPdf, EmissionSample, PointEmission, Source};
 pub use emitters::{EmissionNumbers, Emitters, not_drawn};
 pub use light::{Light, Place, Reach};
+pub use light_block::LightBlock;
 pub use light_lanes::{LightContextLanes, LightLanes};
 pub use light_sample::LightSample;
 pub use light_sample_context::LightSampleContext;
@@ -54,11 +56,13 @@ pub use triangle::SeenTriangle;
 pub use waved::Waved;
 
 use super::materials::Material;
+use super::textures::TexturePoint;
 use super::{Emission, Geometry, Sides};
 use choice::{Choice, Strength};
 use few::Few;
 use infinite::InfiniteLights;
 use instanced::Copied;
+use light_block::TriangleLamp;
 use luminous::{Luminous, is_open};
 use plain::PlainLight;
 use raywright_accel::Primitives;
@@ -92,6 +96,8 @@ pub struct Lights {
     /// Each primitive that emits, if it is a triangle or a sphere that shines alike everywhere; nothing where there are
     /// more than [`Lights::KEPT`].
     kept: Vec<Option<PlainLight>>,
+    /// What shines within the scene, if all of it is triangles that shine alike everywhere.
+    lamps: Vec<TriangleLamp>,
 }
 
 impl Lights {
@@ -147,7 +153,11 @@ impl Lights {
         let plain = |&primitive: &u32| PlainLight::new(geometry, &luminous(geometry.locate(primitive).0), primitive);
         let kept = few_surfaces.iter().map(plain).collect();
         let shines = emission.iter().map(|emission| !emission.is_dark()).collect();
-        Self { emission, shines, open, first, surfaces, copied, inside, choice, infinite, few, kept }
+        let lamps = Vec::new();
+        let mut all =
+            Self { emission, shines, open, first, surfaces, copied, inside, choice, infinite, few, kept, lamps };
+        all.lamps = all.triangle_lamps(geometry);
+        all
     }
 
     /// How strong a primitive of the scene is. What no ray can hit must not shine either, and from what has no end no
@@ -194,11 +204,22 @@ impl Lights {
             + size_of_val(self.first.as_slice())
             + size_of_val(self.surfaces.as_slice())
             + size_of_val(self.kept.as_slice())
+            + size_of_val(self.lamps.as_slice())
             + self.copied.bytes()
             + self.inside.iter().map(|light| light.bytes()).sum::<usize>()
             + self.choice.as_ref().map_or(0, Choice::bytes)
             + self.infinite.bytes()
             + self.few.bytes()
+    }
+
+    /// How bright each light is: a mean of its channels, of radiance on surfaces and of whatever else of others.
+    pub fn radiances(&self) -> impl Iterator<Item = f64> {
+        let of_surfaces = self.emission.iter().map(|emission| emission.radiance.at(&TexturePoint::NOWHERE).mean());
+        let of_others = self.others().map(|light| match light.reach() {
+            Reach::Finite { power, .. } => power,
+            Reach::Infinite { flux, .. } => flux,
+        });
+        of_surfaces.chain(of_others)
     }
 
     /// Those that are no surfaces.

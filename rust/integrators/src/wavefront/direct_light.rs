@@ -1,0 +1,37 @@
+//! Next-event estimation: what light that was drawn brings if nothing blocks it.
+
+use raywright_base::math::single::{choose, mask};
+use raywright_base::math::{LANES, SingleLanes};
+use raywright_base::simd::loops;
+use raywright_scene::{LightBlock, SurfaceBlock};
+use std::f32::consts::FRAC_1_PI;
+
+/// The weight of a draw of one technique beside another (Veach and Guibas, 1995, with the exponent 2), by the ratio of
+/// their densities, so that no square overflows.
+#[inline(always)]
+pub(super) fn power_heuristic(pdf: f32, other: f32) -> f32 {
+    let ratio = other / pdf;
+    1.0 / (1.0 + ratio * ratio)
+}
+
+loops! {
+    /// What a matte surface reflects of light that was drawn; `is_lit` is all bits where that is anything.
+    pub(super) fn reflect(
+        surfaces: &SurfaceBlock,
+        lights: &LightBlock,
+        reflectance: &SingleLanes,
+        throughput: &SingleLanes,
+        arriving: &mut SingleLanes,
+        is_lit: &mut [u32; LANES],
+    ) {
+        for i in 0..LANES {
+            let cosine = surfaces.normal.get(i).dot(lights.direction.get(i));
+            let pdf = cosine * FRAC_1_PI;
+            let all = throughput.get(i) * reflectance.get(i) * lights.weight.get(i);
+            let all = all * (pdf * power_heuristic(lights.pdf[i], pdf));
+            let lit = mask(lights.pdf[i] > 0.0) & mask(cosine > 0.0) & mask(all.x + all.y + all.z > 0.0);
+            arriving.set(i, all * choose(lit, 1.0, 0.0));
+            is_lit[i] = lit;
+        }
+    }
+}

@@ -1,0 +1,169 @@
+//! Where rays of paths meet triangles, sixteen at a time.
+
+use super::{Geometry, Vertices, error_among, unit_normal};
+use crate::RayOrigin;
+use raywright_accel::Primitives;
+use raywright_base::math::single::{greater, lesser, mask};
+use raywright_base::math::{DVec3, LANES, PathRays, SingleLanes, Vec3, VectorLanes, gather};
+use raywright_base::simd::{Level, loops};
+
+/// Points of triangles that rays have met, a lane each.
+#[derive(Clone, Debug)]
+pub struct SurfaceBlock {
+    /// How many lanes count.
+    pub count: usize,
+    /// The rays' places in their queue.
+    pub index: [u32; LANES],
+    /// Unit directions of the rays.
+    pub direction: SingleLanes,
+    /// Distance along the rays.
+    pub t: [f32; LANES],
+    /// The points, to within a rounding of their triangles' planes.
+    pub position: VectorLanes,
+    /// Where rays leave to the side that the ray came from.
+    pub origin: VectorLanes,
+    /// Unit normals of the triangles, on the side that the ray came from.
+    pub normal: SingleLanes,
+    /// Cosine of the angle between ray and normal.
+    pub cosine: [f32; LANES],
+    /// Whether the ray came from the side of the winding's normal: all bits or none.
+    pub is_front: [u32; LANES],
+    /// Which triangles.
+    pub primitive: [u32; LANES],
+    /// Of which shapes.
+    pub shape: [u32; LANES],
+}
+
+/// Corners and normals of triangles, a lane each.
+struct Corners {
+    corners: [VectorLanes; 3],
+    normal: VectorLanes,
+}
+
+impl SurfaceBlock {
+    /// Of no rays.
+    pub const NONE: Self = Self {
+        count: 0,
+        index: [0; LANES],
+        direction: SingleLanes::ZERO,
+        t: [0.0; LANES],
+        position: VectorLanes::ZERO,
+        origin: VectorLanes::ZERO,
+        normal: SingleLanes::ZERO,
+        cosine: [0.0; LANES],
+        is_front: [0; LANES],
+        primitive: [0; LANES],
+        shape: [0; LANES],
+    };
+}
+
+loops! {
+    /// Unit normals by corners.
+    fn normals(corners: &[VectorLanes; 3], normal: &mut VectorLanes) {
+        for i in 0..LANES {
+            normal.set(i, unit_normal([corners[0].get(i), corners[1].get(i), corners[2].get(i)]));
+        }
+    }
+}
+
+loops! {
+    /// Where rays meet triangles, by Möller and Trumbore ("Fast, Minimum Storage Ray/Triangle Intersection", 1997). That
+    /// they do is known, so the weights of corners are brought into their range: the point lies on its triangle whatever
+    /// f32 rounds.
+    #[allow(clippy::too_many_arguments)]
+    fn meet(
+        triangles: &Corners,
+        origin: &VectorLanes,
+        direction: &SingleLanes,
+        t: &mut [f32; LANES],
+        position: &mut VectorLanes,
+        leaves: &mut VectorLanes,
+        normal: &mut SingleLanes,
+        cosine: &mut [f32; LANES],
+        is_front: &mut [u32; LANES],
+    ) {
+        for i in 0..LANES {
+            let (a, b, c) = (triangles.corners[0].get(i), triangles.corners[1].get(i), triangles.corners[2].get(i));
+            let of_triangle = triangles.normal.get(i);
+            let d = direction.get(i);
+            let from_a = origin.get(i) - a;
+            let (first, second, from) = ((b - a).as_vec3(), (c - a).as_vec3(), from_a.as_vec3());
+            let across = d.cross(second);
+            let inverse = 1.0 / first.dot(across);
+            let over = from.cross(first);
+            let (v, w) = (from.dot(across) * inverse, d.dot(over) * inverse);
+            // Also of NaN, where a triangle is next to edge-on.
+            let (v, w) = (greater(v, 0.0), greater(w, 0.0));
+            let sum = 1.0 / greater(v + w, 1.0);
+            let (v, w) = (f64::from(lesser(v * sum, 1.0)), f64::from(lesser(w * sum, 1.0)));
+            let point = a * (1.0 - v - w) + b * v + c * w;
+            let way = (from_a - (point - a)).as_vec3();
+            let slope = of_triangle.as_vec3().dot(d);
+            let front = mask(slope < 0.0);
+            let side = if slope < 0.0 { 1.0 } else { -1.0 };
+            let off = RayOrigin::off(point, error_among([a, b, c]), of_triangle * side);
+            t[i] = way.length();
+            position.set(i, point);
+            leaves.set(i, off.outside());
+            normal.set(i, of_triangle.as_vec3() * side as f32);
+            cosine[i] = slope.abs();
+            is_front[i] = front;
+        }
+    }
+}
+
+impl Geometry {
+    /// What rays meet, by the triangles that each hits first; `which` are their places in the queue, at most sixteen.
+    /// The last stands in the lanes that are left.
+    pub fn meet_block(
+        &self,
+        level: Level,
+        rays: &PathRays,
+        primitives: &[u32],
+        which: &[u32],
+        surfaces: &mut SurfaceBlock,
+    ) {
+        surfaces.count = which.len();
+        let mut triangles = Corners { corners: [VectorLanes::ZERO; 3], normal: VectorLanes::ZERO };
+        let mut origin = VectorLanes::ZERO;
+        let (has_facets, is_single) = (!self.facets.is_empty(), self.few_corners.is_empty());
+        for lane in 0..LANES {
+            surfaces.index[lane] = which[lane.min(which.len() - 1)];
+        }
+        gather(primitives, &surfaces.index, &mut surfaces.primitive);
+        for axis in 0..3 {
+            gather(&rays.direction[axis], &surfaces.index, &mut surfaces.direction.0[axis]);
+            gather(&rays.origin[axis], &surfaces.index, origin.axis_mut(axis));
+        }
+        for lane in 0..LANES {
+            let primitive = surfaces.primitive[lane];
+            let corners: [DVec3; 3] = match (self.facets.get(primitive), &self.vertices) {
+                (Some(facet), _) => {
+                    triangles.normal.set(lane, facet.normal);
+                    surfaces.shape[lane] = facet.shape;
+                    if is_single { facet.corners.map(Vec3::as_dvec3) } else { self.few_corners[primitive as usize] }
+                }
+                // Without a call.
+                (None, Vertices::Single(vertices)) if self.gaps.is_empty() => {
+                    let [a, b, c] = self.faces[primitive as usize];
+                    let at = |i: u32| vertices[i as usize].as_dvec3();
+                    [at(a), at(b), at(c)]
+                }
+                _ => self.corners(primitive),
+            };
+            for (to, corner) in triangles.corners.iter_mut().zip(corners) {
+                to.set(lane, corner);
+            }
+        }
+        if !has_facets {
+            for lane in 0..LANES {
+                surfaces.shape[lane] = self.locate(surfaces.primitive[lane]).0;
+            }
+        }
+        if !has_facets {
+            normals(level, &triangles.corners, &mut triangles.normal);
+        }
+        let SurfaceBlock { direction, t, position, origin: leaves, normal, cosine, is_front, .. } = surfaces;
+        meet(level, &triangles, &origin, direction, t, position, leaves, normal, cosine, is_front);
+    }
+}
