@@ -84,6 +84,18 @@ def test_pairs_of_tensors_are_meshes():
     assert [shape.bounds[0, 0] for shape in both.shapes] == [0, 2]
 
 
+def test_pairs_of_plain_lists_are_meshes():
+    lists, rows = POINTS.tolist(), [tuple(face) for face in FACES.tolist()]
+    vectors = list(POINTS)
+    for pair in ((lists, rows), [lists, rows], (tuple(map(tuple, lists)), tuple(rows)), (vectors, FACES)):
+        assert rw.Mesh.of(pair) == rw.Mesh.of((POINTS, FACES))
+        scene = rw.Scene({"house": {"walls": pair}, "roof": rw.Sphere((0, 0, 3), 1)})
+        assert scene.names == ("house/walls", "roof")
+    # Two meshes, and two pairs, are still lists of meshes.
+    mesh = rw.Mesh.of((POINTS, FACES))
+    assert len(rw.Scene([mesh, mesh]).shapes) == len(rw.Scene([(lists, rows), (lists, rows)]).shapes) == 2
+
+
 @pytest.mark.parametrize(
     ("pair", "error", "told"),
     [
@@ -98,6 +110,9 @@ def test_pairs_of_tensors_are_meshes():
         ((POINTS, FACES, FACES), TypeError, r"got numpy.ndarray; of vertices and faces make a mesh"),
         (3, TypeError, "got builtins.int"),
         (None, TypeError, "got builtins.NoneType"),
+        ((POINTS.tolist(), (FACES + 1).tolist()), ValueError, "faces must be between 0 and 7, got 8"),
+        ((POINTS.tolist(), [(0, 1, 2), (0, 1, 2, 3)]), ValueError, "faces must be .* got ragged list"),
+        ({"house": {"roof": 3}}, TypeError, "shape 'house/roof' must be a Mesh.* got builtins.int"),
         ({1: (POINTS, FACES)}, TypeError, "names of type str as the keys of a dict, got 1"),
         (trimesh.Trimesh, TypeError, "pyvista, VTK, Open3D, .* got the class trimesh.base.Trimesh"),
         (trimesh.PointCloud(POINTS), TypeError, "got trimesh.points.PointCloud"),

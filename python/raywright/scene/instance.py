@@ -16,7 +16,7 @@ from ..accelerators import BVH, Accelerator
 from ..arrays import frozen, integer, label, real_array
 from ..shapes import Shape
 from ..shapes.mesh import Mesh, face_count, stretched
-from ..shapes.sources import EXPECTED, described, hint, leaves, meshes_of, named
+from ..shapes.sources import EXPECTED, leaves, meshes_of, named, refused
 from ..shapes.welding import Weld, welded
 
 AnyShape = Union[Mesh, Shape, "Instance"]
@@ -327,5 +327,5 @@ def _each(shapes: Any, weld: Weld) -> Iterator[AnyShape]:
             continue
         found = meshes_of(one, weld, name=name)
         if found is None:
-            raise TypeError(f"shapes must be {EXPECTED}, got {described(one)}{hint(one)}")
+            raise refused("shapes", EXPECTED, one, name)
         yield from found

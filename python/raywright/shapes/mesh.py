@@ -127,9 +127,9 @@ class Mesh:
         ----------
         source : object
             All that a `Scene` makes meshes of: a path; a mesh of trimesh, pyvista, VTK, Open3D, meshio,
-            manifold3d or Blender; a shape of CadQuery or build123d; a ``(vertices, faces)`` pair of arrays or
-            tensors; a list of these, or a dict by name. Several meshes are joined, with the attributes that
-            all have.
+            manifold3d or Blender; a shape of CadQuery or build123d; a ``(vertices, faces)`` pair of arrays,
+            tensors or lists of rows; a list of these, or a dict by name. Several meshes are joined, with the
+            attributes that all have.
         tolerance : float, optional
             Distance that triangles keep to the curved faces of CAD shapes, in their unit, as far as Open
             CASCADE does: it may be twice that in a few places, such as poles of spheres. A thousandth of the

@@ -7,6 +7,7 @@ import sys
 from collections.abc import Iterator, Mapping
 from importlib import import_module
 from itertools import repeat
+from numbers import Number
 from os import PathLike
 from typing import Any, NamedTuple
 
@@ -140,8 +141,18 @@ def _named(given: Mapping[Any, Any], outer: str | None) -> Iterator[tuple[str, A
 
 
 def is_pair(given: object) -> bool:
-    """Whether something is a list or tuple of two arrays, vertices and faces."""
-    return isinstance(given, list | tuple) and len(given) == 2 and all(map(is_array, given))
+    """Whether something is a list or tuple of two arrays, or lists of rows of numbers: vertices and faces."""
+    return (
+        isinstance(given, list | tuple) and len(given) == 2 and all(is_array(x) or is_rows(x) for x in given)
+    )
+
+
+def is_rows(given: object) -> bool:
+    """Whether something is a list or tuple of rows of numbers, by its first number."""
+    if not isinstance(given, list | tuple) or not given:
+        return False
+    first = given[0]
+    return isinstance(first, list | tuple | np.ndarray) and len(first) > 0 and isinstance(first[0], Number)
 
 
 def is_array(given: object) -> bool:
@@ -220,7 +231,7 @@ def only_mesh(given: Any, tolerance: float | None) -> Mesh:
             continue
         made = meshes_of(one, tolerance=tolerance, name=name)
         if made is None:
-            raise TypeError(f"source must be {_expected_mesh()}, got {described(one)}{hint(one)}")
+            raise refused("source", _expected_mesh(), one, name)
         found += made
     if not found:
         raise ValueError(f"source must hold a mesh, got {described(given)} with none")
@@ -233,6 +244,12 @@ def only_mesh(given: Any, tolerance: float | None) -> Mesh:
 
 def _expected_mesh() -> str:
     return EXPECTED.replace("another raywright shape, an Instance, ", "")
+
+
+def refused(what: str, expected: str, given: object, name: str | None) -> TypeError:
+    """Return the error for something that becomes no shape, by the name that a dict gave it."""
+    subject = what if name is None else f"shape {name!r}"
+    return TypeError(f"{subject} must be {expected}, got {described(given)}{hint(given)}")
 
 
 def described(given: object) -> str:
