@@ -52,6 +52,15 @@ def test_a_plate_is_as_thick_by_ball_as_by_ray():
     assert measure.thickness(plate, (2.0, 0, 0), (1, 0, 0), method="sphere") == pytest.approx(0.2, abs=1e-6)
 
 
+def test_the_result_belongs_to_the_caller():
+    plate = rw.Scene(trimesh.creation.box((4.0, 4.0, 0.2)))
+    for method in ("ray", "sphere"):
+        found = measure.thickness(plate, method=method)
+        again = found.copy()
+        found *= 1000.0
+        assert np.array_equal(measure.thickness(plate, method=method), again)
+
+
 def test_the_ball_in_a_wedge():
     """At a distance d from the edge of a wedge of angle a, the ball that touches both sides has radius d
     tan(a / 2).

@@ -9,7 +9,7 @@ from ..arrays import choice
 from ..query.hits import ClosestPoints, SurfacePoints
 from ..scene.progress import BuildProgress, check_progress, watcher
 from ..scene.scene import Scene
-from .places import Floats, Places, SceneLike, middles, places, scene_of, sealed
+from .places import Floats, Places, SceneLike, middles, places, scene_of
 
 Method = Literal["ray", "sphere"]
 # A ball shrinks towards its last size geometrically; so many steps are more than any took that was tried.
@@ -54,7 +54,7 @@ def thickness(
     -------
     (...) float64
         In the scene's unit, of the leading shape of the points, or (F,) of all faces of all shapes in order;
-        inf where there is no other side, NaN where there is no point. Read-only.
+        inf where there is no other side, NaN where there is no point.
 
     Raises
     ------
@@ -93,7 +93,7 @@ def thickness(
             result[some] = np.where(np.isfinite(points).all(axis=1), across, np.nan)
             if report is not None:
                 report(min(1.0, some.stop / len(out)))
-    return sealed(result.reshape(out.shape))
+    return result.reshape(out.shape)
 
 
 def _inward(
