@@ -79,11 +79,12 @@ def triangles(name: str, value: ArrayLike, vertices: int) -> NDArray[np.uint32]:
     return numbers
 
 
-def indices(name: str, value: ArrayLike, count: int) -> NDArray[np.int64]:
-    """Return integers of any shape, each in 0..count - 1."""
+def indices(name: str, value: ArrayLike, count: int, instead: str = "") -> NDArray[np.int64]:
+    """Return integers of any shape, each in 0..count - 1; `instead` ends the error for real numbers."""
     array = as_array(name, value)
     if array.dtype.kind not in "iu":
-        raise TypeError(f"{name} must be integers, got {describe(value, array)}")
+        told = instead if array.dtype.kind == "f" else ""
+        raise TypeError(f"{name} must be integers, got {describe(value, array)}{told}")
     if array.size and (int(array.min()) < 0 or int(array.max()) >= count):
         first = array.reshape(-1)[np.argmax((array < 0) | (array >= count))]
         raise ValueError(f"{name} must be between 0 and {count - 1}, got {first}")

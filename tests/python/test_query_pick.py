@@ -69,6 +69,7 @@ def test_rays_through_points_are_the_cameras():
         (ValueError, (CAMERA, [3, -1, -2], 0), "x must be between 0 and 36, got -1"),
         (ValueError, (CAMERA, 0, 21), "y must be between 0 and 20, got 21"),
         (TypeError, (CAMERA, 1.0, 0), "x must be integers, got 1.0"),
+        (TypeError, (CAMERA, 1, 2.5), r"y must be integers, got 2.5; .*camera.rays_through"),
         (TypeError, (CAMERA, 1, np.array([True])), "y must be integers, got ndarray of dtype bool"),
         (TypeError, ("camera", 1, 1), "camera must be a Camera, got str"),
         (ValueError, (CAMERA, 1, 1, (0.5,)), r"offsets must have shape \(\.\.\., 2\), got \(1,\)"),

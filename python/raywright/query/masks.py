@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import bools
+from ..foreign_arrays import as_array
 from .rays import AskedRays, RayArguments, view
 
 ShapeMask: TypeAlias = str | Sequence[str] | ArrayLike
@@ -47,8 +48,13 @@ def _each(shapes: ShapeMask, all_shapes: Sequence[Any]) -> list[bool]:
                 told = f"its names are {', '.join(map(repr, sorted(known)))}" if known else "none has a name"
                 raise ValueError(f"shapes has {name!r}, but no shape of the scene is called so: {told}")
         return [name in wanted for name in names]
-    mask = bools("shapes", wanted, "one for each shape, or names")
     count = len(all_shapes)
+    try:
+        mask = bools("shapes", wanted, "one for each shape, or names")
+    except TypeError as error:
+        if as_array("shapes", wanted).dtype.kind not in "iu":
+            raise
+        raise TypeError(f"{error}; of numbers of shapes make one: np.isin(range({count}), shapes)") from None
     if mask.shape != (count,):
         raise ValueError(f"shapes must have shape ({count},), one bool a shape, got {mask.shape}")
     kept: list[bool] = mask.tolist()

@@ -322,7 +322,8 @@ class Queries(PointQueries):
             Whose picture it is.
         x, y : int or (...) integer arrays
             Column and row of the pixel, broadcast against each other: (0, 0) is the upper left of the
-            picture, (width - 1, height - 1) its lower right.
+            picture, (width - 1, height - 1) its lower right. For points between, such as mouse clicks in
+            floating point, use ``intersect(*camera.rays_through(points))``.
         offsets : (2,) or (..., 2) array
             Where in the pixel, for all or for each, as `Camera.rays` has it: (0, 0) is its upper left, (1, 1)
             its lower right. The default is the centre.
@@ -346,7 +347,8 @@ class Queries(PointQueries):
         """
         if not isinstance(camera, AnyCamera):
             raise TypeError(f"camera must be a Camera, got {type(camera).__name__}")
-        column, row = indices("x", x, camera.width), indices("y", y, camera.height)
+        told = "; ask of points between with intersect(*camera.rays_through(points))"
+        column, row = indices("x", x, camera.width, told), indices("y", y, camera.height, told)
         where = last_axis("offsets", offsets, 2)
         try:
             lead = np.broadcast_shapes(column.shape, row.shape, where.shape[:-1])
