@@ -35,7 +35,7 @@ def test_arrays_have_their_types_and_say_what_missed(hits, name, dtype, miss):
     array = getattr(hits, name)
     assert array.dtype == dtype
     assert array.shape[:2] == (5, 6)
-    assert not array.flags.writeable
+    assert array.flags.writeable == (dtype != np.int32)
     assert 0 < hits.hit.sum() < hits.hit.size
     if miss is not None:
         assert np.array_equal(
@@ -90,9 +90,7 @@ def test_repr_counts_hits(scene):
     assert repr(hits) == "Hits(shape=(2,), 1 of 2 rays hit)"
 
 
-def test_hits_cannot_be_written(hits):
-    with pytest.raises(ValueError, match="read-only"):
-        hits.t[0] = 1
+def test_hits_have_no_other_arrays(hits):
     with pytest.raises(AttributeError):
         hits.t = np.zeros(3)
 
@@ -106,8 +104,9 @@ def test_pickled_hits_keep_all_they_knew(hits, again):
     assert back == hits
     assert np.array_equal(back.position, hits.position, equal_nan=True)
     assert np.array_equal(back.normal, hits.normal, equal_nan=True)
-    assert not back.t.flags.writeable
-    assert not back.normal.flags.writeable
+    assert back.t.flags.writeable
+    assert back.normal.flags.writeable
+    assert not back.primitive.flags.writeable
 
 
 def test_equality_is_by_content(scene):

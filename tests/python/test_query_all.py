@@ -213,7 +213,7 @@ def test_all_hits_know_their_rays(scene):
     types = {"ray_splits": "i8", "ray": "i8", "t": "f8", "shape_id": "i4", "primitive": "i4", "uv": "f8"}
     for name, dtype in {**types, "count": "i8", "position": "f8", "normal": "f8"}.items():
         assert getattr(hits, name).dtype == dtype
-        assert not getattr(hits, name).flags.writeable
+        assert getattr(hits, name).flags.writeable == (dtype == "f8")
         assert getattr(hits, name) is getattr(hits, name)
     with pytest.raises(AttributeError):
         hits.t = None
@@ -245,7 +245,8 @@ def test_pickled_hits_keep_all_they_knew(scene, again):
     assert back.shape == (2, 1)
     assert np.array_equal(back.position, hits.position)
     assert np.array_equal(back.normal, hits.normal)
-    assert not back.t.flags.writeable
+    assert back.t.flags.writeable
+    assert not back.primitive.flags.writeable
 
 
 def test_equality_is_by_content(scene):

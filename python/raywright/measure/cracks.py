@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from .. import _core
 from ..query.tabular import Tabular
-from .places import Floats, SceneLike, scene_of, sealed
+from .places import Floats, SceneLike, scene_of
 from .triangles import triangles
 
 
@@ -21,10 +21,10 @@ class Topology(Tabular):
     tolerance : float
         How close corners are one, in the scene's unit.
     cracks : (K, 2, 3) float64
-        Open edges, by their ends: those that an odd number of faces share. Read-only.
+        Open edges, by their ends: those that an odd number of faces share.
     t_junctions : (K, 3) float64
         Corners of faces within edges of other faces that are open otherwise. Rays pass there only through
-        what rounding leaves. Read-only.
+        what rounding leaves.
     volumes : tuple of float
         Of each body, which is faces that hang together without an open edge; negative where normals point in,
         NaN where some of the faces are turned.
@@ -97,8 +97,8 @@ def topology(scene: SceneLike) -> Topology:
     pairs = zip(found.volumes, found.is_oriented, strict=True)
     return Topology(
         tolerance=found.tolerance,
-        cracks=sealed(corners[np.array(found.cracks, np.int64).reshape(-1, 2)]),
-        t_junctions=sealed(corners[np.array(found.junctions, np.int64)]),
+        cracks=corners[np.array(found.cracks, np.int64).reshape(-1, 2)],
+        t_junctions=corners[np.array(found.junctions, np.int64)],
         volumes=tuple(volume if is_oriented else np.nan for volume, is_oriented in pairs),
         open_faces=found.open,
         inner_faces=found.inner,

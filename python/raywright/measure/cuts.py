@@ -10,7 +10,7 @@ from .. import _core
 from ..arrays import choice
 from ..query.tabular import Tabular
 from ..scene.scene import Scene
-from .places import Floats, SceneLike, common, sealed, units, vectors
+from .places import Floats, SceneLike, common, units, vectors
 from .triangles import triangles
 
 AreaRule: TypeAlias = Literal["winding", "even-odd"]
@@ -23,7 +23,7 @@ class CrossSection(Tabular):
     Attributes
     ----------
     lines : tuple of (K, 3) float64
-        Polylines, read-only, open ones first; the last point of a closed one is the first again. Seen against
+        Polylines, open ones first; the last point of a closed one is the first again. Seen against
         the plane's normal, closed ones of a body whose normals point out turn anticlockwise, and those of its
         holes clockwise.
     closed : tuple of bool
@@ -131,6 +131,6 @@ def cross_section(
 
 
 def _section(points: Floats, splits: list[int], closed: list[bool], area: float) -> CrossSection:
-    lines = tuple(sealed(line) for line in np.split(points, splits[1:-1]) if len(line))
+    lines = tuple(line for line in np.split(points, splits[1:-1]) if len(line))
     length = sum(float(np.linalg.norm(np.diff(line, axis=0), axis=1).sum()) for line in lines)
     return CrossSection(lines, tuple(closed), area, length)

@@ -12,7 +12,7 @@ from ..arrays import integer, positive
 from ..query.hits import SurfacePoints
 from ..scene.progress import BuildProgress, check_progress, watcher
 from ..scene.scene import Scene
-from .places import Floats, Places, SceneLike, frames, places, scene_of, sealed, unit
+from .places import Floats, Places, SceneLike, frames, places, scene_of, unit
 from .plots import Plotted
 
 # Rays that are sent together: few enough to stay in some ten megabytes.
@@ -24,7 +24,7 @@ _GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Estimate(Plotted):
-    """Numbers found by sampling, and how far off they may be; arrays of the points' leading shape, read-only.
+    """Numbers found by sampling, and how far off they may be; arrays of the points' leading shape.
 
     Attributes
     ----------
@@ -197,7 +197,7 @@ def _open_share(
     shares[:, ~np.isfinite(where.origins).all(axis=1)] = np.nan
     value, lead = shares.mean(axis=0), where.shape
     error = _told_error(value, shares.var(axis=0, ddof=1) / _BATCHES, each * _BATCHES)
-    return Estimate(sealed(value.reshape(lead)), sealed(error.reshape(lead)), each * _BATCHES)
+    return Estimate(value.reshape(lead), error.reshape(lead), each * _BATCHES)
 
 
 def _told_error(value: Floats, variance: Floats, rays: int) -> Floats:

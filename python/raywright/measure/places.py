@@ -1,7 +1,7 @@
 """Where it is measured: points on surfaces, and rays that leave them."""
 
 from dataclasses import dataclass
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -249,9 +249,3 @@ def frames(normals: Floats) -> tuple[Floats, Floats]:
     b = x * y * a
     first = np.stack([1.0 + sign * x * x * a, sign * b, -sign * x], axis=-1)
     return first, np.stack([b, sign + y * y * a, -y], axis=-1)
-
-
-def sealed(array: NDArray[Any]) -> NDArray[Any]:
-    """Return the array, which can be read only from now on."""
-    array.setflags(write=False)
-    return array

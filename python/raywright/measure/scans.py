@@ -14,7 +14,7 @@ from ..query.tabular import Tabular
 from ..scene.progress import BuildProgress, check_progress, watcher
 from ..scene.scene import Scene
 from .noise import beams_of, normal, uniform
-from .places import Floats, SceneLike, scene_of, sealed, touching
+from .places import Floats, SceneLike, scene_of, touching
 from .plots import plot
 from .scanners import RasterLidar, SpinningLidar
 from .waveforms import peaks
@@ -29,7 +29,7 @@ _GRAZING = 89.995
 
 @dataclass(frozen=True, eq=False, repr=False)
 class LidarScan(Tabular):
-    """What a scanner has measured: K returns in all, by beam and then by range. Arrays are read-only.
+    """What a scanner has measured: K returns in all, by beam and then by range.
 
     Attributes
     ----------
@@ -223,7 +223,7 @@ def lidar(
     measured = true + spread * normal(seed, beam, which, 2)
     found["range"] = np.clip(measured, scanner.min_range, scanner.max_range)
     found["position"] = np.asarray(scanner.position) + found["range"][:, None] * middles[beam]
-    return LidarScan(**{k: sealed(v[chosen]) for k, v in found.items()}, shape=scanner.shape)
+    return LidarScan(**{k: v[chosen] for k, v in found.items()}, shape=scanner.shape)
 
 
 def _at_least_0(name: str, value: float) -> float:

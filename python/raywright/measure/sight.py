@@ -8,13 +8,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import number
 from ..query.hits import Hits
-from .places import Floats, SceneLike, Touching, common, scene_of, sealed, touching, vectors
+from .places import Floats, SceneLike, Touching, common, scene_of, touching, vectors
 from .plots import Plotted
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class LineOfSight(Plotted):
-    """Whether points see each other; arrays of the leading shape of the pairs, read-only.
+    """Whether points see each other; arrays of the leading shape of the pairs.
 
     Attributes
     ----------
@@ -91,7 +91,7 @@ def line_of_sight(
         if not 0 <= least < 0.5:
             raise ValueError(f"margin must be at least 0 and less than 0.5, got {margin}")
         hits = scene.intersect(starts, way, t_min=least, t_max=1.0 - least, threads=threads)
-    found = LineOfSight(sealed(~hits.hit), hits, sealed(np.asarray(far)))
+    found = LineOfSight(~hits.hit, hits, np.asarray(far))
     # Of one viewer and many points, the points tell more.
     found._at(scene, starts if ends.size < starts.size else ends)
     return found

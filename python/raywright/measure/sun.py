@@ -12,7 +12,7 @@ from ..lights.sun_position import way
 from ..lights.times import Time, Times, one_or_many
 from ..query.hits import SurfacePoints
 from ..scene.progress import BuildProgress, check_progress, watcher
-from .places import Floats, SceneLike, places, scene_of, sealed, unit, units
+from .places import Floats, SceneLike, places, scene_of, unit, units
 from .plots import Plotted
 
 _TOGETHER = 1 << 20
@@ -20,7 +20,7 @@ _TOGETHER = 1 << 20
 
 @dataclass(frozen=True, eq=False, repr=False)
 class SolarExposure(Plotted):
-    """What the sun sends to points; arrays of their leading shape, read-only. NaN where there is no point.
+    """What the sun sends to points; arrays of their leading shape. NaN where there is no point.
 
     Attributes
     ----------
@@ -165,7 +165,7 @@ def solar_exposure(
         sums[~np.isfinite(where.origins).all(axis=1)] = np.nan
     lead = where.shape
     total = float(counted[day].sum())
-    found = SolarExposure(sealed(exposure.reshape(lead)), sealed(sunlit.reshape(lead)), total)
+    found = SolarExposure(exposure.reshape(lead), sunlit.reshape(lead), total)
     found._at(scene, points)
     return found
 

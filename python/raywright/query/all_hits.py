@@ -22,7 +22,7 @@ class AllHits(SurfacePoints):
     """Every hit of each ray, one after the other: by ray, then `t`, then (shape_id, primitive).
 
     There are K hits of N rays in all, and those of ray i, counted along the rays in C order, are from
-    ``ray_splits[i]`` to ``ray_splits[i + 1]``. All arrays are read-only.
+    ``ray_splits[i]`` to ``ray_splits[i + 1]``. As of `Hits`, arrays of integers are read-only.
 
     Attributes
     ----------

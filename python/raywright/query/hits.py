@@ -42,7 +42,7 @@ class Known:
 
 @dataclass(frozen=True, eq=False, repr=False, init=False)
 class SurfacePoints(Known, Tabular, PlottedPoints):
-    """Points on the surfaces of a scene; all arrays are read-only.
+    """Points on the surfaces of a scene; numbers of shapes and faces are read-only.
 
     Attributes
     ----------
@@ -119,7 +119,7 @@ class SurfacePoints(Known, Tabular, PlottedPoints):
         points = self._known("position").positions(
             self.shape_id.reshape(-1), self.primitive.reshape(-1), self.uv.reshape(-1, 2)
         )
-        return sealed(points.reshape(*self.primitive.shape, 3))
+        return points.reshape(*self.primitive.shape, 3)
 
     @cached_property
     def normal(self) -> NDArray[np.float64]:
@@ -127,7 +127,7 @@ class SurfacePoints(Known, Tabular, PlottedPoints):
         if self._rays is not None:
             return self.surface.normal
         normals = self._known("normal").normals(self.shape_id.reshape(-1), self.primitive.reshape(-1))
-        return sealed(normals.reshape(*self.primitive.shape, 3))
+        return normals.reshape(*self.primitive.shape, 3)
 
     @cached_property
     def _error(self) -> NDArray[np.float64]:
@@ -202,7 +202,7 @@ class SurfacePoints(Known, Tabular, PlottedPoints):
             ray,
         )
         lead = self.primitive.shape
-        return Surface(*(sealed(part.reshape(lead + part.shape[1:])) for part in parts))
+        return Surface(*(part.reshape(lead + part.shape[1:]) for part in parts))
 
     def to_dict(self) -> dict[str, NDArray[Any]]:
         """Return what is known as flat arrays by name, an entry or a row for each point.
@@ -257,7 +257,10 @@ class SurfacePoints(Known, Tabular, PlottedPoints):
 
 @dataclass(frozen=True, eq=False, repr=False, init=False)
 class Hits(SurfacePoints):
-    """The closest hit of each ray; every array begins with the leading shape of the rays, and is read-only.
+    """The closest hit of each ray; every array begins with the leading shape of the rays.
+
+    Arrays of floats and bools belong to the caller. Those of integers are read-only, as the scene looks up by
+    them what else is known; what was worked out already does not follow a change.
 
     Attributes
     ----------
@@ -312,7 +315,7 @@ class Hits(SurfacePoints):
     @cached_property
     def hit(self) -> NDArray[np.bool_]:
         """Whether each ray hits anything: (...) bool."""
-        return sealed(np.asarray(self.primitive >= 0))
+        return np.asarray(self.primitive >= 0)
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -338,7 +341,7 @@ class Hits(SurfacePoints):
 class ClosestPoints(SurfacePoints):
     """The closest point of the surface to each point; every array begins with their leading shape.
 
-    All arrays are read-only.
+    As of `Hits`, arrays of integers are read-only.
 
     Attributes
     ----------
@@ -387,7 +390,7 @@ class ClosestPoints(SurfacePoints):
     @cached_property
     def normal(self) -> NDArray[np.float64]:
         """Unit geometric normal, out of what is closed: (..., 3) float64; NaN for none."""
-        return sealed(self._site[..., :3].copy()) if self._known("normal").curved else super().normal
+        return self._site[..., :3].copy() if self._known("normal").curved else super().normal
 
     @cached_property
     def _error(self) -> NDArray[np.float64]:
@@ -396,7 +399,7 @@ class ClosestPoints(SurfacePoints):
     @cached_property
     def found(self) -> NDArray[np.bool_]:
         """Whether anything is near enough: (...) bool."""
-        return sealed(np.asarray(self.primitive >= 0))
+        return np.asarray(self.primitive >= 0)
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -462,7 +465,7 @@ def rewritten(out: Hits, shape: tuple[int, ...]) -> Iterator[tuple[Any, ...]]:
         yield (*arrays, instance)
     finally:
         for array in known:
-            array.setflags(write=False)
+            rows.kept(array)
 
 
 def one_or_some(kind: type[Points], of: Any, index: Any) -> Points:
@@ -501,7 +504,7 @@ def restored(kind: type[Points], arrays: dict[str, Any], more: dict[str, Any]) -
     points = kind.__new__(kind)
     for array in arrays.values():
         if isinstance(array, np.ndarray):
-            array.setflags(write=False)
+            rows.kept(array)
     # Where cached_property keeps its values, too.
     vars(points).update(arrays, **more, _compiled=None, _rays=None)
     return points

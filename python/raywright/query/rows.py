@@ -29,7 +29,7 @@ def places(shape: tuple[int, ...], index: Any) -> NDArray[np.int64]:
 
 
 def picked(own: dict[str, Any], which: NDArray[np.int64]) -> dict[str, Any]:
-    """Return what is known of all, of some: copies that can be read only."""
+    """Return what is known of all, of some: copies."""
     parts = {name: value for name, value in own.items() if name not in ("_compiled", "_rays")}
     return {name: _some(name, value, which) for name, value in parts.items()}
 
@@ -44,9 +44,7 @@ def _some(name: str, value: Any, which: NDArray[np.int64]) -> Any:
 
 
 def _rows(array: NDArray[Any], lead: int, which: NDArray[np.int64]) -> NDArray[Any]:
-    some = np.array(array.reshape(-1, *array.shape[lead:])[which])
-    some.setflags(write=False)
-    return some
+    return kept(np.array(array.reshape(-1, *array.shape[lead:])[which]))
 
 
 def place(shape: tuple[int, ...], index: Any) -> int | None:
@@ -71,7 +69,7 @@ def run(shape: tuple[int, ...], first: int) -> NDArray[np.int64]:
 
 
 def cut(own: dict[str, Any], which: int | slice) -> dict[str, Any]:
-    """Return what is known of all, of one place of the first dimension or of a run: read-only copies."""
+    """Return what is known of all, of one place of the first dimension or of a run: copies."""
     parts = {name: value for name, value in own.items() if name not in ("_compiled", "_rays")}
     return {name: _cut(value, which) for name, value in parts.items()}
 
@@ -81,9 +79,7 @@ def _cut(value: Any, which: int | slice) -> Any:
         return Surface(*(_cut(part, which) for part in vars(value).values()))
     if not isinstance(value, np.ndarray):
         return value
-    some = np.array(value[which])
-    some.setflags(write=False)
-    return some
+    return kept(np.array(value[which]))
 
 
 def rays_of(rays: tuple[Any, ...] | None, which: NDArray[np.int64]) -> tuple[Any, ...] | None:
@@ -116,9 +112,14 @@ def filled(some: NDArray[Any], has: NDArray[np.bool_], shape: tuple[int, ...], m
     """Return an entry for each ray: the next of some for those that have one, and what stands for a miss."""
     every = np.full((len(has), *some.shape[1:]), miss, some.dtype)
     every[has] = some
-    every = every.reshape((*shape, *some.shape[1:]))
-    every.setflags(write=False)
-    return every
+    return kept(every.reshape((*shape, *some.shape[1:])))
+
+
+def kept(array: NDArray[Any]) -> NDArray[Any]:
+    """Return the array, read-only where it leads back into the scene, as numbers of shapes and faces do."""
+    if array.dtype.kind not in "fb":
+        array.setflags(write=False)
+    return array
 
 
 def length(shape: tuple[int, ...]) -> int:

@@ -1,7 +1,6 @@
 """How surfaces lie where rays meet them."""
 
 from dataclasses import dataclass, fields
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,7 +8,7 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Surface:
-    """All about the points of some hits; all arrays are float64 and read-only, and NaN for misses.
+    """All about the points of some hits; all arrays are float64, and NaN for misses.
 
     Attributes
     ----------
@@ -43,12 +42,6 @@ class Surface:
         return all(np.array_equal(a, b, equal_nan=True) for a, b in pairs)
 
     __hash__ = None  # type: ignore[assignment]
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        # An unpickled array would be writeable.
-        for array in state.values():
-            array.setflags(write=False)
-        vars(self).update(state)
 
     def __repr__(self) -> str:
         return f"Surface(shape={self.error.shape})"

@@ -117,14 +117,7 @@ pub fn intersect_all<'py>(
             },
         )?;
     }
-    Ok((
-        sealed(splits)?,
-        sealed(t)?,
-        sealed(shape)?,
-        sealed(primitive)?,
-        sealed(uv)?,
-        instance.map(sealed).transpose()?,
-    ))
+    Ok((sealed(splits)?, t, sealed(shape)?, sealed(primitive)?, uv, instance.map(sealed).transpose()?))
 }
 
 type Place<'a> = (

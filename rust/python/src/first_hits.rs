@@ -61,5 +61,5 @@ pub fn first_hits<'py>(
             }
         })?;
     }
-    Ok((sealed(t)?, sealed(shape)?, sealed(primitive)?, sealed(uv)?, by_tree.into_inner()))
+    Ok((t, sealed(shape)?, sealed(primitive)?, uv, by_tree.into_inner()))
 }

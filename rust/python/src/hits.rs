@@ -42,7 +42,7 @@ impl<'a, 'py> HitArrays<'a, 'py> {
         Ok(Self { arrays: (t, shape, primitive, uv, instance), lead })
     }
 
-    /// The arrays after a function has written them. They cannot be written any more.
+    /// The arrays after a function has written them. What leads back into the scene cannot be written any more.
     pub fn written(self, write: impl FnOnce(AllParts<'_>) -> PyResult<()>) -> PyResult<Hits<'py>> {
         let (t, shape, primitive, uv, instance) = &self.arrays;
         let lead = self.lead;
@@ -57,7 +57,6 @@ impl<'a, 'py> HitArrays<'a, 'py> {
             let instances = to_instance.as_mut().map(|to| to.as_slice_mut()).transpose()?;
             write(((ts, shapes, primitives, uvs), instances))?;
         }
-        let _ = (to_t.make_nonwriteable(), to_uv.make_nonwriteable());
         let _ = (to_shape.make_nonwriteable(), to_primitive.make_nonwriteable());
         let _ = to_instance.map(|to| to.make_nonwriteable());
         Ok(self.arrays)

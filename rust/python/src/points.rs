@@ -4,7 +4,7 @@ use numpy::{PyArrayDyn, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use super::arrays::{Numbers, Triples, numbers, rows, sealed, unwritten};
+use super::arrays::{Numbers, Triples, numbers, rows, unwritten};
 use super::query::CompiledScene;
 use super::rays::{answer, share};
 use raywright::math::{Hit, Ray};
@@ -97,16 +97,7 @@ pub fn points<'py>(
             }
         })?;
     }
-    Ok((
-        sealed(position)?,
-        sealed(error)?,
-        sealed(normal)?,
-        sealed(shading)?,
-        sealed(dp_du)?,
-        sealed(dp_dv)?,
-        sealed(dn_du)?,
-        sealed(dn_dv)?,
-    ))
+    Ok((position, error, normal, shading, dp_du, dp_dv, dn_du, dn_dv))
 }
 
 fn triples(numbers: &mut [f64]) -> &mut [[f64; 3]] {

@@ -343,7 +343,7 @@ impl CompiledScene {
             })?;
         }
         let instance = instance.map(sealed).transpose()?;
-        Ok((sealed(distance)?, sealed(position)?, sealed(shape)?, sealed(primitive)?, sealed(uv)?, instance))
+        Ok((distance, position, sealed(shape)?, sealed(primitive)?, uv, instance))
     }
 
     /// The radii of the largest balls, of at most `radius`, that touch meshes at points, have their middles along unit
