@@ -62,6 +62,42 @@ def test_a_ray_goes_through_the_points_that_its_pixel_shows(K, pixel_centre):
         assert np.abs(R @ origin + SHIFT).max() < 1e-14
 
 
+@pytest.mark.parametrize("K", MATRICES.values(), ids=MATRICES)
+def test_points_are_projected_where_rays_go_through(K):
+    R = rotation()
+    camera = rw.Camera.from_intrinsics(K, R, SHIFT, 320, 240)
+    points = np.random.default_rng(4).uniform((-50, -50), (400, 300), (5, 8, 2))
+    origins, ways = camera.rays_through(points)
+    there = origins + np.geomspace(0.1, 1e4, 40).reshape(5, 8, 1) * ways
+    assert np.abs(camera.project(there) - points).max() < 1e-9
+    # OpenCV counts from the centre of the first pixel.
+    u, v = projected(K, R, SHIFT, there[2, 3])
+    assert np.allclose(camera.project(there[2, 3]), (float(u) + 0.5, float(v) + 0.5), rtol=0, atol=1e-9)
+    behind = origins - ways
+    assert np.isnan(camera.project(behind)).all()
+    assert np.isnan(camera.project(camera.position)).all()
+
+
+def test_what_a_pixel_shows_is_projected_into_it():
+    knot = rw.scenes.torus_knot(along=60, around=10)
+    # Where it is, and on a map.
+    for place in (np.zeros(3), np.array((2.6e6, 1.2e6, 400.0))):
+        moved = np.eye(4)
+        moved[:3, 3] = place
+        eye = place + np.array((3, 2, 6))
+        camera = rw.Camera(eye, place, fov=50, width=60, height=40)
+        hits = rw.Scene(knot.transformed(moved)).first_hits(camera)
+        row, column = np.nonzero(hits.hit)
+        assert len(row) > 100
+        pixel = camera.project(hits.position[hits.hit])
+        assert np.abs(pixel - np.stack([column, row], axis=-1) - 0.5).max() < 1e-6
+
+
+def test_only_points_are_projected():
+    with pytest.raises(ValueError, match=r"points must have shape \(\.\.\., 3\), got \(2,\)"):
+        rw.Camera((0, 0, 5), (0, 0, 0)).project((1, 2))
+
+
 def test_the_first_pixel_of_opencv_has_its_centre_at_0():
     K = MATRICES["plain"]
     camera = rw.Camera.from_intrinsics(K, np.eye(3), np.zeros(3), 320, 240)

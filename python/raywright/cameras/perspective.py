@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..arrays import number
+from ..arrays import last_axis, number
 from .any_camera import AnyCamera, Pair, pair, picture_axis, picture_length, view_angle
 from .matrices import of_camera_matrix, of_extrinsics, of_world
 from .pose import Pose
@@ -171,3 +171,33 @@ class Camera(AnyCamera):
             across, down = self.focal
         x, y = self.principal or (0.5 * self.width, 0.5 * self.height)
         return np.array([(across, self.skew, x - 0.5), (0, down, y - 0.5), (0, 0, 1)])
+
+    def project(self, points: ArrayLike) -> NDArray[np.float64]:
+        """Return where points are seen in the picture, whatever is in between.
+
+        Parameters
+        ----------
+        points : (..., 3) array
+            In the scene.
+
+        Returns
+        -------
+        (..., 2) float64 array
+            In pixels from the picture's left and from its top, as `rays_through` takes them: the pixel in row
+            i and column j is from (j, i) to (j + 1, i + 1). Points beside the picture are beyond its ends;
+            NaN for those behind the camera, and in the plane through it. A camera that moves is where it is
+            as the shutter opens.
+
+        Raises
+        ------
+        ValueError
+            If the last dimension is not 3.
+        TypeError
+            If the array does not hold real numbers.
+        """
+        (across, skew, x), (_, down, y), _ = self.intrinsics
+        # From the camera, so that coordinates of maps lose no digits.
+        seen = (last_axis("points", points, 3).astype(np.float64) - self.position) @ self.extrinsics[0].T
+        ahead = np.where(seen[..., 2] > 0, seen[..., 2], np.nan)
+        u, v = seen[..., 0] / ahead, seen[..., 1] / ahead
+        return np.stack([across * u + skew * v + x + 0.5, down * v + y + 0.5], axis=-1)
