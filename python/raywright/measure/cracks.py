@@ -66,7 +66,8 @@ class Topology(Tabular):
 
     def __repr__(self) -> str:
         return (
-            f"Topology({len(self.volumes)} bodies, {self.open_faces} open, {self.inner_faces} inner faces, "
+            f"Topology({len(self.volumes)} bodies, {self.open_faces} faces in no body, "
+            f"{self.inner_faces} inner faces, "
             f"{len(self.cracks)} cracks, "
             f"{len(self.t_junctions)} T-junctions, {self.turned_edges} turned edges, "
             f"{self.duplicate_faces} duplicate and {self.degenerate_faces} degenerate faces)"
