@@ -124,6 +124,25 @@ def test_nan_faces_warn_the_caller(camera, triangle):
     assert caught[0].filename == __file__
 
 
+def test_a_picture_without_any_light_says_why_it_is_black():
+    camera = rw.Camera((0, 0, 5), (0, 0, 0), width=8, height=8)
+    lamp = rw.Instance(rw.Instance(rw.Sphere((0, 0, 0), 0.1, emission=1.0), np.eye(4)), np.eye(4))
+    dark = rw.Scene(rw.Sphere())
+    image = rw.render(dark, camera, samples=1, progress=False)
+    assert "no light: give environment=1.0" in image.warnings[0]
+    assert image.warnings[0] in repr(image)
+    # Looking away from a light is another matter, and so are pictures that need none.
+    away = rw.Camera((0, 0, 5), (0, 0, 9), width=8, height=8)
+    for scene, view, how in (
+        (rw.Scene([rw.Sphere(), lamp]), away, rw.Path()),
+        (rw.Scene(rw.Sphere(), rw.PointLight((9, 9, 9), 1.0)), away, rw.Path()),
+        (dark, camera, rw.AmbientOcclusion()),
+    ):
+        assert not any(
+            "no light" in told for told in rw.render(scene, view, how, samples=1, progress=False).warnings
+        )
+
+
 @pytest.mark.parametrize(
     ("arguments", "error", "message"),
     [

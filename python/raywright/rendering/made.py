@@ -1,12 +1,14 @@
 """Pictures made of renders as the core has them."""
 
 from collections.abc import Iterable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .. import _core
+from ..scene.scene import Scene
 from .image import HISTORY, ErrorEstimate, Image
 from .plan import RenderPlan
 
@@ -59,6 +61,27 @@ def made(
         degrees=degrees,
         alpha=alpha,
     )
+
+
+def shines(scene: Scene) -> bool:
+    """Whether there is any light in a scene, but for what emits in a medium."""
+    if scene.lights or scene.environment is not None:
+        return True
+    left: list[Any] = list(scene.shapes)
+    while left:
+        shape = left.pop()
+        if getattr(shape, "emission", None) is not None:
+            return True
+        left += getattr(shape, "shapes", ())
+    return False
+
+
+def doubted(image: Image, scene: Scene) -> Image:
+    """Return an image, with the reason if it is black for want of light."""
+    if image.rgb.any() or shines(scene):
+        return image
+    why = "black, as the scene has no light: give environment=1.0, lights=, or a shape with emission="
+    return replace(image, warnings=(*image.warnings, why))
 
 
 def overall(done: _core.Rendering) -> dict[str, Any]:

@@ -25,7 +25,7 @@ from .halves import halves_of
 from .image import Image
 from .interrupts import ON_INTERRUPT, unless_terminated
 from .job import Job
-from .made import doubts, made, overall
+from .made import doubted, doubts, made, overall
 from .notebook import display
 from .on_device import OnDevice, check_device
 from .progress import Report, bar
@@ -369,6 +369,7 @@ def render(
     known = covers(rendering, job, asked, None, threads)
     found |= {name: array for name, array in known.items() if name in names}
     image = made(rendering, clamp, found, problems, plan, known["alpha"] if transparent else None)
+    image = doubted(image, scene)
     if rendering.dropped and isinstance(integrator, Integrator):
         _warn_of_written(integrator, rendering.dropped)
     if is_gathered(integrator):

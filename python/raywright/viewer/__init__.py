@@ -9,6 +9,7 @@ from ..cameras import AnyCamera
 from ..integrators import AnyIntegrator, Path, check_integrator
 from ..io.tone import DEFAULT, check_tone
 from ..rendering.filters import BoxFilter, Filter
+from ..rendering.made import shines
 from ..rendering.render import check
 from ..rendering.samplers import Sampler
 from ..scene.framing import framed
@@ -217,7 +218,7 @@ def view(
         error = _ERROR
     if camera is None and isinstance(scene, Scene):
         camera = framed(scene.shapes)
-        if not _shines(scene):
+        if not shines(scene):
             scene = lit(scene.shapes, camera)
     check(scene, camera, integrator, samples, error, seconds, seed, threads, adaptive, clamp, sampler, filter)
     how: dict[str, Any] = {
@@ -247,10 +248,3 @@ def view(
 
         webbrowser.open(viewer.url)
     return viewer
-
-
-def _shines(scene: Scene) -> bool:
-    """Whether there is any light in a scene."""
-    inside = (one for shape in scene.shapes for one in getattr(shape, "shapes", (shape,)))
-    lights = scene.lights or scene.environment is not None
-    return bool(lights) or any(getattr(shape, "emission", None) is not None for shape in inside)
