@@ -439,7 +439,21 @@ def test_what_cannot_be_is_refused_in_a_line(line: str, scene: Any, options: dic
 
 
 def test_what_is_of_the_wrong_kind_is_refused() -> None:
-    with pytest.raises(TypeError, match=r"scene must be a raywright.Scene"):
-        rw.radiosity(3)  # type: ignore[call-overload]
+    with pytest.raises(TypeError, match=r"shapes must be a Mesh, .* got builtins.int"):
+        rw.radiosity(3)
     with pytest.raises(TypeError, match=r"progress must be"):
         rw.radiosity(room(), progress=3)  # type: ignore[call-overload]
+
+
+def test_shapes_exchange_light_as_their_scene_does() -> None:
+    corners = np.array([(x, y, z) for z in (0.0, 1.0) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))])
+    lamp = rw.Mesh(corners[4:], [(0, 2, 1), (0, 3, 2)], emission=1.0)
+    parts = {"below": (corners[:4], [(0, 1, 2, 3)]), "above": lamp}
+    scene = rw.Scene(parts)
+    quiet: dict[str, Any] = {"progress": False}
+    assert np.array_equal(rw.view_factors(parts, **quiet).matrix, rw.view_factors(scene, **quiet).matrix)
+    heat = (rw.radiative_exchange(of, [300.0, 400.0], **quiet) for of in (parts, scene))
+    assert np.array_equal(*(found.flux for found in heat))
+    light = (rw.radiosity(of, **quiet) for of in (parts, scene))
+    assert np.array_equal(*(found.radiosity for found in light))
+    assert rw.view_factors(parts, **quiet).rest.max() < 1

@@ -265,7 +265,7 @@ def test_a_shape_of_no_area_sees_nothing() -> None:
 @pytest.mark.parametrize(
     ("make", "error", "what"),
     [
-        (lambda: rw.view_factors("room"), TypeError, "scene must be a Scene, got str"),  # type: ignore[arg-type]
+        (lambda: rw.view_factors(3), TypeError, "shapes must be a Mesh, another"),
         (lambda: rw.view_factors(rw.Scene([])), ValueError, "the scene has no faces"),
         (lambda: factors(*inward_box(), per="vertex"), ValueError, "per must be"),
         (lambda: factors(*inward_box(), rays=0), ValueError, "rays must be"),

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from ..arrays import positive
 from ..materials import Diffuse, Material, TwoSided
 from ..scene.instance import AnyShape, Instance
-from ..scene.scene import Scene
+from ..scene.scene import Scene, SceneLike, as_scene
 from ..shapes.mesh import Mesh
 from .copies import LaidOut
 
@@ -19,19 +19,18 @@ PATCH = np.dtype(
 _MOST = 2**15
 
 
-def check_exchanging(scene: object, diffuse: bool = True) -> Scene:
-    """Return the scene, if its surfaces can exchange light.
+def exchanging(scene: SceneLike, diffuse: bool = True) -> Scene:
+    """Return the scene, or that of some shapes, if its surfaces can exchange light.
 
     Raises
     ------
     TypeError
-        If it is no scene.
+        If no scene is made of it.
     ValueError
         If it is empty or filled by a medium, or something in it scatters otherwise than diffusely, where that
         counts.
     """
-    if not isinstance(scene, Scene):
-        raise TypeError(f"scene must be a raywright.Scene, got {type(scene).__name__}")
+    scene = as_scene(scene)
     if not scene.shapes:
         raise ValueError("scene has no shapes: nothing exchanges light")
     if scene.medium is not None:

@@ -11,10 +11,10 @@ from ..arrays import choice, integer, number, real_array, thread_limit
 from ..lights import ConstantEnvironment
 from ..query.tabular import Tabular
 from ..scene.progress import BuildProgress, check_progress, watcher
-from ..scene.scene import Scene
+from ..scene.scene import Scene, SceneLike
 from .coincident import Covered, merged
 from .copies import LaidOut, laid_out
-from .patches import check_exchanging
+from .patches import exchanging
 from .problem import BEHIND, ESCAPED, REPLICATES, Problem, lamps_of
 from .shooting import to_the_end
 from .solution import Floats, RadiositySolution
@@ -124,7 +124,7 @@ class RadiativeExchange(Tabular):
 
 
 def radiative_exchange(
-    scene: Scene,
+    scene: SceneLike,
     temperature: PerFace,
     emissivity: PerFace = 1.0,
     sky_temperature: float | None = None,
@@ -145,7 +145,7 @@ def radiative_exchange(
 
     Parameters
     ----------
-    scene : Scene
+    scene : Scene, Mesh or anything else that a Scene is made of
         The surfaces; a shape that is no mesh is one of them. The faces of an `Instance` are those of all its
         copies, one after the other.
     temperature : float, list, dict or array
@@ -183,7 +183,7 @@ def radiative_exchange(
     RuntimeWarning
         If faces coincide: they are one, which exchanges heat once, by what is given for the first of them.
     """
-    check_exchanging(scene, diffuse=False)
+    scene = exchanging(scene, diffuse=False)
     choice("sides", sides, ("front", "both"))
     both = sides == "both"
     laid, covered = merged(laid_out(scene), both)

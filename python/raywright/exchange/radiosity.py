@@ -5,10 +5,10 @@ from typing import Any, Literal, get_args, overload
 
 from ..arrays import choice, integer, number, thread_limit
 from ..scene.progress import BuildProgress, check_progress, watcher
-from ..scene.scene import Scene
+from ..scene.scene import SceneLike
 from .coincident import merged
 from .copies import laid_out
-from .patches import check_exchanging, cut
+from .patches import cut, exchanging
 from .problem import Problem, lamps_of
 from .shooting import states as shooting_states
 from .shooting import to_the_end
@@ -19,7 +19,7 @@ Sides = Literal["front", "both"]
 
 @overload
 def radiosity(
-    scene: Scene,
+    scene: SceneLike,
     per: Per = ...,
     method: Method = ...,
     error: float | None = ...,
@@ -35,7 +35,7 @@ def radiosity(
 
 @overload
 def radiosity(
-    scene: Scene,
+    scene: SceneLike,
     per: Per = ...,
     method: Method = ...,
     error: float | None = ...,
@@ -51,7 +51,7 @@ def radiosity(
 
 
 def radiosity(
-    scene: Scene,
+    scene: SceneLike,
     per: Per = "face",
     method: Method = "stochastic",
     error: float | None = None,
@@ -69,7 +69,7 @@ def radiosity(
 
     Parameters
     ----------
-    scene : Scene
+    scene : Scene, Mesh or anything else that a Scene is made of
         Of `Diffuse` surfaces, or `TwoSided` of them. Surfaces that shine and all other lights and
         environments count. A shape that is no mesh is one patch; shading normals do not count. Each copy of
         an `Instance` has patches of its own, and so takes the memory that its shapes would take; copies that
@@ -151,7 +151,7 @@ def radiosity(
         raise TypeError(f"states must be True or False, got {states!r}")
     if states and method != "progressive":
         raise ValueError(f"states are those of method='progressive', got {method!r}")
-    check_exchanging(scene)
+    scene = exchanging(scene)
     both = method != "matrix" and sides != "front"
     laid, covered = merged(laid_out(scene), both)
     cuts, lamps = cut(laid.scene, patch_size), lamps_of(scene)

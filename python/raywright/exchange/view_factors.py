@@ -13,7 +13,7 @@ from ..io.plots import plotted
 from ..io.value_plots import COLORS
 from ..query.tabular import Tabular
 from ..scene.progress import BuildProgress, check_progress, watcher
-from ..scene.scene import Scene
+from ..scene.scene import Scene, SceneLike, as_scene
 from ..shapes import Plane
 from ..shapes.mesh import Mesh
 from .coincident import Covered, merged
@@ -211,7 +211,7 @@ class ViewFactors(Tabular):
 
 
 def view_factors(
-    scene: Scene,
+    scene: SceneLike,
     per: Per = "face",
     rays: int | None = None,
     error: float | None = None,
@@ -228,7 +228,7 @@ def view_factors(
 
     Parameters
     ----------
-    scene : Scene
+    scene : Scene, Mesh or anything else that a Scene is made of
         Meshes, and shapes other than `Plane`. Each face of each copy of an `Instance` is a face of its own;
         copies must stand still.
     per : {"face", "shape"}
@@ -292,8 +292,7 @@ def view_factors(
     Closed forms: contour integrals, Schröder and Hanrahan (1993), Mitalas and Stephenson (1966). Shafts:
     Haines and Wallace (1991).
     """
-    if not isinstance(scene, Scene):
-        raise TypeError(f"scene must be a Scene, got {type(scene).__name__}")
+    scene = as_scene(scene)
     choice("per", per, get_args(Per))
     start = _RAYS if rays is None else integer("rays", rays, 1, 2**20)
     aim = None if error is None else positive("error", error)

@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 
 from .. import _core
 from ..query.tabular import Tabular
-from .places import Floats, SceneLike, scene_of
+from ..scene.scene import SceneLike
+from .places import Floats, scene_of
 from .triangles import triangles
 
 

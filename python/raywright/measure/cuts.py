@@ -9,8 +9,8 @@ from numpy.typing import ArrayLike, NDArray
 from .. import _core
 from ..arrays import choice
 from ..query.tabular import Tabular
-from ..scene.scene import Scene
-from .places import Floats, SceneLike, common, units, vectors
+from ..scene.scene import Scene, SceneLike
+from .places import Floats, common, units, vectors
 from .triangles import triangles
 
 AreaRule: TypeAlias = Literal["winding", "even-odd"]

@@ -11,8 +11,8 @@ from .. import _core
 from ..arrays import integer, positive
 from ..query.hits import SurfacePoints
 from ..scene.progress import BuildProgress, check_progress, watcher
-from ..scene.scene import Scene
-from .places import Floats, Places, SceneLike, frames, places, scene_of, unit
+from ..scene.scene import Scene, SceneLike
+from .places import Floats, Places, frames, places, scene_of, unit
 from .plots import Plotted
 
 # Rays that are sent together: few enough to stay in some ten megabytes.

@@ -8,11 +8,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import last_axis
 from ..query.hits import ClosestPoints, SurfacePoints
-from ..scene.instance import Shapes
-from ..scene.scene import Scene
+from ..scene.scene import Scene, SceneLike, as_scene
 from ..shapes.mesh import Mesh
 
-SceneLike: TypeAlias = Scene | Shapes
 Floats: TypeAlias = NDArray[np.float64]
 
 # How many times the error of a point of a surface rays start off it, as `Hits.leave` has it.
@@ -28,7 +26,7 @@ _REACH = 2.0**-10
 
 def scene_of(scene: SceneLike) -> Scene:
     """Return the scene, or one of the shapes, with corners welded that rounding has moved."""
-    return (scene if isinstance(scene, Scene) else Scene(scene)).welded()
+    return as_scene(scene).welded()
 
 
 def vectors(name: str, given: ArrayLike) -> Floats:

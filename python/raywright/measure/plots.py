@@ -11,8 +11,8 @@ from ..io.plots import plotted
 from ..io.value_plots import AXES, COLORS, Axis, bar, draw_faces, draw_points, frame, scale
 from ..query.hits import SurfacePoints
 from ..query.tabular import Tabular
-from ..scene.scene import Scene
-from .places import Floats, SceneLike
+from ..scene.scene import Scene, SceneLike
+from .places import Floats
 from .triangles import meshes_in
 
 

@@ -12,9 +12,9 @@ from ..io.value_plots import COLORS, Axis
 from ..query.hits import Hits
 from ..query.tabular import Tabular
 from ..scene.progress import BuildProgress, check_progress, watcher
-from ..scene.scene import Scene
+from ..scene.scene import Scene, SceneLike
 from .noise import beams_of, normal, uniform
-from .places import Floats, SceneLike, scene_of, touching
+from .places import Floats, scene_of, touching
 from .plots import plot
 from .scanners import RasterLidar, SpinningLidar
 from .waveforms import peaks

@@ -8,7 +8,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import number
 from ..query.hits import Hits
-from .places import Floats, SceneLike, Touching, common, scene_of, touching, vectors
+from ..scene.scene import SceneLike
+from .places import Floats, Touching, common, scene_of, touching, vectors
 from .plots import Plotted
 
 

@@ -12,7 +12,8 @@ from ..lights.sun_position import way
 from ..lights.times import Time, Times, one_or_many
 from ..query.hits import SurfacePoints
 from ..scene.progress import BuildProgress, check_progress, watcher
-from .places import Floats, SceneLike, places, scene_of, unit, units
+from ..scene.scene import SceneLike
+from .places import Floats, places, scene_of, unit, units
 from .plots import Plotted
 
 _TOGETHER = 1 << 20

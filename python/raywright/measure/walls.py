@@ -8,8 +8,8 @@ from numpy.typing import ArrayLike
 from ..arrays import choice
 from ..query.hits import ClosestPoints, SurfacePoints
 from ..scene.progress import BuildProgress, check_progress, watcher
-from ..scene.scene import Scene
-from .places import Floats, Places, SceneLike, middles, places, scene_of
+from ..scene.scene import Scene, SceneLike
+from .places import Floats, Places, middles, places, scene_of
 
 Method = Literal["ray", "sphere"]
 # A ball shrinks towards its last size geometrically; so many steps are more than any took that was tried.

@@ -607,3 +607,11 @@ def _elsewhere(shape: AnyShape, name: str, to: Any) -> AnyShape:
 
 def _counted(count: int, name: str) -> str:
     return f"{count} {name}{'' if count == 1 else 's'}"
+
+
+SceneLike: TypeAlias = Scene | Shapes
+
+
+def as_scene(scene: SceneLike) -> Scene:
+    """Return the scene, or the one of some shapes."""
+    return scene if isinstance(scene, Scene) else Scene(scene)
