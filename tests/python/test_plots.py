@@ -185,6 +185,7 @@ def test_copies_keep_values_but_no_scene(plates, again):
         (np.zeros(5), {"points": np.zeros((4, 3))}, ValueError, r"values must have shape \(4,\), one a p.*"),
         (["a"] * 12, {}, TypeError, r"values must be real numbers or bool, got .*"),
         (np.zeros(12), {"up": "w"}, ValueError, r"up must be one of 'x', 'y', 'z', got 'w'"),
+        (np.zeros(12), {"points": "plot.png"}, TypeError, r"points must be places, got 'plot.png': a .* ax="),
         (np.zeros(12), {"ax": "plot.gif"}, ValueError, r"a plot is saved as .*"),
     ],
 )

@@ -1,5 +1,6 @@
 """Values on surfaces and at points, drawn by matplotlib."""
 
+from os import PathLike
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
@@ -65,6 +66,8 @@ def plot(
     shown = _numbers(values)
     whole = scene if isinstance(scene, Scene) else Scene(scene, weld=None)
     vertices, faces = _meshes(whole, is_all=points is None)
+    if isinstance(points, str | PathLike):
+        raise TypeError(f"points must be places, got {str(points)!r}: a file to draw to is ax=")
     places = None if points is None else _places(points, shown.shape)
     if places is None and shown.shape not in ((len(faces),), (len(vertices),)):
         told = f"({len(faces)},), one a face, or ({len(vertices)},), one a vertex"
