@@ -1,8 +1,9 @@
 //! Scenes of few triangles, tested one by one against columns of rays.
 //!
-//! With a few dozen triangles, sixteen rays against every triangle take less time than a tree. Two triangles that make a
-//! convex quadrilateral are one test. Each test is done in f32 with a bound on its error; what the bound leaves open is decided
-//! in f64 by the triangles themselves ([`EdgeRay`]), so that a hit or miss is as exact as everywhere else.
+//! With a few dozen triangles, sixteen rays against every triangle take less time than a tree. Two triangles that
+//! make a convex quadrilateral are one test. Each test is done in f32 with a bound on its error; what the bound
+//! leaves open is decided in f64 by the triangles themselves ([`EdgeRay`]), so that a hit or miss is as exact as
+//! everywhere else.
 
 use super::Primitives;
 use raywright_base::math::single::{choose, greater, lesser, mask};
@@ -94,11 +95,11 @@ fn beyond<const FUSED: bool>(([x, y], offset): Line, p: [f32; 2]) -> f32 {
 /// Tests one patch, which is number `index`. Where `ANY` hit will do, it is noted as patch 0.
 ///
 /// With ε = 2⁻²⁴ and S the sum of the largest coordinates of scene and origin, the numerator of `t` errs by at most
-/// 15εS: sums of numbers up to S, and the roundings of the plane and the origin. The denominator errs by 7ε. So `t` errs
-/// by (15εS + 8ε|t|)/|n·d| to first order, for a normal `n` of largest coordinate 1, the position by that and 2ε(S + |t|),
-/// and its distances across edges by 6ε(S + |t|) more. The far corner of a quadrilateral may lie off its plane by 2εS
-/// ([`outline`]), which moves it and its edges by no more than twice that. 64ε(S + |t|)/|n·d| covers the sum where |n·d|,
-/// which is at most √3, is at least 64ε, and nothing is certain below.
+/// 15εS: sums of numbers up to S, and the roundings of the plane and the origin. The denominator errs by 7ε. So `t`
+/// errs by (15εS + 8ε|t|)/|n·d| to first order, for a normal `n` of largest coordinate 1, the position by that and
+/// 2ε(S + |t|), and its distances across edges by 6ε(S + |t|) more. The far corner of a quadrilateral may lie off its
+/// plane by 2εS ([`outline`]), which moves it and its edges by no more than twice that. 64ε(S + |t|)/|n·d| covers the
+/// sum where |n·d|, which is at most √3, is at least 64ε, and nothing is certain below.
 #[inline(always)]
 fn test<const FUSED: bool, const TRIANGLE: bool, const ANY: bool>(
     patch: &Patch,

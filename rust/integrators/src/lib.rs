@@ -5,6 +5,7 @@ mod aov;
 mod beam_traced;
 mod bidirectional;
 mod cone_traced;
+mod dimensions;
 mod direct;
 mod distributed;
 mod guiding;

@@ -64,8 +64,8 @@ fn simd() -> PyResult<&'static str> {
     Ok(level()?.name())
 }
 
-// Free-threaded interpreters keep their lock off: what threads share is frozen, behind a mutex, or borrowed at run time,
-// and no unsafe code relies on the lock.
+// Free-threaded interpreters keep their lock off: what threads share is frozen, behind a mutex, or borrowed at
+// run time, and no unsafe code relies on the lock.
 #[pymodule(gil_used = false)]
 mod _core {
     #[pymodule_export]

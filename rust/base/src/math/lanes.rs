@@ -70,8 +70,8 @@ impl SingleLanes {
     }
 }
 
-/// Sixteen of a column, in its order; the last may be the same. Where they are neighbours, as survivors of a stage mostly
-/// are, they are read as vectors.
+/// Sixteen of a column, in its order; the last may be the same. Where they are neighbours, as survivors of a stage
+/// mostly are, they are read as vectors.
 #[inline(always)]
 pub fn gather<T: Copy>(column: &[T], which: &[u32; LANES], to: &mut [T; LANES]) {
     let (first, end) = (which[0] as usize, which[LANES - 1] as usize);

@@ -1,10 +1,10 @@
 //! What rays come to.
 
-use super::dimensions::Dimensions;
 use super::features::{Carried, Features};
 use super::path_state::PathState;
 use super::worker::TransportWorker;
 use crate::CameraSample;
+use crate::dimensions::Dimensions;
 use crate::nesting::MediumStack;
 use crate::passing::Met;
 use raywright_base::math::Ray;

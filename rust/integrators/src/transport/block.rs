@@ -1,8 +1,8 @@
 //! Sixteen encounters at a time.
 
-use super::dimensions::Dimensions;
 use super::guided::Arrival;
 use super::path_state::PathState;
+use crate::dimensions::Dimensions;
 use crate::parting::Parting;
 use crate::{CameraSample, LocalGuide};
 use raywright_base::math::{Hit, LANES, Ray, RayLanes, VectorLanes};

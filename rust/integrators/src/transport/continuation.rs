@@ -3,12 +3,12 @@
 use super::Follow;
 use super::aiming::{aim, aiming};
 use super::block::Block;
-use super::dimensions::Dimensions;
 use super::features::{Carried, Features};
 use super::guided::Arrival;
 use super::path_state::PathState;
 use super::splitting::Branch;
 use super::worker::TransportWorker;
+use crate::dimensions::Dimensions;
 use crate::roulette;
 use raywright_base::math::{LANES, VectorLanes};
 use raywright_base::sampling::Pairs;

@@ -1,7 +1,7 @@
 //! What camera rays come to first.
 
-use super::dimensions::Dimensions;
 use crate::CameraSample;
+use crate::dimensions::Dimensions;
 use crate::nesting::MediumStack;
 use crate::passing::{Met, Passing};
 use raywright_base::math::{Hit, RayQueue};

@@ -1,11 +1,11 @@
 //! How surfaces scatter that paths have come to.
 
 use super::block::Block;
-use super::dimensions::Dimensions;
 use super::features::Features;
 use super::guided::Arrival;
 use super::worker::TransportWorker;
 use crate::CameraSample;
+use crate::dimensions::Dimensions;
 use crate::nesting::MediumStack;
 use raywright_base::math::{LANES, Ray, VectorLanes};
 use raywright_base::simd::loops;

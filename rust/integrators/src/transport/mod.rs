@@ -6,7 +6,6 @@ mod arrivals;
 mod arrive;
 mod block;
 mod continuation;
-mod dimensions;
 mod direct_light;
 mod emission;
 mod features;
@@ -27,7 +26,6 @@ mod worker;
 
 use super::wavefront::Wavefront;
 use super::{Guide, Job, Session, Worker};
-pub(super) use dimensions::Dimensions;
 pub(super) use direct_light::share;
 use features::{Features, General, Open, Plain, Sharing};
 pub use first_seen::FirstSeen;

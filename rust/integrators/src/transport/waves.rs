@@ -1,11 +1,11 @@
 //! Paths that carry wavelengths in place of red, green and blue.
 
 use super::block::Block;
-use super::dimensions::Dimensions;
 use super::features::Features;
 use super::path_state::PathState;
 use super::worker::TransportWorker;
 use crate::CameraSample;
+use crate::dimensions::Dimensions;
 use crate::parting::Parting;
 use raywright_base::math::LANES;
 use raywright_optics::spectra::Waves;

@@ -1,6 +1,6 @@
 //! Random numbers of a path through media.
 
-use crate::transport::Dimensions;
+use crate::dimensions::Dimensions;
 use raywright_base::sampling::Sampler;
 
 /// The numbers of one path. Those of which every stage has its own come by their dimensions; of which a stage may need

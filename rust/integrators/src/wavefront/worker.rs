@@ -3,7 +3,7 @@
 use super::matte::{self, Reflectances};
 use super::queues::{PathLanes, PathQueue, ShadowLanes, ShadowQueue};
 use super::{direct_light, emission};
-use crate::transport::Dimensions;
+use crate::dimensions::Dimensions;
 use crate::{CameraSample, Job, Worker, roulette};
 use raywright_base::math::{LANES, Ray, SingleLanes, gather};
 use raywright_base::sampling::{SamplerColumns, SamplerLanes};

@@ -67,9 +67,9 @@ loops! {
 }
 
 loops! {
-    /// Where rays meet triangles, by Möller and Trumbore ("Fast, Minimum Storage Ray/Triangle Intersection", 1997). That
-    /// they do is known, so the weights of corners are brought into their range: the point lies on its triangle whatever
-    /// f32 rounds.
+    /// Where rays meet triangles, by Möller and Trumbore ("Fast, Minimum Storage Ray/Triangle Intersection", 1997).
+    /// That they do is known, so the weights of corners are brought into their range: the point lies on its triangle
+    /// whatever f32 rounds.
     #[allow(clippy::too_many_arguments)]
     fn meet(
         triangles: &Corners,
