@@ -196,7 +196,8 @@ def test_copies_render_as_shapes_that_are_moved() -> None:
     camera = rw.Camera((3, -9, 6), (1, 0, 0), up=(0, 0, 1), width=32, height=24)
     inside = rw.Scene([floor, rw.Instance(block, matrix)], environment=1.0)
     moved = rw.Scene([floor, block.transformed(matrix)], environment=1.0)
-    a, b = (rw.render(scene, camera, samples=8, seed=3) for scene in (inside, moved))
+    # Paths among matte triangles and paths among instances take different numbers for roulette.
+    a, b = (rw.render(scene, camera, rw.Direct(2), samples=8, seed=3) for scene in (inside, moved))
     np.testing.assert_allclose(a.rgb, b.rgb, rtol=1e-5)
     assert a.rgb.std() > 0.01
 
