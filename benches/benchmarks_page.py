@@ -1,6 +1,6 @@
 """Measure what the page of benchmarks shows, and write the page: docs/benchmarks.md.
 
-    python benches/benchmarks_page.py                              # all of it, some ten minutes
+    python benches/benchmarks_page.py                              # all of it, some five minutes
     python benches/benchmarks_page.py --section rays               # some of it, the rest as it is
     python benches/benchmarks_page.py --resume                     # what was not measured today
     python benches/benchmarks_page.py --write                      # the page anew, from the figures

@@ -29,8 +29,8 @@ pub struct LightBlock {
     pub primitive: [u32; LANES],
 }
 
-/// The share of the way to a light that what blocks it must lie on. f32 may place the light's own surroundings before
-/// it by less than the rest.
+/// A shadow ray ends at this share of the way to its light. Directions in f32 miss the drawn point by 2⁻²³ of the way,
+/// so surfaces right behind the light must not block it; what lies within 2⁻²⁰ of the way before it does not either.
 const WAY: f64 = 1.0 - 1.0 / (1u64 << 20) as f64;
 
 /// A triangle that shines alike everywhere.
