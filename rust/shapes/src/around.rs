@@ -1,49 +1,49 @@
-//! The nearest point of what is a curve at every turn about an axis, under a map that scales some lengths more than
-//! others.
+//! Closest points of surfaces of revolution under a non-uniformly scaling map.
 //!
-//! At one turn the nearest point of the curve has a closed form, or nearly so. How far it is changes with the turn by
-//! no more than points of the curve move, which bounds it over an interval of turns (Piyavskii 1972; Shubert, "A
-//! Sequential Method Seeking the Global Maximum of a Function", 1972). So intervals that cannot hold the nearest go,
-//! and those that are left are halved, until each holds one valley, whose bottom is where the way there is at right
-//! angles to the turn.
+//! In each half-plane through the axis the closest point of the profile curve has a (nearly) closed form. As a function
+//! of the angle, the distance changes no faster than points of the curve move, which bounds it over an interval of
+//! angles (Piyavskii 1972; Shubert, "A Sequential Method Seeking the Global Maximum of a Function", 1972). Intervals
+//! that cannot hold the minimum are discarded and the others bisected until each holds one local minimum. There the
+//! offset is at right angles to the motion under rotation.
 
 use super::closest::of_ellipsoid;
 use raywright_base::math::{Affine, DVec3, Frame};
 use std::f64::consts::TAU;
 
-/// Intervals at first, how often they are halved, and as many as they may be: where all turns are as near, any will do.
+/// Initial number of intervals, number of bisections, and maximum number of intervals. If all angles are equally close,
+/// any of them will do.
 const FIRST: usize = 32;
 const HALVINGS: usize = 9;
 const MOST: usize = 512;
 
-/// Valleys whose bottom is looked for.
+/// Maximum number of local minima to refine.
 const VALLEYS: usize = 8;
 
-/// An axis and what is across it, as their images are seen from a place: all is relative to that.
+/// The images of an axis and its normal directions, relative to the query point.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Around {
-    /// The image of the point from which radii and heights count.
+    /// The image of the origin of radii and heights.
     pub foot: DVec3,
     /// The images of unit vectors across the axis.
     across: [DVec3; 2],
-    /// That of the unit vector along it.
+    /// The image of the unit vector along the axis.
     pub up: DVec3,
 }
 
-/// The nearest point of a curve.
+/// The closest point of a profile curve.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Met {
-    /// The way there from the place.
+    /// The offset from the query point.
     pub way: DVec3,
-    /// How far it is from the axis, and along that, before it is mapped.
+    /// Distance from the axis and height along it, before mapping.
     pub radius: f64,
     pub height: f64,
 }
 
-/// The nearest point of all curves.
+/// The closest point over all angles.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Nearest {
-    /// From the foot to it, before it is mapped, in the frame of the axis.
+    /// The offset from the foot in the frame of the axis, before mapping.
     pub local: DVec3,
     pub distance: f64,
 }
@@ -52,20 +52,20 @@ pub(super) struct Nearest {
 struct Sample {
     angle: f64,
     distance: f64,
-    /// Of the sign of what the distance changes by.
+    /// Has the sign of the distance's derivative.
     slope: f64,
     met: Met,
 }
 
 impl Around {
-    /// What is about the axis of a frame through a point.
+    /// Set up the axis of a frame through a point.
     pub fn new(map: &Affine, frame: &Frame, foot: DVec3, place: DVec3) -> Self {
         let across = [map.vector(frame.tangent), map.vector(frame.bitangent)];
         Self { foot: map.point(foot) - place, across, up: map.vector(frame.normal) }
     }
 
-    /// The nearest point of curves, of which each lies in the half-plane of a turn, no farther than `widest` from the
-    /// axis: `curve` is given the image of the unit vector that points away from the axis there.
+    /// Minimize over all angles. At each angle `curve` returns the closest point of the profile in that half-plane,
+    /// given the image of the unit vector away from the axis. The profile stays within `widest` of the axis.
     pub fn nearest(&self, widest: f64, curve: impl Fn(DVec3) -> Met) -> Nearest {
         let [x, y] = self.across;
         let at = |angle: f64| {
@@ -123,11 +123,11 @@ impl Around {
         Nearest { local, distance: best.distance }
     }
 
-    /// What is met of a segment between two points of the half-plane, told as radius and height.
+    /// The closest point of a segment between two points of the half-plane, given as radius and height.
     pub fn of_segment(&self, out: DVec3, ends: [[f64; 2]; 2]) -> Met {
         let [a, b] = ends.map(|[radius, height]| self.foot + out * radius + self.up * height);
         let along = share_of_segment(a, b);
-        // From the nearer end, so that its digits are kept.
+        // From the nearer end, to keep its digits.
         let (near, from, to, part) =
             if along <= 0.5 { (a, ends[0], ends[1], along) } else { (b, ends[1], ends[0], 1.0 - along) };
         let [radius, height] = [0, 1].map(|k| from[k] + (to[k] - from[k]) * part);
@@ -135,11 +135,11 @@ impl Around {
         Met { way: near + (far - near) * part, radius, height }
     }
 
-    /// What is met of the parabola from the foot to a rim, along which the height grows with the radius squared.
+    /// The closest point of the parabola from the foot to a rim; the height is proportional to the radius squared.
     pub fn of_parabola(&self, out: DVec3, [rim, height]: [f64; 2]) -> Met {
         let (across, up) = (out * rim, self.up * height);
         let at = |q: f64| self.foot + across * q + up * (q * q);
-        // The derivative of half the square of the distance by the share of the rim's radius.
+        // The derivative of half the squared distance with respect to the fraction of the rim's radius.
         let cubic = [
             self.foot.dot(across),
             across.length_squared() + 2.0 * self.foot.dot(up),
@@ -156,7 +156,7 @@ impl Around {
         Met { way: best.0, radius: rim * best.1, height: height * best.1 * best.1 }
     }
 
-    /// What is met of a circle about a point of the half-plane at a height of 0.
+    /// The closest point of a circle in the half-plane whose center has height 0.
     pub fn of_circle(&self, out: DVec3, major: f64, minor: f64) -> Met {
         let (middle, axes) = (self.foot + out * major, [out * minor, self.up * minor]);
         let [cos, sin] = turn_of_ellipse(middle, axes);
@@ -168,20 +168,20 @@ fn nearer(a: Sample, b: Sample) -> Sample {
     if b.distance < a.distance { b } else { a }
 }
 
-/// How far along a segment its point lies that is nearest to the origin, as a part of it.
+/// The fraction along a segment of its point closest to the origin.
 fn share_of_segment(a: DVec3, b: DVec3) -> f64 {
     let along = b - a;
     let size = along.abs().max_element();
     if size == 0.0 {
         return 0.0;
     }
-    // In units of the segment, lest squares vanish.
+    // In units of the segment, to avoid underflow of squares.
     let unit = along / size;
     (-a.dot(unit) / unit.length_squared() / size).clamp(0.0, 1.0)
 }
 
-/// Where between 0 and 1 a cubic goes from below 0 to above, by its coefficients: between places where its slope is 0
-/// there is one of them at most.
+/// The zeros in [0, 1] at which a cubic, given by its coefficients, changes from negative to positive. Between
+/// stationary points there is at most one.
 fn rising_zeros([a, b, c, d]: [f64; 4]) -> Vec<f64> {
     let value = |q: f64| a + q * (b + q * (c + q * d));
     let mut ends = vec![0.0];
@@ -198,7 +198,7 @@ fn rising_zeros([a, b, c, d]: [f64; 4]) -> Vec<f64> {
         if value(low) > 0.0 || value(high) < 0.0 {
             continue;
         }
-        // As many halvings as exhaust all f64; mostly 60 do.
+        // Enough bisections to exhaust all f64; usually 60 suffice.
         for _ in 0..1100 {
             let middle = 0.5 * (low + high);
             if middle <= low || middle >= high {
@@ -215,17 +215,17 @@ fn rising_zeros([a, b, c, d]: [f64; 4]) -> Vec<f64> {
     found
 }
 
-/// Cosine and sine of the turn at which an ellipse, by its middle and the ends of two conjugate radii, is nearest to
-/// the origin.
+/// Cosine and sine of the parameter at which an ellipse, given by its center and two conjugate radii, is closest to the
+/// origin.
 fn turn_of_ellipse(middle: DVec3, [a, b]: [DVec3; 2]) -> [f64; 2] {
-    // The turn after which the radii are at right angles (Jacobi 1846).
+    // The rotation that makes the radii orthogonal (Jacobi 1846).
     let (aa, bb, ab) = (a.length_squared(), b.length_squared(), a.dot(b));
     let twice = (2.0 * ab).atan2(aa - bb);
     let (sin, cos) = (0.5 * twice).sin_cos();
     let axes = [a * cos + b * sin, b * cos - a * sin];
     let lengths = axes.map(DVec3::length);
     let [x, y] = [0, 1].map(|i| if lengths[i] > 0.0 { -middle.dot(axes[i]) / lengths[i] } else { 0.0 });
-    // An ellipsoid whose third axis is as long as the shorter of the two has its nearest point on their ellipse, too.
+    // The ellipsoid whose third axis equals the shorter of the two has its closest point on their ellipse, too.
     let least = lengths[0].min(lengths[1]);
     let unit = of_ellipsoid(DVec3::new(lengths[0], lengths[1], least), DVec3::new(x, y, 0.0));
     [unit.x * cos - unit.y * sin, unit.x * sin + unit.y * cos]

@@ -1,30 +1,30 @@
-//! Where and how a ray meets what can be hit.
+//! Intersection candidates and their kind of contact.
 
-/// A primitive that a ray meets.
+/// An intersection of a ray with a primitive.
 #[derive(Clone, Copy, Debug)]
 pub struct Candidate {
-    /// Along the direction that was asked with: of triangles the scaled one.
+    /// The parameter along the query's direction; of triangles along the scaled one.
     pub t: f64,
-    /// Coordinates on the primitive; of a triangle the weights of the second and the third corner.
+    /// Coordinates on the primitive; of a triangle the barycentric weights of the second and third corners.
     pub uv: [f64; 2],
-    /// How.
+    /// The kind of contact.
     pub contact: Contact,
-    /// Of an instance, which primitive in it; 0 for what is no instance.
+    /// The primitive within an instance; 0 for other primitives.
     pub inner: u32,
 }
 
-/// How a ray meets a primitive.
+/// The kind of contact between a ray and a primitive.
 ///
-/// Of the triangles that share an edge or a corner, a ray through it meets all. To know which it crosses, it is moved
-/// by next to nothing, along the same direction (Edelsbrunner and Mücke, "Simulation of Simplicity", 1990): then it
-/// passes no edge of a triangle exactly unless it lies in the triangle's plane, and it crosses a closed surface as
-/// often in as out.
+/// A ray through a shared edge or corner meets all triangles there. Symbolic perturbation decides which of them it
+/// crosses: the ray is moved by an infinitesimal amount along one fixed direction (Edelsbrunner and Mücke, "Simulation
+/// of Simplicity", 1990). The perturbed ray passes through no edge exactly unless it lies in the triangle's plane. It
+/// enters a closed surface as often as it leaves it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Contact {
-    /// Strictly within.
+    /// In the interior.
     Inside,
-    /// Exactly on an edge or a corner, and across it if moved by next to nothing.
+    /// Exactly on an edge or corner; the perturbed ray crosses the primitive.
     Crossing,
-    /// Exactly on an edge or a corner, and past it if moved by next to nothing; of a curved shape, a tangent.
+    /// Exactly on an edge or corner, and the perturbed ray misses; or tangent to a curved shape.
     Touching,
 }

@@ -1,4 +1,4 @@
-//! The box along the axes.
+//! The axis-aligned box.
 
 use super::line::Line;
 use super::meeting::tell;
@@ -9,20 +9,20 @@ use raywright_base::math::robust::UNIT;
 use raywright_base::math::{Affine, Bounded, DVec3, Number, Ray, Triple};
 use std::cmp::Ordering;
 
-/// All points between two corners, borders included: a solid, so that a line in a face, or along an edge, meets it.
+/// The solid box between two corners, borders included. A line in a face or along an edge hits it.
 ///
-/// Its coordinates lay the six faces side by side: three columns for those at right angles to x, y and z, two rows for
-/// the lesser and the greater. In its cell a face runs along the two other axes in turn (y and z of x, z and x of y, x
-/// and y of z), the first of them reversed in the lower row, so that all are seen from outside.
+/// The parametrization lays the six faces side by side: three columns for the axes x, y and z, two rows for the min and
+/// the max side. Within its cell a face is spanned by the two other axes in cyclic order: y and z for x, z and x for y,
+/// x and y for z. The first of them is reversed in the lower row, so that all faces appear as seen from outside.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cuboid {
-    /// The least corner.
+    /// The min corner.
     pub min: DVec3,
-    /// The greatest corner, nowhere less.
+    /// The max corner, nowhere less than `min`.
     pub max: DVec3,
 }
 
-/// Two triangles a face, of corners numbered by x + 2 y + 4 z, anticlockwise as seen from outside.
+/// Two triangles per face. Corners are numbered x + 2 y + 4 z and ordered anticlockwise as seen from outside.
 const FACES: [[usize; 3]; 12] = [
     [0, 2, 1],
     [1, 2, 3],
@@ -38,19 +38,19 @@ const FACES: [[usize; 3]; 12] = [
     [3, 7, 5],
 ];
 
-/// Within a cell, so that rounding leads into no other.
+/// Inset within a cell, so that rounding cannot leave the cell.
 const WITHIN: f64 = 1.0 / (1u64 << 50) as f64;
 
 impl Cuboid {
-    /// The areas of a face at right angles to x, to y and to z.
+    /// The areas of the faces normal to x, y and z.
     fn areas(&self) -> [f64; 3] {
         let e = self.max - self.min;
         [e.y * e.z, e.z * e.x, e.x * e.y]
     }
 
-    /// The point of given coordinates.
+    /// The point at given surface parameters.
     ///
-    /// It lies in its face exactly. Along it: a product and a sum of two UNIT.
+    /// It lies exactly in its face; along the face, a product and a sum err by two UNIT.
     fn at(&self, uv: [f64; 2]) -> Point {
         let column = (uv[0] * 3.0).floor().clamp(0.0, 2.0);
         let greater = uv[1] >= 0.5;
@@ -61,7 +61,7 @@ impl Cuboid {
         let extent = self.max - self.min;
         let mut position = if greater { self.max } else { self.min };
         let between = |i: usize, share: f64| {
-            // From the nearer end, so that both are met.
+            // From the nearer end, so that both ends are exact.
             let x =
                 if share <= 0.5 { self.min[i] + extent[i] * share } else { self.max[i] - extent[i] * (1.0 - share) };
             x.clamp(self.min[i], self.max[i])
@@ -82,7 +82,7 @@ impl Cuboid {
         }
     }
 
-    /// The coordinates of a face's point, by its share along the face's two axes.
+    /// The surface parameters of a point of a face, given as fractions along its two axes.
     fn cell(axis: usize, greater: bool, [a, b]: [f64; 2]) -> [f64; 2] {
         let a = if greater { a } else { 1.0 - a };
         let within = |x: f64| x.clamp(0.0, 1.0) * (1.0 - 2.0 * WITHIN) + WITHIN;
@@ -91,10 +91,9 @@ impl Cuboid {
 }
 
 impl Cuboid {
-    /// [`Solid::meets`] in f64, where no two of the faces that matter are met at nearly the same place.
+    /// [`Solid::meets`] in f64, if no two relevant faces are hit at nearly the same `t`.
     ///
-    /// A difference and a quotient err by one UNIT each, and the quotient by next to nothing more where it is
-    /// subnormal.
+    /// A difference and a quotient err by one UNIT each. The quotient errs negligibly more where it is subnormal.
     #[inline(always)]
     fn quickly(&self, ray: &Ray) -> Option<Meets<Bounded>> {
         let (o, d) = (ray.origin, ray.direction);
@@ -122,7 +121,7 @@ impl Cuboid {
             }
         }
         let error = |t: f64| 3.0 * UNIT * t.abs() + f64::MIN_POSITIVE;
-        // Where nothing is met there is only one face to compare with, and that at infinity.
+        // On a miss there is only one face to compare with, and it is at infinity.
         let apart = |less: f64, more: f64| less.is_infinite() || more - less > 2.0 * (error(less) + error(more));
         if near[0].abs().max(far[0].abs()) > 1e300 {
             return None;
@@ -143,7 +142,7 @@ impl Cuboid {
     }
 }
 
-/// p / q with q above 0: where a line meets a face.
+/// p / q with q > 0: the line parameter at a face.
 struct Crossing<N> {
     p: N,
     q: N,
@@ -157,8 +156,7 @@ impl<N: Number> Crossing<N> {
 }
 
 impl Solid for Cuboid {
-    /// The last face that the line comes in by, and the first that it goes out by (Kay and Kajiya 1986), compared as
-    /// fractions.
+    /// The last face entered and the first face left (Kay and Kajiya 1986), compared as fractions.
     fn meets<N: Number>(&self, line: &Line<N>) -> Option<Meets<N>> {
         let mut near: Option<Crossing<N>> = None;
         let mut far: Option<Crossing<N>> = None;
@@ -238,7 +236,8 @@ impl Shape for Cuboid {
 
     fn closest(&self, place: DVec3) -> Option<Closest> {
         let (below, above) = (self.min - place, place - self.max);
-        // By face, how far the place is beyond it; of a place inside all are 0 at most, and the greatest is nearest.
+        // The distance beyond each face. Inside the box all are 0 or less, and the greatest belongs to the closest
+        // face.
         let beyond = [below.x, above.x, below.y, above.y, below.z, above.z];
         let part = (1..6).fold(0, |most, part| if beyond[part] > beyond[most] { part } else { most });
         let mut position = place.clamp(self.min, self.max);
@@ -247,7 +246,7 @@ impl Shape for Cuboid {
         Some(Closest { position, uv: self.coordinates(part, position - self.min) })
     }
 
-    /// Of the image, the nearest of its six sides, which are two triangles each.
+    /// The minimum over the image's six faces, two triangles each.
     fn closest_under(&self, to_world: &Affine, _: &Affine, place: DVec3) -> Option<Closest> {
         let mut best: Option<(f64, Closest)> = None;
         for part in 0..6 {
@@ -302,7 +301,7 @@ impl Shape for Cuboid {
     fn sample(&self, u: [f64; 2]) -> Option<Drawn> {
         let areas = self.areas();
         let half: f64 = areas.iter().sum();
-        // The first number chooses the face, and what is left of it is as even as it was.
+        // The first number chooses the face; its remainder is uniform again.
         let greater = u[0] >= 0.5;
         let mut left = (2.0 * u[0] - f64::from(u8::from(greater))) * half;
         let mut axis = 0;

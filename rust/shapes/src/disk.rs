@@ -1,4 +1,4 @@
-//! The disk, whole or with a round hole.
+//! The disk and the annulus.
 
 use super::around::Around;
 use super::line::Line;
@@ -14,17 +14,16 @@ use std::f64::consts::{PI, TAU};
 
 /// The points of a plane between two distances from a centre, both included.
 ///
-/// Its coordinates are the angle about the normal, in turns, and the way from the outer rim inwards to the inner one,
-/// or to the centre.
+/// u is the angle about the normal in turns. v runs from the outer rim to the inner one, or to the centre.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Disk {
     /// Its centre.
     pub center: DVec3,
-    /// At right angles to it, to its outside; of any length but 0.
+    /// The normal of the outside, with any length but 0.
     pub normal: DVec3,
-    /// The distance of its rim.
+    /// The radius of the rim.
     pub radius: f64,
-    /// The distance of the hole's rim; 0 for a whole disk.
+    /// The radius of the hole; 0 for a whole disk.
     pub inner_radius: f64,
 }
 
@@ -40,30 +39,32 @@ impl Disk {
         let width = self.radius - self.inner_radius;
         let radius = self.inner_radius + width * (1.0 - v);
         let position = self.center + out * radius;
-        // The last sum; and the radius times a frame whose axes are at right angles to within 8 UNIT.
+        // One UNIT of the position for the last sum, and the radius times a frame that is orthogonal to within 8 UNIT.
         let error = UNIT * (position.abs().max_element() + 16.0 * self.radius);
         let round = (bitangent * cos - tangent * sin) * (TAU * radius);
         Point { position, error, normal, uv: [u, v], dp: [round, out * -width], dn: [DVec3::ZERO; 2] }
     }
 }
 
-/// A whole disk as it is seen from near, in polar coordinates about the foot of the perpendicular from the place to its
-/// plane. Of a solid angle one has dω = dφ dc, c being the cosine to the normal: along the line of an angle φ,
-/// directions are drawn evenly. How angles are drawn is a choice that the density counts; evenly where the foot is
-/// inside, and else by the length of the chord that the line cuts, both of which differ from what is even in all
-/// directions by small factors. (The even way, of Guillén et al., "Area-Preserving Parameterizations for Spherical
-/// Ellipses", 2017, takes the inverse of an elliptic integral for every draw.)
+/// Solid angle sampling of a whole disk from nearby, in polar coordinates about the foot of the perpendicular from the
+/// reference point.
+///
+/// The solid angle is dω = dφ dc, with c the cosine to the normal, so directions are uniform along the line of a fixed
+/// φ. The density of φ is a free choice that the pdf accounts for. It is uniform if the foot is inside the disk, and
+/// otherwise proportional to the chord length on that line. Both differ from uniform solid angle by small factors.
+/// Exactly uniform sampling (Guillén et al., "Area-Preserving Parameterizations for Spherical Ellipses", 2017) inverts
+/// an elliptic integral per sample.
 struct Seen {
     height: f64,
-    /// From the foot to the centre, in the disk's frame: how far, and the unit vector there.
+    /// Distance and unit vector from the foot to the centre, in the disk's frame.
     distance: f64,
     towards: [f64; 2],
     radius: f64,
 }
 
-/// The part of a line through the foot that is on the disk.
+/// The part of a line through the foot that lies on the disk.
 struct Chord {
-    /// The density in solid angle of the directions to it.
+    /// The solid angle density of the directions to it.
     pdf: f64,
     /// 1 − c at its near end, c at its far end, and the difference of c.
     near: f64,
@@ -72,18 +73,18 @@ struct Chord {
 }
 
 impl Seen {
-    /// The line at an angle of which cosine and sine are given, or nearly so.
+    /// The chord at an angle given by its approximate cosine and sine.
     fn chord(&self, cos: f64, sin: f64) -> Chord {
         let (height, aside) = (self.height, self.distance * sin);
         let half = ((self.radius - aside) * (self.radius + aside)).max(0.0).sqrt();
         let middle = self.distance * cos;
         let end = middle + half;
-        // From the foot itself, or from where the line comes to the disk.
+        // From the foot, or from the intersection of the line with the rim.
         let inside = self.distance < self.radius;
         let start = if inside { 0.0 } else { (self.distance - self.radius) * (self.distance + self.radius) / end };
         let (r0, r1) = (start.hypot(height), end.hypot(height));
-        // The span is height · (end² − start²) / lengths, and the density of the angle is 1 / 2π, or outside 2 half ·
-        // middle / π radius² where end² − start² is 4 half · middle: of a chord of no length, the quotient has its
+        // The span is height · (end² − start²) / lengths. The density of the angle is 1 / 2π inside, and outside 2 half
+        // · middle / π radius², where end² − start² is 4 half · middle. For a chord of length 0 the quotient has its
         // limit.
         let lengths = r0 * r1 * (r0 + r1);
         let (squares, per_square) = if inside {
@@ -99,13 +100,14 @@ impl Seen {
         }
     }
 
-    /// A point, from the foot, in the disk's frame, and its density.
+    /// Sample a point relative to the foot in the disk's frame; return its density too.
     fn sample(&self, u: [f64; 2]) -> ([f64; 2], f64) {
         let (cos, sin, along) = if self.distance < self.radius {
             let (sin, cos) = (TAU * u[0]).sin_cos();
             (cos, sin, u[1])
         } else {
-            // Of a point of the unit disk, x has the density of a chord's length, and where on its chord it is is even.
+            // For a uniform point of the unit disk, x has the density of the chord length, and the position on the
+            // chord is uniform.
             let point = uniform_disk(u);
             let half = ((1.0 - point.x) * (1.0 + point.x)).max(0.0).sqrt();
             let sin = self.radius * point.x / self.distance;
@@ -119,7 +121,7 @@ impl Seen {
         ([out * (x * cos - y * sin), out * (y * cos + x * sin)], chord.pdf)
     }
 
-    /// The density of a point, given from the foot.
+    /// The density of a point relative to the foot.
     fn pdf(&self, [x, y]: [f64; 2]) -> f64 {
         let out = x.hypot(y);
         let [a, b] = self.towards;
@@ -129,10 +131,10 @@ impl Seen {
 }
 
 impl Disk {
-    /// How far away the centre of a distant disk is at least, in radii: there, drawing by area is as good.
+    /// Distance of the centre, in radii, from which sampling by area is as good.
     const DISTANT: f64 = 3.0;
 
-    /// How it is seen from a place that is given in its frame, unless by area.
+    /// Set up solid angle sampling from a point in the disk's frame; None if sampling is by area.
     fn seen(&self, place: DVec3) -> Option<Seen> {
         let is_near = place.length_squared() < (Self::DISTANT * self.radius).powi(2) && self.inner_radius == 0.0;
         (is_near && place.z != 0.0).then(|| {
@@ -148,7 +150,7 @@ impl Solid for Disk {
         let line = line.from(self.center);
         let (w, d) = (&line.origin, &line.direction);
         let normal = Triple::of(self.normal);
-        // Where the plane is met, times n · d: (n · d) w − (n · w) d = n × (w × d).
+        // The intersection with the plane, times n · d: (n · d) w − (n · w) d = n × (w × d).
         let along = normal.dot(d);
         if along.sign()? == Ordering::Equal {
             return Some(Meets::new(false));
@@ -251,7 +253,7 @@ impl Shape for Disk {
     }
 
     fn sample(&self, u: [f64; 2]) -> Option<Drawn> {
-        // Even in the square of the distance.
+        // Uniform in the squared radius.
         let (inner, outer) = (self.inner_radius, self.radius);
         let radius = (inner * inner + u[1] * (outer - inner) * (outer + inner)).sqrt();
         let v = ((outer - radius) / (outer - inner)).clamp(0.0, 1.0);
@@ -279,7 +281,7 @@ impl Shape for Disk {
         let t = -from.z / way.z;
         let (x, y) = (way.x * t, way.y * t);
         let out = (from.x + x).hypot(from.y + y);
-        // What rounding puts off the rim is on it.
+        // Accept points that rounding moved off the rim.
         let slack = 1e-12 * self.radius;
         if !(t > 0.0 && out <= self.radius + slack && out >= self.inner_radius - slack) {
             return 0.0;

@@ -10,27 +10,27 @@ use raywright_base::math::robust::UNIT;
 use raywright_base::math::{Affine, DVec3, Number, Ray, Triple, ellipsoid_area};
 use raywright_base::sampling::warp::{UNIFORM_SPHERE_PDF, uniform_sphere};
 
-/// A sphere that is scaled along the axes; closed.
+/// A sphere scaled along the axes; closed.
 ///
-/// Its coordinates are those of the sphere that it comes from ([`Sphere`]).
+/// Its surface parameters are those of the unscaled [`Sphere`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ellipsoid {
     /// Its centre.
     pub center: DVec3,
-    /// Half its width along x, y and z, each above 0.
+    /// The semi-axes along x, y and z, each above 0.
     pub semi_axes: DVec3,
 }
 
 impl Ellipsoid {
-    /// The point of given coordinates.
+    /// The point at given surface parameters.
     ///
-    /// Of the unit vector each coordinate is right to within 4 UNIT; scaling and the last sum add one UNIT each.
+    /// Each coordinate of the unit vector errs by 4 UNIT; scaling and the last sum add one UNIT each.
     fn at(&self, uv: [f64; 2]) -> Point {
         let (unit, [du, dv]) = globe(uv);
         let a = self.semi_axes;
         let position = self.center + unit * a;
         let error = UNIT * (position.abs().max_element() + 6.0 * a.max_element());
-        // Scaled so that the shortest axis' part is whole: nothing overflows.
+        // Scaled by the shortest axis, which avoids overflow.
         let inverse = a.min_element() / a;
         let (n, dn) = (unit * inverse, [du * inverse, dv * inverse]);
         let length = n.length();
@@ -39,8 +39,8 @@ impl Ellipsoid {
         Point { position, error, normal, uv, dp: [du * a, dv * a], dn }
     }
 
-    /// What to scale each axis by, and the radius of the ball that it is then: by the product of the other two axes, so
-    /// that nothing is divided, and the product of all three.
+    /// Factors that scale the ellipsoid to a sphere, and that sphere's radius. Each factor is the product of the other
+    /// two axes, and the radius that of all three, which avoids division.
     fn rounding<N: Number>(&self) -> ([N; 3], N) {
         let [x, y, z] = self.semi_axes.to_array().map(N::of);
         let by = [y.times(&z), z.times(&x), x.times(&y)];
@@ -48,7 +48,7 @@ impl Ellipsoid {
         (by, radius)
     }
 
-    /// How much of its area there is to one of the unit sphere's, at a point of that.
+    /// The ratio of its area element to the unit sphere's at a point of that sphere.
     fn stretch(&self, unit: DVec3) -> f64 {
         let [x, y, z] = self.semi_axes.to_array();
         (unit * DVec3::new(y * z, z * x, x * y)).length()
@@ -129,15 +129,14 @@ impl Shape for Ellipsoid {
         ellipsoid_area_under(map, self.semi_axes)
     }
 
-    /// Even on the sphere that it comes from, and so not on itself: denser where it bends more.
+    /// Uniform on the unscaled sphere, so denser where the ellipsoid is more curved.
     fn sample(&self, u: [f64; 2]) -> Option<Drawn> {
         let unit = uniform_sphere(u);
         let point = self.at(longitude_latitude(unit));
         Some(Drawn { point, pdf: UNIFORM_SPHERE_PDF / self.stretch(unit) })
     }
 
-    /// As seen from a place, the sphere that it comes from fills a cone, from which a direction is drawn evenly and
-    /// brought back.
+    /// Uniform in the cone that the unscaled sphere subtends, mapped back.
     fn sample_from(&self, place: DVec3, u: [f64; 2]) -> Option<Drawn> {
         let place = (place - self.center) / self.semi_axes;
         let Drawn { point, pdf } = Sphere::UNIT.sample_from(place, u)?;
@@ -153,8 +152,8 @@ impl Shape for Ellipsoid {
 }
 
 impl Ellipsoid {
-    /// How much solid angle of the sphere's space there is to one of its own: |S⁻¹ d|⁻³ / det S about a unit vector d,
-    /// which is given as S⁻¹ d of any length.
+    /// The solid angle of the sphere's space per solid angle of object space: |S⁻¹ d|⁻³ / det S for a unit vector d.
+    /// The argument is S⁻¹ d, of any length.
     fn crowding(&self, way: DVec3) -> f64 {
         let stretched = (way.normalize() * self.semi_axes).length();
         stretched.powi(3) / self.semi_axes.element_product()

@@ -1,4 +1,4 @@
-//! What is hit, and where, against an oracle of 60 digits.
+//! Tests that hits agree with an oracle of 60 digits.
 
 use super::oracle::{Exact, Oracle, Vector, cross, dot, minus, vector};
 use super::*;
@@ -7,7 +7,7 @@ use raywright_base::math::{Affine, DVec3, Ray};
 use std::cmp::Ordering;
 use std::sync::Arc;
 
-/// All meetings of a whole line.
+/// All intersections with an unbounded line.
 fn meets(shape: &dyn Shape, ray: &Ray) -> Vec<Candidate> {
     let ray = Ray { t_min: f64::NEG_INFINITY, ..*ray };
     let mut all = Vec::new();
@@ -18,12 +18,12 @@ fn meets(shape: &dyn Shape, ray: &Ray) -> Vec<Candidate> {
     all
 }
 
-/// Fails unless a shape tells what the oracle does, each `t` to within an ulp.
+/// Fail unless shape and oracle agree, with each `t` within one ulp.
 fn check(shape: &dyn Shape, oracle: &Oracle<'_>, ray: &Ray) -> Result<usize, TestCaseError> {
     let found = meets(shape, ray);
     let (wanted, tangent) = oracle.meets(ray);
     if found.len() == 1 && wanted.len() == 2 {
-        // Nearer to each other than f64 can tell: told as one, which counts as no crossing.
+        // Closer together than f64 resolves: reported as one tangent, which is no crossing.
         prop_assert_eq!(found[0].contact, Contact::Touching);
     } else {
         prop_assert_eq!(found.len(), wanted.len(), "{:?} of {:?}: {:?}", ray, shape, found);
@@ -95,7 +95,7 @@ fn any_point(size: f64) -> impl Strategy<Value = DVec3> {
     prop::array::uniform3(-size..size).prop_map(DVec3::from_array)
 }
 
-/// Small integers, among which lines that touch, or lie in a plane or along an axis, are common.
+/// Small integers, for which tangent, coplanar and axis-parallel lines are common.
 fn grid_point(size: i32) -> impl Strategy<Value = DVec3> {
     prop::array::uniform3(-size..=size).prop_map(|p| DVec3::from_array(p.map(f64::from)))
 }
@@ -154,7 +154,7 @@ proptest! {
         o in grid_point(4), d in grid_point(2),
     ) {
         prop_assume!(axis != DVec3::ZERO && d != DVec3::ZERO);
-        // A line along a generator lies in the side, and has no meeting of its own there.
+        // A line along a generator lies in the side surface and has no intersection with it.
         check_turned(kind, base, base + axis, capped, &Ray::new(o, d))?;
         check_sphere(base, axis.length_squared().sqrt().floor().max(1.0), &Ray::new(o, d))?;
     }
@@ -184,8 +184,8 @@ proptest! {
         check(&shape, &Oracle { surface: &surface, planes: vec![], caps: false }, &ray)?;
     }
 
-    /// A map that f64 carries out exactly leaves all as it was: shapes moved and lines moved, by scaling with a power
-    /// of two, changing axes, mirroring, and going from one integer to another.
+    /// Maps that f64 evaluates exactly leave all results unchanged when applied to both shape and line. They scale by
+    /// powers of two, permute axes, mirror, and translate by integers.
     #[test]
     fn exact_maps_change_nothing(
         kind in turned(), capped: bool, base in grid_point(2), axis in grid_point(2), shift in grid_point(50),
@@ -223,7 +223,7 @@ proptest! {
         prop_assume!(d != DVec3::ZERO && b != DVec3::ZERO);
         let ray = Ray::new(o, d);
         let cuboid = Cuboid { min: a.min(b), max: a.max(b) };
-        // All distances at which the line crosses a face's plane, kept where it lies within the others.
+        // All distances at which the line crosses a face's plane, kept if they lie within the other slabs.
         let (eo, ed) = (vector(o), vector(d));
         let mut ts: Vec<Exact> = Vec::new();
         for i in (0..3).filter(|&i| d[i] != 0.0) {
@@ -247,7 +247,7 @@ proptest! {
             prop_assert!(first.ulps_to(found[0].t) <= 1.0 && last.ulps_to(found[found.len() - 1].t) <= 1.0);
             prop_assert!(found.len() == 2 || found[0].contact == Contact::Touching);
         }
-        // The plane through a at right angles to b, and the disk in it.
+        // The plane through a normal to b, and the disk in it.
         let n = vector(b);
         let (along, height) = (dot(&n, &ed), dot(&n, &minus(&vector(a), &eo)));
         let plane = Plane { point: a, normal: b };
@@ -265,7 +265,7 @@ proptest! {
     }
 }
 
-/// Directions and places that have broken intersection routines.
+/// Directions and positions that have broken intersection routines.
 #[test]
 fn hard_cases_are_met_as_the_oracle_says() -> Result<(), TestCaseError> {
     let unit = |x: f64, y: f64, z: f64| DVec3::new(x, y, z).normalize();
@@ -274,19 +274,19 @@ fn hard_cases_are_met_as_the_oracle_says() -> Result<(), TestCaseError> {
         let a = f64::from(i) / 200.0;
         let (sin, cos) = (a * 6.3).sin_cos();
         let way = unit(cos, sin, a - 0.5);
-        // A millimetre at ten kilometres, aimed at its rim and nearly there.
+        // A sphere of 1 mm at 10 km, aimed very near its rim.
         let side = way.any_orthonormal_vector() * 1e-3 * (1.0 + f64::from(i - 100) * 1e-14);
         met += check_sphere(way * 1e4, 1e-3, &Ray::new(DVec3::ZERO, way * 1e4 + side))?;
-        // A thousand kilometres, from its surface, along it and into it.
+        // A sphere of radius 1000 km, from its surface, tangentially and inward.
         let start = way * 1e6;
         met += check_sphere(DVec3::ZERO, 1e6, &Ray::new(start, unit(sin, cos, a)))?;
         met += check_sphere(DVec3::ZERO, 1e6, &Ray::new(start, way.any_orthonormal_vector()))?;
-        // A thread far away.
+        // A thin cylinder far away.
         let base = way * 1e4;
         let tip = base + unit(sin, a, cos) * 10.0;
         let target = base.lerp(tip, a) + side * 0.1;
         met += check_turned(Turned::Cylinder(1e-4), base, tip, i % 2 == 0, &Ray::new(DVec3::ZERO, target))?;
-        // Along the axis, inside and outside, of an axis that no frame holds exactly.
+        // Along the axis, inside and outside, for an axis that no frame represents exactly.
         let axis = DVec3::new(1.0, 3.0, 7.0);
         let foot = DVec3::new(0.1, 0.2, 0.3);
         let from = foot - axis + axis.any_orthonormal_vector() * (2.0 * a);
@@ -294,7 +294,7 @@ fn hard_cases_are_met_as_the_oracle_says() -> Result<(), TestCaseError> {
             met += check_turned(kind, foot, foot + axis, true, &Ray::new(from, axis))?;
             met += check_turned(kind, foot, foot + axis, false, &Ray::new(from, axis))?;
         }
-        // Through the point of a cone.
+        // Through the apex of a cone.
         let apex = DVec3::new(2.0, 4.0, -8.0);
         let d = DVec3::new(f64::from(i % 7) - 3.0, f64::from(i % 5) - 2.0, f64::from(i % 3) - 1.0);
         if d != DVec3::ZERO {
@@ -358,7 +358,7 @@ fn the_interval_is_closed_and_bad_rays_meet_nothing() {
     }
     assert_eq!(count(&Ray { origin: DVec3::NAN, ..ray }), 0);
     assert_eq!(count(&Ray { t_max: f64::NAN, ..ray }), 0);
-    // As large, and as small, as f64 goes.
+    // Near the largest and smallest f64.
     let large = Sphere { center: DVec3::splat(1e300), radius: 1e299 };
     assert_eq!(meets(&large, &Ray::new(DVec3::ZERO, DVec3::splat(1e-300))).len(), 0);
     assert_eq!(meets(&large, &Ray::new(DVec3::ZERO, DVec3::ONE)).len(), 2);

@@ -1,27 +1,27 @@
-//! Flat parts of shapes.
+//! Planar parts of shapes.
 
 use raywright_base::math::{Affine, DVec3};
 use std::f64::consts::TAU;
 
-/// A part of a shape's surface that lies in a plane.
+/// A planar part of a shape's surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Flat {
-    /// Corners, anticlockwise as seen from the shape's outside.
+    /// Corners, anticlockwise as seen from outside.
     Triangle([DVec3; 3]),
-    /// The points `center + x axes[0] + y axes[1]` with `inner² ≤ x² + y² ≤ 1`; the cross product of both axes points
-    /// to the shape's outside.
+    /// The points `center + x axes[0] + y axes[1]` with `inner² ≤ x² + y² ≤ 1`. The cross product of the axes points
+    /// outward.
     Ellipse {
         /// Its center.
         center: DVec3,
         /// Conjugate half-axes.
         axes: [DVec3; 2],
-        /// The radius of the hole as a share of the rim's; 0 for none.
+        /// The hole's radius as a fraction of the rim's; 0 for none.
         inner: f64,
     },
 }
 
 impl Flat {
-    /// Its image under a map, with the outside where the map takes it.
+    /// The image under a map, oriented so that outside stays outside.
     pub fn mapped(&self, map: &Affine) -> Self {
         let is_mirrored = map.determinant() < 0.0;
         match *self {
@@ -36,7 +36,7 @@ impl Flat {
         }
     }
 
-    /// Triangles within it, which leave 1 % of an ellipse.
+    /// Triangles inside it, which miss 1 % of an ellipse.
     pub fn triangles(&self) -> Vec<[DVec3; 3]> {
         /// Sectors of an ellipse.
         const SECTORS: u32 = 32;
@@ -70,7 +70,7 @@ mod tests {
         0.5 * (b - a).cross(c - a).length()
     }
 
-    /// Whether a point of this normal lies on a part, or within a share of its size of one.
+    /// Return whether a point with this normal lies on the part, with a tolerance relative to its size.
     fn holds(flat: &Flat, place: DVec3, normal: DVec3, share: f64) -> bool {
         flat.triangles().into_iter().any(|[a, b, c]| {
             let up = (b - a).cross(c - a).normalize();
@@ -105,7 +105,7 @@ mod tests {
         ];
         let mirrored = Affine::new([at(1.0, 0.5, 0.0), at(0.0, 1.0, 0.0), at(0.0, 0.0, -2.0)], at(3.0, 1.0, 0.0));
         for (shape, flat_area) in shapes {
-            // Of discs the area is given in units of π.
+            // Disk areas are in units of π.
             let flats = shape.flats();
             let is_round = flats.iter().any(|flat| matches!(flat, Flat::Ellipse { .. }));
             let wanted = flat_area * if is_round { std::f64::consts::PI } else { 1.0 };

@@ -1,11 +1,11 @@
-//! How far what a box holds is at least.
+//! A lower bound on the distance to a bounding box.
 
 use super::Bounds;
 use super::triangle::length;
 use raywright_base::math::robust::UNIT;
 use raywright_base::math::{Affine, DVec3};
 
-/// How far a place is at least from the image of what a box holds: from the box around the image of the box.
+/// A lower bound on the distance from a point to the image of a box: the distance to the box around that image.
 pub fn gap_under(map: Option<&Affine>, bounds: &Bounds, place: DVec3) -> f64 {
     let Some(map) = map else {
         return length((bounds.min - place).max(place - bounds.max).max(DVec3::ZERO));

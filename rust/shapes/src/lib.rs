@@ -1,4 +1,4 @@
-//! Floor 1: what can be hit, one shape a module.
+//! Floor 1: geometric shapes and their exact intersection with rays.
 
 mod around;
 mod closest;

@@ -1,11 +1,11 @@
-//! A ray's line in the space of a shape, to any number of digits.
+//! A ray's line in object space, in any number type.
 
 use raywright_base::math::{Affine, DVec3, Double, Number, Ray, Triple};
 
-/// A ray, and the maps that it goes through before it comes to a shape, outermost first.
+/// A ray and the maps into object space, outermost first.
 ///
-/// Nothing is rounded on the way: each type of number computes the line in the shape's space for itself, so that what
-/// is decided there is decided of the ray and the matrices as they are given.
+/// Nothing is rounded in between: each number type computes the line in object space by itself. Decisions there hold
+/// for the given ray and matrices.
 #[derive(Clone, Copy, Debug)]
 pub enum Carried<'a> {
     /// The ray itself.
@@ -16,20 +16,20 @@ pub enum Carried<'a> {
 
 /// The line `(origin + t · direction) / unit`, with a unit above 0.
 ///
-/// The inverse of a matrix is its adjugate over its determinant. With the determinant kept apart there is no division,
-/// and what is asked of a line stays a polynomial. Whoever uses it measures all lengths in units.
+/// The inverse of a matrix is its adjugate over its determinant. Keeping the determinant as a common denominator avoids
+/// division, so predicates on a line remain polynomials. Callers measure all lengths in these units.
 #[derive(Clone, Debug)]
 pub struct Line<N> {
-    /// Where t is 0, in units.
+    /// The origin, in units.
     pub origin: Triple<N>,
-    /// Along t, in units.
+    /// The direction, in units.
     pub direction: Triple<N>,
-    /// The unit.
+    /// The common denominator.
     pub unit: N,
 }
 
 impl Carried<'_> {
-    /// The ray that is carried.
+    /// The ray before all maps.
     pub fn ray(&self) -> &Ray {
         match self {
             Self::Ray(ray) => ray,
@@ -37,7 +37,7 @@ impl Carried<'_> {
         }
     }
 
-    /// Whether there is a line at all: all coordinates finite, and the direction not zero.
+    /// Return whether all coordinates are finite and the direction is not zero.
     pub fn is_line(&self) -> bool {
         let Ray { origin, direction, .. } = self.ray();
         origin.is_finite() && direction.is_finite() && *direction != DVec3::ZERO
@@ -65,8 +65,8 @@ impl Carried<'_> {
         }
     }
 
-    /// The point at `t` in the innermost space relative to another, in units, and the unit: with twice the digits of an
-    /// f64 left after all that cancels, where those of [`Carried::line`] are counted before.
+    /// The point at `t` in object space relative to `from`, in units, and the unit. A full double-double remains after
+    /// cancellation, whereas [`Carried::line`] loses digits to it.
     #[inline(always)]
     pub fn at(&self, t: f64, from: DVec3) -> (Triple<Double>, Double) {
         match self {
@@ -86,14 +86,14 @@ impl Carried<'_> {
         (point.minus(&Triple::of(from).times(&unit)), unit)
     }
 
-    /// The point at `t` in the innermost space relative to another, rounded once.
+    /// The point at `t` in object space relative to `from`, rounded once.
     #[inline(always)]
     pub fn point(&self, t: f64, from: DVec3) -> DVec3 {
         let (Triple([x, y, z]), unit) = self.at(t, from);
         DVec3::new(x.over(&unit).high, y.over(&unit).high, z.over(&unit).high)
     }
 
-    /// The ray in the innermost space, rounded to f64 at the end; `t` is the same.
+    /// The ray in object space, rounded to f64 at the end; `t` is unchanged.
     pub fn rounded(&self) -> Ray {
         let ray = self.ray();
         if matches!(self, Self::Ray(_)) {
@@ -106,7 +106,7 @@ impl Carried<'_> {
 }
 
 impl<N: Number> Line<N> {
-    /// The same line with another origin of space, in units.
+    /// The same line relative to another origin; all lengths in units.
     #[inline]
     pub fn from(&self, origin: DVec3) -> Self {
         Self { origin: self.origin.minus(&Triple::of(origin).times(&self.unit)), ..self.clone() }

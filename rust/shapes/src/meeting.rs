@@ -1,4 +1,4 @@
-//! How a shape that is bounded by planes and quadrics meets a line, decided without error.
+//! Exact intersection of a line with a solid bounded by planes and quadrics.
 
 use super::line::{Carried, Line};
 use super::newton::refined;
@@ -7,19 +7,19 @@ use super::{Candidate, Contact};
 use raywright_base::math::{Bounded, Double, Dyadic, Number, Ray, Triple};
 use std::cmp::Ordering;
 
-/// Tells the meetings of a solid with a ray, as [`super::Shape::meet`] does.
+/// Report the intersections of a solid with a ray, as [`super::Shape::meet`] does.
 ///
-/// What is met, and in which order, is nearly always certain in f64 with a bound on its error, and each `t` is then
-/// corrected by what the surface's polynomial is there at twice the length ([`refined`]). What that leaves open is
-/// computed at twice the length throughout, and what is still open without any error. All three give the f64 nearest to
-/// the exact `t` but within 2⁻⁶⁰ of a tie, and the choice between them depends on nothing but shape and line.
+/// In nearly all cases f64 with error bounds decides what is hit and in which order. Each `t` is then refined by
+/// evaluating the surface polynomial in double-double arithmetic ([`refined`]). Undecided cases are computed in
+/// double-double throughout, and then exactly. All three return the f64 nearest to the exact `t`, except within 2⁻⁶⁰ of
+/// a tie, and the choice among them depends only on shape and line.
 #[inline(always)]
 pub(super) fn tell(solid: &impl Solid, ray: &Carried<'_>, met: &mut dyn FnMut(Candidate) -> bool) -> bool {
     if !ray.is_line() {
         return false;
     }
     match ray {
-        // Compiled apart, since with a unit of 1, and nothing to carry, much of it goes away.
+        // Specialized: with a unit of 1 and no map, much of the code is eliminated.
         Carried::Ray(ray) => tell_of_line(solid, &Carried::Ray(ray), met),
         Carried::Into(..) => tell_of_line(solid, ray, met),
     }
@@ -27,7 +27,7 @@ pub(super) fn tell(solid: &impl Solid, ray: &Carried<'_>, met: &mut dyn FnMut(Ca
 
 #[inline(always)]
 fn tell_of_line(solid: &impl Solid, ray: &Carried<'_>, met: &mut dyn FnMut(Candidate) -> bool) -> bool {
-    // By reference, for meetings are some hundred bytes.
+    // By reference, since a list of intersections takes some hundred bytes.
     let known = match &solid.meets_roughly(ray) {
         Some(meets) if meets.count == 0 => return false,
         Some(meets) => tell_refined(solid, ray, meets, met),
@@ -36,7 +36,7 @@ fn tell_of_line(solid: &impl Solid, ray: &Carried<'_>, met: &mut dyn FnMut(Candi
     known.unwrap_or_else(|told| tell_exactly(solid, ray, told, met))
 }
 
-/// Tells meetings that an f64 is certain of, or fails with how many were dealt with before it was not.
+/// Report the intersections that f64 decides. On failure return how many were processed.
 #[inline(always)]
 fn tell_refined(
     solid: &impl Solid,
@@ -49,8 +49,8 @@ fn tell_refined(
     let (mut first, mut second) = (first, second.as_ref());
     let touched = meets.closed && second.is_none();
     if let Some(second) = &mut second {
-        // Apart by more than their errors and their roundings, of which each error holds one: so are what they are
-        // rounded to.
+        // Their distance exceeds their errors and the roundings to come, each at most one error, so the rounded values
+        // differ too.
         let (gap, room) = (second.t.value - first.t.value, 4.0 * (first.t.error + second.t.error));
         if gap < -room {
             std::mem::swap(&mut first, second);
@@ -59,7 +59,7 @@ fn tell_refined(
         }
     }
     let mut tell_one = |meet: &Meet<Bounded>, told: usize| {
-        // Most often only the first is asked for, or none: the others need no more digits.
+        // Usually at most the first intersection is in the interval; the others need no refinement.
         let room = 4.0 * meet.t.error;
         if meet.t.value - room > t_max || meet.t.value + room < t_min {
             return Ok(false);
@@ -78,7 +78,7 @@ fn tell_refined(
     }
 }
 
-/// Tells meetings by longer numbers, without the first that are told already.
+/// Report the intersections in longer arithmetic, skipping the first `told`.
 #[cold]
 #[inline(never)]
 fn tell_exactly(solid: &impl Solid, ray: &Carried<'_>, told: usize, met: &mut dyn FnMut(Candidate) -> bool) -> bool {
@@ -89,7 +89,7 @@ fn tell_exactly(solid: &impl Solid, ray: &Carried<'_>, told: usize, met: &mut dy
         .unwrap_or_default();
     let (t_min, t_max) = (ray.ray().t_min, ray.ray().t_max);
     for (t, part, contact) in found.into_iter().flatten().skip(told) {
-        // What lies further along than f64 can say is not met.
+        // Discard intersections beyond the range of f64.
         if t.is_finite() && t_min <= t && t <= t_max {
             let uv = solid.coordinates(part, ray.point(t, solid.reference()));
             if met(Candidate { t, uv, contact, inner: 0 }) {
@@ -100,18 +100,18 @@ fn tell_exactly(solid: &impl Solid, ray: &Carried<'_>, told: usize, met: &mut dy
     false
 }
 
-/// `t`, part and contact of up to two meetings by increasing `t`, or none if their errors leave one of them open.
+/// `t`, part and contact of up to two intersections by increasing `t`, or None if their errors leave one undecided.
 fn settled<N: Number>(meets: Meets<N>) -> Option<[Option<(f64, usize, Contact)>; 2]> {
     let mut all = [(0.0, 0, Contact::Inside); 4];
     for (to, meet) in all.iter_mut().zip(meets.all.iter().flatten()) {
-        // Zero is always the positive one.
+        // Turn −0 into +0.
         *to = (meet.t.rounded()? + 0.0, meet.part, meet.contact);
     }
     let all = &mut all[..meets.count];
     all.sort_by(|a, b| a.0.total_cmp(&b.0));
     Some(match *all {
         [] => [None; 2],
-        // Only touched if both ends are the same.
+        // The line is tangent if both ends coincide.
         [first, .., last] if meets.closed && first.0 != last.0 => [Some(first), Some(last)],
         [(t, part, _), ..] if meets.closed => [Some((t, part, Contact::Touching)), None],
         [only] => [Some(only), None],
@@ -119,18 +119,18 @@ fn settled<N: Number>(meets: Meets<N>) -> Option<[Option<(f64, usize, Contact)>;
     })
 }
 
-/// A root along a line, and the derivative there.
+/// A root along a line and its derivative.
 #[derive(Clone)]
 pub(super) struct Root<N> {
-    /// Where.
+    /// The root.
     pub t: N,
     /// The derivative.
     pub slope: N,
 }
 
-/// The roots of `a t² + 2 b t + c`, the lesser first, where `b² − a c` is `discriminant` > 0 and `a` is not 0.
+/// The roots of `a t² + 2 b t + c` in increasing order, given `discriminant` = `b² − a c` > 0 and `a` ≠ 0.
 ///
-/// Of the two formulas for each, the one that subtracts nothing is used (Goldberg 1991).
+/// Each root uses the formula without cancellation (Goldberg 1991).
 #[inline(always)]
 pub(super) fn roots<N: Number>(a: &N, b: &N, c: &N, discriminant: &N) -> Option<[Root<N>; 2]> {
     let root = discriminant.sqrt();
@@ -139,19 +139,19 @@ pub(super) fn roots<N: Number>(a: &N, b: &N, c: &N, discriminant: &N) -> Option<
     let (first, second) = (q.over(a), c.over(&q));
     let rises = a.sign()? == Ordering::Greater;
     let [less, greater] = if rises != negative { [first, second] } else { [second, first] };
-    // Half the derivative, a t + b, is the root of the discriminant, with the sign that it has on that side.
+    // Half the derivative, a t + b, equals ± the square root of the discriminant.
     let (up, down) = (root.plus(&root), root.plus(&root).negated());
     let (less_slope, greater_slope) = if rises { (down, up) } else { (up, down) };
     Some([Root { t: less, slope: less_slope }, Root { t: greater, slope: greater_slope }])
 }
 
-/// Where a line from a ball's centre meets the ball: |origin + t · direction| = radius.
+/// Intersect a line relative to a sphere's center with the sphere: |origin + t · direction| = radius.
 #[inline(always)]
 pub(super) fn ball<N: Number>(line: &Line<N>, radius: &N) -> Option<Meets<N>> {
     let (w, d) = (&line.origin, &line.direction);
     let a = d.dot(d);
-    // r² d² − |w × d|² = d² (r² − h²), with h the least distance of the line from the centre: what b² − a c is, without
-    // its cancellation (Haines et al., "Precision Improvements for Ray/Sphere Intersection", 2019).
+    // r² d² − |w × d|² = d² (r² − h²), with h the distance of the line from the center. It equals b² − a c without its
+    // cancellation (Haines et al., "Precision Improvements for Ray/Sphere Intersection", 2019).
     let moment = w.cross(d);
     let square = radius.squared();
     let discriminant = square.times(&a).minus(&moment.dot(&moment));
@@ -170,7 +170,7 @@ pub(super) fn ball<N: Number>(line: &Line<N>, radius: &N) -> Option<Meets<N>> {
     }
 }
 
-/// What is zero on a ball around the origin.
+/// The implicit function of a sphere around the origin.
 #[inline(always)]
 pub(super) fn ball_surface<N: Number>(point: &Triple<N>, radius: &N) -> N {
     point.dot(point).minus(&radius.squared())
@@ -194,8 +194,7 @@ mod tests {
         told
     }
 
-    /// Fails unless the short way tells what the long one does, to the last bit but for ties; says whether f64 was
-    /// certain.
+    /// Fail unless the fast and the exact method agree to the last bit, except at ties. Return whether f64 was certain.
     fn check(solid: &impl Solid, ray: &Carried<'_>) -> Result<bool, TestCaseError> {
         let exact = told(|met| tell_exactly(solid, ray, 0, met));
         let known = solid.meets_roughly(ray);
@@ -205,16 +204,16 @@ mod tests {
         let found = told(|met| tell(solid, ray, met));
         prop_assert_eq!(found.len(), exact.len(), "{:?}", ray);
         for (f, e) in found.iter().zip(&exact) {
-            // At a tie between two f64 either may be told: 1 + 2⁻⁵³ + 2⁻¹⁰⁶ is a quotient of neighbours.
+            // At a tie either neighbour may be returned: 1 + 2⁻⁵³ + 2⁻¹⁰⁶ is a quotient of neighbours.
             prop_assert!(f == e || (f.0.abs_diff(e.0) == 1 && f.2 == e.2), "{f:?} {e:?} {ray:?}");
         }
         let sure = known.is_some_and(|meets| tell_refined(solid, ray, &meets, &mut |_| false).is_ok());
         Ok(sure || known.is_some_and(|meets| meets.count == 0))
     }
 
-    /// All solids of one size at one place.
+    /// Check all solids of one size at one place.
     fn check_all(a: DVec3, axis: DVec3, size: f64, ray: &Carried<'_>) -> Result<u32, TestCaseError> {
-        // What f64 holds, and is a shape and a line.
+        // Skip combinations that overflow or give no valid shape or line.
         if !(ray.is_line() && a.is_finite() && (a + axis).is_finite() && size.is_finite() && size > 0.0) {
             return Ok(0);
         }
@@ -242,7 +241,7 @@ mod tests {
         prop_oneof![any(3.0), grid, any(1e-4), any(1e4)]
     }
 
-    /// 1, and now and then a power of two at which squares, or products of four, leave the range of f64.
+    /// 1, and sometimes a power of two for which squares or products of four overflow or underflow.
     fn extreme() -> impl Strategy<Value = f64> {
         prop_oneof![Just(0), -60..60i32, -1000..1000i32].prop_map(|power| 2f64.powi(power))
     }
@@ -256,12 +255,12 @@ mod tests {
             o in point(), target in point(),
             (space, length, own) in (extreme(), extreme(), extreme()), close in -52..2i32,
         ) {
-            // To within any share of the size past the rim, too.
+            // Past the rim by any fraction of the size, too.
             let d = a + target.normalize_or_zero() * size * (1.0 + 2f64.powi(close)) - o;
             for d in [d, a + target - o] {
                 let ray = Ray { t_min: f64::NEG_INFINITY, ..Ray::new(o * space, d * space * length) };
                 check_all(a * space, axis * space, size * space, &Carried::Ray(&ray))?;
-                // Shapes of other sizes than the way to them.
+                // Shapes whose size differs from their distance.
                 check_all(a * space, axis * own, size * own, &Carried::Ray(&ray))?;
                 let map = Affine::new([DVec3::new(2.0, 0.3, 0.0), DVec3::new(-0.5, 1.0, 0.1), DVec3::Z], DVec3::ONE);
                 check_all(a * space, axis * space, size * space, &Carried::Into(&Carried::Ray(&ray), &map))?;
@@ -269,7 +268,7 @@ mod tests {
         }
     }
 
-    /// Of a thousand lines that have nothing particular about them an f64 is certain of all.
+    /// f64 decides all of a thousand generic lines.
     #[test]
     fn most_lines_need_no_long_numbers() {
         let mut sure = 0;

@@ -1,22 +1,22 @@
-//! Roots of a surface along a line, from some digits of them to all.
+//! Newton refinement of an intersection from a few digits to full f64 precision.
 
 use super::line::Carried;
 use super::solid::{Meet, Solid};
 use raywright_base::math::Bounded;
 use raywright_base::math::robust::UNIT;
 
-/// How near to a tie between two f64 the last one may be the wrong one of them, relative.
+/// Relative distance from a tie between two f64 within which either neighbour may be returned.
 const NEAR: f64 = 1.0 / (1u64 << 60) as f64;
 
-/// Room for the roundings of the bounds.
+/// Allowance for the roundings of the bounds.
 const SLACK: f64 = 1.0 + 1.0 / (1u64 << 40) as f64;
 
-/// The f64 next to where a line meets a surface; none where the bounds do not make that certain.
+/// The f64 nearest to the intersection of a line with a surface; None if the bounds cannot guarantee it.
 ///
-/// Newton's step, with the polynomial f at twice the length and all else in f64. With S the slope at the root, a half
-/// the second derivative and ε the distance of the start from the root, f = ε (S + a ε) there, exactly: so the step
-/// errs by no more than f and S are wrong, each by a bound that is known, and by a ε. Once is enough but for roots next
-/// to 0, where one that is nearer is as far off as it is large.
+/// This is Newton's method with the polynomial f in double-double arithmetic and all else in f64. Let S be the slope at
+/// the root, a half the second derivative, and ε the distance of the start from the root. Then f = ε (S + a ε) exactly.
+/// The step errs by at most the errors of f and S, which have known bounds, and by a ε. One step suffices except for
+/// roots near 0, where the relative error remains large.
 #[inline(always)]
 pub(super) fn refined(solid: &impl Solid, ray: &Carried<'_>, meet: &Meet<Bounded>) -> Option<f64> {
     let (mut t, mut reach) = (meet.t.value, meet.t.error);
@@ -26,7 +26,7 @@ pub(super) fn refined(solid: &impl Solid, ray: &Carried<'_>, meet: &Meet<Bounded
         let f = solid.surface(meet.surface, &point, &unit);
         let wander = (slope.error + bend * reach) * SLACK;
         let least = slope.value.abs() - wander;
-        // NaN is not above 0, and nothing is less than it.
+        // Also rejects NaN.
         if !(least > 0.0 && t.is_finite()) {
             return None;
         }
@@ -34,7 +34,7 @@ pub(super) fn refined(solid: &impl Solid, ray: &Carried<'_>, meet: &Meet<Bounded
         let off = (f.error + step.abs() * wander) / least * SLACK + 4.0 * UNIT * step.abs();
         let next = t - step;
         if off <= NEAR * next.abs() {
-            // Zero is always the positive one.
+            // Turn −0 into +0.
             return Some(next + 0.0);
         }
         (t, reach) = (next, off + UNIT * next.abs());

@@ -1,7 +1,7 @@
-//! Where a line meets a quadric between two planes, to more than 60 digits, for tests.
+//! A test oracle that intersects a line with a quadric between two planes to more than 60 digits.
 //!
-//! It knows the surface as a polynomial of a point and nothing of how the shapes go about it: the coefficients along
-//! the line come from three of its values, and the roots come by the schoolbook formula in integers of any length.
+//! It knows the surface only as a polynomial, independently of the shapes' formulas. Three values give the coefficients
+//! along the line, and the textbook formula in integers of arbitrary length gives the roots.
 
 use num_bigint::BigInt;
 use raywright_base::math::{DVec3, Ray};
@@ -12,7 +12,7 @@ use std::ops::{Add, Mul, Neg, Sub};
 #[derive(Clone, Debug)]
 pub(crate) struct Exact(BigInt, i64);
 
-/// Digits of what is not exact: quotients and roots.
+/// Bits of inexact results: quotients and roots.
 const BITS: i64 = 400;
 
 impl Exact {
@@ -54,11 +54,11 @@ impl Exact {
         Self((&self.0 << shift as u64).sqrt(), (self.1 - shift) / 2)
     }
 
-    /// The distance of an f64 from it in units of that f64's last place.
+    /// The distance to an f64 in ulps of that f64.
     pub fn ulps_to(&self, x: f64) -> f64 {
         let ulp = Self::new(x.abs().next_up() - x.abs());
         let Self(m, e) = (&Self::new(x) - self).abs().over(&ulp);
-        // Only its size is asked for.
+        // Only the magnitude matters.
         if m == BigInt::ZERO { 0.0 } else { 2f64.powf((m.bits() as i64 + e) as f64) }
     }
 }
@@ -115,8 +115,8 @@ fn along(ray: &Ray, t: &Exact) -> Vector {
     [0, 1, 2].map(|i| &o[i] + &(&d[i] * t))
 }
 
-/// A surface f = 0, inside it f ≤ 0, at most quadratic; cut to where all of some linear functions are at least 0; of
-/// which `caps` are closed where they are 0.
+/// A surface f = 0 with the inside f ≤ 0, of degree 2 at most. It is clipped to where all the linear functions `planes`
+/// are nonnegative; with `caps` the clip planes are closed.
 pub(crate) struct Oracle<'a> {
     pub surface: &'a dyn Fn(&Vector) -> Exact,
     pub planes: Vec<&'a dyn Fn(&Vector) -> Exact>,
@@ -124,7 +124,7 @@ pub(crate) struct Oracle<'a> {
 }
 
 impl Oracle<'_> {
-    /// All meetings by increasing t, and whether the only one is a tangent.
+    /// All intersections by increasing t, and whether the only one is a tangent.
     pub fn meets(&self, ray: &Ray) -> (Vec<Exact>, bool) {
         let half = Exact::new(0.5);
         let at = |t: f64| (self.surface)(&along(ray, &Exact::new(t)));
@@ -146,7 +146,7 @@ impl Oracle<'_> {
         } else if b.sign() != Ordering::Equal {
             found.push((-&c).over(&(&b + &b)));
         }
-        // What lies on a plane to within the digits, lies on it.
+        // Points within rounding of a plane count as lying on it.
         let tiny = |size: &Exact| Exact(size.0.clone(), size.1 - BITS / 2);
         let within = |t: &Exact| {
             self.planes.iter().all(|plane| {
@@ -185,7 +185,7 @@ impl Oracle<'_> {
     }
 }
 
-/// A plane's function along a line: at t = 0, and for each t more.
+/// A plane's function along a line: its value at t = 0 and its slope.
 fn plane_along(plane: &dyn Fn(&Vector) -> Exact, ray: &Ray) -> (Exact, Exact) {
     let from = plane(&along(ray, &Exact::new(0.0)));
     let slope = &plane(&along(ray, &Exact::new(1.0))) - &from;

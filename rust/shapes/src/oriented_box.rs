@@ -1,10 +1,10 @@
-//! Boxes along axes of their own.
+//! Oriented bounding boxes.
 
 use raywright_base::math::DVec3;
 use raywright_base::math::robust::UNIT;
 
-/// The axes, the diagonals of a cube and those of its faces, not of unit length (Kay and Kajiya, "Ray Tracing Complex
-/// Scenes", 1986).
+/// The 13 directions: axes, space diagonals and face diagonals of a cube, not normalized (Kay and Kajiya, "Ray Tracing
+/// Complex Scenes", 1986).
 pub const DIRECTIONS: [DVec3; 13] = [
     DVec3::new(1.0, 0.0, 0.0),
     DVec3::new(0.0, 1.0, 0.0),
@@ -21,38 +21,37 @@ pub const DIRECTIONS: [DVec3; 13] = [
     DVec3::new(-1.0, 0.0, 1.0),
 ];
 
-/// What lies between three pairs of planes that are at right angles to within rounding.
+/// The intersection of three slabs that are orthogonal to within rounding.
 ///
-/// The axes are found after Larsson and Källberg ("Fast Computation of Tight-Fitting Oriented Bounding Boxes", 2011):
-/// from points that are farthest along 13 fixed directions comes a large triangle, and on it two tetrahedra; each edge
-/// of their faces, with the face's normal, proposes axes, and so do the coordinates' own. The box of least surface is
-/// kept.
+/// The axes are found after Larsson and Källberg ("Fast Computation of Tight-Fitting Oriented Bounding Boxes", 2011).
+/// The extreme points along 13 fixed directions give a large triangle and two tetrahedra on it. Each edge of their
+/// faces, with the face's normal, proposes axes, as do the coordinate axes. The box of least surface area is kept.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OrientedBox {
-    /// A point that heights count from.
+    /// The origin of heights.
     pub centre: DVec3,
-    /// Of unit length.
+    /// The unit axes.
     pub axes: [DVec3; 3],
-    /// Along each axis, from where to where it goes.
+    /// The interval along each axis.
     pub spans: [[f64; 2]; 3],
 }
 
-/// The magnitudes of a unit axis's coordinates add up to less.
+/// The magnitudes of a unit axis's coordinates sum to less than this.
 const SUM: f64 = 1.75;
 
 impl OrientedBox {
-    /// A small box around some finite points; None around none.
+    /// A small box around finite points; None for no points.
     pub fn around(points: &[DVec3]) -> Option<Self> {
         let (mut all, extreme) = proposals(points);
         all.push(DVec3::AXES);
-        // The few extreme points choose; all points decide between the choice and the plain box.
+        // The few extreme points propose the axes; all points decide between them and the coordinate axes.
         let area = |axes: &[DVec3; 3]| Self::along(*axes, &extreme).map_or(f64::INFINITY, |b| b.half_area());
         let best = all.iter().min_by(|a, b| area(a).total_cmp(&area(b)))?;
         let (turned, plain) = (Self::along(*best, points)?, Self::along(DVec3::AXES, points)?);
         Some(if turned.half_area() < plain.half_area() { turned } else { plain })
     }
 
-    /// The box around points along given axes of unit length.
+    /// The box around points along given unit axes.
     fn along(axes: [DVec3; 3], points: &[DVec3]) -> Option<Self> {
         let (min, max) = points.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(a, b), &p| (a.min(p), b.max(p)));
         let centre = min / 2.0 + max / 2.0;
@@ -61,7 +60,7 @@ impl OrientedBox {
         for &point in points {
             for (axis, span) in axes.iter().zip(&mut spans) {
                 let height = axis.dot(point - centre);
-                // The difference errs by uR, products and sums by 4u of what they may be.
+                // The difference errs by uR, products and sums by 4u of their bound.
                 let doubt = 8.0 * UNIT * SUM * radius;
                 *span = [span[0].min(height - doubt), span[1].max(height + doubt)];
             }
@@ -69,25 +68,25 @@ impl OrientedBox {
         (!points.is_empty()).then_some(Self { centre, axes, spans })
     }
 
-    /// Half the surface, to which the chance that a random ray meets it is proportional.
+    /// Half the surface area, to which the hit probability of a random ray is proportional.
     fn half_area(&self) -> f64 {
         let [a, b, c] = self.spans.map(|[low, high]| high - low);
         a * (b + c) + b * c
     }
 }
 
-/// The axes along an edge of a triangle and its normal.
+/// The axes along an edge of a triangle, its normal, and their cross product.
 fn frame(edge: DVec3, normal: DVec3) -> Option<[DVec3; 3]> {
     let (x, y) = (edge.try_normalize()?, normal.try_normalize()?);
-    // Of a sliver the normal may lean: at right angles again. What of it is left then may be so short that its own
-    // rounding leans; the second time it is not (Parlett, "The Symmetric Eigenvalue Problem", 1980, 6.9: twice is
-    // enough).
+    // The normal of a sliver may not be orthogonal to the edge, so orthogonalize it. What remains may be short enough
+    // for its rounding to matter; after a second time it is not (Parlett, "The Symmetric Eigenvalue Problem", 1980,
+    // 6.9: twice is enough).
     let y = (y - x * x.dot(y)).try_normalize()?;
     let y = (y - x * x.dot(y)).try_normalize()?;
     Some([x, y, x.cross(y)])
 }
 
-/// Axes that edges and normals of large triangles on the points propose.
+/// Candidate axes from edges and normals of large triangles, and the extreme points.
 fn proposals(points: &[DVec3]) -> (Vec<[DVec3; 3]>, Vec<DVec3>) {
     let farthest = |way: &dyn Fn(DVec3) -> f64| {
         points.iter().copied().max_by(|&a, &b| way(a).total_cmp(&way(b))).unwrap_or(DVec3::ZERO)
@@ -103,7 +102,7 @@ fn proposals(points: &[DVec3]) -> (Vec<[DVec3; 3]>, Vec<DVec3>) {
     let r = farthest(&|x| (x - p - along * along.dot(x - p)).length_squared());
     let mut all = Vec::new();
     let Some(normal) = (q - p).cross(r - p).try_normalize() else {
-        // All on a line.
+        // All points are collinear.
         let (x, y) = along.any_orthonormal_pair();
         return (vec![[along, x, y]], extreme);
     };
@@ -133,7 +132,7 @@ mod tests {
         [coordinate(), coordinate(), coordinate()].prop_map(DVec3::from_array)
     }
 
-    /// Points anywhere, or thin and diagonal, near the origin or far from it.
+    /// Generic points, or thin and diagonal clouds, near the origin or far from it.
     fn cloud() -> impl Strategy<Value = Vec<DVec3>> {
         let shift = prop_oneof![Just(DVec3::ZERO), Just(DVec3::new(1e3, -2e6, 5.0)), point()];
         let squeeze = prop_oneof![Just(0.0), Just(1e-9), Just(1.0)];
@@ -144,7 +143,7 @@ mod tests {
         })
     }
 
-    /// Whether a point's heights along the axes, in 32 digits, are within the spans.
+    /// Return whether a point's heights along the axes, in 32 digits, are within the spans.
     fn holds(turned: &OrientedBox, p: DVec3) -> bool {
         turned.axes.iter().zip(turned.spans).all(|(n, [low, high])| {
             let height = (0..3).fold(DoubleDouble::ZERO, |sum, i| {
@@ -154,7 +153,7 @@ mod tests {
         })
     }
 
-    /// Whether axes are of unit length and at right angles.
+    /// Return whether axes are orthonormal.
     fn are_orthonormal(axes: &[DVec3; 3]) -> bool {
         (0..3).all(|i| (axes[i].length() - 1.0).abs() < 1e-14 && axes[i].dot(axes[(i + 1) % 3]).abs() < 1e-14)
     }
@@ -177,7 +176,7 @@ mod tests {
             DVec3::new(-1.2964641838066503e-11, 1.3726614094095293e-11, 6.236499145460257e-6),
         ];
         assert!(are_orthonormal(&OrientedBox::around(&points).unwrap().axes));
-        // However much a normal leans, and wherever it leans to.
+        // For any direction and error of the normal.
         for lean in [0.0, 0.5, 1.0 - 1e-8, 1.0 - 1e-15] {
             let (x, other) = (DVec3::new(1e-9, 3.0, -2.0), DVec3::new(0.3, 0.2, 1.0));
             let normal = x.normalize() * lean + other * (1.0 - lean);

@@ -1,15 +1,14 @@
-//! Any shape, moved by an affine map.
+//! A shape transformed by an affine map.
 
 use super::{Bounds, Candidate, Carried, Closest, Drawn, Flat, Point, Shape};
 use raywright_base::math::robust::UNIT;
 use raywright_base::math::{Affine, DVec3, Ray, Singular};
 use std::sync::Arc;
 
-/// A shape under an affine map: itself a shape, in the space that the map leads to.
+/// A shape under an affine map, itself a shape in the map's target space.
 ///
-/// A ray is taken back to the shape's own space, with its direction as long as it comes out, so that `t` is the same in
-/// both. Shapes that decide without error do so for the ray and the matrix as they are given ([`Carried`]); others get
-/// the ray rounded once.
+/// Rays are transformed to object space without normalizing the direction, so `t` is the same in both spaces. Shapes
+/// with exact predicates decide for the given ray and matrix ([`Carried`]); others intersect the ray rounded once.
 #[derive(Clone, Debug)]
 pub struct Placed {
     shape: Arc<dyn Shape>,
@@ -18,7 +17,7 @@ pub struct Placed {
 }
 
 impl Placed {
-    /// A shape under a map.
+    /// Place a shape under a map.
     ///
     /// # Errors
     ///
@@ -28,14 +27,14 @@ impl Placed {
         Ok(Self { shape, to_world, to_object })
     }
 
-    /// A point of the shape, in the world.
+    /// Map a point to the target space.
     ///
-    /// The map is computed with twice the digits and rounded once; the error that the point had goes along.
+    /// The map is evaluated in double-double arithmetic and rounded once; the point's own error is propagated.
     fn carried(&self, point: Point) -> Point {
         let map = &self.to_world;
         let position = map.point(point.position);
         let error = UNIT * position.abs().max_element() + map.spread(point.error);
-        // Normals go with the inverse's transpose, scaled so that no square overflows or vanishes.
+        // Normals transform by the inverse transpose, scaled so that no square overflows or underflows.
         let image = self.to_object.transposed(point.normal);
         let scale = image.abs().max_element();
         let length = (image / scale).length();
@@ -47,8 +46,7 @@ impl Placed {
         Point { position, error, normal, uv: point.uv, dp: point.dp.map(|d| map.vector(d)), dn }
     }
 
-    /// How much solid angle of the shape's space there is to one of the world's: |det L⁻¹| / |L⁻¹ d|³ about a unit
-    /// vector d.
+    /// Object-space solid angle per target-space solid angle: |det L⁻¹| / |L⁻¹ d|³ for a unit vector d.
     fn crowding(&self, direction: DVec3) -> f64 {
         let own = self.to_object.vector(direction.normalize());
         self.to_object.determinant().abs() / own.length().powi(3)
@@ -60,8 +58,8 @@ impl Shape for Placed {
         Bounds::of_support(|d| self.support(d))
     }
 
-    /// That of the shape along the direction taken back, which is exact but for roundings of the few products in it:
-    /// where the shape's own is tight, so is this.
+    /// The shape's support along the inversely transformed direction. This is exact up to the roundings of a few
+    /// products, so it is as tight as the shape's own.
     fn support(&self, d: DVec3) -> f64 {
         let own = self.to_world.transposed(d);
         let reach = self.shape.support(own);
@@ -72,7 +70,7 @@ impl Shape for Placed {
         let extent = bounds.min.abs().max(bounds.max.abs());
         let sizes = self.to_world.rows.map(|row| row.abs());
         let rounded = sizes[0] * d.x.abs() + sizes[1] * d.y.abs() + sizes[2] * d.z.abs();
-        // Of a direction along an axis, as the box asks, the products and sums are exact.
+        // For axis-parallel directions, which bounding boxes use, products and sums are exact.
         let plain = [d.x, d.y, d.z].iter().filter(|x| **x != 0.0).count() <= 1 && d.abs().max_element() == 1.0;
         let slack = if plain { 0.0 } else { 4.0 * UNIT * (rounded * extent).element_sum() };
         let shift = self.to_world.shift;
@@ -113,7 +111,7 @@ impl Shape for Placed {
         self.shape.is_closed()
     }
 
-    /// Drawn as the shape draws it, and so even only where the map stretches all of it alike.
+    /// Mapped samples of the shape; uniform only if the map stretches all areas equally.
     fn sample(&self, u: [f64; 2]) -> Option<Drawn> {
         let Drawn { point, pdf } = self.shape.sample(u)?;
         let stretch = self.to_world.cofactors(point.normal).length();

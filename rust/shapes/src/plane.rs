@@ -8,24 +8,23 @@ use raywright_base::math::robust::UNIT;
 use raywright_base::math::{Affine, DVec3, Frame, Number, Ray, Triple};
 use std::cmp::Ordering;
 
-/// The least error that is told of a point: far from where numbers and their products lose digits.
+/// The least reported error of a point, well above the range where products underflow.
 const LEAST: f64 = 1e-100;
 
-/// The plane through a point, at right angles to a normal of any length but 0.
+/// The plane through a point, normal to a vector of any length but 0.
 ///
-/// Its coordinates are those along two unit axes at right angles to the normal, from the point on, less their whole
-/// parts: they repeat after each unit of length.
+/// u and v are the coordinates from the point along two unit axes in the plane, modulo 1: they repeat with period 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plane {
     /// A point on it.
     pub point: DVec3,
-    /// At right angles to it, to its outside.
+    /// The normal of the outside.
     pub normal: DVec3,
 }
 
 impl Plane {
     fn frame(&self) -> Frame {
-        // Scaled first, so that no square overflows or vanishes.
+        // Scaled first, so that no square overflows or underflows.
         Frame::new((self.normal / self.normal.abs().max_element()).normalize())
     }
 }
@@ -50,7 +49,7 @@ impl Solid for Plane {
     }
 }
 
-/// Where a line meets the plane through its origin of space; nowhere if it never meets it, or lies in it.
+/// Intersect a line with the plane through the origin. Parallel and contained lines do not intersect it.
 #[inline]
 pub(super) fn crossing<N: Number>(line: &Line<N>, normal: &Triple<N>) -> Option<Meets<N>> {
     let (along, height) = (normal.dot(&line.direction), normal.dot(&line.origin));
@@ -81,7 +80,7 @@ impl Shape for Plane {
         Some(Closest { position, uv: self.coordinates(0, to_object.point(position) - self.point) })
     }
 
-    /// Without end, but flat where the normal lies along an axis.
+    /// Unbounded, but flat if the normal is parallel to an axis.
     fn bounds(&self) -> Bounds {
         Bounds::of_support(|d| self.support(d))
     }
@@ -103,16 +102,16 @@ impl Shape for Plane {
         tell(self, ray, met)
     }
 
-    /// The ray's own point, moved along the normal by the distance that it is off.
+    /// The ray's point, projected onto the plane along the normal.
     ///
-    /// That distance is an inner product of four rounded differences, wrong by 6 UNIT of their sizes; as much again is
-    /// for the frame's normal.
+    /// The distance to the plane is a dot product of four rounded differences, in error by 6 UNIT of their magnitudes.
+    /// As much again covers the normal's error.
     fn point(&self, ray: &Ray, t: f64, uv: [f64; 2]) -> Point {
         let Frame { tangent, bitangent, normal } = self.frame();
         let away = Carried::Ray(ray).line().from(self.point).at(t);
         let away = away - normal * normal.dot(away);
         let position = self.point + away;
-        // A plane through the origin has no size of its own: there all numbers are 0, and still a ray has to leave it.
+        // The magnitudes are all 0 for a plane through the origin, but a spawned ray still has to leave it.
         let error = (UNIT * (position.abs().max_element() + 12.0 * away.abs().element_sum())).max(LEAST);
         Point { position, error, normal, uv, dp: [tangent, bitangent], dn: [DVec3::ZERO; 2] }
     }

@@ -1,11 +1,11 @@
-//! What every shape that is no triangle can be asked.
+//! The interface of every shape other than a triangle: bounds, intersection, area and sampling.
 
 use super::{Candidate, Carried, Closest, Flat};
 use raywright_base::math::robust::UNIT;
 use raywright_base::math::{Affine, DVec3, Ray};
 use std::fmt::Debug;
 
-/// The closed box from one corner to another, in f64. Infinite along an axis where what it holds is.
+/// An axis-aligned bounding box in f64. Unbounded shapes have infinite extents.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
     /// The least corner.
@@ -14,30 +14,30 @@ pub struct Bounds {
     pub max: DVec3,
 }
 
-/// A ball that holds a shape.
+/// A bounding sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ball {
-    /// Its middle.
+    /// Its center.
     pub center: DVec3,
     /// Its radius, rounded up.
     pub radius: f64,
 }
 
 impl Bounds {
-    /// A ball around the box, if that ends on every side.
+    /// Return a bounding sphere of the box, provided that the box is finite.
     pub fn around(&self) -> Ball {
-        // Halves do not overflow; three roundings and a root are far below what is added.
+        // Halves do not overflow. Three roundings and a root err by far less than the padding.
         let (center, half) = (0.5 * self.min + 0.5 * self.max, 0.5 * self.max - 0.5 * self.min);
         let size = half.length() + self.min.abs().max(self.max.abs()).length() * UNIT;
         Ball { center, radius: size * (1.0 + 16.0 * UNIT) }
     }
 
-    /// Whether it ends on every side.
+    /// Return whether the box is finite along every axis.
     pub fn is_finite(&self) -> bool {
         self.min.is_finite() && self.max.is_finite()
     }
 
-    /// The box of a shape by its support: the greatest `d · x` of its points for each direction asked, rounded up.
+    /// The box of a shape with a given support function: the greatest `d · x` over its points, rounded up.
     pub fn of_support(support: impl Fn(DVec3) -> f64) -> Self {
         let [x, y, z] = [DVec3::X, DVec3::Y, DVec3::Z];
         Self {
@@ -46,12 +46,12 @@ impl Bounds {
         }
     }
 
-    /// The greatest `d · x` of its points, rounded up.
+    /// The support function: the greatest `d · x` over the points of the box, rounded up.
     pub fn support(&self, d: DVec3) -> f64 {
         let (mut sum, mut size) = (0.0, 0.0);
         for i in 0..3 {
             let far = if d[i] > 0.0 { self.max[i] } else { self.min[i] };
-            // An axis along which it has no end does not count where the direction has no part along it.
+            // Skip axes without a component of the direction: 0 · ∞ is NaN.
             if d[i] != 0.0 {
                 sum += d[i] * far;
                 size += (d[i] * far).abs();
@@ -61,36 +61,36 @@ impl Bounds {
     }
 }
 
-/// Where a point of a shape is and where the surface faces: all that light needs to know of it.
+/// A position and a unit normal on a shape, sufficient for light sampling.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Site {
     /// The point, to within `error` in each coordinate.
     pub position: DVec3,
     /// Bound on the error of each coordinate of `position`.
     pub error: f64,
-    /// The unit normal, to the outside of what is closed.
+    /// The unit normal; of a closed shape it points outward.
     pub normal: DVec3,
 }
 
-/// A point of a shape, and how the surface lies there.
+/// A surface point with its parametrization and the derivatives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
-    /// Where it is, to within `error` in each coordinate.
+    /// The position, to within `error` in each coordinate.
     pub position: DVec3,
     /// Bound on the error of each coordinate of `position`.
     pub error: f64,
-    /// The unit normal, to the outside of what is closed.
+    /// The unit normal; of a closed shape it points outward.
     pub normal: DVec3,
-    /// Coordinates on the shape, each from 0 to 1.
+    /// Surface parameters, each in [0, 1].
     pub uv: [f64; 2],
-    /// How the position changes with either coordinate.
+    /// Derivatives of the position with respect to u and v.
     pub dp: [DVec3; 2],
-    /// How the unit normal changes with either coordinate.
+    /// Derivatives of the unit normal with respect to u and v.
     pub dn: [DVec3; 2],
 }
 
 impl Point {
-    /// The point without its coordinates.
+    /// The position and normal alone.
     #[inline]
     pub fn site(&self) -> Site {
         let Self { position, error, normal, .. } = *self;
@@ -98,72 +98,74 @@ impl Point {
     }
 }
 
-/// A point drawn from a shape.
+/// A point sampled on a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drawn {
     /// The point.
     pub point: Point,
-    /// Its density: by area, or by solid angle as seen from where it was drawn for.
+    /// Its density, by area or by solid angle from the reference point.
     pub pdf: f64,
 }
 
-/// A point drawn from a shape as seen from a place, by solid angle.
+/// A point on a shape sampled by solid angle from a reference point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Seen {
     /// The point.
     pub site: Site,
-    /// The density of its direction.
+    /// The density of its direction by solid angle.
     pub pdf: f64,
 }
 
-/// What can be hit and is no triangle. Everything is in the shape's own space.
+/// A geometric shape other than a triangle. All quantities are in object space.
 pub trait Shape: Debug + Send + Sync {
-    /// The least box around it, rounded outwards.
+    /// The axis-aligned bounding box, rounded outward.
     fn bounds(&self) -> Bounds;
 
-    /// A ball around it; infinite where it is.
+    /// A bounding sphere; infinite for unbounded shapes.
     fn around(&self) -> Ball {
         self.bounds().around()
     }
 
-    /// The greatest `d · x` of its points x, or of a box around them, rounded up: what boxes in other spaces are made
-    /// of.
+    /// The support function: the greatest `d · x` over the shape or a box around it, rounded up. Bounds in other spaces
+    /// are computed from it.
     fn support(&self, d: DVec3) -> f64 {
         self.bounds().support(d)
     }
 
-    /// Calls `met` with every point where the line meets the shape and `t_min ≤ t ≤ t_max`, both ends included, by
-    /// increasing `t`, until it says true; says whether it did.
+    /// Call `met` with each intersection in `[t_min, t_max]` by increasing `t` until it returns true. Return whether it
+    /// did.
     ///
-    /// The direction need not be unit, and `t` counts in its lengths: it is the f64 next to the exact one, or next but
-    /// one, and it is what is compared with the ends. Whether there is a hit is decided for the numbers as they are
-    /// given. A closed shape is crossed evenly: a line that touches it is told once, as [`super::Contact::Touching`]. A
-    /// surface that the line runs along is seen edge-on and not met. A line that is not finite, or has no direction,
-    /// meets nothing.
+    /// The direction need not be a unit vector; `t` is in multiples of its length. `t` is within two f64 of the exact
+    /// value, and this rounded value is compared with the interval's ends. The decision whether there is a hit is exact
+    /// for the given numbers. A line crosses a closed shape an even number of times; a tangent line is reported once,
+    /// as [`super::Contact::Touching`]. A surface that contains the line is edge-on and gives no hit. A ray with a zero
+    /// direction or non-finite numbers hits nothing.
     fn meet(&self, ray: &Ray, met: &mut dyn FnMut(Candidate) -> bool) -> bool;
 
-    /// The same for a ray of another space. Where they can, shapes decide for the ray and the maps as they are given;
-    /// others take the ray rounded to f64 in their own space.
+    /// Intersect a ray of another space. Shapes decide exactly for the given ray and maps where they can; others
+    /// intersect the ray rounded to f64 in object space.
     fn meet_carried(&self, ray: &Carried<'_>, met: &mut dyn FnMut(Candidate) -> bool) -> bool {
         self.meet(&ray.rounded(), met)
     }
 
-    /// The point of a candidate that [`Shape::meet`] told of this ray, moved onto the surface as nearly as f64 can.
+    /// The surface point of a candidate that [`Shape::meet`] reported for this ray, projected onto the surface to f64
+    /// precision.
     fn point(&self, ray: &Ray, t: f64, uv: [f64; 2]) -> Point;
 
-    /// The same without coordinates, for shapes that know a shorter way: within the errors of both.
+    /// The position and normal of a candidate. Shapes may override this with a faster method within the error bounds of
+    /// both.
     #[inline]
     fn site(&self, ray: &Ray, t: f64, uv: [f64; 2]) -> Site {
         self.point(ray, t, uv).site()
     }
 
-    /// Its area; infinite where it has no end.
+    /// The area; infinite for unbounded shapes.
     fn area(&self) -> f64;
 
-    /// The area of its image under a map; to about 10⁻⁹ of itself where a shape has a formula of its own.
+    /// The area under an affine map, to a relative error of about 10⁻⁹ for shapes that override this method.
     ///
-    /// Here: exact where the map scales evenly. Else the mean of the stretch at points drawn evenly from a grid, of
-    /// which ever finer ones are taken until the last two agree to 10⁻⁶, or the last has 1024² points.
+    /// The default is exact for maps that scale uniformly. For other maps it averages the area stretch over a regular
+    /// grid of samples. The grid is refined until two successive means agree to 10⁻⁶, or has 1024² samples.
     fn area_under(&self, map: &Affine) -> f64 {
         let area = self.area();
         if !area.is_finite() {
@@ -190,37 +192,37 @@ pub trait Shape: Debug + Send + Sync {
         }
     }
 
-    /// The unit normal that all of its points have; none where they differ.
+    /// The unit normal, if it is constant over the shape.
     fn facing(&self) -> Option<DVec3> {
         None
     }
 
-    /// The parts of its surface that are flat.
+    /// The planar parts of the surface.
     fn flats(&self) -> Vec<Flat> {
         Vec::new()
     }
 
-    /// Whether it encloses a part of space: what has an edge does not.
+    /// Return whether the shape is closed, that is, has no boundary edge.
     fn is_closed(&self) -> bool {
         true
     }
 
-    /// A point drawn by area, from two numbers in [0, 1); `pdf` is the density there, 1 / area where it is even. None
-    /// for a shape without end, or of no area.
+    /// Sample a point by area from two numbers in [0, 1). `pdf` is the density by area, 1 / area for uniform sampling.
+    /// None for shapes of zero or infinite area.
     fn sample(&self, u: [f64; 2]) -> Option<Drawn>;
 
-    /// The first point of a direction drawn by solid angle as seen from a place, and the density of that direction,
-    /// which is [`Shape::pdf_from`]'s. None where nothing is seen.
+    /// Sample a direction by solid angle and return its first intersection, with the density of [`Shape::pdf_from`].
+    /// None if that direction misses.
     ///
-    /// Here: towards a point drawn by area. Whether that point is hidden by others does not matter, since the density
-    /// is that of the direction, and counts them all.
+    /// The default directs the ray toward a point sampled by area. Occlusion of that point by the shape itself is
+    /// harmless: the density is that of the direction and sums over all its intersections.
     fn sample_from(&self, place: DVec3, u: [f64; 2]) -> Option<Drawn> {
         let way = self.sample(u)?.point.position - place;
         let ray = Ray { t_min: f64::MIN_POSITIVE, ..Ray::new(place, way) };
         let mut first = None;
         self.meet(&ray, &mut |met| {
             let point = self.point(&ray, met.t, met.uv);
-            // A place on the shape is not seen from itself, though rounding may have moved it off the surface.
+            // Reject the reference point itself, which rounding may have moved off the surface.
             let seen = met.t * way.length() > 4.0 * point.error;
             first = seen.then_some(point);
             seen
@@ -229,30 +231,30 @@ pub trait Shape: Debug + Send + Sync {
         (pdf.is_finite() && pdf > 0.0).then_some(Drawn { point, pdf })
     }
 
-    /// The same without the point's coordinates, for which shapes may know a shorter way.
+    /// Sample a point without surface parameters. Shapes may override this with a faster method.
     fn sight_from(&self, place: DVec3, u: [f64; 2]) -> Option<Seen> {
         let Drawn { point, pdf } = self.sample_from(place, u)?;
         Some(Seen { site: point.site(), pdf })
     }
 
-    /// Centre and radius, if it is a sphere.
+    /// Center and radius, if the shape is a sphere.
     fn ball(&self) -> Option<(DVec3, f64)> {
         None
     }
 
-    /// [`Shape::pdf_from`] of a direction that is known to meet it.
+    /// [`Shape::pdf_from`] of a direction known to intersect the shape.
     fn pdf_of_met(&self, place: DVec3, direction: DVec3) -> f64 {
         self.pdf_from(place, direction)
     }
 
-    /// The point that is nearest to another, of several one; none where there is none.
+    /// A point of the shape closest to `place`; None if the shape does not support the query.
     fn closest(&self, _place: DVec3) -> Option<Closest> {
         None
     }
 
-    /// The same of its image under a map, of which the inverse is given too.
+    /// A point closest to `place` on the image of the shape under a map, given with its inverse.
     ///
-    /// Here: its own, where the map scales all lengths alike.
+    /// The default maps the closest point in object space, which is correct if the map scales uniformly.
     fn closest_under(&self, to_world: &Affine, to_object: &Affine, place: DVec3) -> Option<Closest> {
         if to_world.uniform_scale().is_none() {
             return self.closest_stretched(to_world, to_object, place);
@@ -261,15 +263,15 @@ pub trait Shape: Debug + Send + Sync {
         Some(Closest { position: to_world.point(own.position), ..own })
     }
 
-    /// The same where the map scales some lengths more than others, which changes what is nearest.
+    /// The closest point under a map that does not scale uniformly and so may change which point is closest.
     fn closest_stretched(&self, _to_world: &Affine, _to_object: &Affine, _place: DVec3) -> Option<Closest> {
         None
     }
 
-    /// The density by solid angle with which [`Shape::sample_from`] draws a direction, of any length, from a place. 0
-    /// where it draws none.
+    /// The solid angle density with which [`Shape::sample_from`] samples a direction of any length; 0 outside its
+    /// support.
     ///
-    /// Here: the sum over all points that lie there, if [`Shape::sample`] is even.
+    /// The default sums over all intersections along the direction, assuming that [`Shape::sample`] is uniform.
     fn pdf_from(&self, place: DVec3, direction: DVec3) -> f64 {
         let area = self.area();
         if !area.is_finite() {

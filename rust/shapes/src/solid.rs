@@ -1,46 +1,46 @@
-//! A shape that is bounded by planes and quadrics, and where a line meets it.
+//! Solids bounded by planes and quadrics, and their intersections with a line.
 
 use super::Contact;
 use super::line::{Carried, Line};
 use raywright_base::math::{Bounded, DVec3, Number, Triple};
 
-/// Where a line meets one of the surfaces that bound a shape.
+/// An intersection of a line with one of a solid's bounding surfaces.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Meet<N> {
-    /// Along the line.
+    /// The line parameter.
     pub t: N,
-    /// The derivative by `t`, there, of what [`Solid::surface`] is along the line.
+    /// The derivative of [`Solid::surface`] along the line.
     pub slope: N,
-    /// Half of the second derivative; 0 for a plane.
+    /// Half the second derivative; 0 for planes.
     pub bend: N,
-    /// Which surface, counted as the shape likes.
+    /// The index of the surface, numbered by the shape.
     pub surface: usize,
-    /// Which part of the shape it counts as, for its coordinates.
+    /// The part of the shape that determines the surface parameters.
     pub part: usize,
-    /// How; of a closed shape that is found out later.
+    /// The contact; for closed shapes it is determined later.
     pub contact: Contact,
 }
 
-/// All of them, in any order.
+/// The intersections of a line with a solid, in any order.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Meets<N> {
-    /// The first so many are there.
+    /// The intersections; the first `count` are set.
     pub all: [Option<Meet<N>>; 4],
-    /// How many.
+    /// Their number.
     pub count: usize,
-    /// Whether the first and the last are the ends of a segment within a closed convex shape; the others do not count
-    /// then.
+    /// True if the first and the last bound a segment inside a closed convex shape. Intersections between them are then
+    /// ignored.
     pub closed: bool,
 }
 
 impl<N> Meets<N> {
-    /// None yet.
+    /// An empty list.
     #[inline(always)]
     pub fn new(closed: bool) -> Self {
         Self { all: [const { None }; 4], count: 0, closed }
     }
 
-    /// One more.
+    /// Append an intersection.
     #[inline(always)]
     pub fn with(mut self, meet: Meet<N>) -> Self {
         self.all[self.count] = Some(meet);
@@ -49,25 +49,25 @@ impl<N> Meets<N> {
     }
 }
 
-/// A shape that can tell in any numbers where a line meets it.
+/// A shape that computes line intersections in any number type.
 pub(super) trait Solid {
-    /// Where, or none where the numbers' errors leave open whether it is met, or by which part. Where there are many,
-    /// some may be told twice, in numbers without error.
+    /// Compute the intersections, or None if the error bounds leave open whether or which part is hit. With exact
+    /// numbers, duplicates are allowed if there are more than two.
     fn meets<N: Number>(&self, line: &Line<N>) -> Option<Meets<N>>;
 
-    /// The same with the bounds of an f64, for shapes that know a shorter way.
+    /// The same in f64 with error bounds. Shapes may override this with a faster method.
     #[inline(always)]
     fn meets_roughly(&self, ray: &Carried<'_>) -> Option<Meets<Bounded>> {
         self.meets(&ray.line::<Bounded>())
     }
 
-    /// What is zero on one of its surfaces: a polynomial of second degree at most of a point, which is given in units,
-    /// relative to [`Solid::reference`].
+    /// Evaluate the implicit polynomial of a surface, of degree 2 at most, at a point in units relative to
+    /// [`Solid::reference`].
     fn surface<N: Number>(&self, surface: usize, point: &Triple<N>, unit: &N) -> N;
 
-    /// The coordinates of a point of a part, given as nearly as f64 can relative to [`Solid::reference`].
+    /// The surface parameters of a point of a part, given to f64 precision relative to [`Solid::reference`].
     fn coordinates(&self, part: usize, point: DVec3) -> [f64; 2];
 
-    /// A point of the shape that others are told relative to, so that far from the origin digits are kept.
+    /// A reference point on the shape. Other points are relative to it, which keeps digits far from the origin.
     fn reference(&self) -> DVec3;
 }

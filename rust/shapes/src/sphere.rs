@@ -13,13 +13,12 @@ use std::f64::consts::{PI, TAU};
 
 /// All points at one distance from a centre; closed.
 ///
-/// Its coordinates are the longitude about +z from +x on, in turns, and the latitude from the pole at −z to that at +z,
-/// in half turns.
+/// u is the longitude about +z from +x, in turns. v is the latitude from the pole at −z to that at +z, in half turns.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sphere {
     /// Its centre.
     pub center: DVec3,
-    /// The distance from it, above 0.
+    /// The radius, above 0.
     pub radius: f64,
 }
 
@@ -27,60 +26,61 @@ impl Sphere {
     /// The unit sphere around the origin.
     pub const UNIT: Self = Self { center: DVec3::ZERO, radius: 1.0 };
 
-    /// The point of given coordinates.
+    /// The point at given surface parameters.
     fn at(&self, uv: [f64; 2]) -> Point {
         let (direction, dn) = globe(uv);
         let Site { position, error, normal } = self.towards(direction);
         Point { position, error, normal, uv, dp: dn.map(|d| d * self.radius), dn }
     }
 
-    /// [`Shape::sight_from`] for a place outside; and whether it is one, without which nothing is said.
+    /// [`Shape::sight_from`] for a reference point outside, and whether it is outside; otherwise the result is
+    /// meaningless.
     #[inline(always)]
     pub fn sight_from_outside(&self, place: DVec3, u: [f64; 2]) -> (Seen, bool) {
         let (cone, is_outside) = self.cone_from_outside(place);
         (self.sight_in(&cone, u), is_outside)
     }
 
-    /// A point drawn evenly in the cone that it fills.
+    /// Sample a point uniformly in the cone that the sphere subtends.
     #[inline(always)]
     fn sight_in(&self, cone: &Cone, u: [f64; 2]) -> Seen {
-        // x = 1 − cos θ is even in [0, height), and sin² θ = x (2 − x) is the square of the cone's sine times that of
-        // the angle at which the sphere is met there.
+        // x = 1 − cos θ is uniform in [0, height). sin² θ = x (2 − x) is the product of the cone's sine squared and
+        // that of the incidence angle's sine.
         let x = u[0] * cone.height();
         let square = u[0] * cone.part * (2.0 - x);
         let facing = (1.0 - square).max(0.0).sqrt();
-        // The angle between the place and the point as seen from the centre: that at which it is met less θ.
+        // The angle at the centre between reference point and sample: the incidence angle minus θ.
         let cosine = (1.0 - x) * facing + square * cone.sine;
         let across = square.sqrt() * (1.0 - x - cone.sine * facing);
         let [sin, cos] = sin_cos_turn(u[1]);
         let direction = Frame::new(cone.axis).to_world(DVec3::new(across * cos, across * sin, cosine));
-        // Unit but for some roundings: a step of Newton's is as good as a root and a quotient, and need not wait for
-        // them.
+        // A unit vector up to rounding: one Newton step is as accurate as a root and a quotient, and has a shorter
+        // latency.
         let direction = direction * (1.5 - 0.5 * direction.length_squared());
         Seen { site: self.towards(direction), pdf: 1.0 / (TAU * cone.height()) }
     }
 
-    /// The point in a direction from the centre that is unit to within 4 UNIT in each coordinate; the last sum adds one
-    /// UNIT of its own.
+    /// The point in a direction from the centre that is a unit vector to within 4 UNIT in each coordinate. The last sum
+    /// adds one UNIT.
     #[inline(always)]
     fn towards(&self, direction: DVec3) -> Site {
         let position = self.center + direction * self.radius;
         Site { position, error: UNIT * (position.abs().max_element() + 5.0 * self.radius), normal: direction }
     }
 
-    /// The cone that it fills as seen from a place; none from inside, and from places on it.
+    /// The cone that the sphere subtends from a point; None from inside or on the sphere.
     #[inline]
     fn cone(&self, place: DVec3) -> Option<Cone> {
         let (cone, is_outside) = self.cone_from_outside(place);
         is_outside.then_some(cone)
     }
 
-    /// The same, and whether there is one.
+    /// The same, and whether it is valid.
     #[inline(always)]
     fn cone_from_outside(&self, place: DVec3) -> (Cone, bool) {
         let way = place - self.center;
         let distance = way.length();
-        // By so much the way to a place on the sphere may be too long.
+        // Rounding may make a point on the sphere appear farther out by this much.
         let rounding = 4.0 * UNIT * (place.abs().max_element() + 5.0 * self.radius);
         let inverse = 1.0 / distance;
         let sine = self.radius * inverse;
@@ -90,18 +90,18 @@ impl Sphere {
     }
 }
 
-/// The directions in which a sphere is seen from a place outside.
+/// The cone of directions that a sphere subtends from an outside point.
 struct Cone {
-    /// From the centre to the place, unit.
+    /// The unit vector from the centre to the reference point.
     axis: DVec3,
-    /// The sine of half its angle.
+    /// The sine of the half-angle.
     sine: f64,
-    /// 1 / (1 + cos) of it.
+    /// 1 / (1 + cos) of the half-angle.
     part: f64,
 }
 
 impl Cone {
-    /// 1 − cos of half its angle, by sin² / (1 + cos), so that a small one keeps its digits.
+    /// 1 − cos of the half-angle, as sin² / (1 + cos), which keeps digits for small angles.
     #[inline(always)]
     fn height(&self) -> f64 {
         self.sine * self.sine * self.part
@@ -109,12 +109,12 @@ impl Cone {
 }
 
 impl Sphere {
-    /// [`Solid::meets`] by a bound of the whole formula ([`ball`]) in place of one for each step.
+    /// [`Solid::meets`] with one error bound for the whole formula ([`ball`]) in place of one per operation.
     ///
-    /// With u = [`UNIT`], and w the rounded way from the centre: d² errs by 3u of it, r² d² by 5u, w² by 5u, w · d by
-    /// 4u |w| |d|, and w × d by 3u of the sizes of its products, in all by 3√2 u |w| |d|, so that its square errs by 3u
-    /// of it and 8.5u |w × d| |w| |d| + 18u² w² d² more. What is allowed for here is greater by more than the roundings
-    /// of the bounds, and, where r² d² is not tiny, by more than any underflow takes.
+    /// Let u = [`UNIT`] and w the rounded vector from the centre. Then d² errs by 3u of it, r² d² by 5u, w² by 5u, and
+    /// w · d by 4u |w| |d|. w × d errs by 3u of the magnitudes of its products, in all by 3√2 u |w| |d|. So its square
+    /// errs by 3u of it and by 8.5u |w × d| |w| |d| + 18u² w² d² more. The bounds used here are greater by more than
+    /// their own roundings, and, unless r² d² is tiny, by more than any underflow.
     #[inline(always)]
     fn quickly(&self, ray: &Ray) -> Option<Meets<Bounded>> {
         const LEAST: f64 = f64::from_bits((1023 - 400) << 52);
@@ -135,7 +135,7 @@ impl Sphere {
         let (b, c) = (w.dot(d), ww - rr);
         let q = root + b.abs();
         let q_error = root_error + 5.0 * UNIT * size + 2.0 * UNIT * q;
-        // The root farther from the origin of the line, and the nearer, both as if it went towards the centre.
+        // The root farther from the line's origin and the nearer one, both as if the line went toward the centre.
         let (outer, inner) = (q / a, c / q);
         let outer_error = q_error / a * (1.0 + 8.0 * UNIT) + 6.0 * UNIT * outer;
         let inner_error = (6.0 * UNIT * (ww + rr) + inner.abs() * q_error) / (q - q_error) + 3.0 * UNIT * inner.abs();
@@ -155,7 +155,7 @@ impl Sphere {
     }
 }
 
-/// The unit vector of a longitude and a latitude, and how it changes with either.
+/// The unit vector of a longitude and a latitude, and its derivatives.
 pub(super) fn globe([u, v]: [f64; 2]) -> (DVec3, [DVec3; 2]) {
     let ((sin, cos), (out, down)) = ((TAU * u).sin_cos(), (PI * v).sin_cos());
     let direction = DVec3::new(out * cos, out * sin, -down);
@@ -166,7 +166,7 @@ pub(super) fn globe([u, v]: [f64; 2]) -> (DVec3, [DVec3; 2]) {
 pub(super) fn longitude_latitude(x: DVec3) -> [f64; 2] {
     let turn = upper_angle(x.y.abs(), x.x) / TAU;
     let square = x.x * x.x + x.y * x.y;
-    // Squares that are too large or too small to be numbers are few.
+    // Squares rarely overflow or underflow.
     let across = if (1e-280..1e280).contains(&square) { square.sqrt() } else { x.x.hypot(x.y) };
     [if x.y < 0.0 { 1.0 - turn } else { turn }, upper_angle(across, -x.z) / PI]
 }
@@ -261,11 +261,11 @@ impl Shape for Sphere {
         Some(Drawn { point: self.at(uv), pdf: 1.0 / self.area() })
     }
 
-    /// Evenly in the cone that it fills, or in all directions from inside.
+    /// Uniform in the cone that the sphere subtends, or in all directions from inside.
     ///
-    /// From outside the point is found from the angle at the centre, which has no difference of great numbers in it
-    /// (Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th edition, 2023, section 6.2.4): a sphere may be as
-    /// small or as distant as it likes.
+    /// From outside, the point is computed from the angle at the centre without a difference of large numbers (Pharr,
+    /// Jakob, Humphreys, "Physically Based Rendering", 4th edition, 2023, section 6.2.4). The sphere may be arbitrarily
+    /// small or distant.
     fn sight_from(&self, place: DVec3, u: [f64; 2]) -> Option<Seen> {
         let Some(cone) = self.cone(place) else {
             let direction = uniform_sphere(u);
@@ -273,7 +273,7 @@ impl Shape for Sphere {
             let mut point = None;
             self.meet(&ray, &mut |met| {
                 let here = self.at(met.uv).site();
-                // A place on the sphere is not seen from itself, though rounding may have moved it off.
+                // Reject the reference point itself, which rounding may have moved off the sphere.
                 let seen = met.t > 4.0 * here.error;
                 point = seen.then_some(here);
                 seen
@@ -302,10 +302,10 @@ impl Shape for Sphere {
     }
 }
 
-/// The area of the image of an ellipsoid of given semi-axes, to about 10⁻¹⁴ of itself.
+/// The area of an ellipsoid of given semi-axes under an affine map, to a relative error of about 10⁻¹⁴.
 ///
-/// The image is the unit sphere's under L diag(a), and the singular values of that map's cofactors are the products of
-/// the image's semi-axes two by two.
+/// The image is that of the unit sphere under L diag(a). The singular values of that map's cofactor matrix are the
+/// pairwise products of the image's semi-axes.
 pub(super) fn ellipsoid_area_under(map: &Affine, axes: DVec3) -> f64 {
     let [x, y, z] = axes.to_array();
     let columns = [DVec3::X * (y * z), DVec3::Y * (z * x), DVec3::Z * (x * y)].map(|c| map.cofactors(c));

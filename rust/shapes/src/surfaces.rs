@@ -1,4 +1,4 @@
-//! What every shape says of its points: where they are, how the surface lies there, how they are drawn.
+//! Tests of every shape's points: positions, derivatives and sampling densities.
 
 use super::*;
 use raywright_base::math::{Affine, DVec3, Ray};
@@ -7,7 +7,7 @@ use raywright_base::sampling::chi_square::assert_frequencies;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-/// A shape of each kind, somewhere, of which none is symmetric to the axes.
+/// One shape of each kind, none aligned with the axes.
 fn shapes() -> Vec<Arc<dyn Shape>> {
     let (a, b) = (DVec3::new(0.3, -0.2, 0.5), DVec3::new(1.1, 0.9, -0.4));
     let mut shapes: Vec<Arc<dyn Shape>> = vec![
@@ -42,7 +42,7 @@ fn at(shape: &dyn Shape, uv: [f64; 2]) -> Point {
     shape.point(&Ray::new(DVec3::ZERO, DVec3::X), 0.0, uv)
 }
 
-/// Coordinates over the whole square, off the borders of faces and caps.
+/// Parameters over the whole unit square, off the borders of faces and caps.
 fn places() -> impl Iterator<Item = [f64; 2]> {
     (0..29).flat_map(|i| (0..31).map(move |j| [(f64::from(i) + 0.37) / 29.0, (f64::from(j) + 0.41) / 31.0]))
 }
@@ -64,7 +64,7 @@ fn derivatives_are_those_of_positions_and_normals() {
                     at(&*shape, uv)
                 });
                 if (less.normal - more.normal).length() > 0.1 {
-                    // A rim or an edge lies between.
+                    // A rim or an edge separates the two samples.
                     continue;
                 }
                 smooth += 1;
@@ -109,7 +109,7 @@ fn points_lie_on_the_surface_to_within_their_error() {
         for uv in places() {
             let shorter = shape.site(&Ray::new(DVec3::ZERO, DVec3::X), 0.0, uv);
             for point in [at(&*shape, uv).site(), shorter] {
-                // A line along the normal: how far along it the surface is, is decided without error.
+                // The distance to the surface along the normal is computed exactly.
                 let mut least = f64::INFINITY;
                 let ray = Ray { t_min: -1.0, ..Ray::new(point.position, point.normal) };
                 shape.meet(&ray, &mut |met| {
@@ -129,7 +129,7 @@ fn points_lie_on_the_surface_to_within_their_error() {
 fn boxes_touch_the_surface_on_all_sides() {
     for shape in shapes() {
         let bounds = shape.bounds();
-        // The points of a fine grid come near to the box on every side.
+        // A fine grid of points approaches the box on every side.
         let (mut min, mut max) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         for i in 0..=400 {
             for j in 0..=400 {
@@ -150,7 +150,7 @@ fn boxes_touch_the_surface_on_all_sides() {
     assert!(moved.min.z <= 4.0 && moved.max.z >= 4.0 && moved.max.z - moved.min.z < 1e-14);
 }
 
-/// The integral of |dp/du × dp/dv| over a cell of the square, times what a map makes of areas.
+/// The integral of |dp/du × dp/dv| over a cell of the unit square, weighted by a map's area stretch.
 fn integral([u, v]: [f64; 2], [du, dv]: [f64; 2], shape: &dyn Shape, of: impl Fn(&Point) -> f64) -> f64 {
     let (columns, rows) = (12, 240);
     let mut sum = 0.0;
@@ -185,11 +185,11 @@ fn areas_have_their_closed_forms() {
     // z = ρ² up to 2: π/6 (27 − 1).
     close(Revolution::paraboloid(DVec3::ZERO, DVec3::Z * 2.0, 2f64.sqrt(), false).area(), PI / 6.0 * 26.0);
     close(Cuboid { min: DVec3::ZERO, max: DVec3::new(1.0, 2.0, 3.0) }.area(), 22.0);
-    // A map that scales evenly, and one that makes a sphere of an ellipsoid again.
+    // A uniformly scaling map, and one that maps an ellipsoid back to a sphere.
     let turn =
         Affine::new([DVec3::new(0.0, 0.0, 2.0), DVec3::new(-2.0, 0.0, 0.0), DVec3::new(0.0, 2.0, 0.0)], DVec3::ONE);
     for shape in shapes() {
-        // The turned paraboloid and cone are summed up around the axis.
+        // Areas of the rotated paraboloid and cone are sums around the axis.
         let (moved, area) = (Placed::new(shape.clone(), turn.clone()).unwrap().area(), shape.area());
         assert!((moved / (4.0 * area) - 1.0).abs() < 1e-9, "{shape:?}");
     }
@@ -197,7 +197,7 @@ fn areas_have_their_closed_forms() {
     let ellipsoid = Arc::new(Ellipsoid { center: DVec3::X, semi_axes: axes });
     let round = Placed::new(ellipsoid, Affine::scale(axes.recip())).unwrap();
     close(round.area(), 4.0 * PI);
-    // A cylinder that is pressed flat is two rectangles, nearly.
+    // A flattened cylinder approaches two rectangles.
     let flat = Affine::scale(DVec3::new(1.0, 1e-9, 1.0));
     let pressed = Placed::new(Arc::new(Revolution::cylinder(DVec3::ZERO, DVec3::Z * 3.0, 2.0, false)), flat).unwrap();
     assert!((pressed.area() / 24.0 - 1.0).abs() < 1e-8);
@@ -214,8 +214,8 @@ fn points_are_drawn_by_area_with_their_density() {
             let [x, y] = drawn.point.uv.map(|x| ((x * 8.0) as usize).min(7));
             counts[8 * x + y] += 1;
         }
-        // An even one's density is one over its area; an ellipsoid is drawn from as the unit sphere that it comes from
-        // is; a placed one as it was before, where the map back shrinks areas by as much as the map stretched them.
+        // A uniformly sampled shape has a density of 1 / area. The ellipsoid samples the unit sphere uniformly and maps
+        // the point. A placed shape keeps its samples: the inverse map undoes the area stretch.
         let (area, round) = (shapes[name % own].area(), format!("{shape:?}").contains("Ellipsoid"));
         let density = |point: &Point| {
             if round {
@@ -243,10 +243,10 @@ fn direction(z: f64, turn: f64) -> DVec3 {
     DVec3::new(out * cos, out * sin, z)
 }
 
-/// Of each cell the directions that meet the shape fill a solid angle. It is the mean of 1 / pdf over drawn directions
-/// that fall there, if and only if they fall there with the density that is told; five standard errors are allowed for,
-/// and three of the grid that measures the solid angle. Where the density has no poles, as it has where a curved
-/// surface is seen edge-on, the frequencies themselves are tested too.
+/// In each cell of directions the shape covers a solid angle. That angle is the mean of 1 / pdf over the sampled
+/// directions in the cell if and only if they follow the reported density. Five standard errors are allowed, and three
+/// of the grid that measures the solid angle. Frequencies are tested as well where the density has no poles, as it has
+/// for a curved surface seen edge-on.
 #[test]
 fn directions_are_drawn_with_their_density() {
     const FINE: usize = 48;
@@ -254,18 +254,18 @@ fn directions_are_drawn_with_their_density() {
     let places = [DVec3::new(2.2, 1.4, 1.9), DVec3::new(0.6, 0.35, 0.1)];
     let shapes = shapes();
     let own = shapes.len() / 2;
-    // All in their own space, and each third moved.
+    // All shapes in object space, and every third placed shape.
     for (name, shape) in (0..).zip(&shapes).filter(|(name, _)| (*name as usize) < own || name % 3 == 0) {
         let place = places[name as usize % 2];
         let mut counts = vec![0; ROWS * COLUMNS];
         let mut inverse = vec![(0.0, 0.0); ROWS * COLUMNS];
         for i in 0..DRAWS {
-            // None where the drawn point is missed by a rounding: not once here.
+            // None is possible if rounding makes the ray miss its sample; it does not occur for these seeds.
             let drawn = shape.sample_from(place, Sampler::new(4, name, i).two(0)).unwrap();
             let way = drawn.point.position - place;
             let pdf = shape.pdf_from(place, way * 3.0);
-            // Rounding turns the direction by next to nothing, which moves a point that is seen at an angle by 1 / cos
-            // of that: the density, which goes with 1 / cos, changes by 1 / cos² of it.
+            // Rounding the direction moves a point seen at grazing angle by 1 / cos of the rounding. The density is
+            // proportional to 1 / cos, so its relative change is 1 / cos² of the rounding.
             let limit = 1e-9 + 1e-15 * pdf * pdf;
             assert!((pdf / drawn.pdf - 1.0).abs() < limit, "{shape:?}: {pdf} {}", drawn.pdf);
             let d = way.normalize();
@@ -278,7 +278,7 @@ fn directions_are_drawn_with_their_density() {
         }
         let fine = |i: usize, cells: usize| (i as f64 + 0.5) / (cells * FINE) as f64;
         let element = 4.0 * PI / (ROWS * COLUMNS * FINE * FINE) as f64;
-        // Probability, solid angle, and how often the border of what is seen is crossed on the grid.
+        // Probability, solid angle, and the number of silhouette crossings on the grid.
         let mut seen = vec![(0.0, 0.0, 0.0); ROWS * COLUMNS];
         for i in 0..ROWS * FINE {
             let mut last = false;
@@ -291,7 +291,7 @@ fn directions_are_drawn_with_their_density() {
                 last = pdf > 0.0;
             }
         }
-        // Cells that few draws fall into are one, since few do not tell their own spread.
+        // Merge cells with few samples, whose variance estimate is unreliable.
         let mut cells: Vec<[f64; 5]> = vec![[0.0; 5]];
         for (&(sum, squares), &(probability, angle, border)) in inverse.iter().zip(&seen) {
             let cell = [sum, squares, probability, angle, border];
@@ -314,7 +314,7 @@ fn directions_are_drawn_with_their_density() {
         let mut expected: Vec<f64> = seen.iter().map(|cell| cell.0).collect();
         let sum: f64 = expected.iter().sum();
         assert!((sum - 1.0).abs() < 0.01, "{shape:?}: {sum}");
-        // Cells that only just hold some of it are one with the least that holds more: their own integrals are rough.
+        // Merge cells with tiny probabilities into the smallest other cell: their integrals are inaccurate.
         let more = (0..expected.len()).filter(|&i| expected[i] >= 0.02);
         let least = more.min_by(|&i, &j| expected[i].total_cmp(&expected[j])).unwrap();
         for i in (0..expected.len()).filter(|&i| i != least) {
@@ -347,7 +347,7 @@ fn normals_outlive_any_scale() {
     }
 }
 
-/// Small and distant, and from its surface and inside: a sphere is drawn from evenly, to the last digits.
+/// Solid angle sampling of spheres is uniform to the last digits at any distance: tiny, far, on the surface and inside.
 #[test]
 fn spheres_are_drawn_from_at_any_distance() {
     for (radius, distance) in [(1e-3, 1e4), (1e-8, 1e8), (1e6, 1e6), (1.0, 1.0 + 1e-12), (1.0, 0.5), (1.0, 0.0)] {
@@ -358,8 +358,8 @@ fn spheres_are_drawn_from_at_any_distance() {
             let way = drawn.point.position - place;
             assert!(drawn.pdf.is_finite() && drawn.pdf > 0.0);
             if distance > radius * 1.001 {
-                // Seen from its front, and within the cone of angle asin(r / d), whose solid angle is π r² / d² where
-                // that is small.
+                // The sample faces the reference point, and the cone has half-angle asin(r / d), with solid angle π r²
+                // / d² for small angles.
                 assert!(way.dot(drawn.point.normal) < 1e-12 * way.length());
                 let angle = (radius / distance).powi(2) * PI;
                 assert!((drawn.pdf * angle - 1.0).abs() < 1e-7);
@@ -368,7 +368,7 @@ fn spheres_are_drawn_from_at_any_distance() {
     }
 }
 
-/// Whoever asks for no coordinates is told the same point.
+/// Sampling without surface parameters returns the same point.
 #[test]
 fn sights_are_what_is_drawn_without_coordinates() {
     for (name, shape) in (0..).zip(&shapes()) {
@@ -381,7 +381,7 @@ fn sights_are_what_is_drawn_without_coordinates() {
                 let site = drawn.point.site();
                 assert!((seen.site.position - site.position).abs().max_element() <= seen.site.error + site.error);
                 assert!((seen.site.normal - site.normal).length() < 1e-14 && seen.pdf == drawn.pdf, "{shape:?}");
-                // The way there meets it, but for what rounding takes off a rim.
+                // The direction hits the shape, except for rounding at a rim.
                 let way = site.position - place;
                 let (met, any) = (shape.pdf_of_met(place, way), shape.pdf_from(place, way));
                 assert!(any == 0.0 || met == any, "{shape:?}");

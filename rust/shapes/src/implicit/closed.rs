@@ -1,16 +1,16 @@
-//! Whether the surface ends within its box, or the box cuts it open.
+//! Test whether an implicit surface is closed within its box.
 
 use super::Bounds;
 use super::tape::Tape;
 use raywright_base::math::Interval;
 
-/// How often a face of the box is quartered where intervals leave open whether the surface meets it.
+/// Maximum depth of quartering a face of the box if interval arithmetic leaves its sign open.
 const DEPTH: u32 = 6;
 
-/// Whether the sign changes nowhere on the faces of the box.
+/// Return whether the function's sign is constant on the faces of the box.
 ///
-/// Intervals rule out parts of a face without a zero. What they leave open at the last is judged by the signs at its
-/// corners, so that a surface that only touches the box is closed.
+/// Interval arithmetic excludes parts of a face. At the maximum depth the signs at the corners decide, so a surface
+/// that only touches the box counts as closed.
 pub fn is_closed(tape: &Tape, bounds: &Bounds) -> bool {
     let [min, max] = [bounds.min.to_array(), bounds.max.to_array()];
     (0..3).all(|axis| {
@@ -22,7 +22,7 @@ pub fn is_closed(tape: &Tape, bounds: &Bounds) -> bool {
     })
 }
 
-/// Whether the sign is the same all over a rectangle across an axis.
+/// Return whether the sign is constant over a rectangle normal to an axis.
 fn keeps_its_sign(tape: &Tape, ends: [[f64; 2]; 3], axis: usize, depth: u32) -> bool {
     let over = ends.map(|[low, high]| Interval::new(low, high));
     if !tape.value(&over, &mut Vec::new()).contains(0.0) {

@@ -1,11 +1,10 @@
-//! The point of the surface that is nearest to a place, under a map.
+//! The closest point of an implicit surface under an affine map.
 //!
-//! The box is halved again and again, and of its parts the nearest is looked at first (branch and bound; Land and Doig
-//! 1960; with intervals, Moore 1966). A part goes where the expression is certainly not zero, where it is farther than
-//! a point that was found, and where no point can be the nearest of those about it: there the way to the place is at
-//! right angles to the surface. That leaves few parts at every size; in each, Newton's method on Lagrange's conditions
-//! goes from a point of the surface to the one at right angles. Where the box cuts the surface open, points on its
-//! sides need to be the nearest of those on that side only.
+//! Branch and bound bisects the box, nearest part first (Land and Doig 1960; with intervals, Moore 1966). A part is
+//! discarded if the expression excludes zero or if it is farther than a known point. It is also discarded if the offset
+//! from the query point is nowhere normal to the surface there, as it is at a local minimum. Few parts remain at every
+//! size. In each, Newton's method on the Lagrange conditions moves a surface point to the stationary one. Where the box
+//! cuts the surface open, points on a side of the box only need to be minimal within that side.
 
 use super::Implicit;
 use super::jet::Jet;
@@ -15,13 +14,14 @@ use raywright_base::math::{Affine, DVec3, Interval};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-/// The most parts that are looked at. Beyond it, what was found is taken: as where all of a sphere is as near.
+/// Maximum number of parts. Beyond it the best point found is returned, as for the center of a sphere, where all points
+/// are equally close.
 const WORK: usize = 6000;
 
-/// A part this much smaller than the box has one nearest point, which Newton's method finds.
+/// A part smaller than the box by this factor has a unique closest point, which Newton's method finds.
 const SMALL: f64 = 1.0 / (1u32 << 14) as f64;
 
-/// The least part on the sides of the box, where halving alone finds it.
+/// The smallest part on the sides of the box, where bisection alone finds the point.
 const LEAST: f64 = 1.0 / (1u64 << 44) as f64;
 
 struct Part {
@@ -44,26 +44,25 @@ impl PartialOrd for Part {
 }
 
 impl Ord for Part {
-    /// The nearest is the greatest; of as near ones the smallest.
+    /// The nearest is the greatest, and the smallest among equals.
     fn cmp(&self, other: &Self) -> Ordering {
         let size = |part: &Self| (part.bounds.max - part.bounds.min).element_sum();
         other.gap.total_cmp(&self.gap).then(size(other).total_cmp(&size(self)))
     }
 }
 
-/// What is looked for.
+/// The state of the search.
 struct Search<'a> {
     shape: &'a Implicit,
     map: &'a Affine,
     place: DVec3,
-    /// The map's columns: half the square of the distance to a point's image grows along each axis by their product
-    /// with the way there.
+    /// The map's columns. Half the squared distance grows along each axis by their dot product with the offset.
     columns: [DVec3; 3],
-    /// The nearest point that was found, before it is mapped, and how far its image is.
+    /// The closest point found, in object space, and its mapped distance.
     best: Option<(f64, DVec3)>,
 }
 
-/// The point of the surface whose image is nearest to a place, before it is mapped; none where there is no surface.
+/// The surface point whose image is closest to a query point, in object space; None if there is no surface.
 pub(super) fn closest(shape: &Implicit, map: &Affine, place: DVec3) -> Option<DVec3> {
     let columns = DVec3::AXES.map(|axis| map.vector(axis));
     let mut search = Search { shape, map, place, columns, best: None };
@@ -86,7 +85,7 @@ pub(super) fn closest(shape: &Implicit, map: &Affine, place: DVec3) -> Option<DV
             continue;
         }
         let share = ((bounds.max - bounds.min) / size).max_element();
-        // What is large is looked into where that is cheap next to what follows.
+        // Try Newton's method on large parts while that is cheap compared with the rest of the search.
         if share <= 0.25 || work < 8 {
             search.try_from(0.5 * (bounds.min + bounds.max), [None; 3], share <= 0.25);
             if cuts > 0 {
@@ -113,7 +112,7 @@ pub(super) fn closest(shape: &Implicit, map: &Affine, place: DVec3) -> Option<DV
     search.best.map(|(_, own)| own)
 }
 
-/// The coordinate of the side of the whole that a part touches along an axis, if it does.
+/// The coordinate of the box side that a part touches along an axis, if any.
 fn side(whole: &Bounds, part: &Bounds, axis: usize) -> Option<f64> {
     if part.min[axis] <= whole.min[axis] {
         Some(whole.min[axis])
@@ -125,20 +124,20 @@ fn side(whole: &Bounds, part: &Bounds, axis: usize) -> Option<f64> {
 }
 
 impl Search<'_> {
-    /// The way from the place to a point's image.
+    /// The offset from the query point to a point's image.
     fn way(&self, own: DVec3) -> DVec3 {
-        // The shift first, which far away takes what the place has.
+        // The shift first: it cancels most of a distant query point.
         (self.map.shift - self.place) + self.map.vector(own)
     }
 
-    /// Half the gradient of the square of the distance.
+    /// Half the gradient of the squared distance.
     fn pull(&self, own: DVec3) -> DVec3 {
         let way = self.way(own);
         DVec3::from_array(self.columns.map(|column| column.dot(way)))
     }
 
-    /// Whether a part may hold a point that no other about it is nearer than, of all or, where it touches a side, of
-    /// those on that side.
+    /// Return whether a part may hold a local minimum: of the whole surface or, if it touches a side of the box, of
+    /// that side.
     fn may_hold(&self, over: &[Interval; 3], cut: Option<usize>) -> bool {
         let mut work = Vec::new();
         let slopes: [Interval; 3] = std::array::from_fn(|axis| {
@@ -149,7 +148,7 @@ impl Search<'_> {
             return true;
         }
         let shift = self.map.shift - self.place;
-        // The way to the place, in which three products and sums are rounded once more than intervals know.
+        // The offset: intervals do not cover one rounding of its three products and sums.
         let way: [Interval; 3] = std::array::from_fn(|k| {
             let row = self.map.rows[k];
             let parts = (0..3).map(|i| Interval::point(row[i]).times(over[i]));
@@ -169,8 +168,8 @@ impl Search<'_> {
         cut.map_or_else(|| (0..3).all(is_along), is_along)
     }
 
-    /// Goes from a point to the surface, and from there, if that is wanted, to where it is at right angles to the way;
-    /// coordinates that are given stay.
+    /// Move a point onto the surface and, if `further`, on to the stationary point of the distance. Coordinates in
+    /// `fixed` are kept.
     fn try_from(&mut self, start: DVec3, fixed: [Option<f64>; 3], further: bool) {
         let free = DVec3::from_array(fixed.map(|side| if side.is_none() { 1.0 } else { 0.0 }));
         let mut own = DVec3::from_array([0, 1, 2].map(|k| fixed[k].unwrap_or(start[k])));
@@ -201,8 +200,8 @@ impl Search<'_> {
         self.offer(own, free, true);
     }
 
-    /// Takes a point that is on the surface, if it is the nearest so far. How far points about the nearest are is the
-    /// same to within rounding: one that is `right` goes before those.
+    /// Accept a point on the surface if it is the closest so far. Distances near the minimum are equal to within
+    /// rounding, so a converged point (`right`) takes precedence.
     fn offer(&mut self, own: DVec3, free: DVec3, right: bool) {
         let slope = (self.shape.gradient(own).0 * free).length();
         let off = self.shape.value(own).abs() / slope;
@@ -214,8 +213,8 @@ impl Search<'_> {
         }
     }
 
-    /// A step of Newton's method, along the axes that are `free`, towards where the pull is along the gradient and the
-    /// expression zero.
+    /// A Newton step along the `free` axes toward the point where the expression is zero and the distance gradient is
+    /// parallel to its gradient.
     fn newton(&self, own: DVec3, free: DVec3) -> Option<DVec3> {
         let (slope, pure) = self.shape.gradient(own);
         let (slope, pull) = (slope * free, self.pull(own) * free);
@@ -244,7 +243,7 @@ impl Search<'_> {
     }
 }
 
-/// The solution of four equations (Gauss, with the largest of a column first); none where they have no single one.
+/// Solve four linear equations by Gaussian elimination with partial pivoting; None if they are singular.
 fn solved(mut rows: [[f64; 5]; 4]) -> Option<[f64; 4]> {
     for k in 0..4 {
         let largest = (k..4).max_by(|&a, &b| rows[a][k].abs().total_cmp(&rows[b][k].abs()))?;

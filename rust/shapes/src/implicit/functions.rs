@@ -1,4 +1,4 @@
-//! The functions that an expression may name.
+//! The functions of the expression language.
 
 /// Functions of one number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,7 +44,7 @@ pub enum Binary {
     Multiply,
     /// `a / b`
     Divide,
-    /// `a ** b` for a power that is no whole number: of what is not negative.
+    /// `a ** b` for a noninteger power of a nonnegative base.
     Raise,
     /// `atan2(a, b)`
     Atan2,

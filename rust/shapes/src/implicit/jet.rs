@@ -1,8 +1,8 @@
-//! A number with its first and second derivative along a line (Taylor arithmetic; Moore 1966, Griewank and Walther
-//! 2008).
+//! Automatic differentiation: a number with its first and second derivative along a line (Taylor arithmetic; Moore
+//! 1966, Griewank and Walther 2008).
 //!
-//! Of intervals the derivatives hold every slope that the function has there, those on either side of a kink included
-//! (Clarke's generalised gradient), so that where zero is not among them the function only rises or only falls.
+//! For intervals, the derivatives enclose every slope of the function, including those on either side of a kink
+//! (Clarke's generalised gradient). So if the slope excludes zero, the function is monotone.
 
 use super::functions::{Binary, Unary};
 use super::number::{Number, Scalar};
@@ -39,12 +39,12 @@ fn times<N: Number>(k: f64, a: N) -> N {
 }
 
 impl<N: Scalar> Jet<N> {
-    /// What changes evenly along the line.
+    /// A linear function along the line.
     pub fn new(value: N, slope: N) -> Self {
         Self { value, slope, bend: N::constant(0.0) }
     }
 
-    /// A function of it, by the function's value and derivatives.
+    /// The chain rule, given the outer function's value and derivatives.
     fn chain(self, value: N, first: N, second: N) -> Self {
         let bend = add(mul(second, self.slope.power(2)), mul(first, self.bend));
         Self { value, slope: mul(first, self.slope), bend }
@@ -88,7 +88,7 @@ impl<N: Scalar> Jet<N> {
         Self { value: y.value.binary(Binary::Atan2, x.value), slope, bend: div(bend, square) }
     }
 
-    /// The lesser or the greater: its slope is that of either where both may be it.
+    /// The minimum or maximum. Its slope is the hull of both slopes if either may be chosen.
     fn choose(self, other: Self, function: Binary) -> Self {
         let value = self.value.binary(function, other.value);
         match self.value.is_less(other.value) {
@@ -215,7 +215,7 @@ mod tests {
                 };
                 let (here, h) = (at(0.0), 1e-5);
                 let (a, b) = (at(-h), at(h));
-                // Away from kinks, where no difference tells a derivative, and poles.
+                // Away from poles and from kinks, where differences do not approximate derivatives.
                 let smooth = (a.slope - b.slope).abs() < 1e-2 && (a.bend - b.bend).abs() < 1e-1;
                 prop_assume!(smooth && here.bend.abs() < 1e3);
                 let (slope, bend) = ((b.value - a.value) / (2.0 * h), (b.slope - a.slope) / (2.0 * h));

@@ -1,4 +1,4 @@
-//! An expression along a line.
+//! An expression evaluated along a line.
 
 use super::jet::Jet;
 use super::roots::Function;
@@ -18,7 +18,7 @@ pub struct Along<'a> {
 }
 
 impl<'a> Along<'a> {
-    /// From an origin that is known to within an interval.
+    /// From an origin given as intervals.
     pub fn new(tape: &'a Tape, origin: [Interval; 3], direction: DVec3) -> Self {
         let rounded = origin.map(|x| 0.5 * (x.low + x.high));
         let direction = direction.to_array();
@@ -52,12 +52,12 @@ impl Function for Along<'_> {
     }
 }
 
-/// `origin + t · direction`, to within a unit in the last place of what comes out, however far away the origin is.
+/// `origin + t · direction` to within one ulp of the result, for any distance of the origin.
 pub fn moved(origin: DVec3, t: f64, direction: DVec3) -> [Interval; 3] {
     std::array::from_fn(|i| {
         let way = DoubleDouble::product(t, direction[i]);
         let sum = (DoubleDouble::from(origin[i]) + way).to_f64();
-        // 32 digits of the larger of the two are kept.
+        // Double-double keeps 32 digits of the larger of the two.
         let lost = 1e-31 * origin[i].abs().max(way.high.abs());
         Interval::new((sum - lost).next_down(), (sum + lost).next_up())
     })

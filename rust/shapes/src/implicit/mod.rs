@@ -22,39 +22,39 @@ use std::sync::OnceLock;
 use surface::Surface;
 use tape::Tape;
 
-/// All points of a box where an expression in x, y and z is zero. Outside is where it is positive.
+/// The zero set of an expression in x, y and z within a box. Positive values are outside.
 ///
-/// No root within the box is skipped: along a ray they are isolated by interval arithmetic with outward rounding
-/// (`roots.rs`). What f64 cannot tell from zero counts as zero, so that two roots closer together than rounding can
-/// tell apart are one touch. A stretch on which the expression is zero all along is met once, where it begins. A pole
-/// or a jump is no root. After 4096 intervals a line is taken as it is known by then, so that no expression hangs. The
-/// surface is cut open where the box ends.
+/// No root within the box is skipped: interval arithmetic with outward rounding isolates all roots along a ray
+/// (`roots.rs`). Values that f64 cannot distinguish from zero count as zero, so two roots closer than rounding are one
+/// tangent. A stretch of zeros is hit once, at its start. Poles and jumps are not roots. After 4096 intervals the
+/// remaining ones are accepted as they are, which bounds the time of any expression. The surface has a boundary where
+/// the box cuts it.
 ///
-/// `u` and `v` are the position in the box, each from 0 to 1, along the two axes that follow the one to which the
-/// normal is nearest: x and y for z, y and z for x, z and x for y. So they are smooth wherever that axis does not
-/// change.
+/// `u` and `v` are the position in the box, each from 0 to 1, along the two axes that follow the normal's main axis: x
+/// and y for z, y and z for x, z and x for y. They are smooth wherever that axis does not change.
 #[derive(Clone, Debug)]
 pub struct Implicit {
     tape: Tape,
     bounds: Bounds,
-    /// Bounds every coordinate.
+    /// Bound on every coordinate.
     extent: f64,
-    /// Measured when it is asked for.
+    /// The measured surface, computed on first use.
     surface: OnceLock<Surface>,
-    /// Whether the box cuts it open, once that was asked.
+    /// True if the surface is closed within the box, computed on first use.
     closed: OnceLock<bool>,
 }
 
 impl Implicit {
-    /// The surface of an expression in Python's notation, in the box from `min` to `max`.
+    /// Create the surface of an expression in Python's notation, in the box from `min` to `max`.
     ///
-    /// It may use x, y, z, numbers, `+ - * / **`, parentheses, pi, e, abs, sqrt, exp, log, sin, cos, tan, asin, acos,
-    /// atan, atan2, sinh, cosh, tanh, pow, min and max. A power that is no whole number written out is defined where
-    /// its base is not negative.
+    /// The expression may use x, y, z, numbers, `+ - * / **`, parentheses, pi, e, abs, sqrt, exp, log, sin, cos, tan,
+    /// asin, acos, atan, atan2, sinh, cosh, tanh, pow, min and max. A power other than an integer literal requires a
+    /// nonnegative base.
     ///
     /// # Errors
-    /// Where the expression does not parse or names something unknown, with the column, or the box is not finite or has
-    /// no volume. One line.
+    ///
+    /// A one-line message if the expression does not parse or uses an unknown name (with the column), or if the box is
+    /// not finite or has no volume.
     pub fn new(expression: &str, min: DVec3, max: DVec3) -> Result<Self, String> {
         let tape = parse::parse(expression).map_err(|e| format!("expression {expression:?}: {e}"))?;
         let extent = min.abs().max(max.abs()).max_element();
@@ -70,23 +70,23 @@ impl Implicit {
         Ok(Self { tape, bounds: Bounds { min, max }, extent, surface: OnceLock::new(), closed: OnceLock::new() })
     }
 
-    /// The expression's value at a point; NaN where it is not defined.
+    /// The expression's value at a point; NaN if undefined.
     pub fn value(&self, at: DVec3) -> f64 {
         self.tape.value(&at.to_array(), &mut Vec::new())
     }
 
-    /// What the value at a point may be.
+    /// An enclosure of the value at a point.
     fn enclosed(&self, at: DVec3) -> Interval {
         self.tape.value(&at.to_array().map(Interval::point), &mut Vec::new())
     }
 
-    /// The integral over the surface of a function of its unit normal, measured as the area is: the area under a linear
-    /// map is that of the length that its matrix of cofactors gives to the normal.
+    /// Integrate a function of the unit normal over the surface, with the accuracy of the area. The area under a linear
+    /// map is the integral of |cofactor matrix · normal|.
     pub fn integral(&self, of: &(dyn Fn(DVec3) -> f64 + Sync)) -> f64 {
         self.surface().integral(self, of)
     }
 
-    /// Below it coordinates cannot be told apart.
+    /// Shorter steps do not change the coordinates.
     fn shortest(&self) -> f64 {
         2.0 * f64::EPSILON * self.extent
     }
@@ -98,7 +98,7 @@ impl Implicit {
         (jet.slope, jet.bend)
     }
 
-    /// The gradient, and the second derivatives along the axes.
+    /// The gradient, and the unmixed second derivatives.
     fn gradient(&self, at: DVec3) -> (DVec3, DVec3) {
         let all = DVec3::AXES.map(|axis| self.along(at, axis));
         (DVec3::from_array(all.map(|d| d.0)), DVec3::from_array(all.map(|d| d.1)))
@@ -108,7 +108,7 @@ impl Implicit {
         self.surface.get_or_init(|| Surface::new(self))
     }
 
-    /// The axis that a direction is nearest to.
+    /// The axis closest to a direction.
     fn main_axis(direction: DVec3) -> usize {
         let size = direction.abs();
         if size.z >= size.x && size.z >= size.y { 2 } else { usize::from(size.y >= size.x) }
@@ -119,10 +119,10 @@ impl Implicit {
             .map(|k| ((at[k] - self.bounds.min[k]) / (self.bounds.max[k] - self.bounds.min[k])).clamp(0.0, 1.0))
     }
 
-    /// The point of the surface next to a place; `towards` stands in for a normal where there is no gradient.
+    /// The surface point near a position; `towards` replaces the normal where the gradient vanishes.
     fn point_near(&self, place: DVec3, towards: DVec3) -> Point {
         let mut position = place;
-        // Two steps of Newton's method along the gradient, while they come nearer.
+        // Two Newton steps along the gradient, while they decrease the value.
         for _ in 0..2 {
             let (gradient, _) = self.gradient(position);
             let next = position - gradient * (self.value(position) / gradient.length_squared());
@@ -138,12 +138,12 @@ impl Implicit {
         let kept = [(axis + 1) % 3, (axis + 2) % 3];
         let size = self.bounds.max - self.bounds.min;
         let dp = kept.map(|k| {
-            // Along the surface, as a graph over the two axes.
+            // Tangents of the surface as a graph over the two axes.
             let mut tangent = DVec3::AXES[k];
             tangent[axis] = -normal[k] / normal[axis];
             tangent * size[k]
         });
-        // Mixed derivatives, from those along diagonals.
+        // Mixed derivatives from second derivatives along diagonals.
         let mixed = |i: usize, j: usize| {
             let (_, bend) = self.along(position, DVec3::AXES[i] + DVec3::AXES[j]);
             0.5 * (bend - pure[i] - pure[j])
@@ -163,8 +163,7 @@ impl Implicit {
         let room = 4.0 * UNIT * self.extent;
         Point {
             position,
-            // To first order in what the value may be; where there is no gradient to tell, what a step of halving
-            // leaves.
+            // The value's error to first order; without a gradient, the shortest bisection step.
             error: room + if off.is_finite() { 2.0 * off } else { self.shortest() },
             normal,
             uv: self.uv(position, axis),
@@ -202,7 +201,7 @@ impl Shape for Implicit {
         }
         let (scale, inverse) = normalising_scale(longest);
         let direction = ray.direction * scale;
-        // Twice: first about where the box begins, then from there, which loses nothing to the distance.
+        // Clip twice: near the box, then from there, so that the origin's distance costs no digits.
         let Some(far) = self.clip(ray.origin.to_array().map(Interval::point), direction) else { return false };
         let mut along = Along::new(&self.tape, moved(ray.origin, far.low, direction), direction);
         let Some(span) = self.clip([0, 1, 2].map(|k| along.origin(k)), direction) else { return false };
@@ -212,7 +211,7 @@ impl Shape for Implicit {
         let mut stopped = false;
         roots::roots(&mut along, span, wanted, self.shortest(), &mut |root| {
             let along = far.low + root.place;
-            // Where a ray starts on the surface as far as f64 can tell, it does.
+            // A ray that starts on the surface to f64 precision hits it at 0.
             let start = along.abs() <= 2.0 * self.shortest() && self.enclosed(ray.origin).contains(0.0);
             let t = if start { 0.0 } else { along * scale };
             if t >= ray.t_min && t <= ray.t_max && t.is_finite() {
@@ -229,8 +228,7 @@ impl Shape for Implicit {
         self.point_near(self.place(ray, t), -ray.direction)
     }
 
-    /// Measured when it is first asked for, until two grids of lines agree to a thousandth, or 256 lines a side are
-    /// reached.
+    /// Computed on first use; refined until two line grids agree to a thousandth, or to 256 lines per side.
     fn area_under(&self, map: &Affine) -> f64 {
         self.integral(&|n| map.cofactors(n).length())
     }
@@ -239,7 +237,8 @@ impl Shape for Implicit {
         self.surface().area
     }
 
-    /// By rejection, from numbers that the two seed: even by area, but near numbers do not give near points.
+    /// By rejection, from random numbers that the two seed. Uniform by area, but nearby numbers do not give nearby
+    /// points.
     fn sample(&self, u: [f64; 2]) -> Option<Drawn> {
         let surface = self.surface();
         let position = surface.sample(self, u)?;
@@ -248,7 +247,7 @@ impl Shape for Implicit {
 }
 
 impl Implicit {
-    /// Where a line is in the box, some units in the last place around it included.
+    /// Clip a line to the box, enlarged by a few ulps.
     fn clip(&self, origin: [Interval; 3], direction: DVec3) -> Option<Interval> {
         let (mut enter, mut leave) = (f64::NEG_INFINITY, f64::INFINITY);
         for k in 0..3 {
@@ -267,7 +266,7 @@ impl Implicit {
         (enter <= leave && enter.is_finite() && leave.is_finite()).then(|| Interval::new(enter, leave))
     }
 
-    /// The ray's point at `t`, in the box.
+    /// The ray's point at `t`, clamped to the box.
     fn place(&self, ray: &Ray, t: f64) -> DVec3 {
         let at = moved(ray.origin, t, ray.direction).map(|x| 0.5 * (x.low + x.high));
         DVec3::from_array(at).clamp(self.bounds.min, self.bounds.max)

@@ -1,29 +1,29 @@
-//! What an expression can be evaluated with: numbers, intervals, and either with its derivatives along a line.
+//! The number types in which expressions are evaluated: f64, intervals, and jets of either.
 
 use super::functions::{Binary, Unary};
 use raywright_base::math::Interval;
 
-/// What knows the functions of an expression.
+/// A number type with the functions of the expression language.
 pub trait Number: Copy {
     /// A constant.
     fn constant(x: f64) -> Self;
-    /// A function of one.
+    /// Apply a unary function.
     fn unary(self, function: Unary) -> Self;
-    /// A function of two.
+    /// Apply a binary function.
     fn binary(self, function: Binary, other: Self) -> Self;
-    /// To a whole power.
+    /// Raise to an integer power.
     fn power(self, n: i32) -> Self;
 }
 
-/// What derivatives can be made of.
+/// A number type that supports derivatives.
 pub trait Scalar: Number {
-    /// All that the derivative of the magnitude may be: the sign, or all from −1 to 1 where that is open.
+    /// The derivative of the absolute value: the sign, or [−1, 1] if it is open.
     fn slope_of_abs(self) -> Self;
-    /// All that the derivative of something with a kink may be there: zero where the kink is certainly missed.
+    /// The second derivative at a kink: zero if the kink is certainly avoided.
     fn kink(self) -> Self;
-    /// Whether it is less than another: none where that is open.
+    /// Return whether it is less than another; None if open.
     fn is_less(self, other: Self) -> Option<bool>;
-    /// What holds both.
+    /// The hull of both.
     fn either(self, other: Self) -> Self;
 }
 
@@ -59,7 +59,7 @@ impl Number for f64 {
             Binary::Divide => self / other,
             Binary::Raise if self < 0.0 => f64::NAN,
             Binary::Raise => self.powf(other),
-            // Adding zero takes the sign from a zero: the negative x axis is at π.
+            // Adding zero turns −0 into +0: the negative x axis is at π.
             Binary::Atan2 => (self + 0.0).atan2(other + 0.0),
             Binary::Min => self.min(other),
             Binary::Max => self.max(other),

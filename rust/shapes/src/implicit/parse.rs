@@ -1,7 +1,7 @@
-//! Expressions in Python's notation, read by recursive descent.
+//! A recursive descent parser for expressions in Python's notation.
 //!
-//! A sum is terms joined by `+` and `-`, a term is factors joined by `*` and `/`, a factor has signs before it, and a
-//! power is an atom with `** factor` behind it: so `-x**2` is `-(x**2)` and `2**-1` is a half, as in Python.
+//! A sum joins terms by `+` and `-`, a term joins factors by `*` and `/`, a factor may have signs, and a power is an
+//! atom followed by `** factor`. So `-x**2` is `-(x**2)` and `2**-1` is a half, as in Python.
 
 use super::functions::{Binary, Unary};
 use super::tape::{Step, Tape};
@@ -29,17 +29,18 @@ const CONSTANTS: [(&str, f64); 2] = [("pi", std::f64::consts::PI), ("e", std::f6
 
 const VARIABLES: [&str; 3] = ["x", "y", "z"];
 
-/// How deep parentheses and signs may nest.
+/// Maximum nesting depth of parentheses and signs.
 const DEPTH: usize = 200;
 
-/// The most steps that an expression may have.
+/// Maximum number of steps in an expression.
 const STEPS: usize = 10_000;
 
-/// Reads an expression in x, y and z. Numbers are the f64 next to what is written.
+/// Parse an expression in x, y and z. Numbers are rounded to the nearest f64.
 ///
 /// # Errors
-/// Where it does not parse, names something unknown, or has none of x, y and z: one line with the column, counted from
-/// 1.
+///
+/// A one-line message with the column, counted from 1, if the expression does not parse, uses an unknown name, or has
+/// none of x, y and z.
 pub fn parse(text: &str) -> Result<Tape, String> {
     let mut parser = Parser { text: text.chars().collect(), place: 0, depth: 0, tape: Tape::default() };
     let result = parser.sum()?;
@@ -63,7 +64,7 @@ struct Parser {
 }
 
 impl Parser {
-    /// The next character that is no space.
+    /// The next nonblank character.
     fn peek(&mut self) -> Option<char> {
         while self.text.get(self.place).is_some_and(|c| c.is_whitespace()) {
             self.place += 1;
@@ -71,7 +72,7 @@ impl Parser {
         self.text.get(self.place).copied()
     }
 
-    /// Goes past some characters if they come next.
+    /// Consume the given characters if they come next.
     fn take(&mut self, wanted: &str) -> bool {
         self.peek();
         let here = &self.text[self.place..];
@@ -89,7 +90,7 @@ impl Parser {
         Ok(self.tape.push(step))
     }
 
-    /// What should have come next.
+    /// The message for a missing token.
     fn missing(&mut self, what: &str) -> String {
         match self.peek() {
             Some(c) => format!("expected {what} at column {}, got {c:?}", self.place + 1),
@@ -188,7 +189,7 @@ impl Parser {
                 end = power;
             }
         }
-        // What a number must not run into is part of what is told.
+        // The error message includes the characters that run into the number.
         let mut all = end;
         while self.text.get(all).is_some_and(|c| c.is_alphanumeric() || *c == '_' || *c == '.') {
             all += 1;
@@ -227,7 +228,7 @@ impl Parser {
         Err(format!("unknown name '{name}' at column {}; known: {}", start + 1, known.join(", ")))
     }
 
-    /// The arguments of a function, as many as it takes.
+    /// Parse the arguments of a function with N parameters.
     fn arguments<const N: usize>(&mut self, name: &str, start: usize) -> Result<[usize; N], String> {
         if !self.take("(") {
             return Err(format!("{name} at column {} is a function: {}", start + 1, self.missing("\"(\"")));

@@ -1,46 +1,46 @@
-//! The zeros of a function of one number, in order, none skipped.
+//! Root isolation: all zeros of a univariate function, in order.
 //!
-//! What is known of the function is an enclosure of its values and first two derivatives over any interval. An interval
-//! whose values exclude zero has no root. Where the slope excludes zero there is one if the signs at the ends differ,
-//! else none. Where the second derivative excludes it the slope has at most one zero, which splits the interval into
-//! two of that kind. What is left is halved (Moore 1966; Mitchell, "Robust Ray Intersection with Interval Arithmetic",
-//! 1990).
+//! The function gives enclosures of its values and first two derivatives over any interval. An interval whose values
+//! exclude zero has no root. If its slope excludes zero, it has one root if the signs at the ends differ, and else
+//! none. If its second derivative excludes zero, the slope has at most one zero, which splits the interval into two of
+//! that kind. All other intervals are bisected (Moore 1966; Mitchell, "Robust Ray Intersection with Interval
+//! Arithmetic", 1990).
 //!
-//! At single points f64 leaves a sign open where the value is zero to within rounding. Such points, and intervals too
-//! short to halve, make a *zone*. When the next sign is certain, the zone is told once: as a crossing if it differs
-//! from the last one, as a touch if not. So roots that rounding cannot tell apart count as one, or as none that is
-//! crossed, and signs always alternate between crossings.
+//! At single points f64 leaves the sign open where the value is zero to within rounding. Such points, and intervals too
+//! short to bisect, form a *zone*. At the next certain sign the zone is reported once: as a crossing if that sign
+//! differs from the last one, as a tangent if not. So roots closer than rounding count as one, or as none that crosses,
+//! and signs always alternate between crossings.
 //!
-//! Where the function is not continuous, or not defined everywhere, short intervals count only if a point in them may
-//! be zero itself: so a pole or a jump is no root.
+//! Where the function is discontinuous or undefined, short intervals count only if the value at one of their points may
+//! be zero. So poles and jumps are not roots.
 
 use super::jet::Jet;
 use crate::Contact;
 use raywright_base::math::Interval;
 
-/// The most intervals that are looked at on one line. Beyond it, those that are left are taken as they are.
+/// Maximum number of intervals per line. Beyond it the remaining ones are accepted as they are.
 pub const WORK: usize = 4096;
 
 /// A function on a line.
 pub trait Function {
-    /// Bounds of the values and derivatives over an interval.
+    /// Enclose value and derivatives over an interval.
     fn enclosure(&mut self, over: Interval) -> Jet<Interval>;
-    /// Bounds of the value at a point.
+    /// Enclose the value at a point.
     fn at(&mut self, s: f64) -> Interval;
     /// Value and derivatives, rounded.
     fn roughly(&mut self, s: f64) -> Jet<f64>;
 }
 
-/// Where and how the function is zero.
+/// A root and its kind.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Root {
-    /// Where.
+    /// The parameter.
     pub place: f64,
-    /// Whether it changes its sign.
+    /// True if the sign changes.
     pub contact: Contact,
 }
 
-/// The sign of a function at a point: certain, open, or the function is not defined there.
+/// The sign of a function at a point: certain, open, or undefined.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Sign {
     Certain(i32),
@@ -57,37 +57,36 @@ impl Sign {
         }
     }
 
-    /// Whether both are certain and differ.
+    /// Return whether both are certain and differ.
     fn differs(self, other: Self) -> bool {
         matches!((self, other), (Self::Certain(a), Self::Certain(b)) if a != b)
     }
 }
 
-/// Points that follow each other and may all be zeros.
+/// A run of points that may all be zeros.
 #[derive(Clone, Copy, Debug)]
 struct Zone {
     start: f64,
     end: f64,
-    /// The point that is told of a touch.
+    /// The point reported for a tangent.
     place: f64,
 }
 
 struct Search<'a, F> {
     function: &'a mut F,
-    /// Shorter intervals are not halved.
+    /// Shorter intervals are not bisected.
     shortest: f64,
     met: &'a mut dyn FnMut(Root) -> bool,
-    /// The last certain sign and where it was found; none at the beginning and where the function is not defined.
+    /// The last certain sign and its position; None at the start and where the function is undefined.
     last: Option<(i32, f64)>,
     zone: Option<Zone>,
     stopped: bool,
 }
 
-/// Calls `met` with every root from `span.low` to `span.high` that is not certainly outside of `wanted`, in order,
-/// until it says true, and says whether it did.
+/// Call `met` with every root from `span.low` to `span.high` that is not certainly outside `wanted`, in order, until it
+/// returns true. Return whether it did.
 ///
-/// Which roots there are does not depend on `wanted`, which only saves work. Places are told to within some units of
-/// `shortest`.
+/// The roots do not depend on `wanted`, which only saves work. Their error is a few multiples of `shortest`.
 pub fn roots<F: Function>(
     function: &mut F,
     span: Interval,
@@ -115,19 +114,19 @@ pub fn roots<F: Function>(
             stack.push([(a, at_a), (middle, at_middle)]);
         }
     }
-    // A zone at the very end: the surface reaches it.
+    // A zone at the very end counts: the surface extends to it.
     search.undefined();
     search.stopped
 }
 
 impl<F: Function> Search<'_, F> {
-    /// Tells the roots of an interval if it need not be halved, and whether that was so.
+    /// Report the roots of an interval unless it needs bisection; return whether it is done.
     fn settle(&mut self, (a, at_a): (f64, Interval), (b, at_b): (f64, Interval), must: bool) -> bool {
         let (sign_a, sign_b) = (Sign::of(at_a), Sign::of(at_b));
         let all = self.function.enclosure(Interval::new(a, b));
         let mut value = all.value;
         if value.whole {
-            // By the mean value theorem, from either end.
+            // The mean value theorem from either end.
             let width = Interval::point(b).minus(Interval::point(a));
             let (low, high) = (Interval { low: 0.0, ..width }, Interval { low: 0.0, ..width }.negated());
             value = value.intersection(at_a.plus(all.slope.times(low)));
@@ -141,7 +140,7 @@ impl<F: Function> Search<'_, F> {
             return true;
         }
         if value.sign() != 0 {
-            // Certain all along, except where it may not be defined.
+            // The sign is certain wherever the function is defined.
             if !value.whole {
                 self.undefined();
             }
@@ -179,7 +178,7 @@ impl<F: Function> Search<'_, F> {
         for (place, at) in [(a, at_a), (middle, self.function.at(middle)), (b, at_b)] {
             match Sign::of(at) {
                 Sign::Open if at.whole => self.visit(place, Sign::Open),
-                // Beside a pole, or beyond a jump: whatever was before says nothing.
+                // Beside a pole or beyond a jump, earlier signs are irrelevant.
                 _ => self.undefined(),
             }
         }
@@ -189,7 +188,7 @@ impl<F: Function> Search<'_, F> {
         true
     }
 
-    /// An interval in which the function only rises or only falls.
+    /// An interval on which the function is monotone.
     fn between(&mut self, (a, sign_a): (f64, Sign), (b, sign_b): (f64, Sign)) {
         self.visit(a, sign_a);
         if sign_a.differs(sign_b) && !self.stopped {
@@ -200,7 +199,7 @@ impl<F: Function> Search<'_, F> {
         self.visit(b, sign_b);
     }
 
-    /// Goes past a point of which the sign is known.
+    /// Advance past a point of known sign.
     fn visit(&mut self, s: f64, sign: Sign) {
         match sign {
             Sign::Open => self.widen(s, s, s),
@@ -209,7 +208,7 @@ impl<F: Function> Search<'_, F> {
                 if let Some(zone) = self.zone.take() {
                     match self.last {
                         Some((before, _)) if before == sign => self.tell(zone.place, Contact::Touching),
-                        // A wide zone is a stretch where the function is zero: it begins at its start.
+                        // A wide zone is a stretch of zeros, reported at its start.
                         Some((before, from)) if zone.end - zone.start <= 64.0 * self.shortest => {
                             let place = self.change((from, s), before < 0, |jet| (jet.value, jet.slope));
                             self.tell(place, Contact::Inside);
@@ -222,7 +221,7 @@ impl<F: Function> Search<'_, F> {
         }
     }
 
-    /// Goes past what is not defined: a zone before it ends there.
+    /// Advance past an undefined stretch, which ends the zone before it.
     fn undefined(&mut self) {
         if let Some(zone) = self.zone.take() {
             self.tell(zone.start, Contact::Inside);
@@ -239,8 +238,8 @@ impl<F: Function> Search<'_, F> {
         self.stopped = self.stopped || (self.met)(Root { place, contact });
     }
 
-    /// Where something of the function, told with its derivative, changes its sign, from below to above zero if it
-    /// `rises`: by Newton's method, and by halving where that leaves the interval.
+    /// The sign change of a part of the function, from negative to positive if `rises`. `part` selects value and
+    /// derivative. Newton's method, with bisection for steps that leave the interval.
     fn change(&mut self, (mut a, mut b): (f64, f64), rises: bool, part: impl Fn(Jet<f64>) -> (f64, f64)) -> f64 {
         let mut place = 0.5 * (a + b);
         for _ in 0..200 {

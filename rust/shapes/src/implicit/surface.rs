@@ -1,14 +1,14 @@
-//! The area of an implicit surface, and points drawn evenly from it.
+//! The area of an implicit surface, and sampling by area.
 //!
-//! Of a surface's area dA, the part n_k² with n the unit normal belongs to axis k; the three parts add up to all of it.
-//! Seen along axis k, dA covers |n_k| dA, so the area is the sum over the axes of the integral of |n_k| over all lines
-//! along the axis and all points on them (a partition of unity in the manner of Cauchy and Crofton). The integrand is
-//! bounded, and zero where a line touches, so a plain grid of lines does, a lattice that runs along no border
-//! (Roberts's sequence): it is refined until two of them agree.
+//! With the unit normal n, the parts n_k² of an area element dA sum to dA (a partition of unity). Projected along axis
+//! k, dA covers |n_k| dA. So the area is the sum over the axes of the integral of |n_k| over all axis-parallel lines
+//! and their intersections (in the manner of Cauchy and Crofton). The integrand is bounded, and zero where a line is
+//! tangent, so a plain grid of lines suffices. The lines form a lattice that is aligned with no border (Roberts's
+//! sequence), refined until two successive results agree.
 //!
-//! Drawing follows the same rule: a line is drawn evenly from all lines, one of its roots evenly from as many places as
-//! any line has roots, and the point is taken with probability |n_k|; else all is drawn anew. The density by area is
-//! then the sum of |n_k| · |n_k|, the same everywhere.
+//! Sampling follows the same scheme. A line is chosen uniformly, then one of as many slots as any line has roots. The
+//! point in that slot is accepted with probability |n_k|; otherwise all is sampled again. The density by area is then
+//! the sum of |n_k| · |n_k|, a constant.
 
 use super::{Implicit, line::Along, roots::roots};
 use crate::Contact;
@@ -16,39 +16,39 @@ use raywright_base::math::{DVec3, Interval};
 use raywright_base::parallel;
 use raywright_base::sampling::philox4x32;
 
-/// Columns a side, and lines a side at first.
+/// Columns per side, and the initial number of lines per side.
 const COLUMNS: usize = 64;
 
-/// The area is refined until four times as many lines change it by less.
+/// The area is accepted when four times as many lines change it by less than this fraction.
 const ACCURACY: f64 = 1e-3;
 
-/// By which the places of lines differ: the inverse of the plastic number, and its square.
+/// The lattice increments: the inverse of the plastic number, and its square.
 const LATTICE: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_3];
 
-/// Lines that a thread takes at once.
+/// Lines per parallel task.
 const CHUNK: usize = 256;
 
-/// By which lines a side are multiplied at most.
+/// Maximum refinement of lines per side.
 const FINEST: usize = 4;
 
-/// How often a point is drawn anew.
+/// Maximum number of rejections per sample.
 const TRIES: u32 = 1 << 16;
 
-/// What is known of the whole surface.
+/// Data about the whole surface.
 #[derive(Clone, Debug)]
 pub struct Surface {
     /// Its area.
     pub area: f64,
-    /// The columns along each axis that may hold a part of it.
+    /// The columns along each axis that may contain surface.
     columns: [Vec<[usize; 2]>; 3],
-    /// The share of the columns of this axis and those before in the area of all columns.
+    /// Cumulative fractions of the columns' area by axis.
     shares: [f64; 3],
-    /// As many roots as any line had.
+    /// The maximum number of roots on a line.
     most: usize,
 }
 
 impl Surface {
-    /// Measures a surface, on all cores.
+    /// Measure a surface in parallel.
     pub fn new(shape: &Implicit) -> Self {
         let columns = occupied(shape);
         let faces = faces(shape);
@@ -59,12 +59,12 @@ impl Surface {
         Self { area, columns, shares, most }
     }
 
-    /// The integral over the surface of a function of its unit normal.
+    /// Integrate a function of the unit normal over the surface.
     pub fn integral(&self, shape: &Implicit, of: &(dyn Fn(DVec3) -> f64 + Sync)) -> f64 {
         measured(shape, &self.columns, of).0
     }
 
-    /// A point drawn evenly by area, and the unit normal there. The two numbers seed as many as are needed.
+    /// Sample a point uniformly by area, with its unit normal. The two numbers seed the rejection sampling.
     pub fn sample(&self, shape: &Implicit, u: [f64; 2]) -> Option<DVec3> {
         if self.area <= 0.0 || !self.area.is_finite() {
             return None;
@@ -90,13 +90,13 @@ impl Surface {
     }
 }
 
-/// The area of a side of the box along each axis.
+/// The area of the box's faces normal to each axis.
 fn faces(shape: &Implicit) -> [f64; 3] {
     let size = shape.bounds.max - shape.bounds.min;
     [0, 1, 2].map(|k| size[(k + 1) % 3] * size[(k + 2) % 3])
 }
 
-/// The integral of a function of the normal, refined until it changes little, and as many roots as any line had.
+/// Integrate a function of the normal, refined until it is stable. Return the maximum number of roots on a line, too.
 fn measured(shape: &Implicit, columns: &[Vec<[usize; 2]>; 3], of: &(dyn Fn(DVec3) -> f64 + Sync)) -> (f64, usize) {
     let (mut fine, mut found) = (1, lattice(shape, columns, of, 1));
     while fine < FINEST {
@@ -135,7 +135,7 @@ fn lattice(
             }
             (sum, most)
         };
-        // In order, so that the sum is the same for any number of threads.
+        // Summed in order, so that the result does not depend on the number of threads.
         let parts: Vec<(f64, usize)> = parallel::map(count.div_ceil(CHUNK), part);
         integral += parts.iter().map(|p| p.0).sum::<f64>() * faces[axis] / count as f64;
         most = parts.iter().map(|p| p.1).fold(most, usize::max);
@@ -143,8 +143,8 @@ fn lattice(
     (integral, most)
 }
 
-/// The columns along each axis that may hold a part of the surface: the box is halved along its longest side again and
-/// again, and what is certainly off the surface goes.
+/// The columns along each axis that may contain surface. The box is bisected along its longest side, and cells
+/// certainly off the surface are discarded.
 fn occupied(shape: &Implicit) -> [Vec<[usize; 2]>; 3] {
     let mut cells = vec![([0usize; 3], [0u32; 3])];
     let size = shape.bounds.max - shape.bounds.min;
@@ -160,7 +160,7 @@ fn occupied(shape: &Implicit) -> [Vec<[usize; 2]>; 3] {
             for _ in 0..2 {
                 let held = std::array::from_fn(|k| {
                     let at = |i: usize| shape.bounds.min[k] + size[k] * (i as f64 / f64::from(1u32 << depth[k]));
-                    // Some ulps more: columns are met by coordinates that are rounded otherwise.
+                    // Padded by some ulps, since the lines' coordinates are rounded differently.
                     let room = 4.0 * f64::EPSILON * shape.extent;
                     Interval::new(at(place[k]) - room, at(place[k] + 1) + room)
                 });
@@ -182,8 +182,8 @@ fn occupied(shape: &Implicit) -> [Vec<[usize; 2]>; 3] {
 }
 
 impl Implicit {
-    /// The points on a line along an axis through a column, given by its part of the column's width, with their unit
-    /// normals.
+    /// The intersections on an axis-parallel line through a column, with their unit normals. `part` gives the line's
+    /// position within the column.
     fn meet_column(&self, axis: usize, column: [usize; 2], part: [f64; 2]) -> Vec<(DVec3, DVec3)> {
         let (min, size) = (self.bounds.min, self.bounds.max - self.bounds.min);
         let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);

@@ -1,32 +1,32 @@
-//! An expression as a list of steps, each of which uses the results of steps before it; equal steps are done once.
+//! An expression as a list of steps on the results of earlier steps, with common subexpressions shared.
 
 use super::functions::{Binary, Unary};
 use super::number::Number;
 
-/// One step; operands are the numbers of earlier steps.
+/// One step; operands are the indices of earlier steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Step {
     /// A number.
     Constant(f64),
     /// x, y or z.
     Variable(usize),
-    /// A function of one.
+    /// A unary function.
     Unary(Unary, usize),
-    /// A function of two.
+    /// A binary function.
     Binary(Binary, usize, usize),
-    /// To a whole power.
+    /// An integer power.
     Power(usize, i32),
 }
 
-/// The steps of an expression; the last one is its value.
+/// The steps of an expression, whose value is the last step.
 #[derive(Clone, Debug, Default)]
 pub struct Tape {
     steps: Vec<Step>,
 }
 
 impl Tape {
-    /// Adds a step, unless it is there, and tells its number. Constants are joined where that rounds nothing, so that
-    /// `x ** -2` is a whole power.
+    /// Return the index of a step, appending it if it is new. Constants are folded where that is exact, so that `x **
+    /// -2` is an integer power.
     pub fn push(&mut self, step: Step) -> usize {
         let step = match step {
             Step::Unary(Unary::Negative, a) if self.constant(a).is_some() => {
@@ -40,7 +40,7 @@ impl Tape {
             _ => step,
         };
         let same = |other: &Step| match (other, &step) {
-            // 0 and −0 are equal but not the same.
+            // 0 and −0 compare equal but differ.
             (Step::Constant(a), Step::Constant(b)) => a.to_bits() == b.to_bits(),
             (a, b) => a == b,
         };
@@ -50,17 +50,17 @@ impl Tape {
         })
     }
 
-    /// The value of a step, if it is a constant.
+    /// The value of a constant step.
     fn constant(&self, step: usize) -> Option<f64> {
         if let Step::Constant(x) = self.steps[step] { Some(x) } else { None }
     }
 
-    /// How many steps there are.
+    /// The number of steps.
     pub fn len(&self) -> usize {
         self.steps.len()
     }
 
-    /// Makes the step of this number the last one, and drops those that it does not need.
+    /// Make the given step the last one, and drop steps it does not need.
     pub fn finish(&mut self, last: usize) {
         let mut needed = vec![false; last + 1];
         needed[last] = true;
@@ -85,12 +85,12 @@ impl Tape {
             .collect();
     }
 
-    /// Whether any step uses x, y or z.
+    /// Return whether any step uses x, y or z.
     pub fn is_constant(&self) -> bool {
         !self.steps.iter().any(|s| matches!(s, Step::Variable(_)))
     }
 
-    /// The value for given x, y and z. `work` is room to compute in.
+    /// Evaluate the expression for given x, y and z. `work` is scratch space.
     pub fn value<N: Number>(&self, variables: &[N; 3], work: &mut Vec<N>) -> N {
         work.clear();
         for step in &self.steps {

@@ -21,7 +21,7 @@ fn hits(shape: &Implicit, ray: &Ray) -> Vec<Candidate> {
     all
 }
 
-/// The roots along x through the middle of a box of half the width, as x and contact.
+/// The roots along x through the center of a box of the given half-width, as x and contact.
 fn along_x(text: &str, half: f64) -> Vec<(f64, Contact)> {
     let ray = Ray::new(DVec3::new(-2.0 * half, 0.0, 0.0), DVec3::X);
     hits(&within(text, half), &ray).iter().map(|m| (m.t - 2.0 * half, m.contact)).collect()
@@ -31,7 +31,7 @@ fn vector() -> impl Strategy<Value = DVec3> {
     prop::array::uniform3(-1.0..1.0f64).prop_map(DVec3::from_array).prop_filter("long", |d| d.length() > 0.1)
 }
 
-/// Where a line meets the unit sphere, to 32 digits; none where it is too near a tangent for f64 to tell.
+/// The intersections of a line with the unit sphere, to 32 digits; None if too close to a tangent for f64.
 fn sphere(o: DVec3, d: DVec3) -> Option<Vec<f64>> {
     let dot = |a: DVec3, b: DVec3| (0..3).fold(DoubleDouble::ZERO, |sum, i| sum + DoubleDouble::product(a[i], b[i]));
     let (a, b, c) = (dot(d, d), dot(o, d), dot(o, o) - DoubleDouble::from(1.0));
@@ -53,7 +53,7 @@ proptest! {
         let mut roots = roots;
         roots.sort_unstable();
         roots.dedup_by_key(|r| r.0);
-        // Roots that f64 holds exactly, and others.
+        // Roots that f64 represents exactly, and others.
         for scale in [0.03125, 0.03] {
             let factor = |(r, power): &(_, _)| format!("(x - {:?})**{power}", f64::from(*r) * scale);
             let factors: Vec<String> = roots.iter().map(factor).collect();
@@ -82,7 +82,8 @@ proptest! {
         let found = hits(&within(SPHERE, half), &ray);
         prop_assert_eq!(found.len(), wanted.len());
         for (met, t) in found.iter().zip(wanted) {
-            // An ulp of t, and what a few ulps of coordinates are along the line, the more the more it grazes.
+            // An ulp of t, plus a few ulps of the coordinates along the line, scaled by the inverse cosine for grazing
+            // rays.
             let grazing = ray.at(t / length).normalize().dot(d.normalize()).abs().max(1e-7);
             let room = 2.0 * f64::EPSILON * t.abs() + 16.0 * f64::EPSILON / grazing / d.length();
             prop_assert!((met.t * length - t).abs() <= room, "{} {}", met.t * length, t);
@@ -117,7 +118,7 @@ proptest! {
         let part = hits(&gyroid, &Ray { t_min: a.min(b), t_max: a.max(b), ..whole });
         let wanted: Vec<f64> = all.iter().copied().filter(|t| a.min(b) <= *t && *t <= a.max(b)).collect();
         prop_assert_eq!(part.iter().map(|m| m.t).collect::<Vec<_>>(), wanted);
-        // Signs just before, between and after tell how often it must be crossed.
+        // Sampled sign changes are a lower bound on the number of crossings.
         let steps: Vec<f64> = (0..4000).map(|i| -8.0 + f64::from(i) * 0.004).collect();
         let inside = |t: f64| whole.at(t).abs().max_element() <= 2.0;
         let signs: Vec<bool> = steps.iter().filter(|t| inside(**t)).map(|t| gyroid.value(whole.at(*t)) > 0.0).collect();
@@ -136,7 +137,7 @@ proptest! {
             prop_assert!((point.normal - point.position).length() < 1e-14);
             prop_assert!((point.uv[0] - met.uv[0]).abs() + (point.uv[1] - met.uv[1]).abs() < 1e-7);
             for k in 0..2 {
-                // Of the unit sphere, the normal is the position.
+                // On the unit sphere the normal equals the position.
                 prop_assert!(point.dp[k].dot(point.normal).abs() < 1e-13);
                 prop_assert!((point.dn[k] - point.dp[k]).length() < 1e-12);
             }
@@ -162,7 +163,7 @@ fn stretches_are_told_once_where_they_begin() {
     assert_eq!(along_x("max(abs(x) - 1, 0)", 3.0).len(), 1);
     assert!((along_x("max(abs(x) - 1, 0)", 3.0)[0].0 + 1.0).abs() < 1e-14);
     assert!((along_x("max(x - 0.25, 0) + min(x + 0.75, 0)", 1.0)[0].0 + 0.75).abs() < 1e-14);
-    // Zero all over, which no interval can tell: once, and soon.
+    // Identically zero, which intervals cannot decide: one hit, found quickly.
     for text in ["x - y - (x - y)", "sin(x)**2 + cos(x)**2 - 1", "0*x"] {
         assert_eq!(along_x(text, 1.0).len(), 1, "{text}");
     }
@@ -203,7 +204,7 @@ fn many_roots_are_all_found_in_order() {
     for (root, k) in found.iter().zip(-15..=15) {
         assert!((root.0 - f64::from(k) * PI / 50.0).abs() < 1e-15);
     }
-    // Infinitely many: those that can be told apart first, and an end.
+    // Infinitely many roots: the distinguishable ones come first, and the search ends.
     let crowded = along_x("x*sin(1/x)", 1.0);
     assert!(crowded.len() > 100 && crowded.windows(2).all(|w| w[0].0 < w[1].0));
     assert!((crowded[0].0 + 1.0 / PI).abs() < 1e-14);
@@ -232,7 +233,7 @@ fn areas_are_right_to_a_thousandth() {
         let area = within(text, half).area();
         assert!((area / wanted - 1.0).abs() < 1e-3, "{text}: {area} of {wanted}");
     }
-    // A tube of radius 1/2 and height 2, of which the height is doubled: normals across it are twice as long.
+    // A tube of radius 1/2 and height 2 with its height doubled: normals across it are twice as long.
     let tube = within("x*x + y*y - 0.25", 1.0);
     let doubled = tube.integral(&|n| DVec3::new(2.0 * n.x, 2.0 * n.y, n.z).length());
     assert!((doubled / (4.0 * PI) - 1.0).abs() < 1e-3);

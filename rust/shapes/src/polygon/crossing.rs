@@ -1,43 +1,42 @@
-//! Whether a line passes through a polygon, decided exactly.
+//! Exact test whether a line passes through a polygon.
 //!
-//! Seen along the line, the polygon's edges are drawn around one point, and the line passes through where a half-line
-//! from that point crosses an odd number of them. On which side of the point an edge passes is the sign of `d · ((v −
-//! w) × (v + w))` with corners relative to the origin, as for triangles (`shapes/triangle/edge.rs`), computed in f64
-//! with its bound and exactly where that is not enough. So polygons and triangles that share an edge agree on it and
-//! leak nowhere.
+//! Projected along the line, the line is a point. It passes through the polygon if a half-line from that point crosses
+//! an odd number of edges. An edge's side of the point is the sign of `d · ((v − w) × (v + w))` with corners relative
+//! to the origin, as for triangles (`shapes/triangle/edge.rs`). It is computed in f64 with an error bound, and exactly
+//! if that is not enough. So polygons and triangles that share an edge agree on it and are watertight.
 //!
-//! A line that touches edges is moved by next to nothing, along the same direction: by ε along x, ε² along y and ε³
-//! along z. What stands on either side of the half-line's own line is told by the sign of the first coordinate of `d ×
-//! (v − o)` that is not zero, which is the sign of a linear form with weights that are next to nothing too, and where
-//! all are zero by that of `−d × (ε, ε², ε³)`.
+//! For a line that touches edges, symbolic perturbation moves the line along one fixed direction: by ε along x, ε²
+//! along y and ε³ along z. The side of a point relative to the half-line's own line is the sign of the first nonzero
+//! coordinate of `d × (v − o)`. This is the sign of a linear form with infinitesimal weights. If all are zero, it is
+//! that of `−d × (ε, ε², ε³)`.
 
 use crate::Contact;
 use raywright_base::math::robust::{UNIT, normalising_scale};
 use raywright_base::math::{DVec3, Ray, exact_edges, exact_turn};
 
-/// A line made ready for edges.
+/// A line prepared for edge tests.
 pub struct Line {
     origin: DVec3,
-    /// As given.
+    /// The direction as given.
     unscaled: DVec3,
     /// Scaled so that its largest coordinate lies in [1, 2).
     direction: DVec3,
     /// Bound on the error of an edge's volume.
     error: f64,
-    /// Bounds every coordinate relative to the origin.
+    /// Bound on every coordinate relative to the origin.
     largest: f64,
     /// The side of a point on the line itself.
     own_side: i32,
 }
 
 impl Line {
-    /// The line of a ray, for corners within `largest` of its origin in every coordinate and edges whose coordinates
-    /// are at most `longest`. The ray must be finite, and its direction have a coordinate that is a normal number.
+    /// Prepare the line of a ray. Corners lie within `largest` of its origin in every coordinate, and edges have
+    /// coordinates of at most `longest`. The ray must be finite, and its direction must have a normal coordinate.
     pub fn new(ray: &Ray, largest: f64, longest: f64) -> Self {
         let d = ray.direction;
         let (scale, _) = normalising_scale(d.abs().max_element());
         let size = longest * largest * largest;
-        // 184 uEM is what an edge's volume errs by (`EdgeRay::meet_closely`).
+        // An edge's volume errs by 184 uEM (`EdgeRay::meet_closely`).
         let error = if size > 1e-270 && size < 1e300 { 256.0 * UNIT * longest * largest } else { f64::INFINITY };
         // −d × x̂ = (0, −d_z, d_y), and −d × ŷ = (d_z, 0, −d_x).
         let sign = |x: f64| i32::from(x > 0.0) - i32::from(x < 0.0);
@@ -45,7 +44,7 @@ impl Line {
         Self { origin: ray.origin, unscaled: d, direction: d * scale, error, largest, own_side }
     }
 
-    /// On which side of the half-line's line a point stands: −1 or 1, and 0 on the ray's own line.
+    /// The side of a point relative to the half-line's line: −1 or 1, and 0 on the ray's own line.
     fn side(&self, point: DVec3) -> i32 {
         let (to, d) = (point - self.origin, self.direction);
         for (j, k) in [(1, 2), (2, 0), (0, 1)] {
@@ -77,8 +76,8 @@ impl Line {
         i32::from(exact > 0.0) - i32::from(exact < 0.0)
     }
 
-    /// How the line passes through what some rings of points enclose, counted evenly: none where it passes by, or sees
-    /// them exactly edge-on.
+    /// The contact of the line with the area that the rings enclose by the even-odd rule. None on a miss or if the
+    /// polygon is exactly edge-on.
     pub fn meet(&self, rings: &[Vec<DVec3>]) -> Option<Contact> {
         let (mut odd, mut touched) = (false, false);
         for ring in rings {

@@ -5,22 +5,22 @@ use glam::DVec2;
 use raywright_base::math::DVec3;
 use std::collections::VecDeque;
 
-/// How many corners are compared with ears, in all and for each corner, before ears are no longer looked into: the
-/// square of the corners of a huge polygon is too much.
+/// Maximum number of corner tests, in total and per corner, after which ears are no longer tested. A huge polygon would
+/// need its squared number of corners.
 const EFFORT: u64 = 1 << 30;
 const EFFORT_PER_CORNER: u64 = 1 << 16;
-/// After so many corners that are no ears any will do, as the ring crosses itself.
+/// After this many corners without an ear, the ring intersects itself, and any corner is cut off.
 const MOST_CROSSINGS: u32 = 64;
 
-/// Triangulates polygons with the given numbers of corners, whose corners follow each other in `corners`, as indices of
+/// Triangulate polygons given by their numbers of corners. `corners` holds their corners in sequence as indices into
 /// `points`. A polygon of n corners yields n − 2 triangles, of indices into `corners`; one with fewer than three yields
 /// none.
 ///
-/// A polygon becomes a fan from its first corner if all triangles of the fan turn the way the polygon does, as those of
-/// convex ones do. All others are looked at along the largest coordinate of their Newell normal, where two coordinates
-/// remain as they are: a simple polygon in a plane is covered exactly once, and so is one whose holes are connected to
-/// its outline by edges that are passed twice. Corners that lie on the edge between their neighbours get triangles with
-/// an area if possible. Polygons that are not finite or without area become fans.
+/// A polygon becomes a fan from its first corner if all triangles of the fan have the polygon's orientation, as for
+/// convex ones. All others are projected along the largest coordinate of their Newell normal, which keeps two
+/// coordinates unchanged. A simple polygon in a plane is covered exactly once, and so is one whose holes are connected
+/// to its outline by edges traversed twice. Corners on the edge between their neighbours get triangles with a nonzero
+/// area if possible. Polygons that are not finite or have no area become fans.
 pub fn triangulate(points: &[[f64; 3]], corners: &[i64], counts: &[usize]) -> Vec<[i64; 3]> {
     let corner = |i: usize| DVec3::from_array(points[corners[i] as usize]);
     let mut triangles = Vec::with_capacity(corners.len());
@@ -29,7 +29,7 @@ pub fn triangulate(points: &[[f64; 3]], corners: &[i64], counts: &[usize]) -> Ve
     let mut first = 0;
     for &count in counts {
         let start = first as i64;
-        // Most polygons are quads, which need no ring of their own.
+        // Most polygons are quads, which need no ring.
         if count == 4 {
             let (a, b, c, d) = (corner(first), corner(first + 1), corner(first + 2), corner(first + 3));
             let (front, back) = ((b - a).cross(c - a), (c - a).cross(d - a));
@@ -54,7 +54,8 @@ pub fn triangulate(points: &[[f64; 3]], corners: &[i64], counts: &[usize]) -> Ve
     triangles
 }
 
-/// Whether all triangles from the first corner turn the way their sum does, which is the polygon's (Newell).
+/// Return whether all triangles from the first corner have the orientation of their sum, which is the polygon's
+/// (Newell).
 fn is_fan(ring: &[DVec3]) -> bool {
     if ring.len() <= 3 {
         return true;
@@ -64,7 +65,7 @@ fn is_fan(ring: &[DVec3]) -> bool {
     normals().all(|normal| normal.dot(total) > 0.0)
 }
 
-/// The corners along an axis from where they turn anticlockwise; `None` if they are not finite or have no area.
+/// The corners projected along an axis so that they are anticlockwise; `None` if they are not finite or have no area.
 fn projected(ring: &[DVec3]) -> Option<Vec<DVec2>> {
     let size = ring.iter().fold(0.0f64, |most, p| most.max(p.abs().max_element()));
     if !ring.iter().all(|p| p.is_finite()) || size == 0.0 {
@@ -84,25 +85,25 @@ fn projected(ring: &[DVec3]) -> Option<Vec<DVec2>> {
     Some(ring.iter().map(|p| DVec2::new(p[x], p[y])).collect())
 }
 
-/// Whether a corner waits to be looked at.
+/// The queue state of a corner.
 #[derive(Clone, Copy, PartialEq)]
 enum Waits {
     No,
     Queued,
-    /// It goes to the end of the queue once more.
+    /// To be queued at the end once more.
     Postponed,
     Gone,
 }
 
-/// The corners that are left of a ring.
+/// The remaining corners of a ring.
 struct Ring<'a> {
     points: &'a [DVec2],
     before: Vec<usize>,
     after: Vec<usize>,
-    /// Corners that do not turn anticlockwise. Only these can lie in an ear: of all that lie in one, the one that is
-    /// farthest from its base is such a corner.
+    /// Corners that do not turn anticlockwise. Only these need testing: of all corners inside an ear, the one farthest
+    /// from its base is reflex.
     reflex: Vec<bool>,
-    /// The corners that were reflex at first, by x, and those that became so later.
+    /// The initially reflex corners by x, and those that became reflex later.
     by_x: Vec<usize>,
     late: Vec<usize>,
 }
@@ -135,14 +136,14 @@ impl<'a> Ring<'a> {
         [self.before[i], i, self.after[i]]
     }
 
-    /// Cuts off ears until none is left. Whether a corner is one changes only with those beside it: a corner within its
-    /// triangle that no longer turns the other way has left another there that does.
+    /// Cut off ears until none is left. Cutting one changes the ear status of its neighbours only: if a corner inside
+    /// some triangle stops being reflex, another reflex corner remains there.
     fn clip(mut self, effort: &mut u64, mut take: impl FnMut([usize; 3])) {
         let count = self.points.len();
         let mut queue: VecDeque<usize> = (1..count).chain([0]).collect();
         let mut waits = vec![Waits::Queued; count];
         let mut left = count;
-        // A corner that is left, and how many were cut off that are no ears.
+        // A remaining corner, and the number of forced cuts.
         let (mut at, mut crossings) = (0, 0);
         while left > 3 {
             let (i, was_flat) = match queue.pop_front() {
@@ -171,7 +172,7 @@ impl<'a> Ring<'a> {
             left -= 1;
             at = self.before[i];
             waits[i] = Waits::Gone;
-            // Going on elsewhere leaves fewer slivers. What had no area may have kept any other from being an ear.
+            // Continuing elsewhere yields fewer slivers. A triangle of no area may have blocked any other ear.
             let ends = [self.before[i], self.after[i]];
             let again = if was_flat { count } else { 0 };
             for j in ends.into_iter().chain(0..again) {
@@ -188,8 +189,8 @@ impl<'a> Ring<'a> {
         take(self.around(at));
     }
 
-    /// The corner to cut off where none is an ear, and whether its triangle has no area, so that nothing changes by
-    /// that. Where there is no such corner, the ring crosses itself, and any that turns anticlockwise will do.
+    /// The corner to cut off if none is an ear, and whether its triangle has no area, so that the cut changes nothing.
+    /// Without such a corner the ring intersects itself, and any convex corner will do.
     fn forced(&self, start: usize) -> (usize, bool) {
         let mut convex = start;
         let mut i = start;
@@ -221,7 +222,7 @@ impl<'a> Ring<'a> {
         }
     }
 
-    /// Whether nothing of the ring lies in the triangle of a corner.
+    /// Return whether no part of the ring lies inside the triangle of a corner.
     fn is_clear(&self, i: usize, effort: &mut u64) -> bool {
         let corners = self.around(i);
         let [a, b, c] = corners.map(|i| self.points[i]);
@@ -237,7 +238,7 @@ impl<'a> Ring<'a> {
             if !self.reflex[j] || corners.contains(&j) || p.cmplt(low).any() || p.cmpgt(high).any() {
                 return true;
             }
-            // Edges from the ends of the base cannot leave the triangle but by a corner in it.
+            // Edges from the ends of the base can leave the triangle only through a corner inside it.
             if p == a || p == c {
                 return true;
             }
@@ -259,7 +260,7 @@ mod tests {
     use num_bigint::BigInt;
     use proptest::prelude::*;
 
-    /// Twice the area that three points turn around, in the units of their integers.
+    /// Twice the signed area of an integer triangle.
     fn doubled([a, b, c]: [[i64; 2]; 3]) -> BigInt {
         let big = |x: i64| BigInt::from(x);
         (big(b[0]) - a[0]) * (big(c[1]) - a[1]) - (big(b[1]) - a[1]) * (big(c[0]) - a[0])
@@ -270,8 +271,8 @@ mod tests {
         triangulate(ring, &all, &[ring.len()]).into_iter().map(|t| t.map(|i| i as usize)).collect()
     }
 
-    /// Asserts that triangles cover a ring once: none turns the other way, all have its area together, and edges that
-    /// are not the ring's are passed once each way.
+    /// Assert that triangles cover a ring once. None is inverted, their areas sum to the ring's, and inner edges are
+    /// traversed once in each direction.
     fn assert_covers(ring: &[[i64; 2]]) {
         let corners: Vec<_> = ring.iter().map(|p| [p[0] as f64, p[1] as f64, 0.0]).collect();
         let triangles = alone(&corners);
@@ -310,7 +311,7 @@ mod tests {
 
         #[test]
         fn combs_of_steps_are_covered_once(heights in prop::collection::vec(0i64..4, 1..40), at in 0usize..80) {
-            // Corners on straight edges, teeth of no height, and walls that touch no other.
+            // Collinear corners, teeth of no height, and walls that touch no others.
             let mut ring = vec![[heights.len() as i64, -1], [0, -1]];
             ring.reverse();
             for (x, &height) in heights.iter().enumerate().rev() {
@@ -324,7 +325,7 @@ mod tests {
 
         #[test]
         fn holes_on_bridges_are_left_open(count in 1i64..6, at in 0usize..80) {
-            // A row of square holes, each entered and left along one edge from the outline's lower one.
+            // A row of square holes, each entered and left along one edge from the outline's lower edge.
             let mut ring = vec![[4 * count, 0], [4 * count, 4], [0, 4], [0, 0]];
             for k in 0..count {
                 let (x, y) = (4 * k + 1, 1);

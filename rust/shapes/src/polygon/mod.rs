@@ -16,48 +16,49 @@ use raywright_base::math::robust::{UNIT, normalising_scale};
 use raywright_base::math::{Affine, DVec3, DoubleDouble, Ray};
 use trapezoids::{Trapezoid, trapezoids};
 
-/// How far points may lie off their plane, as a part of the diagonal of the box around them.
+/// Maximum distance of points from their plane, as a fraction of the bounding box diagonal.
 const FLATNESS: f64 = 1e-6;
 
-/// A flat face with holes.
+/// A planar polygon with holes.
 ///
-/// Where a line passes through it is decided by its edges as they are given, exactly: an edge that two polygons share,
-/// or a polygon and a triangle, lets nothing through and nothing through twice. How far away it is met is told by the
-/// plane that is fitted to its points (Newell's normal, at their mean distance), and never lies outside the box around
-/// them. One that is seen exactly edge-on is not met. The normal points to where the outline turns anticlockwise; which
-/// way round holes go does not matter.
+/// Whether a line passes through it is decided exactly from the given edges. An edge shared by two polygons, or by a
+/// polygon and a triangle, is watertight and hit once. The distance is that of the plane fitted to the points (Newell's
+/// normal, at their mean distance), clamped to their bounding box. An exactly edge-on polygon is not hit. The normal is
+/// on the side from which the outline is anticlockwise; the orientation of holes does not matter.
 ///
-/// `u` runs along the outline's first edge and `v` to the left of it, each from 0 to 1 over the outline's extent that
-/// way: of a rectangle they are the coordinates with the first point at (0, 0).
+/// `u` runs along the outline's first edge and `v` to its left, each from 0 to 1 over the outline's extent in that
+/// direction. For a rectangle the first point is at (0, 0).
 #[derive(Clone, Debug)]
 pub struct Polygon {
     /// The outline, then the holes.
     rings: Vec<Vec<DVec3>>,
     bounds: Bounds,
-    /// The largest coordinate of an edge.
+    /// Bound on the coordinates of edge vectors.
     longest: f64,
     anchor: DVec3,
     normal: DVec3,
-    /// How far points lie off the plane at most.
+    /// Maximum distance of points from the plane.
     deviation: f64,
-    /// The point where u and v are 0, and how it moves with either.
+    /// The point with u = v = 0, and the derivatives with respect to u and v.
     corner: DVec3,
     axes: [DVec3; 2],
     area: f64,
-    /// The coordinates that are kept where the plane is looked at along an axis.
+    /// The coordinates that remain in the axis-aligned projection of the plane.
     kept: [usize; 2],
     parts: Vec<Trapezoid>,
-    /// The share of the area that lies in each part and those before.
+    /// Cumulative fractions of the area.
     shares: Vec<f64>,
 }
 
 impl Polygon {
-    /// A polygon by its outline and its holes, each at least three points, the last not repeating the first.
+    /// Create a polygon from its outline and holes, each of at least three points, without repeating the first.
     ///
     /// # Errors
-    /// Where a ring has fewer points, a point is not finite, all lie on one line, one lies off the plane by more than a
-    /// millionth of the diagonal of the box around them, rings cross or touch themselves or each other, or a hole is
-    /// not inside the outline and outside of the others. One line that tells which and why.
+    ///
+    /// A one-line message with the reason and place. It is returned if a ring has fewer points, a point is not finite,
+    /// or all lie on one line. So it is if a point is off the plane by more than a millionth of the bounding box
+    /// diagonal, rings cross or touch themselves or each other, or a hole is outside the outline or inside another
+    /// hole.
     pub fn new(outline: Vec<DVec3>, holes: Vec<Vec<DVec3>>) -> Result<Self, String> {
         let mut rings = vec![outline];
         rings.extend(holes);
@@ -120,7 +121,7 @@ impl Polygon {
         let dropped =
             if across.x == across.max_element() { 0 } else { 2 - usize::from(across.y == across.max_element()) };
         let kept = [(dropped + 1) % 3, (dropped + 2) % 3];
-        // Coordinates as they are given: dropping one rounds nothing.
+        // Dropping a coordinate rounds nothing.
         let flat: Vec<Vec<DVec2>> =
             rings.iter().map(|ring| ring.iter().map(|p| DVec2::new(p[kept[0]], p[kept[1]])).collect()).collect();
         outline::check(&flat)?;
@@ -155,8 +156,8 @@ impl Polygon {
         Ok(Self { rings, bounds, longest, anchor, normal, deviation, corner, axes, area, kept, parts, shares })
     }
 
-    /// Where a line that passes through meets the plane, and the point relative to where u and v are 0. With 32 digits,
-    /// so that a far origin and a grazing direction lose none.
+    /// The intersection of a line with the plane: its parameter, and the point relative to that of u = v = 0.
+    /// Double-double arithmetic keeps the digits for far origins and grazing directions.
     fn crossing(&self, ray: &Ray) -> Option<(f64, DVec3)> {
         let [o, d, n, anchor] = [ray.origin, ray.direction, self.normal, self.anchor].map(|v| v.to_array());
         let (scale, _) = normalising_scale(ray.direction.abs().max_element());
@@ -167,8 +168,8 @@ impl Polygon {
             slope = slope + DoubleDouble::product(d[i], n[i]);
         }
         let k = (0..3).find(|&k| d[k].abs() >= 1.0)?;
-        // The line passes within the points' hull as seen along it, so it is there between the least and the greatest
-        // depth.
+        // The line passes through the convex hull of the points, so its intersection lies between their least and
+        // greatest depth.
         let depth = [self.bounds.min[k], self.bounds.max[k]].map(|x| DoubleDouble::difference(x, o[k]) / d[k].into());
         let (near, far) = if d[k] > 0.0 { (depth[0], depth[1]) } else { (depth[1], depth[0]) };
         let t = if slope == DoubleDouble::ZERO { (near + far).scaled(0.5) } else { above / slope };
@@ -210,7 +211,7 @@ impl Polygon {
 }
 
 impl Polygon {
-    /// A point of the plane by the coordinates that are kept, relative to where u and v are 0.
+    /// A point of the plane, from its two projected coordinates, relative to that of u = v = 0.
     fn relative_to_corner(&self, flat: DVec2) -> DVec3 {
         let mut relative = [0.0; 3];
         let (i, j) = (self.kept[0], self.kept[1]);
@@ -225,7 +226,7 @@ impl Polygon {
         self.rings.iter().flat_map(|ring| ring.iter().copied().zip(ring.iter().copied().cycle().skip(1)))
     }
 
-    /// Whether a point of its plane is within its outline, and in no hole.
+    /// Return whether a point of the plane is inside the outline and outside all holes.
     fn holds(&self, foot: DVec3) -> bool {
         let [i, j] = self.kept;
         let is_crossed = |(a, b): &(DVec3, DVec3)| {
@@ -257,7 +258,7 @@ impl Shape for Polygon {
         if self.holds(foot) {
             return Some(Closest { position: foot, uv: self.uv(foot - self.corner) });
         }
-        // An edge is a triangle without area.
+        // An edge is a degenerate triangle.
         let near = self.edges().map(|(a, b)| ([a, b, b], nearest_point([a, b, b], place)));
         let (edge, found) = near.min_by(|(_, a), (_, b)| a.distance.total_cmp(&b.distance))?;
         let position = point_of(edge, found.uv);
@@ -269,7 +270,7 @@ impl Shape for Polygon {
         let foot = place - normal * normal.dot(place - to_world.point(self.anchor));
         let own = to_object.point(foot);
         if self.holds(own) {
-            // Far from the plane the foot has lost digits that its own coordinates in the plane have not.
+            // Far from the plane, the foot of the perpendicular has lost digits: project it again.
             let own = own - self.normal * self.normal.dot(own - self.anchor);
             return Some(Closest { position: to_world.point(own), uv: self.uv(own - self.corner) });
         }
@@ -281,7 +282,7 @@ impl Shape for Polygon {
     }
 
     fn bounds(&self) -> Bounds {
-        // Points of the plane near the edges lie off them by no more.
+        // Points of the plane near the edges deviate from them by no more than this.
         let room = DVec3::splat(self.deviation);
         let (min, max) = (self.bounds.min - room, self.bounds.max + room);
         let exact = self.deviation == 0.0;
@@ -316,7 +317,7 @@ impl Shape for Polygon {
     fn sample(&self, u: [f64; 2]) -> Option<Drawn> {
         let part = self.shares.partition_point(|&s| s <= u[0]).min(self.parts.len().checked_sub(1)?);
         let before = if part > 0 { self.shares[part - 1] } else { 0.0 };
-        // The number that chose is stretched over what it chose, so that near numbers stay near points.
+        // Stretch the remainder of the number that chose the part, so that nearby numbers give nearby points.
         let rest = ((u[0] - before) / (self.shares[part] - before)).clamp(0.0, 1.0);
         let point = self.point_at(self.uv(self.relative_to_corner(self.parts[part].sample([rest, u[1]]))));
         Some(Drawn { point, pdf: 1.0 / self.area })

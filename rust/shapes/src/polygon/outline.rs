@@ -1,14 +1,13 @@
-//! Rings of points in the plane: on which side of a line a point lies, exactly, and whether rings cross or touch.
+//! Exact predicates on rings of 2D points: orientation, and whether rings cross or touch.
 
 use glam::DVec2;
 use raywright_base::math::robust::UNIT;
 use raywright_base::math::{DVec3, exact_edges};
 
-/// On which side of the line from `a` to `b` the point `c` lies: 1 to the left, −1 to the right, 0 on it. Exact for
-/// finite numbers.
+/// The side of the line from `a` to `b` on which `c` lies: 1 left, −1 right, 0 on it. Exact for finite numbers.
 ///
-/// The bound is that of Shewchuk ("Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates",
-/// 1997); products that may have underflowed, and what overflows, are decided exactly.
+/// The error bound is that of Shewchuk ("Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric
+/// Predicates", 1997). Products that may have underflowed or overflowed are decided exactly.
 pub fn orientation(a: DVec2, b: DVec2, c: DVec2) -> i32 {
     let left = (b.x - a.x) * (c.y - a.y);
     let right = (b.y - a.y) * (c.x - a.x);
@@ -21,13 +20,13 @@ pub fn orientation(a: DVec2, b: DVec2, c: DVec2) -> i32 {
     i32::from(volume > 0.0) - i32::from(volume < 0.0)
 }
 
-/// Whether `a` comes before `b`: is lower, or as low and further to the left. It is the order by height of a plane that
-/// is sheared by next to nothing, in which no two points are equally high.
+/// Return whether `a` is lower than `b`, or as high and farther left. This is the order by height in an infinitesimally
+/// sheared plane, where no two points have equal height.
 pub fn is_before(a: DVec2, b: DVec2) -> bool {
     a.y < b.y || (a.y == b.y && a.x < b.x)
 }
 
-/// Whether a point that lies on no edge of a ring lies inside of it.
+/// Return whether a point that lies on no edge of a ring is inside it.
 pub fn is_inside(point: DVec2, ring: &[DVec2]) -> bool {
     let crossed = edges(ring).filter(|&(a, b)| {
         let (low, high) = if is_before(a, b) { (a, b) } else { (b, a) };
@@ -41,9 +40,9 @@ pub fn edges(ring: &[DVec2]) -> impl Iterator<Item = (DVec2, DVec2)> {
     ring.iter().copied().zip(ring.iter().copied().cycle().skip(1))
 }
 
-/// Refuses rings that are no outline (the first) with holes (the others): with two equal points in a row, crossing or
-/// touching themselves or each other, or a hole that does not lie inside the outline and outside of the other holes.
-/// Tells what is wrong where.
+/// Check that the first ring is a valid outline and the others are valid holes. Rejected are two equal points in a row,
+/// rings that cross or touch themselves or each other, and holes outside the outline or inside other holes. The error
+/// says what is wrong and where.
 pub fn check(rings: &[Vec<DVec2>]) -> Result<(), String> {
     for (r, ring) in rings.iter().enumerate() {
         if let Some(i) = edges(ring).position(|(a, b)| a == b) {
@@ -66,12 +65,12 @@ pub fn check(rings: &[Vec<DVec2>]) -> Result<(), String> {
     Ok(())
 }
 
-/// What a ring is called.
+/// The name of a ring in error messages.
 pub fn name(ring: usize) -> String {
     if ring == 0 { "the outline".to_owned() } else { format!("hole {}", ring - 1) }
 }
 
-/// An edge, and where it stands.
+/// An edge and its position in its ring.
 #[derive(Clone, Copy)]
 struct Edge {
     ring: usize,
@@ -90,12 +89,12 @@ impl Edge {
         self.from.max(self.to)
     }
 
-    /// Whether `other` starts where this one ends.
+    /// Return whether `other` starts where this one ends.
     fn precedes(&self, other: &Self) -> bool {
         self.ring == other.ring && (self.index + 1) % self.count == other.index
     }
 
-    /// Whether two edges have a point in common that neighbours in a ring must not have.
+    /// Return whether two edges share a point, other than the common corner of neighbours.
     fn meets(&self, other: &Self) -> bool {
         if self.least().cmpgt(other.greatest()).any() || other.least().cmpgt(self.greatest()).any() {
             return false;
@@ -105,17 +104,16 @@ impl Edge {
         }
         if self.precedes(other) {
             let (a, corner, b) = (self.from, self.to, other.to);
-            // Back along the same line.
+            // Folded back along the same line.
             return orientation(a, corner, b) == 0 && is_before(a, corner) == is_before(b, corner);
         }
         let side = |edge: &Self, p| orientation(edge.from, edge.to, p);
-        // On one line, edges meet where their boxes do.
+        // Collinear edges meet if their bounding boxes do.
         side(other, self.from) * side(other, self.to) <= 0 && side(self, other.from) * side(self, other.to) <= 0
     }
 }
 
-/// Two edges that meet and should not. They are swept in the order of their least x, so that only those are compared
-/// that overlap there.
+/// Two edges that meet but must not. A sweep by least x compares only edges that overlap in x.
 fn first_meeting(rings: &[Vec<DVec2>]) -> Option<(Edge, Edge)> {
     let mut all: Vec<Edge> = Vec::new();
     for (ring, points) in rings.iter().enumerate() {
@@ -156,7 +154,7 @@ mod tests {
         fn sides_are_exact(
             a in [-9i64..9, -9..9], b in [-9i64..9, -9..9], k in -9i64..9, ulps in -2i64..=2, power in -60i32..60,
         ) {
-            // On the line, or some units in the last place beside it, in numbers of 2⁻⁵⁰.
+            // On the line, or a few ulps beside it, in units of 2⁻⁵⁰.
             let unit = 1i64 << 48;
             let at = |i: usize| a[i] * unit + k * (b[i] - a[i]) * (unit / 16);
             let c = [at(0), at(1) + ulps];

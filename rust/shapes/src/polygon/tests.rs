@@ -26,7 +26,7 @@ fn hits(shape: &dyn Shape, ray: &Ray) -> Vec<Candidate> {
     all
 }
 
-/// Whether a point in sixteenths lies inside (1), on the border (0) or outside (−1), in integers.
+/// Return whether a point in sixteenths is inside (1), on the border (0) or outside (−1), in integers.
 fn side(p: [i64; 2]) -> i32 {
     let mut inside = false;
     for ring in [&L[..], &HOLE[..]] {
@@ -45,7 +45,7 @@ fn side(p: [i64; 2]) -> i32 {
     if inside { 1 } else { -1 }
 }
 
-/// A prism over the L with its hole, turned and moved so that its corners are rounded: every edge shared by two
+/// A prism over the L with its hole, rotated and moved so that its corners are rounded. Every edge is shared by two
 /// polygons.
 fn prism(turn: [f64; 3], shift: DVec3) -> Vec<Polygon> {
     let lift = |z: f64| {
@@ -111,7 +111,7 @@ proptest! {
         let all = |r: &Ray| faces.iter().flat_map(|f| hits(f, r)).collect::<Vec<_>>();
         let crossed = |r: &Ray| all(r).iter().filter(|m| m.contact != Contact::Touching).count();
         prop_assert_eq!(crossed(&ray) % 2, 0);
-        // The middle of the long wall of the L lies inside the prism.
+        // The middle of the long arm of the L lies inside the prism.
         let inside = (rings_middle(&faces) + target * 1e-9) / (1.0 + 1e-9);
         prop_assert_eq!(crossed(&Ray::new(inside, target - inside)) % 2, 1);
     }

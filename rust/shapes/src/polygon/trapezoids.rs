@@ -1,14 +1,14 @@
-//! A polygon cut into trapezoids with level bottoms and tops, for drawing points evenly.
+//! Trapezoidal decomposition of a polygon, for uniform sampling.
 
 use super::outline::{is_before, orientation};
 use glam::DVec2;
 
-/// What lies between two edges from one height to another.
+/// The region between two edges over an interval of heights.
 #[derive(Clone, Copy, Debug)]
 pub struct Trapezoid {
     bottom: f64,
     top: f64,
-    /// From where to where it goes, at the bottom and at the top.
+    /// The horizontal intervals at the bottom and at the top.
     spans: [[f64; 2]; 2],
 }
 
@@ -26,11 +26,11 @@ impl Trapezoid {
         [DVec2::new(left, low), DVec2::new(right, low), DVec2::new(top_right, high), DVec2::new(top_left, high)]
     }
 
-    /// A point of it, even by area.
+    /// Sample a point uniformly by area.
     pub fn sample(&self, u: [f64; 2]) -> DVec2 {
         let [low, high] = self.widths();
         let root = ((1.0 - u[1]) * low * low + u[1] * high * high).sqrt();
-        // The share of the height below which a share u of the area lies.
+        // The fraction of the height below which a fraction u of the area lies.
         let share = if low + root > 0.0 { u[1] * (low + high) / (low + root) } else { u[1] };
         let mix = |a: f64, b: f64, s: f64| a + (b - a) * s;
         let [left, right] = [0, 1].map(|side| mix(self.spans[0][side], self.spans[1][side], share));
@@ -42,13 +42,12 @@ impl Trapezoid {
     }
 }
 
-/// Cuts the inside of rings that neither cross nor touch into trapezoids without overlap, at most three for every
-/// point.
+/// Decompose the inside of rings that neither cross nor touch into disjoint trapezoids, at most three per point.
 ///
-/// A level line sweeps upwards over the points and knows the edges that it crosses, from left to right: what lies
-/// between the first and the second is inside, between the third and the fourth, and so on. Where an edge of such a
-/// pair ends, a trapezoid does. Points of one height are taken from left to right, as if the plane were sheared by next
-/// to nothing, so level edges need no case of their own.
+/// A horizontal sweep line moves upward over the points and keeps the edges it crosses from left to right. The inside
+/// is between the first and the second, between the third and the fourth, and so on. A trapezoid ends where an edge of
+/// its pair ends. Points of equal height are ordered from left to right, as in an infinitesimally sheared plane, so
+/// horizontal edges need no special case.
 pub fn trapezoids(rings: &[Vec<DVec2>]) -> Vec<Trapezoid> {
     let mut events: Vec<[DVec2; 3]> = Vec::new();
     for ring in rings {
@@ -63,14 +62,14 @@ pub fn trapezoids(rings: &[Vec<DVec2>]) -> Vec<Trapezoid> {
     sweep.done
 }
 
-/// An edge from its lower to its upper end.
+/// An edge, lower end first.
 type Rising = [DVec2; 2];
 
 #[derive(Default)]
 struct Sweep {
     /// From left to right.
     edges: Vec<Rising>,
-    /// From which height on each pair of edges is open.
+    /// The height at which the current trapezoid of each pair begins.
     since: Vec<f64>,
     done: Vec<Trapezoid>,
 }
@@ -105,7 +104,7 @@ impl Sweep {
         }
     }
 
-    /// Ends a pair's trapezoid at a height, where its next one begins.
+    /// End a pair's trapezoid at a height, where its next one begins.
     fn close(&mut self, pair: usize, top: f64) {
         let bottom = std::mem::replace(&mut self.since[pair], top);
         if bottom < top {
@@ -118,7 +117,7 @@ impl Sweep {
     }
 }
 
-/// Where an edge is at a height that it reaches.
+/// The position of an edge at a height within its range.
 fn at([low, high]: Rising, y: f64) -> f64 {
     if high.y <= low.y || y >= high.y {
         return high.x;
@@ -148,7 +147,7 @@ mod tests {
                 let at = |(i, r): (usize, f64)| DVec2::from_angle(i as f64 * std::f64::consts::TAU / count) * r;
                 radii.into_iter().enumerate().map(at).collect()
             };
-            // On a grid, so that points share heights and edges are level.
+            // On a grid, so that points share heights and edges are horizontal.
             let outer = star(radii.into_iter().map(f64::from).collect());
             let outer: Vec<DVec2> = outer.iter().map(|p| p.round()).collect();
             let mut rings = vec![outer, star(hole)];
@@ -162,7 +161,7 @@ mod tests {
             let wanted = area(&rings[0]) - rings[1..].iter().map(|r| area(r)).sum::<f64>();
             prop_assert!((sum - wanted).abs() < 1e-12 * wanted, "{sum} of {wanted}");
             for part in parts.iter().filter(|p| p.area() > 1e-6) {
-                // Off the border, which rounding may cross.
+                // Away from the border, which rounding may cross.
                 let p = part.sample(u.map(|x| 0.01 + 0.98 * x));
                 prop_assert!(is_inside(p, &rings[0]) && !rings[1..].iter().any(|r| is_inside(p, r)));
             }

@@ -1,4 +1,4 @@
-//! Areas of surfaces of revolution, and points drawn from them.
+//! Areas of surfaces of revolution, and sampling by area.
 
 use super::{Profile, Revolution};
 use crate::Drawn;
@@ -21,21 +21,21 @@ impl Revolution {
         [cap(base), side, cap(tip)]
     }
 
-    /// Its area.
+    /// The total area.
     pub(crate) fn area(&self) -> f64 {
         self.areas().iter().sum()
     }
 
-    /// A point drawn evenly by area.
+    /// Sample a point uniformly by area.
     pub(crate) fn sample(&self, u: [f64; 2]) -> Option<Drawn> {
         let areas = self.areas();
         let whole: f64 = areas.iter().sum();
         let [low, high] = self.breaks();
         let (_, height) = self.frame();
-        // The first number chooses the part, and what is left of it is as even as it was.
+        // The first number chooses the part; its remainder is uniform again.
         let left = u[0] * whole;
         let v = if left < areas[0] {
-            // A cap is even in the square of the radius.
+            // A disk is uniform in the squared radius.
             (low * (left / areas[0]).sqrt()).min(low.next_down())
         } else if left >= areas[0] + areas[1] && areas[2] > 0.0 {
             let share = ((left - areas[0] - areas[1]) / areas[2]).clamp(0.0, 1.0);
@@ -44,8 +44,8 @@ impl Revolution {
             let share = ((left - areas[0]) / areas[1]).clamp(0.0, 1.0);
             let along = match self.profile {
                 Profile::Straight { base, tip } => {
-                    // So is a cone; a cylinder is even in the height. One formula serves both, without a difference
-                    // that cancels.
+                    // A cone, too, is uniform in the squared radius, and a cylinder in the height. One formula without
+                    // cancellation serves both.
                     let radius = (base * base + share * (tip - base) * (tip + base)).max(0.0).sqrt();
                     if share > 0.0 { share * (base + tip) / (base + radius) } else { 0.0 }
                 }
@@ -59,17 +59,17 @@ impl Revolution {
         (whole > 0.0).then(|| Drawn { point: self.at([u[1], v]), pdf: 1.0 / whole })
     }
 
-    /// The area of its image under a map, to about 10⁻⁹ of itself.
+    /// The area under an affine map, to a relative error of about 10⁻⁹.
     ///
-    /// A cap's is closed. Around a straight side the stretch depends on the angle alone, and around a paraboloid on the
-    /// radius too: it is summed at ever more angles until that changes nothing more. For a function of period 1 that
-    /// converges faster than any power where it is smooth (Trefethen and Weideman 2014).
+    /// A cap has a closed form. The stretch of a straight side depends on the angle alone, and that of a paraboloid
+    /// also on the radius. It is summed over ever more angles until the sum is stable. For a smooth function of period
+    /// 1 this converges faster than any power (Trefethen and Weideman 2014).
     pub(crate) fn area_under(&self, map: &Affine) -> f64 {
         let (frame, height) = self.frame();
         let [base, _, tip] = self.areas();
         let caps = (base + tip) * map.cofactors(frame.normal).length();
         let [x, y, z] = [frame.tangent, frame.bitangent, frame.normal].map(|axis| map.cofactors(axis));
-        // The mean stretch of normals that go round at a distance of `out` and a height of `up`.
+        // The mean stretch over a ring of normals with radial part `out` and axial part `up`.
         let ring = |out: f64, up: f64| {
             around(|angle| {
                 let (sin, cos) = (TAU * angle).sin_cos();
@@ -86,13 +86,13 @@ impl Revolution {
     }
 }
 
-/// With k = 2 h / r, the squared slope k² of the parabola at its rim, and (1 + k²)^(3/2) − 1.
+/// With k = 2 h / r: the squared slope k² of the parabola at its rim, and (1 + k²)^(3/2) − 1.
 fn parabola(radius: f64, height: f64) -> (f64, f64) {
     let square = (2.0 * height / radius).powi(2);
     (square, (1.5 * square.ln_1p()).exp_m1())
 }
 
-/// The mean of a function of period 1 by sums over ever more places.
+/// The mean of a function of period 1 by the trapezoidal rule with ever more points.
 fn around(f: impl Fn(f64) -> f64) -> f64 {
     let sum = |count: u32, shift: f64| (0..count).map(|i| f((f64::from(i) + shift) / f64::from(count))).sum::<f64>();
     let (mut count, mut total) = (16, sum(16, 0.0));
@@ -106,7 +106,7 @@ fn around(f: impl Fn(f64) -> f64) -> f64 {
     }
 }
 
-/// The integral from 0 to 1, by Simpson's rule on ever smaller steps, extrapolated (Romberg 1955).
+/// The integral over [0, 1] by Simpson's rule with ever smaller steps, extrapolated (Romberg 1955).
 fn simpson(f: impl Fn(f64) -> f64) -> f64 {
     let mut steps = 1u32;
     let mut row = vec![0.5 * (f(0.0) + f(1.0))];

@@ -1,4 +1,4 @@
-//! Where a line meets a surface of revolution.
+//! Exact intersection of a line with a surface of revolution.
 
 use super::{BASE, Profile, Revolution, SIDE, TIP};
 use crate::Contact;
@@ -10,13 +10,12 @@ use raywright_base::math::{Number, Ray, Triple};
 use std::cmp::Ordering;
 
 impl Revolution {
-    /// Where a line meets it, with the foot of the axis as the line's origin of space.
+    /// The intersections of a line given relative to the foot of the axis.
     ///
-    /// On the line the surface is `a t² + 2 b t + c = 0`. Inside, the left side is at most 0, if the axis is long
-    /// enough; between the two planes the closed shape is convex, so that the line lies within from the first to the
-    /// last of its meetings with side and caps. Which root lies between the planes, and which plane is met within its
-    /// disk, follows from the signs of the left side and of its derivative where the line meets the planes: no root is
-    /// compared with anything.
+    /// On the line the surface is `a t² + 2 b t + c = 0`, and the left side is at most 0 inside a sufficiently long
+    /// shape. Between the two planes the closed shape is convex, so the line is inside it from the first to the last
+    /// intersection with side and caps. The signs of the left side and of its derivative at the two planes decide which
+    /// root lies between the planes and which plane is hit within its disk. No root is compared with anything.
     #[inline]
     pub(crate) fn meets_from_foot<N: Number>(&self, line: &Line<N>) -> Option<Meets<N>> {
         let Line { origin: w, direction: d, unit } = line;
@@ -32,7 +31,7 @@ impl Revolution {
             return Some(Meets::new(self.capped));
         }
         let climbs = climb.sign()?;
-        // The line meets a plane at p / climb.
+        // The line intersects a plane at p / climb.
         let planes = [height.negated(), top.minus(&height)];
         if climbs == Ordering::Equal && (planes[0].sign()? == Ordering::Greater || planes[1].sign()? == Ordering::Less)
         {
@@ -51,7 +50,7 @@ impl Revolution {
                 caps[i] = self.capped && there != Ordering::Greater;
                 let slope = a.times(p).plus(&b.times(&climb)).sign()?;
                 let slope = if climbs == Ordering::Less { slope.reverse() } else { slope };
-                // A line that climbs must meet the base plane first.
+                // An ascending line crosses the base plane first.
                 let base_side = (i == 0) == (climbs == Ordering::Greater);
                 side.clip(base_side, a_sign, there, slope, i);
             }
@@ -60,12 +59,12 @@ impl Revolution {
         let plane = |i: usize| Root { t: planes[i].over(&climb), slope: climb.clone() };
         for i in 0..2 {
             if caps[i] {
-                // A cap without a radius is the side's own point.
+                // A cap of radius 0 is a point of the side.
                 let part = if self.radii()[i] == 0.0 { SIDE } else { [BASE, TIP][i] };
                 met = met.with(meet(plane(i), N::of(0.0), [BASE, TIP][i], part, Contact::Inside));
             }
         }
-        // A root that lies on a plane is the plane's.
+        // A root on a plane is computed from the plane.
         let on_side = |root: &Root<N>, on_plane: Option<usize>, contact: Contact| match on_plane {
             Some(i) => meet(plane(i), N::of(0.0), [BASE, TIP][i], SIDE, contact),
             None => meet(root.clone(), a.clone(), SIDE, SIDE, contact),
@@ -86,8 +85,7 @@ impl Revolution {
                 if keep {
                     let slope = if double { N::of(0.0) } else { b.plus(&b) };
                     let t = if double { b.over(&a).negated() } else { c.over(&slope).negated() };
-                    // Through the point of a cone, and within it before or after: moved by next to nothing it crosses
-                    // once.
+                    // Through the apex of a cone and inside before or after: the perturbed line crosses once.
                     let through = if a_sign == Ordering::Less { Contact::Crossing } else { Contact::Touching };
                     let contact = if double { through } else { Contact::Inside };
                     met = met.with(on_side(&Root { t, slope }, on_plane, contact));
@@ -97,12 +95,11 @@ impl Revolution {
         Some(met)
     }
 
-    /// Whether a ray's line certainly stays farther from the axis' line than any point of the surface: |(d × w) · v| >
-    /// r |d × v|, for most lines that come near and meet nothing.
+    /// Return whether a ray's line is certainly farther from the axis' line than any point of the surface: |(d × w) ·
+    /// v| > r |d × v|. It rejects most near misses.
     ///
-    /// With u = [`UNIT`], and the rounded ways w and v: a cross product errs by 3√2 u of the product of its factors'
-    /// lengths, and the triple product by (3√2 + 4) u of |d| |w| |v|. Lengths that are not extreme leave underflow no
-    /// part in it.
+    /// Let u = [`UNIT`], and w and v the rounded vectors. A cross product errs by 3√2 u of the product of its factors'
+    /// lengths, and the triple product by (3√2 + 4) u of |d| |w| |v|. The limits on lengths exclude underflow.
     #[inline]
     pub(crate) fn is_passed_by(&self, ray: &Ray) -> bool {
         const LEAST: f64 = f64::from_bits((1023 - 200) << 52);
@@ -117,8 +114,8 @@ impl Revolution {
         usual(d_length) && usual(w_length) && usual(v_length) && usual(radius) && volume > reach * (1.0 + 16.0 * UNIT)
     }
 
-    /// What is zero on a part's whole surface, at a point in units relative to the foot of the axis: on a line it is
-    /// what [`Revolution::meets`] says of it there.
+    /// The implicit function of a part's whole surface, at a point in units relative to the foot of the axis. On a line
+    /// it equals the polynomial of [`Revolution::meets`].
     #[inline]
     pub(crate) fn zero_on<N: Number>(&self, part: usize, point: &Triple<N>, unit: &N) -> N {
         let v = Triple::between(self.base, self.tip);
@@ -145,11 +142,11 @@ impl Revolution {
         }
     }
 
-    /// The coefficients a, b, c along the line, and b² − a c up to a positive factor of exactly 1 in closest-approach
-    /// form, that is without the terms that always cancel.
+    /// The coefficients a, b, c along the line, and b² − a c up to a positive factor. The latter is in closest-approach
+    /// form, without the terms that always cancel.
     ///
-    /// With P = d × v, R = w × v, m = d × w, and A, B what the axis adds along the line: P·R squared less P² R² is
-    /// −|P × R|² = −v² (m · v)² (Lagrange), and B P − A R = (B d − A w) × v with (w · v) d − (d · v) w = v × m.
+    /// Let P = d × v, R = w × v, m = d × w, and A, B the axial parts along the line. (P·R)² − P² R² is −|P × R|² = −v²
+    /// (m · v)² (Lagrange). B P − A R = (B d − A w) × v with (w · v) d − (d · v) w = v × m.
     fn polynomial<N: Number>(
         &self,
         line: &Line<N>,
@@ -159,7 +156,7 @@ impl Revolution {
     ) -> [N; 4] {
         let volume = moment.dot(v);
         match self.profile {
-            // A cylinder has a polynomial of its own that is v² times less.
+            // A cylinder has its own polynomial, smaller by a factor of v².
             Profile::Straight { base, tip } if base == tip => {
                 let square = N::of(base).times(&line.unit).squared().times(vv);
                 let a = across.dot(across);
@@ -196,10 +193,10 @@ impl Revolution {
     }
 }
 
-/// The meetings with the infinite side, and which of them lie between the planes.
+/// The intersections with the infinite side surface, and whether they lie between the planes.
 enum Side {
     None,
-    /// The only root; of a tangent, or through a cone's point, double.
+    /// The only root; double if the line is tangent or passes through the apex.
     One {
         keep: bool,
         on_plane: Option<usize>,
@@ -215,7 +212,7 @@ enum Side {
 impl Side {
     fn of<N: Number>(a: Ordering, b: &N, discriminant: impl FnOnce() -> Option<Ordering>) -> Option<Self> {
         if a == Ordering::Equal {
-            // With no linear term either the line runs along the surface, and so meets it edge-on, or never meets it.
+            // Without a linear term the line is either contained in the surface, and so edge-on, or misses it.
             let none = b.sign()? == Ordering::Equal;
             return Some(if none { Self::None } else { Self::One { keep: true, on_plane: None, double: false } });
         }
@@ -226,16 +223,16 @@ impl Side {
         })
     }
 
-    /// Drops the roots that lie before the line's meeting with plane `i` (`first`), or after it, by the signs of the
-    /// polynomial and of half its derivative there.
+    /// Discard the roots before the intersection with plane `i` if `first`, else those after it. The signs of the
+    /// polynomial and of half its derivative at the plane decide.
     fn clip(&mut self, first: bool, a: Ordering, there: Ordering, slope: Ordering, i: usize) {
-        // How a root compares with the plane's t.
+        // The order of a root and the plane's t.
         let against = |greater: bool, linear: bool| {
             if linear {
-                // Half the derivative is b everywhere.
+                // Half the derivative is constant, b.
                 return if slope == Ordering::Greater { there.reverse() } else { there };
             }
-            // Right of the middle between the roots?
+            // Whether the plane's t exceeds the midpoint of the roots.
             let right = if a == Ordering::Greater { slope } else { slope.reverse() };
             let outside = if a == Ordering::Greater { there } else { there.reverse() };
             match (outside, right) {

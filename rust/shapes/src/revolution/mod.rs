@@ -1,9 +1,8 @@
-//! Cylinders, cones and paraboloids: what a line or a parabola draws when it is turned about an axis, between two
-//! planes.
+//! Surfaces of revolution: cylinders, cones and paraboloids about a segment.
 //!
-//! With x a point relative to the foot of the axis and v the axis, |x × v| is |v| times the distance from the axis, and
-//! x · v is |v| times the height. So all are the zeros of polynomials in what is given, with no unit vector and no
-//! rotation:
+//! Let x be a point relative to the foot of the axis and v the axis. Then |x × v| is |v| times the distance from the
+//! axis, and x · v is |v| times the height. All surfaces are therefore zeros of polynomials in the given numbers,
+//! without unit vectors or rotations:
 //!
 //! - from radius r to r + k: `v² |x × v|² = (r v² + k (x · v))²`;
 //! - a parabola of radius r at height |v|: `|x × v|² = r² (x · v)`.
@@ -19,12 +18,12 @@ use raywright_base::math::robust::UNIT;
 use raywright_base::math::{DVec3, Frame};
 use std::f64::consts::TAU;
 
-/// What is turned about the axis.
+/// The profile curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Profile {
-    /// A line, from one distance to another.
+    /// A straight line between two radii.
     Straight { base: f64, tip: f64 },
-    /// A parabola, from the axis to a distance.
+    /// A parabola from the axis to a rim radius.
     Parabola { tip: f64 },
 }
 
@@ -36,13 +35,13 @@ pub(crate) const TIP: usize = 2;
 /// A surface of revolution about a segment.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Revolution {
-    /// Where the axis begins.
+    /// The start of the axis.
     pub(crate) base: DVec3,
-    /// Where it ends.
+    /// The end of the axis.
     pub(crate) tip: DVec3,
-    /// What is turned.
+    /// The profile curve.
     pub(crate) profile: Profile,
-    /// Whether it is closed by disks.
+    /// True if it is closed by disks.
     pub(crate) capped: bool,
 }
 
@@ -58,33 +57,33 @@ impl Revolution {
     /// The frame about the axis, and the height.
     pub(crate) fn frame(&self) -> (Frame, f64) {
         let axis = self.tip - self.base;
-        // Scaled first, so that no square overflows or vanishes.
+        // Scaled first, so that no square overflows or underflows.
         let scale = axis.abs().max_element();
         let scaled = axis / scale;
         let length = scaled.length();
         (Frame::new(scaled / length), length * scale)
     }
 
-    /// The box around it: around its two rims, since nothing bulges out between them.
+    /// The bounding box of the two rims; the surface does not bulge out between them.
     pub(crate) fn bounds(&self) -> Bounds {
         Bounds::of_support(|d| self.support(d))
     }
 
-    /// The greatest d · x of its points, rounded up.
+    /// The support function: the greatest d · x over the surface, rounded up.
     pub(crate) fn support(&self, d: DVec3) -> f64 {
         let (frame, height) = self.frame();
         let across = d.cross(frame.normal).length();
         let rim = |end: DVec3, radius: f64| {
             let size = (end.abs() * d.abs()).element_sum() + radius * d.length();
-            // The sum of three products errs by 3 UNIT of the sum of their sizes; the frame's own normal by 4 UNIT,
-            // which tells on the second term only.
+            // The sum of three products errs by 3 UNIT of the sum of their magnitudes. The frame's normal errs by 4
+            // UNIT, which affects only the second term.
             end.dot(d) + radius * across + 16.0 * UNIT * size
         };
         match self.profile {
             Profile::Straight { base, tip } => rim(self.base, base).max(rim(self.tip, tip)),
             Profile::Parabola { tip } => {
-                // Along the profile (r v, h v²): greatest at the rim or, where d points below it, at v = −r |d⊥| / (2 h
-                // d∥).
+                // Along the profile (r v, h v²) the maximum is at the rim or, where d points below it, at v = −r |d⊥| /
+                // (2 h d∥).
                 let along = d.dot(frame.normal) * height;
                 let v = -tip * across / (2.0 * along);
                 let bulge = if (0.0..=1.0).contains(&v) {
@@ -97,8 +96,8 @@ impl Revolution {
         }
     }
 
-    /// Where the second coordinate comes from the base cap to the side, and from there to the tip cap: by lengths along
-    /// the profile, and half and half of a paraboloid.
+    /// The values of v at which the base cap ends and the tip cap begins. They follow the arc length of the profile,
+    /// and halve v for a paraboloid.
     pub(crate) fn breaks(&self) -> [f64; 2] {
         match self.profile {
             _ if !self.capped => [0.0, 1.0],
@@ -111,7 +110,7 @@ impl Revolution {
         }
     }
 
-    /// The coordinates of a point of a part, relative to the foot.
+    /// The surface parameters of a point of a part, relative to the foot.
     pub(crate) fn coordinates(&self, part: usize, x: DVec3) -> [f64; 2] {
         let (frame, height) = self.frame();
         let local = frame.to_local(x);
@@ -134,10 +133,10 @@ impl Revolution {
         [u, v.clamp(0.0, 1.0)]
     }
 
-    /// The point of given coordinates.
+    /// The point at given surface parameters.
     ///
-    /// The error of a coordinate is that of its last sum, one unit of its own, and those of the summands, which come
-    /// from a few roundings each: 8 of the height's and 16 of the radius', with the frame's.
+    /// A coordinate errs by one UNIT of itself for the last sum, and by the summands' errors from a few roundings each.
+    /// These are 8 UNIT of the height and 16 of the radius, including the frame.
     pub(crate) fn at(&self, [u, v]: [f64; 2]) -> Point {
         let (frame, height) = self.frame();
         let [base, tip] = self.radii();
@@ -168,7 +167,7 @@ impl Revolution {
                 let radius = base + widening * along;
                 let slant = height.hypot(widening);
                 let (level, rise) = (height / slant, -widening / slant);
-                // From the nearer end, so that its rim is met.
+                // From the nearer end, so that its rim is exact.
                 let (from, x) = if along <= 0.5 {
                     (self.base, up * (height * along))
                 } else {
@@ -180,7 +179,7 @@ impl Revolution {
             }
             Profile::Parabola { .. } => {
                 let radius = tip * along;
-                // Upwards it is h for every r, outwards 2 h s for every s of the way: the normal is at right angles.
+                // The tangent has the axial part 2 h s for the radial part r, and the normal is at right angles to it.
                 let (n, dn) = (out * (2.0 * height * along) - up * tip, out * (2.0 * height / span));
                 let length = n.length();
                 let normal = n / length;

@@ -1,4 +1,4 @@
-//! A surface of revolution as a shape: what its own file and its neighbours work out, as others ask for it.
+//! The `Shape` and `Solid` implementations of surfaces of revolution.
 
 use super::{BASE, Profile, Revolution, SIDE, TIP};
 use crate::around::Around;
@@ -36,12 +36,12 @@ impl Solid for Revolution {
     }
 }
 
-/// The point of the parabola from the origin to a rim that is nearest to a point on its right.
+/// The closest point of the parabola from the origin to a rim, for a query point on its right.
 ///
-/// At a share q of the rim's radius r, the height is h q², and q is where `2 h² q³ + (r² − 2 h z) q − r ρ` is 0: below
-/// 0 before it and above after, since there is one such q above 0 at most.
+/// At a fraction q of the rim's radius r, the height is h q². The closest q is the zero of `2 h² q³ + (r² − 2 h z) q −
+/// r ρ`, which is negative below it and positive above, since at most one such q is positive.
 fn of_parabola(rim: f64, height: f64, [across, up]: [f64; 2]) -> [f64; 2] {
-    // In units of the larger, lest powers vanish.
+    // In units of the larger, to avoid underflow of powers.
     let size = rim.max(height);
     let (r, h, rho, z) = (rim / size, height / size, across / size, up / size);
     let is_before = |q: f64| (2.0 * h * (h * q * q - z) + r * r) * q - r * rho <= 0.0;
@@ -49,7 +49,7 @@ fn of_parabola(rim: f64, height: f64, [across, up]: [f64; 2]) -> [f64; 2] {
         return [rim, height];
     }
     let (mut low, mut high) = (0.0, 1.0);
-    // As many halvings as exhaust all f64; mostly 60 do.
+    // Enough bisections to exhaust all f64; usually 60 suffice.
     for _ in 0..1100 {
         let middle = 0.5 * (low + high);
         if middle <= low || middle >= high {
@@ -68,7 +68,7 @@ impl Shape for Revolution {
     fn flats(&self) -> Vec<Flat> {
         let Frame { tangent, bitangent, .. } = self.frame().0;
         let [base, tip] = self.radii();
-        // The outside of the base lies before it.
+        // The base faces downward.
         let caps = [(self.base, bitangent * base, tangent * base), (self.tip, tangent * tip, bitangent * tip)];
         let caps = caps.into_iter().filter(|cap| self.capped && cap.1 != DVec3::ZERO);
         caps.map(|(center, a, b)| Flat::Ellipse { center, axes: [a, b], inner: 0.0 }).collect()
@@ -83,7 +83,7 @@ impl Shape for Revolution {
         let local = frame.to_local(place - self.base);
         let across = local.x.hypot(local.y);
         let [x, y] = if across > 0.0 { [local.x / across, local.y / across] } else { [1.0, 0.0] };
-        // The nearest lies in the half-plane of the place, in which the surface is its profile and its caps.
+        // The closest point lies in the half-plane of the query point, which cuts the surface in its profile and caps.
         let from = [across, local.z];
         let [base, tip] = self.radii();
         let side = match self.profile {
@@ -122,7 +122,7 @@ impl Shape for Revolution {
         let parts = [(BASE, cap(base, 0.0)), (SIDE, Some(side)), (TIP, cap(tip, height))];
         let found = parts.into_iter().filter_map(|(part, found)| Some((part, found?)));
         let (part, nearest) = found.min_by(|(_, a), (_, b)| a.distance.total_cmp(&b.distance))?;
-        // From the nearer end of the axis, as points of given coordinates are.
+        // From the nearer end of the axis, as in `at`.
         let from_base = frame.to_world(nearest.local);
         let DVec3 { x, y, z } = nearest.local;
         let own = if z <= 0.5 * height {

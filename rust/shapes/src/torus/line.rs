@@ -1,60 +1,60 @@
-//! Where a line meets a torus.
+//! Intersection of a line with a torus.
 //!
-//! About the centre, with the line's nearest point P to it and its direction d, a point `P + s·d` lies on the torus
-//! where `F(s) = (|p|² + R² − r²)² − 4R²ρ² = 0`, ρ being the distance from the axis. As P ⟂ d, the quartic has no cubic
-//! term, and its critical points are the roots of `4A²s³ + 2bs + c`, with A = d · d. Between two of them F is monotone
-//! and has at most one root: it has one where the signs at the ends differ. So no root is skipped, and what decides is
-//! the sign of F at three points at most. Where it is critical, an error δ of the place changes F by no more than δ²,
-//! so the place need not be exact.
+//! About the centre, let P be the line's nearest point to it and d its direction. A point p = `P + s·d` lies on the
+//! torus where `F(s) = (|p|² + R² − r²)² − 4R²ρ² = 0`, ρ being the distance from the axis. As P ⟂ d, the quartic has no
+//! cubic term, and its critical points are the roots of `4A²s³ + 2bs + c`, with A = d · d. F is monotone between two
+//! critical points, so it has one root there if the signs at the ends differ, and else none. So no root is skipped, and
+//! the sign of F at three points at most decides. At a critical point, an error δ of s changes F by no more than δ², so
+//! s need not be exact.
 //!
-//! F has the sign of `G = (ρ − R)² + z² − r²`, the swept form, which loses less than the expanded one when the tube is
-//! thin. All is computed with some 32 digits: in units in which R lies in [1, 2), P errs by less than 2⁻⁹⁹ whatever the
-//! distance of the origin, since `P = d × (q × d) / A` and each coordinate of q × d is summed without error. So does ρ,
-//! and G near the tube by less than 2⁻⁹⁶·R·r. What is below 2⁻⁹⁴·R·r counts as zero, so a line that passes the tube
-//! within 10⁻²⁸·R of touching it touches it.
+//! F has the sign of `G = (ρ − R)² + z² − r²`, the swept form, which cancels less than the expanded one for thin tubes.
+//! All is computed in double-double (32 digits). In units in which R lies in [1, 2), P errs by less than 2⁻⁹⁹ for any
+//! distance of the origin, since `P = d × (q × d) / A` and each coordinate of q × d is summed exactly. So does ρ, and G
+//! near the tube errs by less than 2⁻⁹⁶·R·r. Values below 2⁻⁹⁴·R·r count as zero, so a line within 10⁻²⁸·R of tangency
+//! is a tangent.
 
 use crate::Contact;
 use raywright_base::math::{DVec3, DoubleDouble, Ray};
 
-/// A torus about the origin, in units in which R lies in [1, 2).
+/// An origin-centered torus, in units in which R lies in [1, 2).
 #[derive(Clone, Copy, Debug)]
 pub struct Tube {
     /// The unit axis.
     pub axis: [DoubleDouble; 3],
-    /// R.
+    /// The major radius R.
     pub major: f64,
-    /// r.
+    /// The minor radius r.
     pub minor: f64,
 }
 
-/// A point where the line meets the torus.
+/// An intersection of the line with the torus.
 #[derive(Clone, Copy, Debug)]
 pub struct Meeting {
-    /// Along the line's direction.
+    /// The line parameter.
     pub t: f64,
     /// Relative to the centre.
     pub position: DVec3,
-    /// How.
+    /// The kind of contact.
     pub contact: Contact,
 }
 
-/// What counts as nothing along the line: far below what f64 tells of coordinates of the torus's size.
+/// Parameter differences below this count as zero: far below the f64 resolution at the torus's size.
 const NOTHING: f64 = 1.0 / (1u128 << 88) as f64;
 
 fn dot(a: &[DoubleDouble; 3], b: &[DoubleDouble; 3]) -> DoubleDouble {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// A line about a torus, in which `s` counts from the point nearest to the centre.
+/// A line relative to a torus; `s` is 0 at the point nearest to the centre.
 struct Line<'a> {
     tube: &'a Tube,
-    /// What is at right angles to the axis, of the nearest point and of the direction.
+    /// The parts of nearest point and direction across the axis.
     across: [[DoubleDouble; 3]; 2],
-    /// What is along it, of both.
+    /// Their parts along the axis.
     along: [DoubleDouble; 2],
-    /// The nearest point and the direction, rounded.
+    /// Nearest point and direction, rounded.
     place: [DVec3; 2],
-    /// What is at right angles to the axis, rounded.
+    /// Their parts across the axis, rounded.
     rounded: [DVec3; 2],
     /// Coefficients of F' as `s³ + p·s + q`.
     slope: [DoubleDouble; 2],
@@ -65,8 +65,8 @@ struct Line<'a> {
 }
 
 impl<'a> Line<'a> {
-    /// For an origin relative to the centre and a direction with its largest coordinate in [1, 2). None where the line
-    /// passes by the sphere around the torus.
+    /// Set up a line from an origin relative to the centre and a direction whose largest coordinate is in [1, 2). None
+    /// if the line misses the bounding sphere.
     fn new(tube: &'a Tube, q: [DoubleDouble; 3], d: DVec3) -> Option<Self> {
         let far = DVec3::from_array(q.map(|x| x.high));
         let (around, length) = (tube.major + tube.minor, d.length());
@@ -122,7 +122,7 @@ impl<'a> Line<'a> {
         })
     }
 
-    /// G at a place.
+    /// G at a parameter.
     fn swept(&self, s: DoubleDouble) -> DoubleDouble {
         let (major, minor) = (DoubleDouble::from(self.tube.major), DoubleDouble::from(self.tube.minor));
         let across: [DoubleDouble; 3] = std::array::from_fn(|i| self.across[0][i] + s * self.across[1][i]);
@@ -144,7 +144,7 @@ impl<'a> Line<'a> {
 
     /// The sign of G: −1, 0 or 1.
     fn sign(&self, s: DoubleDouble) -> i32 {
-        // Coordinates below 8 err by less than 2⁻⁴⁸.
+        // G errs by less than 2⁻⁴⁸ for coordinates below 8.
         let (value, _) = self.roughly(s.high);
         let (value, doubt) = if value.abs() > 1.0 / (1u64 << 40) as f64 {
             (value, 0.0)
@@ -154,7 +154,7 @@ impl<'a> Line<'a> {
         i32::from(value > doubt) - i32::from(value < -doubt)
     }
 
-    /// The places within reach where F is critical, in order.
+    /// The critical points of F within reach, in order.
     fn critical(&self) -> ([DoubleDouble; 3], usize) {
         let [p, q] = self.slope;
         let cubic = |s: DoubleDouble| (s.squared() + p) * s + q;
@@ -164,7 +164,7 @@ impl<'a> Line<'a> {
         let mut corners = [-reach, reach, reach, reach];
         let mut used = 2;
         if p.is_negative() {
-            // Between the cubic's own critical points, which need not be exact either, it is monotone.
+            // Between its own critical points, which need not be exact either, the cubic is monotone.
             let turn = (-p / DoubleDouble::from(3.0)).sqrt();
             if turn < reach {
                 corners = [-reach, -turn, turn, reach];
@@ -173,7 +173,7 @@ impl<'a> Line<'a> {
         }
         for pair in corners[..used].windows(2) {
             let ends = [cubic(pair[0]), cubic(pair[1])];
-            // A root at a corner belongs to what lies on its left.
+            // A root at a corner belongs to the interval on its left.
             let crossed = ends[0] != DoubleDouble::ZERO
                 && (ends[1] == DoubleDouble::ZERO || ends[0].is_negative() != ends[1].is_negative());
             if crossed {
@@ -193,9 +193,9 @@ impl<'a> Line<'a> {
     }
 }
 
-/// The place between two where a function changes its sign once: first by Newton's method in f64, then with all digits,
-/// always within what is known to hold the root. `falls` says whether it is negative at the upper end; `roughly` gives
-/// value and derivative.
+/// The root between two points at which a function changes sign once. Newton's method runs first in f64, then in
+/// double-double, always within a bracket of the root. `falls` says whether the function is negative at the upper end;
+/// `roughly` returns value and derivative.
 fn root(
     low: DoubleDouble,
     high: DoubleDouble,
@@ -220,8 +220,7 @@ fn root(
             break;
         }
     }
-    // What f64 cannot tell apart may have misled the first search: the second one trusts nothing of it but a place to
-    // begin.
+    // Rounding may have misled the f64 search, so the second search uses only its result as a start.
     let (mut low, mut high) = (low, high);
     let mut place = DoubleDouble::from(guess);
     if !(place > low && place < high) {
@@ -250,7 +249,7 @@ fn root(
     place
 }
 
-/// Calls `met` with every point where a line meets the torus, in order, until it says true.
+/// Call `met` with each intersection of a line with the torus, in order, until it returns true.
 ///
 /// `q` is the line's origin relative to the centre and `direction` has its largest coordinate in [1, 2).
 pub fn meet(tube: &Tube, q: [DoubleDouble; 3], direction: DVec3, met: &mut dyn FnMut(Meeting) -> bool) -> bool {
@@ -258,7 +257,7 @@ pub fn meet(tube: &Tube, q: [DoubleDouble; 3], direction: DVec3, met: &mut dyn F
     let (critical, count) = line.critical();
     let end = DoubleDouble::from(line.reach);
     let (mut before, mut outside) = (-end, true);
-    // A critical point where F is zero: the line touches there, or crosses where the signs around differ.
+    // At a critical point with F = 0 the line is tangent, or crosses if the signs on both sides differ.
     let mut zero = None;
     for &place in critical[..count].iter().chain([&end]) {
         let sign = if place == end { 1 } else { line.sign(place) };
@@ -284,7 +283,7 @@ pub fn meet(tube: &Tube, q: [DoubleDouble; 3], direction: DVec3, met: &mut dyn F
     false
 }
 
-/// The ray's origin relative to a centre, without rounding, times a power of two.
+/// The ray's origin relative to a centre, without rounding, scaled by a power of two.
 pub fn relative(ray: &Ray, centre: DVec3, scale: f64) -> [DoubleDouble; 3] {
     std::array::from_fn(|i| {
         let (o, c) = (ray.origin[i], centre[i]);

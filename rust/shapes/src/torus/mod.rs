@@ -1,4 +1,4 @@
-//! The torus: a ring, or a horn.
+//! The ring and the horn torus.
 
 mod line;
 #[cfg(test)]
@@ -11,12 +11,13 @@ use raywright_base::math::robust::{UNIT, normalising_scale};
 use raywright_base::math::{Affine, DVec3, DoubleDouble, Frame, Ray};
 use std::f64::consts::{PI, TAU};
 
-/// All points at the distance `minor` from a circle of radius `major`.
+/// All points at distance `minor` from a circle of radius `major`.
 ///
-/// The circle lies about `centre` at right angles to the axis. It is a ring where `minor < major` and a horn, which
-/// touches itself in the centre, where they are equal. A spindle, whose surface passes through itself, is refused.
+/// The circle lies about `centre` at right angles to the axis. The surface is a ring torus if `minor < major`, and a
+/// horn torus, which touches itself in the centre, if they are equal. Spindle tori, which intersect themselves, are
+/// rejected.
 ///
-/// `u` runs around the axis and `v` around the tube, from the outermost circle towards where the axis points.
+/// `u` runs around the axis and `v` around the tube, from the outermost circle toward the axis' direction.
 #[derive(Clone, Debug)]
 pub struct Torus {
     centre: DVec3,
@@ -29,11 +30,12 @@ pub struct Torus {
 }
 
 impl Torus {
-    /// A torus by its centre, its axis of any length, the radius of its circle and that of its tube.
+    /// Create a torus from its centre, its axis of any length, and its major and minor radius.
     ///
     /// # Errors
-    /// Where a number is not finite, the axis has no length, a radius is not between 1e-140 and 1e140, or the tube's is
-    /// the larger one. One line.
+    ///
+    /// A one-line message if a number is not finite, the axis has no length, a radius is not between 1e-140 and 1e140,
+    /// or the minor radius exceeds the major one.
     pub fn new(centre: DVec3, axis: DVec3, major: f64, minor: f64) -> Result<Self, String> {
         if !centre.is_finite() {
             return Err(format!("center is {centre}, expected finite numbers"));
@@ -85,7 +87,7 @@ impl Torus {
         let position = self.centre + (outwards * self.major + normal * self.minor);
         Point {
             position,
-            // The angles err by 2u of a turn, the frame and the sums by some u.
+            // The angles err by 2u of a turn, the frame and the sums by a few u.
             error: 32.0 * UNIT * (self.major + self.minor) + UNIT * self.centre.abs().max_element() * 2.0,
             normal,
             uv,
@@ -99,7 +101,8 @@ impl Shape for Torus {
     fn closest(&self, place: DVec3) -> Option<Closest> {
         let local = self.frame.to_local(place - self.centre);
         let across = local.x.hypot(local.y);
-        // Of the circle's points, all are as near to one on the axis; of the tube's, to one on the circle.
+        // All points of the circle are equally near to a point on the axis, and all of the tube to a point on the
+        // circle.
         let [x, y] = if across > 0.0 { [local.x / across, local.y / across] } else { [1.0, 0.0] };
         let (out, up) = (across - self.major, local.z);
         let away = out.hypot(up);
@@ -132,7 +135,7 @@ impl Shape for Torus {
         }
         let (unit, _) = normalising_scale(longest);
         let q = line::relative(ray, self.centre, self.scale);
-        // Beyond 10²⁰⁰ radii nothing is aimed at.
+        // Reject lines from beyond 10²⁰⁰ radii.
         if !q.iter().all(|x| x.high.abs() < 1e200) {
             return false;
         }
@@ -157,8 +160,8 @@ impl Shape for Torus {
     }
 
     fn sample(&self, u: [f64; 2]) -> Option<Drawn> {
-        // The share of the area up to an angle is (angle + r/R · sin) / 2π, which only rises: Newton's method within
-        // what is known.
+        // The fraction of the area up to an angle is (angle + r/R · sin) / 2π, which is monotone: invert it by Newton's
+        // method within a bracket.
         let (turn, bulge) = (TAU * u[1], self.minor / self.major);
         let (mut low, mut high) = ((turn - bulge).max(0.0), (turn + bulge).min(TAU));
         let mut angle = turn;

@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use raywright_base::sampling::Sampler;
 use raywright_base::sampling::chi_square::assert_frequencies;
 
-/// A polynomial, from the constant up.
+/// A polynomial, lowest coefficient first.
 type Poly = Vec<BigInt>;
 
 /// `x · 2^300` as an integer.
@@ -35,7 +35,7 @@ fn combine(a: &Poly, b: &Poly, times: &BigInt) -> Poly {
     (0..a.len().max(b.len())).map(|i| a.get(i).unwrap_or(&zero) + times * b.get(i).unwrap_or(&zero)).collect()
 }
 
-/// The quartic whose roots are where the ray meets the torus, exact.
+/// The exact quartic whose roots are the intersections of the ray with the torus.
 fn quartic(centre: DVec3, axis: DVec3, major: f64, minor: f64, ray: &Ray) -> Poly {
     let [c, a, o, d] = [centre, axis, ray.origin, ray.direction].map(|v| v.to_array().map(integer));
     let coordinates: Vec<Poly> = (0..3).map(|i| vec![&o[i] - &c[i], d[i].clone()]).collect();
@@ -57,7 +57,7 @@ fn trimmed(mut p: Poly) -> Poly {
     p
 }
 
-/// Sturm's chain, each remainder times a positive number so that it stays in integers.
+/// The Sturm chain, with each remainder scaled by a positive number to stay in integers.
 fn chain(p: Poly) -> Vec<Poly> {
     let derivative: Poly = p.iter().enumerate().skip(1).map(|(i, x)| x * i).collect();
     let mut all = vec![trimmed(p), trimmed(derivative)];
@@ -101,13 +101,13 @@ fn sign_at(p: &Poly, t: f64) -> i32 {
     sign(&sum)
 }
 
-/// How many different roots there are in all.
+/// The number of distinct real roots.
 fn count(chain: &[Poly]) -> usize {
     let at = |p: &Poly, up: bool| sign(&p[p.len() - 1]) * if up || p.len() % 2 == 1 { 1 } else { -1 };
     changes(chain.iter().map(|p| at(p, false))) - changes(chain.iter().map(|p| at(p, true)))
 }
 
-/// How many lie above `low` and not above `high`.
+/// The number of roots in (`low`, `high`].
 fn between(chain: &[Poly], low: f64, high: f64) -> usize {
     changes(chain.iter().map(|p| sign_at(p, low))) - changes(chain.iter().map(|p| sign_at(p, high)))
 }
@@ -125,15 +125,15 @@ fn line(origin: DVec3, direction: DVec3) -> Ray {
     Ray { t_min: f64::NEG_INFINITY, ..Ray::new(origin, direction) }
 }
 
-/// The roots of a ray are those of the exact quartic, in number and in place.
+/// Fail unless the intersections agree with the exact quartic's roots in number and position.
 fn agree(centre: DVec3, axis: DVec3, major: f64, minor: f64, ray: &Ray) -> Result<usize, TestCaseError> {
     let torus = Torus::new(centre, axis, major, minor).unwrap();
     let found = hits(&torus, ray);
     let exact = chain(quartic(centre, axis, major, minor, ray));
     prop_assert_eq!(found.len(), count(&exact), "{:?}", found);
     prop_assert_eq!(found.iter().filter(|m| m.contact != Contact::Touching).count() % 2, 0);
-    // In units of t: an ulp of t, and what 2⁻⁸⁰ of the torus's size is along the direction; of two roots next to each
-    // other, of which a change of G by 2⁻⁹⁶ moves either by its root, 2⁻⁴⁸.
+    // In units of t: an ulp of t, plus 2⁻⁸⁰ of the torus's size along the direction. A change of G by 2⁻⁹⁶ moves each
+    // of two adjacent roots by its square root, 2⁻⁴⁸.
     let unit = major / ray.direction.length();
     for (i, met) in found.iter().enumerate() {
         let alone = found.iter().enumerate().all(|(j, other)| i == j || (other.t - met.t).abs() > 1e-4 * unit);
@@ -221,7 +221,7 @@ fn a_line_through_both_sides_has_four_roots_and_a_tangent_one() {
     assert_eq!(along_x(0.0, 0.0).iter().map(|m| m.t).collect::<Vec<_>>(), [2.5, 3.5, 6.5, 7.5]);
     let outer = along_x(5.0, 0.0);
     assert_eq!(outer.iter().map(|m| (m.t, m.contact)).collect::<Vec<_>>(), [(5.0, Contact::Touching)]);
-    // Along the top circle's tangent, and the two points of the inner equator.
+    // Along the tangent of the top circle, and through two points of the inner equator.
     assert_eq!(along_x(4.0, 1.0).iter().map(|m| m.contact).collect::<Vec<_>>(), [Contact::Touching]);
     assert_eq!(along_x(3.0, 0.0).len(), 3);
     assert_eq!(along_x(5.0 + 1e-15, 0.0).len(), 0);
@@ -256,7 +256,7 @@ fn points_are_drawn_evenly() {
 fn density_by_solid_angle_is_that_of_what_is_drawn() {
     let torus = Torus::new(DVec3::ZERO, DVec3::new(1.0, 2.0, 0.5), 2.0, 0.5).unwrap();
     let place = DVec3::new(4.0, -3.0, 2.0);
-    // The mean of 1 / pdf is the solid angle in which the torus is seen: as told by directions in a cone around it.
+    // The mean of 1 / pdf is the torus's solid angle, estimated by directions in a cone around it.
     let (axis, cosine) = (Frame::new(-place.normalize()), (1.0 - (2.5 / place.length()).powi(2)).sqrt());
     let (mut by_area, mut by_angle, count) = (0.0, 0.0, 60_000);
     for i in 0..count {
@@ -272,7 +272,7 @@ fn density_by_solid_angle_is_that_of_what_is_drawn() {
         let d = axis.to_world(DVec3::new(cos, sin, 0.0) * (1.0 - z * z).sqrt() + DVec3::Z * z);
         by_angle += if torus.pdf_from(place, d) > 0.0 { TAU * (1.0 - cosine) } else { 0.0 };
     }
-    // A third of the directions meet it: their number has a standard error of 0.6 %.
+    // A third of the directions hit it: their number has a standard error of 0.6 %.
     assert!((by_area / by_angle - 1.0).abs() < 0.03, "{by_area} {by_angle}");
 }
 
