@@ -1,43 +1,44 @@
-//! What f32 knows of how rays meet triangles: whether a ray does, where that is certain, and between which two
-//! numbers its `t` lies. So f64 decides only what f32 leaves open: whether a triangle is met near its edges, and
-//! which of two is nearer that are met at much the same place.
+//! Conservative f32 intersection of rays and triangles, with an interval for `t`.
 //!
-//! The weights are those of [`super::pretest`], with the same bound on their errors. Where all three are greater than
-//! it, or less than its negative, so are those of exact arithmetic greater or less than zero, and the triangle is met.
+//! Whether a triangle is hit near its edges, and which of two almost equally distant ones is nearer, is left to f64.
 //!
-//! The bound on `t`. With n and m the numerator and the denominator as computed, off by no more than N and M (64εLE²
-//! and 128εE², of which 52 and 92 are needed), exact arithmetic has t = (n + a) / (m + b) with |a| ≤ N and |b| ≤ M.
-//! That differs from n / m by (a − b · n/m) / (m + b); where |m| ≥ 4M, by no more than (N + |n/m| · M) · 4/3 / |m|.
-//! The inverse and the product are rounded: n / m errs by 2ε of itself. Then what has to lie within is `t` as f64 has
-//! it, which differs from exact arithmetic's by no more than [`EdgeRay::T_ERROR`] of the reach: by εL/4, as the reach
-//! is no more than L. Twice each term is more than enough: 2 (N + |n/m| · M) / |m| where 4/3 is needed (and N, M are
-//! larger than needed themselves), 4ε |n/m|, and εL/2. What underflows in n and m is part of N and M; in the quotient
-//! it is less than the least normal number, which is added.
+//! The weights are those of [`super::pretest`], with the same error bound. If all three exceed it, or all are less than
+//! its negative, exact arithmetic gives them the same sign, and the triangle is hit.
 //!
-//! Where |m| < 4M, or L is so large that the numerator may overflow, nothing is known of `t`. Nor is it where `t` as
-//! given might be more than an f64 holds.
+//! The bound on `t`. Let n and m be the numerator and denominator as computed, in error by at most N and M (64εLE² and
+//! 128εE², of which 52 and 92 are needed). Exact arithmetic has t = (n + a) / (m + b) with |a| ≤ N and |b| ≤ M. It
+//! differs from n / m by (a − b · n/m) / (m + b), for |m| ≥ 4M by at most (N + |n/m| · M) · 4/3 / |m|. Inverse and
+//! product are rounded: n / m errs by 2ε of itself. The interval has to contain `t` as computed in f64, which differs
+//! from the exact one by at most [`EdgeRay::T_ERROR`] of the reach: by εL/4, as the reach is at most L. Twice each term
+//! suffices: 2 (N + |n/m| · M) / |m| where 4/3 is needed (and N and M are themselves larger than needed), 4ε |n/m|, and
+//! εL/2. Underflow in n and m is part of N and M. In the quotient it is less than the least normal number, which is
+//! added.
+//!
+//! If |m| < 4M, or L is so large that the numerator may overflow, the interval is unbounded. So it is if `t` along the
+//! given direction might overflow an f64.
 
 use super::EdgeRay;
 use super::pretest::{BlockRay, Bounds, Weights};
 use super::rows::Rows;
 use raywright_base::simd::Lanes;
 
-/// What is known of some triangles and one ray, or of one triangle and some rays; bits above the lanes mean nothing.
+/// Conservative results for some triangles and one ray, or one triangle and some rays. Bits above the lanes are
+/// undefined.
 pub struct Bracket<F> {
-    /// Lanes that may be met.
+    /// Lanes that may be hit.
     pub possible: u32,
-    /// Lanes that are met for certain, at whatever `t`.
+    /// Lanes that are certainly hit, at any `t`.
     pub inside: u32,
-    /// Lanes of which more is known of `t` than that it is a number.
+    /// Lanes with a bounded interval for `t`.
     pub known: u32,
-    /// The least that `t` can be, where it is known.
+    /// The lower bound of `t` in those lanes.
     pub low: F,
-    /// The greatest that `t` can be, where it is known.
+    /// The upper bound of `t` in those lanes.
     pub high: F,
 }
 
-/// What is known of `t` by its numerator and its denominator, and how far they may be off; those in `possible` may be
-/// met, and those in `inside` are.
+/// Bound `t` from its numerator and denominator and their error bounds. `possible` are the lanes that may be hit and
+/// `inside` those that are.
 #[inline(always)]
 #[allow(clippy::too_many_arguments)]
 pub(super) fn bracket<const N: usize, S: Lanes<N>>(
@@ -62,13 +63,12 @@ pub(super) fn bracket<const N: usize, S: Lanes<N>>(
 }
 
 impl EdgeRay {
-    /// The bound on how far `t` may be off in f64, twice over, for rays where the first test has L = `largest`;
-    /// infinite where nothing is known of it in f32.
+    /// Twice the f64 error bound of `t`, for rays whose pretest has L = `largest`; infinite if f32 cannot bound `t`.
     #[inline(always)]
     pub(super) fn depth_error(largest: f64, scale: f64) -> f32 {
-        /// Beyond it numerators may overflow.
+        /// Numerators may overflow beyond this.
         const LARGEST: f64 = (1u64 << 40) as f64;
-        /// Beyond it `t` as given may be infinite.
+        /// `t` along the given direction may be infinite beyond this.
         const GREATEST_SCALE: f64 = 1e200;
         if largest < LARGEST && scale < GREATEST_SCALE {
             (2.0 * Self::T_ERROR * largest) as f32 + f32::MIN_POSITIVE
@@ -79,7 +79,7 @@ impl EdgeRay {
 }
 
 impl<const N: usize> Rows<N> {
-    /// What is known of a ray and the triangles of a leaf.
+    /// Test a ray against the triangles of a leaf.
     #[inline(always)]
     pub(super) fn bracket<S: Lanes<N>>(
         &self,
@@ -93,8 +93,8 @@ impl<const N: usize> Rows<N> {
         let (weights, numerator, largest) = Weights::new(simd, self.edges(simd, first, count, edges), o, d);
         let (of_weight, above, over) = ray.errors.of(simd, largest);
         let (possible, inside) = weights.signs(simd, of_weight);
-        // To leave here where nothing is possible is slower: whether that is so is hard to foresee, and whether
-        // anything is left after the depths has to be asked anyway.
+        // An early exit for empty masks is slower: the branch is hard to predict, and the caller tests for empty
+        // results after the depths anyway.
         let possible = possible & ((1 << count) - 1);
         bracket(simd, numerator, above, weights.denominator, over, &ray.errors, possible, inside)
     }
@@ -111,10 +111,10 @@ mod tests {
     use raywright_base::math::{DVec3, Ray, Region};
     use raywright_base::simd::{Dispatch, Kernel, Level, Scalar, Simd};
 
-    /// What f32 says of one triangle: possible, inside, known, and between which two numbers `t` lies.
+    /// The f32 result for one triangle: possible, inside, known, and the interval of `t`.
     type Said = (bool, bool, bool, f32, f32);
 
-    /// Asks about the only triangle of a leaf: one ray, or sixteen that are the same.
+    /// Test the only triangle of a leaf with one ray, or with sixteen equal rays.
     struct Ask<'a, L> {
         leaves: &'a L,
         ray: &'a BlockRay,
@@ -146,7 +146,7 @@ mod tests {
         (bit(bracket.possible), bit(bracket.inside), bit(bracket.known), low[lane], high[lane])
     }
 
-    /// What was said of a ray and a triangle, and what is so: `t` in the leaves' units where it is met at all.
+    /// Results for a ray and a triangle, each with the true `t` in the leaves' units if it is hit.
     fn heard<const N: usize, L: Leaves<N>>(ray: &Ray, triangle: [DVec3; 3], share: f32) -> Vec<(Said, Option<f64>)>
     where
         Level: Dispatch<N>,
@@ -160,7 +160,7 @@ mod tests {
         let mut columns = PlainRays::NONE;
         columns.take(Scalar, &RayBatch::Rows(&[*ray]), 0, &region);
         let is_plain = columns.plain & 1 == 1;
-        // They start at one point; and as others that do not.
+        // Rays with a common origin, also in the variant for different origins.
         let mut shared = L::rays(Scalar, &columns, &region);
         assert!(shared.share_origin || !is_plain);
         shared.errors.weight *= share;
@@ -171,7 +171,7 @@ mod tests {
         all.map(|said| (said, met)).collect()
     }
 
-    /// Whether what was said may be so, with intervals narrowed to a part of their width.
+    /// Return whether a result is correct, with intervals narrowed to a fraction of their width.
     fn is_right(((possible, inside, known, low, high), met): (Said, Option<f64>), width: f64) -> bool {
         let (low, high) = (f64::from(low), f64::from(high));
         let (middle, half) = (low / 2.0 + high / 2.0, (high / 2.0 - low / 2.0) * width);
@@ -185,8 +185,8 @@ mod tests {
         prop::array::uniform3(-size..size).prop_map(DVec3::from_array)
     }
 
-    /// A triangle of any shape and size, and a ray to a point of it or next to it: within, or as near to an edge as
-    /// roundings are, on either side.
+    /// A triangle of any shape and size, and a ray to a point in it or next to it: inside, or within roundings of an
+    /// edge on either side.
     fn aimed() -> impl Strategy<Value = (Ray, [DVec3; 3])> {
         let triangle = (point(1.0), [point(1.0), point(1.0), point(1.0)], 0i32..16, 0i32..10);
         let weights = (-1.0..1.0f64, 0.0..1.0f64, -30i32..2);
@@ -199,7 +199,7 @@ mod tests {
             let target = corners[0] * (1.0 - v - w) + corners[1] * v + corners[2] * w;
             let origin = target - way * 2f64.powi(far + scale);
             let ray = Ray::new(origin, (target - origin) * 2f64.powi(length));
-            // At any t, so that what is inside is met.
+            // At any t, so that all lanes inside are hit.
             (Ray { t_min: f64::NEG_INFINITY, ..ray }, corners)
         })
     }
@@ -226,14 +226,13 @@ mod tests {
         }
     }
 
-    /// A vector with all coordinates near to their greatest.
+    /// A vector whose coordinates are all near the largest one.
     fn long() -> impl Strategy<Value = DVec3> {
         let coordinate = (0.8..1.0f64, prop::bool::ANY).prop_map(|(x, down)| if down { -x } else { x });
         prop::array::uniform3(coordinate).prop_map(DVec3::from_array)
     }
 
-    /// A small triangle and a ray from afar past one of its edges by next to nothing, on either side, with as much to
-    /// round as can be.
+    /// A small triangle and a distant ray that just passes one of its edges on either side, with maximum rounding.
     fn along_edges() -> impl Strategy<Value = (Ray, [DVec3; 3])> {
         let triangle = (point(1.0), long(), long(), 4i32..10);
         (triangle, (0usize..3, 0.0..1.0f64, -1.0..1.0f64, -22i32..-10), long()).prop_map(
@@ -248,7 +247,7 @@ mod tests {
         )
     }
 
-    /// So many rays and triangles, the same at every run.
+    /// A given number of test cases, the same on every run.
     fn cases(count: usize, of: impl Strategy<Value = (Ray, [DVec3; 3])>) -> Vec<(Ray, [DVec3; 3])> {
         let mut runner = TestRunner::new_with_rng(
             Config::default(),
@@ -271,7 +270,7 @@ mod tests {
 
     #[test]
     fn most_is_decided_by_f32() {
-        // From a few sizes away, at the middle of a triangle of a mesh of some thousands.
+        // From a few sizes away, at the center of a triangle of a mesh of some thousands.
         let triangle = [DVec3::ZERO, DVec3::new(0.02, 0.0, 0.001), DVec3::new(0.003, 0.02, 0.0)];
         let middle = (triangle[0] + triangle[1] + triangle[2]) / 3.0;
         for way in [DVec3::new(0.3, 0.2, 1.0), DVec3::new(-2.0, 0.1, 3.0), DVec3::new(0.1, -1.0, -2.0)] {

@@ -1,28 +1,28 @@
-//! What of a triangle lies in a box.
+//! Bounds of the part of a triangle inside a box.
 //!
-//! The triangle is clipped by one face of the box after the other (Sutherland and Hodgman, "Reentrant Polygon
-//! Clipping", 1974), in f64.
+//! The triangle is clipped against the box's faces in turn (Sutherland and Hodgman, "Reentrant Polygon Clipping",
+//! 1974), in f64.
 //!
-//! The bound. Where a face cuts an edge between two corners as they were computed, the share of the edge errs by 4u of
-//! itself, with u = 2⁻⁵³, and so with coordinates of at most 2 each coordinate of the cut errs by less than 32u. So the
-//! outline is moved by less than ε = 200u by six faces and by the rounding of the triangle's own corners. It may be
-//! bent by that, but about a point of the triangle that is farther than ε from it, it still winds: clipping moves only
-//! what is beyond a face, and rounding less than ε. So all of the triangle that is in the box is within ε of the
-//! outline's hull, if the faces stand 2ε outside, once for how far the outline is from the triangle and once for what
-//! it has left the triangle's plane by. 2⁻⁴⁴ is allowed for that, and once more at the end.
+//! The bound. Let u = 2⁻⁵³. Where a face cuts an edge between two computed corners, the edge fraction errs by 4u of
+//! itself. So with coordinates of at most 2, each coordinate of the cut errs by less than 32u. Six faces and the
+//! rounding of the triangle's own corners move the outline by less than ε = 200u. The outline may be distorted by that,
+//! but it still winds around each point of the triangle farther than ε from it: clipping moves only points beyond a
+//! face, and rounding moves points by less than ε. So if the faces are moved 2ε outward, the clipped triangle is within
+//! ε of the outline's hull. One ε is for the outline's distance from the triangle, the other for its distance from the
+//! triangle's plane. 2⁻⁴⁴ is allowed for that, and once more at the end.
 
 use raywright_base::math::{Aabb, DVec3, Vec3};
 use std::array::from_fn;
 use std::mem::swap;
 
-/// More than the outline may err by.
+/// An upper bound on the outline's error.
 const SLACK: f64 = 1.0 / (1u64 << 44) as f64;
 
-/// Of n corners, one face leaves at most 3n/2, however they are bent: 3, 4, 6, 9, 13, 19, 28.
+/// Clipping n corners by one face leaves at most 3n/2, even if nonconvex: 3, 4, 6, 9, 13, 19, 28.
 const MOST: usize = 28;
 
-/// A box around all of a triangle that lies in another box; within that box, and empty only if there is nothing.
-/// Coordinates are in box units, in which they do not exceed 2 by more than a rounding
+/// A box around the part of a triangle inside another box. It lies within that box, and is empty only if the
+/// intersection is. Coordinates are in box units, where they exceed 2 by a rounding at most
 /// ([`Region::to_box`](raywright_base::math::Region::to_box)).
 pub fn clipped(corners: [DVec3; 3], to: &Aabb) -> Aabb {
     let (min, max) = (to.min.as_dvec3() - SLACK, to.max.as_dvec3() + SLACK);
@@ -35,7 +35,7 @@ pub fn clipped(corners: [DVec3; 3], to: &Aabb) -> Aabb {
         outlines[0].corners[..3].copy_from_slice(&corners);
         let [mut from, mut to] = outlines.each_mut();
         for axis in 0..3 {
-            // Most faces have the whole outline on their inner side, which they leave as it is.
+            // The whole outline is usually inside a face, which leaves it unchanged.
             if from.corners().iter().any(|p| p[axis] < min[axis]) {
                 from.clip(to, |p| p[axis] - min[axis], |p| p[axis] = min[axis]);
                 swap(&mut from, &mut to);
@@ -55,22 +55,22 @@ pub fn clipped(corners: [DVec3; 3], to: &Aabb) -> Aabb {
     if inner.is_empty() { Aabb::EMPTY } else { inner }
 }
 
-/// Not above, and at most two steps below.
+/// A lower bound, at most two steps below.
 fn below(x: f64) -> f32 {
     (x as f32).next_down()
 }
 
-/// Not below, and at most two steps above.
+/// An upper bound, at most two steps above.
 fn above(x: f64) -> f32 {
     (x as f32).next_up()
 }
 
-/// The least and the greatest of all coordinates.
+/// The componentwise minimum and maximum.
 fn extremes(points: &[DVec3]) -> [DVec3; 2] {
     points.iter().fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[min, max], &p| [min.min(p), max.max(p)])
 }
 
-/// What is left of a triangle: its corners, in turn.
+/// The corners of a clipped triangle, in order.
 #[derive(Clone, Copy)]
 struct Outline {
     corners: [DVec3; MOST],
@@ -82,7 +82,7 @@ impl Outline {
         &self.corners[..self.count]
     }
 
-    /// Leaves in `to` what is not below height 0; `level` puts a point that is there at height 0 exactly.
+    /// Clip to the half-space of nonnegative `height`; `level` moves a point exactly to height 0.
     #[inline(always)]
     fn clip(&self, to: &mut Self, height: impl Fn(DVec3) -> f64, level: impl Fn(&mut DVec3)) {
         to.count = 0;
@@ -138,7 +138,7 @@ mod tests {
         ) {
             let kept = clipped(corners, &to);
             prop_assert!(kept == Aabb::EMPTY || to.contains(&kept));
-            // Points of the triangle: their weights are whole, so that they err by roundings alone.
+            // Points of the triangle with exact dyadic weights, so that they err by roundings alone.
             for (s, t) in weights {
                 let (s, t) = if s + t > 1 << 20 { ((1 << 20) - s, (1 << 20) - t) } else { (s, t) };
                 let [a, b, c] = [(1 << 20) - s - t, s, t].map(|w| f64::from(w) / f64::from(1 << 20));
@@ -164,7 +164,7 @@ mod tests {
 
     #[test]
     fn a_diagonal_is_cut_to_what_is_there() {
-        // A thin triangle along a diagonal: a quarter of the way each, an eighth of a box has an eighth of its length.
+        // A thin triangle along a diagonal, clipped to an eighth of a box.
         let corners = [DVec3::ZERO, DVec3::ONE, DVec3::new(1.0, 1.0, 0.999)];
         let to = Aabb { min: Vec3::new(0.25, 0.0, 0.0), max: Vec3::new(0.5, 1.0, 1.0) };
         let kept = clipped(corners, &to);

@@ -1,36 +1,35 @@
-//! `t` where a line meets the plane of a triangle: the f64 nearest to it.
+//! Correctly rounded `t` at which a line intersects a triangle's plane.
 //!
-//! With edges e = b − a and f = c − a, s = a − o and n = e × f, it is s · n over d · n. Both are computed as sums of
-//! two f64 (Dekker, "A Floating-Point Technique for Extending the Available Precision", 1971), and so is their
-//! quotient, which is rounded once. So `t` is the exact one where an f64 holds that, and never on the other side of an
-//! f64 than the exact one: to compare it with the ends of a ray decides as exact arithmetic would, a hit at either end
-//! counts, a ray that is asked up to the `t` of a hit still meets it, and one that is asked from the next f64 on no
-//! longer does.
+//! With edges e = b − a and f = c − a, s = a − o and n = e × f, t is s · n over d · n. Both are computed as sums of two
+//! f64 (Dekker, "A Floating-Point Technique for Extending the Available Precision", 1971). So is their quotient, which
+//! is rounded once. So `t` is exact where an f64 can represent it, and never on the other side of an f64 than the exact
+//! one. Comparing it with a ray's ends decides as exact arithmetic would: a hit at either end counts. A ray that ends
+//! at the `t` of a hit still has that hit, and a ray that starts at the next f64 does not.
 //!
 //! The bound. Let u = 2⁻⁵³, E bound every coordinate of e and f, L those of s, and D < 2 those of d. The differences
-//! are exact as sums of two. A product in n errs by 8u²E², and n by 2·8u²E² + (6 + 8)u²E² = 30u²E²; its low part is at
-//! most 8uE². A product in s · n errs by (8 + 2 + 10 + 12 + 8)u²LE² and 30u²LE² for n; three of them by 210u²LE², and
-//! their sum by (24 + 36 + 10 + 46)u²LE² more: 512u²LE² is allowed where 326 are needed. In the same way d · n errs by
-//! 490u²E², of which 768 are allowed. The quotient adds less than 16u² of itself. What underflows is less than the
-//! constants that are added, where coordinates are below 1e101.
+//! are exact as sums of two f64. A product in n errs by 8u²E², and n by 2·8u²E² + (6 + 8)u²E² = 30u²E²; its low part is
+//! at most 8uE². A product in s · n errs by (8 + 2 + 10 + 12 + 8)u²LE² and 30u²LE² for n; three of them by 210u²LE²,
+//! and their sum by (24 + 36 + 10 + 46)u²LE² more: 512u²LE² is allowed where 326 are needed. In the same way d · n errs
+//! by 490u²E², of which 768 are allowed. The quotient adds less than 16u² of itself. Underflow is less than the added
+//! constants if coordinates are below 1e101.
 
 use raywright_base::math::robust::{UNIT, greater};
 
-/// A coordinate each.
+/// Three coordinates.
 type Vector = [f64; 3];
 
-/// Where a line meets a plane.
+/// The intersection of a line with a plane.
 #[derive(Clone, Copy)]
 pub(super) struct Depth {
-    /// Rounded once from what was computed.
+    /// The computed value, rounded once.
     pub t: f64,
-    /// What was computed errs by no more than this; infinite or NaN where nothing is known.
+    /// Bound on its error before rounding; infinite or NaN if unknown.
     error: f64,
 }
 
 impl Depth {
-    /// Of a line from `o` along `d`, scaled to below 2, and a triangle. With or without `fused` multiplication
-    /// ([`raywright_base::simd::Lanes::FUSED`]) what rounding takes from a product is the same number.
+    /// Intersect the line from `o` along `d`, scaled to below 2, with a triangle's plane. The rounding error of a
+    /// product is the same number with or without `fused` multiplication ([`raywright_base::simd::Lanes::FUSED`]).
     #[inline(always)]
     pub fn new(fused: bool, o: Vector, d: Vector, [a, b, c]: [Vector; 3]) -> Self {
         const OF_NUMERATOR: f64 = 512.0 * UNIT * UNIT;
@@ -56,14 +55,14 @@ impl Depth {
         Self { t, error: if size >= 4.0 * denominator_error { error } else { f64::INFINITY } }
     }
 
-    /// Whether `t` is the f64 nearest to the exact one, but within 2⁻³ of a unit in its last place of a tie.
+    /// Return whether `t` is the f64 nearest to the exact one, except within 2⁻³ ulp of a tie.
     #[inline(always)]
     pub fn is_known(&self) -> bool {
         const SHARE: f64 = UNIT / 16.0;
         self.error <= SHARE * self.t.abs()
     }
 
-    /// Whether the f64 nearest to the exact `t` certainly lies before `t_min` or beyond `t_max`.
+    /// Return whether the f64 nearest to the exact `t` is certainly less than `t_min` or greater than `t_max`.
     #[inline(always)]
     pub fn is_beyond(&self, t_min: f64, t_max: f64) -> bool {
         let room = self.error + 4.0 * UNIT * self.t.abs();
@@ -71,7 +70,7 @@ impl Depth {
     }
 }
 
-/// The quotient of two sums, rounded.
+/// The quotient of two double-doubles, rounded.
 #[inline(always)]
 pub(super) fn quotient(fused: bool, (n, n_low): (f64, f64), (d, d_low): (f64, f64)) -> f64 {
     let first = n / d;
@@ -80,7 +79,7 @@ pub(super) fn quotient(fused: bool, (n, n_low): (f64, f64), (d, d_low): (f64, f6
     first + left / d
 }
 
-/// The differences of coordinates, and what rounding took from them (Knuth, 1969).
+/// Differences of coordinates, and their rounding errors (Knuth, 1969).
 #[inline(always)]
 fn difference(v: Vector, w: Vector) -> (Vector, Vector) {
     let (x, x_low) = sum(v[0], -w[0]);
@@ -96,7 +95,7 @@ fn sum(a: f64, b: f64) -> (f64, f64) {
     (sum, (a - (sum - of_b)) + (b - of_b))
 }
 
-/// A number as a sum of two of half the length (Veltkamp, 1968).
+/// Split a number into two of half the length (Veltkamp, 1968).
 #[inline(always)]
 fn halves(x: f64) -> (f64, f64) {
     let c = 134_217_729.0 * x;
@@ -109,7 +108,7 @@ fn split(v: Vector) -> [(f64, f64); 3] {
     [halves(v[0]), halves(v[1]), halves(v[2])]
 }
 
-/// The product of two numbers, given with their halves, and what rounding took from it.
+/// The product of two numbers, given with their halves, and its rounding error.
 #[inline(always)]
 fn product(fused: bool, a: f64, (ah, al): (f64, f64), b: f64, (bh, bl): (f64, f64)) -> (f64, f64) {
     let product = a * b;
@@ -117,10 +116,10 @@ fn product(fused: bool, a: f64, (ah, al): (f64, f64), b: f64, (bh, bl): (f64, f6
     (product, rest)
 }
 
-/// Three numbers, what they leave out, and the halves of them.
+/// Three double-double coordinates: high parts, low parts, and the halves of the high parts.
 type Long = (Vector, Vector, [(f64, f64); 3]);
 
-/// The product of a coordinate of one and one of another.
+/// The product of two coordinates.
 #[inline(always)]
 fn times(fused: bool, (v, v_low, v_split): Long, i: usize, (w, w_low, w_split): Long, j: usize) -> (f64, f64) {
     let (high, low) = product(fused, v[i], v_split[i], w[j], w_split[j]);
@@ -136,8 +135,7 @@ fn minor(fused: bool, i: usize, j: usize, e: Long, f: Long) -> (f64, f64) {
     (high, low + (p_low - q_low))
 }
 
-/// The inner product; the second part is at most half a unit in the last place of the first, unless all but nothing is
-/// left of it.
+/// The dot product. Its low part is at most half an ulp of the high part, barring near-total cancellation.
 #[inline(always)]
 fn dot(fused: bool, v: Long, w: Long) -> (f64, f64) {
     let (x, x_low) = times(fused, v, 0, w, 0);
@@ -175,7 +173,7 @@ mod tests {
         prop_oneof![grid, any].prop_map(move |p| p * size)
     }
 
-    /// A triangle of any shape, and a ray to a point of it from any distance, even none.
+    /// A triangle of any shape, and a ray to a point in it from any distance, even 0.
     fn aimed() -> impl Strategy<Value = (Ray, [DVec3; 3])> {
         let triangle = (point(1.0), [point(1.0), point(1.0), point(1.0)], 0i32..20, 0i32..20);
         let ray = (point(1.0), 0.0..1.0f64, 0.0..1.0f64, -60i32..20, -300i32..300);
@@ -203,7 +201,7 @@ mod tests {
             };
             let Some(t) = meet(&ray) else { return Ok(()) };
             let wanted = exact(&ray, corners);
-            // To the nearest but for ties, and where it is subnormal for a second rounding.
+            // Correctly rounded except for ties, and for a second rounding of subnormal results.
             let off = (&wanted - &Exact::new(t)).abs();
             let most = if t.abs() > 1e-300 { (t.abs().next_up() - t.abs()) * 0.625 } else { f64::MIN_POSITIVE };
             prop_assert!(!Exact::new(most).less(&off), "{t} {ray:?}");
@@ -261,7 +259,7 @@ mod tests {
         }
     }
 
-    /// Of a thousand rays that have nothing particular about them `t` is known of all without exact arithmetic.
+    /// For a thousand generic rays `t` is known without exact arithmetic.
     #[test]
     fn most_rays_need_no_exact_arithmetic() {
         let corners = [[0.1, 0.2, 0.3], [1.1, 0.3, 0.2], [0.2, 1.3, 0.4]];
@@ -272,7 +270,7 @@ mod tests {
                 Depth::new(false, [0.4 + cos * far, 0.5 + sin * far, 0.3 + 1.7 * far], [-cos, -sin, -1.7], corners);
             assert!(depth.is_known() && (depth.t / far - 1.0).abs() < 0.5 + 0.1 / far, "{far} {}", depth.t);
         }
-        // Nor to tell that the surface which a ray has left lies behind it.
+        // The surface that a ray has left is rejected without exact arithmetic, too.
         for off in [1e-15, 1e-20] {
             let depth =
                 Depth::new(false, [0.5, 0.5, off], [0.3, 0.2, 1.0], [[0.0; 3], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0]]);

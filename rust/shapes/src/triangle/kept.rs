@@ -1,4 +1,4 @@
-//! Triangles of leaves as they are kept: with corners that are f32, or f64.
+//! Leaf storage of triangles with f32 or f64 corners.
 
 use super::leaves::Leaves;
 use super::pretest::{BlockRay, BlockRays};
@@ -8,13 +8,13 @@ use raywright_base::math::{DVec3, Region};
 use raywright_base::parallel;
 use raywright_base::simd::Lanes;
 
-/// Triangles whose coordinates are f32.
+/// Triangles with f32 coordinates.
 #[derive(Clone, Debug)]
 pub struct SingleLeaves<const N: usize> {
     rows: Rows<N>,
 }
 
-/// Triangles whose coordinates are f64: rounded for the first test, and as they are.
+/// Triangles with f64 coordinates: rounded for the pretest, and in full precision.
 #[derive(Clone, Debug)]
 pub struct DoubleLeaves<const N: usize> {
     /// In box units.
@@ -28,7 +28,7 @@ impl<const N: usize> Leaves<N> for SingleLeaves<N> {
     const EDGES: bool = false;
 
     fn new(_: &Region, order: &[u32], counts: &[u32], corners: impl Fn(u32) -> [DVec3; 3] + Sync) -> Self {
-        // Exact: the coordinates are f32.
+        // Exact, since the coordinates are f32.
         Self { rows: Rows::new(order, counts, |p| corners(p).map(|c| c.as_vec3())) }
     }
 
@@ -39,7 +39,7 @@ impl<const N: usize> Leaves<N> for SingleLeaves<N> {
 
     #[inline(always)]
     fn corners(&self, first: usize, count: u32, lane: usize) -> [DVec3; 3] {
-        // Written out: `map` is not always compiled for a kernel's level.
+        // Written out, since `map` is not always compiled for a kernel's SIMD level.
         let [a, b, c] = self.rows.vectors(first, count, lane);
         [a.as_dvec3(), b.as_dvec3(), c.as_dvec3()]
     }
@@ -127,7 +127,7 @@ mod tests {
     use raywright_base::math::Ray;
     use raywright_base::simd::{Dispatch, Kernel, Level, Simd};
 
-    /// What is not rejected of one leaf.
+    /// Collects the triangles of one leaf that the pretest does not reject.
     struct Left<'a, L> {
         leaves: &'a L,
         ray: &'a BlockRay,
@@ -143,12 +143,12 @@ mod tests {
         }
     }
 
-    /// Those with so many lanes.
+    /// The available SIMD levels with at least N lanes.
     fn levels<const N: usize>() -> impl Iterator<Item = Level> {
         Level::ALL.into_iter().filter(|l| l.is_available() && l.lanes() >= N)
     }
 
-    /// Nothing that is met may be rejected.
+    /// Assert that no hit triangle is rejected.
     fn nothing_met_is_rejected<const N: usize, L: Leaves<N>>(
         ray: &Ray,
         triangles: &[[DVec3; 3]],
@@ -176,8 +176,8 @@ mod tests {
         prop::array::uniform3(-size..size).prop_map(DVec3::from_array)
     }
 
-    /// A triangle of any shape and size, somewhere, and a ray to a point of it: within, or as near to an edge, a corner
-    /// or the ray's start as roundings are.
+    /// A triangle of any shape, size and position, and a ray to a point in it: inside, or within roundings of an edge,
+    /// a corner or the ray's start.
     fn aimed() -> impl Strategy<Value = (Ray, [DVec3; 3])> {
         let triangle = (point(1.0), [point(1.0), point(1.0), point(1.0)], 0i32..24, 0i32..24);
         let weights = (0.0..1.0f64, 0.0..1.0f64, -30i32..2, prop::bool::ANY);

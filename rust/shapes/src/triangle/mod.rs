@@ -1,4 +1,4 @@
-//! Triangles: the exact decision whether a ray meets one, alone and by the block.
+//! Exact ray-triangle intersection, for single triangles and for blocks of them.
 
 mod bracket;
 mod clip;

@@ -1,52 +1,51 @@
-//! The point of a triangle that is nearest to another point (Ericson, "Real-Time Collision Detection", 2005, section
-//! 5.1).
+//! The closest point of a triangle (cf. Ericson, "Real-Time Collision Detection", 2005, section 5.1).
 //!
-//! Ericson finds the feature that is nearest, face, edge or corner, from dot products of edges, which says little of
-//! slivers: their squares cancel. Here the face counts where the point's projection lies within all three edges,
-//! decided by the signs of the same cross products that give the distances to the edges; elsewhere the nearest of the
-//! three edges counts, each a segment of its own. So a triangle without area needs no case of its own: it is its edges,
-//! and those are segments or points.
+//! Ericson classifies the closest feature, face, edge or corner, by dot products of edges, which is unreliable for
+//! slivers because of cancellation. Here the face is closest if the point projects inside all three edges, decided by
+//! the signs of the same cross products that give the distances to the edges. Otherwise it is the closest of the three
+//! edges, each treated as a segment. So degenerate triangles need no special case: they are their edges, and those are
+//! segments or points.
 //!
-//! What holds. Let F be the distance to the farthest corner. The distance errs by less than 2⁻⁴⁹·F. Where differences
-//! of the corners and the point are exact, as those of f32 numbers of about one size are, it is 0 on corners and edges,
-//! and within a face where products of three such differences are exact too, as those of small integers. All is done in
-//! units of F, so coordinates may be of any size. Cross products keep nearly all digits however much they cancel
-//! (Kahan; Jeannerod, Louvet and Muller 2013), so that the plane of a sliver is as good as any. What is smaller than
-//! 2⁻⁴⁰⁰·F is lost: such an edge is a point, and such an area none.
+//! The bound. Let F be the distance to the farthest corner. The distance errs by less than 2⁻⁴⁹·F. It is 0 on corners
+//! and edges if the differences of the corners and the point are exact, as for f32 numbers of similar size. Within a
+//! face it is 0 if products of three such differences are exact too, as for small integers. All is computed in units of
+//! F, so coordinates may be of any size. Cross products keep nearly all digits despite cancellation (Kahan; Jeannerod,
+//! Louvet and Muller 2013), so the plane of a sliver is as accurate as any. Lengths below 2⁻⁴⁰⁰·F are lost: such an
+//! edge is a point, and such an area zero.
 
 use raywright_base::math::DVec3;
 use raywright_base::math::robust::{greater, lesser, normalising_scale};
 
-/// Where a triangle is nearest to a point.
+/// The closest point of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NearestPoint {
-    /// How far that is; infinite if it is more than an f64 holds.
+    /// The distance; infinite if it overflows an f64.
     pub distance: f64,
-    /// Weights of the second and the third corner.
+    /// Barycentric weights of the second and the third corner.
     pub uv: [f64; 2],
 }
 
 /// Squares below this, 2⁻⁸⁰⁰, may have lost digits to underflow.
 const SMALL_SQUARE: f64 = f64::from_bits((1023 - 800) << 52);
 
-/// The most that coordinates may be for differences and their differences to be finite.
+/// Maximum coordinate for which differences and their differences are finite.
 const LARGE: f64 = f64::MAX / 8.0;
 
-/// The nearest point of a triangle, whose coordinates and the point's are finite. The distance to an edge that two
-/// triangles share has the same bits for both, whichever way they run along it.
+/// Find the closest point of a triangle with finite coordinates. The distance to an edge shared by two triangles has
+/// the same bits for both, in either orientation.
 #[inline(always)]
 pub fn nearest_point(corners: [DVec3; 3], point: DVec3) -> NearestPoint {
     let [a, b, c] = corners;
     let (to_a, to_b, to_c) = (a - point, b - point, c - point);
     let largest = to_a.abs().max(to_b.abs()).max(to_c.abs());
     let largest = greater(greater(largest.x, largest.y), largest.z);
-    // Infinite where a difference is.
+    // Infinite if a difference is.
     if largest > LARGE {
         return nearest_far_point(corners, point);
     }
     let (scale, inverse) = normalising_scale(greater(largest, f64::MIN_POSITIVE));
     let to = [to_a * scale, to_b * scale, to_c * scale];
-    // Opposite each corner, all the same way round.
+    // The edge opposite each corner, in consistent orientation.
     let along = [(c - b) * scale, (a - c) * scale, (b - a) * scale];
     let normal = cross(along[2], along[0]);
     let squares = [to[0].length_squared(), to[1].length_squared(), to[2].length_squared()];
@@ -59,7 +58,7 @@ pub fn nearest_point(corners: [DVec3; 3], point: DVec3) -> NearestPoint {
     let area = normal.length_squared();
     let sides = [normal.dot(edges[0].moment), normal.dot(edges[1].moment), normal.dot(edges[2].moment)];
     if area >= SMALL_SQUARE && sides[0] > 0.0 && sides[1] > 0.0 && sides[2] > 0.0 {
-        // From the nearest corner, whose numbers err least.
+        // From the nearest corner, whose coordinates err least.
         let nearest = if squares[0] <= squares[1] { 0 } else { 1 };
         let nearest = if squares[nearest] <= squares[2] { nearest } else { 2 };
         let distance = dot(normal, to[nearest]).abs() / area.sqrt() * inverse;
@@ -71,17 +70,18 @@ pub fn nearest_point(corners: [DVec3; 3], point: DVec3) -> NearestPoint {
     NearestPoint { distance: edge.distance() * inverse, uv: [edge.weights[1], edge.weights[2]] }
 }
 
-/// The weights of the second and the third corner where the face is nearest, given the weights of all times `area`.
+/// The weights of the second and the third corner if the face is closest, given all weights times `area`.
 ///
-/// Those of a sliver are uncertain, while the place along its longest edge is not: so the weight of the corner opposite
-/// that edge is taken, as far as the triangle reaches at that place, and those of its ends follow from both.
+/// The weights of a sliver are uncertain, but the position along its longest edge is not. So the weight of the corner
+/// opposite that edge is limited to the triangle's extent at that position. The weights of the edge's ends follow from
+/// both.
 #[inline(always)]
 fn weights(to: &[DVec3; 3], along: &[DVec3; 3], sides: &[f64; 3], area: f64) -> [f64; 2] {
     let lengths = along.map(|e| e.length_squared());
     let k = if lengths[0] >= lengths[1] { 0 } else { 1 };
     let k = if lengths[k] >= lengths[2] { k } else { 2 };
     let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-    // Where along the edge from i to j the point stands, and the corner k.
+    // The positions of the point and of corner k along the edge from i to j.
     let place = lesser(greater(-to[i].dot(along[k]) / lengths[k], 0.0), 1.0);
     let top = lesser(greater(-along[j].dot(along[k]) / lengths[k], 0.0), 1.0);
     let reach = if place < top {
@@ -98,7 +98,7 @@ fn weights(to: &[DVec3; 3], along: &[DVec3; 3], sides: &[f64; 3], area: f64) -> 
     [weights[1], weights[2]]
 }
 
-/// [`nearest_point`] where differences may be more than an f64 holds.
+/// [`nearest_point`] for coordinates whose differences may overflow.
 #[cold]
 #[inline(never)]
 fn nearest_far_point(corners: [DVec3; 3], point: DVec3) -> NearestPoint {
@@ -107,32 +107,31 @@ fn nearest_far_point(corners: [DVec3; 3], point: DVec3) -> NearestPoint {
     NearestPoint { distance: nearest.distance / LESS, ..nearest }
 }
 
-/// The point of a triangle with weights `uv` for its second and third corner; a corner itself where it has all the
+/// The point of a triangle with weights `uv` for its second and third corner; exactly a corner if it has all the
 /// weight.
 pub fn point_of(corners: [DVec3; 3], [u, v]: [f64; 2]) -> DVec3 {
     let weights = [1.0 - u - v, u, v];
     let heaviest = if weights[0] >= weights[1] { 0 } else { 1 };
     let heaviest = if weights[heaviest] >= weights[2] { heaviest } else { 2 };
     let (i, j) = ((heaviest + 1) % 3, (heaviest + 2) % 3);
-    // From the corner that weighs most, so that far from the origin only one sum is rounded. Halves, lest differences
-    // overflow.
+    // Relative to the corner of greatest weight, so that far from the origin only one sum is rounded. Halved, since
+    // differences may overflow.
     let base = corners[heaviest];
     let from_base = |k: usize| (corners[k] / 2.0 - base / 2.0) * weights[k];
     base + (from_base(i) + from_base(j)) * 2.0
 }
 
-/// An edge as seen from the point.
+/// An edge relative to the point.
 #[derive(Clone, Copy)]
 struct Edge {
-    /// The cross product of its ends, as seen from the point: the weight of the corner opposite is its part along the
-    /// normal.
+    /// The cross product of its ends. Its component along the normal is the weight of the opposite corner.
     moment: DVec3,
-    /// The square of the distance.
+    /// The squared distance.
     square: f64,
-    /// What the square is made of: the square of a vector by this number.
+    /// The numerator and denominator of the squared distance: a vector's square over this number.
     vector: DVec3,
     divisor: f64,
-    /// Of the triangle's corners.
+    /// The corners' weights at the closest point of the edge.
     weights: [f64; 3],
 }
 
@@ -140,7 +139,8 @@ impl Edge {
     /// The edge `along` from corner `i` to corner `j`.
     #[inline(always)]
     fn new(corners: &[DVec3; 3], to: &[DVec3; 3], squares: &[f64; 3], along: DVec3, [i, j]: [usize; 2]) -> Self {
-        // From its nearer end, whose numbers err least; of two as near, from the same one whichever way the edge runs.
+        // From its nearer end, whose coordinates err least; if both are equally near, from the same one in either
+        // orientation.
         let first =
             squares[i] < squares[j] || (squares[i] == squares[j] && corners[i].to_array() <= corners[j].to_array());
         let (near, far, out) = if first { (i, j, along) } else { (j, i, -along) };
@@ -153,7 +153,7 @@ impl Edge {
             (weights[near], weights[far]) = (1.0 - part, part);
             Self { moment, square: moment.length_squared() / length, vector: moment, divisor: length, weights }
         } else {
-            // Of an edge that is small next to its distance the other end may turn out to be the nearer one.
+            // For an edge that is short relative to its distance, the other end may turn out to be the nearer one.
             let end = if forward > 0.0 && length >= SMALL_SQUARE { far } else { near };
             weights[end] = 1.0;
             Self { moment, square: squares[end], vector: to[end], divisor: 1.0, weights }
@@ -177,7 +177,7 @@ pub fn length(v: DVec3) -> f64 {
     (v * scale).length() * inverse
 }
 
-/// `a × b`, each coordinate to within 1.5 units in its last place.
+/// `a × b`, each coordinate to within 1.5 ulp.
 #[inline(always)]
 pub(super) fn cross(a: DVec3, b: DVec3) -> DVec3 {
     DVec3::new(difference(a.y, b.z, a.z, b.y), difference(a.z, b.x, a.x, b.z), difference(a.x, b.y, a.y, b.x))
@@ -191,7 +191,7 @@ fn difference(a: f64, b: f64, c: f64, d: f64) -> f64 {
     a.mul_add(b, -product) + lost
 }
 
-/// `a · b` as if in twice the digits (Ogita, Rump and Oishi 2005).
+/// `a · b` as in twice the working precision (Ogita, Rump and Oishi 2005).
 #[inline(always)]
 fn dot(a: DVec3, b: DVec3) -> f64 {
     let (x, y, z) = (a.x * b.x, a.y * b.y, a.z * b.z);
@@ -201,7 +201,7 @@ fn dot(a: DVec3, b: DVec3) -> f64 {
     xyz + (lost_xy + lost_xyz + lost)
 }
 
-/// A rounded sum, and what rounding took (Knuth 1969).
+/// A rounded sum and its rounding error (Knuth 1969).
 #[inline(always)]
 fn sum(a: f64, b: f64) -> (f64, f64) {
     let sum = a + b;

@@ -1,7 +1,7 @@
-//! Sixteen rays by columns, rounded to f32 for boxes and for the first test of triangles.
+//! Sixteen rays in SoA layout, rounded to f32 for boxes and for the triangle pretest.
 //!
-//! Rays that come as f32 are scaled as f32, exactly, and take half the registers. Every loop runs over all columns and
-//! has no branch: so the compiler makes vectors of it.
+//! Rays given in f32 are scaled in f32, exactly, which takes half the registers. Every loop runs over all columns
+//! without branches, so the compiler vectorizes it.
 
 use super::EdgeRay;
 use super::sixteen::{Column, RAYS, bits};
@@ -18,34 +18,34 @@ pub struct PlainRays {
     pub origin: [Column<f32>; 3],
     /// Origins relative to the region's centre, in box units.
     pub local: [Column<f32>; 3],
-    /// Directions scaled by a power of two so that the largest coordinate lies in [1, 2).
+    /// Directions, scaled by a power of two so that the largest coordinate lies in [1, 2).
     pub direction: [Column<f32>; 3],
     /// Along the scaled direction, rounded.
     pub t_min: Column<f32>,
     /// Along the scaled direction, rounded.
     pub t_max: Column<f32>,
-    /// In box units, a bound on every coordinate of a corner relative to the origin, a little more than needed.
+    /// Bound on every coordinate of a corner relative to the origin, in box units, slightly padded.
     pub largest: Column<f32>,
-    /// `t` as given over `t` along the scaled direction, at most.
+    /// Upper bound on `t` along the given direction over `t` along the scaled one.
     pub scale: f64,
-    /// Those that are plain: not those that cannot hit anything, or are far from the scene, or have a direction at the
-    /// end of the range of their numbers. Of the others nothing is said here.
+    /// The plain rays. Excluded are rays that cannot hit anything, are far from the scene, or whose direction is near
+    /// the ends of the exponent range. The fields of excluded rays are undefined.
     pub plain: u32,
 }
 
-/// Floats that rays come in.
+/// The float type of the given rays.
 trait Real: Copy + PartialOrd + Add<Output = Self> + Mul<Output = Self> {
     const ZERO: Self;
-    /// The exponents, as they are kept, of a number and its inverse add up to this.
+    /// The sum of the biased exponents of a power of two and its inverse.
     const BOTH: u32;
-    /// The exponent as it is kept.
+    /// The biased exponent.
     fn exponent(self) -> u32;
-    /// A power of two by its exponent as it is kept.
+    /// The power of two with a biased exponent.
     fn power(exponent: u32) -> Self;
     fn size(self) -> Self;
     fn single(self) -> f32;
     fn double(self) -> f64;
-    /// At least the greatest of sixteen; NaN is passed over.
+    /// An upper bound on sixteen numbers; NaN is ignored.
     fn greatest(column: &Column<Self>) -> f64;
 }
 
@@ -124,7 +124,7 @@ impl PlainRays {
         plain: 0,
     };
 
-    /// Takes up to sixteen rays of a batch, at least one; the last stands for those that are missing.
+    /// Take up to sixteen rays of a batch, at least one. The last one fills missing places.
     #[inline(always)]
     pub fn take<S: Lanes<RAYS>>(&mut self, simd: S, rays: &RayBatch<'_>, from: usize, region: &Region) {
         let mut t = [[0.0; RAYS]; 2];
@@ -176,7 +176,7 @@ impl PlainRays {
             let (ox, oy, oz) = (o[0][i], o[1][i], o[2][i]);
             let (dx, dy, dz) = (d[0][i], d[1][i], d[2][i]);
             let longest = greater(greater(dx.size(), dy.size()), dz.size());
-            // Zero times infinity or NaN is NaN: one comparison for six numbers.
+            // Zero times infinity or NaN is NaN: one comparison tests six numbers.
             let (x, y, z) = (ox * T::ZERO + dx * T::ZERO, oy * T::ZERO + dy * T::ZERO, oz * T::ZERO + dz * T::ZERO);
             let finite = x + y + z == T::ZERO;
             let exponent = longest.exponent();
@@ -188,7 +188,7 @@ impl PlainRays {
             let inverse = T::power(exponent).double();
             self.t_min[i] = (t_min[i] * inverse) as f32;
             self.t_max[i] = (t_max[i] * inverse) as f32;
-            // The largest numbers have an inverse that is subnormal.
+            // The largest numbers have a subnormal inverse.
             let normal = (exponent > 0) & (exponent < T::BOTH);
             plain[i] = u32::from(finite & normal & (t_min[i] <= t_max[i]));
         }
@@ -198,9 +198,9 @@ impl PlainRays {
                 self.local[axis][i] = ((o[axis][i].double() - region.centre[axis]) * region.scale) as f32;
             }
         }
-        /// Room for rounding.
+        /// Allowance for rounding.
         const ROOM: f32 = 1.0 + 1.0 / (1u32 << 21) as f32;
-        // Of a power of two that is no normal f32 times are not known in box units.
+        // If the scale is no normal f32, `t` in box units is unknown.
         let radius = if (region.scale as f32).is_normal() { (region.radius * region.scale) as f32 } else { f32::NAN };
         let [x, y, z] = [simd.load(&self.local[0]), simd.load(&self.local[1]), simd.load(&self.local[2])];
         let away = simd.max(simd.max(simd.abs(x), simd.abs(y)), simd.abs(z));
@@ -211,19 +211,19 @@ impl PlainRays {
         self.scale = T::greatest(&scales);
     }
 
-    /// In box units, a bound on every coordinate of a corner relative to the origin of a plain ray.
+    /// Bound on every coordinate of a corner relative to the origin of a plain ray, in box units.
     #[inline(always)]
     pub fn most<S: Lanes<RAYS>>(&self, simd: S) -> f64 {
-        // What is no number in the others must not hide what is.
+        // NaN in other lanes must not hide the maximum.
         simd.greatest(simd.select(self.plain, simd.load(&self.largest), simd.splat(0.0))).into()
     }
 
-    /// Bounds |origin| + |corner| of plain rays, as given.
+    /// Bound on |origin| + |corner| of the plain rays, in the scene's units.
     #[inline(always)]
     pub fn absolute<S: Lanes<RAYS>>(&self, simd: S, region: &Region) -> f64 {
         let [x, y, z] = [simd.load(&self.origin[0]), simd.load(&self.origin[1]), simd.load(&self.origin[2])];
         let away = simd.max(simd.max(simd.abs(x), simd.abs(y)), simd.abs(z));
-        // The origins are rounded.
+        // An allowance for the rounding of the origins.
         let away = simd.select(self.plain, away, simd.splat(0.0));
         (f64::from(simd.greatest(away)) + region.extent) * (1.0 + 1.0 / (1u32 << 22) as f64)
     }
@@ -294,7 +294,7 @@ mod tests {
                 let mut plain = PlainRays::NONE;
                 plain.take(Scalar, &RayBatch::Rows(&some), 0, &region);
                 assert_eq!(plain.plain, ALL & !(1 << at), "{spoilt:?}");
-                // What the others need, and no more than all need.
+                // The bound of the other rays, and no more.
                 let others: Vec<_> = (0..RAYS).filter(|&i| i != at).map(|i| rays[i]).collect();
                 let mut wanted = PlainRays::NONE;
                 wanted.take(Scalar, &RayBatch::Rows(&others), 0, &region);

@@ -1,45 +1,47 @@
-//! The test of triangles in f32 that comes before the decision in f64: it rejects only what is certainly not met.
+//! The conservative f32 pretest of triangles before the decision in f64: it rejects only certain misses.
 //!
-//! The test in f32 is that of Möller and Trumbore ("Fast, Minimum Storage Ray/Triangle Intersection", 1997), which
-//! takes half the work of the edge form. With edges e = b − a and f = c − a, the ray from s relative to a, p = d × f
-//! and q = s × e, the corners' weights are u = s · p of b, v = d · q of c, and w = e · p − u − v of a. A triangle is
-//! rejected only where one weight is certainly positive and another certainly negative.
+//! The test is that of Möller and Trumbore ("Fast, Minimum Storage Ray/Triangle Intersection", 1997), which takes half
+//! the work of the edge test. With edges e = b − a and f = c − a, the ray from s relative to a, p = d × f and q = s ×
+//! e, the corners' weights are u = s · p of b, v = d · q of c, and w = e · p − u − v of a. A triangle is rejected only
+//! if one weight is certainly positive and another certainly negative.
 //!
 //! The bound. Let ε = 2⁻²⁴, E bound every coordinate of e and f, L bound |origin| + |corner| in every coordinate, and D
 //! < 2 those of the direction. The edges err by εE, s by 2εL for rounding the origin and the difference, and d by 2ε. A
 //! product in p errs by 2εE + 2εE + 2εE, and so p by 12εE + 4εE = 16εE; it is at most 4E. A product in q errs by 2εLE +
 //! εLE + εLE, and so q by 8εLE + 2εLE = 10εLE; it is at most 2LE. A product in u errs by 8εLE + 16εLE + 4εLE, and so u
-//! by 84εLE + 20εLE = 104εLE. A product in v errs by 4εLE + 20εLE + 4εLE, and v like u. A product in e · p errs by
-//! 4εE² + 16εE² + 4εE², and the sum by 92εE², which is at most 184εLE, since E ≤ 2L. So w errs by 184εLE + 208εLE and,
-//! for its own two roundings, 48εLE: 440εLE, to first order; fused operations err less. 512εLE is allowed. What
-//! underflows in p or q loses at most 2⁻¹⁴⁸ a coordinate, 2⁻¹⁴⁵L in a weight, and elsewhere less than 2⁻¹⁴⁶: 2⁻¹⁴⁰L +
-//! 2⁻¹²⁶ is added. (The least normal number: a subnormal one would make every sum slow.) With L below 2⁶⁰ no sum
-//! exceeds 96L² < 2¹²⁷; beyond it, where infinities of either sign may appear, nothing is rejected.
+//! by 84εLE + 20εLE = 104εLE. A product in v errs by 4εLE + 20εLE + 4εLE, and v like u. A product in e · p errs by 4εE²
+//! + 16εE² + 4εE², and the sum by 92εE², which is at most 184εLE, since E ≤ 2L. So w errs by 184εLE + 208εLE and, for
+//! its own two roundings, 48εLE: 440εLE, to first order; fused operations err less. 512εLE is allowed. Underflow in p
+//! or q loses at most 2⁻¹⁴⁸ a coordinate, 2⁻¹⁴⁵L in a weight, and elsewhere less than 2⁻¹⁴⁶: 2⁻¹⁴⁰L + 2⁻¹²⁶ is added.
+//! (The latter is the least normal number: a subnormal one would slow down every sum.) With L below 2⁶⁰ no sum exceeds
+//! 96L² < 2¹²⁷; beyond it, where infinities of either sign may appear, nothing is rejected.
 //!
-//! Most of what is left lies behind the ray: the surface that it leaves. The ray's parameter is t = f · q / e · p,
-//! negative where numerator and denominator are certainly of opposite sign, and then the triangle is rejected if t must
-//! not be. A product in f · q errs by 2εLE² + 10εLE² + 2εLE², and the sum by 52εLE²: 64εLE² is allowed, and 128εE² for
-//! the denominator. With L below 2⁴⁰ no sum exceeds 6LE² < 2¹²⁵; beyond it nothing is rejected by t.
+//! Most remaining triangles lie behind the ray, on the surface that it leaves. The ray's parameter is t = f · q / e ·
+//! p. It is negative if numerator and denominator certainly have opposite signs, and the triangle is then rejected if
+//! the ray allows no negative t. A product in f · q errs by 2εLE² + 10εLE² + 2εLE², and the sum by 52εLE²: 64εLE² is
+//! allowed, and 128εE² for the denominator. With L below 2⁴⁰ no sum exceeds 6LE² < 2¹²⁵; beyond it nothing is rejected
+//! by t.
 //!
-//! Corners that are f64 are kept relative to the scene's centre, in box units: a corner, and the edges from there as
-//! f64 has them. All of it is rounded to f32. Then an edge errs by εE as before, and s by ε|corner| more, which with
-//! ε|origin| is εL: the bounds are the same. (With edges taken between rounded corners they would have terms in L² that
-//! do not shrink with the triangle, and next to nothing of a fine mesh would be rejected.)
+//! f64 corners are stored relative to the scene's centre, in box units: a corner, and its two edges computed in f64.
+//! All are rounded to f32. An edge then errs by εE as before, and s by ε|corner| more, which with ε|origin| is εL: the
+//! bounds are the same. (Edges between rounded corners would have terms in L² that do not shrink with the triangle, and
+//! almost no triangle of a fine mesh would be rejected.)
 
 use super::{Column, EdgeRay, PlainRays, RAYS};
 use raywright_base::math::DVec3;
 use raywright_base::math::robust::greater;
 use raywright_base::simd::Lanes;
 
-/// What tells whether triangles are met, lane by lane.
+/// The corners' weights and the denominator of t, lane by lane.
 pub(super) struct Weights<F> {
-    /// Of b, c and a.
+    /// The weights of b, c and a.
     pub weights: [F; 3],
     pub denominator: F,
 }
 
 impl<F: Copy> Weights<F> {
-    /// Those of triangles by corner and edges; the numerator of t; and the largest coordinate of an edge.
+    /// Compute them for triangles given by corner and edges, with the numerator of t and the largest coordinate of an
+    /// edge.
     #[inline(always)]
     pub fn new<const N: usize, S: Lanes<N, F32 = F>>(
         simd: S,
@@ -58,8 +60,8 @@ impl<F: Copy> Weights<F> {
         (Self { weights: [u, v, w], denominator }, dot(simd, f, q), largest)
     }
 
-    /// Lanes of which no two weights are certainly of different signs, and those of which all are certainly of one,
-    /// where `above` bounds their errors.
+    /// Lanes in which no two weights certainly differ in sign, and lanes in which all certainly have the same sign;
+    /// `above` bounds the weights' errors.
     #[inline(always)]
     pub fn signs<const N: usize, S: Lanes<N, F32 = F>>(&self, simd: S, above: F) -> (u32, u32) {
         let [u, v, w] = self.weights;
@@ -70,7 +72,7 @@ impl<F: Copy> Weights<F> {
     }
 }
 
-/// Lanes in which f32 cannot reject that a ray meets a triangle; bits above the lanes are set.
+/// Lanes in which f32 cannot reject the triangle; bits above the lanes are set.
 #[inline(always)]
 pub(super) fn not_rejected<const N: usize, S: Lanes<N>>(
     simd: S,
@@ -89,25 +91,25 @@ pub(super) fn not_rejected<const N: usize, S: Lanes<N>>(
     possible & !behind
 }
 
-/// What the test in f32 needs of a ray.
+/// A ray prepared for the f32 pretest.
 #[derive(Clone, Copy, Debug)]
 pub struct BlockRay {
-    /// Where it starts, in the units that leaves keep.
+    /// The origin, in the leaves' units.
     pub origin: [f32; 3],
-    /// Scaled.
+    /// The scaled direction.
     pub direction: [f32; 3],
     pub(super) errors: Bounds,
 }
 
-/// What the test in f32 needs of sixteen rays.
+/// Sixteen rays prepared for the f32 pretest.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub struct BlockRays {
-    /// Where they start, in the units that leaves keep, by axis.
+    /// The origins, in the leaves' units, by axis.
     pub origin: [Column<f32>; 3],
-    /// Scaled, by axis.
+    /// The scaled directions, by axis.
     pub direction: [Column<f32>; 3],
-    /// Whether all start at one point.
+    /// True if all rays have the same origin.
     pub(super) share_origin: bool,
     pub(super) errors: Bounds,
 }
@@ -121,9 +123,9 @@ impl BlockRay {
         Self { origin: [o.x, o.y, o.z], direction: [d.x, d.y, d.z], errors }
     }
 
-    /// Origin and direction in every lane.
-    // Written out, axis by axis, as all that is called from here on: closures and iterators between here and the
-    // kernel's entry are not always compiled for its level, and then every operation is a call.
+    /// Origin and direction, broadcast to every lane.
+    // Written out axis by axis, as are all functions called from here on. Closures and iterators between here and the
+    // kernel's entry are not always compiled for its SIMD level, and then every operation is a call.
     #[inline(always)]
     pub(super) fn splat<const N: usize, S: Lanes<N>>(&self, simd: S) -> ([S::F32; 3], [S::F32; 3]) {
         let (o, d) = (&self.origin, &self.direction);
@@ -140,14 +142,13 @@ impl BlockRays {
         errors: Bounds { weight: 0.0, numerator: 0.0, least: 0.0, depth: 0.0 },
     };
 
-    /// The same with all that is computed in f32 taken for certain, as most ray tracers take it: what that would save
-    /// can be measured.
+    /// The same rays with zero error bounds, as most ray tracers assume, to measure what that would save.
     pub fn believed(mut self) -> Self {
         self.errors = Bounds { weight: 0.0, numerator: 0.0, least: 0.0, depth: 0.0 };
         self
     }
 
-    /// Makes what it says of these rays true of others as well.
+    /// Extend the bounds to cover other rays as well.
     #[inline(always)]
     pub fn unite(&mut self, others: &Self) {
         let (a, b) = (&self.origin, &others.origin);
@@ -163,7 +164,7 @@ impl BlockRays {
     /// Sixteen rays from origins in the leaves' units; `largest` is the greatest L.
     #[inline(always)]
     pub(super) fn new<S: Lanes<RAYS>>(simd: S, origin: &[Column<f32>; 3], rays: &PlainRays, largest: f64) -> Self {
-        // What lies behind a ray is told by the interval of its `t`.
+        // The interval of `t` rejects hits behind the ray.
         let errors = Bounds::new(largest, false, rays.scale);
         let mut differ = 0;
         for column in origin {
@@ -173,14 +174,14 @@ impl BlockRays {
         Self { origin: *origin, direction: rays.direction, share_origin: differ == 0, errors }
     }
 
-    /// Origins and directions, a vector of each coordinate.
+    /// Origins and directions, one vector per coordinate.
     #[inline(always)]
     pub(super) fn load<S: Lanes<RAYS>>(&self, simd: S) -> ([S::F32; 3], [S::F32; 3]) {
         let (o, d) = (&self.origin, &self.direction);
         ([simd.load(&o[0]), simd.load(&o[1]), simd.load(&o[2])], [simd.load(&d[0]), simd.load(&d[1]), simd.load(&d[2])])
     }
 
-    /// One of them.
+    /// One of the rays.
     #[inline(always)]
     pub fn of(&self, i: usize) -> BlockRay {
         let i = i & (RAYS - 1);
@@ -189,22 +190,22 @@ impl BlockRays {
     }
 }
 
-/// Bounds on the errors of the test in f32.
+/// Error bounds of the f32 pretest.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bounds {
-    /// Of a weight over the largest edge.
+    /// For a weight, relative to the largest edge.
     pub(super) weight: f32,
-    /// Of the numerator of t over the square of the largest edge.
+    /// For the numerator of t, relative to the squared largest edge.
     numerator: f32,
-    /// What is added to every bound.
+    /// An absolute term of every bound.
     pub(super) least: f32,
-    /// Of t itself ([`EdgeRay::depth_error`]).
+    /// For t itself ([`EdgeRay::depth_error`]).
     pub(super) depth: f32,
 }
 
 impl Bounds {
-    /// Those where L is `largest`, of rays that are asked for no t below 0, or for some, and whose `t` as given is at
-    /// most `scale` times that along the scaled direction.
+    /// Bounds for L = `largest`. `forwards` says that no t below 0 is allowed. `t` along the given direction is at most
+    /// `scale` times that along the scaled one.
     #[inline(always)]
     fn new(largest: f64, forwards: bool, scale: f64) -> Self {
         const UNIT: f64 = 1.0 / (1u64 << 24) as f64;
@@ -214,7 +215,7 @@ impl Bounds {
         let weight = if largest < OVERFLOW { 512.0 * largest } else { f64::INFINITY };
         let numerator = if forwards && largest < NUMERATOR_OVERFLOW { 64.0 * largest } else { f64::INFINITY };
         Self {
-            // Rounded to nearest: the error of that is among those of higher order.
+            // The rounding to nearest is covered by the terms of higher order.
             weight: (UNIT * weight) as f32,
             numerator: (UNIT * numerator) as f32,
             least: (UNDERFLOW * largest) as f32 + f32::MIN_POSITIVE,
@@ -222,13 +223,12 @@ impl Bounds {
         }
     }
 
-    /// Bounds on the errors of a weight, of the numerator and of the denominator of t, where the largest coordinate of
-    /// an edge is this.
+    /// Error bounds of a weight, and of the numerator and denominator of t, given the largest coordinate of an edge.
     #[inline(always)]
     pub(super) fn of<const N: usize, S: Lanes<N>>(&self, simd: S, largest: S::F32) -> (S::F32, S::F32, S::F32) {
         const DENOMINATOR: f32 = 128.0 / (1u32 << 24) as f32;
         let (weight, least) = (simd.mul(largest, simd.splat(self.weight)), simd.splat(self.least));
-        // 64εLE² where the weight has 512εLE.
+        // 64εLE², where the weight has 512εLE.
         let numerator = simd.mul_add(simd.mul(largest, weight), simd.splat(0.125), least);
         let denominator = simd.mul_add(simd.mul(largest, largest), simd.splat(DENOMINATOR), least);
         (simd.add(weight, least), numerator, denominator)

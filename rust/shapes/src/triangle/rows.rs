@@ -1,45 +1,45 @@
-//! The triangles of a tree's leaves in f32, side by side, and the first test of them.
+//! Leaf triangles in f32 SoA layout, and their pretest.
 
 use super::pretest::{BlockRay, difference, not_rejected};
 use raywright_base::math::Vec3;
 use raywright_base::parallel;
 use raywright_base::simd::Lanes;
 
-/// Numbers of a triangle: nine coordinates and which it is.
+/// Values per triangle: nine coordinates and the index.
 const ROWS: usize = 10;
 
-/// Numbers from where a leaf begins, of which its first nine rows are a part however many triangles it has, up to
-/// eight: so one look says that all of them are there.
+/// Length of a slice that contains the first nine rows of any leaf of up to eight triangles, so that one bounds check
+/// suffices.
 const WHOLE: usize = 8 * MOST + MOST;
 
-/// Triangles of the largest leaf.
+/// Maximum number of triangles in a leaf.
 const MOST: usize = 8;
 
-/// The triangles of all leaves in f32. A leaf of n has n numbers of each row, one row after the other: the coordinates
-/// of three vectors by axis, then the triangles' own numbers. So a leaf takes no more memory than its triangles need,
-/// and `N` numbers read from any row are those of the leaf and others that do not matter.
+/// The triangles of all leaves in f32. A leaf of n triangles has n numbers per row, one row after the other: the
+/// coordinates of three vectors by axis, then the triangles' indices. So a leaf takes only the memory its triangles
+/// need. `N` numbers read from a row start with the leaf's; the others are irrelevant.
 #[derive(Clone, Debug)]
 pub struct Rows<const N: usize> {
     numbers: Vec<f32>,
 }
 
-/// One of the first nine rows of a leaf of so many.
+/// One of the first nine rows of a leaf with `count` triangles.
 #[inline(always)]
 fn whole_row<const N: usize>(whole: &[f32; WHOLE], row: usize, count: u32) -> &[f32; N] {
     whole[row * (count as usize).min(MOST)..].first_chunk().expect("within")
 }
 
 impl<const N: usize> Rows<N> {
-    /// Makes the bits of small whole numbers those of ordinary floats: they are computed with, to no end, by lanes that
-    /// do not matter, and subnormal ones would make that slow.
+    /// Turns small integers into the bits of normal floats. Unused lanes compute with these bits, and subnormal floats
+    /// would be slow.
     const MASK: u32 = 0x4000_0000;
 
     pub(super) fn new(order: &[u32], counts: &[u32], vectors: impl Fn(u32) -> [Vec3; 3] + Sync) -> Self {
-        /// Leaves that a thread fills at a time.
+        /// Leaves per parallel task.
         const SOME: usize = 1024;
         assert_eq!(counts.iter().sum::<u32>() as usize, order.len(), "as many triangles as their counts say");
         const { assert!(N <= MOST) };
-        // The last leaf can be read as any other.
+        // Padding, so that the last leaf can be read like any other.
         let last = counts.last().map_or(0, |&count| count as usize * ROWS);
         let mut numbers = vec![0.0; order.len() * ROWS + WHOLE.saturating_sub(last)];
         let mut parts = Vec::with_capacity(counts.len().div_ceil(SOME));
@@ -76,13 +76,13 @@ impl<const N: usize> Rows<N> {
         size_of_val(self.numbers.as_slice())
     }
 
-    /// Where a leaf begins. The address is only asked for.
+    /// The address of a leaf, for prefetching only.
     #[inline(always)]
     pub(super) fn place(&self, first: usize) -> *const u8 {
         self.numbers.as_ptr().wrapping_add(first * ROWS).cast()
     }
 
-    /// The number of the triangle in a lane of a leaf.
+    /// The index of the triangle in a lane of a leaf.
     #[inline(always)]
     pub(super) fn primitive(&self, first: usize, count: u32, lane: usize) -> u32 {
         self.numbers[first * ROWS + 9 * count as usize + lane].to_bits() ^ Self::MASK
@@ -100,7 +100,7 @@ impl<const N: usize> Rows<N> {
         [vector(leaf, count, 0), vector(leaf, count, 1), vector(leaf, count, 2)]
     }
 
-    /// What stands from where a leaf begins.
+    /// The numbers from the start of a leaf.
     #[inline(always)]
     fn whole(&self, first: usize) -> &[f32; WHOLE] {
         let start = first * ROWS;
@@ -116,7 +116,7 @@ impl<const N: usize> Rows<N> {
         [simd.load(x), simd.load(y), simd.load(z)]
     }
 
-    /// The triangles of a leaf as a corner and the edges from there, axis by axis. `edges` says that they are kept so.
+    /// The triangles of a leaf as a corner and its two edges, axis by axis. `edges` says that they are stored so.
     #[inline(always)]
     pub(super) fn edges<S: Lanes<N>>(&self, simd: S, first: usize, count: u32, edges: bool) -> [[S::F32; 3]; 3] {
         let a = self.numbers(simd, first, count, 0);
@@ -128,7 +128,7 @@ impl<const N: usize> Rows<N> {
         [a, e, f]
     }
 
-    /// Of the lanes of a leaf, those that f32 cannot reject.
+    /// The lanes of a leaf that f32 cannot reject.
     #[inline(always)]
     pub(super) fn not_rejected<S: Lanes<N>>(
         &self,

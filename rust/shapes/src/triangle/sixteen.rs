@@ -1,7 +1,7 @@
-//! Sixteen rays by columns, made ready together and tested against a triangle together.
+//! Sixteen rays in SoA layout, prepared and tested against a triangle together.
 //!
-//! Every loop here runs over all columns, has no branch and does to each ray what [`EdgeRay`] does to one, in the same
-//! order and with the same roundings: so the compiler makes vectors of it, and the bits are the same.
+//! Every loop runs over all columns without branches and treats each ray as [`EdgeRay`] does, in the same order and
+//! with the same roundings. So the compiler vectorizes it, and the bits are the same.
 
 use super::EdgeRay;
 use super::depth::Depth;
@@ -9,48 +9,48 @@ use super::edge::LEAST;
 use raywright_base::math::robust::{greater, lesser};
 use raywright_base::math::{DVec3, Ray, RayBatch, Region};
 
-/// Rays that go together.
+/// Rays per packet.
 pub const RAYS: usize = 16;
 
-/// A number of each ray.
+/// One number per ray.
 pub type Column<T> = [T; RAYS];
 
-/// Sixteen rays as triangles see them; see [`EdgeRay`] for what each number is.
+/// Sixteen rays prepared for triangles; [`EdgeRay`] explains the fields.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub struct EdgeRays {
-    /// As given, by axis.
+    /// Origins as given, by axis.
     pub origin: [Column<f64>; 3],
-    /// The origin relative to the region's centre.
+    /// Origins relative to the region's centre.
     pub local: [Column<f64>; 3],
-    /// The direction as given.
+    /// Directions as given.
     unscaled: [Column<f64>; 3],
-    /// Scaled, once the rays are ready.
+    /// Scaled directions, after `prepare`.
     pub direction: [Column<f64>; 3],
-    /// Of the scaled direction, once the rays are ready.
+    /// Along the scaled directions, after `prepare`.
     pub t_min: Column<f64>,
-    /// Of the scaled direction, once the rays are ready.
+    /// Along the scaled directions, after `prepare`.
     pub t_max: Column<f64>,
-    /// `t` as given over `t` along the scaled direction.
+    /// `t` along the given direction over `t` along the scaled one.
     pub scale: Column<f64>,
-    /// Bounds every coordinate of a corner relative to the origin.
+    /// Bound on every coordinate of a corner relative to the origin.
     pub largest: Column<f64>,
 }
 
-/// How sixteen rays meet a triangle.
+/// Intersections of sixteen rays with a triangle.
 pub struct Met {
-    /// Rays that meet it for certain.
+    /// Rays that certainly hit it.
     pub met: u32,
-    /// Rays for which f64 is not enough.
+    /// Rays that f64 cannot decide.
     pub open: u32,
-    /// Along the scaled directions, or the directions as given.
+    /// `t` along the scaled directions, or along the given ones.
     pub t: Column<f64>,
-    /// Weights of the second and the third corner.
+    /// Barycentric weights of the second and the third corner.
     pub uv: [Column<f64>; 2],
 }
 
 impl Met {
-    /// None of them.
+    /// No intersections.
     pub const NONE: Self = Self { met: 0, open: 0, t: [0.0; RAYS], uv: [[0.0; RAYS]; 2] };
 }
 
@@ -84,7 +84,7 @@ pub fn bits(flags: &Column<u32>) -> u32 {
 pub const ALL: u32 = u32::MAX >> (32 - RAYS);
 
 impl EdgeRays {
-    /// Takes up to sixteen rays of a batch, at least one; the last stands for those that are missing.
+    /// Take up to sixteen rays of a batch, at least one. The last one fills missing places.
     #[inline(always)]
     pub fn take(&mut self, rays: &RayBatch<'_>, from: usize) {
         match rays {
@@ -104,7 +104,7 @@ impl EdgeRays {
         }
     }
 
-    /// Takes a ray in the place of the `i`-th.
+    /// Replace the `i`-th ray.
     #[inline(always)]
     pub fn put(&mut self, i: usize, ray: &Ray) {
         let i = i & (RAYS - 1);
@@ -114,8 +114,9 @@ impl EdgeRays {
         (self.t_min[i], self.t_max[i]) = (ray.t_min, ray.t_max);
     }
 
-    /// Makes rays that were taken ready, and says which are plain: not those that cannot hit anything, or are far from
-    /// the scene, or have a direction at the end of the range of f64. Those are better asked one by one.
+    /// Prepare the rays that were taken, and return which are plain. Excluded are rays that cannot hit anything, are
+    /// far from the scene, or whose direction is near the ends of the exponent range. Those are better traced one by
+    /// one.
     #[inline(always)]
     pub fn prepare(&mut self, region: &Region) -> u32 {
         let mut plain = [0u32; RAYS];
@@ -140,14 +141,14 @@ impl EdgeRays {
             let far = greater(greater(lx.abs(), ly.abs()), lz.abs());
             self.largest[i] = far + region.radius;
             let near = far <= EdgeRay::FAR * region.radius;
-            // The largest numbers have an inverse that is subnormal.
+            // The largest numbers have a subnormal inverse.
             let normal = (biased > 0) & (biased < 2046);
             plain[i] = u32::from(finite & ordered & near & normal);
         }
         bits(&plain)
     }
 
-    /// Tests all rays against a triangle; only the answers of those in `asked` count. Multiplication may be `fused`.
+    /// Test all rays against a triangle; only the results of those in `asked` are used. Multiplication may be `fused`.
     #[inline(always)]
     pub fn meet(&self, fused: bool, [a, b, c]: [DVec3; 3], asked: u32) -> Met {
         let mut met = Met::NONE;
@@ -161,12 +162,12 @@ impl EdgeRays {
         met
     }
 
-    /// Where each ray meets a triangle of its own, given by corner and axis, of which it is known to meet it between
-    /// its `t_min` and `t_max`. Open are those for which f64 does not say where; only those in `asked` count.
+    /// Compute the intersection of each ray with a triangle of its own, given by corner and axis, that it is known to
+    /// hit between `t_min` and `t_max`. Rays for which f64 is not certain of `t` are open. Only those in `asked` count.
     /// Multiplication may be `fused`.
     #[inline(always)]
     pub fn won<T: Copy + Into<f64>>(&self, fused: bool, [a, b, c]: &[[Column<T>; 3]; 3], asked: u32) -> Met {
-        /// No closure: those are not always inlined.
+        /// Not a closure: those are not always inlined.
         #[inline(always)]
         fn of<T: Copy + Into<f64>>(corner: &[Column<T>; 3], i: usize) -> [f64; 3] {
             [corner[0][i].into(), corner[1][i].into(), corner[2][i].into()]
@@ -184,8 +185,8 @@ impl EdgeRays {
         met
     }
 
-    /// Whether a ray meets a triangle for certain, whether that is open, and where it does: `t`, and the weights of the
-    /// second and the third corner. Where it is known to, nobody asks for the first.
+    /// Return whether a ray certainly hits a triangle, whether that is open, `t`, and the weights of the second and the
+    /// third corner. With `WON` the first is known to be true and is not used.
     #[inline(always)]
     fn meet_one<const WON: bool>(&self, fused: bool, i: usize, corners: [[f64; 3]; 3]) -> (u32, u32, f64, f64, f64) {
         let [[ax, ay, az], [bx, by, bz], [cx, cy, cz]] = corners;

@@ -1,15 +1,16 @@
-//! The triangles of a leaf spread out for sixteen rays at once: what depends on the triangle alone is computed for all
-//! of the leaf side by side, so that little is left to do for each ray.
+//! A leaf's triangles prepared for sixteen rays at once: terms that depend on the triangle alone are computed once, in
+//! parallel over the leaf.
 //!
-//! The weights are those of [`super::pretest`], in an order that leaves the edges for last: with n = f × e and c = d
-//! × s, the weight of b is −f · c, that of c is e · c, their sum with that of a is d · n, and the numerator of t is
-//! −s · n. The bounds hold as they are. A product in c errs by 4εL + 2εL + 2εL, and so c by 16εL + 4εL = 20εL; it is
-//! at most 4L. A product in f · c errs by 4εLE + 20εLE + 4εLE, and the weight by 84εLE + 20εLE = 104εLE, as before. A
-//! product in n errs by 3εE², and so n by 8εE²; it is at most 2E². A product in d · n errs by 4εE² + 16εE² + 4εE²,
-//! and the sum by 92εE², as before; one in s · n by 4εLE² + 8εLE² + 2εLE², and the sum by 52εLE², as before.
+//! The weights are those of [`super::pretest`], in an order that applies the edges last. With n = f × e and c = d × s,
+//! the weight of b is −f · c, that of c is e · c, their sum with that of a is d · n, and the numerator of t is −s · n.
+//! The bounds are unchanged. A product in c errs by 4εL + 2εL + 2εL, and so c by 16εL + 4εL = 20εL; it is at most 4L. A
+//! product in f · c errs by 4εLE + 20εLE + 4εLE, and the weight by 84εLE + 20εLE = 104εLE, as before. A product in n
+//! errs by 3εE², and so n by 8εE²; it is at most 2E². A product in d · n errs by 4εE² + 16εE² + 4εE², and the sum by
+//! 92εE², as before; one in s · n by 4εLE² + 8εLE² + 2εLE², and the sum by 52εLE², as before.
 //!
-//! Where all rays start at one point, as a camera's do, s is the triangle's as well: then the weight of b is d · r with
-//! r = f × s, that of c is d · q with q = s × e. Both vectors err by 10εLE, as q does there, and the weights by 104εLE.
+//! If all rays have the same origin, as camera rays do, s depends on the triangle alone, too. Then the weight of b is d
+//! · r with r = f × s, and that of c is d · q with q = s × e. Both vectors err by 10εLE, as q does there, and the
+//! weights by 104εLE.
 
 use super::bracket::{Bracket, bracket};
 use super::pretest::{BlockRays, Weights, cross, difference, dot, largest};
@@ -17,24 +18,24 @@ use super::rows::Rows;
 use super::sixteen::RAYS;
 use raywright_base::simd::Lanes;
 
-/// What of some triangles does not depend on a ray's direction, by axis where there are three of it.
+/// The terms of some triangles that do not depend on the ray's direction; vectors by axis.
 pub struct Spread<const N: usize> {
-    /// The corner, or, where all rays start at one point, q.
+    /// The corner; for a common origin, q.
     a: [[f32; N]; 3],
-    /// The edges from there, or, where all rays start at one point, r for the second.
+    /// The edges from there; for a common origin, the second one is r.
     e: [[f32; N]; 3],
     f: [[f32; N]; 3],
     n: [[f32; N]; 3],
-    /// Of t, where all rays start at one point.
+    /// The numerator of t, for a common origin.
     numerator: [f32; N],
-    /// Bounds on the errors of weights, of the numerator and of the denominator.
+    /// Error bounds of the weights, and of the numerator and denominator of t.
     above: [f32; N],
     numerator_error: [f32; N],
     over: [f32; N],
 }
 
 impl<const N: usize> Rows<N> {
-    /// Spreads out the triangles of a leaf for sixteen rays.
+    /// Prepare the triangles of a leaf for sixteen rays.
     #[inline(always)]
     pub(super) fn spread<S: Lanes<N>>(
         &self,
@@ -80,7 +81,7 @@ impl<const N: usize> Rows<N> {
 }
 
 impl<const N: usize> Spread<N> {
-    /// What is known of those in `asked` of sixteen rays and one of the triangles; nothing if none of them meets it.
+    /// Test one of the triangles against the rays in `asked` conservatively; an empty result if none hits.
     #[inline(always)]
     pub fn bracket<S: Lanes<RAYS>>(
         &self,
@@ -121,7 +122,7 @@ impl<const N: usize> Spread<N> {
     }
 }
 
-/// A vector of one triangle in every lane.
+/// A vector of one triangle, broadcast to every lane.
 #[inline(always)]
 fn spread_one<const N: usize, S: Lanes<RAYS>>(simd: S, vectors: &[[f32; N]; 3], lane: usize) -> [S::F32; 3] {
     [simd.splat(vectors[0][lane]), simd.splat(vectors[1][lane]), simd.splat(vectors[2][lane])]

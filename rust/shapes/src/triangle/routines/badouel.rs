@@ -1,25 +1,25 @@
 //! Badouel, "An Efficient Ray-Polygon Intersection", in Graphics Gems (1990).
 //!
-//! First the point where the ray meets the triangle's plane, then whether that point is inside, in two dimensions:
-//! along the axes on which the triangle casts its largest shadow. The point is rounded before it is compared with the
-//! edges, which is why this one leaks: two triangles that share an edge each see a point of their own.
+//! First the intersection with the triangle's plane, then a 2D point-in-triangle test along the axes of its largest
+//! projection. The point is rounded before it is compared with the edges, which is why this test is not watertight: two
+//! triangles that share an edge each use a point of their own.
 
 use super::{Meeting, Routine, SingleRay};
 use raywright_base::math::Vec3;
 
-/// Plane first, then the shadow of the triangle.
+/// Plane first, then the projected triangle.
 pub struct Badouel;
 
-/// What is kept of a triangle.
+/// The precomputed data of a triangle.
 pub struct Shadow {
-    /// The plane is where `normal · x + offset = 0`.
+    /// The plane `normal · x + offset = 0`.
     normal: Vec3,
     offset: f32,
-    /// The axes of the shadow.
+    /// The axes of the projection.
     axes: [usize; 2],
-    /// The first corner's shadow.
+    /// The first corner, projected.
     a: [f32; 2],
-    /// The shadows of the edges that leave it.
+    /// The edges from it, projected.
     ab: [f32; 2],
     ac: [f32; 2],
 }

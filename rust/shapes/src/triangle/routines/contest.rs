@@ -1,4 +1,4 @@
-//! All routines side by side, on the same rays and triangles and by the same clock.
+//! A benchmark of all routines on the same rays and triangles.
 
 use std::hint::black_box;
 use std::time::{Duration, Instant};
@@ -12,10 +12,10 @@ use super::woop::Woop;
 use super::{Meeting, Routine, SingleRay};
 use raywright_base::math::Vec3;
 
-/// Pairs that are brought near before their time is taken: few enough for a second-level cache.
+/// Pairs per timed batch, loaded beforehand: few enough for a second-level cache.
 const NEAR: usize = 1024;
 
-/// Pairs of a ray and a triangle, made ready for every routine.
+/// Pairs of a ray and a triangle, prepared for every routine.
 pub struct Contest {
     contenders: Vec<Box<dyn Contender>>,
     pairs: usize,
@@ -25,19 +25,20 @@ pub struct Contest {
 pub trait Contender: Send + Sync {
     /// Its name.
     fn name(&self) -> &'static str;
-    /// What it keeps of a triangle, in bytes.
+    /// The size of its triangle data in bytes.
     fn bytes(&self) -> usize;
-    /// Tests every pair once and returns the answers.
+    /// Test every pair once and return the results.
     fn answers(&self) -> Vec<Option<Meeting>>;
-    /// Tests every pair, and tells how long that takes.
+    /// Test every pair and return the time taken.
     fn time(&self, answers: &mut [Option<Meeting>]) -> Duration;
 }
 
 impl Contest {
-    /// The `i`th ray is for the `i`th triangle.
+    /// Pair the `i`-th ray with the `i`-th triangle.
     ///
     /// # Panics
-    /// If there are not as many rays as triangles.
+    ///
+    /// If the numbers of rays and triangles differ.
     pub fn new(rays: &[SingleRay], triangles: &[[Vec3; 3]]) -> Self {
         assert_eq!(rays.len(), triangles.len(), "as many rays as triangles");
         let contenders = vec![
@@ -57,15 +58,15 @@ impl Contest {
         self.contenders.iter().map(|contender| &**contender)
     }
 
-    /// How long each routine takes for all pairs. One after the other, so that of several rounds each has its share of
-    /// whatever else the machine does.
+    /// The time of each routine for all pairs. The routines take turns, so that over several rounds each has an equal
+    /// share of other load on the machine.
     pub fn round(&self) -> Vec<Duration> {
         let mut answers = vec![None; self.pairs];
         self.contenders.iter().map(|contender| contender.time(&mut answers)).collect()
     }
 }
 
-/// Pairs as a routine wants them.
+/// Pairs in the form that a routine needs.
 struct Pairs<R: Routine>(Vec<(R::Ray, R::Triangle)>);
 
 impl<R> Pairs<R>
@@ -80,7 +81,7 @@ where
     }
 }
 
-/// One test. The pair is hidden from the compiler, lest it merge several tests into one of vectors.
+/// One test. The pair is hidden from the compiler, which might otherwise vectorize across tests.
 #[inline(always)]
 fn test<R: Routine>(pair: &(R::Ray, R::Triangle)) -> Option<Meeting> {
     let (ray, triangle) = black_box(pair);
@@ -108,7 +109,7 @@ where
     fn time(&self, answers: &mut [Option<Meeting>]) -> Duration {
         let mut spent = Duration::ZERO;
         for (pairs, answers) in self.0.chunks(NEAR).zip(answers.chunks_mut(NEAR)) {
-            // First from back to front: that fetches them, and teaches the branch predictor nothing of their order.
+            // A warm-up from back to front loads the pairs without training the branch predictor on their order.
             for (pair, answer) in pairs.iter().zip(answers.iter_mut()).rev() {
                 *answer = test::<R>(pair);
             }

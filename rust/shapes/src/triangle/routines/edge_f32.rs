@@ -1,15 +1,14 @@
-//! The edge form in f32: what [`crate::triangle::EdgeRay`] computes, with half the digits and no exact
-//! fallback.
+//! The edge test in f32: as [`crate::triangle::EdgeRay`], with half the digits and no exact fallback.
 //!
-//! The weight of a corner, twice over, is `d · ((b − c) × (b + c))` with corners relative to the ray's origin: the
-//! signed volume of [`super::volumes`], but it loses less to cancellation far from the origin. It too is negated
-//! exactly when the edge is walked the other way, so nothing leaks between triangles that share one. t is the mean of
-//! the corners' depths along the direction's largest axis, by these weights.
+//! The doubled weight of a corner is `d · ((b − c) × (b + c))` with corners relative to the ray's origin. It is the
+//! signed volume of [`super::volumes`], with less cancellation far from the origin. Reversing the edge negates it
+//! exactly, too, so shared edges are watertight. t is the mean of the corners' depths along the direction's largest
+//! axis with these weights.
 
 use super::{Meeting, Routine, SingleRay, relative, signs_differ};
 use raywright_base::math::Vec3;
 
-/// The edge form in f32.
+/// The edge test in f32.
 pub struct EdgeF32;
 
 /// A ray with its largest axis.

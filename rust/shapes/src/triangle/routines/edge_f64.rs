@@ -1,18 +1,18 @@
-//! The library's own: the edge form in f64 with a bound on its error, and exact where the bound leaves a sign open.
+//! The library's own edge test: in f64 with an error bound, and exact where the bound leaves a sign open.
 //!
-//! [`EdgeRay`] has the formulas and the proof. Corners are kept in f32 and widened when they are tested.
+//! [`EdgeRay`] has the formulas and the proof. Corners are stored in f32 and widened for the test.
 
 use super::{Meeting, Routine, SingleRay};
 use crate::triangle::EdgeRay;
 use raywright_base::math::{Ray, Region, Vec3};
 
-/// The edge form in f64, exact where it is in doubt.
+/// The edge test in f64, exact in case of doubt.
 pub struct EdgeF64;
 
 impl Routine for EdgeF64 {
     const NAME: &'static str = "edge form, f64, exact";
     type Triangle = [Vec3; 3];
-    /// None for a ray that hits nothing.
+    /// None for a ray that cannot hit anything.
     type Ray = Option<EdgeRay>;
 
     fn triangle(corners: [Vec3; 3]) -> [Vec3; 3] {

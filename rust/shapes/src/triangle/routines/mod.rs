@@ -1,9 +1,9 @@
-//! The ways to meet a triangle that the literature knows, one ray and one triangle at a time: to be read, and compared.
+//! Ray-triangle tests from the literature, for one ray and one triangle, for study and comparison.
 //!
-//! Each file is one of them as it was published, but for three things that all share, so that they answer the same
-//! question on the same numbers: rays and corners come in f32; both sides of a triangle are hit; and a hit has a
-//! finite t ≥ 0. What depends on the ray alone, or on the triangle alone, is computed beforehand where the author does
-//! so. [`Contest`] runs them side by side. Only [`edge_f64`] decides exactly; traversal uses that one, by the block.
+//! Each file holds one test as published, except for three common conventions that make them comparable. Rays and
+//! corners are given in f32, both sides of a triangle are hit, and a hit has a finite t ≥ 0. Terms that depend on the
+//! ray or the triangle alone are precomputed where the author does so. [`Contest`] compares their speed. Only
+//! [`edge_f64`] decides exactly; traversal uses that one, in blocks.
 
 pub mod badouel;
 mod contest;
@@ -17,38 +17,38 @@ pub use contest::{Contender, Contest};
 
 use raywright_base::math::Vec3;
 
-/// A way to find where a ray meets a triangle.
+/// A ray-triangle intersection routine.
 pub trait Routine {
-    /// What to call it: its authors and the year, or what it computes.
+    /// Its name: authors and year, or the method.
     const NAME: &'static str;
-    /// What is kept of a triangle.
+    /// The precomputed data of a triangle.
     type Triangle;
-    /// What is kept of a ray.
+    /// The precomputed data of a ray.
     type Ray;
 
-    /// Makes a triangle ready, once for all rays.
+    /// Prepare a triangle, once for all rays.
     fn triangle(corners: [Vec3; 3]) -> Self::Triangle;
 
-    /// Makes a ray ready, once for all triangles that lie in the box around these `corners`.
+    /// Prepare a ray, once for all triangles in the bounding box of these `corners`.
     fn ray(ray: SingleRay, corners: [Vec3; 3]) -> Self::Ray;
 
-    /// Where the ray meets the triangle.
+    /// Intersect the ray with the triangle.
     fn meet(ray: &Self::Ray, triangle: &Self::Triangle) -> Option<Meeting>;
 }
 
 /// A half-line `origin + t · direction`, t ≥ 0, in single precision.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SingleRay {
-    /// Where the ray starts.
+    /// The origin.
     pub origin: Vec3,
-    /// Where it goes.
+    /// The direction.
     pub direction: Vec3,
 }
 
-/// Where a ray meets a triangle.
+/// An intersection of a ray with a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Meeting {
-    /// In lengths of the ray's direction.
+    /// The ray parameter, in lengths of the direction.
     pub t: f64,
     /// The weight of the second corner.
     pub u: f64,
@@ -57,7 +57,7 @@ pub struct Meeting {
 }
 
 impl Meeting {
-    /// Of numbers in f32; none if `t` is not one that counts.
+    /// Convert from f32; None if `t` is out of range.
     #[inline(always)]
     fn new(t: f32, u: f32, v: f32) -> Option<Self> {
         (0.0..=f32::MAX).contains(&t).then(|| Self { t: t.into(), u: u.into(), v: v.into() })
@@ -70,8 +70,8 @@ fn relative(corners: &[Vec3; 3], origin: Vec3) -> [Vec3; 3] {
     [corners[0] - origin, corners[1] - origin, corners[2] - origin]
 }
 
-/// Whether some number is below zero and another above: the ray passes the edges on different sides.
-// Each comparison by a branch of its own would cost more than all else, as no processor can guess them.
+/// Return whether one number is negative and another positive: the ray passes the edges on different sides.
+// No short circuit: a branch per comparison would be unpredictable and cost more than all else.
 #[inline(always)]
 fn signs_differ(u: f32, v: f32, w: f32) -> bool {
     ((u < 0.0) | (v < 0.0) | (w < 0.0)) & ((u > 0.0) | (v > 0.0) | (w > 0.0))

@@ -1,22 +1,22 @@
 //! Möller and Trumbore, "Fast, Minimum Storage Ray-Triangle Intersection" (1997).
 //!
 //! `origin + t · direction = a + u · (b − a) + v · (c − a)` is three linear equations in t, u and v; Cramer's rule
-//! solves them with two cross products. The triangle's plane is never needed, and a ray that misses is often gone
-//! after the first weight.
+//! solves them with two cross products. The triangle's plane is never needed, and a miss is often detected after the
+//! first weight.
 //!
-//! The paper also rejects every determinant below 10⁻⁶, and with it every triangle of a small scene; here only zero
-//! is rejected.
+//! The paper also rejects every determinant below 10⁻⁶, and with it every triangle of a small scene; here only zero is
+//! rejected.
 
 use super::{Meeting, Routine, SingleRay};
 use raywright_base::math::Vec3;
 
-/// With the corners as they come.
+/// With the corners as given.
 pub struct MollerTrumbore;
 
-/// With the edges computed beforehand: no more to store, and the same answers.
+/// With precomputed edges: the same storage and the same results.
 pub struct MollerTrumboreEdges;
 
-/// One corner, and the edges that leave it.
+/// One corner and its two edges.
 pub struct Edges {
     a: Vec3,
     ab: Vec3,

@@ -2,12 +2,12 @@
 //! Ray-Triangle Intersection. Comparative Study" (2001).
 //!
 //! With corners relative to the ray's origin, `d · (b × c)` is six times the volume of a tetrahedron between the ray
-//! and the edge from b to c, and its sign tells on which side of the edge the ray passes. In Plücker coordinates the
-//! same number is the side product of two lines. The three are also the weights of the corners, and with the volume
+//! and the edge from b to c. Its sign says on which side of the edge the ray passes. In Plücker coordinates the same
+//! number is the side product of two lines. The three volumes are also the weights of the corners, and with the volume
 //! under the whole triangle, `a · (b × c)`, they give t.
 //!
-//! An edge that two triangles share has the same volume in both, but for its sign, so nothing leaks between them. Far
-//! from the origin b and c are nearly the same vector, and their product is little but rounding.
+//! An edge shared by two triangles has the same volume in both, except for its sign, so shared edges are watertight.
+//! Far from the origin b and c are nearly equal, and their cross product is mostly rounding error.
 
 use super::{Meeting, Routine, SingleRay, relative, signs_differ};
 use raywright_base::math::Vec3;

@@ -1,17 +1,16 @@
 //! Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection" (2013).
 //!
-//! The ray is sheared and scaled to be the z axis from the origin. Then an edge function is a determinant of two rows
-//! of two, and it is negated exactly when the edge is walked the other way, so nothing leaks between triangles that
-//! share one. Where an edge function is zero, all three are computed again in f64, which is exact for products of two
-//! f32.
+//! The ray is sheared and scaled to be the z axis from the origin. An edge function is then a 2 × 2 determinant, and
+//! reversing the edge negates it exactly, so shared edges are watertight. If an edge function is zero, all three are
+//! recomputed in f64, which is exact for products of two f32.
 //!
-//! The corners are rounded when they are sheared. So what is decided exactly is where the ray passes a triangle that
-//! is a little off: neighbours agree with each other, but not with exact arithmetic on the triangle that was given.
+//! The shear rounds the corners. So the decision is exact for a slightly perturbed triangle: neighbours agree with each
+//! other, but not with exact arithmetic on the given triangle.
 
 use super::{Meeting, Routine, SingleRay, relative, signs_differ};
 use raywright_base::math::Vec3;
 
-/// Sheared to the ray, in f32, with the fallback in f64.
+/// Sheared to the ray, in f32, with a fallback to f64.
 pub struct Woop;
 
 /// A ray with the shear that makes it the z axis.
@@ -77,7 +76,7 @@ impl Routine for Woop {
     }
 }
 
-/// `p · q − r · s` with products that are exact and one rounding of their difference, then one to f32.
+/// `p · q − r · s` with exact products and one rounding of their difference, then one to f32.
 #[inline(always)]
 fn determinant(p: f32, q: f32, r: f32, s: f32) -> f32 {
     (f64::from(p) * f64::from(q) - f64::from(r) * f64::from(s)) as f32
