@@ -1,17 +1,17 @@
-//! A tree of boxes in f64, for what is asked by how far it is.
+//! A bounding volume hierarchy in f64 for overlap and nearest-first queries.
 
 use raywright_base::math::DVec3;
 use raywright_shapes::Bounds;
 
-/// What a leaf holds at most.
+/// Maximum number of boxes in a leaf.
 const LEAF: usize = 4;
 
-/// Boxes by number, halved at the middle one along the longest axis until few are left. Boxes without end stand beside
-/// it: there is nothing to be told about them.
+/// Numbered boxes, split at the median along the axis of largest extent. Unbounded boxes are kept beside the tree,
+/// since no query can exclude them.
 #[derive(Clone, Debug, Default)]
 pub struct BoxTree {
     nodes: Vec<Node>,
-    /// The numbers of what is in the leaves.
+    /// The numbers of the boxes in the leaves.
     order: Vec<u32>,
     endless: Vec<u32>,
 }
@@ -19,13 +19,14 @@ pub struct BoxTree {
 #[derive(Clone, Copy, Debug)]
 struct Node {
     bounds: Bounds,
-    /// Of a leaf what it holds of `order`; of others, which hold nothing, the first child, beside which the second is.
+    /// Of a leaf, its first entry in `order`. Of an inner node, which has a count of 0, the first child; the second one
+    /// follows it.
     first: u32,
     count: u32,
 }
 
 impl BoxTree {
-    /// The tree of some boxes, each with its number.
+    /// Build the tree of numbered boxes.
     pub fn new(boxes: impl Iterator<Item = (u32, Bounds)>) -> Self {
         let (mut finite, mut tree) = (Vec::new(), Self::default());
         for (number, bounds) in boxes {
@@ -48,7 +49,7 @@ impl BoxTree {
             self.order.extend(boxes.iter().map(|&(number, _)| number));
             return;
         }
-        // Halves, lest sums overflow.
+        // Halved, since sums may overflow.
         let middle = |bounds: &Bounds, axis: usize| 0.5 * bounds.min[axis] + 0.5 * bounds.max[axis];
         let spread = |axis: usize| {
             let ends = boxes.iter().map(|(_, b)| middle(b, axis));
@@ -58,7 +59,7 @@ impl BoxTree {
         let spreads = [0, 1, 2].map(spread);
         let axis = (0..3).fold(0, |best, k| if spreads[k] > spreads[best] { k } else { best });
         let half = boxes.len() / 2;
-        // Of as far ones the lower number first, so that the tree is the same whatever is told first.
+        // The number breaks ties, so that the tree does not depend on the order of the input.
         boxes
             .select_nth_unstable_by(half, |a, b| middle(&a.1, axis).total_cmp(&middle(&b.1, axis)).then(a.0.cmp(&b.0)));
         let (low, high) = boxes.split_at_mut(half);
@@ -71,7 +72,7 @@ impl BoxTree {
         self.split(first + 1, high);
     }
 
-    /// Visits the numbers of all in boxes that are met, those without end included, and maybe of some others.
+    /// Visit the number of each box that satisfies `is_met`, all unbounded ones, and possibly some others.
     pub fn visit(&self, is_met: impl Fn(&Bounds) -> bool, mut visit: impl FnMut(u32)) {
         self.endless.iter().for_each(|&number| visit(number));
         let mut open = if self.nodes.is_empty() { Vec::new() } else { vec![0] };
@@ -88,10 +89,10 @@ impl BoxTree {
         }
     }
 
-    /// Visits what may be near enough, what is nearer by its box before what is farther: `gap` says how far what a box
-    /// holds is at least, and `visit` is given a number and how far to look, and says how far to look from then on.
+    /// Visit boxes nearest first. `gap` is a lower bound on the distance to a box's content. `visit` is given a number
+    /// and the current maximum distance, and returns the new one.
     pub fn nearest(&self, most: f64, gap: impl Fn(&Bounds) -> f64, mut visit: impl FnMut(u32, f64) -> f64) {
-        /// Room for the roundings of gaps and of distances.
+        /// Allowance for the roundings of gaps and distances.
         const ROOM: f64 = 1.0 + 1.0 / (1u64 << 40) as f64;
         let mut most = most;
         for &number in &self.endless {
@@ -115,13 +116,13 @@ impl BoxTree {
         }
     }
 
-    /// Memory held.
+    /// Memory use in bytes.
     pub fn bytes(&self) -> usize {
         self.nodes.capacity() * size_of::<Node>() + (self.order.capacity() + self.endless.capacity()) * size_of::<u32>()
     }
 }
 
-/// The box around boxes.
+/// The union of boxes.
 fn around(boxes: &[(u32, Bounds)]) -> Bounds {
     let none = Bounds { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY };
     boxes.iter().fold(none, |all, (_, b)| Bounds { min: all.min.min(b.min), max: all.max.max(b.max) })
@@ -139,7 +140,7 @@ mod tests {
 
     #[test]
     fn the_nearest_of_many_is_found_and_few_are_looked_at() {
-        // Also a thousand at one place, and one without end.
+        // Also a thousand boxes at one place, and one unbounded box.
         for same in [false, true] {
             let at = |i: u32| if same { DVec3::ONE } else { place(i) };
             let boxes = (0..1000).map(|i| (i, Bounds { min: at(i), max: at(i) + 0.01 }));

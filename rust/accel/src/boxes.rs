@@ -1,4 +1,4 @@
-//! The boxes of trees, for people to look at.
+//! The node boxes of trees, for visualization.
 
 use raywright_base::math::{Aabb, Axes, DVec3, Region};
 
@@ -7,26 +7,26 @@ use raywright_base::math::{Aabb, Axes, DVec3, Region};
 pub struct NodeBox {
     /// In box units, along the tree's axes.
     pub aabb: Aabb,
-    /// Steps from the root.
+    /// Depth below the root.
     pub depth: usize,
-    /// Of a leaf, how many primitives stand in it.
+    /// Of a leaf, the number of its primitives.
     pub primitives: Option<usize>,
 }
 
-/// The boxes of a tree, in no order.
+/// The boxes of a tree, in no particular order.
 #[derive(Clone, Debug)]
 pub struct Boxes {
-    /// Of all nodes.
+    /// The boxes of all nodes.
     pub nodes: Vec<NodeBox>,
-    /// Whose units they are in.
+    /// The region that defines their units.
     pub region: Region,
-    /// What they lie along, if not the scene's own axes.
+    /// The tree's own axes, if they differ from the scene's.
     pub axes: Option<Axes>,
 }
 
 impl Boxes {
-    /// The corners of a box where the scene is: bits 0 to 2 of a corner's number are set where it is at the greater
-    /// end along the first to the third axis.
+    /// The corners of a box in the scene's units. Bit k of a corner's index is set if it is at the upper end along the
+    /// k-th axis.
     pub fn corners(&self, aabb: &Aabb) -> [DVec3; 8] {
         let (min, max) = (aabb.min.as_dvec3(), aabb.max.as_dvec3());
         std::array::from_fn(|i| {

@@ -1,4 +1,4 @@
-//! Every primitive against every ray: the measure of all other accelerators.
+//! Brute force: every primitive is tested against every ray, as a reference for the other accelerators.
 
 use super::nearest::{Search, of};
 use super::query::{Answers, Query};
@@ -9,10 +9,10 @@ use raywright_base::simd::{Dispatch, Kernel, Level, Simd};
 use raywright_shapes::triangle::{DoubleLeaves, EdgeRay, Leaves, SingleLeaves, SolidCone};
 use std::time::Instant;
 
-/// Triangles that are tested at once, on every processor.
+/// Triangles per SIMD test, on every processor.
 const LANES: usize = 4;
 
-/// Tests all primitives: one leaf, and no box before it.
+/// One leaf with all primitives, and no boxes.
 pub struct BruteForce<L = SingleLeaves<LANES>> {
     contents: Contents<LANES, L>,
     region: Region,
@@ -21,7 +21,7 @@ pub struct BruteForce<L = SingleLeaves<LANES>> {
 }
 
 impl BruteForce {
-    /// Collects the primitives, and keeps numbers as precisely as they are.
+    /// Collect the primitives, with coordinates in the given precision.
     pub fn over(primitives: &dyn Primitives, level: Level) -> Box<dyn Accelerator> {
         if primitives.is_single() {
             Box::new(Self::of(primitives, level))
@@ -31,7 +31,7 @@ impl BruteForce {
     }
 }
 
-/// The numbers of what can be hit.
+/// The numbers of the primitives that can be hit.
 fn all(primitives: &dyn Primitives) -> Vec<u32> {
     (0..primitives.count() as u32).filter(|&p| primitives.bounds(p).is_some()).collect()
 }

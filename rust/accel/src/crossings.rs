@@ -1,18 +1,17 @@
-//! Every hit of a ray, in order, and each point of a surface once.
+//! Every hit of each ray in order, with shared points of a surface counted once.
 //!
-//! Triangles are closed, so a ray through an edge that two of them share meets both; as a surface it is crossed once
-//! there, or not at all where the ray only touches a ridge. Of the triangles met at one point of edges and corners
-//! those count that the ray crosses when it is moved by next to nothing ([`Contact`]), so that a closed surface is
-//! crossed an even number of times from outside and an odd one from inside, however the ray is aimed. Where the ray
-//! touches and crosses none, what it meets is told nevertheless, since [`super::Accelerator::intersect`] tells it:
-//! twice, as if in and out. That is two triangles of a ridge, or twice the same one where the others that it shares the
-//! point with are seen edge-on.
+//! A ray through a shared edge hits both triangles. As a surface, they are crossed once there, or not at all if the ray
+//! only touches a ridge. Of the triangles hit at one point of edges and corners, those count that the symbolically
+//! perturbed ray crosses ([`Contact`]). So a closed surface is crossed an even number of times from outside and an odd
+//! number from inside, in any direction. Where the ray touches but crosses nothing, the contact is still reported,
+//! since [`super::Accelerator::intersect`] reports it: twice, as an entry and an exit. These are two triangles of a
+//! ridge, or twice the same one if its neighbours at that point are edge-on.
 
 use super::query::{Every, Meeting};
 use raywright_base::math::Hit;
 use raywright_shapes::Contact;
 
-/// The hits of some rays.
+/// The hits of a batch of rays.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Crossings {
     /// Ray `i` has the hits from `splits[i]` to `splits[i + 1]`.
@@ -22,23 +21,23 @@ pub struct Crossings {
 }
 
 impl Crossings {
-    /// Those of a ray, by its number.
+    /// The hits of one ray.
     #[inline]
     pub fn of_ray(&self, ray: usize) -> &[Hit] {
         &self.hits[self.splits[ray]..self.splits[ray + 1]]
     }
 
-    /// Puts what rays meet in order, and counts points that triangles share once.
+    /// Sort the intersections, and count points shared by triangles once.
     pub fn of(every: Every) -> Self {
         let Every { mut met, rays } = every;
-        // The sum with zero is zero for −0 too, since these are equal to whoever looks for the closest.
+        // Adding zero turns −0 into +0; closest-hit queries treat them as equal.
         let t = |m: &Meeting| m.hit.t + 0.0;
         met.sort_unstable_by(|(r, a), (s, b)| {
             r.cmp(s)
                 .then(t(a).total_cmp(&t(b)))
                 .then((a.hit.primitive, a.hit.inner).cmp(&(b.hit.primitive, b.hit.inner)))
         });
-        // Structures in which a primitive stands at several places may meet it at each.
+        // Structures that reference a primitive in several leaves may report it from each.
         met.dedup_by(|(r, a), (s, b)| {
             let same = |a: &Hit, b: &Hit| a.primitive == b.primitive && a.inner == b.inner;
             r == s && t(a) == t(b) && same(&a.hit, &b.hit)
@@ -51,7 +50,7 @@ impl Crossings {
             let (mine, others) = rest.split_at(count);
             rest = others;
             if let [(_, Meeting { hit, contact: Contact::Inside })] = mine {
-                // Most often there is one, and it shares its point with no other.
+                // Most rays have one hit, at no shared point.
                 crossings.hits.push(Hit { t: hit.t * scale, ..*hit });
                 crossings.splits.push(crossings.hits.len());
                 continue;
@@ -66,7 +65,7 @@ impl Crossings {
     }
 }
 
-/// How often each of a ray's meetings, in order, is told.
+/// How many times each of a ray's intersections, in order, is reported.
 fn times_told(met: &[(u32, Meeting)], same_point: f64) -> Vec<usize> {
     let mut times = vec![1; met.len()];
     let shared: Vec<usize> = (0..met.len()).filter(|&i| met[i].1.contact != Contact::Inside).collect();

@@ -1,14 +1,14 @@
-//! Triangles and fans of rays that try all kernels, for the tests of this crate and of the public face.
+//! Test scenes and ray fans that exercise all kernels, shared by the tests of this crate and of the Python interface.
 
 use raywright_accel::Primitives;
 use raywright_base::math::{DVec3, Ray, Vec3};
 use raywright_base::sampling::philox4x32;
 
-/// Triangles, in leaves of f32 or of f64.
+/// A triangle soup with f32 or f64 leaves.
 pub struct Soup {
-    /// The corners of each.
+    /// The corners of each triangle.
     pub triangles: Vec<[Vec3; 3]>,
-    /// Whether leaves hold f32.
+    /// True if leaves store f32.
     pub is_single: bool,
 }
 
@@ -24,13 +24,13 @@ impl Primitives for Soup {
     }
 }
 
-/// The `i`-th of any number of triples from −1 to 1.
+/// The `i`-th of a sequence of points in [−1, 1]³.
 fn triple(i: u32) -> DVec3 {
     let [x, y, z, _] = philox4x32([i, 0, 0, 0], [7, 7]).map(|bits| f64::from(bits) / f64::from(1u32 << 31) - 1.0);
     DVec3::new(x, y, z)
 }
 
-/// Triangles of all sizes, with a few planes through them so that rays meet edges and ties.
+/// Triangles of all sizes, and a few planes through them so that rays hit edges and tie.
 pub fn soup() -> Vec<[Vec3; 3]> {
     let corner = |i: u32, size: f64| (triple(i) + size * triple(i + 10_000)).as_vec3();
     let mut all: Vec<_> = (0..1000)
@@ -48,8 +48,8 @@ pub fn soup() -> Vec<[Vec3; 3]> {
     all
 }
 
-/// Fans of neighbouring rays: through the pixels of cameras near and far, parallel ones along axes, and with gaps
-/// of rays that cannot hit anything.
+/// Fans of neighbouring rays: through the pixels of near and distant cameras, parallel to the axes, and with gaps of
+/// invalid rays.
 pub fn fans() -> Vec<Vec<Ray>> {
     let mut fans = Vec::new();
     for camera in 0..12 {
@@ -80,7 +80,7 @@ pub fn fans() -> Vec<Vec<Ray>> {
     fans
 }
 
-/// Long thin triangles along axes of their own, and in planes at right angles to these.
+/// Long thin triangles along rotated axes, and in planes normal to these.
 pub fn sticks() -> Vec<[Vec3; 3]> {
     let x = DVec3::new(0.48, 0.64, 0.6);
     let axes = [x, x.any_orthonormal_vector(), x.cross(x.any_orthonormal_vector())];
@@ -91,7 +91,7 @@ pub fn sticks() -> Vec<[Vec3; 3]> {
     (0..600).map(stick).collect()
 }
 
-/// Soups of all sizes: many triangles, and so few that all stand in one leaf; large ones, and a part of the planes.
+/// Soups of all sizes: many triangles, so few that one leaf holds all, large ones, and a part of the planes.
 pub fn soups() -> Vec<Vec<[Vec3; 3]>> {
     let all = soup();
     let large = |i: u32| [0, 1, 2].map(|k| (1.2 * triple(3 * i + k + 70_000)).as_vec3());

@@ -1,9 +1,9 @@
-//! Scenes of few triangles, tested one by one against columns of rays.
+//! Brute-force intersection for scenes of few triangles, in SoA packets.
 //!
-//! With a few dozen triangles, sixteen rays against every triangle take less time than a tree. Two triangles that
-//! make a convex quadrilateral are one test. Each test is done in f32 with a bound on its error; what the bound
-//! leaves open is decided in f64 by the triangles themselves ([`EdgeRay`]), so that a hit or miss is as exact as
-//! everywhere else.
+//! For up to a few dozen triangles, testing sixteen rays against every triangle is faster than traversing a tree. Two
+//! triangles that form a convex planar quadrilateral are tested as one. Each test is done in f32 with an error bound.
+//! Undecided cases are decided in f64 by the triangles themselves ([`EdgeRay`]), so hits are as exact as everywhere
+//! else.
 
 use super::Primitives;
 use raywright_base::math::single::{choose, greater, lesser, mask};
@@ -14,21 +14,20 @@ use raywright_shapes::triangle::EdgeRay;
 /// Half of the distance between neighbouring f32 numbers in [1, 2).
 const UNIT: f32 = 1.0 / (1u32 << 24) as f32;
 
-/// A line in a plane of two coordinates: how far beyond it a point lies is its product with the point, less an offset.
+/// A 2D line as a normal and an offset: a point's signed distance is its dot product with the normal, less the offset.
 type Line = ([f32; 2], f32);
 
-/// A triangle, or a flat and convex quadrilateral of two, as it is seen along an axis.
+/// A triangle, or a convex planar quadrilateral of two triangles, projected along an axis.
 #[derive(Clone, Debug)]
 struct Patch {
-    /// The other axes, and the axis that the plane faces most.
+    /// The two axes of the projection, and the axis most parallel to the normal.
     axes: [usize; 3],
-    /// The plane: where the sum of these two times its coordinates along the other axes and of the one along the third
-    /// is the last.
+    /// The plane: `slopes` · (coordinates along the first two axes) + coordinate along the third = `height`.
     slopes: [f32; 2],
     height: f32,
-    /// Its edges, as lines that it lies on the near side of. A triangle has three.
+    /// Its edges, as lines with the patch on their negative side. A triangle has three.
     edges: [Line; 4],
-    /// The diagonal of a quadrilateral: the first triangle lies on its near side.
+    /// The diagonal of a quadrilateral, with the first triangle on its negative side.
     diagonal: Line,
     /// The triangles.
     halves: [Option<Half>; 2],
@@ -41,65 +40,65 @@ struct Half {
     corners: [DVec3; 3],
 }
 
-/// Few triangles, ready for columns of rays.
+/// A few triangles, prepared for packets of rays.
 #[derive(Clone, Debug)]
 pub struct FewTriangles {
     patches: Vec<Patch>,
-    /// The primitives of each patch; of a triangle, twice the same.
+    /// The primitives of each patch; twice the same for a single triangle.
     halves: Vec<[u32; 2]>,
     /// The patch of each primitive.
     patch_of: Vec<u32>,
     region: Region,
 }
 
-/// Sixteen rays, and the patches that each leaves and goes to.
+/// Sixteen rays, and for each the patches to ignore: that of its origin and that of its end.
 struct Rays {
     origin: [[f32; LANES]; 3],
     direction: [[f32; LANES]; 3],
     t_max: [f32; LANES],
-    /// The largest coordinate of the scene and of the origin, added.
+    /// The largest coordinate of the scene plus that of the origin.
     size: [f32; LANES],
     misses: [[u32; LANES]; 2],
 }
 
 /// The closest hits of sixteen rays.
 struct Best {
-    /// Between `low` and `high` lies `t`.
+    /// `t` is between `low` and `high`.
     low: [f32; LANES],
     high: [f32; LANES],
-    /// Whether the second half of the patch is hit: all bits or none.
+    /// True if the second triangle of the patch is hit, as a mask of all bits or none.
     is_second: [u32; LANES],
     patch: [u32; LANES],
-    /// The patches, by bits, that were open when they were tested.
+    /// Bit masks of the patches that were undecided.
     open: [[u32; LANES]; 2],
 }
 
-/// The greatest `t` that is told from infinity. No hit lies as far.
+/// The greatest finite `t`; hits are always nearer.
 const MOST_T: f32 = 1e30;
 
-/// Of a lane with nothing.
+/// Marks a lane without a hit.
 const NONE: u32 = u32::MAX;
 
-/// `a · b + c`, rounded once where the processor can: what follows is within its bounds either way.
+/// `a · b + c`, fused where the processor supports it. The error bounds cover both.
 #[inline(always)]
 fn fused<const FUSED: bool>(a: f32, b: f32, c: f32) -> f32 {
     if FUSED { a.mul_add(b, c) } else { a * b + c }
 }
 
-/// How far beyond a line a point lies.
+/// The signed distance of a point from a line.
 #[inline(always)]
 fn beyond<const FUSED: bool>(([x, y], offset): Line, p: [f32; 2]) -> f32 {
     fused::<FUSED>(x, p[0], fused::<FUSED>(y, p[1], -offset))
 }
 
-/// Tests one patch, which is number `index`. Where `ANY` hit will do, it is noted as patch 0.
+/// Test the patch of the given index. If `ANY` hit suffices, it is recorded as patch 0.
 ///
 /// With ε = 2⁻²⁴ and S the sum of the largest coordinates of scene and origin, the numerator of `t` errs by at most
-/// 15εS: sums of numbers up to S, and the roundings of the plane and the origin. The denominator errs by 7ε. So `t`
-/// errs by (15εS + 8ε|t|)/|n·d| to first order, for a normal `n` of largest coordinate 1, the position by that and
-/// 2ε(S + |t|), and its distances across edges by 6ε(S + |t|) more. The far corner of a quadrilateral may lie off its
-/// plane by 2εS ([`outline`]), which moves it and its edges by no more than twice that. 64ε(S + |t|)/|n·d| covers the
-/// sum where |n·d|, which is at most √3, is at least 64ε, and nothing is certain below.
+/// 15εS: from sums of numbers up to S, and the roundings of the plane and the origin. The denominator errs by 7ε. So
+/// `t` errs by (15εS + 8ε|t|)/|n·d| to first order, for a normal `n` of largest coordinate 1. The position errs by that
+/// and 2ε(S + |t|), and its distances across edges by 6ε(S + |t|) more. The far corner of a quadrilateral may lie off
+/// its plane by 2εS ([`outline`]), which moves it and its edges by at most twice that. 64ε(S + |t|)/|n·d| covers the
+/// sum if |n·d|, which is at most √3, is at least 64ε. Below that nothing is certain.
 #[inline(always)]
 fn test<const FUSED: bool, const TRIANGLE: bool, const ANY: bool>(
     patch: &Patch,
@@ -124,13 +123,13 @@ fn test<const FUSED: bool, const TRIANGLE: bool, const ANY: bool>(
         let outside = if TRIANGLE { outside } else { greater(outside, beyond::<FUSED>(patch.edges[3], p)) };
         let error = (64.0 * UNIT) * (size + t.abs()) * inverse.abs();
         let (nearest, farthest) = (t - error, t + error);
-        // Comparisons with NaN are false, and leave the test open. So do those of slopes below 64ε: the error is more
-        // than t then, unless the plane is left by more than the scene is large.
+        // Comparisons with NaN are false, and leave the test undecided. So do slopes below 64ε, where the error exceeds
+        // t, unless the distance from the plane exceeds the scene's size.
         let is_out = mask(outside > error)
             | mask(farthest < 0.0)
             | mask(nearest > best.high[i])
             | mask(above.abs() > 8.0 * size * slope.abs() + 64.0 * UNIT * size);
-        // Only those that end go to a triangle.
+        // Only rays with a finite end have a target patch to ignore.
         let is_known = mask(index == rays.misses[0][i]) | if ANY { mask(index == rays.misses[1][i]) } else { 0 };
         let is_possible = !(is_known | is_out);
         let is_certain = mask(outside < -error) & mask(nearest > 0.0) & mask(farthest < best.low[i]);
@@ -152,7 +151,7 @@ fn test<const FUSED: bool, const TRIANGLE: bool, const ANY: bool>(
     }
 }
 
-/// All patches, to be tested against sixteen rays.
+/// Tests all patches against sixteen rays.
 struct TestAll<'a, const ANY: bool> {
     patches: &'a [Patch],
     rays: &'a Rays,
@@ -176,7 +175,7 @@ impl<const N: usize, const ANY: bool> Kernel<N> for TestAll<'_, ANY> {
 }
 
 loops! {
-    /// Takes sixteen rays.
+    /// Load sixteen rays.
     fn take(from: &PathRays, start: usize, extent: f32, patch_of: &[u32], rays: &mut Rays, best: &mut Best) {
         let end = start + LANES;
         for axis in 0..3 {
@@ -195,7 +194,7 @@ loops! {
         for (to, &[left, _]) in rays.misses[0].iter_mut().zip(&from.misses[start..end]) {
             *to = patch(left);
         }
-        // Only those that end go to a triangle.
+        // Only rays with a finite end have a target triangle.
         if !from.t_max.is_empty() {
             for (to, &[_, reached]) in rays.misses[1].iter_mut().zip(&from.misses[start..end]) {
                 *to = patch(reached);
@@ -204,7 +203,7 @@ loops! {
         for i in 0..LANES {
             let (x, y, z) = (rays.origin[0][i].abs(), rays.origin[1][i].abs(), rays.origin[2][i].abs());
             rays.size[i] = extent + greater(greater(x, y), z);
-            // What ends within an error of the ray's end is open.
+            // Hits within an error of the ray's end are undecided.
             let end = rays.t_max[i];
             let room = (4.0 * UNIT) * end;
             best.low[i] = end - room;
@@ -217,12 +216,12 @@ loops! {
 }
 
 impl FewTriangles {
-    /// The greatest number of triangles. Trees take less time for more.
+    /// Maximum number of triangles. Trees are faster for more.
     pub const MOST: usize = 64;
 
-    /// Prepares all primitives, if they are few triangles whose sizes f32 can hold.
+    /// Prepare all primitives, if they are few triangles and their size suits f32.
     pub fn new(primitives: &dyn Primitives) -> Option<Self> {
-        /// The least and the greatest size of a scene: their squares stay in range.
+        /// Minimum and maximum size of a scene, for which squares neither overflow nor underflow.
         const SIZES: [f64; 2] = [1e-12, 1e12];
         let count = primitives.count();
         if count > Self::MOST || primitives.objects().is_some() {
@@ -243,7 +242,7 @@ impl FewTriangles {
             for half in halves.iter().flatten() {
                 patch_of[half.primitive as usize] = patches.len() as u32;
             }
-            // Without area, nothing hits it.
+            // Degenerate triangles cannot be hit.
             let Some(patch) = Patch::new(halves, region.extent) else { continue };
             if !(SIZES[0]..SIZES[1]).contains(&region.extent) {
                 return None;
@@ -255,7 +254,7 @@ impl FewTriangles {
         Some(Self { patches, halves, patch_of, region })
     }
 
-    /// Finds the triangle that each ray hits first, or [`Ray::NO_TRIANGLE`].
+    /// Find the first triangle that each ray hits, or [`Ray::NO_TRIANGLE`].
     pub fn closest(&self, level: Level, rays: &PathRays, primitives: &mut [u32]) {
         self.ask::<false>(level, rays, |start, best| {
             for (i, to) in primitives[start..][..LANES].iter_mut().enumerate() {
@@ -265,7 +264,7 @@ impl FewTriangles {
         });
     }
 
-    /// Tells which rays hit anything.
+    /// Test which rays hit anything.
     pub fn occluded(&self, level: Level, rays: &PathRays, occluded: &mut [bool]) {
         self.ask::<true>(level, rays, |start, best| {
             for (i, to) in occluded[start..][..LANES].iter_mut().enumerate() {
@@ -274,7 +273,7 @@ impl FewTriangles {
         });
     }
 
-    /// Tests all patches against all rays.
+    /// Test all patches against all rays.
     fn ask<const ANY: bool>(&self, level: Level, from: &PathRays, mut answer: impl FnMut(usize, &Best)) {
         let mut rays = Rays {
             origin: [[0.0; LANES]; 3],
@@ -308,7 +307,7 @@ impl FewTriangles {
         }
     }
 
-    /// Decides in f64 whether a ray hits a patch before all that it has hit.
+    /// Decide in f64 whether a ray hits a patch before its closest hit so far.
     #[cold]
     #[inline(never)]
     fn decide(&self, patch: &Patch, ray: &Ray, lane: usize, best: &mut Best) {
@@ -332,8 +331,8 @@ impl FewTriangles {
     }
 }
 
-/// The corners of the quadrilateral that two triangles make, one after the other: the first and the third are of one
-/// triangle each. `None` if it is not convex, or not flat to within what f32 would round.
+/// The corners in order of the quadrilateral that two triangles form; the first and the third belong to one triangle
+/// each. `None` if it is not convex, or not planar to within f32 rounding.
 fn outline([first, second]: &[Half; 2], extent: f64) -> Option<[DVec3; 4]> {
     let (a, b) = (first.corners, second.corners);
     let [own, other] = shared(a, b)?;
@@ -344,7 +343,7 @@ fn outline([first, second]: &[Half; 2], extent: f64) -> Option<[DVec3; 4]> {
     (is_flat && (0..4).all(turns)).then_some(all)
 }
 
-/// The corner of each of two triangles that the other has not, if they share the other two.
+/// The unshared corner of each of two triangles, if they share the other two.
 fn shared(a: [DVec3; 3], b: [DVec3; 3]) -> Option<[usize; 2]> {
     let own = |of: [DVec3; 3], other: [DVec3; 3]| {
         let mut own = (0..3).filter(|&i| !other.contains(&of[i]));
@@ -354,7 +353,7 @@ fn shared(a: [DVec3; 3], b: [DVec3; 3]) -> Option<[usize; 2]> {
 }
 
 impl Patch {
-    /// `None` without area.
+    /// `None` for degenerate triangles.
     fn new(halves: [Option<Half>; 2], extent: f64) -> Option<Self> {
         let [a, b, c] = halves[0]?.corners;
         let normal = (b - a).cross(c - a).try_normalize()?;
@@ -364,7 +363,7 @@ impl Patch {
             if normal.y.abs() > normal.z.abs() { 1 } else { 2 }
         };
         let [x, y] = [(z + 1) % 3, (z + 2) % 3];
-        // Seen from the side that the normal points to, or mirrored.
+        // Seen from the normal's side, or mirrored.
         let turn = 1f64.copysign(normal[z]);
         let line = |from: DVec3, to: DVec3| -> Line {
             let along = to - from;
@@ -399,7 +398,7 @@ mod tests {
         philox4x32([i, 0, 0, 0], [3, 9])[0] as f32 / (1u32 << 31) as f32 - 1.0
     }
 
-    /// A room with a box in it, of parallelograms, and some triangles; on a grid, so that rays meet corners and edges.
+    /// A room with a box in it, of parallelograms, and some triangles, on a grid so that rays hit corners and edges.
     fn room(scale: f32) -> Vec<[Vec3; 3]> {
         let mut all = Vec::new();
         for (low, high) in [([-1.0, -1.0, -1.0], [1.0, 1.0, 1.0]), ([-0.5, -1.0, -0.5], [0.25, 0.0, 0.25])] {
@@ -426,7 +425,7 @@ mod tests {
 
     fn rays(scale: f32) -> PathRays {
         let of_fans = fans().into_iter().flatten().map(|ray| (ray.origin.as_vec3(), ray.direction.as_vec3()));
-        // From points of the grid to points of the grid.
+        // From grid points to grid points.
         let grid = |i: u32| Vec3::from_array([0, 1, 2].map(|x| (4.0 * number(3 * i + x)).round() / 4.0));
         let of_grid = (0..4000).map(|i| (grid(i), grid(i + 5000) - grid(i)));
         let all: Vec<_> = of_fans.chain(of_grid).filter(|(_, d)| d.length() > 0.0).collect();
@@ -463,7 +462,7 @@ mod tests {
                     assert_eq!(occluded[i], wanted.is_hit(), "{i} at {scale}: {:?} {wanted:?}", exact[i]);
                     assert_eq!(hits[i] != NONE, wanted.is_hit(), "{i} at {scale}");
                     if wanted.is_hit() {
-                        // On the diagonal of a quadrilateral, one triangle is as good as the other.
+                        // On the diagonal of a quadrilateral either triangle is correct.
                         let patch = |primitive: u32| few.patch_of[primitive as usize];
                         assert_eq!(patch(hits[i]), patch(wanted.primitive), "{i} at {scale}: {:?}", exact[i]);
                     }

@@ -1,28 +1,28 @@
-//! The closest hit among what counts for a ray: whoever asks says so of each thing that the ray meets.
+//! Queries with a hit filter: the caller decides for each intersection whether it counts.
 
 use super::query::{Closest, Query, Wanted};
 use raywright_base::math::Hit;
 use raywright_shapes::Candidate;
 use raywright_shapes::triangle::Along;
 
-/// Whether a primitive counts for ray `i` of a batch, which meets it so; `t` is along the scaled direction.
+/// True if ray `i` of a batch accepts a primitive's intersection; `t` is along the scaled direction.
 pub type Counts<'a> = dyn Fn(usize, u32, &Candidate) -> bool + Sync + 'a;
 
-/// The closest hit that counts or, if any will do, one that does.
+/// The closest accepted hit, or any accepted one.
 ///
-/// All goes as it would if what does not count were not there: it neither shortens a ray nor ends it.
+/// Rejected intersections have no effect: they neither shorten a ray nor end it.
 pub struct Kept<'a> {
-    /// What counts.
+    /// The filter.
     pub counts: &'a Counts<'a>,
-    /// Whether any hit will do.
+    /// True if any accepted hit will do.
     pub any: bool,
-    /// Of each ray.
+    /// The hit of each ray.
     pub hits: &'a mut [Hit],
 }
 
 impl Query for Kept<'_> {
     type State = (usize, Hit);
-    // Of a curved shape or a copy, the first point may not count and the next one may.
+    // Of a curved shape or an instance, the first intersection may be rejected and a later one accepted.
     const WANTED: Wanted = Wanted::Met;
     const NEAREST_FIRST: bool = true;
 

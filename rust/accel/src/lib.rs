@@ -1,10 +1,10 @@
-//! Floor 2: what finds hits.
+//! Floor 2: acceleration structures, and their queries for hits, nearest points and cones.
 
-// What its functions take and return.
+// Types in the signatures of this crate.
 pub use raywright_base::{math, simd};
 pub use raywright_shapes as shapes;
 
-// Files that tests share name the crate as its users do.
+// Shared test files refer to the crate by the name its users use.
 #[cfg(test)]
 extern crate self as raywright_accel;
 
@@ -63,38 +63,37 @@ use raywright_shapes::{Bounds, Candidate};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// What an accelerator is built from: triangles known by their numbers and corners, and objects known by their numbers
-/// alone.
+/// The input of an accelerator: triangles given by number and corners, and objects given by number alone.
 ///
-/// The accelerators know no scene; whoever owns primitives shows them so.
+/// Accelerators do not depend on the scene; the owner of the primitives implements this trait.
 pub trait Primitives: Sync {
-    /// The number of primitives; they are numbered from 0.
+    /// The number of primitives, which are numbered from 0.
     fn count(&self) -> usize;
 
-    /// The corners of a triangle; NaN of what is none.
+    /// The corners of a triangle; NaN for other primitives.
     fn corners(&self, primitive: u32) -> [DVec3; 3];
 
-    /// Whether every coordinate of a triangle is an f32, so that leaves need not keep more.
+    /// Return whether every coordinate of a triangle is an f32, so that leaves can store f32.
     fn is_single(&self) -> bool;
 
-    /// What is no triangle; none if there is no such thing.
+    /// The primitives that are not triangles, if any.
     fn objects(&self) -> Option<Arc<dyn UserGeometry>> {
         None
     }
 
-    /// Who watches what is made over them, and may stop it: nobody, unless it is said.
+    /// The observer of the build, which may cancel it; by default there is none.
     ///
-    /// An accelerator that was stopped holds nothing, and is of no use: whoever stops it drops it.
+    /// A canceled accelerator is empty and has to be dropped.
     fn work(&self) -> Work<'_> {
         Work::UNWATCHED
     }
 
-    /// Whether it is a triangle that can be hit: not if a corner is NaN or infinite.
+    /// Return whether it is a triangle that can be hit: all corners are finite.
     fn is_finite(&self, primitive: u32) -> bool {
         self.corners(primitive).iter().all(|c| c.is_finite())
     }
 
-    /// The box around a primitive, triangle or not; none if nothing can hit it.
+    /// The bounding box of any primitive; None if it cannot be hit.
     fn bounds(&self, primitive: u32) -> Option<Bounds> {
         let [a, b, c] = self.corners(primitive);
         if a.is_finite() && b.is_finite() && c.is_finite() {
@@ -103,13 +102,13 @@ pub trait Primitives: Sync {
         self.objects()?.bounds(primitive)
     }
 
-    /// Where the primitives lie that can be hit, but for those without end: [`region`], unless that is known.
+    /// The region of all bounded primitives that can be hit; [`region`] unless it is known.
     fn region(&self) -> Region {
         region(self.count(), &|p| self.bounds(p))
     }
 }
 
-/// Where all of so many lie that have bounds, and an end.
+/// The region of the primitives with finite bounds.
 pub fn region(count: usize, bounds: &(dyn Fn(u32) -> Option<Bounds> + Sync)) -> Region {
     let nothing = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     let join = |a: (DVec3, DVec3), b: (DVec3, DVec3)| (a.0.min(b.0), a.1.max(b.1));
@@ -121,8 +120,7 @@ pub fn region(count: usize, bounds: &(dyn Fn(u32) -> Option<Bounds> + Sync)) -> 
     Region::new(min, max)
 }
 
-/// Finds hits among primitives. Every accelerator gives the same answers, ties included: of equal `t`, the lowest
-/// primitive.
+/// An acceleration structure. All return the same results, ties included: at equal `t`, the lowest primitive wins.
 pub trait Accelerator: Send + Sync {
     /// The closest hit of each ray.
     fn intersect(&self, rays: &[Ray], hits: &mut [Hit]);
@@ -134,46 +132,46 @@ pub trait Accelerator: Send + Sync {
         hit[0]
     }
 
-    /// Whether one ray hits anything.
+    /// Return whether one ray hits anything.
     fn occluded_one(&self, ray: &Ray) -> bool {
         let mut occluded = [false];
         self.occluded(std::slice::from_ref(ray), &mut occluded);
         occluded[0]
     }
 
-    /// Whether each ray hits anything.
+    /// Test whether each ray hits anything.
     fn occluded(&self, rays: &[Ray], occluded: &mut [bool]);
 
-    /// It as what takes rays by columns, if it does: where a ray's way in and out would otherwise take as long as its
-    /// way through the structure.
+    /// The same accelerator with an SoA interface, if it has one. It avoids converting rays and hits, which may take
+    /// as long as the traversal.
     fn by_columns(&self) -> Option<&dyn ByColumns> {
         None
     }
 
-    /// Every hit of each ray, of which there are fewer than 2³².
+    /// Find every hit of each ray; fewer than 2³² rays.
     fn crossings(&self, rays: &[Ray]) -> Crossings;
 
-    /// The closest hit of each ray among what counts for it or, if `any` will do, one of these: as if all else were not
-    /// there.
+    /// Find the closest accepted hit of each ray, or with `any` some accepted hit. Rejected intersections have no
+    /// effect.
     fn kept(&self, rays: &[Ray], counts: &Counts<'_>, any: bool, hits: &mut [Hit]);
 
-    /// All that each ray meets, by every triangle.
+    /// Find all intersections of each ray, including duplicates at shared edges.
     fn met(&self, rays: &[Ray]) -> Every;
 
-    /// Every hit of each ray among what counts for it.
+    /// Find every accepted hit of each ray.
     fn crossings_kept(&self, rays: &[Ray], counts: &Counts<'_>) -> Crossings;
 
-    /// All surfaces that the rays, asked from a `t_min` of 0 on, cross ahead of their origins, among the primitives
-    /// that count.
+    /// Find all surfaces of the counting primitives that each ray crosses ahead of its origin. Rays have a `t_min` of
+    /// 0.
     fn exits(&self, counts: &(dyn Fn(u32) -> bool + Sync), rays: &[Ray]) -> Exits;
 
-    /// The nearest point to each point, within its greatest distance, that distance included; one greatest distance for
-    /// all of them, or one each. A point that is NaN or infinite has none. Of primitives as near, the lowest.
+    /// Find the nearest point to each query point, within a maximum distance, inclusive, given once for all or per
+    /// point. A non-finite point has none. At equal distances, the lowest primitive wins.
     fn nearest(&self, points: &[DVec3], max_distances: &[f64], nearest: &mut [Nearest]) {
         self.nearest_kept(points, max_distances, None, nearest);
     }
 
-    /// The same among the primitives that count.
+    /// The same, among the counting primitives.
     fn nearest_kept(
         &self,
         points: &[DVec3],
@@ -182,36 +180,35 @@ pub trait Accelerator: Send + Sync {
         nearest: &mut [Nearest],
     );
 
-    /// The triangles that each cone touches, nearest first: those that share a point with it, within the bounds that
-    /// [`SolidCone`] states. None of what is no cone.
+    /// Find the triangles that each cone touches, nearest first: those that share a point with it, within the bounds of
+    /// [`SolidCone`]. An invalid cone, None, touches nothing.
     fn touched(&self, cones: &[Option<SolidCone>]) -> Touches;
 
-    /// What finding the closest hit of each ray takes, ray by ray.
+    /// Measure the traversal cost of the closest hit of each ray.
     fn cost(&self, rays: &[Ray], costs: &mut [Cost]);
 
-    /// The boxes of all nodes, of each of the trees that it is; `None` of what has no boxes.
+    /// The boxes of all nodes, for each tree of the accelerator; `None` for structures without boxes.
     fn boxes(&self) -> Option<Vec<Boxes>>;
 
-    /// The same structure over primitives that have moved: as many, of the same numbers and of which the same can be
-    /// hit.
+    /// Refit the structure to moved primitives: the same number, of which the same can be hit.
     fn refitted(&self, primitives: &dyn Primitives) -> Result<Box<dyn Accelerator>, String>;
 
-    /// Checks what queries rely on; says what is wrong.
+    /// Check the invariants that queries rely on; the error describes the violation.
     fn validate(&self, primitives: &dyn Primitives) -> Result<(), String>;
 
-    /// What it looks like.
+    /// Statistics of the structure.
     fn info(&self) -> &Info;
 }
 
-/// An [`Accelerator`] over triangles that takes rays by columns, and gives the same answers.
+/// An [`Accelerator`] over triangles with an SoA interface and the same results.
 pub trait ByColumns: Send + Sync {
     /// The closest hit of each ray.
     fn intersect(&self, rays: &RayColumns<'_>, hits: HitColumns<'_>);
 
-    /// The closest hit of each ray, one after the other.
+    /// Find the closest hit of each ray, as an array of structures.
     fn first_hits(&self, rays: &RayColumns<'_>, hits: &mut [Hit]);
 
-    /// The primitive that each ray hits first, or [`Ray::NO_TRIANGLE`].
+    /// Find the first primitive that each ray hits, or [`Ray::NO_TRIANGLE`].
     fn first_primitives(&self, rays: &RayColumns<'_>, primitives: &mut [u32]) {
         let mut hits = vec![Hit::MISS; rays.len()];
         self.first_hits(rays, &mut hits);
@@ -220,10 +217,10 @@ pub trait ByColumns: Send + Sync {
         }
     }
 
-    /// Whether each ray hits anything.
+    /// Test whether each ray hits anything.
     fn occluded(&self, rays: &RayColumns<'_>, occluded: &mut [bool]);
 
-    /// How large what rays meet is, if it matters to them in which order they come.
+    /// The size of the scene, if sorting rays for coherence pays.
     fn extent(&self) -> Option<f64>;
 }
 
@@ -311,35 +308,35 @@ impl<A: Answers> Accelerator for A {
     }
 }
 
-/// What a query took.
+/// The cost of a query.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Cost {
-    /// Nodes whose boxes were tested.
+    /// Nodes with tested boxes.
     pub nodes: u32,
-    /// Primitives that stood in the leaves visited; each once, where it is known to have been met before.
+    /// Primitives in the visited leaves, without those already marked as tested.
     pub primitives: u32,
 }
 
-/// What an accelerator looks like.
+/// Statistics of an accelerator.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Info {
-    /// What it is, and how it was built.
+    /// The kind of structure and build.
     pub kind: String,
-    /// How precisely the corners of triangles are kept in its leaves: "single" or "double".
+    /// The precision of triangle corners in its leaves: "single" or "double".
     pub precision: &'static str,
-    /// Primitives in it: those that can be hit.
+    /// The number of primitives that can be hit.
     pub primitives: usize,
     /// Inner nodes.
     pub nodes: usize,
     /// Leaves.
     pub leaves: usize,
-    /// The longest way from the root to a leaf; 0 where the root is a leaf.
+    /// The depth of the tree; 0 if the root is a leaf.
     pub depth: usize,
-    /// Memory held.
+    /// Memory use in bytes.
     pub bytes: usize,
     /// Wall-clock time of the build.
     pub build_seconds: f64,
-    /// Expected cost of a random ray that meets the root's box, by the surface-area heuristic (Goldsmith and Salmon
+    /// The expected cost of a random ray that hits the root's box by the surface area heuristic (Goldsmith and Salmon
     /// 1987), in tests of a node or of a block of triangles.
     pub sah_cost: f64,
 }

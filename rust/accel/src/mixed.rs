@@ -1,4 +1,4 @@
-//! Triangles and objects, each in a structure of their own: one is asked, then the other for what is left.
+//! Triangles and objects in separate structures. A ray queries one, then the other with the remaining interval.
 
 use super::walk::{Build, Mailbox};
 use super::walked::walked;
@@ -14,8 +14,8 @@ use raywright_shapes::triangle::SolidCone;
 use std::cell::Cell;
 use std::sync::Arc;
 
-/// An accelerator over both: `triangles` builds the one over triangles, `objects` that over the others. Where there is
-/// only one kind, its accelerator is all that is built.
+/// Build an accelerator over both: `triangles` builds the one over triangles, `objects` the other. If there is only one
+/// kind, its accelerator alone is returned.
 pub fn mixed(
     primitives: &dyn Primitives,
     level: Level,
@@ -23,7 +23,7 @@ pub fn mixed(
     objects: &Build,
 ) -> Box<dyn Accelerator> {
     let Some(kept) = primitives.objects() else { return triangles(primitives) };
-    // One of them is no triangle, most are: what takes longer is seldom known before.
+    // An estimate: the build times are seldom known beforehand.
     let [first, then] = primitives.work().parts([1.0, 3.0]);
     let (kept_moves, kept_nests) = (kept.moves(), kept.is_nested());
     let others = walked(&OnlyObjects(primitives, kept, first), level, Mailbox::Stamps, objects);
@@ -34,7 +34,7 @@ pub fn mixed(
     Box::new(Mixed::of(triangles, others, !kept_moves && !kept_nests))
 }
 
-/// Primitives without those that are no triangles.
+/// The triangles among the primitives.
 struct OnlyTriangles<'a>(&'a dyn Primitives, Work<'a>);
 
 impl Primitives for OnlyTriangles<'_> {
@@ -52,7 +52,7 @@ impl Primitives for OnlyTriangles<'_> {
     }
 }
 
-/// Primitives without triangles.
+/// The primitives other than triangles.
 struct OnlyObjects<'a>(&'a dyn Primitives, Arc<dyn UserGeometry>, Work<'a>);
 
 impl<'a> OnlyObjects<'a> {
@@ -86,12 +86,12 @@ impl Primitives for OnlyObjects<'_> {
 struct Mixed {
     triangles: Box<dyn Accelerator>,
     objects: Box<dyn Accelerator>,
-    /// Whether columns say all of a ray and of its hit: nothing moves, and there are no primitives within others.
+    /// True if the SoA interface suffices: nothing moves, and there are no nested primitives.
     is_plain: bool,
     info: Info,
 }
 
-/// Rays that objects are asked about together: more leave the cache before they are answered.
+/// Rays per batch for objects, small enough to stay in the cache.
 const TOGETHER: usize = 256;
 
 impl Mixed {
@@ -111,7 +111,7 @@ impl Mixed {
         Self { triangles, objects, is_plain, info }
     }
 
-    /// Asks objects for what is nearer than what was hit, and says for which rays it is.
+    /// Query the objects for hits closer than the given ones, and report those found.
     fn nearer(
         &self,
         count: usize,
@@ -124,7 +124,7 @@ impl Mixed {
         for start in (0..count).step_by(TOGETHER) {
             let these = start..count.min(start + TOGETHER);
             rays.clear();
-            // A hit takes over at equal `t` too, if it is that of a lower primitive.
+            // At equal `t`, a hit on a lower primitive wins.
             rays.extend(these.clone().map(|i| {
                 let ray = ray(i);
                 Ray { t_max: ray.t_max.min(hit(i).t), ..ray }
@@ -139,7 +139,7 @@ impl Mixed {
         }
     }
 
-    /// Asks objects about rays on whose way no triangle is.
+    /// Query the objects for rays that hit no triangle.
     fn also(&self, ray: impl Fn(usize) -> Ray, occluded: &mut [bool]) {
         let open: Vec<usize> = (0..occluded.len()).filter(|&i| !occluded[i]).collect();
         let (mut rays, mut others) = (Vec::with_capacity(TOGETHER.min(open.len())), [false; TOGETHER]);
@@ -155,12 +155,12 @@ impl Mixed {
     }
 }
 
-/// Which of two hits comes first: of equal `t`, that of the lowest primitive.
+/// The order of hits: at equal `t`, the lowest primitive comes first.
 fn is_before(a: &Hit, b: &Hit) -> bool {
     (a.t, a.primitive, a.inner) < (b.t, b.primitive, b.inner)
 }
 
-/// The hits of two structures in one order.
+/// Merge the hits of two structures in order.
 fn joined(count: usize, a: &Crossings, b: &Crossings) -> Crossings {
     let mut all = Crossings { splits: vec![0], hits: Vec::with_capacity(a.hits.len() + b.hits.len()) };
     for i in 0..count {
@@ -168,7 +168,7 @@ fn joined(count: usize, a: &Crossings, b: &Crossings) -> Crossings {
         let from = all.hits.len();
         all.hits.extend_from_slice(&a.hits[of(a)]);
         all.hits.extend_from_slice(&b.hits[of(b)]);
-        // Stable: what is told twice stays so. The sum with zero is zero for −0 too.
+        // The sort is stable, so duplicates remain. Adding zero turns −0 into +0.
         all.hits[from..].sort_by(|x, y| {
             (x.t + 0.0).total_cmp(&(y.t + 0.0)).then((x.primitive, x.inner).cmp(&(y.primitive, y.inner)))
         });
@@ -223,7 +223,7 @@ impl Accelerator for Mixed {
     fn met(&self, rays: &[Ray]) -> Every {
         let (mut all, others) = (self.triangles.met(rays), self.objects.met(rays));
         all.met.extend(others.met);
-        // A ray that one of the two lets pass is not told about by it.
+        // A structure sets no conversion for rays that hit nothing in it.
         for (mine, other) in all.rays.iter_mut().zip(others.rays) {
             *mine = if *mine == Every::UNTOLD { other } else { *mine };
         }
@@ -289,7 +289,7 @@ impl Accelerator for Mixed {
 }
 
 impl Mixed {
-    /// The triangles, as what takes columns.
+    /// The SoA interface of the triangles.
     fn columns(&self) -> &dyn ByColumns {
         self.triangles.by_columns().expect("asked only where they are")
     }
@@ -300,7 +300,7 @@ impl ByColumns for Mixed {
         let HitColumns { t, uv, primitive } = hits;
         self.columns().intersect(rays, HitColumns { t, uv, primitive });
         let (t, primitive) = (Cell::from_mut(t).as_slice_of_cells(), Cell::from_mut(primitive).as_slice_of_cells());
-        // Of what is missed, −1 is greater than any other.
+        // A miss has −1, which converts to the greatest number.
         let hit = |i: usize| Hit { t: t[i].get(), primitive: primitive[i].get() as u32, ..Hit::MISS };
         self.nearer(
             rays.len(),

@@ -1,12 +1,11 @@
-//! Octrees: every cell is halved across all three axes at once, so that nothing has to be said about where.
+//! Octrees: every cell is split in the middle along all three axes, so split positions need no storage.
 //!
-//! A node is 4 bytes and knows neither plane nor box. A ray is followed by the `t` at which it meets the six planes
-//! around a cell; those of the planes between its eight children lie half-way (Revelles, Ureña and Lastra, "An
-//! Efficient Parametric Algorithm for Octree Traversal", 2000). Cells have the proportions of the box around
-//! everything.
+//! A node takes 4 bytes and stores neither plane nor box. Traversal tracks the `t` of a cell's six planes; that of a
+//! plane between its eight children is the mean of two (Revelles, Ureña and Lastra, "An Efficient Parametric Algorithm
+//! for Octree Traversal", 2000). Cells have the proportions of the scene's bounding box.
 //!
-//! Where it meets a plane is uncertain, by an amount that is the same for all planes across an axis. So in some
-//! children it certainly is not; all others are visited.
+//! The `t` of a plane is uncertain by an amount that is the same for all planes across an axis. Children that the ray
+//! certainly misses are skipped; all others are visited.
 
 use super::walk::{Halves, Input, Lists, Part, Plane, Room, Structure, Walker};
 use super::{Info, NodeBox, SlabRay};
@@ -15,20 +14,20 @@ use raywright_base::math::robust::{greater, lesser};
 use raywright_base::parallel;
 use std::array::from_fn;
 
-/// Most levels below the root. With so many, cells are about as small as it is uncertain where a ray is.
+/// Maximum depth. There, cells are about as small as the uncertainty of a ray's position.
 pub const MAX_DEPTH: usize = 18;
 
-/// How to build an octree.
+/// Build options of an octree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options {
-    /// Most levels below the root, up to [`MAX_DEPTH`].
+    /// Maximum depth, up to [`MAX_DEPTH`].
     pub max_depth: usize,
-    /// So many primitives are not parted any more.
+    /// Cells with at most this many primitives become leaves.
     pub leaf_size: usize,
 }
 
 impl Options {
-    /// As good as any for most scenes.
+    /// A good choice for most scenes.
     pub const DEFAULT: Self = Self { max_depth: 12, leaf_size: 8 };
 }
 
@@ -41,17 +40,17 @@ impl Default for Options {
 /// An octree.
 #[derive(Clone, Debug)]
 pub struct Octree {
-    /// The first is the root.
+    /// The nodes, root first.
     nodes: Vec<Node>,
-    /// The box around everything: the root's cell.
+    /// The root's cell.
     bounds: Aabb,
     depth: usize,
-    /// By the surface-area heuristic: of every inner node one visit, of every leaf its primitives, each times the
-    /// chance that a ray that meets the root's cell meets this one's.
+    /// The surface area heuristic: one per inner node, plus the primitives of each leaf, each times the probability
+    /// that a ray through the root's cell hits the cell.
     sah_cost: f64,
 }
 
-/// The first of eight children, which stand side by side, or a leaf.
+/// The index of the first of eight consecutive children, or a leaf.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Node(u32);
 
@@ -60,7 +59,7 @@ const _: () = assert!(size_of::<Node>() == 4);
 impl Node {
     const LEAF: u32 = 1 << 31;
 
-    /// A leaf with nothing in it.
+    /// An empty leaf.
     const EMPTY: Self = Self(u32::MAX);
 
     fn leaf(number: usize) -> Self {
@@ -78,27 +77,28 @@ impl Node {
         self.0 & Self::LEAF != 0
     }
 
-    /// Of a leaf with anything in it.
+    /// The index of a nonempty leaf.
     fn number(self) -> Option<u32> {
         (self.is_leaf() && self != Self::EMPTY).then_some(self.0 & !Self::LEAF)
     }
 
-    /// The first of an inner node.
+    /// The first child of an inner node.
     fn children(self) -> Option<usize> {
         (!self.is_leaf()).then_some(self.0 as usize)
     }
 }
 
-/// From so many parts on, threads deal out so many each.
+/// Minimum number of parts for parallel distribution, and parts per task.
 const SHARE: usize = 4096;
 
-/// Builds an octree over primitives.
+/// Build an octree over primitives.
 ///
-/// It has the same bits for any number of threads. Time is n times the number of levels, with clipped parts counted in
-/// n; a node is a leaf where its children would not save tests, as where primitives coincide, and there are at most 9
-/// times as many parts as primitives, and 64 more.
+/// The result is bit-identical for any number of threads. Time is proportional to n times the number of levels, with n
+/// counting clipped parts. A cell becomes a leaf if a split would not save tests, as for coincident primitives. There
+/// are at most 9 times as many parts as primitives, plus 64.
 ///
 /// # Panics
+///
 /// If an option is out of range.
 pub fn build(input: &Input, options: &Options) -> (Box<dyn Structure>, Lists) {
     let Options { max_depth, leaf_size } = *options;
@@ -118,7 +118,7 @@ pub fn build(input: &Input, options: &Options) -> (Box<dyn Structure>, Lists) {
         if parts.len() > SHARE && steps.is_stopped() {
             break;
         }
-        // A child has a quarter of its parent's surface, and so as much of its rays.
+        // A child has a quarter of its parent's surface area, so a quarter of its rays.
         let share = 0.25f64.powi(cell.depth as i32);
         let parted = if parts.len() > leaf_size { tree.parted(input, &cell, &parts, room) } else { None };
         let Some((children, rooms)) = parted else {
@@ -146,26 +146,26 @@ pub fn build(input: &Input, options: &Options) -> (Box<dyn Structure>, Lists) {
     (Box::new(tree), lists)
 }
 
-/// A node, with its cell as the builder sees it.
+/// A node and its cell during the build.
 #[derive(Clone, Copy, Debug)]
 struct Cell {
     node: usize,
     aabb: Aabb,
-    /// Which it is of all cells of its level, by axis.
+    /// Its index among the cells of its level, by axis.
     at: [u32; 3],
     depth: usize,
 }
 
 impl Octree {
-    /// Where planes stand: rounded to f32, of what rays have exactly. Rays leave room for the difference.
+    /// The splitting plane, rounded to f32. Rays use the exact position and allow for the difference.
     fn plane(&self, cell: &Cell, axis: usize) -> Plane {
         let (min, max) = (f64::from(self.bounds.min[axis]), f64::from(self.bounds.max[axis]));
         let share = f64::from(2 * cell.at[axis] + 1) / f64::from(1u32 << (cell.depth + 1));
         Plane { axis, at: (min + (max - min) * share) as f32 }
     }
 
-    /// One of eight children, of which the first is said: bits 0 to 2 of its number are set where it lies above the
-    /// plane across x to z.
+    /// One of eight consecutive children. Bits 0 to 2 of its octant are set if it lies above the plane normal to x to
+    /// z.
     fn child(&self, cell: &Cell, first: usize, octant: usize) -> Cell {
         let mut child = Cell { node: first + octant, depth: cell.depth + 1, ..*cell };
         for axis in 0..3 {
@@ -176,7 +176,8 @@ impl Octree {
         child
     }
 
-    /// What goes to each child, and what may yet be done there. None if that saves no tests, or is too much.
+    /// Distribute parts to the children, with their share of the budget. None if that saves no tests or exceeds the
+    /// budget.
     fn parted(&self, input: &Input, cell: &Cell, parts: &[Part], room: Room) -> Option<([Vec<Part>; 8], [Room; 8])> {
         if room.depth == 0 {
             return None;
@@ -195,12 +196,12 @@ impl Octree {
             dealt(parts)
         };
         let counts = children.each_ref().map(Vec::len);
-        // Each is met by a quarter of the rays.
+        // Each child is hit by a quarter of the rays.
         let saves = counts.iter().sum::<usize>() < 4 * parts.len();
         room.shared(parts.len(), counts).filter(|_| saves).map(|rooms| (children, rooms))
     }
 
-    /// Tells each child what of a part it has.
+    /// Clip a part to each child that it overlaps.
     fn deal(&self, input: &Input, cell: &Cell, part: Part, to: &mut impl FnMut(usize, Part)) {
         let mut pieces = [(0, part); 8];
         let mut count = 1;
@@ -222,13 +223,13 @@ impl Octree {
                 }
             }
         }
-        // Pieces with nothing in them stay so, whatever plane comes.
+        // Empty pieces stay empty.
         for &(octant, part) in pieces[..count].iter().filter(|(_, part)| !part.aabb.is_empty()) {
             to(octant, part);
         }
     }
 
-    /// Every node, from the root on.
+    /// All cells, root first.
     fn cells(&self) -> impl Iterator<Item = Cell> {
         let root = Cell { node: 0, aabb: self.bounds, at: [0; 3], depth: 0 };
         let mut open: Vec<_> = self.nodes.first().map(|_| root).into_iter().collect();
@@ -241,7 +242,7 @@ impl Octree {
         })
     }
 
-    /// Whether a part stands wherever it should below a node.
+    /// Return whether a part is in all the leaves it overlaps below a node.
     fn stands(&self, input: &Input, lists: &[Vec<u32>], cell: &Cell, part: Part) -> bool {
         match self.nodes[cell.node].children() {
             Some(first) => {
@@ -261,7 +262,7 @@ impl Octree {
 
 impl Structure for Octree {
     fn walker(&self, counted: bool) -> Box<dyn Walker + '_> {
-        // A path puts seven children away a level, and the root.
+        // A path leaves seven siblings per level, and the root.
         let open = Vec::with_capacity(7 * self.depth + 1);
         if counted {
             Box::new(Walk::<true> { tree: self, way: Way::new(&SlabRay::EVERYWHERE), open, nodes: 0 })
@@ -326,20 +327,20 @@ impl Structure for Octree {
     }
 }
 
-/// A ray as planes around cells need it.
+/// A ray prepared for cell planes.
 #[derive(Clone, Copy)]
 struct Way {
     t_min: f32,
-    /// Where it meets the root's planes: by axis, the one that it comes to first, and the other.
+    /// The `t` of the root's planes by axis: the near plane and the far plane.
     around: [[f32; 3]; 2],
-    /// By axis, how far off it may meet a plane.
+    /// By axis, the uncertainty of a plane's `t`.
     ///
-    /// With v = 2⁻²⁴ and R the ray's reach, a plane stands up to 2v from where the builder put it, and what is taken
-    /// for half-way errs by vR more a level at the most: the least upper bound of what two errors of levels above,
-    /// halved, add up to. In all that is less than 2vR + 18 · 2/3 · vR = 14vR, in units of t times the inverse of the
-    /// direction; taking the middle of what bounds a `t` from both sides costs less than vR. Twice the pad is 16vR.
+    /// With v = 2⁻²⁴ and R the ray's reach, a plane is off by up to 2v from where the builder put it. A midpoint errs
+    /// by at most vR more per level, the least upper bound for halving the sum of two parent errors. In all that is
+    /// less than 2vR + 18 · 2/3 · vR = 14vR, in units of t times the inverse of the direction; using the middle of each
+    /// `t` interval costs less than vR. Twice the pad is 16vR.
     room: [f32; 3],
-    /// The bits of axes along which the ray goes down: what turns the octant that it comes to first into octant 0.
+    /// Bits of the axes with a negative direction: XOR maps the first octant on the ray to octant 0.
     mirror: u32,
 }
 
@@ -353,7 +354,7 @@ impl Way {
         }
     }
 
-    /// Around a box.
+    /// Set up the planes around a box.
     fn around(ray: &SlabRay, aabb: &Aabb) -> Self {
         let planes = [aabb.min, aabb.max];
         let t = |side: usize, axis: usize| {
@@ -363,7 +364,7 @@ impl Way {
         Self { around: [0, 1].map(|side| from_fn(|axis| t(side, axis))), ..Self::new(ray) }
     }
 
-    /// Where it is between planes, at most.
+    /// A conservative interval of `t` between planes.
     #[inline(always)]
     fn span(&self, [first, last]: &[[f32; 3]; 2]) -> (f32, f32) {
         let (mut enter, mut leave) = (self.t_min, f32::INFINITY);
@@ -375,7 +376,7 @@ impl Way {
     }
 }
 
-/// A node, and where the ray meets the planes around it.
+/// A node and the `t` of its planes.
 #[derive(Clone, Copy)]
 struct Open {
     node: Node,
@@ -390,12 +391,11 @@ struct Walk<'a, const COUNTED: bool> {
     nodes: u32,
 }
 
-/// Of eight children, those above the middle of an axis.
+/// Masks of the children above the middle of each axis.
 const ABOVE: [u32; 3] = [0b1010_1010, 0b1100_1100, 0b1111_0000];
 
 impl<const COUNTED: bool> Walk<'_, COUNTED> {
-    /// Children that the ray may be in while it is in their parent, the one that it comes to first as the first: a bit
-    /// each.
+    /// Mask of the children that the ray may enter within the parent's interval, in traversal order.
     #[inline(always)]
     fn met(&self, (enter, leave): (f32, f32), middle: &[f32; 3]) -> u32 {
         let room = &self.way.room;
@@ -404,7 +404,7 @@ impl<const COUNTED: bool> Walk<'_, COUNTED> {
             let (from, until) = (middle[axis] - room[axis], middle[axis] + room[axis]);
             met &= if from > leave { !ABOVE[axis] } else { !0 };
             met &= if until < enter { ABOVE[axis] } else { !0 };
-            // Nor is it beyond this plane while it is before another that it leaves behind earlier.
+            // Before it crosses an earlier plane, the ray is not beyond this one.
             for other in (0..3).filter(|&other| other != axis) {
                 let apart = from > middle[other] + room[other];
                 met &= if apart { !(ABOVE[axis] & !ABOVE[other]) } else { !0 };
@@ -440,8 +440,7 @@ impl<const COUNTED: bool> Walker for Walk<'_, COUNTED> {
             let middle: [f32; 3] = from_fn(|axis| 0.5 * (first[axis] + last[axis]));
             let (enter, leave) = self.way.span(&around);
             let mut met = self.met((enter, lesser(leave, limit)), &middle);
-            // The farthest is put away first. A child's number has a bit more than those of all that the ray may come
-            // to before it.
+            // Push the farthest first. In this numbering children increase along the ray.
             while met != 0 {
                 let octant = 31 - met.leading_zeros();
                 met ^= 1 << octant;

@@ -1,48 +1,48 @@
-//! What rays cross on their way out: an odd number of times a closed surface if they start inside of it.
+//! Point-in-solid tests by ray parity: from inside, a ray crosses a closed surface an odd number of times.
 //!
-//! All of it is decided exactly. Which triangles the ray crosses, [`Contact`] tells, through edges and corners too; and
-//! `t` is the f64 nearest to the exact one, so that it is 0 on a surface alone.
+//! All decisions are exact. [`Contact`] tells which triangles the ray crosses, also through edges and corners. `t` is
+//! the f64 nearest to the exact one, so it is 0 only on a surface.
 
 use super::query::{Query, Wanted};
 use raywright_shapes::triangle::Along;
 use raywright_shapes::{Candidate, Contact};
 
-/// Where a point lies.
+/// The side of a surface on which a point lies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Side {
-    /// The surface is crossed an even number of times on the way out.
+    /// The ray crosses the surface an even number of times.
     #[default]
     Outside,
-    /// An odd number of times.
+    /// The ray crosses the surface an odd number of times.
     Inside,
-    /// The point is a point of the surface.
+    /// The point is on the surface.
     Surface,
 }
 
-/// A surface that a ray crosses ahead of its origin.
+/// A crossing of a ray with a surface ahead of its origin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Exit {
-    /// The number of the ray.
+    /// The index of the ray.
     pub ray: u32,
-    /// What is crossed.
+    /// The primitive.
     pub primitive: u32,
-    /// Which primitive within that one.
+    /// The primitive within an instance.
     pub inner: u32,
-    /// The bits of `t`, by which crossings of one primitive differ.
+    /// The bits of `t`, which distinguish crossings of one primitive.
     t: u64,
 }
 
 /// All crossings of rays ahead of their origins, each once, by ray and primitive; and the origins on a surface.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Exits {
-    /// What is crossed.
+    /// The crossings.
     pub crossed: Vec<Exit>,
-    /// Whether the origin of each ray is a point of a surface.
+    /// True if the origin of each ray is a point of a surface.
     pub on_surface: Vec<bool>,
 }
 
 impl Exits {
-    /// On which side of all surfaces in one the origins lie, by the even-odd rule.
+    /// The side of all surfaces together on which each origin lies, by the even-odd rule.
     pub fn sides(&self) -> Vec<Side> {
         let mut sides = vec![Side::Outside; self.on_surface.len()];
         for exits in self.crossed.chunk_by(|a, b| a.ray == b.ray) {
@@ -54,7 +54,7 @@ impl Exits {
         sides
     }
 
-    /// Those of two structures together.
+    /// Merge the results of two structures.
     pub(crate) fn joined(mut self, other: Self) -> Self {
         self.crossed.extend(other.crossed);
         for (on_surface, other) in self.on_surface.iter_mut().zip(other.on_surface) {
@@ -63,7 +63,7 @@ impl Exits {
         self.in_order()
     }
 
-    /// By ray and primitive, and each once: a structure may tell the same crossing more than once.
+    /// Sort by ray and primitive, without duplicates: a structure may report a crossing more than once.
     pub(crate) fn in_order(mut self) -> Self {
         self.crossed.sort_unstable();
         self.crossed.dedup();
@@ -71,11 +71,11 @@ impl Exits {
     }
 }
 
-/// Finds what rays cross on their way out.
+/// A query for the surfaces that rays cross ahead of their origins.
 pub struct WaysOut<'a> {
-    /// Whether a primitive counts.
+    /// True if a primitive counts.
     pub counts: &'a (dyn Fn(u32) -> bool + Sync),
-    /// The answers, crossings in any order.
+    /// The results, in any order.
     pub exits: Exits,
 }
 

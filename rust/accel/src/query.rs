@@ -1,65 +1,65 @@
-//! What is asked of each ray: a type each, so that each question has kernels of its own.
+//! Ray queries, one type each: traversal is generic over the query, so each has its own kernels.
 
 use super::{Boxes, ByColumns, Cost, Info, Nearest, PrimitiveFilter, Primitives, Touches};
 use raywright_base::math::{DVec3, Hit, Ray};
 use raywright_shapes::triangle::{Along, SolidCone};
 use raywright_shapes::{Candidate, Contact};
 
-/// How much has to be known of a ray.
+/// The intersections that a query needs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wanted {
-    /// Whatever is met first.
+    /// The closest intersection.
     Closest,
-    /// Whether anything is met.
+    /// True if there is any intersection.
     Any,
-    /// All that is met, points that triangles share once.
+    /// All intersections, with points shared by triangles counted once.
     Every,
-    /// All that is met, by every triangle: whoever asks looks for what counts among it.
+    /// All intersections of every triangle; the caller filters them.
     Met,
-    /// On which side of a closed surface the ray starts: what it crosses, an odd number of times or an even one, and
-    /// whether it starts on the surface, where `t` is 0.
+    /// The side of a closed surface on which the ray starts. This needs the parity of its crossings, and whether the
+    /// ray starts on the surface, where `t` is 0.
     Side,
 }
 
-/// A question about rays. Kernels offer it the triangles that a ray meets, in any order.
+/// A ray query. Kernels offer it the triangles that a ray hits, in any order.
 pub trait Query {
-    /// What is known of a ray so far.
+    /// The state of a ray.
     type State: Copy;
 
-    /// What has to be offered.
+    /// The intersections to offer.
     const WANTED: Wanted;
 
-    /// Whether the nearest triangles should be looked at first.
+    /// True if traversal should go nearest first.
     const NEAREST_FIRST: bool = matches!(Self::WANTED, Wanted::Closest);
 
-    /// What has to be offered; one type may hold queries of several kinds.
+    /// The intersections to offer; one type may hold queries of several kinds.
     #[inline(always)]
     fn wanted(&self) -> Wanted {
         Self::WANTED
     }
 
-    /// Nothing is known yet of ray `i`, asked for `t` up to `t_max` along its scaled direction.
+    /// The initial state of ray `i` for `t` up to `t_max` along its scaled direction.
     fn start(&self, i: usize, t_max: f64) -> Self::State;
-    /// The greatest `t` that still matters.
+    /// The greatest `t` that is still relevant.
     fn limit(state: &Self::State) -> f64;
-    /// A triangle that is met; true if the question is answered.
+    /// Offer an intersection. Return true if the query is done.
     fn offer(&mut self, state: &mut Self::State, primitive: u32, candidate: Candidate) -> bool;
-    /// Writes down the answer for ray `i`; without a state, that of a ray that hits nothing.
+    /// Store the result of ray `i`; without a state, that of a ray that cannot hit anything.
     fn finish(&mut self, i: usize, answer: Option<(Along, Self::State)>);
 
-    /// Whether what is visited is counted. Such a question is asked of one ray after the other: what a ray costs is its
-    /// own work.
+    /// True if visited nodes and primitives are counted. Such rays are traced one by one, so that the cost of each is
+    /// its own.
     const COUNTED: bool = false;
 
-    /// A node is about to be tested.
+    /// Count a node about to be tested.
     #[inline(always)]
     fn visit_node(state: &mut Self::State) {
         Self::visit_nodes(state, 1);
     }
-    /// So many nodes have been tested.
+    /// Count tested nodes.
     #[inline(always)]
     fn visit_nodes(_: &mut Self::State, _: u32) {}
-    /// So many primitives are about to be tested.
+    /// Count primitives about to be tested.
     #[inline(always)]
     fn visit_leaf(_: &mut Self::State, _: u32) {}
 }
@@ -73,7 +73,7 @@ impl Query for Closest<'_> {
 
     #[inline(always)]
     fn start(&self, _: usize, t_max: f64) -> Hit {
-        // Beyond t_max nothing is met, so that a hit at t_max itself still beats this.
+        // Just beyond t_max, so that a hit at t_max itself is still closer.
         Hit { t: t_max.next_up(), ..Hit::MISS }
     }
     #[inline(always)]
@@ -96,7 +96,7 @@ impl Query for Closest<'_> {
     }
 }
 
-/// Whether there is any hit.
+/// True if there is any hit.
 pub struct Any<'a>(pub &'a mut [bool]);
 
 impl Query for Any<'_> {
@@ -122,29 +122,29 @@ impl Query for Any<'_> {
     }
 }
 
-/// A triangle that a ray meets, and how.
+/// An intersection with a triangle.
 #[derive(Clone, Copy, Debug)]
 pub struct Meeting {
-    /// `t` is along the scaled direction.
+    /// The hit; `t` is along the scaled direction.
     pub hit: Hit,
-    /// How it is met.
+    /// The kind of contact.
     pub contact: Contact,
 }
 
-/// All triangles that are met, one list for all rays.
+/// All intersections, in one list for all rays.
 #[derive(Debug, Default)]
 pub struct Every {
-    /// Each with the number of its ray, in no order.
+    /// Intersections with their ray's index, in no particular order.
     pub met: Vec<(u32, Meeting)>,
-    /// By ray: what turns `t` into the ray's own, and how far apart the same point may be found.
+    /// By ray: the factor from `t` to the given direction, and the maximum difference of `t` at a shared point.
     pub rays: Vec<(f64, f64)>,
 }
 
 impl Every {
-    /// What is said of a ray that meets nothing.
+    /// The entry of a ray that hits nothing.
     pub const UNTOLD: (f64, f64) = (1.0, 0.0);
 
-    /// Nothing yet of so many rays.
+    /// No intersections yet for the given number of rays.
     pub fn of(rays: usize) -> Self {
         Self { met: Vec::new(), rays: vec![Self::UNTOLD; rays] }
     }
@@ -176,7 +176,7 @@ impl Query for Every {
     }
 }
 
-/// The work that the closest hit takes.
+/// The cost of the closest hit.
 pub struct Counted<'a>(pub &'a mut [Cost]);
 
 impl Query for Counted<'_> {
@@ -210,9 +210,9 @@ impl Query for Counted<'_> {
     }
 }
 
-/// What can be asked any question: every [`super::Accelerator`] is one.
+/// A structure that runs any query; each one is a [`super::Accelerator`].
 pub trait Answers: Send + Sync + Sized + 'static {
-    /// Answers every ray once.
+    /// Run a query on every ray.
     fn answer<Q: Query>(&self, rays: &[Ray], query: &mut Q);
 
     /// See [`super::Accelerator::intersect`].

@@ -1,4 +1,4 @@
-//! Rare queries as one type: which of them it is, is decided at each hit, so that traversal is compiled once for all.
+//! Rare queries as one type: dispatch at each hit, so that traversal is compiled once for all.
 
 use super::kept::Kept;
 use super::query::{Every, Query, Wanted};
@@ -12,7 +12,7 @@ pub enum RareQuery<'a> {
     Every(&'a mut Every),
 }
 
-/// The state of a ray under any of them.
+/// The state of a ray in any of them.
 #[derive(Clone, Copy, Debug)]
 pub struct State {
     limit: f64,
@@ -21,7 +21,7 @@ pub struct State {
 }
 
 impl RareQuery<'_> {
-    // These are functions of their own: a kernel calls them for few of its triangles, and need not hold their code.
+    // Not inlined: a kernel calls these for few of its triangles, and need not contain their code.
     #[inline(never)]
     fn initial_state(&self, i: usize, t_max: f64) -> State {
         match self {

@@ -1,24 +1,24 @@
-//! A ray made ready for box tests in f32 that never reject a true hit.
+//! Rays prepared for conservative f32 box tests, which never reject a true hit.
 //!
-//! Boxes are kept in *box units* ([`Region`]), rounded outwards from f64 numbers that err by 2⁻⁵³ of themselves.
+//! Boxes are stored in *box units* ([`Region`]), rounded outward from f64 numbers that err by 2⁻⁵³ of themselves.
 //!
-//! The interval of `t` in which a ray is between two planes is `(plane − o) / d`, computed as `plane · r + s` with
-//! `r ≈ 1/d` and `s ≈ −o/d ∓ pad`, all in f32. With v = 2⁻²⁴, to first order and in units of |r|, this errs by
-//! 2v·|plane − o| for r, the same in both terms; v·|plane| for the product (less if fused); v·|o| for rounding o, and
-//! as much again for −o·r and for taking the pad off; and v·(|plane| + |o|) for the sum: in all by less than 6v·R,
-//! where R ("reach") bounds |plane| + |o|. The pad is 8v·R; what is left, at least v·R since |r| > 1/2, covers the
-//! error of a hit's own `t` ([`EdgeRay::T_ERROR`] is a quarter of v). Taking the centre off, moving a far origin up and
-//! rounding `t`, all in f64, costs some fourteen 2⁻⁵³ of the distance, for which 2⁻⁴⁶ of it is added.
+//! The interval of `t` in which a ray is between two planes is `(plane − o) / d`, computed as `plane · r + s` with `r ≈
+//! 1/d` and `s ≈ −o/d ∓ pad`, all in f32. With v = 2⁻²⁴, to first order and in units of |r|, this errs by 2v·|plane −
+//! o| for r, the same in both terms; v·|plane| for the product (less if fused); v·|o| for rounding o, and as much again
+//! for −o·r and for subtracting the pad; and v·(|plane| + |o|) for the sum. In all that is less than 6v·R, where R
+//! ("reach") bounds |plane| + |o|. The pad is 8v·R. What remains, at least v·R since |r| > 1/2, covers the error of a
+//! hit's own `t` ([`EdgeRay::T_ERROR`] is a quarter of v). Subtracting the centre, moving a distant origin and rounding
+//! `t`, all in f64, cost some fourteen 2⁻⁵³ of the distance, for which 2⁻⁴⁶ of it is added.
 //!
-//! A direction of less than 2⁻⁶⁰ along an axis counts as ±2⁻⁶⁰: within reach, that moves the ray by less than a
-//! hundred-millionth of the pad, and no infinity times zero appears.
+//! A direction component of less than 2⁻⁶⁰ is replaced by ±2⁻⁶⁰. Within reach, that moves the ray by less than a
+//! hundred-millionth of the pad, and it avoids infinity times zero.
 //!
-//! Where boxes lie along axes of a tree's own ([`Axes`]), in f32 each coordinate of the origin and of the direction
-//! along these errs by v for what it is made of, v for the axes, and 3v for products and sums, of what adds up to less
-//! than √3/2 of the largest: by 4.4v·|o|, and 4.4v times the direction's largest, on which the ray goes no farther than
-//! R. That moves the ray by less than 8.8v·R. The slab test itself errs by 6v of less than √3/2·R, since all is half as
-//! long there, and a hit's `t` by v/4 of R times a direction of less than √3. In all that is less than 14.5v·R, and the
-//! pad is twice what it is otherwise.
+//! The bound for boxes along a tree's own axes ([`Axes`]). In f32 each coordinate of origin and direction along them
+//! errs by v for its inputs, v for the axes, and 3v for products and sums of terms that add up to less than √3/2 of the
+//! largest. That is 4.4v·|o|, and 4.4v times the direction's largest coordinate, along which the ray covers at most R.
+//! That moves the ray by less than 8.8v·R. The slab test itself errs by 6v of less than √3/2·R, since all lengths are
+//! halved there, and a hit's `t` by v/4 of R times a direction of less than √3. In all that is less than 14.5v·R, and
+//! the pad is doubled.
 
 use glam::Vec3A;
 use raywright_base::math::robust::{greater, lesser};
@@ -26,56 +26,56 @@ use raywright_base::math::{Aabb, Axes, Ray, Region};
 use raywright_base::simd::Lanes;
 use raywright_shapes::triangle::{ALL, Column, EdgeRay, PlainRays, RAYS};
 
-/// What slab tests of a ray need.
+/// A ray prepared for slab tests.
 #[derive(Clone, Copy, Debug)]
 pub struct SlabRay {
-    /// Per axis, the inverse of the direction.
+    /// The inverse of the direction, per axis.
     pub inverse: [f32; 3],
-    /// Per axis, what is added for the plane that is met first.
+    /// The offset for the near plane, per axis.
     pub near: [f32; 3],
-    /// Per axis, what is added for the plane that is met last.
+    /// The offset for the far plane, per axis.
     pub far: [f32; 3],
-    /// Per axis, which plane is met first: 0 the lower, 1 the upper.
+    /// The near plane, per axis: 0 the lower, 1 the upper.
     pub first: [usize; 3],
-    /// Where it starts, in box units: moved up to the scene if that is far.
+    /// The origin in box units, moved to the scene if that is distant.
     pub origin: [f32; 3],
-    /// How far outside of a box it may pass, in box units, and still be said to meet it.
+    /// Distance from a box, in box units, within which the test may accept the ray.
     pub pad: f32,
     /// In box units.
     pub t_min: f32,
-    /// From `t` along the scaled direction to box units.
+    /// Conversion of `t` along the scaled direction to box units.
     pub clock: Clock,
 }
 
-/// From `t` along a scaled direction to box units.
+/// Conversion of `t` along a scaled direction to box units.
 #[derive(Clone, Copy, Debug)]
 pub struct Clock {
     to_box: f64,
-    /// How far along the origin was moved, in box units.
+    /// The distance by which the origin was moved, in box units.
     start: f64,
 }
 
 impl Clock {
-    /// Of rays that start where they start.
+    /// For rays whose origin was not moved.
     #[inline(always)]
     pub fn of(region: &Region) -> Self {
         Self { to_box: region.scale, start: 0.0 }
     }
 
-    /// Of a ray of which [`Clock::start`] is this.
+    /// For a ray with the given [`Clock::start`].
     #[inline(always)]
     pub fn started(region: &Region, start: f64) -> Self {
-        // What meets every box never loses interest.
+        // A ray that hits every box has no limit.
         if start == f64::NEG_INFINITY { SlabRay::EVERYWHERE.clock } else { Self { to_box: region.scale, start } }
     }
 
-    /// How far along the origin was moved, in box units; −∞ where the ray is said to meet every box.
+    /// The distance by which the origin was moved, in box units; −∞ if the ray counts as hitting every box.
     #[inline(always)]
     pub fn start(self) -> f64 {
         if self.to_box == 0.0 { f64::NEG_INFINITY } else { self.start }
     }
 
-    /// A `t` in box units, rounded up, and never NaN: no box that starts beyond it can improve on it.
+    /// Convert `t` to box units, rounded up and never NaN: no box that starts beyond it can contain a closer hit.
     #[inline(always)]
     pub fn limit(self, t: f64) -> f32 {
         widened(greater(lesser(t, f64::MAX) * self.to_box - self.start, f64::from(f32::MIN)), ULPS)
@@ -85,19 +85,19 @@ impl Clock {
 /// The pad over the reach.
 const PAD: f64 = 1.0 / (1u64 << 21) as f64;
 
-/// What is added to it over the distance.
+/// The additional pad over the distance.
 const FAR_PAD: f64 = 1.0 / (1u64 << 46) as f64;
 
-/// So many radii away the pad is many times the scene, and what is added soon more than an f32 can hold.
+/// Radii beyond which the pad is many times the scene, and the offsets may soon overflow an f32.
 const FARTHEST: f64 = (1u128 << 100) as f64;
 
-/// How many times as much it is, and what is added to it, along axes of a tree's own.
+/// The factor on the pad for trees with their own axes.
 const TURNED: f64 = 2.0;
 
-/// What a direction counts as along an axis at least.
+/// Minimum magnitude of a direction component.
 const SMALLEST: f32 = 1.0 / (1u64 << 60) as f32;
 
-/// At least 2⁻⁶⁰ in magnitude, in every coordinate.
+/// Clamp every component to a magnitude of at least 2⁻⁶⁰.
 #[inline(always)]
 fn away_from_zero(d: Vec3A) -> Vec3A {
     let smallest = Vec3A::splat(SMALLEST);
@@ -107,22 +107,22 @@ fn away_from_zero(d: Vec3A) -> Vec3A {
 /// Four times the error of rounding to f32.
 const ULPS: f32 = 1.0 / (1u32 << 22) as f32;
 
-/// Rounds to f32, a little up or down for certain; without a branch, unlike exact outward rounding.
+/// Round to f32, strictly up or down by a small amount. Unlike exact outward rounding it needs no branch.
 #[inline(always)]
 fn widened(x: f64, by: f32) -> f32 {
     let x = x as f32;
     x + x.abs() * by
 }
 
-/// A `t_min` in box units, rounded down. One that no f32 can hold counts as the greatest: infinity less a part of it
-/// would be NaN, which in a packet is the neighbours' affair as well.
+/// Convert `t_min` in box units, rounded down. Overflow is clamped to the greatest f32: infinity minus a part of it
+/// would be NaN, which would affect other rays of a packet.
 #[inline(always)]
 fn earliest(t: f64) -> f32 {
     widened(lesser(t, f64::from(f32::MAX)), -ULPS)
 }
 
 impl SlabRay {
-    /// Meets every box but an empty one, at any distance.
+    /// A ray that hits every nonempty box, at any distance.
     pub const EVERYWHERE: Self = Self {
         inverse: [1.0; 3],
         near: [-1e38; 3],
@@ -134,8 +134,7 @@ impl SlabRay {
         clock: Clock { to_box: 0.0, start: 0.0 },
     };
 
-    /// Makes a ray ready for boxes in box units, which lie along axes of a tree's own if there are any; none if it
-    /// passes the scene by for certain.
+    /// Prepare a ray for boxes in box units, along a tree's own axes if given. None if it certainly misses the scene.
     #[inline(always)]
     pub fn new(axes: Option<&Axes>, ray: &EdgeRay, region: &Region) -> Option<Self> {
         let mut origin = ray.local * region.scale;
@@ -158,7 +157,7 @@ impl SlabRay {
             (origin, direction, pad) = (axes.to(origin), axes.to(direction), TURNED * pad);
         }
         let pad = pad as f32;
-        // Vectors of four, the last unused: an operation is one instruction, not three.
+        // Four-lane vectors with an unused lane: an operation is one instruction instead of three.
         let (origin, direction) = (origin.as_vec3a(), direction.as_vec3a());
         let inverse = away_from_zero(direction).recip();
         let (shift, room) = (-origin * inverse, pad * inverse.abs());
@@ -174,15 +173,15 @@ impl SlabRay {
         })
     }
 
-    /// A `t` along its direction in box units, rounded up, and never NaN: no box that starts beyond it can improve on
-    /// it.
+    /// Convert `t` along its direction to box units, rounded up and never NaN: no box that starts beyond it can contain
+    /// a closer hit.
     #[inline(always)]
     pub fn limit(&self, t: f64) -> f32 {
         self.clock.limit(t)
     }
 
-    /// Of a box, where the ray may enter it and where it may leave it. None if it does neither for certain between its
-    /// `t_min` and `limit`; an empty box is never met.
+    /// The interval in which the ray may be inside a box. None on a certain miss between `t_min` and `limit`; an empty
+    /// box is never hit.
     #[inline(always)]
     pub fn passes(&self, aabb: &Aabb, limit: f32) -> Option<(f32, f32)> {
         let planes = [aabb.min.to_array(), aabb.max.to_array()];
@@ -195,8 +194,8 @@ impl SlabRay {
         (enter <= leave).then_some((enter, leave))
     }
 
-    /// Readies a ray for a scene: for triangles, and for boxes, which lie along axes of a tree's own if there are any.
-    /// None if it cannot hit anything, or passes the scene by.
+    /// Prepare a ray for a scene, for triangles and for boxes along a tree's own axes if given. None if it cannot hit
+    /// anything or misses the scene.
     #[inline(always)]
     pub fn prepare(axes: Option<&Axes>, ray: &Ray, region: &Region) -> Option<(EdgeRay, Self)> {
         let edges = EdgeRay::new(ray, region)?;
@@ -205,23 +204,23 @@ impl SlabRay {
     }
 }
 
-/// Sixteen rays by columns, made ready for box tests as [`SlabRay`] does one.
+/// Sixteen rays in SoA layout, prepared for box tests like [`SlabRay`].
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub struct SlabRays {
-    /// Per axis, the inverse of the direction.
+    /// The inverse of the directions, per axis.
     pub inverse: [Column<f32>; 3],
-    /// Per axis, what is added for the plane that is met first.
+    /// The offset for the near plane, per axis.
     pub near: [Column<f32>; 3],
-    /// Per axis, what is added for the plane that is met last.
+    /// The offset for the far plane, per axis.
     pub far: [Column<f32>; 3],
-    /// How far outside of a box they may pass, in box units, and still be said to meet it.
+    /// Distance from a box, in box units, within which the test may accept the ray.
     pub pad: Column<f32>,
     /// In box units.
     pub t_min: Column<f32>,
-    /// Where in box units each loses interest.
+    /// The end of each ray in box units.
     pub limit: Column<f32>,
-    /// Where they start along axes of a tree's own, if it has any.
+    /// The origins along a tree's own axes, if any.
     pub turned: Option<[Column<f32>; 3]>,
 }
 
@@ -237,15 +236,14 @@ impl SlabRays {
         turned: None,
     };
 
-    /// Makes rays ready for boxes, which lie along axes of a tree's own if there are any; of rays that are not plain
-    /// nothing is said.
+    /// Prepare rays for boxes, along a tree's own axes if given. The results of rays that are not plain are undefined.
     #[inline(always)]
     pub fn prepare<S: Lanes<RAYS>>(&mut self, simd: S, rays: &PlainRays, region: &Region, axes: Option<&Axes>) {
-        // Rays that are not far have their largest coordinate for reach.
+        // The reach of rays that are not distant is their largest coordinate.
         let per_reach = (PAD + FAR_PAD) * if axes.is_some() { TURNED } else { 1.0 };
         let pad = simd.mul(simd.load(&rays.largest), simd.splat(per_reach as f32));
         simd.store(pad, &mut self.pad);
-        // As `earliest` and `Clock::limit` have it.
+        // As in `earliest` and `Clock::limit`.
         let (to_box, most) = (simd.splat(region.scale as f32), simd.splat(f32::MAX));
         let t_min = simd.min(simd.mul(simd.load(&rays.t_min), to_box), most);
         let t_min = simd.sub(t_min, simd.mul(simd.abs(t_min), simd.splat(ULPS)));
@@ -279,7 +277,7 @@ impl SlabRays {
         }
     }
 
-    /// Rays that may meet a box, at any `t` from their `t_min` on up to a limit in box units.
+    /// The rays that may hit a box between their `t_min` and a limit in box units.
     #[inline(always)]
     pub fn meeting<S: Lanes<RAYS>>(&self, simd: S, aabb: &Aabb, limit: S::F32) -> u32 {
         let (min, max) = (aabb.min.to_array(), aabb.max.to_array());
@@ -295,7 +293,7 @@ impl SlabRays {
         simd.le(nears, fars)
     }
 
-    /// Which plane is met first by axis (0 the lower, 1 the upper), if it is the same for all rays.
+    /// The near plane by axis (0 the lower, 1 the upper), if it is the same for all rays.
     #[inline(always)]
     pub fn first<S: Lanes<RAYS>>(&self, simd: S) -> Option<[usize; 3]> {
         let mut first = [0; 3];
@@ -310,7 +308,7 @@ impl SlabRays {
     }
 }
 
-/// Sixteen vectors along axes of a tree's own.
+/// Express sixteen vectors along a tree's own axes.
 #[inline(always)]
 fn turn<S: Lanes<RAYS>>(simd: S, axes: &Axes, vectors: &[Column<f32>; 3]) -> [Column<f32>; 3] {
     let [x, y, z] = [simd.load(&vectors[0]), simd.load(&vectors[1]), simd.load(&vectors[2])];
@@ -333,7 +331,7 @@ mod tests {
         prop::array::uniform3(-1.0..1.0f64).prop_map(DVec3::from_array)
     }
 
-    /// How much of a direction is along each of three axes: all along one of them.
+    /// The components of a direction along three axes; along one of them it is ±1.
     fn parts() -> impl Strategy<Value = [f64; 3]> {
         let part = prop_oneof![Just(0.0), -1.0..1.0f64, -1e-7..1e-7f64, -1e-4..1e-4f64];
         (prop::array::uniform3(part), 0..3usize, any::<bool>()).prop_map(|(mut parts, main, down)| {
@@ -356,13 +354,13 @@ mod tests {
             let axes = axes.filter(|_| turned);
             let points = corners.map(|c| (c + DVec3::splat(shift)) * size);
             let region = Region::around(points);
-            // Towards a point, nearly along what boxes lie along.
+            // Toward a point, nearly parallel to one of the boxes' axes.
             let own = axes.map_or([DVec3::X, DVec3::Y, DVec3::Z], |axes| {
                 [0, 1, 2].map(|i| axes.single()[i].map(f64::from)).map(DVec3::from_array)
             });
             let direction = own[0] * parts[0] + own[1] * parts[1] + own[2] * parts[2];
             let ray = Ray::new(points[place] - direction * distance * size, direction);
-            // Nothing but the point where the ray is after so long, which rounding moves by less than is allowed for.
+            // A box of the target point alone, which rounding moves by less than is allowed for.
             let bounds = region.aabb_along(axes.as_ref(), [points[place]; 3]);
             let Some((_, slabs)) = SlabRay::prepare(axes.as_ref(), &ray, &region) else {
                 return Err(TestCaseError::fail("it meets the scene"));

@@ -1,55 +1,55 @@
-//! The largest ball that touches a surface at a point and has nothing of it inside.
+//! The largest empty ball tangent to a surface at a point.
 //!
-//! All balls that touch a plane at a point p, with their middles along w from there, lie within each other. So the
-//! largest one that is empty is the least that any triangle allows, and one walk of a tree finds it: what is passed by
-//! for a ball is passed by for smaller ones (Ma, Bae and Choi, "3D Medial Axis Point Approximation Using Nearest
-//! Neighbors and the Normal Field", 2012, shrink the ball by one nearest point after the other).
+//! All balls tangent to a plane at a point p, with centers along w from there, are nested. So the largest empty one is
+//! the minimum over the triangles, and one tree traversal finds it: a node culled for a ball is culled for all smaller
+//! ones (Ma, Bae and Choi, "3D Medial Axis Point Approximation Using Nearest Neighbors and the Normal Field", 2012,
+//! shrink the ball by one nearest point after another).
 //!
-//! From the middle of a ball or a rod all of its surface is about as far, and boxes tell nothing of it apart: the box
-//! of a slanted patch reaches inwards by half of the patch's size. The slab between two planes that holds a patch
-//! reaches by its sagitta only, the square of that. So each node has a slab too, across the mean normal of its
+//! From the center of a ball or a rod all of its surface is about equally far, so boxes cull nothing: the box of a
+//! slanted patch extends inward by half of the patch's size. The slab between two planes around a patch extends inward
+//! by its sagitta only, which is quadratic in that size. So each node has a slab, too, normal to the mean normal of its
 //! triangles.
 
 use raywright_base::math::DVec3;
 use raywright_shapes::triangle::{nearest_point, point_of};
 
-/// What a leaf holds at most.
+/// Maximum number of triangles in a leaf.
 const LEAF: usize = 4;
 
-/// To how much of itself the radius is found: what would shrink it by less is passed by.
+/// Relative accuracy of the radius: nodes that would shrink it by less are culled.
 const EXACT: f64 = 1e-6;
 
-/// What is nearer than the radius by less of it, or by less than rounding, touches the ball.
+/// A triangle inside the ball by less than this fraction of the radius, or by rounding, counts as tangent.
 const TOUCH: f64 = 1e-9;
 
-/// What is nearer to each other than this of the largest coordinate is not told apart.
+/// Points closer than this fraction of the largest coordinate are not distinguished.
 const ROUNDED: f64 = 16.0 * f64::EPSILON;
 
-/// The ball shrinks towards a triangle geometrically; so many steps are more than any took that was tried.
+/// Maximum number of iterations. The ball shrinks geometrically, and no tested case took as many.
 const STEPS: usize = 60;
 
 #[derive(Clone, Copy, Debug)]
 struct Node {
     min: DVec3,
     max: DVec3,
-    /// The mean normal, and between which heights along it all lies.
+    /// The mean normal, and the interval of heights along it.
     normal: DVec3,
     low: f64,
     high: f64,
-    /// Of a leaf what it holds of the triangles; of others, which hold nothing, the first child, beside which the
-    /// second is.
+    /// Of a leaf, the index of its first triangle. Of an inner node, which has a count of 0, the first child; the
+    /// second one follows it.
     first: u32,
     count: u32,
 }
 
-/// Triangles, for the balls that touch them.
+/// A tree of triangles for tangent-ball queries.
 #[derive(Clone, Debug, Default)]
 pub struct TangentBalls {
     nodes: Vec<Node>,
     triangles: Vec<[DVec3; 3]>,
 }
 
-/// A ball: where it touches the surface, in which direction its middle lies, and how large it is.
+/// A ball, given by its tangent point, the direction of its center, and its radius.
 #[derive(Clone, Copy)]
 struct Ball {
     touch: DVec3,
@@ -62,7 +62,7 @@ impl Ball {
         self.touch + self.way * self.radius
     }
 
-    /// The least radius of a ball that reaches a slab.
+    /// The least radius for which the ball reaches the node's slab.
     fn least(&self, node: &Node) -> f64 {
         let (height, rise) = (node.normal.dot(self.touch), node.normal.dot(self.way));
         let (gap, slope) =
@@ -70,8 +70,7 @@ impl Ball {
         if gap > 0.0 { gap / slope.max(f64::MIN_POSITIVE) } else { 0.0 }
     }
 
-    /// Whether a node lies on the plane that the ball touches, or behind it, to within rounding: as faces do that are
-    /// coplanar with the point's own.
+    /// Return whether a node lies on or behind the tangent plane to within rounding, as coplanar faces do.
     fn is_behind(&self, node: &Node) -> bool {
         let rise = node.normal.dot(self.way);
         let (side, high) = if rise > 0.0 { (1.0, node.high) } else { (-1.0, -node.low) };
@@ -84,7 +83,7 @@ impl Ball {
         depth <= 0.5 * ROUNDED * self.touch.abs().max_element()
     }
 
-    /// Whether it may be shrunk by what a node holds.
+    /// Return whether the content of a node may shrink the ball.
     fn may_meet(&self, node: &Node) -> bool {
         let middle = self.middle();
         let near = middle.clamp(node.min, node.max);
@@ -93,7 +92,7 @@ impl Ball {
             && !self.is_behind(node)
     }
 
-    /// Shrinks it until a triangle is not inside.
+    /// Shrink the ball until the triangle is not inside.
     fn shrink(&mut self, corners: &[DVec3; 3]) {
         let Self { touch, way, .. } = *self;
         let mut least = None;
@@ -109,7 +108,7 @@ impl Ball {
             if near.distance >= self.radius - least {
                 return;
             }
-            // The ball through the point that also touches the nearest one: |q - p|^2 / 2 w·(q - p).
+            // The ball through the tangent point that also touches the nearest point q: |q - p|^2 / 2 w·(q - p).
             let away = point_of(*corners, near.uv) - touch;
             let depth = away.dot(way);
             let smaller = away.length_squared() / (2.0 * depth);
@@ -122,7 +121,7 @@ impl Ball {
 }
 
 impl TangentBalls {
-    /// Of some triangles; those with corners that are not finite are left out.
+    /// Build a tree of triangles, skipping those with non-finite corners.
     pub fn new(triangles: impl Iterator<Item = [DVec3; 3]>) -> Self {
         let triangles = triangles.filter(|corners| corners.iter().all(|c| c.is_finite())).collect();
         let mut tree = Self { nodes: Vec::new(), triangles };
@@ -138,7 +137,7 @@ impl TangentBalls {
         if end - start <= LEAF {
             return;
         }
-        // Where middles lie, not how large triangles are: those of a rod's side are as long as it is.
+        // Split by centroids rather than boxes: triangles on the side of a rod are as long as the rod.
         let at = |[a, b, c]: &[DVec3; 3]| *a + *b + *c;
         let (min, max) = self.triangles[start..end]
             .iter()
@@ -155,13 +154,13 @@ impl TangentBalls {
         self.split(first + 1, middle, end);
     }
 
-    /// The radius of the largest ball, of at most `radius`, that touches the surface at a point of it, has its middle
-    /// in a direction of length one, and nothing inside: to within 1e-6 of itself.
+    /// The radius of the largest empty ball, up to `radius`, tangent to the surface at `touch` with its center along
+    /// the unit vector `way`. Its relative error is 1e-6.
     pub fn radius(&self, touch: DVec3, way: DVec3, radius: f64) -> f64 {
         self.walk(touch, way, radius).0
     }
 
-    /// The radius, and how many nodes are visited for it.
+    /// The radius and the number of visited nodes.
     fn walk(&self, touch: DVec3, way: DVec3, radius: f64) -> (f64, usize) {
         let (mut ball, mut visits) = (Ball { touch, way, radius }, 0);
         let mut open = vec![];
@@ -179,7 +178,7 @@ impl TangentBalls {
                 self.triangles[first..][..node.count as usize].iter().for_each(|corners| ball.shrink(corners));
                 continue;
             }
-            // What is nearer to the point shrinks the ball most.
+            // The child nearer to the tangent point shrinks the ball most.
             let [a, b] = [first, first + 1].map(|child| {
                 let Node { min, max, .. } = self.nodes[child];
                 (touch.clamp(min, max) - touch).length_squared()
@@ -190,7 +189,7 @@ impl TangentBalls {
     }
 }
 
-/// The leaf of some triangles, the first of which has this number.
+/// A leaf of triangles, the first with the given index.
 fn around(triangles: &[[DVec3; 3]], first: usize) -> Node {
     let corners = || triangles.iter().flatten().copied();
     let (min, max) = corners().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(a, b), c| (a.min(c), b.max(c)));
@@ -206,7 +205,7 @@ mod tests {
     use super::*;
     use raywright_base::sampling::{Sampler, warp};
 
-    /// Triangles about a ball of radius one around a point, as many as that squared times two.
+    /// Triangles of a unit sphere around a point, 2 `count`² of them.
     fn globe(count: usize, middle: DVec3) -> Vec<[DVec3; 3]> {
         let at = |i: usize, j: usize| {
             let (high, turn) = (i as f64 / count as f64, j as f64 / count as f64);
@@ -265,7 +264,7 @@ mod tests {
 
     #[test]
     fn of_a_ball_few_nodes_are_visited() {
-        // All of the surface is as far from the middle as all else: boxes alone would have all nodes visited.
+        // All points are equally far from the center: boxes alone would visit all nodes.
         for (count, most) in [(32, 0.5), (64, 0.25), (128, 0.12)] {
             let triangles = globe(count, DVec3::ZERO);
             let tree = TangentBalls::new(triangles.iter().copied());
@@ -281,7 +280,7 @@ mod tests {
 
     #[test]
     fn of_a_rod_few_nodes_are_visited() {
-        // Its side are triangles as long as it is.
+        // The side consists of triangles as long as the rod.
         let at = |i: usize, z: f64| {
             let (y, x) = (std::f64::consts::TAU * i as f64 / 1024.0).sin_cos();
             DVec3::new(x, y, z)
@@ -301,7 +300,7 @@ mod tests {
 
     #[test]
     fn what_is_coplanar_is_passed_by() {
-        // The top of a prism is a fan about its middle, whose boxes lie upon each other.
+        // The top of a prism is a fan about its center, whose boxes overlap.
         let (count, turned) = (512, DVec3::new(0.6, 0.0, 0.8));
         let (x, y) = (DVec3::Y, turned.cross(DVec3::Y));
         let at = |i: usize| {

@@ -1,13 +1,13 @@
-//! What solid cones touch: of each, all primitives, the nearest first; and which boxes they may be passed by for.
+//! Solid cone queries: all primitives that each cone touches, nearest first, with conservative box tests.
 //!
-//! The bound. A box that is met must be told of wherever a triangle in it is ([`SolidCone::nearest`]). In units in
-//! which the largest coordinate of the apex and of the region, P + 2 box units, lies in [1, 2), a triangle is found up
-//! to 2⁻⁴³·2 outside of a cone, and apex and box err by 4u each for their rounding. Boxes are passed by from 2⁻⁴¹ on,
-//! which is four times that, and far less than what their f32 planes are rounded by.
+//! The bound. A box must be accepted whenever a triangle inside it is ([`SolidCone::nearest`]). In units in which the
+//! largest coordinate of apex and region, P + 2 box units, lies in [1, 2), a triangle is accepted up to 2⁻⁴³·2 outside
+//! a cone, and apex and box err by 4u each for their rounding. Boxes are rejected beyond 2⁻⁴¹, which is four times
+//! that, and far less than the rounding of their f32 planes.
 //!
-//! Along axes of a tree's own ([`Axes`]) all is half as long, and the unit is 2√3·P + 2 or more for an apex whose
-//! largest coordinate there is P: so no smaller than it would be otherwise, where half as far outside is as far. Apex,
-//! axis and box err by some 20u there.
+//! Along a tree's own axes ([`Axes`]) all lengths are halved. For an apex whose largest coordinate there is P, the unit
+//! is at least 2√3·P + 2: no smaller than otherwise, while half the distance outside suffices. Apex, axis and box err
+//! by some 20u there.
 
 use raywright_base::math::robust::{greater, normalising_scale};
 use raywright_base::math::{Axes, DVec3, Region};
@@ -16,13 +16,13 @@ use raywright_shapes::triangle::SolidCone;
 /// A primitive that a cone touches.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Touch {
-    /// From the apex to the nearest point of the primitive that is in the cone.
+    /// The distance from the apex to the primitive's nearest point inside the cone.
     pub distance: f64,
-    /// Which primitive.
+    /// The primitive.
     pub primitive: u32,
 }
 
-/// What some cones touch.
+/// The touched primitives of a batch of cones.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Touches {
     /// Cone `i` has the touches from `splits[i]` to `splits[i + 1]`.
@@ -32,12 +32,12 @@ pub struct Touches {
 }
 
 impl Touches {
-    /// Of no cone.
+    /// No cones.
     pub fn new() -> Self {
         Self { splits: vec![0], touches: Vec::new() }
     }
 
-    /// Adds the next cone with what it touches, in any order; a primitive may come several times.
+    /// Add the next cone with its touched primitives, in any order and possibly with duplicates.
     pub fn push(&mut self, mut touches: Vec<Touch>) {
         touches.sort_unstable_by(|a, b| a.distance.total_cmp(&b.distance).then(a.primitive.cmp(&b.primitive)));
         touches.dedup();
@@ -45,12 +45,12 @@ impl Touches {
         self.splits.push(self.touches.len());
     }
 
-    /// What one cone touches.
+    /// The touched primitives of one cone.
     pub fn of(&self, cone: usize) -> &[Touch] {
         &self.touches[self.splits[cone]..self.splits[cone + 1]]
     }
 
-    /// Adds cones after these.
+    /// Append the cones of another batch.
     pub fn append(&mut self, other: &Self) {
         let before = self.touches.len();
         self.splits.extend(other.splits[1..].iter().map(|split| split + before));
@@ -58,23 +58,23 @@ impl Touches {
     }
 }
 
-/// A cone that asks which boxes may hold something that it touches.
+/// A cone prepared for box tests.
 #[derive(Clone, Copy, Debug)]
 pub struct Boxes {
     cone: SolidCone,
     apex: DVec3,
-    /// From box units to those of `apex`.
+    /// The factor from box units to those of `apex`.
     scale: f64,
-    /// The square of the greatest distance that counts.
+    /// The squared maximum distance.
     most: f64,
 }
 
-/// How far outside of a cone a box is passed by, where the largest coordinate lies in [1, 2).
+/// Distance from the cone beyond which a box is rejected, if the largest coordinate lies in [1, 2).
 const PAD: f64 = 1.0 / (1u64 << 41) as f64;
 
 impl Boxes {
-    /// Readies a cone for the boxes of a region, along axes of a tree's own if there are any. None if its apex is so
-    /// far, in box units, that an f64 cannot say it: then every box may hold something.
+    /// Prepare a cone for the boxes of a region, along a tree's own axes if given. None if its apex in box units
+    /// overflows an f64; then no box can be rejected.
     pub fn new(axes: Option<&Axes>, cone: &SolidCone, region: &Region) -> Option<Self> {
         let apex = region.to_box_along(axes, cone.apex);
         let mut cone = *cone;
@@ -91,8 +91,8 @@ impl Boxes {
         Some(Self { cone, apex: apex * scale, scale, most: most * most * (1.0 + PAD) })
     }
 
-    /// Of some boxes by axis and side, those that may hold something that the cone touches, and perhaps some that are
-    /// empty.
+    /// Mask of the boxes, given by axis and side, that may contain a touched primitive, and possibly of some empty
+    /// ones.
     #[inline(always)]
     pub fn may_touch<const N: usize>(&self, planes: &[[[f32; N]; 2]; 3]) -> u32 {
         let mut left = 0;
@@ -135,7 +135,7 @@ mod tests {
             let region = Region::new(DVec3::splat(-2.0), DVec3::splat(2.0));
             let apex = apex * away;
             let cone = SolidCone::new(apex, way, angle, f64::INFINITY).unwrap();
-            // A point in the cone, and a box that holds it.
+            // A point in the cone, and a box that contains it.
             let side = cone.axis.any_orthonormal_vector();
             let side = side * around.cos() + cone.axis.cross(side) * around.sin();
             let turned = (angle * part).to_radians();
@@ -143,7 +143,7 @@ mod tests {
             let bounds = region.aabb([p, p + low.min(DVec3::ZERO), p + high.max(DVec3::ZERO)]);
             let planes = std::array::from_fn(|axis| [[bounds.min[axis]; 1], [bounds.max[axis]; 1]]);
             prop_assert_eq!(Boxes::new(None, &cone, &region).unwrap().may_touch(&planes), 1);
-            // And so within the distance of the point.
+            // The box is also accepted within the distance of the point.
             let mut near = cone;
             near.most = (p - apex).length();
             prop_assert_eq!(Boxes::new(None, &near, &region).unwrap().may_touch(&planes), 1);
@@ -154,7 +154,7 @@ mod tests {
     fn boxes_beside_behind_and_beyond_are_passed_by() {
         let region = Region::new(DVec3::splat(-1.0), DVec3::splat(1.0));
         let cone = SolidCone::new(DVec3::new(-1.0, 0.0, 0.0), DVec3::X, 45.0, 1.0).unwrap();
-        // From x and y on, a tenth wide.
+        // From x and y, a tenth wide.
         let boxes = [[-0.5f32, 0.0], [-0.5, 0.45], [-0.5, 0.61], [-0.4, -0.85], [-1.11, 0.0], [0.0, 0.0], [0.1, 0.0]];
         let of = |axis: usize, side: usize| {
             std::array::from_fn(|lane| {

@@ -1,4 +1,4 @@
-//! Answers every question by walking a structure.
+//! Runs every query by traversing a structure.
 
 use super::query::{Answers, Query, Wanted};
 use super::walk::{Build, Contents, Few, Input, Lists, Mailbox, Mailboxes, Marks, Structure, TogetherBatch};
@@ -11,29 +11,29 @@ use std::ops::Range;
 use std::sync::OnceLock;
 use std::time::Instant;
 
-/// A structure with what stands in its leaves.
+/// A structure with the primitives in its leaves.
 pub struct Walked<const N: usize, L> {
     structure: Box<dyn Structure>,
     contents: Contents<N, L>,
-    /// All of them, if they are few objects.
+    /// All primitives, if they are few objects.
     few: Option<Few>,
-    /// Objects without end, which every ray is tested against.
+    /// Unbounded objects, tested against every ray.
     unbounded: Vec<u32>,
-    /// Where a primitive stands in several leaves.
+    /// Mailboxes, if a primitive may be in several leaves.
     mailboxes: Option<Mailboxes>,
-    /// A tree over the triangles, made when something is asked that is no ray.
+    /// A tree over the triangles for queries other than rays, built on first use.
     nearest: OnceLock<Box<dyn Accelerator>>,
-    /// How many primitives there are, those among them that nothing can hit.
+    /// The number of primitives, including those that cannot be hit.
     count: usize,
     region: Region,
     level: Level,
     info: Info,
 }
 
-/// Builds a structure over primitives, triangles or not, and keeps their numbers as precisely as they are.
+/// Build a structure over primitives of any kind, with coordinates in the given precision.
 ///
-/// `build` is given what there is, and tells which primitives stand in which leaf. Where one stands in several,
-/// `mailbox` says how that is seen to.
+/// `build` is given the primitives and returns the structure and the content of its leaves. `mailbox` avoids repeated
+/// tests of primitives in several leaves.
 pub fn walked(primitives: &dyn Primitives, level: Level, mailbox: Mailbox, build: &Build) -> Box<dyn Accelerator> {
     match (level.lanes(), primitives.is_single()) {
         (8, true) => Box::new(Walked::<8, SingleLeaves<8>>::new(primitives, level, mailbox, build)),
@@ -44,7 +44,7 @@ pub fn walked(primitives: &dyn Primitives, level: Level, mailbox: Mailbox, build
 }
 
 impl<'a> Input<'a> {
-    /// Looks where primitives lie. Apart from that come the numbers of those without end.
+    /// Compute the primitives' boxes. The numbers of unbounded primitives are returned separately.
     pub(super) fn new(primitives: &'a dyn Primitives) -> (Self, Vec<u32>) {
         let region = primitives.region();
         let [surround, work] = primitives.work().parts([1.0, 20.0]);
@@ -83,7 +83,7 @@ impl<const N: usize, L: Leaves<N>> Walked<N, L> {
         walked
     }
 
-    /// What answers for points and cones: a tree of boxes does that better than anything else.
+    /// The BVH that serves point and cone queries, for which it is the best structure.
     fn tree(&self) -> &dyn Accelerator {
         let tree = self.nearest.get_or_init(|| {
             let mut kept = Kept { corners: vec![[DVec3::NAN; 3]; self.count], is_single: L::PRECISION == "single" };
@@ -95,7 +95,7 @@ impl<const N: usize, L: Leaves<N>> Walked<N, L> {
         tree.as_ref()
     }
 
-    /// Writes down what it looks like.
+    /// Fill in the statistics.
     fn inform(&mut self) {
         let of_structure = self.structure.info();
         self.info = Info {
@@ -197,7 +197,7 @@ where
 }
 
 impl<const N: usize, L: Leaves<N>> Walked<N, L> {
-    /// Answers all rays without the structure.
+    /// Run a query without the structure.
     #[inline(always)]
     fn answer_by_few<Q: Query>(&self, few: &Few, rays: &[Ray], query: &mut Q) {
         let Self { contents, unbounded, region, .. } = self;
@@ -221,7 +221,7 @@ impl<const N: usize, L: Leaves<N>> Walked<N, L> {
     }
 }
 
-/// The triangles of a structure, as a tree is built of them.
+/// The structure's triangles, as input for a BVH.
 struct Kept {
     corners: Vec<[DVec3; 3]>,
     is_single: bool,
@@ -268,9 +268,8 @@ impl<const N: usize, L: Leaves<N>, Q: Query> Kernel<N> for Batch<'_, N, L, Q> {
             TogetherBatch { contents, unbounded, region, rays }.answer(simd, walk.as_mut(), query);
             return;
         }
-        // One ray at a time. Eight in turn, each with its next leaf fetched meanwhile, are faster in grids where rays
-        // have nothing in common, and slower where they are neighbours; and one's stamps would take the place of
-        // another's.
+        // One ray at a time. Eight interleaved rays with prefetched leaves are faster in grids for incoherent rays, and
+        // slower for coherent ones. Their mailbox stamps would also overwrite each other.
         let mut walker = match Q::WANTED {
             Wanted::Any => structure.any_walker(),
             _ => structure.walker(Q::COUNTED),

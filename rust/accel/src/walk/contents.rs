@@ -1,4 +1,4 @@
-//! What stands in the leaves of a structure: triangles by the block, and anything else by its number.
+//! The content of leaves: triangles in blocks, and other primitives by number.
 
 use super::mailbox::Marks;
 use super::{Few, Input, Lists};
@@ -9,7 +9,7 @@ use raywright_base::simd::Simd;
 use raywright_shapes::triangle::{BlockRay, EdgeRay, Leaves};
 use std::sync::Arc;
 
-/// A ray as whatever stands in leaves needs it.
+/// A ray prepared for all kinds of primitives.
 pub struct LeafRay<'a> {
     pub edges: &'a EdgeRay,
     pub lanes: BlockRay,
@@ -19,16 +19,16 @@ pub struct LeafRay<'a> {
 /// The primitives of all leaves, with triangles in blocks of up to `N`.
 pub struct Contents<const N: usize, L> {
     triangles: L,
-    /// Where the triangles of each leaf begin, and where the last end. Empty where there are none.
+    /// The start of each leaf's triangles, and the end of the last one's. Empty without triangles.
     ends: Vec<u32>,
     objects: Option<Arc<dyn UserGeometry>>,
-    /// The numbers of objects, leaf by leaf; and where those of each leaf begin. Empty where there are none.
+    /// The numbers of objects by leaf, and the start of each leaf's. Empty without objects.
     numbers: Vec<u32>,
     number_ends: Vec<u32>,
 }
 
 impl<const N: usize, L: Leaves<N>> Contents<N, L> {
-    /// Puts primitives into leaves.
+    /// Fill the leaves.
     pub fn new(input: &Input, lists: &Lists) -> Self {
         let primitives = input.primitives;
         let (mut order, mut blocks, mut ends) = (Vec::with_capacity(lists.order.len()), Vec::new(), vec![0]);
@@ -39,7 +39,7 @@ impl<const N: usize, L: Leaves<N>> Contents<N, L> {
             rest = others;
             let before = order.len();
             for &p in leaf {
-                // What nothing can hit is in no leaf.
+                // Primitives that cannot be hit are in no leaf.
                 if primitives.objects().is_none() || primitives.is_finite(p) { order.push(p) } else { numbers.push(p) }
             }
             let triangles = order.len() - before;
@@ -59,19 +59,19 @@ impl<const N: usize, L: Leaves<N>> Contents<N, L> {
         Self { triangles, ends, objects: primitives.objects(), numbers, number_ends }
     }
 
-    /// All there is, if that is a few objects.
+    /// All primitives, if they are few objects.
     pub fn few(&self) -> Option<Few> {
         let objects = self.objects.as_deref().filter(|_| self.ends.is_empty())?;
         Few::new(&self.numbers, objects)
     }
 
-    /// Memory held.
+    /// Memory use in bytes.
     pub fn bytes(&self) -> usize {
         let words = self.ends.len() + self.numbers.len() + self.number_ends.len();
         self.triangles.bytes() + words * size_of::<u32>()
     }
 
-    /// Of a leaf, where its triangles begin and end.
+    /// The range of a leaf's triangles.
     #[inline(always)]
     fn ends_of(&self, leaf: u32) -> (usize, usize) {
         match self.ends.get(leaf as usize..leaf as usize + 2) {
@@ -80,7 +80,7 @@ impl<const N: usize, L: Leaves<N>> Contents<N, L> {
         }
     }
 
-    /// Of a leaf, the blocks of triangles: where each begins and how many it has.
+    /// The triangle blocks of a leaf: start and count.
     #[inline(always)]
     fn blocks(&self, leaf: u32) -> impl Iterator<Item = (usize, u32)> + use<N, L> {
         let (first, end) = self.ends_of(leaf);
@@ -95,7 +95,7 @@ impl<const N: usize, L: Leaves<N>> Contents<N, L> {
         }
     }
 
-    /// How many leaves there are.
+    /// The number of leaves.
     fn leaves(&self) -> u32 {
         self.ends.len().max(self.number_ends.len()) as u32 - 1
     }
@@ -122,7 +122,7 @@ impl<const N: usize, L: Leaves<N>> Contents<N, L> {
         blocks.flat_map(of_block).collect()
     }
 
-    /// Checks that triangles have the corners that they were given.
+    /// Check that the triangles match the given corners.
     pub fn validate(&self, primitives: &dyn Primitives) -> Result<(), String> {
         match self.triangles().into_iter().find(|&(p, corners)| corners != primitives.corners(p)) {
             Some((p, _)) => Err(format!("primitive {p} has other corners in its leaf")),
@@ -130,13 +130,13 @@ impl<const N: usize, L: Leaves<N>> Contents<N, L> {
         }
     }
 
-    /// A ray as leaves need it.
+    /// Prepare a ray for leaves.
     #[inline(always)]
     pub fn ray<'a>(&self, ray: &Ray, edges: &'a EdgeRay, region: &Region) -> LeafRay<'a> {
         LeafRay { edges, lanes: L::ray(edges, region), time: ray.time }
     }
 
-    /// Of a block, the lanes with a primitive that the ray comes to for the first time.
+    /// The lanes of a block whose primitives are new to the ray's mailbox.
     #[inline(always)]
     fn new_lanes(&self, first: usize, count: u32, marks: &mut Option<&mut Marks>) -> u32 {
         let is_new = |lane: usize| {
@@ -146,10 +146,10 @@ impl<const N: usize, L: Leaves<N>> Contents<N, L> {
         (0..count as usize).map(is_new).enumerate().fold(0, |new, (lane, is_new)| new | u32::from(is_new) << lane)
     }
 
-    /// Offers what of a leaf is met to the query; true if that answers it.
+    /// Offer a leaf's intersections to the query. Return true if it is done.
     ///
-    /// No primitive is decided twice for a ray, nor counted twice, as far as the ray's marks remember; the test of a
-    /// block in f32 may be done again.
+    /// No primitive is decided or counted twice for a ray, as far as the mailbox remembers. The f32 test of a block may
+    /// be repeated.
     #[inline(always)]
     pub fn meet<Q: Query, S: Simd<N>>(
         &self,
@@ -173,8 +173,8 @@ impl<const N: usize, L: Leaves<N>> Contents<N, L> {
                 let lane = left.trailing_zeros() as usize & (N - 1);
                 left &= left - 1;
                 let primitive = self.triangles.primitive(first, count, lane);
-                // Only what f32 leaves is asked about: to ask about every lane took longer than to test the block
-                // again.
+                // Consult the mailbox only for lanes that pass the f32 test. Doing so for all lanes was slower than
+                // repeating the test.
                 if !Q::COUNTED
                     && let Some(marks) = marks
                     && !marks.is_new(primitive)
@@ -193,7 +193,7 @@ impl<const N: usize, L: Leaves<N>> Contents<N, L> {
         !numbers.is_empty() && self.meet_objects(numbers, ray, marks, query, state)
     }
 
-    /// The same for objects, by their numbers.
+    /// The same for objects, given by number.
     pub fn meet_objects<Q: Query>(
         &self,
         numbers: &[u32],
@@ -212,7 +212,7 @@ impl<const N: usize, L: Leaves<N>> Contents<N, L> {
             let t_max = t_max.min(Q::limit(state));
             let asked = Ray { t_min, t_max, time: ray.time, ..Ray::new(origin, direction) };
             let answered = objects.meet(number, query.wanted(), &asked, &mut |met| {
-                // What lies so far along a short direction that an f64 cannot say it is no hit.
+                // Reject hits whose `t` along a short direction overflows.
                 (met.t * scale).is_finite() && query.offer(state, number, met)
             });
             if answered {

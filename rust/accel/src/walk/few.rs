@@ -1,25 +1,25 @@
-//! Few objects: what sixteen rays certainly miss is told at once, and no structure is walked.
+//! Culling of few objects for sixteen rays at once, without a structure.
 
 use crate::UserGeometry;
 use raywright_base::math::{LANES, Ray};
 use raywright_base::simd::{Level, loops};
 use raywright_shapes::Ball;
 
-/// Objects that are few, each in a ball.
+/// Up to 16 objects with bounding spheres.
 ///
-/// Among few, most rays miss most; that they pass a ball takes a few operations, which sixteen rays do together, and to
-/// make a ray ready and to walk takes as long as the test of an object. What is not certainly missed is asked, as
-/// everywhere.
+/// With few objects, most rays miss most of them. A bounding sphere test takes a few operations and handles sixteen
+/// rays in parallel, whereas preparing and traversing a ray takes as long as the test of an object. Objects that are
+/// not certainly missed are tested as everywhere else.
 pub struct Few {
     numbers: Vec<u32>,
     balls: Vec<Ball>,
 }
 
-/// So many objects are few: a tree of more is walked sooner.
+/// Maximum number of objects; for more, tree traversal is faster.
 const OBJECTS: usize = 16;
 
 impl Few {
-    /// Objects of these numbers, if they are few and stand still.
+    /// Set up culling, if the objects are few and static.
     pub fn new(numbers: &[u32], objects: &dyn UserGeometry) -> Option<Self> {
         if numbers.is_empty() || numbers.len() > OBJECTS || objects.moves() {
             return None;
@@ -28,7 +28,7 @@ impl Few {
         Some(Self { numbers: numbers.to_vec(), balls })
     }
 
-    /// Of each of some rays, at most sixteen, which objects it may meet: a bit for each.
+    /// A bit mask per ray, for at most sixteen rays, of the objects that it may hit.
     pub fn ask(&self, level: Level, rays: &[Ray], may_meet: &mut [u32; LANES]) {
         let mut origin = [[0.0; LANES]; 3];
         let mut direction = [[0.0; LANES]; 3];
@@ -49,7 +49,7 @@ impl Few {
         }
     }
 
-    /// The numbers of objects by their bits.
+    /// The numbers of the objects in a bit mask.
     #[inline(always)]
     pub fn numbers(&self, mut bits: u32) -> impl Iterator<Item = u32> {
         std::iter::from_fn(move || {
@@ -59,18 +59,18 @@ impl Few {
         })
     }
 
-    /// Memory held.
+    /// Memory use in bytes.
     pub fn bytes(&self) -> usize {
         size_of_val(self.numbers.as_slice()) + size_of_val(self.balls.as_slice())
     }
 }
 
 loops! {
-    /// Whether rays certainly pass a ball: 1 where they do.
+    /// Test which rays certainly miss a sphere: 1 for those.
     ///
-    /// With w the way from its middle to the origin, a line of direction d passes at a distance of |w × d| / |d|. All
-    /// that is compared is rounded by less than 2⁻⁴⁸ of |w|² |d|², or of |w| |d|; what is allowed for is 2⁻³⁶ of these,
-    /// where nothing underflows. Otherwise, and where anything is no number, nothing is certain.
+    /// With w the vector from the center to the origin, a line of direction d has distance |w × d| / |d|. All compared
+    /// terms err by less than 2⁻⁴⁸ of |w|² |d|², or of |w| |d|; 2⁻³⁶ of these is allowed, in the absence of underflow.
+    /// With underflow or NaN nothing is certain.
     fn pass(
         ball: &Ball,
         origin: &[[f64; LANES]; 3],
@@ -96,11 +96,11 @@ loops! {
             let level = square * length;
             let is_plain = (length >= LEAST) & (level >= LEAST);
             let is_beside = moment > level + SLACK * (far * length + level);
-            // Ahead of the origin nothing comes nearer, where it starts outside and leads away.
+            // A ray that starts outside and heads away only recedes.
             let along = x * u + y * v + z * w;
             let is_outside = far > square + SLACK * (far + square);
             let is_behind = (along >= 0.0) & is_outside & (t_min[i] >= 0.0);
-            // It is as near to the middle as it gets at −along / |d|², and meets the ball a radius earlier at most.
+            // The closest approach is at −along / |d|², and the entry at most one radius earlier.
             let size = (far * length).sqrt();
             let entry = -along - (level.sqrt() + SLACK * (size + level.sqrt()));
             let is_beyond = is_outside & (entry > t_max[i] * length);
@@ -149,7 +149,7 @@ mod tests {
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(4096))]
-        /// Rays of all kinds, half of them aimed at the rim or nearly so, from near and far.
+        /// Rays of all kinds, half of them aimed at or near the rim, from near and far.
         #[test]
         fn what_is_passed_is_not_met(
             center in prop::array::uniform3(-3.0..3.0f64),

@@ -1,28 +1,28 @@
-//! What keeps a ray from testing a primitive twice that stands in several leaves.
+//! Mailboxes, which avoid testing a ray twice against a primitive that is in several leaves.
 
 use std::sync::Mutex;
 
-/// Ways to know what has been tested.
+/// Kinds of mailboxes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Mailbox {
-    /// None: tests are repeated, answers are not.
+    /// No mailbox: tests are repeated, without effect on the results.
     None,
-    /// A stamp a primitive, which says by which ray it was tested last (Amanatides and Woo, "A Fast Voxel Traversal
-    /// Algorithm for Ray Tracing", 1987). Nothing is decided twice.
+    /// A stamp per primitive, with the last ray that tested it (Amanatides and Woo, "A Fast Voxel Traversal Algorithm
+    /// for Ray Tracing", 1987). Nothing is decided twice.
     #[default]
     Stamps,
-    /// A few of the last primitives tested, found by the last digits of their numbers (Benthin, "Realtime Ray Tracing
-    /// on Current CPU Architectures", 2006). It fits into the nearest cache, and forgets.
+    /// A small hash table of recently tested primitives (Benthin, "Realtime Ray Tracing on Current CPU Architectures",
+    /// 2006). It fits into the L1 cache, and forgets.
     Cache,
 }
 
-/// Entries of the small cache.
+/// Entries of the hash table.
 const ENTRIES: usize = 64;
 
-/// Which primitives the ray at hand has met.
+/// The primitives already tested for the current ray.
 #[derive(Debug)]
 pub struct Marks {
-    /// By primitive, or by the last digits of its number: a ray's number, and in the cache the primitive too.
+    /// By primitive or its hash: the ray's number, and in the cache the primitive's, too.
     stamps: Vec<u64>,
     kind: Mailbox,
     ray: u32,
@@ -38,7 +38,7 @@ impl Marks {
         Self { stamps: vec![0; entries], kind, ray: 0 }
     }
 
-    /// The next ray has met nothing yet.
+    /// Start the next ray.
     #[inline(always)]
     pub fn next_ray(&mut self) {
         self.ray = self.ray.wrapping_add(1);
@@ -48,7 +48,7 @@ impl Marks {
         }
     }
 
-    /// Whether the ray meets the primitive for the first time, as far as is known.
+    /// Return whether the primitive is new to the ray, as far as is known; mark it as tested.
     #[inline(always)]
     pub fn is_new(&mut self, primitive: u32) -> bool {
         let (entry, stamp) = match self.kind {
@@ -60,7 +60,7 @@ impl Marks {
     }
 }
 
-/// Marks to be had, one for each batch at work: stamps are many, and are not cleared for every batch.
+/// A pool of marks, one per active batch: stamps are large, and are not cleared for every batch.
 #[derive(Debug)]
 pub struct Mailboxes {
     free: Mutex<Vec<Marks>>,
@@ -69,17 +69,17 @@ pub struct Mailboxes {
 }
 
 impl Mailboxes {
-    /// For so many primitives.
+    /// A pool for the given number of primitives.
     pub fn new(kind: Mailbox, primitives: usize) -> Self {
         Self { free: Mutex::new(Vec::new()), kind, primitives }
     }
 
-    /// As many, for other rays.
+    /// A pool of the same kind and size.
     pub fn another(&self) -> Self {
         Self::new(self.kind, self.primitives)
     }
 
-    /// Runs `work` with marks of its own.
+    /// Run `work` with marks from the pool.
     pub fn with<T>(&self, work: impl FnOnce(&mut Marks) -> T) -> T {
         let free = || self.free.lock().expect("nobody panics here");
         let found = free().pop();

@@ -1,67 +1,64 @@
-//! Parts of primitives, as planes across an axis make them: where space is divided and not the primitives, one may lie
-//! on both sides.
+//! Parts of primitives clipped to cells: a primitive may lie on both sides of a splitting plane.
 
 use super::Input;
 use raywright_base::math::Aabb;
 use raywright_shapes::triangle::clipped;
 
-/// What of a primitive lies in a box: all of it that lies in a cell.
+/// The part of a primitive inside a cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Part {
-    /// Around the part.
+    /// Its bounding box.
     pub aabb: Aabb,
     /// The primitive's number.
     pub primitive: u32,
 }
 
-/// Where a part lies that a plane across an axis comes near.
+/// The position of a part relative to a splitting plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Halves {
-    /// Nowhere above the plane.
+    /// Not above the plane.
     Below,
-    /// Nowhere below it.
+    /// Not below the plane.
     Above,
-    /// In the plane: on either side.
+    /// In the plane: it may go to either side.
     Within,
-    /// On both sides, with what lies there; empty where that is nothing.
+    /// On both sides, with the clipped boxes; an empty box if one side is empty.
     Both([Aabb; 2]),
 }
 
-/// A plane across an axis.
+/// An axis-aligned splitting plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plane {
     /// The axis, 0 to 2.
     pub axis: usize,
-    /// Where it stands, in box units.
+    /// Its position in box units.
     pub at: f32,
 }
 
 impl Plane {
-    /// The two parts of a box.
+    /// Split a box into the two parts.
     pub fn cut(self, aabb: &Aabb) -> [Aabb; 2] {
         let [mut below, mut above] = [*aabb; 2];
         (below.max[self.axis], above.min[self.axis]) = (self.at, self.at);
         [below, above]
     }
 
-    /// Whether it has room on both sides in a box.
+    /// Return whether it is strictly inside a box.
     pub fn is_within(self, aabb: &Aabb) -> bool {
         aabb.min[self.axis] < self.at && self.at < aabb.max[self.axis]
     }
 }
 
 impl Part {
-    /// Half-way between the plane that it is met at first and the last.
+    /// The center of its box along an axis.
     pub fn centre(&self, axis: usize) -> f32 {
         0.5 * (self.aabb.min[axis] + self.aabb.max[axis])
     }
 
-    /// Where it lies. Triangles are clipped, which is what makes splits "perfect" (Havran, "Heuristic Ray Shooting
-    /// Algorithms", 2000): a side gets the triangle only if some of it lies in the part of the box that is on that
-    /// side.
+    /// Classify the part against a plane. Triangles are clipped, for "perfect" splits (Havran, "Heuristic Ray Shooting
+    /// Algorithms", 2000): a side gets the triangle only if it overlaps the cell on that side.
     ///
-    /// Whatever point of the primitive lies in the part's box lies in the closed half on one of the sides that are
-    /// named.
+    /// Every point of the primitive in the part's box is in the closed half-space of one of the returned sides.
     pub fn halves(&self, input: &Input, plane: Plane) -> Halves {
         let (least, greatest) = (self.aabb.min[plane.axis], self.aabb.max[plane.axis]);
         if least == plane.at && greatest == plane.at {
@@ -84,7 +81,7 @@ impl Part {
 }
 
 impl Input<'_> {
-    /// All primitives that can be hit and end somewhere, and the box around them.
+    /// All bounded primitives that can be hit, and their bounding box.
     pub fn parts(&self) -> (Vec<Part>, Aabb) {
         let numbered = self.boxes.iter().zip(0..).filter(|(aabb, _)| !aabb.is_empty());
         let parts: Vec<_> = numbered.map(|(&aabb, primitive)| Part { aabb, primitive }).collect();

@@ -1,44 +1,44 @@
-//! How much a builder may yet do, so that no input takes time or memory without bound.
+//! The budget of a builder, which bounds time and memory for any input.
 
-/// What is left below a node.
+/// The budget below a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Room {
     /// Levels.
     pub depth: usize,
-    /// Parts added to the primitives by parting them. A node shares what it has left among its children by how many
-    /// parts these have, so that threads need not agree.
+    /// Duplicates that splits may add to the primitives. A node distributes its budget in proportion to the children's
+    /// parts, so that threads need not synchronize.
     spare: usize,
-    /// What is below as a share of the work: a node shares it alike.
+    /// The work below as a fraction of [`Room::STEPS`], distributed likewise.
     steps: usize,
 }
 
 impl Room {
-    /// Parts that may be added, over the number of primitives.
+    /// Maximum number of duplicates per primitive.
     const SPARE: usize = 8;
 
-    /// What all work is counted as.
+    /// The total work.
     pub const STEPS: usize = 1 << 40;
 
-    /// And to however few.
+    /// Additional duplicates, for small inputs.
     const AT_LEAST: usize = 64;
 
-    /// For so many primitives, down to some depth.
+    /// The budget for a number of primitives and a maximum depth.
     pub fn new(primitives: usize, depth: usize) -> Self {
         Self { depth, spare: Self::SPARE * primitives + Self::AT_LEAST, steps: Self::STEPS }
     }
 
-    /// How many steps of work there are below.
+    /// The work below, in steps.
     pub fn steps(self) -> usize {
         self.steps
     }
 
-    /// How deep a tree of planes should be at most: 8 + 1.3 log₂ n, which Havran found to be enough ("Heuristic Ray
-    /// Shooting Algorithms", 2000).
+    /// Maximum depth of a kd-tree or BSP tree: 8 + 1.3 log₂ n, which Havran found sufficient ("Heuristic Ray Shooting
+    /// Algorithms", 2000).
     pub fn depth_for(primitives: usize) -> usize {
         (8.0 + 1.3 * (primitives.max(1) as f64).log2()) as usize
     }
 
-    /// What is left for each child, if so many of so many parts are to go there; none if that is too many.
+    /// The budget of each child after splitting `parts` into the given numbers; None if it is exceeded.
     pub fn shared<const N: usize>(self, parts: usize, children: [usize; N]) -> Option<[Self; N]> {
         let sum: usize = children.iter().sum();
         let spare = self.spare.checked_sub(sum.saturating_sub(parts))?;

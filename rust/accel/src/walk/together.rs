@@ -1,5 +1,5 @@
-//! Rays that are walked together, leaf by leaf. Each keeps its own answer and its own limit; in a leaf each is tested
-//! by itself.
+//! Packet traversal of structures, leaf by leaf. Each ray keeps its own result and limit, and is tested by itself in a
+//! leaf.
 
 use super::contents::{Contents, LeafRay};
 use crate::SlabRay;
@@ -8,30 +8,29 @@ use raywright_base::math::{Ray, Region};
 use raywright_base::simd::Simd;
 use raywright_shapes::triangle::{BlockRay, EdgeRay, Leaves};
 
-/// No more rays are walked together.
+/// Maximum number of rays in a packet.
 pub const MOST_TOGETHER: usize = 64;
 
-/// Takes rays through a structure, some at a time.
+/// Traverses a structure with packets of rays.
 pub trait Together {
-    /// How many rays there may be, up to [`MOST_TOGETHER`].
+    /// Maximum number of rays, up to [`MOST_TOGETHER`].
     fn width(&self) -> usize;
 
-    /// Begins with some rays, at least one.
+    /// Start a packet of at least one ray.
     fn start(&mut self, rays: &[SlabRay]);
 
-    /// The next leaf with anything in it that some of the rays may meet, each at a `t` of no more than its limit, in
-    /// box units; and which rays these are, bit by bit. Rays that are answered, and those that are missing, have a
-    /// limit of −∞, and are not told. No leaf is given twice.
+    /// Return the next nonempty leaf that some rays may hit, each at a `t` of at most its limit, in box units, with a
+    /// bit mask of these rays. Finished and missing rays have a limit of −∞ and are never in the mask. No leaf is
+    /// returned twice.
     fn next(&mut self, limits: &[f32; MOST_TOGETHER]) -> Option<(u32, u64)>;
 
-    /// Nodes visited since the start for one of the rays; 0 if none are counted. A test of all rays at once counts
-    /// once.
+    /// Nodes visited since the start for a ray; 0 if not counted. A test of all rays counts for the first one only.
     fn nodes(&self, ray: usize) -> u32;
 }
 
-/// A ray of those at hand.
+/// A ray of the current packet.
 struct Asked<T> {
-    /// Its number in the batch.
+    /// Its index in the batch.
     number: usize,
     edges: EdgeRay,
     lanes: BlockRay,
@@ -39,20 +38,20 @@ struct Asked<T> {
     state: T,
 }
 
-/// What a batch is asked about.
+/// A batch of rays and the scene.
 pub struct TogetherBatch<'a, const N: usize, L> {
     pub contents: &'a Contents<N, L>,
-    /// What every ray is tested against.
+    /// Objects tested against every ray.
     pub unbounded: &'a [u32],
     pub region: &'a Region,
     pub rays: &'a [Ray],
 }
 
 impl<const N: usize, L: Leaves<N>> TogetherBatch<'_, N, L> {
-    /// Answers all rays.
+    /// Run a query on all rays.
     ///
-    /// Where a primitive stands in several leaves, a ray may be offered it more than once, which changes no answer:
-    /// marks would have to be kept for every ray at hand.
+    /// A primitive in several leaves may be offered more than once, which does not change results. Mailboxes would be
+    /// needed for every ray of the packet.
     #[inline(always)]
     pub fn answer<Q: Query, S: Simd<N>>(&self, simd: S, walk: &mut dyn Together, query: &mut Q) {
         let Self { contents, unbounded, region, rays } = *self;
@@ -84,7 +83,7 @@ impl<const N: usize, L: Leaves<N>> TogetherBatch<'_, N, L> {
         }
     }
 
-    /// Walks the rays at hand, and writes down their answers.
+    /// Traverse the current packet and store its results.
     #[inline(always)]
     fn walk<Q: Query, S: Simd<N>>(
         &self,
