@@ -1,10 +1,10 @@
-//! From the top down, each plane the best of a few.
+//! A top-down builder of BSP trees that picks the best of a few candidate planes per cell.
 //!
-//! Any plane may part a cell; those worth trying are the ones that polygons lie in, those through their edges, and
-//! those across axes that they touch (Ize, Wald and Parker, "Ray Tracing with the BSP Tree", 2008). They are taken from
-//! a few polygons of each cell. The cost of each is first guessed, from how it divides a few of the pieces and the
-//! cell's width. For the best of them the surface on both sides is measured and all pieces are counted, those that are
-//! cut on both sides: so balance is weighed against splits.
+//! Any plane may split a cell. Candidates are the planes of polygons, planes through their edges, and axis-aligned
+//! planes that touch them (Ize, Wald and Parker, "Ray Tracing with the BSP Tree", 2008), for a few polygons of each
+//! cell. The cost of each is first estimated from a sample of the pieces and the cell's width. For the best of them the
+//! surface area on both sides is computed and all pieces are counted, cut ones on both sides. This weighs balance
+//! against splits.
 
 use super::cell::Cell;
 use super::pieces::{Piece, TOLERANCE, triangle};
@@ -15,32 +15,32 @@ use raywright_base::math::DVec3;
 use raywright_base::parallel;
 use raywright_base::work::Steps;
 
-/// How many pieces tell how good a plane may be.
+/// Number of sampled pieces for a cost estimate.
 const ASKED: usize = 128;
 
-/// How many planes are looked at closely.
+/// Number of planes with an exact cost.
 const CLOSELY: usize = 4;
 
-/// A plane has at least so much of a cell on both sides, in box units.
+/// Minimum extent of a cell on both sides of a plane, in box units.
 const LEAST: f64 = 1.0 / (1u64 << 30) as f64;
 
-/// From so many pieces on, both sides are built at once.
+/// Minimum number of pieces for a parallel build of both sides.
 const PARALLEL: usize = 1024;
 
-/// Up to so many pieces, nobody asks whether to go on.
+/// Cancellation is not checked for cells with at most this many pieces.
 const FEW: usize = 64;
 
-/// What is built: nodes, whose places are counted from the first.
+/// A subtree whose node indices start at 0.
 #[derive(Default)]
 pub struct Grown {
     pub nodes: Vec<Node>,
     pub lists: Lists,
-    /// The expected cost, times the root's surface.
+    /// The expected cost times the root's surface area.
     pub cost: f64,
     pub depth: usize,
 }
 
-/// Builds a tree over everything; gives its root.
+/// Build a tree over all primitives; return its root.
 pub fn build(input: &Input, options: &Options) -> (Child, Grown) {
     let (parts, bounds) = input.parts();
     let pieces: Vec<_> = parts.iter().map(|part| Piece::whole(input, part.primitive)).collect();
@@ -65,7 +65,7 @@ struct Builder<'a> {
     steps: &'a Steps<'a>,
 }
 
-/// A plane with what it makes of a cell.
+/// A plane and the two cells it creates.
 struct Split {
     plane: Plane,
     cells: [Cell; 2],
@@ -74,7 +74,7 @@ struct Split {
 }
 
 impl Builder<'_> {
-    /// Builds what is in a cell.
+    /// Build the subtree of a cell.
     fn grow(self, pieces: Vec<Piece>, cell: &Cell, depth: usize, room: Room, grown: &mut Grown) -> Child {
         let count = pieces.len();
         if count > FEW && self.steps.is_stopped() {
@@ -102,7 +102,7 @@ impl Builder<'_> {
             let few = pieces.len() <= PARALLEL;
             let child = self.grow(pieces, &cells[side], depth + 1, rooms[side], grown);
             if few && count > PARALLEL {
-                // Whether to go on is asked before nodes are made.
+                // Cancellation is checked before nodes are created.
                 let _ = self.steps.did(rooms[side].steps());
             }
             child
@@ -118,7 +118,7 @@ impl Builder<'_> {
         Child::node(place)
     }
 
-    /// The best plane; gives the pieces back if none is better than a leaf.
+    /// Split by the best plane; return the pieces if a leaf is cheaper.
     fn split(self, pieces: Vec<Piece>, cell: &Cell, area: f64, room: Room) -> Result<Split, Vec<Piece>> {
         let mut planes: Vec<_> =
             self.planes(&pieces).into_iter().filter_map(|p| Some((self.guess(&pieces, cell, area, &p)?, p))).collect();
@@ -146,9 +146,9 @@ impl Builder<'_> {
         Ok(Split { plane, cells, sides, rooms })
     }
 
-    /// The least cost of a node, given its children's shares of the surface, how many pieces each child has and, as the
-    /// third number, how many lie in the plane. With it comes on which side the latter are best put, and how many
-    /// pieces there are then on each. A piece counts for `scale`.
+    /// The least cost of a node. `shares` are the children's fractions of the surface area. The counts are the pieces
+    /// behind, in front of, and within the plane. Also returns the side for the pieces in the plane, and the number of
+    /// pieces on each side. `scale` is the weight of a piece.
     fn best_counts(self, shares: [f64; 2], [back, front, within]: [usize; 3], scale: f64) -> (f64, usize, [usize; 2]) {
         let Options { traversal_cost, intersection_cost, .. } = *self.options;
         let of_a_piece = f64::from(intersection_cost) * scale;
@@ -160,7 +160,7 @@ impl Builder<'_> {
         (cost(ways[side]), side, ways[side])
     }
 
-    /// What a plane may cost; none if it leaves nothing on a side.
+    /// Estimate the cost of a plane; None if one side is empty.
     fn guess(self, pieces: &[Piece], cell: &Cell, area: f64, plane: &Plane) -> Option<f64> {
         let areas = cell.guessed_areas(plane, LEAST)?;
         let step = pieces.len().div_ceil(ASKED);
@@ -169,18 +169,18 @@ impl Builder<'_> {
         Some(self.best_counts(areas.map(|a| a / area), counts, scale).0)
     }
 
-    /// Planes worth trying.
+    /// Candidate planes.
     fn planes(self, pieces: &[Piece]) -> Vec<Plane> {
         let mut planes = Vec::new();
         let asked = self.options.candidates.min(pieces.len());
         for k in 0..asked {
-            // One of every so many, and not the first of them.
+            // Evenly spaced pieces, not starting with the first.
             let piece = &pieces[(2 * k + 1) * pieces.len() / (2 * asked)];
             if let Some([a, b, c]) = triangle(self.input, piece.primitive) {
                 let normal = (b - a).cross(c - a);
                 planes.extend(Plane::through(a, normal));
                 for (from, to) in [(a, b), (b, c), (c, a)] {
-                    // Short normals cross edges to something shorter still.
+                    // Normalized first, since the product of short vectors would underflow.
                     let across = normal.normalize_or_zero().cross((to - from).normalize_or_zero());
                     planes.extend(Plane::through(from, across));
                 }
@@ -196,12 +196,12 @@ impl Builder<'_> {
     }
 }
 
-/// The planes across axes around a box.
+/// The axis-aligned planes around a box.
 fn across(extremes: [DVec3; 2]) -> impl Iterator<Item = Plane> {
     extremes.into_iter().flat_map(|corner| (0..3).map(move |axis| Plane::across(axis, corner[axis])))
 }
 
-/// How many pieces would be behind a plane and in front of it, and how many lie in it.
+/// The numbers of pieces behind a plane, in front of it, and in it.
 fn counts<'a>(pieces: impl Iterator<Item = &'a Piece>, plane: &Plane) -> [usize; 3] {
     let mut counts = [0; 3];
     for piece in pieces {
@@ -216,7 +216,7 @@ fn counts<'a>(pieces: impl Iterator<Item = &'a Piece>, plane: &Plane) -> [usize;
 }
 
 impl Grown {
-    /// Makes a leaf.
+    /// Create a leaf.
     fn leaf(&mut self, pieces: &[Piece]) -> Child {
         if pieces.is_empty() {
             return Child::EMPTY;
@@ -227,7 +227,7 @@ impl Grown {
         Child::leaf(number)
     }
 
-    /// Puts another tree behind; gives its root.
+    /// Append another subtree; return its root.
     fn append(&mut self, root: Child, other: Self) -> Child {
         let (nodes, leaves) = (self.nodes.len(), self.lists.counts.len());
         let moved = |node: Node| Node { children: node.children.map(|child| child.moved(nodes, leaves)), ..node };

@@ -1,13 +1,13 @@
-//! What planes leave of a box: convex bodies, whose surface says how many rays they meet.
+//! Convex cells of a BSP tree, whose surface area is proportional to the probability of a ray hitting them.
 
 use super::plane::Plane;
 use raywright_base::math::{Aabb, DVec3};
 
-/// A convex body by its faces. What it is used for, expected costs, bears any rounding.
+/// A convex polyhedron, given by its faces. It is used only for expected costs, which tolerate rounding.
 #[derive(Clone, Debug)]
 pub struct Cell {
     faces: Vec<Vec<DVec3>>,
-    /// By face, its area times its normal, one way or the other.
+    /// The area times the normal of each face, in either orientation.
     areas: Vec<DVec3>,
 }
 
@@ -33,7 +33,7 @@ impl Cell {
         Self { faces, areas }
     }
 
-    /// The surface.
+    /// The surface area.
     pub fn area(&self) -> f64 {
         self.areas.iter().map(|area| area.length()).sum()
     }
@@ -44,22 +44,21 @@ impl Cell {
         ranges.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], [least, greatest]| [a.min(least), b.max(greatest)])
     }
 
-    /// How much surface a plane may leave on either side, if the cell is taken for a prism that stands across the plane
-    /// and is as wide as the cell at its widest: each side has two ends, as large as the cell's shadow on the plane,
-    /// and its share of what is around.
+    /// Estimate the surface area on either side of a plane. The cell is modelled as a prism normal to the plane, as
+    /// wide as the cell's projection: each side has two ends, and its fraction of the lateral surface.
     ///
-    /// None if the plane has less than `least` of the cell on a side.
+    /// None if the cell extends less than `least` on a side.
     pub fn guessed_areas(&self, plane: &Plane, least: f64) -> Option<[f64; 2]> {
         let [lowest, highest] = self.range(plane);
         let back = -lowest / (highest - lowest);
-        // Every ray along the normal that meets it does so twice.
+        // Every ray along the normal that hits the cell crosses its surface twice.
         let ends: f64 =
             self.areas.iter().map(|area| plane.normal.dot(*area).abs()).sum::<f64>() / plane.normal.length();
         let around = (self.area() - ends).max(0.0);
         (lowest < -least && highest > least).then(|| [back, 1.0 - back].map(|share| ends + share * around))
     }
 
-    /// What lies behind a plane, and what in front of it.
+    /// The parts behind and in front of a plane.
     pub fn halved(&self, plane: &Plane) -> [Self; 2] {
         let mut cuts = Vec::new();
         let mut halves = [Vec::with_capacity(self.faces.len() + 1), Vec::with_capacity(self.faces.len() + 1)];
@@ -80,14 +79,14 @@ impl Cell {
     }
 }
 
-/// The area of a convex outline, times its normal.
+/// The area of a convex outline times its normal.
 fn area(outline: &[DVec3]) -> DVec3 {
     let Some(&first) = outline.first() else { return DVec3::ZERO };
     let twice: DVec3 = outline.windows(2).map(|p| (p[0] - first).cross(p[1] - first)).sum();
     0.5 * twice
 }
 
-/// Points of a convex outline across a direction, in turn.
+/// Sort the points of a convex outline by angle about a direction.
 fn around(mut points: Vec<DVec3>, normal: DVec3) -> Vec<DVec3> {
     let middle = points.iter().sum::<DVec3>() / points.len().max(1) as f64;
     let u = normal.any_orthogonal_vector();

@@ -1,9 +1,9 @@
-//! BSP trees: space parted by planes that lie as they like (Fuchs, Kedem and Naylor, "On Visible Surface Generation by
-//! A Priori Tree Structures", 1980; for rays, Ize, Wald and Parker, "Ray Tracing with the BSP Tree", 2008).
+//! BSP trees, which split space by arbitrary planes (Fuchs, Kedem and Naylor, "On Visible Surface Generation by A
+//! Priori Tree Structures", 1980; for rays, Ize, Wald and Parker, "Ray Tracing with the BSP Tree", 2008).
 //!
-//! Rays go from front to back as through a kD-tree. Planes and rays are kept in f64; a ray is taken to be on both sides
-//! of a plane while it is no farther from it than it may be off, and a polygon that reaches over by less stands on one
-//! side only.
+//! Rays traverse them front to back as in a kd-tree. Planes and rays are in f64. A ray counts as on both sides of a
+//! plane while its distance is within its error, and a polygon that crosses a plane by less than a tolerance is stored
+//! on one side only.
 
 mod build;
 mod cell;
@@ -17,30 +17,30 @@ use plane::{Plane, Side};
 use raywright_base::math::robust::{greater, lesser};
 use raywright_base::math::{Aabb, DVec3};
 
-/// Most levels below the root that may be asked for.
+/// Maximum depth that may be requested.
 pub const MAX_DEPTH: usize = 60;
 
-/// Most polygons of a cell that may be asked to give planes.
+/// Maximum number of candidate polygons per cell.
 pub const MAX_CANDIDATES: usize = 1024;
 
-/// How to build a BSP tree.
+/// Build options of a BSP tree.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// So many polygons of a cell give planes that are tried, from 1 to [`MAX_CANDIDATES`]: each the one that it lies
-    /// in, three through its edges and six across axes.
+    /// Number of polygons per cell that propose planes, from 1 to [`MAX_CANDIDATES`]. Each proposes its own plane,
+    /// three through its edges and six axis-aligned ones.
     pub candidates: usize,
-    /// Cost of visiting a node, for the surface-area heuristic; only its ratio to the next matters.
+    /// Cost of visiting a node in the surface area heuristic; only its ratio to the next matters.
     pub traversal_cost: f32,
     /// Cost of testing a primitive.
     pub intersection_cost: f32,
-    /// Most levels below the root, up to [`MAX_DEPTH`]; 8 + 1.3 log₂ n for n primitives if not given.
+    /// Maximum depth, up to [`MAX_DEPTH`]; by default 8 + 1.3 log₂ n for n primitives.
     pub max_depth: Option<usize>,
-    /// So many primitives are not parted any more.
+    /// Cells with at most this many primitives become leaves.
     pub leaf_size: usize,
 }
 
 impl Options {
-    /// As good as any for most scenes.
+    /// A good choice for most scenes.
     pub const DEFAULT: Self =
         Self { candidates: 4, traversal_cost: 1.0, intersection_cost: 1.0, max_depth: None, leaf_size: 2 };
 
@@ -63,7 +63,7 @@ impl Default for Options {
     }
 }
 
-/// A plane, with what is behind it and what is in front.
+/// A plane and the children behind and in front of it.
 #[derive(Clone, Copy, Debug)]
 struct Node {
     plane: Plane,
@@ -79,7 +79,7 @@ struct Child(u32);
 impl Child {
     const LEAF: u32 = 1 << 31;
 
-    /// A leaf with nothing in it.
+    /// An empty leaf.
     const EMPTY: Self = Self(u32::MAX);
 
     fn node(number: usize) -> Self {
@@ -97,12 +97,12 @@ impl Child {
         self.0 & Self::LEAF != 0
     }
 
-    /// Of a leaf with anything in it.
+    /// The index of a nonempty leaf.
     fn number(self) -> Option<u32> {
         (self.is_leaf() && self != Self::EMPTY).then_some(self.0 & !Self::LEAF)
     }
 
-    /// The same where all nodes stand `nodes` later and all leaves are numbered `leaves` higher.
+    /// The same child after shifting all node and leaf indices.
     fn moved(self, nodes: usize, leaves: usize) -> Self {
         match self {
             Self::EMPTY => self,
@@ -115,24 +115,25 @@ impl Child {
 /// A BSP tree.
 #[derive(Clone, Debug)]
 struct Bsp {
-    /// Children stand behind their parent.
+    /// Children follow their parent.
     nodes: Vec<Node>,
     root: Child,
-    /// The box around everything: the root's cell.
+    /// The root's cell.
     bounds: Aabb,
     depth: usize,
-    /// By the surface-area heuristic: of every inner node one test of a plane, of every leaf its primitives, each times
-    /// the chance that a ray that meets the box around everything meets its cell.
+    /// The surface area heuristic: one plane test per inner node, plus the primitives of each leaf, each times the
+    /// probability that a ray through the scene's box hits the cell.
     sah_cost: f64,
 }
 
-/// Builds a BSP tree over primitives.
+/// Build a BSP tree over primitives.
 ///
-/// It has the same bits for any number of threads. Time is n times the number of levels, with cut pieces counted in n;
-/// there are at most 9 times as many pieces as primitives, and 64 more. What is no triangle gives planes across axes
-/// only, and is cut by no others.
+/// The result is bit-identical for any number of threads. Time is proportional to n times the number of levels, with n
+/// counting cut pieces. There are at most 9 times as many pieces as primitives, plus 64. Primitives other than
+/// triangles propose axis-aligned planes only, and are cut by no others.
 ///
 /// # Panics
+///
 /// If an option is out of range.
 pub fn build(input: &Input, options: &Options) -> (Box<dyn Structure>, Lists) {
     options.check();
@@ -142,7 +143,7 @@ pub fn build(input: &Input, options: &Options) -> (Box<dyn Structure>, Lists) {
 }
 
 impl Bsp {
-    /// Whether a piece stands wherever it should below a node.
+    /// Return whether a piece is in all the leaves it overlaps below a node.
     fn stands(&self, lists: &[Vec<u32>], child: Child, piece: Piece) -> bool {
         if child.is_leaf() {
             let list = child.number().map(|leaf| &lists[leaf as usize]);
@@ -153,7 +154,7 @@ impl Bsp {
             let mut sides = children.into_iter().zip(piece.clone().parted(&plane, within));
             sides.all(|(child, piece)| piece.is_none_or(|piece| self.stands(lists, child, piece)))
         };
-        // What lies in the plane may be on either side.
+        // A piece in the plane may be on either side.
         on(0) || (Plane::side(piece.range(&plane), TOLERANCE) == Side::Within && on(1))
     }
 }
@@ -220,12 +221,12 @@ impl Structure for Bsp {
     }
 }
 
-/// A path puts one node away a level. A power of two, so that no place needs to be checked.
+/// A path leaves one pending node per level. A power of two, so that masked indices need no bounds check.
 const STACK: usize = 64;
 
 const _: () = assert!(MAX_DEPTH < STACK);
 
-/// A node or a leaf, and where the ray is in it at most.
+/// A node or leaf, and the interval in which the ray may be inside.
 #[derive(Clone, Copy)]
 struct Open {
     child: Child,
@@ -237,15 +238,15 @@ struct Walk<'a, const COUNTED: bool> {
     tree: &'a Bsp,
     origin: DVec3,
     direction: DVec3,
-    /// How far off the ray may be, and how far a primitive may reach over a plane and still stand on one side of it
-    /// only: in any coordinate, and so in the height over any plane.
+    /// Maximum error of the ray's position, and maximum extent of a primitive across a plane for storing it on one
+    /// side. It applies to each coordinate, and so to the height over any plane.
     ///
     /// The origin is rounded to f32, the inverse of the direction twice. With R the ray's reach, that moves it by less
-    /// than 3 · 2⁻²⁴ R where the scene is, of which the pad is more than twice as much. Quotients in f64 add next to
-    /// nothing.
+    /// than 3 · 2⁻²⁴ R within the scene, and the pad is more than twice as much. Divisions in f64 add a negligible
+    /// amount.
     room: f64,
     open: [Open; STACK],
-    /// How many are open.
+    /// Height of the stack.
     height: usize,
     nodes: u32,
 }
@@ -287,8 +288,8 @@ impl<const COUNTED: bool> Walker for Walk<'_, COUNTED> {
                 }
                 let node = &nodes[child.0 as usize];
                 let (above, ascent) = (node.plane.height(self.origin), node.plane.normal.dot(self.direction));
-                // Going up it comes from behind. What is not a number, as where it goes along the plane as far away as
-                // it may be off, is never less or more, and both sides are visited.
+                // An ascending ray comes from behind. NaN, from a ray along the plane at the error distance, fails both
+                // comparisons, so both sides are visited.
                 let up = ascent > 0.0;
                 let (way, speed) = (if up { -above } else { above }, ascent.abs());
                 let (from, until) = ((way - self.room) / speed, (way + self.room) / speed);

@@ -1,32 +1,32 @@
-//! Pieces of polygons, as planes cut them.
+//! Pieces of primitives cut by BSP planes.
 
 use super::plane::{Plane, Side};
 use crate::walk::Input;
 use raywright_base::math::{Aabb, DVec3};
 
-/// What does not reach over a plane by more lies on one side of it. A piece is where it should be but for less than a
-/// quarter of it: a cut in f64 of coordinates up to 2 lies on the edge that it cuts, and off the plane, by less than
-/// 2⁻⁴⁸ each, and no more than 60 are made.
+/// A piece that crosses a plane by at most this counts as on one side. A piece's own error is less than a quarter of
+/// it. A cut in f64 of coordinates up to 2 is off the cut edge and the plane by less than 2⁻⁴⁸ each, and at most 60
+/// cuts are made.
 pub const TOLERANCE: f64 = 1.0 / (1u64 << 40) as f64;
 
-/// What of a primitive lies in a cell.
+/// The part of a primitive inside a cell.
 #[derive(Clone, Debug)]
 pub struct Piece {
     pub primitive: u32,
     pub outline: Outline,
 }
 
-/// Where it lies, in box units.
+/// The extent of a piece in box units.
 #[derive(Clone, Debug)]
 pub enum Outline {
-    /// A convex polygon, of a triangle.
+    /// A convex polygon, part of a triangle.
     Polygon(Vec<DVec3>),
-    /// Somewhere in a box, from one corner to another: of what is no triangle. Only planes across axes cut it.
+    /// A box, for other primitives. Only axis-aligned planes cut it.
     Box([DVec3; 2]),
 }
 
 impl Piece {
-    /// All of a primitive.
+    /// A whole primitive.
     pub fn whole(input: &Input, primitive: u32) -> Self {
         let outline = match triangle(input, primitive) {
             Some(corners) => Outline::Polygon(corners.to_vec()),
@@ -38,7 +38,7 @@ impl Piece {
         Self { primitive, outline }
     }
 
-    /// Its least and greatest height over a plane.
+    /// The least and greatest height over a plane.
     pub fn range(&self, plane: &Plane) -> [f64; 2] {
         match &self.outline {
             Outline::Polygon(corners) => plane.range(corners),
@@ -46,7 +46,7 @@ impl Piece {
         }
     }
 
-    /// The box around it.
+    /// The bounding box.
     pub fn extremes(&self) -> [DVec3; 2] {
         match &self.outline {
             Outline::Polygon(corners) => {
@@ -57,8 +57,8 @@ impl Piece {
         }
     }
 
-    /// What is behind a plane, and what in front of it; all of it on side `within` if it lies in the plane, for rays
-    /// are on both sides of what they are so near to.
+    /// Split into the parts behind and in front of a plane. A piece in the plane goes to side `within`; that is correct
+    /// because rays so near to the plane visit both sides.
     pub fn parted(self, plane: &Plane, within: usize) -> [Option<Self>; 2] {
         match Plane::side(self.range(plane), TOLERANCE) {
             Side::Back => [Some(self), None],
@@ -83,7 +83,7 @@ impl Piece {
     }
 }
 
-/// The corners of a triangle in box units; none of what is no triangle.
+/// The corners of a triangle in box units; None for other primitives.
 pub fn triangle(input: &Input, primitive: u32) -> Option<[DVec3; 3]> {
     let corners = input.primitives.corners(primitive);
     corners.iter().all(|c| c.is_finite()).then(|| corners.map(|c| input.region.to_box(c)))

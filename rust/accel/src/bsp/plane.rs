@@ -1,29 +1,29 @@
-//! Planes that lie as they like.
+//! Planes of arbitrary orientation.
 
 use raywright_base::math::DVec3;
 
 /// The points `p` with `normal · p = offset`, in box units.
 ///
-/// The coordinates of the normal add up to 1 in magnitude, so that what moves no coordinate of a point by more than e
-/// moves its height by no more than e.
+/// The absolute coordinates of the normal sum to 1. So moving each coordinate of a point by at most e changes its
+/// height by at most e.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plane {
     pub normal: DVec3,
     pub offset: f64,
 }
 
-/// Where something lies of which a plane comes near.
+/// The position of an object relative to a plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
     Back,
     Front,
-    /// In the plane, as far as that can be told: on either side.
+    /// In the plane to within the tolerance: it may go to either side.
     Within,
     Both,
 }
 
 impl Plane {
-    /// Through a point; none if the normal is too short to be one.
+    /// The plane through a point; None if the normal is too short.
     pub fn through(point: DVec3, normal: DVec3) -> Option<Self> {
         let size = normal.abs().element_sum();
         (size > 1e-30).then(|| {
@@ -32,35 +32,35 @@ impl Plane {
         })
     }
 
-    /// Across an axis.
+    /// An axis-aligned plane.
     pub fn across(axis: usize, at: f64) -> Self {
         Self { normal: DVec3::AXES[axis], offset: at }
     }
 
-    /// How far in front a point lies, in lengths of the normal.
+    /// The signed height of a point, in lengths of the normal.
     #[inline(always)]
     pub fn height(&self, point: DVec3) -> f64 {
         self.normal.dot(point) - self.offset
     }
 
-    /// The least and the greatest height of some points.
+    /// The least and the greatest height of points.
     pub fn range(&self, points: &[DVec3]) -> [f64; 2] {
         let heights = points.iter().map(|&p| self.height(p));
         heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, greatest], h| [least.min(h), greatest.max(h)])
     }
 
-    /// The same of a box, from one corner to another.
+    /// The same for a box.
     pub fn range_of_box(&self, [min, max]: [DVec3; 2]) -> [f64; 2] {
         let (middle, reach) = (self.height(0.5 * (min + max)), self.normal.abs().dot(0.5 * (max - min)));
         [middle - reach, middle + reach]
     }
 
-    /// The axis that it is across, if it is across one.
+    /// The axis of an axis-aligned plane.
     pub fn axis(&self) -> Option<usize> {
         (0..3).find(|&axis| self.normal == DVec3::AXES[axis])
     }
 
-    /// Where something of such heights lies; on a side if it does not reach over to the other by more than `tolerance`.
+    /// Classify an object by its range of heights; crossing the plane by at most `tolerance` is ignored.
     pub fn side([least, greatest]: [f64; 2], tolerance: f64) -> Side {
         match (greatest <= tolerance, least >= -tolerance) {
             (true, true) => Side::Within,
@@ -70,7 +70,7 @@ impl Plane {
         }
     }
 
-    /// What of a convex outline lies behind and what in front, and the points where it was cut (Sutherland and Hodgman,
+    /// Split a convex outline into the parts behind and in front, and append the cut points (Sutherland and Hodgman,
     /// "Reentrant Polygon Clipping", 1974).
     pub fn cut(&self, outline: &[DVec3], cuts: &mut Vec<DVec3>) -> [Vec<DVec3>; 2] {
         let [mut back, mut front] = [Vec::with_capacity(outline.len() + 1), Vec::with_capacity(outline.len() + 1)];

@@ -1,4 +1,4 @@
-//! All that there is of a scene as arrays: nodes, what stands in their leaves, and what is put elsewhere as a whole.
+//! A scene as flat arrays for kernels: nodes, leaf primitives and instances.
 
 use super::nodes::{FlatNode, flatten};
 use crate::bvh::Options;
@@ -11,41 +11,42 @@ use raywright_base::parallel;
 use raywright_shapes::Bounds;
 use std::collections::HashMap;
 
-/// What stands in a leaf: a triangle by a corner and the two edges from there, in box units. Differences are taken in
-/// f64 and rounded once: edges of small triangles lose nothing to their distance from the middle. Of the three corners
-/// it is that from which the shortest edge goes, as it is wound: of a sliver, only one of two edges is long then, and
-/// products of both are as small as the triangle.
+/// A leaf primitive: a triangle as a corner and two edges, in box units.
+///
+/// Edges are computed in f64 and rounded once, so edges of small triangles lose no digits to their distance from the
+/// center. The corner is the one that starts the shortest edge in winding order. So for a sliver only one of the two
+/// edges is long, and their products are as small as the triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct FlatTriangle {
-    /// A corner; of what is no triangle, the least corner of its box.
+    /// A corner; for other primitives the box's min corner.
     pub corner: [f32; 3],
-    /// Its number among all primitives.
+    /// The index among all primitives.
     pub primitive: u32,
-    /// From there to the next corner; of what is no triangle, the greatest corner of its box.
+    /// The edge to the next corner; for other primitives the box's max corner.
     pub edge: [f32; 3],
-    /// The largest coordinate of an edge in magnitude; −1 for what is no triangle.
+    /// The largest absolute coordinate of an edge; −1 for other primitives.
     pub largest: f32,
-    /// From there to the one before.
+    /// The edge to the previous corner.
     pub other: [f32; 3],
-    /// Of an instance that is told, one more than its place among instances; otherwise 0.
+    /// One plus the index of an included instance; otherwise 0.
     pub instance: u32,
 }
 
 const _: () = assert!(size_of::<FlatTriangle>() == 48);
 
-/// A prototype that is put somewhere: where its tree stands in the same arrays, and how a ray comes there.
+/// An instance: the position of the prototype's tree in the same arrays, and the transform of rays.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct FlatInstance {
-    /// From the box units of what it stands in to those of the prototype: three numbers of the linear part a row, and
-    /// one of the shift.
+    /// The map from the parent's box units to those of the prototype: in each row, three linear coefficients and a
+    /// translation.
     pub rows: [[f32; 4]; 3],
     /// The root of the prototype's tree.
     pub node: u32,
-    /// The node after the last of it.
+    /// One past the last node of that tree.
     pub end: u32,
-    /// The instance's number among all primitives of what it stands in.
+    /// The instance's index among all primitives of its parent.
     pub primitive: u32,
     /// 0.
     pub reserved: u32,
@@ -53,28 +54,28 @@ pub struct FlatInstance {
 
 const _: () = assert!(size_of::<FlatInstance>() == 64);
 
-/// A scene as arrays.
+/// A scene as flat arrays.
 #[derive(Clone, Debug)]
 pub struct Flat {
-    /// The tree, and then those of prototypes, if they are wanted. No nodes, no primitives.
+    /// The scene's tree, then those of prototypes if included. Empty without primitives.
     pub nodes: Vec<FlatNode>,
-    /// What stands in leaves, leaf after leaf. A primitive may stand in several.
+    /// Leaf primitives, leaf by leaf. A primitive may be in several leaves.
     pub triangles: Vec<FlatTriangle>,
-    /// Instances that stand still, if they are wanted.
+    /// Static instances, if included.
     pub instances: Vec<FlatInstance>,
-    /// How many of the nodes and of the triangles are the scene's own.
+    /// The numbers of nodes and triangles of the scene's own tree.
     pub own: [usize; 2],
-    /// The longest way from the root to a leaf.
+    /// The depth of the tree.
     pub depth: usize,
-    /// Whose units boxes, corners and edges of its own are in.
+    /// The region that defines the units of the scene's own boxes, corners and edges.
     pub region: Region,
-    /// What has no end, and stands in no leaf.
+    /// Unbounded primitives, which are in no leaf.
     pub unbounded: Vec<u32>,
-    /// Where the triangles among the primitives lie: what their errors are measured against.
+    /// The region of the triangles, which determines their error bounds.
     pub of_triangles: Region,
 }
 
-/// What is tested at once.
+/// Primitives per SIMD test.
 const BLOCK: usize = 1;
 
 /// A tree that has been laid out.
@@ -85,18 +86,18 @@ struct Laid {
     region: Region,
 }
 
-/// What is laid out so far.
+/// The arrays so far.
 #[derive(Default)]
 struct Layout {
     nodes: Vec<FlatNode>,
     triangles: Vec<FlatTriangle>,
     instances: Vec<FlatInstance>,
-    /// Prototypes that are there already.
+    /// Prototypes already included.
     known: HashMap<usize, Laid>,
 }
 
 impl Flat {
-    /// Builds a tree as the options say, and lays all out flat; prototypes too, if they are `wanted`.
+    /// Build a tree and flatten the scene, with prototypes if `wanted`.
     pub fn new(primitives: &dyn Primitives, options: &Options, wanted: bool) -> Self {
         let mut layout = Layout::default();
         let (input, unbounded) = Input::new(primitives);
@@ -119,7 +120,7 @@ impl Flat {
 }
 
 impl Layout {
-    /// Builds a tree and lays it out behind what there is; returns its depth.
+    /// Build a tree and append it; return its depth.
     fn tree(&mut self, input: &Input, options: &Options) -> usize {
         let (mut bvh, _) = gathered(input, options, BLOCK);
         larger_first(&mut bvh);
@@ -139,7 +140,7 @@ impl Layout {
         bvh.depth()
     }
 
-    /// Lays out what is put elsewhere among the triangles from one on, and what is in that.
+    /// Add the instances among the triangles starting at `from`, and their prototypes.
     fn instances_from(&mut self, from: usize, primitives: &dyn Primitives, region: &Region, options: &Options) {
         let Some(objects) = primitives.objects() else { return };
         for i in from..self.triangles.len() {
@@ -156,7 +157,7 @@ impl Layout {
         }
     }
 
-    /// Lays a prototype out, if it is not there.
+    /// Add a prototype unless it is included.
     fn prototype(&mut self, inside: &Placed<'_>, options: &Options) -> Laid {
         if let Some(laid) = self.known.get(&inside.id) {
             return *laid;
@@ -166,14 +167,14 @@ impl Layout {
         self.tree(&input, options);
         let laid = Laid { node, end: self.nodes.len() as u32, region: input.region };
         self.known.insert(inside.id, laid);
-        // Behind its tree, whose triangles end here.
+        // Nested instances follow the tree, whose triangles end here.
         let region = input.region;
         self.instances_from(from, inside.primitives, &region, options);
         laid
     }
 }
 
-/// The map from one region's box units to those of a prototype's.
+/// The map from one region's box units to a prototype's.
 fn between(inside: &Placed<'_>, from: &Region, to: &Region) -> [[f32; 4]; 3] {
     std::array::from_fn(|i| {
         let row = inside.rows[i];
@@ -183,7 +184,7 @@ fn between(inside: &Placed<'_>, from: &Region, to: &Region) -> [[f32; 4]; 3] {
     })
 }
 
-/// A primitive as it stands in a leaf.
+/// A primitive in a leaf.
 fn flat_triangle(input: &Input, primitive: u32) -> FlatTriangle {
     if !input.primitives.is_finite(primitive) {
         let aabb = &input.boxes[primitive as usize];
@@ -194,7 +195,7 @@ fn flat_triangle(input: &Input, primitive: u32) -> FlatTriangle {
     let local = corners.map(|corner| input.region.to_box(corner));
     let edges = [0, 1, 2].map(|i| {
         let next = (i + 1) % 3;
-        // A difference of huge numbers may overflow before it is scaled; in box units it does not.
+        // A difference of huge numbers may overflow before scaling; in box units it does not.
         let exact: DVec3 = (corners[next] - corners[i]) * input.region.scale;
         if exact.is_finite() { exact } else { local[next] - local[i] }
     });

@@ -1,5 +1,5 @@
-//! Binary trees as arrays without pointers, as graphics processors take them, and what the CPU does for these: it makes
-//! rays ready in f64, and decides among the candidates that come back.
+//! Binary trees as pointerless arrays for GPUs, with the CPU side of the traversal: rays are prepared in f64, and
+//! returned candidates are decided exactly.
 
 mod arrays;
 mod nodes;

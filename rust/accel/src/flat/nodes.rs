@@ -1,8 +1,8 @@
-//! Nodes of 32 bytes in the order in which a walk that goes first to the first child comes to them.
+//! Nodes of 32 bytes in depth-first order.
 //!
-//! So a node needs one number alone. After an inner node comes its first child, and it says which node comes after all
-//! that is below it: that is where a walk goes on that has missed its box (Smits, "Efficiency Issues for Ray Tracing",
-//! 1998), and, as a first child, where its sibling stands. The same array serves walks with a stack and without one.
+//! A node needs only one link. An inner node is followed by its first child, and links to the node after its subtree.
+//! Traversal continues there after a miss (Smits, "Efficiency Issues for Ray Tracing", 1998), and the link of a first
+//! child is its sibling. The same array serves traversals with and without a stack.
 
 use crate::bvh::Node;
 use raywright_base::math::{Aabb, Vec3};
@@ -11,20 +11,20 @@ use raywright_base::math::{Aabb, Vec3};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct FlatNode {
-    /// The least corner of the box, in box units.
+    /// The min corner of the box, in box units.
     pub min: [f32; 3],
-    /// Of an inner node, the node that comes after all below it; of a leaf, where what stands in it begins.
+    /// The node after the subtree of an inner node; the first primitive of a leaf.
     pub index: u32,
-    /// The greatest corner.
+    /// The max corner.
     pub max: [f32; 3],
-    /// How many primitives a leaf has; 0 for an inner node.
+    /// The number of primitives of a leaf; 0 for an inner node.
     pub count: u32,
 }
 
 const _: () = assert!(size_of::<FlatNode>() == 32);
 
 impl FlatNode {
-    /// Whether it is a leaf.
+    /// Return whether it is a leaf.
     #[inline(always)]
     pub fn is_leaf(&self) -> bool {
         self.count > 0
@@ -36,17 +36,17 @@ impl FlatNode {
         Aabb { min: Vec3::from_array(self.min), max: Vec3::from_array(self.max) }
     }
 
-    /// The node after all that is below it, given its own number.
+    /// The node after the subtree, given the node's own index.
     #[inline(always)]
     pub fn after(&self, own: usize) -> usize {
         if self.is_leaf() { own + 1 } else { self.index as usize }
     }
 }
 
-/// The nodes of a tree one after the other; leaves keep their `index`.
+/// Arrange the nodes of a tree in depth-first order; leaves keep their `index`.
 pub fn flatten(nodes: &[Node]) -> Vec<FlatNode> {
     let mut flat: Vec<FlatNode> = Vec::with_capacity(nodes.len());
-    // Which node comes next; or that all below one has come.
+    // The next node to enter, or a finished subtree.
     enum Step {
         Enter(usize),
         Leave(usize),
@@ -70,7 +70,7 @@ pub fn flatten(nodes: &[Node]) -> Vec<FlatNode> {
     flat
 }
 
-/// The tree again, with children side by side; leaves keep their `index`.
+/// Restore the tree with adjacent siblings; leaves keep their `index`.
 pub fn unflatten(flat: &[FlatNode]) -> Vec<Node> {
     let mut nodes = Vec::with_capacity(flat.len());
     nodes.extend(flat.first().map(|root| Node::leaf(root.aabb(), 0, 1)));
@@ -100,7 +100,7 @@ mod tests {
 
     #[test]
     fn trees_are_flattened_and_back() {
-        // ((a b) (c (d e))), children side by side in another order than depth first.
+        // ((a b) (c (d e))), with adjacent siblings, so not in depth-first order.
         let tree = [
             Node::inner(of(0.0), 1),
             Node::inner(of(1.0), 3),

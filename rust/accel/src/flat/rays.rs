@@ -1,52 +1,53 @@
-//! Rays in box units and f32, as kernels over flat arrays take them.
+//! Rays in box units and f32 for kernels over flat arrays.
 
 use raywright_base::math::robust::{greater, lesser};
 use raywright_base::math::{Ray, Region};
 use raywright_shapes::triangle::EdgeRay;
 
-/// A ray: where it starts, its `t_min`, where it goes, its `t_max`.
+/// A ray: origin, `t_min`, direction, `t_max`.
 ///
-/// `t` counts in box units along the direction, which is scaled so that its largest coordinate lies in [1, 2). A ray
-/// that hits nothing for certain has a `t_max` below its `t_min`; one that f32 is not fit for has no direction at all.
+/// `t` is in box units along the direction, which is scaled so that its largest coordinate lies in [1, 2). A ray that
+/// certainly misses has a `t_max` below its `t_min`. A ray unsuitable for f32 has a zero direction.
 pub type FlatRay = [f32; 8];
 
-/// Hits nothing.
+/// A certain miss.
 const PASSED: FlatRay = [0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, -1.0];
 
-/// Is for the CPU.
+/// A ray for the CPU.
 const OPEN: FlatRay = [0.0; 8];
 
-/// From so many radii on a ray is moved up to where it is nearest to the middle, in f64: errors grow with the distance.
+/// Radii beyond which a ray's origin is moved in f64 to its closest point to the center, since errors grow with the
+/// distance.
 const FAR: f64 = 2.0;
 
-/// More than a move may err by, over the distance: it is rounded as the middle is taken off, and as a part of the
-/// direction is added, by 2⁻⁵³ of the distance each.
+/// Bound on the error of a move relative to the distance. Subtracting the center and adding a multiple of the direction
+/// round by 2⁻⁵³ of the distance each.
 const FAR_ERROR: f64 = 1.0 / (1u64 << 51) as f64;
 
-/// Beyond it, in box units, a move errs by more than 2⁻²⁵, and kernels know of no more.
+/// Beyond this, in box units, a move errs by more than 2⁻²⁵, the most that kernels allow for.
 const FARTHEST: f64 = (1u64 << 26) as f64;
 
-/// In place of what is greater.
+/// Replaces larger numbers.
 const FOREVER: f64 = (1u128 << 100) as f64;
 
 /// Four times the error of rounding to f32.
 const ULPS: f32 = 1.0 / (1u32 << 22) as f32;
 
-/// To f32, and a little farther for certain.
+/// Round to f32, strictly outward.
 fn widened(t: f64, by: f32) -> f32 {
     let t = greater(lesser(t, FOREVER), -FOREVER) as f32;
     t + t.abs() * by
 }
 
-/// Makes a ray ready for flat arrays of a region.
+/// Prepare a ray for the flat arrays of a region.
 ///
 /// The origin errs by less than 2⁻²⁴ of its own coordinates and 2⁻²⁵, the direction by 2⁻²⁴ of its coordinates and
-/// 2⁻¹⁴⁹; `t_min` is rounded down, and `t_max` up, by 2⁻²¹ of themselves at most.
+/// 2⁻¹⁴⁹. `t_min` is rounded down, and `t_max` up, by 2⁻²¹ of themselves at most.
 #[inline]
 pub fn flat_ray(ray: &Ray, region: &Region) -> FlatRay {
     let Some(edges) = EdgeRay::new(ray, region) else { return PASSED };
     let largest = edges.largest * region.scale;
-    // Nor is it where a t along a short direction may be more than an f64 holds.
+    // Also unsuitable if t along a short direction may overflow an f64.
     let told = edges.largest * edges.scale * 8.0;
     if largest.is_nan() || largest > FARTHEST || !told.is_finite() {
         return OPEN;
@@ -57,7 +58,7 @@ pub fn flat_ray(ray: &Ray, region: &Region) -> FlatRay {
     if origin.abs().max_element() > FAR * radius {
         start = -origin.dot(direction) / direction.dot(direction);
         origin += start * direction;
-        // What is within the box around the scene is within √3 radii.
+        // Points inside the scene's box are within √3 radii.
         if origin.abs().max_element() > 2.0 * radius + FAR_ERROR * largest {
             return PASSED;
         }
@@ -86,7 +87,7 @@ mod tests {
             let (o, d) = (DVec3::new(x, y, z), DVec3::new(dx, dy, dz));
             assert!(o.abs().max_element() <= 2.0 * FAR * radius * scale);
             assert!((1.0..2.0).contains(&d.abs().max_element()));
-            // The point is on it, between both ends.
+            // The target point is on the ray, between both ends.
             let aim = region.to_box(aim);
             let t = (aim - o).dot(d) / d.dot(d);
             assert!((o + t * d - aim).length() < 1e-6, "{}", (o + t * d - aim).length());

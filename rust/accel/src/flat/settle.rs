@@ -1,8 +1,7 @@
-//! Decides which of a ray's candidates it hits first, exactly as every accelerator does.
+//! Decides exactly which of a ray's candidates is the first hit, as every accelerator does.
 //!
-//! What a kernel in f32 says of a ray is a superset of what it may hit first, or that there are more such than it can
-//! tell. Each is asked as in any leaf; where there is one that is met for certain, its `t` is all that is wanted, and
-//! sixteen rays are computed at a time.
+//! The result of an f32 kernel for a ray is a superset of its possible first hits, or an overflow mark. Each candidate
+//! is tested as in any leaf. For a candidate that is certain, only its `t` is computed, for sixteen rays at a time.
 
 use super::arrays::Flat;
 use crate::query::{Closest, Query};
@@ -13,59 +12,59 @@ use raywright_shapes::Candidate;
 use raywright_shapes::triangle::{Column, EdgeRay, EdgeRays, Met, RAYS};
 use std::sync::Arc;
 
-/// How many candidates a ray may have.
+/// Maximum number of candidates per ray.
 pub const CANDIDATES: usize = 4;
 
-/// In place of a candidate.
+/// Marks an unused candidate slot.
 pub const NO_CANDIDATE: u32 = u32::MAX;
 
-/// In place of the first: there are more than can be told.
+/// In the first slot: too many candidates.
 pub const OVERFLOW: u32 = u32::MAX - 1;
 
-/// In place of the second: the first is a triangle that is hit for certain, and first. Where any hit will do, in place
-/// of the only one: something is hit for certain.
+/// In the second slot: the first candidate is a triangle and certainly the first hit. In occlusion results: something
+/// is certainly hit.
 pub const CERTAIN: u32 = u32::MAX - 2;
 
-/// What decides.
+/// The data for exact decisions.
 pub struct Settler<'a> {
     primitives: &'a dyn Primitives,
     objects: Option<Arc<dyn UserGeometry>>,
-    /// Where triangles lie.
+    /// The region of the triangles.
     region: &'a Region,
-    /// What every ray may hit besides its candidates.
+    /// Unbounded primitives, which every ray may hit besides its candidates.
     unbounded: &'a [u32],
     level: Level,
-    /// Whom to ask where candidates are too many.
+    /// The fallback for rays with too many candidates.
     accelerator: &'a dyn Accelerator,
 }
 
-/// How many rays had to be decided among candidates, and of how many the accelerator was asked.
+/// Statistics: rays decided among candidates, and rays traced by the accelerator.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Settled {
-    /// Decided among candidates.
+    /// Rays decided among candidates.
     pub decided: usize,
-    /// Walked through the accelerator.
+    /// Rays traced by the accelerator.
     pub walked: usize,
 }
 
-/// Up to sixteen rays that are known to hit a triangle each.
+/// Up to sixteen rays, each known to hit a triangle.
 struct Sixteen {
     places: [usize; RAYS],
     triangles: [u32; RAYS],
     edges: EdgeRays,
-    /// Of the triangles, by corner and axis.
+    /// The triangles' corners, by corner and axis.
     corners: [[Column<f64>; 3]; 3],
     len: usize,
 }
 
 impl<'a> Settler<'a> {
-    /// Of primitives that are laid out flat, and whose hits an accelerator finds.
+    /// Decide for primitives in flat arrays, with an accelerator over the same primitives.
     pub fn new(primitives: &'a dyn Primitives, flat: &'a Flat, accelerator: &'a dyn Accelerator, level: Level) -> Self {
         let (region, unbounded) = (&flat.of_triangles, flat.unbounded.as_slice());
         Self { primitives, objects: primitives.objects(), region, unbounded, level, accelerator }
     }
 
-    /// The closest hit of each ray, of which these are candidates.
+    /// Find the closest hit of each ray among its candidates.
     pub fn closest(&self, rays: &[Ray], candidates: &[[u32; CANDIDATES]], hits: &mut [Hit]) -> Settled {
         assert!(rays.len() == candidates.len() && rays.len() == hits.len(), "candidates and a hit for each ray");
         let mut settled = Settled::default();
@@ -102,7 +101,7 @@ impl<'a> Settler<'a> {
         settled
     }
 
-    /// Whether each ray hits anything, of which this is told: what it may hit, if that is one primitive alone.
+    /// Test whether each ray hits anything, given the kernel's result: a mark, or the only candidate.
     pub fn occluded(&self, rays: &[Ray], told: &[u32], occluded: &mut [bool]) -> Settled {
         assert!(rays.len() == told.len() && rays.len() == occluded.len(), "what is told and an answer for each ray");
         let mut settled = Settled::default();
@@ -117,7 +116,7 @@ impl<'a> Settler<'a> {
                 }
                 _ => false,
             };
-            // What has no end may be hit where nothing else is.
+            // Unbounded primitives may be hit where nothing else is.
             if told == OVERFLOW || (!occluded[i] && !self.unbounded.is_empty()) {
                 walked.push(*ray);
                 places.push(i);
@@ -134,7 +133,7 @@ impl<'a> Settler<'a> {
         settled
     }
 
-    /// Whether a ray meets a primitive.
+    /// Return whether a ray hits a primitive.
     fn meets(&self, ray: &Ray, primitive: u32) -> bool {
         let Some(edges) = EdgeRay::new(ray, self.region) else { return false };
         let corners = self.primitives.corners(primitive);
@@ -172,7 +171,7 @@ impl<'a> Settler<'a> {
         hit[0]
     }
 
-    /// Computes the hits of those that there are, and is empty then.
+    /// Compute the hits of the collected rays, and empty the collection.
     fn settle(&self, sixteen: &mut Sixteen, rays: &[Ray], hits: &mut [Hit]) {
         let count = std::mem::take(&mut sixteen.len);
         if count == 0 {
@@ -193,7 +192,7 @@ impl<'a> Settler<'a> {
 }
 
 loops! {
-    /// Where sixteen rays meet triangles that they are known to meet.
+    /// The intersections of sixteen rays with triangles they are known to hit.
     fn won(edges: &mut EdgeRays, corners: &[[Column<f64>; 3]; 3], region: &Region, here: u32, all: &mut Met) {
         let plain = edges.prepare(region) & here;
         *all = edges.won(false, corners, plain);

@@ -1,5 +1,5 @@
-//! Walks through flat nodes: without a stack, in the order in which they lie, with one number for all state; or with a
-//! stack, the nearer child first.
+//! Traversals of flat nodes: stackless in depth-first order, with an index as its only state; or with a stack, nearer
+//! child first.
 
 use super::nodes::{FlatNode, flatten, unflatten};
 use crate::bvh::Options;
@@ -7,7 +7,7 @@ use crate::bvh::traverse::{Numbered, gathered, larger_first};
 use crate::walk::{Built, Input, Structure, Walker};
 use crate::{Info, NodeBox, SlabRay};
 
-/// How rays go through.
+/// Traversal algorithms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Way {
     /// With a stack.
@@ -18,13 +18,13 @@ pub enum Way {
 
 struct FlatTree {
     nodes: Vec<FlatNode>,
-    /// What else is known of it; without its nodes.
+    /// The other data of the tree, without its nodes.
     outline: Numbered,
     way: Way,
     kind: String,
 }
 
-/// Builds a tree as the options say and lays it out flat.
+/// Build a tree with the given options and flatten it.
 pub fn build(input: &Input, options: &Options, way: Way) -> Built {
     let (mut bvh, name) = gathered(input, options, BLOCK);
     larger_first(&mut bvh);
@@ -36,7 +36,7 @@ pub fn build(input: &Input, options: &Options, way: Way) -> Built {
     (Box::new(FlatTree::of(numbered, way, format!("BVH, {name}, {kind}"))), lists)
 }
 
-/// Triangles that leaves are made for, which are tested at once at any level.
+/// Triangles per SIMD test that leaves are optimized for, available at any level.
 const BLOCK: usize = 4;
 
 impl FlatTree {
@@ -45,7 +45,7 @@ impl FlatTree {
         Self { nodes, outline, way, kind }
     }
 
-    /// The tree with its children side by side.
+    /// The tree with adjacent siblings.
     fn numbered(&self) -> Numbered {
         let mut numbered = self.outline.clone();
         numbered.nodes = unflatten(&self.nodes);
@@ -70,7 +70,7 @@ impl Structure for FlatTree {
     }
 
     fn any_walker(&self) -> Box<dyn Walker + '_> {
-        // Any hit will do: larger boxes come first, as they lie, and nothing need be sorted.
+        // For occlusion, larger boxes come first in the given order, without sorting.
         self.along(false, Way::Stackless)
     }
 
@@ -139,7 +139,7 @@ impl<const COUNTED: bool> Walker for Stackless<'_, COUNTED> {
 struct Stacked<'a, const COUNTED: bool> {
     nodes: &'a [FlatNode],
     ray: SlabRay,
-    /// Nodes that are met, and from where on.
+    /// Nodes to visit, and the `t` at which the ray enters them.
     stack: Vec<(u32, f32)>,
     visited: u32,
 }

@@ -1,10 +1,8 @@
-//! Puts primitives into the cells that they touch: each cell's number is counted, the counts are added up, and
-//! everything goes to its place, a counting sort (Lagae and Dutré, "Compact, Fast and Robust Grids for Ray Tracing",
-//! 2008).
+//! Fills grid cells with the primitives they overlap by a counting sort: count per cell, prefix sums, then placement
+//! (Lagae and Dutré, "Compact, Fast and Robust Grids for Ray Tracing", 2008).
 //!
-//! What is large stands in many cells. Lest a few large things in fine cells take all memory, a grid that would need
-//! more than it may is made coarser until it does not; each time a third of the cells is left, so all tries together
-//! take little more than the first.
+//! Large primitives overlap many cells. To bound memory, a grid over budget is made coarser until it fits. Each step
+//! leaves a third of the cells, so all attempts together take little more than the first.
 
 use super::lattice::Lattice;
 use super::overlap::Overlap;
@@ -15,30 +13,30 @@ use raywright_base::parallel;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
-/// How much a grid may take.
+/// Limits on the cost of a grid.
 #[derive(Clone, Copy, Debug)]
 pub struct Budget {
-    /// Cells that primitives' boxes touch, in all: the time that it takes to look at them.
+    /// The total number of cells that primitives' boxes overlap: a bound on the time.
     pub looked_at: u64,
-    /// Cells that primitives stand in, in all: the memory.
+    /// The total number of references in cells: a bound on the memory.
     pub references: u64,
 }
 
-/// Cells with what stands in them.
+/// A filled grid.
 #[derive(Debug)]
 pub struct Filled {
     pub lattice: Lattice,
-    /// By cell, how many stand in it.
+    /// The number of references in each cell.
     pub counts: Vec<u32>,
-    /// The numbers of primitives, cell by cell, each cell's in order.
+    /// The primitives' numbers, cell by cell, sorted within each.
     pub order: Vec<u32>,
 }
 
 impl Filled {
-    /// Puts primitives into a grid around `bounds` of so many cells, or of fewer if that takes more than it may.
+    /// Fill a grid around `bounds` with the given number of cells, or fewer if it exceeds the budget.
     pub fn new(input: &Input, primitives: &[u32], bounds: &Aabb, mut cells: [u32; 3], budget: Budget) -> Self {
         loop {
-            // Whoever has stopped it takes anything.
+            // A canceled build may return any grid.
             cells = if input.work.is_stopped() { [1; 3] } else { cells };
             let touching = Touching { input, lattice: Lattice::around(bounds, cells) };
             let is_last = cells == [1; 3];
@@ -64,7 +62,7 @@ impl Filled {
         }
     }
 
-    /// What stands in the cells that are not empty, cell by cell, with their numbers.
+    /// The nonempty cells with their indices and primitives.
     pub fn lists(&self) -> impl Iterator<Item = (usize, &[u32])> {
         let mut rest = self.order.as_slice();
         self.counts.iter().enumerate().filter(|&(_, &count)| count > 0).map(move |(cell, &count)| {
@@ -75,32 +73,32 @@ impl Filled {
     }
 }
 
-/// Primitives that a thread takes at a time, and lists of them.
+/// Primitives, or lists of them, per parallel task.
 const TOGETHER: usize = 512;
 
-/// Calls `work` with each primitive, in any order.
+/// Call `work` with each primitive, in any order.
 fn each(primitives: &[u32], work: impl Fn(u32) + Sync) {
     parallel::map_chunks(primitives.len(), TOGETHER, |some| primitives[some].iter().for_each(|&p| work(p)));
 }
 
-/// Which cells of a lattice primitives touch.
+/// Tests which cells of a lattice primitives overlap.
 struct Touching<'a> {
     input: &'a Input<'a>,
     lattice: Lattice,
 }
 
 impl Touching<'_> {
-    /// How many cells touch a primitive's box.
+    /// The number of cells that a primitive's box overlaps.
     fn in_box(&self, primitive: u32) -> u64 {
         let range = self.lattice.range(&self.input.boxes[primitive as usize]);
         range.map_or(0, |(from, to)| (0..3).map(|a| u64::from(to[a] - from[a]) + 1).product())
     }
 
-    /// Calls `touched` with every cell that touches a primitive.
+    /// Call `touched` with every cell that a primitive overlaps.
     fn each(&self, primitive: u32, mut touched: impl FnMut(usize)) {
         let Some((from, to)) = self.lattice.range(&self.input.boxes[primitive as usize]) else { return };
         let axes = (0..3).filter(|&axis| from[axis] < to[axis]).count();
-        // Along one axis alone, a triangle that reaches from end to end touches all there are between.
+        // A triangle that spans a single row of cells overlaps all of them.
         let overlap = (axes > 1).then(|| self.overlap(primitive)).flatten();
         for z in from[2]..=to[2] {
             for y in from[1]..=to[1] {
@@ -114,14 +112,14 @@ impl Touching<'_> {
         }
     }
 
-    /// What parts a triangle from cells; none of what is no triangle.
+    /// The separating axis test of a triangle; None for other primitives.
     fn overlap(&self, primitive: u32) -> Option<Overlap> {
         let Input { region, primitives, .. } = self.input;
         let corners = primitives.corners(primitive);
         corners.iter().all(|c| c.is_finite()).then(|| Overlap::new(corners.map(|c| region.to_box(c)), &self.lattice))
     }
 
-    /// Everything in its place, `counts` being known.
+    /// Place all references, given `counts`.
     fn sorted(self, primitives: &[u32], counts: Vec<u32>, references: usize) -> Filled {
         let mut end = 0;
         let places: Vec<AtomicU32> = counts
@@ -136,7 +134,7 @@ impl Touching<'_> {
             self.each(p, |cell| order[places[cell].fetch_add(1, Relaxed) as usize].store(p, Relaxed));
         });
         let mut order: Vec<u32> = order.into_iter().map(AtomicU32::into_inner).collect();
-        // Threads come in any order; the grid is the same.
+        // Threads place references in any order; sorting makes the grid deterministic.
         let (mut rest, mut lists) = (order.as_mut_slice(), Vec::new());
         for &count in counts.iter().filter(|&&count| count > 0) {
             let (own, others) = rest.split_at_mut(count as usize);
@@ -152,7 +150,7 @@ impl Touching<'_> {
     }
 }
 
-/// By cell, the primitives that touch it, as they come: what grids are checked against.
+/// The primitives that overlap each cell, in order: the reference for checks.
 pub fn expected(input: &Input, lattice: &Lattice, primitives: &[u32]) -> Vec<Vec<u32>> {
     let mut lists = vec![Vec::new(); lattice.count()];
     let touching = Touching { input, lattice: *lattice };

@@ -1,34 +1,34 @@
-//! Rays with a large pad, from so far away that an f32 hardly tells one cell from the next: what they may meet is found
-//! by halving the grid as long as [`SlabRay::passes`] cannot rule a part out, the nearer half first. That needs no
-//! bound but the one of the box test.
+//! Grid traversal for rays with a large pad, whose origin is so distant that f32 hardly separates adjacent cells. The
+//! grid is bisected, nearer half first, as long as [`SlabRay::passes`] cannot exclude a part. This relies only on the
+//! bound of the box test.
 //!
-//! Slices are parted first, then rows, then cells, so that the numbers of a part's cells are an interval, and whether
-//! there is anything in them is known at once.
+//! Bisection splits slices first, then rows, then cells. So the cells of a part are a contiguous interval, and testing
+//! whether it is empty takes constant time.
 
 use super::lattice::{Lattice, Occupied};
 use crate::SlabRay;
 use std::ops::Range;
 
-/// Parts of grids that a ray may pass.
+/// The stack of parts that a ray may hit.
 #[derive(Debug, Default)]
 pub struct Halving {
-    /// Of which grid, and which of its cells.
+    /// The grid and a range of its cells.
     open: Vec<(u32, Range<usize>)>,
 }
 
 impl Halving {
-    /// Nothing is open any more.
+    /// Discard all parts.
     pub fn clear(&mut self) {
         self.open.clear();
     }
 
-    /// All of a grid is open, and comes next.
+    /// Push a whole grid.
     pub fn push(&mut self, grid: u32, lattice: &Lattice) {
         self.open.push((grid, 0..lattice.count()));
     }
 
-    /// The next cell with anything in it that the ray may pass, and the grid it belongs to; `grid` says of each where
-    /// it lies and where its bits begin. Every box that is tested is counted in `nodes`.
+    /// The next nonempty cell that the ray may hit, and its grid. `grid` returns a grid's lattice and its first word of
+    /// bits. Every box test is counted in `nodes`.
     pub fn next<'a>(
         &mut self,
         ray: &SlabRay,

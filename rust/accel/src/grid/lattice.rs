@@ -1,68 +1,68 @@
-//! Where the cells of a grid lie, and which of them have something in them.
+//! The geometry of grid cells, and the bit set of nonempty ones.
 
 use super::PAD;
 use raywright_base::math::{Aabb, DVec3, Vec3};
 
-/// A box cut into cells of one size. Cell (x, y, z) has the number x + nₓ · (y + n_y · z).
+/// A box divided into equal cells. Cell (x, y, z) has the index x + nₓ · (y + n_y · z).
 #[derive(Clone, Copy, Debug)]
 pub struct Lattice {
-    /// Where the first plane of each axis lies, in box units.
+    /// The position of the first plane of each axis, in box units.
     pub low: [f32; 3],
-    /// From plane to plane.
+    /// The distance between planes.
     pub width: [f32; 3],
-    /// Cells along each axis.
+    /// The number of cells along each axis.
     pub cells: [u32; 3],
 }
 
 impl Lattice {
-    /// Cuts what is at least twice [`PAD`] larger on every side than `bounds`.
+    /// Divide a box that is larger than `bounds` by at least twice [`PAD`] on every side.
     pub fn around(bounds: &Aabb, cells: [u32; 3]) -> Self {
-        // A third time for rounding, which is less than a hundredth of it.
+        // The third PAD covers rounding, which is less than a hundredth of it.
         let room = Vec3::splat(3.0 * PAD);
         let (low, high) = ((bounds.min - room).to_array(), (bounds.max + room).to_array());
         let width = |axis: usize| ((high[axis] - low[axis]) / cells[axis] as f32).next_up();
         Self { low, width: [0, 1, 2].map(width), cells }
     }
 
-    /// How many cells there are.
+    /// The number of cells.
     pub fn count(&self) -> usize {
         self.cells.iter().map(|&n| n as usize).product()
     }
 
-    /// From one cell to the next along each axis.
+    /// The index increments along each axis.
     #[inline(always)]
     pub fn strides(&self) -> [usize; 3] {
         let [x, y, _] = self.cells.map(|n| n as usize);
         [1, x, x * y]
     }
 
-    /// The number of a cell.
+    /// The index of a cell.
     #[inline(always)]
     pub fn number(&self, cell: [u32; 3]) -> usize {
         let [x, y, z] = cell.map(|i| i as usize);
         x + self.cells[0] as usize * (y + self.cells[1] as usize * z)
     }
 
-    /// Where it is.
+    /// The cell of an index.
     pub fn cell(&self, number: usize) -> [u32; 3] {
         let [x, y, _] = self.cells.map(|n| n as usize);
         [number % x, number / x % y, number / (x * y)].map(|i| i as u32)
     }
 
-    /// Where a plane lies, to within 2⁻⁵² of itself.
+    /// The position of a plane, to a relative error of 2⁻⁵².
     #[inline(always)]
     fn plane(&self, axis: usize, i: u32) -> f64 {
         f64::from(self.low[axis]) + f64::from(i) * f64::from(self.width[axis])
     }
 
-    /// The middle of a cell.
+    /// The center of a cell.
     #[inline(always)]
     pub fn middle(&self, cell: [u32; 3]) -> DVec3 {
         let [x, y, z] = [0, 1, 2].map(|a| self.plane(a, cell[a]) + 0.5 * f64::from(self.width[a]));
         DVec3::new(x, y, z)
     }
 
-    /// The box of the cells from one to another, widened by [`PAD`], give or take a rounding.
+    /// The box of a range of cells, widened by [`PAD`] to within a rounding.
     #[inline]
     pub fn aabb(&self, from: [u32; 3], to: [u32; 3]) -> Aabb {
         let corner = |cell: [u32; 3], more: u32, pad: f64| {
@@ -71,8 +71,8 @@ impl Lattice {
         Aabb { min: corner(from, 0, -f64::from(PAD)), max: corner(to, 1, f64::from(PAD)) }
     }
 
-    /// The first and the last cell that touch a box when they are widened by [`PAD`]; none if no cell does. What f64
-    /// rounds here is far less than PAD has to spare.
+    /// The first and the last cell that overlap a box when widened by [`PAD`]; None if no cell does. PAD's reserve is
+    /// far larger than the f64 rounding here.
     #[inline]
     pub fn range(&self, aabb: &Aabb) -> Option<([u32; 3], [u32; 3])> {
         let (mut from, mut to) = ([0; 3], [0; 3]);
@@ -80,7 +80,7 @@ impl Lattice {
             let (low, per_cell) = (f64::from(self.low[axis]), 1.0 / f64::from(self.width[axis]));
             let least = (f64::from(aabb.min[axis] - PAD) - low) * per_cell;
             let most = (f64::from(aabb.max[axis] + PAD) - low) * per_cell;
-            // Negative numbers are no cells; others are truncated, where `floor` would be a call.
+            // Nonnegative numbers are truncated, since `floor` would be a function call.
             if most < 0.0 {
                 return None;
             }
@@ -93,21 +93,20 @@ impl Lattice {
         Some((from, to))
     }
 
-    /// Half the surface of a cell.
+    /// Half the surface area of a cell.
     pub fn cell_area(&self) -> f64 {
         let [x, y, z] = self.width.map(f64::from);
         x * (y + z) + y * z
     }
 
-    /// Half the surface of all cells together.
+    /// Half the surface area of the whole grid.
     pub fn area(&self) -> f64 {
         let [x, y, z] = [0, 1, 2].map(|a| f64::from(self.width[a]) * f64::from(self.cells[a]));
         x * (y + z) + y * z
     }
 }
 
-/// Which cells have something in them: a bit each, so that many fit into the nearest caches; and how many of them come
-/// before.
+/// A bit set of nonempty cells with rank queries. One bit per cell fits many cells into the inner caches.
 #[derive(Clone, Debug, Default)]
 pub struct Occupied {
     bits: Vec<u64>,
@@ -115,7 +114,7 @@ pub struct Occupied {
 }
 
 impl Occupied {
-    /// Of cells with so many primitives each; those of one grid after those of another begin with a word of their own.
+    /// Append a grid's cells, given their numbers of primitives. Each grid starts at a new word.
     pub fn push(&mut self, counts: &[u32]) {
         let mut before = self.count();
         for counts in counts.chunks(64) {
@@ -126,12 +125,12 @@ impl Occupied {
         }
     }
 
-    /// How many words there are.
+    /// The number of words.
     pub fn words(&self) -> usize {
         self.bits.len()
     }
 
-    /// How many cells have something in them.
+    /// The number of nonempty cells.
     pub fn count(&self) -> u32 {
         match (self.bits.last(), self.before.last()) {
             (Some(bits), Some(before)) => before + bits.count_ones(),
@@ -139,26 +138,26 @@ impl Occupied {
         }
     }
 
-    /// Whether a cell of the grid that begins with this word has something in it.
+    /// Return whether a cell is nonempty; `word` is the grid's first word.
     #[inline(always)]
     pub fn has(&self, word: usize, cell: usize) -> bool {
         self.bits[word + cell / 64] >> (cell % 64) & 1 != 0
     }
 
-    /// Whether any cell from one up to another, which is not one of them, has something in it.
+    /// Return whether any cell in `from..to` is nonempty.
     #[inline]
     pub fn has_any(&self, word: usize, from: usize, to: usize) -> bool {
         from < to && self.rank(word, to - 1) + u32::from(self.has(word, to - 1)) > self.rank(word, from)
     }
 
-    /// How many of those that have something in them come before a cell.
+    /// The number of nonempty cells before a cell.
     #[inline(always)]
     pub fn rank(&self, word: usize, cell: usize) -> u32 {
         let below = (1u64 << (cell % 64)) - 1;
         self.before[word + cell / 64] + (self.bits[word + cell / 64] & below).count_ones()
     }
 
-    /// Memory held.
+    /// Memory use in bytes.
     pub fn bytes(&self) -> usize {
         size_of_val(self.bits.as_slice()) + size_of_val(self.before.as_slice())
     }

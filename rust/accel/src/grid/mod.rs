@@ -1,28 +1,27 @@
-//! Grids: space cut into cells of one size, and walks from cell to cell.
+//! Grids: space divided into equal cells, traversed from cell to cell.
 //!
-//! "A hit counts only inside its cell" is what textbooks ask, since a primitive that stands in many cells may be met in
-//! one that the ray comes to later. Here it need not be asked, and nothing is left to chance:
+//! Textbooks accept a hit only inside its cell, since a primitive referenced in many cells may be hit in one that the
+//! ray reaches later. Here this test is not needed, for the following reason.
 //!
-//! Along axis a, plane i of a grid lies at the real number pᵢ = low + i · width, and a walk says that the ray meets it
-//! at Tₐ(i), computed in f32 by one formula (`walk.rs`). That is monotone in i, so these numbers, as they were rounded,
-//! cut the line of t into intervals without gap, and the walk goes through all cells whose interval, the common one of
-//! their three axes, is more than nothing. Let a ray meet a primitive at t, which lies in the interval of some cell.
-//! Were all exact, the ray would be in that cell then; as it is, it is at most PAD outside along any axis. So a
-//! primitive is listed in every cell that it touches when that is widened by PAD on all sides, and therefore in this
-//! one: whatever the ray meets up to the t at which it leaves a cell is listed in the cells so far. A hit found there
-//! is a hit wherever it lies, and once the nearest known one lies before the ray leaves its cell, the walk is over. The
-//! planes at the border of a grid lie so much more than PAD beyond all that is in it that no hit lies outside of their
-//! intervals.
+//! Along axis a, plane i of a grid is at the real number pᵢ = low + i · width. Traversal computes the `t` of that plane
+//! as Tₐ(i), in f32 by one formula (`walk.rs`). That is monotone in i, so the rounded values divide the line of t into
+//! intervals without gaps. Traversal visits every cell with a nonempty interval, the intersection of those of its three
+//! axes. Let a ray hit a primitive at t, in the interval of some cell. In exact arithmetic the ray would be in that
+//! cell at t. With rounding it is at most PAD outside along each axis. A primitive is referenced in every cell that it
+//! overlaps when the cell is widened by PAD, so in this one, too. Hence every hit up to the t at which the ray leaves a
+//! cell is referenced in the cells visited so far. A hit is valid wherever it lies, and traversal ends once the nearest
+//! known hit is before the end of the current cell. The outer planes of a grid are so much farther than PAD from its
+//! content that no hit is outside their intervals.
 //!
-//! The bound. Let v = 2⁻²⁴, all be in box units, and r be the inverse of the direction along an axis, as [`SlabRay`]
-//! has it. Planes are at most P = 2 from the centre, and a little. A ray that is not far starts at most 8 radii away,
-//! O = 16, and its reach is R = 18. In units of v·|r|, what is computed for a plane's t errs by 2R for r; by 4O for the
+//! The bound. Let v = 2⁻²⁴, all lengths be in box units, and r be the inverse of the direction along an axis, as
+//! [`SlabRay`] has it. Planes are at most P = 2 from the centre, plus a little. A ray that is not far starts at most 8
+//! radii away, O = 16, and its reach is R = 18. In units of v·|r|, a plane's computed t errs by 2R for r; by 4O for the
 //! shift −o·r (o is rounded, the product, `near` and `far`, and their sum); by 2·4 for i · (width · r); by P + (P + O)
-//! for low · r and its sum with the shift; and by R for the last sum: 146, and so the ray is 146v from where a plane is
-//! thought to be. A hit's own t errs by a quarter of v times the reach, along which the ray moves less than twice as
-//! far: 9v. Of a ray that is far and was moved up, R is 6 and O is 4: 53v in all, and what moving it costs is less than
-//! its pad, of which 48v are not for that: where the pad is at most MOST_PAD = 144v, 96v are left, 149v together. PAD
-//! is 192v. Rays with a larger pad, from beyond a hundred million radii, halve the grid instead (`halving.rs`).
+//! for low · r and its sum with the shift; and by R for the last sum: 146. So the ray is 146v from the plane's assumed
+//! position. A hit's own t errs by a quarter of v times the reach, along which the ray moves less than twice as far:
+//! 9v. For a ray that is far and was moved, R is 6 and O is 4: 53v in all. The move costs less than the ray's pad, of
+//! which 48v are for other errors: if the pad is at most MOST_PAD = 144v, 96v remain, 149v together. PAD is 192v. Rays
+//! with a larger pad, from beyond a hundred million radii, bisect the grid instead (`halving.rs`).
 //!
 //! Sources: Fujimoto, Tanaka and Iwata, "ARTS: Accelerated Ray-Tracing System", 1986; Amanatides and Woo, "A Fast Voxel
 //! Traversal Algorithm for Ray Tracing", 1987; Cleary and Wyvill, "Analysis of an Algorithm for Fast Ray Tracing Using
@@ -42,14 +41,14 @@ pub use resolution::Resolution;
 use crate::SlabRay;
 use raywright_shapes::triangle::EdgeRay;
 
-/// How far around each cell, in box units, what touches it is listed.
+/// Distance from a cell, in box units, within which primitives are referenced in it.
 const PAD: f32 = 3.0 / (1u32 << 18) as f32;
 
-/// The greatest pad of rays that go from cell to cell: that of the farthest origin from which a ray is not moved up,
-/// with room for rounding.
+/// Maximum pad of rays that step from cell to cell: that of the most distant origin that is not moved, with an
+/// allowance for rounding.
 const MOST_PAD: f32 = (2.0 * (EdgeRay::FAR + 1.0) * (1.0 + 1e-6)) as f32 / (1u32 << 21) as f32;
 
-/// Whether a ray may go from cell to cell.
+/// Return whether a ray may step from cell to cell.
 #[inline(always)]
 fn can_step(ray: &SlabRay) -> bool {
     ray.pad <= MOST_PAD
@@ -81,7 +80,7 @@ mod tests {
     }
 
     impl Triangles {
-        /// Of some size, anywhere in the cube from 0 to 1.
+        /// Triangles of a given size in the unit cube.
         fn soup(count: u32, size: f64) -> Self {
             let point = |i, which| {
                 let [x, y, z, _] = philox4x32([i, which, 0, 0], [0, 0]).map(|bits| f64::from(bits) / 2f64.powi(32));
@@ -101,7 +100,7 @@ mod tests {
         }
     }
 
-    /// Both grids over some triangles.
+    /// Both kinds of grids over triangles.
     fn built(triangles: &Triangles) -> [(Box<dyn Structure>, Lists); 2] {
         let input = triangles.input();
         [uniform::build(&input, &uniform::Options::DEFAULT), nested::build(&input, &nested::Options::DEFAULT)]
@@ -121,7 +120,7 @@ mod tests {
         for (structure, lists) in built(&triangles) {
             check(&triangles, structure.as_ref(), &lists).unwrap();
             assert_eq!(structure.info().leaves, lists.counts.len());
-            // Moved to other cells; gone from a leaf; out of the grid.
+            // Invalid inputs: a primitive in other cells, one missing from a leaf, one outside the grid.
             let mut moved = Triangles(triangles.0.clone());
             moved.0[7] = moved.0[7].map(|c| DVec3::ONE - c);
             check(&moved, structure.as_ref(), &lists).unwrap_err();

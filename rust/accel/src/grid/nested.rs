@@ -1,10 +1,11 @@
-//! Grids in the dense cells of grids, each with a resolution of its own (Jevans and Wyvill, "Adaptive Voxel Subdivision
-//! for Ray Tracing", 1989): what a single grid cannot do where a little of the scene is fine and most of it is not.
+//! Nested grids: dense cells contain grids of their own resolution (Jevans and Wyvill, "Adaptive Voxel Subdivision for
+//! Ray Tracing", 1989). They suit scenes with small detailed parts, for which a single grid is either too coarse or too
+//! large.
 //!
-//! A grid in a cell lies around what of the cell's primitives is in the cell, widened by PAD, and is walked while the
-//! ray is in the cell. Where the walk says that the ray is in the cell then, it is there or at most PAD outside; a hit
-//! at that time is therefore within what the inner grid lies around, whose border is beyond that again. So what the
-//! module says of one grid holds of grids in grids.
+//! An inner grid surrounds the part of its cell's primitives inside the cell widened by PAD, and is traversed while the
+//! ray is in the cell. While traversal assumes that the ray is in the cell, the ray is at most PAD outside. A hit at
+//! that time is therefore within the content of the inner grid, whose border is beyond that by a margin. So the
+//! argument of the module for one grid holds for nested ones.
 
 use super::fill::{Budget, Filled, expected};
 use super::halving::Halving;
@@ -17,21 +18,21 @@ use crate::{Info, SlabRay};
 use raywright_base::math::Aabb;
 use raywright_base::parallel;
 
-/// How to build.
+/// Build options.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// Cells of the outermost grid.
+    /// The resolution of the outermost grid.
     pub resolution: Resolution,
-    /// Cells a primitive of the grids in it.
+    /// Cells per primitive of inner grids.
     pub density: f32,
-    /// The most that stand in a cell before a grid in it is thought of.
+    /// Maximum number of primitives in a cell without an inner grid.
     pub leaf: u32,
-    /// The most grids in each other; 1 for a single one.
+    /// Maximum nesting depth; 1 for a single grid.
     pub depth: u32,
 }
 
 impl Options {
-    /// A cell a primitive in every grid, for what is more than eight in a cell, up to five deep.
+    /// One cell per primitive in every grid; cells with more than eight primitives are subdivided, up to depth five.
     pub const DEFAULT: Self = Self { resolution: Resolution::Density(1.0), density: 1.0, leaf: 8, depth: 5 };
 }
 
@@ -41,41 +42,41 @@ impl Default for Options {
     }
 }
 
-/// A grid, and where its bits begin.
+/// A grid and its first word of bits.
 struct Part {
     lattice: Lattice,
     word: usize,
 }
 
-/// What is in a cell that is not empty: a leaf, or if this bit is set, a grid.
+/// Marks an entry of a nonempty cell as a grid rather than a leaf.
 const INNER: u32 = 1 << 31;
 
-/// Grids in grids, the outermost first; none if there is nothing in them.
+/// All grids, outermost first; none without primitives.
 struct Nested {
     parts: Vec<Part>,
     occupied: Occupied,
-    /// By cell that is not empty, what is in it.
+    /// The entries of nonempty cells, in order.
     entries: Vec<u32>,
     depth: usize,
     cost: f64,
 }
 
-/// A grid as it is built.
+/// A grid during the build.
 struct Made {
     filled: Filled,
-    /// Cells that have grids in them, and which, in order.
+    /// Cells with inner grids and the indices of these, in order.
     inner: Vec<(usize, u32)>,
-    /// The share of the rays that meet the outermost grid's box that come into a cell, on average.
+    /// The average probability that a ray through the outermost grid's box enters a cell.
     share: f64,
 }
 
-/// What coming into a grid takes, in steps or tests: it is ten times the instructions of a step, and waits for memory.
+/// The cost of entering a grid, in steps or tests: ten times the instructions of a step, plus memory latency.
 const ENTRY: f64 = 12.0;
 
-/// Builds the grids; leaves are numbered grid by grid, those in a cell before what is in the next.
+/// Build the grids. Leaves are numbered grid by grid, those inside a cell before those of the next one.
 ///
-/// Grids in each other are made level by level, until the least of these is reached: `depth`, a dozen references a
-/// primitive, or none that lowers the cost.
+/// Grids are added level by level until one of three limits: `depth`, a dozen references per primitive, or no grid that
+/// lowers the cost.
 pub fn build(input: &Input, options: &Options) -> (Box<dyn Structure>, Lists) {
     let primitives = present(input);
     if primitives.is_empty() {
@@ -99,7 +100,7 @@ pub fn build(input: &Input, options: &Options) -> (Box<dyn Structure>, Lists) {
     (Box::new(nested), lists)
 }
 
-/// All grids, each after the one it is in, and how deep they are.
+/// All grids, each after its parent, and the depth.
 fn levels(input: &Input, primitives: &[u32], options: &Options) -> (Vec<Made>, usize) {
     let n = primitives.len() as u64;
     let bounds = around(input, primitives);
@@ -141,7 +142,7 @@ fn levels(input: &Input, primitives: &[u32], options: &Options) -> (Vec<Made>, u
     (made, depth)
 }
 
-/// A grid in a cell, if there is one that costs less than testing what stands there.
+/// A grid inside a cell, if it is cheaper than testing the cell's primitives.
 fn inside(input: &Input, outer: &Lattice, cell: usize, own: &[u32], options: &Options) -> Option<Filled> {
     let bounds = content(input, outer, cell, own);
     if bounds.is_empty() {
@@ -156,7 +157,7 @@ fn inside(input: &Input, outer: &Lattice, cell: usize, own: &[u32], options: &Op
     (lattice.count() > 1 && cost < n as f64).then_some(filled)
 }
 
-/// The box around what is in a cell of some primitives that touch it.
+/// The bounding box of the primitives' parts inside a cell.
 fn content(input: &Input, lattice: &Lattice, cell: usize, own: &[u32]) -> Aabb {
     let place = lattice.cell(cell);
     let cell = lattice.aabb(place, place);
@@ -168,7 +169,7 @@ fn content(input: &Input, lattice: &Lattice, cell: usize, own: &[u32]) -> Aabb {
 }
 
 impl Nested {
-    /// Numbers the leaves below a grid.
+    /// Number the leaves below a grid.
     fn number(&mut self, made: &[Made], part: u32, lists: &mut Lists) {
         let Made { filled, inner, .. } = &made[part as usize];
         let mut inner = inner.iter().peekable();
@@ -189,14 +190,14 @@ impl Nested {
         }
     }
 
-    /// What is in a cell, if anything.
+    /// The entry of a cell, if nonempty.
     #[inline(always)]
     fn entry(&self, part: u32, cell: usize) -> Option<u32> {
         let word = self.parts[part as usize].word;
         self.occupied.has(word, cell).then(|| self.entries[self.occupied.rank(word, cell) as usize])
     }
 
-    /// Checks a grid that should have all of some primitives in it, and those in its cells; gives how deep they are.
+    /// Check a grid and its inner grids, given its primitives; return the depth.
     fn check(
         &self,
         part: u32,
@@ -236,8 +237,8 @@ impl Structure for Nested {
         if counted { Box::new(NestedWalk::<true>::new(self)) } else { Box::new(NestedWalk::<false>::new(self)) }
     }
 
-    /// The cost is that of a uniform grid, summed over all: of each cell a step and, if there is no grid in it, a test
-    /// of each primitive, times the chance that a line that meets the outermost grid's box comes into it.
+    /// The cost is that of a uniform grid, summed over all grids. Each cell costs a step and, without an inner grid, a
+    /// test of each primitive, times the probability that a line through the outermost box enters it.
     fn info(&self) -> Info {
         let cells = self.parts.iter().map(|part| part.lattice.count()).sum();
         Info {
@@ -262,7 +263,7 @@ impl Structure for Nested {
         check_border(&outermost.lattice, &around(input, &all))?;
         let mut next = 0;
         let depth = self.check(0, input, &all, &mut |leaf| {
-            // In this order each comes once.
+            // Leaves occur once each, in this order.
             next += u32::from(leaf == next);
             primitives(leaf)
         })?;
@@ -274,18 +275,18 @@ impl Structure for Nested {
     }
 }
 
-/// A walk through one of the grids.
+/// The traversal of one grid.
 struct Level {
     part: u32,
     walk: Walk,
-    /// Whether it is still in its first cell.
+    /// True if it is still in its first cell.
     is_new: bool,
 }
 
 struct NestedWalk<'a, const COUNTED: bool> {
     nested: &'a Nested,
     ray: SlabRay,
-    /// Walks in grids, each in the cell that the one before it has come to.
+    /// The stack of traversals, each inside the current cell of the one before.
     levels: Vec<Level>,
     halving: Halving,
     nodes: u32,
@@ -297,7 +298,7 @@ impl<'a, const COUNTED: bool> NestedWalk<'a, COUNTED> {
         Self { nested, ray: SlabRay::EVERYWHERE, levels, halving: Halving::default(), nodes: 0 }
     }
 
-    /// Goes into a grid, from one t to another.
+    /// Enter a grid for an interval of t.
     #[inline(always)]
     fn enter(&mut self, part: u32, from: f32, until: f32) {
         let walk = Walk::new(&self.nested.parts[part as usize].lattice, &self.ray, from, until);

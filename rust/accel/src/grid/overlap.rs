@@ -1,32 +1,31 @@
-//! Which cells a primitive touches.
+//! Triangle-cell overlap tests.
 //!
-//! A triangle touches a box unless one of thirteen axes parts them: the box's three, the triangle's normal, and the
-//! nine cross products of edges of both (Akenine-Möller, "Fast 3D Triangle-Box Overlap Testing", 2001). Since all cells
-//! are of one size, what each axis allows is computed once a triangle, and a cell takes one product with its middle
-//! (Schwarz and Seidel, "Fast Parallel Surface and Solid Voxelization on GPUs", 2010).
+//! A triangle overlaps a box unless one of thirteen axes separates them: the box's three, the triangle's normal, and
+//! the nine cross products of their edges (Akenine-Möller, "Fast 3D Triangle-Box Overlap Testing", 2001). All cells
+//! have the same size, so the allowed interval on each axis is computed once per triangle, and a cell takes one dot
+//! product with its center (Schwarz and Seidel, "Fast Parallel Surface and Solid Voxelization on GPUs", 2010).
 //!
-//! Whatever axis is taken, corners and cell projected onto it without error are parted or not. In f64 a projection errs
-//! by some 2⁻⁵⁰ of the axis' length, and the cell is widened by [`PAD`], of which a sixth is to spare: so no rounding
-//! leaves a triangle out.
+//! The test is valid for any axis, even a rounded one. Projections in f64 err by some 2⁻⁵⁰ of the axis' length, and the
+//! cell is widened by [`PAD`], a sixth of which is spare. So rounding never excludes an overlapping triangle.
 
 use super::PAD;
 use super::lattice::Lattice;
 use raywright_base::math::{DVec3, Vec3};
 
-/// The axes that may part a triangle from cells, besides those along the cells' sides.
+/// The potential separating axes of a triangle and cells, other than the coordinate axes.
 pub struct Overlap {
-    /// An axis, and between what the middle of a cell must lie along it for the cell to be touched.
+    /// Axes, each with the interval of cell centers that overlap.
     axes: [(DVec3, f64, f64); 10],
 }
 
 impl Overlap {
-    /// For a triangle in box units and the cells of a lattice.
+    /// Set up the test of a triangle in box units against the cells of a lattice.
     pub fn new(corners: [DVec3; 3], lattice: &Lattice) -> Self {
         let half = (Vec3::from(lattice.width) / 2.0 + Vec3::splat(PAD)).as_dvec3();
         let [a, b, c] = corners;
         let edges = [b - a, c - b, a - c];
         let bounded = |axis: DVec3| {
-            // Below, products may underflow.
+            // Products may underflow below this.
             if axis.abs().max_element() < 1e-200 {
                 return (axis, f64::NEG_INFINITY, f64::INFINITY);
             }
@@ -43,7 +42,7 @@ impl Overlap {
         Self { axes }
     }
 
-    /// Whether a cell that the triangle's box touches is touched by the triangle.
+    /// Return whether the triangle overlaps a cell that its bounding box overlaps.
     #[inline]
     pub fn touches(&self, middle: DVec3) -> bool {
         self.axes.iter().all(|&(axis, least, most)| {
@@ -64,7 +63,7 @@ mod tests {
             .prop_map(DVec3::from_array)
     }
 
-    /// What of a polygon lies on one side of a plane across an axis (Sutherland and Hodgman 1974).
+    /// Clip a polygon against one side of an axis-aligned plane (Sutherland and Hodgman 1974).
     fn clipped(polygon: &[DVec3], axis: usize, plane: f64, sign: f64) -> Vec<DVec3> {
         let depth = |p: DVec3| sign * (p[axis] - plane);
         let mut rest = Vec::new();
@@ -104,7 +103,7 @@ mod tests {
                 if !left_by(middle, 0.9 * f64::from(PAD)).is_empty() {
                     prop_assert!(touches, "{cell:?} is touched by {corners:?}");
                 }
-                // The thirteen axes are enough, but for rounding.
+                // The thirteen axes are exhaustive, up to rounding.
                 if left_by(middle, 2.0 * f64::from(PAD)).is_empty() {
                     prop_assert!(!touches, "{cell:?} is not touched by {corners:?}");
                 }
@@ -117,7 +116,7 @@ mod tests {
         let lattice = Lattice::around(&Aabb { min: Vec3::ZERO, max: Vec3::ONE }, [10; 3]);
         let sliver = Overlap::new([DVec3::ZERO, DVec3::ONE, DVec3::new(1.0, 1.0, 0.99)], &lattice);
         let touched = (0..1000).filter(|&i| sliver.touches(lattice.middle(lattice.cell(i)))).count();
-        // It goes through nine corners, where eight cells meet.
+        // The diagonal passes through nine corners, each shared by eight cells.
         assert_eq!(touched, 10 + 9 * 6);
     }
 

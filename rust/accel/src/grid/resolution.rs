@@ -1,32 +1,31 @@
-//! How many cells a grid has.
+//! The resolution of grids.
 
 use super::PAD;
 use raywright_base::math::{Aabb, Vec3};
 
-/// How many cells a grid is to have.
+/// How the number of cells is chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Resolution {
-    /// So many cells a primitive, as nearly cubes as can be: the cube-root rule (Cleary and Wyvill 1988), by which a
-    /// grid in space has ∛(density · n) cells along an axis, one over a plane √(density · n), and one along a line
-    /// density · n.
+    /// Cells per primitive, with nearly cubic cells: the cube-root rule (Cleary and Wyvill 1988). A grid in space has
+    /// ∛(density · n) cells along an axis, one over a plane √(density · n), and one along a line density · n.
     Density(f32),
-    /// So many along the longest side, and cells that are as nearly cubes as can be.
+    /// Cells along the longest side, with nearly cubic cells.
     Longest(u32),
-    /// So many along each axis.
+    /// Cells along each axis.
     Each([u32; 3]),
 }
 
 impl Resolution {
-    /// The most cells along an axis.
+    /// Maximum number of cells along an axis.
     pub const MOST: u32 = 4096;
 
-    /// The most cells in all.
+    /// Maximum total number of cells.
     pub const MOST_IN_ALL: usize = 1 << 27;
 
-    /// The cells along each axis of a box in box units with `count` primitives in it.
+    /// The cells along each axis of a box in box units with `count` primitives.
     ///
-    /// Fewer than asked for where there would be more than can be, or where they would be thinner than eight times what
-    /// is listed around each: then everything would stand everywhere.
+    /// The result is limited by the maximum numbers, and cells are at least eight PAD thick: thinner cells would
+    /// reference almost everything.
     pub fn cells(self, bounds: &Aabb, count: usize) -> [u32; 3] {
         let extent = (bounds.max - bounds.min).max(Vec3::ZERO).to_array();
         let most = extent.map(|e| ((e / (8.0 * PAD)) as u32).clamp(1, Self::MOST));
@@ -46,8 +45,8 @@ impl Resolution {
     }
 }
 
-/// The side of cubes of which so many fill a box. Along an axis that is thinner than a cube there is one, and the
-/// others share them.
+/// The side length of cubes, given the number that fill a box. An axis thinner than a cube has one cell, and the other
+/// axes share the cells.
 fn cell_width(mut extent: [f32; 3], cells: f32) -> f32 {
     extent.sort_by(f32::total_cmp);
     let [a, b, c] = extent.map(f64::from);
@@ -63,12 +62,12 @@ fn cell_width(mut extent: [f32; 3], cells: f32) -> f32 {
     width as f32
 }
 
-/// How many of a width fit along each axis, about.
+/// The number of cells of a given width along each axis, rounded.
 fn cubes(extent: [f32; 3], width: f32) -> [u32; 3] {
     extent.map(|e| if width > 0.0 { (e / width).round() as u32 } else { 1 })
 }
 
-/// About a third as many in all.
+/// About a third as many cells in total.
 pub fn coarser(cells: [u32; 3]) -> [u32; 3] {
     cells.map(|n| (n * 7 / 10).max(1))
 }
@@ -90,7 +89,7 @@ mod tests {
         assert_eq!(by([0.0, 2.0, 0.0], 100), [1, 400, 1]);
         assert_eq!(by([0.0; 3], 100), [1, 1, 1]);
         assert_eq!(by([1.0; 3], 0), [1, 1, 1]);
-        // A sheet that is thinner than its cells.
+        // A sheet thinner than its cells.
         assert_eq!(by([1.0, 1.0, 1e-3], 2500), [100, 100, 1]);
     }
 

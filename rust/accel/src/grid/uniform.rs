@@ -1,4 +1,4 @@
-//! One grid over everything.
+//! Uniform grids.
 
 use super::fill::{Budget, Filled, expected};
 use super::halving::Halving;
@@ -9,17 +9,16 @@ use crate::walk::{Input, Lists, Structure, Walker};
 use crate::{Info, SlabRay};
 use raywright_base::math::{Aabb, Vec3};
 
-/// How to build.
+/// Build options.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// How many cells to make. Fewer are made where they would hold more than a dozen primitives for each that there
-    /// is, or more than two million.
+    /// The resolution. It is reduced to limit references to a dozen per primitive, or two million.
     pub resolution: Resolution,
 }
 
 impl Options {
-    /// Two primitives a cell. With more cells, fewer primitives are tested in each; but up to eight are tested at once,
-    /// and of one that reaches into many cells each keeps a copy, which has to come from memory.
+    /// Two primitives per cell. More cells mean fewer primitive tests each. But up to eight are tested at once, and
+    /// every cell keeps its own copies of primitives, which have to be loaded from memory.
     pub const DEFAULT: Self = Self { resolution: Resolution::Density(0.5) };
 }
 
@@ -31,13 +30,13 @@ impl Default for Options {
 
 /// A uniform grid.
 struct Grid {
-    /// None if there is nothing in it.
+    /// None without primitives.
     lattice: Option<Lattice>,
     occupied: Occupied,
     references: usize,
 }
 
-/// Builds a grid; its leaves are the cells with something in them, by number.
+/// Build a grid; its leaves are the nonempty cells, in order.
 pub fn build(input: &Input, options: &Options) -> (Box<dyn Structure>, Lists) {
     let primitives: Vec<u32> = present(input);
     if primitives.is_empty() {
@@ -57,17 +56,17 @@ pub fn build(input: &Input, options: &Options) -> (Box<dyn Structure>, Lists) {
     (Box::new(grid), Lists { counts: counts.into_iter().filter(|&n| n > 0).collect(), order })
 }
 
-/// The numbers of what there is.
+/// The primitives that can be hit.
 pub(super) fn present(input: &Input) -> Vec<u32> {
     (0..input.boxes.len() as u32).filter(|&p| !input.boxes[p as usize].is_empty()).collect()
 }
 
-/// The box around some primitives.
+/// The bounding box of primitives.
 pub(super) fn around(input: &Input, primitives: &[u32]) -> Aabb {
     primitives.iter().fold(Aabb::EMPTY, |all, &p| all.union(input.boxes[p as usize]))
 }
 
-/// Checks that a lattice reaches far enough beyond what is in it.
+/// Check that a lattice extends far enough beyond its content.
 pub(super) fn check_border(lattice: &Lattice, bounds: &Aabb) -> Result<(), String> {
     let room = Vec3::splat(2.0 * PAD);
     let needed = Aabb { min: bounds.min - room, max: bounds.max + room };
@@ -82,9 +81,9 @@ impl Structure for Grid {
         if counted { Box::new(GridWalk::<true>::new(self)) } else { Box::new(GridWalk::<false>::new(self)) }
     }
 
-    /// The cost is what a random line that meets the grid's box takes if nothing ends it: by the surface-area
-    /// heuristic, the chance of coming into a cell times one step and a test of each primitive there (Cleary and Wyvill
-    /// 1988 count alike).
+    /// The cost is that of a random line through the grid's box without a hit. By the surface area heuristic, this is
+    /// the probability of entering each cell, times one step and a test of each primitive in it (as in Cleary and
+    /// Wyvill 1988).
     fn info(&self) -> Info {
         let cells = self.lattice.map_or(0, |l| l.count());
         let share = self.lattice.map_or(0.0, |l| l.cell_area() / l.area());
@@ -121,7 +120,7 @@ impl Structure for Grid {
 }
 
 impl Grid {
-    /// The leaf of a cell, if there is anything in it.
+    /// The leaf of a cell, if nonempty.
     #[inline(always)]
     fn leaf(&self, cell: usize) -> Option<u32> {
         self.occupied.has(0, cell).then(|| self.occupied.rank(0, cell))
@@ -130,10 +129,9 @@ impl Grid {
 
 struct GridWalk<'a, const COUNTED: bool> {
     grid: &'a Grid,
-    /// In the cell that comes next; none where the ray does not come into the grid, or is too far away to go from cell
-    /// to cell.
+    /// The traversal, at the next cell; None if the ray misses the grid, or is too distant to step from cell to cell.
     walk: Option<Walk>,
-    /// Whether the walk is still in its first cell.
+    /// True if it is still in the first cell.
     is_new: bool,
     ray: SlabRay,
     halving: Halving,

@@ -1,8 +1,7 @@
-//! From cell to cell along a ray (Amanatides and Woo 1987): of the next planes across the three axes, the one that is
-//! met first is stepped through.
+//! The 3D DDA (Amanatides and Woo 1987): step across the nearest of the next planes along the three axes.
 //!
-//! Where a plane is met is not added up step by step, which would add up rounding too, but computed from the plane's
-//! index. So it is the same number from either side, and whoever asks for it.
+//! The `t` of a plane is computed from its index rather than accumulated, which would accumulate rounding errors. So it
+//! has the same bits from either side.
 
 use super::lattice::Lattice;
 use crate::SlabRay;
@@ -11,33 +10,33 @@ use raywright_base::math::robust::{greater, lesser};
 /// A ray in a cell of a lattice.
 #[derive(Clone, Copy, Debug)]
 pub struct Walk {
-    /// The number of the cell.
+    /// The index of the cell.
     pub cell: usize,
-    /// Where the ray comes into it.
+    /// The `t` at which the ray enters it.
     pub enter: f32,
-    /// Where the ray leaves the lattice, or the walk is to end.
+    /// The `t` at which the traversal ends.
     until: f32,
-    /// By axis: where the next plane is met.
+    /// The `t` of the next plane, by axis.
     next: [f32; 3],
     /// The index of that plane.
     plane: [f32; 3],
-    /// From one plane's index to the next.
+    /// The increment of the plane index.
     sign: [f32; 3],
-    /// From one cell's number to the next; down as two's complement.
+    /// The increment of the cell index, in two's complement if negative.
     stride: [usize; 3],
-    /// What an index is times, and what is added, to say where its plane is met.
+    /// The `t` of a plane is its index times `step`, plus `start`.
     step: [f32; 3],
     start: [f32; 3],
 }
 
 impl Walk {
-    /// Begins where the ray comes into the lattice, or at `from` if that is later. None if it leaves, or `until` is,
-    /// before.
+    /// Start where the ray enters the lattice, or at `from` if that is later. None if it leaves, or `until` is, before
+    /// that.
     #[inline(always)]
     pub fn new(lattice: &Lattice, ray: &SlabRay, mut from: f32, mut until: f32) -> Option<Self> {
         let (mut step, mut start) = ([0.0; 3], [0.0; 3]);
         for axis in 0..3 {
-            // In the middle of what `near` and `far` are padded to.
+            // The middle between the padded `near` and `far`.
             let shift = 0.5 * (ray.near[axis] + ray.far[axis]);
             step[axis] = lattice.width[axis] * ray.inverse[axis];
             start[axis] = lattice.low[axis] * ray.inverse[axis] + shift;
@@ -54,9 +53,9 @@ impl Walk {
         for axis in 0..3 {
             let met = |i: f32| i * step[axis] + start[axis];
             let last = (lattice.cells[axis] - 1) as f32;
-            // Rounded down; by way of an integer, since not every processor can round.
+            // Rounded down through an integer, since some processors have no rounding instruction.
             let mut i = lesser(greater((from - start[axis]) / step[axis], 0.0), last) as i32 as f32;
-            // What is guessed so may be off, but which interval `from` lies in is for `met` alone to say.
+            // The estimate may be off; `met` decides which interval contains `from`.
             if ray.first[axis] == 0 {
                 while i > 0.0 && met(i) > from {
                     i -= 1.0;
@@ -82,19 +81,19 @@ impl Walk {
         Some(Self { cell, enter: from, until, next, plane, sign, stride, step, start })
     }
 
-    /// Where the ray leaves the cell.
+    /// The `t` at which the ray leaves the cell.
     #[inline(always)]
     pub fn leave(&self) -> f32 {
         lesser(lesser(self.next[0], self.next[1]), self.next[2])
     }
 
-    /// Goes to the next cell; false if what begins where this one ends is beyond `limit`, or the lattice.
+    /// Step to the next cell. Return false if it begins beyond `limit` or outside the lattice.
     ///
-    /// No plane at the border is stepped through: `until` is at most where the first of those is met.
+    /// No outer plane is crossed: `until` is at most the `t` of the first one.
     #[inline(always)]
     pub fn step(&mut self, limit: f32) -> bool {
         let [x, y, z] = self.next;
-        // Which is least, without a branch that would be guessed wrong every other time.
+        // The minimum without branches, which would often be mispredicted.
         let axis = if x <= y {
             if x <= z { 0 } else { 2 }
         } else if y <= z {
@@ -133,8 +132,7 @@ mod tests {
     }
 
     proptest! {
-        /// What the module says of walks: at every t the ray is in the cell that the walk is in then, or at most PAD
-        /// outside.
+        /// The claim of the module: at every t the ray is in the current cell, or at most PAD outside.
         #[test]
         fn the_ray_is_where_the_walk_is(
             origin in prop::array::uniform3(coordinate()).prop_map(DVec3::from_array),
@@ -169,7 +167,7 @@ mod tests {
             }
         }
 
-        /// No point of what a lattice was made around lies outside of the interval that is walked.
+        /// No point of a lattice's content is outside the traversed interval.
         #[test]
         fn nothing_is_met_before_the_walk_or_after(
             origin in prop::array::uniform3(coordinate()).prop_map(DVec3::from_array),
@@ -188,7 +186,7 @@ mod tests {
             let cell = lattice.cell(walk.cell);
             let widened = lattice.aabb(cell, cell);
             let at = target * region.scale;
-            // `limit` is rounded up, by up to four roundings of an f32.
+            // `limit` is rounded up, by up to four f32 roundings.
             let slack = 16.0 * f64::from(f32::EPSILON);
             prop_assert!(at.cmpge(widened.min.as_dvec3() - slack).all(), "{at} before {widened:?}");
             prop_assert!(at.cmple(widened.max.as_dvec3() + slack).all(), "{at} beyond {widened:?}");

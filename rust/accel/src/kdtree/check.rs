@@ -1,14 +1,14 @@
-//! What walks rely on.
+//! Validation of kd-trees.
 
 use super::KdTree;
 use crate::walk::{Halves, Input, Part};
 use raywright_base::math::Aabb;
 
-/// Says what is wrong with a tree, given the primitives of each leaf.
+/// Check a tree, given the primitives of each leaf; the error describes the violation.
 ///
-/// Each pair of children comes after its parent, and has only the one; planes stand within the cells that they part,
-/// and no leaf is deeper than recorded; and each primitive stands in the leaves whose cells it has a part in, clipped
-/// at every plane as it was when the tree was built.
+/// Each pair of children follows its parent, and has only one. Planes are inside the cells that they split, and no leaf
+/// is deeper than recorded. Each primitive is in all leaves whose cells it overlaps, clipped at every plane as in the
+/// build.
 pub fn check(tree: &KdTree, input: &Input, primitives: &dyn Fn(u32) -> Vec<u32>) -> Result<(), String> {
     let (parts, bounds) = input.parts();
     if bounds != tree.bounds {
@@ -59,7 +59,7 @@ pub fn check(tree: &KdTree, input: &Input, primitives: &dyn Fn(u32) -> Vec<u32>)
     }
 }
 
-/// Whether a part stands wherever it should below a node.
+/// Return whether a part is in all the leaves it overlaps below a node.
 fn stands(tree: &KdTree, input: &Input, lists: &[Vec<u32>], node: usize, part: Part) -> bool {
     if part.aabb.is_empty() {
         return true;

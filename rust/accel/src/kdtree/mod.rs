@@ -1,8 +1,8 @@
-//! kD-trees: space parted by planes across its axes, in nodes of 8 bytes.
+//! kd-trees: space split by axis-aligned planes, in nodes of 8 bytes.
 //!
-//! A node covers a cell of space and knows nothing but the plane that parts it; a primitive stands in every leaf whose
-//! cell it has a part in. Cells do not overlap, so a ray comes to leaves strictly from the front, and what it meets in
-//! the first ends its search.
+//! A node covers a cell of space and stores only its splitting plane. A primitive is in every leaf whose cell it
+//! overlaps. Cells are disjoint, so rays visit leaves strictly front to back, and a hit within a cell ends the
+//! traversal.
 
 mod build;
 mod check;
@@ -18,24 +18,24 @@ use super::walk::{Input, Lists, Plane, Structure, Walker};
 use super::{Info, NodeBox};
 use raywright_base::math::Aabb;
 
-/// Most levels below the root that may be asked for.
+/// Maximum depth that may be requested.
 pub const MAX_DEPTH: usize = 60;
 
-/// Ways through a kD-tree. Both come to the same leaves in the same order.
+/// Traversal algorithms. Both visit the same leaves in the same order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Traversal {
-    /// What is left for later is put on a stack.
+    /// With a stack of pending nodes.
     #[default]
     Stack,
-    /// Nothing is: from each leaf on, the ray goes down again.
+    /// Without a stack: the ray restarts at the top after each leaf.
     Restart,
 }
 
 impl Traversal {
-    /// All of them.
+    /// All algorithms.
     pub const ALL: [Self; 2] = [Self::Stack, Self::Restart];
 
-    /// As options call it.
+    /// The name in options.
     pub fn name(self) -> &'static str {
         match self {
             Self::Stack => "stack",
@@ -47,21 +47,22 @@ impl Traversal {
 /// A kD-tree.
 #[derive(Clone, Debug)]
 pub struct KdTree {
-    /// The first is the root. Every other pair is children of one node, which stands before it; the second is none's.
+    /// The nodes, root first. Children are in pairs after their parent; the second node is unused.
     nodes: Vec<Node>,
-    /// The box around everything: the root's cell.
+    /// The root's cell.
     bounds: Aabb,
     depth: usize,
     options: Options,
 }
 
-/// Builds a kD-tree over primitives.
+/// Build a kd-tree over primitives.
 ///
-/// It has the same bits for any number of threads. Time is n log n by the surface-area heuristic, where clipped parts
-/// are counted in n, and n log² n at most otherwise; there are at most 9 times as many parts as primitives, and 64
-/// more.
+/// The result is bit-identical for any number of threads. The surface area heuristic takes n log n time, with n
+/// counting clipped parts, and other builders at most n log² n. There are at most 9 times as many parts as primitives,
+/// plus 64.
 ///
 /// # Panics
+///
 /// If an option is out of range.
 pub fn build(input: &Input, options: &Options) -> (Box<dyn Structure>, Lists) {
     let (nodes, lists, bounds) = build::build(input, options);
@@ -70,7 +71,7 @@ pub fn build(input: &Input, options: &Options) -> (Box<dyn Structure>, Lists) {
     (Box::new(tree), lists)
 }
 
-/// A node with its cell.
+/// A node and its cell.
 struct Cell {
     node: usize,
     aabb: Aabb,
@@ -78,7 +79,7 @@ struct Cell {
 }
 
 impl KdTree {
-    /// Every node from the root on.
+    /// All nodes, root first.
     fn cells(&self) -> impl Iterator<Item = Cell> {
         let mut open = Vec::new();
         if !self.nodes.is_empty() {
@@ -96,15 +97,15 @@ impl KdTree {
         })
     }
 
-    /// Of an inner node, its plane and the first of its children.
+    /// The plane and first child of an inner node.
     fn plane(&self, node: usize) -> Option<(Plane, usize)> {
         let node = self.nodes[node];
         let plane = || Plane { axis: node.axis(), at: node.plane() };
         (!node.is_leaf()).then(|| (plane(), node.children() as usize))
     }
 
-    /// The surface-area heuristic's cost: of every inner node one test of a plane, of every leaf its primitives, each
-    /// times the chance that a ray that meets the root's cell meets this one's.
+    /// The cost by the surface area heuristic: one plane test per inner node, plus the primitives of each leaf, each
+    /// times the probability that a ray through the root's cell hits the cell.
     fn sah_cost(&self) -> f64 {
         let root = area(&self.bounds);
         let share = |cell: &Cell| if root > 0.0 { area(&cell.aabb) / root } else { 1.0 };
@@ -116,7 +117,7 @@ impl KdTree {
     }
 }
 
-/// Half the surface, where an f32 may hold none of it.
+/// Half the surface area in f64, since it may underflow in f32.
 fn area(aabb: &Aabb) -> f64 {
     let d = aabb.max.as_dvec3() - aabb.min.as_dvec3();
     d.x * (d.y + d.z) + d.y * d.z

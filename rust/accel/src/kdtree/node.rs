@@ -1,12 +1,11 @@
-//! The 8-byte node.
+//! The 8-byte kd-tree node.
 
-/// A plane that parts space, or a leaf. It has no box: what it covers is said by the planes above it.
+/// A splitting plane or a leaf. It has no box: its cell follows from the planes above it.
 ///
-/// The lowest two bits of `bits` are the axis, or 3 for a leaf. The rest is, of an inner node, where its two children
-/// stand, which lie side by side, the one below the plane first; of a leaf, how many primitives it has. `word` is, of
-/// an inner node, where its plane stands, as the bits of an f32; of a leaf, its number. (After Pharr, Jakob and
-/// Humphreys, "Physically Based Rendering", where one child needs no number. With both side by side they share a cache
-/// line, and either is found without a branch.)
+/// The lowest two bits of `bits` are the axis, or 3 for a leaf. The others are the index of the first child of an inner
+/// node, or the number of primitives in a leaf. The two children are adjacent, the lower one first. `word` is the
+/// plane's position as the bits of an f32, or the leaf's index. (After Pharr, Jakob and Humphreys, "Physically Based
+/// Rendering", where one child needs no index. Adjacent children share a cache line and are selected without a branch.)
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub struct Node {
@@ -16,71 +15,73 @@ pub struct Node {
 
 const _: () = assert!(size_of::<Node>() == 8);
 
-/// What stands where an axis would.
+/// The axis value of leaves.
 const LEAF: u32 = 3;
 
-/// Children and primitives of a leaf are numbered below it.
+/// Limit of child indices and of primitives in a leaf.
 const MOST: usize = 1 << 30;
 
 impl Node {
-    /// A leaf with nothing in it, which has no number.
+    /// An empty leaf, which has no index.
     pub const EMPTY: Self = Self { word: u32::MAX, bits: LEAF };
 
-    /// A plane across an axis, with its two children from `children` on.
+    /// An axis-aligned splitting plane with two children, starting at `children`.
     ///
     /// # Panics
+    ///
     /// If there are too many nodes.
     pub fn inner(axis: usize, plane: f32, children: usize) -> Self {
         assert!(axis < 3 && children < MOST, "{children} nodes are more than a kD-tree can number");
         Self { word: plane.to_bits(), bits: (children as u32) << 2 | axis as u32 }
     }
 
-    /// A leaf of so many primitives.
+    /// A leaf with the given number of primitives.
     ///
     /// # Panics
+    ///
     /// If there are too many primitives.
     pub fn leaf(number: u32, count: usize) -> Self {
         assert!(count < MOST, "{count} primitives are more than a leaf can hold");
         Self { word: number, bits: (count as u32) << 2 | LEAF }
     }
 
-    /// Whether it is a leaf.
+    /// Return whether it is a leaf.
     #[inline(always)]
     pub fn is_leaf(self) -> bool {
         self.bits & LEAF == LEAF
     }
 
-    /// Of a leaf, how many primitives it has.
+    /// The number of primitives of a leaf.
     #[inline(always)]
     pub fn count(self) -> u32 {
         self.bits >> 2
     }
 
-    /// Of a leaf with anything in it, its number.
+    /// The index of a nonempty leaf.
     #[inline(always)]
     pub fn number(self) -> u32 {
         self.word
     }
 
-    /// Of an inner node, the axis that its plane is across; 3 of a leaf.
+    /// The axis of an inner node; 3 for a leaf.
     #[inline(always)]
     pub fn axis(self) -> usize {
         (self.bits & LEAF) as usize
     }
 
-    /// Of an inner node, where its plane stands.
+    /// The position of an inner node's plane.
     #[inline(always)]
     pub fn plane(self) -> f32 {
         f32::from_bits(self.word)
     }
 
-    /// Of an inner node, the child below its plane; the one above stands behind it.
+    /// The lower child of an inner node; the upper one follows it.
     #[inline(always)]
     pub fn children(self) -> u32 {
         self.bits >> 2
     }
 
-    /// The same node where all nodes stand `nodes` later and all leaves are numbered `leaves` higher.
+    /// The same node after shifting all node and leaf indices.
     pub fn moved(self, nodes: usize, leaves: usize) -> Self {
         if !self.is_leaf() {
             Self::inner(self.axis(), self.plane(), self.children() as usize + nodes)

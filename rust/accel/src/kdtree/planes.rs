@@ -1,36 +1,35 @@
-//! A ray as planes across axes need it.
+//! A ray prepared for axis-aligned planes.
 
 use crate::SlabRay;
 
-/// Along an axis.
+/// The data for one axis.
 #[derive(Clone, Copy, Debug)]
 struct Along {
     inverse: f32,
     near: f32,
     far: f32,
-    /// The child that the ray comes to first: 0 the one below the plane, 1 the one above.
+    /// The near child: 0 below the plane, 1 above.
     first: u32,
 }
 
-/// By axis, so that what a plane needs lies together; the fourth is never used, and makes every axis that two bits can
-/// say one.
+/// By axis, so that the data for a plane are contiguous. The fourth is padding, which makes every two-bit axis valid.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub struct PlaneRay([Along; 4]);
 
-/// What a ray meets of the two sides of a plane.
+/// The intervals of a ray on the two sides of a plane.
 #[derive(Clone, Copy, Debug)]
 pub struct Sides {
-    /// The child that it comes to first, with its parent's first taken for 0.
+    /// The near child, as 0 or 1.
     pub first: u32,
-    /// The ray is not on the other side before.
+    /// The ray is not on the far side before this.
     pub from: f32,
-    /// It is not on this side after.
+    /// The ray is not on the near side after this.
     pub until: f32,
 }
 
 impl PlaneRay {
-    /// From a ray as boxes need it.
+    /// Convert from a ray prepared for boxes.
     pub fn new(ray: &SlabRay) -> Self {
         let along = |axis: usize| Along {
             inverse: ray.inverse[axis],
@@ -41,7 +40,7 @@ impl PlaneRay {
         Self([along(0), along(1), along(2), along(2)])
     }
 
-    /// Where it meets a plane: at the earliest, and at the latest.
+    /// The earliest and the latest `t` of a plane.
     #[inline(always)]
     pub fn sides(&self, axis: usize, plane: f32) -> Sides {
         let Along { inverse, near, far, first } = self.0[axis & 3];

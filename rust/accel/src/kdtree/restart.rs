@@ -1,11 +1,10 @@
-//! No stack: after a leaf the ray goes down again from the top (Foley and Sugerman, "KD-Tree Acceleration Structures
-//! for a GPU Raytracer", 2005), or from the lowest node that has all in it that is left (push-down; Horn, Sugerman,
-//! Houston and Hanrahan, "Interactive k-D Tree GPU Raytracing", 2007).
+//! Stackless kd-tree traversal. After a leaf the ray restarts at the root (Foley and Sugerman, "KD-Tree Acceleration
+//! Structures for a GPU Raytracer", 2005), or at the lowest node that contains all remaining work (push-down; Horn,
+//! Sugerman, Houston and Hanrahan, "Interactive k-D Tree GPU Raytracing", 2007).
 //!
-//! Where two leaves meet at a plane, it is not certain on which side of it a ray is, so that `t` alone would not say
-//! where it has been. A bit a level does, of whether the ray is done with the side that it came to first
-//! (Laine, "Restart Trail for Stackless BVH Traversal", 2010). So it comes to the same leaves as with a stack, in the
-//! same order.
+//! Near a plane it is uncertain on which side of it a ray is, so `t` alone does not tell which leaves were visited. One
+//! bit per level does: whether the near side is done (Laine, "Restart Trail for Stackless BVH Traversal", 2010). So the
+//! leaves and their order are the same as with a stack.
 
 use super::planes::PlaneRay;
 use super::{KdTree, MAX_DEPTH};
@@ -13,12 +12,12 @@ use crate::SlabRay;
 use crate::walk::Walker;
 use raywright_base::math::robust::{greater, lesser};
 
-/// The bit of the level of the root; that of the next is half of it.
+/// The bit of the root's level; each further level has half of it.
 const TOP: u64 = 1 << 63;
 
 const _: () = assert!(MAX_DEPTH < 64);
 
-/// A node, and where the ray is in it at most, however near it has met something.
+/// A node and the interval in which the ray may be inside, regardless of hits.
 #[derive(Clone, Copy)]
 struct At {
     node: u32,
@@ -28,19 +27,19 @@ struct At {
     level: u64,
 }
 
-/// A walk without a stack.
+/// A stackless traversal.
 pub struct Walk<'a, const COUNTED: bool> {
     tree: &'a KdTree,
     planes: PlaneRay,
-    /// Where to go down from; nothing where all is done.
+    /// The restart node; None when done.
     top: Option<At>,
-    /// By level below that, whether the first side is done, or there is only one.
+    /// The restart trail: by level, whether the near side is done or there is only one side.
     trail: u64,
     nodes: u32,
 }
 
 impl<'a, const COUNTED: bool> Walk<'a, COUNTED> {
-    /// Through a tree.
+    /// Create a traversal of a tree.
     pub fn new(tree: &'a KdTree) -> Self {
         Self { tree, planes: PlaneRay::new(&SlabRay::EVERYWHERE), top: None, trail: 0, nodes: 0 }
     }
@@ -58,11 +57,11 @@ impl<const COUNTED: bool> Walker for Walk<'_, COUNTED> {
     fn next(&mut self, limit: f32) -> Option<u32> {
         let nodes = self.tree.nodes.as_slice();
         while let Some(mut at) = self.top {
-            // The lowest node above which nothing is left, once it is known.
+            // The lowest node with no remaining work above it, once known.
             let mut top = None;
             let leaf = loop {
                 let node = nodes[at.node as usize];
-                // All that is below lies as far away as this, or farther.
+                // Everything below is at least as far.
                 if node.is_leaf() || at.enter > limit {
                     break node;
                 }
@@ -84,7 +83,7 @@ impl<const COUNTED: bool> Walker for Walk<'_, COUNTED> {
                     (at.node, at.enter) = (first ^ 1, greater(here.enter, sides.from));
                 }
             };
-            // One more at the level above: what is done there carries on upwards, and what lies below starts anew.
+            // Add one at the level above: a carry marks finished levels upward, and the levels below start again.
             let above = at.level << 1;
             self.trail = (self.trail & above.wrapping_neg()).wrapping_add(above);
             self.top = top;

@@ -1,6 +1,6 @@
-//! The stack: the side that the ray comes to first, the other put away with the part of the ray that is in it
-//! (Havran, "Heuristic Ray Shooting Algorithms", 2000; what was tried since, in Hapala and Havran, "Review: Kd-tree
-//! Traversal Algorithms for Ray Tracing", 2011).
+//! Stack-based kd-tree traversal: the near side first, the far side pushed with its interval of the ray (Havran,
+//! "Heuristic Ray Shooting Algorithms", 2000; for later variants see Hapala and Havran, "Review: Kd-tree Traversal
+//! Algorithms for Ray Tracing", 2011).
 
 use super::planes::PlaneRay;
 use super::{KdTree, MAX_DEPTH};
@@ -8,12 +8,12 @@ use crate::SlabRay;
 use crate::walk::Walker;
 use raywright_base::math::robust::{greater, lesser};
 
-/// A path puts one node away a level. A power of two, so that no place needs to be checked.
+/// A path leaves one pending node per level. A power of two, so that masked indices need no bounds check.
 const STACK: usize = 64;
 
 const _: () = assert!(MAX_DEPTH < STACK);
 
-/// A node, and where the ray is in it at most.
+/// A node and the interval in which the ray may be inside.
 #[derive(Clone, Copy)]
 struct Open {
     node: u32,
@@ -21,18 +21,18 @@ struct Open {
     leave: f32,
 }
 
-/// A walk with a stack.
+/// A traversal with a stack.
 pub struct Walk<'a, const COUNTED: bool> {
     tree: &'a KdTree,
     planes: PlaneRay,
     open: [Open; STACK],
-    /// How many are open.
+    /// Height of the stack.
     height: usize,
     nodes: u32,
 }
 
 impl<'a, const COUNTED: bool> Walk<'a, COUNTED> {
-    /// Through a tree.
+    /// Create a traversal of a tree.
     pub fn new(tree: &'a KdTree) -> Self {
         let nothing = Open { node: 0, enter: 0.0, leave: 0.0 };
         Self { tree, planes: PlaneRay::new(&SlabRay::EVERYWHERE), open: [nothing; STACK], height: 0, nodes: 0 }
@@ -68,8 +68,8 @@ impl<const COUNTED: bool> Walker for Walk<'_, COUNTED> {
                 if COUNTED {
                     self.nodes += 1;
                 }
-                // With arithmetic for the branches below, a ray takes longer: it waits for each node where it now goes
-                // ahead on a guess.
+                // Branches are faster than arithmetic here: with arithmetic the ray waits for each node, whereas
+                // branches allow speculation.
                 let sides = self.planes.sides(node.axis(), node.plane());
                 at = node.children() + sides.first;
                 if sides.from > leave {

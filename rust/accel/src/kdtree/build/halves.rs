@@ -1,11 +1,11 @@
-//! Planes that do not look at what they cost: in the middle, or at the median.
+//! Spatial middle and object median splits of kd-trees, without a cost model.
 
 use super::{Builder, Grown, Node, Options, PARALLEL, is_stopped, told};
 use crate::walk::{Halves, Input, Part, Plane, Room};
 use raywright_base::math::Aabb;
 use raywright_base::work::Steps;
 
-/// A builder at work.
+/// The context of a build.
 #[derive(Clone, Copy)]
 pub struct Halving<'a> {
     pub input: &'a Input<'a>,
@@ -14,11 +14,11 @@ pub struct Halving<'a> {
     pub steps: &'a Steps<'a>,
 }
 
-/// What goes to each side of a plane, and what may yet be done there.
+/// The parts on each side of a plane, and their budgets.
 type Sides = ([Vec<Part>; 2], [Room; 2]);
 
 impl Halving<'_> {
-    /// Builds what is in a cell; gives its node.
+    /// Build the subtree of a cell; return its node.
     pub fn grow(self, parts: Vec<Part>, cell: Aabb, room: Room, grown: &mut Grown) -> Node {
         if is_stopped(self.steps, parts.len()) {
             return Node::EMPTY;
@@ -46,11 +46,11 @@ impl Halving<'_> {
         Node::inner(plane.axis, plane.at, pair)
     }
 
-    /// The axes in the order in which they are tried.
+    /// The axes in the order of preference.
     fn axes(self, cell: &Aabb, room: Room) -> [usize; 3] {
         let size = cell.max - cell.min;
         match self.builder {
-            // The levels that are left go down as the levels that have been go up.
+            // The remaining depth decreases with each level, so the axes cycle.
             Builder::Cycle => [0, 1, 2].map(|k| (k + 3 - room.depth % 3) % 3),
             _ => {
                 let mut axes = [0, 1, 2];
@@ -60,7 +60,7 @@ impl Halving<'_> {
         }
     }
 
-    /// The plane across an axis, if it leaves room on both sides.
+    /// The plane across an axis, if it is strictly inside the cell.
     fn plane(self, parts: &[Part], cell: &Aabb, axis: usize) -> Option<Plane> {
         let at = match self.builder {
             Builder::Middle => 0.5 * (cell.min[axis] + cell.max[axis]),
@@ -74,7 +74,7 @@ impl Halving<'_> {
         plane.is_within(cell).then_some(plane)
     }
 
-    /// What goes to each side; none if that makes nothing better, as for primitives that coincide.
+    /// Distribute the parts to both sides; None if that is no improvement, as for coincident primitives.
     fn parted(self, parts: &[Part], plane: Plane, room: Room) -> Option<Sides> {
         let mut sides = [Vec::new(), Vec::new()];
         for part in parts {

@@ -1,4 +1,4 @@
-//! Builders of kD-trees, all from the top down.
+//! Top-down builders of kd-trees.
 
 mod halves;
 mod sah;
@@ -9,28 +9,29 @@ use raywright_base::math::Aabb;
 use raywright_base::parallel;
 use raywright_base::work::Steps;
 
-/// Ways to choose a plane.
+/// How splitting planes are chosen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Builder {
-    /// Where the surface-area heuristic expects the least work (MacDonald and Booth, "Heuristics for Ray Tracing Using
-    /// Space Subdivision", 1990), with a bonus for cutting off empty space, among all ends of clipped parts, in n log n
-    /// (Wald and Havran, "On Building Fast kd-Trees for Ray Tracing, and on Doing That in O(N log N)", 2006).
+    /// The plane of least cost by the surface area heuristic (MacDonald and Booth, "Heuristics for Ray Tracing Using
+    /// Space Subdivision", 1990), with a bonus for cutting off empty space. Candidates are all ends of clipped parts,
+    /// in n log n time (Wald and Havran, "On Building Fast kd-Trees for Ray Tracing, and on Doing That in O(N log N)",
+    /// 2006).
     #[default]
     Sah,
-    /// Across the cell's longest axis, at the median of the primitives' centres.
+    /// The median of the primitives' centres, along the cell's longest axis.
     Median,
-    /// In the middle of the cell, across its longest axis.
+    /// The middle of the cell's longest axis.
     Middle,
-    /// Across one axis after the other, at the median of the primitives' centres (Bentley, "Multidimensional Binary
-    /// Search Trees Used for Associative Searching", 1975).
+    /// The median of the primitives' centres, with axes in turn (Bentley, "Multidimensional Binary Search Trees Used
+    /// for Associative Searching", 1975).
     Cycle,
 }
 
 impl Builder {
-    /// All of them.
+    /// All builders.
     pub const ALL: [Self; 4] = [Self::Sah, Self::Median, Self::Middle, Self::Cycle];
 
-    /// As options call it.
+    /// The name in options.
     pub fn name(self) -> &'static str {
         match self {
             Self::Sah => "sah",
@@ -41,28 +42,28 @@ impl Builder {
     }
 }
 
-/// How to build a kD-tree, and how to walk it.
+/// Options for the build and the traversal of a kd-tree.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// How a plane is chosen.
+    /// How splitting planes are chosen.
     pub builder: Builder,
-    /// How rays go through the tree.
+    /// The traversal algorithm.
     pub traversal: Traversal,
-    /// Cost of visiting a node, for the surface-area heuristic; only its ratio to the next matters.
+    /// Cost of visiting a node in the surface area heuristic; only its ratio to the next matters.
     pub traversal_cost: f32,
     /// Cost of testing a primitive.
     pub intersection_cost: f32,
-    /// By what part the cost of a plane is taken to be less that has nothing on one side, from 0 to 1.
+    /// The fraction by which the cost of a plane with an empty side is reduced, from 0 to 1.
     pub empty_bonus: f32,
-    /// Most levels below the root, up to [`MAX_DEPTH`]; 8 + 1.3 log₂ n for n primitives if not given.
+    /// Maximum depth, up to [`MAX_DEPTH`]; by default 8 + 1.3 log₂ n for n primitives.
     pub max_depth: Option<usize>,
-    /// So many primitives are not parted any more.
+    /// Cells with at most this many primitives become leaves.
     pub leaf_size: usize,
 }
 
 impl Options {
-    /// As good as any for most scenes. Up to eight primitives are tested at once, and what a node's plane costs most is
-    /// that its outcome is guessed wrong: so a primitive is cheap beside it.
+    /// A good choice for most scenes. Up to eight primitives are tested at once, and the main cost of a node is branch
+    /// misprediction, so a primitive is comparatively cheap.
     pub const DEFAULT: Self = Self {
         builder: Builder::Sah,
         traversal: Traversal::Stack,
@@ -92,25 +93,24 @@ impl Default for Options {
     }
 }
 
-/// From so many parts on, what is below and above a plane is built at once, and a plane is sought along all axes at
-/// once.
+/// Minimum number of parts for building both sides in parallel, and for searching the axes in parallel.
 const PARALLEL: usize = 4096;
 
-/// Tells that so many parts are built, if that was one thread's work and all of it.
+/// Report the progress of a subtree, if one thread built all of it.
 fn told(steps: &Steps, parts: usize, room: Room, is_all: bool) {
     if is_all && parts <= PARALLEL {
-        // Whether to go on is asked before nodes are made.
+        // Cancellation is checked before nodes are created.
         let _ = steps.did(room.steps());
     }
 }
 
-/// Whether it is time to ask whether to go on: of few parts, much is built in no time.
+/// Return whether the build is canceled. Small cells are not checked, since they build quickly.
 fn is_stopped(steps: &Steps, parts: usize) -> bool {
     const FEW: usize = 256;
     parts > FEW && steps.is_stopped()
 }
 
-/// Nodes and leaves, and the box around everything.
+/// Build the nodes and leaves; return the scene's bounding box, too.
 pub fn build(input: &Input, options: &Options) -> (Vec<Node>, Lists, Aabb) {
     options.check();
     let (parts, bounds) = input.parts();
@@ -120,7 +120,7 @@ pub fn build(input: &Input, options: &Options) -> (Vec<Node>, Lists, Aabb) {
     }
     let depth = options.max_depth.unwrap_or_else(|| Room::depth_for(count).min(MAX_DEPTH));
     let room = Room::new(count, depth);
-    // The root, and what stands beside it so that all pairs of children begin at even numbers.
+    // The root and an unused node, so that all pairs of children start at even indices.
     let mut grown = Grown { nodes: vec![Node::EMPTY; 2], lists: Lists::default() };
     let steps = input.work.steps(Room::STEPS);
     grown.nodes[0] = match options.builder {
@@ -133,7 +133,7 @@ pub fn build(input: &Input, options: &Options) -> (Vec<Node>, Lists, Aabb) {
     (nodes, lists, bounds)
 }
 
-/// A tree that grows: what is below some nodes, whose places are counted from the first of it.
+/// A growing part of the tree whose node indices start at 0.
 #[derive(Default)]
 struct Grown {
     nodes: Vec<Node>,
@@ -141,7 +141,7 @@ struct Grown {
 }
 
 impl Grown {
-    /// Makes a leaf.
+    /// Create a leaf.
     fn leaf(&mut self, parts: &[Part]) -> Node {
         if parts.is_empty() {
             return Node::EMPTY;
@@ -152,8 +152,7 @@ impl Grown {
         Node::leaf(number, parts.len())
     }
 
-    /// Makes two children, what is below the first and then what is below the second, and gives the number of the
-    /// first; both at once if they are many.
+    /// Build two subtrees as adjacent children and return the index of the first; in parallel if they are large.
     fn pair(
         &mut self,
         many: bool,

@@ -1,5 +1,5 @@
-//! By the surface-area heuristic in n log n: the ends of all parts are sorted once, and stay sorted as they are dealt
-//! out (Wald and Havran, "On Building Fast kd-Trees for Ray Tracing, and on Doing That in O(N log N)", 2006).
+//! The surface area heuristic in n log n: part ends are sorted once and stay sorted when distributed (Wald and Havran,
+//! "On Building Fast kd-Trees for Ray Tracing, and on Doing That in O(N log N)", 2006).
 
 use super::super::area;
 use super::{Grown, Node, Options, PARALLEL, is_stopped, told};
@@ -9,8 +9,8 @@ use raywright_base::parallel::{self, CHUNK};
 use raywright_base::work::Steps;
 use std::ops::Range;
 
-/// An end of a part along an axis. In the order of its bits are: where it lies; whether the part ends there, lies flat
-/// there, or starts there; and the part's number.
+/// An end of a part along an axis. Its bits, in order of significance: the position; whether the part ends there, is
+/// flat there, or starts there; and the part's index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Event(u64);
 
@@ -19,17 +19,17 @@ const FLAT: u64 = 1;
 const START: u64 = 2;
 
 impl Event {
-    /// Parts are numbered below it.
+    /// Limit of part indices.
     const MOST: usize = 1 << 30;
 
     fn new(at: f32, kind: u64, part: usize) -> Self {
-        // So that bits are ordered as numbers are; adding 0 makes zeros one.
+        // Maps bits to the order of the numbers; adding 0 turns −0 into +0.
         let bits = (at + 0.0).to_bits();
         let ordered = if bits >> 31 == 0 { bits | 1 << 31 } else { !bits };
         Self(u64::from(ordered) << 32 | kind << 30 | part as u64)
     }
 
-    /// Those of a part, in order; the second is none if it is flat.
+    /// The events of a part in order; the second is None for a flat part.
     fn of(part: &Part, number: usize, axis: usize) -> [Option<Self>; 2] {
         let (least, greatest) = (part.aabb.min[axis], part.aabb.max[axis]);
         if least == greatest {
@@ -56,13 +56,13 @@ impl Event {
         self.0 as usize & (Self::MOST - 1)
     }
 
-    /// The same of a part with another number.
+    /// The same event for another part index.
     fn renumbered(self, part: u32) -> Self {
         Self(self.0 & !(Self::MOST as u64 - 1) | u64::from(part))
     }
 }
 
-/// A plane, and on which side what lies in it goes.
+/// A plane and the side for parts in the plane.
 #[derive(Clone, Copy, Debug)]
 struct Split {
     cost: f64,
@@ -70,19 +70,19 @@ struct Split {
     flat: usize,
 }
 
-/// What is in a cell.
+/// The content of a cell.
 struct Set {
     parts: Vec<Part>,
-    /// By axis, sorted.
+    /// Sorted events by axis.
     events: [Vec<Event>; 3],
     cell: Aabb,
     room: Room,
 }
 
-/// A part that does not go to a side, or goes there with other ends.
+/// Marks parts that are not on a side, or that are cut.
 const GONE: u32 = u32::MAX;
 
-/// Builds what is in a cell; gives its node.
+/// Build the subtree of a cell; return its node.
 pub fn grow(input: &Input, options: &Options, parts: Vec<Part>, cell: Aabb, room: Room, grown: &mut Grown) -> Node {
     let sorted = |axis: usize| {
         let ends = |i: usize| Event::of(&parts[i], i, axis).into_iter().flatten().map(|event| event.0);
@@ -133,13 +133,13 @@ impl Builder<'_> {
         Node::inner(split.plane.axis, split.plane.at, pair)
     }
 
-    /// The plane of least cost: of the first of them, should there be several.
+    /// The plane of least cost; the first of several.
     fn best(self, set: &Set) -> Option<Split> {
         let splits = on_axes(set.parts.len() > PARALLEL, |axis| self.best_across(set, axis));
         splits.into_iter().flatten().reduce(|best, split| if split.cost < best.cost { split } else { best })
     }
 
-    /// The same across one axis: sweeps over the ends, and counts what is on either side.
+    /// The same along one axis: a sweep over the events counts the parts on either side.
     fn best_across(self, set: &Set, axis: usize) -> Option<Split> {
         let cell = &set.cell;
         let size = cell.max.as_dvec3() - cell.min.as_dvec3();
@@ -148,12 +148,12 @@ impl Builder<'_> {
         if whole <= 0.0 || wide <= 0.0 {
             return None;
         }
-        // Of a side that has this share of the cell's width, the share of the cell's surface.
+        // A side's fraction of the cell's surface area, given its fraction of the width.
         let (ends, walls) = (other[0] * other[1] / whole, (other[0] + other[1]) / whole);
         let Options { traversal_cost, intersection_cost, empty_bonus, .. } = *self.options;
         let (traversal, intersection) = (f64::from(traversal_cost), f64::from(intersection_cost));
         let bonus = 1.0 - f64::from(empty_bonus);
-        // To count the blocks in which leaves are tested instead of what is in them is no faster, and no slower.
+        // Counting SIMD blocks of leaves instead of primitives made no measurable difference.
         let cost = |areas: [f64; 2], below: usize, above: usize| {
             let cost = traversal + intersection * (areas[0] * below as f64 + areas[1] * above as f64);
             if below == 0 || above == 0 { bonus * cost } else { cost }
@@ -188,14 +188,14 @@ impl Builder<'_> {
         best
     }
 
-    /// Deals everything out to both sides; none if that takes more parts than there may be.
+    /// Distribute everything to both sides; None if that exceeds the budget.
     fn parted(self, set: &Set, split: Split) -> Option<[Set; 2]> {
         let Split { plane, flat, .. } = split;
-        // By side, the new number of each part that goes there as it is.
+        // By side, the new index of each uncut part.
         let count = set.parts.len();
         let mut numbers = [vec![GONE; count], vec![GONE; count]];
         let mut parts = [Vec::new(), Vec::new()];
-        // By side, the numbers of those that are cut.
+        // By side, the indices of cut parts.
         let mut cut = [Vec::new(), Vec::new()];
         for (i, part) in set.parts.iter().enumerate() {
             let whole = match part.halves(self.input, plane) {
@@ -235,8 +235,7 @@ fn on_axes<T: Send>(many: bool, work: impl Fn(usize) -> T + Sync) -> [T; 3] {
     }
 }
 
-/// The ends along an axis on either side: of what goes there as it is in the order in which they were, of what is cut
-/// anew.
+/// The events along an axis on either side: those of uncut parts keep their order, and those of cut parts are new.
 fn dealt(
     events: &[Event],
     axis: usize,
