@@ -1,52 +1,52 @@
-//! Axes along which triangles fill more of their boxes than along the scene's.
+//! Rotated axes along which triangles fill their boxes better than along the scene's axes.
 //!
-//! What is built at right angles has boxes that fit along axes of its own, and fills little of its boxes along any
-//! others: a room that is turned by 45° then takes several times the time of a straight one, or several times the
-//! memory where what is long is cut. Rays can be turned for less. So where boxes are much larger than what is in them,
-//! frames of some triangles are tried: along a side, at right angles to it in the plane, and along the normal; where
-//! things have right angles, half of the triangles have theirs. (A frame for each box of a tree: Gottschalk, Lin and
-//! Manocha, "OBBTree", 1996.)
+//! Rectangular geometry fits boxes along its own axes, and fills little of them along others. A room rotated by 45°
+//! then takes several times the traversal time of an aligned one, or several times the memory if long primitives are
+//! split. Rotating the rays is cheaper. So if boxes are much larger than their content, the frames of sampled triangles
+//! are tried: a side, the perpendicular to it in the plane, and the normal. In rectangular geometry, half of the
+//! triangles have the right frame. (One frame per box: Gottschalk, Lin and Manocha, "OBBTree", 1996.)
 //!
-//! What decides is the surface of all boxes, which is how many of them a ray may be expected to meet.
+//! The criterion is the total surface area of the boxes, to which the expected number of hit boxes is proportional.
 
 use super::build::reference::SHARE;
 use raywright_base::math::{Aabb, Axes, DVec3};
 use raywright_base::parallel;
 use std::ops::Range;
 
-/// Boxes along other axes are worth their while if they have this share of the surface at most. Where sticks lie along
-/// all four diagonals, axes along one of them save a half, and cutting all of them saves more.
+/// Other axes are used if they reduce the surface area to this fraction or less. For sticks along all four diagonals,
+/// axes along one of them save a half, and splitting the sticks saves more.
 pub const WORTHWHILE: f64 = 1.0 / 3.0;
 
-/// Of so few triangles rays test so few boxes that it does not matter how they lie.
+/// Scenes with at most this many triangles have so few boxes that their axes do not matter.
 const FEW: usize = 64;
 
-/// Triangles by which axes are judged.
+/// Sample size for comparing axes.
 const SAMPLE: usize = 1024;
 
-/// Of these, those that have frames, and those by which all frames are judged at first.
+/// The number of sampled triangles that propose frames, and the number used for their first comparison.
 const TRIED: usize = 64;
 const BY: usize = 128;
 
-/// Frames that are judged by the whole sample.
+/// The number of frames compared on the whole sample.
 const BEST: usize = 8;
 
-/// A triangle of a sample.
+/// A sampled triangle.
 #[derive(Clone, Copy)]
 struct Sampled {
-    /// Two sides of it; in units in which its box along the scene's axes has a surface of 2.
+    /// Two of its sides, in units in which its box along the scene's axes has a surface of 2.
     sides: [DVec3; 2],
 }
 
 impl Sampled {
-    /// What its surface is along axes, over what it is along the scene's.
+    /// Its surface area along given axes, relative to the scene's.
     fn area(&self, axes: &Axes) -> f64 {
         let [b, c] = self.sides.map(|side| axes.to(side));
         let size = b.max(c).max(DVec3::ZERO) - b.min(c).min(DVec3::ZERO);
         (size.x * size.y + size.y * size.z + size.z * size.x) / (Axes::SCALE * Axes::SCALE)
     }
 
-    /// What it is at least along any axes: two sides of a box hold a parallelogram of which it is a half.
+    /// A lower bound of its surface area along any axes: two opposite sides of a box contain a parallelogram of twice
+    /// the triangle's area.
     fn least(&self) -> f64 {
         self.sides[0].cross(self.sides[1]).length()
     }
@@ -58,10 +58,10 @@ impl Sampled {
     }
 }
 
-/// The axes along which the boxes of triangles have the least surface, and have little enough of it as far as a sample
-/// tells; the boxes along the scene's are given, and empty where there is no triangle.
+/// The axes with the least surface area of the triangles' boxes, if the sample shows a sufficient gain. `boxes` are
+/// those along the scene's axes, empty for other primitives.
 ///
-/// They are the same for any number of threads.
+/// The result does not depend on the number of threads.
 pub fn find(boxes: &[Aabb], corners: impl Fn(u32) -> [DVec3; 3] + Sync) -> Option<Axes> {
     let sample = sample(boxes, corners);
     let mean =
@@ -79,14 +79,14 @@ pub fn find(boxes: &[Aabb], corners: impl Fn(u32) -> [DVec3; 3] + Sync) -> Optio
     (area <= WORTHWHILE).then_some(axes)
 }
 
-/// Triangles at even steps through the surface of all boxes, so that the mean of what they are over what their boxes
-/// are is that of all; none if there are few.
+/// Sample triangles in proportion to the surface area of their boxes, so that the mean of the areas' ratios is the
+/// ratio of the total areas. Empty for few triangles.
 fn sample(boxes: &[Aabb], corners: impl Fn(u32) -> [DVec3; 3] + Sync) -> Vec<Sampled> {
     let area = |b: &Aabb| if b.is_empty() { 0.0 } else { f64::from(b.half_area()) };
     if boxes.len() <= FEW {
         return Vec::new();
     }
-    // From which share of the boxes on there is how much of the surface.
+    // Prefix sums of the surface area over chunks of boxes.
     let of_share = |share: Range<usize>| boxes[share].iter().map(area).sum::<f64>();
     let mut shares = parallel::map_chunks(boxes.len(), SHARE, of_share);
     let mut before = 0.0;
@@ -122,13 +122,13 @@ mod tests {
     use raywright_base::sampling::philox4x32;
     use raywright_base::workers;
 
-    /// Three numbers from −1 to 1.
+    /// A vector in [−1, 1]³.
     fn triple(i: u32) -> DVec3 {
         let [x, y, z, _] = philox4x32([i, 0, 0, 0], [3, 3]).map(|bits| f64::from(bits) / f64::from(1u32 << 31) - 1.0);
         DVec3::new(x, y, z)
     }
 
-    /// Long thin triangles with a right angle along some axes, among as many small ones of any kind.
+    /// Long thin right triangles along given axes, and as many small ones of any orientation.
     fn sticks(axes: [DVec3; 3], count: u32) -> Vec<[DVec3; 3]> {
         let stick = |i: u32| {
             let (from, way) = (triple(i), i as usize % 3);
@@ -157,7 +157,7 @@ mod tests {
             for count in [33, 20_000] {
                 let axes = found(&sticks(own, count)).unwrap();
                 for stick in own {
-                    // Along one of them, and none of the others.
+                    // Parallel to one axis exactly.
                     let along = axes.to(stick).abs();
                     assert!((along.max_element() - Axes::SCALE).abs() < 1e-9, "{axes:?}, {own:?}");
                     assert!((along.element_sum() - Axes::SCALE).abs() < 1e-9, "{axes:?}, {own:?}");

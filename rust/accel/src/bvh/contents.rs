@@ -1,15 +1,15 @@
-//! What builders see of primitives besides their boxes.
+//! The geometry of primitives as builders use it for splitting.
 
 use super::build::Shapes;
 use crate::Primitives;
 use raywright_base::math::{Aabb, Axes, DVec3, Region, Vec3};
 use raywright_shapes::triangle::clipped;
 
-/// Primitives in box units; those that are no triangles fill their boxes, or are nowhere if none are given.
+/// Primitives in box units. Primitives other than triangles are treated as filling their boxes.
 pub struct Contents<'a> {
     pub primitives: &'a dyn Primitives,
     pub region: &'a Region,
-    /// What boxes lie along, if not the scene's own axes.
+    /// The tree's own axes, if they differ from the scene's.
     pub axes: Option<&'a Axes>,
     pub boxes: &'a [Aabb],
 }

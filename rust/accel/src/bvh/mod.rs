@@ -1,4 +1,4 @@
-//! Bounding volume hierarchies: a binary tree that builders make, and wide trees that rays walk.
+//! Bounding volume hierarchies: binary trees for builders, and wide trees for traversal.
 
 mod axes;
 pub mod build;
@@ -20,7 +20,7 @@ use super::{Accelerator, Primitives};
 use raywright_base::simd::{Dispatch, Level};
 use raywright_shapes::triangle::{DoubleLeaves, Leaves, SingleLeaves};
 
-/// A tree over what is tested one by one: a wide one, or a binary one of moving boxes if anything moves.
+/// A tree over primitives tested one by one: a wide one, or a binary one of moving boxes if anything moves.
 pub(super) fn over_objects(input: &Input, options: &Options, level: Level) -> Built {
     if input.primitives.objects().is_some_and(|objects| objects.moves()) {
         let built = options.quality.steps(1).whole(&input.boxes, input.work);
@@ -31,18 +31,19 @@ pub(super) fn over_objects(input: &Input, options: &Options, level: Level) -> Bu
     }
 }
 
-/// A wide tree as wide as the level's registers, 8 from AVX2 on and 4 below, that keeps numbers as precisely as they
-/// are.
+/// A wide tree with as many children per node as SIMD lanes, 8 from AVX2 on and 4 below, with coordinates in the given
+/// precision.
 pub fn widest(primitives: &dyn Primitives, options: &Options, level: Level) -> Box<dyn Accelerator> {
     wide(level.lanes(), primitives, options, level)
 }
 
-/// A tree of so many children a node, 4 or 8.
+/// A tree with the given number of children per node, 4 or 8.
 ///
-/// Not generic: a tree with all its kernels is much code, and whoever made one of a type of their own would compile it
-/// again.
+/// It is not generic, since its kernels are much code, which would be compiled again in every crate that instantiates
+/// them.
 ///
 /// # Panics
+///
 /// If the level has fewer lanes, or there is no tree of that width.
 pub fn wide(width: usize, primitives: &dyn Primitives, options: &Options, level: Level) -> Box<dyn Accelerator> {
     match (width, primitives.is_single()) {
@@ -54,7 +55,7 @@ pub fn wide(width: usize, primitives: &dyn Primitives, options: &Options, level:
     }
 }
 
-/// A tree over leaves of another type, by which a bench compares these with others.
+/// A tree with another type of leaves, for benchmarks.
 #[doc(hidden)]
 pub fn with_leaves<const N: usize, L: Leaves<N>>(
     primitives: &dyn Primitives,

@@ -1,27 +1,26 @@
-//! The binary tree that every builder makes, of 32-byte nodes.
+//! The binary BVH of all builders, with 32-byte nodes.
 
 use super::parts::cover;
 use raywright_base::math::{Aabb, Vec3};
 
-/// A node of a binary tree: half a cache line, so that a pair of children is one.
+/// A node of a binary tree: half a cache line, so that siblings share one.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct Node {
-    /// The least corner of the box.
+    /// The min corner of the box.
     pub min: Vec3,
-    /// Of an inner node, the first of its two children, which lie side by side; of a leaf, where its primitives start
-    /// in [`BinaryBvh::order`].
+    /// The first of two adjacent children of an inner node; the first entry of a leaf in [`BinaryBvh::order`].
     pub index: u32,
-    /// The greatest corner of the box.
+    /// The max corner of the box.
     pub max: Vec3,
-    /// How many primitives a leaf has; 0 for an inner node.
+    /// The number of primitives of a leaf; 0 for an inner node.
     pub count: u32,
 }
 
 const _: () = assert!(size_of::<Node>() == 32);
 
 impl Node {
-    /// A leaf over `count` primitives from `index` on.
+    /// A leaf with `count` primitives from `index`.
     pub fn leaf(bounds: Aabb, index: u32, count: u32) -> Self {
         Self { min: bounds.min, index, max: bounds.max, count }
     }
@@ -31,7 +30,7 @@ impl Node {
         Self { min: bounds.min, index, max: bounds.max, count: 0 }
     }
 
-    /// Whether it is a leaf.
+    /// Return whether it is a leaf.
     pub fn is_leaf(&self) -> bool {
         self.count > 0
     }
@@ -47,22 +46,23 @@ impl Node {
     }
 }
 
-/// A binary tree over boxes. Node 0 is the root; children come after their parent; no nodes, no primitives.
+/// A binary tree over boxes. Node 0 is the root, and children follow their parent. Without primitives there are no
+/// nodes.
 #[derive(Clone, Debug, Default)]
 pub struct BinaryBvh {
     /// The nodes.
     pub nodes: Vec<Node>,
-    /// The numbers of the primitives, as leaves refer to them.
+    /// The primitives' numbers in the order of the leaves.
     pub order: Vec<u32>,
 }
 
 impl BinaryBvh {
-    /// The box around all.
+    /// The bounding box of the tree.
     pub fn bounds(&self) -> Aabb {
         self.nodes.first().map_or(Aabb::EMPTY, Node::aabb)
     }
 
-    /// The longest way from the root to a leaf, in steps.
+    /// The depth of the tree.
     pub fn depth(&self) -> usize {
         let mut depth = vec![0usize; self.nodes.len()];
         for (i, node) in self.nodes.iter().enumerate().filter(|(_, n)| !n.is_leaf()) {
@@ -73,8 +73,8 @@ impl BinaryBvh {
         depth.into_iter().max().unwrap_or(0)
     }
 
-    /// Checks what traversal relies on: boxes hold their children's and those of their primitives, every primitive
-    /// that is not empty stands in one leaf, once, and children follow their parent.
+    /// Check the invariants of traversal. Boxes contain those of their children and primitives, every nonempty
+    /// primitive is in exactly one leaf, and children follow their parent.
     pub fn validate(&self, boxes: &[Aabb]) -> Result<(), String> {
         let mut met = vec![0u32; boxes.len()];
         self.check(|i, node, primitives| {
@@ -92,10 +92,10 @@ impl BinaryBvh {
         }
     }
 
-    /// The same of a tree whose primitives may stand in several leaves, part by part: boxes hold their children's,
-    /// children follow their parent, every primitive that is not empty stands in some leaf, no leaf has it twice, and
-    /// its leaves' boxes together hold it. What lies between them by less than 2⁻²⁰ of the primitive's largest
-    /// coordinate is not seen, nor more than `clip` tells; see [`Builder::build`](super::build::Builder::build).
+    /// The same for trees that split primitives. Boxes contain those of their children, and children follow their
+    /// parent. Every nonempty primitive is in some leaf, at most once per leaf, and the boxes of its leaves together
+    /// cover it. Gaps of less than 2⁻²⁰ of the primitive's largest coordinate are not detected, nor gaps hidden by the
+    /// bounds of `clip`; see [`Builder::build`](super::build::Builder::build).
     pub fn validate_parts(&self, boxes: &[Aabb], clip: impl Fn(u32, &Aabb) -> Aabb) -> Result<(), String> {
         let mut parts = vec![Vec::new(); boxes.len()];
         self.check(|i, node, primitives| {
@@ -118,7 +118,7 @@ impl BinaryBvh {
         Ok(())
     }
 
-    /// Checks that children follow their parents, which hold them, and gives each leaf to another check, with its
+    /// Check that children follow their parents, whose boxes contain theirs, and run another check on each leaf and its
     /// primitives.
     fn check(&self, mut leaf: impl FnMut(usize, &Node, &[u32]) -> Result<(), String>) -> Result<(), String> {
         let mut parents = vec![0u32; self.nodes.len()];

@@ -1,16 +1,15 @@
-//! Whether boxes hold a primitive together, each a part of it.
+//! Test whether boxes together cover a primitive.
 
 use raywright_base::math::{Aabb, Vec3};
 
-/// What may lie between boxes without being seen, over the largest coordinate.
+/// Maximum undetected gap between boxes, relative to the largest coordinate.
 const GAP: f32 = 1.0 / (1u32 << 20) as f32;
 
-/// Whether some boxes together hold a primitive, whose own box is `whole`; `clip` gives a box around what of it lies in
-/// another.
+/// Return whether boxes together cover a primitive with the box `whole`; `clip` bounds its part in a box.
 ///
-/// The primitive's box is cut along faces of the boxes until a piece holds nothing of the primitive, or lies in one of
-/// the boxes, or no face cuts it. The boxes are made larger by 2⁻²⁰ of the largest coordinate before, many times what
-/// `clip` may exceed: else a face on which the primitive ends might have something beyond it.
+/// The primitive's box is split along faces of the boxes until each piece is empty of the primitive, inside one of the
+/// boxes, or not cut by any face. The boxes are first enlarged by 2⁻²⁰ of the largest coordinate, many times the error
+/// of `clip`. Otherwise a piece beyond a face at the primitive's border might seem nonempty.
 pub fn cover(boxes: &[Aabb], whole: &Aabb, clip: impl Fn(&Aabb) -> Aabb) -> bool {
     let gap = Vec3::splat(GAP * whole.min.abs().max(whole.max.abs()).max_element());
     let boxes: Vec<_> = boxes.iter().map(|b| Aabb { min: b.min - gap, max: b.max + gap }).collect();
@@ -32,7 +31,7 @@ pub fn cover(boxes: &[Aabb], whole: &Aabb, clip: impl Fn(&Aabb) -> Aabb) -> bool
     true
 }
 
-/// A face of a box that cuts another in two: its axis and where it is.
+/// A face of a box that splits another one: its axis and position.
 fn face(of: &Aabb, cut: &Aabb) -> Option<(usize, f32)> {
     let faces = (0..3).flat_map(|axis| [(axis, of.min[axis]), (axis, of.max[axis])]);
     faces.into_iter().find(|&(axis, at)| cut.min[axis] < at && at < cut.max[axis])

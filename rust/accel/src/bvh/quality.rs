@@ -1,4 +1,4 @@
-//! How a tree is made, step by step, and how much time that may take for the sake of the rays.
+//! The steps of a BVH build for each build quality.
 
 use super::BinaryBvh;
 use super::build::presplit::{self, Pieces, Remedy};
@@ -9,25 +9,24 @@ use raywright_base::math::{Aabb, Vec3};
 use raywright_base::work::{Stopped, Work};
 use std::borrow::Cow;
 
-/// A choice between a tree soon and a tree that rays walk fast.
+/// The trade-off between build time and traversal time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Quality {
-    /// For few rays, or for geometry that changes all the time.
+    /// For few rays, or geometry that changes frequently.
     FastBuild,
-    /// For most scenes: what is long and diagonal is taken care of, by spatial splits where it is little and by cuts
-    /// before the build where it is much, and a mesh of even triangles takes no more time than it takes to see that
-    /// nothing in it is.
+    /// For most scenes. Long diagonal geometry is handled by spatial splits if there is little of it, and by splits
+    /// before the build if there is much. A regular mesh pays only for detecting that it has none.
     #[default]
     Balanced,
-    /// For many rays on one scene, which does not move: what straddles a plane may be parted by it.
+    /// For many rays in a static scene: primitives may be split by planes.
     FastRays,
 }
 
 impl Quality {
-    /// All of them, from least to most time.
+    /// All qualities, by increasing build time.
     pub const ALL: [Self; 3] = [Self::FastBuild, Self::Balanced, Self::FastRays];
 
-    /// Bins an axis that suit it.
+    /// The number of bins per axis.
     pub const fn bins(self) -> usize {
         match self {
             Self::FastBuild => 8,
@@ -36,9 +35,9 @@ impl Quality {
         }
     }
 
-    /// How to build for leaves of blocks of so many triangles.
+    /// The build steps for leaves of blocks with the given number of triangles.
     pub const fn steps(self, block: usize) -> Steps {
-        // Where time is short nothing is improved, unless that is asked for.
+        // FastBuild runs no optimizer unless requested.
         let (optimisers, rounds, share, worthwhile) = match self {
             Self::FastBuild => (Optimisers::NONE, 6, 0.1, 2e-3),
             Self::Balanced => (Optimisers::REINSERTION, 6, 0.1, 2e-3),
@@ -47,8 +46,8 @@ impl Quality {
         let builder = Builder::Binned { bins: Some(self.bins()) };
         let cuts = match self {
             Self::FastBuild => None,
-            // A tree over pieces cannot be refitted, so a ray must meet less than half as many boxes. With more pieces
-            // it would meet fewer still, but be slower for want of cache.
+            // A tree over pieces cannot be refitted, so it has to halve the number of boxes per ray at least. More
+            // pieces would reduce that number further, but cache misses would cost more.
             Self::Balanced => {
                 let planes = Builder::Spatial { bins: Some(self.bins()), budget: BUDGET };
                 Some(Cuts { options: presplit::Options { budget: 4.0, worthwhile: 0.5 }, builder, planes })
@@ -67,61 +66,61 @@ impl Quality {
     }
 }
 
-/// What is done about what fills little of its box.
+/// How primitives that fill little of their box are split.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cuts {
-    /// How much is cut before a build, where there is much of it.
+    /// Options of splitting before the build, if there are many of them.
     pub options: presplit::Options,
-    /// How the tree is built then.
+    /// The builder over their pieces.
     pub builder: Builder,
-    /// How it is built where there is less of it, so that nothing need be cut before.
+    /// The builder if there are few, without splitting before.
     pub planes: Builder,
 }
 
 impl Cuts {
-    /// The same with so many bins.
+    /// The same with the given number of bins.
     pub fn with_bins(self, bins: usize) -> Self {
         let [builder, planes] = [self.builder, self.planes].map(|builder| builder.with_bins(bins));
         Self { builder, planes, ..self }
     }
 
-    /// Spatial splits, and the cuts that they need before. Together they add at most `budget` references for each
-    /// primitive.
+    /// Spatial splits, and splits before the build. Together they add at most `budget` references per primitive.
     pub const fn and_splits(bins: Option<usize>, budget: f32) -> Self {
         let builder = Builder::Spatial { bins, budget };
         Self { options: presplit::Options { budget, worthwhile: 0.125 }, builder, planes: builder }
     }
 }
 
-/// What is done one after the other.
+/// The steps of a build.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Steps {
-    /// What is cut before, where that is worthwhile.
+    /// Splitting, where it pays.
     pub cuts: Option<Cuts>,
-    /// Whether boxes may lie along other axes than the scene's, where that serves.
+    /// True if boxes may be along rotated axes, where that pays.
     pub may_turn: bool,
-    /// How the tree is built where nothing is.
+    /// The builder if nothing is split.
     pub builder: Builder,
     /// When a builder makes a leaf.
     pub leaves: Leaves,
-    /// What improves it then.
+    /// The optimizers that run after the build.
     pub optimisers: Optimisers,
-    /// How much is reinserted, if anything is.
+    /// Options of reinsertion.
     pub reinsertion: reinsertion::Options,
-    /// How many treelets are tried, if any are.
+    /// Options of treelet restructuring.
     pub treelet: treelet::Options,
 }
 
 impl Steps {
-    /// Makes a tree over boxes none of which is cut, leaving out empty ones, and says how.
+    /// Build a tree over unsplit boxes, skipping empty ones, and describe the method.
     pub fn whole(self, boxes: &[Aabb], work: Work) -> Result<(BinaryBvh, String), Stopped> {
         let fill = |p: u32, to: &Aabb| boxes[p as usize].intersection(*to);
         Self { cuts: None, ..self }.build(boxes, fill, work)
     }
 
-    /// Makes a tree over boxes, leaving out empty ones, and tells how it was made, for people.
+    /// Build a tree over boxes, skipping empty ones, and describe the method in words.
     ///
     /// # Panics
+    ///
     /// If an option is out of range.
     pub fn build<'a>(
         &self,
@@ -135,7 +134,8 @@ impl Steps {
         let remedy = self.cuts.map(|cuts| (cuts, Remedy::of(&boxes, &shapes, &cuts.options)));
         work.goes_on()?;
         look.done();
-        // Planes take some five times as long as whole primitives do, and cuts longer than a tree of their pieces.
+        // Relative durations: spatial splits take some five times as long as object splits, and presplitting longer
+        // than a tree of its pieces.
         let (cutting, growing) = match remedy {
             Some((_, Remedy::Pieces)) => (12.0, 5.0),
             Some((_, Remedy::Planes)) => (0.0, 24.0),
@@ -171,13 +171,13 @@ impl Steps {
             }
             name = format!("{name} and {}", optimiser.name());
         }
-        // Who finds nothing more to gain ends early.
+        // An optimizer without further gain ends early.
         improve.done();
         Ok((bvh, name))
     }
 }
 
-/// Shapes that are clipped as long as that is wanted: then nothing is cut any further.
+/// Shapes that clip to nothing once the build is canceled, which ends splitting.
 struct Wanted<'a, S> {
     shapes: S,
     work: Work<'a>,
@@ -209,7 +209,7 @@ mod tests {
 
     #[test]
     fn more_time_makes_trees_of_less_area() {
-        // A jumble of sticks.
+        // Randomly placed sticks.
         let boxes: Vec<_> = (0..20_000)
             .map(|i| {
                 let [x, y, z, which] = philox4x32([i, 0, 0, 0], [0, 0]).map(|bits| bits as f32 / 2f32.powi(32));
@@ -226,7 +226,7 @@ mod tests {
         assert!(costs[1] < costs[0] && costs[2] < costs[1], "{costs:?}");
     }
 
-    /// Triangles, whose parts are estimated by their corners.
+    /// Triangles whose parts are estimated from their corners.
     struct Triangles(Vec<[DVec3; 3]>);
 
     impl Shapes for Triangles {
@@ -239,7 +239,7 @@ mod tests {
         }
     }
 
-    /// Triangles along a diagonal, one in so many of which is long, and their boxes.
+    /// Triangles along a diagonal, one in `long_one_in` of them long, and their boxes.
     fn triangles(long_one_in: u32) -> (Triangles, Vec<Aabb>) {
         let triangle = |i: u32| {
             let [x, y, z, _] = philox4x32([i, 0, 0, 0], [0, 0]).map(|bits| f64::from(bits) / 2f64.powi(32));
@@ -265,7 +265,7 @@ mod tests {
             let shapes = Triangles(triangles.0.clone());
             pool.install(|| built(quality, &boxes, shapes))
         };
-        // Inner nodes and leaves by area, over the root's.
+        // The areas of inner nodes and leaves, relative to the root's.
         let cost = |bvh: &BinaryBvh| {
             let area = |n: &Node| f64::from(n.aabb().half_area()) * f64::from(n.count.max(1));
             bvh.nodes.iter().map(area).sum::<f64>() / f64::from(bvh.nodes[0].aabb().half_area())
@@ -277,7 +277,7 @@ mod tests {
         assert_eq!(name, "SAH with spatial splits and reinsertion");
         one.validate_parts(&boxes, |p, to| triangles.clip(p, to)).unwrap();
         assert!(cost(&one) < 0.6 * cost(&whole), "{} from {}", cost(&one), cost(&whole));
-        // Planes found by estimates are as good as planes found by clipping.
+        // Planes found by estimates are as good as those found by clipping.
         assert!(cost(&one) < 1.02 * cost(&clipped), "{}, not {}", cost(&one), cost(&clipped));
         assert!(one.order.len() < 45_000, "{}", one.order.len());
         let nodes = |bvh: &BinaryBvh| -> Vec<_> {
@@ -288,7 +288,7 @@ mod tests {
 
     #[test]
     fn planes_and_cuts_tell_all_that_they_do_and_end_when_they_are_stopped() {
-        /// Stops the work when so many have been clipped.
+        /// Cancels the work after a number of clips.
         struct Stopping<'a> {
             triangles: &'a Triangles,
             watch: &'a Watch,
@@ -320,7 +320,7 @@ mod tests {
             let (name, clips, share) = build(usize::MAX);
             assert!(name.as_ref().is_ok_and(|name| name.starts_with(made)), "{name:?}");
             assert_eq!(share, 1.0);
-            // Wherever it is stopped, hardly anything is clipped any more.
+            // At any time of canceling, almost nothing is clipped afterwards.
             for most in [1, clips / 10, clips / 2, 9 * clips / 10] {
                 let (stopped, after, share) = build(most);
                 assert_eq!(stopped, Err(Stopped), "at {most} of {clips}");
@@ -346,7 +346,7 @@ mod tests {
             bvh.validate_parts(&boxes, clip).unwrap();
             assert!(bvh.order.len() > 9000 && name.ends_with(" of pieces and reinsertion"), "{name}");
         }
-        // Less by a factor, at least.
+        // Each lower by a factor.
         let leaves = |bvh: &BinaryBvh| {
             let area = |n: &Node| f64::from(n.aabb().half_area()) * f64::from(n.count);
             bvh.nodes.iter().map(area).sum::<f64>()

@@ -1,7 +1,7 @@
-//! Top-down by the surface-area heuristic in bins, on all cores.
+//! A parallel top-down builder with the surface area heuristic on bins.
 //!
-//! Where a tree is to be collapsed, it splits down to a few primitives a leaf. How many go into one leaf of the tree
-//! that rays walk is decided then, where the cost of a block of triangles and of wide nodes is known.
+//! A tree that will be collapsed is split down to a few primitives per leaf. The final leaf size is decided in the
+//! collapse, where the costs of triangle blocks and wide nodes are known.
 
 use super::bins::{Bins, Split};
 use super::part::Part;
@@ -15,21 +15,22 @@ use std::borrow::Cow;
 
 pub use super::bins::MAX_BINS;
 
-/// How to build.
+/// Build options.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// Bins an axis, from 2 to [`MAX_BINS`].
+    /// Bins per axis, from 2 to [`MAX_BINS`].
     pub bins: usize,
-    /// When a leaf is made. How what fits a block is split hardly matters, and is decided quickly.
+    /// When a leaf is made. Splits of sets that fit a block hardly matter, and are decided quickly.
     pub leaves: Leaves,
 }
 
-/// Builds a tree over boxes, leaving out empty ones.
+/// Build a tree over boxes, skipping empty ones.
 ///
-/// Takes time n log n on any input: a split that makes no progress by area gives way to the median, and so do all
-/// splits from a depth on that a reasonable tree does not reach.
+/// Time is n log n on any input: splits without progress by area are replaced by median splits, and so are all splits
+/// beyond a depth that no reasonable tree reaches.
 ///
 /// # Panics
+///
 /// If an option is out of range.
 pub fn build<'a>(boxes: impl Into<Cow<'a, [Aabb]>>, options: &Options, work: Work) -> Result<BinaryBvh, Stopped> {
     let Options { bins, leaves } = *options;
@@ -50,21 +51,21 @@ pub fn build<'a>(boxes: impl Into<Cow<'a, [Aabb]>>, options: &Options, work: Wor
     part.assemble(order, place)
 }
 
-/// What to build of a slice of the references.
+/// The parameters for building a subtree from a slice of references.
 #[derive(Clone, Copy)]
 pub struct Task {
-    /// Bins an axis.
+    /// Bins per axis.
     pub bins: usize,
     /// When a leaf is made.
     pub leaves: Leaves,
-    /// How many more levels may be split by area.
+    /// The remaining number of levels with splits by area.
     pub spare: usize,
-    /// The first primitive, as leaves refer to it; none if parts are to list theirs.
+    /// The index of the first primitive in the order; None if parts list their own.
     pub first: Option<u32>,
 }
 
 impl Task {
-    /// Builds a subtree.
+    /// Build a subtree.
     pub fn build(self, references: &mut [Reference], extents: Extents, due: Due) -> Result<Part, Stopped> {
         if references.len() <= TASK {
             let part = self.build_alone(references, extents);
@@ -93,11 +94,11 @@ impl Task {
         Ok(Part::pair(extents.all.aabb(), left?, right?))
     }
 
-    /// Builds a subtree on this thread.
+    /// Build a subtree on this thread.
     pub fn build_alone(self, references: &mut [Reference], extents: Extents) -> Part {
-        /// A node to be made.
+        /// A pending node.
         struct Open {
-            /// Its place below the root, or none for the root.
+            /// Its index below the root; None for the root.
             node: Option<usize>,
             start: usize,
             end: usize,
@@ -122,7 +123,7 @@ impl Task {
             let Some((middle, [left, right])) = split else { continue };
             let (middle, spare) = (start + middle, spare.saturating_sub(1));
             below.extend([nothing; 2]);
-            // The last is taken first, so that what is below the left child comes first.
+            // The stack is popped from the end, so the left subtree comes first.
             open.push(Open { node: Some(child + 1), start: middle, end, extents: right, spare });
             open.push(Open { node: Some(child), start, end: middle, extents: left, spare });
         }
@@ -131,7 +132,7 @@ impl Task {
         Part::Whole { root, below, order }
     }
 
-    /// Splits some primitives, unless they are to be a leaf: how many go left, and the extents of both sides.
+    /// Split references unless they become a leaf; return the number on the left and the extents of both sides.
     #[inline(always)]
     fn split(
         &self,
@@ -160,7 +161,8 @@ impl Task {
     }
 }
 
-/// Sorts at most [`Leaves::MAX_BLOCK`] along an axis and tells where to split them, by the surface-area heuristic.
+/// Sort at most [`Leaves::MAX_BLOCK`] references along an axis, and return the best split position by the surface area
+/// heuristic.
 #[inline(always)]
 fn sweep(references: &mut [Reference], axis: usize) -> usize {
     let n = references.len();
@@ -252,7 +254,7 @@ mod tests {
 
     #[test]
     fn two_groups_apart_are_parted_first() {
-        // Where the gap is, no plane cuts a box and both sides are smallest.
+        // A plane in the gap cuts no box, and both sides are smallest.
         let boxes: Vec<_> =
             (0..300).map(|i| point([if i % 3 == 0 { 9.0 } else { 0.0 } + 1e-3 * i as f32, 0.0, 0.5])).collect();
         let bvh = check(&boxes, 8);
@@ -262,7 +264,7 @@ mod tests {
 
     #[test]
     fn a_staircase_of_scales_stays_shallow() {
-        // Each box holds all that come before it, and equal bins can cut off only one at a time.
+        // Each box contains all previous ones, and equal bins can separate only one at a time.
         let boxes: Vec<_> = (0..40_000)
             .map(|i| {
                 let s = 1.0 - 0.9997f32.powi(i);

@@ -1,31 +1,31 @@
-//! Where to split a set of boxes: the surface-area heuristic at the borders of equal bins (Wald, "On fast Construction
-//! of SAH-based Bounding Volume Hierarchies", 2007).
+//! Binned splits: the surface area heuristic at the borders of equal bins (Wald, "On fast Construction of SAH-based
+//! Bounding Volume Hierarchies", 2007).
 
 use super::reference::{Bounds, Extents, MANY, Reference, SHARE};
 use glam::Vec4;
 use raywright_base::parallel;
 use std::ops::Range;
 
-/// Most bins that may be asked for.
+/// Maximum number of bins.
 pub const MAX_BINS: usize = 64;
 
-/// How many references there are on a side of a plane, and what is around them.
+/// The number of references on a side of a plane, and their bounds.
 pub type Side = (usize, Bounds);
 
 /// A plane between bins.
 #[derive(Clone, Copy)]
 pub struct Split {
     axis: usize,
-    /// The last place on the left, as [`Binning::place`] gives it.
+    /// The last place on the left, as returned by [`Binning::place`].
     last: f32,
     binning: Binning,
 }
 
 impl Split {
-    /// The cheapest plane; none if no plane parts the centres.
+    /// The cheapest plane; None if no plane separates the centres.
     #[inline(always)]
     pub fn best(references: &[Reference], extents: &Extents, bins: usize, workspace: &mut Bins) -> Option<Self> {
-        // Small nodes, of which there are many, are split as well with fewer.
+        // Fewer bins are as good for small nodes, which are numerous.
         let bins = bins.min((references.len() / 2).max(8));
         let binning = Binning::new(&extents.centres, bins);
         workspace.clear(bins);
@@ -33,12 +33,12 @@ impl Split {
         workspace.best(bins, binning)
     }
 
-    /// The same, by several threads.
+    /// The same in parallel.
     pub fn best_of_many(references: &[Reference], extents: &Extents, bins: usize) -> Option<Self> {
         Self::filled_by_many(references, extents, bins).0
     }
 
-    /// The cheapest plane by several threads where references are many, and what lies on either side of it.
+    /// The cheapest plane and its two sides, in parallel for many references.
     pub fn best_with_sides(references: &[Reference], extents: &Extents, bins: usize) -> Option<(Self, [Side; 2])> {
         let (split, bins) = if references.len() < MANY {
             let mut filled = Bins::new();
@@ -61,17 +61,17 @@ impl Split {
         (filled.best(bins, binning), filled)
     }
 
-    /// On which side a reference is.
+    /// Return whether a reference is on the left.
     #[inline(always)]
     pub fn is_left(&self, r: &Reference) -> bool {
         self.binning.place(r, self.axis) <= self.last
     }
 }
 
-/// Adding it rounds to a whole number, which then is the lower bits: quicker than a conversion.
+/// Adding this rounds to an integer in the lower bits, which is faster than a conversion.
 pub const WHOLE: f32 = 1.5 * (1 << 23) as f32;
 
-/// From a centre to its bin. Binning and partitioning round alike, so they always agree.
+/// The map from a centre to its bin. Binning and partitioning round in the same way, so they always agree.
 #[derive(Clone, Copy)]
 struct Binning {
     origin: Vec4,
@@ -81,7 +81,7 @@ struct Binning {
 impl Binning {
     fn new(centres: &Bounds, bins: usize) -> Self {
         let size = centres.size();
-        // Just under the number of bins, so that the last centre falls into the last bin. Flat axes get bin 0 alone.
+        // Just under the number of bins, so that the last centre falls into the last bin. Flat axes use bin 0 alone.
         let scale = Vec4::splat(bins as f32 * (1.0 - 1e-6)) / size;
         let usable = scale.is_finite_mask() & size.cmpgt(Vec4::ZERO);
         Self { origin: centres.least(), scale: Vec4::select(usable, scale, Vec4::ZERO) }
@@ -103,7 +103,7 @@ impl Binning {
     }
 }
 
-/// The bins of the three axes: what they hold, and how many. Reused from node to node, since clearing all of them costs
+/// The bins of the three axes, with bounds and counts. They are reused for every node, since clearing all of them costs
 /// more than filling a few.
 pub struct Bins {
     bounds: Box<[[Bounds; MAX_BINS]; 3]>,
@@ -111,7 +111,7 @@ pub struct Bins {
 }
 
 impl Bins {
-    /// All of them, empty.
+    /// Empty bins.
     pub fn new() -> Self {
         Self { bounds: Box::new([[Bounds::EMPTY; MAX_BINS]; 3]), counts: [[0; MAX_BINS]; 3] }
     }
@@ -126,8 +126,7 @@ impl Bins {
 
     #[inline(always)]
     fn add(&mut self, references: &[Reference], binning: &Binning) {
-        // Neighbours often fall into the same bin, where the second would wait for the first: take turns with some from
-        // afar.
+        // Neighbours often share a bin, which makes the second wait for the first: alternate with distant ones.
         let (first, second) = references.split_at(references.len() / 2);
         for (i, r) in second.iter().enumerate() {
             self.add_one(r, binning);
@@ -156,7 +155,7 @@ impl Bins {
         self
     }
 
-    /// What lies on either side of a plane.
+    /// The content of both sides of a plane.
     fn sides(&self, split: &Split) -> [Side; 2] {
         let last = (split.last - WHOLE) as usize;
         let mut sides = [(0, Bounds::EMPTY); 2];
@@ -176,7 +175,7 @@ impl Bins {
                 continue;
             }
             let (bounds, counts) = (&self.bounds[axis], &self.counts[axis]);
-            // Costs of all that lies right of a plane, then swept from the left.
+            // The costs to the right of each plane; then a sweep from the left.
             let mut right = [0f32; MAX_BINS];
             let (mut grown, mut count) = (Bounds::EMPTY, 0);
             for i in (1..bins).rev() {
@@ -188,7 +187,7 @@ impl Bins {
             for i in 0..bins - 1 {
                 grown.grow(&bounds[i]);
                 count += counts[i];
-                // With nothing on the left it is no number, which is not less than anything.
+                // NaN if the left is empty, which fails the comparison.
                 let cost = grown.half_area() * count as f32 + right[i + 1];
                 if cost < least {
                     (least, best) = (cost, Some(Split { axis, last: WHOLE + i as f32, binning }));

@@ -1,11 +1,11 @@
-//! What of a triangle lies between planes across an axis, about: by where the planes cut its edges.
+//! Approximate bounds of a triangle's parts between parallel planes, from the cuts of its edges.
 
 use super::reference::Bounds;
 use glam::Vec4;
 use std::ops::RangeInclusive;
 
-/// Gives the bounds of the parts of a reference, some of a triangle, in some bins, of which `border` tells the lower
-/// one. Parts err by roundings in f32, and what boxes cut off before across other axes counts as whole.
+/// Compute the bounds of a reference's parts in a range of bins; `border` returns the lower border of a bin. They err
+/// by f32 rounding. Earlier cuts across other axes are ignored.
 #[inline(always)]
 pub fn parts(
     corners: &[Vec4; 3],
@@ -18,7 +18,7 @@ pub fn parts(
     let edges = Edges::new(corners, axis);
     let (first, last) = (*bins.start(), *bins.end());
     let (from, to) = (of.least().as_ref()[axis], of.greatest().as_ref()[axis]);
-    // A piece begins where the triangle is cut already.
+    // The first part begins at the reference's own border.
     let mut lower = if edges.at[0] < from { edges.section(from) } else { Bounds::point(edges.corners[0]) };
     let mut seen = usize::from(edges.at[1] < from);
     for bin in first..=last {
@@ -37,7 +37,7 @@ pub fn parts(
     }
 }
 
-/// A triangle's corners in their order along an axis.
+/// A triangle's corners, sorted along an axis.
 struct Edges {
     corners: [Vec4; 3],
     at: [f32; 3],
@@ -61,7 +61,7 @@ impl Edges {
         Self { corners: [a, b, c], at: [at(&a), at(&b), at(&c)], axis }
     }
 
-    /// Around what a plane meets of it, which lies between the first corner and the last.
+    /// The bounds of the triangle's intersection with a plane between its first and last corner.
     #[inline(always)]
     fn section(&self, at: f32) -> Bounds {
         let upper = usize::from(at > self.at[1]);
@@ -70,7 +70,7 @@ impl Edges {
         section
     }
 
-    /// Where a plane cuts an edge.
+    /// The intersection of a plane with an edge.
     #[inline(always)]
     fn cut(&self, from: usize, to: usize, at: f32) -> Vec4 {
         let length = self.at[to] - self.at[from];
@@ -122,7 +122,7 @@ mod tests {
         fn parts_of_pieces_hold_what_is_left(
             corners in [point(), point(), point()], ends in [point(), point()], axis in 0usize..3,
         ) {
-            // A box around the triangle's middle, which it therefore meets.
+            // A box around the triangle's center, which overlaps the triangle.
             let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
             let to = Aabb { min: middle - ends[0].abs(), max: middle + ends[1].abs() };
             let corners_of: [DVec3; 3] = corners.map(Vec3::as_dvec3);
@@ -138,7 +138,7 @@ mod tests {
                 let mut slab = piece;
                 (slab.min[axis], slab.max[axis]) = (border(bin), border(bin + 1).min(piece.max[axis]));
                 let exact = clipped(corners_of, &slab);
-                // Estimates may leave out what is thinner than their error.
+                // Estimates may miss parts thinner than their error.
                 if !exact.is_empty() && (exact.max - exact.min).min_element() > 1e-5 {
                     let grown = Aabb { min: part.min - Vec3::splat(1e-5), max: part.max + Vec3::splat(1e-5) };
                     prop_assert!(grown.contains(&exact), "{:?} does not hold {:?}", part, exact);

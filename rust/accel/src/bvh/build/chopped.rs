@@ -1,9 +1,8 @@
-//! Planes that part what they cut: bins of equal width that hold the parts of each reference (Stich, Friedrich and
-//! Dietrich, "Spatial Splits in Bounding Volume Hierarchies", 2009; "chopped binning" after Popov, Günther, Seidel and
-//! Slusallek 2006).
+//! Spatial splits: equal bins that hold the parts of each reference (Stich, Friedrich and Dietrich, "Spatial Splits in
+//! Bounding Volume Hierarchies", 2009; "chopped binning" after Popov, Günther, Seidel and Slusallek 2006).
 //!
-//! What planes are weighed by are estimates: the parts of a triangle between two planes are bounded by where these cut
-//! its edges, and by the reference's box, in f32. Only what straddles the plane that is chosen is clipped with care.
+//! Planes are compared by estimates. The parts of a triangle are bounded by the planes' cuts of its edges and the
+//! reference's box, in f32. Only references that straddle the chosen plane are clipped exactly.
 
 use super::binned::MAX_BINS;
 use super::bins::WHOLE;
@@ -15,26 +14,26 @@ use raywright_base::parallel;
 use raywright_base::work::Work;
 use std::ops::Range;
 
-/// From so many references on, several threads look at them.
+/// Minimum number of references for parallel processing.
 const MANY: usize = 1 << 13;
 
-/// So many are one thread's share then.
+/// References per parallel task.
 const SHARE: usize = 1 << 12;
 
-/// The most shares for which bins are filled.
+/// Maximum number of parallel tasks that fill bins.
 const MOST_SHARES: usize = 256;
 
-/// Planes are weighed along axes along which a set is at least so long, over the longest: others hardly ever win.
+/// Only axes with at least this fraction of the longest extent are tried; others hardly ever win.
 const LENGTH: f32 = 0.5;
 
-/// Bins of equal width along the three axes.
+/// Equal bins along the three axes.
 #[derive(Clone, Copy)]
 struct Grid {
     origin: Vec4,
     width: Vec4,
-    /// Bins over length; 0 along an axis that is not worth it.
+    /// The inverse bin width; 0 along axes that are not tried.
     scale: Vec4,
-    /// The last bin, as a number.
+    /// The last bin as a float.
     last: Vec4,
 }
 
@@ -48,7 +47,7 @@ impl Grid {
         Self { origin: around.least(), width, scale, last: Vec4::splat((bins - 1) as f32) }
     }
 
-    /// Those along which planes are weighed.
+    /// The axes that are tried.
     fn axes(&self) -> impl Iterator<Item = usize> {
         let scale = self.scale.to_array();
         (0..3).filter(move |&axis| scale[axis] > 0.0)
@@ -60,13 +59,13 @@ impl Grid {
         self.origin.as_ref()[axis] + self.width.as_ref()[axis] * bin as f32
     }
 
-    /// The first and the last bin that a reference reaches into along each axis; not one that it only touches.
+    /// The first and the last bin that a reference overlaps along each axis, excluding bins it only touches.
     #[inline(always)]
     fn places(&self, r: &Reference) -> [[usize; 3]; 2] {
         let whole = Vec4::splat(WHOLE);
         let below = (r.bounds.least() - self.origin) * self.scale;
         let above = (r.bounds.greatest() - self.origin) * self.scale;
-        // To the next whole number, and one down or up where that is on the wrong side.
+        // Round to the nearest integer, and correct it by one if it is on the wrong side.
         let (near_below, near_above) = ((below + whole) - whole, (above + whole) - whole);
         let down = Vec4::select(near_below.cmpgt(below), Vec4::ONE, Vec4::ZERO);
         let up = Vec4::select(near_above.cmplt(above), Vec4::ZERO, Vec4::ONE);
@@ -79,7 +78,7 @@ impl Grid {
     }
 }
 
-/// The bins of the three axes: around the parts in each, and how many references begin and end there.
+/// The bins of the three axes: bounds of the parts, and the numbers of references that begin and end there.
 pub struct Chopped {
     bounds: Box<[[Bounds; MAX_BINS]; 3]>,
     begin: [[u32; MAX_BINS]; 3],
@@ -98,8 +97,7 @@ impl Chopped {
             axes[count] = axis;
             count += 1;
         }
-        // Neighbours often fall into the same bin, where the second would wait for the first: take turns with some from
-        // afar.
+        // Neighbours often share a bin, which makes the second wait for the first: alternate with distant ones.
         let (first, second) = references.split_at(references.len() / 2);
         for (i, r) in second.iter().enumerate() {
             self.add_one(r, grid, &axes[..count], shapes);
@@ -169,7 +167,7 @@ impl Chopped {
             let right = after[last + 1];
             let plane = Plane { grid: *grid, axis, last, left, right };
             let allowed = left.1 > 0 && right.1 > 0 && left.1 + right.1 - count <= budget;
-            // A cost that is no number is not less than any.
+            // NaN fails the comparison.
             if allowed && plane.cost() < best.as_ref().map_or(f32::INFINITY, Plane::cost) {
                 best = Some(plane);
             }
@@ -185,13 +183,13 @@ pub struct Plane {
     axis: usize,
     /// The last bin on the left.
     last: usize,
-    /// What is there if all that straddle are parted, about, and how many.
+    /// Approximate bounds and counts of both sides if all straddling references are split.
     left: (Bounds, usize),
     right: (Bounds, usize),
 }
 
 impl Plane {
-    /// The cheapest plane that adds no more references than the budget. None is told once the work is stopped.
+    /// The cheapest plane that adds no more references than the budget. None once the work is canceled.
     pub fn best(
         references: &[Reference],
         around: &Bounds,
@@ -200,7 +198,7 @@ impl Plane {
         budget: usize,
         work: Work,
     ) -> Option<Self> {
-        // Half as many as for whole references, and fewer for few: planes found so are hardly worse.
+        // Half as many bins as for object splits, and fewer for small sets: such planes are hardly worse.
         let bins = bins.div_ceil(2).min(references.len() / 256).max(bins.div_ceil(4)).max(4);
         let grid = Grid::new(around, bins);
         let fill = |share: Range<usize>| {
@@ -213,26 +211,26 @@ impl Plane {
         let filled = if references.len() < MANY {
             fill(0..references.len())
         } else {
-            // Shares are few, since each has bins of its own.
+            // Few tasks, since each has its own bins.
             let share = SHARE.max(references.len().div_ceil(MOST_SHARES));
             let shares = parallel::map_chunks(references.len(), share, fill).into_iter();
             shares.reduce(|a, b| a.join(&b, bins)).unwrap_or_else(Chopped::new)
         };
         if work.is_stopped() {
-            // Some may not have been counted.
+            // The counts may be incomplete.
             return None;
         }
         let planes = grid.axes().filter_map(|axis| filled.best(&grid, axis, bins, references.len(), budget));
-        // Of equals the first.
+        // The first of several equal ones.
         planes.reduce(|best, plane| if plane.cost() < best.cost() { plane } else { best })
     }
 
-    /// Its cost, by area and number.
+    /// The cost by area and count.
     pub fn cost(&self) -> f32 {
         self.left.0.half_area() * self.left.1 as f32 + self.right.0.half_area() * self.right.1 as f32
     }
 
-    /// Both sides: what straddles is parted, or goes to one side as a whole where that costs less.
+    /// Distribute references to both sides. Straddling ones are split, or go to one side as a whole if that is cheaper.
     pub fn part(&self, references: &[Reference], shapes: &impl Shapes) -> (Vec<Reference>, Vec<Reference>) {
         let Self { left: (mut left_bounds, mut left_count), right: (mut right_bounds, mut right_count), .. } = *self;
         let Sorted { mut left, mut right, across } = if references.len() < MANY {
@@ -266,7 +264,7 @@ impl Plane {
         (left, right)
     }
 
-    /// Tells what lies on either side, and cuts what straddles.
+    /// Classify references, and clip straddling ones.
     fn sort(&self, references: &[Reference], shapes: &impl Shapes) -> Sorted {
         let Self { grid, axis, last, .. } = *self;
         let at = grid.border(axis, last + 1);
@@ -289,7 +287,7 @@ impl Plane {
     }
 }
 
-/// References on either side of a plane, and those that straddle it.
+/// References on either side of a plane, and straddling ones.
 #[derive(Default)]
 struct Sorted {
     left: Vec<Reference>,
@@ -298,7 +296,7 @@ struct Sorted {
 }
 
 impl Sorted {
-    /// These, and then others.
+    /// Append others.
     fn then(mut self, other: Self) -> Self {
         self.left.extend(other.left);
         self.right.extend(other.right);
@@ -310,6 +308,6 @@ impl Sorted {
 /// A reference that straddles a plane.
 struct Across {
     whole: Reference,
-    /// What of it lies below the plane, and above.
+    /// The boxes of its parts below and above the plane.
     halves: [Aabb; 2],
 }

@@ -1,6 +1,5 @@
-//! From the top down by halves along the longest axis of the centres, as textbooks begin (Kay and Kajiya, "Ray Tracing
-//! Complex Scenes", 1986): at the middle of where the centres are, at their median, or at their mean. The sides' areas
-//! are not looked at.
+//! Top-down splits along the longest axis of the centres without a cost model, as in textbooks (Kay and Kajiya, "Ray
+//! Tracing Complex Scenes", 1986): at the midpoint, the median, or the mean.
 
 use super::reference::{Extents, Reference, SHARE, median, partition, references};
 use super::top_down::{self, Set};
@@ -11,19 +10,19 @@ use raywright_base::work::{Stopped, Work};
 use std::borrow::Cow;
 use std::ops::Range;
 
-/// Where to halve.
+/// The position of the split.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Way {
-    /// Half way from the first centre to the last; at the median where all centres then are on one side.
+    /// Midway between the first centre and the last; the median if that separates nothing.
     Midpoint,
-    /// As many primitives on either side: the tree of least depth.
+    /// Equal numbers on both sides, which gives the least depth.
     Median,
-    /// At the mean of the centres; at the median where all of them then are on one side.
+    /// The mean of the centres; the median if that separates nothing.
     Mean,
 }
 
 impl Way {
-    /// Its name, for people.
+    /// Its display name.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Midpoint => "midpoints",
@@ -33,12 +32,13 @@ impl Way {
     }
 }
 
-/// Builds a tree over boxes, leaving out empty ones. Leaves are made by number alone: at most [`Leaves::whole`]
+/// Build a tree over boxes, skipping empty ones. Leaves depend on the count alone: at most [`Leaves::whole`]
 /// primitives.
 ///
-/// Takes time n log n on any input: from a depth on that a reasonable tree does not reach, sets are halved by number.
+/// Time is n log n on any input: beyond a depth that no reasonable tree reaches, sets are split at the median.
 ///
 /// # Panics
+///
 /// If an option is out of range.
 pub fn build<'a>(
     boxes: impl Into<Cow<'a, [Aabb]>>,
@@ -60,9 +60,9 @@ struct Half<'a> {
     references: &'a mut [Reference],
     extents: Extents,
     way: Way,
-    /// Up to so many are not halved.
+    /// Maximum number of primitives in a leaf.
     whole: usize,
-    /// How many more levels may be halved other than by number.
+    /// The remaining number of levels with splits other than at the median.
     spare: usize,
 }
 
@@ -104,14 +104,14 @@ impl Set for Half<'_> {
     }
 }
 
-/// The middle of the centres along an axis.
+/// The midpoint of the centres along an axis.
 fn middle(extents: &Extents, axis: usize) -> f32 {
     let Aabb { min, max } = extents.centres.aabb();
-    // Halves first: the sum may be more than an f32 holds.
+    // Halved first, since the sum may overflow.
     min[axis] / 2.0 + max[axis] / 2.0
 }
 
-/// The mean of the centres along an axis; sums of shares of one size, so that it does not depend on threads.
+/// The mean of the centres along an axis. Sums over fixed chunks make it independent of the number of threads.
 fn mean(references: &[Reference], axis: usize) -> f32 {
     let sum = |share: Range<usize>| references[share].iter().map(|r| f64::from(r.centre_on(axis))).sum::<f64>();
     let shares = parallel::map_chunks(references.len(), SHARE, sum);

@@ -1,8 +1,7 @@
-//! Builders of the binary tree. They see boxes, never shapes.
+//! Builders of binary BVHs, which see boxes only.
 //!
-//! Trees come laid out depth first: behind a pair of children stands all that is below the first, then all that is
-//! below the second, and leaves refer to the primitives in the same order. However many threads build, the tree is the
-//! same.
+//! Trees are in depth-first order: a pair of children is followed by the subtree of the first, then that of the second,
+//! and leaves refer to primitives in the same order. The result does not depend on the number of threads.
 
 pub mod binned;
 mod bins;
@@ -32,13 +31,13 @@ use raywright_base::math::{Aabb, Vec3};
 use raywright_base::work::{Stopped, Work};
 use std::borrow::Cow;
 
-/// What is in the boxes, as far as it can be parted. A function that clips will do.
+/// The geometry inside the boxes, for splitting. Any clipping function implements it.
 pub trait Shapes: Sync {
-    /// A box around what of a primitive lies in another box, or around more. It must be empty only where there is
-    /// nothing, and lie within the primitive's own box and the other one.
+    /// A box around the part of a primitive inside another box, not necessarily tight. It must be empty only if that
+    /// part is, and inside both the primitive's own box and the other one.
     fn clip(&self, primitive: u32, to: &Aabb) -> Aabb;
 
-    /// About where a triangle's corners are, by which its parts are estimated; none if it is asked to clip for that.
+    /// A triangle's approximate corners for estimating its parts; None if it has to be clipped.
     fn corners(&self, _primitive: u32) -> Option<[Vec3; 3]> {
         None
     }
@@ -50,39 +49,39 @@ impl<F: Fn(u32, &Aabb) -> Aabb + Sync> Shapes for F {
     }
 }
 
-/// How a binary tree is built.
+/// The algorithm of a builder.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Builder {
-    /// By the surface-area heuristic in bins: [`binned`].
+    /// The surface area heuristic on bins: [`binned`].
     Binned {
-        /// Bins an axis, from 2 to [`binned::MAX_BINS`].
+        /// Bins per axis, from 2 to [`binned::MAX_BINS`].
         bins: Option<usize>,
     },
-    /// By the surface-area heuristic at every place: [`sweep`].
+    /// The surface area heuristic at every position: [`sweep`].
     Sweep,
-    /// By the surface-area heuristic with spatial splits: [`spatial`].
+    /// The surface area heuristic with spatial splits: [`spatial`].
     Spatial {
-        /// Bins an axis, from 2 to [`binned::MAX_BINS`].
+        /// Bins per axis, from 2 to [`binned::MAX_BINS`].
         bins: Option<usize>,
-        /// How many references may be added, over the number of primitives.
+        /// Maximum number of added references per primitive.
         budget: f32,
     },
-    /// By Morton codes: [`morton`].
+    /// Morton codes: [`morton`].
     Morton(morton::Bits),
-    /// Bottom up by locally ordered clustering: [`ploc`].
+    /// Bottom-up by parallel locally-ordered clustering: [`ploc`].
     Ploc {
-        /// How far off in the order of Morton codes a neighbour is sought, from 1 to [`ploc::MAX_RADIUS`].
+        /// The search radius in Morton order, from 1 to [`ploc::MAX_RADIUS`].
         radius: usize,
     },
-    /// By halves: [`halves`].
+    /// Splits without a cost model: [`halves`].
     Halves(Way),
 }
 
 impl Builder {
-    /// What is meant by bins where nobody says how many.
+    /// The default number of bins.
     const BINS: usize = 16;
 
-    /// The same with so many bins, if it has any.
+    /// The same with the given number of bins, if it uses bins.
     pub fn with_bins(self, bins: usize) -> Self {
         match self {
             Self::Binned { .. } => Self::Binned { bins: Some(bins) },
@@ -91,7 +90,7 @@ impl Builder {
         }
     }
 
-    /// The same with so many bins where nobody has said how many.
+    /// The same with a default number of bins.
     pub fn or_bins(self, some: usize) -> Self {
         match self {
             Self::Binned { bins } => Self::Binned { bins: bins.or(Some(some)) },
@@ -100,7 +99,7 @@ impl Builder {
         }
     }
 
-    /// Its name, for people.
+    /// Its display name.
     pub const fn name(&self) -> &'static str {
         match self {
             Self::Binned { .. } => "binned SAH",
@@ -112,13 +111,12 @@ impl Builder {
         }
     }
 
-    /// Whether a primitive may stand in several leaves, part by part.
+    /// Return whether primitives may be split among several leaves.
     pub const fn parts(&self) -> bool {
         matches!(self, Self::Spatial { .. })
     }
 
-    /// The same over pieces of primitives that were cut before: the pieces beyond one for each primitive count as
-    /// references that are added already.
+    /// The same over pieces of primitives: the additional pieces count toward the budget of references.
     pub fn over_pieces(self, primitives: usize, pieces: usize) -> Self {
         match self {
             Self::Spatial { bins, budget } => {
@@ -129,13 +127,12 @@ impl Builder {
         }
     }
 
-    /// Makes a tree over boxes, leaving out empty ones.
+    /// Build a tree over boxes, skipping empty ones.
     ///
-    /// Only spatial splits ask what is in the boxes.
-    ///
-    /// Boxes that are given away are freed as soon as they are not needed any more.
+    /// Only spatial splits use the shapes. Owned boxes are freed as soon as they are not needed.
     ///
     /// # Panics
+    ///
     /// If an option is out of range.
     pub fn build<'a>(
         &self,
@@ -161,13 +158,12 @@ impl Builder {
     }
 }
 
-/// How many levels are split as the heuristic wants it, before halves by number bound the depth of what is left: a
-/// reasonable tree is not as deep.
+/// The number of levels split by the heuristic, before median splits bound the depth. No reasonable tree is as deep.
 fn spare(references: usize) -> usize {
     2 * references.max(1).ilog2() as usize + 40
 }
 
-/// Panics unless what is below a node lies together, the left before the right, as do its primitives.
+/// Assert that subtrees are contiguous, the left before the right, and so are their primitives.
 #[cfg(test)]
 pub(super) fn assert_depth_first(bvh: &BinaryBvh) {
     let (mut next, mut first) = (1, 0);

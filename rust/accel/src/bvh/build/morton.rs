@@ -1,9 +1,8 @@
-//! A linear tree: primitives in the order of their centres' Morton codes, parted bit by bit (Lauterbach, Garland,
-//! Sengupta, Luebke and Manocha, "Fast BVH Construction on GPUs", 2009; Karras, "Maximizing Parallelism in the
-//! Construction of BVHs, Octrees, and k-d Trees", 2012). Codes are sorted by radix, subtrees written side by side, and
-//! boxes made from the bottom up.
+//! Linear BVHs: primitives in Morton order, split bit by bit (Lauterbach, Garland, Sengupta, Luebke and Manocha, "Fast
+//! BVH Construction on GPUs", 2009; Karras, "Maximizing Parallelism in the Construction of BVHs, Octrees, and k-d
+//! Trees", 2012). Codes are radix sorted, subtrees are written in parallel, and boxes are computed bottom-up.
 //!
-//! Leaves have one primitive each; what shares a block is decided when the tree is collapsed.
+//! Leaves have one primitive each; blocks are formed when the tree is collapsed.
 
 use super::reference::{Extents, Reference, references};
 use super::slices::{self, Opened, Subtree};
@@ -12,18 +11,18 @@ use raywright_base::math::Aabb;
 use raywright_base::work::{Stopped, Work};
 use std::borrow::Cow;
 
-/// How fine the codes are.
+/// The resolution of the codes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Bits {
-    /// 30 bits: 1024 places along an axis.
+    /// 30 bits: 1024 positions per axis.
     Thirty,
-    /// 63 bits: 2²¹ places along an axis.
+    /// 63 bits: 2²¹ positions per axis.
     #[default]
     SixtyThree,
 }
 
 impl Bits {
-    /// How many there are in a code.
+    /// The number of bits in a code.
     pub const fn count(self) -> u32 {
         match self {
             Self::Thirty => 30,
@@ -32,8 +31,8 @@ impl Bits {
     }
 }
 
-/// Builds a tree over boxes, leaving out empty ones. It is no deeper than codes have bits, plus the logarithm of how
-/// many share a code: these are halved by number.
+/// Build a tree over boxes, skipping empty ones. Its depth is at most the number of bits, plus the logarithm of the
+/// number of equal codes, which are split at the median.
 pub fn build<'a>(boxes: impl Into<Cow<'a, [Aabb]>>, bits: Bits, work: Work) -> Result<BinaryBvh, Stopped> {
     let [gather, sort, write] = work.parts([1.0, 8.0, 10.0]);
     let references = references(boxes, gather)?;
@@ -44,11 +43,11 @@ pub fn build<'a>(boxes: impl Into<Cow<'a, [Aabb]>>, bits: Bits, work: Work) -> R
     slices::write(Codes { sorted: &sorted, references: &references }, references.len(), write)
 }
 
-/// Morton codes, and whose they are by their place; in order of the code, then of the place.
+/// The Morton codes with the indices of their references, sorted by code, then by index.
 pub fn sorted(references: &[Reference], bits: Bits, work: Work) -> Result<Vec<(u64, u32)>, Stopped> {
     let centres = Extents::around_many(references).centres.aabb();
     let (min, max) = (centres.min.as_dvec3(), centres.max.as_dvec3());
-    // The same along all axes, so that cells are cubes.
+    // The same scale for all axes, so that cells are cubes.
     let places = (1u64 << (bits.count() / 3)) as f64;
     let size = (max - min).max_element();
     let scale = if size > 0.0 { places / size } else { 0.0 };
@@ -65,7 +64,7 @@ pub fn sorted(references: &[Reference], bits: Bits, work: Work) -> Result<Vec<(u
     Ok(sorted)
 }
 
-/// Puts two clear bits between any two of the lowest 21.
+/// Insert two zero bits between adjacent bits of the lowest 21.
 fn spread(x: u64) -> u64 {
     let x = (x | x << 32) & 0x001f_0000_0000_ffff;
     let x = (x | x << 16) & 0x001f_0000_ff00_00ff;
@@ -74,7 +73,7 @@ fn spread(x: u64) -> u64 {
     (x | x << 2) & 0x1249_2492_4924_9249
 }
 
-/// Codes that have all their bits in common down to some bit.
+/// A run of codes with a common prefix.
 #[derive(Clone, Copy)]
 struct Codes<'a> {
     sorted: &'a [(u64, u32)],
@@ -117,7 +116,7 @@ mod tests {
 
     #[test]
     fn points_of_a_grid_are_parted_in_their_middles() {
-        // In the order of a Z curve: every inner node is a box of a power of two of points.
+        // In Morton order every inner node is a box of a power of two of points.
         let boxes: Vec<_> =
             (0..512).map(|i| Aabb::around([Vec3::new((i % 8) as f32, (i / 8 % 8) as f32, (i / 64) as f32)])).collect();
         for bits in [Bits::Thirty, Bits::SixtyThree] {

@@ -1,4 +1,4 @@
-//! Subtrees before they have a place: how long one gets is known only when it is built.
+//! Subtrees built in parallel, before their final positions are known.
 
 use super::reference::Reference;
 use super::{BinaryBvh, Node};
@@ -8,46 +8,45 @@ use raywright_base::work::{Stopped, Work};
 
 /// A part of a tree.
 pub enum Part {
-    /// A subtree: its root, and what is below, whose places are counted from the first below the root.
+    /// A subtree: its root and the nodes below it, whose indices start at 0 for the first of them.
     Whole {
         /// The root.
         root: Node,
-        /// What is below.
+        /// The nodes below the root.
         below: Vec<Node>,
-        /// The primitives of its leaves, which say where theirs begin in this list. Empty if they already say where
-        /// among all primitives.
+        /// The primitives of its leaves, which refer to this list. Empty if they already refer to all primitives.
         order: Vec<u32>,
     },
-    /// Two parts side by side.
+    /// Two parts as siblings.
     Pair(Box<Pair>),
 }
 
-/// Two parts side by side.
+/// Two parts as siblings.
 pub struct Pair {
-    /// The box around them.
+    /// Their bounding box.
     aabb: Aabb,
     parts: [Part; 2],
-    /// How many nodes there are in both.
+    /// The number of nodes in both.
     nodes: usize,
-    /// How many primitives they list.
+    /// The number of listed primitives in both.
     listed: usize,
 }
 
 impl Part {
-    /// A leaf that lists what is in it.
+    /// A leaf that lists its primitives.
     pub fn leaf(aabb: Aabb, references: &[Reference]) -> Self {
         let order: Vec<_> = references.iter().map(Reference::primitive).collect();
         Self::Whole { root: Node::leaf(aabb, 0, order.len() as u32), below: Vec::new(), order }
     }
 
-    /// Puts two parts side by side.
+    /// Combine two parts as siblings.
     pub fn pair(aabb: Aabb, left: Self, right: Self) -> Self {
         let nodes = 2 + left.below() + right.below();
         let listed = left.listed() + right.listed();
         Self::Pair(Box::new(Pair { aabb, parts: [left, right], nodes, listed }))
     }
 
-    /// How many nodes there are below its root.
+    /// The number of nodes below its root.
     fn below(&self) -> usize {
         match self {
             Self::Whole { below, .. } => below.len(),
@@ -55,7 +54,7 @@ impl Part {
         }
     }
 
-    /// How many primitives it lists.
+    /// The number of listed primitives.
     fn listed(&self) -> usize {
         match self {
             Self::Whole { order, .. } => order.len(),
@@ -63,7 +62,7 @@ impl Part {
         }
     }
 
-    /// Makes a tree of it, over primitives in some order: that which the parts list, if they do.
+    /// Assemble the tree, over primitives in the given order or, if the parts list theirs, in that one.
     pub fn assemble(self, mut order: Vec<u32>, work: Work) -> Result<BinaryBvh, Stopped> {
         let [make, place] = work.parts([1.0, 3.0]);
         let mut nodes = make.collect(self.below() + 1, |_| Node::leaf(Aabb::EMPTY, 0, 0))?;
@@ -78,7 +77,7 @@ impl Part {
         Ok(BinaryBvh { nodes, order })
     }
 
-    /// Writes its root, and what is below.
+    /// Write its root and the nodes below.
     fn place(self, node: &mut Node, to: Target) {
         match self {
             Self::Whole { root, below, order } => {
@@ -111,12 +110,12 @@ impl Part {
     }
 }
 
-/// Where a part is written.
+/// The destination of a part.
 struct Target<'a> {
-    /// The number of the first node below its root.
+    /// The index of the first node below its root.
     base: usize,
     below: &'a mut [Node],
-    /// The place of its first primitive in the order.
+    /// The index of its first primitive in the order.
     first: usize,
     order: &'a mut [u32],
 }

@@ -1,13 +1,13 @@
-//! From the bottom up by locally ordered clustering (Meister and Bittner, "Parallel Locally-Ordered Clustering for
-//! Bounding Volume Hierarchy Construction", 2018).
+//! Bottom-up build by parallel locally-ordered clustering (Meister and Bittner, "Parallel Locally-Ordered Clustering
+//! for Bounding Volume Hierarchy Construction", 2018).
 //!
-//! Clusters stand in the order of Morton codes, one primitive each at first. In every round each seeks, among those up
-//! to a radius before and behind it, the one with which it makes the smallest box; two that seek each other become one.
-//! Which of several as near is sought is a matter of their places alone, in an order that both sides see alike: so some
-//! pair is made in every round, all are where everything coincides, and threads do not matter.
+//! Clusters are in Morton order, initially of one primitive each. In every round each cluster finds the neighbour
+//! within a radius with which it forms the smallest box. Mutual nearest neighbours merge. Ties are broken by the
+//! positions alone, in the same way for both partners. So at least one pair merges per round, all of them do for
+//! coincident primitives, and the result does not depend on threads.
 //!
-//! In a chain of scales only one pair finds itself a round. After more rounds than a reasonable scene takes, neighbours
-//! are paired as they stand, which bounds time and depth.
+//! In a chain of scales only one pair merges per round. After more rounds than any reasonable scene takes, adjacent
+//! clusters are paired, which bounds time and depth.
 
 use super::morton::{self, Bits};
 use super::reference::{Bounds, Reference, references};
@@ -19,26 +19,27 @@ use raywright_base::work::{Stopped, Work};
 use std::borrow::Cow;
 use std::ops::Range;
 
-/// How to cluster.
+/// Options of the clustering.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options {
-    /// How far off in the order a neighbour is sought, from 1 to [`MAX_RADIUS`].
+    /// The search radius in Morton order, from 1 to [`MAX_RADIUS`].
     pub radius: usize,
 }
 
-/// Farthest that may be asked for.
+/// Maximum search radius.
 pub const MAX_RADIUS: usize = 128;
 
-/// What the authors found to be worth its time.
+/// The radius that the authors recommend.
 pub const RADIUS: usize = 14;
 
-/// So many clusters are one thread's share.
+/// Clusters per parallel task.
 const SHARE: usize = 1 << 12;
 
-/// Builds a tree over boxes, leaving out empty ones. Leaves have one primitive each; what shares a block is decided
-/// when the tree is collapsed.
+/// Build a tree over boxes, skipping empty ones. Leaves have one primitive each; blocks are formed when the tree is
+/// collapsed.
 ///
 /// # Panics
+///
 /// If the radius is out of range.
 pub fn build<'a>(boxes: impl Into<Cow<'a, [Aabb]>>, options: &Options, work: Work) -> Result<BinaryBvh, Stopped> {
     let Options { radius } = *options;
@@ -66,28 +67,28 @@ pub fn build<'a>(boxes: impl Into<Cow<'a, [Aabb]>>, options: &Options, work: Wor
     slices::write(Merged { link: clusters[0].link, leaves: &sorted, pairs: &pairs }, count, write)
 }
 
-/// Some primitives that are a subtree by now.
+/// A cluster of primitives, which is a subtree.
 #[derive(Clone, Copy)]
 struct Cluster {
     bounds: Bounds,
-    /// Of a single primitive, its place; of a pair, its place among the pairs, counted on from the primitives.
+    /// The index of a single primitive; for a pair, its index among the pairs plus the number of primitives.
     link: u32,
-    /// How many primitives.
+    /// The number of primitives.
     count: u32,
 }
 
-/// What became one: the links of both, and how many primitives are in the first.
+/// A merged pair: the links of both, and the number of primitives in the first.
 struct Pair {
     links: [u32; 2],
     first: u32,
 }
 
-/// A neighbour, and how near it is.
+/// A neighbour and its distance.
 #[derive(Clone, Copy)]
 struct Neighbour {
     area: f32,
-    /// Of equal areas the least rank is nearer: two that are paired as they stand, then those that are less far apart,
-    /// then those that come first.
+    /// Breaks ties of areas, lower ranks first: adjacent clusters that would be paired in a forced round, then those at
+    /// a smaller distance, then earlier ones.
     rank: u64,
     place: u32,
 }
@@ -103,17 +104,17 @@ impl Neighbour {
     }
 }
 
-/// For each cluster, the place of that which it makes the smallest box with. There are at least two.
+/// The nearest neighbour of each cluster, among at least two.
 fn nearest(clusters: &[Cluster], radius: usize) -> Vec<u32> {
     let mut sought = vec![0; clusters.len()];
     parallel::each_chunk_mut(&mut sought, SHARE, &|start, sought| {
         let own = start..start + sought.len();
         let mut found = vec![Neighbour::NONE; own.len()];
-        // Each pair is looked at once, unless two shares have it in common.
+        // Each pair is evaluated once, unless two tasks share it.
         for a in start.saturating_sub(radius)..own.end {
             let bounds = clusters[a].bounds;
             for b in (a + 1).max(start)..(a + radius + 1).min(clusters.len()) {
-                // Of an infinite box it may be no number.
+                // Infinite boxes may give NaN.
                 let area = bounds.union(&clusters[b].bounds).half_area().min(f32::MAX);
                 let rank = if a ^ 1 == b { a as u64 } else { ((b - a) as u64) << 32 | a as u64 };
                 for (one, other) in [(a, b), (b, a)] {
@@ -128,12 +129,12 @@ fn nearest(clusters: &[Cluster], radius: usize) -> Vec<u32> {
     sought
 }
 
-/// Each cluster's partner where they are paired as they stand; itself if it has none.
+/// The partner of each cluster if adjacent ones are paired; itself if it has none.
 fn beside(count: usize) -> Vec<u32> {
     (0..count).map(|place| if place ^ 1 < count { place ^ 1 } else { place } as u32).collect()
 }
 
-/// What is left when all that seek each other have become one, in the place of the first.
+/// The clusters after merging mutual nearest neighbours, each at the position of its first member.
 fn merged(clusters: &[Cluster], sought: &[u32], leaves: usize, pairs: &mut Vec<Pair>) -> Vec<Cluster> {
     let agree = |place: usize| sought[sought[place] as usize] as usize == place && sought[place] as usize != place;
     let is_first = |place: &usize| agree(*place) && *place < sought[*place] as usize;
@@ -171,7 +172,7 @@ fn merged(clusters: &[Cluster], sought: &[u32], leaves: usize, pairs: &mut Vec<P
     left
 }
 
-/// What came of it, from a link down.
+/// The subtree below a link.
 #[derive(Clone, Copy)]
 struct Merged<'a> {
     link: u32,
@@ -198,7 +199,7 @@ mod tests {
 
     #[test]
     fn pairs_that_are_near_come_first() {
-        // Two and two close together, in an order that the codes do not tell.
+        // Two close pairs, in an order that the codes do not reveal.
         let boxes =
             [0.0, 0.1, 7.0, 7.1].map(|x: f32| Aabb::around([Vec3::new(x, 0.0, 0.0), Vec3::new(x + 0.05, 1.0, 1.0)]));
         let bvh = build(&boxes, &Options { radius: RADIUS }, Work::UNWATCHED).unwrap();

@@ -1,14 +1,14 @@
-//! Cuts before a build: what is long and lies across the axes fills little of its box, and any builder makes a better
-//! tree of the boxes of its pieces (Ernst and Greiner, "Early Split Clipping for Bounding Volume Hierarchies", 2007).
+//! Splitting before the build: a long diagonal primitive fills little of its box, and any builder makes a better tree
+//! from the boxes of its pieces (Ernst and Greiner, "Early Split Clipping for Bounding Volume Hierarchies", 2007).
 //!
-//! What a cut gains is the area of a box less that of what is left of the primitive in either half: by so much fewer
-//! rays meet it for nothing. Pieces are cut where most is gained, wherever in the scene that is, until the budget is
-//! used up or too little is gained, so that in the end they gain about the same everywhere. (Karras and Aila, "Fast
-//! Parallel Construction of High-Quality Bounding Volume Hierarchies", 2013, share the budget out beforehand, by a
-//! power of the area.)
+//! The gain of a split is the box's area minus the areas of the primitive's parts in its halves: it is proportional to
+//! the number of avoided false hits. Splits with the greatest gain come first, anywhere in the scene, until the budget
+//! is used up or the gain is too small. In the end the remaining gains are about equal everywhere. (Karras and Aila,
+//! "Fast Parallel Construction of High-Quality Bounding Volume Hierarchies", 2013, distribute the budget beforehand, by
+//! a power of the area.)
 //!
-//! Even meshes gain nothing by it, since a piece takes a place in a block as its whole did. So nothing is cut where not
-//! much is gained in all.
+//! Regular meshes gain nothing, since a piece takes a place in a block like a whole primitive. So nothing is split if
+//! the total gain is small.
 
 use super::reference::SHARE;
 use super::spatial::MAX_BUDGET;
@@ -16,46 +16,45 @@ use super::{BinaryBvh, Shapes};
 use raywright_base::math::{Aabb, Vec3};
 use raywright_base::parallel;
 
-/// How much to cut.
+/// Options of splitting.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// How many pieces may be added, over the number of primitives; from 0 to [`MAX_BUDGET`].
+    /// Maximum number of added pieces per primitive, from 0 to [`MAX_BUDGET`].
     pub budget: f32,
-    /// Nothing is cut unless all cuts together save this share of the area of all boxes.
+    /// Minimum total saving, as a fraction of the area of all boxes; otherwise nothing is split.
     pub worthwhile: f32,
 }
 
-/// A cut gains at least so much of the area of the box around all, over the number of primitives. If as many pieces are
-/// added as there are primitives, a ray then meets at least so many boxes fewer.
+/// Minimum gain of a split, relative to the area of the scene's box over the number of primitives. If as many pieces
+/// are added as there are primitives, a ray hits at least this many boxes fewer.
 const LEAST: f32 = 5.0;
 
-/// And so much of the area that it cuts. A diagonal in a plane gains a half; a triangle with two sides along the axes
-/// gains a quarter, which is lost again in the nodes above its pieces.
+/// Minimum gain relative to the area of the split box. A diagonal in a plane gains a half. A triangle with two
+/// axis-parallel sides gains a quarter, which the nodes above its pieces cost again.
 const LEAST_SHARE: f32 = 0.3;
 
-/// Whether cuts are worthwhile is told by those that gain at least so much, as long as they are not too few.
+/// Gain threshold of the splits that decide whether splitting is worthwhile, unless they are too few.
 const COARSE: f32 = 100.0;
 
-/// Cuts of this share of the primitives in number are too many to be left to planes, which would spend a budget where
-/// less is gained.
+/// Beyond this number of splits per primitive, spatial splits would spend their budget where less is gained.
 const MANY: f32 = 0.5;
 
-/// So many pieces can be told apart by a wide tree.
+/// Maximum number of pieces that a wide tree can index.
 const MOST: usize = (1 << 28) - 2;
 
-/// What to do about primitives that fill little of their boxes.
+/// The treatment of primitives that fill little of their boxes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Remedy {
-    /// Nothing: there are not enough of them.
+    /// None: there are too few of them.
     Nothing,
-    /// Planes may part them where these are, since they are few: spatial splits.
+    /// Spatial splits during the build, if there are few.
     Planes,
-    /// They are best cut before the build, since the budget is spent where most is gained.
+    /// Splitting before the build, which spends the budget where most is gained.
     Pieces,
 }
 
 impl Remedy {
-    /// Makes the cuts that gain most and tells by these.
+    /// Choose the treatment from the splits with the greatest gain.
     pub fn of(boxes: &[Aabb], shapes: &impl Shapes, options: &Options) -> Self {
         let total = Total::of(boxes);
         let coarse = (total.count as f32 * 1e-3).clamp(LEAST, COARSE);
@@ -72,20 +71,21 @@ impl Remedy {
     }
 }
 
-/// Pieces of primitives, over which a tree may be built in place of these.
+/// Pieces of primitives, over which a tree may be built instead.
 pub struct Pieces {
-    /// Around each piece, or a primitive as a whole, which is empty if that was.
+    /// The box of each piece or unsplit primitive, empty if the primitive's was.
     pub boxes: Vec<Aabb>,
-    /// What each is a piece of.
+    /// The primitive of each piece.
     pub primitives: Vec<u32>,
 }
 
 impl Pieces {
-    /// Cuts primitives, given by their boxes; none if that is not worthwhile.
+    /// Split primitives, given by their boxes; None if that is not worthwhile.
     ///
-    /// Takes time in proportion to the pieces that there are, and the pieces are the same for any number of threads.
+    /// Time is proportional to the number of pieces, and the result does not depend on the number of threads.
     ///
     /// # Panics
+    ///
     /// If the budget is out of range.
     pub fn cut(boxes: &[Aabb], shapes: &impl Shapes, options: &Options) -> Option<Self> {
         let Options { budget, worthwhile } = *options;
@@ -93,7 +93,7 @@ impl Pieces {
         let total = Total::of(boxes);
         let least = LEAST * total.around.half_area() / total.count as f32;
         let wanted = f64::from(worthwhile) * total.area;
-        // More than its area a box cannot gain.
+        // A box cannot gain more than its area.
         let most: f64 = long(boxes, least).map(|(_, b)| f64::from(b.half_area())).sum();
         if most <= wanted {
             return None;
@@ -103,7 +103,7 @@ impl Pieces {
         if made.saved <= wanted {
             return None;
         }
-        // A primitive's pieces stay in the order in which they were made.
+        // The pieces of a primitive stay in the order of their creation.
         let key = |(i, piece): (usize, &(u32, Aabb))| u64::from(piece.0) << 32 | i as u64;
         let mut keys: Vec<u64> = made.pieces.iter().enumerate().map(key).collect();
         parallel::sort(&mut keys);
@@ -122,12 +122,12 @@ impl Pieces {
         Some(all)
     }
 
-    /// What is in the boxes of the pieces.
+    /// The shapes of the pieces.
     pub fn shapes<'a, S: Shapes>(&'a self, of: &'a S) -> Pieced<'a, S> {
         Pieced { of, pieces: &self.primitives }
     }
 
-    /// Makes a tree over pieces one over primitives: several pieces of one that share a leaf are there once.
+    /// Turn a tree over pieces into one over primitives, without duplicates within a leaf.
     pub fn put_together(&self, bvh: &mut BinaryBvh) {
         let mut order = Vec::with_capacity(bvh.order.len());
         let mut open: Vec<usize> = bvh.nodes.first().map(|_| 0).into_iter().collect();
@@ -150,18 +150,18 @@ impl Pieces {
     }
 }
 
-/// What there is before anything is cut.
+/// Totals before splitting.
 pub struct Total {
-    /// The box around all.
+    /// The bounding box of all.
     pub around: Aabb,
-    /// Half the surface of all boxes.
+    /// Half the surface area of all boxes.
     pub area: f64,
-    /// How many are not empty.
+    /// The number of nonempty boxes.
     pub count: usize,
 }
 
 impl Total {
-    /// Of some boxes; the same for any number of threads.
+    /// Compute the totals, independently of the number of threads.
     pub fn of(boxes: &[Aabb]) -> Self {
         let of_share = |share: &[Aabb]| {
             let none = Self { around: Aabb::EMPTY, area: 0.0, count: 0 };
@@ -171,7 +171,7 @@ impl Total {
                 count: total.count + 1,
             })
         };
-        // Sums are added up in one order, however many threads make them.
+        // Partial sums are added in a fixed order.
         let shares = parallel::map_chunks(boxes.len(), SHARE, |share| of_share(&boxes[share]));
         shares.into_iter().fold(of_share(&[]), |a, b| Self {
             around: a.around.union(b.around),
@@ -181,7 +181,7 @@ impl Total {
     }
 }
 
-/// Pieces, each known by what it is a piece of.
+/// Shapes of pieces, given by the primitive of each.
 pub struct Pieced<'a, S> {
     of: &'a S,
     pieces: &'a [u32],
@@ -197,17 +197,17 @@ impl<S: Shapes> Shapes for Pieced<'_, S> {
     }
 }
 
-/// A cut through a primitive or a piece of it, in the middle of its box where that is longest.
+/// A split of a primitive or piece in the middle of its box's longest side.
 struct Cut {
     primitive: u32,
     whole: Aabb,
     halves: [Aabb; 2],
-    /// By how much less area the halves have.
+    /// The reduction of the area.
     gain: f32,
 }
 
 impl Cut {
-    /// None if it gains too little.
+    /// None if the gain is too small.
     fn new(primitive: u32, whole: &Aabb, shapes: &impl Shapes, least: f32) -> Option<Self> {
         let area = whole.half_area();
         let least = least.max(LEAST_SHARE * area);
@@ -228,24 +228,24 @@ impl Cut {
     }
 }
 
-/// Those that are more than so large.
+/// The boxes of more than a given area.
 fn long(boxes: &[Aabb], least: f32) -> impl Iterator<Item = (u32, &Aabb)> {
     (0u32..).zip(boxes).filter(move |(_, b)| !b.is_empty() && b.half_area() > least)
 }
 
-/// What has been cut.
+/// The result of splitting.
 #[derive(Default)]
 struct Made {
-    /// All that was worth a look, with their primitives.
+    /// All candidate pieces with their primitives.
     pieces: Vec<(u32, Aabb)>,
-    /// How many cuts were made.
+    /// The number of splits.
     cuts: usize,
-    /// How much area was saved.
+    /// The saved area.
     saved: f64,
 }
 
 impl Made {
-    /// Makes at most so many cuts that gain at least so much.
+    /// Make splits above a minimum gain, up to a maximum number.
     fn of(boxes: &[Aabb], shapes: &impl Shapes, least: f32, budget: usize) -> Self {
         let mut made = Self::default();
         let long: Vec<_> = long(boxes, least).collect();
@@ -253,11 +253,11 @@ impl Made {
         made
     }
 
-    /// Cuts so often at most, the cuts that gain most first, to a factor of two.
+    /// Split up to a maximum number of times, by decreasing gain to within a factor of two.
     fn cut(&mut self, long: &[(u32, &Aabb)], cut: &(dyn Fn(u32, &Aabb) -> Option<Cut> + Sync), mut budget: usize) {
         let first = parallel::collect(long.len(), |i| cut(long[i].0, long[i].1));
         let greatest = first.iter().flatten().fold(0f32, |greatest, cut| greatest.max(cut.gain));
-        // Those that gain more than half of the greatest, more than a quarter, and so on.
+        // Buckets of gains above a half of the greatest, above a quarter, and so on.
         let mut rows: Vec<Vec<Cut>> = Vec::new();
         let put = |rows: &mut Vec<Vec<Cut>>, cut: Cut, from: usize| {
             let row = ((greatest / cut.gain).log2() as usize).max(from);
@@ -266,7 +266,7 @@ impl Made {
             }
             rows[row].push(cut);
         };
-        // What gains nothing as a whole stays whole, which needs no mention.
+        // Primitives without gain stay whole and are not listed.
         first.into_iter().flatten().for_each(|cut| put(&mut rows, cut, 0));
         let mut row = 0;
         while row < rows.len() {
@@ -308,8 +308,7 @@ mod tests {
     use raywright_base::work::Work;
     use raywright_shapes::triangle::clipped;
 
-    /// Triangles of some size, the second corner in a direction from the first, which for the third is turned by a
-    /// right angle.
+    /// Triangles given by two sides from random corners.
     fn triangles(count: u32, along: DVec3, aside: DVec3) -> Vec<[DVec3; 3]> {
         let random = |i| philox4x32([i, 0, 0, 0], [0, 0]).map(|bits| f64::from(bits) / 2f64.powi(32));
         let place = |i| DVec3::from_slice(&random(i)[..3]);
@@ -363,7 +362,7 @@ mod tests {
 
     #[test]
     fn what_is_small_stays_whole() {
-        // The box around all has an area of 3; boxes of less than 5 thousandths of it are not even looked at.
+        // The scene's box has an area of 3; boxes of less than 5 thousandths of it are not even considered.
         let small = triangles(1000, DVec3::splat(0.07), DVec3::new(0.0, 1e-3, 0.0));
         let boxes = boxes(&small);
         assert!(
@@ -392,7 +391,7 @@ mod tests {
             Remedy::of(&[], &|_: u32, to: &Aabb| *to, &Options { budget: 4.0, worthwhile: 0.5 }),
             Remedy::Nothing
         );
-        // A gain that is not asked for is none.
+        // A gain below the requested one counts as none.
         let straight = triangles(5000, DVec3::X, 1e-3 * DVec3::Y);
         let clip = |p: u32, to: &Aabb| clipped(straight[p as usize], to);
         let options = Options { budget: 4.0, worthwhile: 0.5 };

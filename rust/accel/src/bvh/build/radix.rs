@@ -1,19 +1,18 @@
-//! A stable parallel radix sort by whole-number keys (Zagha and Blelloch, "Radix Sort for Vector Multiprocessors",
-//! 1991).
+//! A stable parallel radix sort by integer keys (Zagha and Blelloch, "Radix Sort for Vector Multiprocessors", 1991).
 
 use raywright_base::parallel;
 use raywright_base::work::{Stopped, Work};
 use std::ops::Range;
 
-/// Bits of a digit.
+/// Bits per digit.
 const DIGIT: u32 = 8;
 
 const DIGITS: usize = 1 << DIGIT;
 
-/// So many pairs are one thread's share.
+/// Pairs per parallel task.
 const SHARE: usize = 1 << 14;
 
-/// Sorts pairs by the lowest `bits` of the first, and keeps pairs of one key in the order they had.
+/// Sort pairs by the lowest `bits` of the first component, stably.
 pub fn sort(pairs: &mut Vec<(u64, u32)>, bits: u32, work: Work) -> Result<(), Stopped> {
     let mut other = vec![(0, 0); pairs.len()];
     let steps = work.steps(bits.div_ceil(DIGIT) as usize);
@@ -30,7 +29,7 @@ fn digit(key: u64, shift: u32) -> usize {
     (key >> shift) as usize & (DIGITS - 1)
 }
 
-/// Writes the pairs by one digit; not if all have the same.
+/// Distribute the pairs by one digit. Return false, without writing, if all have the same digit.
 fn pass(from: &[(u64, u32)], to: &mut [(u64, u32)], shift: u32) -> bool {
     let count = |share: Range<usize>| {
         let mut counts = [0usize; DIGITS];
@@ -41,7 +40,7 @@ fn pass(from: &[(u64, u32)], to: &mut [(u64, u32)], shift: u32) -> bool {
     if (0..DIGITS).any(|d| counts.iter().map(|c| c[d]).sum::<usize>() == from.len()) {
         return false;
     }
-    // Where each share writes its pairs of each digit: by digit, then by share.
+    // The output slices of each task for each digit: by digit, then by task.
     let mut rooms: Vec<Vec<std::slice::IterMut<(u64, u32)>>> =
         counts.iter().map(|_| Vec::with_capacity(DIGITS)).collect();
     let mut rest = to;

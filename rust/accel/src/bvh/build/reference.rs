@@ -1,4 +1,4 @@
-//! What builders sort: boxes with the numbers of their primitives.
+//! The references that builders sort: boxes with primitive numbers.
 
 use glam::{Vec4, Vec4Swizzles};
 use raywright_base::math::{Aabb, Vec3};
@@ -7,14 +7,13 @@ use raywright_base::work::{Stopped, Work};
 use std::borrow::Cow;
 use std::ops::Range;
 
-/// So many references are one thread's share of a large node.
+/// References per parallel task in a large node.
 pub const SHARE: usize = 1 << 14;
 
-/// From so many references on, several threads look at them.
+/// Minimum number of references for parallel processing.
 pub const MANY: usize = 1 << 16;
 
-/// A box that grows: its least corner, and its greatest with all signs turned, so that both grow by taking the lesser.
-/// What stands in `w` does not count.
+/// A growing box, stored as the min corner and the negated max corner, so that both grow by a minimum. `w` is ignored.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct Bounds {
@@ -23,75 +22,75 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// Holds nothing.
+    /// The empty box.
     pub const EMPTY: Self = Self { min: Vec4::INFINITY, neg_max: Vec4::INFINITY };
 
-    /// Around one point.
+    /// The box of a point.
     #[inline(always)]
     pub fn point(at: Vec4) -> Self {
         Self { min: at, neg_max: -at }
     }
 
-    /// Makes it hold another as well.
+    /// Extend it to contain another one.
     #[inline(always)]
     pub fn grow(&mut self, other: &Self) {
         self.min = self.min.min(other.min);
         self.neg_max = self.neg_max.min(other.neg_max);
     }
 
-    /// The smallest around two.
+    /// The union of two boxes.
     #[inline(always)]
     pub fn union(mut self, other: &Self) -> Self {
         self.grow(other);
         self
     }
 
-    /// As others know it.
+    /// Convert to an [`Aabb`].
     pub fn aabb(&self) -> Aabb {
         Aabb { min: self.min.truncate(), max: -self.neg_max.truncate() }
     }
 
-    /// What two have in common; whether that is empty, [`Bounds::is_empty`] tells.
+    /// The intersection of two boxes, possibly empty ([`Bounds::is_empty`]).
     #[inline(always)]
     pub fn common(&self, other: &Self) -> Self {
         Self { min: self.min.max(other.min), neg_max: self.neg_max.max(other.neg_max) }
     }
 
-    /// Whether nothing is inside.
+    /// Return whether the box is empty.
     #[inline(always)]
     pub fn is_empty(&self) -> bool {
         self.size().truncate().cmplt(Vec3::ZERO).any()
     }
 
-    /// The least corner.
+    /// The min corner.
     #[inline(always)]
     pub fn least(&self) -> Vec4 {
         self.min
     }
 
-    /// The greatest corner.
+    /// The max corner.
     #[inline(always)]
     pub fn greatest(&self) -> Vec4 {
         -self.neg_max
     }
 
-    /// How long it is along each axis; not positive where it is flat, or empty.
+    /// The extent along each axis; not positive if flat or empty.
     #[inline(always)]
     pub fn size(&self) -> Vec4 {
         -(self.min + self.neg_max)
     }
 
-    /// The axis along which it is longest.
+    /// The axis of greatest extent.
     #[inline(always)]
     pub fn longest(&self) -> usize {
         let [x, y, z, _] = self.size().to_array();
         if x >= y && x >= z { 0 } else { 1 + usize::from(z > y) }
     }
 
-    /// Half the surface; of an empty box, no number.
+    /// Half the surface area; NaN for an empty box.
     #[inline(always)]
     pub fn half_area(&self) -> f32 {
-        // The signs cancel out.
+        // The signs cancel.
         let d = self.min + self.neg_max;
         let [x, y, z, _] = (d * d.yzxw()).to_array();
         x + y + z
@@ -104,12 +103,12 @@ impl From<&Aabb> for Bounds {
     }
 }
 
-/// A box with the number of its primitive, as builders sort them.
+/// A box with its primitive's number.
 #[derive(Clone, Copy, Debug)]
 #[repr(transparent)]
 pub struct Reference {
-    /// The lower half of the primitive's number stands in the first `w`, the upper in the second. Halves, as the bits
-    /// of a whole number would make subnormals, which slow arithmetic down.
+    /// The lower half of the number is stored in the first `w`, the upper half in the second, both as floats. The bits
+    /// of an integer would be subnormal floats, which are slow.
     pub bounds: Bounds,
 }
 
@@ -140,20 +139,20 @@ impl Reference {
     }
 }
 
-/// Boxes of a set of references: of all that they hold, and of their centres (doubled).
+/// The bounds of references, and of their (doubled) centres.
 #[derive(Clone, Copy)]
 pub struct Extents {
-    /// Of all that they hold.
+    /// The bounds of the boxes.
     pub all: Bounds,
-    /// Of their centres, doubled.
+    /// The bounds of the centres, doubled.
     pub centres: Bounds,
 }
 
 impl Extents {
-    /// Of no references.
+    /// No references.
     pub const EMPTY: Self = Self { all: Bounds::EMPTY, centres: Bounds::EMPTY };
 
-    /// Of some references.
+    /// The extents of references.
     #[inline(always)]
     pub fn around(references: &[Reference]) -> Self {
         let mut extents = Self::EMPTY;
@@ -164,14 +163,14 @@ impl Extents {
         extents
     }
 
-    /// Of two sets.
+    /// The union of two sets.
     pub fn union(self, other: Self) -> Self {
         Self { all: self.all.union(&other.all), centres: self.centres.union(&other.centres) }
     }
 }
 
 impl Extents {
-    /// Of some references, by several threads if they are many.
+    /// The extents of references, in parallel for many.
     pub fn around_many(references: &[Reference]) -> Self {
         if references.len() < MANY {
             Self::around(references)
@@ -182,7 +181,7 @@ impl Extents {
     }
 }
 
-/// References to all boxes but empty ones. Boxes that are given away are freed.
+/// References to all nonempty boxes. Owned boxes are freed.
 pub fn references<'a>(boxes: impl Into<Cow<'a, [Aabb]>>, work: Work) -> Result<Vec<Reference>, Stopped> {
     let boxes = boxes.into();
     let reference = |i: usize| Reference::new(&boxes[i], i as u32);
@@ -192,13 +191,12 @@ pub fn references<'a>(boxes: impl Into<Cow<'a, [Aabb]>>, work: Work) -> Result<V
         let there = |share: Range<usize>| share.filter(|&i| !boxes[i].is_empty()).map(reference).collect::<Vec<_>>();
         Ok(parallel::map_chunks(boxes.len(), SHARE, there).concat())
     } else {
-        // Where each belongs is known, so it is written there at once.
+        // Without empty boxes the positions are known, so references are written directly.
         work.collect(boxes.len(), reference)
     }
 }
 
-/// Brings those that belong on the left to the front and tells how many they are. Without a branch on the side, which
-/// would be guessed wrong every other time.
+/// Move left references to the front and return their number. Branchless, since a branch would often be mispredicted.
 #[inline(always)]
 pub fn partition(references: &mut [Reference], is_left: impl Fn(&Reference) -> bool) -> usize {
     let mut left = 0;
@@ -209,7 +207,7 @@ pub fn partition(references: &mut [Reference], is_left: impl Fn(&Reference) -> b
     left
 }
 
-/// Halves by number along the longest axis of the centres; equal centres by their primitive's number.
+/// Split at the median along the longest axis of the centres; equal centres are ordered by primitive.
 pub fn median(references: &mut [Reference], centres: &Bounds) -> usize {
     let axis = centres.longest();
     let middle = references.len() / 2;

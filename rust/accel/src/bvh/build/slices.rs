@@ -1,30 +1,29 @@
-//! Binary trees with one primitive a leaf, written where they belong at once: a subtree over n of them has 2 n − 1
-//! nodes, so every place is known beforehand.
+//! Binary trees with one primitive per leaf, written in place: a subtree over n primitives has 2 n − 1 nodes, so all
+//! positions are known in advance.
 
 use super::{BinaryBvh, Node};
 use raywright_base::math::Aabb;
 use raywright_base::parallel;
 use raywright_base::work::{Steps, Stopped, Work};
 
-/// Subtrees over up to so many primitives are written by one thread.
+/// Maximum number of primitives of a subtree written by one thread.
 const TASK: usize = 1024;
 
-/// A subtree that is yet to be written.
+/// A subtree to be written.
 pub trait Subtree: Copy + Send + Sync {
-    /// What it turns out to be.
+    /// Expand it by one level.
     fn open(self) -> Opened<Self>;
 }
 
-/// What a subtree turns out to be.
+/// An expanded subtree.
 pub enum Opened<S> {
     /// A leaf: its box and its primitive.
     Leaf(Aabb, u32),
-    /// Two subtrees, and over how many primitives the first is.
+    /// Two subtrees, and the number of primitives in the first.
     Pair(S, S, usize),
 }
 
-/// Writes a tree over so many primitives, at least one; boxes come from the bottom up. Subtrees must not be nested much
-/// deeper than a stack can hold.
+/// Write a tree over at least one primitive, with boxes computed bottom-up. The recursion is as deep as the tree.
 pub fn write(root: impl Subtree, count: usize, work: Work) -> Result<BinaryBvh, Stopped> {
     let [make, fill] = work.parts([1.0, 8.0]);
     let mut nodes = make.collect(2 * count - 1, |_| Node::leaf(Aabb::EMPTY, 0, 0))?;
@@ -35,17 +34,17 @@ pub fn write(root: impl Subtree, count: usize, work: Work) -> Result<BinaryBvh, 
     Ok(BinaryBvh { nodes, order })
 }
 
-/// Where a subtree is written.
+/// The destination of a subtree.
 struct Target<'a> {
-    /// The number of the first node below its root.
+    /// The index of the first node below its root.
     base: usize,
     below: &'a mut [Node],
-    /// The place of its first primitive in the order.
+    /// The index of its first primitive in the order.
     first: usize,
     order: &'a mut [u32],
 }
 
-/// Writes a subtree: its root, what is below, and its primitives.
+/// Write a subtree: its root, the nodes below, and its primitives.
 fn subtree(tree: impl Subtree, root: &mut Node, to: Target, steps: &Steps) -> Result<(), Stopped> {
     let Target { base, below, first, order } = to;
     match tree.open() {
@@ -62,7 +61,7 @@ fn subtree(tree: impl Subtree, root: &mut Node, to: Target, steps: &Steps) -> Re
             let right_base = base + 2 + left_below.len();
             let left_to = Target { base: base + 2, below: left_below, first, order: left_order };
             let right_to = Target { base: right_base, below: right_below, first: first + count, order: right_order };
-            // What one thread writes is told as a whole.
+            // Progress is reported once per single-threaded subtree.
             let told = |count: usize| if parallel && count <= TASK { steps.did(count) } else { Ok(()) };
             let (left_count, right_count) = (left_to.order.len(), right_to.order.len());
             let write_left = || subtree(left, left_root, left_to, steps).and_then(|()| told(left_count));

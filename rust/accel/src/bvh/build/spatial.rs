@@ -1,12 +1,12 @@
-//! From the top down by the surface-area heuristic, where a primitive that straddles a plane may be parted by it
-//! (Stich, Friedrich and Dietrich, "Spatial Splits in Bounding Volume Hierarchies", 2009).
+//! A top-down builder with the surface area heuristic and spatial splits, which may split straddling primitives (Stich,
+//! Friedrich and Dietrich, "Spatial Splits in Bounding Volume Hierarchies", 2009).
 //!
-//! What is sorted are references: a primitive with the box around a part of it, which another may share. Where the two
-//! sides of the best split of the set overlap, planes that part what they cut are weighed too, in bins that hold the
-//! parts. A straddling reference that costs less when it is left whole goes to one side ("reference unsplitting"). How
-//! many references may be added is bounded; a subtree gets what its parent has left in proportion to its references, so
-//! that threads need not share it. That spends it badly where some need many cuts and others none, so what gains most
-//! is better cut before, wherever it is: `presplit`. Sets that are small beside the scene are left to `binned`.
+//! A reference is a primitive with the box of one of its parts. If the two sides of the best object split overlap,
+//! spatial splits are evaluated too, in bins of the parts. A straddling reference goes to one side as a whole if that
+//! is cheaper ("reference unsplitting"). The number of added references is bounded. Subtrees inherit the remaining
+//! budget in proportion to their references, so that threads need not share it. That wastes budget if some subtrees
+//! need many splits and others none, so large gains are better realized beforehand, anywhere in the scene: `presplit`.
+//! Sets that are small relative to the scene are left to `binned`.
 
 use super::binned::{MAX_BINS, Task};
 use super::bins::{Side, Split};
@@ -20,41 +20,42 @@ use raywright_base::parallel;
 use raywright_base::work::{Stopped, Work};
 use std::borrow::Cow;
 
-/// How to build.
+/// Build options.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// Bins an axis, from 2 to [`MAX_BINS`].
+    /// Bins per axis, from 2 to [`MAX_BINS`].
     pub bins: usize,
-    /// How many references may be added, over the number of primitives; from 0 to [`MAX_BUDGET`].
+    /// Maximum number of added references per primitive, from 0 to [`MAX_BUDGET`].
     pub budget: f32,
     /// When a leaf is made.
     pub leaves: Leaves,
 }
 
-/// Most that may be asked for.
+/// Maximum budget.
 pub const MAX_BUDGET: f32 = 8.0;
 
-/// Enough for most of what long diagonal geometry has to gain. Where planes gain nothing, it is not used up.
+/// Enough for most of the gain on long diagonal geometry. Without gain it is not used up.
 pub const BUDGET: f32 = 4.0;
 
-/// So many references can be told apart by a wide tree.
+/// Maximum number of references that a wide tree can index.
 const MOST: usize = (1 << 28) - 2;
 
-/// Planes are weighed where the sides overlap by more than this share of the root's area (α in the paper): where they
-/// overlap by less, hardly a ray meets both for nothing.
+/// Spatial splits are evaluated if the sides' overlap exceeds this fraction of the root's area (α in the paper). With
+/// less overlap, hardly any ray hits both sides in vain.
 const OVERLAP: f32 = 1e-3;
 
-/// And by more than this share of the set's own. What parting saves is not more than the overlap, and in a mesh of even
-/// triangles neighbours overlap everywhere by a little.
+/// The overlap must also exceed this fraction of the set's own area. The saving is at most the overlap, and in a
+/// regular mesh all neighbours overlap slightly.
 const OWN_OVERLAP: f32 = 0.2;
 
-/// Builds a tree over boxes, leaving out empty ones; a primitive may stand in several leaves, each of which holds what
-/// is left of it in a box.
+/// Build a tree over boxes, skipping empty ones. A primitive may be in several leaves, each with the box of one of its
+/// parts.
 ///
-/// Takes time n log n on any input: sets that cannot be parted by area are halved by number, and so are all from a
-/// depth on that a reasonable tree does not reach.
+/// Time is n log n on any input: sets that cannot be split by area are split at the median, and so are all beyond a
+/// depth that no reasonable tree reaches.
 ///
 /// # Panics
+///
 /// If an option is out of range.
 pub fn build<'a>(
     boxes: impl Into<Cow<'a, [Aabb]>>,
@@ -84,7 +85,7 @@ struct Shared<'a, S> {
     shapes: &'a S,
     bins: usize,
     leaves: Leaves,
-    /// Half the surface that sides may have in common before planes are weighed.
+    /// The overlap, as half a surface area, above which spatial splits are evaluated.
     overlap: f32,
     work: Work<'a>,
 }
@@ -92,9 +93,9 @@ struct Shared<'a, S> {
 struct Parts<'a, S> {
     references: Vec<Reference>,
     extents: Extents,
-    /// How many more levels may be split by area.
+    /// The remaining number of levels with splits by area.
     spare: usize,
-    /// How many more references there may be.
+    /// The remaining budget of references.
     budget: usize,
     shared: &'a Shared<'a, S>,
 }
@@ -123,7 +124,7 @@ impl<S: Shapes> Parts<'_, S> {
         }
     }
 
-    /// Builds a subtree on this thread.
+    /// Build a subtree on this thread.
     fn build_alone(mut self) -> Part {
         if let Some(task) = self.without_planes() {
             return task.build_alone(&mut self.references, self.extents);
@@ -135,22 +136,22 @@ impl<S: Shapes> Parts<'_, S> {
         }
     }
 
-    /// How to build where nothing is to be parted any more.
+    /// The parameters of a build without further spatial splits, if none are possible.
     fn without_planes(&self) -> Option<Task> {
         let Shared { bins, leaves, overlap, .. } = *self.shared;
-        // Sides have no more in common than the set has, nor do those of its parts.
+        // The overlap of sides is at most the set's own box, also further down.
         let is_small = self.references.len() <= leaves.block || self.extents.all.half_area() <= overlap;
         let is_over = self.budget == 0 || self.spare == 0;
         (is_small || is_over).then_some(Task { bins, leaves, spare: self.spare, first: None })
     }
 
-    /// Two sets of it, neither empty; or what is in it, if it is to be a leaf.
+    /// Split the set into two nonempty ones; return its references if it becomes a leaf.
     fn split(self) -> Result<[Self; 2], Vec<Reference>> {
         let Self { mut references, extents, spare, budget, shared } = self;
         let count = references.len();
         let whole = Split::best_with_sides(&references, &extents, shared.bins);
         let plane = shared.best_plane(&references, &extents, whole.map(|whole| whole.1), budget);
-        // Where nothing is parted after all, one side may be empty.
+        // If no reference is split after all, one side may be empty.
         let parted = plane.map(|plane| plane.part(&references, shared.shapes));
         let (mut left, right) = match parted.filter(|(left, right)| !left.is_empty() && !right.is_empty()) {
             Some(sides) => sides,
@@ -181,7 +182,7 @@ impl<S: Shapes> Parts<'_, S> {
 }
 
 impl<S: Shapes> Shared<'_, S> {
-    /// The best plane, where it costs less than the best split without, of which this lies on either side.
+    /// The best spatial split, if it is cheaper than the best object split, given by its two sides.
     fn best_plane(
         &self,
         references: &[Reference],

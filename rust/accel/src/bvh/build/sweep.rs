@@ -1,9 +1,9 @@
-//! From the top down by the surface-area heuristic at every place where a set can be parted along an axis (MacDonald
-//! and Booth, "Heuristics for Ray Tracing Using Space Subdivision", 1990).
+//! A top-down builder with the surface area heuristic at every split position along each axis (MacDonald and Booth,
+//! "Heuristics for Ray Tracing Using Space Subdivision", 1990).
 //!
-//! The primitives are sorted once along each axis, and the three orders are parted stably (Wald and Havran, "On
-//! building fast kd-trees for ray tracing, and on doing that in O(N log N)", 2006). The three axes are swept side by
-//! side where nodes are large, and subtrees are built side by side below.
+//! Primitives are sorted once along each axis, and the three orders are partitioned stably (Wald and Havran, "On
+//! building fast kd-trees for ray tracing, and on doing that in O(N log N)", 2006). Large nodes sweep the three axes in
+//! parallel, and subtrees below are built in parallel.
 
 use super::reference::{Bounds, Reference, references};
 use super::top_down::{self, Set};
@@ -15,15 +15,16 @@ use raywright_base::work::{Stopped, Work};
 use std::borrow::Cow;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
-/// From so many primitives on, each axis has a thread.
+/// Minimum number of primitives for one thread per axis.
 const MANY: usize = 4096;
 
-/// Builds a tree over boxes, leaving out empty ones.
+/// Build a tree over boxes, skipping empty ones.
 ///
-/// Takes time n log n on any input: sets that cannot be parted by area are halved by number, and so are all from a
-/// depth on that a reasonable tree does not reach.
+/// Time is n log n on any input: sets that cannot be split by area are split at the median, and so are all beyond a
+/// depth that no reasonable tree reaches.
 ///
 /// # Panics
+///
 /// If an option is out of range.
 pub fn build<'a>(boxes: impl Into<Cow<'a, [Aabb]>>, leaves: &Leaves, work: Work) -> Result<BinaryBvh, Stopped> {
     leaves.check();
@@ -34,7 +35,7 @@ pub fn build<'a>(boxes: impl Into<Cow<'a, [Aabb]>>, leaves: &Leaves, work: Work)
     }
     let count = references.len();
     let sorted = |axis: usize| {
-        // In the order of f32::total_cmp, and those with one centre by their numbers.
+        // In the order of f32::total_cmp; equal centres are ordered by index.
         let rank = |x: f32| x.to_bits() ^ if x.is_sign_negative() { u32::MAX } else { 1 << 31 };
         let key = |i: usize| u64::from(rank(references[i].centre_on(axis))) << 32 | i as u64;
         let mut keys = parallel::collect(count, key);
@@ -59,24 +60,24 @@ pub fn build<'a>(boxes: impl Into<Cow<'a, [Aabb]>>, leaves: &Leaves, work: Work)
 
 struct Shared<'a> {
     references: &'a [Reference],
-    /// Whether a primitive is on the right of the split that is being made.
+    /// True if a primitive is on the right of the current split.
     right: &'a [AtomicBool],
     leaves: Leaves,
 }
 
-/// Some primitives along one axis.
+/// A set of primitives along one axis.
 struct Axis<'a> {
-    /// By their centres, and those with one centre by their numbers.
+    /// Sorted by centre, then by index.
     order: &'a mut [u32],
-    /// As much room.
+    /// Scratch space of the same length.
     space: &'a mut [u32],
 }
 
 struct Sweep<'a> {
     axes: [Axis<'a>; 3],
-    /// The box around all.
+    /// The bounding box.
     all: Bounds,
-    /// How many more levels may be split by area.
+    /// The remaining number of levels with splits by area.
     spare: usize,
     shared: &'a Shared<'a>,
 }
@@ -125,11 +126,11 @@ impl Set for Sweep<'_> {
 }
 
 impl Sweep<'_> {
-    /// The cheapest place, by axis and how many are left of it; of equals the first. None if nothing is gained.
+    /// The cheapest split, as axis and number on the left; the first of several. None without gain.
     fn best(&mut self) -> Option<(usize, usize)> {
         let references = self.shared.references;
         let costs = each(&mut self.axes, |_, axis| axis.best(references));
-        // Where roundings decide, halves do better.
+        // If only rounding decides, median splits are better.
         let unsplit = self.all.half_area() * self.len() as f32;
         let (mut least, mut best) = (unsplit * (1.0 - 8.0 * f32::EPSILON), None);
         for (axis, (cost, left)) in costs.into_iter().enumerate() {
@@ -140,7 +141,7 @@ impl Sweep<'_> {
         best
     }
 
-    /// The axis along which the centres are farthest apart.
+    /// The axis of greatest extent of the centres.
     fn longest(&self) -> usize {
         let centre = |axis: usize, i: u32| self.shared.references[i as usize].centre_on(axis);
         let ends = |side: usize| {
@@ -155,11 +156,11 @@ impl Sweep<'_> {
 }
 
 impl<'a> Axis<'a> {
-    /// The cheapest place: its cost, infinite if there is none, and how many are left of it.
+    /// The cheapest split: its cost, infinite if there is none, and the number on the left.
     fn best(&mut self, references: &[Reference]) -> (f32, usize) {
         let count = self.order.len();
         let bounds = |i: u32| &references[i as usize].bounds;
-        // Costs of all from a place on.
+        // The costs of the right side from each position.
         let mut grown = Bounds::EMPTY;
         for place in (1..count).rev() {
             grown.grow(bounds(self.order[place]));
@@ -177,7 +178,7 @@ impl<'a> Axis<'a> {
         (least, best)
     }
 
-    /// Brings those on the left before those on the right, each in the order they had.
+    /// Partition stably into left and right.
     fn part(&mut self, is_right: &[AtomicBool]) {
         let (mut left, mut right) = (0, 0);
         for place in 0..self.order.len() {
@@ -197,7 +198,7 @@ impl<'a> Axis<'a> {
     }
 }
 
-/// Something about each axis, side by side where that pays.
+/// Apply a function to each axis, in parallel for large sets.
 fn each<T: Send>(axes: &mut [Axis; 3], f: impl Fn(usize, &mut Axis) -> T + Sync) -> [T; 3] {
     let [x, y, z] = axes;
     if x.order.len() < MANY {

@@ -1,4 +1,4 @@
-//! What holds of the trees of all builders, optimised or not, over any boxes.
+//! Tests of the trees of all builders, with and without optimizers, over arbitrary boxes.
 
 use super::*;
 use crate::bvh::optimise::{reinsertion, treelet};
@@ -20,29 +20,29 @@ const ALL: [Builder; 9] = [
     Builder::Halves(Way::Mean),
 ];
 
-/// What primitives leave that fill their boxes.
+/// Clip primitives that fill their boxes.
 fn fill(boxes: &[Aabb]) -> impl Fn(u32, &Aabb) -> Aabb + Sync {
     |p, to| boxes[p as usize].intersection(*to)
 }
 
-/// Area of all inner nodes.
+/// The area of all inner nodes.
 fn cost(bvh: &BinaryBvh) -> f64 {
     bvh.nodes.iter().filter(|n| !n.is_leaf()).map(|n| f64::from(n.aabb().half_area())).sum()
 }
 
-/// That a tree is one of these boxes, in its order, and no deeper than a stack is made for.
+/// Assert that a tree over these boxes is valid, in depth-first order, and no deeper than traversal stacks allow.
 fn assert_sound(bvh: &BinaryBvh, boxes: &[Aabb], builder: Builder, clip: impl Fn(u32, &Aabb) -> Aabb) {
     if builder.parts() { bvh.validate_parts(boxes, clip) } else { bvh.validate(boxes) }
         .unwrap_or_else(|wrong| panic!("{}: {wrong}", builder.name()));
     assert_depth_first(bvh);
     let count = boxes.iter().filter(|b| !b.is_empty()).count();
-    // What fits a block may be a chain.
+    // Primitives within a block may form a chain.
     let limit = 3 * count.max(1).ilog2() as usize + 42 + Leaves::MAX_BLOCK;
     let limit = if let Builder::Morton(bits) = builder { limit.max(bits.count() as usize + 33) } else { limit };
     assert!(bvh.depth() <= limit, "{}: depth {} of {count}", builder.name(), bvh.depth());
 }
 
-/// Builds with every builder, and improves with every optimiser.
+/// Build with every builder, and run every optimizer.
 fn check(boxes: &[Aabb], clip: impl Fn(u32, &Aabb) -> Aabb + Sync, block: usize) {
     for builder in ALL {
         let mut bvh = builder.build(boxes, &clip, &Leaves::for_blocks(block), Work::UNWATCHED).unwrap();
@@ -106,7 +106,7 @@ fn many_of_one_centre_and_of_one_box() {
     check(&scales, fill(&scales), 8);
     let equal = vec![Aabb { min: Vec3::ZERO, max: Vec3::ONE }; 30_000];
     check(&equal, fill(&equal), 8);
-    // Each box holds all that come before it.
+    // Each box contains all previous ones.
     let nested: Vec<_> =
         (0..20_000).map(|i| Aabb { min: Vec3::ZERO, max: Vec3::splat(1.0 - 0.9995f32.powi(i)) }).collect();
     check(&nested, fill(&nested), 4);
@@ -123,7 +123,7 @@ fn a_million_copies_end_soon() {
     assert!(start.elapsed().as_secs() < 120, "{:?}", start.elapsed());
 }
 
-/// Thin triangles along one diagonal, and boxes around them.
+/// Thin triangles along a diagonal, and their boxes.
 fn sticks(count: u32) -> (Vec<[DVec3; 3]>, Vec<Aabb>) {
     let random = |i| philox4x32([i, 0, 0, 0], [0, 0]).map(|bits| f64::from(bits) / 2f64.powi(32));
     let triangles: Vec<_> = (0..count)
@@ -138,7 +138,7 @@ fn sticks(count: u32) -> (Vec<[DVec3; 3]>, Vec<Aabb>) {
     (triangles, boxes)
 }
 
-/// The surface-area heuristic's cost, over the root's area.
+/// The cost by the surface area heuristic, relative to the root's area.
 fn sah(bvh: &BinaryBvh) -> f64 {
     let cost = |n: &Node| f64::from(n.aabb().half_area()) * if n.is_leaf() { f64::from(n.count) } else { 1.0 };
     bvh.nodes.iter().map(cost).sum::<f64>() / f64::from(bvh.nodes[0].aabb().half_area())
@@ -174,7 +174,7 @@ fn looking_everywhere_costs_no_more_than_looking_at_borders_of_bins() {
 
 #[test]
 fn a_leaf_is_made_where_splitting_does_not_lower_the_cost() {
-    // Equal boxes gain nothing; boxes apart do, if steps down are cheap enough.
+    // Equal boxes gain nothing; separate ones do, if traversal steps are cheap enough.
     let equal = vec![Aabb { min: Vec3::ZERO, max: Vec3::ONE }; 12];
     let apart: Vec<_> =
         (0..12).map(|i| Aabb::around([Vec3::new(i as f32, 0.0, 0.0), Vec3::new(i as f32 + 0.1, 1.0, 1.0)])).collect();
@@ -195,7 +195,7 @@ fn the_number_of_threads_does_not_matter() {
     let clip = |p: u32, to: &Aabb| clipped(triangles[p as usize], to);
     let on = |threads: usize, builder: Builder| {
         let pool = raywright_base::workers::pool(Some(threads)).unwrap();
-        // Planes are sought by several threads only in the largest nodes.
+        // Planes are searched in parallel only in the largest nodes.
         let boxes = &all[..if builder.parts() { all.len() } else { 10_000 }];
         pool.install(|| {
             let mut bvh = builder.build(boxes, clip, &Leaves::for_blocks(8), Work::UNWATCHED).unwrap();
@@ -221,12 +221,12 @@ fn builds_tell_all_that_they_do_and_end_when_they_are_stopped() {
         let leaves = Leaves::for_blocks(8);
         let clip = |p: u32, to: &Aabb| clipped(triangles[p as usize], to);
         let bvh = builder.build(&boxes, clip, &leaves, Work::of(&watch)).unwrap();
-        // What is told of the parts adds up to all there was.
+        // The reported progress adds up to the whole.
         assert!(watch.share() > 0.99 && watch.share() <= 1.0, "{}: {}", builder.name(), watch.share());
         stopped.stop();
         let early = builder.build(boxes.clone(), clip, &leaves, Work::of(&stopped));
         assert!(early.is_err() && stopped.share() < 0.5, "{}: {}", builder.name(), stopped.share());
-        // An optimiser that is stopped leaves the tree as it is.
+        // A canceled optimizer leaves the tree unchanged.
         let mut same = bvh.clone();
         let options = treelet::Options { rounds: 1, worthwhile: 0.0, block: 8 };
         assert_eq!(treelet::optimise(&mut same, &options, Work::of(&stopped)), Err(Stopped));
@@ -238,7 +238,7 @@ fn builds_tell_all_that_they_do_and_end_when_they_are_stopped() {
 
 #[test]
 fn halves_are_made_where_they_say() {
-    // Of centres 0, 1, 2, 9 the middle is 4.5, the mean is 3, and the median parts two from two.
+    // For centres 0, 1, 2, 9 the midpoint is 4.5, the mean 3, and the median separates two from two.
     let boxes = [0.0, 1.0, 2.0, 9.0].map(|x| Aabb::around([Vec3::new(x, 0.0, 0.0)]));
     for (way, left) in [(Way::Midpoint, 2.0), (Way::Mean, 2.0), (Way::Median, 1.0)] {
         let bvh = halves::build(&boxes, way, &Leaves::for_blocks(1), Work::UNWATCHED).unwrap();

@@ -1,4 +1,4 @@
-//! From the top down, subtree by subtree, whatever decides on the splits.
+//! The top-down build of subtrees in parallel, generic over the split criterion.
 
 use super::part::Part;
 use super::{BinaryBvh, Node};
@@ -6,28 +6,27 @@ use raywright_base::math::Aabb;
 use raywright_base::parallel;
 use raywright_base::work::{Steps, Stopped, Work};
 
-/// Up to so many primitives, a subtree is built by one thread.
+/// Maximum number of primitives of a subtree built by one thread.
 pub const TASK: usize = 1024;
 
-/// How much is told once a subtree is built.
+/// The progress to report once a subtree is built.
 #[derive(Clone, Copy)]
 pub struct Due<'a> {
     amount: usize,
-    /// How many levels it is for, at least one.
+    /// The number of levels it covers, at least one.
     levels: usize,
     steps: &'a Steps<'a>,
 }
 
 impl<'a> Due<'a> {
-    /// It takes as long to go through all once a level where subtrees are large, and so many times as long to build
-    /// what is below.
+    /// Cost of building a small subtree, in passes over its primitives. A level of large nodes takes one pass.
     const BELOW: usize = 8;
 
     fn levels(count: usize) -> usize {
         (count / TASK).max(1).ilog2() as usize + Self::BELOW
     }
 
-    /// A build of so many primitives in steps.
+    /// Progress steps for a build of the given size.
     pub fn steps(count: usize, work: Work) -> Steps {
         work.steps(count * Self::levels(count))
     }
@@ -38,7 +37,7 @@ impl<'a> Due<'a> {
         Self { amount: count * levels, levels, steps }
     }
 
-    /// Tells that a set is split: what is due for either side, of so many primitives.
+    /// Report that a set is split; return the shares of both sides, given their sizes.
     pub fn split(self, [left, right]: [usize; 2]) -> Result<[Self; 2], Stopped> {
         let Self { amount, levels, steps } = self;
         let now = amount / levels;
@@ -48,7 +47,7 @@ impl<'a> Due<'a> {
         Ok([of_left, rest - of_left].map(|amount| Self { amount, levels: levels.saturating_sub(1).max(1), steps }))
     }
 
-    /// Tells all of it.
+    /// Report all of it.
     pub fn tell(self) -> Result<(), Stopped> {
         self.steps.did(self.amount)
     }
@@ -56,23 +55,23 @@ impl<'a> Due<'a> {
 
 /// A set of primitives that may be split in two.
 pub trait Set: Sized + Send {
-    /// What is reused from split to split.
+    /// Scratch space, reused between splits.
     type Workspace: Default;
 
-    /// How many there are, at least one.
+    /// The number of primitives, at least one.
     fn len(&self) -> usize;
 
-    /// The box around them.
+    /// The bounding box.
     fn aabb(&self) -> Aabb;
 
-    /// Two sets of it, neither empty; or itself, if it is to be a leaf.
+    /// Split into two nonempty sets; return the set itself if it becomes a leaf.
     fn split(self, workspace: &mut Self::Workspace) -> Result<[Self; 2], Self>;
 
-    /// Adds the numbers of its primitives.
+    /// Append the numbers of its primitives.
     fn list(&self, order: &mut Vec<u32>);
 }
 
-/// Builds a tree over a set. The sets must not be split much more often in a row than a stack can hold.
+/// Build a tree over a set. The recursion is as deep as the tree.
 pub fn build<S: Set>(set: S, work: Work) -> Result<BinaryBvh, Stopped> {
     let [grow, place] = work.parts([10.0, 1.0]);
     let count = set.len();
@@ -101,11 +100,11 @@ fn part<S: Set>(set: S, due: Due) -> Result<Part, Stopped> {
     }
 }
 
-/// Builds a subtree on this thread.
+/// Build a subtree on this thread.
 fn alone<S: Set>(set: S, workspace: &mut S::Workspace) -> Part {
     let nothing = Node::leaf(Aabb::EMPTY, 0, 0);
     let (mut root, mut below, mut order) = (nothing, Vec::new(), Vec::with_capacity(set.len()));
-    // With its place below the root, or none for the root.
+    // Each with its index below the root; None for the root.
     let mut open: Vec<(Option<usize>, S)> = vec![(None, set)];
     while let Some((place, set)) = open.pop() {
         let aabb = set.aabb();
@@ -113,7 +112,7 @@ fn alone<S: Set>(set: S, workspace: &mut S::Workspace) -> Part {
             Ok([left, right]) => {
                 let child = below.len();
                 below.extend([nothing; 2]);
-                // The last is taken first, so that what is below the left child comes first.
+                // The stack is popped from the end, so the left subtree comes first.
                 open.push((Some(child + 1), right));
                 open.push((Some(child), left));
                 Node::inner(aabb, child as u32)

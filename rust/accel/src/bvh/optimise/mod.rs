@@ -1,21 +1,21 @@
-//! Optimisers of the binary tree: what a builder, which looks at one node at a time, has left to gain. To them leaves
-//! are opaque, so the tree of any builder will do.
+//! Optimizers of binary trees, which improve on the local decisions of builders. They treat leaves as opaque, so they
+//! work on the tree of any builder.
 
 pub mod reinsertion;
 mod tree;
 pub mod treelet;
 
-/// What improves a tree.
+/// An optimizer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Optimiser {
-    /// Moving subtrees to where they cost less: [`reinsertion`].
+    /// Moves subtrees to cheaper places: [`reinsertion`].
     Reinsertion,
-    /// Putting treelets together anew: [`treelet`].
+    /// Restructures treelets: [`treelet`].
     Treelet,
 }
 
 impl Optimiser {
-    /// Its name, for people.
+    /// Its display name.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Reinsertion => "reinsertion",
@@ -24,32 +24,32 @@ impl Optimiser {
     }
 }
 
-/// Optimisers one after the other, each at most once.
+/// A sequence of optimizers, each at most once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Optimisers([Option<Optimiser>; 2]);
 
 impl Optimisers {
-    /// None at all.
+    /// No optimizers.
     pub const NONE: Self = Self([None; 2]);
 
     /// Reinsertion alone.
     pub const REINSERTION: Self = Self([Some(Optimiser::Reinsertion), None]);
 
-    /// Some in turn; none of them if one is named twice.
+    /// A sequence of optimizers; None if one is repeated.
     pub fn new(some: impl IntoIterator<Item = Optimiser>) -> Option<Self> {
         let mut all = Self::NONE;
         for optimiser in some {
             if all.0.contains(&Some(optimiser)) {
                 return None;
             }
-            // As many places as there are kinds.
+            // There are as many slots as kinds.
             let place = all.0.iter().position(Option::is_none)?;
             all.0[place] = Some(optimiser);
         }
         Some(all)
     }
 
-    /// Each in turn.
+    /// The optimizers in order.
     pub fn iter(self) -> impl Iterator<Item = Optimiser> {
         self.0.into_iter().flatten()
     }

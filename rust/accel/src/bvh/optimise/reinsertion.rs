@@ -1,16 +1,16 @@
-//! Moving subtrees to where they cost less (Meister and Bittner, "Parallel Reinsertion for Bounding Volume Hierarchy
+//! Reinsertion of subtrees at cheaper places (Meister and Bittner, "Parallel Reinsertion for Bounding Volume Hierarchy
 //! Optimization", 2018).
 //!
-//! The cost of a tree is the area of its inner nodes. Taking a subtree out makes its parent needless and its ancestors
-//! smaller; putting it in somewhere else makes a new parent and enlarges those above. In every round the best place is
-//! sought for each of the largest nodes, by branch and bound and on all cores, in the tree as it stands; then the moves
-//! are made one after the other, from the one that gains most, leaving out those whose neighbourhood another has
-//! changed. Since nothing of that depends on who seeks, the tree is the same for any number of threads.
+//! The cost of a tree is the area of its inner nodes. Removing a subtree eliminates its parent and shrinks its
+//! ancestors; reinserting it creates a new parent and enlarges the nodes above. In every round, branch and bound finds
+//! the best place for each of the largest nodes, in parallel and in the unchanged tree. Then the moves are made by
+//! decreasing gain, except those whose neighbourhood an earlier move has changed. So the result does not depend on the
+//! number of threads.
 //!
-//! Three things are our own. What fits one block of triangles is moved as a whole: a triangle that leaves it alone
-//! makes inner nodes smaller, but needs a block for itself, which costs more. A node that found no better place rests
-//! for some rounds, so that the search comes to smaller ones. And a search sees a bounded number of nodes, so that the
-//! time is bounded on any input.
+//! Three details differ from the paper. Subtrees that fit one block of triangles are moved as a whole: a single
+//! triangle that leaves a block shrinks inner nodes, but needs a block of its own, which costs more. A node without a
+//! better place is skipped for some rounds, so that smaller nodes get their turn. And a search visits a bounded number
+//! of nodes, which bounds the time on any input.
 
 use super::tree::{Move, Tree, sibling};
 use crate::bvh::BinaryBvh;
@@ -19,37 +19,38 @@ use raywright_base::parallel;
 use raywright_base::work::{Stopped, Work};
 use std::ops::Range;
 
-/// How long to look for better places.
+/// Options of reinsertion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// Most rounds of seeking and moving.
+    /// Maximum number of rounds.
     pub rounds: u32,
-    /// The share of all subtrees that seek a place in a round, from 0 to 1.
+    /// The fraction of all subtrees searched per round, from 0 to 1.
     pub share: f32,
-    /// A round that saves less than this share of the cost is the last. If it is the first, the tree is left as it is.
+    /// Minimum saving of a round relative to the cost. A round that saves less is the last; if it is the first, the
+    /// tree is left unchanged.
     pub worthwhile: f32,
-    /// Subtrees of up to so many primitives are moved as a whole: as many as fit a block.
+    /// Subtrees of up to this many primitives are moved as a whole: as many as fit a block.
     pub block: usize,
 }
 
-/// For so many rounds a node that found no better place does not seek one.
+/// Number of rounds for which a node without a better place is skipped.
 const REST: u32 = 5;
 
-/// So many pairs of nodes are seen in a search; few searches come near.
+/// Maximum number of visited node pairs per search; few searches come near.
 const PATIENCE: u32 = 256;
 
-/// Subtrees that a thread seeks places for at a time.
+/// Subtrees per parallel task.
 const TOGETHER: usize = 64;
 
-/// Moves subtrees of a tree, which is laid out depth first and is so again afterwards. Its inner nodes have no more
-/// area then, and it is no deeper than it was or than three times the logarithm of its primitives and some.
+/// Optimize a tree in depth-first order, which is restored afterwards. The area of inner nodes does not increase, nor
+/// does the depth beyond its initial value or about three times the logarithm of the number of primitives.
 pub fn optimise(bvh: &mut BinaryBvh, options: &Options, work: Work) -> Result<(), Stopped> {
     if options.rounds == 0 || bvh.nodes.is_empty() {
         return Ok(());
     }
     let [open, improve, place] = work.parts([1.0, options.rounds as f32, 1.5]);
     let mut tree = Tree::new(bvh, options.block as u32);
-    // Stacks are made for the depth, and a tree of least cost can be a chain.
+    // Traversal stacks are sized by the depth, and a tree of least cost may be a chain.
     let deepest = tree.height().max(3 * bvh.order.len().ilog2() + 42);
     let worthwhile = f64::from(options.worthwhile) * tree.cost();
     let batch = (tree.len() as f64 * f64::from(options.share)) as usize;
@@ -70,7 +71,7 @@ pub fn optimise(bvh: &mut BinaryBvh, options: &Options, work: Work) -> Result<()
         found.iter().for_each(|found| rests_until[found.step.node as usize] = 0);
         found.sort_unstable_by(|a, b| b.saved.total_cmp(&a.saved).then(a.step.node.cmp(&b.step.node)));
         let (made, saved) = tree.apply(found.iter().map(|found| found.step));
-        // Moves are weighed one by one. Together they may do harm, if seldom.
+        // Gains are estimated independently. In rare cases, moves together increase the cost.
         let harm = saved < 0.0 || tree.height() > deepest;
         if harm {
             tree.undo(&made);
@@ -87,11 +88,10 @@ pub fn optimise(bvh: &mut BinaryBvh, options: &Options, work: Work) -> Result<()
     Ok(())
 }
 
-/// About so many of the largest nodes for which `is_asked` holds, in the order of their numbers; the root is none of
-/// them.
+/// About `count` of the largest nodes that satisfy `is_asked`, by index, without the root.
 fn largest(tree: &Tree, count: usize, is_asked: impl Fn(u32) -> bool) -> Vec<u32> {
     let nodes = || (0..).zip(tree.areas()).skip(1).filter(|&(node, _)| is_asked(node));
-    // The area of the least is taken from a sample.
+    // The area threshold is estimated from a sample.
     let stride = (tree.len() >> 12).max(1);
     let mut sample: Vec<f32> = nodes().step_by(stride).map(|(_, &area)| area).collect();
     let place = count / stride;
@@ -99,24 +99,24 @@ fn largest(tree: &Tree, count: usize, is_asked: impl Fn(u32) -> bool) -> Vec<u32
     nodes().filter(|&(_, &area)| area >= least).map(|(node, _)| node).collect()
 }
 
-/// A place that is better than where a subtree is.
+/// A better place for a subtree.
 struct Found {
     step: Move,
-    /// How much area it saves.
+    /// The saved area.
     saved: f32,
 }
 
-/// The best place for a subtree, if it is better than where it is.
+/// The best place for a subtree, if it is better than the current one.
 fn best_place(tree: &Tree, node: u32, open: &mut Vec<Pair>) -> Option<Found> {
     let bounds = *tree.bounds(node);
     let mut beside = sibling(node);
     let mut pivot = tree.parent(node);
-    // What is saved above a place, which is somewhere below the pivot; and the pivot's box without the subtree.
+    // The area saved above a place below the pivot, and the pivot's box without the subtree.
     let mut saved = tree.area(pivot);
     let mut rest = *tree.bounds(beside);
     open.clear();
     let mut search = Search { tree, bounds, area: bounds.half_area(), best: 0.0, to: node, patience: PATIENCE, open };
-    // To become the sibling of its sibling is no move.
+    // Reinserting next to its own sibling changes nothing.
     if let Some(first) = tree.below(beside) {
         let grown = rest.union(&bounds).half_area();
         search.open.push(Pair { first, saved: saved - (grown - rest.half_area()) });
@@ -128,7 +128,7 @@ fn best_place(tree: &Tree, node: u32, open: &mut Vec<Pair>) -> Option<Found> {
         search.see(beside, saved);
         search.run();
         rest.grow(tree.bounds(beside));
-        // As the pivot's own sibling it makes a node as large as the pivot was.
+        // As the pivot's sibling the subtree makes a node as large as the pivot was.
         let before = tree.area(pivot);
         saved += before - rest.half_area();
         search.offer(pivot, saved - before);
@@ -136,25 +136,25 @@ fn best_place(tree: &Tree, node: u32, open: &mut Vec<Pair>) -> Option<Found> {
     (search.to != node).then_some(Found { step: Move { node, to: search.to }, saved: search.best })
 }
 
-/// A search for a place, by branch and bound.
+/// A branch and bound search for a place.
 struct Search<'a> {
     tree: &'a Tree,
-    /// The box of what is to be placed.
+    /// The box of the subtree.
     bounds: Bounds,
     /// Its area.
     area: f32,
-    /// The most that can be saved, as is known so far, and where.
+    /// The greatest saving so far, and its place.
     best: f32,
     to: u32,
-    /// How many more pairs are seen.
+    /// The remaining number of pairs to visit.
     patience: u32,
     open: &'a mut Vec<Pair>,
 }
 
-/// Two children yet to be seen.
+/// Two children to visit.
 struct Pair {
     first: u32,
-    /// What is saved above them.
+    /// The area saved above them.
     saved: f32,
 }
 
@@ -166,7 +166,7 @@ impl Search<'_> {
         }
     }
 
-    /// Sees a place, if `saved` is what is saved above it.
+    /// Visit a place, given the area saved above it.
     #[inline(always)]
     fn see(&mut self, at: u32, saved: f32) {
         let bounds = self.tree.bounds(at);
@@ -180,13 +180,13 @@ impl Search<'_> {
         }
     }
 
-    /// Whether there may be a better place below; the new parent is at least as large as the subtree itself.
+    /// Return whether there may be a better place below: the new parent is at least as large as the subtree.
     #[inline(always)]
     fn may_save(&self, saved: f32) -> bool {
         saved - self.area > self.best
     }
 
-    /// Sees all that is open.
+    /// Visit all pending pairs.
     fn run(&mut self) {
         while let Some(Pair { first, saved }) = self.open.pop() {
             if self.may_save(saved) && self.patience > 0 {
@@ -209,12 +209,12 @@ mod tests {
 
     const THOROUGH: Options = Options { rounds: 10, share: 1.0, worthwhile: 0.0, block: 1 };
 
-    /// Area of all inner nodes.
+    /// The area of all inner nodes.
     fn cost(bvh: &BinaryBvh) -> f64 {
         bvh.nodes.iter().filter(|n| !n.is_leaf()).map(|n| f64::from(n.aabb().half_area())).sum()
     }
 
-    /// A tree before and after, both valid.
+    /// A tree before and after, both validated.
     fn check(boxes: &[Aabb], options: &Options) -> [BinaryBvh; 2] {
         let leaves = Leaves::for_blocks(options.block);
         let before = binned::build(boxes, &binned::Options { bins: 16, leaves }, Work::UNWATCHED).unwrap();
@@ -229,7 +229,7 @@ mod tests {
         [before, after]
     }
 
-    /// Boxes that are long along some axis, anywhere from 0 to 1.
+    /// Boxes in the unit cube, long along one axis.
     fn sticks(count: u32) -> Vec<Aabb> {
         let stick = |i| {
             let at = |purpose| philox4x32([i, 0, 0, 0], [purpose, 0]).map(|bits| bits as f32 / 2f32.powi(32));
@@ -275,7 +275,7 @@ mod tests {
 
     #[test]
     fn a_box_in_the_wrong_place_is_moved() {
-        // Two pairs of neighbours, each parted by the root.
+        // Two pairs of neighbours, each separated by the root.
         let point = |x: f32| Aabb { min: Vec3::new(x, 0.0, 0.0), max: Vec3::new(x + 0.1, 1.0, 1.0) };
         let boxes = [0.0, 10.0, 0.2, 10.2].map(point);
         let node = |a: usize, b: usize| boxes[a].union(boxes[b]);
@@ -331,7 +331,7 @@ mod tests {
             }
             blocks
         };
-        // Two blocks of a few primitives may have become siblings, and so make one.
+        // Two small blocks may have become siblings and so form one.
         let after = blocks(&after);
         let whole = |block: &Vec<u32>| after.iter().any(|b| block.iter().all(|p| b.contains(p)));
         assert!(blocks(&before).iter().all(whole));
@@ -339,14 +339,14 @@ mod tests {
 
     #[test]
     fn a_chain_of_scales_stays_shallow() {
-        // The tree of least area would be as deep as there are boxes.
+        // The tree of least area would be as deep as the number of boxes.
         let boxes: Vec<_> = (0..2000).map(|i| Aabb { min: Vec3::ZERO, max: Vec3::splat(1.01f32.powi(i)) }).collect();
         check(&boxes, &Options { rounds: 50, ..THOROUGH });
     }
 
     #[test]
     fn a_tree_with_nothing_to_gain_is_left_as_it_is() {
-        // Boxes side by side on a grid.
+        // Adjacent boxes on a grid.
         let boxes: Vec<_> = (0..4096)
             .map(|i| Vec3::new((i % 16) as f32, (i / 16 % 16) as f32, (i / 256) as f32))
             .map(|p| Aabb { min: p, max: p + Vec3::ONE })

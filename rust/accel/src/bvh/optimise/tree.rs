@@ -1,23 +1,23 @@
-//! A binary tree whose subtrees can be moved.
+//! A binary tree with movable subtrees.
 
 use crate::bvh::build::Bounds;
 use crate::bvh::{BinaryBvh, Node};
 use raywright_base::math::Aabb;
 use raywright_base::parallel;
 
-/// A tree whose nodes know what is above them. Its leaves are whole subtrees of the tree that it was made of.
+/// A tree with parent links. Its leaves stand for whole subtrees of the original tree.
 ///
-/// Node 0 is the root; pairs of children fill the rest, in any order.
+/// Node 0 is the root; pairs of siblings fill the rest in any order.
 pub struct Tree {
     boxes: Vec<Bounds>,
-    /// Half the surface of every box.
+    /// Half the surface area of every box.
     areas: Vec<f32>,
-    /// Of an inner node, the first of its children; of a leaf, [`LEAF`] and the node that it stands for.
+    /// The first child of an inner node; [`LEAF`] and the original node for a leaf.
     links: Vec<u32>,
     sizes: Vec<Size>,
-    /// By pair, the node whose children they are.
+    /// The parent of each pair of siblings.
     parents: Vec<u32>,
-    /// When a node last was part of a move, or above one.
+    /// The last time a node or a descendant was part of a move.
     marks: Vec<u32>,
     time: u32,
 }
@@ -25,12 +25,12 @@ pub struct Tree {
 /// Marks the links of leaves.
 const LEAF: u32 = 1 << 31;
 
-/// What there is in a subtree.
+/// The size of a subtree.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Size {
     nodes: u32,
     primitives: u32,
-    /// The longest way down to a leaf.
+    /// Its height.
     height: u32,
 }
 
@@ -44,50 +44,50 @@ impl Size {
     }
 }
 
-/// A subtree and a place for it.
+/// A subtree and its new place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Move {
     /// The root of the subtree.
     pub node: u32,
-    /// Whose sibling it becomes.
+    /// Its new sibling.
     pub to: u32,
 }
 
-/// A move that was made.
+/// A completed move.
 #[derive(Clone, Copy, Debug)]
 pub struct Made {
     node: u32,
-    /// The parent that it had.
+    /// Its former parent.
     from: u32,
     to: u32,
 }
 
-/// Some nodes below a node, and how they are to hang together.
+/// Nodes below a root, and a new topology for them.
 pub struct Treelet {
-    /// The node.
+    /// The root.
     pub root: u32,
-    /// Nodes whose subtrees stay as they are.
+    /// Nodes whose subtrees stay unchanged.
     pub leaves: Vec<u32>,
-    /// The pairs between them and the root, by the first of each: one less than leaves.
+    /// The sibling pairs between them and the root, by their first node: one less than leaves.
     pub pairs: Vec<u32>,
-    /// Of every set of leaves that has a node, those on the left, each leaf as a bit.
+    /// For every set of leaves with a node, its left subset; each leaf is a bit.
     pub left: Box<[u8; 128]>,
 }
 
-/// The pair that a node is one of; not of the root.
+/// The index of a node's pair; not for the root.
 #[inline(always)]
 fn pair(node: u32) -> usize {
     (node as usize - 1) / 2
 }
 
-/// The other child of a node's parent.
+/// The sibling of a node.
 #[inline(always)]
 pub fn sibling(node: u32) -> u32 {
     ((node - 1) ^ 1) + 1
 }
 
 impl Tree {
-    /// A tree whose leaves are the largest subtrees of at most so many primitives. `bvh` is not empty.
+    /// Create a tree whose leaves are the largest subtrees of at most `block` primitives. `bvh` is not empty.
     pub fn new(bvh: &BinaryBvh, block: u32) -> Self {
         // Blocks are rarely full.
         let nodes = 1 + bvh.nodes.len().min(3 * bvh.order.len() / block.max(1) as usize);
@@ -108,7 +108,7 @@ impl Tree {
         tree
     }
 
-    /// Takes over what is below a node, children before their parents; what links to it, and its size.
+    /// Import the subtree of a node, children first; return its link and size.
     fn take(&mut self, bvh: &BinaryBvh, block: u32, at: usize) -> (u32, Size) {
         let node = &bvh.nodes[at];
         let as_leaf = LEAF | at as u32;
@@ -139,14 +139,14 @@ impl Tree {
         self.sizes.push(size);
     }
 
-    /// Tells the children of a node whose they are.
+    /// Set the parent of a node's children.
     fn own(&mut self, node: u32) {
         if let Some(children) = self.below(node) {
             self.parents[pair(children)] = node;
         }
     }
 
-    /// How many nodes it has.
+    /// The number of nodes.
     pub fn len(&self) -> usize {
         self.links.len()
     }
@@ -165,24 +165,24 @@ impl Tree {
         self.sizes[node as usize]
     }
 
-    /// The longest way from the root down, to the leaves of the tree that it was made of.
+    /// The height of the tree, including the original subtrees.
     pub fn height(&self) -> u32 {
         self.size(0).height
     }
 
-    /// The longest way from a node down.
+    /// The height of a node.
     pub fn height_of(&self, node: u32) -> u32 {
         self.size(node).height
     }
 
-    /// The first of the children of an inner node.
+    /// The first child of an inner node.
     #[inline(always)]
     pub fn below(&self, node: u32) -> Option<u32> {
         let link = self.links[node as usize];
         (link & LEAF == 0).then_some(link)
     }
 
-    /// The parent of a node, which is not the root.
+    /// The parent of a node other than the root.
     #[inline(always)]
     pub fn parent(&self, node: u32) -> u32 {
         self.parents[pair(node)]
@@ -193,27 +193,27 @@ impl Tree {
         &self.areas
     }
 
-    /// What the inner nodes cost: their area.
+    /// The total area of the inner nodes.
     pub fn cost(&self) -> f64 {
         (0..self.len() as u32).filter(|&n| self.below(n).is_some()).map(|n| f64::from(self.area(n))).sum()
     }
 
-    /// Makes the moves that do not get into each other's way, the first ones first; which they are, and how much area
-    /// they save in all.
+    /// Make the moves in order, skipping those that conflict with earlier ones. Return the completed moves and the
+    /// saved area.
     pub fn apply(&mut self, moves: impl IntoIterator<Item = Move>) -> (Vec<Made>, f64) {
         self.time += 1;
         let (mut made, mut saved) = (Vec::new(), 0.0);
         for Move { node, to } in moves {
             let from = self.parent(node);
             let around = [node, sibling(node), from, to, if to == 0 { 0 } else { self.parent(to) }];
-            // No subtree moves into itself, but the place may have moved there meanwhile.
+            // An earlier move may have put the place inside the subtree.
             if around.iter().any(|&n| self.marks[n as usize] == self.time) || self.is_within(to, node) {
                 continue;
             }
             for n in around {
                 self.marks[n as usize] = self.time;
             }
-            // Until it is refitted, the new parent has the box of what it stands above.
+            // Until refitting, the new parent has the box of its child.
             saved += f64::from(self.area(from)) - f64::from(self.area(to));
             self.reinsert(node, to);
             made.push(Made { node, from, to });
@@ -222,7 +222,7 @@ impl Tree {
         (made, saved)
     }
 
-    /// Takes moves back.
+    /// Undo moves.
     pub fn undo(&mut self, made: &[Made]) {
         for &Made { node, from, .. } in made.iter().rev() {
             self.reinsert(node, from);
@@ -230,7 +230,7 @@ impl Tree {
         self.refit(made);
     }
 
-    /// Puts a treelet's inner nodes together anew; the box around it stays as it is.
+    /// Restructure a treelet; its root's box is unchanged.
     pub fn regrow(&mut self, treelet: &Treelet) {
         let leaves = treelet.leaves.iter().map(|&leaf| {
             let i = leaf as usize;
@@ -238,7 +238,7 @@ impl Tree {
         });
         let leaves: Vec<_> = leaves.collect();
         let mut pairs = treelet.pairs.iter().copied();
-        // A set of leaves and the node that is to hold it; what holds two is made when both are.
+        // Sets of leaves with their nodes. A parent is completed after both children.
         let (mut open, mut made) =
             (vec![(((1u32 << leaves.len()) - 1) as u8, treelet.root)], Vec::with_capacity(leaves.len()));
         while let Some((set, node)) = open.pop() {
@@ -264,14 +264,14 @@ impl Tree {
         }
     }
 
-    /// Takes the size of an inner node from its children, which have changed.
+    /// Recompute the size of an inner node from its children.
     pub fn measure(&mut self, node: u32) {
         if let Some(left) = self.below(node) {
             self.sizes[node as usize] = Size::above(self.size(left), self.size(left + 1));
         }
     }
 
-    /// Whether a node lies in the subtree of another.
+    /// Return whether a node is in the subtree of another.
     fn is_within(&self, mut node: u32, root: u32) -> bool {
         while node != root && node != 0 {
             node = self.parent(node);
@@ -279,9 +279,9 @@ impl Tree {
         node == root
     }
 
-    /// Takes out a subtree and makes it the sibling of what stands at `to`. Pairs stay pairs, so only three nodes
-    /// change: the sibling left behind takes the parent's place, what stood at `to` the sibling's, and the pair hangs
-    /// below `to`. The same with the former parent for `to` takes it back.
+    /// Remove a subtree and make it the sibling of the node at `to`. Pairs remain pairs, so only three nodes change.
+    /// The former sibling replaces its parent, the node at `to` takes the sibling's place, and the pair becomes the
+    /// children of `to`. Doing the same with the former parent as `to` undoes it.
     fn reinsert(&mut self, node: u32, to: u32) {
         let (from, beside) = (self.parent(node), sibling(node));
         self.put(from, beside);
@@ -290,7 +290,7 @@ impl Tree {
         self.own(to);
     }
 
-    /// Puts what stands at one place at another.
+    /// Copy a node to another place.
     fn put(&mut self, to: u32, from: u32) {
         let (to_index, from_index) = (to as usize, from as usize);
         self.boxes[to_index] = self.boxes[from_index];
@@ -300,7 +300,7 @@ impl Tree {
         self.own(to);
     }
 
-    /// Makes boxes and sizes right above what has moved; how much area that saves.
+    /// Recompute boxes and sizes above the moved subtrees; return the saved area.
     fn refit(&mut self, made: &[Made]) -> f64 {
         self.time += 1;
         for &Made { from, to, .. } in made {
@@ -328,7 +328,7 @@ impl Tree {
         saved + f64::from(before) - f64::from(self.area(node))
     }
 
-    /// The whole tree, with what its leaves stand for in `from`, laid out depth first as builders do it.
+    /// The whole tree, with the original subtrees from `from`, in depth-first order.
     pub fn lay_out(&self, from: &BinaryBvh) -> BinaryBvh {
         let mut nodes: Vec<Node> = parallel::collect(from.nodes.len(), |_| Node::leaf(Aabb::EMPTY, 0, 0));
         let mut order = vec![0; from.order.len()];
@@ -338,7 +338,7 @@ impl Tree {
     }
 
     fn place(&self, from: &BinaryBvh, node: u32, root: &mut Node, to: Target) {
-        /// Subtrees of fewer nodes are placed by one thread.
+        /// Smaller subtrees are written by one thread.
         const PARALLEL: u32 = 4096;
         let Some(left) = self.below(node) else {
             to.copy(from, (self.links[node as usize] & !LEAF) as usize, root);
@@ -357,18 +357,18 @@ impl Tree {
     }
 }
 
-/// Where a subtree is laid out.
+/// The destination of a subtree.
 struct Target<'a> {
-    /// The number of the first node below its root.
+    /// The index of the first node below its root.
     base: u32,
     below: &'a mut [Node],
-    /// The place of its first primitive in the order.
+    /// The index of its first primitive in the order.
     first: u32,
     order: &'a mut [u32],
 }
 
 impl<'a> Target<'a> {
-    /// Where two children stand, and where what is below them goes.
+    /// Reserve two children, and split the space for the nodes below them.
     fn split(self, left: Size) -> ([&'a mut Node; 2], [Self; 2]) {
         let Self { base, below, first, order } = self;
         let (children, below) = below.split_at_mut(2);
@@ -382,9 +382,9 @@ impl<'a> Target<'a> {
         ([left_root, right_root], [left_to, right_to])
     }
 
-    /// Moves a subtree here as it is.
+    /// Copy an original subtree.
     fn copy(self, from: &BinaryBvh, at: usize, root: &mut Node) {
-        // Depth first, the nodes below it and its primitives lie together.
+        // In depth-first order its nodes and primitives are contiguous.
         let own = &from.nodes[at];
         let start = if own.is_leaf() { 0 } else { own.index };
         let below = &from.nodes[start as usize..start as usize + self.below.len()];

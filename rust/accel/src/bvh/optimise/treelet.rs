@@ -1,11 +1,11 @@
-//! Putting treelets together anew (Karras and Aila, "Fast Parallel Construction of High-Quality Bounding Volume
-//! Hierarchies", 2013).
+//! Treelet restructuring (Karras and Aila, "Fast Parallel Construction of High-Quality Bounding Volume Hierarchies",
+//! 2013).
 //!
-//! From the bottom up, each node and its largest descendants are a treelet of seven leaves. Of all the ways in which
-//! these can hang together, dynamic programming over their subsets finds the one whose inner nodes have the least area.
-//! Treelets of one level do not meet, so threads share them out, and the tree is the same for any number of threads.
+//! Bottom-up, each node and its largest descendants form a treelet of seven leaves. Dynamic programming over subsets of
+//! the leaves finds the topology whose inner nodes have the least area. Treelets of one level are disjoint, so they are
+//! processed in parallel, and the result does not depend on the number of threads.
 //!
-//! What fits one block of triangles is a leaf here, and stays as it is.
+//! Subtrees that fit one block of triangles are leaves here and stay unchanged.
 
 use super::tree::{Tree, Treelet};
 use crate::bvh::BinaryBvh;
@@ -14,44 +14,44 @@ use raywright_base::parallel;
 use raywright_base::work::{Stopped, Work};
 use std::ops::Range;
 
-/// How much to try.
+/// Options of treelet restructuring.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// How many times the tree is gone through. Each time, only nodes with twice as many leaves below are looked at.
+    /// The number of passes over the tree. Each pass considers only nodes with twice as many leaves as the one before.
     pub rounds: u32,
-    /// A round that saves less than this share of the cost is the last.
+    /// A round that saves less than this fraction of the cost is the last.
     pub worthwhile: f32,
-    /// Subtrees of up to so many primitives stay as they are: as many as fit a block.
+    /// Subtrees of up to this many primitives stay unchanged: as many as fit a block.
     pub block: usize,
 }
 
 /// Leaves of a treelet.
 const LEAVES: usize = 7;
 
-/// Goes through a tree, which is laid out depth first and is so again afterwards. Its inner nodes have no more area
-/// then, and it is no deeper than it was or than three times the logarithm of its primitives and some.
+/// Optimize a tree in depth-first order, which is restored afterwards. The area of inner nodes does not increase, nor
+/// does the depth beyond its initial value or about three times the logarithm of the number of primitives.
 pub fn optimise(bvh: &mut BinaryBvh, options: &Options, work: Work) -> Result<(), Stopped> {
     if options.rounds == 0 || bvh.nodes.is_empty() {
         return Ok(());
     }
-    // Each looks at half as many nodes as the one before.
+    // Each round considers half as many nodes as the one before.
     let steps = work.steps(2 * bvh.order.len());
     let mut tree = Tree::new(bvh, options.block as u32);
-    // Stacks are made for the depth, and a tree of least cost can be a chain.
+    // Traversal stacks are sized by the depth, and a tree of least cost may be a chain.
     let deepest = tree.height().max(3 * bvh.order.len().ilog2() + 42);
     let worthwhile = f64::from(options.worthwhile) * tree.cost();
     let mut changed = false;
     for round in 0..options.rounds {
         let mut saved = 0.0;
         for (depth, level) in levels(&tree).iter().enumerate().rev() {
-            // What is below has changed.
+            // The nodes below have changed.
             level.iter().for_each(|seen| tree.measure(seen.node));
             let best = |place: usize| {
                 if steps.is_stopped() {
                     return None;
                 }
                 let seen = &level[place];
-                // No way down becomes longer than the longest that was there, or than all are allowed to be.
+                // No path becomes longer than the longest one before, or than the limit.
                 let highest = seen.height.max(deepest.saturating_sub(depth as u32));
                 if seen.leaves >= (LEAVES as u32) << round { best(&tree, seen.node, highest) } else { None }
             };
@@ -74,15 +74,15 @@ pub fn optimise(bvh: &mut BinaryBvh, options: &Options, work: Work) -> Result<()
     Ok(())
 }
 
-/// An inner node before anything below it has changed.
+/// An inner node before any change below it.
 struct Seen {
     node: u32,
     height: u32,
-    /// How many leaves there are below.
+    /// The number of leaves below.
     leaves: u32,
 }
 
-/// The inner nodes, by depth.
+/// The inner nodes by depth.
 fn levels(tree: &Tree) -> Vec<Vec<Seen>> {
     let has_children = |node: &u32| tree.below(*node).is_some();
     let mut levels: Vec<Vec<u32>> = vec![[0].into_iter().filter(has_children).collect()];
@@ -101,8 +101,8 @@ fn levels(tree: &Tree) -> Vec<Vec<Seen>> {
     levels.into_iter().map(|level| level.into_iter().map(seen).collect()).collect()
 }
 
-/// The best treelet at a node, and how much area it saves; none if that is nothing, or if it would be higher than
-/// allowed.
+/// The best topology of the treelet at a node and the saved area; None if nothing is saved or its height exceeds the
+/// limit.
 fn best(tree: &Tree, root: u32, highest: u32) -> Option<(Treelet, f64)> {
     let first = tree.below(root)?;
     let mut leaves = Vec::with_capacity(LEAVES);
@@ -129,7 +129,7 @@ fn best(tree: &Tree, root: u32, highest: u32) -> Option<(Treelet, f64)> {
     (saved > 0.0 && height(tree, &treelet, all as u8) <= highest).then_some((treelet, saved))
 }
 
-/// For every set of leaves, its left part where its inner nodes have the least area; and what that is for all of them.
+/// For every set of leaves, the left subset of its topology of least area; and that area for the full set.
 fn divided(tree: &Tree, leaves: &[u32]) -> ([u8; 1 << LEAVES], f64) {
     let sets = 1usize << leaves.len();
     let mut bounds = [Bounds::EMPTY; 1 << LEAVES];
@@ -140,7 +140,7 @@ fn divided(tree: &Tree, leaves: &[u32]) -> ([u8; 1 << LEAVES], f64) {
         if others == 0 {
             continue;
         }
-        // Each part that has the lowest leaf and is not all, once.
+        // Each subset that contains the lowest leaf, other than the full set, once.
         let (mut least, mut best) = (f64::INFINITY, lowest);
         let mut right = others;
         while right != 0 {
@@ -157,7 +157,7 @@ fn divided(tree: &Tree, leaves: &[u32]) -> ([u8; 1 << LEAVES], f64) {
     (left, cost[sets - 1])
 }
 
-/// How high a set of leaves of a treelet is.
+/// The height of a set of leaves in a treelet.
 fn height(tree: &Tree, treelet: &Treelet, set: u8) -> u32 {
     if set.is_power_of_two() {
         return tree.height_of(treelet.leaves[set.trailing_zeros() as usize]);

@@ -1,6 +1,6 @@
-//! Any hit will do: nothing is sorted, and no distance is kept. Of two children that are met, the one of more surface
-//! goes first, since a ray that meets both is more likely stopped there; that order is the same for all rays, so the
-//! tree itself has it.
+//! Occlusion traversal without sorting or distances. Of two hit children, the one with more surface area goes first,
+//! since a ray that hits both is more likely to be blocked there. That order is the same for all rays, so it is stored
+//! in the tree.
 
 use super::numbered::Numbered;
 use super::volumes::Volumes;
@@ -8,7 +8,7 @@ use crate::SlabRay;
 use crate::bvh::BinaryBvh;
 use crate::walk::Walker;
 
-/// Puts of every two children the one of more surface first.
+/// Swap siblings so that the one with more surface area comes first.
 pub fn larger_first(bvh: &mut BinaryBvh) {
     for i in 0..bvh.nodes.len() {
         if bvh.nodes[i].is_leaf() {
@@ -21,18 +21,18 @@ pub fn larger_first(bvh: &mut BinaryBvh) {
     }
 }
 
-/// A walk with a stack of nodes, in the order in which they lie.
+/// A traversal with a stack, in the order of storage.
 pub struct Unordered<'a, V: Volumes> {
     tree: &'a Numbered,
     volumes: &'a V,
     ray: SlabRay,
     ready: V::Ready,
-    /// Nodes that are met.
+    /// Nodes to visit.
     stack: Vec<u32>,
 }
 
 impl<'a, V: Volumes> Unordered<'a, V> {
-    /// Ready to walk.
+    /// Create a traversal.
     pub fn new(tree: &'a Numbered, volumes: &'a V) -> Self {
         let ray = SlabRay::EVERYWHERE;
         Self { tree, volumes, ray, ready: V::ready(&ray), stack: Vec::with_capacity(tree.depth + 1) }
@@ -78,7 +78,7 @@ impl<V: Volumes> Walker for Unordered<'_, V> {
         None
     }
 
-    /// None are counted: what a ray costs is asked of its closest hit.
+    /// Not counted: costs are measured for closest hits.
     fn nodes(&self) -> u32 {
         0
     }

@@ -1,19 +1,17 @@
-//! Sixty-four rays together. What is known of a bundle at a node is its first ray that may meet the box, and the last;
-//! those between are not looked at (Wald, Boulos and Shirley, "Ray Tracing Deformable Scenes using Dynamic Bounding
-//! Volume Hierarchies", 2007; Overbeck, Ramamoorthi and Mark, "Large Ray Packets for Real-time Whitted Ray Tracing",
-//! 2008, where it is called ranged traversal). A box is tested in three steps:
+//! Ranged traversal with packets of sixty-four rays. At a node, a packet is represented by the first and the last ray
+//! that may hit the box; those between are not examined (Wald, Boulos and Shirley, "Ray Tracing Deformable Scenes using
+//! Dynamic Bounding Volume Hierarchies", 2007; Overbeck, Ramamoorthi and Mark, "Large Ray Packets for Real-time Whitted
+//! Ray Tracing", 2008). A box is tested in three steps:
 //!
-//! 1. if the first ray so far meets it, all go on: where rays keep together, that is all that a box takes;
-//! 2. if an interval that holds all rays misses it, none does (Boulos et al., "Packet-based Whitted and Distribution
-//!    Ray Tracing", 2007): what is derived in `bvh/wide/packet.rs` holds here, where rays may be far too, since each
-//!    has its own pad;
-//! 3. else the first that meets it is sought, ray after ray.
+//! - If the first ray so far hits it, all continue. For coherent rays this is usually the only test.
+//! - If the interval of all rays misses it, no ray hits it (Boulos et al., "Packet-based Whitted and Distribution Ray
+//!   Tracing", 2007). The bound of `bvh/wide/packet.rs` holds here also for distant rays, since each has its own pad.
+//! - Otherwise the first ray that hits it is searched, one after another.
 //!
-//! In place of one ray stands a vector of them. Which child comes first is decided by the first ray, by the axis along
-//! which the children are farthest apart. A node is tested when it is its turn, so that what was found until then
-//! counts.
+//! Vectors of rays take the place of single rays. The first ray decides which child comes first, by the axis along
+//! which the children are farthest apart. A node is tested when it is popped, so that earlier hits shorten the rays.
 //!
-//! Rays that go different ways have ranges that are long and mostly empty: they are answered as well, but slowly.
+//! Incoherent rays have long and mostly empty ranges: the results are correct, but slow.
 
 use super::columns::{Columns, First};
 use super::numbered::Numbered;
@@ -23,10 +21,10 @@ use crate::walk::{MOST_TOGETHER, Together};
 use raywright_base::math::robust::{greater, lesser};
 use raywright_base::simd::{Dispatch, Kernel, Level, Simd};
 
-/// Rays in a bundle.
+/// Rays in a packet.
 const WIDTH: usize = MOST_TOGETHER;
 
-/// Ready to walk a tree with sixty-four rays at a time.
+/// Create a traversal with packets of sixty-four rays.
 pub fn walk(tree: &Numbered, counted: bool, level: Level) -> Box<dyn Together + '_> {
     match (level.lanes(), counted) {
         (8.., false) => Box::new(Walk::<8, false>::new(tree, level)),
@@ -36,26 +34,26 @@ pub fn walk(tree: &Numbered, counted: bool, level: Level) -> Box<dyn Together + 
     }
 }
 
-/// Rays come in groups of `N`, as vectors have them.
+/// Rays are in groups of `N`, the vector width.
 struct Walk<'a, const N: usize, const COUNTED: bool> {
     tree: &'a Numbered,
     level: Level,
     rays: Columns<WIDTH>,
     around: Interval,
-    /// How many rays there are.
+    /// The number of rays.
     count: usize,
     stack: Vec<Entry>,
     nodes: [u32; WIDTH],
 }
 
-/// A node still to be tested, and against which groups.
+/// A node to test, and its groups of rays.
 #[derive(Clone, Copy)]
 struct Entry {
     node: u32,
     groups: Range,
 }
 
-/// Groups from `first` up to `end`.
+/// The groups `first..end`.
 #[derive(Clone, Copy)]
 struct Range {
     first: usize,
@@ -64,13 +62,13 @@ struct Range {
 
 impl<'a, const N: usize, const COUNTED: bool> Walk<'a, N, COUNTED> {
     fn new(tree: &'a Numbered, level: Level) -> Self {
-        // A path puts one child away a level.
+        // A path leaves one sibling per level.
         let stack = Vec::with_capacity(tree.depth + 1);
         let (rays, around) = (Columns::NONE, Interval::EVERYWHERE);
         Self { tree, level, rays, around, count: 0, stack, nodes: [0; WIDTH] }
     }
 
-    /// Which rays of a group meet a box.
+    /// The rays of a group that hit a box.
     #[inline(always)]
     fn met<S: Simd<N>>(&mut self, simd: S, group: usize, node: &Node, limits: &[f32; WIDTH]) -> u32 {
         if COUNTED {
@@ -81,8 +79,8 @@ impl<'a, const N: usize, const COUNTED: bool> Walk<'a, N, COUNTED> {
         self.rays.meet::<N, S>(simd, group, node, limits).1
     }
 
-    /// The groups between the first and the last of some in which any ray meets a box, and one such ray of the first.
-    /// None if no ray does.
+    /// The range from the first to the last group with a ray that hits the box, and one such ray of the first. None if
+    /// no ray does.
     #[inline(always)]
     fn narrowed<S: Simd<N>>(
         &mut self,
@@ -96,7 +94,7 @@ impl<'a, const N: usize, const COUNTED: bool> Walk<'a, N, COUNTED> {
         let mut met = self.met(simd, first, node, limits);
         if met == 0 {
             if COUNTED {
-                // The test of all is put down to the first of them.
+                // The interval test is counted for the first ray.
                 self.nodes[first * N] += 1;
             }
             if !self.around.may_meet(node, last) {
@@ -116,11 +114,11 @@ impl<'a, const N: usize, const COUNTED: bool> Walk<'a, N, COUNTED> {
         Some((Range { first, end }, first * N + met.trailing_zeros() as usize))
     }
 
-    /// The children of a node: the one that a ray comes to first, and the other.
+    /// The children of a node: the near one for a ray, then the far one.
     #[inline(always)]
     fn in_order(&self, node: &Node, ray: usize) -> [u32; 2] {
         let [a, b] = node.children().map(|child| &self.tree.nodes[child]);
-        // Of twice the centres.
+        // The vector between the doubled centers.
         let apart = (b.min + b.max) - (a.min + a.max);
         let axis = apart.abs().max_position();
         let [a, b] = [node.index, node.index + 1];
@@ -156,7 +154,7 @@ where
     }
 }
 
-/// Goes on to the next leaf.
+/// Advance to the next leaf.
 struct Next<'w, 'a, const N: usize, const COUNTED: bool> {
     walk: &'w mut Walk<'a, N, COUNTED>,
     limits: &'w [f32; WIDTH],
@@ -193,21 +191,21 @@ impl<const N: usize, const COUNTED: bool> Kernel<N> for Next<'_, '_, N, COUNTED>
     }
 }
 
-/// What holds all rays of a bundle.
+/// Intervals that contain all rays of a packet.
 struct Interval {
-    /// By axis, the origin from which the plane that is met first is met last.
+    /// By axis, the origin for which the near plane is hit last.
     near: [f32; 3],
-    /// The origin from which the other plane is met first.
+    /// The origin for which the far plane is hit first.
     far: [f32; 3],
-    /// The least inverse of a direction in magnitude, and the greatest.
+    /// The least and the greatest magnitude of the inverse directions.
     inverse: [[f32; 2]; 3],
     t_min: f32,
-    /// Along an axis on which rays go both ways nothing is known.
+    /// An axis along which the rays' signs differ is ignored.
     first: [First; 3],
 }
 
 impl Interval {
-    /// Nothing is known.
+    /// No information.
     const EVERYWHERE: Self = Self {
         near: [0.0; 3],
         far: [0.0; 3],
@@ -240,7 +238,7 @@ impl Interval {
         around
     }
 
-    /// Whether any ray may be in a box before `last`.
+    /// Return whether any ray may be inside a box before `last`.
     #[inline(always)]
     fn may_meet(&self, node: &Node, last: f32) -> bool {
         let planes = [node.min.to_array(), node.max.to_array()];

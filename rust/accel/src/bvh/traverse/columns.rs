@@ -1,19 +1,19 @@
-//! Some rays by columns, a lane each, and one box against as many of them as a vector has lanes.
+//! Rays in SoA layout, tested against one box in vectors.
 
 use crate::SlabRay;
 use crate::bvh::Node;
 use raywright_base::simd::Simd;
 
-/// Which plane of an axis rays meet first.
+/// The near plane of the rays along an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum First {
-    /// All the same: 0 the lower, 1 the upper.
+    /// The same for all: 0 the lower, 1 the upper.
     All(usize),
-    /// Some the one, some the other.
+    /// Different planes.
     Mixed,
 }
 
-/// `R` rays; what stands in lanes without one meets boxes or not, and is of no account.
+/// `R` rays; results of unused lanes are arbitrary.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub struct Columns<const R: usize> {
@@ -25,7 +25,7 @@ pub struct Columns<const R: usize> {
 }
 
 impl<const R: usize> Columns<R> {
-    /// No rays yet.
+    /// No rays.
     pub const NONE: Self = Self {
         inverse: [[1.0; R]; 3],
         near: [[0.0; R]; 3],
@@ -34,7 +34,7 @@ impl<const R: usize> Columns<R> {
         first: [First::Mixed; 3],
     };
 
-    /// Takes in rays, at least one and at most `R`.
+    /// Load rays, at least one and at most `R`.
     pub fn fill(&mut self, rays: &[SlabRay]) {
         for (i, ray) in rays.iter().enumerate() {
             for axis in 0..3 {
@@ -51,20 +51,20 @@ impl<const R: usize> Columns<R> {
         }
     }
 
-    /// Whether a ray goes up along an axis.
+    /// Return whether a ray's direction is positive along an axis.
     pub fn goes_up(&self, ray: usize, axis: usize) -> bool {
         self.inverse[axis][ray] > 0.0
     }
 
-    /// Which plane of an axis is met first.
+    /// The near plane along an axis.
     pub fn first(&self, axis: usize) -> First {
         self.first[axis]
     }
 
-    /// Where the rays of a group of `N` enter a box, and which of them do so no later than they leave it and than
-    /// `limits`: that is [`SlabRay::passes`], lane by lane, for a box that is not empty.
+    /// The `t` at which a group of `N` rays enters a nonempty box, and the mask of rays that do so no later than they
+    /// leave it and than `limits`: [`SlabRay::passes`] lane by lane.
     ///
-    /// Where rays go both ways along an axis, the lesser of both products is that of the plane which each meets first.
+    /// If the rays' signs differ along an axis, the lesser of both products belongs to each ray's near plane.
     #[inline(always)]
     pub fn meet<const N: usize, S: Simd<N>>(
         &self,

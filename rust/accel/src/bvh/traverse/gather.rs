@@ -1,25 +1,24 @@
-//! Leaves of as many primitives as cost least, for a tree that is walked as it is: builders from the bottom up make a
-//! leaf of every primitive, and optimisers let leaves be.
+//! Merging of leaves to the cheapest size, for trees that are traversed as they are. Bottom-up builders make a leaf per
+//! primitive, and optimizers leave leaves unchanged.
 
 use crate::bvh::{BinaryBvh, Node};
 
-/// What a step down and a test cost, and what is tested at once.
+/// The costs of traversal and intersection.
 #[derive(Clone, Copy, Debug)]
 pub struct Costs {
-    /// Of a step down.
+    /// Cost of a traversal step.
     pub traversal: f32,
-    /// Of testing a block.
+    /// Cost of testing a block.
     pub intersection: f32,
-    /// Primitives that are tested at once.
+    /// Primitives per SIMD test.
     pub block: usize,
 }
 
-/// More primitives are not gathered in a leaf.
+/// Maximum number of primitives in a merged leaf.
 const MOST: usize = 32;
 
-/// Makes a leaf of everything below a node wherever that costs no more, by the surface-area heuristic (Goldsmith and
-/// Salmon 1987). What stands below a node more than once, part by part, stands in its leaf once. The tree is laid out
-/// depth first.
+/// Turn a subtree into a leaf wherever that costs no more by the surface area heuristic (Goldsmith and Salmon 1987).
+/// Several parts of a primitive in a subtree become one reference. The result is in depth-first order.
 pub fn gather(bvh: &BinaryBvh, costs: Costs) -> BinaryBvh {
     let whole = is_whole(bvh, costs);
     let mut gathered = BinaryBvh { nodes: Vec::with_capacity(bvh.nodes.len()), order: Vec::new() };
@@ -46,10 +45,10 @@ pub fn gather(bvh: &BinaryBvh, costs: Costs) -> BinaryBvh {
     gathered
 }
 
-/// By node, whether it is to be a leaf.
+/// Return whether each node becomes a leaf.
 fn is_whole(bvh: &BinaryBvh, costs: Costs) -> Vec<bool> {
     let mut whole: Vec<bool> = bvh.nodes.iter().map(Node::is_leaf).collect();
-    // Of what is below: how many there are, and what they cost.
+    // The number of primitives below each node, and their cost.
     let mut known = vec![(0, 0.0); bvh.nodes.len()];
     for (i, node) in bvh.nodes.iter().enumerate().rev() {
         let area = f64::from(node.aabb().half_area());
@@ -66,7 +65,7 @@ fn is_whole(bvh: &BinaryBvh, costs: Costs) -> Vec<bool> {
     whole
 }
 
-/// Tells every primitive below a node, from left to right.
+/// Report every primitive below a node, from left to right.
 fn below(bvh: &BinaryBvh, from: usize, mut tell: impl FnMut(u32)) {
     let mut open = vec![from];
     while let Some(i) = open.pop() {

@@ -1,4 +1,4 @@
-//! Ways through the binary tree, as textbooks have them: one ray after the other, or some together.
+//! Textbook traversals of binary BVHs, with single rays or packets.
 
 mod any;
 mod bundle;
@@ -28,15 +28,15 @@ use oriented::Oriented;
 use raywright_base::math::Aabb;
 use slabs::Slabs;
 
-/// Triangles that leaves are made for, which are tested at once at any level.
+/// Triangles per SIMD test that leaves are optimized for, available at any level.
 const BLOCK: usize = 4;
 
-/// A way through a binary tree.
+/// A traversal algorithm for binary BVHs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Traversal {
     /// With a stack.
     Stack(Rays),
-    /// With a stack, each ray alone, where nodes have turned boxes too.
+    /// With a stack and single rays, and oriented boxes at the nodes.
     Oriented,
     /// The same with slabs along diagonals.
     Slabs,
@@ -45,7 +45,7 @@ pub enum Traversal {
 }
 
 impl Traversal {
-    /// All of them.
+    /// All algorithms.
     pub const ALL: [Self; 7] = [
         Self::Stack(Rays::One),
         Self::Stack(Rays::Four),
@@ -56,7 +56,7 @@ impl Traversal {
         Self::Threaded(Orders::Eight),
     ];
 
-    /// A structure that is walked so; `kind` says how the tree was built.
+    /// Create a structure with this traversal; `kind` describes the build.
     pub fn over(self, bvh: BinaryBvh, input: &Input, kind: &str) -> Built {
         match self {
             Self::Stack(rays) => Ordered::over(bvh, rays, kind),
@@ -66,17 +66,16 @@ impl Traversal {
         }
     }
 
-    /// Builds a tree as the options say, with leaves that suit one that is walked as it is.
+    /// Build a tree with the given options and leaves for this traversal.
     pub fn build(self, input: &Input, options: &Options) -> Built {
         let (bvh, name) = gathered(input, options, BLOCK);
         self.over(bvh, input, &name)
     }
 }
 
-/// A tree as the options say, with leaves that suit one that is walked as it is and tests so many triangles at once;
-/// and how it was built.
+/// Build a tree for direct traversal, with leaves for `block` triangles per SIMD test; describe the build, too.
 pub(crate) fn gathered(input: &Input, options: &Options, block: usize) -> (BinaryBvh, String) {
-    // What is no triangle is tested one by one.
+    // Other primitives are tested one by one.
     let block = if input.primitives.objects().is_some() { 1 } else { block };
     let steps = options.steps(block);
     let built = steps.build(&input.boxes, contents(input), input.work);
@@ -85,13 +84,13 @@ pub(crate) fn gathered(input: &Input, options: &Options, block: usize) -> (Binar
     (gather(&bvh, Costs { traversal, intersection, block }), name)
 }
 
-/// What builders see of primitives.
+/// The geometry of the primitives for builders.
 fn contents<'a>(input: &'a Input) -> Contents<'a> {
     Contents { primitives: input.primitives, region: &input.region, axes: None, boxes: &input.boxes }
 }
 
-/// The surface-area heuristic's cost of a tree, in tests of a node: of every inner node its two boxes, of every leaf
-/// its primitives, each times the chance that a ray that meets the root's box meets this one's.
+/// The cost by the surface area heuristic, in tests of a node: two box tests per inner node, plus the primitives of
+/// each leaf, each times the probability that a ray through the root's box hits the node's.
 fn sah_cost(bvh: &BinaryBvh) -> f64 {
     let area = |aabb: &Aabb| f64::from(aabb.half_area());
     let sum: f64 = bvh.nodes.iter().map(|n| area(&n.aabb()) * if n.is_leaf() { f64::from(n.count) } else { 2.0 }).sum();

@@ -1,6 +1,6 @@
-//! The stack over boxes that move: every node keeps its box as the shutter opens and as it closes, and a ray meets what
-//! lies between the two at its own time (Glassner, "Spacetime Ray Tracing for Animation", 1988; interpolated boxes as
-//! in Christensen, Fong, Laur and Batali, "Ray Tracing for the Movie 'Cars'", 2006).
+//! Motion blur: every node has boxes for the opening and the closing of the shutter, and a ray is tested against their
+//! interpolation at its time (Glassner, "Spacetime Ray Tracing for Animation", 1988; interpolated boxes as in
+//! Christensen, Fong, Laur and Batali, "Ray Tracing for the Movie 'Cars'", 2006).
 
 use super::numbered::Numbered;
 use crate::bvh::{BinaryBvh, Node};
@@ -8,17 +8,17 @@ use crate::walk::{Built, Input, Structure, Walker};
 use crate::{Info, NodeBox, SlabRay};
 use raywright_base::math::{Aabb, Vec3};
 
-/// A binary tree whose boxes move.
+/// A binary tree with moving boxes.
 pub struct Moving {
-    /// Over the boxes at any time.
+    /// The tree over boxes for the whole time interval.
     tree: Numbered,
-    /// Of each node, at both ends.
+    /// The boxes of each node at both ends.
     ends: Vec<[Aabb; 2]>,
     kind: String,
 }
 
 impl Moving {
-    /// Walks a tree over what moves; `kind` says how it was built.
+    /// Create the structure over moving primitives; `kind` describes the build.
     pub fn over(bvh: BinaryBvh, input: &Input, kind: &str) -> Built {
         let (tree, lists) = Numbered::new(bvh);
         let mut starts = vec![0usize];
@@ -37,7 +37,7 @@ fn ends_of(input: &Input, primitive: u32) -> [Aabb; 2] {
     let objects = input.primitives.objects();
     match objects.and_then(|objects| objects.ends(primitive)) {
         Some(ends) if ends.iter().all(|b| b.is_finite()) => ends.map(|b| input.region.aabb([b.min, b.max, b.max])),
-        // Triangles stand still.
+        // Triangles are static.
         _ => [input.boxes[primitive as usize]; 2],
     }
 }
@@ -49,7 +49,7 @@ fn union([a, b]: [Aabb; 2], [c, d]: [Aabb; 2]) -> [Aabb; 2] {
 /// The boxes of all nodes at both ends.
 fn ends(nodes: &[Node], input: &Input, primitives: &dyn Fn(u32) -> Vec<u32>) -> Vec<[Aabb; 2]> {
     let mut ends = vec![[Aabb::EMPTY; 2]; nodes.len()];
-    // Children come after their parents.
+    // Children follow their parents.
     for (i, node) in nodes.iter().enumerate().rev() {
         ends[i] = if node.is_leaf() {
             let each = primitives(node.index).into_iter().map(|p| ends_of(input, p));
@@ -62,10 +62,10 @@ fn ends(nodes: &[Node], input: &Input, primitives: &dyn Fn(u32) -> Vec<u32>) -> 
     ends
 }
 
-/// The box between two, at a time from 0 to 1: rounded outwards.
+/// Interpolate two boxes at a time in [0, 1], rounded outward.
 #[inline(always)]
 fn between([start, end]: &[Aabb; 2], time: f64) -> Aabb {
-    // In f64 an end errs by some 2⁻⁵² of its size, and rounded to f32 by 2⁻²⁴.
+    // The f64 computation errs by some 2⁻⁵² of its size, and rounding to f32 by 2⁻²⁴.
     const ROOM: f32 = 1.0 / (1u32 << 23) as f32;
     let at = |a: Vec3, b: Vec3| (a.as_dvec3() + (b.as_dvec3() - a.as_dvec3()) * time).as_vec3();
     let room = |a: Vec3, b: Vec3| a.abs().max(b.abs()) * ROOM + Vec3::splat(f32::MIN_POSITIVE);
@@ -77,7 +77,7 @@ fn between([start, end]: &[Aabb; 2], time: f64) -> Aabb {
 
 impl Structure for Moving {
     fn walker(&self, counted: bool) -> Box<dyn Walker + '_> {
-        // A path puts one child away a level.
+        // A path leaves one sibling per level.
         let stack = Vec::with_capacity(self.tree.depth + 1);
         if counted {
             Box::new(Walk::<true> { tree: self, ray: SlabRay::EVERYWHERE, time: 0.0, stack, nodes: 0 })
@@ -122,13 +122,13 @@ struct Walk<'a, const COUNTED: bool> {
     tree: &'a Moving,
     ray: SlabRay,
     time: f64,
-    /// Nodes that are met, and from where on.
+    /// Nodes to visit, and the `t` at which the ray enters them.
     stack: Vec<(u32, f32)>,
     nodes: u32,
 }
 
 impl<const COUNTED: bool> Walk<'_, COUNTED> {
-    /// From where on the ray passes a node's box, if it does.
+    /// The `t` at which the ray enters a node's box, if it does.
     #[inline(always)]
     fn enters(&self, node: u32, limit: f32) -> Option<f32> {
         let aabb = between(&self.tree.ends[node as usize], self.time);
@@ -143,7 +143,7 @@ impl<const COUNTED: bool> Walker for Walk<'_, COUNTED> {
 
     fn start_at(&mut self, ray: &SlabRay, time: f64) {
         self.ray = *ray;
-        // Not a number counts as 0.
+        // NaN counts as 0.
         self.time = if time > 0.0 { time.min(1.0) } else { 0.0 };
         self.nodes = 0;
         self.stack.clear();
@@ -205,10 +205,10 @@ mod tests {
         ) {
             let around = |p: Vec3| Aabb::around([p - low.abs(), p + high.abs()]);
             let moved = between(&[around(from), around(to)], time);
-            // Exact but for half an ulp of f64 in each of three operations, which the room in f32 is far more than.
+            // Exact up to half an ulp of f64 in each of three operations, far less than the f32 padding.
             let point = from.as_dvec3() * (1.0 - time) + to.as_dvec3() * time;
             prop_assert!(moved.min.as_dvec3().cmple(point).all() && moved.max.as_dvec3().cmpge(point).all());
-            // And it is no looser than some ulps of f32.
+            // The padding is at most some ulps of f32.
             let ends = [around(from), around(to)];
             let wide = (ends[1].min - ends[0].min).as_dvec3() * time + ends[0].min.as_dvec3() - moved.min.as_dvec3();
             prop_assert!(wide.max_element() <= 1e-6 * 4.0);

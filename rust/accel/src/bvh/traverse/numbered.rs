@@ -1,5 +1,4 @@
-//! The tree that all these ways share: leaves are known by numbers of their own, and what is in them is for others to
-//! keep.
+//! The tree that these traversals share: leaves have numbers, and their content is stored elsewhere.
 
 use super::{contents, sah_cost};
 use crate::bvh::build::Shapes;
@@ -8,20 +7,20 @@ use crate::walk::{Input, Lists};
 use crate::{Info, NodeBox};
 use raywright_base::math::Aabb;
 
-/// A binary tree whose leaves have their own number for `index`: they are numbered as their nodes are.
+/// A binary tree whose leaves have their number as `index`, in the order of the nodes.
 #[derive(Clone)]
 pub struct Numbered {
-    /// The nodes; children come after their parents.
+    /// The nodes; children follow their parents.
     pub nodes: Vec<Node>,
-    /// The longest way from the root to a leaf.
+    /// The depth of the tree.
     pub depth: usize,
-    /// Whether a primitive may stand in several leaves, each of which holds a part of it.
+    /// True if primitives may be split among several leaves.
     in_parts: bool,
     sah_cost: f64,
 }
 
 impl Numbered {
-    /// Numbers the leaves, and tells what stands in them.
+    /// Number the leaves, and return their content.
     pub fn new(bvh: BinaryBvh) -> (Self, Lists) {
         let of = |node: &Node| &bvh.order[node.index as usize..(node.index + node.count) as usize];
         let lists = Lists::of(bvh.nodes.iter().filter(|n| n.is_leaf()).map(of));
@@ -35,7 +34,7 @@ impl Numbered {
         (Self { nodes, depth, in_parts, sah_cost }, lists)
     }
 
-    /// What it looks like.
+    /// Its statistics.
     pub fn info(&self, kind: &str) -> Info {
         let leaves = self.nodes.iter().filter(|n| n.is_leaf()).count();
         Info {
@@ -62,7 +61,7 @@ impl Numbered {
         nodes.map(|(node, depth)| NodeBox { aabb: node.aabb(), depth, primitives: primitives(node) }).collect()
     }
 
-    /// The tree as builders make it, given the primitives of each leaf.
+    /// The original tree, given the primitives of each leaf.
     fn whole(&self, primitives: &dyn Fn(u32) -> Vec<u32>) -> Result<BinaryBvh, String> {
         let mut whole = BinaryBvh { nodes: self.nodes.clone(), order: Vec::new() };
         for node in whole.nodes.iter_mut().filter(|n| n.is_leaf()) {
@@ -76,7 +75,7 @@ impl Numbered {
         Ok(whole)
     }
 
-    /// Checks what walks rely on, given the primitives of each leaf.
+    /// Check the invariants of traversal, given the primitives of each leaf.
     pub fn validate(&self, input: &Input, primitives: &dyn Fn(u32) -> Vec<u32>) -> Result<(), String> {
         let whole = self.whole(primitives)?;
         match whole.depth() {
@@ -86,13 +85,13 @@ impl Numbered {
         }
     }
 
-    /// The same tree around primitives that have moved.
+    /// The same tree with boxes refitted to moved primitives.
     pub fn refitted(&self, input: &Input, primitives: &dyn Fn(u32) -> Vec<u32>) -> Result<Self, String> {
         if self.in_parts {
             return Err("spatial splits are made for where things are: build the tree again".into());
         }
         let mut nodes = self.nodes.clone();
-        // Children come after their parents.
+        // Children follow their parents.
         for i in (0..nodes.len()).rev() {
             let node = &nodes[i];
             let around = if node.is_leaf() {

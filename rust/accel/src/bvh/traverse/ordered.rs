@@ -1,5 +1,5 @@
-//! The stack: the nearer child first, the other put away with the distance at which its box begins, and left out when
-//! something nearer was found meanwhile (Kay and Kajiya, "Ray tracing complex scenes", 1986, with a stack for their
+//! Traversal with a stack: nearer child first. The other child is pushed with its entry distance, and skipped if a
+//! nearer hit was found meanwhile (Kay and Kajiya, "Ray tracing complex scenes", 1986, with a stack instead of their
 //! heap).
 
 use super::any::{Unordered, larger_first};
@@ -11,28 +11,28 @@ use crate::walk::{Built, Input, Lists, Structure, Together, Walker};
 use crate::{Info, NodeBox, SlabRay};
 use raywright_base::simd::Level;
 
-/// How many rays go through a tree together.
+/// The number of rays traversed together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rays {
-    /// Each alone.
+    /// Single rays.
     One,
-    /// In packets of 4: one vector.
+    /// Packets of 4, one vector.
     Four,
-    /// In bundles of 64: a range of vectors.
+    /// Packets of 64, ranges of vectors.
     SixtyFour,
 }
 
-/// A binary tree walked with a stack, by rays alone or together.
+/// A binary tree traversed with a stack, by single rays or packets.
 pub struct Ordered<V = Alone> {
     tree: Numbered,
-    /// What nodes have beside their boxes.
+    /// Additional bounding volumes of the nodes.
     volumes: V,
     rays: Rays,
     kind: String,
 }
 
 impl Ordered {
-    /// Walks a tree; `kind` says how it was built.
+    /// Create the structure; `kind` describes the build.
     pub fn over(mut bvh: BinaryBvh, rays: Rays, kind: &str) -> Built {
         larger_first(&mut bvh);
         let (tree, lists) = Numbered::new(bvh);
@@ -46,7 +46,7 @@ impl Ordered {
 }
 
 impl<V: Volumes> Ordered<V> {
-    /// Walks a tree whose nodes have volumes beside their boxes, each ray alone.
+    /// Create the structure with additional bounding volumes, for single rays.
     pub(super) fn within(mut bvh: BinaryBvh, input: &Input, kind: &str) -> Built {
         larger_first(&mut bvh);
         let (tree, lists) = Numbered::new(bvh);
@@ -110,7 +110,7 @@ struct Walk<'a, V: Volumes, const COUNTED: bool> {
     volumes: &'a V,
     ray: SlabRay,
     ready: V::Ready,
-    /// Nodes that are met, and from where on.
+    /// Nodes to visit, and the `t` at which the ray enters them.
     stack: Vec<(u32, f32)>,
     nodes: u32,
 }
@@ -118,7 +118,7 @@ struct Walk<'a, V: Volumes, const COUNTED: bool> {
 impl<'a, V: Volumes, const COUNTED: bool> Walk<'a, V, COUNTED> {
     fn new(of: &'a Ordered<V>) -> Self {
         let ray = SlabRay::EVERYWHERE;
-        // A path puts one child away a level.
+        // A path leaves one sibling per level.
         let stack = Vec::with_capacity(of.tree.depth + 1);
         Self { tree: &of.tree, volumes: &of.volumes, ray, ready: V::ready(&ray), stack, nodes: 0 }
     }

@@ -1,5 +1,5 @@
-//! Turned boxes: a node has, beside its box, one along axes of its own, where that has less surface (Gottschalk, Lin
-//! and Manocha, "OBBTree: A Hierarchical Structure for Rapid Interference Detection", 1996).
+//! Oriented bounding boxes: a node has one in addition to its axis-aligned box, if its surface area is smaller
+//! (Gottschalk, Lin and Manocha, "OBBTree: A Hierarchical Structure for Rapid Interference Detection", 1996).
 
 use super::numbered::Numbered;
 use super::volumes::{Line, NOWHERE, Points, Span, Volumes, grow};
@@ -8,17 +8,17 @@ use raywright_base::math::{DVec3, Vec3};
 use raywright_base::parallel;
 use raywright_shapes::oriented_box::OrientedBox;
 
-/// What a turned box has of the surface of the node's own at most: one that has more is not worth its test.
+/// Maximum surface area of an oriented box relative to the axis-aligned one. A larger one is not worth its test.
 const WORTHWHILE: f32 = 0.8;
 
-/// Turned boxes of the nodes that have one.
+/// The oriented boxes of nodes that have one.
 pub struct Oriented {
-    /// By node, which; [`Oriented::NONE`] where there is none.
+    /// The index of each node's box; [`Oriented::NONE`] without one.
     which: Vec<u32>,
     boxes: Vec<Turned>,
 }
 
-/// A turned box.
+/// An oriented box.
 #[derive(Clone, Copy)]
 struct Turned {
     axes: [Vec3; 3],
@@ -26,9 +26,9 @@ struct Turned {
 }
 
 impl Turned {
-    /// Around points, if it has little enough of a surface.
+    /// A box around points, if its surface area is small enough.
     fn around(points: &[DVec3], surface: f32) -> Option<Self> {
-        // Its axes serve, rounded; from where to where it goes along these is found anew.
+        // Use rounded axes, with intervals recomputed along them.
         let axes = OrientedBox::around(points)?.axes.map(|axis| axis.as_vec3());
         let mut spans = [NOWHERE; 3];
         for &point in points {

@@ -1,7 +1,6 @@
-//! Four rays together, one in each lane: a box is tested against all of them in the time of one (Wald, Slusallek,
-//! Benthin and Wagner, "Interactive Rendering with Coherent Ray Tracing", 2001). Those that meet it go on, those that
-//! do not wait. Which child comes first is decided by the majority, so rays that go different ways are answered as
-//! well, only not as soon.
+//! Packets of four rays, one per lane: a box is tested against all of them at once (Wald, Slusallek, Benthin and
+//! Wagner, "Interactive Rendering with Coherent Ray Tracing", 2001). Rays that miss are masked. The majority decides
+//! which child comes first, so results for incoherent rays are correct, but slower.
 
 use super::columns::Columns;
 use super::numbered::Numbered;
@@ -12,9 +11,9 @@ use raywright_base::simd::{Dispatch, Kernel, Level, Simd};
 /// Rays in a packet.
 const WIDTH: usize = 4;
 
-/// Ready to walk a tree with four rays at a time.
+/// Create a traversal with packets of four rays.
 pub fn walk(tree: &Numbered, counted: bool, level: Level) -> Box<dyn Together + '_> {
-    // A path puts one child away a level.
+    // A path leaves one sibling per level.
     let (rays, stack) = (Columns::NONE, Vec::with_capacity(tree.depth + 1));
     if counted {
         Box::new(Walk::<true> { tree, level, rays, stack, nodes: [0; WIDTH] })
@@ -31,13 +30,13 @@ struct Walk<'a, const COUNTED: bool> {
     nodes: [u32; WIDTH],
 }
 
-/// A node that some rays meet.
+/// A node that some rays hit.
 #[derive(Clone, Copy)]
 struct Entry {
-    /// From where on.
+    /// The `t` at which they enter it.
     enter: [f32; WIDTH],
     node: u32,
-    /// Which, in bits.
+    /// The mask of these rays.
     rays: u32,
 }
 
@@ -66,7 +65,7 @@ impl<const COUNTED: bool> Together for Walk<'_, COUNTED> {
 }
 
 impl<const COUNTED: bool> Walk<'_, COUNTED> {
-    /// So many boxes are tested for some rays.
+    /// Count box tests for some rays.
     #[inline(always)]
     fn count(&mut self, rays: u32, boxes: u32) {
         if COUNTED {
@@ -76,7 +75,7 @@ impl<const COUNTED: bool> Walk<'_, COUNTED> {
         }
     }
 
-    /// Puts a node away that some rays meet, if any do.
+    /// Push a node if any ray hits it.
     #[inline(always)]
     fn push<S: Simd<WIDTH>>(&mut self, simd: S, node: u32, from: S::F32, rays: u32) {
         if rays != 0 {
@@ -106,7 +105,7 @@ impl<const COUNTED: bool> Kernel<WIDTH> for Begin<'_, '_, COUNTED> {
     }
 }
 
-/// Goes on to the next leaf.
+/// Advances to the next leaf.
 struct Next<'w, 'a, const COUNTED: bool> {
     walk: &'w mut Walk<'a, COUNTED>,
     limits: &'w [f32; WIDTH],
@@ -135,7 +134,7 @@ impl<const COUNTED: bool> Kernel<WIDTH> for Next<'_, '_, COUNTED> {
                 let (met_a, met_b) = (met_a & rays, met_b & rays);
                 let both = met_a & met_b;
                 let a_first = (simd.le(enter_a, enter_b) & both).count_ones();
-                // A ray that meets only one of them is served either way.
+                // For a ray that hits only one of them the order is irrelevant.
                 (at, rays) = if met_b == 0 || met_a != 0 && 2 * a_first >= both.count_ones() {
                     walk.push(simd, b, enter_b, met_b);
                     (a, met_a)

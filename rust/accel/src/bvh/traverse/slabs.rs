@@ -1,5 +1,5 @@
-//! Slabs along the diagonals: a node has, beside its box, from where to where it goes along ten more directions, those
-//! of a cube's edges and corners (Kay and Kajiya, "Ray tracing complex scenes", 1986).
+//! Slabs along diagonals: a node has, in addition to its box, intervals along ten more directions, those of a cube's
+//! edge midpoints and corners (Kay and Kajiya, "Ray tracing complex scenes", 1986).
 
 use super::numbered::Numbered;
 use super::volumes::{Across, Line, NOWHERE, Points, Span, Volumes, grow};
@@ -7,14 +7,14 @@ use crate::SlabRay;
 use raywright_base::math::DVec3;
 use raywright_shapes::oriented_box::DIRECTIONS;
 
-/// Directions beside the axes.
+/// Directions other than the axes.
 const COUNT: usize = 10;
 
 fn normal(i: usize) -> DVec3 {
     DIRECTIONS[3 + i]
 }
 
-/// Heights of all nodes.
+/// The height intervals of all nodes.
 pub struct Slabs(Vec<[Span; COUNT]>);
 
 impl Volumes for Slabs {
@@ -23,7 +23,7 @@ impl Volumes for Slabs {
 
     fn around(tree: &Numbered, points: &Points) -> Self {
         let mut spans = vec![[NOWHERE; COUNT]; tree.nodes.len()];
-        // Children come after their parents.
+        // Children follow their parents.
         for (i, node) in tree.nodes.iter().enumerate().rev() {
             if node.is_leaf() {
                 for point in points.of(node.index) {

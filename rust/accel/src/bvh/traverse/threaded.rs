@@ -1,9 +1,9 @@
-//! Threads in place of a stack: every node says where to go on if its box is met and where if it is missed, so that a
-//! walk keeps one number (Smits, "Efficiency Issues for Ray Tracing", 1998).
+//! Stackless traversal with threads: every node has one link for a hit and one for a miss, so a traversal needs only an
+//! index (Smits, "Efficiency Issues for Ray Tracing", 1998).
 //!
-//! One thread through the tree is one order of its leaves, and good for rays that come to them in that order. So there
-//! are several, one for each of six or eight ways that a ray may go (Hachisuka, "Implementing a Photorealistic
-//! Rendering System using GLSL", 2015), and of each two children the one whose centre comes sooner that way goes first.
+//! One thread is one order of the leaves, which suits rays in that direction. So there are several threads, one for
+//! each of six or eight classes of directions (Hachisuka, "Implementing a Photorealistic Rendering System using GLSL",
+//! 2015). In each, the child whose centre is nearer in that direction goes first.
 
 use super::numbered::Numbered;
 use crate::bvh::BinaryBvh;
@@ -11,10 +11,10 @@ use crate::walk::{Built, Input, Structure, Walker};
 use crate::{Info, NodeBox, SlabRay};
 use raywright_base::math::Vec3;
 
-/// How ways to go are told apart.
+/// The classes of directions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Orders {
-    /// By the axis that a ray goes along most, and whether up or down.
+    /// By the major axis and its sign.
     Six,
     /// By octant.
     #[default]
@@ -22,7 +22,7 @@ pub enum Orders {
 }
 
 impl Orders {
-    /// How many ways there are.
+    /// The number of classes.
     pub const fn count(self) -> usize {
         match self {
             Self::Six => 6,
@@ -30,7 +30,7 @@ impl Orders {
         }
     }
 
-    /// The direction that stands for a way.
+    /// The representative direction of a class.
     fn direction(self, way: usize) -> Vec3 {
         let towards = |down: usize| if down == 0 { 1.0 } else { -1.0 };
         match self {
@@ -39,7 +39,7 @@ impl Orders {
         }
     }
 
-    /// The way that a ray goes.
+    /// The class of a ray.
     fn way(self, ray: &SlabRay) -> usize {
         let [x, y, z] = ray.first;
         match self {
@@ -53,31 +53,31 @@ impl Orders {
     }
 }
 
-/// Where a walk goes on from a node.
+/// The links of a node.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Link {
-    /// If its box is met.
+    /// The next node after a hit.
     hit: u32,
-    /// If it is missed.
+    /// The next node after a miss.
     miss: u32,
 }
 
 impl Link {
-    /// No node: the walk is over.
+    /// The end of the traversal.
     const END: u32 = u32::MAX;
 }
 
-/// A binary tree walked along threads.
+/// A binary tree with threads.
 pub struct Threaded {
     tree: Numbered,
     orders: Orders,
-    /// Way by way, of every node.
+    /// The links of every node, class by class.
     links: Vec<Link>,
     kind: String,
 }
 
 impl Threaded {
-    /// Walks a tree; `kind` says how it was built.
+    /// Create the structure; `kind` describes the build.
     pub fn over(bvh: BinaryBvh, orders: Orders, kind: &str) -> Built {
         let (tree, lists) = Numbered::new(bvh);
         let links = (0..orders.count()).flat_map(|way| thread(&tree, orders.direction(way))).collect();
@@ -86,11 +86,11 @@ impl Threaded {
     }
 }
 
-/// The links of all nodes for one way.
+/// The links of all nodes for one class.
 fn thread(tree: &Numbered, direction: Vec3) -> Vec<Link> {
     let nodes = tree.nodes.as_slice();
     let mut links = vec![Link { hit: Link::END, miss: Link::END }; nodes.len()];
-    // Parents come before their children, and know where to go on behind them.
+    // Parents come before their children, so their miss links are known.
     for (i, node) in nodes.iter().enumerate() {
         let behind = links[i].miss;
         if node.is_leaf() {
@@ -98,7 +98,7 @@ fn thread(tree: &Numbered, direction: Vec3) -> Vec<Link> {
             continue;
         }
         let [a, b] = node.children();
-        // Of twice the centres.
+        // Doubled centers.
         let at = |child: usize| (nodes[child].min + nodes[child].max).dot(direction);
         let (near, far) = if at(a) <= at(b) { (a, b) } else { (b, a) };
         links[i].hit = near as u32;
@@ -170,7 +170,7 @@ impl Structure for Threaded {
 
 struct Walk<'a, const COUNTED: bool> {
     threaded: &'a Threaded,
-    /// Those of the ray's way.
+    /// The links of the ray's class.
     links: &'a [Link],
     ray: SlabRay,
     at: u32,

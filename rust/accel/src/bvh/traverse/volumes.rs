@@ -1,13 +1,13 @@
-//! What nodes may have beside their boxes: something that fits diagonal geometry closer, and that a ray which meets the
-//! box still has to meet. All are made of planes across some directions.
+//! Additional bounding volumes of nodes, which fit diagonal geometry tighter: a ray that hits the box must also hit the
+//! volume. All consist of planes normal to some directions.
 //!
-//! The bound, with v = 2⁻²⁴ and R the reach of `accel/slab.rs`, which bounds what is in a box, the origin, and the way
-//! between in every coordinate. Of a direction n with coordinates of at most 1, a point of the node on the ray has the
-//! height n·p = n·o + t (n·d). Per coordinate the origin errs by vR and the ray's way by 3vR, since d is taken from its
-//! inverse: 12vR for three. Computing n·o errs by 6vR, and n·d by as much times t. So with the numbers computed, the
-//! height is off by 24vR at most. Dividing by n·d errs by v of heights of at most 3R four times, and sums and products
-//! by 9vR: 45vR in all, in units of the inverse. Eight pads of the slab test are 64vR; what is left covers the error of
-//! a hit's own `t`, and heights that are rounded in f64.
+//! The bound, with v = 2⁻²⁴ and R the reach of `accel/slab.rs`, which bounds the content of a box, the origin, and the
+//! vector between them in every coordinate. For a direction n with coordinates of at most 1, a point of the node on the
+//! ray has the height n·p = n·o + t (n·d). Per coordinate the origin errs by vR and the ray's displacement by 3vR,
+//! since d is computed from its inverse: 12vR for three. Computing n·o errs by 6vR, and n·d by as much times t. So with
+//! the computed numbers, the height is off by 24vR at most. Dividing by n·d errs by v of heights of at most 3R four
+//! times, and sums and products by 9vR: 45vR in all, in units of the inverse. Eight pads of the slab test are 64vR;
+//! what remains covers the error of a hit's own `t`, and heights rounded in f64.
 
 use crate::SlabRay;
 use crate::bvh::traverse::numbered::Numbered;
@@ -15,27 +15,27 @@ use crate::walk::{Input, Lists};
 use raywright_base::math::robust::{greater, lesser};
 use raywright_base::math::{DVec3, Vec3};
 
-/// Volumes of all nodes of a tree.
+/// The volumes of all nodes of a tree.
 pub trait Volumes: Sized + Send + Sync + 'static {
-    /// What they are, for people; nothing where there is nothing.
+    /// Their display name; empty without volumes.
     const NAME: &'static str;
 
-    /// A ray, ready for all of them.
+    /// A ray prepared for them.
     type Ready: Copy;
 
-    /// Around the primitives below each node, given what stands in the leaves.
+    /// Compute the volume of each node, given the content of the leaves.
     fn around(tree: &Numbered, points: &Points) -> Self;
 
-    /// Makes a ray ready.
+    /// Prepare a ray.
     fn ready(ray: &SlabRay) -> Self::Ready;
 
-    /// Of the part of a ray that is in a node's box, the part that may be in its volume. None if no part can.
+    /// Narrow the interval of a ray inside a node's box to its volume. None if it misses.
     fn narrowed(&self, node: u32, ray: &Self::Ready, within: (f32, f32)) -> Option<(f32, f32)>;
 
-    /// Whether a point in box units is in a node's volume.
+    /// Return whether a point in box units is in a node's volume.
     fn holds(&self, node: usize, point: DVec3) -> bool;
 
-    /// Memory held.
+    /// Memory use in bytes.
     fn bytes(&self) -> usize;
 }
 
@@ -63,16 +63,16 @@ impl Volumes for Alone {
     }
 }
 
-/// What stands in leaves, as points whose hull holds it.
+/// The content of leaves as points whose convex hull contains it.
 pub struct Points<'a> {
     input: &'a Input<'a>,
     lists: &'a Lists,
-    /// Where the primitives of each leaf begin, and where the last end.
+    /// The start of each leaf's primitives, and the end of the last one's.
     ends: Vec<usize>,
 }
 
 impl<'a> Points<'a> {
-    /// Of the primitives of all leaves.
+    /// The points of all leaves.
     pub fn new(input: &'a Input<'a>, lists: &'a Lists) -> Self {
         let mut ends = vec![0];
         ends.extend(lists.counts.iter().scan(0, |end, &count| {
@@ -82,7 +82,7 @@ impl<'a> Points<'a> {
         Self { input, lists, ends }
     }
 
-    /// Those of a leaf, in box units.
+    /// The points of a leaf, in box units.
     pub fn of(&self, leaf: u32) -> impl Iterator<Item = DVec3> {
         let mine = &self.lists.order[self.ends[leaf as usize]..self.ends[leaf as usize + 1]];
         mine.iter().flat_map(|&p| {
@@ -104,7 +104,7 @@ impl<'a> Points<'a> {
         })
     }
 
-    /// Those of all leaves below a node.
+    /// The points of all leaves below a node.
     pub fn below(&self, tree: &Numbered, node: usize) -> Vec<DVec3> {
         let (mut points, mut open) = (Vec::new(), vec![node]);
         while let Some(i) = open.pop() {
@@ -115,10 +115,10 @@ impl<'a> Points<'a> {
     }
 }
 
-/// Heights from `low` to `high`.
+/// The heights from `low` to `high`.
 pub type Span = [f32; 2];
 
-/// Grows heights by another, rounded outwards.
+/// Extend an interval to a height, rounded outward.
 pub fn grow([low, high]: Span, height: f64) -> Span {
     let near = height as f32;
     let down = if f64::from(near) > height { near.next_down() } else { near };
@@ -126,10 +126,10 @@ pub fn grow([low, high]: Span, height: f64) -> Span {
     [low.min(down), high.max(up)]
 }
 
-/// No heights.
+/// The empty interval.
 pub const NOWHERE: Span = [f32::INFINITY, f32::NEG_INFINITY];
 
-/// A ray as directions other than the axes see it.
+/// A ray prepared for directions other than the axes.
 #[derive(Clone, Copy)]
 pub struct Line {
     origin: Vec3,
@@ -137,18 +137,18 @@ pub struct Line {
     pad: f32,
 }
 
-/// Below this the change of height counts as this: over the way through a scene, that is nothing beside the pad.
+/// Minimum rate of change of the height: across a scene, its effect is negligible relative to the pad.
 const SMALLEST: f32 = 1.0 / (1u64 << 60) as f32;
 
 impl Line {
-    /// From a ray made ready for boxes.
+    /// Convert from a ray prepared for boxes.
     #[inline(always)]
     pub fn new(ray: &SlabRay) -> Self {
         let [x, y, z] = ray.inverse;
         Self { origin: Vec3::from(ray.origin), direction: Vec3::new(1.0 / x, 1.0 / y, 1.0 / z), pad: 8.0 * ray.pad }
     }
 
-    /// How it goes along a direction.
+    /// The ray relative to planes normal to a direction.
     #[inline(always)]
     pub fn across(&self, normal: Vec3) -> Across {
         let rise = normal.dot(self.direction);
@@ -159,7 +159,7 @@ impl Line {
     }
 }
 
-/// A ray's way between planes across a direction.
+/// A ray's intervals between planes normal to a direction.
 #[derive(Clone, Copy)]
 pub struct Across {
     inverse: f32,
@@ -168,7 +168,7 @@ pub struct Across {
 }
 
 impl Across {
-    /// Of a part of the ray, what may be between two heights; enters after it leaves if nothing can.
+    /// Narrow an interval to that between two heights; the result is reversed if empty.
     #[inline(always)]
     pub fn narrowed(&self, [low, high]: Span, (enter, leave): (f32, f32)) -> (f32, f32) {
         let (a, b) = (low * self.inverse, high * self.inverse);
