@@ -1,11 +1,11 @@
-//! How many cases a test tries: a part, or all of them where `RAYWRIGHT_SLOW` is set.
+//! The number of test cases: a subset, or all of them if `RAYWRIGHT_SLOW` is set.
 
-/// Whether all cases are tried.
+/// Return whether all cases are tested.
 pub fn are_all() -> bool {
     std::env::var_os("RAYWRIGHT_SLOW").is_some()
 }
 
-/// Every `step`-th case, or all of them. Loops within loops start at another one each time, by an offset.
+/// Every `step`-th case, or all of them. Inner loops pass an offset so that each starts at another case.
 pub fn every<T>(step: usize, offset: usize, cases: impl IntoIterator<Item = T>) -> impl Iterator<Item = T> {
     let are_all = are_all();
     cases

@@ -1,6 +1,6 @@
-//! Floor 0 of raywright: what all other crates use.
+//! Floor 0 of raywright: mathematics, sampling, SIMD and threads, shared by all other crates.
 
-// For the tests of all crates.
+// Used by the tests of all crates.
 #[doc(hidden)]
 pub mod cases;
 pub mod math;

@@ -1,16 +1,16 @@
-//! Loops that threads share.
+//! Parallel loops.
 //!
-//! Rayon compiles its loops anew for each closure, to some thousand lines of intermediate code each time. Here they are
-//! compiled once, or once a type: closures are called through pointers, one call for a chunk of the work. A call costs
-//! some 50 ns with the splitting, so a chunk should take microseconds.
+//! Rayon compiles its loops anew for each closure, to some thousand lines of intermediate code each time. These
+//! functions are compiled once, or once per type: closures are called through pointers, one call per chunk of work. A
+//! call costs some 50 ns with the splitting, so a chunk should take microseconds.
 //!
-//! Chunks are of a given size, and results are in the order of the chunks. So nothing depends on the number of threads.
+//! Chunks have a given size, and results are in the order of the chunks. So nothing depends on the number of threads.
 
 use rayon::prelude::*;
 use std::array::from_fn;
 use std::ops::Range;
 
-/// Items of a chunk where each takes some 10 ns.
+/// Items per chunk for work of some 10 ns per item.
 pub const CHUNK: usize = 4096;
 
 /// Return the number of threads of the current pool.
@@ -43,7 +43,7 @@ pub fn each_mut<T: Send>(items: &mut [T], work: &(dyn Fn(usize, &mut T) + Sync))
     each_chunk_mut(items, 1, &|i, item| work(i, &mut item[0]));
 }
 
-/// Call `work` with each chunk of so many items and the number of its first item, in any order.
+/// Call `work` with each chunk of `size` items and the index of its first item, in any order.
 pub fn each_chunk_mut<T: Send>(items: &mut [T], size: usize, work: &(dyn Fn(usize, &mut [T]) + Sync)) {
     fn part<T: Send>(first: usize, items: &mut [T], size: usize, work: &(dyn Fn(usize, &mut [T]) + Sync)) {
         if items.len() > size {
@@ -64,7 +64,7 @@ pub fn map<T: Send>(count: usize, work: impl Fn(usize) -> T + Sync) -> Vec<T> {
     results.into_iter().map(|result| result.expect("all were computed")).collect()
 }
 
-/// Return the results of `work` for each chunk of so many numbers below `count`.
+/// Return the results of `work` for each chunk of `size` numbers below `count`.
 pub fn map_chunks<T: Send>(count: usize, size: usize, work: impl Fn(Range<usize>) -> T + Sync) -> Vec<T> {
     map(count.div_ceil(size), |chunk| work(chunk * size..((chunk + 1) * size).min(count)))
 }
@@ -76,8 +76,8 @@ pub fn map_parts<P: Send, T: Send>(parts: Vec<P>, work: impl Fn(P) -> T + Sync) 
     slots.into_iter().map(|(_, result)| result.expect("all were computed")).collect()
 }
 
-/// Return the items that `make` gives for each number below `count`. Items may be cheap: they are made in blocks, where
-/// they shall stand. [`Work::collect`](super::work::Work::collect) does the same and can be stopped.
+/// Return the items that `make` returns for each number below `count`. Items may be cheap: they are made in blocks, in
+/// place. [`Work::collect`](super::work::Work::collect) does the same and can be canceled.
 pub fn collect<T: Send>(count: usize, make: impl Fn(usize) -> T + Sync) -> Vec<T> {
     let mut blocks = Blocks::new(count);
     blocks.extend(0..count, &make);
@@ -89,28 +89,28 @@ pub fn sort(keys: &mut [u64]) {
     keys.par_sort_unstable();
 }
 
-/// Call both, possibly at the same time. All that threads share comes down to this, but for [`Blocks`] and [`sort`].
+/// Call both, possibly at the same time. All parallelism uses this function, except [`Blocks`] and [`sort`].
 #[inline(never)]
 fn both(a: &mut (dyn FnMut() + Send), b: &mut (dyn FnMut() + Send)) {
     rayon::join(a, b);
 }
 
-/// Items of a block.
+/// Items per block.
 const BLOCK: usize = 32;
 
-/// Items as they are made: whole blocks, and what is left over at the end.
+/// Items under construction: whole blocks, and a remainder at the end.
 pub(crate) struct Blocks<T> {
     blocks: Vec<[T; BLOCK]>,
     count: usize,
 }
 
 impl<T: Send> Blocks<T> {
-    /// Make room for `count` items.
+    /// Reserve space for `count` items.
     pub fn new(count: usize) -> Self {
         Self { blocks: Vec::with_capacity(count.div_ceil(BLOCK)), count }
     }
 
-    /// Make the whole blocks of a range of items that starts where the last one ended, at the start of a block.
+    /// Make the whole blocks of a range of items that starts at the end of the last one, at the start of a block.
     pub fn extend(&mut self, range: Range<usize>, make: &(impl Fn(usize) -> T + Sync)) {
         fn extend<B: Send>(blocks: &mut Vec<B>, range: Range<usize>, make: &(dyn Fn(usize) -> B + Sync)) {
             blocks.par_extend(range.into_par_iter().map(make));
@@ -119,7 +119,7 @@ impl<T: Send> Blocks<T> {
         extend(&mut self.blocks, blocks, &|block| from_fn(|i| make(block * BLOCK + i)));
     }
 
-    /// Make what is left over, and return all items.
+    /// Make the remainder, and return all items.
     pub fn finish(self, make: &impl Fn(usize) -> T) -> Vec<T> {
         let mut items = self.blocks.into_flattened();
         items.extend((items.len()..self.count).map(make));

@@ -1,35 +1,34 @@
-//! Where the time of a picture goes, for those who work on it: `benches/shading.py` tells it. Without the feature
-//! `timing` there is nothing of it in what is compiled.
+//! A profile of rendering, printed by `benches/shading.py`. Without the feature `timing` it compiles to nothing.
 
-/// What the time of a picture goes into.
+/// The parts of rendering that are timed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
-    /// Samples of the camera, and its rays.
+    /// Camera samples and camera rays.
     Camera,
-    /// Rays to what they meet first.
+    /// Closest-hit queries.
     Closest,
-    /// Rays to lights.
+    /// Shadow rays.
     Shadow,
-    /// Paths are sorted by what they have come to, and light from outside is added.
+    /// Sorting paths by material, and light from the environment.
     Arriving,
-    /// What is known of the surfaces there.
+    /// Surface interactions.
     Surface,
-    /// What they emit.
+    /// Emission.
     Emission,
-    /// What scatters there.
+    /// BSDFs.
     Scattering,
-    /// Light that is asked for.
+    /// Light sampling.
     Light,
-    /// Where paths go on to.
+    /// Continuation of paths.
     Continuation,
     /// Random numbers for these.
     Numbers,
-    /// Samples are added to the film.
+    /// Adding samples to the film.
     Film,
 }
 
 impl Part {
-    /// Every one, with its name.
+    /// All parts with their names.
     pub const ALL: [(Self, &'static str); 11] = [
         (Self::Camera, "camera"),
         (Self::Closest, "closest"),
@@ -49,13 +48,13 @@ impl Part {
 mod nothing {
     use super::Part;
 
-    /// Does some work, of which the time is told.
+    /// Run and time some work.
     #[inline(always)]
     pub fn timed<T>(_: Part, work: impl FnOnce() -> T) -> T {
         work()
     }
 
-    /// Counts surfaces that paths have come to.
+    /// Count path vertices on surfaces.
     #[inline(always)]
     pub fn count(_vertices: usize) {}
 }
@@ -69,16 +68,16 @@ mod told {
 
     const PARTS: usize = Part::ALL.len();
 
-    /// Of all threads, nanoseconds by part, and how often it was begun or left.
+    /// Nanoseconds by part, and the number of entries and exits, summed over all threads.
     static TOLD: [[AtomicU64; 2]; PARTS] = [const { [const { AtomicU64::new(0) }; 2] }; PARTS];
     static VERTICES: AtomicU64 = AtomicU64::new(0);
 
     thread_local! {
-        /// What is being done, and since when.
+        /// The current part and its start time.
         static NOW: Cell<Option<(Part, Instant)>> = const { Cell::new(None) };
     }
 
-    /// Changes to another part, and says which it was.
+    /// Switch to another part; return the previous one.
     fn change(to: Option<Part>) -> Option<Part> {
         let now = Instant::now();
         let before = NOW.replace(to.map(|part| (part, now)));
@@ -93,7 +92,7 @@ mod told {
         })
     }
 
-    /// Does some work, of which the time is told: that of parts within it is theirs.
+    /// Run and time some work, excluding nested parts.
     pub fn timed<T>(part: Part, work: impl FnOnce() -> T) -> T {
         let before = change(Some(part));
         let done = work();
@@ -101,17 +100,17 @@ mod told {
         done
     }
 
-    /// Counts surfaces that paths have come to.
+    /// Count path vertices on surfaces.
     pub fn count(vertices: usize) {
         VERTICES.fetch_add(vertices as u64, Ordering::Relaxed);
     }
 
-    /// Nanoseconds by part, less what looking at the clock takes, and vertices, since this was last asked.
+    /// Return the nanoseconds by part, corrected for clock reads, and the number of vertices since the last call.
     pub fn take() -> ([f64; PARTS], u64) {
         let swapped = |cell: &AtomicU64| cell.swap(0, Ordering::Relaxed) as f64;
         let (told, vertices) =
             (TOLD.each_ref().map(|pair| pair.each_ref().map(swapped)), VERTICES.swap(0, Ordering::Relaxed));
-        // Each part has half of what it takes to begin or to leave one.
+        // Each part contains half of the cost of an entry or exit.
         let (start, looks) = (Instant::now(), 10_000u32);
         (0..looks).for_each(|_| timed(Part::Camera, || ()));
         let of_look = start.elapsed().as_nanos() as f64 / f64::from(2 * looks);

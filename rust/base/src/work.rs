@@ -1,44 +1,44 @@
-//! Work that takes a while: how far it is, and whether it is still wanted.
+//! Progress and cancellation of long work.
 //!
-//! Who does it asks at coarse steps, of some milliseconds each, whether to go on, and tells at the same time what is
-//! done. Nobody waits for an answer: both are plain numbers that threads share.
+//! Workers check for cancellation at coarse steps of some milliseconds, and report progress at the same time. Both are
+//! atomic numbers, so nobody waits.
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU32, AtomicUsize, Ordering::Relaxed};
 
 use crate::parallel::{self, Blocks};
 
-/// What is known of some work by those who do it, and by those who watch it.
+/// The shared state of workers and watchers.
 #[derive(Debug, Default)]
 pub struct Watch {
     stopped: AtomicBool,
-    /// The bits of a share that is not negative, which are ordered as the numbers are.
+    /// The bits of the completed fraction. For nonnegative floats they are ordered like the numbers.
     share: AtomicU32,
 }
 
 impl Watch {
-    /// Asks for the work to end soon: what comes of it is of no use to anyone.
+    /// Request cancellation; the result will be discarded.
     pub fn stop(&self) {
         self.stopped.store(true, Relaxed);
     }
 
-    /// Whether that was asked.
+    /// Return whether cancellation was requested.
     #[inline]
     pub fn is_stopped(&self) -> bool {
         self.stopped.load(Relaxed)
     }
 
-    /// What share of the work is done, from 0 to 1; never less than it was.
+    /// The completed fraction of the work, from 0 to 1. It never decreases.
     pub fn share(&self) -> f32 {
         f32::from_bits(self.share.load(Relaxed))
     }
 }
 
-/// Work was stopped before its end.
+/// The error of canceled work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stopped;
 
-/// Some work, or a part of it that follows upon other parts: from which share of the whole to which.
+/// Some work, or one of its sequential parts, given by its interval of the whole.
 #[derive(Clone, Copy, Debug)]
 pub struct Work<'a> {
     watch: Option<&'a Watch>,
@@ -47,30 +47,30 @@ pub struct Work<'a> {
 }
 
 impl<'a> Work<'a> {
-    /// That nobody watches, and nobody stops.
+    /// Work without a watcher, which is never canceled.
     pub const UNWATCHED: Self = Self { watch: None, from: 0.0, to: 1.0 };
 
-    /// Items of a round of work that all threads share, for each of them: some milliseconds.
+    /// Items per thread in a round of parallel work, which takes some milliseconds.
     const ROUND: usize = 1 << 16;
 
-    /// All that is watched.
+    /// All of the watched work.
     pub fn of(watch: &'a Watch) -> Self {
         Self { watch: Some(watch), ..Self::UNWATCHED }
     }
 
-    /// Whether nobody wants it any more.
+    /// Return whether it is canceled.
     #[inline]
     pub fn is_stopped(self) -> bool {
         self.watch.is_some_and(Watch::is_stopped)
     }
 
-    /// Nothing, unless nobody wants it any more.
+    /// Return an error if it is canceled.
     #[inline]
     pub fn goes_on(self) -> Result<(), Stopped> {
         if self.is_stopped() { Err(Stopped) } else { Ok(()) }
     }
 
-    /// Parts that are done one after the other, each of which takes about so much of the time.
+    /// Split into sequential parts with durations proportional to the weights.
     pub fn parts<const K: usize>(self, weights: [f32; K]) -> [Self; K] {
         let each = (self.to - self.from) / weights.iter().sum::<f32>();
         let mut from = self.from;
@@ -81,12 +81,13 @@ impl<'a> Work<'a> {
         })
     }
 
-    /// The work as so many steps, which threads may share.
+    /// The work as a number of steps, which threads may share.
     pub fn steps(self, all: usize) -> Steps<'a> {
         Steps { work: self, all: all.max(1), done: AtomicUsize::new(0) }
     }
 
-    /// So many items in rounds, for loops that end early: what is done of a round when the next is asked for is told.
+    /// Divide `count` items into rounds, for loops that can be canceled. Requesting the next round reports the last one
+    /// as done.
     pub fn rounds(self, count: usize) -> impl Iterator<Item = Result<Range<usize>, Stopped>> {
         let (steps, round) = (self.steps(count), Self::ROUND * parallel::threads());
         (0..count).step_by(round).map(move |start| {
@@ -95,7 +96,7 @@ impl<'a> Work<'a> {
         })
     }
 
-    /// What `make` gives for each number from 0 on, in order, by all threads.
+    /// The results of `make` for each number below `count`, in order, computed in parallel.
     pub fn collect<T: Send>(self, count: usize, make: impl Fn(usize) -> T + Sync) -> Result<Vec<T>, Stopped> {
         let mut blocks = Blocks::new(count);
         for round in self.rounds(count) {
@@ -106,7 +107,7 @@ impl<'a> Work<'a> {
         Ok(made)
     }
 
-    /// Tells that all of it is done.
+    /// Report that all of it is done.
     pub fn done(self) {
         self.reaches(1.0);
     }
@@ -128,7 +129,7 @@ pub struct Steps<'a> {
 }
 
 impl Steps<'_> {
-    /// So many more are done: tells it, and whether to go on. To be called once in some milliseconds.
+    /// Report `count` completed steps, and return an error if canceled. Call it every few milliseconds.
     pub fn did(&self, count: usize) -> Result<(), Stopped> {
         if self.work.watch.is_some() {
             let done = self.done.fetch_add(count, Relaxed) + count;
@@ -137,7 +138,7 @@ impl Steps<'_> {
         self.work.goes_on()
     }
 
-    /// Whether nobody wants the work any more.
+    /// Return whether the work is canceled.
     #[inline]
     pub fn is_stopped(&self) -> bool {
         self.work.is_stopped()

@@ -1,4 +1,4 @@
-//! Threads: pools by size, and work that the calling thread watches and can stop.
+//! Thread pools by size, and work that the calling thread watches and can cancel.
 
 use rayon::ThreadPoolBuilder;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
@@ -7,28 +7,28 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::time::Duration;
 
-/// How often the calling thread looks up from waiting.
+/// How often the waiting thread calls its watcher.
 const WATCH: Duration = Duration::from_millis(20);
 
-/// Raised to ask work to stop soon.
+/// A cancellation flag.
 #[derive(Debug, Default)]
 pub struct Cancel(AtomicBool);
 
 impl Cancel {
-    /// Asks.
+    /// Request cancellation.
     #[inline]
     pub fn raise(&self) {
         self.0.store(true, Ordering::Relaxed);
     }
 
-    /// Whether it was asked.
+    /// Return whether cancellation was requested.
     #[inline]
     pub fn is_raised(&self) -> bool {
         self.0.load(Ordering::Relaxed)
     }
 }
 
-/// Threads that wait for work.
+/// A pool of waiting threads.
 #[derive(Debug)]
 pub struct Pool(rayon::ThreadPool);
 
@@ -38,42 +38,42 @@ impl Pool {
         self.0.current_num_threads()
     }
 
-    /// Return the result of `work`, which runs on the pool; so does all that it shares with other threads.
+    /// Return the result of `work`, which runs on the pool, as does all its parallel work.
     pub fn install<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
         let (mut work, mut result) = (Some(work), None);
         self.install_once(&mut || result = work.take().map(|work| work()));
         result.expect("work that does not panic leaves a result")
     }
 
-    /// [`Pool::install`], compiled once for all sorts of work.
+    /// [`Pool::install`], compiled once for all types of work.
     fn install_once(&self, work: &mut (dyn FnMut() + Send)) {
         self.0.install(work);
     }
 
-    /// Whether this thread is one of the pool's.
+    /// Return whether this thread is one of the pool's.
     fn is_here(&self) -> bool {
         self.0.current_thread_index().is_some()
     }
 }
 
-/// The pool of so many threads, or of one a core. Made when it is first used and kept: the latter for ever, others as
-/// long as those used since have no more than 64 threads in all.
+/// The pool with the given number of threads, or with one per core. It is created on first use and kept. The default
+/// pool is kept forever, others as long as more recent ones have at most 64 threads in total.
 ///
-/// A process that was forked has none of its parent's threads and would wait for them forever, so pools are kept by
-/// process as well; this is also why the global pool is never used.
+/// A forked process has none of its parent's threads and would wait for them forever, so pools are kept per process.
+/// This is also why the global pool is never used.
 pub fn pool(threads: Option<usize>) -> Result<Arc<Pool>, String> {
     kept(threads, false)
 }
 
-/// A pool of one thread a core for those who look at what others work on, and do not wait for these.
+/// A pool with one thread per core for work that must not wait for the main pools.
 pub fn onlookers() -> Result<Arc<Pool>, String> {
     kept(None, true)
 }
 
-/// Threads of the pools of a given number of threads that are kept, or of one such pool.
+/// Maximum number of threads in all kept pools, except in the most recent one.
 const MOST_KEPT: usize = 64;
 
-/// A process, the number of threads that was given, and whether they are onlookers.
+/// The process id, the requested number of threads, and whether it is a separate pool for onlookers.
 type Key = (u32, Option<usize>, bool);
 
 fn kept(threads: Option<usize>, looks: bool) -> Result<Arc<Pool>, String> {
@@ -81,11 +81,11 @@ fn kept(threads: Option<usize>, looks: bool) -> Result<Arc<Pool>, String> {
     POOLS.lock().unwrap_or_else(PoisonError::into_inner).get((std::process::id(), threads, looks))
 }
 
-/// Pools that are kept, of which the one used last comes last.
+/// The kept pools, most recently used last.
 struct Pools(Vec<(Key, Arc<Pool>)>);
 
 impl Pools {
-    /// That of a key, which is made if it is not there.
+    /// The pool of a key, created if missing.
     fn get(&mut self, key: Key) -> Result<Arc<Pool>, String> {
         if let Some(at) = self.0.iter().position(|(of, _)| *of == key) {
             self.0[at..].rotate_left(1);
@@ -103,8 +103,8 @@ impl Pools {
         Ok(pool)
     }
 
-    /// Drops pools of this process that were not used for long, while there are too many threads. These end once the
-    /// work is done that they still have. Those of a process that this one was forked from are not its own to end.
+    /// Drop the least recently used pools of this process while there are too many threads. They end once their work is
+    /// done. Pools of a parent process are left alone.
     fn forget_old(&mut self) {
         let (own, mut left) = (std::process::id(), MOST_KEPT);
         for at in (0..self.0.len()).rev() {
@@ -123,8 +123,8 @@ impl Pools {
     }
 }
 
-/// Does `work` on the pool of so many threads while the calling thread calls `watch` 50 times a second; when that
-/// says false, the work's [`Cancel`] is raised, and it should end soon.
+/// Run `work` on a pool while the calling thread calls `watch` 50 times per second. If that returns false, the work's
+/// [`Cancel`] is raised, and it should end soon.
 pub fn watched<T: Send>(
     threads: Option<usize>,
     work: impl FnOnce(&Cancel) -> T + Send,
@@ -136,7 +136,7 @@ pub fn watched<T: Send>(
     Ok(result.expect("work that does not panic leaves a result"))
 }
 
-/// [`watched`], compiled once for all sorts of work. `work` is called once.
+/// [`watched`], compiled once for all types of work. `work` is called once.
 fn watched_once(
     threads: Option<usize>,
     work: &mut (dyn FnMut(&Cancel) + Send),
@@ -145,13 +145,13 @@ fn watched_once(
     let pool = pool(threads)?;
     let cancel = Cancel::default();
     if pool.is_here() {
-        // One of its own threads, which must not wait for the others: they may all be here. Whoever called it is
+        // On one of the pool's own threads, which must not wait for the others: all may be here. The outer call is
         // watched.
         work(&cancel);
         return Ok(());
     }
     let (done, ended) = (Mutex::new(false), Condvar::new());
-    /// Tells the watcher even if the work panics; the scope then passes the panic on.
+    /// Notifies the watcher even if the work panics; the scope then propagates the panic.
     struct Tell<'a>(&'a Mutex<bool>, &'a Condvar);
     impl Drop for Tell<'_> {
         fn drop(&mut self) {
@@ -169,7 +169,7 @@ fn watched_once(
             let (guard, wait) = ended.wait_timeout(over, WATCH).unwrap_or_else(PoisonError::into_inner);
             over = guard;
             if wait.timed_out() && !*over && !cancel.is_raised() {
-                // Watching may take its time, and the work must be able to end meanwhile.
+                // Watching may take time, and the work must be able to end meanwhile.
                 drop(over);
                 if !watch() {
                     cancel.raise();
@@ -181,8 +181,8 @@ fn watched_once(
     Ok(())
 }
 
-/// Does `work` on the pool of so many threads while the calling thread calls `watch` 50 times a second. When that says
-/// false, nobody waits any longer, and nothing is given. What is left so ends on its own, and had better be told to.
+/// Run `work` on a pool while the calling thread calls `watch` 50 times per second. If that returns false, return None
+/// without waiting any longer. The abandoned work ends by itself, and should be canceled.
 pub fn unless_left<T: Send + 'static>(
     threads: Option<usize>,
     work: impl FnOnce() -> T + Send + 'static,
@@ -195,7 +195,7 @@ pub fn unless_left<T: Send + 'static>(
     }
     let (send, receive) = channel();
     pool.0.spawn(move || {
-        // Whoever has left receives nothing; what was made is dropped here.
+        // An abandoned result is dropped here.
         let _ = send.send(catch_unwind(AssertUnwindSafe(work)));
     });
     loop {
@@ -232,7 +232,7 @@ mod tests {
             (pool.threads(), Arc::downgrade(&pool))
         };
         let whole = weak(&mut pools, None);
-        // Of a process that this one was forked from.
+        // A pool of a parent process.
         pools.get((0, Some(3), false)).unwrap();
         let all: Vec<_> = (2..=40).chain([5]).map(|threads| weak(&mut pools, Some(threads))).collect();
         let alive = |all: &[(usize, std::sync::Weak<Pool>)]| -> usize {
@@ -240,7 +240,7 @@ mod tests {
         };
         assert!((5..=MOST_KEPT).contains(&alive(&all)));
         assert!(all.last().unwrap().1.strong_count() == 1);
-        // What one is at work on that is dropped goes on to its end.
+        // A dropped pool finishes its current work.
         let ((release, held), (done, ended)) = (channel::<()>(), channel());
         let three = pools.get((std::process::id(), Some(3), false)).unwrap();
         three.0.spawn(move || {
@@ -304,7 +304,7 @@ mod tests {
         );
         assert_eq!((left, looks), (Ok(None), 2));
         assert!(start.elapsed() < Duration::from_secs(10));
-        // The one thread of its pool is free again once the work ends.
+        // The only thread of the pool is free again once the work ends.
         release.send(()).unwrap();
         assert_eq!(unless_left(Some(1), || 8, || true), Ok(Some(8)));
     }

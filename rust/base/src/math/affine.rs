@@ -5,30 +5,30 @@ use super::robust::{UNIT, normalising_scale};
 use super::{DVec3, Double, Dyadic};
 use std::cmp::Ordering;
 
-/// A linear map and a shift: `p ↦ L p + s`, with the rows of `L` and its adjugate at hand.
+/// A linear map and a translation: `p ↦ L p + s`, with the rows of `L` and its adjugate.
 #[derive(Clone)]
 pub struct Affine {
     /// The rows of the linear part.
     pub rows: [DVec3; 3],
-    /// Where the origin goes.
+    /// The image of the origin.
     pub shift: DVec3,
-    /// The adjugate and the determinant of the linear part, both times the same power of two: the inverse is the first
-    /// over the second. So no number of a map vanishes, whatever its scale.
+    /// The adjugate and the determinant of the linear part, scaled by the same power of two: the inverse is their
+    /// quotient. The scaling prevents underflow.
     adjugate: ([Triple<Double>; 3], Double),
-    /// One over that power of two's root.
+    /// One over that power of two's square root.
     scale: f64,
 }
 
-/// Why a map has no inverse.
+/// The reason why a map has no inverse.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Singular {
     /// A number is infinite or NaN.
     NotFinite,
     /// The determinant is zero, exactly.
     ZeroDeterminant,
-    /// The inverse is more than f64 holds.
+    /// The inverse overflows f64.
     OutOfRange,
-    /// Rounding is amplified by the first number, where no more than by the second is allowed.
+    /// The condition number, and the maximum that is allowed.
     IllConditioned(f64, f64),
 }
 
@@ -45,14 +45,14 @@ impl std::fmt::Display for Singular {
     }
 }
 
-/// By what it is made of.
+/// Shows rows and shift only.
 impl std::fmt::Debug for Affine {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Affine").field("rows", &self.rows).field("shift", &self.shift).finish()
     }
 }
 
-/// Equal maps are of equal rows and shift.
+/// Maps are equal if their rows and shifts are.
 impl PartialEq for Affine {
     fn eq(&self, other: &Self) -> bool {
         self.rows == other.rows && self.shift == other.shift
@@ -60,14 +60,14 @@ impl PartialEq for Affine {
 }
 
 impl Affine {
-    /// The map of three rows and a shift.
+    /// The map with the given rows and shift.
     pub fn new(rows: [DVec3; 3], shift: DVec3) -> Self {
         let largest = rows.iter().map(|row| row.abs().max_element()).fold(0.0, f64::max);
         let (up, scale) = if largest.is_normal() { normalising_scale(largest) } else { (1.0, 1.0) };
         let scaled = rows.map(|row| {
             Triple(row.to_array().map(|x| {
                 let y = x * up;
-                // What becomes subnormal is rounded.
+                // Subnormal results are rounded.
                 Double { error: if y / up == x { 0.0 } else { f64::MIN_POSITIVE }, ..Double::of(y) }
             }))
         });
@@ -75,22 +75,22 @@ impl Affine {
         Self { rows, shift, adjugate: (adjugate, determinant.times(&Double::of(scale))), scale }
     }
 
-    /// The map of a matrix that acts on columns (x, y, z, 1), of which the last row is (0, 0, 0, 1) and not given.
+    /// The map of a matrix that acts on columns (x, y, z, 1), given without its last row (0, 0, 0, 1).
     pub fn from_matrix(matrix: [[f64; 4]; 3]) -> Self {
         Self::new(matrix.map(|[x, y, z, _]| DVec3::new(x, y, z)), DVec3::from_array(matrix.map(|row| row[3])))
     }
 
-    /// A map that only moves.
+    /// A translation.
     pub fn translation(shift: DVec3) -> Self {
         Self::new([DVec3::X, DVec3::Y, DVec3::Z], shift)
     }
 
-    /// A map that scales along the axes.
+    /// A scaling along the axes.
     pub fn scale(by: DVec3) -> Self {
         Self::new([DVec3::X * by.x, DVec3::Y * by.y, DVec3::Z * by.z], DVec3::ZERO)
     }
 
-    /// The map that does the other first and then this one, each of its numbers rounded once from twice the digits.
+    /// The composition: `first`, then this map. Each number is rounded once from double-double.
     pub fn compose(&self, first: &Self) -> Self {
         let columns: [Triple<Double>; 3] =
             [0, 1, 2].map(|i| Triple::of(DVec3::from_array(first.rows.map(|row| row[i]))));
@@ -105,7 +105,7 @@ impl Affine {
     ///
     /// # Errors
     ///
-    /// If there is none, decided exactly, or f64 cannot hold it.
+    /// If the map is singular, decided exactly, or f64 cannot hold its inverse.
     pub fn inverse(&self) -> Result<Self, Singular> {
         if !(self.rows.iter().all(|row| row.is_finite()) && self.shift.is_finite()) {
             return Err(Singular::NotFinite);
@@ -123,7 +123,7 @@ impl Affine {
         }
     }
 
-    /// The inverse, where numbers of this type are sure of each.
+    /// The inverse, if this number type is certain of each entry.
     fn inverse_in<N: Number>(&self) -> Option<([DVec3; 3], DVec3)> {
         let (rows, determinant) = self.adjugate_in::<N>();
         if determinant.sign()? == Ordering::Equal {
@@ -141,8 +141,8 @@ impl Affine {
         Some(result)
     }
 
-    /// The rows of the adjugate, and the determinant, up to a common factor that makes the determinant positive: the
-    /// inverse is the first over the second.
+    /// The rows of the adjugate, and the determinant, up to a common factor that makes the determinant positive. The
+    /// inverse is their quotient.
     #[inline]
     pub fn adjugate_in<N: Number>(&self) -> ([Triple<N>; 3], N) {
         let (rows, determinant) = &self.adjugate;
@@ -163,12 +163,12 @@ impl Affine {
         }
     }
 
-    /// The determinant of the linear part, approximately: how volumes change; negative where it mirrors.
+    /// The approximate determinant of the linear part: the volume scale, negative if the map mirrors.
     pub fn determinant(&self) -> f64 {
         self.adjugate.1.high * self.scale * self.scale
     }
 
-    /// Where a point goes, rounded once from twice the digits.
+    /// Map a point, rounded once from double-double.
     #[inline]
     pub fn point(&self, p: DVec3) -> DVec3 {
         let point = Triple::<Double>::of(p);
@@ -177,36 +177,35 @@ impl Affine {
         }))
     }
 
-    /// Where a vector goes.
+    /// Map a vector.
     pub fn vector(&self, v: DVec3) -> DVec3 {
         DVec3::from_array(self.rows.map(|row| row.dot(v)))
     }
 
-    /// How areas go, as vectors along their normals: the cofactors of the linear part, times a vector.
+    /// Map an area vector along its normal: the cofactor matrix times a vector.
     pub fn cofactors(&self, v: DVec3) -> DVec3 {
         let [a, b, c] = self.adjugate.0.each_ref().map(|Triple(row)| DVec3::from_array(row.map(|x| x.high)));
         (a * v.x + b * v.y + c * v.z) * self.scale * self.scale
     }
 
-    /// A normal's image: at right angles to the images of what it is at right angles to, and on the same side. Not
-    /// unit.
+    /// Map a normal: the result is orthogonal to the images of the tangents, and on the same side. Not normalized.
     pub fn normal(&self, n: DVec3) -> DVec3 {
         self.cofactors(n) * 1f64.copysign(self.adjugate.1.high)
     }
 
-    /// The linear part's transpose times a vector: `(Lᵀ d) · p = d · (L p)`.
+    /// The transpose of the linear part times a vector: `(Lᵀ d) · p = d · (L p)`.
     pub fn transposed(&self, d: DVec3) -> DVec3 {
         self.rows[0] * d.x + self.rows[1] * d.y + self.rows[2] * d.z
     }
 
-    /// A bound, in each coordinate, on how far apart the images of two points are that are at most `error` apart in
-    /// each.
+    /// A bound, per coordinate, on the distance of the images of two points that differ by at most `error` per
+    /// coordinate.
     pub fn spread(&self, error: f64) -> f64 {
         let most = self.rows.iter().map(|row| row.abs().element_sum()).fold(0.0, f64::max);
         most * error * (1.0 + 8.0 * UNIT)
     }
 
-    /// The factor by which it scales all lengths, to within 2⁻⁴⁸; none if it scales some more than others.
+    /// The factor by which it scales all lengths, to within 2⁻⁴⁸; None if the scaling is not uniform.
     pub fn uniform_scale(&self) -> Option<f64> {
         let columns = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| self.vector(axis));
         let square = columns[0].length_squared();
@@ -246,7 +245,7 @@ mod tests {
                 Err(why) => prop_assert!(singular && why == Singular::ZeroDeterminant),
                 Ok(inverse) => {
                     prop_assert!(!singular);
-                    // What an ulp in each number of the inverse makes of a point.
+                    // The effect on a point of an ulp in each number of the inverse.
                     let size = inverse.spread(map.point(p).abs().max_element()) + inverse.shift.abs().max_element();
                     prop_assert!((inverse.point(map.point(p)) - p).abs().max_element() <= 16.0 * UNIT * size);
                     prop_assert!((inverse.determinant() * map.determinant() - 1.0).abs() < 1e-9 || size > 1e3);
@@ -258,7 +257,7 @@ mod tests {
         fn maps_compose_and_carry_normals(f in map(), g in map(), p in vector(), v in vector(), w in vector()) {
             let both = f.compose(&g);
             prop_assert!((both.point(p) - f.point(g.point(p))).length() < 1e-13);
-            // Cofactors are to cross products what the map is to vectors.
+            // Cofactors map cross products as the map does vectors.
             prop_assert!((f.cofactors(v.cross(w)) - f.vector(v).cross(f.vector(w))).length() < 1e-12);
             prop_assert!((f.transposed(v).dot(w) - v.dot(f.vector(w))).abs() < 1e-13);
             let n = v.cross(w);

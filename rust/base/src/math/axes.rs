@@ -1,13 +1,13 @@
-//! Axes of its own that a tree may keep its boxes along.
+//! Rotated axes for the boxes of a tree.
 
 use super::DVec3;
 
-/// Three vectors at right angles to each other, right-handed and each half as long as 1, all to within a rounding.
+/// Three orthogonal right-handed vectors of length 1/2, all to within a rounding.
 ///
-/// A point whose coordinates do not exceed 2 ([`Region::to_box`](super::Region::to_box)) has none greater than √3 along
-/// them, so what counts on 2 may count on it here as well. A coordinate along them errs by 2u of each of three products
-/// for it, and by 3u for how these are added up and what they were before, with u = 2⁻⁵³ and a vector's coordinates
-/// adding up to less than √3/2: by less than 5u times the point's largest.
+/// A point whose coordinates are at most 2 ([`Region::to_box`](super::Region::to_box)) has coordinates of at most √3
+/// along them, so the bound of 2 remains valid. With u = 2⁻⁵³, a coordinate errs by 2u of each of three products, and
+/// by 3u for their sum and for their inputs. A vector's coordinates add up to less than √3/2, so the error is less than
+/// 5u times the point's largest coordinate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Axes {
     double: [DVec3; 3],
@@ -15,15 +15,15 @@ pub struct Axes {
 }
 
 impl Axes {
-    /// How long the vectors are: by so much all is shorter along them.
+    /// The length of the vectors, by which all lengths along them are scaled.
     pub const SCALE: f64 = 0.5;
 
-    /// The axes of which one goes along a vector and another one lies in its plane with a second vector. None if the
-    /// two say no plane, or are too long or too short to tell.
+    /// Axes with one along `along` and another in its plane with `beside`. None if the two span no plane, or are too
+    /// long or too short.
     pub fn new(along: DVec3, beside: DVec3) -> Option<Self> {
         let first = along.try_normalize()?;
-        // Twice, so that what is left is at right angles to within rounding of its own length, however little it is:
-        // unless it was nothing but rounding, which may go along the first.
+        // Twice, so that the remainder is orthogonal to within rounding of its own length, however short. A remainder
+        // of mere rounding, which may be parallel, is rejected.
         let second = (beside - first * first.dot(beside)).try_normalize()?;
         let second = second - first * first.dot(second);
         if second.length_squared() < 0.5 {
@@ -34,20 +34,20 @@ impl Axes {
         Some(Self { double, single: double.map(|axis| axis.as_vec3().to_array()) })
     }
 
-    /// A point or a vector along the axes.
+    /// Transform a point or vector to the axes.
     #[inline(always)]
     pub fn to(&self, v: DVec3) -> DVec3 {
         let [x, y, z] = self.double;
         DVec3::new(x.dot(v), y.dot(v), z.dot(v))
     }
 
-    /// What has these coordinates along the axes, to within rounding.
+    /// Transform back, to within rounding.
     pub fn back(&self, along: DVec3) -> DVec3 {
         let [x, y, z] = self.double;
         (x * along.x + y * along.y + z * along.z) / (Self::SCALE * Self::SCALE)
     }
 
-    /// The vectors, rounded to f32.
+    /// The vectors in f32.
     #[inline(always)]
     pub fn single(&self) -> &[[f32; 3]; 3] {
         &self.single
@@ -80,7 +80,7 @@ mod tests {
             }
             prop_assert!(x.cross(y).dot(z) > 0.0);
             prop_assert!((axes.back(axes.to(along)) - along).length() < 1e-15);
-            // What goes along the first and the second does so there.
+            // The two defining vectors lie along the first axis and in the first plane.
             prop_assert!((axes.to(along) - DVec3::X * along.length() / 2.0).length() < 1e-15);
             prop_assert!(aside < 1.0 || axes.to(beside).z.abs() < 1e-12 && axes.to(beside).y > 0.0);
         }

@@ -1,48 +1,49 @@
-//! Caps of the unit sphere: what a solid cone sees, and what of it others have in common with it.
+//! Spherical caps: solid angles of cones and of their intersections.
 
 use super::DVec3;
 
-/// The directions within an angle of +z, of less than 90 degrees.
+/// The directions within an angle of +z that is less than 90 degrees.
 #[derive(Clone, Copy, Debug)]
 pub struct Cap {
     sine: f64,
     cosine: f64,
 }
 
-/// The solid angle of the directions within an angle of one, in radians; in a form that keeps digits for small ones.
+/// The solid angle of a cone with the given half-angle in radians, in a form that keeps digits for small angles.
 pub fn solid_angle(angle: f64) -> f64 {
     8.0 * std::f64::consts::FRAC_PI_2 * (0.5 * angle).sin().powi(2)
 }
 
-/// The solid angle that two caps have in common, of these half angles and with such an angle between their middles, all
-/// in radians from 0 to π.
+/// The solid angle of the intersection of two caps with half-angles `a` and `b`, whose centers are at an angle
+/// `between`. All are in radians from 0 to π.
 ///
-/// Caps that cross are two sectors less the two triangles of their middles and a crossing. The angles of these are told
-/// by half-angle formulas, and their area by L'Huilier's, which keep their digits for caps of any size; by cosines
-/// (Tovchigrechko and Vakser, "How Common is the Funnel-Like Energy Landscape in Protein-Protein Interactions?", 2001;
-/// Oat and Sander, "Ambient Aperture Lighting", 2007) a cap of a thousandth of a degree would keep none.
+/// For overlapping caps it is two sectors minus the two triangles of their centers and an intersection. Half-angle
+/// formulas give the triangles' angles, and L'Huilier's formula their area. They keep their digits for caps of any
+/// size. With cosines (Tovchigrechko and Vakser, "How Common is the Funnel-Like Energy Landscape in Protein-Protein
+/// Interactions?", 2001; Oat and Sander, "Ambient Aperture Lighting", 2007) a cap of a thousandth of a degree would
+/// keep none.
 pub fn shared(a: f64, b: f64, between: f64) -> f64 {
     let (small, large) = if a <= b { (a, b) } else { (b, a) };
     if between >= a + b {
         return 0.0;
     }
-    // Differences of near numbers are exact, and are taken first.
+    // Differences of nearby numbers are exact, so they come first.
     let apart = between - large;
     if apart + small <= 0.0 {
         return solid_angle(small);
     }
     let around = 0.5 * (small + large + between);
     if around >= std::f64::consts::PI {
-        // They cover the sphere between them.
+        // Together they cover the sphere.
         return solid_angle(a) + solid_angle(b) - 2.0 * std::f64::consts::TAU;
     }
-    // Half the sum of the three sides, less each of them: small, large, and that between the middles.
+    // The semiperimeter minus each of the sides: small, large, and between the centers.
     let [by_small, by_large, by_between] =
         [0.5 * ((large - small) + between), 0.5 * (small + apart), 0.5 * (small - apart)];
     let half_angle = |x: f64, y: f64, opposite: f64| {
         (x.sin() * y.sin()).max(0.0).sqrt().atan2((around.sin() * opposite.sin()).max(0.0).sqrt())
     };
-    // At the middle of the small one, opposite of the large one, and the other way round.
+    // The angle at the small cap's center, opposite the large side, and vice versa.
     let at_small = 2.0 * half_angle(by_small, by_between, by_large);
     let at_large = 2.0 * half_angle(by_large, by_between, by_small);
     let tangents = [around, by_small, by_large, by_between].map(|side| (0.5 * side).tan().max(0.0));
@@ -52,12 +53,12 @@ pub fn shared(a: f64, b: f64, between: f64) -> f64 {
 }
 
 impl Cap {
-    /// The cap of a half angle, by its sine and cosine.
+    /// The cap with the given sine and cosine of its half-angle.
     pub fn new(sine: f64, cosine: f64) -> Self {
         Self { sine, cosine }
     }
 
-    /// 1 − cos of the half angle.
+    /// 1 − cos of the half-angle.
     fn height(&self) -> f64 {
         self.sine * self.sine / (1.0 + self.cosine)
     }
@@ -67,18 +68,18 @@ impl Cap {
         std::f64::consts::TAU * self.height()
     }
 
-    /// The solid angle that it has in common with a convex polygon, whose corners are seen from the origin.
+    /// The solid angle of its intersection with a convex polygon, whose corners are relative to the origin.
     ///
-    /// It is the integral of 1 − cos θ over the turn φ along the outline (Green), where θ is no more than the half
-    /// angle: along the part of a side that is within the cap, the triangle that it makes with +z (Van Oosterom and
-    /// Strackee, "The Solid Angle of a Plane Triangle", 1983); along others, the height of the cap times their turn.
+    /// It is the integral of 1 − cos θ over the azimuth φ along the outline (Green), with θ clamped to the half-angle.
+    /// Along the part of a side inside the cap, it is the triangle with +z (Van Oosterom and Strackee, "The Solid Angle
+    /// of a Plane Triangle", 1983). Elsewhere it is the height of the cap times the azimuth difference.
     pub fn shared_with(&self, corners: &[DVec3]) -> f64 {
         if corners.len() < 3 {
             return 0.0;
         }
         let next = |i: usize| corners[(i + 1) % corners.len()];
         let sum: f64 = (0..corners.len()).map(|i| self.along(corners[i], next(i))).sum();
-        // Around −z turns count the other way round.
+        // Around −z the azimuth decreases.
         let way = |i: usize| corners[i].cross(next(i)).z;
         let facing = corners[0].dot(corners[1].cross(corners[2]));
         let is_around_end = (0..corners.len()).all(|i| way(i) * facing < 0.0);
@@ -90,7 +91,7 @@ impl Cap {
     fn along(&self, from: DVec3, to: DVec3) -> f64 {
         let way = to - from;
         let (inside, outside) = (self.cosine * self.cosine, self.sine * self.sine);
-        // How far a point from + t · way is outside of the cone, both ways: a square.
+        // How far a point from + t · way is outside the double cone, as a quadratic form.
         let product = |a: DVec3, b: DVec3| inside * a.truncate().dot(b.truncate()) - outside * a.z * b.z;
         let (a, b, c) = (product(way, way), product(from, way), product(from, from));
         let discriminant = b * b - a * c;
@@ -105,7 +106,7 @@ impl Cap {
             let [p, q] = [pair[0], pair[1]].map(|t| if t == 1.0 { to } else { from + way * t });
             let middle = p + (q - p) * 0.5;
             let turn = p.truncate().perp_dot(q.truncate());
-            // A side that only touches the cone is outside, whatever rounding says of its middle.
+            // A side tangent to the cone is outside, regardless of rounding at its midpoint.
             sum += if discriminant > 0.0 && middle.z > 0.0 && product(middle, middle) < 0.0 {
                 let (l, m) = (p.length(), q.length());
                 2.0 * turn.atan2(l * m + p.z * m + q.z * l + p.dot(q))
@@ -130,7 +131,7 @@ mod tests {
 
     #[test]
     fn caps_share_what_a_quadrature_says() {
-        // Half angles and the angle between, in degrees; the solid angle, and its share of the first, to 11 digits.
+        // Half-angles and the angle between, in degrees; the solid angle, and its fraction of the first, to 11 digits.
         let known = [
             ([10.0, 5.0, 12.0], 0.005_188_130_044_004_39, 0.054_351_179_425_294_6),
             ([40.0, 60.0, 50.0], 0.893_351_850_795_718, 0.607_728_086_778_201),
@@ -153,7 +154,7 @@ mod tests {
     }
 
     proptest! {
-        /// As the textbook has it, where that keeps its digits.
+        /// The textbook formula, where it keeps its digits.
         #[test]
         fn caps_that_cross_share_what_cosines_say(a in 0.2..1.5f64, b in 0.2..1.5f64, x in 0.01..0.99f64) {
             let between = (a - b).abs() + x * (a + b - (a - b).abs());
@@ -164,8 +165,8 @@ mod tests {
             prop_assert!((shared(a, b, between) - expected).abs() < 1e-12);
         }
 
-        /// A polygon of many sides along a circle is the cap in it; two such caps share what caps do. The circle of n
-        /// corners has more than the polygon by at most a share of 2 (π / n)².
+        /// A regular polygon with many sides approximates a cap, so its intersection with a cap approximates that of
+        /// two caps. The circle's area exceeds that of the polygon with n corners by a fraction of at most 2 (π / n)².
         #[test]
         fn a_round_polygon_is_a_cap(a in 0.01..85.0f64, b in 0.01..80.0f64, between in 0.0..170.0f64) {
             const CORNERS: usize = 4096;
@@ -185,7 +186,7 @@ mod tests {
             }
         }
 
-        /// All of a polygon's sides may touch the cone, as those do that are drawn around it: then it has all of it.
+        /// All sides of a circumscribed polygon touch the cone: it contains the whole cap.
         #[test]
         fn a_polygon_whose_sides_touch_a_cap_has_all_of_it(a in 0.01..80.0f64, turn in 0.0..1.0f64, n in 3..12usize) {
             let corner = |i: usize| {
@@ -199,7 +200,7 @@ mod tests {
             prop_assert!((share - 1.0).abs() < 1e-6, "{}", share);
         }
 
-        /// Triangles around a point add up to the cap, whichever way they are cut.
+        /// Triangles around a point add up to the cap.
         #[test]
         fn parts_of_the_sphere_add_up(a in 0.001..89.0f64, at in prop::array::uniform3(-1.0..1.0f64)) {
             let at = DVec3::from_array(at);

@@ -1,13 +1,13 @@
-//! Whether the rays of a batch go much the same way.
+//! A test whether the rays of a batch are coherent.
 
 use glam::DVec3;
 
-/// Pairs of neighbours looked at.
+/// Number of sampled pairs of neighbours.
 const PAIRS: usize = 16;
 
-/// Whether most neighbours among rays, each an origin and a direction, start within a hundredth of `extent` of each
-/// other, in directions less than 8 degrees apart, and so visit much the same of a scene. A few neighbours are looked
-/// at, spread evenly over the rays; which answer is given matters to speed alone.
+/// Return whether rays, given as origins and directions, are coherent: most neighbours start within a hundredth of
+/// `extent` of each other, with directions less than 8 degrees apart. A few evenly spaced pairs are sampled. The answer
+/// affects speed only.
 pub fn is_coherent(count: usize, ray: impl Fn(usize) -> (DVec3, DVec3), extent: f64) -> bool {
     const COSINE_SQUARED: f64 = 0.98;
     let step = (count / PAIRS).max(2);
@@ -16,7 +16,7 @@ pub fn is_coherent(count: usize, ray: impl Fn(usize) -> (DVec3, DVec3), extent: 
         let [(from, a), (from_next, b)] = [ray(at), ray(at + 1)];
         let cosine = a.dot(b);
         let lengths = a.length_squared() * b.length_squared();
-        // Of directions so short or long that this under- or overflows, neither comparison holds.
+        // Extreme lengths overflow or underflow, and fail both comparisons.
         let same_way = cosine > 0.0 && cosine * cosine >= COSINE_SQUARED * lengths;
         near += usize::from(same_way && (from - from_next).length_squared() <= 1e-4 * extent * extent);
         all += 1;

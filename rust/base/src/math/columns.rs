@@ -1,8 +1,8 @@
-//! Rays and hits by columns: each of their numbers in an array of its own, so that any sixteen neighbours are vectors.
+//! Rays and hits in SoA layout: any sixteen neighbours form vectors.
 
 use super::{DVec3, Ray};
 
-/// Three coordinates of each ray, by axis, as precisely as they are.
+/// Three coordinates of each ray, by axis, in their original precision.
 #[derive(Clone, Copy, Debug)]
 pub enum Vectors<'a> {
     /// f32.
@@ -11,37 +11,37 @@ pub enum Vectors<'a> {
     Double([&'a [f64]; 3]),
 }
 
-/// A number of each ray.
+/// One number per ray.
 #[derive(Clone, Copy, Debug)]
 pub enum Numbers<'a> {
-    /// The same for all of them.
+    /// The same number for all rays.
     One(f64),
-    /// One each.
+    /// One number each.
     Each(&'a [f64]),
 }
 
-/// Rays by columns, all of the same length; see [`Ray`] for what each is. They are asked where nothing moves: they have
-/// no time.
+/// Rays in SoA layout, all columns of the same length; [`Ray`] explains the fields. They have no time, so they are for
+/// static scenes.
 #[derive(Clone, Copy, Debug)]
 pub struct RayColumns<'a> {
     origin: Vectors<'a>,
     direction: Vectors<'a>,
     t_min: Numbers<'a>,
     t_max: Numbers<'a>,
-    /// None where nothing is known.
+    /// None if no triangles are known to be missed.
     misses: Option<&'a [[u32; 2]]>,
 }
 
-/// Rays as whoever asks has them.
+/// Rays in the layout of the caller.
 #[derive(Clone, Copy, Debug)]
 pub enum RayBatch<'a> {
-    /// One after the other.
+    /// Array of structures.
     Rows(&'a [Ray]),
-    /// By columns.
+    /// Structure of arrays.
     Columns(RayColumns<'a>),
 }
 
-/// Where the closest hits of rays are written, by columns, all of the same length; see [`super::Hit`] for what each is.
+/// The output for closest hits in SoA layout, all columns of the same length; [`super::Hit`] explains the fields.
 #[derive(Debug)]
 pub struct HitColumns<'a> {
     /// Distance in lengths of the ray's direction; infinite for a miss.
@@ -76,7 +76,7 @@ impl Vectors<'_> {
         }
     }
 
-    /// Up to so many from a place on as f64, by axis; the last stands for those that are missing.
+    /// Read up to K vectors as f64, by axis. The last one fills missing places.
     #[inline(always)]
     pub fn read<const K: usize>(&self, from: usize, to: &mut [[f64; K]; 3]) {
         for axis in 0..3 {
@@ -97,7 +97,7 @@ impl Numbers<'_> {
         }
     }
 
-    /// Up to so many from a place on; the last stands for those that are missing.
+    /// Read up to K numbers. The last one fills missing places.
     #[inline(always)]
     pub fn read<const K: usize>(&self, from: usize, to: &mut [f64; K]) {
         match self {
@@ -107,7 +107,7 @@ impl Numbers<'_> {
     }
 }
 
-/// Up to so many of a column from a place on; the last stands for those that are missing.
+/// Read up to K numbers of a column. The last one fills missing places.
 #[inline(always)]
 pub fn read_column<const K: usize, T: Copy + Into<U>, U>(column: &[T], from: usize, to: &mut [U; K]) {
     let rest = &column[from..];
@@ -123,10 +123,11 @@ pub fn read_column<const K: usize, T: Copy + Into<U>, U>(column: &[T], from: usi
 }
 
 impl<'a> RayColumns<'a> {
-    /// Rays of these numbers.
+    /// Create rays from columns.
     ///
     /// # Panics
-    /// If columns differ in length.
+    ///
+    /// If the columns differ in length.
     pub fn new(origin: Vectors<'a>, direction: Vectors<'a>, t_min: Numbers<'a>, t_max: Numbers<'a>) -> Self {
         assert!(origin.are_columns_alike() && direction.are_columns_alike(), "three columns of one length");
         let count = origin.len();
@@ -137,22 +138,23 @@ impl<'a> RayColumns<'a> {
         Self { origin, direction, t_min, t_max, misses: None }
     }
 
-    /// The same, of which each is known to miss two triangles.
+    /// Add two triangles that each ray is known to miss.
     ///
     /// # Panics
+    ///
     /// If the column differs in length.
     pub fn missing(self, misses: &'a [[u32; 2]]) -> Self {
         assert_eq!(misses.len(), self.len(), "two triangles for each ray");
         Self { misses: Some(misses), ..self }
     }
 
-    /// How many there are.
+    /// The number of rays.
     #[inline(always)]
     pub fn len(&self) -> usize {
         self.origin.len()
     }
 
-    /// Whether there are none.
+    /// Return whether there are none.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -163,7 +165,7 @@ impl<'a> RayColumns<'a> {
         (self.origin, self.direction, self.t_min, self.t_max)
     }
 
-    /// One of them.
+    /// One of the rays.
     #[inline(always)]
     pub fn get(&self, i: usize) -> Ray {
         let (t_min, t_max) = (self.t_min.get(i), self.t_max.get(i));
@@ -173,7 +175,7 @@ impl<'a> RayColumns<'a> {
 }
 
 impl RayBatch<'_> {
-    /// How many there are.
+    /// The number of rays.
     #[inline(always)]
     pub fn len(&self) -> usize {
         match self {
@@ -182,12 +184,12 @@ impl RayBatch<'_> {
         }
     }
 
-    /// Whether there are none.
+    /// Return whether there are none.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Whether one of them is known to miss a triangle.
+    /// Return whether a ray is known to miss a triangle.
     #[inline(always)]
     pub fn misses(&self, i: usize, triangle: u32) -> bool {
         match self {
@@ -196,7 +198,7 @@ impl RayBatch<'_> {
         }
     }
 
-    /// One of them.
+    /// One of the rays.
     #[inline(always)]
     pub fn get(&self, i: usize) -> Ray {
         match self {
@@ -207,10 +209,11 @@ impl RayBatch<'_> {
 }
 
 impl HitColumns<'_> {
-    /// How many hits there is room for.
+    /// The number of hits that fit.
     ///
     /// # Panics
-    /// If columns differ in length.
+    ///
+    /// If the columns differ in length.
     #[inline(always)]
     pub fn len(&self) -> usize {
         let count = self.t.len();
@@ -218,7 +221,7 @@ impl HitColumns<'_> {
         count
     }
 
-    /// Whether there is none.
+    /// Return whether there is none.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }

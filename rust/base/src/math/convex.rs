@@ -1,25 +1,25 @@
-//! Convex polygons of a plane, cut by lines and by each other.
+//! Convex polygons in 2D, and their intersections with lines and each other.
 //!
-//! A cut computes each point where a side crosses the line once, for both parts: so their areas add up to that of the
-//! whole to within rounding, and parts of neighbours meet without a gap.
+//! A cut computes each intersection with the line once, for both parts. So the parts' areas add up to the whole to
+//! within rounding, and the parts of neighbours meet without a gap.
 
 use super::DVec3;
 use glam::DVec2;
 
-/// The corners of a convex polygon, in order, one way round or the other.
+/// The corners of a convex polygon, in order, in either orientation.
 pub type Convex = Vec<DVec2>;
 
-/// A side of a line: where `line.x · x + line.y · y + line.z` is above 0.
+/// The half-plane `line.x · x + line.y · y + line.z > 0`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HalfPlane {
-    /// The three factors.
+    /// The three coefficients.
     pub line: DVec3,
-    /// Where the sum is no more than this from 0, a corner is on the line.
+    /// Corners with an absolute value of at most this are on the line.
     pub slack: f64,
 }
 
 impl HalfPlane {
-    /// The side of the line from `a` to `b` on which `within` is; `None` if all three are on a line.
+    /// The half-plane beside the line from `a` to `b` that contains `within`; `None` if all three are collinear.
     pub fn through(a: DVec2, b: DVec2, within: DVec2, slack: f64) -> Option<Self> {
         let normal = (b - a).perp();
         let side = normal.dot(within - a);
@@ -30,7 +30,7 @@ impl HalfPlane {
         })
     }
 
-    /// The sum, above 0 within; 0 for what is on the line.
+    /// The signed value, positive inside, and 0 within the slack.
     #[inline]
     pub fn value(&self, at: DVec2) -> f64 {
         let value = self.line.x * at.x + self.line.y * at.y + self.line.z;
@@ -38,14 +38,14 @@ impl HalfPlane {
     }
 }
 
-/// The half-planes that a convex polygon is what they share of, its sides lying on lines to within `slack`.
+/// The half-planes whose intersection is a convex polygon; sides lie on their lines to within `slack`.
 pub fn sides(polygon: &[DVec2], slack: f64) -> Vec<HalfPlane> {
     let middle = polygon.iter().sum::<DVec2>() / polygon.len() as f64;
     let side = |i: usize| HalfPlane::through(polygon[i], polygon[(i + 1) % polygon.len()], middle, slack);
     (0..polygon.len()).filter_map(side).collect()
 }
 
-/// Twice the area between the sides and a corner, by side, and where its triangle's middle is, times 3, from there.
+/// A triangle fan: twice the signed area of each triangle, and three times its centroid relative to the first corner.
 fn fans(polygon: &[DVec2]) -> impl Iterator<Item = (f64, DVec2)> {
     polygon.windows(2).skip(1).map(|pair| {
         let (a, b) = (pair[0] - polygon[0], pair[1] - polygon[0]);
@@ -53,12 +53,12 @@ fn fans(polygon: &[DVec2]) -> impl Iterator<Item = (f64, DVec2)> {
     })
 }
 
-/// The area of a convex polygon, whichever way round.
+/// The area of a convex polygon in either orientation.
 pub fn area(polygon: &[DVec2]) -> f64 {
     0.5 * fans(polygon).map(|(twice, _)| twice).sum::<f64>().abs()
 }
 
-/// The middle of a convex polygon's area; of one without area, that of its corners.
+/// The centroid of a convex polygon; of a degenerate one, that of its corners.
 pub fn centroid(polygon: &[DVec2]) -> DVec2 {
     let (area, moment) =
         fans(polygon).fold((0.0, DVec2::ZERO), |(area, moment), (twice, at)| (area + twice, moment + at * twice));
@@ -66,7 +66,7 @@ pub fn centroid(polygon: &[DVec2]) -> DVec2 {
     if middle.is_finite() { middle } else { polygon.iter().sum::<DVec2>() / polygon.len() as f64 }
 }
 
-/// Cuts a convex polygon in two: what is within, and what is not. Either may be empty.
+/// Split a convex polygon into the parts inside and outside. Either may be empty.
 pub fn cut(polygon: &[DVec2], by: &HalfPlane) -> [Convex; 2] {
     let mut parts = [Convex::new(), Convex::new()];
     let mut before = polygon[polygon.len() - 1];
@@ -88,7 +88,7 @@ pub fn cut(polygon: &[DVec2], by: &HalfPlane) -> [Convex; 2] {
     parts.map(|part| if part.len() < 3 { Convex::new() } else { part })
 }
 
-/// What of a convex polygon is within all of some half-planes; empty if nothing is.
+/// Clip a convex polygon to an intersection of half-planes; the result may be empty.
 pub fn clip(polygon: &[DVec2], region: &[HalfPlane]) -> Convex {
     let mut left = polygon.to_vec();
     for side in region {
@@ -100,8 +100,8 @@ pub fn clip(polygon: &[DVec2], region: &[HalfPlane]) -> Convex {
     left
 }
 
-/// Takes what some half-planes share out of a convex polygon: adds convex pieces of what is left to `outside`, and
-/// gives what was taken out; empty if that is nothing, and then the polygon is left whole.
+/// Split a convex polygon by an intersection of half-planes. Convex pieces of the outside are appended to `outside`,
+/// and the inside is returned. If that is empty, the polygon is appended whole.
 pub fn take_out(polygon: Convex, region: &[HalfPlane], outside: &mut Vec<Convex>) -> Convex {
     let is_beyond = |side: &HalfPlane| polygon.iter().all(|&corner| side.value(corner) <= 0.0);
     if region.iter().any(is_beyond) || clip(&polygon, region).is_empty() {
@@ -119,7 +119,7 @@ pub fn take_out(polygon: Convex, region: &[HalfPlane], outside: &mut Vec<Convex>
     left
 }
 
-/// What of a polygon in space has a value above 0, that is linear; corners of no more than the slack are on the border.
+/// Clip a polygon in space to where a linear function is positive; corners within the slack are on the border.
 pub fn above(polygon: &[DVec3], value: impl Fn(DVec3) -> f64, slack: f64) -> Vec<DVec3> {
     let value = |at: DVec3| Some(value(at)).filter(|v| v.abs() > slack).unwrap_or(0.0);
     if polygon.iter().all(|&corner| value(corner) <= 0.0) {
@@ -146,7 +146,7 @@ mod tests {
 
     const SLACK: f64 = 1e-12;
 
-    /// Points of a circle about a place, one after the other.
+    /// Corners on a circle, in order.
     fn polygon() -> impl Strategy<Value = Convex> {
         (-3.0..3.0f64, -3.0..3.0f64, 0.3..4.0f64, prop::collection::vec(0.3..1.5f64, 3..9)).prop_map(
             |(x, y, r, gaps)| {
@@ -168,10 +168,10 @@ mod tests {
             let inside = take_out(whole.clone(), &sides(&other, SLACK), &mut outside);
             let left: f64 = outside.iter().map(|piece| area(piece)).sum();
             prop_assert!((area(&inside) + left - area(&whole)).abs() < 1e-12 * (1.0 + area(&whole)));
-            // The other way round the same is shared.
+            // The intersection is symmetric.
             let shared = take_out(other.clone(), &sides(&whole, SLACK), &mut Vec::new());
             prop_assert!((area(&shared) - area(&inside)).abs() < 1e-10);
-            // The middle of the whole is that of its pieces.
+            // The centroid of the whole is that of its pieces.
             let all = outside.iter().chain([&inside]).filter(|piece| !piece.is_empty());
             let moment: DVec2 = all.map(|piece| centroid(piece) * area(piece)).sum();
             prop_assert!((moment / area(&whole) - centroid(&whole)).length() < 1e-10);
@@ -179,7 +179,7 @@ mod tests {
 
         #[test]
         fn a_square_that_is_clipped_has_the_area_under_its_edge(slope in -1.0..1.0f64, height in 1.0..2.0f64) {
-            // Below y = height + slope (x - 1/2), over a square from 0 to 3: within it, a trapezoid of unit width.
+            // Below y = height + slope (x - 1/2), inside a square from 0 to 3: a trapezoid of unit width.
             let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 3.0], [0.0, 3.0]].map(DVec2::from_array);
             let below = HalfPlane { line: DVec3::new(slope, -1.0, height - 0.5 * slope), slack: 0.0 };
             prop_assert!((area(&clip(&square, &[below])) - height).abs() < 1e-14);
@@ -192,7 +192,7 @@ mod tests {
         let mut outside = Vec::new();
         assert!(take_out(square(0.2), &sides(&square(0.3), SLACK), &mut outside).is_empty());
         assert_eq!(outside, [square(0.2)]);
-        // Nothing is left of what is the same.
+        // A polygon minus itself is empty.
         outside.clear();
         assert_eq!(take_out(square(0.2), &sides(&square(0.2), SLACK), &mut outside), square(0.2));
         assert!(outside.is_empty());

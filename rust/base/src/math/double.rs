@@ -1,42 +1,40 @@
-//! Numbers of twice the length of an f64.
+//! Double-double numbers with an error bound.
 
 use super::number::{Number, SLACK, underflow};
 use std::cmp::Ordering;
 
-/// The unevaluated sum of two f64, the second at most half an ulp of the first, and a bound on the distance from what
-/// it stands for.
+/// The unevaluated sum of two f64, the second at most half an ulp of the first, and a bound on its error.
 ///
 /// Sums and products are those of Dekker ("A Floating-Point Technique for Extending the Available Precision", 1971) in
 /// the forms whose errors Joldes, Muller and Popescu proved ("Tight and rigorous error bounds for basic building blocks
 /// of double-word arithmetic", 2017): with u = 2⁻⁵³, at most 3u² + 13u³ of a sum and less than 8u² of a product. Twice
 /// that is allowed for.
 ///
-/// It is [`DoubleDouble`](super::DoubleDouble) with its error, for decisions: that costs about half as much again,
-/// which numbers that decide nothing need not pay. No fused multiplication is asked of the processor: where a program
-/// is compiled for processors that may have none, each is a call, and the hits of most shapes are made of a hundred
-/// products.
+/// It is [`DoubleDouble`](super::DoubleDouble) with an error bound, for exact predicates. The bound costs about half as
+/// much again, which other numbers need not pay. It does not use fused multiplication: code compiled for processors
+/// without it would call a function for each, and the hits of most shapes take a hundred products.
 #[derive(Clone, Copy, Debug)]
 pub struct Double {
     /// The f64 nearest to the sum.
     pub high: f64,
-    /// The rest.
+    /// The remainder.
     pub low: f64,
-    /// At most so far from what it stands for.
+    /// Bound on the absolute error.
     pub error: f64,
 }
 
-/// Of a sum, relative.
+/// Relative error of a sum.
 const SUM: f64 = ulp_fraction(103);
-/// Of a product, relative.
+/// Relative error of a product.
 const PRODUCT: f64 = ulp_fraction(102);
-/// Of a quotient and of a root, relative.
+/// Relative error of a quotient and of a root.
 const QUOTIENT: f64 = ulp_fraction(98);
 
 const fn ulp_fraction(bits: u64) -> f64 {
     f64::from_bits((1023 - bits) << 52)
 }
 
-/// The sum of two f64 and what its rounding left (Knuth, 1969).
+/// The sum of two f64 and its rounding error (Knuth, 1969).
 #[inline(always)]
 pub fn two_sum(a: f64, b: f64) -> (f64, f64) {
     let sum = a + b;
@@ -44,16 +42,16 @@ pub fn two_sum(a: f64, b: f64) -> (f64, f64) {
     (sum, (a - (sum - of_b)) + (b - of_b))
 }
 
-/// The same where |a| ≥ |b|.
+/// The same for |a| ≥ |b|.
 #[inline(always)]
 pub fn fast_two_sum(a: f64, b: f64) -> (f64, f64) {
     let sum = a + b;
     (sum, b - (sum - a))
 }
 
-/// The product of two f64 and what its rounding left (Veltkamp and Dekker, 1971).
+/// The product of two f64 and its rounding error (Veltkamp and Dekker, 1971).
 ///
-/// NaN where a factor is above 2⁹⁹⁶, and off by some of the least f64 where the rest is subnormal.
+/// NaN if a factor exceeds 2⁹⁹⁶. The error is off by some of the least f64 if it is subnormal.
 #[inline(always)]
 pub fn two_product(a: f64, b: f64) -> (f64, f64) {
     let split = |x: f64| {
@@ -78,7 +76,7 @@ impl Double {
     #[inline(always)]
     pub fn product(a: f64, b: f64) -> Self {
         let (high, low) = two_product(a, b);
-        // Of large numbers the parts may be NaN; what is zero has no error.
+        // The parts of large numbers may be NaN; zero has no error.
         let error = if a == 0.0 || b == 0.0 { 0.0 } else { underflow(high) };
         Self { high, low, error }
     }
@@ -114,7 +112,7 @@ impl Number for Double {
     fn plus(&self, other: &Self) -> Self {
         let (sum, rest) = two_sum(self.high, other.high);
         if self.low == 0.0 && other.low == 0.0 {
-            // Nothing is lost of two f64; the second sum makes NaN of what overflowed.
+            // The sum of two f64 is exact; the second sum makes NaN of an overflow.
             let (high, low) = fast_two_sum(sum, rest);
             return Self { high, low, error: self.error + other.error };
         }
@@ -131,16 +129,16 @@ impl Number for Double {
 
     #[inline]
     fn times(&self, other: &Self) -> Self {
-        // The unit of a line is mostly 1.
+        // The unit of a line is usually 1.
         if other.is_one() {
             return *self;
         }
         let (product, rest) = two_product(self.high, other.high);
         let (high, low) = fast_two_sum(product, rest + (self.high * other.low + self.low * other.high));
-        // Nothing is lost of two f64.
+        // The product of two f64 is exact.
         let own = if self.low == 0.0 && other.low == 0.0 { 0.0 } else { PRODUCT * high.abs() };
         let lost = if self.is_zero() || other.is_zero() { 0.0 } else { underflow(high) };
-        // The low part is at most 2⁻⁵³ of the high one: SLACK has room for it.
+        // The low part is at most 2⁻⁵³ of the high one, which SLACK covers.
         let carried = self.high.abs() * other.error + (other.high.abs() + other.error) * self.error;
         Self { high, low, error: carried * SLACK + own + lost }
     }
@@ -153,7 +151,7 @@ impl Number for Double {
         if self.is_zero() && !other.is_zero() {
             return Self::of(0.0);
         }
-        // Three digits of 53 bits by long division; the third corrects what the second left.
+        // Long division with three digits of 53 bits; the third corrects the remainder of the second.
         let bare = Self { error: 0.0, ..*other };
         let digit = |rest: &Self| Self::of(rest.high / other.high);
         let first = digit(self);
@@ -172,7 +170,7 @@ impl Number for Double {
         if self.high <= 0.0 {
             return Self { high: 0.0, low: 0.0, error: (self.error * 4.0).sqrt() };
         }
-        // One step of Newton's method from the f64 root doubles its digits.
+        // One Newton step from the f64 root doubles its digits.
         let first = Self::of(self.high.sqrt());
         let rest = Self { error: 0.0, ..*self }.minus(&first.squared());
         let root = first.plus(&Self::of(rest.high / (2.0 * first.high)));

@@ -1,28 +1,28 @@
-//! Numbers of some 32 digits: the unevaluated sum of two f64 (Dekker, "A Floating-Point Technique for Extending the
-//! Available Precision", 1971; bounds by Joldes, Muller and Popescu, "Tight and Rigorous Error Bounds for Basic
-//! Building Blocks of Double-Word Arithmetic", 2017).
+//! Double-double numbers of some 32 digits: the unevaluated sum of two f64 (Dekker, "A Floating-Point Technique for
+//! Extending the Available Precision", 1971; bounds by Joldes, Muller and Popescu, "Tight and Rigorous Error Bounds for
+//! Basic Building Blocks of Double-Word Arithmetic", 2017).
 
 use super::double::fast_two_sum;
 pub use super::double::two_sum;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// `high + low`, where `low` is at most half a unit in the last place of `high`.
+/// `high + low`, where `low` is at most half an ulp of `high`.
 ///
 /// With u = 2⁻⁵³, a sum errs by less than 3.1u², a product by 4u², a quotient by 10u², a root by 4u², relative to the
 /// result, as long as nothing overflows and no product falls below 2⁻⁹⁶⁰.
 ///
-/// For what is computed to a precision that is known beforehand. [`Double`](super::Double) is the same with a bound on
-/// its own error, for what is decided. Products are fused here, which is right up to the largest f64, while those of
-/// `Double` end at 2⁹⁹⁶ and say so.
+/// It is for computations with a known error. [`Double`](super::Double) adds an error bound for exact predicates.
+/// Products are fused here, which is correct up to the largest f64, whereas those of `Double` are limited to 2⁹⁹⁶ and
+/// report it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
 pub struct DoubleDouble {
-    /// The number, rounded.
+    /// The number rounded to f64.
     pub high: f64,
-    /// What is left.
+    /// The remainder.
     pub low: f64,
 }
 
-/// A product and what rounding took from it: exact where that does not underflow.
+/// A product and its rounding error, exact in the absence of underflow.
 #[inline(always)]
 pub fn two_product(a: f64, b: f64) -> (f64, f64) {
     let product = a * b;
@@ -40,15 +40,15 @@ impl DoubleDouble {
         Self { high, low }
     }
 
-    /// The exact product of two f64 that neither over- nor underflows.
+    /// The exact product of two f64, in the absence of overflow and underflow.
     #[inline]
     pub fn product(a: f64, b: f64) -> Self {
         let (high, low) = two_product(a, b);
         Self { high, low }
     }
 
-    /// The sum of some f64, with an error of 2⁻¹⁰⁴ of the sum itself however much of it cancels: they are added up as
-    /// an expansion without overlaps first, exactly (Shewchuk, 1997).
+    /// The sum of several f64, with a relative error of 2⁻¹⁰⁴ despite any cancellation: they are first added exactly,
+    /// as a nonoverlapping expansion (Shewchuk, 1997).
     pub fn sum<const N: usize>(terms: [f64; N]) -> Self {
         let mut expansion = [0.0; N];
         for (count, term) in terms.into_iter().enumerate() {
@@ -70,13 +70,13 @@ impl DoubleDouble {
         Self { high, low }
     }
 
-    /// Whether it is below zero.
+    /// Return whether it is negative.
     #[inline]
     pub fn is_negative(self) -> bool {
         self.high < 0.0
     }
 
-    /// Its size.
+    /// Its absolute value.
     #[inline]
     pub fn abs(self) -> Self {
         if self.is_negative() { -self } else { self }
@@ -88,7 +88,7 @@ impl DoubleDouble {
         self * self
     }
 
-    /// Its square root; zero for what is not above zero.
+    /// Its square root; zero for negative numbers.
     #[inline]
     pub fn sqrt(self) -> Self {
         if self.high <= 0.0 {
@@ -100,13 +100,13 @@ impl DoubleDouble {
         Self { high, low }
     }
 
-    /// Times a power of two, which is exact.
+    /// The exact product with a power of two.
     #[inline]
     pub fn scaled(self, power_of_two: f64) -> Self {
         Self { high: self.high * power_of_two, low: self.low * power_of_two }
     }
 
-    /// The f64 next to it.
+    /// The nearest f64.
     #[inline]
     pub fn to_f64(self) -> f64 {
         self.high + self.low
@@ -177,7 +177,7 @@ mod tests {
     use num_bigint::BigInt;
     use proptest::prelude::*;
 
-    /// `x · 2^1200` as an integer, for numbers of ordinary size.
+    /// `x · 2^1200` as an integer, for numbers of moderate size.
     fn integer(x: f64) -> BigInt {
         let bits = x.to_bits();
         let exponent = ((bits >> 52) & 0x7ff) as i32 - 1075 + 1200;
@@ -192,7 +192,7 @@ mod tests {
         integer(x.high) + integer(x.low)
     }
 
-    /// Whether `found` is `wanted` to within `units` of u² of it.
+    /// Return whether `found` equals `wanted` to within `units` of u², relative.
     fn near(found: &BigInt, wanted: &BigInt, units: u32) -> bool {
         let error: BigInt = (found - wanted) << 106usize;
         error.magnitude() <= &(wanted.magnitude() * units)
@@ -222,12 +222,12 @@ mod tests {
             prop_assert!(near(&exact(a - b), &(exact(a) - exact(b)), 4));
             prop_assert!(near(&(exact(a * b) * &one), &(exact(a) * exact(b)), 4));
             if b.high != 0.0 {
-                // Against the dividend: quotient times divisor.
+                // Compared with the dividend: quotient times divisor.
                 prop_assert!(near(&(exact(a / b) * exact(b)), &(exact(a) * &one), 10));
             }
             if a.high > 0.0 {
                 let root = exact(a.sqrt());
-                // The square errs by twice what the root does.
+                // The square errs by twice as much as the root.
                 prop_assert!(near(&(&root * &root), &(exact(a) * &one), 8));
             }
         }

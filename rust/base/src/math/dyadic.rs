@@ -1,17 +1,18 @@
-//! Numbers without any error.
+//! Exact dyadic numbers.
 
 use super::Double;
 use super::number::Number;
 use std::cmp::Ordering;
 
-/// An integer of any length times a power of two of any size: sums and products of f64 are such, exactly, with no
-/// overflow or underflow.
+/// An integer of any length times a power of two of any size. Sums and products of f64 are exact, without overflow or
+/// underflow.
 ///
-/// Asked only where shorter numbers leave a sign open, so it is kept simple: schoolbook products of 64-bit words.
+/// It is needed only where shorter numbers leave a sign open, so it is kept simple: schoolbook products of 64-bit
+/// words.
 #[derive(Clone, Debug)]
 pub struct Dyadic {
     negative: bool,
-    /// The integer's words, least first; the last is not zero. None for zero.
+    /// The integer's words, least significant first; the last is not zero. Empty for zero.
     words: Vec<u64>,
     exponent: i64,
 }
@@ -19,7 +20,7 @@ pub struct Dyadic {
 impl Dyadic {
     const ZERO: Self = Self { negative: false, words: Vec::new(), exponent: 0 };
 
-    /// Without zero words at either end.
+    /// Remove zero words at both ends.
     fn trimmed(negative: bool, mut words: Vec<u64>, mut exponent: i64) -> Self {
         while words.last() == Some(&0) {
             words.pop();
@@ -43,7 +44,7 @@ impl Dyadic {
         result
     }
 
-    /// The sum, or the difference.
+    /// The sum or the difference.
     fn sum(&self, other: &Self, subtract: bool) -> Self {
         let other_negative = other.negative != subtract;
         if other.words.is_empty() {
@@ -78,7 +79,7 @@ impl Dyadic {
         Self::trimmed(if less { other_negative } else { self.negative }, large, exponent)
     }
 
-    /// Its leading 106 bits or more as a magnitude in [1/2, 1], and a power of two; not of zero.
+    /// Its leading 106 bits or more as a magnitude in [1/2, 1], and a power of two; not for zero.
     fn leading(&self) -> (Double, i64) {
         let top = self.words.len() - 1;
         let zeros = self.words[top].leading_zeros();
@@ -87,7 +88,7 @@ impl Dyadic {
             of(i) << zeros | if zeros > 0 { of(i + 1) >> (64 - zeros) } else { 0 }
         };
         let part = |bits: u64, below: i32| Double::of(bits as f64 * 2f64.powi(below));
-        // Halves of words are f64 exactly.
+        // Halves of words are exact in f64.
         let sum = (0..2)
             .flat_map(|i| [(word(i) >> 32, 2 * i), (word(i) & 0xffff_ffff, 2 * i + 1)])
             .fold(Double::of(0.0), |sum, (half, place)| sum.plus(&part(half, -32 * (place as i32 + 1))));
@@ -112,7 +113,7 @@ impl Number for Dyadic {
         if mantissa == 0 {
             return Self::ZERO;
         }
-        // Exponents that are multiples of 64 spare most shifts when numbers are added.
+        // Exponents that are multiples of 64 avoid most shifts in sums.
         let exact = Self { negative: x < 0.0, words: vec![mantissa], exponent };
         let down = exponent.rem_euclid(64);
         Self::trimmed(x < 0.0, exact.shifted(down as u64), exponent - down)
@@ -170,17 +171,17 @@ impl Number for Dyadic {
         })
     }
 
-    /// Never none: where an f64 cannot hold it, infinite or zero.
+    /// Always known; infinite or zero if out of the range of f64.
     fn rounded(&self) -> Option<f64> {
         if self.words.is_empty() {
             return Some(0.0);
         }
         let (x, exponent) = self.leading();
-        // Three factors: one power of two may be more than an f64 holds where the product is not.
+        // Three factors: a single power of two may overflow where the product does not.
         let exponent = exponent.clamp(-3000, 3000) as i32;
         let part = exponent / 3;
         let mut magnitude = x.high * 2f64.powi(part) * 2f64.powi(exponent - 2 * part) * 2f64.powi(part);
-        // Not zero, so that a sign is never lost.
+        // Not zero, to preserve the sign.
         magnitude = magnitude.max(f64::from_bits(1));
         Some(if self.negative { -magnitude } else { magnitude })
     }

@@ -1,6 +1,6 @@
 //! Symmetric elliptic integrals, and the area of an ellipsoid.
 
-/// The area of an ellipsoid from the products of its semi-axes two by two, to about 10⁻¹⁴ of itself.
+/// The area of an ellipsoid from the pairwise products of its semi-axes, to a relative error of about 10⁻¹⁴.
 ///
 /// It is `4π R_G(b²c², c²a², a²b²)` (Carlson, "Normal Elliptic Integrals of the First and Second Kinds", 1961).
 pub fn ellipsoid_area(products: [f64; 3]) -> f64 {
@@ -13,13 +13,13 @@ pub fn ellipsoid_area(products: [f64; 3]) -> f64 {
     4.0 * std::f64::consts::PI * largest * integral_g(squares)
 }
 
-/// R_G(x, y, z) of 0 ≤ x ≤ y ≤ z: the mean over all directions of √(x d₁² + y d₂² + z d₃²).
+/// R_G(x, y, z) for 0 ≤ x ≤ y ≤ z: the mean over all directions of √(x d₁² + y d₂² + z d₃²).
 fn integral_g([x, y, z]: [f64; 3]) -> f64 {
     if y == 0.0 {
         // The mean of |d₃|.
         return z.sqrt() / 2.0;
     }
-    // With the middle one in the place of the third, nothing cancels (DLMF 19.21.10).
+    // With the middle argument in third place, nothing cancels (DLMF 19.21.10).
     let product = (x - y) * (z - y);
     (y * integral_f([x, z, y]) - product * integral_d([x, z, y]) / 3.0 + (x / y * z).sqrt()) / 2.0
 }
@@ -32,14 +32,14 @@ fn integral_f(mut v: [f64; 3]) -> f64 {
         let [x, y, z] = v.map(|v| 1.0 - v / mean);
         if x.abs().max(y.abs()).max(z.abs()) < 1e-3 {
             let (e2, e3) = (x * y - z * z, x * y * z);
-            // What is left out is of the sixth order.
+            // The truncated terms are of sixth order.
             return (1.0 - e2 / 10.0 + e3 / 14.0 + e2 * e2 / 24.0 - 3.0 * e2 * e3 / 44.0) / mean.sqrt();
         }
         v = duplicated(v).0;
     }
 }
 
-/// R_D, in the same way. The third is not zero, and of the others at most one.
+/// R_D, by duplication. The third argument is not zero, and at most one of the others is.
 fn integral_d(mut v: [f64; 3]) -> f64 {
     let (mut sum, mut power) = (0.0, 1.0);
     loop {

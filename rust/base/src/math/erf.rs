@@ -1,4 +1,4 @@
-//! The error function, as slopes of Gaussian surfaces ask for it.
+//! The error function and its inverse, for the slopes of Gaussian surfaces.
 
 use super::exponential::exp;
 use std::f64::consts::FRAC_2_SQRT_PI;
@@ -7,7 +7,7 @@ use std::f64::consts::FRAC_2_SQRT_PI;
 pub const FRAC_1_SQRT_PI: f64 = 0.5 * FRAC_2_SQRT_PI;
 
 /// (1 + 2x) times [`scaled_complement`] as a polynomial in (x − 3) / (x + 3), in which it is smooth from 0 to infinity
-/// (Shepherd and Laframboise, "Chebyshev Approximation of (1 + 2x) exp(x²) erfc x", 1981); interpolated at Chebyshev's
+/// (Shepherd and Laframboise, "Chebyshev Approximation of (1 + 2x) exp(x²) erfc x", 1981). Interpolated at Chebyshev
 /// nodes.
 const COMPLEMENT: [f64; 17] = [
     1.2530080582697298,
@@ -29,8 +29,8 @@ const COMPLEMENT: [f64; 17] = [
     5.5170860854608995e-8,
 ];
 
-/// erf⁻¹(s) / s by w = −ln(1 − s²) from 0 to [`MIDDLE`], as a polynomial in the variable from −1 to 1 over that range;
-/// interpolated.
+/// erf⁻¹(s) / s as a function of w = −ln(1 − s²) from 0 to [`MIDDLE`], as a polynomial in w mapped to [−1, 1].
+/// Interpolated likewise.
 const INVERSE_MIDDLE: [f64; 13] = [
     1.6536545626831138,
     0.7504943076479603,
@@ -47,7 +47,7 @@ const INVERSE_MIDDLE: [f64; 13] = [
     -1.0903445003376967e-5,
 ];
 
-/// erf⁻¹(s) / (s √w) by 1 / √w from 1 / [`FAREST`] to 1 / √[`MIDDLE`], likewise.
+/// erf⁻¹(s) / (s √w) as a function of 1 / √w from 1 / [`FAREST`] to 1 / √[`MIDDLE`], likewise.
 const INVERSE_TAIL: [f64; 11] = [
     0.9553345741837332,
     -0.02446856618014872,
@@ -79,12 +79,12 @@ pub fn scaled_complement(x: f64) -> f64 {
 /// The integral of erfc from x ≥ 0 to infinity, exp(−x²) / √π − x erfc(x), to within 10⁻¹¹.
 #[inline(always)]
 pub fn complement_integral(x: f64) -> f64 {
-    // From here on less than 10⁻²² is left.
+    // Less than 10⁻²² beyond this.
     if x > 7.0 { 0.0 } else { exp(-x * x) * (FRAC_1_SQRT_PI - x * scaled_complement(x)) }
 }
 
-/// erf⁻¹(1 − 2u) for 0 < u < 1: the slope that a share u of a Gaussian surface exceeds. The relative error is below
-/// 10⁻⁸ from u = 10⁻²⁰ on, and as much from the other end.
+/// erf⁻¹(1 − 2u) for 0 < u < 1: the slope that is exceeded on a fraction u of a Gaussian surface. The relative error is
+/// below 10⁻⁸ for u ≥ 10⁻²⁰, and likewise at the other end.
 #[inline(always)]
 pub fn exceeded(u: f64) -> f64 {
     let product = 4.0 * u * (1.0 - u);
@@ -103,7 +103,7 @@ mod tests {
 
     #[test]
     fn the_complement_is_that_of_the_tables() {
-        // erfc(x) exp(x²) in 20 digits, by its continued fraction and series.
+        // erfc(x) exp(x²) to 20 digits, by its continued fraction and series.
         let truths = [
             (0.0, 1.0),
             (1e-9, 0.999_999_998_871_620_8),
@@ -118,7 +118,7 @@ mod tests {
         for (x, truth) in truths {
             assert!((scaled_complement(x) / truth - 1.0).abs() < 1e-11, "{x} {}", scaled_complement(x));
         }
-        // At infinity 1 / (x √π).
+        // 1 / (x √π) at infinity.
         assert!((scaled_complement(1e9) * 1e9 / FRAC_1_SQRT_PI - 1.0).abs() < 1e-11);
     }
 
@@ -144,7 +144,7 @@ mod tests {
         for k in 1..2000 {
             for u in [f64::from(k) / 4000.0, 0.5 * (-f64::from(k) * 0.022).exp()] {
                 let x = exceeded(u);
-                // Half of erfc; its relative change is 2 x² that of x, about.
+                // Half of erfc, whose relative change is about 2 x² that of x.
                 let back = 0.5 * (-x * x).exp() * scaled_complement(x);
                 assert!((back / u - 1.0).abs() < 3e-8 * (0.5 + x * x), "{u:e} {x} {back:e}");
                 assert!(u < 1e-9 || (exceeded(1.0 - u) + x).abs() < 1e-7, "{u}");

@@ -1,18 +1,18 @@
-//! The side of a line on which another line passes, decided without any rounding.
+//! Exact predicates for lines and edges.
 //!
-//! Everything a ray tracer decides of a triangle comes from one number: the volume spanned by the ray's direction and
-//! the two ends of an edge as seen from the ray's origin, `d · ((v − o) × (w − o))`. It is a sum of eighteen products
-//! of three coordinates. A product of three f64 is an integer of 159 bits times a power of two, so the sum fits a
-//! fixed-point number of at most 6,400 bits; usually a few words, since only the span between the smallest and the
-//! largest term is used (Kulisch's long accumulator, 1971). That is simpler than expansions (Shewchuk 1997), cannot
-//! underflow or overflow, and is asked only of rays that pass an edge within rounding. `cargo bench --bench exact`
-//! tells what it costs.
+//! Every decision of a ray tracer about a triangle depends on one number: the volume spanned by the ray's direction and
+//! the two ends of an edge relative to the ray's origin, `d · ((v − o) × (w − o))`. It is a sum of eighteen products of
+//! three coordinates. A product of three f64 is an integer of 159 bits times a power of two, so the sum fits a
+//! fixed-point number of at most 6,400 bits. Usually a few words suffice, since only the span between the smallest and
+//! the largest term is used (Kulisch's long accumulator, 1971). That is simpler than expansions (Shewchuk 1997) and
+//! cannot underflow or overflow. It is needed only for rays that pass an edge within rounding. `cargo bench --bench
+//! exact` measures its cost.
 
 use glam::DVec3;
 
-/// The three edge volumes of a triangle as seen by a ray, `d · (b × c)`, `d · (c × a)`, `d · (a × b)` with corners
-/// relative to the origin: correctly rounded but for ties, and scaled by a common power of two so that the largest
-/// lies in [1/2, 1]. A value is zero only if it is zero exactly, and its sign is always right.
+/// The three edge volumes of a triangle and a ray, `d · (b × c)`, `d · (c × a)`, `d · (a × b)` with corners relative to
+/// the origin. They are correctly rounded except for ties, and scaled by a common power of two so that the largest lies
+/// in [1/2, 1]. A value is zero only if it is exactly zero, and its sign is always correct.
 ///
 /// All coordinates must be finite.
 #[cold]
@@ -23,10 +23,11 @@ pub fn exact_edges(origin: DVec3, direction: DVec3, [a, b, c]: [DVec3; 3]) -> [f
     volumes.map(|v| v.scaled(top))
 }
 
-/// The sign of the first coordinate of `d × (w − v)` that is not exactly zero, and zero where all are: −1, 0 or 1.
+/// The sign of the first coordinate of `d × (w − v)` that is not exactly zero, or zero if all are: −1, 0 or 1.
 ///
-/// It tells on which side of the edge from `v` to `w` a line along `d` passes that touches it, once the line is moved
-/// by nearly nothing along x, by nearly nothing of that along y, and again along z.
+/// It decides on which side of the edge from `v` to `w` a line along `d` passes that touches it, under symbolic
+/// perturbation: the line is moved by an infinitesimal amount along x, by a still smaller one along y, and again along
+/// z.
 ///
 /// All coordinates must be finite.
 #[cold]
@@ -51,19 +52,19 @@ pub fn exact_turn(direction: DVec3, v: DVec3, w: DVec3) -> i32 {
 pub struct Long {
     high: f64,
     low: f64,
-    /// Of both parts.
+    /// The exponent of both parts.
     pub exponent: i32,
 }
 
 impl Long {
-    /// The number over its power of two: an f64, and what is left.
+    /// The mantissa as an f64 and a remainder.
     pub fn parts(&self) -> (f64, f64) {
         (self.high, self.low)
     }
 }
 
-/// What `t` is the quotient of where a line meets the plane of a triangle: `n · (a − o)` and `n · d` with
-/// `n = (b − a) × (c − a)`, both zero only if they are exactly.
+/// The numerator and denominator of `t` where a line intersects a triangle's plane: `n · (a − o)` and `n · d` with `n =
+/// (b − a) × (c − a)`. They are zero only if exactly so.
 ///
 /// All coordinates must be finite.
 #[cold]
@@ -71,7 +72,7 @@ impl Long {
 pub fn exact_depth(origin: DVec3, direction: DVec3, corners: [DVec3; 3]) -> [Long; 2] {
     let [o, d, a, b, c] = [origin, direction, corners[0], corners[1], corners[2]].map(|x| x.to_array().map(Float::new));
     let (mut over, mut under) = (Terms::new(), Terms::new());
-    // Of the determinant of three differences, what has the origin in it twice vanishes: four are left of eight.
+    // In the determinant of three differences, terms with the origin twice vanish: four of eight remain.
     for (x, y, z) in [(a, b, c), (b, a, o), (c, b, o), (a, c, o)] {
         over.push_product(x, y, z);
     }
@@ -122,7 +123,7 @@ impl Terms {
         Long { exponent: long.exponent + low, ..long }
     }
 
-    /// The sum over a power of two; none of no terms.
+    /// The sum over a power of two; None without terms.
     fn accumulated(&self) -> Option<(Accumulator, i32)> {
         let terms = &self.factors[..self.count];
         let exponent = |f: &[Float; 3]| f[0].exponent + f[1].exponent + f[2].exponent;
@@ -155,7 +156,7 @@ impl Volume {
         Self { mantissa, exponent }
     }
 
-    /// The value over 2^top, kept from vanishing.
+    /// The value over 2^top, prevented from underflowing to zero.
     fn scaled(&self, top: i32) -> f64 {
         if self.mantissa == 0.0 {
             return 0.0;
@@ -185,7 +186,7 @@ impl Float {
         if mantissa == 0 {
             return Self::ZERO;
         }
-        // Without trailing zeros the span of the terms is short for round numbers, the usual case of exact ties.
+        // Removing trailing zeros shortens the span of the terms for round numbers, the usual case of exact ties.
         let zeros = mantissa.trailing_zeros();
         Self { mantissa: mantissa >> zeros, exponent: exponent + zeros as i32, negative: bits >> 63 == 1 }
     }
@@ -201,12 +202,12 @@ impl Accumulator {
     /// Three exponents span at most 3 · (1023 + 1074) bits, a product has 159 bits, and 24 terms carry into 5 more.
     const WORDS: usize = (3 * 2097 + 159 + 5 + 1) / 64 + 2;
 
-    /// Room for terms whose exponents differ by up to `span`.
+    /// An accumulator for terms whose exponents differ by up to `span`.
     fn new(span: u32) -> Self {
         Self { words: [0; Self::WORDS], used: (span as usize + 159 + 5 + 1) / 64 + 1 }
     }
 
-    /// Adds or subtracts `m₀ · m₁ · m₂ · 2^shift`.
+    /// Add or subtract `m₀ · m₁ · m₂ · 2^shift`.
     fn add(&mut self, m: [u64; 3], shift: u32, negative: bool) {
         let two = u128::from(m[0]) * u128::from(m[1]);
         let low = u128::from(two as u64) * u128::from(m[2]);
@@ -239,7 +240,7 @@ impl Accumulator {
     /// The sum as a mantissa in [1/2, 1] and an exponent.
     fn value(self) -> (f64, i32) {
         let Some((negative, bits, exponent)) = self.leading() else { return (0.0, 0) };
-        // A sticky bit for all that lies below; only an exact tie could round the other way without it.
+        // A sticky bit for all lower bits: without it, rounding could err in case of an exact tie.
         let bits = (bits >> 64) as u64 | u64::from(bits as u64 != 0);
         let mantissa = bits as f64 / 2f64.powi(64);
         (if negative { -mantissa } else { mantissa }, exponent)
@@ -253,8 +254,8 @@ impl Accumulator {
         if negative { Long { high: -high, low: -low, exponent } } else { Long { high, low, exponent } }
     }
 
-    /// The sign, the first 128 bits, the last of which is set for all that lies below, and the exponent of the bit
-    /// above them; none if the sum is zero.
+    /// The sign, the first 128 bits with a sticky last bit, and the exponent of the bit above them; None if the sum is
+    /// zero.
     fn leading(mut self) -> Option<(bool, u128, i32)> {
         let words = &mut self.words[..self.used];
         let negative = words[words.len() - 1] >> 63 == 1;
@@ -287,7 +288,7 @@ mod tests {
         if f.negative { -m } else { m }
     }
 
-    /// The edge volume times 2^(3 · 1074), by another arithmetic.
+    /// The edge volume times 2^(3 · 1074), in integer arithmetic.
     fn oracle(o: DVec3, d: DVec3, v: DVec3, w: DVec3) -> BigInt {
         let [o, d, v, w] = [o, d, v, w].map(|x| x.to_array().map(integer));
         let v: Vec<_> = (0..3).map(|i| &v[i] - &o[i]).collect();
@@ -303,7 +304,7 @@ mod tests {
         for (f, w) in found.iter().zip(&wanted) {
             prop_assert_eq!(f.partial_cmp(&0.0).map(|x| x as i32), Some(w.cmp(&BigInt::ZERO) as i32));
             if w.bits() + 900 > largest && w.bits() > 0 {
-                // |f| · 2^largest against |w|, to within one rounding.
+                // |f| · 2^largest compared with |w|, to within one rounding.
                 let scaled = integer(f.abs()) << largest as usize;
                 let exact = (w.magnitude().clone() << 1074usize).into();
                 let difference: BigInt = &scaled - &exact;
@@ -341,7 +342,7 @@ mod tests {
             o in prop::array::uniform3(-8i32..8), k in 0i32..=16,
         ) {
             let [a, b, o] = [a, b, o].map(|p| DVec3::from_array(p.map(f64::from)));
-            // A target on the edge from a to b, exactly: sixteenths of small integers.
+            // A target exactly on the edge from a to b: sixteenths of small integers.
             let target = a + (b - a) * (f64::from(k) / 16.0);
             let e = exact_edges(o, target - o, [a, b, DVec3::new(3.0, 5.0, -7.0)]);
             prop_assert_eq!(e[2], 0.0);

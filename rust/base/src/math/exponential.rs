@@ -1,9 +1,9 @@
-//! Powers of e, by arithmetic that lanes have too.
+//! The exponential function, in arithmetic that vectorizes.
 
-/// ln 2 in two parts, of which the first has so few digits that its multiples are exact.
+/// ln 2 in two parts, the first with so few digits that its multiples are exact.
 const LN_2: [f64; 2] = [f64::from_bits(0x3FE6_2E42_FEE0_0000), 1.908_214_929_270_587_7e-10];
 
-/// 1/2!, 1/3! and so on: what follows in the series, after 1 + x. The first term left out is 4·10⁻¹⁸ at ln 2 / 2.
+/// 1/2!, 1/3! and so on: the coefficients of the series after 1 + x. The first omitted term is 4·10⁻¹⁸ at ln 2 / 2.
 const TERMS: [f64; 12] = [
     1.0 / 2.0,
     1.0 / 6.0,
@@ -19,15 +19,15 @@ const TERMS: [f64; 12] = [
     1.0 / 6_227_020_800.0,
 ];
 
-/// e to a power from −700 to 700, to within 2⁻⁵² of itself; beyond these it is any number.
+/// e to a power from −700 to 700, to a relative error of 2⁻⁵². Beyond that range the result is arbitrary.
 #[inline(always)]
 pub fn exp(x: f64) -> f64 {
-    /// Beside it a number has no digits left behind the point, and the last ones in front of it are its own last bits.
+    /// Adding this rounds to an integer in the last bits of the mantissa.
     const WHOLE: f64 = 6_755_399_441_055_744.0;
     let shifted = x * std::f64::consts::LOG2_E + WHOLE;
     let twos = shifted - WHOLE;
     let rest = (x - twos * LN_2[0]) - twos * LN_2[1];
-    // In pairs, so that they need not wait for each other (Estrin, 1960).
+    // In pairs, for instruction-level parallelism (Estrin, 1960).
     let (r2, r4) = (rest * rest, (rest * rest) * (rest * rest));
     let c = &TERMS;
     let low = (c[0] + c[1] * rest) + (c[2] + c[3] * rest) * r2;

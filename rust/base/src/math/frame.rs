@@ -14,8 +14,8 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// A frame whose z is the unit vector `normal`, without a branch that jumps or a singular direction
-    /// (Duff et al., "Building an Orthonormal Basis, Revisited", 2017).
+    /// A frame whose z is the unit vector `normal`, without branches or singular directions (Duff et al., "Building an
+    /// Orthonormal Basis, Revisited", 2017).
     #[inline(always)]
     pub fn new(normal: DVec3) -> Self {
         let sign = 1f64.copysign(normal.z);
@@ -28,10 +28,11 @@ impl Frame {
         }
     }
 
-    /// A frame whose z is the unit vector `normal`, and whose x lies along another vector as nearly as it can; any
-    /// where that has no direction, or the normal's.
+    /// A frame whose z is the unit vector `normal`, and whose x is as close as possible to another vector. Any frame if
+    /// that vector is zero or parallel to the normal.
     pub fn along(normal: DVec3, x: DVec3) -> Self {
-        // By its largest coordinate first, lest squares vanish; what is left of unit vectors this short is rounding.
+        // Scaled by its largest coordinate to avoid underflow of squares. A remainder of unit vectors this short is
+        // mere rounding.
         let flat = (x / x.abs().max_element())
             .try_normalize()
             .map(|x| x - normal * normal.dot(x))
@@ -42,13 +43,13 @@ impl Frame {
         }
     }
 
-    /// From local coordinates to the world's.
+    /// Transform local to world coordinates.
     #[inline(always)]
     pub fn to_world(&self, v: DVec3) -> DVec3 {
         self.tangent * v.x + self.bitangent * v.y + self.normal * v.z
     }
 
-    /// From the world's coordinates to local ones.
+    /// Transform world to local coordinates.
     #[inline(always)]
     pub fn to_local(&self, v: DVec3) -> DVec3 {
         DVec3::new(self.tangent.dot(v), self.bitangent.dot(v), self.normal.dot(v))

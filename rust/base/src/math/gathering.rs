@@ -1,32 +1,30 @@
-//! An order of rays in which those stand together that start close to each other, or go much the same way.
+//! Sorting of rays for coherence, by origin or direction.
 //!
-//! Rays that leave a surface come in the order of the pixels that see it, a row after the other, and so a packet of
-//! them is a long thin strip. Of some thousand rays it is known where they all start: this box is halved where it is
-//! longest, and its halves where they are, until there are as many cells as a table holds; and the rays go in the
-//! order of their cells, by counting. (Pharr, Kolb, Gershbein and Hanrahan, "Rendering Complex Scenes with
-//! Memory-Coherent Ray Tracing", 1997, put rays that are near each other into one queue.)
+//! Rays that leave a surface are in the order of the pixels, row by row, so a packet of them is a long thin strip. The
+//! bounding box of some thousand origins is bisected along its longest side, and so are its parts, until there are as
+//! many cells as a table holds. The rays are then sorted by cell with a counting sort. (Pharr, Kolb, Gershbein and
+//! Hanrahan, "Rendering Complex Scenes with Memory-Coherent Ray Tracing", 1997, queue rays by location.)
 //!
-//! Four that stand next to each other stay together: rays one by one take four times as long to put in order, and are
-//! traced no sooner.
+//! Runs of four neighbours stay together: sorting single rays takes four times as long, and does not speed up tracing.
 
 use std::array::from_fn;
 
 /// Neighbours that stay together.
 pub const RUN: usize = 4;
 
-/// Rays that are put in order together, at most: some rows of a picture. (Half as many are traced up to a twentieth
-/// slower, an eighth up to a fifth.)
+/// Maximum number of rays sorted together: some rows of a picture. (Half as many are traced up to a twentieth slower,
+/// an eighth up to a fifth.)
 pub const WINDOW: usize = 16384;
 
-/// Halvings.
+/// Number of bisections.
 const BITS: u32 = 12;
 
-/// Halvings along one axis, at most.
+/// Maximum number of bisections along one axis.
 const ALONG: u32 = 8;
 
-/// Numbers that vectors are made of.
+/// Coordinate types of vectors.
 pub trait Coordinate: Copy + Default {
-    /// Rounded.
+    /// Round to f32.
     fn single(self) -> f32;
 }
 
@@ -44,23 +42,23 @@ impl Coordinate for f64 {
     }
 }
 
-/// The first vectors of all runs, in f32.
+/// The first vector of each run, in f32.
 #[inline(always)]
 fn firsts<T: Coordinate>(vectors: &[[T; 3]]) -> impl Iterator<Item = [f32; 3]> {
     vectors.as_chunks::<RUN>().0.iter().map(|run| run[0].map(T::single))
 }
 
-/// The box around the first vectors of runs.
+/// The bounding box of the first vectors of runs.
 #[derive(Clone, Copy, Debug)]
 pub struct Spread {
     low: [f32; 3],
     size: [f32; 3],
-    /// The coordinate that lies farthest from zero.
+    /// The largest absolute coordinate.
     farthest: f32,
 }
 
 impl Spread {
-    /// Of these; NaN is passed over.
+    /// Compute it, ignoring NaN.
     pub fn of<T: Coordinate>(vectors: &[[T; 3]]) -> Self {
         let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
         for vector in firsts(vectors) {
@@ -73,14 +71,14 @@ impl Spread {
         Self { low, size: from_fn(|axis| high[axis] - low[axis]), farthest }
     }
 
-    /// The longest side, over `extent`, or, if none is given, over the coordinate that lies farthest from zero.
+    /// The longest side over `extent` or, if none is given, over the largest absolute coordinate.
     pub fn over(&self, extent: Option<f64>) -> f32 {
         let longest = self.size.into_iter().fold(0.0, f32::max);
         longest / extent.map_or(self.farthest, |extent| extent as f32)
     }
 }
 
-/// An order of up to [`WINDOW`] vectors.
+/// Sorts up to [`WINDOW`] vectors.
 #[derive(Debug, Default)]
 pub struct Gathering {
     order: Vec<u16>,
@@ -89,20 +87,20 @@ pub struct Gathering {
 }
 
 impl Gathering {
-    /// An order of the runs of vectors, at most [`WINDOW`], that lie in a box: which run stands where. What is left of
-    /// vectors that are no whole run is not in it.
+    /// Sort the runs of vectors, at most [`WINDOW`], within a box; return the order of the runs. An incomplete last run
+    /// is omitted.
     pub fn of<T: Coordinate>(&mut self, vectors: &[[T; 3]], spread: &Spread) -> &[u16] {
         assert!(vectors.len() <= WINDOW, "{} vectors", vectors.len());
-        // By axis and place along it, the bits of a cell.
+        // The bits of a cell, by axis and position along it.
         let mut bits = [[0u16; 1 << ALONG]; 3];
         let mut halved = [0u32; 3];
         let mut size = spread.size;
         for bit in (0..BITS).rev() {
-            // Of those that a table has room for, also where all are as long, or none has a length.
+            // Only axes with room in their table, also if all sides are equal or zero.
             let open = (0..3).filter(|&axis| halved[axis] < ALONG);
             let longer = |best: usize, axis: usize| if size[axis] > size[best] { axis } else { best };
             let longest = open.reduce(longer).expect("fewer bits than all tables have");
-            // What is known of a place is known of both its halves.
+            // Both halves inherit the bits of their parent.
             let to = &mut bits[longest];
             for place in (0..1 << halved[longest]).rev() {
                 (to[2 * place], to[2 * place + 1]) = (to[place], to[place] | 1 << bit);
@@ -110,7 +108,7 @@ impl Gathering {
             halved[longest] += 1;
             size[longest] /= 2.0;
         }
-        // To whole numbers by adding so much that nothing else is left of the digits.
+        // Adding this rounds to an integer in the last bits.
         const WHOLE: f32 = (1 << 23) as f32;
         let scale: [f32; 3] =
             from_fn(|axis| ((1 << halved[axis]) - 1) as f32 / spread.size[axis].max(f32::MIN_POSITIVE));
@@ -144,7 +142,7 @@ impl Gathering {
 mod tests {
     use super::*;
 
-    /// Points of a wavy surface, row after row.
+    /// Points on a wavy surface, row by row.
     fn surface(width: usize, height: usize) -> Vec<[f32; 3]> {
         let point = |i: usize| {
             let (x, y) = ((i % width) as f32, (i / width) as f32);
@@ -179,7 +177,7 @@ mod tests {
             let double: Vec<_> = vectors.iter().map(|v| v.map(f64::from)).collect();
             let order = gathered(&vectors);
             assert_eq!(order, gathered(&double));
-            // Sixteen runs, as a packet of rays.
+            // Sixteen runs, as in a packet of rays.
             let side = |runs: &[u16]| -> f32 {
                 let some: Vec<_> = runs.iter().map(|&run| vectors[RUN * usize::from(run)]).collect();
                 let of = |axis: usize| some.iter().map(move |v| v[axis]);
@@ -187,7 +185,7 @@ mod tests {
                 (0..3).map(size).fold(0.0, f32::max)
             };
             let sides: Vec<_> = order.chunks_exact(16).map(side).collect();
-            // As they come they are 60 long, and some go on from the end of a row.
+            // Unsorted packets are 60 long, and some wrap around the end of a row.
             let mean = sides.iter().sum::<f32>() / sides.len() as f32;
             assert!(mean < 20.0, "{width} × {height}: {mean}");
         }
@@ -196,7 +194,7 @@ mod tests {
     #[test]
     fn a_box_says_how_far_apart_they_are() {
         let spread = Spread::of(&[[1.0, 2.0, 3.0], [9.0; 3], [9.0; 3], [9.0; 3], [-4.0, f64::NAN, 3.5]]);
-        // Of the first of each run; what is left is none.
+        // Only the first of each run counts, and an incomplete run has none.
         assert_eq!((spread.over(Some(2.0)), spread.over(None)), (0.0, 0.0));
         let spread = Spread::of(&surface(1024, 2));
         assert_eq!((spread.over(Some(10.0)), spread.over(None)), (102.0, 1.0));

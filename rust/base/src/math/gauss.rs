@@ -1,6 +1,7 @@
-//! Gauss's rules.
+//! Gauss-Legendre quadrature.
 
-/// Nodes and weights of Gauss's rule with so many points on [0, 1], by Newton's method on Legendre's polynomials.
+/// Nodes and weights of the Gauss-Legendre rule on [0, 1] with `count` points, by Newton's method on Legendre
+/// polynomials.
 pub fn gauss(count: usize) -> Vec<(f64, f64)> {
     let node = |i: usize| {
         let mut x = (std::f64::consts::PI * (i as f64 + 0.75) / (count as f64 + 0.5)).cos();

@@ -1,22 +1,22 @@
-//! Closed intervals of f64, rounded outwards: what is computed of intervals holds what exact arithmetic gives for any
-//! numbers in them (Moore, "Interval Analysis", 1966; the decoration after IEEE 1788-2015).
+//! Interval arithmetic in f64 with outward rounding: a result contains the exact value for all numbers in the operands
+//! (Moore, "Interval Analysis", 1966; the decoration after IEEE 1788-2015).
 //!
-//! Sums, products, quotients and roots are rounded by the sign of their own error, so that what is exact stays exact.
-//! Functions of the platform's mathematical library are trusted to within [`LIBRARY_ULPS`] units in the last place.
+//! Sums, products, quotients and roots are rounded by the sign of their error, so exact results stay exact. Functions
+//! of the platform's mathematical library are trusted to within [`LIBRARY_ULPS`] ulps.
 
 use super::double_double::two_sum;
 
-/// How far the mathematical library may be off, in units in the last place.
+/// Maximum error of the mathematical library in ulps.
 pub const LIBRARY_ULPS: u32 = 4;
 
-/// All numbers from `low` to `high`, both included, which may be infinite.
+/// All numbers from `low` to `high`, both included, possibly infinite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
-    /// The least.
+    /// The lower bound.
     pub low: f64,
-    /// The greatest.
+    /// The upper bound.
     pub high: f64,
-    /// Whether what it was computed by is defined and continuous for all numbers that went in.
+    /// True if the computed function is defined and continuous on all operands (IEEE 1788 decoration).
     pub whole: bool,
 }
 
@@ -24,18 +24,18 @@ fn up(x: f64) -> f64 {
     if x == f64::NEG_INFINITY { -f64::MAX } else { x.next_up() }
 }
 
-/// The least f64 known to be at or above `a + b`.
+/// An upper bound of `a + b`, tight if exact.
 fn sum_up(a: f64, b: f64) -> f64 {
     let (sum, error) = two_sum(a, b);
     if sum.is_infinite() {
-        // Of finite numbers it may lie just below.
+        // The exact sum of finite numbers may lie just below.
         return if sum < 0.0 && a.is_finite() && b.is_finite() { -f64::MAX } else { sum };
     }
-    // The parts of the error overflow only for the largest numbers.
+    // The error overflows only for the largest numbers.
     if error <= 0.0 { sum } else { up(sum) }
 }
 
-/// At or above `a · b`, where zero times infinity is zero.
+/// An upper bound of `a · b`, with zero times infinity equal to zero.
 fn product_up(a: f64, b: f64) -> f64 {
     if a == 0.0 || b == 0.0 {
         return 0.0;
@@ -44,11 +44,11 @@ fn product_up(a: f64, b: f64) -> f64 {
     if product.is_infinite() {
         return if product < 0.0 && a.is_finite() && b.is_finite() { -f64::MAX } else { product };
     }
-    // Where the error may itself underflow it says nothing.
+    // The error term may underflow below this.
     if product.abs() > 1e-280 && a.mul_add(b, -product) <= 0.0 { product } else { up(product) }
 }
 
-/// At or above `a / b`, b not zero; infinity over infinity is left out by giving the least.
+/// An upper bound of `a / b` for nonzero b; infinity over infinity is ignored by returning the least number.
 fn quotient_up(a: f64, b: f64) -> f64 {
     let quotient = a / b;
     if quotient.is_nan() {
@@ -62,60 +62,60 @@ fn quotient_up(a: f64, b: f64) -> f64 {
     if exact && (rest == 0.0 || (rest < 0.0) == (b > 0.0)) { quotient } else { up(quotient) }
 }
 
-/// At or above the library's `x`.
+/// An upper bound, given the library's `x`.
 fn library_up(x: f64) -> f64 {
     (0..LIBRARY_ULPS).fold(x, |x, _| up(x))
 }
 
 impl Interval {
-    /// No number at all.
+    /// The empty interval.
     pub const EMPTY: Self = Self { low: f64::INFINITY, high: f64::NEG_INFINITY, whole: false };
 
-    /// Every number, of something that may be undefined somewhere.
+    /// All numbers, for a possibly undefined result.
     pub const ANYTHING: Self = Self { low: f64::NEG_INFINITY, high: f64::INFINITY, whole: false };
 
-    /// From one number to another that is not less.
+    /// The interval between two ordered numbers.
     pub const fn new(low: f64, high: f64) -> Self {
         Self { low, high, whole: true }
     }
 
-    /// One number.
+    /// A single number.
     pub const fn point(x: f64) -> Self {
         Self::new(x, x)
     }
 
-    /// Whether there is no number in it.
+    /// Return whether it is empty.
     pub fn is_empty(self) -> bool {
         self.low.partial_cmp(&self.high).is_none_or(std::cmp::Ordering::is_gt)
     }
 
-    /// Whether a number is in it.
+    /// Return whether it contains a number.
     pub fn contains(self, x: f64) -> bool {
         self.low <= x && x <= self.high
     }
 
-    /// 1 where all numbers are above zero, −1 where all are below, else 0.
+    /// 1 if all numbers are positive, −1 if all are negative, else 0.
     pub fn sign(self) -> i32 {
         i32::from(self.low > 0.0 && !self.is_empty()) - i32::from(self.high < 0.0 && !self.is_empty())
     }
 
-    /// The greatest magnitude.
+    /// The greatest absolute value.
     pub fn magnitude(self) -> f64 {
         self.low.abs().max(self.high.abs())
     }
 
-    /// What is in both; it is as whole as the first.
+    /// The intersection, with the first one's decoration.
     pub fn intersection(self, other: Self) -> Self {
         Self { low: self.low.max(other.low), high: self.high.min(other.high), whole: self.whole }
     }
 
-    /// The least interval around both.
+    /// The convex hull.
     pub fn hull(self, other: Self) -> Self {
         let whole = self.whole && other.whole;
         Self { low: self.low.min(other.low), high: self.high.max(other.high), whole }
     }
 
-    /// The interval between `bounds`, or empty if this one is; whole only if this one is, and `whole` says so.
+    /// The interval between `bounds`, or empty if this one is; whole only if this one and `whole` are.
     fn built(self, whole: bool, bounds: impl FnOnce() -> (f64, f64)) -> Self {
         if self.is_empty() {
             return Self::EMPTY;
@@ -124,8 +124,8 @@ impl Interval {
         Self { low, high, whole: self.whole && whole }
     }
 
-    /// By a function of the library that never falls, on the part of the interval from `least` to `most`, and whose
-    /// values lie from `floor` to `ceiling`.
+    /// Apply a nondecreasing library function with values from `floor` to `ceiling`, on the part of the interval from
+    /// `least` to `most`.
     fn rising(self, f: impl Fn(f64) -> f64, [least, most]: [f64; 2], [floor, ceiling]: [f64; 2]) -> Self {
         let part = Self { low: self.low.max(least), high: self.high.min(most), whole: self.whole };
         part.built(part == self, || ((-library_up(-f(part.low))).max(floor), library_up(f(part.high)).min(ceiling)))
@@ -168,7 +168,7 @@ impl Interval {
         })
     }
 
-    /// Quotient. Where the divisor may be zero it is not whole, and empty where that is nothing but zero.
+    /// Quotient. It is not whole if the divisor contains zero, and empty if the divisor is zero.
     pub fn over(self, other: Self) -> Self {
         if other.is_empty() || (other.low == 0.0 && other.high == 0.0) {
             return Self::EMPTY;
@@ -191,13 +191,13 @@ impl Interval {
         })
     }
 
-    /// Magnitude.
+    /// Absolute value.
     pub fn abs(self) -> Self {
         let least = if self.contains(0.0) { 0.0 } else { self.low.abs().min(self.high.abs()) };
         self.built(true, || (least, self.magnitude()))
     }
 
-    /// The lesser of two.
+    /// The minimum of two.
     pub fn least(self, other: Self) -> Self {
         if other.is_empty() {
             return Self::EMPTY;
@@ -205,12 +205,12 @@ impl Interval {
         self.built(other.whole, || (self.low.min(other.low), self.high.min(other.high)))
     }
 
-    /// The greater of two.
+    /// The maximum of two.
     pub fn greatest(self, other: Self) -> Self {
         self.negated().least(other.negated()).negated()
     }
 
-    /// Square root of what is not negative.
+    /// Square root of the nonnegative part.
     pub fn sqrt(self) -> Self {
         let part = Self { low: self.low.max(0.0), ..self };
         let root_up = |x: f64| {
@@ -225,7 +225,7 @@ impl Interval {
         part.built(part == self, || (root_down(part.low), root_up(part.high)))
     }
 
-    /// To a whole power.
+    /// An integer power.
     pub fn power(self, n: i32) -> Self {
         if n == 0 {
             return self.built(true, || (1.0, 1.0));
@@ -255,14 +255,14 @@ impl Interval {
         result
     }
 
-    /// To any power, of what is not negative; undefined where zero meets a power that is not positive.
+    /// A real power of the nonnegative part; undefined for zero to a nonpositive power.
     pub fn raised(self, other: Self) -> Self {
         let part = Self { low: self.low.max(0.0), ..self };
         if other.is_empty() {
             return Self::EMPTY;
         }
         let defined = part == self && !(part.low == 0.0 && other.low <= 0.0);
-        // It is monotone in either.
+        // It is monotone in each argument.
         part.built(other.whole && defined, || {
             let corners =
                 [(part.low, other.low), (part.low, other.high), (part.high, other.low), (part.high, other.high)];
@@ -272,12 +272,12 @@ impl Interval {
         })
     }
 
-    /// e to the power.
+    /// The exponential function.
     pub fn exp(self) -> Self {
         self.rising(f64::exp, [f64::NEG_INFINITY, f64::INFINITY], [0.0, f64::INFINITY])
     }
 
-    /// Natural logarithm of what is positive.
+    /// Natural logarithm of the positive part.
     pub fn ln(self) -> Self {
         if self.high <= 0.0 {
             return Self::EMPTY;
@@ -286,7 +286,7 @@ impl Interval {
         Self { whole: all.whole && self.low > 0.0, ..all }
     }
 
-    /// Whether there is a whole number `k` with `shift + k · period` in it, or nearly so.
+    /// Return whether it contains `shift + k · period` for an integer `k`, to within rounding.
     fn reaches(self, shift: f64, period: f64) -> bool {
         let [low, high] = [self.low, self.high].map(|x| (x - shift) / period);
         let doubt = 1e-15 * (2.0 + low.abs().max(high.abs()));
@@ -297,7 +297,7 @@ impl Interval {
     pub fn cos(self) -> Self {
         use std::f64::consts::{PI, TAU};
         self.built(true, || {
-            // Beyond, neighbouring f64 are too far apart to tell.
+            // Beyond this, adjacent f64 are too far apart.
             if self.magnitude() > 1e13 {
                 return (-1.0, 1.0);
             }
@@ -334,12 +334,12 @@ impl Interval {
         self.rising(f64::tan, [f64::NEG_INFINITY, f64::INFINITY], [f64::NEG_INFINITY, f64::INFINITY])
     }
 
-    /// Arc sine, of what lies from −1 to 1.
+    /// Arc sine of the part in [−1, 1].
     pub fn asin(self) -> Self {
         self.rising(f64::asin, [-1.0, 1.0], [-1.6, 1.6])
     }
 
-    /// Arc cosine, of what lies from −1 to 1.
+    /// Arc cosine of the part in [−1, 1].
     pub fn acos(self) -> Self {
         self.negated().rising(|x| (-x).acos(), [-1.0, 1.0], [0.0, 3.2])
     }
@@ -349,7 +349,7 @@ impl Interval {
         self.rising(f64::atan, [f64::NEG_INFINITY, f64::INFINITY], [-1.6, 1.6])
     }
 
-    /// The angle from the x axis of the point (`x`, this), from −π to π; not whole across the negative x axis and at
+    /// The angle of the point (`x`, this) from the x axis, from −π to π; not whole across the negative x axis and at
     /// the origin.
     pub fn atan2(self, x: Self) -> Self {
         use std::f64::consts::PI;
@@ -362,7 +362,7 @@ impl Interval {
             if cut || origin && x.low < 0.0 {
                 return (if cut { -library_up(PI) } else { 0.0 }, library_up(PI));
             }
-            // Adding zero takes the sign from a zero.
+            // Adding zero turns −0 into +0.
             let angles = [(self.low, x.low), (self.low, x.high), (self.high, x.low), (self.high, x.high)]
                 .map(|(y, x)| (y + 0.0).atan2(x + 0.0));
             let (low, high) = angles.into_iter().fold((PI, -PI), |(a, b), c| (a.min(c), b.max(c)));

@@ -1,18 +1,18 @@
-//! Vectors by lane: each coordinate in an array of its own, so that a loop over lanes becomes vectors.
+//! Vectors in SoA layout, so that loops over lanes vectorize.
 
 use glam::{DVec3, Vec3};
 use std::fmt::Debug;
 
-/// Lanes that go together.
+/// Lanes processed together.
 pub const LANES: usize = 16;
 
-/// One of two vectors, without a branch.
+/// Select one of two vectors without a branch.
 #[inline(always)]
 pub fn select(first: bool, a: DVec3, b: DVec3) -> DVec3 {
     DVec3::new(if first { a.x } else { b.x }, if first { a.y } else { b.y }, if first { a.z } else { b.z })
 }
 
-/// A vector a lane.
+/// One vector per lane.
 #[derive(Clone, Copy, Debug)]
 pub struct VectorLanes {
     x: [f64; LANES],
@@ -24,7 +24,7 @@ impl VectorLanes {
     /// Zero in every lane.
     pub const ZERO: Self = Self { x: [0.0; LANES], y: [0.0; LANES], z: [0.0; LANES] };
 
-    /// That of a lane.
+    /// The vector of a lane.
     #[inline(always)]
     pub fn get(&self, lane: usize) -> DVec3 {
         DVec3::new(self.x[lane], self.y[lane], self.z[lane])
@@ -42,14 +42,14 @@ impl VectorLanes {
         [&mut self.x, &mut self.y, &mut self.z][axis]
     }
 
-    /// Sets that of a lane.
+    /// Set the vector of a lane.
     #[inline(always)]
     pub fn set(&mut self, lane: usize, v: DVec3) {
         (self.x[lane], self.y[lane], self.z[lane]) = (v.x, v.y, v.z);
     }
 }
 
-/// Vectors of f32, a lane each.
+/// One f32 vector per lane.
 #[derive(Clone, Copy, Debug)]
 pub struct SingleLanes(pub [[f32; LANES]; 3]);
 
@@ -57,21 +57,21 @@ impl SingleLanes {
     /// Zero in every lane.
     pub const ZERO: Self = Self([[0.0; LANES]; 3]);
 
-    /// That of a lane.
+    /// The vector of a lane.
     #[inline(always)]
     pub fn get(&self, lane: usize) -> Vec3 {
         Vec3::new(self.0[0][lane], self.0[1][lane], self.0[2][lane])
     }
 
-    /// Sets that of a lane.
+    /// Set the vector of a lane.
     #[inline(always)]
     pub fn set(&mut self, lane: usize, v: Vec3) {
         (self.0[0][lane], self.0[1][lane], self.0[2][lane]) = (v.x, v.y, v.z);
     }
 }
 
-/// Sixteen of a column, in its order; the last may be the same. Where they are neighbours, as survivors of a stage
-/// mostly are, they are read as vectors.
+/// Gather sixteen entries of a column by increasing index; the last one may repeat. If they are contiguous, as
+/// survivors of a stage usually are, they are copied as vectors.
 #[inline(always)]
 pub fn gather<T: Copy>(column: &[T], which: &[u32; LANES], to: &mut [T; LANES]) {
     let (first, end) = (which[0] as usize, which[LANES - 1] as usize);
@@ -86,21 +86,21 @@ pub fn gather<T: Copy>(column: &[T], which: &[u32; LANES], to: &mut [T; LANES]) 
     }
 }
 
-/// What sixteen of can stand in columns, a lane each.
+/// A type that has an SoA layout of sixteen lanes.
 pub trait InLanes: Sized {
-    /// Those columns.
+    /// The type of that layout.
     type Lanes: Clone + Debug;
-    /// Of nothing yet.
+    /// Empty lanes.
     const EMPTY: Self::Lanes;
 
-    /// That of a lane.
+    /// The value of a lane.
     fn get(lanes: &Self::Lanes, lane: usize) -> Self;
 
-    /// Puts it into a lane.
+    /// Store the value in a lane.
     fn put(&self, lanes: &mut Self::Lanes, lane: usize);
 }
 
-/// Plain values: an array of them.
+/// Plain values use an array.
 macro_rules! plain {
     ($($of:ty: $none:expr,)+) => {
         $(impl InLanes for $of {
@@ -153,8 +153,7 @@ impl<T: InLanes> InLanes for [T; 2] {
     }
 }
 
-/// Makes a type of columns, one of each of these fields, and of another that has them, all of them, one that can stand
-/// there.
+/// Define the SoA type of a structure, with one column per field, and implement `InLanes` for the structure.
 #[macro_export]
 macro_rules! in_lanes {
     ($(#[$about:meta])* $lanes:ident of $one:ident { $($field:ident: $type:ty),+ $(,)? }) => {

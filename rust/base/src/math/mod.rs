@@ -1,4 +1,4 @@
-//! Floor 0: rays, boxes, frames and numbers whose errors are known.
+//! Floor 0: rays, boxes, frames, and numbers with error bounds.
 
 mod aabb;
 mod affine;

@@ -1,20 +1,20 @@
-//! Numbers that know how wrong they are: one formula, computed as roughly as its sign allows.
+//! Number types with error bounds, for predicates computed only as precisely as their sign requires.
 //!
-//! A decision is a sign of a polynomial in the numbers that were given. It is asked of [`Bounded`] first, an f64 with a
-//! bound on its error; where that leaves it open, of [`Double`](super::Double), twice as long; and last of
-//! [`Dyadic`](super::Dyadic), which has no error at all.
+//! A predicate is the sign of a polynomial in the given numbers. It is evaluated first in [`Bounded`], an f64 with an
+//! error bound; if that leaves it open, in [`Double`](super::Double), with twice the precision; and last in
+//! [`Dyadic`](super::Dyadic), which is exact.
 
 use super::DVec3;
 use super::robust::UNIT;
 use std::cmp::Ordering;
 
-/// A number with a bound on its error.
+/// A number with an error bound.
 pub trait Number: Clone {
-    /// A finite f64, as it is.
+    /// A finite f64, exactly.
     fn of(x: f64) -> Self;
 
-    /// A number within `error` of the sum of two f64, the second at most half an ulp of the first; none if this type
-    /// cannot hold it.
+    /// A number within `error` of the sum of two f64, the second at most half an ulp of the first; None if this type
+    /// cannot represent it.
     fn of_sum(high: f64, low: f64, error: f64) -> Option<Self>;
 
     /// The sum.
@@ -26,19 +26,19 @@ pub trait Number: Clone {
     /// The product.
     fn times(&self, other: &Self) -> Self;
 
-    /// The quotient, to the type's own precision: to about 2⁻⁹⁸ where all else is exact.
+    /// The quotient, to the type's own precision: about 2⁻⁹⁸ for exact types.
     fn over(&self, other: &Self) -> Self;
 
-    /// The square root of what is not negative, to the type's own precision as [`Number::over`].
+    /// The square root of a nonnegative number, to the type's own precision as for [`Number::over`].
     fn sqrt(&self) -> Self;
 
-    /// How it compares with zero; none if the error leaves that open.
+    /// The sign; None if the error leaves it open.
     fn sign(&self) -> Option<Ordering>;
 
-    /// The f64 next to it or, at a tie within the error, one of the two; none if the error is larger than that.
+    /// The nearest f64 or, at a tie within the error, one of the two; None if the error is larger.
     fn rounded(&self) -> Option<f64>;
 
-    /// Whether it seems negative. It may be wrong where [`Number::sign`] is none.
+    /// Return whether it appears negative. This may be wrong if [`Number::sign`] is None.
     fn seems_negative(&self) -> bool;
 
     /// Its square.
@@ -52,33 +52,32 @@ pub trait Number: Clone {
     }
 }
 
-/// An f64 and a bound on its distance from what it stands for, kept as it is computed (Wilkinson's running error
-/// analysis, 1986).
+/// An f64 and a running error bound (Wilkinson's running error analysis, 1986).
 ///
-/// Each operation adds its own rounding, at most [`UNIT`] of what came out. The bound is itself computed with
-/// roundings, a few a step, each of a relative [`UNIT`]: 2⁻⁴⁰ of it, added when a sign is asked for, is room for
-/// thousands of steps.
+/// Each operation adds its own rounding, at most [`UNIT`] of its result. The bound itself has a few roundings per
+/// operation, each of a relative [`UNIT`]. Adding 2⁻⁴⁰ of the bound, when a sign is requested, covers thousands of
+/// operations.
 #[derive(Clone, Copy, Debug)]
 pub struct Bounded {
-    /// About the number.
+    /// The approximate value.
     pub value: f64,
-    /// At most so far from it.
+    /// Bound on its absolute error.
     pub error: f64,
 }
 
-/// Where no product loses digits to underflow.
+/// Above this, products lose no digits to underflow.
 const SAFE: f64 = f64::MIN_POSITIVE * (1u64 << 60) as f64 * (1u64 << 60) as f64;
 
-/// What the products in a [`Double`](super::Double) product, and its bound, lose to underflow: less than 16 halves of
-/// the least f64, four times over.
+/// The loss to underflow of the products in a [`Double`](super::Double) product and its bound: less than 16 halves of
+/// the least f64, times four.
 const UNDERFLOW: f64 = f64::from_bits(32);
 
-/// What is added to the bound of a product for underflow.
+/// The allowance for underflow in the bound of a product.
 pub(super) fn underflow(product: f64) -> f64 {
     if product.abs() > SAFE { 0.0 } else { UNDERFLOW }
 }
 
-/// Room for the roundings of a bound.
+/// Allowance for the roundings of a bound.
 pub(super) const SLACK: f64 = 1.0 + 1.0 / (1u64 << 40) as f64;
 
 impl Number for Bounded {
@@ -108,7 +107,7 @@ impl Number for Bounded {
     fn times(&self, other: &Self) -> Self {
         let value = self.value * other.value;
         let (own, others) = (self.value.abs() + self.error, other.value.abs() + other.error);
-        // Zero that is known as such makes a product that is known to be zero.
+        // An exact zero factor makes the product exactly zero.
         let lost = if value.abs() > SAFE || own == 0.0 || others == 0.0 { 0.0 } else { UNDERFLOW };
         let carried = self.value.abs() * other.error + others * self.error;
         Self { value, error: carried + UNIT * value.abs() + lost }
@@ -156,14 +155,14 @@ impl Number for Bounded {
 pub struct Triple<N>(pub [N; 3]);
 
 impl<N: Number> Triple<N> {
-    /// Three by the same rule. Written out, since closures over arrays are not always compiled away.
+    /// Three numbers by the same rule. Written out, since closures over arrays are not always optimized away.
     #[inline(always)]
     fn by(mut rule: impl FnMut(usize) -> N) -> Self {
         let (x, y, z) = (rule(0), rule(1), rule(2));
         Self([x, y, z])
     }
 
-    /// A finite vector, as it is.
+    /// A finite vector, exactly.
     #[inline(always)]
     pub fn of(v: DVec3) -> Self {
         Self::by(|i| N::of(v[i]))
@@ -187,13 +186,13 @@ impl<N: Number> Triple<N> {
         Self::by(|i| self.0[i].plus(&other.0[i]))
     }
 
-    /// All three times a number.
+    /// The product with a scalar.
     #[inline(always)]
     pub fn times(&self, by: &N) -> Self {
         Self::by(|i| self.0[i].times(by))
     }
 
-    /// The inner product.
+    /// The dot product.
     #[inline(always)]
     pub fn dot(&self, other: &Self) -> N {
         let product = |i: usize| self.0[i].times(&other.0[i]);
@@ -216,14 +215,14 @@ mod tests {
     use num_bigint::BigInt;
     use proptest::prelude::*;
 
-    /// Sums and products of six numbers, with whatever cancels.
+    /// A polynomial with cancellation in six numbers.
     fn formula<N: Number>(x: [f64; 6]) -> N {
         let [a, b, c, d, e, f] = x.map(N::of);
         let (p, q) = (a.times(&b).minus(&c.times(&d)), a.plus(&e).times(&f.minus(&b)));
         p.squared().minus(&q.times(&c.plus(&d))).times(&e.minus(&a))
     }
 
-    /// The same in integers: every number times 2^1074, of a product of degree 5 times 2^(5 · 1074).
+    /// The same in integers: numbers are scaled by 2^1074, so the product of degree 5 by 2^(5 · 1074).
     fn integer(x: [f64; 6]) -> BigInt {
         let scaled = x.map(|x| {
             let bits = x.to_bits();
@@ -274,7 +273,7 @@ mod tests {
         fn quotients_and_roots_multiply_back(a in number(), b in number(), c in number()) {
             let b = if b == 0.0 { 1.0 } else { b };
             let (x, y) = (Dyadic::of(a).times(&Dyadic::of(c)), Dyadic::of(b));
-            // To 2^-90 of what is divided, or rooted.
+            // To within 2^-90 of the dividend or radicand.
             let close = |back: &Dyadic, x: &Dyadic| {
                 let off = back.minus(x);
                 let limit = x.times(&Dyadic::of(2f64.powi(-90)));

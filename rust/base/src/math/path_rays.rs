@@ -1,11 +1,11 @@
-//! Rays of a wavefront of paths, by columns.
+//! Rays of a wavefront of paths in SoA layout.
 
 use super::{DVec3, LANES, Numbers, Ray, RayColumns, Vectors};
 
-/// Rays that leave surfaces, by columns. Origins keep the digits of f64: what leaves a surface must not be rounded.
-/// Directions are unit vectors, and f32 has enough of their digits for light.
+/// Rays that leave surfaces, in SoA layout. Origins are in f64, since rays that leave a surface must not be rounded.
+/// Directions are unit vectors, for which f32 is precise enough in light transport.
 ///
-/// Every column has room for sixteen more than there are rays, so that loops of sixteen lanes need no end of their own.
+/// Every column has sixteen spare entries, so that loops over sixteen lanes need no remainder.
 #[derive(Clone, Debug, Default)]
 pub struct PathRays {
     /// Number of rays.
@@ -14,15 +14,15 @@ pub struct PathRays {
     pub origin: [Vec<f64>; 3],
     /// Unit directions, by axis.
     pub direction: [Vec<f32>; 3],
-    /// The greatest `t` that counts, in lengths of the direction. Empty if all rays are endless.
+    /// Maximum `t`, in lengths of the direction. Empty if all rays are unbounded.
     pub t_max: Vec<f64>,
-    /// The triangle that each ray leaves and, of those that end, the triangle that it goes to, or
-    /// [`Ray::NO_TRIANGLE`]: it misses both.
+    /// Triangles that each ray misses: the one it leaves and, for bounded rays, the one it goes to, or
+    /// [`Ray::NO_TRIANGLE`].
     pub misses: Vec<[u32; 2]>,
 }
 
 impl PathRays {
-    /// Room for so many rays, endless or not.
+    /// Reserve space for rays, which may be unbounded.
     pub fn with_room(most: usize, are_endless: bool) -> Self {
         let room = most + LANES;
         Self {
@@ -34,7 +34,7 @@ impl PathRays {
         }
     }
 
-    /// The greatest `t` of a ray.
+    /// Maximum `t` of a ray.
     #[inline(always)]
     pub fn end(&self, i: usize) -> f64 {
         self.t_max.get(i).copied().unwrap_or(f64::INFINITY)
@@ -52,13 +52,13 @@ impl PathRays {
         DVec3::new(self.origin[0][i], self.origin[1][i], self.origin[2][i])
     }
 
-    /// One ray, all in f64.
+    /// One ray, in f64.
     #[inline(always)]
     pub fn get(&self, i: usize) -> Ray {
         Ray { t_max: self.end(i), misses: self.misses[i], ..Ray::new(self.origin(i), self.direction(i)) }
     }
 
-    /// All of them.
+    /// All rays as columns.
     pub fn columns(&self) -> RayColumns<'_> {
         let some = self.len;
         let origin = Vectors::Double(self.origin.each_ref().map(|column| &column[..some]));

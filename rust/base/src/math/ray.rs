@@ -1,39 +1,39 @@
-//! What is asked (a ray) and what is answered (a hit).
+//! The ray and the hit.
 
 use glam::DVec3;
 
-/// A half-line `origin + t · direction`, asked for `t_min ≤ t ≤ t_max`.
+/// A half-line `origin + t · direction`, restricted to `t_min ≤ t ≤ t_max`.
 ///
-/// The direction need not be unit: `t` counts in its lengths.
+/// The direction need not be a unit vector: `t` is in multiples of its length.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct Ray {
-    /// Where the ray starts.
+    /// The origin.
     pub origin: DVec3,
-    /// Where it goes, of any finite non-zero length.
+    /// The direction, of any finite nonzero length.
     pub direction: DVec3,
-    /// The least `t` that counts, itself included.
+    /// The least `t`, inclusive.
     pub t_min: f64,
-    /// The greatest `t` that counts, itself included.
+    /// The greatest `t`, inclusive.
     pub t_max: f64,
-    /// When it is asked, for what moves: 0 as the shutter opens, 1 as it closes.
+    /// The time, from 0 at the opening of the shutter to 1 at its closing.
     pub time: f64,
-    /// Triangles that it is known to miss, by their numbers among the primitives that it is asked of, such as the one
-    /// that it leaves and the one that it goes to. They need not be asked about; that changes no answer.
+    /// Triangles that the ray is known to miss, by number, such as the one it leaves and the one it goes to. Their
+    /// tests may be skipped without changing results.
     pub misses: [u32; 2],
 }
 
 impl Ray {
-    /// In place of a triangle that a ray is known to miss.
+    /// Marks an unused entry of `misses`.
     pub const NO_TRIANGLE: u32 = u32::MAX;
 
-    /// A ray asked for every `t` from 0 on.
+    /// A ray for all `t ≥ 0`.
     #[inline(always)]
     pub const fn new(origin: DVec3, direction: DVec3) -> Self {
         Self { origin, direction, t_min: 0.0, t_max: f64::INFINITY, time: 0.0, misses: [Self::NO_TRIANGLE; 2] }
     }
 
-    /// The segment from `a` to `b`: `t` runs from 0 to 1.
+    /// The segment from `a` to `b`, with `t` from 0 to 1.
     #[inline(always)]
     pub fn segment(a: DVec3, b: DVec3) -> Self {
         Self { t_max: 1.0, ..Self::new(a, b - a) }
@@ -45,7 +45,7 @@ impl Ray {
     }
 }
 
-/// The answer to a ray. A miss is [`Hit::MISS`].
+/// The result of a ray query. A miss is [`Hit::MISS`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct Hit {
@@ -55,15 +55,15 @@ pub struct Hit {
     pub uv: [f64; 2],
     /// Index among all primitives of the scene; `u32::MAX` for a miss.
     pub primitive: u32,
-    /// Of an instance, which primitive in it; 0 for what is no instance.
+    /// The primitive within an instance; 0 for other primitives.
     pub inner: u32,
 }
 
 impl Hit {
-    /// Nothing was hit.
+    /// No hit.
     pub const MISS: Self = Self { t: f64::INFINITY, uv: [0.0; 2], primitive: u32::MAX, inner: 0 };
 
-    /// Whether something was hit.
+    /// Return whether it is a hit.
     pub fn is_hit(&self) -> bool {
         self.primitive != u32::MAX
     }

@@ -1,8 +1,8 @@
-//! Rays that wait to be asked, by columns.
+//! A queue of rays in SoA layout.
 
 use super::{DVec3, LANES, Numbers, Ray, RayColumns, VectorLanes, Vectors};
 
-/// Rays that wait to be asked, by columns, and in f64: what leaves a surface must not be rounded.
+/// A queue of rays in SoA layout, in f64, since rays that leave a surface must not be rounded.
 #[derive(Clone, Debug, Default)]
 pub struct RayQueue {
     origin: [Vec<f64>; 3],
@@ -11,26 +11,26 @@ pub struct RayQueue {
     t_max: Vec<f64>,
     time: Vec<f64>,
     misses: Vec<[u32; 2]>,
-    /// The same one after the other, for whom that serves; what stood here last otherwise.
+    /// Scratch space for the same rays in row layout; its content is that of the last call.
     rows: Vec<Ray>,
 }
 
-/// Rays to be queued, a lane each, that are asked from a `t` of 0 on.
+/// Rays to be queued, one per lane, with a `t_min` of 0.
 #[derive(Clone, Debug)]
 pub struct RayLanes {
-    /// Where they start.
+    /// The origins.
     pub origin: VectorLanes,
-    /// Where they go.
+    /// The directions.
     pub direction: VectorLanes,
-    /// The greatest `t` that counts.
+    /// The greatest `t`.
     pub t_max: [f64; LANES],
-    /// When they are asked.
+    /// The times.
     pub time: [f64; LANES],
     /// Triangles that they are known to miss.
     pub misses: [[u32; 2]; LANES],
 }
 
-/// Some of all lanes, in their order.
+/// The selected lanes, in order.
 struct Chosen {
     lanes: [u8; LANES],
     count: usize,
@@ -47,7 +47,7 @@ impl Chosen {
         Self { lanes, count }
     }
 
-    /// Appends what they have.
+    /// Append the values of the selected lanes.
     #[inline(always)]
     fn append<T: Copy>(&self, column: &mut Vec<T>, all: &[T; LANES]) {
         if self.count == LANES {
@@ -62,19 +62,19 @@ impl Chosen {
 }
 
 impl RayQueue {
-    /// How many there are.
+    /// The number of rays.
     #[inline]
     pub fn len(&self) -> usize {
         self.t_max.len()
     }
 
-    /// Whether there are none.
+    /// Return whether there are none.
     #[inline]
     pub fn is_empty(&self) -> bool {
         self.t_max.is_empty()
     }
 
-    /// Forgets all.
+    /// Remove all rays.
     #[inline]
     pub fn clear(&mut self) {
         self.origin.iter_mut().chain(&mut self.direction).for_each(Vec::clear);
@@ -95,7 +95,7 @@ impl RayQueue {
         self.misses.push(ray.misses);
     }
 
-    /// Adds the rays of those lanes that are in a mask.
+    /// Add the rays of the lanes in a mask.
     #[inline]
     pub fn push_lanes(&mut self, rays: &RayLanes, mask: u32) {
         let chosen = Chosen::of(mask);
@@ -110,13 +110,14 @@ impl RayQueue {
         chosen.append(&mut self.misses, &rays.misses);
     }
 
-    /// Some of them, a lane each.
+    /// Gather sixteen rays.
     ///
     /// # Panics
-    /// If one is not there.
+    ///
+    /// If an index is out of range.
     #[inline]
     pub fn gather(&self, which: &[u32; LANES], rays: &mut [Ray; LANES]) {
-        // All columns are as long as this one, which is seen here once for all lanes.
+        // Equal lengths are established here once, which avoids bounds checks per lane.
         let count = self.len();
         let [ox, oy, oz] = self.origin.each_ref().map(|column| &column[..count]);
         let [dx, dy, dz] = self.direction.each_ref().map(|column| &column[..count]);
@@ -136,7 +137,7 @@ impl RayQueue {
         }
     }
 
-    /// One of them.
+    /// One of the rays.
     #[inline(always)]
     pub fn get(&self, i: usize) -> Ray {
         let at = |columns: &[Vec<f64>; 3]| [columns[0][i], columns[1][i], columns[2][i]].into();
@@ -150,12 +151,12 @@ impl RayQueue {
         }
     }
 
-    /// Has one of them asked from another `t` on.
+    /// Change the `t_min` of a ray.
     pub fn set_t_min(&mut self, i: usize, t_min: f64) {
         self.t_min[i] = t_min;
     }
 
-    /// All of them, where nothing moves.
+    /// All rays as columns, for static scenes.
     pub fn columns(&self) -> RayColumns<'_> {
         let [origin, direction] = [&self.origin, &self.direction].map(|columns| {
             let [x, y, z] = columns;
@@ -164,7 +165,7 @@ impl RayQueue {
         RayColumns::new(origin, direction, Numbers::Each(&self.t_min), Numbers::Each(&self.t_max)).missing(&self.misses)
     }
 
-    /// All of them, one after the other.
+    /// All rays as rows.
     pub fn rows(&mut self) -> &[Ray] {
         let mut rows = std::mem::take(&mut self.rows);
         rows.clear();

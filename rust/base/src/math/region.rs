@@ -1,36 +1,35 @@
-//! Where a scene lies: what errors are measured against, and the units that boxes are kept in.
+//! The extent of a scene, to which error bounds refer, and the units of boxes.
 
 use super::robust::normalising_scale;
 use super::{Aabb, Axes, DVec3, Vec3};
 
-/// The box around a scene, in f64, with a centre and a scale of its own.
+/// The bounding box of a scene in f64, with a center and a scale.
 ///
-/// What is computed in f32 is computed in *box units*: relative to the centre, and times a power of two so that no
-/// coordinate exceeds 2. So a small scene far from the origin loses nothing to its distance, and nothing overflows
-/// whatever its size.
+/// Computations in f32 use *box units*: relative to the center, and scaled by a power of two so that no coordinate
+/// exceeds 2. So a small scene far from the origin loses no precision, and nothing overflows for any size.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Region {
-    /// The least corner.
+    /// The min corner.
     pub min: DVec3,
-    /// The greatest corner.
+    /// The max corner.
     pub max: DVec3,
-    /// About its middle.
+    /// The approximate center.
     pub centre: DVec3,
-    /// Bounds every coordinate relative to the centre.
+    /// Bound on every coordinate relative to the center.
     pub radius: f64,
-    /// Bounds every coordinate.
+    /// Bound on every coordinate.
     pub extent: f64,
-    /// From the scene's units to those of boxes.
+    /// The factor from the scene's units to box units.
     pub scale: f64,
 }
 
 impl Region {
-    /// The region from one corner to another; of nothing at all if they are the wrong way round.
+    /// The region between two corners; empty if they are reversed.
     pub fn new(min: DVec3, max: DVec3) -> Self {
         if min.cmpgt(max).any() {
             return Self { min, max, centre: DVec3::ZERO, radius: 0.0, extent: 0.0, scale: 1.0 };
         }
-        // Halves first: the sum may be more than an f64 holds.
+        // Halved first, since the sum may overflow.
         let centre = min / 2.0 + max / 2.0;
         let radius = (max - centre).max(centre - min).max_element() * (1.0 + 4.0 * f64::EPSILON);
         let radius = radius.min(f64::MAX);
@@ -40,14 +39,14 @@ impl Region {
         Self { min, max, centre, radius, extent, scale }
     }
 
-    /// The region of some points.
+    /// The region of points.
     pub fn around(points: impl IntoIterator<Item = DVec3>) -> Self {
         let (min, max) =
             points.into_iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(min, max), p| (min.min(p), max.max(p)));
         Self::new(min, max)
     }
 
-    /// Whether nothing is inside.
+    /// Return whether it is empty.
     pub fn is_empty(&self) -> bool {
         self.min.cmpgt(self.max).any()
     }
@@ -58,21 +57,21 @@ impl Region {
         (point - self.centre) * self.scale
     }
 
-    /// A point in box units, along axes of a tree's own if there are any.
+    /// A point in box units, along a tree's own axes if given.
     #[inline(always)]
     pub fn to_box_along(&self, axes: Option<&Axes>, point: DVec3) -> DVec3 {
         let point = self.to_box(point);
         axes.map_or(point, |axes| axes.to(point))
     }
 
-    /// The box around some points in box units, rounded outwards. It errs by what [`Region::to_box`] does in f64, half
-    /// an ulp of its own numbers, and by no more.
+    /// The bounding box of points in box units, rounded outward. It errs by half an ulp of the coordinates, from
+    /// [`Region::to_box`] in f64.
     #[inline]
     pub fn aabb(&self, points: [DVec3; 3]) -> Aabb {
         self.aabb_along(None, points)
     }
 
-    /// The same along axes of a tree's own, if there are any: then it errs by up to 2⁻⁵⁰.
+    /// The same along a tree's own axes, if given; then it errs by up to 2⁻⁵⁰.
     #[inline]
     pub fn aabb_along(&self, axes: Option<&Axes>, points: [DVec3; 3]) -> Aabb {
         let [a, b, c] = points.map(|p| self.to_box_along(axes, p));
@@ -81,14 +80,14 @@ impl Region {
     }
 }
 
-/// The greatest f32 that is not above.
+/// Round down to f32.
 #[inline]
 fn down(x: f64) -> f32 {
     let y = x as f32;
     if f64::from(y) > x { y.next_down() } else { y }
 }
 
-/// The least f32 that is not below.
+/// Round up to f32.
 #[inline]
 fn up(x: f64) -> f32 {
     let y = x as f32;

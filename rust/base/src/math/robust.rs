@@ -1,15 +1,15 @@
-//! Steps of one unit in the last place, powers of two, and the constants that error bounds are made of.
+//! Basic functions for robust floating-point arithmetic, and constants of error bounds.
 
 /// Half the distance from 1 to the next f64: the largest relative error of one rounding.
 pub const UNIT: f64 = f64::EPSILON / 2.0;
 
-/// The greater of two numbers that are not NaN: one instruction, where `f64::max` takes four for NaN's sake.
+/// The maximum of two numbers other than NaN: one instruction, where `f64::max` takes four to handle NaN.
 #[inline(always)]
 pub fn greater<T: PartialOrd>(a: T, b: T) -> T {
     if a > b { a } else { b }
 }
 
-/// The lesser of two numbers that are not NaN.
+/// The minimum of two numbers other than NaN.
 #[inline(always)]
 pub fn lesser<T: PartialOrd>(a: T, b: T) -> T {
     if a < b { a } else { b }
@@ -17,11 +17,11 @@ pub fn lesser<T: PartialOrd>(a: T, b: T) -> T {
 
 /// The power of two `s` for which `s · x` lies in [1, 2), and its inverse, for a normal number; 1 for zero.
 ///
-/// Multiplying by either is exact, so that whatever is computed of scaled numbers is the scaled result.
+/// Multiplying by either is exact, so computations on scaled numbers give scaled results.
 #[inline(always)]
 pub fn normalising_scale(x: f64) -> (f64, f64) {
     debug_assert!(x == 0.0 || x.is_normal());
-    // The inverse has the exponent of x and no other bits; exponents of inverses add up to twice the bias.
+    // The inverse has the exponent of x and no other bits: biased exponents of inverses sum to twice the bias.
     match (x.to_bits() >> 52) & 0x7ff {
         0 => (1.0, 1.0),
         // 2⁻¹⁰²³ is subnormal.

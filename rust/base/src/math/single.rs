@@ -1,33 +1,33 @@
-//! What light transport computes in f32, a lane at a time: written without branches, for loops of sixteen lanes.
+//! f32 functions for light transport, written without branches for loops over sixteen lanes.
 
 use super::Vec3;
 use std::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
-/// All bits or none. SSE2 has no vectors of bool, nor a choice by them.
+/// A mask of all bits or none. SSE2 has no vectors of bool, nor a blend by them.
 #[inline(always)]
 pub fn mask(is: bool) -> u32 {
     u32::from(is).wrapping_neg()
 }
 
-/// The first where the mask is set, otherwise the second.
+/// Select the first if the mask is set, else the second.
 #[inline(always)]
 pub fn choose(mask: u32, first: f32, second: f32) -> f32 {
     f32::from_bits(first.to_bits() & mask | second.to_bits() & !mask)
 }
 
-/// The first of two vectors where the mask is set, otherwise the second.
+/// Select the first vector if the mask is set, else the second.
 #[inline(always)]
 pub fn choose_vector(mask: u32, first: Vec3, second: Vec3) -> Vec3 {
     Vec3::new(choose(mask, first.x, second.x), choose(mask, first.y, second.y), choose(mask, first.z, second.z))
 }
 
-/// The greater of two numbers that are not NaN.
+/// The maximum of two numbers other than NaN.
 #[inline(always)]
 pub fn greater(a: f32, b: f32) -> f32 {
     choose(mask(a > b), a, b)
 }
 
-/// The lesser of two numbers that are not NaN.
+/// The minimum of two numbers other than NaN.
 #[inline(always)]
 pub fn lesser(a: f32, b: f32) -> f32 {
     choose(mask(a < b), a, b)
@@ -42,10 +42,10 @@ pub fn sin_cos_eighth(x: f32) -> [f32; 2] {
     [sin, cos]
 }
 
-/// The sine and the cosine of so many quarters of a turn, from 0 to 4, to within 2⁻²² of 1.
+/// The sine and the cosine of an angle in quarter turns, from 0 to 4, to within 2⁻²² of 1.
 #[inline(always)]
 pub fn sin_cos_quarters(quarters: f32) -> [f32; 2] {
-    /// Added to a small number, it rounds it to a whole one, which then stands in the last bits.
+    /// Adding this rounds a small number to an integer in the last bits.
     const WHOLE: f32 = 12_582_912.0;
     let shifted = quarters + WHOLE;
     let [sin, cos] = sin_cos_eighth((quarters - (shifted - WHOLE)) * FRAC_PI_2);
@@ -55,7 +55,7 @@ pub fn sin_cos_quarters(quarters: f32) -> [f32; 2] {
     [f32::from_bits(a.to_bits() ^ (turns & 2) << 30), f32::from_bits(b.to_bits() ^ (turns.wrapping_add(1) & 2) << 30)]
 }
 
-/// The angle from +x of a point that is not below the axis, from 0 to π, to within 2⁻²¹ of itself; NaN at the origin.
+/// The angle of a point in the upper half-plane from +x, from 0 to π, to a relative error of 2⁻²¹; NaN at the origin.
 #[inline(always)]
 pub fn upper_angle(y: f32, x: f32) -> f32 {
     /// tan π/8.
@@ -63,7 +63,7 @@ pub fn upper_angle(y: f32, x: f32) -> f32 {
     let width = x.abs();
     let is_steep = mask(y > width);
     let (over, under) = (lesser(y, width), greater(y, width));
-    // Turned by an eighth where it is more than a sixteenth, so that a few terms will do.
+    // Rotated by an eighth of a turn if it exceeds a sixteenth, so that a few terms suffice.
     let is_far = mask(over > EIGHTH * under);
     let tangent = choose(is_far, over - under, over) / choose(is_far, over + under, under);
     let z = tangent * tangent;
@@ -73,8 +73,7 @@ pub fn upper_angle(y: f32, x: f32) -> f32 {
     choose(mask(x < 0.0), PI - angle, angle)
 }
 
-/// Radius of a point of the unit disk, and the sine and the cosine of its angle; see
-/// [`crate::sampling::warp::uniform_disk`].
+/// Radius, and sine and cosine of the angle, of a point in the unit disk; see [`crate::sampling::warp::uniform_disk`].
 #[inline(always)]
 fn concentric(u: [f32; 2]) -> (f32, [f32; 2]) {
     let (a, b) = (2.0 * u[0] - 1.0, 2.0 * u[1] - 1.0);
@@ -89,7 +88,7 @@ fn concentric(u: [f32; 2]) -> (f32, [f32; 2]) {
 #[inline(always)]
 pub fn cosine_hemisphere(u: [f32; 2]) -> Vec3 {
     let (radius, [sin, cos]) = concentric(u);
-    // Not 1 − r², which would lose the digits of grazing directions.
+    // 1 − r² would lose the digits of grazing directions.
     let height = ((1.0 - radius) * (1.0 + radius)).sqrt();
     Vec3::new(radius * cos, radius * sin, height)
 }
@@ -102,7 +101,7 @@ pub fn uniform_triangle([x, y]: [f32; 2]) -> [f32; 2] {
     [choose(is_above, 0.5 * x, x - 0.5 * y), choose(is_above, y - 0.5 * x, 0.5 * y)]
 }
 
-/// A vector of the local coordinates of a unit normal in the world's; see [`super::Frame::new`].
+/// Transform a vector from the local frame of a unit normal to the world; see [`super::Frame::new`].
 #[inline(always)]
 pub fn to_world(normal: Vec3, local: Vec3) -> Vec3 {
     let sign = 1f32.copysign(normal.z);
@@ -144,7 +143,7 @@ mod tests {
             let u = sampler.two(0);
             let single = u.map(|u| u as f32);
             assert!((cosine_hemisphere(single).as_dvec3() - warp::cosine_hemisphere(u)).length() < 3e-3);
-            // Of the same numbers, to some ulps.
+            // Same inputs, same results to some ulps.
             let same = single.map(f64::from);
             assert!((cosine_hemisphere(single).as_dvec3() - warp::cosine_hemisphere(same)).length() < 1e-3);
             let ([v, w], [a, b]) = (uniform_triangle(single), warp::uniform_triangle(same));

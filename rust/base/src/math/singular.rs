@@ -3,9 +3,9 @@
 use super::DVec3;
 use super::robust::UNIT;
 
-/// The columns of a matrix, turned in pairs until all are at right angles (Hestenes, "Inversion of Matrices by
-/// Biorthogonalization and Related Results", 1958). Their lengths are its singular values, and what it makes of the
-/// unit sphere is an ellipsoid of which they are the semi-axes. Small ones keep their digits as well as large ones do.
+/// One-sided Jacobi rotations of a matrix' columns until they are orthogonal (Hestenes, "Inversion of Matrices by
+/// Biorthogonalization and Related Results", 1958). Their lengths are the singular values, and they are the semi-axes
+/// of the unit sphere's image. Small singular values are as accurate as large ones.
 pub fn at_right_angles(mut columns: [DVec3; 3]) -> [DVec3; 3] {
     for _ in 0..40 {
         let mut turned = false;
@@ -36,7 +36,7 @@ mod tests {
     #[test]
     fn the_axes_of_a_scaled_and_turned_sphere_are_found() {
         let (c, s) = (0.6, 0.8);
-        // Scaled by 1, 1e-5 and 4 along x, y, z after a turn about z, so that columns are not at right angles.
+        // Scaled by 1, 1e-5 and 4 along x, y, z after a rotation about z, so that the columns are not orthogonal.
         let axes =
             at_right_angles([DVec3::new(c, 1e-5 * s, 0.0), DVec3::new(-s, 1e-5 * c, 0.0), DVec3::new(0.0, 0.0, 4.0)]);
         let mut lengths = axes.map(DVec3::length);

@@ -1,31 +1,31 @@
-//! The rays of an image in tiles of 8 × 8 pixels, each in four of 4 × 4: neighbours in both directions, not along rows
-//! alone, share a packet.
+//! Tiled order of an image's rays: tiles of 8 × 8 pixels, each of four 4 × 4 quarters, so that packets are compact in
+//! both directions.
 
 use super::DVec3;
 
-/// Pixels on a tile's side.
+/// Side length of a tile in pixels.
 const SIDE: usize = 8;
 
-/// Pixels on a side of its quarters.
+/// Side length of its quarters.
 const HALF: usize = SIDE / 2;
 
-/// Pixels of a tile.
+/// Pixels per tile.
 const TILE: usize = SIDE * SIDE;
 
-/// Tiles that are read line by line: few enough that what is made of them stays in the nearest cache.
+/// Tiles that are read line by line together: few enough for their results to stay in the L1 cache.
 const TOGETHER: usize = 1;
 
-/// Rows longer than this are not cut into tiles: a band of them would be too much for one thread.
+/// Maximum row length for tiling: a band of longer rows would be too much for one thread.
 const LONGEST: usize = 1 << 14;
 
-/// Pixels that are neighbours in a row and are visited one after the other.
+/// Neighbouring pixels of a row that are visited consecutively.
 #[derive(Clone, Copy, Debug)]
 pub struct Run {
-    /// Where the first lies.
+    /// The position of the first pixel.
     pub place: usize,
-    /// When it is visited.
+    /// The rank of the first pixel in the order.
     pub at: usize,
-    /// How many they are.
+    /// The number of pixels.
     pub len: usize,
 }
 
@@ -35,7 +35,7 @@ pub struct Tiling {
     row: usize,
 }
 
-/// Where in a tile its `k`-th pixel lies.
+/// The position of the `k`-th pixel within a tile.
 #[inline(always)]
 fn within(k: usize) -> [usize; 2] {
     const QUARTER: usize = HALF * HALF;
@@ -44,24 +44,24 @@ fn within(k: usize) -> [usize; 2] {
 }
 
 impl Tiling {
-    /// For an image of `count` pixels in rows of `row`. A sequence, whose `row` is 0, keeps its order, as does what
-    /// does not divide into rows, or divides into rows narrower than a tile or very long.
+    /// The order for `count` pixels in rows of `row`. A sequence, with a `row` of 0, keeps its order. So do images with
+    /// incomplete rows, and those with rows narrower than a tile or very long.
     pub fn new(count: usize, row: usize) -> Self {
         let is_image = (SIDE..=LONGEST).contains(&row) && count.is_multiple_of(row) && count / row >= SIDE;
         Self { row: if is_image { row } else { 0 } }
     }
 
-    /// Whether it is a plain sequence, whose order is its own.
+    /// Return whether it is a plain sequence.
     pub fn is_sequence(&self) -> bool {
         self.row == 0
     }
 
-    /// The least number of pixels, `wanted` or more, that are whole bands of tiles: an image may be cut after so many.
+    /// The least number of pixels, `wanted` or more, that are whole bands of tiles: images may be split there.
     pub fn chunk(&self, wanted: usize) -> usize {
         if self.row == 0 { wanted } else { wanted.next_multiple_of(SIDE * self.row) }
     }
 
-    /// Where the pixels lie that are visited `from`-th and next, among `count` that begin with a band.
+    /// The positions of the pixels visited from rank `from`, among `count` pixels that begin with a band.
     #[inline]
     pub fn places(&self, from: usize, count: usize, places: &mut [usize]) {
         self.runs(from, places.len(), count, |run| {
@@ -71,7 +71,7 @@ impl Tiling {
         });
     }
 
-    /// The same for `some` of them, as runs of neighbours: those of whole tiles line by line, as they lie in memory.
+    /// The same for `some` pixels, as runs of neighbours. Whole tiles are read line by line, as they lie in memory.
     #[inline(always)]
     pub fn runs(&self, from: usize, some: usize, count: usize, mut each: impl FnMut(Run)) {
         if self.row == 0 {
@@ -83,10 +83,10 @@ impl Tiling {
         while at < some {
             let (i, rest) = ((from + at) % band, some - at);
             let start = from + at - i;
-            // The first run, and how many lines of how many runs of whole tiles there are.
+            // The first run, and the numbers of lines and of runs per line in whole tiles.
             let (mut lines, mut runs) = (1, 1);
             let (place, len) = if start + band > count {
-                // Where too few rows are left for tiles, pixels keep their order.
+                // Pixels in too few remaining rows for tiles keep their order.
                 (start + i, rest)
             } else if i >= tiled {
                 let (x, y) = ((i - tiled) % more, (i - tiled) / more);
@@ -111,13 +111,13 @@ impl Tiling {
     }
 }
 
-/// How many of `count` vectors make a row, if they are those of an image, row after row, as a camera's directions are:
-/// along a row each differs a little from the one before, and every row begins with a leap back. 0 if they are not. A
-/// guess that is wrong costs no more than an order of rays that has nothing to say for itself.
+/// Guess the row length of `count` vectors that belong to an image, row by row, such as a camera's directions. Steps
+/// within a row are small, and every row begins with a leap. 0 if there is no such pattern. A wrong guess merely gives
+/// an arbitrary order of the rays.
 pub fn row_length(count: usize, vector: impl Fn(usize) -> DVec3) -> usize {
-    /// How much longer than a step a leap is, squared.
+    /// The squared ratio of a leap to a step.
     const LEAP: f64 = 64.0;
-    /// Rows that are looked at.
+    /// Number of rows that are checked.
     const ROWS: usize = 8;
     let step = |i: usize| (vector(i + 1) - vector(i)).length_squared();
     let is_leap = |i: usize, step: f64| step > 0.0 && (vector(i + 1) - vector(i)).length_squared() > LEAP * step;
@@ -133,7 +133,7 @@ pub fn row_length(count: usize, vector: impl Fn(usize) -> DVec3) -> usize {
     let rows = count / row;
     let is_row = (1..ROWS).all(|k| {
         let start = (rows - 2) * k / ROWS * row;
-        // Within, and from its end to the next one's start.
+        // A step inside the row, and a leap from its end to the next start.
         !is_leap(start + row / 2, step(start)) && is_leap(start + row - 1, step(start))
     });
     if is_row { row } else { 0 }
@@ -209,15 +209,14 @@ mod tests {
             let count = width * height;
             let size = height.max(width) as f64;
             let forward = DVec3::new(size / 3.0, -size / 2.0, size);
-            // Through pixels, of any length or of length one, and the origins of parallel rays.
+            // Directions through pixels, of any length or normalized, and origins of parallel rays.
             assert_eq!(row_length(count, |i| pixel(i, width) + forward), width);
             assert_eq!(row_length(count, |i| (pixel(i, width) + forward).normalize()), width);
             assert_eq!(row_length(count, |i| 1e-3 * pixel(i, width)), width);
             // One more or less is no image.
             assert_eq!(row_length(count + 1, |i| pixel(i, width)), 0);
         }
-        // Digits of multiples that have nothing to do with each other (Steele, Lea and Flood, "Fast Splittable
-        // Pseudorandom Number Generators", 2014).
+        // Pseudorandom digits (Steele, Lea and Flood, "Fast Splittable Pseudorandom Number Generators", 2014).
         let mixed = |i: usize| {
             let x = (i as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15);
             let x = (x ^ x >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -231,7 +230,7 @@ mod tests {
             assert_eq!(row_length(count, |i| DVec3::X * i as f64), 0);
             assert_eq!(row_length(count, |_| DVec3::NAN), 0);
         }
-        // A leap that does not come again.
+        // A leap that does not repeat.
         assert_eq!(row_length(10_000, |i| DVec3::X * if i < 100 { i as f64 } else { i as f64 - 1000.0 }), 0);
     }
 }

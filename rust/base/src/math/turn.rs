@@ -1,13 +1,13 @@
-//! Sines and cosines of parts of a turn, and the angle of a point.
+//! Sines and cosines of fractions of a turn, and the angle of a point.
 //!
-//! Directions are drawn by angles that are simple parts of a turn. Of these the quadrant is found exactly, before
-//! anything is rounded, and in an eighth of a turn to either side a few terms of the Taylor series are all there is to
-//! it; a sine for every argument has to do much more.
+//! Directions are sampled by angles that are simple fractions of a turn. Their quadrant is exact, before any rounding,
+//! and within an eighth of a turn a few terms of the Taylor series suffice. A sine for every argument takes much more
+//! work.
 
 use std::f64::consts::{FRAC_2_PI, FRAC_PI_2, FRAC_PI_4, PI, TAU};
 
-/// 1/3!, −1/5! and so on: what follows in the sine of x, after x, in powers of −x². The first term left out is 5·10⁻¹⁷
-/// at π/4.
+/// 1/3!, −1/5! and so on: the coefficients of the sine of x after x, in powers of −x². The first omitted term is
+/// 5·10⁻¹⁷ at π/4.
 const SINE: [f64; 7] = [
     -1.0 / 6.0,
     1.0 / 120.0,
@@ -18,7 +18,7 @@ const SINE: [f64; 7] = [
     -1.0 / 1_307_674_368_000.0,
 ];
 
-/// The same of the cosine, after 1 − x²/2. The first term left out is 2·10⁻¹⁸ at π/4.
+/// The same for the cosine, after 1 − x²/2. The first omitted term is 2·10⁻¹⁸ at π/4.
 const COSINE: [f64; 7] = [
     1.0 / 24.0,
     -1.0 / 720.0,
@@ -29,8 +29,8 @@ const COSINE: [f64; 7] = [
     1.0 / 20_922_789_888_000.0,
 ];
 
-/// What follows in the arc tangent of x, after x, in powers of x²: the polynomial of least error up to tan² π/8, which
-/// is 4·10⁻¹⁷ of the last.
+/// The coefficients of the arc tangent of x after x, in powers of x²: the minimax polynomial up to tan² π/8, with an
+/// error of 4·10⁻¹⁷.
 const ARC: [f64; 11] = [
     -0.333_333_333_333_333_3,
     0.199_999_999_999_955_2,
@@ -45,7 +45,7 @@ const ARC: [f64; 11] = [
     -0.019_176_887_119_066_22,
 ];
 
-/// A polynomial of degree 6, its terms in pairs so that they need not wait for each other (Estrin, 1960).
+/// A polynomial of degree 6, with terms in pairs for instruction-level parallelism (Estrin, 1960).
 #[inline(always)]
 fn polynomial(c: &[f64; 7], z: f64) -> f64 {
     let (z2, z4) = (z * z, (z * z) * (z * z));
@@ -59,18 +59,18 @@ pub fn sin_cos_eighth(x: f64) -> [f64; 2] {
     [x + x * z * polynomial(&SINE, z), 1.0 - 0.5 * z + z * z * polynomial(&COSINE, z)]
 }
 
-/// Those of an angle, turned on by so many quarters.
+/// Rotate by a number of quarter turns.
 #[inline(always)]
 fn turned([sin, cos]: [f64; 2], quarters: i32) -> [f64; 2] {
     let [sin, cos] = if quarters & 1 == 0 { [sin, cos] } else { [cos, -sin] };
     if quarters & 2 == 0 { [sin, cos] } else { [-sin, -cos] }
 }
 
-/// The sine and the cosine of a part of a turn, from 0 to 1, to within 2⁻⁵¹ of 1.
+/// The sine and the cosine of a fraction of a turn, from 0 to 1, to within 2⁻⁵¹ of 1.
 #[inline(always)]
 pub fn sin_cos_turn(part: f64) -> [f64; 2] {
     let quarters = (4.0 * part + 0.5) as i32;
-    // Exact: of two numbers so near each other.
+    // Exact, as a difference of nearby numbers.
     let rest = part - 0.25 * f64::from(quarters);
     turned(sin_cos_eighth(TAU * rest), quarters)
 }
@@ -78,20 +78,20 @@ pub fn sin_cos_turn(part: f64) -> [f64; 2] {
 /// The sine and the cosine of an angle from 0 to 2π, to within 2⁻⁵¹ of 1.
 #[inline(always)]
 pub fn sin_cos(angle: f64) -> [f64; 2] {
-    /// π/2 in two parts, of which the first has so few digits that its multiples are exact.
+    /// π/2 in two parts, the first with so few digits that its multiples are exact.
     const QUARTER: [f64; 2] = [f64::from_bits(0x3FF9_21FB_5400_0000), 9.920_935_796_805_404e-10];
     let quarters = (angle * FRAC_2_PI + 0.5) as i32;
     let rest = (angle - f64::from(quarters) * QUARTER[0]) - f64::from(quarters) * QUARTER[1];
     turned(sin_cos_eighth(rest), quarters)
 }
 
-/// The angle from +x of a point that is not below the axis, from 0 to π, to within 2⁻⁵⁰ of itself; 0 at the origin.
+/// The angle of a point in the upper half-plane from +x, from 0 to π, to a relative error of 2⁻⁵⁰; 0 at the origin.
 #[inline(always)]
 pub fn upper_angle(y: f64, x: f64) -> f64 {
     /// tan π/8, and its inverse.
     const EIGHTH: [f64; 2] = [0.414_213_562_373_095_03, 2.414_213_562_373_095];
     let width = x.abs();
-    // Turned by a quarter or an eighth, so that it is no more than an eighth of half a turn from an axis.
+    // Rotated by a quarter or an eighth of a turn, so that it is within a sixteenth of a turn from an axis.
     let (is_steep, is_flat) = (y > EIGHTH[1] * width, y <= EIGHTH[0] * width);
     let (over, under) = if is_steep { (-width, y) } else { (y - width, y + width) };
     let (over, under) = if is_flat { (y, width) } else { (over, under) };
@@ -157,7 +157,7 @@ mod tests {
             };
             close(sin_cos_eighth((part - 0.5) * FRAC_PI_4 * 2.0), (part - 0.5) * FRAC_PI_4 * 2.0, f64::EPSILON)?;
             close(sin_cos(TAU * part), TAU * part, 2.0 * f64::EPSILON)?;
-            // libm is asked for an angle that is rounded, by as much as 4 ε.
+            // libm's argument is rounded, by as much as 4 ε.
             close(sin_cos_turn(part), TAU * part, 6.0 * f64::EPSILON)?;
         }
 

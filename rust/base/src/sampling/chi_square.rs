@@ -1,9 +1,9 @@
-//! Pearson's test of frequencies, for tests.
+//! Pearson's chi-square test, for tests.
 
-/// Fails if counts contradict probabilities, at an error rate of 10⁻⁴ for each call.
+/// Assert that counts are consistent with probabilities, with a false alarm rate of 10⁻⁴ per call.
 ///
-/// `probabilities` need not add up to 1: the rest is taken as a class of its own, which must not be drawn if it is 0.
-/// Classes that expect fewer than 5 are pooled, as Pearson's approximation wants it.
+/// `probabilities` need not add up to 1: the remainder is a class of its own, which must not occur if it is 0. Classes
+/// with an expectation below 5 are pooled, as Pearson's approximation requires.
 pub fn assert_frequencies(counts: &[u64], probabilities: &[f64]) {
     assert_eq!(counts.len(), probabilities.len());
     let total: u64 = counts.iter().sum();
@@ -29,7 +29,7 @@ pub fn assert_frequencies(counts: &[u64], probabilities: &[f64]) {
     assert!(statistic < limit, "chi-square {statistic} of {classes} classes, at most {limit}");
 }
 
-/// The chi-square that is exceeded with probability 10⁻⁴ (Wilson and Hilferty, 1931).
+/// The chi-square value exceeded with probability 10⁻⁴ (Wilson and Hilferty, 1931).
 fn quantile(degrees: f64) -> f64 {
     const NORMAL: f64 = 3.719_016_485;
     let spread = 2.0 / (9.0 * degrees);

@@ -1,4 +1,4 @@
-//! The numbers of a batch of samples, by columns.
+//! The random numbers of a batch of samples in SoA layout.
 
 use super::bits::number;
 use super::lanes::joined;
@@ -7,33 +7,33 @@ use crate::math::single::lesser;
 use crate::math::{LANES, gather};
 use crate::simd::{Level, loops};
 
-/// Samples of one picture, whose numbers are asked for sixteen at a time.
+/// Samples of one picture, whose numbers are generated sixteen at a time.
 #[derive(Clone, Debug)]
 pub struct SamplerColumns {
-    /// Which numbers they have.
+    /// The kind and seed of the numbers.
     all: SamplerLanes,
     pixel: Vec<u32>,
     sample: Vec<u32>,
-    /// Where each batch's stream starts; nothing where numbers are independent.
+    /// The start of each batch's stream; empty for independent numbers.
     words: Vec<[u32; 4]>,
 }
 
 /// The greatest f32 below 1.
 const BELOW_ONE: f32 = 1.0 - f32::EPSILON / 2.0;
 
-/// 32 bits as the middle of one of 2²³ steps in (0, 1).
+/// 32 bits as the midpoint of one of 2²³ equal steps in (0, 1).
 #[inline(always)]
 fn step(word: u32) -> f32 {
     ((word >> 9) as i32 as f32 + 0.5) * (1.0 / (1u32 << 23) as f32)
 }
 
 impl SamplerColumns {
-    /// With samples of the picture that one is of.
+    /// An empty set of samples of the picture that `sampler` belongs to.
     pub fn new(sampler: &Sampler) -> Self {
         Self { all: SamplerLanes::new(sampler), pixel: Vec::new(), sample: Vec::new(), words: Vec::new() }
     }
 
-    /// Takes samples of the same picture in place of those before.
+    /// Replace the samples by others of the same picture.
     pub fn take<'a>(&mut self, samplers: impl Iterator<Item = &'a Sampler>) {
         self.pixel.clear();
         self.sample.clear();
@@ -48,7 +48,7 @@ impl SamplerColumns {
         }
     }
 
-    /// Those of some samples, a lane each.
+    /// Gather samples, one per lane.
     #[inline]
     pub fn gather(&self, which: &[u32; LANES], to: &mut SamplerLanes) {
         gather(&self.pixel, which, &mut to.pixel);
@@ -65,7 +65,7 @@ impl SamplerColumns {
 }
 
 impl SamplerLanes {
-    /// What [`SamplerLanes::one_and_two`] gives for a dimension of all lanes, the pair in f32.
+    /// The numbers of [`SamplerLanes::one_and_two`] for the same dimension in all lanes, with the pair in f32.
     #[inline]
     pub fn choice_and_pair(&self, level: Level, dimension: u32, one: &mut [f64; LANES], two: &mut [[f32; LANES]; 2]) {
         if self.kind == SamplerKind::Independent {

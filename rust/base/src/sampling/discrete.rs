@@ -1,10 +1,10 @@
-//! Choosing one of many by weight.
+//! Sampling of discrete distributions.
 
-/// Chooses an entry with probability proportional to its weight, in constant time (Walker, 1977; built in linear time
-/// as in Vose, "A Linear Algorithm for Generating Random Numbers with a Given Distribution", 1991).
+/// Samples an entry with probability proportional to its weight in constant time (Walker, 1977; built in linear time as
+/// in Vose, "A Linear Algorithm for Generating Random Numbers with a Given Distribution", 1991).
 #[derive(Clone, Debug)]
 pub struct AliasTable {
-    /// Each column of the table belongs to its own entry below the threshold, and to its alias from there on.
+    /// Each column belongs to its own entry below the threshold, and to its alias above.
     columns: Vec<Column>,
     probabilities: Vec<f64>,
 }
@@ -16,9 +16,10 @@ struct Column {
 }
 
 impl AliasTable {
-    /// A table for weights; `None` if all are 0 or there is none.
+    /// Build a table for weights; `None` if all are 0 or there are none.
     ///
     /// # Panics
+    ///
     /// If a weight is negative, infinite or NaN.
     pub fn new(weights: &[f64]) -> Option<Self> {
         assert!(weights.iter().all(|w| w.is_finite() && *w >= 0.0), "weights are finite and not negative");
@@ -26,7 +27,7 @@ impl AliasTable {
         if largest == 0.0 {
             return None;
         }
-        // Taken relative to the largest, no sum overflows.
+        // Relative to the largest weight, no sum overflows.
         let sum: f64 = weights.iter().map(|w| w / largest).sum();
         let probabilities: Vec<f64> = weights.iter().map(|w| w / largest / sum).collect();
 
@@ -34,13 +35,13 @@ impl AliasTable {
         let mut share: Vec<f64> = probabilities.iter().map(|p| p * count as f64).collect();
         let mut columns: Vec<Column> = (0..count as u32).map(|alias| Column { threshold: 1.0, alias }).collect();
         let (mut poor, mut rich): (Vec<u32>, Vec<u32>) = (0..count as u32).partition(|&i| share[i as usize] < 1.0);
-        // Entries of weight 0 come first, while there is surely one to fill their column: rounding may leave a few
-        // poor ones over at the end, which then keep their column to themselves.
+        // Entries of weight 0 come first, while a donor for their column certainly exists. Rounding may leave a few
+        // poor ones at the end, which then keep their column to themselves.
         poor.sort_by_key(|&i| share[i as usize] == 0.0);
         while let Some(&donor) = rich.last() {
             let Some(small) = poor.pop() else { break };
             columns[small as usize] = Column { threshold: share[small as usize], alias: donor };
-            // In this order the difference is exact for a small share (Vose).
+            // In this order the difference is exact for small shares (Vose).
             share[donor as usize] = (share[donor as usize] + share[small as usize]) - 1.0;
             if share[donor as usize] < 1.0 {
                 poor.push(donor);
@@ -50,7 +51,7 @@ impl AliasTable {
         Some(Self { columns, probabilities })
     }
 
-    /// The memory held.
+    /// Memory use in bytes.
     pub fn bytes(&self) -> usize {
         size_of_val(self.columns.as_slice()) + size_of_val(self.probabilities.as_slice())
     }
@@ -78,7 +79,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// The probability that the table gives to each entry, read off its columns.
+    /// The probability of each entry that the table's columns imply.
     fn implied(table: &AliasTable) -> Vec<f64> {
         let mut sums = vec![0.0; table.columns.len()];
         for (i, column) in table.columns.iter().enumerate() {
@@ -123,8 +124,8 @@ mod tests {
 
     #[test]
     fn rare_entries_are_reached() {
-        // One of a thousand entries has a share of 10⁻¹⁰: its column starts with it, and only a number with more than
-        // 32 bits tells it from the rest.
+        // One of a thousand entries has a probability of 10⁻¹⁰: it is the start of its column, and only a number with
+        // more than 32 bits resolves it.
         let mut weights = vec![1.0; 1000];
         weights[0] = 1e-10;
         let table = AliasTable::new(&weights).unwrap();

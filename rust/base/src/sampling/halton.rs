@@ -1,21 +1,22 @@
-//! Radical inverses in prime bases.
+//! Halton points: radical inverses in prime bases.
 
 use super::BatchSize;
 use super::permutation::permute;
 use super::stream::Stream;
 
-/// The bases of pairs of dimensions. Beyond these, points would be no better than random ones: with more than 64 strata
-/// a batch has one point in some and none in others. So they are used again, with the samples in another order.
+/// The bases of pairs of dimensions. Higher bases would be no better than random numbers: with more than 64 strata, a
+/// batch has one point in some and none in others. So further dimensions reuse these, with the samples in another
+/// order.
 const BASES: [[u32; 2]; 8] = [[2, 3], [5, 7], [11, 13], [17, 19], [23, 29], [31, 37], [41, 43], [47, 53]];
 
-/// A number of 64 bits for a dimension: the first coordinate of its pair.
+/// A 64-bit number for a dimension: the first coordinate of its pair.
 #[inline(always)]
 pub(super) fn one(size: BatchSize, stream: Stream, index: u32, dimension: u32) -> u64 {
     coordinate(size, stream, index, dimension, 0)
 }
 
-/// Two numbers of 32 bits for a dimension (Halton, "On the Efficiency of Certain Quasi-Random Sequences of Points in
-/// Evaluating Multi-Dimensional Integrals", 1960), its digits scrambled as Owen does (1995).
+/// Two 32-bit numbers for a dimension (Halton, "On the Efficiency of Certain Quasi-Random Sequences of Points in
+/// Evaluating Multi-Dimensional Integrals", 1960), with Owen scrambling of its digits (1995).
 #[inline(always)]
 pub(super) fn two(size: BatchSize, stream: Stream, index: u32, dimension: u32) -> [u32; 2] {
     [0, 1].map(|axis| (coordinate(size, stream, index, dimension, axis) >> 32) as u32)
@@ -23,12 +24,12 @@ pub(super) fn two(size: BatchSize, stream: Stream, index: u32, dimension: u32) -
 
 fn coordinate(size: BatchSize, stream: Stream, index: u32, dimension: u32, axis: u32) -> u64 {
     let each = BASES.len() as u32;
-    // The dimensions that share an order have their word from the first of them.
+    // The dimensions that share an order take their random word from the first of them.
     let index = permute(size, index, stream.word(dimension / each * each, 3));
     let base = BASES[(dimension % each) as usize][axis as usize];
     let scrambled = |place: u32, before: u32, digit: u32| {
-        // Digits that follow others have a permutation of their own, a·d + b modulo the base: it takes any two digits
-        // to any two equally often, as a random one would.
+        // Each digit's permutation depends on the digits before it: a·d + b modulo the base. It takes any two digits to
+        // any two with equal probability, as a random permutation does.
         let random = stream.word_of(1 << 8 | place << 6 | before, dimension, axis);
         let factor = 1 + (((random & 0xFFFF_FFFF) * u64::from(base - 1)) >> 32) as u32;
         let shift = (((random >> 32) * u64::from(base)) >> 32) as u32;
@@ -38,9 +39,8 @@ fn coordinate(size: BatchSize, stream: Stream, index: u32, dimension: u32, axis:
     inverse(base, size.samples(), index, rest, scrambled)
 }
 
-/// The first 64 binary digits of the radical inverse of an index below `count`, each of whose digits is changed by a
-/// function of its place, of the digits before it and of itself. What follows the digits that `count` numbers have is
-/// `rest`.
+/// The first 64 binary digits of the radical inverse of an index below `count`. A function of its position, the
+/// preceding digits and itself changes each digit. `rest` supplies the digits beyond those of `count`.
 fn inverse(base: u32, count: u32, mut index: u32, rest: u64, changed: impl Fn(u32, u32, u32) -> u32) -> u64 {
     let (mut before, mut unit, mut digits, mut place) = (0, 1, 0, 0);
     while unit < count {
@@ -77,8 +77,8 @@ mod tests {
 
     #[test]
     fn boxes_of_both_bases_hold_one_point_each() {
-        // Of the first 2ᵃ·3ᵇ points of the first dimension, and 5, 7, 35 of the second. With batches of 64, the samples
-        // come in an order of their own, so the first points are found by undoing it.
+        // For the first 2ᵃ·3ᵇ points of the first dimension, and 5, 7, 35 of the second. With batches of 64, samples
+        // are permuted, so the first points are found by inverting that order.
         let size = BatchSize::new(64).unwrap();
         for pixel in 0..20 {
             let stream = Stream::new(Stream::words([3, 0], pixel, 0));

@@ -1,27 +1,28 @@
-//! Which point set the numbers of a picture come from, and how large its batches are.
+//! The kinds of point sets, and their batch sizes.
 
-/// How many consecutive samples of a pixel are placed with regard to each other: a power of two, at most 64.
+/// The number of consecutive samples of a pixel that form a point set: a power of two, at most 64.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct BatchSize(pub(super) u8);
 
 impl BatchSize {
-    /// Of the largest batch, the logarithm to base 2.
+    /// The logarithm to base 2 of the largest batch.
     pub const MOST_BITS: u32 = 6;
 
-    /// Batches that a picture has at least, where it is known how many samples it takes. Of two, the spread of a pixel
-    /// would be known by one degree of freedom, and of pictures whose light is rare, too many would tell too small an
-    /// error: 10 of 30 of caustics at 16 samples, where one is to be expected.
+    /// Minimum number of batches for a known sample count. With two, the variance of a pixel would have one degree of
+    /// freedom. In pictures with rare light, too many error estimates would be too small: 10 of 30 for caustics at 16
+    /// samples, where one is to be expected.
     const LEAST_BATCHES: u32 = 4;
 
-    /// A batch of so many samples: 1, 2, 4, ... 64; `None` for another number.
+    /// A batch of 1, 2, 4, ... 64 samples; `None` for other numbers.
     pub fn new(samples: u32) -> Option<Self> {
         (samples.is_power_of_two() && samples.ilog2() <= Self::MOST_BITS).then(|| Self(samples.ilog2() as u8))
     }
 
-    /// The largest batch of which so many samples make four or more; the default where their number is not known.
+    /// The largest batch of which the given number of samples makes four or more; the default if their number is
+    /// unknown.
     ///
-    /// The larger it is, the smaller the error of the same number of samples, as each is placed with regard to more
-    /// others. Samples that are no multiple of it end in part of a batch, which is unbiased too, but not worth as much.
+    /// A larger batch has a smaller error for the same number of samples, since more of them are stratified together.
+    /// If the number of samples is no multiple of it, the last batch is incomplete: unbiased, but less effective.
     pub fn for_budget(samples: Option<u32>) -> Self {
         samples.map_or(Self::default(), |samples| {
             let most = (samples / Self::LEAST_BATCHES).clamp(1, 1 << Self::MOST_BITS);
@@ -29,13 +30,13 @@ impl BatchSize {
         })
     }
 
-    /// The columns of a grid of as many cells, which has as many rows or half as many.
+    /// The columns of a grid with this many cells, which has as many rows or half as many.
     #[inline(always)]
     pub(super) fn halved(self) -> Self {
         Self(self.0.div_ceil(2))
     }
 
-    /// How many samples.
+    /// The number of samples.
     #[inline(always)]
     pub fn samples(self) -> u32 {
         1 << self.0
@@ -48,47 +49,46 @@ impl BatchSize {
     }
 }
 
-/// 1 sample: where it is not known how many there will be, there may be few, and it takes two batches to tell their
-/// error.
+/// 1 sample: if the number of samples is unknown it may be small, and estimating the error takes two batches.
 impl Default for BatchSize {
     fn default() -> Self {
         Self(0)
     }
 }
 
-/// Which point set the numbers come from.
+/// The point set of the random numbers.
 ///
-/// Every number of every sample is uniform by itself, and those of different dimensions are independent, whatever the
-/// kind: the mean of a picture over all seeds is the same. Kinds differ in how the samples of a batch lie relative to
-/// each other. A dimension takes its numbers from a set of two or three dimensions, and sets are put together at random
-/// ("padding"): Sobol's own points of many dimensions have worse pairs, and lose more by that than they gain.
+/// For every kind, each number of a sample is uniform, and those of different dimensions are independent, so the mean
+/// of a picture over all seeds is the same. Kinds differ in the joint distribution of a batch's samples. Each dimension
+/// uses a point set of two or three dimensions, and sets are combined at random ("padding"): Sobol points in many
+/// dimensions have worse pairs, and lose more by that than they gain.
 ///
-/// `benches/samplers.py` compares them. Lattices leave the least error in most batches; of 4 points, those of rank 1
-/// all lie on a diagonal, and Sobol's nets are better. Blue noise over the picture is no kind: it changes how errors
-/// lie beside each other, and no pixel's error.
+/// `benches/samplers.py` compares them. Lattices have the least error for most batch sizes. With 4 points, all rank-1
+/// lattices lie on a diagonal, and Sobol nets are better. Blue noise over the picture is not a kind: it changes the
+/// correlation of errors between pixels, and no pixel's error.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SamplerKind {
     /// Independent random numbers.
     #[default]
     Independent,
-    /// A jittered grid whose rows and columns are stratified too.
+    /// A jittered grid with stratified rows and columns.
     Stratified(BatchSize),
-    /// Radical inverses in prime bases, scrambled.
+    /// Scrambled radical inverses in prime bases.
     Halton(BatchSize),
-    /// Sobol's nets, scrambled as Owen does.
+    /// Owen-scrambled Sobol nets.
     Sobol(BatchSize),
-    /// Rank-1 lattices, shifted.
+    /// Randomly shifted rank-1 lattices.
     Lattice(BatchSize),
 }
 
 impl SamplerKind {
-    /// How many consecutive samples of a pixel belong together. Batches are independent of each other, so the spread
-    /// between them is an honest measure of the error; within a batch of a low-discrepancy set it would not be.
+    /// The number of consecutive samples of a pixel in a batch. Batches are independent, so their variance is an
+    /// unbiased measure of the error. The variance within a batch of a low-discrepancy set would not be.
     pub fn batch(self) -> u32 {
         self.batch_size().map_or(1, BatchSize::samples)
     }
 
-    /// The same, of kinds that place samples with regard to each other.
+    /// The batch size of kinds with batches.
     #[inline]
     pub(super) fn batch_size(self) -> Option<BatchSize> {
         match self {

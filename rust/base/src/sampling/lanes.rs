@@ -1,4 +1,4 @@
-//! The numbers of sixteen samples at a time.
+//! The random numbers of sixteen samples at a time.
 
 use super::bits::{number, step};
 use super::permutation::permute;
@@ -9,28 +9,28 @@ use crate::math::LANES;
 use crate::simd::{Level, loops};
 use crate::timing::{Part, timed};
 
-/// Samples of one picture, a lane each.
+/// Samples of one picture, one per lane.
 #[derive(Clone, Debug)]
 pub struct SamplerLanes {
     pub(super) kind: SamplerKind,
     key: [u32; 2],
     pub(super) pixel: [u32; LANES],
     pub(super) sample: [u32; LANES],
-    /// Where each batch's stream starts; nothing where numbers are independent.
+    /// The start of each batch's stream; zero for independent numbers.
     pub(super) words: [[u32; 4]; LANES],
 }
 
-/// A pair a lane, each number in an array of its own.
+/// A pair per lane, in SoA layout.
 pub type Pairs = [[f64; LANES]; 2];
 
 impl SamplerLanes {
-    /// With samples like this one, which is in every lane.
+    /// Fill all lanes with one sample.
     pub fn new(sampler: &Sampler) -> Self {
         let Sampler { kind, key, pixel, sample, words, .. } = *sampler;
         Self { kind, key, pixel: [pixel; LANES], sample: [sample; LANES], words: [words; LANES] }
     }
 
-    /// Sample number `number` of a pixel, a lane each, as [`SamplerKind::sampler`] has it.
+    /// Sample `number` of a pixel per lane, as in [`SamplerKind::sampler`].
     pub fn of(kind: SamplerKind, level: Level, seed: u64, pixel: &[u32; LANES], number: &[u32; LANES]) -> Self {
         let first = kind.sampler(seed, 0, 0);
         let mut lanes = Self { pixel: *pixel, sample: *number, ..Self::new(&first) };
@@ -44,7 +44,7 @@ impl SamplerLanes {
         lanes
     }
 
-    /// That of a lane, whose number among the samples of its pixel is `number`.
+    /// The sample of a lane, whose number among the samples of its pixel is `number`.
     #[inline]
     pub fn get(&self, lane: usize, number: u32) -> Sampler {
         let mut sampler = Sampler::of(self.kind, self.key, self.pixel[lane], number);
@@ -52,7 +52,7 @@ impl SamplerLanes {
         sampler
     }
 
-    /// Puts a sample of the same picture into a lane.
+    /// Store a sample of the same picture in a lane.
     #[inline(always)]
     pub fn set(&mut self, lane: usize, sampler: &Sampler) {
         self.pixel[lane] = sampler.pixel;
@@ -62,7 +62,7 @@ impl SamplerLanes {
         }
     }
 
-    /// What [`Sampler::one`] gives for an even dimension of each lane, and [`Sampler::two`] for the one that follows.
+    /// The number of [`Sampler::one`] for an even dimension of each lane, and those of [`Sampler::two`] for the next.
     #[inline]
     pub fn one_and_two(&self, level: Level, dimensions: &[u32; LANES], one: &mut [f64; LANES], two: &mut Pairs) {
         timed(Part::Numbers, || match self.kind {
@@ -77,13 +77,13 @@ impl SamplerLanes {
         });
     }
 
-    /// What [`Sampler::one`] gives for a dimension of each lane.
+    /// The number of [`Sampler::one`] for a dimension of each lane.
     #[inline]
     pub fn one(&self, level: Level, dimensions: &[u32; LANES], to: &mut [f64; LANES]) {
         timed(Part::Numbers, || ones(level, self, dimensions, to));
     }
 
-    /// What [`Sampler::two`] gives for a dimension of each lane.
+    /// The numbers of [`Sampler::two`] for a dimension of each lane.
     #[inline]
     pub fn two(&self, level: Level, dimensions: &[u32; LANES], to: &mut Pairs) {
         timed(Part::Numbers, || twos(level, self, dimensions, to));
@@ -94,8 +94,8 @@ impl SamplerLanes {
         philox4x32([dimension / 2, self.sample[lane], self.pixel[lane], 0], self.key)
     }
 
-    /// Which point of its batch each sample is, for a pair of numbers. What a lane looks up in a table is no vector,
-    /// and stands in a loop of its own.
+    /// The index of each sample's point in its batch, for a pair of numbers. Table lookups do not vectorize, so they
+    /// have a loop of their own.
     #[inline(always)]
     fn points_of_pairs(&self, size: BatchSize, dimensions: &[u32; LANES]) -> [u32; LANES] {
         let (mut random, mut points) = ([0; LANES], [0; LANES]);
@@ -108,7 +108,7 @@ impl SamplerLanes {
         points
     }
 
-    /// The same for one number, which at an even dimension is placed with the pair that follows.
+    /// The same for one number, which at an even dimension belongs to the pair that follows.
     #[inline(always)]
     fn points(&self, size: BatchSize, dimensions: &[u32; LANES]) -> [u32; LANES] {
         self.points_of_pairs(size, &dimensions.map(|dimension| dimension | 1))
@@ -116,7 +116,7 @@ impl SamplerLanes {
 }
 
 loops! {
-    /// Where the streams of batches start.
+    /// The starts of the streams of batches.
     fn starts(
         key: [u32; 2],
         pixel: &[u32; LANES],
@@ -191,7 +191,7 @@ loops! {
 }
 
 loops! {
-    /// One number a lane.
+    /// One number per lane.
     fn ones(lanes: &SamplerLanes, dimensions: &[u32; LANES], to: &mut [f64; LANES]) {
         macro_rules! each {
             ($i:ident, $one:expr) => {
@@ -224,7 +224,7 @@ loops! {
 }
 
 loops! {
-    /// Two numbers a lane.
+    /// Two numbers per lane.
     fn twos(lanes: &SamplerLanes, dimensions: &[u32; LANES], to: &mut Pairs) {
         macro_rules! each {
             ($i:ident, $two:expr) => {

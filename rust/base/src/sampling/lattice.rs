@@ -1,36 +1,35 @@
-//! Shifted rank-1 lattices.
+//! Randomly shifted rank-1 lattices.
 
 use super::BatchSize;
 use super::permutation::permute;
 use super::stream::Stream;
 
-/// Generators (1, a, b) of the lattices of 1, 2, 4, ... points: those of the least P₂, summed over the pair (1, a) and
-/// the triple (Sloan and Joe, "Lattice Methods for Multiple Integration", 1994), by trying all.
+/// Generators (1, a, b) of the lattices of 1, 2, 4, ... points. They minimize P₂ summed over the pair (1, a) and the
+/// triple (Sloan and Joe, "Lattice Methods for Multiple Integration", 1994), by exhaustive search.
 const GENERATORS: [[u32; 2]; BatchSize::MOST_BITS as usize + 1] =
     [[1, 1], [1, 1], [1, 1], [3, 1], [7, 3], [5, 15], [19, 29]];
 
-/// A number of 64 bits for a dimension. One at an even dimension is the third coordinate of the pair at the dimension
-/// that follows.
+/// A 64-bit number for a dimension. At an even dimension it is the third coordinate of the pair at the next dimension.
 #[inline(always)]
 pub(super) fn one(size: BatchSize, stream: Stream, index: u32, dimension: u32) -> u64 {
     one_at(size, stream, permute(size, index, stream.word(dimension | 1, 2)), dimension)
 }
 
-/// As [`one`], of the point of this index.
+/// As [`one`], for a point given by index.
 #[inline(always)]
 pub(super) fn one_at(size: BatchSize, stream: Stream, index: u32, dimension: u32) -> u64 {
     let factor = if dimension.is_multiple_of(2) { GENERATORS[size.bits() as usize][1] } else { 1 };
     u64::from(index * factor).unbounded_shl(64 - size.bits()).wrapping_add(stream.word(dimension, 0))
 }
 
-/// Two numbers of 32 bits for a dimension: a point of a lattice, shifted around the square (Cranley and Patterson,
-/// "Randomization of Number Theoretic Methods for Multiple Integration", 1976).
+/// Two 32-bit numbers for a dimension: a lattice point, shifted modulo 1 (Cranley and Patterson, "Randomization of
+/// Number Theoretic Methods for Multiple Integration", 1976).
 #[inline(always)]
 pub(super) fn two(size: BatchSize, stream: Stream, index: u32, dimension: u32) -> [u32; 2] {
     two_at(size, stream, permute(size, index, stream.word(dimension, 2)), dimension)
 }
 
-/// As [`two`], of the point of this index.
+/// As [`two`], for a point given by index.
 #[inline(always)]
 pub(super) fn two_at(size: BatchSize, stream: Stream, index: u32, dimension: u32) -> [u32; 2] {
     let shift = stream.word(dimension, 0);
@@ -44,7 +43,7 @@ mod tests {
     use crate::sampling::SamplerKind;
     use std::f64::consts::PI;
 
-    /// P₂ of a lattice, whose sum over its dual has a closed form by Bernoulli's polynomial of degree 2.
+    /// P₂ of a lattice: the sum over its dual has a closed form with the Bernoulli polynomial of degree 2.
     fn p2(count: u32, generator: &[u32]) -> f64 {
         let term = |i: u32| {
             generator.iter().fold(1.0, |product, g| {
@@ -78,7 +77,7 @@ mod tests {
                     [x, y, (sampler.one(6) * 2f64.powi(53)) as u64]
                 })
                 .collect();
-            // Taken from the point of least x, all are multiples of the generator.
+            // Relative to the point of least x, all points are multiples of the generator.
             found.sort_unstable();
             let origin = found[0];
             let [a, b] = GENERATORS[bits as usize].map(u64::from);

@@ -1,7 +1,7 @@
-//! Floor 0: random numbers, and what turns them into points, directions and choices.
+//! Floor 0: random numbers, and their maps to points, directions and discrete choices.
 
 mod bits;
-// For the tests of all crates: what is not called is not linked.
+// Used by the tests of all crates; unused code is not linked.
 #[doc(hidden)]
 pub mod chi_square;
 mod columns;

@@ -2,7 +2,7 @@
 
 use super::BatchSize;
 
-/// Of a field of 2ᵐ elements: the powers of its generator, twice over, and their logarithms.
+/// A finite field of 2ᵐ elements: the powers of its generator, repeated once, and their logarithms.
 struct Field {
     powers: [u8; 2 * Field::MOST],
     logarithms: [u8; Field::MOST],
@@ -38,12 +38,12 @@ impl Field {
 
 static FIELDS: [Field; Field::POLYNOMIALS.len()] = Field::ALL;
 
-/// Where element `index` of a batch goes in a permutation of it that `random` picks.
+/// The image of `index` under a permutation of a batch that `random` selects.
 ///
-/// It is i ↦ a·i + b in the field of that many elements, a ≠ 0, which takes any two elements to any two places equally
-/// often. No more is asked for: the variance of a mean depends on its samples two at a time, so it is as if all
-/// permutations were equally likely. Owen's scrambling of the index (Burley, "Practical Hash-Based Owen Scrambling",
-/// 2020) keeps neighbours neighbours in all dimensions, which makes errors larger.
+/// It is i ↦ a·i + b in the field with as many elements, a ≠ 0, which takes any two elements to any two positions with
+/// equal probability. That suffices: the variance of a mean depends on pairs of samples only, so it is the same as for
+/// uniformly random permutations. Owen scrambling of the index (Burley, "Practical Hash-Based Owen Scrambling", 2020)
+/// preserves neighbours in all dimensions, which increases the error.
 #[inline(always)]
 pub(super) fn permute(size: BatchSize, index: u32, random: u64) -> u32 {
     let field = &FIELDS[size.bits() as usize];
@@ -51,7 +51,7 @@ pub(super) fn permute(size: BatchSize, index: u32, random: u64) -> u32 {
     if index == 0 {
         return (random >> 32) as u32 & others;
     }
-    // All factors come equally often, to within 2⁻³².
+    // All factors are equally likely to within 2⁻³².
     let factor = (((random & 0xFFFF_FFFF) * u64::from(others)) >> 32) as usize;
     let exponent = usize::from(field.logarithms[index as usize % Field::MOST]) + factor;
     u32::from(field.powers[exponent % (2 * Field::MOST)]) ^ (random >> 32) as u32 & others

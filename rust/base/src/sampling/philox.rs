@@ -1,10 +1,9 @@
-//! Random numbers from a counter.
+//! A counter-based random number generator.
 
-/// Philox4x32-10: four random words for each counter and key, with no state between calls
-/// (Salmon et al., "Parallel Random Numbers: As Easy as 1, 2, 3", 2011).
+/// Philox4x32-10: four random words for each counter and key, without state between calls (Salmon et al., "Parallel
+/// Random Numbers: As Easy as 1, 2, 3", 2011).
 ///
-/// Any number of any stream can be had at once, which is what makes a picture independent of the order in which it is
-/// worked on.
+/// Random access to any number of any stream makes a picture independent of the order of rendering.
 #[inline(always)]
 pub fn philox4x32(mut counter: [u32; 4], mut key: [u32; 2]) -> [u32; 4] {
     const MULTIPLIERS: [u32; 2] = [0xD251_1F53, 0xCD9E_8D57];

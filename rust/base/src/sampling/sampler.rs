@@ -1,23 +1,20 @@
-//! The numbers of one sample of one pixel, by dimension.
+//! The random numbers of one sample of a pixel, by dimension.
 
 use super::bits::{number, step};
 use super::stream::Stream;
 use super::{SamplerKind, halton, lattice, philox4x32, sobol, stratified};
 
-/// How many dimensions stand before those of the first bounce: film position, lens, one to spare, and time.
+/// Dimensions before those of the first bounce: film position, lens, one spare, and time.
 pub const CAMERA_DIMENSIONS: u32 = 4;
 
-/// The numbers of one sample of one pixel. Each is named by its dimension, so none depends on which were asked for
-/// before.
+/// The random numbers of one sample of a pixel. Each is identified by its dimension, so none depends on earlier calls.
 ///
-/// A dimension holds 64 random bits, to be taken either as one number of 53 bits or as a pair of 32 bits each. A choice
-/// wants the many bits: a light of a billionth of the power must still be chosen as often as its probability says. A
-/// point on a surface does not: 2⁻³² of a light's width, in each of two directions, is far below what can be seen of
-/// it.
+/// A dimension holds 64 random bits, used either as one number of 53 bits or as a pair of 32 bits each. A discrete
+/// choice needs many bits: a light of a billionth of the power must be chosen with its exact probability. A point on a
+/// surface does not: 2⁻³² of a light's width in each of two directions is invisible.
 ///
-/// A dimension is asked for one of the two in a picture, not for both. Where a choice leads to a point, as that of a
-/// light does, the choice takes an even dimension and the point the odd one that follows: kinds that can do so place
-/// the three together.
+/// A picture uses a dimension for one of the two, not for both. If a choice leads to a point, as in light sampling, the
+/// choice takes an even dimension and the point the next, odd one. Some kinds stratify the three together.
 #[derive(Clone, Debug)]
 pub struct Sampler {
     pub(super) kind: SamplerKind,
@@ -25,16 +22,16 @@ pub struct Sampler {
     pub(super) pixel: u32,
     /// Its number among the pixel's samples.
     number: u32,
-    /// The same, or among those of its batch.
+    /// The same, or its number within the batch.
     pub(super) sample: u32,
-    /// The Philox block last made: it holds two dimensions, which are mostly asked for one after the other.
+    /// The index of the last Philox block, which holds two dimensions that are usually used consecutively.
     block: u32,
-    /// That block, or where the batch's stream starts.
+    /// That block, or the start of the batch's stream.
     pub(super) words: [u32; 4],
 }
 
 impl SamplerKind {
-    /// The numbers of sample number `sample` of a pixel.
+    /// The random numbers of sample `sample` of a pixel.
     #[inline]
     pub fn sampler(self, seed: u64, pixel: u32, sample: u32) -> Sampler {
         let mut sampler = Sampler::new(seed, pixel, sample);
@@ -48,26 +45,26 @@ impl SamplerKind {
 }
 
 impl Sampler {
-    /// Independent numbers of sample number `sample` of a pixel, for a seed of the whole picture.
+    /// Independent random numbers of sample `sample` of a pixel, for a seed of the whole picture.
     #[inline]
     pub fn new(seed: u64, pixel: u32, sample: u32) -> Self {
         Self::of(SamplerKind::Independent, [seed as u32, (seed >> 32) as u32], pixel, sample)
     }
 
-    /// Before it is known where in which batch it stands.
+    /// Before its position in a batch is known.
     #[inline]
     pub(super) fn of(kind: SamplerKind, key: [u32; 2], pixel: u32, number: u32) -> Self {
         Self { kind, key, pixel, number, sample: number, block: u32::MAX, words: [0; 4] }
     }
 
-    /// Numbers of the same sample that have nothing to do with these, for what it is paired with.
+    /// Independent numbers for the same sample, to pair with these.
     pub fn paired(&self) -> Self {
-        /// Any number: none that somebody is likely to give for a seed.
+        /// An arbitrary number that is unlikely to be used as a seed.
         const PAIRED: u64 = 0x9e37_79b9_7f4a_7c15;
         self.of_seed_with(PAIRED)
     }
 
-    /// Numbers of the same sample that have nothing to do with these, nor with those paired with either.
+    /// Numbers for the same sample that are independent of these, and of those paired with either.
     pub fn apart(&self) -> Self {
         const APART: u64 = 0xd1b5_4a32_d192_ed03;
         self.of_seed_with(APART)
@@ -78,12 +75,12 @@ impl Sampler {
         self.kind.sampler(seed ^ other, self.pixel, self.number)
     }
 
-    /// Of which pixel it is a sample.
+    /// The pixel of the sample.
     pub fn pixel(&self) -> u32 {
         self.pixel
     }
 
-    /// Its number among the samples of its pixel, from 0 on.
+    /// Its number among the samples of its pixel, from 0.
     pub fn number(&self) -> u32 {
         self.number
     }
@@ -105,8 +102,8 @@ impl Sampler {
         number(bits)
     }
 
-    /// Two numbers in (0, 1), each at the middle of one of 2³² equal steps: never 0 and never 1, so that no warp has
-    /// to fear its borders.
+    /// Two numbers in (0, 1), each the midpoint of one of 2³² equal steps. They are never 0 or 1, so warps need not
+    /// handle their borders.
     #[inline]
     pub fn two(&mut self, dimension: u32) -> [f64; 2] {
         let (stream, index) = (Stream::new(self.words), self.sample);
@@ -120,7 +117,7 @@ impl Sampler {
         [step(bits[0]), step(bits[1])]
     }
 
-    /// The 64 bits of a dimension, of independent numbers.
+    /// The 64 bits of a dimension of independent numbers.
     #[inline]
     fn bits(&mut self, dimension: u32) -> [u32; 2] {
         let block = dimension / 2;

@@ -1,35 +1,35 @@
-//! Scrambled nets in base 2.
+//! Owen-scrambled Sobol nets.
 
 use super::BatchSize;
 use super::permutation::permute;
 use super::scramble::{scramble, scramble_short};
 use super::stream::Stream;
 
-/// A number of 64 bits for a dimension.
+/// A 64-bit number for a dimension.
 ///
-/// One at an even dimension is placed with the pair at the dimension that follows: together they make a (0, m, 3)-net,
-/// so that the pairs of each half, quarter, ... of the choices are a net of their own.
+/// At an even dimension it is stratified with the pair at the next dimension. Together they form a (0, m, 3)-net, so
+/// the pairs for each half, quarter, ... of the choices are a net, too.
 #[inline(always)]
 pub(super) fn one(size: BatchSize, stream: Stream, index: u32, dimension: u32) -> u64 {
     one_at(size, stream, permute(size, index, stream.word(dimension | 1, 2)), dimension)
 }
 
-/// As [`one`], of the point of this index.
+/// As [`one`], for a point given by index.
 #[inline(always)]
 pub(super) fn one_at(size: BatchSize, stream: Stream, index: u32, dimension: u32) -> u64 {
-    // Of a net of three, the third coordinate is the index itself, greatest bit first (Niederreiter, 1992, lemma 4.22).
+    // The third coordinate of the net is the index itself, most significant bit first (Niederreiter, 1992, lemma 4.22).
     let digits = if dimension.is_multiple_of(2) { index.reverse_bits().unbounded_shr(32 - size.bits()) } else { index };
     scramble(digits, [stream.word(dimension, 0), stream.word(dimension, 1)])
 }
 
-/// Two numbers of 32 bits for a dimension: a point of the first two coordinates of Sobol's sequence (1967), a
-/// (0, m, 2)-net with every power of two of its points.
+/// Two 32-bit numbers for a dimension: the first two coordinates of the Sobol sequence (1967), whose first 2ᵏ points
+/// are a (0, k, 2)-net for every k.
 #[inline(always)]
 pub(super) fn two(size: BatchSize, stream: Stream, index: u32, dimension: u32) -> [u32; 2] {
     two_at(stream, permute(size, index, stream.word(dimension, 2)), dimension)
 }
 
-/// As [`two`], of the point of this index.
+/// As [`two`], for a point given by index.
 #[inline(always)]
 pub(super) fn two_at(stream: Stream, index: u32, dimension: u32) -> [u32; 2] {
     [scramble_short(index, stream.word(dimension, 0)), scramble_short(pascal(index), stream.word(dimension, 1))]
@@ -79,7 +79,7 @@ mod tests {
                         let mut seen = vec![0; 1 << bits];
                         for sampler in &points {
                             let [x, y] = sampler.clone().two(dimension);
-                            // Choices only stand before odd dimensions.
+                            // Only odd dimensions are preceded by a choice.
                             let z = if dimension % 2 == 1 { sampler.clone().one(dimension - 1) } else { 0.0 };
                             let deep = if dimension % 2 == 1 { bits - across - down } else { 0 };
                             let cell = |u: f64, bits: u32| (u * f64::from(1u32 << bits)) as usize;

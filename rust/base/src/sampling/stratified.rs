@@ -4,24 +4,23 @@ use super::BatchSize;
 use super::permutation::permute;
 use super::stream::Stream;
 
-/// A number of 64 bits for a dimension: anywhere in a stratum of its own.
+/// A 64-bit number for a dimension, uniform within its own stratum.
 #[inline(always)]
 pub(super) fn one(size: BatchSize, stream: Stream, index: u32, dimension: u32) -> u64 {
     let stratum = permute(size, index, stream.word(dimension, 2));
     u64::from(stratum).unbounded_shl(64 - size.bits()) | stream.word_of(index, dimension, 0) >> size.bits()
 }
 
-/// Two numbers of 32 bits for a dimension: one point in each cell of a grid, and one in each row and column of the grid
-/// of 2ᵐ × 2ᵐ too (Chiu, Shirley and Wang, "Multi-Jittered Sampling", 1994), all columns of cells having their points
-/// in the same order, and all rows (Kensler, "Correlated Multi-Jittered Sampling", 2013).
+/// Two 32-bit numbers for a dimension: one point in each cell of a grid, and one in each row and column of the fine
+/// grid of 2ᵐ × 2ᵐ (Chiu, Shirley and Wang, "Multi-Jittered Sampling", 1994). All columns of cells use the same order,
+/// and so do all rows (Kensler, "Correlated Multi-Jittered Sampling", 2013).
 #[inline(always)]
 pub(super) fn two(size: BatchSize, stream: Stream, index: u32, dimension: u32) -> [u32; 2] {
     let cell = permute(size, index, stream.word(dimension, 2));
     let columns = size.halved();
     let rows = BatchSize(size.0 - columns.0);
     let (column, row) = (cell & (columns.samples() - 1), cell >> columns.bits());
-    // A column of cells has as many rows of the fine grid to give as there are columns of cells, and the other way
-    // round.
+    // A column of cells has as many fine rows as there are columns of cells, and vice versa.
     let across = column << rows.bits() | permute(rows, row, stream.word(dimension, 0));
     let down = row << columns.bits() | permute(columns, column, stream.word(dimension, 1));
     let jitter = stream.word_of(index, dimension, 3);

@@ -1,13 +1,13 @@
-//! The random numbers that a batch of samples is placed by.
+//! The random words that randomize the point set of a batch.
 
 use super::philox4x32;
 
 /// Random words for one batch of samples of one pixel, the same for each of its samples.
 ///
 /// They are the SplitMix64 sequence (Steele, Lea and Flood, "Fast Splittable Pseudorandom Number Generators", 2014;
-/// constants of Stafford's thirteenth variant), begun at a random place and with a random key in the midst of it, so
-/// that no two batches share a part of it. Three multiplications a word make numbers from a net cost no more than
-/// independent ones.
+/// constants of Stafford's thirteenth variant) with a random start and a random key in the mixing, so that no two
+/// batches share a part of it. With three multiplications per word, numbers from a net cost no more than independent
+/// ones.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Stream {
     start: u64,
@@ -15,27 +15,26 @@ pub(super) struct Stream {
 }
 
 impl Stream {
-    /// The block of Philox numbers that starts a stream: one that no dimension of independent numbers has.
+    /// The Philox block that starts a stream, which no dimension of independent numbers uses.
     #[inline(always)]
     pub fn words(key: [u32; 2], pixel: u32, batch: u32) -> [u32; 4] {
         philox4x32([0, batch, pixel, 1], key)
     }
 
-    /// The stream that starts from such words.
+    /// The stream with the given start.
     #[inline(always)]
     pub fn new(words: [u32; 4]) -> Self {
         let [a, b, c, d] = words.map(u64::from);
         Self { start: a << 32 | b, key: c << 32 | d }
     }
 
-    /// Word number 0 to 3 of a dimension.
+    /// Word 0 to 3 of a dimension.
     #[inline(always)]
     pub fn word(self, dimension: u32, number: u32) -> u64 {
         self.mixed(u64::from(dimension) << 2 | u64::from(number))
     }
 
-    /// A word that belongs to one sample of the batch, or to any other number below 2²⁸, and to word 0 to 3 of a
-    /// dimension.
+    /// Word 0 to 3 of a dimension, for one sample of the batch or any other number below 2²⁸.
     #[inline(always)]
     pub fn word_of(self, sample: u32, dimension: u32, number: u32) -> u64 {
         self.mixed(u64::from(sample + 1) << 34 | u64::from(dimension) << 2 | u64::from(number))
@@ -57,7 +56,7 @@ mod tests {
 
     #[test]
     fn words_are_uniform_and_neighbours_independent() {
-        // Neighbours along each part of the name: batch, dimension, number, sample.
+        // Neighbours in each component: batch, dimension, number, sample.
         let word = |i: u32, axis: u32| {
             let stream = Stream::new(Stream::words([9, 0], 4, if axis == 0 { i } else { 0 }));
             match axis {

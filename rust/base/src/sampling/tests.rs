@@ -1,4 +1,4 @@
-//! What holds of the numbers of every kind.
+//! Tests of the numbers of all kinds.
 
 use super::chi_square::assert_frequencies;
 use super::{BatchSize, SamplerKind};
@@ -40,7 +40,7 @@ fn each_number_is_uniform_over_seeds() {
 #[test]
 fn dimensions_are_independent_over_pixels() {
     for kind in [2, 16, 64].into_iter().flat_map(kinds) {
-        // Neighbours, a choice and its point, pairs that share bases, a sum that a weak hash would see.
+        // Neighbours, a choice and its point, pairs that share bases, and a sum that a weak hash would reveal.
         for (first, second) in [(0, 1), (4, 5), (5, 6), (1, 9), (0, 8), (6, 1030)] {
             let (mut pairs, mut mixed, mut ones) = (vec![0; 256], vec![0; 256], vec![0; 256]);
             for pixel in 0..40_000 {
@@ -72,8 +72,8 @@ fn batches_are_independent_of_each_other() {
 
 #[test]
 fn samples_of_a_batch_are_paired_at_random_across_dimensions() {
-    // Two samples of a batch avoid each other in either dimension, but how near they are in one tells nothing of the
-    // other. Halton's points are excepted: they are one set of many dimensions.
+    // Two samples of a batch repel each other in either dimension, but their distances in two dimensions are
+    // independent. Halton points are excepted, as one point set of many dimensions.
     for kind in kinds(16).into_iter().filter(|k| !matches!(k, SamplerKind::Halton(_))) {
         let distance = |a: f64, b: f64| ((a - b).abs() * 256.0) as usize / 64;
         let (mut joint, mut sums) = (vec![0u64; 16], [[0u64; 4]; 2]);
@@ -84,7 +84,7 @@ fn samples_of_a_batch_are_paired_at_random_across_dimensions() {
             sums[0][near] += 1;
             sums[1][far] += 1;
         }
-        // By its own margins, which takes 6 of 15 degrees of freedom and so makes failing rarer than 10⁻⁴.
+        // Expected from the observed margins, which take 6 of 15 degrees of freedom, so failing is rarer than 10⁻⁴.
         let share = |n: u64| n as f64 / 60_000.0;
         let expected: Vec<f64> = (0..16).map(|i| share(sums[0][i / 4]) * share(sums[1][i % 4])).collect();
         assert_frequencies(&joint, &expected);
@@ -113,7 +113,7 @@ fn a_number_depends_on_its_name_only() {
     }
 }
 
-/// Mean over seeds and variance of the mean of one batch.
+/// Mean over seeds, and variance of the mean of one batch.
 fn batch_moments(kind: SamplerKind, samples: u32, of: impl Fn([f64; 2]) -> f64) -> (f64, f64) {
     const BATCHES: u32 = 8000;
     let mean = |pixel| (0..samples).map(|i| of(kind.sampler(3, pixel, i).two(1))).sum::<f64>() / f64::from(samples);
@@ -124,7 +124,7 @@ fn batch_moments(kind: SamplerKind, samples: u32, of: impl Fn([f64; 2]) -> f64) 
 
 #[test]
 fn errors_fall_as_theory_has_it() {
-    // A smooth integrand, and the inside of a circle: means and variances of one sample in closed form.
+    // A smooth integrand, and the inside of a circle, with means and variances of one sample in closed form.
     let smooth = |[x, y]: [f64; 2]| (x + y).exp();
     let edge = |[x, y]: [f64; 2]| f64::from(u8::from(x * x + y * y < 0.64));
     let (e, quarter) = (std::f64::consts::E, std::f64::consts::PI * 0.16);
@@ -133,9 +133,9 @@ fn errors_fall_as_theory_has_it() {
     for (samples, kinds) in [(16u32, kinds(16)), (64, kinds(64))] {
         for kind in kinds {
             let n = f64::from(samples);
-            // The exponents of Owen's nets: n⁻³ of what is smooth, n⁻³ᐟ² across an edge; a jittered grid has n⁻² and
-            // n⁻³ᐟ² (Mitchell, "Consequences of Stratified Sampling in Graphics", 1996). A lattice whose integrand does
-            // not go on around the square, n⁻². Factors of 8 beside them hold logarithms and constants.
+            // The exponents of Owen's nets: n⁻³ for smooth integrands, n⁻³ᐟ² for an edge. A jittered grid has n⁻² and
+            // n⁻³ᐟ² (Mitchell, "Consequences of Stratified Sampling in Graphics", 1996), and a lattice has n⁻² for a
+            // nonperiodic integrand. Factors of 8 allow for logarithms and constants.
             let (smooth_rate, edge_rate) = match kind {
                 SamplerKind::Independent => (1.0, 1.0),
                 SamplerKind::Sobol(_) => (3.0, 1.5),

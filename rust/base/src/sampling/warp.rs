@@ -4,8 +4,8 @@ use crate::math::turn::{sin_cos_eighth, sin_cos_turn};
 use glam::{DVec2, DVec3};
 use std::f64::consts::{FRAC_1_PI, FRAC_PI_4};
 
-/// A point of the unit disk, uniform in area; squares near each other in the square stay near each other
-/// (Shirley and Chiu, "A Low Distortion Map Between Disk and Square", 1997).
+/// A point of the unit disk, uniform by area; nearby points of the square stay close (Shirley and Chiu, "A Low
+/// Distortion Map Between Disk and Square", 1997).
 #[inline]
 pub fn uniform_disk(u: [f64; 2]) -> DVec2 {
     let (radius, [sin, cos]) = concentric(u);
@@ -18,7 +18,7 @@ fn concentric(u: [f64; 2]) -> (f64, [f64; 2]) {
     let (a, b) = (2.0 * u[0] - 1.0, 2.0 * u[1] - 1.0);
     let wide = a.abs() > b.abs();
     let (radius, other) = if wide { (a, b) } else { (b, a) };
-    // An eighth of a turn at most to either side of an axis.
+    // At most an eighth of a turn to either side of an axis.
     let [sin, cos] = sin_cos_eighth(if radius == 0.0 { 0.0 } else { FRAC_PI_4 * (other / radius) });
     (radius, if wide { [sin, cos] } else { [cos, sin] })
 }
@@ -27,32 +27,33 @@ fn concentric(u: [f64; 2]) -> (f64, [f64; 2]) {
 #[inline(always)]
 pub fn cosine_hemisphere(u: [f64; 2]) -> DVec3 {
     let (radius, [sin, cos]) = concentric(u);
-    // The product keeps the digits of a small height that 1 − r² would cancel, so a direction never lies in the plane.
+    // The product keeps the digits of a small height, which 1 − r² would cancel, so a direction never lies in the
+    // plane.
     DVec3::new(radius * cos, radius * sin, ((1.0 - radius) * (1.0 + radius)).sqrt())
 }
 
-/// The density of [`cosine_hemisphere`] in solid angle, 0 below the plane.
+/// The solid angle density of [`cosine_hemisphere`], 0 below the plane.
 #[inline(always)]
 pub fn cosine_hemisphere_pdf(direction: DVec3) -> f64 {
     direction.z.max(0.0) * FRAC_1_PI
 }
 
-/// A direction of the whole sphere, uniform in solid angle (Archimedes' hat box).
+/// A direction on the whole sphere, uniform by solid angle (Archimedes' hat-box theorem).
 #[inline(always)]
 pub fn uniform_sphere(u: [f64; 2]) -> DVec3 {
     let z = 1.0 - 2.0 * u[0];
     let [sin, cos] = sin_cos_turn(u[1]);
-    // 1 − z² = 4 u (1 − u), without the cancellation at the poles.
+    // 1 − z² = 4 u (1 − u), without cancellation at the poles.
     let radius = 2.0 * (u[0] * (1.0 - u[0])).sqrt();
     DVec3::new(radius * cos, radius * sin, z)
 }
 
-/// The density of [`uniform_sphere`] in solid angle.
+/// The solid angle density of [`uniform_sphere`].
 pub const UNIFORM_SPHERE_PDF: f64 = 0.25 * FRAC_1_PI;
 
-/// Weights of a triangle's second and third corner, uniform in area. The square is folded along a diagonal, which
-/// crowds nothing into a corner as the map with the square root does (Heitz, "A Low-Distortion Map Between Triangle and
-/// Square", 2019). The density is 1 / area.
+/// Barycentric weights of a triangle's second and third corner, uniform by area. The square is folded along a diagonal,
+/// which distorts less near the corners than the map with the square root (Heitz, "A Low-Distortion Map Between
+/// Triangle and Square", 2019). The density is 1 / area.
 #[inline(always)]
 pub fn uniform_triangle(u: [f64; 2]) -> [f64; 2] {
     let [x, y] = u;
@@ -68,7 +69,7 @@ mod tests {
 
     const DRAWS: u32 = 200_000;
 
-    /// Counts the draws that fall into each cell.
+    /// Count the samples in each cell.
     fn histogram(cells: usize, cell: impl Fn([f64; 2]) -> usize) -> Vec<u64> {
         let mut counts = vec![0; cells];
         for sample in 0..DRAWS {
@@ -131,7 +132,8 @@ mod tests {
 
     #[test]
     fn uniform_triangle_has_its_density() {
-        // The unit square of weights in 15 × 15 cells: those below the diagonal hold 2 / 225, those on it half of that.
+        // The unit square of weights in 15 × 15 cells: those below the diagonal have probability 2 / 225, those on it
+        // half of that.
         let cell = |u: [f64; 2]| {
             let [v, w] = uniform_triangle(u);
             assert!(v >= 0.0 && w >= 0.0 && v + w <= 1.0);

@@ -1,4 +1,4 @@
-//! Lanes of 64-bit ARM: NEON, which every such processor has.
+//! SIMD lanes of 64-bit ARM: NEON, which every such processor has.
 
 use super::scalar::pick_by_lane;
 use super::{Lanes, Pair, Simd};
@@ -10,14 +10,14 @@ use std::arch::asm;
 pub struct Neon(());
 
 impl Neon {
-    /// Every 64-bit ARM processor has it.
+    /// Available on every 64-bit ARM processor.
     #[allow(clippy::new_without_default)]
     pub fn new() -> Self {
         Self(())
     }
 }
 
-/// The lanes of a comparison as bits.
+/// The bit mask of a comparison.
 #[inline(always)]
 fn mask(lanes: uint32x4_t) -> u32 {
     const BITS: [u32; 4] = [1, 2, 4, 8];
@@ -25,7 +25,7 @@ fn mask(lanes: uint32x4_t) -> u32 {
     unsafe { vaddvq_u32(vandq_u32(lanes, vld1q_u32(BITS.as_ptr()))) }
 }
 
-/// Makes safe, always inlined methods of intrinsics.
+/// Defines safe, always inlined methods of intrinsics.
 macro_rules! lanes {
     ($($name:ident($($arg:ident: $type:ty),*) $(-> $ret:ty)? = $body:expr;)*) => {$(
         #[inline(always)]
@@ -54,7 +54,7 @@ impl Lanes<4> for Neon {
         abs(a: float32x4_t) -> float32x4_t = vabsq_f32(a);
         mul_sub(a: float32x4_t, b: float32x4_t, c: float32x4_t) -> float32x4_t = vfmaq_f32(vnegq_f32(c), a, b);
         mul_add(a: float32x4_t, b: float32x4_t, c: float32x4_t) -> float32x4_t = vfmaq_f32(c, a, b);
-        // Its own instructions give NaN where either is NaN, and tell zeros apart.
+        // NEON's own instructions return NaN if either is NaN, and distinguish zeros.
         min(a: float32x4_t, b: float32x4_t) -> float32x4_t = vbslq_f32(vcltq_f32(a, b), a, b);
         max(a: float32x4_t, b: float32x4_t) -> float32x4_t = vbslq_f32(vcgtq_f32(a, b), a, b);
         select(mask: u32, a: float32x4_t, b: float32x4_t) -> float32x4_t = {

@@ -1,4 +1,4 @@
-//! Which vector instructions to use: found once, or forced by `RAYWRIGHT_SIMD`.
+//! The SIMD level, detected once or forced by `RAYWRIGHT_SIMD`.
 
 #[cfg(target_arch = "aarch64")]
 use super::Neon;
@@ -9,10 +9,10 @@ use super::Simd;
 use super::{Avx2, Avx512, Sse2};
 use std::sync::OnceLock;
 
-/// A level of the processor's vector instructions, from least to most.
+/// A level of the processor's vector instructions, in increasing order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Level {
-    /// Arrays, for processors without vectors: those that always have some need no second copy of each kernel.
+    /// Arrays, for processors without vectors. Others always have vectors and need no scalar copy of each kernel.
     Scalar,
     /// NEON, on every 64-bit ARM.
     Neon,
@@ -25,10 +25,10 @@ pub enum Level {
 }
 
 impl Level {
-    /// All levels, from least to most.
+    /// All levels in increasing order.
     pub const ALL: [Self; 5] = [Self::Scalar, Self::Neon, Self::Sse2, Self::Avx2, Self::Avx512];
 
-    /// The name that `RAYWRIGHT_SIMD` takes.
+    /// The name in `RAYWRIGHT_SIMD`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Scalar => "scalar",
@@ -39,12 +39,12 @@ impl Level {
         }
     }
 
-    /// Lanes of its vectors of f32; kernels may have fewer.
+    /// The lanes of its f32 vectors; kernels may use fewer.
     pub fn lanes(self) -> usize {
         if self >= Self::Avx2 { 8 } else { 4 }
     }
 
-    /// Whether this processor has it.
+    /// Return whether this processor supports it.
     pub fn is_available(self) -> bool {
         match self {
             Self::Scalar => cfg!(not(any(target_arch = "x86_64", target_arch = "aarch64"))),
@@ -60,9 +60,9 @@ impl Level {
         }
     }
 
-    /// The level that kernels run at: the one that `RAYWRIGHT_SIMD` names when the process first asks, or the best.
+    /// The level of kernels: the one named by `RAYWRIGHT_SIMD` at the first call in the process, or the best.
     ///
-    /// A level that is unknown or that the processor lacks is an error, since who forces one wants to know.
+    /// An unknown or unsupported level is an error rather than ignored.
     pub fn current() -> Result<Self, String> {
         static CURRENT: OnceLock<Result<Level, String>> = OnceLock::new();
         CURRENT
@@ -82,22 +82,23 @@ impl Level {
     }
 }
 
-/// A computation on vectors of `N` lanes, whatever the level.
+/// A computation on vectors of `N` lanes, generic over the level.
 pub trait Kernel<const N: usize> {
-    /// What it gives.
+    /// Its result.
     type Output;
 
-    /// Whether it is compiled for AVX-512 too. AVX2 serves rare kernels as well, and each copy takes long to compile.
+    /// True if it is compiled for AVX-512, too. AVX2 suffices for rare kernels, and each copy takes long to compile.
     const AVX512: bool = true;
 
-    /// Runs it. Implementations must be `#[inline(always)]`, down to every function that takes `simd`, so that all is
+    /// Run it. Implementations must be `#[inline(always)]`, as must every function that takes `simd`, so that all is
     /// compiled for the level that [`Dispatch`] chose.
     fn run<S: Simd<N>>(self, simd: S) -> Self::Output;
 }
 
-/// Runs kernels of `N` lanes compiled for a level, which must be available and have as many ([`Level::lanes`]).
+/// Runs kernels of `N` lanes compiled for a level, which must be available and have at least N lanes
+/// ([`Level::lanes`]).
 pub trait Dispatch<const N: usize> {
-    /// Runs one.
+    /// Run a kernel.
     fn dispatch<K: Kernel<N>>(self, kernel: K) -> K::Output;
 }
 
@@ -107,7 +108,7 @@ impl Dispatch<4> for Level {
         match self {
             #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
             Self::Scalar => with_scalar(kernel),
-            // Four lanes are for processors without more; wider levels have no code of their own for them.
+            // Four lanes are for processors without more; wider levels have no separate code for them.
             #[cfg(target_arch = "x86_64")]
             _ => with_sse2(kernel),
             #[cfg(target_arch = "aarch64")]
@@ -125,16 +126,16 @@ impl Dispatch<8> for Level {
             #[cfg(target_arch = "x86_64")]
             Self::Avx512 if K::AVX512 => {
                 let simd = Avx512::detect().expect("an available level");
-                // SAFETY: the processor was just seen to have what `with_avx512` is compiled for.
+                // SAFETY: the processor was just checked for the features that `with_avx512` is compiled for.
                 unsafe { with_avx512(kernel, simd) }
             }
             #[cfg(target_arch = "x86_64")]
             Self::Avx2 | Self::Avx512 => {
                 let simd = Avx2::detect().expect("an available level");
-                // SAFETY: the processor was just seen to have what `with_avx2` is compiled for.
+                // SAFETY: the processor was just checked for the features that `with_avx2` is compiled for.
                 unsafe { with_avx2(kernel, simd) }
             }
-            // Who has no vectors of eight takes four.
+            // Processors without vectors of eight use four.
             level => {
                 let _ = kernel;
                 panic!("eight lanes need AVX2, not {}", level.name())
@@ -143,7 +144,7 @@ impl Dispatch<8> for Level {
     }
 }
 
-/// A function of its own, as those of the other levels are.
+/// A separate function, as for the other levels.
 #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
 #[inline(never)]
 fn with_scalar<const N: usize, K: Kernel<N>>(kernel: K) -> K::Output
@@ -186,13 +187,13 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Every operation on the same numbers, as bits: by as many lanes as a node has, and by sixteen.
+    /// Every operation on the same numbers, as bits: with the lanes of a node, and with sixteen.
     struct Everything<const N: usize> {
         a: [f32; 16],
         b: [f32; 16],
     }
 
-    /// All that lanes can do.
+    /// All operations of `Lanes`.
     #[inline(always)]
     fn arithmetic<const N: usize, S: Lanes<N>>(simd: S, a: &[f32; N], b: &[f32; N], out: &mut Vec<u32>) {
         let one = simd.splat(a[1]);
@@ -217,7 +218,7 @@ mod tests {
             out.extend(lanes.map(f32::to_bits));
         }
         out.extend([simd.same(a, b), simd.same(a, a)]);
-        // Which of two zeros is the greatest is not part of the promise.
+        // The sign of a zero maximum or minimum is unspecified.
         out.extend([simd.greatest(a), simd.least(a)].map(|x| (x + 0.0).to_bits()));
     }
 
@@ -246,7 +247,7 @@ mod tests {
     where
         Level: Dispatch<N>,
     {
-        // The sign of a NaN that an operation makes is not part of the promise.
+        // The sign of a resulting NaN is unspecified.
         let plain = |bits: Vec<u32>| -> Vec<u32> {
             bits.into_iter().map(|x| if f32::from_bits(x).is_nan() { f32::NAN.to_bits() } else { x }).collect()
         };
@@ -257,7 +258,7 @@ mod tests {
         Ok(())
     }
 
-    /// The levels of this processor that have so many lanes.
+    /// The levels of this processor with at least N lanes.
     fn levels<const N: usize>() -> impl Iterator<Item = Level> {
         Level::ALL.into_iter().filter(|l| l.is_available() && l.lanes() >= N)
     }

@@ -1,13 +1,12 @@
-//! Loops over arrays that the compiler turns into vectors, compiled for each level.
+//! Loops over arrays, vectorized by the compiler for each level.
 
-/// Makes a function of loops over arrays, one turn a lane, compiled for each level: its first argument says which of
-/// them, which must be available, is run. Whatever the level, lanes have the same arithmetic, and so the same bits.
+/// Define a function of loops over arrays, one iteration per lane, compiled for each level. Its first argument selects
+/// the level, which must be available. The arithmetic of lanes is the same at all levels, and so are the bits.
 ///
-/// What a level has is what the compiler may use; it fuses nothing by itself. A loop becomes vectors where its lanes do
-/// the same: no branch that jumps, no call, no index that depends on a lane. Such steps stand in loops of their own.
-/// What is called must be `#[inline(always)]`, down to the last, so that all is compiled for the level; and what is
-/// written must come as an argument each, for only of those is it known that they lie apart. Such a function may be one
-/// of types, which it is compiled for one by one.
+/// The compiler may use a level's instructions; it fuses no operations by itself. A loop vectorizes if all lanes do the
+/// same: no branches, no calls, no lane-dependent indices. Such steps need loops of their own. Called functions must be
+/// `#[inline(always)]` throughout, so that all is compiled for the level. Every output must be a separate argument,
+/// since only arguments are known not to alias. Such a function may be generic over types, and is compiled for each.
 #[macro_export]
 macro_rules! loops {
     (
@@ -46,12 +45,12 @@ macro_rules! loops {
             match level {
                 #[cfg(target_arch = "x86_64")]
                 $crate::simd::Level::Avx512 if $crate::simd::Avx512::detect().is_some() => {
-                    // SAFETY: the processor was just seen to have what `with_avx512` is compiled for.
+                    // SAFETY: the processor was just checked for the features that `with_avx512` is compiled for.
                     unsafe { with_avx512$(::<$($of),+>)?($($argument),*) }
                 }
                 #[cfg(target_arch = "x86_64")]
                 $crate::simd::Level::Avx2 if $crate::simd::Avx2::detect().is_some() => {
-                    // SAFETY: the processor was just seen to have what `with_avx2` is compiled for.
+                    // SAFETY: the processor was just checked for the features that `with_avx2` is compiled for.
                     unsafe { with_avx2$(::<$($of),+>)?($($argument),*) }
                 }
                 _ => at_base_level$(::<$($of),+>)?($($argument),*),

@@ -1,8 +1,8 @@
-//! Floor 0: one vocabulary for every width and level of the processor's vector units.
+//! Floor 0: SIMD vectors, generic over width and instruction set.
 //!
-//! A kernel is written once against [`Simd`] and compiled whole for each level ([`Dispatch`]); which one runs is
-//! decided once. All levels round alike: only [`Lanes::mul_add`] and [`Lanes::mul_sub`] may or may not be fused, and
-//! they serve tests whose bounds allow for both.
+//! A kernel is written once against [`Simd`] and compiled as a whole for each level ([`Dispatch`]); the choice is made
+//! once. All levels round alike, except that [`Lanes::mul_add`] and [`Lanes::mul_sub`] may be fused. They are used only
+//! in tests whose bounds allow for both.
 
 #[cfg(target_arch = "aarch64")]
 mod arm;
@@ -24,7 +24,7 @@ pub use pair::Pair;
 pub use scalar::Scalar;
 pub use transpose::columns_of_four;
 
-/// Asks for the cache line of an address, which need not be valid.
+/// Prefetch the cache line of an address, which need not be valid.
 #[inline(always)]
 pub fn ask_for(line: *const u8) {
     #[cfg(target_arch = "x86_64")]
@@ -37,23 +37,22 @@ pub fn ask_for(line: *const u8) {
 #[cfg(target_arch = "x86_64")]
 pub use x86::{Avx2, Avx512, Sse2};
 
-/// Arithmetic on vectors of `N` lanes. A value of a type that implements it proves that the processor has what it
-/// needs.
+/// Arithmetic on vectors of `N` lanes. A value of an implementing type proves that the processor supports it.
 ///
 /// Masks are bits of a `u32`, lane 0 lowest. Comparisons with NaN are false.
 pub trait Lanes<const N: usize>: Copy + Send + Sync {
     /// `N` lanes of f32.
     type F32: Copy;
 
-    /// Whether the processor has instructions that multiply and add with one rounding, to which `f64::mul_add` is
-    /// compiled in a kernel; elsewhere that is a call.
+    /// True if the processor has fused multiply-add instructions, to which `f64::mul_add` is compiled in a kernel;
+    /// otherwise that is a function call.
     const FUSED: bool;
 
-    /// The same number in every lane.
+    /// Broadcast a number to every lane.
     fn splat(self, x: f32) -> Self::F32;
-    /// Lanes from memory.
+    /// Load from memory.
     fn load(self, from: &[f32; N]) -> Self::F32;
-    /// Lanes to memory.
+    /// Store to memory.
     fn store(self, x: Self::F32, to: &mut [f32; N]);
     /// `a + b`.
     fn add(self, a: Self::F32, b: Self::F32) -> Self::F32;
@@ -71,11 +70,11 @@ pub trait Lanes<const N: usize>: Copy + Send + Sync {
     fn mul_sub(self, a: Self::F32, b: Self::F32, c: Self::F32) -> Self::F32;
     /// `a · b + c`, rounded once or twice.
     fn mul_add(self, a: Self::F32, b: Self::F32, c: Self::F32) -> Self::F32;
-    /// The lesser of each pair.
+    /// The lanewise minimum.
     fn min(self, a: Self::F32, b: Self::F32) -> Self::F32;
-    /// The greater of each pair.
+    /// The lanewise maximum.
     fn max(self, a: Self::F32, b: Self::F32) -> Self::F32;
-    /// The lanes of `a` that are in `mask`, and otherwise those of `b`.
+    /// Blend: the lanes of `a` that are in `mask`, else those of `b`.
     fn select(self, mask: u32, a: Self::F32, b: Self::F32) -> Self::F32;
     /// Lanes where `a ≤ b`.
     fn le(self, a: Self::F32, b: Self::F32) -> u32;
@@ -83,27 +82,27 @@ pub trait Lanes<const N: usize>: Copy + Send + Sync {
     fn gt(self, a: Self::F32, b: Self::F32) -> u32;
     /// Lanes in which `a` and `b` have the same bits.
     fn same(self, a: Self::F32, b: Self::F32) -> u32;
-    /// The greatest of all lanes, none of which is NaN.
+    /// The maximum of all lanes, none of which is NaN.
     fn greatest(self, a: Self::F32) -> f32;
 
-    /// The least of all lanes, none of which is NaN.
+    /// The minimum of all lanes, none of which is NaN.
     #[inline(always)]
     fn least(self, a: Self::F32) -> f32 {
         -self.greatest(self.neg(a))
     }
 }
 
-/// A level's vectors of `N` lanes, as many as a node has children, and what else nodes and queues of rays need.
+/// A level's vectors of `N` lanes, the number of a node's children, with further operations for nodes and ray packets.
 pub trait Simd<const N: usize>: Lanes<N> {
-    /// Vectors for sixteen rays together, of as many registers as it takes.
+    /// Vectors for sixteen rays, in as many registers as needed.
     type Sixteen: Lanes<16>;
 
-    /// These.
+    /// Convert to those vectors.
     fn sixteen(self) -> Self::Sixteen;
 
-    /// Writes some lanes of `nears` and `items` to the front of `to_nears` and `to_items`, and says how many they are;
-    /// what is behind them is undefined. They are those of the first `count` in `order`, three bits each from the
-    /// lowest, for which `nears ≤ fars`.
+    /// Compact the lanes with `nears ≤ fars` among the first `count` in `order`, which has three bits per lane from the
+    /// lowest. Their `nears` and `items` are written to the front of `to_nears` and `to_items`; the entries after them
+    /// are undefined. Return their number.
     #[allow(clippy::too_many_arguments)]
     fn pick(
         self,
@@ -116,9 +115,9 @@ pub trait Simd<const N: usize>: Lanes<N> {
         to_items: &mut [u32; N],
     ) -> usize;
 
-    /// Asks for so many cache lines from an address on, which need not be valid.
+    /// Prefetch a number of cache lines from an address, which need not be valid.
     fn prefetch(self, start: *const u8, lines: usize);
 }
 
-/// The order of lanes that [`Simd::pick`] takes for the lowest first.
+/// The order of lanes in [`Simd::pick`] that starts with the lowest.
 pub const ASCENDING: u32 = 0o76543210;

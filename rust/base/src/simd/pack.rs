@@ -1,4 +1,4 @@
-//! Survivors of sixteen lanes, moved to the front of columns.
+//! Stream compaction of sixteen lanes.
 
 use super::Level;
 use std::marker::PhantomData;
@@ -6,7 +6,7 @@ use std::marker::PhantomData;
 /// Lanes of a column.
 const LANES: usize = 16;
 
-/// What stands in columns: plain bits.
+/// The plain types of columns.
 pub trait Word: Copy + private::Sealed {}
 
 mod private {
@@ -22,20 +22,21 @@ impl Word for u32 {}
 impl Word for f64 {}
 impl Word for [u32; 2] {}
 
-/// Sixteen lanes, and the place in a column that those which survive move to.
+/// Sixteen lanes, and the destination of the surviving ones.
 pub struct Column<'a> {
     from: *const u8,
     to: *mut u8,
-    /// Four or eight bytes a lane.
+    /// True if lanes have eight bytes rather than four.
     is_wide: bool,
     of: PhantomData<&'a mut u8>,
 }
 
 impl<'a> Column<'a> {
-    /// From lanes to a place.
+    /// Set up source and destination.
     ///
     /// # Panics
-    /// If the place has room for less than sixteen.
+    ///
+    /// If the destination has fewer than sixteen entries.
     #[inline(always)]
     pub fn new<T: Word>(from: &'a [T; LANES], to: &'a mut [T]) -> Self {
         assert!(to.len() >= LANES, "room for sixteen lanes");
@@ -43,20 +44,20 @@ impl<'a> Column<'a> {
     }
 }
 
-/// Moves the lanes in a mask to the front of their columns, in their order. What follows them there, up to the
-/// sixteenth, is unspecified.
+/// Move the lanes in a mask to the front of their columns, in order. The entries after them, up to the sixteenth, are
+/// unspecified.
 #[inline]
 pub fn pack(level: Level, mask: u32, columns: &[Column<'_>]) {
     let mask = mask & 0xffff;
     match level {
         #[cfg(target_arch = "x86_64")]
         Level::Avx512 if super::Avx512::detect().is_some() => {
-            // SAFETY: the processor was just seen to have what `x86::pack_512` is compiled for.
+            // SAFETY: the processor was just checked for the features that `x86::pack_512` is compiled for.
             unsafe { x86::pack_512(mask, columns) }
         }
         #[cfg(target_arch = "x86_64")]
         Level::Avx2 if super::Avx2::detect().is_some() => {
-            // SAFETY: the processor was just seen to have what `x86::pack_256` is compiled for.
+            // SAFETY: the processor was just checked for the features that `x86::pack_256` is compiled for.
             unsafe { x86::pack_256(mask, columns) }
         }
         _ => pack_any(mask, columns),
@@ -96,7 +97,7 @@ mod x86 {
     use super::Column;
     use std::arch::x86_64::*;
 
-    /// For each mask of eight lanes, the lanes that are in it.
+    /// The lanes of each mask of eight.
     const FRONT: [[u32; 8]; 256] = {
         let mut all = [[0; 8]; 256];
         let mut mask = 0;
@@ -114,7 +115,7 @@ mod x86 {
         all
     };
 
-    /// The same of four lanes of two words each.
+    /// The same for four lanes of two words each.
     const FRONT_WIDE: [[u32; 8]; 16] = {
         let mut all = [[0; 8]; 16];
         let mut mask = 0;

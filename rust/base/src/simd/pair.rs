@@ -2,7 +2,7 @@
 
 use super::Lanes;
 
-/// Two vectors for one.
+/// Two vectors as one.
 #[derive(Clone, Copy, Debug)]
 pub struct Pair<S>(pub S);
 

@@ -1,12 +1,12 @@
-//! Lanes as plain arrays: for processors without a level of their own, and as the reading of what the others do.
+//! Lanes as plain arrays, for processors without a level of their own, and as the reference for the other levels.
 //!
-//! Tests compile every kernel so. There an operation is a call: all of them compile in an eighth less time, and take no
-//! longer to run.
+//! Tests compile every kernel for it. Operations are function calls there, which takes an eighth less time to compile,
+//! and no longer to run.
 
 use super::{Lanes, Simd};
 use std::array::from_fn;
 
-/// No vector instructions beyond what the compiler makes of arrays.
+/// No explicit vector instructions.
 #[derive(Clone, Copy, Debug)]
 pub struct Scalar;
 
@@ -15,7 +15,7 @@ fn mask<const N: usize>(lane: impl Fn(usize) -> bool) -> u32 {
     (0..N).fold(0, |m, i| m | u32::from(lane(i)) << i)
 }
 
-/// [`Simd::pick`] lane by lane, without a branch: each is written, and written over unless it counts.
+/// [`Simd::pick`] lane by lane and branchless: each lane is written, and overwritten unless it counts.
 #[inline(always)]
 pub(super) fn pick_by_lane<const N: usize>(
     nears: [f32; N],

@@ -1,4 +1,4 @@
-//! Rows of three numbers to columns.
+//! Transposition of rows of three numbers to columns.
 
 /// Four vectors of three, by axis.
 #[inline(always)]

@@ -1,4 +1,4 @@
-//! Lanes of x86-64: SSE2, which every such processor has, AVX2 with FMA, and AVX-512.
+//! SIMD lanes of x86-64: SSE2, which every such processor has, AVX2 with FMA, and AVX-512.
 
 use super::scalar::pick_by_lane;
 use super::{Lanes, Pair, Simd};
@@ -9,7 +9,7 @@ use std::arch::x86_64::*;
 pub struct Sse2(());
 
 impl Sse2 {
-    /// Every x86-64 processor has it.
+    /// Available on every x86-64 processor.
     #[allow(clippy::new_without_default)]
     pub fn new() -> Self {
         Self(())
@@ -21,7 +21,7 @@ impl Sse2 {
 pub struct Avx2(());
 
 impl Avx2 {
-    /// Some on a processor that has it.
+    /// Some if the processor supports it.
     #[inline]
     pub fn detect() -> Option<Self> {
         // Every processor with AVX2 has the others, and kernels are compiled for them.
@@ -35,12 +35,12 @@ impl Avx2 {
     }
 }
 
-/// AVX-512 with vectors of every length: eight lanes or sixteen, and moves by mask.
+/// AVX-512 with vectors of every length: eight or sixteen lanes, and masked compression.
 #[derive(Clone, Copy, Debug)]
 pub struct Avx512(());
 
 impl Avx512 {
-    /// Some on a processor that has it.
+    /// Some if the processor supports it.
     #[inline]
     pub fn detect() -> Option<Self> {
         let has = is_x86_feature_detected!("avx512f")
@@ -51,7 +51,7 @@ impl Avx512 {
     }
 }
 
-/// By mask of eight lanes, the numbers of those in it, lowest first, a byte each.
+/// For each mask of eight lanes, the indices of its lanes, lowest first, one byte each.
 static FRONT: [u64; 256] = {
     let mut front = [0; 256];
     let mut picked = 0;
@@ -78,7 +78,7 @@ pub(super) fn prefetch(start: *const u8, lines: usize) {
     }
 }
 
-/// The greatest of four.
+/// The maximum of four.
 #[inline(always)]
 fn greatest(a: __m128) -> f32 {
     // SAFETY: every x86-64 processor has the instructions.
@@ -88,7 +88,7 @@ fn greatest(a: __m128) -> f32 {
     }
 }
 
-/// Makes safe, always inlined methods of intrinsics.
+/// Defines safe, always inlined methods of intrinsics.
 macro_rules! lanes {
     ($($name:ident($($arg:ident: $type:ty),*) $(-> $ret:ty)? = $body:expr;)*) => {$(
         #[inline(always)]
@@ -325,7 +325,7 @@ impl Simd<8> for Avx512 {
             let fars = _mm256_permutexvar_ps(lanes, fars);
             let items = _mm256_permutexvar_epi32(lanes, _mm256_loadu_si256(items.as_ptr().cast()));
             let picked = _mm256_cmp_ps_mask::<_CMP_LE_OQ>(nears, fars) & ((1u32 << count) - 1) as u8;
-            // In a register first: a compressing store to memory is many times slower.
+            // Compressed in a register first: a compressing store to memory is many times slower.
             _mm256_storeu_ps(to_nears.as_mut_ptr(), _mm256_maskz_compress_ps(picked, nears));
             _mm256_storeu_si256(to_items.as_mut_ptr().cast(), _mm256_maskz_compress_epi32(picked, items));
             picked.count_ones() as usize

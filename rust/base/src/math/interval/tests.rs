@@ -18,7 +18,7 @@ fn inside() -> impl Strategy<Value = (Interval, f64)> {
     })
 }
 
-/// Whether an interval holds a number of 32 digits.
+/// Return whether an interval contains a double-double number.
 fn holds(interval: Interval, x: DoubleDouble) -> bool {
     DoubleDouble::from(interval.low) <= x && x <= DoubleDouble::from(interval.high)
 }
@@ -82,7 +82,7 @@ proptest! {
                 prop_assert!(image.contains(value), "function {index} of {x:?} at {a}: {image:?}, {value}");
             }
             if image.whole {
-                // Defined everywhere: at both ends too.
+                // Defined everywhere, including both ends.
                 prop_assert!(!plain(x.low).is_nan() && !plain(x.high).is_nan());
             }
         }
