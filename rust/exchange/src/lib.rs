@@ -1,4 +1,4 @@
-//! Floor 4: what surfaces send each other, as numbers instead of pictures.
+//! Floor 4: radiative exchange between surfaces, as numbers instead of pictures: view factors and radiosity.
 
 mod radiosity;
 mod view_factors;

@@ -1,4 +1,4 @@
-//! What exchanges light: the sides of patches, what they reflect, and what they emit.
+//! The sources of a radiosity solution: patch sides with their emission and reflectance.
 
 use crate::view_factors::Fronts;
 use raywright_accel::Primitives;
@@ -8,17 +8,17 @@ use raywright_optics::{Bsdf, Rgb};
 use raywright_scene::{Patches, Scene, SurfaceInteraction, SurfacePoint};
 use std::f64::consts::PI;
 
-/// Which sides of faces take part.
+/// The sides of faces that take part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sides {
-    /// That of the normals; the other is black, and sends nothing on.
+    /// The sides of the normals; the other sides are black.
     Front,
-    /// Each for itself.
+    /// Both sides, independently.
     Both,
 }
 
-/// Patches of a scene that exchange light. A source is one side of one: first all fronts, then all backs, if these take
-/// part.
+/// Patches of a scene that exchange light. A source is one side of one patch: first all fronts, then all backs if they
+/// take part.
 #[derive(Clone, Debug)]
 pub struct Enclosure {
     pub(super) patches: Patches,
@@ -29,15 +29,16 @@ pub struct Enclosure {
     fronts: Fronts,
 }
 
-/// Points of a patch, by the weights of its second and third corner: the middles of the four that it would be cut into.
+/// Sample points of a patch, as the weights of its second and third corner: the centroids of its four quarters.
 const LOOKS: [[f64; 2]; 4] = [[1.0 / 3.0, 1.0 / 3.0], [2.0 / 3.0, 1.0 / 6.0], [1.0 / 6.0, 2.0 / 3.0], [1.0 / 6.0; 2]];
 
 impl Enclosure {
-    /// The patches of a scene. What is not diffuse counts as black; textures have their mean of four points of a patch.
-    /// Triangles without area, or with a corner that is not finite, are never hit: they have no area, and are black.
+    /// The patches of a scene. Nondiffuse materials count as black, and textures are averaged over four points per
+    /// patch. Degenerate triangles and those with a non-finite corner are never hit: they have no area, and are black.
     ///
     /// # Errors
-    /// If something has no end, or no points that could be drawn evenly.
+    ///
+    /// If a shape is unbounded, or cannot be sampled uniformly.
     pub fn new(scene: &Scene, patches: Patches, sides: Sides) -> Result<Self, String> {
         let geometry = scene.geometry();
         if patches.primitives() != geometry.count() {
@@ -62,7 +63,7 @@ impl Enclosure {
         let all = if sides == Sides::Both { 2 * count } else { count };
         let fronts = match sides {
             Sides::Front => Fronts::new(scene),
-            // Of a sheet each side is met as the other side's back.
+            // Rays hit each side of a sheet as the back of the other side.
             Sides::Both => Fronts::of_touching(scene),
         };
         let mut made = Self { patches, sides, areas, emission: Vec::new(), reflectance: Vec::new(), fronts };
@@ -72,10 +73,11 @@ impl Enclosure {
         Ok(made)
     }
 
-    /// The same with other radiosities by emission and other reflectances, one a source.
+    /// Replace emitted radiosities and reflectances, one per source.
     ///
     /// # Errors
-    /// If there are more or fewer.
+    ///
+    /// If their numbers differ from the number of sources.
     pub fn with(self, emission: Vec<Rgb>, reflectance: Vec<Rgb>) -> Result<Self, String> {
         let count = self.sources();
         if emission.len() != count || reflectance.len() != count {
@@ -84,7 +86,7 @@ impl Enclosure {
         Ok(Self { emission, reflectance, ..self })
     }
 
-    /// What a source emits and what it reflects.
+    /// The emission and reflectance of a source.
     fn look(&self, scene: &Scene, source: u32) -> Result<(Rgb, Rgb), String> {
         let (patch, side) = self.side(source);
         if self.areas[patch as usize] == 0.0 {
@@ -117,22 +119,21 @@ impl Enclosure {
         Ok((sums.0 * (PI * share), sums.1 * share))
     }
 
-    /// How many sides take part.
+    /// The number of sources.
     pub fn sources(&self) -> usize {
         self.patches.count() * if self.sides == Sides::Both { 2 } else { 1 }
     }
 
-    /// Of which patch a source is a side, and of which side.
+    /// The patch of a source, and 1 for its front or −1 for its back.
     #[inline]
     pub(super) fn side(&self, source: u32) -> (u32, f64) {
         let count = self.patches.count() as u32;
         if source < count { (source, 1.0) } else { (source - count, -1.0) }
     }
 
-    /// The source that a ray from a place on a side of a face meets; none if it meets what is black, or nothing.
+    /// The source that a ray from a point on a side of a face hits; None if it hits nothing or a black side.
     ///
-    /// Where two faces touch front to front, what leaves the one comes to the other, and within their solids rays meet
-    /// backs.
+    /// If two faces touch front to front, all light from one reaches the other, and rays inside their solids hit backs.
     #[inline]
     pub(super) fn met(
         &self,
@@ -173,7 +174,7 @@ impl Enclosure {
         }
     }
 
-    /// Whether another face touches a side of a face at a place, so that no light comes to it.
+    /// Return whether another face touches a side of a face at a point, so that no other light reaches it.
     #[inline]
     pub(super) fn is_touched(&self, (face, side, place): (u32, f64, DVec3)) -> bool {
         side > 0.0 && self.fronts.touching(face, place).is_some()
@@ -195,18 +196,18 @@ impl Enclosure {
         &self.areas
     }
 
-    /// The radiosity by emission of each source, W/m².
+    /// The emitted radiosity of each source, W/m².
     pub fn emission(&self) -> &[Rgb] {
         &self.emission
     }
 
-    /// The share of light that each source reflects.
+    /// The reflectance of each source.
     pub fn reflectance(&self) -> &[Rgb] {
         &self.reflectance
     }
 }
 
-/// The radiance that a surface emits along a ray that meets it, and its reflectance.
+/// The radiance that a surface emits toward a ray's origin, and its reflectance.
 fn seen(scene: &Scene, ray: &Ray, hit: &Hit, surface: SurfacePoint) -> (Rgb, Rgb) {
     let emission = scene.emission_at(&surface).sent(scene.geometry(), ray, hit, &surface, || 0.0);
     let here = SurfaceInteraction::new(scene, ray, hit, surface, 0.0, 1.0);

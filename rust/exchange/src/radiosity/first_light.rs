@@ -1,4 +1,4 @@
-//! The light that comes to patches from lights that are no surfaces.
+//! Direct irradiance of patches from lights that are not surfaces.
 
 use super::Enclosure;
 use super::origins::Origin;
@@ -8,11 +8,11 @@ use raywright_base::workers::Cancel;
 use raywright_optics::Rgb;
 use raywright_scene::{LightSampleContext, RayOrigin, Scene};
 
-/// Sources that a thread looks at before it asks whether to go on.
+/// Sources per parallel task, between checks for cancellation.
 const TOGETHER: usize = 256;
 
-/// The irradiance of each source by the lights of a scene of nothing else, as each is drawn, over so many rays a
-/// source. What stands in `scene` shadows it.
+/// The irradiance of each source from a scene with lights only, by light sampling with the given number of rays per
+/// source. Objects in `scene` cast shadows.
 pub(super) fn irradiance(
     scene: &Scene,
     lamps: &Scene,
@@ -75,7 +75,7 @@ mod tests {
         let patches = Patches::new(vec![2; 2]).unwrap();
         let enclosure = Enclosure::new(&floor, patches, Sides::Both).unwrap();
         let found = irradiance(&floor, &sky, &enclosure, &[4096; 16], 3, &Cancel::default());
-        // 4096 draws by nets of 64, each of them known to better than 1 in 10.
+        // 4096 samples from nets of 64, each accurate to better than 1 in 10.
         for light in found {
             assert!((light - Rgb::new(1.0, 2.0, 3.0) * PI).abs().max() < 0.01 * PI, "{light:?}");
         }

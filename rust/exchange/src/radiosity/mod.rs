@@ -1,4 +1,4 @@
-//! Radiosity: the light that diffuse patches send each other, by shooting what is unshot along rays.
+//! Radiosity: light exchange between diffuse patches, by shooting unshot radiosity along rays.
 
 mod enclosure;
 mod first_light;

@@ -1,4 +1,4 @@
-//! Shooting: unshot power goes along rays to where it arrives, and what is reflected there is unshot again.
+//! Shooting: unshot power is distributed along rays, and the reflected part becomes unshot again.
 
 use super::origins::Origin;
 use super::{Enclosure, first_light};
@@ -10,44 +10,45 @@ use raywright_optics::Rgb;
 use raywright_scene::Scene;
 use std::ops::Range;
 
-/// Of a ray that meets nothing, and of one that meets the black side of a face.
+/// Marks rays that hit nothing, and rays that hit the black side of a face.
 const ESCAPED: u32 = u32::MAX;
 const BEHIND: u32 = u32::MAX - 1;
 
-/// In place of a ray that could not be drawn: it meets nothing.
+/// Replaces a ray that could not be sampled: it hits nothing.
 const NOWHERE: Ray = Ray { t_max: -1.0, ..Ray::new(DVec3::ZERO, DVec3::X) };
 
-/// Rays that a thread asks about together.
+/// Rays per parallel task.
 const TOGETHER: u32 = 4096;
 
-/// One replicate of a solution on its way: what has arrived where, and what of it is still to be shot.
+/// One replicate of a solution in progress: arrived and unshot power.
 ///
-/// Each ray of a source carries the same share of its unshot power from a point that is even over the patch, into a
-/// direction drawn by the cosine, to whatever it meets first. What arrives is right on average for any number of rays,
-/// and nothing is lost on the way: what was emitted has been absorbed, has left, or is unshot. To shoot all sources at
-/// once, rays by power, is stochastic Jacobi iteration (Neumann, "Monte Carlo Radiosity", 1995; Bekaert, "Hierarchical
-/// and Stochastic Algorithms for Radiosity", 1999); to shoot the one that has most is progressive refinement (Cohen,
-/// Chen, Wallace and Greenberg, "A Progressive Refinement Approach to Fast Radiosity Image Generation", 1988).
+/// Each ray of a source carries the same fraction of its unshot power. It starts at a uniform point of the patch, in a
+/// cosine-weighted direction, and ends at the first hit. The arrived power is unbiased for any number of rays, and
+/// power is conserved: emitted power has been absorbed, has escaped, or is unshot. Shooting all sources at once, with
+/// rays in proportion to power, is stochastic Jacobi iteration (Neumann, "Monte Carlo Radiosity", 1995; Bekaert,
+/// "Hierarchical and Stochastic Algorithms for Radiosity", 1999). Shooting the source of greatest power is progressive
+/// refinement (Cohen, Chen, Wallace and Greenberg, "A Progressive Refinement Approach to Fast Radiosity Image
+/// Generation", 1988).
 #[derive(Clone, Debug)]
 pub struct Shots {
-    /// Its number, which its rays are drawn by, with that of each shot.
+    /// Its number, which seeds its rays together with the number of each shot.
     replicate: u32,
     shot: u32,
     unshot: Vec<Rgb>,
     arrived: Vec<Rgb>,
-    /// What set out at first: what patches emit, and what came to them from other lights.
+    /// The initial power: emission of patches, and irradiance from other lights.
     emitted: Rgb,
-    /// What has left the scene, and what has come to black sides.
+    /// The power that has escaped, and that has reached black sides.
     escaped: Rgb,
     behind: Rgb,
-    /// All power that was unshot at first.
+    /// The total initial power.
     first: f64,
     rays: u64,
 }
 
 impl Shots {
-    /// What patches emit, and what they reflect of lights that are no surfaces, where there are such: of these so many
-    /// rays are drawn in all, each source that has an area at least one.
+    /// Start with the emission of patches, and their reflection of lights that are not surfaces, if any. The latter are
+    /// sampled with the given total number of rays, at least one for each source with an area.
     pub fn new(
         scene: &Scene,
         lamps: Option<(&Scene, u64)>,
@@ -83,8 +84,8 @@ impl Shots {
         Self { replicate, shot: 0, unshot, arrived, emitted, escaped, behind, first, rays: drawn }
     }
 
-    /// Shoots the unshot power of all sources. Were all power unshot, it took about `rays` rays, of which each source
-    /// gets a share by its power, and at least one.
+    /// Shoot the unshot power of all sources. The full initial power would take about `rays` rays. Each source gets a
+    /// number in proportion to its power, and at least one.
     pub fn shoot_all(&mut self, scene: &Scene, enclosure: &Enclosure, rays: u64, seed: u64, cancel: &Cancel) {
         let mut whole = 0.0;
         let share = rays as f64 / self.first;
@@ -100,7 +101,7 @@ impl Shots {
         self.shoot(scene, enclosure, &sources, seed, cancel);
     }
 
-    /// Shoots, one after the other, so many sources that have most unshot power when their turn comes.
+    /// Shoot sources one after another, each time the one with the greatest unshot power.
     pub fn shoot_greatest(
         &mut self,
         scene: &Scene,
@@ -109,7 +110,7 @@ impl Shots {
         seed: u64,
         cancel: &Cancel,
     ) {
-        /// A ray alone would carry all power of a patch to one other.
+        /// A single ray would carry all power of a patch to one other.
         const LEAST: f64 = 16.0;
         for _ in 0..count {
             let most = self.unshot.iter().enumerate().max_by(|a, b| a.1.mean().total_cmp(&b.1.mean()));
@@ -128,7 +129,7 @@ impl Shots {
             .iter()
             .map(|&(source, rays)| std::mem::take(&mut self.unshot[source as usize]) / f64::from(rays))
             .collect();
-        // Memory for the targets of some million rays at a time.
+        // The targets of some million rays at a time, to limit memory.
         for part in parts(sources, 1 << 22) {
             let (sources, carried) = (&sources[part.clone()], &carried[part]);
             let pieces = pieces(sources);
@@ -157,39 +158,39 @@ impl Shots {
         }
     }
 
-    /// The power that has come to each source, W.
+    /// The power that has arrived at each source, W.
     pub fn arrived(&self) -> &[Rgb] {
         &self.arrived
     }
 
-    /// The power that is unshot, W, of each source.
+    /// The unshot power of each source, W.
     pub fn unshot(&self) -> &[Rgb] {
         &self.unshot
     }
 
-    /// The power that set out at first, W: by emission, and of other lights what came to patches.
+    /// The initial power, W: emission, and irradiance of patches from other lights.
     pub fn emitted(&self) -> Rgb {
         self.emitted
     }
 
-    /// The power that has left the scene, and that has come to black sides, W.
+    /// The power that has escaped, and that has reached black sides, W.
     pub fn lost(&self) -> (Rgb, Rgb) {
         (self.escaped, self.behind)
     }
 
-    /// The rays so far.
+    /// The number of rays so far.
     pub fn rays(&self) -> u64 {
         self.rays
     }
 }
 
-/// What the numbers of a shot are drawn by.
+/// The random key of a shot.
 fn key(seed: u64, replicate: u32, shot: u32) -> u64 {
     let [a, b, _, _] = philox4x32([shot, replicate, 0, 0x7261_6469], [seed as u32, (seed >> 32) as u32]);
     u64::from(a) << 32 | u64::from(b)
 }
 
-/// Sources in parts of about so many rays.
+/// Split sources into parts of about `most` rays.
 fn parts(sources: &[(u32, u32)], most: u64) -> Vec<Range<usize>> {
     let (mut parts, mut start, mut rays) = (Vec::new(), 0, 0);
     for (i, &(_, more)) in sources.iter().enumerate() {
@@ -202,7 +203,7 @@ fn parts(sources: &[(u32, u32)], most: u64) -> Vec<Range<usize>> {
     parts
 }
 
-/// Rays that are followed together: of which source, from which number on, and how many.
+/// Pieces of rays that are traced together, each with source, first number and count.
 fn pieces(sources: &[(u32, u32)]) -> Vec<Vec<(u32, u32, u32)>> {
     let (mut pieces, mut piece, mut room) = (Vec::new(), Vec::new(), TOGETHER);
     for &(source, rays) in sources {
@@ -221,7 +222,7 @@ fn pieces(sources: &[(u32, u32)]) -> Vec<Vec<(u32, u32, u32)>> {
     pieces
 }
 
-/// The sources that rays come to, ray by ray.
+/// The sources that rays hit, ray by ray.
 fn follow(scene: &Scene, enclosure: &Enclosure, piece: &[(u32, u32, u32)], key: u64) -> Vec<u32> {
     let kind = SamplerKind::Sobol(BatchSize::new(64).unwrap_or_default());
     let mut rays = Vec::with_capacity(TOGETHER as usize);
@@ -289,7 +290,7 @@ mod tests {
             shots.shoot_all(&scene, &enclosure, 20_000, 7, &Cancel::default());
         }
         let arrived: Rgb = shots.arrived().iter().copied().sum();
-        // 24 of area emit π and reflect a half: π / (1 − ½) comes to each, and is known but for roundings.
+        // An area of 24 emits π and reflects a half: each point receives π / (1 − ½), up to rounding.
         assert!((arrived.mean() / (24.0 * std::f64::consts::TAU) - 1.0).abs() < 1e-12);
         assert_eq!(shots.lost(), (Rgb::ZERO, Rgb::ZERO));
     }

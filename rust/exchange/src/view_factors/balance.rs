@@ -1,4 +1,4 @@
-//! Rows of estimates that add up to what is known of them: to one in a closed room.
+//! Balancing of estimated rows so that they sum to a known value: to one in a closed room.
 
 use super::Sampled;
 use super::by_rays::leaving;
@@ -12,18 +12,19 @@ use raywright_base::sampling::{BatchSize, SamplerKind};
 use raywright_scene::Scene;
 use std::ops::Range;
 
-/// Rays that look for a way out of a room, from all its faces together, and from each at least and at most.
+/// Number of rays that search for a way out of a room, for all its faces together, and the minimum and maximum per
+/// face.
 const LOOKS: usize = 1 << 16;
 const LEAST: usize = 1 << 6;
 const MOST: usize = 1 << 12;
 
-/// Rays from each face of a room that has one.
+/// Rays per face of an open room.
 const ESTIMATE: u32 = 1 << 10;
 
-/// Other random numbers than those of rows.
+/// Separates these random numbers from those of the rows.
 const SALT: u64 = 0x9E37_79B9_7F4A_7C15;
 
-/// What balances rows: of a scene, the areas of its faces, and their factors before.
+/// The data for balancing rows: the scene, the areas of its faces, and the factors so far.
 pub struct Balance<'a> {
     pub scene: &'a Scene,
     pub fronts: &'a Fronts,
@@ -33,19 +34,19 @@ pub struct Balance<'a> {
     pub seed: u64,
 }
 
-/// What came of it.
+/// The result of balancing.
 pub struct Balanced {
-    /// The rows of rooms that nothing leaves.
+    /// True if each row belongs to a closed room.
     pub closed: Vec<bool>,
-    /// Rays that were sent.
+    /// The number of rays traced.
     pub rays: u64,
 }
 
 impl Balance<'_> {
-    /// Moves estimates so that rows add up: in a room that no ray leaves to exactly one; elsewhere each row has a
-    /// share that is lost, an estimate like all others.
+    /// Adjust estimates to row sums: exactly one in a room that no ray leaves. In other rooms each row has an escaping
+    /// fraction, which is another estimate.
     ///
-    /// A room is what sees each other, directly or by way of others. A ray leaves it if it meets nothing or a back.
+    /// A room is a connected component of mutual visibility. A ray leaves it if it hits nothing or a back.
     pub fn apply(&self, sampled: &mut [Sampled]) -> Balanced {
         let count = self.areas.len();
         let rooms = self.rooms();
@@ -83,7 +84,7 @@ impl Balance<'_> {
         Balanced { closed, rays: rays + of_open.len() as u64 * u64::from(ESTIMATE) }
     }
 
-    /// What the estimates of a row should add up to.
+    /// The target sums of the estimates in each row.
     fn wanted(&self, sampled: &[Sampled], is_sampled: &[bool]) -> Vec<Option<f64>> {
         let count = self.areas.len();
         let row = |i: usize| {
@@ -106,7 +107,7 @@ impl Balance<'_> {
         wanted
     }
 
-    /// The number of the room of each face.
+    /// The room of each face.
     fn rooms(&self) -> Vec<u32> {
         let count = self.areas.len();
         let mut rooms = vec![u32::MAX; count];
@@ -129,10 +130,10 @@ impl Balance<'_> {
         rooms
     }
 
-    /// The share of rays from each of some faces that meets nothing or a back. Rays from where another face touches
-    /// come to that.
+    /// The fraction of rays from each of some faces that hits nothing or a back. Rays from points where another face
+    /// touches hit that face.
     fn lost(&self, faces: &[u32], rays: impl Fn(u32) -> u32 + Sync) -> Vec<f64> {
-        /// Faces that a thread takes at a time.
+        /// Faces per parallel task.
         const TOGETHER: usize = 16;
         let kind = SamplerKind::Sobol(BatchSize::for_budget(Some(1 << BatchSize::MOST_BITS)));
         let of = |face: u32| {

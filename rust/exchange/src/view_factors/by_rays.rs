@@ -1,5 +1,4 @@
-//! Whole rows of the matrix by rays: of surfaces that are no triangles, and of scenes with too many faces for all
-//! pairs.
+//! Rows of the matrix by ray tracing, for curved surfaces and for scenes with too many faces for all pairs.
 
 use super::Aim;
 use super::facet::Facet;
@@ -10,36 +9,36 @@ use raywright_base::math::{DVec3, Frame, Hit, Ray};
 use raywright_base::sampling::{BatchSize, Sampler, SamplerKind, warp};
 use raywright_scene::{RayOrigin, Scene};
 
-/// Rays that are asked together.
+/// Rays traced together.
 const TOGETHER: u32 = 1 << 12;
 
-/// No row takes more rays; nor, where nobody names an error, more than the second number.
+/// Maximum number of rays per row, and the maximum without a requested error.
 const MOST: u32 = 1 << 26;
 const MOST_UNASKED: u32 = 1 << 20;
 
-/// One face in a row: to which, the view factor, and its standard error.
+/// An entry of a row: face, view factor and standard error.
 pub type Entry = (u32, f64, f64);
 
-/// What a thread makes rows with.
+/// The state of a thread that computes rows.
 pub struct Rows<'a> {
     scene: &'a Scene,
     fronts: &'a Fronts,
     seed: u64,
-    /// By face: what its hits count in this batch, in all, and the sum of the squares of batches.
+    /// By face: the weight of its hits in the current batch, in all batches, and the sum of squares over batches.
     batch: Vec<f64>,
     sums: Vec<[f64; 2]>,
-    /// The faces that are hit, in this batch and at all.
+    /// The faces hit in the current batch, and in any batch.
     fresh: Vec<u32>,
     touched: Vec<u32>,
     rays: Vec<Ray>,
-    /// What each ray counts, and where it starts.
+    /// The weight and origin of each ray.
     weights: Vec<f64>,
     places: Vec<DVec3>,
     hits: Vec<Hit>,
 }
 
 impl<'a> Rows<'a> {
-    /// Of a scene.
+    /// Create the state for a scene.
     pub fn new(scene: &'a Scene, fronts: &'a Fronts, seed: u64) -> Self {
         let count = scene.geometry().count();
         Self {
@@ -57,9 +56,9 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// The row of a face, by rays that leave even by area and by the cosine, each counted where it lands first, if it
-    /// does so on a front. Doubled until no error is larger than `wanted` has it for a face, its factor, and the
-    /// greatest factor of the row. Also returns the number of rays.
+    /// Compute the row of a face from rays with uniform origins and cosine-weighted directions, each counted at its
+    /// first hit if that is a front. The number of rays doubles until the error of each entry is at most `wanted(face,
+    /// factor, greatest factor of the row)`. Return the number of rays, too.
     pub fn row(
         &mut self,
         primitive: u32,
@@ -68,7 +67,7 @@ impl<'a> Rows<'a> {
         wanted: impl Fn(u32, f64, f64) -> f64,
     ) -> (Vec<Entry>, u32) {
         let rays = aim.row_rays;
-        // Of a stretched shape it takes an integral.
+        // The area of a stretched shape takes an integral, so it is computed once.
         let from = (primitive, self.scene.geometry().area(primitive));
         let size = BatchSize::for_budget(Some(rays));
         let (mut done, mut target) = (0, rays.next_multiple_of(size.samples()).max(2 * size.samples()));
@@ -142,8 +141,8 @@ impl<'a> Rows<'a> {
     }
 }
 
-/// A ray that leaves a face of an area even by area and by the cosine, what it counts, and where it starts. One that
-/// counts nothing keeps its place in its batch.
+/// A ray from a face of the given area, with uniform origin and cosine-weighted direction, its weight, and its origin.
+/// One of weight 0 keeps its place in the batch.
 pub fn leaving(
     scene: &Scene,
     (primitive, area): (u32, f64),

@@ -1,32 +1,32 @@
-//! Faces in clusters of clusters, near each other and turned alike.
+//! A tree of face clusters, by position and orientation.
 
 use super::facet::Facet;
 use raywright_base::math::DVec3;
 
-/// Faces of a leaf at most.
+/// Maximum number of faces in a leaf.
 const LEAF: usize = 8;
 
-/// Some faces, one after the other in [`Clusters::order`].
+/// A cluster of faces, consecutive in [`Clusters::order`].
 #[derive(Clone, Copy, Debug)]
 pub struct Cluster {
-    /// The box around their corners.
+    /// The min corner of its bounding box.
     pub low: DVec3,
-    /// Its other corner.
+    /// The max corner.
     pub high: DVec3,
-    /// The first of them.
+    /// The index of the first face.
     pub first: u32,
-    /// How many.
+    /// The number of faces.
     pub count: u32,
-    /// Its two parts, the second after the first; 0 for a leaf.
+    /// The index of the first of two adjacent children; 0 for a leaf.
     pub parts: u32,
 }
 
-/// The tree of them.
+/// The cluster tree.
 #[derive(Debug)]
 pub struct Clusters {
-    /// The root first.
+    /// The nodes, root first.
     pub nodes: Vec<Cluster>,
-    /// Which face stands where.
+    /// The faces in the order of the clusters.
     pub order: Vec<u32>,
 }
 
@@ -37,21 +37,21 @@ impl Cluster {
         std::array::from_fn(|i| DVec3::new(pick(i, 0, 0), pick(i, 1, 1), pick(i, 2, 2)))
     }
 
-    /// Whether it has no parts.
+    /// Return whether it is a leaf.
     pub fn is_leaf(&self) -> bool {
         self.parts == 0
     }
 }
 
 impl Clusters {
-    /// Of some of the faces, halved where their centres and normals differ the most.
+    /// Build a tree of some faces, split at the median of the centre or normal coordinate with the greatest spread.
     pub fn new(facets: &[Facet], of: Vec<u32>) -> Self {
         let mut tree = Self { nodes: Vec::new(), order: of };
         if tree.order.is_empty() {
             return tree;
         }
         let (low, high) = around(facets, &tree.order);
-        // The sides of a box are told apart before they are parted.
+        // Normals are scaled so that the sides of a box are separated before they are split.
         let turn = (high - low).max_element();
         tree.nodes.push(Cluster { low, high, first: 0, count: tree.order.len() as u32, parts: 0 });
         let mut next = 0;
@@ -80,7 +80,7 @@ impl Clusters {
         };
         let widest = (0..6).max_by(|&a, &b| spread(a).total_cmp(&spread(b))).unwrap_or(0);
         let half = count / 2;
-        // Of equal keys by number, so that the tree is always the same.
+        // The number breaks ties, so that the tree is deterministic.
         faces.select_nth_unstable_by(half as usize, |&a, &b| key(a, widest).total_cmp(&key(b, widest)).then(a.cmp(&b)));
         self.nodes[node].parts = self.nodes.len() as u32;
         for (first, count) in [(first, half), (first + half, count - half)] {
@@ -94,7 +94,7 @@ impl Clusters {
         &self.order[node.first as usize..(node.first + node.count) as usize]
     }
 
-    /// The parts of a node that is no leaf.
+    /// The children of an inner node.
     pub fn parts(&self, node: &Cluster) -> [&Cluster; 2] {
         [&self.nodes[node.parts as usize], &self.nodes[node.parts as usize + 1]]
     }

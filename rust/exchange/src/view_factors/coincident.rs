@@ -1,4 +1,4 @@
-//! Triangles that share a part of one plane.
+//! Coplanar overlapping triangles.
 
 use super::clusters::{Cluster, Clusters};
 use super::facet::Facet;
@@ -6,27 +6,27 @@ use super::facets;
 use raywright_base::math::DVec3;
 use raywright_scene::Scene;
 
-/// Two triangles in one plane, and what they have in common.
+/// Two overlapping triangles in one plane.
 #[derive(Clone, Copy, Debug)]
 pub struct Overlap {
-    /// The lower number first.
+    /// The faces, lower number first.
     pub faces: [u32; 2],
-    /// The area in common.
+    /// The area of the overlap.
     pub area: f64,
-    /// A point in its middle.
+    /// Its centroid.
     pub middle: DVec3,
-    /// Whether both look the same way.
+    /// True if both have the same orientation.
     pub is_same: bool,
 }
 
-/// Of coordinates that all are numbers of single precision, what their roundings may make of a plane, and of others.
+/// Relative effect of rounding on a plane, for f32 coordinates and for others.
 pub const SINGLE: f64 = 1.0 / (1u64 << 22) as f64;
 const DOUBLE: f64 = 1.0 / (1u64 << 48) as f64;
 
-/// A smaller share of the smaller triangle is what roundings make of neighbours.
+/// Overlaps below this fraction of the smaller triangle are attributed to rounding.
 pub const LEAST: f64 = 1e-4;
 
-/// All pairs of triangles that share a part of one plane, in the order of their numbers.
+/// All pairs of coplanar overlapping triangles, ordered by number.
 pub fn coincident(scene: &Scene) -> Vec<Overlap> {
     let facets = facets(scene);
     let sending = (0..facets.len() as u32).filter(|&i| facets[i as usize].area > 0.0).collect();
@@ -69,14 +69,14 @@ fn visit(facets: &[Facet], tree: &Clusters, one: &Cluster, other: &Cluster, foun
     }
 }
 
-/// The area that two triangles of one plane have in common, and its middle; `None` if they are not of one plane.
+/// The area and centroid of the overlap of two coplanar triangles; `None` if they are not coplanar or do not overlap.
 pub fn overlap(one: &Facet, other: &Facet) -> Option<(f64, DVec3)> {
     overlap_within(one, other, rounding(one).min(rounding(other)))
 }
 
-/// The same of planes that are no farther apart than this.
+/// The same with a given tolerance for the distance of the planes.
 pub fn overlap_within(one: &Facet, other: &Facet, room: f64) -> Option<(f64, DVec3)> {
-    // Normals tell quickly; of slender triangles they are not known well.
+    // A quick test of the normals, with a margin since those of slender triangles are inaccurate.
     if one.normal.dot(other.normal).abs() < 0.99 || one.centre.distance(other.centre) >= one.radius + other.radius {
         return None;
     }
@@ -109,7 +109,7 @@ pub fn overlap_within(one: &Facet, other: &Facet, room: f64) -> Option<(f64, DVe
     Some((0.5 * twice.length(), middle))
 }
 
-/// How far roundings of its corners may move a triangle's plane.
+/// How far rounding of the corners may move a triangle's plane.
 pub fn rounding(facet: &Facet) -> f64 {
     let coordinates = facet.corners.map(|corner| corner.to_array());
     let is_single = coordinates.as_flattened().iter().all(|&x| f64::from(x as f32) == x);
@@ -141,7 +141,7 @@ mod tests {
                 assert!((found - truth).abs() < 1e-15, "{found} for {truth}");
             }
         }
-        // Numbers of double precision may differ by rounding, and those of single precision by theirs.
+        // Tolerances follow the rounding of f64 or f32 coordinates.
         let turned = |facet: &Facet, by: f64| Facet::new(facet.corners.map(|p| DVec3::new(p.x, p.y, p.x / 3.0 + by)));
         assert!(overlap(&turned(&half, 0.0), &turned(&half, 1e-16)).is_some());
         assert!(overlap(&turned(&half, 0.0), &turned(&half, 1e-9)).is_none());

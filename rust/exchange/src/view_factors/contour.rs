@@ -1,12 +1,12 @@
-//! The closed form for two polygons that are near each other, as integrals around both:
+//! The closed form for two nearby polygons, as a double contour integral:
 //!
 //! A₁ F₁₂ = 1/(2π) ∮∮ ln r dp·dq
 //!
-//! (Schröder and Hanrahan, "On the Form Factor Between Two Polygons", 1993). The inner integral along an edge is in
-//! closed form (Mitalas and Stephenson 1966), the outer one is by Gauss's rules. Along its edge it is analytic but for
-//! three places: where it passes the two ends of the other edge, and where it passes the other edge's line. How far
-//! each of them is from the real axis is known, and an interval takes the rule whose error that bounds (Trefethen,
-//! "Approximation Theory and Approximation Practice", 2013, theorem 19.3), or is cut towards it.
+//! (Schröder and Hanrahan, "On the Form Factor Between Two Polygons", 1993). The inner integral along an edge has a
+//! closed form (Mitalas and Stephenson 1966); the outer one uses Gauss-Legendre rules. Along its edge the integrand is
+//! analytic except near three points: beside the two ends of the other edge, and beside that edge's line. Their
+//! distances from the real axis are known. An interval uses the rule whose error they bound (Trefethen, "Approximation
+//! Theory and Approximation Practice", 2013, theorem 19.3), or is split near them.
 
 use super::facet::Facet;
 use raywright_base::math::DVec3;
@@ -14,13 +14,13 @@ use raywright_base::math::gauss::gauss;
 use std::f64::consts::TAU;
 use std::sync::OnceLock;
 
-/// The most points of a rule.
+/// Maximum number of points of a rule.
 const MOST: usize = 16;
 
-/// The area of one times its view factor to another, all of each in front of the other.
+/// The area of `one` times its view factor to `other`, if each is wholly in front of the other.
 pub fn contour(one: &Facet, other: &Facet) -> f64 {
     let origin = one.corners[0];
-    // A power of two, which is exact: logarithms of lengths about 1 are small.
+    // An exact power of two: lengths near 1 have small logarithms.
     let scale = 2f64.powi(-((one.radius.max(other.radius)).log2().round() as i32));
     let [p, q] = [one, other].map(|facet| facet.corners.map(|corner| (corner - origin) * scale));
     let mut sum = 0.0;
@@ -32,7 +32,7 @@ pub fn contour(one: &Facet, other: &Facet) -> f64 {
     sum / (TAU * scale * scale)
 }
 
-/// A place along an edge, and how far from the real axis, where the inner integral is not analytic.
+/// The position along an edge of a singularity of the inner integral, and its distance from the real axis.
 #[derive(Clone, Copy)]
 struct Singularity {
     at: f64,
@@ -74,10 +74,10 @@ fn edges(p: [DVec3; 2], q: [DVec3; 2]) -> f64 {
     cosine * graded(a, &singular, &inner)
 }
 
-/// ∫ over [0, a] and between two ends of the same line of ln |s − t|.
+/// ∫ ln |s − t| over [0, a] and an interval of the same line.
 fn collinear(a: f64, [from, to]: [f64; 2]) -> f64 {
     let second = |x: f64| if x == 0.0 { 0.0 } else { 0.5 * x * x * (x.abs().ln() - 1.5) };
-    // The ends stand as the other edge goes, and its length counts as positive.
+    // The ends are in the other edge's direction, and its length counts as positive.
     let whole = second(to) - second(to - a) - second(from) + second(from - a);
     if to >= from { whole } else { -whole }
 }
@@ -87,7 +87,7 @@ fn collinear(a: f64, [from, to]: [f64; 2]) -> f64 {
 fn logarithms(q: [DVec3; 2], v: DVec3, b: f64, x: DVec3) -> f64 {
     let (first, last) = (q[0] - x, q[1] - x);
     let (from, to) = (first.dot(v), last.dot(v));
-    // From the nearer end, of which fewer digits are lost.
+    // From the nearer end, which loses fewer digits.
     let nearer = if from.abs() < to.abs() { first } else { last };
     let height = nearer.cross(v).length();
     let term = |t: f64, square: f64| if square > 0.0 { 0.5 * t * square.ln() } else { 0.0 };
@@ -95,7 +95,7 @@ fn logarithms(q: [DVec3; 2], v: DVec3, b: f64, x: DVec3) -> f64 {
     term(to, last.length_squared()) - term(from, first.length_squared()) - b + arc
 }
 
-/// ∫ over [0, length] of what has these singularities.
+/// ∫ over [0, length] of a function with the given singularities.
 fn graded(length: f64, singular: &[Singularity; 3], inner: &impl Fn(f64) -> f64) -> f64 {
     static RULES: OnceLock<Vec<Vec<(f64, f64)>>> = OnceLock::new();
     let rules = RULES.get_or_init(|| (0..=MOST).map(gauss).collect());
@@ -107,7 +107,7 @@ fn graded(length: f64, singular: &[Singularity; 3], inner: &impl Fn(f64) -> f64)
         left -= 1;
         let [from, to] = open[left];
         let (half, middle) = (0.5 * (to - from), 0.5 * (from + to));
-        // Of the ellipse about the ends that goes through the nearest singularity, the sum of half axes.
+        // The sum of semi-axes of the ellipse about the interval's ends through the nearest singularity.
         let (mut least, mut nearest) = (f64::INFINITY, singular[0]);
         for place in singular.iter().filter(|place| place.off.is_finite()) {
             let (x, y) = ((place.at - middle) / half, place.off / half);
@@ -119,7 +119,7 @@ fn graded(length: f64, singular: &[Singularity; 3], inner: &impl Fn(f64) -> f64)
         let rho = least + (least * least - 1.0).max(0.0).sqrt();
         // ρ to the power −2n is 10⁻¹³.
         let points = if rho > 1.0 { (15.0 / rho.ln()).ceil() } else { f64::INFINITY };
-        // What is left out next to a singularity is of the order of the interval's square.
+        // The error next to a singularity is of the order of the squared interval.
         let is_last = to - from < 1e-7 * length || left + 2 > open.len();
         if points <= MOST as f64 || is_last {
             let points = if is_last { 6 } else { (points as usize).max(2) };
@@ -134,7 +134,7 @@ fn graded(length: f64, singular: &[Singularity; 3], inner: &impl Fn(f64) -> f64)
         } else if at >= to {
             to - quarter
         } else {
-            // Not so close to an end that a part has no length.
+            // Not too close to an end, so that both parts have a length.
             at.clamp(from + 1e-3 * quarter, to - 1e-3 * quarter)
         };
         open[left] = [from, cut];

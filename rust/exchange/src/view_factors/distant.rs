@@ -1,4 +1,4 @@
-//! View factors of triangles that are far from each other, by rules of points on both.
+//! View factors of distant triangles by cubature over both.
 
 use super::facet::Facet;
 use raywright_base::math::DVec3;
@@ -6,11 +6,11 @@ use raywright_base::simd::{Level, loops};
 use std::f64::consts::PI;
 use std::sync::OnceLock;
 
-/// The most points of a rule.
+/// Maximum number of points of a rule.
 const MOST: usize = 48;
 
-/// Points of a triangle, as weights of its second and third corner, and what each counts: 1 in all. As many as fill
-/// vectors; what is left over counts 0.
+/// Points of a triangle, as weights of its second and third corner, and their weights, which sum to 1. Padded to whole
+/// vectors with weights of 0.
 struct Rule {
     points: usize,
     second: [f64; MOST],
@@ -28,7 +28,7 @@ impl Rule {
         rule
     }
 
-    /// Exact to degree 5, of 7 points (Radon 1948).
+    /// A rule exact to degree 5 with 7 points (Radon 1948).
     fn seven() -> Self {
         let root = 15f64.sqrt();
         let mut of = vec![([1.0 / 3.0; 2], 9.0 / 40.0)];
@@ -39,8 +39,8 @@ impl Rule {
         Self::new(&of)
     }
 
-    /// Of orbits about the middle: a weight, and two of the three weights of corners, of which two are alike where but
-    /// one is told. What is left to 1 is in the middle.
+    /// A symmetric rule given by orbits about the center. Each has a weight and one or two of the barycentric
+    /// coordinates; with one, the other two are equal. The remaining weight is at the center.
     fn of_orbits(pairs: &[[f64; 2]], triples: &[[f64; 3]]) -> Self {
         let mut of = Vec::with_capacity(MOST);
         for &[weight, a] in pairs {
@@ -58,7 +58,7 @@ impl Rule {
         Self::new(&of)
     }
 
-    /// Exact to degree 8, of 16 points (Lyness and Jespersen 1975).
+    /// A rule exact to degree 8 with 16 points (Lyness and Jespersen 1975).
     fn sixteen() -> Self {
         Self::of_orbits(
             &[
@@ -70,7 +70,7 @@ impl Rule {
         )
     }
 
-    /// Exact to degree 10, of 25 points (Dunavant 1985).
+    /// A rule exact to degree 10 with 25 points (Dunavant 1985).
     fn twenty_five() -> Self {
         Self::of_orbits(
             &[
@@ -85,8 +85,8 @@ impl Rule {
         )
     }
 
-    /// Exact to degree 14, of 42 points (Dunavant, "High Degree Efficient Symmetrical Gaussian Quadrature Rules for the
-    /// Triangle", 1985).
+    /// A rule exact to degree 14 with 42 points (Dunavant, "High Degree Efficient Symmetrical Gaussian Quadrature Rules
+    /// for the Triangle", 1985).
     fn forty_two() -> Self {
         Self::of_orbits(
             &[
@@ -107,11 +107,11 @@ impl Rule {
     }
 }
 
-/// Rules, and up to which ratio of both radii to the distance they are taken.
+/// The rules, and the maximum ratio of both radii to the distance for each.
 static RULES: OnceLock<[Rule; 4]> = OnceLock::new();
 const RATIOS: [f64; 4] = [0.05, 0.18, 0.35, 0.7];
 
-/// Points of a triangle, and what each counts times how high it is above the other's plane.
+/// Points of a triangle, with their weights times their heights above the other's plane.
 struct Points {
     x: [f64; MOST],
     y: [f64; MOST],
@@ -141,7 +141,7 @@ loops! {
 loops! {
     fn sum(points: usize, one: &Points, other: &Points, to: &mut f64) {
         let mut sums = [0.0; 8];
-        // Divisions are what takes time: one for four points, of which there are as many as fill vectors.
+        // Divisions dominate the time: one for four points, in whole vectors.
         for four in (0..points).step_by(4) {
             for start in (0..points).step_by(8) {
                 let [xs, ys, zs, weights] =
@@ -163,13 +163,13 @@ loops! {
     }
 }
 
-/// Two fractions as one: numbers that are near 1, in units of the distance.
+/// The sum of two fractions whose numbers are near 1, in units of the distance.
 #[inline(always)]
 fn added((a, b): (f64, f64), (c, d): (f64, f64)) -> (f64, f64) {
     (a * d + c * b, b * d)
 }
 
-/// What sums over the points of two triangles, with the memory that it needs.
+/// Cubature over two triangles, with its scratch space.
 pub struct Quadrature {
     level: Level,
     rules: &'static [Rule; 4],
@@ -178,15 +178,14 @@ pub struct Quadrature {
 }
 
 impl Quadrature {
-    /// At a level of the processor.
+    /// For a SIMD level.
     pub fn new(level: Level) -> Self {
         let rules = RULES.get_or_init(|| [Rule::seven(), Rule::sixteen(), Rule::twenty_five(), Rule::forty_two()]);
         Self { level, rules, from: Points::NONE, to: Points::NONE }
     }
 
-    /// The area of one times its view factor to another, all of each in front of the other; none where they are too
-    /// near. The heights are those of the other's corners above the plane of the one, and of the one's above the
-    /// other's.
+    /// The area of `one` times its view factor to `other`, if each is wholly in front of the other. None if they are
+    /// too near. `heights` are those of the other's corners above the plane of `one`, and vice versa.
     #[inline]
     pub fn distant(&mut self, one: &Facet, other: &Facet, heights: [[f64; 3]; 2]) -> Option<f64> {
         let reach = one.radius + other.radius;
@@ -197,7 +196,7 @@ impl Quadrature {
 
     fn by_rule(&mut self, rule: usize, one: &Facet, other: &Facet, [to_other, to_one]: [[f64; 3]; 2]) -> f64 {
         let (level, rule) = (self.level, &self.rules[rule]);
-        // In units of the distance, from the one's centre.
+        // In units of the distance, relative to the centre of `one`.
         let unit = 1.0 / other.centre.distance(one.centre);
         let near = |facet: &Facet| facet.corners.map(|corner| (corner - one.centre) * unit);
         place(level, rule, &near(one), &to_one.map(|h| h * unit), &mut self.from);
@@ -232,7 +231,7 @@ mod tests {
         }
     }
 
-    /// Two triangles of corners in unit boxes, some way apart.
+    /// Two triangles with corners in unit boxes at some distance.
     fn drawn(number: u32) -> [Facet; 2] {
         let mut sampler = Sampler::new(1, number, 0);
         let mut dimension = 0;
@@ -266,7 +265,7 @@ mod tests {
             }
             assert!((found / truth - 1.0).abs() < 1e-9, "{number}: {found} for {truth}");
             asked[0] += 1;
-            // The terms of the integrals around both are of the order of the radii's product.
+            // The terms of the contour integrals are of the order of the radii's product.
             let around = contour(&one, &other);
             let cancelled = 3e-13 * one.radius.max(other.radius).powi(2);
             assert!((around - truth).abs() < 1e-10 * truth + cancelled, "{number}: {around} for {truth}");

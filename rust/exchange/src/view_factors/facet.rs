@@ -1,44 +1,44 @@
-//! Triangles that send and receive, and what of them lies in front of another's plane.
+//! One-sided triangles, and the part of a triangle in front of a plane.
 
 use raywright_base::math::{DVec3, DoubleDouble};
 
-/// A triangle that sends from the side of its normal.
+/// A triangle that emits from the side of its normal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Facet {
     /// Its corners, anticlockwise as seen from the front.
     pub corners: [DVec3; 3],
-    /// The unit normal; zero where it has no area.
+    /// The unit normal; zero for a degenerate triangle.
     pub normal: DVec3,
     /// Its area.
     pub area: f64,
-    /// Where the middle of its corners is.
+    /// The mean of its corners.
     pub centre: DVec3,
-    /// How far from there the farthest corner is.
+    /// The distance of the farthest corner from the centre.
     pub radius: f64,
-    /// What the roundings of its coordinates may be.
+    /// The rounding error of its coordinates.
     noise: f64,
 }
 
-/// Roundings of a height, as a part of the distance and of the coordinates: 16 of 2⁻⁵³ each.
+/// Rounding error of a height relative to the distance and the coordinates: 16 of 2⁻⁵³ each.
 const ROUNDING: f64 = 1.0 / (1u64 << 49) as f64;
 
-/// Heights that are a smaller part of the distance have lost more than 10⁻¹⁰ of themselves, and are computed anew.
+/// Heights below this fraction of the distance have a relative error above 10⁻¹⁰, and are recomputed.
 const FLAT: f64 = 1.0 / (1u64 << 18) as f64;
 
-/// What makes as much of the roundings of coordinates: of a height that is more, they are no part that counts.
+/// Heights above this multiple of the coordinates' rounding errors are not affected by them.
 const STEEP: f64 = (1u64 << 31) as f64;
 
-/// What is no farther outside of a triangle, as a part of its radius, counts as within.
+/// Points outside a triangle by at most this fraction of its radius count as inside.
 const NEXT: f64 = 1e-9;
 
 impl Facet {
-    /// Of these corners.
+    /// The triangle with the given corners.
     pub fn new(corners: [DVec3; 3]) -> Self {
         let [a, b, c] = corners;
         let centre = a + ((b - a) + (c - a)) / 3.0;
         let radius = corners.iter().fold(0.0f64, |most, corner| most.max(corner.distance(centre)));
         let coordinate = corners.iter().fold(0.0f64, |most, corner| most.max(corner.abs().max_element()));
-        // In units of its own, so that no square vanishes however small it is.
+        // In units of the radius, to avoid underflow of squares.
         let unit = if radius > 0.0 { 1.0 / radius } else { 0.0 };
         let vector = ((b - a) * unit).cross((c - a) * unit);
         let length = vector.length();
@@ -46,24 +46,24 @@ impl Facet {
         Self { corners, normal, area: 0.5 * length * radius * radius, centre, radius, noise: ROUNDING * coordinate }
     }
 
-    /// How far a point is in front of the plane: 0 where that is no more than rounding.
+    /// The signed height of a point above the plane; 0 if within rounding.
     #[inline]
     pub fn height(&self, point: DVec3) -> f64 {
         let from = point - self.centre;
         let height = self.normal.dot(from);
-        // Of a point well off the plane, all digits that count are right.
+        // The height of a point well off the plane is accurate.
         if height.abs() > FLAT * (from.abs().element_sum() + self.radius) + STEEP * self.noise {
             return height;
         }
         self.low_height(point)
     }
 
-    /// The same of a point that is not far from the plane.
+    /// The same for a point near the plane.
     #[inline(never)]
     fn low_height(&self, point: DVec3) -> f64 {
         let [a, b, c] = self.corners.map(|corner| point - corner);
         let [aa, bb, cc] = [a, b, c].map(DVec3::length_squared);
-        // From the nearest corner: exactly 0 of a corner that two have in common.
+        // From the nearest corner, so that it is exactly 0 for a shared corner.
         let from = if aa <= bb && aa <= cc {
             a
         } else if bb <= cc {
@@ -82,11 +82,11 @@ impl Facet {
         }
     }
 
-    /// The height of a point next to the plane, to all digits: a volume by numbers of twice the length, over an area.
+    /// The accurate height of a point very near the plane: a double-double volume over an area.
     #[cold]
     fn flat_height(&self, point: DVec3) -> f64 {
         let [a, b, c] = self.corners;
-        // A power of two, so that no product vanishes.
+        // A power of two, to avoid underflow of products.
         let unit = 2f64.powi(-(self.radius.log2().round() as i32));
         let from = |p: DVec3| [0, 1, 2].map(|k| DoubleDouble::difference(p[k], a[k]).scaled(unit));
         let ([ax, ay, az], [bx, by, bz], [px, py, pz]) = (from(b), from(c), from(point));
@@ -94,20 +94,20 @@ impl Facet {
         volume.to_f64() / (2.0 * self.area * unit * unit * unit)
     }
 
-    /// The same with all digits, where what is taken for rounding may be a gap: 0 of corners in common alone.
+    /// Accurate heights where apparent rounding may be a real gap: 0 for shared corners only.
     #[cold]
     pub fn exact_heights(&self, other: &Self) -> [f64; 3] {
         other.corners.map(|corner| if self.corners.contains(&corner) { 0.0 } else { self.flat_height(corner) })
     }
 
-    /// On which side of the plane points are at most: whether some are in front, and whether some are behind.
+    /// Return whether some points are in front of the plane, and whether some are behind.
     #[inline]
     pub fn sides(&self, points: impl IntoIterator<Item = DVec3>) -> [bool; 2] {
         let mut found = [false; 2];
         for point in points {
             let from = point - self.centre;
             let height = self.normal.dot(from);
-            // The sum of coordinates is no less than the distance, and takes no root.
+            // The L1 norm is an upper bound of the distance, without a root.
             let rounding = ROUNDING * (from.abs().element_sum() + self.radius) + self.noise;
             found[0] |= height > rounding;
             found[1] |= height < -rounding;
@@ -115,19 +115,19 @@ impl Facet {
         found
     }
 
-    /// The heights of another's corners.
+    /// The heights of another triangle's corners.
     #[inline]
     pub fn heights(&self, other: &Self) -> [f64; 3] {
         let [a, b, c] = other.corners;
         [self.height(a), self.height(b), self.height(c)]
     }
 
-    /// Whether a point of the plane is within, or next to it.
+    /// Return whether a point of the plane is inside or adjacent.
     pub fn covers(&self, point: DVec3) -> bool {
         self.covers_by(point, -NEXT)
     }
 
-    /// Whether a point of the plane is within, and by so many radii away from its border.
+    /// Return whether a point of the plane is inside by at least `margin` radii.
     pub fn covers_by(&self, point: DVec3, margin: f64) -> bool {
         (0..3).all(|i| {
             let (from, edge) = (self.corners[i], self.corners[(i + 1) % 3] - self.corners[i]);
@@ -135,7 +135,7 @@ impl Facet {
         })
     }
 
-    /// The weights of the second and third corner of a point of the plane.
+    /// The barycentric weights of the second and third corner for a point of the plane.
     pub fn weights(&self, point: DVec3) -> [f64; 2] {
         let [a, b, c] = self.corners;
         let share = |one: DVec3, other: DVec3| self.normal.dot(one.cross(other)) / (2.0 * self.area);
@@ -144,11 +144,11 @@ impl Facet {
         [second / whole, third / whole]
     }
 
-    /// The four parts that halved edges make, all alike.
+    /// The four congruent quarters.
     pub fn quarters(&self) -> [Self; 4] {
         let [a, b, c] = self.corners;
         let (p, q, r) = (0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a));
-        // Their planes are its own, whatever the halves are rounded to.
+        // They have the same plane, despite the rounding of the midpoints.
         [[a, p, r], [p, b, q], [r, q, c], [q, r, p]].map(|corners| Self {
             corners,
             area: 0.25 * self.area,
@@ -159,8 +159,7 @@ impl Facet {
     }
 }
 
-/// What of a triangle lies in front of a plane, and its heights above that: one triangle or two, of its own plane; none
-/// if there is nothing.
+/// The part of a triangle in front of a plane, as up to two triangles with their heights above it.
 pub fn in_front(facet: &Facet, heights: [f64; 3]) -> [Option<(Facet, [f64; 3])>; 2] {
     if heights.iter().all(|&h| h <= 0.0) {
         return [None, None];
@@ -178,7 +177,7 @@ pub fn in_front(facet: &Facet, heights: [f64; 3]) -> [Option<(Facet, [f64; 3])>;
             count += 1;
         }
         if (from > 0.0 && to < 0.0) || (from < 0.0 && to > 0.0) {
-            // From the end in front, so that both triangles at an edge have the same point.
+            // Interpolated from the end in front, so that both triangles at an edge have the same point.
             let (near, far, a, b) = if from > 0.0 {
                 (facet.corners[i], facet.corners[j], from, to)
             } else {

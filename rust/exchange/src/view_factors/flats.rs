@@ -1,4 +1,4 @@
-//! Flat parts of faces, and which of them share a plane.
+//! Flat parts of faces, and pairs of coplanar overlapping ones.
 
 use super::clusters::{Cluster, Clusters};
 use super::coincident::{LEAST, SINGLE, coincident, overlap_within, rounding};
@@ -10,7 +10,7 @@ use raywright_scene::Scene;
 use raywright_shapes::Flat;
 use std::collections::BTreeMap;
 
-/// A flat part of a face: a triangle that is one, or a part of a shape that is no triangle.
+/// A flat part of a face: a triangle, or a flat part of another shape.
 #[derive(Clone, Copy, Debug)]
 pub enum Part {
     Triangle(Facet),
@@ -23,7 +23,7 @@ pub enum Part {
     },
 }
 
-/// What is no farther outside, as a share of the part's size, counts as within.
+/// Points outside by at most this fraction of the part's size count as inside.
 const NEXT: f64 = 1e-9;
 
 impl Part {
@@ -45,7 +45,7 @@ impl Part {
         }
     }
 
-    /// How far a point is in front of the plane, but for roundings.
+    /// The approximate signed height of a point above the plane.
     pub fn height(&self, place: DVec3) -> f64 {
         match self {
             Self::Triangle(facet) => facet.normal.dot(place - facet.centre),
@@ -53,12 +53,12 @@ impl Part {
         }
     }
 
-    /// Whether a point of the plane is within, or next to it.
+    /// Return whether a point of the plane is inside or adjacent.
     pub fn covers(&self, place: DVec3) -> bool {
         self.covers_by(place, -NEXT)
     }
 
-    /// Whether a point of the plane is within, and by a share of the part's size away from its border.
+    /// Return whether a point of the plane is inside by at least a fraction of the part's size.
     pub fn covers_by(&self, place: DVec3, margin: f64) -> bool {
         match self {
             Self::Triangle(facet) => facet.covers_by(place, margin),
@@ -71,7 +71,8 @@ impl Part {
         }
     }
 
-    /// The weights of a triangle's second and third corner at a point of the plane; shapes have one value everywhere.
+    /// The barycentric weights of a triangle's second and third corner for a point of the plane; zero for other shapes,
+    /// which have constant values.
     pub fn weights(&self, place: DVec3) -> [f64; 2] {
         match self {
             Self::Triangle(facet) => facet.weights(place),
@@ -80,25 +81,25 @@ impl Part {
     }
 }
 
-/// Flat parts of two faces that share a part of one plane.
+/// Overlapping coplanar parts of two faces.
 #[derive(Clone, Copy, Debug)]
 pub struct SharedPlane {
-    /// The lower number first.
+    /// The faces, lower number first.
     pub faces: [u32; 2],
-    /// Which parts of them.
+    /// Their parts.
     pub parts: [Part; 2],
-    /// The area in common; of ellipses to some percent.
+    /// The area of the overlap; for ellipses to some percent.
     pub area: f64,
-    /// A point in common.
+    /// A point of the overlap.
     pub middle: DVec3,
-    /// Whether both look the same way.
+    /// True if both have the same orientation.
     pub is_same: bool,
-    /// How far roundings may have parted the planes.
+    /// Maximum distance of the planes by rounding.
     pub room: f64,
 }
 
-/// All pairs of faces that share a part of one plane: triangles first, then what shapes that are none share with these
-/// and with each other.
+/// All pairs of faces with overlapping coplanar parts: triangles first, then other shapes with triangles and with each
+/// other.
 pub fn shared_planes(scene: &Scene) -> Vec<SharedPlane> {
     let corners = |face| Facet::new(scene.geometry().corners(face));
     let of_triangles = coincident(scene).into_iter().map(|overlap| {
@@ -115,14 +116,14 @@ pub fn shared_planes(scene: &Scene) -> Vec<SharedPlane> {
     of_triangles.chain(of_shapes(scene)).collect()
 }
 
-/// A flat part of a shape, by the number of the face, and the triangles that stand for it.
+/// A flat part of a shape, with its face and a triangulation.
 struct OfShape {
     face: u32,
     part: Part,
     pieces: Vec<Facet>,
 }
 
-/// What shapes that are no triangles share with triangles, and with each other.
+/// The overlaps of other shapes with triangles and with each other.
 fn of_shapes(scene: &Scene) -> Vec<SharedPlane> {
     let geometry = scene.geometry();
     let count = geometry.count() as u32;
@@ -135,7 +136,7 @@ fn of_shapes(scene: &Scene) -> Vec<SharedPlane> {
     if parts.is_empty() {
         return Vec::new();
     }
-    // All triangles, and then all pieces, with the number of the part that each is of.
+    // All triangles, followed by all pieces with the index of their part.
     let mut all = facets(scene);
     let mut owners = Vec::new();
     for (number, part) in parts.iter().enumerate() {
@@ -146,7 +147,8 @@ fn of_shapes(scene: &Scene) -> Vec<SharedPlane> {
     let tree = Clusters::new(&all, sending);
     let mut found = Vec::new();
     for (number, part) in parts.iter().enumerate() {
-        // By face and part of the other: the area in common, the largest piece of it, and the room.
+        // By face and part of the other: the overlap's area, the area and middle of its largest piece, and the
+        // tolerance.
         let mut shared = BTreeMap::<(u32, usize), (f64, f64, DVec3, f64)>::new();
         for piece in &part.pieces {
             let mut with = |other: u32| {
@@ -188,7 +190,7 @@ fn of_shapes(scene: &Scene) -> Vec<SharedPlane> {
     found
 }
 
-/// Calls `with` for all faces of a tree that may share a plane with a piece.
+/// Call `with` for all faces of a tree that may be coplanar with a piece.
 fn near(tree: &Clusters, piece: &Facet, node: usize, with: &mut dyn FnMut(u32)) {
     let cluster: &Cluster = &tree.nodes[node];
     let root = &tree.nodes[0];

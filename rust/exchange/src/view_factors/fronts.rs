@@ -1,4 +1,4 @@
-//! Which front a ray meets, also where two faces lie back to back, or touch front to front.
+//! The front that a ray hits, also where two faces are back to back or touch front to front.
 
 use super::flats::{Part, SharedPlane, shared_planes};
 use raywright_base::math::{DVec3, Frame, Hit, Ray};
@@ -7,28 +7,29 @@ use raywright_base::sampling::{BatchSize, SamplerKind, warp};
 use raywright_scene::{RayOrigin, Scene};
 use std::collections::BTreeMap;
 
-/// A face, a flat part of which lies in the plane of another and looks the other way.
+/// A face with a flat part that is coplanar with another face's and opposite in orientation.
 #[derive(Clone, Debug)]
 struct Opposite {
     face: u32,
     part: Part,
-    /// How far from its plane places of the other are at most that lie in it: of a triangle all do.
+    /// Maximum distance from the part's plane of points on the other face; infinite for a triangle, all of which is in
+    /// the plane.
     room: f64,
-    /// Whether both touch front to front; else they lie back to back, as both sides of a sheet do.
+    /// True if both touch front to front, rather than lying back to back as the two sides of a sheet.
     touches: bool,
 }
 
-/// Faces that lie in the planes of others and look the other way.
+/// Pairs of coplanar overlapping faces of opposite orientation.
 ///
-/// Rays meet both sides of a sheet at once, and which of them is told depends on roundings; that which looks at the ray
-/// counts. All that leaves a face where another touches it comes to that.
+/// Rays hit both sides of a sheet at once, and rounding decides which is reported; the side that faces the ray counts.
+/// All light from a face goes to the face that touches it there.
 #[derive(Clone, Debug, Default)]
 pub struct Fronts {
     opposite: BTreeMap<u32, Vec<Opposite>>,
 }
 
 impl Opposite {
-    /// Whether it lies at a place of the other.
+    /// Return whether it covers a point of the other face.
     #[inline]
     fn holds(&self, place: DVec3) -> bool {
         self.part.covers(place) && (self.room == f64::INFINITY || self.part.height(place).abs() <= self.room)
@@ -36,12 +37,12 @@ impl Opposite {
 }
 
 impl Fronts {
-    /// Those of a scene.
+    /// Find the pairs in a scene.
     pub fn new(scene: &Scene) -> Self {
         Self::among(scene, &shared_planes(scene))
     }
 
-    /// Those among all faces of a scene that share planes.
+    /// Find the pairs among all coplanar overlapping faces.
     pub fn among(scene: &Scene, shared: &[SharedPlane]) -> Self {
         let pairs: Vec<&SharedPlane> = shared.iter().filter(|shared| !shared.is_same).collect();
         let mut opposite = BTreeMap::<u32, Vec<Opposite>>::new();
@@ -63,7 +64,7 @@ impl Fronts {
         found
     }
 
-    /// Those alone that touch front to front.
+    /// Find only pairs that touch front to front.
     pub fn of_touching(scene: &Scene) -> Self {
         let mut found = Self::new(scene);
         found.opposite.retain(|_, all| {
@@ -73,13 +74,13 @@ impl Fronts {
         found
     }
 
-    /// Whether two faces touch front to front.
+    /// Return whether two faces touch front to front.
     ///
-    /// Where they do, at least one is of a solid, and the front of the other looks into that: most rays from there meet
-    /// backs. Those that meet a sheet, or faces that touch, tell nothing. Closed shapes are solids whose flat parts
-    /// look outwards.
+    /// If so, at least one belongs to a solid, and the front of the other faces its inside, so most rays from there hit
+    /// backs. Rays that hit a sheet or touching faces are inconclusive. Closed shapes are solids whose flat parts face
+    /// outward.
     fn is_touching(&self, scene: &Scene, pair: &SharedPlane) -> bool {
-        /// Rays from each of both.
+        /// Rays per face.
         const RAYS: u32 = 32;
         let geometry = scene.geometry();
         if pair.faces.iter().any(|&face| geometry.shape(face).is_some_and(|shape| shape.is_closed())) {
@@ -109,18 +110,18 @@ impl Fronts {
         pair.faces.into_iter().zip(&pair.parts).any(looks_into)
     }
 
-    /// Whether no face has another in its plane that looks the other way.
+    /// Return whether there are no such pairs.
     #[inline]
     pub fn is_empty(&self) -> bool {
         self.opposite.is_empty()
     }
 
-    /// Whether a face touches another front to front.
+    /// Return whether a face touches another front to front.
     pub fn is_touched(&self, face: u32) -> bool {
         self.opposite.get(&face).is_some_and(|all| all.iter().any(|found| found.touches))
     }
 
-    /// The face that touches this one at a place, so that nothing else is seen from there, and the weights of its
+    /// The face that touches this one at a point and so hides everything else, with the barycentric weights of its
     /// second and third corner.
     #[inline]
     pub fn touching(&self, face: u32, place: DVec3) -> Option<(u32, [f64; 2])> {
@@ -128,13 +129,13 @@ impl Fronts {
         Some((found.face, found.part.weights(place)))
     }
 
-    /// Whether two faces touch front to front.
+    /// Return whether two faces touch front to front.
     pub fn touch(&self, [one, other]: [u32; 2]) -> bool {
         self.opposite.get(&one).is_some_and(|all| all.iter().any(|found| found.face == other && found.touches))
     }
 
-    /// The face to whose front a ray from a place on a face comes, and the weights of its second and third corner
-    /// there; `None` if it meets a back alone, or nothing.
+    /// The face whose front a ray from a point on a face reaches, with the barycentric weights of its second and third
+    /// corner. `None` if it hits only a back, or nothing.
     #[inline]
     pub fn met(&self, scene: &Scene, (from, place): (u32, DVec3), ray: &Ray, hit: &Hit) -> Option<(u32, [f64; 2])> {
         if let Some(found) = self.touching(from, place) {
@@ -151,16 +152,16 @@ impl Fronts {
         Some((found.face, found.part.weights(surface.position)))
     }
 
-    /// Whether a ray that meets the front of a face at a place has met the back of another there, which touches it.
-    /// Next to the borders of solids, which rays from outside do not get under, roundings may seem to say so.
+    /// Return whether a ray that hits the front of a face has passed through the back of another face touching it
+    /// there. Points near the borders of solids are excluded: there, rounding may make rays from outside appear to.
     #[inline]
     fn lies_under(&self, face: u32, place: DVec3) -> bool {
-        /// As a share of the other's size.
+        /// As a fraction of the other's size.
         const BORDER: f64 = 1e-6;
         self.at(face, place).is_some_and(|found| found.touches && found.part.covers_by(place, BORDER))
     }
 
-    /// The face that lies at a place of another and looks the other way.
+    /// The opposite face at a point of a face.
     #[inline]
     fn at(&self, face: u32, place: DVec3) -> Option<&Opposite> {
         if self.opposite.is_empty() {

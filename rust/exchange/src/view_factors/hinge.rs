@@ -1,16 +1,16 @@
-//! Two triangles that are nearly in one plane: what they exchange is then so little that integrals around both cancel.
-//! Here all terms are positive.
+//! View factors of two nearly coplanar triangles. They exchange so little that contour integrals cancel; here all terms
+//! are positive.
 //!
 //! The planes meet in a line, and the triangles lie on either side of it. With the distance u or v of a point from that
 //! line, t along it, and the angle φ between the half-planes,
 //!
-//! A₁ F₁₂ = sin²φ/π ∫∫ u v ∫∫ ((t₁ − t₂)² + s²)⁻² dt₁ dt₂ du dv, s² = u² + v² − 2uv cos φ,
+//! A₁ F₁₂ = sin²φ/π ∫∫ u v ∫∫ ((t₁ − t₂)² + s²)⁻² dt₁ dt₂ du dv, s² = u² + v² − 2uv cos φ.
 //!
-//! in which the inner two are in closed form (Feingold, "Radiation-Interchange Configuration Factors Between Various
-//! Selected Plane Surfaces", 1966, does so for rectangles). The outer two are by Gauss's rules on rectangles that are
-//! halved where halves tell otherwise. Next to a corner on the line, where 1/s³ is not smooth, lines through that
-//! corner are taken for one of both axes (Duffy, "Quadrature over a Pyramid or Cube of Integrands with a Singularity at
-//! a Vertex", 1982).
+//! The inner two integrals have a closed form (Feingold, "Radiation-Interchange Configuration Factors Between Various
+//! Selected Plane Surfaces", 1966, has it for rectangles). The outer two use Gauss-Legendre rules on adaptively halved
+//! rectangles. Next to a corner on the line, where 1/s³ is not smooth, the Duffy transformation replaces one of the
+//! axes by lines through that corner (Duffy, "Quadrature over a Pyramid or Cube of Integrands with a Singularity at a
+//! Vertex", 1982).
 
 use super::facet::Facet;
 use raywright_base::math::DVec3;
@@ -19,41 +19,40 @@ use std::collections::VecDeque;
 use std::f64::consts::PI;
 use std::sync::OnceLock;
 
-/// Points of a rule, each way.
+/// Points of a rule per axis.
 const POINTS: usize = 8;
 
-/// Rectangles that halves change by less than this share of all are not halved. What is smooth is then known far
-/// better: the halves of what converges at all are off by less than a hundredth of the change.
+/// Relative tolerance of adaptive halving: rectangles whose halves change the total by less are accepted. For smooth
+/// integrands the error is far smaller, since the halves of a convergent rule are off by less than a hundredth of the
+/// change.
 const ENOUGH: f64 = 1e-11;
 
-/// No rectangle is halved more often.
+/// Maximum depth of halving.
 const MOST_CUTS: u32 = 96;
 
-/// Nor are more rectangles halved of a pair, the large ones first: where roundings of corners lie between what touches,
-/// halves never tell the same.
+/// Maximum number of halved rectangles per pair, larger rectangles first. With rounding errors between touching
+/// corners, halving never converges.
 const MOST_HALVED: u32 = 1 << 9;
 
-/// Slices that end so much farther from the line than others, or than they start, are cut.
+/// Slices are split if their far end exceeds this multiple of their start, or of the other's end.
 const UNEVEN: f64 = 8.0;
 
-/// Intervals along the line that are shorter than this share of their distance have sums of points: the closed form
-/// would cancel.
+/// Intervals shorter than this fraction of their distance use a quadrature rule, since the closed form would cancel.
 const SHORT: f64 = 0.1;
 
-/// Points of the sums of short intervals: of ellipses forty times as large as they are, to the power of minus ten.
+/// Points of that rule. The nearest singularity is on an ellipse with ρ ≈ 40, so the error is about 40⁻¹⁰.
 const SHORT_POINTS: usize = 5;
 
-/// Radii from the line beyond which the planes are as good as parallel: distances from it would cancel.
+/// Distance from the line, in radii, beyond which the planes count as parallel: such distances would cancel.
 const FARTHEST: f64 = 1000.0;
 
-/// The area of one times its view factor to another, all of each in front of the other; `None` where their planes are
-/// as good as parallel. `heights` are those of the other's corners above the plane of the one, and of the one's above
-/// the other's.
+/// The area of `one` times its view factor to `other`, if each is wholly in front of the other. `None` if their planes
+/// are nearly parallel. `heights` are those of the other's corners above the plane of `one`, and vice versa.
 pub fn hinge(one: &Facet, other: &Facet, heights: [[f64; 3]; 2]) -> Option<f64> {
     let scale = 2f64.powi(-((one.radius.max(other.radius)).log2().round() as i32));
     let slopes = [slope(one, heights[1]), slope(other, heights[0])];
     let [ours, theirs] = slopes.map(DVec3::length);
-    // Both lengths are the sine of the angle; the one of the larger heights has lost fewer digits.
+    // Both lengths are the sine of the angle; the one from larger heights has lost fewer digits.
     let most = |of: [f64; 3]| of.into_iter().fold(0.0, f64::max);
     if heights.iter().any(|&of| most(of) == 0.0) {
         return Some(0.0);
@@ -82,7 +81,7 @@ pub fn hinge(one: &Facet, other: &Facet, heights: [[f64; 3]; 2]) -> Option<f64> 
     Some(sine * sine / PI * sum(&squares) / (scale * scale))
 }
 
-/// How steep the heights of a triangle's corners are, within its plane.
+/// The gradient of the heights of a triangle's corners within its plane.
 fn slope(facet: &Facet, [a, b, c]: [f64; 3]) -> DVec3 {
     let [first, second] = [1, 2].map(|i| facet.corners[i] - facet.corners[0]);
     let unit = 1.0 / facet.radius;
@@ -93,9 +92,9 @@ fn slope(facet: &Facet, [a, b, c]: [f64; 3]) -> DVec3 {
 
 /// The angle between two half-planes.
 struct Bend {
-    /// Of the normals: −cos φ.
+    /// The cosine of the normals' angle, −cos φ.
     cosine: f64,
-    /// What it is short of 1, or of −1, to all digits.
+    /// The accurate difference of its magnitude from 1.
     short: f64,
 }
 
@@ -107,7 +106,7 @@ impl Bend {
         Self { cosine, short }
     }
 
-    /// The distance, across the line, of what is u and v from it.
+    /// The distance, across the line, of two points at the distances u and v from it.
     #[inline]
     fn across(&self, u: f64, v: f64) -> f64 {
         let square = if self.cosine > 0.0 {
@@ -119,12 +118,12 @@ impl Bend {
     }
 }
 
-/// A part of a triangle between two distances from the line, with an interval along it that changes evenly.
+/// A part of a triangle between two distances from the line, with an interval along it that changes linearly.
 #[derive(Clone, Copy, Debug)]
 struct Slice {
     start: f64,
     end: f64,
-    /// The intervals at both.
+    /// The intervals at both ends.
     from: [f64; 2],
     to: [f64; 2],
 }
@@ -134,13 +133,13 @@ impl Slice {
         self.end - self.start
     }
 
-    /// What is nearer than some distance from the line, and the rest.
+    /// Split at a distance: the nearer part and the rest.
     fn cut(&self, at: f64) -> [Self; 2] {
         let (_, middle) = self.at((at - self.start) / self.width());
         [Self { end: at, to: middle, ..*self }, Self { start: at, from: middle, ..*self }]
     }
 
-    /// The distance, and the interval, at a share of the way.
+    /// The distance and the interval at a fraction between both ends.
     #[inline]
     fn at(&self, share: f64) -> (f64, [f64; 2]) {
         let between = |a: f64, b: f64| a + (b - a) * share;
@@ -148,7 +147,7 @@ impl Slice {
     }
 }
 
-/// The slices of a triangle whose corners are these, as places along the line and distances from it.
+/// The slices of a triangle, given by its corners' positions along the line and distances from it.
 fn slices(mut corners: [[f64; 2]; 3]) -> [Option<Slice>; 2] {
     corners.sort_by(|a, b| a[1].total_cmp(&b[1]));
     let [low, middle, high] = corners;
@@ -163,7 +162,7 @@ fn slices(mut corners: [[f64; 2]; 3]) -> [Option<Slice>; 2] {
     [slice(low[1], middle[1], [low[0]; 2], wide), slice(middle[1], high[1], wide, [high[0]; 2])]
 }
 
-/// A slice of each.
+/// A slice of each triangle.
 #[derive(Clone, Copy)]
 struct Slices<'a> {
     from: Slice,
@@ -172,8 +171,8 @@ struct Slices<'a> {
 }
 
 impl<'a> Slices<'a> {
-    /// What is integrated over them, where none of both goes much farther from the line than the other and than where
-    /// it starts.
+    /// Divide into parts for integration, so that no slice extends much farther from the line than the other, or than
+    /// its own start.
     fn graded(self, found: &mut Vec<Part<'a>>) {
         let Self { from, to, .. } = self;
         let cut = |slice: &Slice, least: f64| {
@@ -191,15 +190,15 @@ impl<'a> Slices<'a> {
         }
     }
 
-    /// How far from where both start what is integrated may be another than farther off: the least distance between
-    /// the ends there that is one at all.
+    /// The width of a possible boundary layer at the start of both slices: the least nonzero distance between their
+    /// ends there.
     fn layer(&self) -> f64 {
         let (a, b) = (self.from.from, self.to.from);
         let ends = [a[0] - b[0], a[0] - b[1], a[1] - b[0], a[1] - b[1], self.from.start + self.to.start];
         ends.into_iter().map(f64::abs).filter(|&way| way > 0.0).fold(f64::INFINITY, f64::min)
     }
 
-    /// u v ∫∫ ((t₁ − t₂)² + s²)⁻² dt₁ dt₂ at a share of the way of each, by its area.
+    /// u v ∫∫ ((t₁ − t₂)² + s²)⁻² dt₁ dt₂ at a fraction of each slice, times the slices' widths.
     #[inline]
     fn exchanged(&self, first: f64, second: f64) -> f64 {
         let ((u, one), (v, other)) = (self.from.at(first), self.to.at(second));
@@ -207,23 +206,23 @@ impl<'a> Slices<'a> {
     }
 }
 
-/// Which lines through the corner at no distance a square stands for.
+/// The lines through the corner at distance zero that a square represents.
 #[derive(Clone, Copy)]
 enum Fan {
-    /// None: it is as it is.
+    /// None: no transformation.
     None,
-    /// Those that leave by the end of the first.
+    /// Those that leave through the far end of the first slice.
     First,
-    /// And of the second.
+    /// Those that leave through the far end of the second slice.
     Second,
 }
 
-/// What is integrated over a unit square.
+/// An integrand over the unit square.
 #[derive(Clone, Copy)]
 struct Part<'a> {
     both: Slices<'a>,
     fan: Fan,
-    /// How near to the corner of a fan it is to be halved, whatever halves tell.
+    /// Distance from the fan's corner within which it is always halved.
     near: f64,
 }
 
@@ -237,7 +236,7 @@ impl Part<'_> {
         }
     }
 
-    /// By points, over a rectangle in the square.
+    /// Integrate over a rectangle in the square with a rule.
     fn over(&self, area: &Rectangle, rule: &[(f64, f64)]) -> f64 {
         let ([x, y], [width, height]) = (area.corner, area.sides);
         let row = |&(s, weight): &(f64, f64)| {
@@ -248,7 +247,7 @@ impl Part<'_> {
     }
 }
 
-/// A part of the unit square.
+/// A rectangle in the unit square.
 #[derive(Clone, Copy)]
 struct Rectangle {
     corner: [f64; 2],
@@ -280,7 +279,7 @@ fn sum(parts: &[Part]) -> f64 {
         let [across, up] = halves.map(|[low, high]| low.1 + high.1 - before);
         let is_next = area.corner[0] == 0.0 && area.sides[0] > part.near;
         if (across.abs() <= enough && up.abs() <= enough && !is_next) || cuts == 0 || halved == MOST_HALVED {
-            // What either way of halving mends.
+            // Add the corrections from halving along both axes.
             found += before + across + up;
         } else {
             halved += 1;
@@ -293,9 +292,9 @@ fn sum(parts: &[Part]) -> f64 {
 
 /// ∫∫ ((t₁ − t₂)² + s²)⁻² over two intervals.
 ///
-/// The second integral of the integrand is x atan(x/s)/(2s³) = π|x|/(4s³) − 1/(2s²) + k(|x|). Of the four of them that
-/// count, the first terms add up to what the intervals have in common, the second ones to nothing, and only
-/// [`tail`], which is small where x is large, is subtracted.
+/// The second integral of the integrand is x atan(x/s)/(2s³) = π|x|/(4s³) − 1/(2s²) + k(|x|). In the sum over four
+/// ends, the first terms add up to the overlap of the intervals, and the second ones to zero. Only [`tail`], which is
+/// small for large x, is subtracted.
 #[inline]
 fn along([a, b]: [f64; 2], [c, d]: [f64; 2], s: f64) -> f64 {
     let common = (b.min(d) - a.max(c)).max(0.0);
@@ -318,7 +317,7 @@ fn tail(x: f64, s: f64) -> f64 {
     series / (2.0 * x * x)
 }
 
-/// The same by points.
+/// The same by a quadrature rule.
 fn by_points([a, b]: [f64; 2], [c, d]: [f64; 2], square: f64) -> f64 {
     static RULE: OnceLock<Vec<(f64, f64)>> = OnceLock::new();
     let rule = RULE.get_or_init(|| gauss(SHORT_POINTS));
@@ -340,7 +339,7 @@ mod tests {
     use crate::view_factors::contour::contour;
     use raywright_base::sampling::Sampler;
 
-    /// Two triangles with an edge, a corner or nothing in common, all of each in front of the other.
+    /// Two triangles with an edge, a corner or nothing in common, each wholly in front of the other.
     fn drawn(number: u32) -> Option<[Facet; 2]> {
         let mut sampler = Sampler::new(2, number, 0);
         let mut dimension = 0;
@@ -369,7 +368,7 @@ mod tests {
             let Some(found) = hinge(&one, &other, [one.heights(&other), other.heights(&one)]) else { continue };
             let around = contour(&one, &other);
             let radius = one.radius.max(other.radius);
-            // What is promised, and roundings: terms of integrals around both are of the order of the radii's
+            // The promised accuracy, plus rounding: terms of the contour integrals are of the order of the radii's
             // product, and some hundred of them add up.
             let enough = 1e-9 * found + 1e-13 * radius * radius;
             assert!((found - around).abs() < enough, "{number}: {found} {around}");
@@ -380,7 +379,7 @@ mod tests {
 
     #[test]
     fn faces_that_are_opposite_have_no_line_in_common() {
-        // Slender ones, far from each other: what they exchange is little, and not because they are in one plane.
+        // Slender and far apart: the small exchange is not due to coplanarity.
         let strip = |z: f64, turn: [usize; 3]| {
             let corners = [DVec3::new(0.0, 0.0, z), DVec3::new(1.0, 0.0, z), DVec3::new(0.0, 1e-3, z)];
             Facet::new(turn.map(|k| corners[k]))

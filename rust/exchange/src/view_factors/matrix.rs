@@ -1,4 +1,4 @@
-//! The whole matrix: pairs of clusters, and what may lie between them, down to pairs of faces.
+//! The full matrix of view factors: pairs of clusters with potential blockers, down to pairs of faces.
 
 use super::balance::Balance;
 use super::by_rays::{Entry, Rows};
@@ -25,19 +25,19 @@ use std::sync::{Mutex, PoisonError};
 /// View factors between all faces of a scene.
 #[derive(Debug, Default)]
 pub struct Matrix {
-    /// By row: from each face to each.
+    /// The factors, row by row.
     pub factors: Vec<f64>,
-    /// What was sampled, and its errors.
+    /// The sampled entries and their errors.
     pub sampled: Vec<Sampled>,
-    /// Pairs in closed form, pairs that are hidden for certain, and pairs by rays.
+    /// Numbers of pairs in closed form, certainly hidden pairs, and ray-traced pairs.
     pub counts: [u64; 3],
-    /// Rays that were sent.
+    /// The number of rays traced.
     pub rays: u64,
-    /// Which rows were sampled and belong to a room that nothing leaves.
+    /// True if each row was sampled and belongs to a closed room.
     pub closed: Vec<bool>,
 }
 
-/// All view factors of a scene. What has no area sees nothing.
+/// Compute all view factors of a scene. Degenerate faces have factors of 0.
 pub fn matrix(scene: &Scene, aim: &Aim, work: Work) -> Result<Matrix, Stopped> {
     let facets = facets(scene);
     let count = facets.len();
@@ -92,7 +92,7 @@ pub fn matrix(scene: &Scene, aim: &Aim, work: Work) -> Result<Matrix, Stopped> {
 }
 
 impl Matrix {
-    /// Writes an estimate into both rows.
+    /// Store an estimate in both rows.
     fn write(&mut self, estimate: &Sampled, areas: &[f64]) {
         let [i, j] = estimate.faces.map(|face| face as usize);
         self.factors[i * areas.len() + j] = estimate.value / areas[i];
@@ -100,7 +100,7 @@ impl Matrix {
     }
 }
 
-/// What may hide anything: all but those whose plane has the whole scene on one side, as every face of a convex room.
+/// The potential blockers: all faces except those whose plane has the whole scene on one side, as in a convex room.
 fn blockers(scene: &Scene, facets: &[Facet], tree: &Clusters) -> Vec<Blocker> {
     let geometry = scene.geometry();
     let curved: Vec<u32> = (0..facets.len() as u32).filter(|&i| geometry.shape(i).is_some()).collect();
@@ -121,7 +121,7 @@ fn blockers(scene: &Scene, facets: &[Facet], tree: &Clusters) -> Vec<Blocker> {
         }
         false
     };
-    /// Facets that a thread looks at at a time.
+    /// Facets per parallel task.
     const TOGETHER: usize = 16;
     let flat = |some: Range<usize>| -> Vec<Blocker> {
         let facets = tree.order[some].iter().map(|&i| facets[i as usize]);
@@ -131,7 +131,7 @@ fn blockers(scene: &Scene, facets: &[Facet], tree: &Clusters) -> Vec<Blocker> {
     flat.chain(curved.iter().map(|&i| Blocker::Curved(i))).collect()
 }
 
-/// What all threads share.
+/// The data shared by all threads.
 struct Everything<'a> {
     scene: &'a Scene,
     facets: &'a [Facet],
@@ -141,22 +141,22 @@ struct Everything<'a> {
     aim: &'a Aim,
     level: Level,
     steps: Steps<'a>,
-    /// The bits of the view factors, each of which is written once.
+    /// The bits of the view factors, each written once.
     factors: Vec<AtomicU64>,
-    /// Pairs that something may lie between.
+    /// Pairs that may be partly hidden.
     open: Mutex<Vec<Open>>,
     counts: [AtomicU64; 3],
     rays: AtomicU64,
 }
 
-/// Rows of surfaces that are no triangles, before they are added up.
+/// Rows of curved surfaces computed together.
 const ROWS: usize = 64;
 
-/// Pairs of faces that are worth a task of their own.
+/// Minimum number of face pairs for a parallel task.
 const TASK: u64 = 1 << 14;
 
 impl Everything<'_> {
-    /// All pairs of two clusters, or of one with itself; what may lie between them is among these blockers.
+    /// Process all pairs of faces of two clusters, or of one with itself. Blockers between them are among `may_hide`.
     fn visit(&self, one: &Cluster, other: &Cluster, may_hide: &[u32]) {
         if self.steps.is_stopped() {
             return;
@@ -184,7 +184,7 @@ impl Everything<'_> {
         }
     }
 
-    /// Those blockers that may lie between faces of two clusters.
+    /// The blockers that may lie between faces of two clusters.
     fn between(&self, one: &Cluster, other: &Cluster, may_hide: &[u32]) -> Vec<u32> {
         if may_hide.is_empty() {
             return Vec::new();
@@ -199,7 +199,7 @@ impl Everything<'_> {
         may_hide.iter().copied().filter(|&i| is_open(&self.blockers[i as usize])).collect()
     }
 
-    /// All pairs of faces of two clusters.
+    /// Process all pairs of faces of two clusters.
     fn pairs(&self, one: &Cluster, other: &Cluster, is_same: bool, may_hide: &[u32]) {
         let (ones, others) = (self.tree.faces(one), self.tree.faces(other));
         let against = [ones, others].map(|faces| self.against(faces, may_hide));
@@ -211,10 +211,10 @@ impl Everything<'_> {
         let (mut open, mut counts) = (Vec::new(), [0; 3]);
         for (k, &i) in ones.iter().enumerate() {
             for (l, &j) in others.iter().enumerate().skip(if is_same { k + 1 } else { 0 }) {
-                // In the order of their numbers, whatever that of the tree.
+                // In the order of their numbers, independently of the tree.
                 let [one, other] = if i < j { [face(0, k, i), face(1, l, j)] } else { [face(1, l, j), face(0, k, i)] };
                 let (from, to, faces) = (one.facet, other.facet, [i.min(j), i.max(j)]);
-                // All that leaves a face where another touches it comes to that, whatever roundings lie between.
+                // All light from a face goes to the face that touches it there, despite rounding gaps.
                 if self.fronts.touch(faces) {
                     if let Some((area, _)) = overlap(from, to) {
                         counts[0] += 1;
@@ -223,7 +223,7 @@ impl Everything<'_> {
                     continue;
                 }
                 let mut hidden = self.hidden(&one, &other, may_hide);
-                // What touches a face hides a part of it from all others, and may lie in no shaft.
+                // A touching face hides a part of this one from all others, though it may be in no shaft.
                 if hidden.is_none() && faces.iter().any(|&face| self.fronts.is_touched(face)) {
                     hidden = Some(Hidden::Partly);
                 }
@@ -252,11 +252,11 @@ impl Everything<'_> {
             all.fetch_add(count, Relaxed);
         }
         let pairs = one.count as usize * other.count as usize;
-        // Whoever waits is told by the tree's next pair.
+        // Cancellation is noticed at the tree's next pair.
         let _ = self.steps.did(if is_same { pairs } else { 2 * pairs });
     }
 
-    /// What each of some faces is to each of some blockers: by face.
+    /// Classify faces relative to blockers, face by face.
     fn against(&self, faces: &[u32], blockers: &[u32]) -> Vec<Against> {
         let one = |face: u32, blocker: u32| {
             let face = &self.facets[face as usize];
@@ -272,7 +272,7 @@ impl Everything<'_> {
         faces.iter().flat_map(|&face| blockers.iter().map(move |&blocker| one(face, blocker))).collect()
     }
 
-    /// How far two faces may be hidden from each other; not at all if none of these blockers touches their shaft.
+    /// Return whether two faces are hidden from each other; None if no blocker intersects their shaft.
     fn hidden(&self, one: &Face, other: &Face, may_hide: &[u32]) -> Option<Hidden> {
         if may_hide.is_empty() {
             return None;
@@ -285,7 +285,7 @@ impl Everything<'_> {
         let mut shaft: Option<Vec<HalfSpace>> = None;
         let mut found = None;
         for (&i, (from, to)) in may_hide.iter().zip(one.against.iter().zip(other.against)) {
-            // What has both on one side of its plane, or is seen by one alone, lies aside.
+            // Not between them, if both are on one side of its plane or only one sees it.
             let is_between = (0..2).all(|side| from.sides[side] || to.sides[side]);
             if !is_between || !from.sees || !to.sees {
                 continue;
@@ -296,7 +296,7 @@ impl Everything<'_> {
             {
                 return Some(Hidden::Wholly);
             }
-            // Where one is known to touch the shaft, others count only if they hide all.
+            // Once one blocker intersects the shaft, others matter only if they hide all.
             if found.is_none() {
                 let shaft = shaft.get_or_insert_with(|| between_facets(one.facet, other.facet));
                 if !shaft.iter().any(|half| blocker.is_beyond(geometry, half)) {
@@ -307,7 +307,7 @@ impl Everything<'_> {
         found
     }
 
-    /// Writes what two faces exchange into both rows.
+    /// Store the exchange of two faces in both rows.
     fn store(&self, [i, j]: [u32; 2], exchanged: f64) {
         let (i, j) = (i as usize, j as usize);
         self.write(i, j, exchanged / self.facets[i].area);
@@ -318,7 +318,7 @@ impl Everything<'_> {
         self.factors[row * self.facets.len() + column].store(factor.to_bits(), Relaxed);
     }
 
-    /// The greatest factor in closed form of each row.
+    /// The greatest closed-form factor of each row.
     fn greatest(&self) -> Vec<f64> {
         let count = self.facets.len();
         let of = |i: usize| {
@@ -328,7 +328,7 @@ impl Everything<'_> {
         parallel::collect(count, of)
     }
 
-    /// The error that a factor from one face to another may have, by the greatest factors of both rows.
+    /// The allowed error of a factor, given the greatest factors of both rows.
     fn wanted(&self, [i, j]: [u32; 2], [factor, most]: [f64; 2], areas: &[f64], greatest: &[f64]) -> f64 {
         let larger = areas[j as usize] / areas[i as usize];
         let absolute = self.aim.error.map_or(f64::INFINITY, |error| error * larger.min(1.0));
@@ -337,7 +337,7 @@ impl Everything<'_> {
         absolute.min(relative)
     }
 
-    /// Estimates all pairs that something may lie between, beside those there are.
+    /// Estimate all potentially hidden pairs, and add them to the given estimates.
     fn sampled(&self, sampled: &mut Vec<Sampled>, areas: &[f64], work: Work) -> Result<(), Stopped> {
         let mut open = std::mem::take(&mut *self.open.lock().unwrap_or_else(PoisonError::into_inner));
         if open.is_empty() {
@@ -357,8 +357,8 @@ impl Everything<'_> {
         Ok(())
     }
 
-    /// What all that is no triangle exchanges. Of two such surfaces both rows tell what they exchange, A F, with a
-    /// variance of about A² F / n, so that the one of the smaller area counts more.
+    /// The exchange of curved surfaces. For two of them, both rows estimate the exchange A F, with a variance of about
+    /// A² F / n, so the row of the smaller area has the greater weight.
     fn curved(&self, areas: &[f64]) -> Result<Vec<Sampled>, Stopped> {
         let geometry = self.scene.geometry();
         let is_curved = |i: u32| geometry.shape(i).is_some();
@@ -396,7 +396,8 @@ impl Everything<'_> {
         Ok(sampled.collect())
     }
 
-    /// A row by rays, with what no ray has met and yet may be seen: it is not known to be nothing.
+    /// A row by rays, with entries for faces that may be visible but were not hit: their factor is not known to be
+    /// zero.
     fn with_unmet(&self, i: u32, mut row: Vec<Entry>, rays: u32, areas: &[f64]) -> Vec<Entry> {
         let geometry = self.scene.geometry();
         let mut is_met = vec![false; areas.len()];
@@ -416,23 +417,23 @@ impl Everything<'_> {
     }
 }
 
-/// A face, and what it is to each of the blockers that may hide it.
+/// A face and its classification for each potential blocker.
 struct Face<'a> {
     facet: &'a Facet,
     against: &'a [Against],
 }
 
-/// What a face is to a blocker, whatever it looks at.
+/// The classification of a face relative to a blocker, independent of the other face.
 struct Against {
-    /// Whether some of the face is in front of the blocker's plane, and whether some is behind.
+    /// True if some of the face is in front of the blocker's plane, and whether some is behind.
     sides: [bool; 2],
-    /// Whether some of the blocker is in front of the face.
+    /// True if some of the blocker is in front of the face.
     sees: bool,
-    /// How far in front of the blocker's plane the face's corners are.
+    /// The heights of the face's corners above the blocker's plane.
     heights: [f64; 3],
 }
 
-/// How far one face is hidden from another.
+/// The degree to which one face is hidden from another.
 enum Hidden {
     Partly,
     Wholly,

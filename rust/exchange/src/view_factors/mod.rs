@@ -1,4 +1,4 @@
-//! View factors: which share of the light that leaves one face, even and from its front, comes to the front of another.
+//! View factors: the fraction of diffuse light leaving the front of one face that reaches the front of another.
 
 mod balance;
 mod by_rays;
@@ -33,25 +33,25 @@ pub use sparse::{Sparse, sparse};
 use raywright_accel::Primitives;
 use raywright_scene::Scene;
 
-/// How well what is sampled is to be known.
+/// The accuracy of sampled entries.
 #[derive(Clone, Copy, Debug)]
 pub struct Aim {
-    /// Rays between two faces that something may lie between.
+    /// Rays for a pair of faces with a potential blocker.
     pub rays: u32,
-    /// Rays from a face whose whole row is sampled.
+    /// Rays for a face with a sampled row.
     pub row_rays: u32,
-    /// The standard error that no view factor exceeds, if rays can do it.
+    /// Maximum standard error of any view factor, as far as rays can achieve it.
     pub error: Option<f64>,
-    /// The same as a share of the greatest factor of either row, as far as a number of rays can do it.
+    /// The same relative to the greatest factor of either row, within a maximum number of rays.
     pub relative: Option<f64>,
-    /// Picks the random numbers.
+    /// The random seed.
     pub seed: u64,
 }
 
-/// What two faces exchange, the area of each times its view factor to the other, as sampled.
+/// The sampled exchange of two faces: the area of either times its view factor to the other.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Sampled {
-    /// Which.
+    /// The faces.
     pub faces: [u32; 2],
     /// The estimate.
     pub value: f64,
@@ -61,13 +61,13 @@ pub struct Sampled {
     pub most: f64,
 }
 
-/// All primitives as triangles that send; those that are none have no area here.
+/// All primitives as one-sided triangles; other shapes have no area here.
 fn facets(scene: &Scene) -> Vec<Facet> {
     let geometry = scene.geometry();
     (0..geometry.count() as u32).map(|primitive| Facet::new(geometry.corners(primitive))).collect()
 }
 
-/// The areas of all primitives; 0 of what cannot be hit.
+/// The areas of all primitives; 0 for those that cannot be hit.
 pub fn areas(scene: &Scene) -> Vec<f64> {
     let geometry = scene.geometry();
     let area = |primitive| {

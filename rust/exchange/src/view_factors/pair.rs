@@ -1,60 +1,60 @@
-//! Two triangles that nothing lies between.
+//! View factors of two triangles without blockers.
 
 use super::contour::contour;
 use super::distant::Quadrature;
 use super::facet::{Facet, in_front};
 use super::hinge::hinge;
 
-/// How often a triangle is quartered to be no larger than another; what is left is then so near, and so small, that it
-/// does not count.
+/// Maximum depth of quartering the larger triangle; what remains is so near and so small that it is negligible.
 const MOST_CUTS: u32 = 60;
 
-/// Radii that differ by more are made alike by quartering the larger one: integrals around both would cancel.
+/// Triangles with a larger ratio of radii are made similar by quartering the larger one, since contour integrals would
+/// cancel.
 const UNLIKE: f64 = 4.0;
 
-/// Of the square of the radius, what is exchanged by so much more than roundings of integrals around both, which are
-/// some 10⁻¹⁵ of it, that they are 10⁻⁹ at most.
+/// Exchange relative to the squared radius, above which the rounding of contour integrals, some 10⁻¹⁵ of that square,
+/// is at most 10⁻⁹.
 const CANCELLED: f64 = 1e-6;
 
-/// Heights that are a greater part of the radius are of triangles that exchange little because they are slender, and
-/// not because they are in one plane.
+/// With heights above this fraction of the radius, a small exchange is due to slender triangles rather than to
+/// coplanarity.
 const FLAT: f64 = 1.0 / 16.0;
 
-/// Heights that are no greater a part of the radius are what roundings of corners leave of one plane. What is exchanged
-/// is less than 10⁻²⁴ of the square of the radius, and to find it takes long.
+/// Heights up to this fraction of the radius are attributed to rounding of coplanar corners. The exchange is less than
+/// 10⁻²⁴ of the squared radius, and computing it would take long.
 const LEVEL: f64 = 1e-12;
 
-/// Parts in front of another triangle that are a smaller share of their own do not count.
+/// Parts in front of the other triangle are dropped below this fraction of their triangle.
 const DROPPED: f64 = 1e-11;
 
-/// Parts of two triangles that lie wholly in front of each other.
+/// Parts of two triangles that are wholly in front of each other.
 #[derive(Clone, Copy, Debug)]
 pub struct Facing {
-    /// A part of the first, and one of the second.
+    /// A part of the first triangle, and one of the second.
     pub facets: [Facet; 2],
-    /// How far the corners of the second are in front of the first, and those of the first in front of the second.
+    /// The heights of the second's corners above the first, and vice versa.
     heights: [[f64; 3]; 2],
 }
 
 impl Facing {
-    /// What both exchange if nothing lies between.
+    /// Their exchange without blockers.
     pub fn exchanged(&self, quadrature: &mut Quadrature) -> f64 {
         before(quadrature, &self.facets[0], &self.facets[1], self.heights, MOST_CUTS)
     }
 
-    /// Whether the distance between both is less than this many times the sum of their radii.
+    /// Return whether the distance of their centres is less than a multiple of the sum of their radii.
     pub fn is_within(&self, times: f64) -> bool {
         let [one, other] = &self.facets;
         one.centre.distance(other.centre) < times * (one.radius + other.radius)
     }
 
-    /// Whether both lie nearly in one plane, where it takes long to find what they exchange.
+    /// Return whether both are nearly coplanar, which makes the exchange slow to compute.
     pub fn is_flat(&self) -> bool {
         let most = FLAT * self.facets[0].radius.max(self.facets[1].radius);
         self.heights.as_flattened().iter().all(|&height| height <= most)
     }
 
-    /// The quarters of the larger one, each with the smaller one.
+    /// The quarters of the larger one, each paired with the smaller one.
     pub fn quarters(&self) -> [Self; 4] {
         let [one, other] = &self.facets;
         let larger = usize::from(one.radius <= other.radius);
@@ -71,11 +71,11 @@ impl Facing {
     }
 }
 
-/// The parts of two triangles that lie in front of each other, up to four pairs.
+/// The parts of two triangles in front of each other, up to four pairs.
 pub fn facing(one: &Facet, other: &Facet) -> impl Iterator<Item = Facing> {
     let mut heights = [one.heights(other), other.heights(one)];
     let mut is_any = heights.iter().all(|of| of.iter().any(|&h| h > 0.0));
-    // Where all heights are low, the least of them count.
+    // If all heights are low, even the least of them matter.
     let flat = FLAT * one.radius.max(other.radius);
     if is_any && heights.as_flattened().iter().all(|h| h.abs() <= flat) && heights.as_flattened().contains(&0.0) {
         heights = [one.exact_heights(other), other.exact_heights(one)];
@@ -87,7 +87,8 @@ pub fn facing(one: &Facet, other: &Facet) -> impl Iterator<Item = Facing> {
     } else if heights.as_flattened().iter().all(|&h| h >= 0.0) {
         ([Some((*one, heights[1])), None], [Some((*other, heights[0])), None])
     } else {
-        // What is dropped sends no more than this share of the whole, and might take millions of quarters of the other.
+        // Dropped parts emit at most this fraction of the whole, and might take millions of quarters of the other
+        // triangle.
         let counts = |whole: &Facet, part: &Facet| part.area >= DROPPED * whole.area;
         let of_one = in_front(one, heights[1]).map(|part| part.filter(|(part, _)| counts(one, part)));
         (of_one, in_front(other, heights[0]).map(|part| part.filter(|(part, _)| counts(other, part))))
@@ -96,12 +97,12 @@ pub fn facing(one: &Facet, other: &Facet) -> impl Iterator<Item = Facing> {
     both.map(|((part, to_other), (other, to_one))| Facing { facets: [part, other], heights: [to_one, to_other] })
 }
 
-/// The area of one triangle times its view factor to another, which is the other's times that to the one.
+/// The area of one triangle times its view factor to another, which is symmetric.
 pub fn pair(quadrature: &mut Quadrature, one: &Facet, other: &Facet) -> f64 {
     facing(one, other).fold(0.0, |sum, part| sum + part.exchanged(quadrature))
 }
 
-/// The same of two that lie wholly in front of each other.
+/// The same for triangles wholly in front of each other.
 fn before(quadrature: &mut Quadrature, one: &Facet, other: &Facet, heights: [[f64; 3]; 2], cuts: u32) -> f64 {
     if let Some(found) = quadrature.distant(one, other, heights) {
         return found;

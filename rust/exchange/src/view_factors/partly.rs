@@ -1,4 +1,4 @@
-//! Pairs of faces that something may lie between, by rays.
+//! Ray-traced estimates of pairs of faces with potential blockers.
 
 use super::Sampled;
 use super::distant::Quadrature;
@@ -11,23 +11,23 @@ use raywright_base::sampling::{BatchSize, Sampler, SamplerKind, warp};
 use raywright_scene::{RayOrigin, Scene, SeenTriangle};
 use std::f64::consts::PI;
 
-/// Two faces, by number, and what they would exchange if nothing lay between.
+/// Two faces and their unblocked exchange.
 #[derive(Clone, Copy, Debug)]
 pub struct Open {
-    /// The one and the other.
+    /// The numbers of the faces.
     pub faces: [u32; 2],
-    /// Its area times its view factor, unblocked.
+    /// The unblocked area times view factor.
     pub whole: f64,
 }
 
-/// The samples of a pair: how many, and the number of the first.
+/// The samples of a pair in a round: first index and count.
 #[derive(Clone, Copy, Debug)]
 pub struct Round {
     pub first: u32,
     pub rays: u32,
 }
 
-/// An estimate, by how many rays, and whether all of them agree.
+/// An estimate, its number of rays, and whether all of them agree.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Estimate {
     pub sampled: Sampled,
@@ -35,10 +35,10 @@ pub struct Estimate {
     pub agrees: bool,
 }
 
-/// Rays that are traced together.
+/// Rays traced together.
 const TOGETHER: usize = 1 << 12;
 
-/// What estimates share.
+/// The data shared by all estimates.
 pub struct Pairs<'a> {
     pub scene: &'a Scene,
     pub fronts: &'a Fronts,
@@ -46,10 +46,10 @@ pub struct Pairs<'a> {
     pub seed: u64,
 }
 
-/// The sums of a batch: of weights, and of weights of points that see each other.
+/// The sums of a batch: of all weights, and of weights of mutually visible points.
 type Batch = [f64; 2];
 
-/// A pair on its way.
+/// The running sums of a pair.
 struct Tally {
     open: Open,
     size: BatchSize,
@@ -57,20 +57,20 @@ struct Tally {
     counts: Counts,
 }
 
-/// A ray on its way: of which pair and which batch, and its weight.
+/// A ray in flight: its pair, batch and weight.
 type Sent = (usize, usize, f64);
 
 impl Pairs<'_> {
-    /// Estimates some pairs, each by as many rays as its round says.
+    /// Estimate pairs, each with the number of rays of its round.
     ///
-    /// A sample is a piece of the pair, drawn by its exchange w₀, a point x of its smaller part, drawn by area, and a
-    /// direction from there to the larger part, drawn by solid angle. It has the weight w = A cos θ / (π p w₀), whose
-    /// mean is 1, and V is 1 where both points see each other. The estimate of a batch is
+    /// A sample is a piece of the pair, chosen by its exchange w₀, a point x of its smaller part, sampled by area, and
+    /// a direction from there to the larger part, sampled by solid angle. Its weight is w = A cos θ / (π p w₀), with
+    /// mean 1, and V is 1 if both points are mutually visible. The estimate of a batch is
     ///
     /// whole · (mean(w V) + β (1 − mean(w))),
     ///
-    /// with the share β that the *other* batches have seen. As β does not depend on the batch, the estimate has no bias
-    /// (control variates: Hammersley and Handscomb 1964), before it is held within 0 and the whole.
+    /// with the visible fraction β of the *other* batches. As β does not depend on the batch, the estimate is unbiased
+    /// (control variates: Hammersley and Handscomb 1964), before it is clamped between 0 and the whole.
     pub fn estimate(&self, quadrature: &mut Quadrature, pairs: &[(Open, Round)], sent: &mut u64) -> Vec<Estimate> {
         let tally = |&(open, round): &(Open, Round)| {
             let size = BatchSize::for_budget(Some(round.rays));
@@ -105,7 +105,8 @@ impl Pairs<'_> {
         tallies.iter().map(Tally::estimate).collect()
     }
 
-    /// A segment between both parts of a piece, and its weight; no segment if another face touches one of its ends.
+    /// Sample a segment between both parts of a piece, and its weight; no segment if another face touches one of its
+    /// ends.
     fn draw(&self, sampler: &mut Sampler, piece: &Piece, faces: [u32; 2]) -> Option<(Option<Ray>, f64)> {
         let [one, other] = &piece.facets;
         let start = point(one, warp::uniform_triangle(sampler.two(1)));

@@ -1,44 +1,45 @@
-//! Pairs of triangles in pieces, so that samples lie where exchange takes place.
+//! Subdivision of triangle pairs for importance sampling of their exchange.
 
 use super::distant::Quadrature;
 use super::facet::Facet;
 use super::pair::{Facing, facing};
 
-/// Pieces of a pair at most; each cut adds three.
+/// Maximum number of pieces per pair; each split adds three.
 const MOST: usize = 48;
 
-/// A piece that holds a smaller part of the exchange is not cut.
+/// Pieces with less than this fraction of the exchange are not split.
 const SMALL: f64 = 1.0 / 16.0;
 
-/// Nor is one of whose smaller part a greater share arrives: no sample then has many times the weight of another.
+/// Nor are pieces with a greater view factor from the smaller part: no sample then has many times the weight of
+/// another.
 const SHARE: f64 = 1.0 / 8.0;
 
-/// Triangles closer than this many times both radii are cut: the exchange varies from point to point.
+/// Triangles closer than this multiple of both radii are split, since their exchange varies strongly with position.
 const NEAR: f64 = 2.0;
 
-/// A part of each of two triangles, in front of each other.
+/// Parts of two triangles, in front of each other.
 pub struct Piece {
     /// The smaller part, from which rays start, and the larger one.
     pub facets: [Facet; 2],
-    /// Which of the two triangles the first is a part of.
+    /// The triangle that the first part belongs to.
     pub from: usize,
-    /// What they exchange if nothing lies between.
+    /// Their unblocked exchange.
     pub whole: f64,
 }
 
 /// All pieces of a pair.
 pub struct Pieces {
     pieces: Vec<Piece>,
-    /// The sums of `whole` up to and including each piece.
+    /// The cumulative sums of `whole`.
     sums: Vec<f64>,
 }
 
 impl Pieces {
-    /// Cuts what two triangles show each other until no near piece holds much of the exchange.
+    /// Split the mutually facing parts of two triangles until no near piece has much of the exchange.
     ///
-    /// Nearly coplanar triangles are left whole. With points drawn evenly over whole triangles, a few samples near a
-    /// common edge would carry most of the weight, and could all be missed. What both exchange in all is given: it is
-    /// that of most pairs' only piece.
+    /// Nearly coplanar triangles are not split. With uniform points over whole triangles, a few samples near a common
+    /// edge would carry most of the weight, and could all be missed. The total exchange is given, and belongs to the
+    /// only piece of most pairs.
     pub fn new(quadrature: &mut Quadrature, one: &Facet, other: &Facet, total: f64) -> Self {
         let mut parts: Vec<(Facing, f64)> = facing(one, other).map(|part| (part, total)).collect();
         if parts.len() > 1 {
@@ -69,7 +70,7 @@ impl Pieces {
         Self { pieces, sums }
     }
 
-    /// The piece at a share of the exchange; `None` if nothing is exchanged.
+    /// The piece at a fraction of the exchange; `None` if there is no exchange.
     pub fn at(&self, share: f64) -> Option<&Piece> {
         let at = share * self.sums.last()?;
         let i = self.sums.partition_point(|&sum| sum <= at).min(self.pieces.len() - 1);
@@ -86,7 +87,7 @@ mod tests {
 
     #[test]
     fn pieces_make_the_whole_and_none_at_a_contact_holds_much() {
-        // Slender walls that meet at an edge, and a wall that stands half below a large floor.
+        // Slender walls that meet at an edge, and a wall half below a large floor.
         let at = |corners: [[f64; 3]; 3]| Facet::new(corners.map(DVec3::from));
         let floor = at([[0.0; 3], [100.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
         let wall = at([[0.0; 3], [0.0, 1.0, 0.0], [0.0, 0.0, 50.0]]);

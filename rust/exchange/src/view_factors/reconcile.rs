@@ -1,44 +1,44 @@
-//! Estimates that are to have given sums, moved as little as their errors allow.
+//! Constrained least squares: adjust estimates to given sums.
 
-/// A number that was estimated, and counts in the sums of one row or of two.
+/// An estimate that counts in the sums of one row or two.
 #[derive(Clone, Copy, Debug)]
 pub struct Term {
     /// Both rows; the same twice for one.
     pub rows: [u32; 2],
     pub value: f64,
     pub variance: f64,
-    /// It lies between 0 and this.
+    /// Its upper bound; the lower bound is 0.
     pub most: f64,
 }
 
-/// Steps of Newton's method, and those of conjugate gradients within each.
+/// Maximum number of Newton steps, and of conjugate gradient steps in each.
 const STEPS: usize = 40;
 const INNER: usize = 100;
 
-/// Sums are right when they are off by no more than this share of their rows' scales.
+/// Tolerance of sums relative to their rows' scales.
 const ENOUGH: f64 = 1e-14;
 
-/// Steps without halving the greatest error of a sum after which the method ends, if that error is good: otherwise it
-/// goes on with more careful steps, and ends after so many more of them.
+/// The method ends after PATIENCE steps that do not halve the greatest error, if that error is GOOD. Otherwise it
+/// continues with more careful steps, up to MORE_PATIENCE of them without progress.
 const PATIENCE: u32 = 2;
 const MORE_PATIENCE: u32 = 16;
 const GOOD: f64 = 1e-12;
 
-/// Standard deviation that a sum itself may be off by, as a share of its row's scale. Only rows whose terms have less
-/// room than that, by their errors and bounds, make use of it: their sums cannot be had, as where rounding has moved
-/// the corners of faces that touch.
+/// Standard deviation allowed for a sum relative to its row's scale. It matters only in rows whose terms, by their
+/// errors and bounds, are more constrained than that. Such sums cannot be reached, for example if rounding has moved
+/// the corners of touching faces.
 const SLACK: f64 = 1e-12;
 
-/// Curvature of a row all of whose terms are at their bounds, as a share of what it is if none are: careful steps then
-/// lead back to where some are free.
+/// Curvature of a row whose terms are all at their bounds, relative to that of a free row. It lets careful steps lead
+/// back to free terms.
 const DAMPING: f64 = 1e-10;
 
-/// Moves terms so that rows have the sums that are wanted, and each term stays within its bounds.
+/// Adjust terms to the wanted row sums within their bounds.
 ///
-/// Of all such numbers x it finds those next to the estimates x̂ by Σ (x − x̂)² / variance: weighted least squares,
-/// which lower the error of every term if variances are right. With a multiplier λ for each row,
-/// x = x̂ + variance (λᵢ + λⱼ), held within the bounds; the sums are solved for λ by Newton's method, which takes one
-/// step where no bound is met. Rows without a sum wanted are left alone, and so are terms of which no row has one.
+/// The result x minimizes Σ (x − x̂)² / variance for the estimates x̂: weighted least squares, which reduce the error
+/// of every term if the variances are correct. With a Lagrange multiplier λ for each row, x = x̂ + variance (λᵢ + λⱼ),
+/// clamped to the bounds. Newton's method solves the sums for λ, in one step if no bound is active. Rows without a
+/// wanted sum are unchanged, as are terms with no constrained row.
 pub fn reconcile(terms: &mut [Term], wanted: &[Option<f64>], scales: &[f64]) {
     let without = multipliers(terms, wanted, scales, 0.0);
     let best = if without.0 <= GOOD {
@@ -52,8 +52,8 @@ pub fn reconcile(terms: &mut [Term], wanted: &[Option<f64>], scales: &[f64]) {
     }
 }
 
-/// The multipliers, and by which share of its row's scale a sum is off at most. Sums themselves have this error, as a
-/// share of the scale.
+/// The multipliers, and the greatest error of a sum relative to its row's scale. `error` is the allowed relative error
+/// of the sums.
 fn multipliers(terms: &[Term], wanted: &[Option<f64>], scales: &[f64], error: f64) -> (f64, Vec<f64>) {
     let slack: Vec<f64> = scales.iter().map(|scale| (error * scale) * (error * scale)).collect();
     let mut lambda = vec![0.0; wanted.len()];
@@ -78,13 +78,13 @@ fn multipliers(terms: &[Term], wanted: &[Option<f64>], scales: &[f64], error: f6
         }
         let step = newton(terms, wanted, &slack, &lambda, &residual, if is_careful { DAMPING } else { 0.0 });
         let rise = dot(&residual, &step);
-        // Where no term of a row is free enough, steps may leave the range of f64.
+        // If no term of a row is free enough, steps may overflow.
         if !rise.is_finite() {
             break;
         }
         let mut share = 1.0;
-        // A step that leads past the top of the concave dual has a slope below 0 at its end, and is halved. At first so
-        // is one that hardly changes the slope, which ends sooner where few bounds are met, but may end too soon.
+        // A step beyond the maximum of the concave dual has a negative slope at its end, and is halved. At first, so is
+        // a step that hardly changes the slope. That converges faster if few bounds are active, but may end too soon.
         loop {
             let next: Vec<f64> = lambda.iter().zip(&step).map(|(l, s)| l + share * s).collect();
             let left = residuals(terms, wanted, &slack, &next);
@@ -102,22 +102,22 @@ fn multipliers(terms: &[Term], wanted: &[Option<f64>], scales: &[f64], error: f6
     (worst(&sums, scales), best.1)
 }
 
-/// By which share of its row's scale a sum is off at most; infinitely where one is no number.
+/// The greatest error of a sum relative to its row's scale; infinite for NaN.
 fn worst(residual: &[f64], scales: &[f64]) -> f64 {
     let shares = residual.iter().zip(scales).map(|(r, scale)| r.abs() / scale);
     shares.fold(0.0f64, |most, share| if share.is_nan() { f64::INFINITY } else { most.max(share) })
 }
 
-/// A term with these multipliers, and whether it is free to move.
+/// A term for the given multipliers, and whether it is free.
 fn moved(term: &Term, lambda: &[f64]) -> (f64, bool) {
     let [i, j] = term.rows.map(|row| row as usize);
     let by = lambda[i] + if i == j { 0.0 } else { lambda[j] };
     let free = term.value + term.variance * by;
-    // A term at a bound counts as free: it may move away from there.
+    // A term exactly at a bound counts as free: it may move away from it.
     (free.clamp(0.0, term.most), free >= 0.0 && free <= term.most && term.variance > 0.0)
 }
 
-/// What sums are short by; 0 of rows that may have any.
+/// The missing part of each sum; 0 for unconstrained rows.
 fn residuals(terms: &[Term], wanted: &[Option<f64>], slack: &[f64], lambda: &[f64]) -> Vec<f64> {
     let mut left: Vec<f64> =
         (0..wanted.len()).map(|row| wanted[row].unwrap_or(0.0) - slack[row] * lambda[row]).collect();
@@ -132,7 +132,7 @@ fn residuals(terms: &[Term], wanted: &[Option<f64>], slack: &[f64], lambda: &[f6
     left.iter().zip(wanted).map(|(left, wanted)| if wanted.is_some() { *left } else { 0.0 }).collect()
 }
 
-/// Newton's step, by conjugate gradients with the diagonal as preconditioner.
+/// A Newton step by conjugate gradients with a diagonal preconditioner.
 fn newton(
     terms: &[Term],
     wanted: &[Option<f64>],
@@ -213,7 +213,7 @@ mod tests {
     use super::*;
     use raywright_base::sampling::Sampler;
 
-    /// Every pair of so many rows, each with a truth, an estimate of it, and its variance.
+    /// Every pair of rows, each with a true value, an estimate of it, and its variance.
     fn terms(rows: u32, seed: u64) -> (Vec<Term>, Vec<f64>) {
         let mut terms = Vec::new();
         let mut truths = Vec::new();
@@ -259,7 +259,7 @@ mod tests {
             let off = |of: &[Term]| {
                 of.iter().zip(&truths).map(|(t, truth)| (t.value - truth).powi(2) / t.variance).sum::<f64>()
             };
-            // The truth is within the bounds and has the sums, so that no such numbers nearest are farther from it.
+            // The true values satisfy bounds and sums, so the projection onto these is at least as close to them.
             assert!(off(&terms) < off(&before), "{} {}", off(&terms), off(&before));
         }
     }
@@ -297,7 +297,7 @@ mod tests {
             assert!(off < 1e-3, "{seed}: {off}");
             stuck += u32::from(off > 1e-12);
         }
-        // Newton's method may come to rest at a bound: of 3,000 such problems it does so in 5.
+        // Newton's method may stop at a bound: in 5 of 3,000 such problems.
         assert!(stuck <= 2, "{stuck}");
     }
 
@@ -318,7 +318,7 @@ mod tests {
         reconcile(&mut terms, &[Some(0.5), None, None], &[1.0; 3]);
         assert_eq!((terms[0].value, terms[2].value), (0.3, 0.3));
         assert!((terms[1].value - 0.2).abs() < 1e-15);
-        // Two rows of one term that want different sums.
+        // Two rows with one term and contradictory sums.
         let mut alone = [term([0, 1], 0.3, 0.1)];
         reconcile(&mut alone, &[Some(0.4), Some(0.5)], &[1.0; 2]);
         assert!((0.2..=0.7).contains(&alone[0].value), "{}", alone[0].value);

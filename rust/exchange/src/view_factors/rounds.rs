@@ -1,4 +1,4 @@
-//! How many rays each pair takes: a pilot tells how many its error needs.
+//! Rounds of ray tracing: a pilot round estimates how many rays each pair needs.
 
 use super::Aim;
 use super::distant::Quadrature;
@@ -11,29 +11,29 @@ use raywright_base::work::{Steps, Stopped, Work};
 use raywright_scene::Scene;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
-/// Rounds after the pilot.
+/// Number of rounds after the pilot.
 const ROUNDS: u32 = 6;
 
-/// No pair takes more rays in a round, and none that had so many takes part in another.
+/// Maximum number of rays per pair and round; a pair that had as many is finished.
 const MOST: u32 = 1 << 20;
 
-/// Pairs that a thread takes at a time: the first time, and when each takes many rays.
+/// Pairs per parallel task: in the pilot, and in later rounds with many rays each.
 const PILOTS: usize = 64;
 const PAIRS: usize = 4;
 
-/// Rows whose factors all are smaller need no better errors than if one were as large as this.
+/// Rows whose factors are all smaller need no better errors than for a greatest factor of this size.
 pub const FAINT: f64 = 0.01;
 
-/// Where nobody names an error, rounds after the pilot send no more rays than this in all.
+/// Maximum total number of rays in the rounds after the pilot, without a requested error.
 const BUDGET: f64 = (1u32 << 25) as f64;
 
-/// The pilot tells roughly what an error needs, so that this many times as much is sent.
+/// Safety factor on the number of rays, which the pilot estimates only roughly.
 const RESERVE: f64 = 1.4;
 
-/// Estimates pairs by rays until their errors are as is aimed at.
+/// Estimates pairs by rays until their errors meet the aim.
 ///
-/// Each round sends new rays, whose number follows from those before. Its estimates thus do not depend on when it
-/// ended, as those of rays that are added up until they seem to agree would.
+/// Each round traces new rays, whose number follows from earlier rounds. So its estimates do not depend on the stopping
+/// time. Accumulated rays, stopped once they appear to agree, would be biased.
 pub struct Rounds<'a> {
     pub scene: &'a Scene,
     pub fronts: &'a Fronts,
@@ -44,7 +44,7 @@ pub struct Rounds<'a> {
 }
 
 impl Rounds<'_> {
-    /// The estimates of all pairs, and how many rays were sent.
+    /// The estimates of all pairs, and the number of rays traced.
     pub fn estimate(mut self, pairs: &[Open], work: Work) -> Result<(Vec<Estimate>, u64), Stopped> {
         let steps = work.steps(2 * pairs.len());
         let pilot: Vec<usize> = (0..pairs.len()).collect();
@@ -66,7 +66,7 @@ impl Rounds<'_> {
         Ok((found, sent))
     }
 
-    /// The error that a pair may have of what it exchanges.
+    /// The allowed error of a pair's exchange.
     fn wanted(&self, pair: &Open) -> f64 {
         let [i, j] = pair.faces.map(|face| face as usize);
         let areas = [self.facets[i].area, self.facets[j].area];
@@ -76,7 +76,7 @@ impl Rounds<'_> {
         absolute.min(share * greatest(i).min(greatest(j)))
     }
 
-    /// Keeps the greatest factor of each row.
+    /// Update the greatest factor of each row.
     fn note(&mut self, found: &[Estimate]) {
         for estimate in found {
             for face in estimate.sampled.faces.map(|face| face as usize) {
@@ -120,17 +120,17 @@ impl Rounds<'_> {
     }
 }
 
-/// How many rays each pair needs: none where its error is as wanted. If all together are more than a budget, pairs
-/// whose errors are too large by the least factors stay as they are, or get fewer.
+/// The number of rays that each pair needs: none if its error is small enough. If the total exceeds the budget, a
+/// common slack on the errors reduces it, and pairs with the smallest excess get none.
 fn rays_for(found: &[Estimate], wanted: &[f64], budget: f64) -> Vec<u32> {
     let needed = |slack: f64| {
         found.iter().zip(wanted).map(move |(estimate, wanted)| {
             let over = estimate.sampled.error / (wanted * slack);
-            // 0 over 0 is not known to be too much.
+            // 0 over 0 is not known to be too large.
             if over.is_nan() || over <= 1.0 || estimate.rays >= MOST {
                 return 0;
             }
-            // Where all rays agree, the error falls as one over their number.
+            // If all rays agree, the error is inversely proportional to their number.
             let times = if estimate.agrees { over } else { over * over };
             let rays = f64::from(estimate.rays) * times * RESERVE;
             (rays.min(f64::from(MOST)) as u32).next_multiple_of(64)

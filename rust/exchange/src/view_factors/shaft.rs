@@ -1,9 +1,8 @@
-//! What may lie between: the shaft of all segments from one thing to another (Haines and Wallace, "Shaft Culling for
-//! Efficient Ray-Traced Radiosity", 1991), as planes that it lies behind.
+//! Potential blockers: the shaft of all segments between two objects (Haines and Wallace, "Shaft Culling for Efficient
+//! Ray-Traced Radiosity", 1991), as an intersection of half-spaces.
 //!
-//! What only touches a shaft hides nothing, so all comparisons let rounding pass: of a plane's distance, 2⁻⁴⁸
-//! of the
-//! coordinates that it is computed from.
+//! An object that only touches a shaft hides nothing, so all comparisons allow for rounding: for distances from a
+//! plane, 2⁻⁴⁸ of the coordinates involved.
 
 use super::clusters::Cluster;
 use super::facet::Facet;
@@ -12,26 +11,26 @@ use raywright_scene::Geometry;
 
 const ROUNDING: f64 = 1.0 / (1u64 << 48) as f64;
 
-/// What may hide one face from another.
+/// An object that may hide one face from another.
 #[derive(Clone, Copy, Debug)]
 pub enum Blocker {
     /// A triangle.
     Facet(Facet),
-    /// What is none, by its number.
+    /// Another shape, by number.
     Curved(u32),
 }
 
-/// A half-space: `normal · x ≤ offset` within.
+/// The half-space `normal · x ≤ offset`.
 #[derive(Clone, Copy, Debug)]
 pub struct HalfSpace {
     normal: DVec3,
     offset: f64,
-    /// What rounding may make of a distance.
+    /// The rounding error of a distance.
     rounding: f64,
 }
 
 impl Blocker {
-    /// The greatest `d · x` of its points, or more.
+    /// An upper bound of the support function: the greatest `d · x` over its points.
     pub fn support(&self, geometry: &Geometry, d: DVec3) -> f64 {
         match self {
             Self::Facet(facet) => facet.corners.iter().fold(f64::NEG_INFINITY, |most, &c| most.max(d.dot(c))),
@@ -39,13 +38,13 @@ impl Blocker {
         }
     }
 
-    /// Whether none of it is within.
+    /// Return whether it is wholly outside a half-space.
     #[inline]
     pub fn is_beyond(&self, geometry: &Geometry, half: &HalfSpace) -> bool {
         -self.support(geometry, -half.normal) >= half.offset - half.rounding
     }
 
-    /// Whether its plane, if it is flat, has all of some points on one side.
+    /// Return whether it is flat and its plane has all the points on one side.
     #[inline]
     pub fn has_aside(&self, points: impl IntoIterator<Item = DVec3>) -> bool {
         match self {
@@ -55,7 +54,7 @@ impl Blocker {
     }
 }
 
-/// The shaft between two boxes: the box around both, and planes along an axis over two edges.
+/// The shaft between two boxes: their bounding box, and axis-parallel planes through one edge of each.
 pub fn between_boxes(one: &Cluster, other: &Cluster) -> Vec<HalfSpace> {
     let (low, high) = (one.low.min(other.low), one.high.max(other.high));
     let rounding = ROUNDING * low.abs().max(high.abs()).max_element();
@@ -79,7 +78,7 @@ pub fn between_boxes(one: &Cluster, other: &Cluster) -> Vec<HalfSpace> {
             if length <= rounding {
                 continue;
             }
-            // Out of both boxes at this corner, if it is on the hull of their outlines.
+            // Outward from both boxes at this corner, if it is on the convex hull of their outlines.
             let mut normal = DVec3::ZERO;
             (normal[k], normal[l]) = (way.1 / length, -way.0 / length);
             let out = if corner & 1 == 0 { -normal[k] } else { normal[k] };
@@ -96,7 +95,8 @@ pub fn between_boxes(one: &Cluster, other: &Cluster) -> Vec<HalfSpace> {
     found
 }
 
-/// The shaft between two triangles: planes through an edge of one and a corner of the other that have all on one side.
+/// The shaft between two triangles: planes through an edge of one and a corner of the other with all corners on one
+/// side.
 pub fn between_facets(one: &Facet, other: &Facet) -> Vec<HalfSpace> {
     let all = [one.corners, other.corners];
     let most = all.iter().flatten().fold(0.0f64, |most, corner| most.max(corner.abs().max_element()));
@@ -111,7 +111,7 @@ pub fn between_facets(one: &Facet, other: &Facet) -> Vec<HalfSpace> {
                     continue;
                 }
                 let offset = normal.dot(from);
-                // Without a branch for each: most planes are none of the shaft's.
+                // Branchless, since most planes do not bound the shaft.
                 let heights = all.as_flattened().iter().map(|&point| normal.dot(point) - offset);
                 let (low, high) = heights.fold((0.0f64, 0.0f64), |(low, high), h| (low.min(h), high.max(h)));
                 if high <= rounding {
@@ -125,9 +125,9 @@ pub fn between_facets(one: &Facet, other: &Facet) -> Vec<HalfSpace> {
     found
 }
 
-/// Whether a triangle hides all of one from all of another: it parts them, and all segments between their corners go
-/// through it, so that those between any of their points do. Each comes with the heights of its corners over the
-/// blocker.
+/// Return whether a triangle hides all of one triangle from all of another. It separates them, and all segments between
+/// their corners pass through it, so those between any of their points do. Each comes with its corners' heights above
+/// the blocker.
 pub fn hides(blocker: &Facet, (one, from): (&Facet, [f64; 3]), (other, to): (&Facet, [f64; 3])) -> bool {
     let parts = |of: [f64; 3], than: [f64; 3]| of.iter().all(|&h| h > 0.0) && than.iter().all(|&h| h < 0.0);
     if !parts(from, to) && !parts(to, from) {
@@ -139,7 +139,7 @@ pub fn hides(blocker: &Facet, (one, from): (&Facet, [f64; 3]), (other, to): (&Fa
         let (i, j) = (i / 3, i % 3);
         let share = from[i] / (from[i] - to[j]);
         let point = one.corners[i] + (other.corners[j] - one.corners[i]) * share;
-        // Inwards of each edge by more than rounding.
+        // Inside each edge by more than rounding.
         let room = ROUNDING * (point.abs().max_element() + blocker.centre.abs().max_element() + blocker.radius);
         edges.iter().all(|(from, inwards)| inwards.dot(point - *from) > room * inwards.length())
     })

@@ -1,4 +1,4 @@
-//! The matrix of scenes with many faces: rows by rays, of which only what is hit is kept.
+//! Sparse matrices of view factors for scenes with many faces: rows by ray tracing, with entries for hit faces only.
 
 use super::by_rays::{Entry, Rows};
 use super::fronts::Fronts;
@@ -8,25 +8,25 @@ use raywright_base::work::{Stopped, Work};
 use raywright_scene::Scene;
 use std::ops::Range;
 
-/// Rows one after the other, as compressed sparse rows have it.
+/// A matrix in compressed sparse row format.
 #[derive(Debug, Default)]
 pub struct Sparse {
-    /// Where each row starts, and where the last ends.
+    /// The start of each row, and the end of the last one.
     pub starts: Vec<i64>,
-    /// Which faces are seen, in rising order by row.
+    /// The column indices, increasing within each row.
     pub faces: Vec<i32>,
-    /// How much of each.
+    /// The view factors.
     pub values: Vec<f64>,
-    /// Its standard error.
+    /// Their standard errors.
     pub errors: Vec<f32>,
-    /// Rays that were sent.
+    /// The number of rays traced.
     pub rays: u64,
 }
 
-/// Rows that a thread makes at a time.
+/// Rows per parallel task.
 const TOGETHER: usize = 64;
 
-/// All rows of a scene by rays.
+/// Compute all rows of a scene by ray tracing.
 pub fn sparse(scene: &Scene, aim: &Aim, work: Work) -> Result<Sparse, Stopped> {
     let facets = facets(scene);
     let fronts = Fronts::new(scene);

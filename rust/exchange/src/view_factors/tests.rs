@@ -1,10 +1,10 @@
-//! Pairs of polygons against Howell's closed forms and symmetries.
+//! Tests of polygon pairs against Howell's closed forms and symmetries.
 
 use super::{Facet, Quadrature, pair};
 use raywright_base::math::DVec3;
 use raywright_base::simd::Level;
 
-/// A polygon as triangles about its first corner.
+/// A polygon as a triangle fan.
 fn polygon<const N: usize>(corners: [[f64; 3]; N]) -> Vec<Facet> {
     let at = corners.map(DVec3::from);
     (1..N - 1).map(|i| Facet::new([at[0], at[i], at[i + 1]])).collect()
@@ -23,7 +23,7 @@ fn factor(from: &[Facet], to: &[Facet]) -> f64 {
     exchanged / area
 }
 
-/// A rectangle of this width and depth at z = 0 that looks up, and one like it at a height that looks down.
+/// A rectangle of the given width and depth at z = 0 facing up, and one like it at a height facing down.
 fn opposed(width: f64, depth: f64, height: f64) -> [Vec<Facet>; 2] {
     let (w, d, h) = (width, depth, height);
     [
@@ -32,7 +32,7 @@ fn opposed(width: f64, depth: f64, height: f64) -> [Vec<Facet>; 2] {
     ]
 }
 
-/// Rectangles with a common edge along y that include an angle.
+/// Rectangles with a common edge along y that enclose an angle.
 fn wedge(edge: f64, width: f64, height: f64, degrees: f64) -> [Vec<Facet>; 2] {
     let (sin, cos) = if degrees == 90.0 { (1.0, 0.0) } else { degrees.to_radians().sin_cos() };
     let (x, z) = (height * cos, height * sin);
@@ -42,7 +42,7 @@ fn wedge(edge: f64, width: f64, height: f64, degrees: f64) -> [Vec<Facet>; 2] {
     ]
 }
 
-/// Both ways, at sizes far apart, and turned: within a tolerance of the truth.
+/// Assert a view factor in both directions, at very different scales, and rotated.
 fn assert_factor(what: &str, [from, to]: [Vec<Facet>; 2], truth: f64, tolerance: f64) {
     let areas = [&from, &to].map(|of| of.iter().map(|facet| facet.area).sum::<f64>());
     let there = factor(&from, &to);
@@ -73,7 +73,7 @@ fn opposed_rectangles() {
         (1.0, 10.0, 1.0, 0.386_382_489_266_135),
         (1.0, 1.0, 1000.0, 3.183_096_739_773_8e-7),
     ] {
-        // Points of rules, where they serve, are within 10⁻⁹.
+        // Cubature rules, where they apply, are accurate to 10⁻⁹.
         assert_factor(&format!("{width} {depth} {height}"), opposed(width, depth, height), truth, 1e-10);
     }
 }
@@ -106,7 +106,7 @@ fn rectangles_apart() {
 
 #[test]
 fn what_is_behind_a_plane_is_cut_off() {
-    // The same as the part of it in front, whose factor is known.
+    // The same as for the part of it in front, whose factor is known.
     let [from, _] = wedge(1.0, 1.0, 1.0, 90.0);
     let across = polygon([[0.0, 0.0, -0.7], [0.0, 1.0, -0.7], [0.0, 1.0, 1.0], [0.0, 0.0, 1.0]]);
     let exchanged = factor(&across, &from) * 1.7;
@@ -127,7 +127,7 @@ fn what_does_not_look_at_each_other_is_nothing() {
     assert_eq!(factor(&one, &[Facet::new([DVec3::Z; 3])]), 0.0);
 }
 
-/// The rows of closed surfaces whose faces look inwards.
+/// The row sums of closed surfaces with inward faces.
 fn assert_closed(what: &str, faces: &[Facet], tolerance: f64) {
     for one in faces {
         let sum: f64 = faces.iter().map(|other| factor(&[*one], &[*other])).sum();
@@ -154,13 +154,13 @@ fn rows_of_closed_surfaces_are_one() {
             }
         }
     }
-    // A box whose sides differ a thousandfold, and a needle.
+    // Boxes with an aspect ratio of a thousand, and a needle.
     for size in [[1.0, 2.0, 3.0], [1.0, 1.0, 1000.0], [1.0, 0.001, 1.0], [1.0, 30.0, 0.03]] {
         assert_closed(&format!("{size:?}"), &inward_box(size).concat(), 1e-9);
     }
 }
 
-/// The sides −x, +x, −y, +y, −z, +z of a box, which look inwards.
+/// The sides −x, +x, −y, +y, −z, +z of a box, facing inward.
 fn inward_box([a, b, c]: [f64; 3]) -> [Vec<Facet>; 6] {
     [
         polygon([[0.0, 0.0, 0.0], [0.0, b, 0.0], [0.0, b, c], [0.0, 0.0, c]]),

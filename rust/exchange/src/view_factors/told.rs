@@ -1,19 +1,19 @@
-//! The error of a share that was counted, also where all samples agree.
+//! The standard error of a proportion, also if all samples agree.
 
-/// Hits and misses that are added to those counted (Agresti and Coull, 1998). Where none of n samples is a hit, the
-/// variance is 2.5 / n², and 1.96 standard errors are the rule of three: 3 / n.
+/// Pseudo-counts of hits and misses added to those observed (Agresti and Coull, 1998). If none of n samples is a hit,
+/// the variance is 2.5 / n², and 1.96 standard errors are the rule of three: 3 / n.
 const ADDED: f64 = 2.5;
 
-/// Degrees of freedom that the variance of independent samples counts for beside that between batches.
+/// Degrees of freedom of the variance of independent samples, when combined with that between batches.
 ///
-/// Few batches tell their variance badly: of four, one error in 60 would be beyond four standard errors. The variance
-/// of independent samples needs no batches, but is too large for samples that are placed with regard to each other.
+/// Few batches estimate their variance poorly: with four, one error in 60 would exceed four standard errors. The
+/// variance of independent samples needs no batches, but is too large for stratified samples.
 const PRIOR: f64 = 16.0;
 
 /// Weighted samples, each a hit or a miss.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Counts {
-    /// The sums of weights and of their squares, of all samples and of hits.
+    /// The sums of weights and of their squares, over all samples and over hits.
     pub weights: f64,
     pub squares: f64,
     pub hits: f64,
@@ -31,23 +31,23 @@ impl Counts {
         }
     }
 
-    /// The counts of so many samples of equal weight, of which a share are hits.
+    /// The counts of `samples` samples of equal weight, a fraction `share` of them hits.
     pub fn of(share: f64, samples: f64) -> Self {
         let hits = share.clamp(0.0, 1.0) * samples;
         Self { weights: samples, squares: samples, hits, hit_squares: hits }
     }
 
-    /// The number of samples of equal weight that would tell as much.
+    /// The effective sample size: the number of samples of equal weight with the same information.
     pub fn effective(&self) -> f64 {
         if self.squares > 0.0 { self.weights * self.weights / self.squares } else { 0.0 }
     }
 
-    /// Whether all samples are hits, or all are misses.
+    /// Return whether all samples are hits, or all are misses.
     pub fn agree(&self) -> bool {
         self.hits == 0.0 || self.hits == self.weights
     }
 
-    /// The variance of the share of hits, given that of the mean of independent batches and their number.
+    /// The variance of the proportion of hits, given that of the mean of independent batches and their number.
     pub fn variance(&self, (between, batches): (f64, f64)) -> f64 {
         let count = self.effective();
         if count == 0.0 {
@@ -88,7 +88,7 @@ mod tests {
         for i in 0..40_000 {
             counts.add(if i % 2 == 0 { 1.0 } else { 3.0 }, i % 4 < 2);
         }
-        // Half of the weight is seen; the effective number is 4² / (2 · 10) of that of the samples.
+        // Half of the weight is visible; the effective sample size is 4² / (2 · 10) of the number of samples.
         let truth: f64 = 0.25 / 32_000.0;
         assert!((counts.variance((truth, 1.0)) / truth - 1.0).abs() < 0.01);
         assert!((counts.variance((0.5 * truth, 1e6)) / truth - 0.5).abs() < 0.01);
