@@ -12,7 +12,7 @@ author = "the raywright authors"
 release = version_of("raywright")
 version = release
 
-extensions = ["myst_nb", "sphinx.ext.autodoc", "numpydoc", "reference_pages"]
+extensions = ["myst_nb", "sphinx.ext.autodoc", "numpydoc", "reference_pages", "diagrams"]
 exclude_patterns = ["_build", "_templates"]
 html_theme = "furo"
 html_title = "raywright"
@@ -38,6 +38,8 @@ autodoc_member_order = "bysource"
 numpydoc_show_class_members = False
 
 myst_heading_anchors = 3
+# ```mermaid is a directive of `diagrams`.
+myst_fence_as_directive = ["mermaid"]
 
 # Recipes are notebooks, run when their code has changed. The one for torch is shown as it is without torch.
 nb_execution_mode = "cache"
