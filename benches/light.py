@@ -110,13 +110,13 @@ def contest(name, arguments):
     rows |= dict(peers(scene, camera, arguments.seconds, arguments.seeds, truth.rgb.astype(np.float64)))
     products = [value for value in rows.values() if isinstance(value, float)]
     yield f"## {name.capitalize()}\n"
-    yield f"The long picture is of {right}, {truth.samples} samples, and tells a relMSE of {truth.error}.\n"
-    yield "| way | relMSE x seconds | over the best |\n|---|---|---|"
+    yield f"Reference: {right}, {truth.samples} samples, relMSE {truth.error}.\n"
+    yield "| integrator | relMSE x seconds | over the best |\n|---|---|---|"
     for each, value in rows.items():
         if isinstance(value, float):
             yield f"| {each} | {value:.2e} | {value / min(products):.1f} |"
         else:
-            yield f"| {each} | {value or 'below what the long picture knows'} | |"
+            yield f"| {each} | {value or 'below the error of the reference'} | |"
     for each, why in refused.items():
         yield f"| {each} | {why} | |"
     yield ""

@@ -73,20 +73,20 @@ def sayings(of):
             of[name].mrays("grid") / of[name].mrays("binned SAH") for name in ("terrain", "stadium")
         )
         yield (
-            f"A grid suits what is evenly spread, and collapses in the stadium: {even:.2f} times the rays a "
-            f"second of the binned tree on the terrain, {hall:.2f} in the stadium."
+            f"A grid suits evenly distributed geometry, and collapses in the stadium: {even:.2f} times the "
+            f"rays a second of the binned tree on the terrain, {hall:.2f} in the stadium."
         )
     if "stadium" in of:
         nested = of["stadium"].mrays("nested grid") / of["stadium"].mrays("grid")
-        yield f"A grid within cells repairs that: {nested:.1f} times the rays a second of the plain grid."
+        yield f"A nested grid repairs that: {nested:.1f} times the rays a second of the plain grid."
     if "diagonal wall" in of:
         straight, turned = (
             {name: of[wall].tests(name) for name in ("binned SAH", "spatial SAH")}
             for wall in ("straight wall", "diagonal wall")
         )
         yield (
-            "Spatial splits repair rotation: turned by 45 degrees, the wall takes so many times the tests of "
-            + "the straight one: "
+            "Spatial splits repair rotation: number of tests in the wall turned by 45 degrees, over the "
+            + "straight one: "
             + ", ".join(f"{turned[name] / straight[name]:.2f} ({name})" for name in turned)
             + "."
         )
@@ -95,7 +95,7 @@ def sayings(of):
             f"{of['room'].mrays(name) / of['turned room'].mrays(name):.2f} ({name})"
             for name in ("default", "binned SAH", "spatial SAH", "kD-tree", "BSP tree", "grid")
         )
-        yield f"The turned room takes so many times the time of the straight one: {', '.join(rows)}."
+        yield f"Time in the turned room, over the straight one: {', '.join(rows)}."
     gains = [one.mrays("binned SAH") / one.mrays("median") for one in of.values()]
     yield (
         f"The surface area heuristic doubles a median tree: {geometric_mean(gains):.2f} times the rays a "
@@ -128,7 +128,7 @@ def main():
         if arguments.scene is None or name in arguments.scene:
             of[name] = Measured(scene, camera, arguments)
             print(f"\n### {name}\n", *of[name].lines(), sep="\n", flush=True)
-    print("\n### What is said, and what was seen\n", *(f"- {line}" for line in sayings(of)), sep="\n")
+    print("\n### Claims and measurements\n", *(f"- {line}" for line in sayings(of)), sep="\n")
 
 
 if __name__ == "__main__":
