@@ -1,7 +1,7 @@
-"""Mitsuba's plugins, one by one, and what becomes of each here.
+"""Table of Mitsuba's plugins: supported, approximated or refused.
 
 ``python docs/mitsuba_plugins.py --write`` puts the table into ``docs/from_mitsuba.md``; a test checks that it
-is current. What is read is asked of the reader itself; what is approximated or refused is told here.
+is current. Supported plugins are read from the reader itself; this file lists the others.
 """
 
 import re
@@ -16,7 +16,7 @@ BEGIN, END = "<!-- plugins -->\n", "<!-- plugins end -->\n"
 READ = {
     "shapes": (*shapes.TYPES, shapes.GROUP, shapes.COPY, shapes.MERGED),
     "BSDFs": (*bsdfs.TYPES, "null"),
-    "textures and colours": (*textures.TYPES, *values.UNIFORM),
+    "textures and colors": (*textures.TYPES, *values.UNIFORM),
     "emitters": ("area", *emitters.TYPES),
     "sensors": sensors.TYPES,
     "films": sensors.FILMS,
@@ -25,41 +25,41 @@ READ = {
     "integrators": settings.INTEGRATORS,
     "media": (*media.TYPES, *media.PHASES, *media.VOLUMES),
 }
-# What is another thing here, or not quite the same.
+# Approximated, and how.
 NEARLY = {
     "linearcurve": "a mesh of 48 sides, within 0.22 % of the radius; fewer sides beyond 4 million triangles",
-    "bsplinecurve": "so too, in straight pieces that stray by 0.1 % of the radius; one sees into open ends",
+    "bsplinecurve": "likewise, in straight pieces within 0.1 % of the radius; the ends are open",
     "sdfgrid": "a mesh of a third of its cells, with corners on the surface",
-    "heightfield": "Mitsuba 0.6's: a mesh of four triangles a patch, whose points are those of the picture",
-    "mesh_attribute": "of PLY files: vertices or faces, one attribute a mesh, between 0 and 1",
-    "volume": "a grid: of meshes, quartered until edges are half a cell or there are 4 million triangles",
+    "heightfield": "Mitsuba 0.6's: a mesh of four triangles a patch, with the points of the picture",
+    "mesh_attribute": "PLY files only: vertices or faces, one attribute a mesh, between 0 and 1",
+    "volume": "grids on meshes, quartered until edges are half a cell or there are 4 million triangles",
     "bumpmap": "slopes are means over a thousandth of the coordinates",
-    "spot": "with a texture: a projector of up to 2048² points, in which the fall-off is",
+    "spot": "with a texture: a projector of up to 2048² points, fall-off included",
     "projector": "a texture's picture is resampled to 512 points or more",
-    "envmap": "rows lie evenly between the poles, half a row off at most",
-    "sunsky": "the sky of Preetham et al. (1999), which is brighter than Hosek's and Wilkie's; warned of",
-    "perspective": "`near_clip` and `far_clip` are left out",
+    "envmap": "rows are spaced evenly between the poles, half a row off at most",
+    "sunsky": "the sky of Preetham et al. (1999), which is brighter than Hosek's and Wilkie's; with a warning",
+    "perspective": "`near_clip` and `far_clip` are ignored",
     "distant": "towards a point",
     "ldrfilm": "as `hdrfilm`",
-    "independent": "as Mitsuba's default: none is named; `load(path, sampler=)` overrules",
+    "independent": "as Mitsuba's default: the sampler is chosen automatically; `load(path, sampler=)` sets one",
     "hammersley": "as `halton`",
     "volpath": "as `path`",
     "volpathmis": "as `path`",
     "prb": "as `path`",
     "prb_basic": "as `path`",
     "prbvolpath": "as `path`",
-    "moment": "the integrator within, whose error every picture tells",
-    "direct": "with none of `emitter_samples` or `bsdf_samples`: the same light by the other; warned of",
-    "gridvolume": "of one or three channels; those of a medium in the same place",
+    "moment": "the nested integrator; every picture has an error estimate",
+    "direct": "with none of `emitter_samples` or `bsdf_samples`: the same light by the other; with a warning",
+    "gridvolume": "one or three channels; all grids of a medium in the same place",
     "depth": '`aov="depth"`',
 }
-# What is not read, and is refused by its name.
+# Refused by name.
 REFUSED = {
     "shapes": ("ellipsoids", "ellipsoidsmesh"),
     "BSDFs": (
         "circular", "hair", "measured", "measured_polarized", "polarizer", "pplastic", "retarder",
     ),
-    "textures and colours": (),
+    "textures and colors": (),
     "emitters": ("directionalarea", "timed_sunsky"),
     "sensors": ("batch", "irradiancemeter"),
     "films": ("specfilm",),
@@ -71,16 +71,17 @@ REFUSED = {
 
 
 def table() -> str:
-    """Return the table as a page has it."""
-    lines = ["| Mitsuba | | |", "|---|---|---|"]
+    """Return the table in Markdown."""
+    lines = ["| Mitsuba | support | plugins, or approximation |", "|---|---|---|"]
     for kind in REFUSED:
         rows = [
-            (name, "approximated" if name in NEARLY else "had") for name in dict.fromkeys(READ.get(kind, ()))
+            (name, "approximated" if name in NEARLY else "supported")
+            for name in dict.fromkeys(READ.get(kind, ()))
         ]
-        had = ", ".join(f"`{name}`" for name, what in rows if what == "had")
-        if had:
-            lines.append(f"| {kind} | had | {had} |")
-        lines += [f"| `{name}` | {what} | {NEARLY[name]} |" for name, what in rows if what != "had"]
+        supported = ", ".join(f"`{name}`" for name, what in rows if what == "supported")
+        if supported:
+            lines.append(f"| {kind} | supported | {supported} |")
+        lines += [f"| `{name}` | {what} | {NEARLY[name]} |" for name, what in rows if what != "supported"]
         if REFUSED[kind]:
             lines.append(f"| {kind} | refused | {', '.join(f'`{name}`' for name in REFUSED[kind])} |")
     return "\n".join(lines) + "\n"

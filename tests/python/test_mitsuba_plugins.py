@@ -27,7 +27,7 @@ def test_the_table_is_current():
 
 @pytest.mark.parametrize("name", REFUSED)
 def test_what_is_refused_is_refused_by_name(name):
-    of_a_colour = name in plugins.REFUSED["textures and colours"]
+    of_a_colour = name in plugins.REFUSED["textures and colors"]
     inner = {"type": "diffuse", "reflectance": {"type": name}} if of_a_colour else {"type": name}
     scene = {"type": "scene", "eye": EYE, "ball": {"type": "sphere", "inner": inner}}
     if name in (*plugins.REFUSED["sensors"], *plugins.REFUSED["integrators"]):
