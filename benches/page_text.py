@@ -24,28 +24,27 @@ _TITLES = {
 }
 
 _TEXTS = {
-    "rays": """Millions of rays a second, from numpy arrays to numpy arrays. Each engine is timed in turns
-beside raywright, and the last columns are the median ratio of those turns: how many times as fast as the
-fastest other engine raywright is. embreex, Open3D and Mitsuba are Embree inside, and choose its widest
-instructions. embreex is shown in its robust mode, and has one thread; Mitsuba is told that rays are
-coherent, and told that they are not, and the faster is shown.""",
-    "wrong": """Of a million rays that are aimed where float32 arithmetic decides badly, those for which an
-engine says hit instead of miss or the other way round, or names another surface. The truth is that of exact
-rational arithmetic. All numbers given are float32, so each engine holds the same scene. "embreex" and
+    "rays": """Millions of rays a second, from numpy arrays to numpy arrays. Each engine takes turns with
+raywright, and the last columns are the median ratio of those turns: raywright's speed over that of the
+fastest other engine. embreex, Open3D and Mitsuba use Embree, with its widest instructions. embreex runs in
+its robust mode, and has one thread; Mitsuba is timed with and without its flag for coherent rays, and the
+faster time is shown.""",
+    "wrong": """Wrong answers among a million rays that are hard for float32 arithmetic: a hit instead of a
+miss, the reverse, or another surface. Exact rational arithmetic gives the truth. All input is float32, so
+each engine has the same scene. "embreex" and
 "open3d" are Embree's robust mode; "embreex fast" and "mitsuba" are not. [Why raywright has
-none](architecture.md).""",
-    "builds": """Seconds from arrays to a scene that is ready for rays, on all cores, and the bytes for each
-triangle by which a fresh process grows. The mesh is a torus with a rough surface.""",
+none](architecture/exactness.md).""",
+    "builds": """Seconds from arrays to a compiled scene, on all cores, and memory growth of a fresh process
+for each triangle, in bytes. The mesh is a torus with a rough surface.""",
     "distances": """Points a second on all cores: half of the points are near the surface, half anywhere in
-1.5 times its box. trimesh gets a hundredth of the points; libigl builds its tree in each call. Distances
-differ by at most that part of the mesh's size.""",
+1.5 times its box. trimesh gets a hundredth of the points; libigl builds its tree in each call. The column
+"differs by" is the largest difference over the mesh's size.""",
     "factors": """All view factors between the faces of a cubic room, empty and with a block in it. Rows add
-up to 1 in a closed room, and to within the given number here. The errors of rows are standard errors, of
-the pairs that rays decide. pyViewFactor computes the empty room from squares, raywright from twice as many
-triangles.""",
-    "pictures": """Error against time: relMSE, the mean of (x - ref)² / (ref² + 0.01), of a picture of so
-many samples a pixel, against a long picture of the same engine. Of Mitsuba's samplers the one is shown
-whose error times time is least. raywright is called with nothing but the number of samples.""",
+up to 1 in a closed room; "rows within" is the largest deviation. Errors of rows are standard errors of the
+pairs by rays. pyViewFactor computes the empty room from squares, raywright from twice as many triangles.""",
+    "pictures": """Error against time: relMSE, the mean of (x - ref)² / (ref² + 0.01), against a long picture
+of the same engine, by the number of samples a pixel. For Mitsuba the sampler with the least error times
+time is shown. raywright chooses its own options.""",
 }
 
 

@@ -13,7 +13,7 @@ import re
 from html import escape
 from typing import Any, NamedTuple
 
-_STYLE = 'font-family="sans-serif" font-size="13" text-anchor="middle" fill="currentColor"'
+_STYLE = 'font-family="sans-serif" font-size="13" fill="currentColor"'
 _LINE = 'stroke="currentColor" fill="none"'
 _COLUMN, _ROW, _HEAD = 150, 40, 34
 
@@ -44,8 +44,9 @@ def svg(text: str) -> str:
     return f'<svg xmlns="http://www.w3.org/2000/svg" {size}>\n' + "\n".join(parts) + "\n</svg>"
 
 
-def _label(x: float, y: float, text: str) -> str:
-    return f'<text x="{x:g}" y="{y:g}" {_STYLE}>{escape(text, quote=False)}</text>'
+def _label(x: float, y: float, text: str, anchor: str = "middle") -> str:
+    shown = escape(text, quote=False)
+    return f'<text x="{x:g}" y="{y:g}" text-anchor="{anchor}" {_STYLE}>{shown}</text>'
 
 
 def _box(x: float, y: float, width: float, height: float, extra: str = "") -> str:
@@ -96,9 +97,7 @@ def _sequence(lines: list[str]) -> tuple[float, float, list[str]]:
         elif kind == "end":
             top, text = opened.pop()
             parts.append(_box(4, top, width - 8, y - top - 8, ' stroke-dasharray="2 4"'))
-            parts.append(
-                f'<text x="12" y="{top + 16:g}" {_STYLE.replace("middle", "start")}>{escape(text, quote=False)}</text>'
-            )
+            parts.append(_label(12, top + 16, text, "start"))
             y += 8 - _ROW
         else:
             parts += _arrow(middles[first], middles[last], y + 20, text, column, kind == "answer")

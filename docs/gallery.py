@@ -1,7 +1,7 @@
 """The pictures of the gallery, and its page: ``python docs/gallery.py [NAME ...]``.
 
-Each picture is a function, and the page shows its very lines. It is saved in ``docs/gallery``; what was seen
-of it stands in ``docs/gallery/record.json`` and on the page. Those that are not named keep what they have.
+Each picture is a function, and the page shows its code. It is saved in ``docs/gallery``, and its seconds and
+error in ``docs/gallery/record.json`` and on the page. Pictures that are not named are not changed.
 """
 
 import sys
@@ -18,13 +18,13 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))
 import gallery_page  # noqa: E402
 
-# How the page begins.
+# The first lines of the page.
 HEAD = """# Gallery
 
-Each picture was made by the lines under it, and `python docs/gallery.py NAME` makes it again. None was
-clamped, denoised or retouched. The seconds are the processor's, of all threads together, on a virtual
-machine of two cores that had other work too. The error is the relMSE that the render itself tells, without
-a picture to compare with, and its 95 % interval.
+Each picture is made by the code below it, and `python docs/gallery.py NAME` renders it again. None was
+clamped, denoised or retouched. Seconds are processor time, of all threads together, on a virtual machine of
+two cores under other load. The error is the render's own estimate of relMSE, without a reference, with its
+95 % interval.
 
 All begin with
 
@@ -40,7 +40,7 @@ import raywright as rw
 
 
 def cornell():
-    """The box of Cornell University by its measured colours, with a knot of 20,000 triangles in it."""
+    """The box of Cornell University with its measured colors, and a knot of 20,000 triangles."""
     knot = rw.scenes.torus_knot(material=rw.Diffuse((0.78, 0.55, 0.2)))
     scene, camera = rw.scenes.cornell_box(knot, 1000, 1000, emission=(18, 15, 10.5))
     image = rw.render(scene, camera, samples=64)
@@ -51,8 +51,8 @@ def cornell():
 def caustic():
     """Light under a glass of water, and in a ring of gold.
 
-    Paths from the eye meet such light by chance alone. Here each sample has photons besides, and every way to
-    find light is weighed with all others (vertex connection and merging, Georgiev et al. 2012).
+    Paths from the camera hit a small lamp through glass only by chance. Here each sample has photons too,
+    and MIS weights all techniques (vertex connection and merging, Georgiev et al. 2012).
     """
     up = np.array((0, 1, 0))
     glass = rw.Cylinder(-0.02 * up, 1.15 * up, 0.5, material=rw.Dielectric(1.5))
@@ -71,9 +71,9 @@ def caustic():
 
 
 def keyhole():
-    """A room that has no light but what comes through the hole in its door.
+    """A room lit only through the hole in its door.
 
-    Paths from the lamp and paths from the eye are joined at all their surfaces (Lafortune and Willems 1993;
+    Paths from the lamp and paths from the camera are connected at all surfaces (Lafortune and Willems 1993;
     Veach and Guibas 1994).
     """
     turn = np.linspace(np.radians(-60), np.radians(240), 40)
@@ -104,11 +104,11 @@ def keyhole():
 
 
 def prism():
-    """White light that a prism of flint spreads into its colours.
+    """White light, dispersed by a prism of flint glass.
 
     The index of refraction is that of the glass SF10 at each wavelength (Sellmeier's formula). Paths carry
-    three wavelengths, of which one goes on where the glass parts them (Wilkie et al. 2014). The beam is as
-    narrow as a slit: only paths that start at the lamp find where it goes.
+    three wavelengths, and one of them continues after a dispersive refraction (Wilkie et al. 2014). The beam
+    is as narrow as a slit: only paths from the lamp follow it.
     """
     corners = [0.6 * np.array((np.cos(turn), np.sin(turn))) for turn in np.radians((90, 210, 330))]
     ends = [(x, y, z) for z in (0.002, 0.7) for x, y in corners]
@@ -128,7 +128,7 @@ def prism():
 
 
 def haze():
-    """Beams of light in haze, through a window with a blind; what is scattered twice is left out."""
+    """Beams of light in haze, through a window with a blind, without multiple scattering."""
     dark = rw.Diffuse(0.15)
     slats = [rw.Box((-2, y, -0.04), (2, y + 0.15, 0.04), material=dark) for y in np.arange(0.9, 3.3, 0.48)]
     wall = [
@@ -150,7 +150,7 @@ def haze():
 
 
 def cloud():
-    """A cloud at sunset: a grid of densities, in which light is scattered as often as it takes."""
+    """A cloud at sunset: a grid of densities, with multiple scattering to any depth."""
     x, y, z = np.mgrid[-1:1:128j, -1:1:80j, -1:1:128j]
     rng = np.random.default_rng(4)
     # Waves of all lengths, the weaker the shorter.
@@ -173,10 +173,10 @@ def cloud():
 
 
 def marble():
-    """Marble that light enters: rough and clear at its surface, and a medium that scatters within.
+    """Translucent marble: a rough dielectric surface around a scattering medium.
 
-    It glows where it is thin, and where light that fell on its back comes out. No lamp can be asked for from
-    under a rough surface: photons are kept where the stone scatters them, and paths from the eye ask there.
+    It is bright where it is thin, and where light from behind comes out. Shadow rays do not pass a rough
+    dielectric, so photons are stored where the stone scatters them, and paths from the camera gather them.
     """
     within = rw.Homogeneous(absorption=(0.13, 0.44, 1.0), scattering=11)
     stone = rw.Dielectric(1.5, 0.5, interior=within)
@@ -192,9 +192,9 @@ def marble():
 
 
 def radiosity():
-    """A room solved for once, and its patches, each with the light that it sends.
+    """A room solved by radiosity, shown by its patches.
 
-    Any camera can look at it then, by one ray a sample; the error is that of the picture, and that of the
+    Any camera can view the solution, with one ray a sample. The error is that of the picture; that of the
     solution is 2 %.
     """
 
@@ -241,7 +241,7 @@ def radiosity():
 
 
 def photons():
-    """Where light falls, as points: each photon that the camera sees, in the colour of its power."""
+    """Photons as points: each photon that the camera sees, in the color of its power."""
     scene, camera = rw.scenes.glass_spheres(1000, 1000)
     found = scene.photons(200_000)
     seen = found[~scene.occluded(camera.position, found.positions - camera.position, t_max=1 - 1e-6)]
@@ -257,7 +257,7 @@ def photons():
 
 
 def shapes():
-    """Curved shapes are hit as they are, not as triangles, here by a lens with six blades."""
+    """Curved shapes without triangles, seen through a lens with six blades."""
     blue, rust = rw.Plastic((0.1, 0.35, 0.6), roughness=0.15), rw.OrenNayar((0.7, 0.3, 0.15))
     green, copper = rw.Plastic((0.2, 0.45, 0.15), roughness=0.25), rw.Conductor("Cu", roughness=0.2)
     stool = "(x - 0.5)**2 + (z - 1.4)**2 - 0.45 * (y + 0.1)**2 - 0.06"
@@ -288,7 +288,7 @@ def shapes():
 
 
 def materials():
-    """Materials and textures: what they are made of is told by a few words each."""
+    """Materials and textures, each defined in a line or two."""
     bumps = rw.BumpMap(rw.Plastic((0.55, 0.12, 0.1), roughness=0.2), rw.FBm(transform=4.0), scale=0.12)
     paint = rw.Principled((0.1, 0.25, 0.45), roughness=0.5, metallic=0.6, clearcoat=1, clearcoat_gloss=1)
     kinds = [
@@ -312,9 +312,9 @@ def materials():
 
 
 def bubble():
-    """A soap bubble from which the soap has run down, in a dark room with two windows.
+    """A draining soap bubble in a dark room with two windows.
 
-    Its film is black at the top, where it is 12 nm thick, and shows the colours of its thickness below.
+    The film is black at the top, where it is 12 nm thick, and shows interference colors below.
     """
     scene, camera = rw.scenes.soap_bubble(1000, 900)
     image = rw.render(scene, camera, samples=64)
@@ -360,7 +360,7 @@ def forest():
 
 
 def whitted():
-    """The first picture of its kind (Whitted 1980): what is seen in glass and mirrors, as a tree of rays."""
+    """Whitted's picture of 1980: reflection and refraction as a tree of rays."""
     scene, camera = rw.scenes.whitted_spheres(1000, 640)
     tree = rw.Whitted(ambient=0.1, light_samples=2)
     image = rw.render(scene, camera, tree, samples=64, filter=rw.BlackmanHarrisFilter())
@@ -369,7 +369,7 @@ def whitted():
 
 
 def heatmap():
-    """Where the work is: how many nodes of its tree each ray of a picture of a city visits."""
+    """Traversal cost: the number of tree nodes that each ray visits, in a picture of a city."""
     scene = rw.Scene(rw.scenes.city())
     camera = rw.Camera((-260, 190, 420), (0, 20, 0), fov=50, width=888, height=560)
     picture = rw.report.heatmap(scene, camera)
@@ -408,7 +408,7 @@ def main(names: list[str]) -> None:
 
 
 def seen(_name: str, made: Any, seconds: float) -> str:
-    """Tell what is to be known of a picture."""
+    """Return the line under a picture: seconds, samples and error."""
     parts = [f"{seconds:.0f} s of one core"]
     if not isinstance(made, rw.Image):
         return "; ".join([*parts, repr(made)])
@@ -420,7 +420,7 @@ def seen(_name: str, made: Any, seconds: float) -> str:
 
 
 def page(record: dict[str, str]) -> str:
-    """Return the page, of what was seen of each picture."""
+    """Return the page, given the line under each picture."""
     return gallery_page.page(HEAD, PICTURES, record, "gallery")
 
 

@@ -1,4 +1,4 @@
-"""What the galleries share: a picture is a function, and its page shows the lines of it."""
+"""The common part of the galleries: a picture is a function, and its page shows the code."""
 
 import inspect
 import json

@@ -1,4 +1,4 @@
-"""Ten pictures of what rays measure, and their page: ``python docs/measured.py [NAME ...]``.
+"""Ten pictures of measurements, and their page: ``python docs/measured.py [NAME ...]``.
 
 Each picture is a function, and ``docs/measured.md`` shows its lines. Files in ``docs/measured`` have at most
 40 kB each. Needs matplotlib and manifold3d.
@@ -226,9 +226,9 @@ PICTURES = {
 
 HEAD = f"""# A measurer's gallery
 
-Ten pictures of what rays measure, each with the lines that made it. `python docs/measured.py NAME` makes one
-again. The seconds are the processor's, of all threads together, on a virtual machine of two cores that had
-other work too. `painted` measures nothing: it turns values on the surfaces that a camera sees into colors.
+Ten pictures of measurements, each with its code. `python docs/measured.py NAME` makes one again. Seconds are
+processor time, of all threads together, on a virtual machine of two cores under other load. `painted` only
+draws: it turns values on the surfaces that a camera sees into colors.
 
 <!-- shown -->
 ```python
@@ -262,7 +262,7 @@ def kept(name: str, made: Any, seconds: float) -> str:
 
 
 def page(record: dict[str, str]) -> str:
-    """Return the page, of what was seen of each picture."""
+    """Return the page, given the line under each picture."""
     return gallery_page.page(HEAD, PICTURES, record, "measured")
 
 

@@ -37,11 +37,11 @@ NEARLY = {
     "spot": "with a texture: a projector of up to 2048² points, fall-off included",
     "projector": "a texture's picture is resampled to 512 points or more",
     "envmap": "rows are spaced evenly between the poles, half a row off at most",
-    "sunsky": "the sky of Preetham et al. (1999), which is brighter than Hosek's and Wilkie's; with a warning",
+    "sunsky": "the sky of Preetham et al. (1999), which is brighter than Hosek's and Wilkie's; warns",
     "perspective": "`near_clip` and `far_clip` are ignored",
     "distant": "towards a point",
     "ldrfilm": "as `hdrfilm`",
-    "independent": "as Mitsuba's default: the sampler is chosen automatically; `load(path, sampler=)` sets one",
+    "independent": "as Mitsuba's default: chosen automatically; `load(path, sampler=)` sets one",
     "hammersley": "as `halton`",
     "volpath": "as `path`",
     "volpathmis": "as `path`",
@@ -74,10 +74,8 @@ def table() -> str:
     """Return the table in Markdown."""
     lines = ["| Mitsuba | support | plugins, or approximation |", "|---|---|---|"]
     for kind in REFUSED:
-        rows = [
-            (name, "approximated" if name in NEARLY else "supported")
-            for name in dict.fromkeys(READ.get(kind, ()))
-        ]
+        names = dict.fromkeys(READ.get(kind, ()))
+        rows = [(name, "approximated" if name in NEARLY else "supported") for name in names]
         supported = ", ".join(f"`{name}`" for name, what in rows if what == "supported")
         if supported:
             lines.append(f"| {kind} | supported | {supported} |")
