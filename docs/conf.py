@@ -1,4 +1,4 @@
-"""How the pages are built: ``sphinx-build -W docs build/docs``, with raywright installed."""
+"""Configuration of Sphinx: ``sphinx-build -W docs build/docs``, with raywright installed."""
 
 import sys
 from importlib.metadata import version as version_of
@@ -30,9 +30,9 @@ html_sidebars = {
     ]
 }
 
-# One backtick names a thing in docstrings: it becomes a link where there is such a thing, and code where not.
+# A name in single backticks in docstrings becomes a link, or code if there is no such name.
 default_role = "py:obj"
-# Types stand in the docstrings, in words and shapes that annotations have not.
+# Docstrings give types in words and with shapes, which annotations lack.
 autodoc_typehints = "none"
 autodoc_member_order = "bysource"
 numpydoc_show_class_members = False
@@ -41,7 +41,7 @@ myst_heading_anchors = 3
 # ```mermaid is a directive of `diagrams`.
 myst_fence_as_directive = ["mermaid"]
 
-# Recipes are notebooks, run when their code has changed. The one for torch is shown as it is without torch.
+# Recipes are notebooks; they run when their code has changed. Without torch, its recipe is not run.
 nb_execution_mode = "cache"
 nb_execution_timeout = 120
 nb_execution_raise_on_error = True

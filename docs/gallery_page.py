@@ -17,7 +17,7 @@ def lines(picture: Picture) -> str:
     """Return the lines that make a picture: all of its function but the last, which returns it."""
     body = inspect.getsource(picture).split('"""', 2)[2].strip("\n")
     body = textwrap.dedent(body).rsplit("\nreturn ", 1)[0]
-    # What is defined at the left margin has two empty lines around it.
+    # Definitions at the left margin have two empty lines around them.
     body = re.sub(r"\n\n+(?=def )", "\n\n\n", body)
     return re.sub(r"(\n    .*)\n\n+(?=\S)", r"\1\n\n\n", body)
 
