@@ -29,8 +29,8 @@ raywright, and the last columns are the median ratio of those turns: raywright's
 fastest other engine. embreex, Open3D and Mitsuba use Embree, with its widest instructions. embreex runs in
 its robust mode, and has one thread; Mitsuba is timed with and without its flag for coherent rays, and the
 faster time is shown.""",
-    "wrong": """Wrong answers among a million rays that are hard for float32 arithmetic: a hit instead of a
-miss, the reverse, or another surface. Exact rational arithmetic gives the truth. All input is float32, so
+    "wrong": """Wrong answers per million rays that are hard for float32 arithmetic: a hit instead of a miss,
+the reverse, or another surface. Exact rational arithmetic gives the truth. All input is float32, so
 each engine has the same scene. "embreex" and
 "open3d" are Embree's robust mode; "embreex fast" and "mitsuba" are not. [Why raywright has
 none](architecture/exactness.md).""",
