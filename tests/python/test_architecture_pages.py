@@ -45,6 +45,13 @@ def test_pages_that_a_page_links_to_are_there(path):
         assert (path.parent / link).exists(), f"{name(path)} links to {link}"
 
 
+def test_pages_that_are_read_first_are_short():
+    assert len(read(ROOT / "README.md").splitlines()) <= 120
+    assert len(read(ROOT / "ARCHITECTURE.md").split()) <= 1000
+    first = re.search(r"^## 0\.2\.0$.*?(?=^## |\Z)", read(ROOT / "CHANGELOG.md"), re.MULTILINE | re.DOTALL)
+    assert len(first[0].splitlines()) <= 60
+
+
 def test_every_path_is_on_the_page_of_the_architecture():
     linked = re.findall(r"\]\((docs/architecture/\w+\.md)\)", read(ROOT / "ARCHITECTURE.md"))
     assert sorted(linked) == [name(path) for path in PATHS]
