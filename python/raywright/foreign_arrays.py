@@ -234,8 +234,7 @@ def _readable(array: NDArray[Any]) -> NDArray[Any]:
 
 def _unmasked(name: str, value: Any) -> None:
     """Refuse masked entries, which numpy would take for what lies below the mask."""
-    # astropy's Masked has a mask too, without being one of these.
-    of_numpy = isinstance(value, np.ma.MaskedArray)
-    mask: Any = np.ma.getmaskarray(value) if of_numpy else getattr(value, "mask", None)
+    # Arrays of numpy.ma have it, and astropy's Masked, which is none; without it, numpy.ma isn't imported.
+    mask = getattr(value, "mask", None)
     if isinstance(mask, np.ndarray) and mask.dtype == np.bool_ and (count := int(mask.sum())):
         raise ValueError(f"{name} must have no masked entries, got {count}: fill them, as with NaN")

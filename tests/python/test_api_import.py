@@ -1,13 +1,15 @@
-"""Importing the package imports numpy and nothing else, and soon."""
+"""Importing the package imports numpy and its core; a name is imported when it is first used."""
 
+import ast
 import importlib.metadata
 import os
+import pkgutil
 import platform
 import re
-import statistics
 import subprocess
 import sys
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 
@@ -21,11 +23,29 @@ def run(code):
     return done.stdout
 
 
-def test_import_brings_in_numpy_and_nothing_else():
+def test_import_brings_in_the_core_and_nothing_else():
     code = "import numpy, sys; before = set(sys.modules); import raywright; print(*set(sys.modules) - before)"
-    new = {name.split(".")[0] for name in run(code).split()}
-    assert new - set(sys.stdlib_module_names) <= {"raywright", "numpy"}
-    assert "raywright" in new
+    assert set(run(code).split()) == {"raywright", "raywright._core"}
+
+
+def imported(use):
+    """Return the names of the modules that a use of the package imports beyond numpy."""
+    code = f"import numpy, sys; before = set(sys.modules); {use}; print(*set(sys.modules) - before)"
+    return set(run(code).split())
+
+
+@pytest.mark.parametrize(
+    ("use", "unused"),
+    [
+        ("rw.Mesh", "accelerators cameras integrators query rendering scene scenes"),
+        ("rw.Scene", "cli compat exchange gpu integrators mesh_files rendering scene_files scenes viewer"),
+        ("rw.render", "cli compat gpu mesh_files scene_files scenes viewer"),
+    ],
+)
+def test_a_name_imports_what_it_needs(use, unused):
+    new = imported(f"import raywright as rw; {use}")
+    assert not {f"raywright.{room}" for room in unused.split()} & new
+    assert {name.split(".")[0] for name in new} - set(sys.stdlib_module_names) <= {"raywright", "numpy"}
 
 
 def test_queries_do_not_bring_in_more():
@@ -37,22 +57,54 @@ def test_queries_do_not_bring_in_more():
     assert run(code).split() == []
 
 
-def test_import_leaves_to_others_what_few_need():
-    code = (
-        "import sys, numpy; before = set(sys.modules); import raywright;"
-        "print(*{'logging', 'hashlib', 'json', 'concurrent.futures', 'asyncio', 'email', 'http', 'socket',"
-        " 'subprocess', 'tempfile', 'unittest', 'xml'} & (set(sys.modules) - before))"
-    )
-    assert run(code).split() == []
+def test_queries_leave_to_others_what_few_need():
+    new = imported("import raywright as rw; rw.Scene(rw.Sphere((0, 0, 0), 1)).occluded((0, 0, 5), (0, 0, 1))")
+    assert not new & {
+        *("logging", "hashlib", "json", "concurrent.futures", "asyncio", "email", "http", "socket"),
+        *("subprocess", "tempfile", "unittest", "xml", "numpy.ma"),
+    }
 
 
-def test_import_takes_less_than_two_of_numpy():
-    # Of the process, which waits for nothing, and beside numpy in the same process: machines differ.
+def test_what_type_checkers_read_is_what_is_imported():
+    tree = ast.parse(Path(rw.__file__).read_text(encoding="utf-8"))
+    read = {
+        name.name: node.module or name.name
+        for node in ast.walk(tree)
+        if isinstance(node, ast.ImportFrom) and node.level
+        for name in node.names
+    }
+    assert read == {"_core": "_core"} | {name: name for name in rw.__all__} | rw._MODULES
+
+
+def test_subpackages_are_there_with_what_is_public_of_them():
     code = (
-        "import time; a = time.process_time(); import numpy; b = time.process_time(); import raywright;"
-        "print((time.process_time() - b) / (b - a))"
+        "import raywright as rw; print(rw.rendering.image.Image is rw.Image, rw.textures.illuminants is"
+        " rw.illuminants, rw.materials.glasses is rw.glasses, rw.scene.scene.Scene is rw.Scene)"
     )
-    assert statistics.median(float(run(code)) for _ in range(5)) < 2
+    assert run(code).split() == ["True"] * 4
+    # A name in both would change its meaning with what has been imported.
+    rooms = {module.name for module in pkgutil.iter_modules(rw.__path__)}
+    modules = {name for name in rw.__all__ if isinstance(getattr(rw, name), ModuleType)}
+    assert rooms & set(rw.__all__) == modules
+
+
+@pytest.mark.parametrize("name", ["Sceen", "_nothing", "compat"])
+def test_what_is_not_there_is_told(name):
+    done = subprocess.run(
+        [sys.executable, "-c", f"import raywright; raywright.{name}"], capture_output=True, text=True
+    )
+    assert f"AttributeError: module 'raywright' has no attribute '{name}'" in done.stderr
+
+
+def test_threads_that_use_the_package_first_see_the_same():
+    code = (
+        "import threading, raywright as rw; names = rw.__all__; found = []; b = threading.Barrier(4);"
+        "use = lambda: (b.wait(), found.append([getattr(rw, n) for n in names]));"
+        "threads = [threading.Thread(target=use) for _ in range(4)];"
+        "[t.start() for t in threads]; [t.join() for t in threads];"
+        "print(len(found), all(a is b for some in found for a, b in zip(some, found[0], strict=True)))"
+    )
+    assert run(code).split() == ["4", "True"]
 
 
 def test_every_public_name_is_there_and_documented():
