@@ -3,14 +3,20 @@
 import math
 import operator
 import os
-from typing import Any
+import sys
+from typing import TYPE_CHECKING, Any, TypeAlias, Union, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .foreign_arrays import as_array, describe
 
+if TYPE_CHECKING:
+    from numpy.random import Generator, SeedSequence
+
 Triple = tuple[float, float, float]
+# By name: numpy imports its random numbers when they are first used.
+SeedLike: TypeAlias = Union[int, "Generator", "SeedSequence"]
 
 # As many may be started on any machine, if they are asked for.
 _THREADS = 64
@@ -165,6 +171,26 @@ def integer(name: str, value: int, least: int, most: int | None = None) -> int:
         allowed = f"at least {least}" if most is None else f"between {least} and {most}"
         raise ValueError(f"{name} must be {allowed}, got {result}")
     return result
+
+
+def seed_number(value: SeedLike, most: int | None = 2**64 - 1, name: str = "seed") -> int:
+    """Return a seed as an integer in 0..most, or at least 0.
+
+    A Generator is advanced by one draw, so that the next call that takes it gets another seed. A SeedSequence
+    is not changed, and always gives the same. Their integers are below 2^64; `most` must be one less than a
+    power of two.
+    """
+    # Where numpy's random numbers are not imported, nobody has an object of them.
+    random: Any = sys.modules.get("numpy.random")
+    if random is not None:
+        mask = -1 if most is None else most
+        if isinstance(value, random.Generator):
+            return int(value.integers(2**64 - 1, dtype=np.uint64, endpoint=True)) & mask
+        if isinstance(value, random.SeedSequence):
+            return int(value.generate_state(1, np.uint64)[0]) & mask
+        if isinstance(value, random.RandomState | random.BitGenerator):
+            raise TypeError(f"{name} must be an integer, a Generator or a SeedSequence, got {value!r}")
+    return integer(name, cast(int, value), 0, most)
 
 
 def thread_limit(threads: int | None) -> int | None:

@@ -7,7 +7,7 @@ from typing import Any, Literal, TypeAlias, get_args
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..arrays import choice, integer, number, real_array, thread_limit
+from ..arrays import SeedLike, choice, integer, number, real_array, seed_number, thread_limit
 from ..lights import ConstantEnvironment
 from ..query.tabular import Tabular
 from ..scene.progress import BuildProgress, check_progress, watcher
@@ -133,7 +133,7 @@ def radiative_exchange(
     error: float | None = None,
     rays: int | None = None,
     sides: Literal["front", "both"] = "front",
-    seed: int = 0,
+    seed: SeedLike = 0,
     threads: int | None = None,
     progress: BuildProgress = True,
 ) -> RadiativeExchange:
@@ -210,7 +210,7 @@ def radiative_exchange(
     if wanted is not None and wanted <= 0:
         raise ValueError(f"error must be greater than 0, got {error}")
     limit = None if rays is None else integer("rays", rays, 1, 2**50)
-    integer("seed", seed, 0, 2**64 - 1)
+    seed = seed_number(seed)
     workers = thread_limit(threads)
     check_progress(progress)
     kelvin, grey, light = (

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterator
 from typing import Any, Literal, get_args, overload
 
-from ..arrays import choice, integer, number, thread_limit
+from ..arrays import SeedLike, choice, integer, number, seed_number, thread_limit
 from ..scene.progress import BuildProgress, check_progress, watcher
 from ..scene.scene import SceneLike
 from .coincident import merged
@@ -26,7 +26,7 @@ def radiosity(
     rays: int | None = ...,
     patch_size: float | None = ...,
     sides: Sides | None = ...,
-    seed: int = ...,
+    seed: SeedLike = ...,
     threads: int | None = ...,
     progress: BuildProgress = ...,
     states: Literal[False] = ...,
@@ -42,7 +42,7 @@ def radiosity(
     rays: int | None = ...,
     patch_size: float | None = ...,
     sides: Sides | None = ...,
-    seed: int = ...,
+    seed: SeedLike = ...,
     threads: int | None = ...,
     progress: BuildProgress = ...,
     *,
@@ -58,7 +58,7 @@ def radiosity(
     rays: int | None = None,
     patch_size: float | None = None,
     sides: Sides | None = None,
-    seed: int = 0,
+    seed: SeedLike = 0,
     threads: int | None = None,
     progress: BuildProgress = True,
     states: bool = False,
@@ -98,7 +98,7 @@ def radiosity(
         Which sides of faces take part: those that normals point to, with black backs, or both, as `Path` has
         them. By default both, and for "matrix", which knows fronts only, these. With both, two faces that lie
         in each other and look opposite ways are the two sides of one, each as the front of its face is.
-    seed : int
+    seed : int, Generator or SeedSequence
         Which random numbers; the same seed gives the same bits.
     threads : int, optional
         How many threads; one a core by default.
@@ -144,7 +144,7 @@ def radiosity(
     if wanted is not None and wanted <= 0:
         raise ValueError(f"error must be greater than 0, got {error}")
     limit = None if rays is None else integer("rays", rays, 1, 2**50)
-    integer("seed", seed, 0, 2**64 - 1)
+    seed = seed_number(seed)
     threads = thread_limit(threads)
     check_progress(progress)
     if not isinstance(states, bool):

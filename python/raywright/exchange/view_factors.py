@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .. import _core
-from ..arrays import choice, frozen, integer, positive, real_array, thread_limit
+from ..arrays import SeedLike, choice, frozen, integer, positive, real_array, seed_number, thread_limit
 from ..io.plots import plotted
 from ..io.value_plots import COLORS
 from ..query.tabular import Tabular
@@ -215,7 +215,7 @@ def view_factors(
     per: Per = "face",
     rays: int | None = None,
     error: float | None = None,
-    seed: int = 0,
+    seed: SeedLike = 0,
     threads: int | None = None,
     progress: BuildProgress = True,
 ) -> ViewFactors:
@@ -243,7 +243,7 @@ def view_factors(
     error : float, optional
         The standard error that no view factor between faces should exceed. More rays are sent until it is
         met, up to 2**20 for a pair.
-    seed : int
+    seed : int, Generator or SeedSequence
         Picks the random numbers, 0 to 2**64 - 1.
     threads : int, optional
         How many to use; all cores if not given. The answer does not depend on it.
@@ -296,7 +296,7 @@ def view_factors(
     choice("per", per, get_args(Per))
     start = _RAYS if rays is None else integer("rays", rays, 1, 2**20)
     aim = None if error is None else positive("error", error)
-    number = integer("seed", seed, 0, 2**64 - 1)
+    number = seed_number(seed)
     workers = thread_limit(threads)
     check_progress(progress)
     laid = laid_out(scene)

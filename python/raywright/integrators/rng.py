@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .. import _core
+from ..arrays import SeedLike, seed_number
 
 
 class Rng:
@@ -14,14 +15,14 @@ class Rng:
 
     Parameters
     ----------
-    seed : int
+    seed : int, Generator or SeedSequence
         That of the picture.
     pixel, sample : (N,) uint32
         Of which pixel each entry is a sample, and which of its samples.
     """
 
-    def __init__(self, seed: int, pixel: NDArray[np.uint32], sample: NDArray[np.uint32]) -> None:
-        self._seed = seed
+    def __init__(self, seed: SeedLike, pixel: NDArray[np.uint32], sample: NDArray[np.uint32]) -> None:
+        self._seed = seed_number(seed)
         self._pixel = pixel
         self._sample = sample
         self._dimension = 0

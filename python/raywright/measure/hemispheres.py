@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .. import _core
-from ..arrays import integer, positive
+from ..arrays import SeedLike, integer, positive, seed_number
 from ..query.hits import SurfacePoints
 from ..scene.progress import BuildProgress, check_progress, watcher
 from ..scene.scene import Scene, SceneLike
@@ -59,7 +59,7 @@ def sky_view(
     rays: int = 256,
     up: ArrayLike | None = None,
     offset: float | None = None,
-    seed: int = 0,
+    seed: SeedLike = 0,
     progress: BuildProgress | None = None,
     threads: int | None = None,
 ) -> Estimate:
@@ -87,7 +87,7 @@ def sky_view(
         within rounding leave it by the bound on its error, as what was hit does, and others start where they
         are. Rounding is 2**-40 of the largest coordinate of the face, or 2**-22 where points or vertices were
         rounded to float32.
-    seed : int
+    seed : int, Generator or SeedSequence
         Picks the random numbers, 0 to 2**64 - 1.
     progress : bool or callable, optional
         Whether to show a bar on stderr where it takes longer than two seconds, as at a terminal if not given;
@@ -130,7 +130,7 @@ def ambient_visibility(
     radius: float | None = None,
     rays: int = 256,
     offset: float | None = None,
-    seed: int = 0,
+    seed: SeedLike = 0,
     progress: BuildProgress | None = None,
     threads: int | None = None,
 ) -> Estimate:
@@ -170,13 +170,13 @@ def _open_share(
     rays: int,
     most: float,
     up: Floats | None,
-    seed: int,
+    seed: SeedLike,
     progress: BuildProgress | None,
     threads: int | None,
     what: str,
 ) -> Estimate:
     each = -(-integer("rays", rays, _BATCHES) // _BATCHES)
-    integer("seed", seed, 0, 2**64 - 1)
+    seed = seed_number(seed)
     if progress is not None:
         check_progress(progress)
     count = len(where)

@@ -7,7 +7,7 @@ from typing import Any, Literal, TypeAlias, get_args
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..arrays import choice, integer, number, positive
+from ..arrays import SeedLike, choice, number, positive, seed_number
 from ..io.value_plots import COLORS, Axis
 from ..query.hits import Hits
 from ..query.tabular import Tabular
@@ -137,7 +137,7 @@ def lidar(
     dropout: float = 0.0,
     fading_range: float | None = None,
     incidence_power: float = 0.0,
-    seed: int = 0,
+    seed: SeedLike = 0,
     progress: BuildProgress | None = None,
     threads: int | None = None,
 ) -> LidarScan:
@@ -159,7 +159,7 @@ def lidar(
         Returns are kept with a probability of exp(-(range / fading_range)^2), all if not given.
     incidence_power : float
         Returns are kept with a probability of the cosine of their incidence to this power, all at 0.
-    seed : int
+    seed : int, Generator or SeedSequence
         Picks the random numbers, 0 to 2**64 - 1.
     progress : bool or callable, optional
         As for `sky_view`.
@@ -201,7 +201,7 @@ def lidar(
         raise ValueError(f"dropout must be between 0 and 1, got {dropout}")
     fading = math.inf if fading_range is None else positive("fading_range", fading_range)
     power = _at_least_0("incidence_power", incidence_power)
-    integer("seed", seed, 0, 2**64 - 1)
+    seed = seed_number(seed)
     if progress is not None:
         check_progress(progress)
     scene = scene_of(scene)

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arrays import Triple, integer, thread_limit
+from ..arrays import SeedLike, Triple, integer, seed_number, thread_limit
 from .hits import same, sealed
 
 Floats = NDArray[np.float64]
@@ -120,13 +120,13 @@ _ARRAYS = tuple(field.name for field in fields(Photons) if field.name not in _FL
 
 
 def photon_arguments(
-    count: int, max_depth: int | None, roulette_depth: int, seed: int, threads: int | None
+    count: int, max_depth: int | None, roulette_depth: int, seed: SeedLike, threads: int | None
 ) -> tuple[int, int | None, int, int, int | None]:
     """Return the arguments of `Queries.photons`, checked."""
     return (
         integer("count", count, 1, 2**31 - 1),
         None if max_depth is None else integer("max_depth", max_depth, 1, 2**32 - 1),
         integer("roulette_depth", roulette_depth, 0, 2**32 - 1),
-        integer("seed", seed, 0, 2**64 - 1),
+        seed_number(seed),
         thread_limit(threads),
     )

@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .. import _core
 from .._core import CompiledScene
-from ..arrays import indices, last_axis, number, thread_limit
+from ..arrays import SeedLike, indices, last_axis, number, thread_limit
 from ..cameras import AnyCamera, pixel_offsets
 from .all_hits import AllHits
 from .cones import ConeCoverage, ConeTouches, cone_arguments, cone_solid_angle
@@ -504,7 +504,7 @@ class Queries(PointQueries):
         count: int,
         max_depth: int | None = None,
         roulette_depth: int = 4,
-        seed: int = 0,
+        seed: SeedLike = 0,
         threads: int | None = None,
     ) -> Photons:
         """Follow light from the lights, and note it at each surface that it comes to.
@@ -522,7 +522,7 @@ class Queries(PointQueries):
             The greatest number of surfaces that a path comes to, at least 1. No limit if not given.
         roulette_depth : int
             Surfaces before Russian roulette begins, at least 0.
-        seed : int
+        seed : int, Generator or SeedSequence
             Picks the random numbers, 0 to 2**64 - 1.
         threads : int, optional
             How many to use; all cores if not given. The answer does not depend on it.

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _core
-from ..arrays import frozen, integer, thread_limit
+from ..arrays import SeedLike, frozen, integer, seed_number, thread_limit
 from ..cameras import AnyCamera
 from ..integrators import Path
 from ..scene.scene import Scene
@@ -60,7 +60,7 @@ def aovs(
     aov: str | Iterable[str] = AOVS,
     samples: int = 16,
     *,
-    seed: int = 0,
+    seed: SeedLike = 0,
     threads: int | None = None,
 ) -> dict[str, NDArray[Any]]:
     """Return pictures of what is seen first, by their names.
@@ -83,7 +83,7 @@ def aovs(
     samples : int
         Samples per pixel, over its square, the lens and the shutter: a pixel is the mean of those that see
         something. Numbers of shapes and primitives are those of its middle.
-    seed : int
+    seed : int, Generator or SeedSequence
         Picks the random numbers.
     threads : int, optional
         How many to use; all cores if not given.
@@ -107,7 +107,7 @@ def aovs(
         raise TypeError(f"camera must be a raywright.Camera, got {type(camera).__name__}")
     names = names_of(aov)
     samples = integer("samples", samples, 1, 2**32 - 1)
-    seed = integer("seed", seed, 0, 2**64 - 1)
+    seed = seed_number(seed)
     threads = thread_limit(threads)
     found = seen(scene, camera, names, samples, seed, threads)
     if any(name in _COVER for name in names):

@@ -7,7 +7,7 @@ from contextlib import ExitStack, closing
 from pathlib import Path
 from typing import Any
 
-from ..arrays import integer, positive
+from ..arrays import SeedLike, integer, positive, seed_number
 from ..cameras import AnyCamera
 from ..io.pictures import check_writable
 from ..io.tone import DEFAULT, check_tone
@@ -28,7 +28,7 @@ def render_frames(
     out: str | os.PathLike[str] | Callable[[int, Image], object],
     count: int | None = None,
     *,
-    seed: int = 0,
+    seed: SeedLike = 0,
     fps: float = 24.0,
     exposure: float = 0.0,
     tone: str = DEFAULT,
@@ -50,7 +50,7 @@ def render_frames(
         `Image`.
     count : int, optional
         How many frames; a function needs it, and something to iterate over ends there if it does not before.
-    seed : int
+    seed : int, Generator or SeedSequence
         That of the first frame. Each of the others has that of the one before and one more, so that noise
         does not stand still.
     fps : float
@@ -82,7 +82,7 @@ def render_frames(
         When Ctrl-C is pressed. Frames that were done are kept, and a film ends with the last of them.
     """
     count = None if count is None else integer("count", count, 0)
-    seed = integer("seed", seed, 0, 2**64 - 1)
+    seed = seed_number(seed)
     fps, exposure = positive("fps", fps), check_tone(exposure, tone)
     if not isinstance(progress, bool):
         raise TypeError(f"progress must be True or False, got {progress!r}")

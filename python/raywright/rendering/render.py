@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 from numpy.typing import NDArray
 
 from .. import _core
-from ..arrays import integer, positive, thread_limit
+from ..arrays import SeedLike, integer, positive, seed_number, thread_limit
 from ..cameras import AnyCamera
 from ..debug_log import debug
 from ..integrators import AnyIntegrator, Path, ProgressivePhotonMap, check_integrator
@@ -63,7 +63,7 @@ def render(
     error: float | None = None,
     seconds: float | None = None,
     *,
-    seed: int = 0,
+    seed: SeedLike = 0,
     threads: int | None = None,
     progress: bool | Callable[[Image], object] = True,
     adaptive: bool = False,
@@ -102,10 +102,11 @@ def render(
         limit; ``image.error.trusted`` is False then.
     seconds : float, optional
         Limit on run time in seconds, to the nearest sample of all pixels.
-    seed : int
+    seed : int, Generator or SeedSequence
         Picks the random numbers, 0 to 2**64 - 1. The same seed, samples and sampler give the same picture,
         bit for bit, for any number of threads. What is chosen where it is not named goes by the limits that
-        are given.
+        are given. A `numpy.random.Generator` is advanced by one draw, so that the next picture has other
+        numbers; a `numpy.random.SeedSequence` is not changed and always stands for the same number.
     threads : int, optional
         How many to use; all cores if not given. With an executor, for each piece of its work; 1 if not given.
     progress : bool or callable
@@ -409,7 +410,7 @@ def check(
     samples: int | None,
     error: float | None,
     seconds: float | None,
-    seed: int,
+    seed: SeedLike,
     threads: int | None,
     adaptive: bool,
     clamp: float | None,
@@ -437,7 +438,7 @@ def check(
     clamp = None if clamp is None else positive("clamp", clamp)
     if samples is None and error is None and seconds is None:
         samples = _DEFAULT_SAMPLES
-    seed = integer("seed", seed, 0, 2**64 - 1)
+    seed = seed_number(seed)
     threads = thread_limit(threads)
     return Checked((samples, error, seconds), seed, threads, clamp)
 

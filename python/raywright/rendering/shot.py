@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from ..arrays import integer
+from ..arrays import SeedLike, integer, seed_number
 from ..cameras import AnyCamera
 from ..cameras.any_camera import resized
 from ..integrators import AnyIntegrator, Path
@@ -36,7 +36,7 @@ class Shot:
         Where the random numbers come from; None leaves it to `render`.
     filter : BoxFilter, GaussianFilter or another kind
         What part of the film a pixel is the mean of.
-    seed : int
+    seed : int, Generator or SeedSequence
         Picks the random numbers.
     aov : tuple of str
         What is seen first, besides the picture, as `raywright.render` takes it.
@@ -54,11 +54,16 @@ class Shot:
     samples: int | None = None
     sampler: Sampler | None = None
     filter: Filter = field(default_factory=BoxFilter)
-    seed: int = 0
+    seed: SeedLike = 0
     aov: tuple[str, ...] = ()
     background: str = "shown"
     clamp: float | None = None
     unnamed: str | None = None
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.seed, int):
+            # Every picture of a shot is made of the same random numbers.
+            object.__setattr__(self, "seed", seed_number(self.seed))
 
     def render(self, **overrides: Any) -> Image:
         """Render the picture.

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..accelerators import Accelerator, every, name_of
-from ..arrays import integer, thread_limit
+from ..arrays import SeedLike, integer, seed_number, thread_limit
 from ..scene.scene import Scene
 from .contest import Measured, measured
 from .per_build import COUNTS, RaysPerBuild, rays_per_build_of
@@ -78,7 +78,7 @@ def accelerators(
     threads: int | None = 1,
     repeats: int = 5,
     check: int | None = None,
-    seed: int = 0,
+    seed: SeedLike = 0,
 ) -> AcceleratorReport:
     """Compare accelerators on the same rays: what they cost to build and to hold, and what rays cost.
 
@@ -102,7 +102,7 @@ def accelerators(
     check : int, optional
         How many rays are held against brute force, of all sets together. If not given, as many as brute force
         answers in a second or two, and 300 at least.
-    seed : int
+    seed : int, Generator or SeedSequence
         Which diffuse rays, and which points of lamps.
 
     Returns
@@ -134,7 +134,7 @@ def accelerators(
     threads = thread_limit(threads)
     repeats = integer("repeats", repeats, 1, 10_000)
     check = None if check is None else integer("check", check, 1)
-    sets = ray_sets(scene, rays, integer("seed", seed, 0, 2**64 - 1))
+    sets = ray_sets(scene, rays, seed_number(seed))
     return _report(measured(scene, sets, chosen, threads, repeats, check), sets, threads, repeats)
 
 
@@ -145,7 +145,7 @@ def rays_per_build(
     rays: Any = None,
     threads: int | None = None,
     repeats: int = 5,
-    seed: int = 0,
+    seed: SeedLike = 0,
 ) -> RaysPerBuild:
     """Find which accelerator gives the most rays a second in all, its build counted in.
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..arrays import integer, positive, real_array
+from ..arrays import SeedLike, integer, positive, real_array, seed_number
 from ..cameras import AnyCamera
 from ..rendering.image import Image
 from ..rendering.render import render
@@ -85,7 +85,7 @@ def convergence(
     contenders: Mapping[str, Any] | None = None,
     seconds: float = 4.0,
     reference: Image | ArrayLike | float | None = None,
-    seeds: int | Sequence[int] = 3,
+    seeds: int | Sequence[SeedLike] = 3,
     threads: int | None = None,
 ) -> ConvergenceReport:
     """Compare ways to render a scene: relMSE over run time, and how fast it falls.
@@ -107,7 +107,7 @@ def convergence(
     reference : Image, (H, W, 3) array, or float, optional
         The right picture, or seconds to make one in, in the way of the first contender. If not given, errors
         are the renders' own estimates.
-    seeds : int or sequence of int
+    seeds : int or sequence of int, Generator or SeedSequence
         How many, or which.
     threads : int, optional
         How many each render uses, unless a contender says so; all cores if not given.
@@ -171,11 +171,11 @@ def _contenders(contenders: Mapping[str, Any] | None, threads: int | None) -> di
     return ways
 
 
-def _seeds(seeds: int | Sequence[int]) -> list[int]:
+def _seeds(seeds: int | Sequence[SeedLike]) -> list[int]:
     if isinstance(seeds, Sequence) and not isinstance(seeds, str):
         if not seeds:
             raise ValueError("seeds are empty: there must be one at least")
-        return [integer("seeds", seed, 0, 2**64 - 1) for seed in seeds]
+        return [seed_number(seed, name="seeds") for seed in seeds]
     return list(range(integer("seeds", seeds, 1, 10_000)))
 
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..arrays import integer, last_axis
+from ..arrays import SeedLike, last_axis, seed_number
 from ..cameras import AnyCamera, Camera
 from ..lights import DirectionalLight
 from ..query.rays import ray_arguments
@@ -78,7 +78,7 @@ class Rays:
         return replace(self, origins=origins, directions=directions)
 
 
-def typical_rays(scene: Scene, camera: AnyCamera | None = None, seed: int = 0) -> dict[str, Rays]:
+def typical_rays(scene: Scene, camera: AnyCamera | None = None, seed: SeedLike = 0) -> dict[str, Rays]:
     """Return the rays that a renderer asks for: primary, diffuse and shadow.
 
     Parameters
@@ -88,7 +88,7 @@ def typical_rays(scene: Scene, camera: AnyCamera | None = None, seed: int = 0) -
     camera : Camera or another kind, optional
         Whose the primary rays are, one through the centre of each pixel. If not given, one of 256 by 256
         pixels that sees all of the scene from outside.
-    seed : int
+    seed : int, Generator or SeedSequence
         Which directions the diffuse rays have.
 
     Returns
@@ -104,7 +104,7 @@ def typical_rays(scene: Scene, camera: AnyCamera | None = None, seed: int = 0) -
     ValueError
         If the scene is empty, or no primary ray hits anything.
     """
-    seed = integer("seed", seed, 0, 2**64 - 1)
+    seed = seed_number(seed)
     camera = camera or outside(scene)
     eye, towards = camera.rays()
     hits = scene.intersect(eye, towards)

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._core import KernelContest
-from ..arrays import integer
+from ..arrays import SeedLike, integer, seed_number
 from .exact import ExactHits, exact_hits
 from .pairs import FAMILIES, Pairs, family
 from .table import Chart, Column, Table
@@ -91,7 +91,7 @@ class KernelReport(Table[KernelRow]):
         return Table(_TITLE, tuple(columns), tuple(rows), notes, Chart("ns", "max_ulps", "routine"))
 
 
-def kernels(pairs: int = 10_000, seed: int = 0, repeat: int = 15) -> KernelReport:
+def kernels(pairs: int = 10_000, seed: SeedLike = 0, repeat: int = 15) -> KernelReport:
     """Try every ray-triangle routine on pairs of a ray and a triangle, and tell its error and its time.
 
     Families of pairs: ordinary; slivers of aspect 1e3 to 1e8; grazing rays at a sine of 1e-7 to 1e-3; origins
@@ -110,7 +110,7 @@ def kernels(pairs: int = 10_000, seed: int = 0, repeat: int = 15) -> KernelRepor
     ----------
     pairs : int
         Pairs in each family, 1 to 100,000.
-    seed : int
+    seed : int, Generator or SeedSequence
         Which pairs: the same seed, the same pairs and errors.
     repeat : int
         How often each routine is timed, 1 to 10,000; the median is told. Routines take turns, so that each
@@ -130,7 +130,7 @@ def kernels(pairs: int = 10_000, seed: int = 0, repeat: int = 15) -> KernelRepor
         If it is not an integer.
     """
     pairs = integer("pairs", pairs, 1, 100_000)
-    seed = integer("seed", seed, 0, 2**64 - 1)
+    seed = seed_number(seed)
     repeat = integer("repeat", repeat, 1, 10_000)
     rows: list[KernelRow] = []
     for name in FAMILIES:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..arrays import integer
+from ..arrays import SeedLike, integer, seed_number
 from ..materials import Diffuse
 from ..shapes.mesh import Mesh
 from .boxes import boxes
@@ -11,7 +11,7 @@ _BLOCK, _STREET = 60.0, 18.0
 _FLOOR = 3.5
 
 
-def city(blocks: int = 12, seed: int = 0) -> list[Mesh]:
+def city(blocks: int = 12, seed: SeedLike = 0) -> list[Mesh]:
     """Return a city: a ground, and on it blocks of houses that are higher towards the centre.
 
     Blocks are squares of 60 m with streets of 18 m between, each of 3 by 3 plots with a house or two set one
@@ -22,7 +22,7 @@ def city(blocks: int = 12, seed: int = 0) -> list[Mesh]:
     ----------
     blocks : int
         Along each side of the city.
-    seed : int
+    seed : int, Generator or SeedSequence
         Which houses.
 
     Returns
@@ -38,7 +38,7 @@ def city(blocks: int = 12, seed: int = 0) -> list[Mesh]:
         If a number is of the wrong type.
     """
     blocks = integer("blocks", blocks, 1)
-    rng = np.random.default_rng(integer("seed", seed, 0))
+    rng = np.random.default_rng(seed_number(seed, None))
     pitch, plots = _BLOCK + _STREET, 3 * blocks
     edge = pitch * blocks / 2
     # Middles of plots along a side: three in a block, then a street.

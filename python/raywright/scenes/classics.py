@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..arrays import integer
+from ..arrays import SeedLike, integer, seed_number
 from ..cameras import Camera
 from ..scene.instance import Shapes
 from ..scene.scene import Scene
@@ -31,7 +31,7 @@ _FOV = 50.0
 
 
 def classics(
-    triangles: int = 50_000, seed: int = 0, width: int = 256, height: int = 256
+    triangles: int = 50_000, seed: SeedLike = 0, width: int = 256, height: int = 256
 ) -> dict[str, tuple[Scene, Camera]]:
     """Return the scenes on which textbooks compare accelerators, and a camera for each.
 
@@ -53,7 +53,7 @@ def classics(
     ----------
     triangles : int
         About how many in each, 1000 at least; in the forest, of the trees that are copied.
-    seed : int
+    seed : int, Generator or SeedSequence
         Which scenes.
     width, height : int
         Size of the pictures in pixels.
@@ -65,7 +65,7 @@ def classics(
     TypeError
         If a number is of the wrong type.
     """
-    count = integer("triangles", triangles, 1000)
+    count, seed = integer("triangles", triangles, 1000), seed_number(seed, None)
     # Shares as they are by default: two thirds of a stadium are its teapot, half of a terrain its grass.
     divisions = max(round((count * 2 / 3 / 64) ** 0.5), 1)
     tiers = max(round((count / 3 / 384) ** 0.5 * 2), 1)

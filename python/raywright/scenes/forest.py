@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arrays import integer, positive
+from ..arrays import SeedLike, integer, positive, seed_number
 from ..materials import Diffuse
 from ..scene.instance import Instance
 from ..shapes.mesh import Mesh
@@ -59,7 +59,7 @@ def forest(
     unique: int = 10,
     triangles: int = 10_000,
     spacing: float = 6.0,
-    seed: int = 0,
+    seed: SeedLike = 0,
 ) -> Forest:
     """Return a forest of a few unique trees, each seen many times: by default 10⁹ triangles of 10⁵ unique.
 
@@ -77,7 +77,7 @@ def forest(
         Of each unique tree, exactly; more than 400.
     spacing : float
         Side of the squares, in metres.
-    seed : int
+    seed : int, Generator or SeedSequence
         Which trees, and where.
 
     Raises
@@ -90,7 +90,7 @@ def forest(
     count, unique = integer("count", count, 1), integer("unique", unique, 1)
     triangles = integer("triangles", triangles, 2 * _SIDES * _branches() + 1)
     spacing = positive("spacing", spacing)
-    rng = np.random.default_rng(integer("seed", seed, 0))
+    rng = np.random.default_rng(seed_number(seed, None))
     trees = [_tree(rng, triangles) for _ in range(unique)]
     side = int(np.ceil(count**0.5))
     cell = np.stack(np.divmod(np.arange(count), side), axis=1)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..arrays import integer
+from ..arrays import SeedLike, integer, seed_number
 from ..cameras import Camera
 from ..materials import Diffuse
 from ..scene.scene import Scene
@@ -14,7 +14,7 @@ _HALF, _POWER = 0.01, 400.0
 
 
 def many_lights(
-    lights: int = 2000, seed: int = 0, width: int = 512, height: int = 512
+    lights: int = 2000, seed: SeedLike = 0, width: int = 512, height: int = 512
 ) -> tuple[Scene, Camera]:
     """Return the room of `room` lit by many small lamps of all colours, and a camera.
 
@@ -25,7 +25,7 @@ def many_lights(
     ----------
     lights : int
         How many lamps, at least 1.
-    seed : int
+    seed : int, Generator or SeedSequence
         Where they are.
     width, height : int
         Size of the picture in pixels.
@@ -36,9 +36,9 @@ def many_lights(
         Shapes: those of the room, then the lamps, each a square.
     camera : Camera
     """
-    count = integer("lights", lights, 1)
+    count, seed = integer("lights", lights, 1), seed_number(seed, None)
     shell = room(20_000, seed)
-    rng = np.random.default_rng(integer("seed", seed, 0))
+    rng = np.random.default_rng(seed)
     places = rng.uniform(0.1 * SIZE, 0.9 * SIZE, (count, 3))
     colours = rng.uniform(0.2, 1.0, (count, 3)) * (_POWER / count / (4 * _HALF**2 * np.pi))
     lamps = []

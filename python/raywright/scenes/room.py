@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..arrays import integer
+from ..arrays import SeedLike, integer, seed_number
 from ..shapes.mesh import Mesh
 from .boxes import Array, boxes
 
@@ -13,7 +13,7 @@ EYE, TARGET, LAMP = np.array([[0.05, 0.55, 0.93], [0.7, 0.4, 0.3], [0.55, 0.9, 0
 """Where a camera stands well, where it looks, and where a lamp hangs."""
 
 
-def room(triangles: int = 70_000, seed: int = 0) -> list[Mesh]:
+def room(triangles: int = 70_000, seed: SeedLike = 0) -> list[Mesh]:
     """Return a closed room, to be seen from inside, all of long thin boxes: boards, slats and loose beams.
 
     It is 8 m long, 3 m high (y) and 5 m deep, with a corner in the origin. Each of its six sides is of boards
@@ -26,7 +26,7 @@ def room(triangles: int = 70_000, seed: int = 0) -> list[Mesh]:
     ----------
     triangles : int
         About how many: 12 a box, and 8 boxes at least.
-    seed : int
+    seed : int, Generator or SeedSequence
         Where the beams are.
 
     Returns
@@ -42,7 +42,7 @@ def room(triangles: int = 70_000, seed: int = 0) -> list[Mesh]:
         If a number is of the wrong type.
     """
     count = max(integer("triangles", triangles, 1) // 12, 8)
-    rng = np.random.default_rng(integer("seed", seed, 0))
+    rng = np.random.default_rng(seed_number(seed, None))
     panels = [_boards(axis, end, count // 8) for axis in range(3) for end in (0.0, SIZE[axis])]
     beams = count - 6 * (count // 8)
     scale = min((1500 / beams) ** 0.5, 3)

@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from ..arrays import integer, positive
+from ..arrays import SeedLike, integer, positive, seed_number
 from ..shapes.mesh import Mesh
 
 
-def soup(triangles: int = 10_000, size: float | None = None, seed: int = 0) -> list[Mesh]:
+def soup(triangles: int = 10_000, size: float | None = None, seed: SeedLike = 0) -> list[Mesh]:
     """Return triangles anywhere in the unit cube, at any angle: nothing for an accelerator to go by.
 
     Parameters
@@ -16,7 +16,7 @@ def soup(triangles: int = 10_000, size: float | None = None, seed: int = 0) -> l
     size : float, optional
         How far corners are from the middle of their triangle, at most. If not given, the less the more there
         are, so that a ray sees about a third of the cube's edge far.
-    seed : int
+    seed : int, Generator or SeedSequence
         Which triangles.
 
     Returns
@@ -35,7 +35,7 @@ def soup(triangles: int = 10_000, size: float | None = None, seed: int = 0) -> l
     # A ray meets as many in a unit of length as there is area across it in a unit of volume: of a triangle
     # half its area, which is 0.26 of the squared size on average.
     reach = (23 / count) ** 0.5 if size is None else positive("size", size)
-    rng = np.random.default_rng(integer("seed", seed, 0))
+    rng = np.random.default_rng(seed_number(seed, None))
     spokes = rng.normal(size=(count, 3, 3))
     spokes *= rng.uniform(0.25, 1, (count, 3, 1)) * reach / np.linalg.norm(spokes, axis=2, keepdims=True)
     vertices = rng.random((count, 1, 3)) + spokes

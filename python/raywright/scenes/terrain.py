@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..arrays import integer
+from ..arrays import SeedLike, integer, seed_number
 from ..materials import Diffuse
 from ..shapes.mesh import Mesh
 from .boxes import Array
@@ -11,7 +11,7 @@ _WIDTH = 100.0
 _HEIGHT = 6.0
 
 
-def terrain(side: int = 160, blades: int = 50_000, seed: int = 0) -> list[Mesh]:
+def terrain(side: int = 160, blades: int = 50_000, seed: SeedLike = 0) -> list[Mesh]:
     """Return hills, and blades of grass spread evenly over them: what grids are good at.
 
     The ground is a square of 100 m around the y axis, which is up. Its heights are random waves whose power
@@ -25,7 +25,7 @@ def terrain(side: int = 160, blades: int = 50_000, seed: int = 0) -> list[Mesh]:
         Squares along each side of the ground, two triangles each.
     blades : int
         How many blades of grass; 0 leaves the ground bare.
-    seed : int
+    seed : int, Generator or SeedSequence
         Which hills and which grass.
 
     Returns
@@ -41,7 +41,7 @@ def terrain(side: int = 160, blades: int = 50_000, seed: int = 0) -> list[Mesh]:
         If a number is of the wrong type.
     """
     side, blades = integer("side", side, 1), integer("blades", blades, 0)
-    rng = np.random.default_rng(integer("seed", seed, 0))
+    rng = np.random.default_rng(seed_number(seed, None))
     heights = _heights(rng, side + 1)
     line = _WIDTH * (np.arange(side + 1) / side - 0.5)
     x, z = np.meshgrid(line, line, indexing="ij")

@@ -5,13 +5,13 @@ from typing import Any
 
 from numpy.typing import ArrayLike
 
-from ..arrays import Triple, integer, number
+from ..arrays import SeedLike, Triple, integer, number, seed_number
 from .noise import SEEDS
 from .texture import Texture, Value, either, scalar, value
 from .transform import ObjectTransform, Transform, placed
 
 
-def octaves_of(octaves: int, lacunarity: float, gain: float, seed: int) -> dict[str, Any]:
+def octaves_of(octaves: int, lacunarity: float, gain: float, seed: SeedLike) -> dict[str, Any]:
     """Return what describes a sum of noises, checked."""
     finer = number("lacunarity", lacunarity)
     if not 1 < finer <= 16:
@@ -22,7 +22,7 @@ def octaves_of(octaves: int, lacunarity: float, gain: float, seed: int) -> dict[
         "octaves": integer("octaves", octaves, 1, 32),
         "lacunarity": finer,
         "gain": scalar("gain", gain, most=1.0),
-        "seed": integer("seed", seed, 0, SEEDS),
+        "seed": seed_number(seed, SEEDS),
     }
 
 
@@ -45,7 +45,7 @@ class FBm(Texture):
         How many times finer each is than the one before, above 1 and at most 16.
     gain : float
         How many times as strong, 0 to 1.
-    seed : int
+    seed : int, Generator or SeedSequence
         Which of all noises, 0 to 2^32 - 1.
 
     Raises
@@ -72,7 +72,7 @@ class FBm(Texture):
         octaves: int = 8,
         lacunarity: float = 2.0,
         gain: float = 0.5,
-        seed: int = 0,
+        seed: SeedLike = 0,
     ) -> None:
         self._set(
             a=value("a", a, -float("inf")),

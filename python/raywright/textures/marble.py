@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from numpy.typing import ArrayLike
 
-from ..arrays import Triple, number
+from ..arrays import SeedLike, Triple, number
 from .fbm import octaves_of
 from .texture import Texture, Value, either, value
 from .transform import ObjectTransform, Transform, placed
@@ -54,7 +54,7 @@ class Marble(Texture):
         octaves: int = 8,
         lacunarity: float = 2.0,
         gain: float = 0.5,
-        seed: int = 0,
+        seed: SeedLike = 0,
     ) -> None:
         self._set(
             a=value("a", a, -float("inf")),

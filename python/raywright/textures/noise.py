@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from numpy.typing import ArrayLike
 
-from ..arrays import Triple, integer
+from ..arrays import SeedLike, Triple, seed_number
 from .texture import Texture, Value, either, value
 from .transform import ObjectTransform, Transform, placed
 
@@ -24,7 +24,7 @@ class Noise(Texture):
     transform : ObjectTransform, UvTransform or float, optional
         Where they lie: in the space of the shape, or in texture coordinates. A number is how many there are
         to a unit of the shape's space.
-    seed : int
+    seed : int, Generator or SeedSequence
         Which of all noises, 0 to 2^32 - 1.
 
     Raises
@@ -45,13 +45,13 @@ class Noise(Texture):
         a: ArrayLike | Texture = 0.0,
         b: ArrayLike | Texture = 1.0,
         transform: Transform | float | None = None,
-        seed: int = 0,
+        seed: SeedLike = 0,
     ) -> None:
         self._set(
             a=value("a", a, -float("inf")),
             b=value("b", b, -float("inf")),
             transform=placed(transform, ObjectTransform),
-            seed=integer("seed", seed, 0, SEEDS),
+            seed=seed_number(seed, SEEDS),
         )
 
     @property

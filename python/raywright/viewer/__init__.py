@@ -4,7 +4,7 @@ import atexit
 import threading
 from typing import TYPE_CHECKING, Any
 
-from ..arrays import integer
+from ..arrays import SeedLike, integer
 from ..cameras import AnyCamera
 from ..integrators import AnyIntegrator, Path, check_integrator
 from ..io.tone import DEFAULT, check_tone
@@ -154,7 +154,7 @@ def view(
     error: float | None = None,
     seconds: float | None = None,
     *,
-    seed: int = 0,
+    seed: SeedLike = 0,
     threads: int | None = None,
     adaptive: bool = False,
     clamp: float | None = None,
@@ -220,12 +220,14 @@ def view(
         camera = framed(scene.shapes)
         if not shines(scene):
             scene = lit(scene.shapes, camera)
-    check(scene, camera, integrator, samples, error, seconds, seed, threads, adaptive, clamp, sampler, filter)
+    checked = check(
+        scene, camera, integrator, samples, error, seconds, seed, threads, adaptive, clamp, sampler, filter
+    )
     how: dict[str, Any] = {
         "samples": samples,
         "error": error,
         "seconds": seconds,
-        "seed": seed,
+        "seed": checked.seed,
         "threads": threads,
         "adaptive": adaptive,
         "clamp": clamp,
