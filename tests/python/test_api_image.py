@@ -39,6 +39,35 @@ def test_arrays_are_read_only(picture):
         assert not array.flags.writeable
 
 
+def test_an_image_is_an_array_that_can_be_written_to(picture):
+    array = np.asarray(picture)
+    assert array.dtype == np.float32
+    assert np.array_equal(array, picture.rgb)
+    # As torch wants it: torch.from_numpy warns of what is read-only.
+    assert array.flags.writeable
+    assert array.flags.c_contiguous
+    array[:] = -1
+    assert picture.rgb.min() == 0
+    wide = np.asarray(picture, np.float64)
+    assert wide.dtype == np.float64
+    assert np.array_equal(wide, picture.rgb)
+    assert np.array_equal(np.array(picture), picture.rgb)
+    assert np.sum(picture) == picture.rgb.sum()
+    assert rw.ImageTexture(picture) == rw.ImageTexture(picture.rgb)
+
+
+def test_an_image_is_not_copied_if_that_is_forbidden(picture):
+    assert picture.__array__(copy=False) is picture.rgb
+    assert picture.__array__(np.float32, copy=False) is picture.rgb
+    assert picture.__array__(np.dtype("=f4"), copy=False) is picture.rgb
+    with pytest.raises(ValueError, match=r"copy must not be False for dtype float64: rgb is float32"):
+        picture.__array__(np.float64, copy=False)
+    assert not np.shares_memory(picture.__array__(copy=True), picture.rgb)
+    if np.lib.NumpyVersion(np.__version__) >= "2.0.0":
+        assert np.shares_memory(np.asarray(picture, copy=False), picture.rgb)
+        assert not np.shares_memory(np.asarray(picture, copy=True), picture.rgb)
+
+
 def test_pickle_and_equality(picture):
     assert pickle.loads(pickle.dumps(picture)) == picture
     parts = {name: getattr(picture, name) for name in picture.__dataclass_fields__}

@@ -45,6 +45,22 @@ def test_two_plates() -> None:
     assert found.of(0) == found.power[0]
 
 
+@pytest.mark.parametrize("method", ["matrix", "stochastic"])
+def test_arrays_belong_to_the_caller(method: str) -> None:
+    kelvin, grey = np.full(2, 300.0), np.full(2, 0.5)
+    found = exchanged(rw.Scene(square(0.5, True)), kelvin, grey, method=method, rays=2**8)
+    back = pickle.loads(pickle.dumps(found))
+    assert back == found
+    # torch warns of what cannot be written to; numbers of shapes and faces alone are read-only.
+    arrays = {name: value for name, value in vars(found).items() if isinstance(value, np.ndarray)}
+    assert [name for name, array in arrays.items() if not array.flags.writeable] == ["patches"]
+    for name, array in arrays.items():
+        if name != "patches":
+            array[:] = -1.0
+    assert (kelvin.min(), grey.min()) == (300.0, 0.5)
+    assert back.areas.min() > 0
+
+
 def test_what_shapes_shine_themselves_is_light_too() -> None:
     found = exchanged(room(), 0.0, 0.25, method="stochastic", rays=2**12)
     # All that is emitted, 1 W/m², is absorbed in the end.

@@ -36,7 +36,7 @@ _SMALL = 2048
 
 @dataclass(frozen=True, eq=False, repr=False)
 class RadiativeExchange(Tabular):
-    """The heat that surfaces exchange by radiation; all arrays are read-only. Made by `radiative_exchange`.
+    """The heat that surfaces exchange by radiation. Made by `radiative_exchange`; `patches` is read-only.
 
     There is a row a face of the scene, or a row a side: all fronts, and after them all backs.
 
@@ -77,16 +77,6 @@ class RadiativeExchange(Tabular):
     emissivity: Floats
     escaped: float
     dropped: int
-
-    def __post_init__(self) -> None:
-        for field in fields(self):
-            value = getattr(self, field.name)
-            if isinstance(value, np.ndarray):
-                value.setflags(write=False)
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        vars(self).update(state)
-        self.__post_init__()
 
     def of(self, shape: int) -> float:
         """Return the power that all faces of a shape lose together, W.
@@ -252,7 +242,7 @@ def radiative_exchange(
         radiosity=leaves.copy(),
         irradiance=arrives.copy(),
         absorbed_light=absorbed,
-        areas=heat.areas,
+        areas=heat.areas.copy(),
         patches=heat.patches,
         temperature=kelvin,
         emissivity=grey,

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .. import _core
-from ..arrays import SeedLike, choice, frozen, integer, positive, real_array, seed_number, thread_limit
+from ..arrays import SeedLike, choice, integer, positive, real_array, seed_number, thread_limit
 from ..io.plots import plotted
 from ..io.value_plots import COLORS
 from ..query.tabular import Tabular
@@ -86,12 +86,12 @@ class ViewFactors(Tabular):
         rows, columns, values = self._variance
         error = np.zeros(self.matrix.shape)
         error[rows, columns] = np.sqrt(values)
-        return frozen(error)
+        return error
 
     @cached_property
     def rest(self) -> NDArray[np.float64]:
         """What comes to no front, (N,): 1 less the sum of each row."""
-        return frozen(1.0 - np.asarray(self.matrix.sum(axis=1)))
+        return 1.0 - np.asarray(self.matrix.sum(axis=1))
 
     def plot(self, ax: Any = None, name: str = "matrix", cmap: Any = COLORS) -> Any:
         """Draw the matrix with matplotlib, a pixel an entry, or a block of entries where there are many.
@@ -373,9 +373,7 @@ def _dense(core: _core.CompiledScene, covered: Covered, rays: tuple[int, int], *
         values = squares[rows, columns]
     dropped = int(np.count_nonzero(areas == 0))
     variance = rows, columns, values
-    return ViewFactors(
-        frozen(matrix), frozen(areas), "face", *counts, sent, dropped, variance, frozen(closed)
-    )
+    return ViewFactors(matrix, areas, "face", *counts, sent, dropped, variance, closed)
 
 
 def _by_rows(core: _core.CompiledScene, covered: Covered, rays: int, *how: Any) -> ViewFactors:
@@ -397,8 +395,8 @@ def _by_rows(core: _core.CompiledScene, covered: Covered, rays: int, *how: Any) 
         variance = sparse((shares**2, (rows, columns)), shape=shape) @ variance
     count = (matrix.nnz + len(areas)) // 2
     dropped = int(np.count_nonzero(areas == 0))
-    closed = frozen(np.zeros(len(areas), np.bool_))
-    return ViewFactors(matrix, frozen(areas), "face", 0, 0, count, sent, dropped, variance, closed)
+    closed = np.zeros(len(areas), np.bool_)
+    return ViewFactors(matrix, areas, "face", 0, 0, count, sent, dropped, variance, closed)
 
 
 def _sparse() -> Any:
@@ -413,7 +411,7 @@ def _of_shapes(faces: ViewFactors, covered: Covered, first: NDArray[np.int64]) -
     """Add up the faces of each shape, weighted by area."""
     count = len(first) - 1
     of = np.repeat(np.arange(count), np.diff(first))
-    areas = np.bincount(of, faces.areas, count)
+    areas = np.bincount(of, faces.areas, count).astype(np.float64, copy=False)
     # A shape all of whose faces coincide with others has their row, by their areas.
     weights = faces.areas.copy()
     if len(covered):
@@ -444,4 +442,4 @@ def _of_shapes(faces: ViewFactors, covered: Covered, first: NDArray[np.int64]) -
     closed = np.ones(count, np.bool_)
     np.logical_and.at(closed, of[faces.areas > 0], faces._closed[faces.areas > 0])
     variance = *where, summed[where]
-    return ViewFactors(frozen(matrix), frozen(areas), "shape", *counts, variance, frozen(closed))
+    return ViewFactors(matrix, areas, "shape", *counts, variance, closed)

@@ -8,7 +8,7 @@ from os import PathLike
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import DTypeLike, NDArray
 
 from .. import _core
 from ..arrays import frozen, number, thread_limit
@@ -72,7 +72,9 @@ class ErrorEstimate:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Image:
-    """A picture that `render` made. Arrays are read-only; row 0 is the top.
+    """A picture that `render` made. Row 0 is the top.
+
+    Arrays are read-only. ``np.asarray(image)`` is a copy of `rgb` that can be written to.
 
     Attributes
     ----------
@@ -147,6 +149,32 @@ class Image:
         for name in ("pooled_error", "degrees", "alpha", "bias", "bias_error"):
             if getattr(self, name) is not None:
                 object.__setattr__(self, name, frozen(getattr(self, name)))
+
+    def __array__(self, dtype: DTypeLike | None = None, copy: bool | None = None) -> NDArray[Any]:
+        """Return `rgb`, for ``np.asarray(image)``.
+
+        Parameters
+        ----------
+        dtype : dtype, optional
+            That of `rgb` if not given, float32.
+        copy : bool, optional
+            Whether the array is a new one, which can be written to, so that torch wraps it without a warning.
+            If False it is `rgb` itself, which cannot.
+
+        Returns
+        -------
+        (H, W, 3) array
+
+        Raises
+        ------
+        ValueError
+            If `copy` is False and the dtype is another one.
+        """
+        if copy is not False:
+            return np.array(self.rgb, dtype)
+        if dtype is not None and np.dtype(dtype) != self.rgb.dtype:
+            raise ValueError(f"copy must not be False for dtype {np.dtype(dtype)}: rgb is {self.rgb.dtype}")
+        return self.rgb
 
     def interval(self, level: float = 0.95) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
         """Return between what and what each pixel lies, in that share of cases.
