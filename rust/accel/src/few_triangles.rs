@@ -25,12 +25,25 @@ struct Patch {
     /// The plane: `slopes` · (coordinates along the first two axes) + coordinate along the third = `height`.
     slopes: [f32; 2],
     height: f32,
-    /// Its edges, as lines with the patch on their negative side. A triangle has three.
+    outline: Outline,
+    /// Its edges, as lines with the patch on their negative side. Of a parallelogram, the first two pass through its
+    /// center.
     edges: [Line; 4],
-    /// The diagonal of a quadrilateral, with the first triangle on its negative side.
+    /// Distances from the center of a parallelogram to its edges.
+    reach: [f32; 2],
+    /// The diagonal of two triangles, with the first on its negative side.
     diagonal: Line,
-    /// The triangles.
+    /// The triangles, and their primitives; of one triangle, twice the same.
     halves: [Option<Half>; 2],
+    primitives: [u32; 2],
+}
+
+/// The shape of a patch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Outline {
+    Triangle,
+    Parallelogram,
+    Quadrilateral,
 }
 
 /// One of the triangles of a patch.
@@ -44,8 +57,6 @@ struct Half {
 #[derive(Clone, Debug)]
 pub struct FewTriangles {
     patches: Vec<Patch>,
-    /// The primitives of each patch; twice the same for a single triangle.
-    halves: Vec<[u32; 2]>,
     /// The patch of each primitive.
     patch_of: Vec<u32>,
     region: Region,
@@ -55,26 +66,26 @@ pub struct FewTriangles {
 struct Rays {
     origin: [[f32; LANES]; 3],
     direction: [[f32; LANES]; 3],
-    t_max: [f32; LANES],
-    /// The largest coordinate of the scene plus that of the origin.
-    size: [f32; LANES],
+    /// Inverse directions, at most [`STEEPEST`].
+    inverse: [[f32; LANES]; 3],
+    /// The error bound of `FLAT` patches by axis, and the factor of 1 + 1/|n·d| in all bounds ([`test`]).
+    error: [[f32; LANES]; 3],
+    unit: [f32; LANES],
     misses: [[u32; LANES]; 2],
 }
 
 /// The closest hits of sixteen rays.
 struct Best {
-    /// `t` is between `low` and `high`.
-    low: [f32; LANES],
-    high: [f32; LANES],
-    /// True if the second triangle of the patch is hit, as a mask of all bits or none.
-    is_second: [u32; LANES],
+    /// Between `near` and `far` lies `t`.
+    near: [f32; LANES],
+    far: [f32; LANES],
     patch: [u32; LANES],
     /// Bit masks of the patches that were undecided.
     open: [[u32; LANES]; 2],
 }
 
-/// The greatest finite `t`; hits are always nearer.
-const MOST_T: f32 = 1e30;
+/// The greatest inverse of a slope. Its products with sizes of scenes, up to 4e12, stay finite.
+const STEEPEST: f32 = 1e24;
 
 /// Marks a lane without a hit.
 const NONE: u32 = u32::MAX;
@@ -85,22 +96,35 @@ fn fused<const FUSED: bool>(a: f32, b: f32, c: f32) -> f32 {
     if FUSED { a.mul_add(b, c) } else { a * b + c }
 }
 
+/// One over the size of a slope.
+#[inline(always)]
+fn steepness(slope: f32) -> f32 {
+    lesser(1.0 / slope.abs(), STEEPEST)
+}
+
+/// Return all bits if the sign bit is set. Signs combine in whole registers; masks of comparisons are narrowed first.
+#[inline(always)]
+fn signs(bits: u32) -> u32 {
+    (bits.cast_signed() >> 31).cast_unsigned()
+}
+
 /// The signed distance of a point from a line.
 #[inline(always)]
 fn beyond<const FUSED: bool>(([x, y], offset): Line, p: [f32; 2]) -> f32 {
     fused::<FUSED>(x, p[0], fused::<FUSED>(y, p[1], -offset))
 }
 
-/// Test the patch of the given index. If `ANY` hit suffices, it is recorded as patch 0.
+/// Tests the patch of number `index`. With `ANY`, every hit is noted as patch 0. A `FLAT` patch is normal to an axis.
 ///
-/// With ε = 2⁻²⁴ and S the sum of the largest coordinates of scene and origin, the numerator of `t` errs by at most
-/// 15εS: from sums of numbers up to S, and the roundings of the plane and the origin. The denominator errs by 7ε. So
-/// `t` errs by (15εS + 8ε|t|)/|n·d| to first order, for a normal `n` of largest coordinate 1. The position errs by that
-/// and 2ε(S + |t|), and its distances across edges by 6ε(S + |t|) more. The far corner of a quadrilateral may lie off
-/// its plane by 2εS ([`outline`]), which moves it and its edges by at most twice that. 64ε(S + |t|)/|n·d| covers the
-/// sum if |n·d|, which is at most √3, is at least 64ε. Below that nothing is certain.
+/// With ε = 2⁻²⁴, let S be the sum of the largest coordinates of scene and origin, and let t' be the exact distance of
+/// a hit: t' ≤ √3·S, as directions have length 1. The numerator of `t` errs by at most 15εS: sums of numbers up to S,
+/// and the roundings of the plane and the origin. The denominator errs by at most 7ε, for a normal whose largest
+/// coordinate is 1. So |t − t'| ≤ (15 + 7√3)εS/|n·d| + εt', with the computed n·d. The position errs by that and
+/// 2ε(S + t'), and its distances across edges by 6ε(S + t') more. The far corner of a quadrilateral may lie off its
+/// plane by 2εS ([`outline`]), which moves it and its edges by no more than twice that. 64εS(1 + 1/|n·d|) is more than
+/// the sum.
 #[inline(always)]
-fn test<const FUSED: bool, const TRIANGLE: bool, const ANY: bool>(
+fn test<const FUSED: bool, const OUTLINE: usize, const FLAT: bool, const ANY: bool>(
     patch: &Patch,
     index: u32,
     rays: &Rays,
@@ -109,45 +133,65 @@ fn test<const FUSED: bool, const TRIANGLE: bool, const ANY: bool>(
     let bit = 1 << (index & 31);
     let word = usize::from(index >= 32);
     let [x, y, z] = patch.axes;
+    let edges = &patch.edges;
+    let [ox, oy, oz] = [&rays.origin[x], &rays.origin[y], &rays.origin[z]];
+    let [dx, dy, dz] = [&rays.direction[x], &rays.direction[y], &rays.direction[z]];
+    let (mut t, mut error) = ([0.0; LANES], [0.0; LANES]);
+    if FLAT {
+        for i in 0..LANES {
+            t[i] = -(oz[i] - patch.height) * rays.inverse[z][i];
+            error[i] = rays.error[z][i];
+        }
+    } else {
+        for i in 0..LANES {
+            let above = fused::<FUSED>(patch.slopes[1], oy[i], oz[i] - patch.height);
+            let above = fused::<FUSED>(patch.slopes[0], ox[i], above);
+            let slope = fused::<FUSED>(patch.slopes[1], dy[i], dz[i]);
+            let slope = fused::<FUSED>(patch.slopes[0], dx[i], slope);
+            let steep = steepness(slope);
+            t[i] = -above * steep.copysign(slope);
+            error[i] = fused::<FUSED>(rays.unit[i], steep, rays.unit[i]);
+        }
+    }
+    if ANY {
+        // The walls of a room separate none of its points: most planes lie beyond all sixteen rays.
+        let mut is_near = [0; LANES];
+        for i in 0..LANES {
+            is_near[i] = !signs((t[i] + error[i]).to_bits() | (best.far[i] - (t[i] - error[i])).to_bits());
+        }
+        if is_near.iter().fold(0, |all, lane| all | lane) == 0 {
+            return;
+        }
+    }
     for i in 0..LANES {
-        let o = [rays.origin[x][i], rays.origin[y][i], rays.origin[z][i]];
-        let d = [rays.direction[x][i], rays.direction[y][i], rays.direction[z][i]];
-        let size = rays.size[i];
-        let above = fused::<FUSED>(patch.slopes[0], o[0], fused::<FUSED>(patch.slopes[1], o[1], o[2] - patch.height));
-        let slope = fused::<FUSED>(patch.slopes[0], d[0], fused::<FUSED>(patch.slopes[1], d[1], d[2]));
-        let inverse = 1.0 / slope;
-        let t = -above * inverse;
-        let p = [fused::<FUSED>(t, d[0], o[0]), fused::<FUSED>(t, d[1], o[1])];
-        let outside = greater(beyond::<FUSED>(patch.edges[0], p), beyond::<FUSED>(patch.edges[1], p));
-        let outside = greater(outside, beyond::<FUSED>(patch.edges[2], p));
-        let outside = if TRIANGLE { outside } else { greater(outside, beyond::<FUSED>(patch.edges[3], p)) };
-        let error = (64.0 * UNIT) * (size + t.abs()) * inverse.abs();
-        let (nearest, farthest) = (t - error, t + error);
-        // Comparisons with NaN are false, and leave the test undecided. So do slopes below 64ε, where the error exceeds
-        // t, unless the distance from the plane exceeds the scene's size.
-        let is_out = mask(outside > error)
-            | mask(farthest < 0.0)
-            | mask(nearest > best.high[i])
-            | mask(above.abs() > 8.0 * size * slope.abs() + 64.0 * UNIT * size);
-        // Only rays with a finite end have a target patch to ignore.
+        let (t, error) = (t[i], error[i]);
+        let p = [fused::<FUSED>(t, dx[i], ox[i]), fused::<FUSED>(t, dy[i], oy[i])];
+        let across = |edge: usize| beyond::<FUSED>(edges[edge], p);
+        let outside = if OUTLINE == Outline::Parallelogram as usize {
+            greater(across(0).abs() - patch.reach[0], across(1).abs() - patch.reach[1])
+        } else if OUTLINE == Outline::Triangle as usize {
+            greater(greater(across(0), across(1)), across(2))
+        } else {
+            greater(greater(across(0), across(1)), greater(across(2), across(3)))
+        };
+        // How far the point lies off the patch, or the patch behind the ray.
+        let off = greater(outside, -t);
+        let (near, far) = (t - error, t + error);
+        // Only shadow rays end on a triangle.
         let is_known = mask(index == rays.misses[0][i]) | if ANY { mask(index == rays.misses[1][i]) } else { 0 };
-        let is_possible = !(is_known | is_out);
-        let is_certain = mask(outside < -error) & mask(nearest > 0.0) & mask(farthest < best.low[i]);
+        let is_out = signs((error - off).to_bits() | (best.far[i] - near).to_bits()) | is_known;
+        let is_certain = signs((off + error).to_bits() & (far - best.near[i]).to_bits());
+        let is_hit = is_certain & !is_out;
+        best.open[word][i] |= bit & !(is_out | is_certain);
         if ANY {
-            let is_hit = is_possible & is_certain;
+            // Behind all patches from here on.
+            best.far[i] = choose(is_hit, f32::MIN, best.far[i]);
             best.patch[i] &= !is_hit;
-            best.open[word][i] |= bit & is_possible & !is_hit;
-            continue;
+        } else {
+            best.near[i] = choose(is_hit, near, best.near[i]);
+            best.far[i] = choose(is_hit, far, best.far[i]);
+            best.patch[i] = index & is_hit | best.patch[i] & !is_hit;
         }
-        let half = if TRIANGLE { -1.0 } else { beyond::<FUSED>(patch.diagonal, p) };
-        let is_hit = is_possible & is_certain & if TRIANGLE { NONE } else { mask(half.abs() > error) };
-        best.low[i] = choose(is_hit, nearest, best.low[i]);
-        best.high[i] = choose(is_hit, farthest, best.high[i]);
-        if !TRIANGLE {
-            best.is_second[i] = mask(half > 0.0) & is_hit | best.is_second[i] & !is_hit;
-        }
-        best.patch[i] = index & is_hit | best.patch[i] & !is_hit;
-        best.open[word][i] |= bit & is_possible & !is_hit;
     }
 }
 
@@ -164,13 +208,32 @@ impl<const N: usize, const ANY: bool> Kernel<N> for TestAll<'_, ANY> {
     #[inline(always)]
     fn run<S: Simd<N>>(self, _: S) {
         for (index, patch) in (0u32..).zip(self.patches) {
-            match (S::FUSED, patch.halves[1].is_none()) {
-                (true, true) => test::<true, true, ANY>(patch, index, self.rays, self.best),
-                (true, false) => test::<true, false, ANY>(patch, index, self.rays, self.best),
-                (false, true) => test::<false, true, ANY>(patch, index, self.rays, self.best),
-                (false, false) => test::<false, false, ANY>(patch, index, self.rays, self.best),
+            const TRIANGLE: usize = Outline::Triangle as usize;
+            const PARALLELOGRAM: usize = Outline::Parallelogram as usize;
+            const QUADRILATERAL: usize = Outline::Quadrilateral as usize;
+            let (rays, best) = (self.rays, &mut *self.best);
+            match patch.outline {
+                Outline::Triangle => either::<S, N, TRIANGLE, ANY>(patch, index, rays, best),
+                Outline::Parallelogram => either::<S, N, PARALLELOGRAM, ANY>(patch, index, rays, best),
+                Outline::Quadrilateral => either::<S, N, QUADRILATERAL, ANY>(patch, index, rays, best),
             }
         }
+    }
+}
+
+/// Tests one patch, across an axis or not, with products that are fused where the processor can.
+#[inline(always)]
+fn either<S: Simd<N>, const N: usize, const OUTLINE: usize, const ANY: bool>(
+    patch: &Patch,
+    index: u32,
+    rays: &Rays,
+    best: &mut Best,
+) {
+    match (S::FUSED, patch.slopes == [0.0; 2]) {
+        (true, true) => test::<true, OUTLINE, true, ANY>(patch, index, rays, best),
+        (true, false) => test::<true, OUTLINE, false, ANY>(patch, index, rays, best),
+        (false, true) => test::<false, OUTLINE, true, ANY>(patch, index, rays, best),
+        (false, false) => test::<false, OUTLINE, false, ANY>(patch, index, rays, best),
     }
 }
 
@@ -184,10 +247,23 @@ loops! {
             }
             rays.direction[axis].copy_from_slice(&from.direction[axis][start..end]);
         }
-        rays.t_max = [MOST_T; LANES];
+        for i in 0..LANES {
+            let (x, y, z) = (rays.origin[0][i].abs(), rays.origin[1][i].abs(), rays.origin[2][i].abs());
+            let size = extent + greater(greater(x, y), z);
+            rays.unit[i] = (64.0 * UNIT) * size;
+            // No hit lies as far.
+            best.far[i] = 2.0 * size;
+        }
+        for (inverse, (error, direction)) in rays.inverse.iter_mut().zip(rays.error.iter_mut().zip(&rays.direction)) {
+            for i in 0..LANES {
+                let steep = steepness(direction[i]);
+                error[i] = rays.unit[i] + rays.unit[i] * steep;
+                inverse[i] = steep.copysign(direction[i]);
+            }
+        }
         if let Some(from) = from.t_max.get(start..end) {
-            for (to, &from) in rays.t_max.iter_mut().zip(from) {
-                *to = lesser(from as f32, MOST_T);
+            for (to, &from) in best.far.iter_mut().zip(from) {
+                *to = lesser(from as f32, *to);
             }
         }
         let patch = |primitive: u32| patch_of.get(primitive as usize).copied().unwrap_or(NONE);
@@ -201,17 +277,14 @@ loops! {
             }
         }
         for i in 0..LANES {
-            let (x, y, z) = (rays.origin[0][i].abs(), rays.origin[1][i].abs(), rays.origin[2][i].abs());
-            rays.size[i] = extent + greater(greater(x, y), z);
-            // Hits within an error of the ray's end are undecided.
-            let end = rays.t_max[i];
+            // What ends within an error of the ray's end is open.
+            let end = best.far[i];
             let room = (4.0 * UNIT) * end;
-            best.low[i] = end - room;
-            best.high[i] = end + room;
-            best.patch[i] = NONE;
-            best.is_second[i] = 0;
-            best.open = [[0; LANES]; 2];
+            best.near[i] = end - room;
+            best.far[i] = end + room;
         }
+        best.patch = [NONE; LANES];
+        best.open = [[0; LANES]; 2];
     }
 }
 
@@ -249,42 +322,45 @@ impl FewTriangles {
             }
             patches.push(patch);
         }
-        let halves = patches.iter().map(|patch| patch.halves.map(|half| half.map_or(NONE, |half| half.primitive)));
-        let halves = halves.map(|[first, second]| [first, if second == NONE { first } else { second }]).collect();
-        Some(Self { patches, halves, patch_of, region })
+        Some(Self { patches, patch_of, region })
     }
 
     /// Find the first triangle that each ray hits, or [`Ray::NO_TRIANGLE`].
     pub fn closest(&self, level: Level, rays: &PathRays, primitives: &mut [u32]) {
-        self.ask::<false>(level, rays, |start, best| {
+        self.ask::<false>(level, rays, |start, rays, best| {
             for (i, to) in primitives[start..][..LANES].iter_mut().enumerate() {
-                let halves = self.halves.get(best.patch[i] as usize);
-                *to = halves.map_or(NONE, |halves| halves[(best.is_second[i] & 1) as usize]);
+                *to = self.patches.get(best.patch[i] as usize).map_or(NONE, |patch| {
+                    // On the diagonal, one triangle is as good as the other.
+                    let t = 0.5 * (best.near[i] + best.far[i]);
+                    let p = |axis: usize| t * rays.direction[axis][i] + rays.origin[axis][i];
+                    let is_second = beyond::<false>(patch.diagonal, [p(patch.axes[0]), p(patch.axes[1])]) > 0.0;
+                    patch.primitives[usize::from(is_second)]
+                });
             }
         });
     }
 
     /// Test which rays hit anything.
     pub fn occluded(&self, level: Level, rays: &PathRays, occluded: &mut [bool]) {
-        self.ask::<true>(level, rays, |start, best| {
+        self.ask::<true>(level, rays, |start, _, best| {
             for (i, to) in occluded[start..][..LANES].iter_mut().enumerate() {
                 *to = best.patch[i] != NONE;
             }
         });
     }
 
-    /// Test all patches against all rays.
-    fn ask<const ANY: bool>(&self, level: Level, from: &PathRays, mut answer: impl FnMut(usize, &Best)) {
+    /// Tests all patches against all rays.
+    fn ask<const ANY: bool>(&self, level: Level, from: &PathRays, mut answer: impl FnMut(usize, &Rays, &Best)) {
         let mut rays = Rays {
             origin: [[0.0; LANES]; 3],
             direction: [[0.0; LANES]; 3],
-            t_max: [0.0; LANES],
-            size: [0.0; LANES],
+            inverse: [[0.0; LANES]; 3],
+            error: [[0.0; LANES]; 3],
+            unit: [0.0; LANES],
             misses: [[NONE; LANES]; 2],
         };
         let zero = [0.0; LANES];
-        let mut best =
-            Best { low: zero, high: zero, is_second: [0; LANES], patch: [NONE; LANES], open: [[0; LANES]; 2] };
+        let mut best = Best { near: zero, far: zero, patch: [NONE; LANES], open: [[0; LANES]; 2] };
         for start in (0..from.len).step_by(LANES) {
             take(level, from, start, self.region.extent as f32, &self.patch_of, &mut rays, &mut best);
             let test = TestAll::<ANY> { patches: &self.patches, rays: &rays, best: &mut best };
@@ -303,7 +379,7 @@ impl FewTriangles {
                     self.decide(&self.patches[patch], &from.get(start + i), i, &mut best);
                 }
             }
-            answer(start, &best);
+            answer(start, &rays, &best);
         }
     }
 
@@ -313,20 +389,18 @@ impl FewTriangles {
     fn decide(&self, patch: &Patch, ray: &Ray, lane: usize, best: &mut Best) {
         let Some(edges) = EdgeRay::new(ray, &self.region) else { return };
         let meet = |patch: &Patch| {
-            let halves = patch.halves.iter().enumerate().filter_map(|(i, half)| Some((i, (*half)?)));
-            let met = halves.filter_map(|(i, half)| Some((edges.meet(half.corners)?, i, half)));
-            met.min_by(|a, b| a.0.t.total_cmp(&b.0.t).then(a.2.primitive.cmp(&b.2.primitive)))
+            let met = patch.halves.iter().flatten().filter_map(|half| Some((edges.meet(half.corners)?, *half)));
+            met.min_by(|a, b| a.0.t.total_cmp(&b.0.t).then(a.1.primitive.cmp(&b.1.primitive)))
         };
-        let Some((new, which, half)) = meet(patch) else { return };
-        if let Some((old, _, other)) = self.patches.get(best.patch[lane] as usize).and_then(meet)
+        let Some((new, half)) = meet(patch) else { return };
+        if let Some((old, other)) = self.patches.get(best.patch[lane] as usize).and_then(meet)
             && (old.t, other.primitive) <= (new.t, half.primitive)
         {
             return;
         }
         let t = (new.t * edges.scale) as f32;
         let room = 4.0 * UNIT * t;
-        (best.low[lane], best.high[lane]) = (t - room, t + room);
-        best.is_second[lane] = mask(which == 1);
+        (best.near[lane], best.far[lane]) = (t - room, t + room);
         best.patch[lane] = self.patch_of[half.primitive as usize];
     }
 }
@@ -372,17 +446,44 @@ impl Patch {
             let (across_x, across_y) = (across_x / length, across_y / length);
             ([across_x as f32, across_y as f32], (across_x * from[x] + across_y * from[y]) as f32)
         };
-        let (edges, diagonal) = match halves {
-            [Some(first), Some(second)] => {
-                let all = outline(&[first, second], extent)?;
-                ([0, 1, 2, 3].map(|i| line(all[i], all[(i + 1) % 4])), line(all[1], all[3]))
+        let first = halves[0]?.primitive;
+        let (outline, edges, reach, diagonal, primitives) = match halves {
+            [Some(one), Some(other)] => {
+                let all = outline(&[one, other], extent)?;
+                let mut edges = [0, 1, 2, 3].map(|i| line(all[i], all[(i + 1) % 4]));
+                let (center, skew) = (0.5 * (all[0] + all[2]), all[0] - all[1] + all[2] - all[3]);
+                let mut reach = [0.0; 2];
+                let is_parallelogram = skew.abs().max_element() <= 2.0 * f64::from(UNIT) * extent;
+                if is_parallelogram {
+                    for (i, reach) in reach.iter_mut().enumerate() {
+                        edges[i] = line(center, center + all[i + 1] - all[i]);
+                        let across = edges[i].0.map(f64::from);
+                        let from = all[i] - center;
+                        *reach = (across[0] * from[x] + across[1] * from[y]).abs() as f32;
+                    }
+                }
+                let outline = if is_parallelogram { Outline::Parallelogram } else { Outline::Quadrilateral };
+                (outline, edges, reach, line(all[1], all[3]), [first, other.primitive])
             }
-            _ => ([line(a, b), line(b, c), line(c, a), line(c, a)], line(a, b)),
+            _ => {
+                let edges = [line(a, b), line(b, c), line(c, a), line(c, a)];
+                (Outline::Triangle, edges, [0.0; 2], line(a, b), [first; 2])
+            }
         };
         let slopes = [normal[x] / normal[z], normal[y] / normal[z]];
         let height = slopes[0] * a[x] + slopes[1] * a[y] + a[z];
         let slopes = slopes.map(|slope| slope as f32);
-        Some(Self { axes: [x, y, z], slopes, height: height as f32, edges, diagonal, halves })
+        Some(Self {
+            axes: [x, y, z],
+            slopes,
+            height: height as f32,
+            outline,
+            edges,
+            reach,
+            diagonal,
+            halves,
+            primitives,
+        })
     }
 }
 

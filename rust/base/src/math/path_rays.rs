@@ -22,7 +22,11 @@ pub struct PathRays {
 }
 
 impl PathRays {
-    /// Reserve space for rays, which may be unbounded.
+    /// Rays to a point end at this share of the way. Directions in f32 miss the point by 2⁻²³ of the way, so surfaces
+    /// right behind it must not block it; surfaces within 2⁻²⁰ of the way before it do not either.
+    pub const END: f64 = 1.0 - 1.0 / (1u64 << 20) as f64;
+
+    /// Room for so many rays, endless or not.
     pub fn with_room(most: usize, are_endless: bool) -> Self {
         let room = most + LANES;
         Self {
@@ -34,7 +38,18 @@ impl PathRays {
         }
     }
 
-    /// Maximum `t` of a ray.
+    /// Make room for so many rays with ends, and keep those that are there.
+    pub fn make_room(&mut self, most: usize) {
+        let room = most + LANES;
+        if self.t_max.len() < room {
+            self.origin.iter_mut().for_each(|column| column.resize(2 * room, 0.0));
+            self.direction.iter_mut().for_each(|column| column.resize(2 * room, 0.0));
+            self.t_max.resize(2 * room, f64::INFINITY);
+            self.misses.resize(2 * room, [Ray::NO_TRIANGLE; 2]);
+        }
+    }
+
+    /// The greatest `t` of a ray.
     #[inline(always)]
     pub fn end(&self, i: usize) -> f64 {
         self.t_max.get(i).copied().unwrap_or(f64::INFINITY)

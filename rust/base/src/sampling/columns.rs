@@ -5,7 +5,8 @@ use super::lanes::joined;
 use super::{Sampler, SamplerKind, SamplerLanes};
 use crate::math::single::lesser;
 use crate::math::{LANES, gather};
-use crate::simd::{Level, loops};
+use crate::simd::{Column, Level, loops, pack};
+use std::ops::Range;
 
 /// Samples of one picture, whose numbers are generated sixteen at a time.
 #[derive(Clone, Debug)]
@@ -14,8 +15,11 @@ pub struct SamplerColumns {
     all: SamplerLanes,
     pixel: Vec<u32>,
     sample: Vec<u32>,
-    /// The start of each batch's stream; empty for independent numbers.
+    /// Of each among the samples of its pixel.
+    number: Vec<u32>,
+    /// Where each batch's stream starts; nothing where numbers are independent.
     words: Vec<[u32; 4]>,
+    len: usize,
 }
 
 /// The greatest f32 below 1.
@@ -28,24 +32,90 @@ fn step(word: u32) -> f32 {
 }
 
 impl SamplerColumns {
-    /// An empty set of samples of the picture that `sampler` belongs to.
+    /// None yet, of the picture that some samples are of.
+    pub fn like(samplers: &SamplerLanes) -> Self {
+        Self {
+            all: samplers.clone(),
+            pixel: Vec::new(),
+            sample: Vec::new(),
+            number: Vec::new(),
+            words: Vec::new(),
+            len: 0,
+        }
+    }
+
+    /// With samples of the picture that one is of.
     pub fn new(sampler: &Sampler) -> Self {
-        Self { all: SamplerLanes::new(sampler), pixel: Vec::new(), sample: Vec::new(), words: Vec::new() }
+        Self::like(&SamplerLanes::new(sampler))
+    }
+
+    /// Forgets all.
+    pub fn clear(&mut self) {
+        self.len = 0;
     }
 
     /// Replace the samples by others of the same picture.
     pub fn take<'a>(&mut self, samplers: impl Iterator<Item = &'a Sampler>) {
-        self.pixel.clear();
-        self.sample.clear();
+        for column in [&mut self.pixel, &mut self.sample, &mut self.number] {
+            column.clear();
+        }
         self.words.clear();
         let has_words = self.all.kind != SamplerKind::Independent;
         for sampler in samplers {
             self.pixel.push(sampler.pixel);
             self.sample.push(sampler.sample);
+            self.number.push(sampler.number());
             if has_words {
                 self.words.push(sampler.words);
             }
         }
+        self.len = self.pixel.len();
+    }
+
+    /// Takes some of others of the same picture in place of those before.
+    pub fn take_from(&mut self, others: &Self, some: Range<usize>) {
+        for (to, from) in [(&mut self.pixel, &others.pixel), (&mut self.sample, &others.sample)] {
+            to.clear();
+            to.extend_from_slice(&from[some.clone()]);
+        }
+        self.words.clear();
+        self.number.clear();
+        if !others.words.is_empty() {
+            self.words.extend_from_slice(&others.words[some.clone()]);
+        }
+        self.all = others.all.clone();
+        self.len = some.len();
+    }
+
+    /// Appends those of the lanes in a mask; `number` is the number of each among the samples of its pixel.
+    pub fn push(&mut self, level: Level, mask: u32, samplers: &SamplerLanes, number: &[u32; LANES]) {
+        let (at, room) = (self.len, self.len + LANES);
+        for column in [&mut self.pixel, &mut self.sample, &mut self.number] {
+            if column.len() < room {
+                column.resize(2 * room, 0);
+            }
+        }
+        let columns = [
+            Column::new(&samplers.pixel, &mut self.pixel[at..]),
+            Column::new(&samplers.sample, &mut self.sample[at..]),
+            Column::new(number, &mut self.number[at..]),
+        ];
+        pack(level, mask, &columns);
+        if samplers.kind != SamplerKind::Independent {
+            self.words.truncate(at);
+            self.words.extend((0..LANES).filter(|lane| mask >> lane & 1 == 1).map(|lane| samplers.words[lane]));
+        }
+        self.len += (mask & 0xffff).count_ones() as usize;
+    }
+
+    /// One of them.
+    pub fn get(&self, i: usize) -> Sampler {
+        let mut sampler = Sampler::of(self.all.kind, self.all.key, self.pixel[i], self.number[i]);
+        sampler.sample = self.sample[i];
+        if let Some(&words) = self.words.get(i) {
+            sampler.words = words;
+        }
+        sampler
     }
 
     /// Gather samples, one per lane.

@@ -13,7 +13,7 @@ use crate::timing::{Part, timed};
 #[derive(Clone, Debug)]
 pub struct SamplerLanes {
     pub(super) kind: SamplerKind,
-    key: [u32; 2],
+    pub(super) key: [u32; 2],
     pub(super) pixel: [u32; LANES],
     pub(super) sample: [u32; LANES],
     /// The start of each batch's stream; zero for independent numbers.

@@ -3,6 +3,7 @@
 use super::scalar::pick_by_lane;
 use super::{Lanes, Pair, Simd};
 use std::arch::x86_64::*;
+use std::sync::OnceLock;
 
 /// SSE2: four lanes.
 #[derive(Clone, Copy, Debug)]
@@ -24,14 +25,17 @@ impl Avx2 {
     /// Some if the processor supports it.
     #[inline]
     pub fn detect() -> Option<Self> {
+        static HAS: OnceLock<bool> = OnceLock::new();
         // Every processor with AVX2 has the others, and kernels are compiled for them.
-        let has = is_x86_feature_detected!("avx2")
-            && is_x86_feature_detected!("fma")
-            && is_x86_feature_detected!("popcnt")
-            && is_x86_feature_detected!("bmi1")
-            && is_x86_feature_detected!("bmi2")
-            && is_x86_feature_detected!("lzcnt");
-        has.then_some(Self(()))
+        let has = || {
+            is_x86_feature_detected!("avx2")
+                && is_x86_feature_detected!("fma")
+                && is_x86_feature_detected!("popcnt")
+                && is_x86_feature_detected!("bmi1")
+                && is_x86_feature_detected!("bmi2")
+                && is_x86_feature_detected!("lzcnt")
+        };
+        HAS.get_or_init(has).then_some(Self(()))
     }
 }
 
@@ -43,11 +47,15 @@ impl Avx512 {
     /// Some if the processor supports it.
     #[inline]
     pub fn detect() -> Option<Self> {
-        let has = is_x86_feature_detected!("avx512f")
-            && is_x86_feature_detected!("avx512vl")
-            && is_x86_feature_detected!("avx512dq")
-            && is_x86_feature_detected!("avx512bw");
-        (has && Avx2::detect().is_some()).then_some(Self(()))
+        static HAS: OnceLock<bool> = OnceLock::new();
+        let has = || {
+            is_x86_feature_detected!("avx512f")
+                && is_x86_feature_detected!("avx512vl")
+                && is_x86_feature_detected!("avx512dq")
+                && is_x86_feature_detected!("avx512bw")
+                && Avx2::detect().is_some()
+        };
+        HAS.get_or_init(has).then_some(Self(()))
     }
 }
 

@@ -9,8 +9,8 @@
 //! < 2 those of the direction. The edges err by εE, s by 2εL for rounding the origin and the difference, and d by 2ε. A
 //! product in p errs by 2εE + 2εE + 2εE, and so p by 12εE + 4εE = 16εE; it is at most 4E. A product in q errs by 2εLE +
 //! εLE + εLE, and so q by 8εLE + 2εLE = 10εLE; it is at most 2LE. A product in u errs by 8εLE + 16εLE + 4εLE, and so u
-//! by 84εLE + 20εLE = 104εLE. A product in v errs by 4εLE + 20εLE + 4εLE, and v like u. A product in e · p errs by 4εE²
-//! + 16εE² + 4εE², and the sum by 92εE², which is at most 184εLE, since E ≤ 2L. So w errs by 184εLE + 208εLE and, for
+//! by 84εLE + 20εLE = 104εLE. A product in v errs by 4εLE + 20εLE + 4εLE, and v like u. A product in e · p errs by
+//! (4 + 16 + 4)εE², and the sum by 92εE², which is at most 184εLE, since E ≤ 2L. So w errs by 184εLE + 208εLE and, for
 //! its own two roundings, 48εLE: 440εLE, to first order; fused operations err less. 512εLE is allowed. Underflow in p
 //! or q loses at most 2⁻¹⁴⁸ a coordinate, 2⁻¹⁴⁵L in a weight, and elsewhere less than 2⁻¹⁴⁶: 2⁻¹⁴⁰L + 2⁻¹²⁶ is added.
 //! (The latter is the least normal number: a subnormal one would slow down every sum.) With L below 2⁶⁰ no sum exceeds
