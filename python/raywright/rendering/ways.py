@@ -16,11 +16,11 @@ from .plan import Choice
 
 # The side of patches that share paths, where any do; that of larger ones, which are tried where those pay;
 # and the relMSE of a pilot above which light is taken to be found by few paths, as behind a keyhole.
-_REUSE, _LARGE, _NOISY = 4, 8, 0.3
+_REUSE, _LARGE, _NOISY = 4, 8, 0.2
 # How much longer samples take that share paths, or that aim, by `benches/choices.py`, in times of a plain
 # one. It is not measured on the spot: the same has to be chosen everywhere, every time.
 _COSTS: dict[str, dict[Any, float]] = {
-    "reuse": {1: 0.0, 2: 0.2, _REUSE: 0.5, _LARGE: 1.3},
+    "reuse": {1: 0.0, 2: 0.3, _REUSE: 0.5, _LARGE: 1.3},
     "caustics": {False: 0.0, True: 1.2},
 }
 # Among media paths go on for longer, beside which sharing costs less.

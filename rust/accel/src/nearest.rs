@@ -3,8 +3,8 @@
 //! Boxes are stored in f32, in box units ([`Region`]), rounded outward; distances to them are computed in f64. With u =
 //! 2⁻⁵³ and P the point's largest coordinate in box units, the point errs by 2uP, and a box by 2u for its rounding to
 //! box units. A triangle's own distance errs by 2⁻⁴⁹ of the distance to its farthest corner, which is at most
-//! 16u·√3·(P + 2). The point is widened by 64u·(P + 2) along every axis, so that the distance to a box never exceeds the
-//! computed distances to its triangles.
+//! 16u·√3·(P + 2). The point is widened by 64u·(P + 2) along every axis, so that the distance to a box never exceeds
+//! the computed distances to its triangles.
 //!
 //! Along a tree's own axes ([`Axes`]) all lengths are halved, and P is the point's largest coordinate there, at most
 //! 2√3·P in box units. So a triangle's distance errs by 8u·√3·(2√3·P + 2), the point by 5u·2√3·P, and a box by 10u.

@@ -4,6 +4,7 @@ mod ambient_occlusion;
 mod aov;
 mod beam_traced;
 mod bidirectional;
+mod camera_samples;
 mod cone_traced;
 mod dimensions;
 mod direct;
@@ -15,6 +16,7 @@ mod nesting;
 mod parting;
 mod passing;
 mod path;
+mod path_sharing;
 mod photon_map;
 mod photons;
 mod radiosity;
@@ -33,6 +35,7 @@ pub use ambient_occlusion::AmbientOcclusion;
 pub use aov::{Channel, aovs};
 pub use beam_traced::BeamTraced;
 pub use bidirectional::{Alone, Bidirectional, Merge};
+pub use camera_samples::{CameraSample, CameraSamples};
 pub use cone_traced::ConeTraced;
 pub use direct::Direct;
 pub use distributed::Distributed;
@@ -49,21 +52,11 @@ pub use transport::FirstSeen;
 pub use volumes::optical_depths;
 pub use whitted::Whitted;
 
-use raywright_base::math::Ray;
 use raywright_base::sampling::Sampler;
 use raywright_base::workers::Cancel;
 use raywright_optics::Rgb;
 use raywright_scene::{Camera, Footprint, Scene};
 use std::ops::Range;
-
-/// One sample of one pixel: the ray that the camera sends, and the numbers for what follows.
-#[derive(Clone, Debug)]
-pub struct CameraSample {
-    /// The ray, of unit direction.
-    pub ray: Ray,
-    /// Its numbers; the camera has used the first [`raywright_base::sampling::CAMERA_DIMENSIONS`].
-    pub sampler: Sampler,
-}
 
 /// What there is to be rendered.
 #[derive(Clone, Copy)]
@@ -189,6 +182,24 @@ pub trait Worker: Send {
     /// Writes the radiance that arrives along each ray. Each depends on its own sample only, not on the batch that it
     /// is in. Returns early, with nothing of use written, soon after `cancel` is raised.
     fn radiance(&mut self, samples: &mut [CameraSample], cancel: &Cancel, radiance: &mut [Rgb]);
+
+    /// As [`Worker::radiance`], or, if there are any groups, as [`Worker::radiance_in_groups`], of samples by columns.
+    /// `rows` is memory that may be used.
+    fn radiance_of_columns(
+        &mut self,
+        samples: &CameraSamples,
+        groups: &[u32],
+        rows: &mut Vec<CameraSample>,
+        cancel: &Cancel,
+        radiance: &mut [Rgb],
+    ) {
+        samples.rows(rows);
+        if groups.is_empty() {
+            self.radiance(rows, cancel, radiance);
+        } else {
+            self.radiance_in_groups(rows, groups, cancel, radiance);
+        }
+    }
 
     /// As [`Worker::radiance`], of samples that stand in groups one after the other, of so many each. What arrives
     /// along a ray may depend on all samples of its group, but on no others, and its mean not even on these.

@@ -1,11 +1,11 @@
 //! What covers pixels, and how much of each.
 
-use super::camera_samples::{CameraSampler, Wanted};
+use super::camera_sampler::{CameraSampler, Wanted};
 use super::tile::FilmTile;
 use super::{Film, Settings};
 use raywright_base::parallel;
 use raywright_base::workers::Cancel;
-use raywright_integrators::{FirstSeen, Integrator};
+use raywright_integrators::{CameraSamples, FirstSeen, Integrator};
 use raywright_scene::{Camera, Scene};
 
 /// Samples looked at together.
@@ -54,7 +54,8 @@ fn of_cells(
     let counts = || tile.counts().iter().map(|&count| each.unwrap_or(count));
     let mut cells: Vec<(u32, Cover)> = counts().map(|count| (count, Cover::new())).collect();
     let (mut wanted, mut of) = (Vec::new(), Vec::new());
-    let (mut samples, mut weights, mut seen) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut samples, mut rows) = (CameraSamples::default(), Vec::new());
+    let (mut weights, mut seen) = (Vec::new(), Vec::new());
     let mut all = counts().enumerate().flat_map(|(cell, count)| (0..count).map(move |nth| (cell, nth))).peekable();
     while let Some((cell, nth)) = all.next() {
         wanted.push(Wanted { position: tile.position(cell), number: tile.number(cell, nth) });
@@ -68,7 +69,8 @@ fn of_cells(
         samples.clear();
         weights.clear();
         sampler.take(&wanted, &mut samples, &mut weights);
-        first.look(&mut samples, &mut seen);
+        samples.rows(&mut rows);
+        first.look(&mut rows, &mut seen);
         let mut found = seen.iter();
         for (&cell, &weight) in of.iter().zip(&weights).filter(|(_, weight)| **weight != 0.0) {
             if let Some(&Some(shape)) = found.next() {

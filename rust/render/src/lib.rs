@@ -3,7 +3,7 @@
 mod adaptive;
 mod bias;
 mod bytes;
-mod camera_samples;
+mod camera_sampler;
 mod cover;
 pub mod denoise;
 mod denominators;

@@ -1,6 +1,6 @@
 //! Work on a pass: samples of all pixels, tile by tile over the threads.
 
-use super::camera_samples::{CameraSampler, Wanted};
+use super::camera_sampler::{CameraSampler, Wanted};
 use super::epoch::Epoch;
 use super::lent::held;
 use super::patchwork::Patchwork;
@@ -9,7 +9,7 @@ use super::{FilmTile, Settings};
 use raywright_base::parallel;
 use raywright_base::timing::{self, timed};
 use raywright_base::workers::Cancel;
-use raywright_integrators::{CameraSample, Integrator, Session, Worker};
+use raywright_integrators::{CameraSample, CameraSamples, Integrator, Session, Worker};
 use raywright_optics::Rgb;
 use raywright_scene::{Camera, Scene};
 use std::ops::Range;
@@ -110,7 +110,9 @@ struct Bench<'a> {
     signed: bool,
     /// What is to be taken next.
     wanted: Vec<Wanted>,
-    samples: Vec<CameraSample>,
+    samples: CameraSamples,
+    /// The same one after the other, for whom that serves.
+    rows: Vec<CameraSample>,
     /// How much each sample counts, by the filter and the camera: also those for which the camera has no ray, and the
     /// integrator is not asked.
     weights: Vec<f64>,
@@ -249,7 +251,8 @@ impl<'a> Exposure<'a> {
             worker: self.session.worker(),
             signed: self.signed,
             wanted: Vec::new(),
-            samples: Vec::new(),
+            samples: CameraSamples::default(),
+            rows: Vec::new(),
             weights: Vec::new(),
             radiance: Vec::new(),
             ends: Vec::new(),
@@ -362,12 +365,8 @@ impl Bench<'_> {
             }
             start = end;
         }
-        self.radiance.resize(self.samples.len(), Rgb::ZERO);
-        if self.groups.is_empty() {
-            self.worker.radiance(&mut self.samples, cancel, &mut self.radiance);
-        } else {
-            self.worker.radiance_in_groups(&mut self.samples, &self.groups, cancel, &mut self.radiance);
-        }
+        self.radiance.resize(self.samples.len, Rgb::ZERO);
+        self.worker.radiance_of_columns(&self.samples, &self.groups, &mut self.rows, cancel, &mut self.radiance);
         if cancel.is_raised() {
             return false;
         }

@@ -171,6 +171,11 @@ impl Scene {
         }
     }
 
+    /// Return whether rays of paths are traced in packets of sixteen, which gain by a common origin.
+    pub fn traces_packets(&self) -> bool {
+        self.few.is_none()
+    }
+
     /// Whether each of the rays of paths hits anything.
     pub fn are_occluded(&self, level: Level, rays: &PathRays, occluded: &mut [bool]) {
         if let Some(few) = &self.few {

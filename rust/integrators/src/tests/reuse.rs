@@ -82,9 +82,11 @@ fn a_group_of_one_is_a_path_on_its_own() {
     let samples = groups(&camera, 8, 20);
     let alone = shared(&scene, &path(4), &samples, 1, 100);
     let mut plain = vec![Rgb::ZERO; samples.len()];
-    let session = path(1).begin_as(job(&scene), ShadingVariant::Plain, &Cancel::default());
+    let alone_path = path(1);
+    let session = alone_path.begin(job(&scene), &Cancel::default());
     session.worker().radiance(&mut samples.clone(), &Cancel::default(), &mut plain);
-    assert!(alone.iter().zip(&plain).all(|(a, b)| (*a - *b).abs().max() <= 1e-12 * b.max()));
+    // Seven products in f32, of which sharing begins anew at the second point.
+    assert!(alone.iter().zip(&plain).all(|(a, b)| (*a - *b).abs().max() <= 1e-6 * b.max()));
     assert!(plain.iter().filter(|v| v.max() > 0.0).count() > 1000);
 }
 

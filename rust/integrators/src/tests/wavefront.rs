@@ -33,7 +33,7 @@ fn assert_same(scene: &Scene, from: DVec3) {
     assert!(Wavefront::takes(scene));
     let path = Path { max_depth: Some(DEPTH), roulette_depth: u32::MAX, ..Path::default() };
     let count = 20_000;
-    let stages = found(&Wavefront::new(job(scene), path.max_depth, path.roulette_depth), from, count);
+    let stages = found(&Wavefront::new(job(scene), path.max_depth, path.roulette_depth, false), from, count);
     let session = path.begin_as(job(scene), ShadingVariant::Plain, &Cancel::default());
     let wanted = found(&*session, from, count);
     let largest = wanted.iter().map(|value| value.max()).fold(0.0, f64::max);
@@ -83,5 +83,26 @@ fn roulette_of_stages_changes_no_mean() {
     for depth in [0, 2, 5] {
         let (got, other) = mean(depth);
         assert!((got - wanted).abs() < 4.0 * error.hypot(other), "{depth}: {got}, not {wanted} ± {error}");
+    }
+}
+
+#[test]
+fn points_on_large_triangles_are_as_near_as_on_small_ones() {
+    let point = PointLight { position: DVec3::new(1.0, 0.0, 1.0), intensity: Rgb::ONE };
+    let lights: Vec<Arc<dyn Light>> = vec![Arc::new(point)];
+    let expected = 0.5 * 0.353_553_390_593_273_73 / std::f64::consts::PI;
+    let ray = Ray::new(DVec3::new(0.0, -0.6, 0.8), DVec3::new(0.0, 0.6, -0.8));
+    for size in [2f32, 2e3, 2e6] {
+        let ground = rectangle([-0.45 * size, -0.55 * size, 0.0], [size, 0.0, 0.0], [0.0, size, 0.0]);
+        let scene = scene(SceneDescription { shapes: vec![shape(ground, [0.5; 3], 0.0)], lights: lights.clone() });
+        assert!(Wavefront::takes(&scene));
+        let mut samples = [0, 1, 2, 3].map(|number| CameraSample { ray, sampler: Sampler::new(3, 7, number) });
+        let mut values = [Rgb::ZERO; 4];
+        let session = Wavefront::new(job(&scene), None, 4, false);
+        session.worker().radiance(&mut samples, &Cancel::default(), &mut values);
+        for value in values {
+            let off = value[1] / expected - 1.0;
+            assert!(off.abs() < 8.0 * f64::from(f32::EPSILON), "{size}: {off:e}");
+        }
     }
 }

@@ -10,7 +10,7 @@ pub(super) trait Features: Send + Sync + 'static {
     const PLAIN: bool;
     /// Paths carry [`Carried`]: the scene may have masks, nested media or filtered textures, and paths may be split.
     const GENERAL: bool;
-    /// Paths of a group share what they find from their second surface on ([`super::reuse::Reuse`]).
+    /// Paths of a group share what they find from their second surface on ([`crate::path_sharing`]).
     const SHARES: bool = false;
 }
 

@@ -63,8 +63,8 @@ impl<'a, N: Features> TransportWorker<'a, N> {
                 };
                 block.reflectance.set(lane, reflectance);
                 if N::SHARES && block.goes_on[lane] {
-                    block.paths[lane] =
-                        self.reuse.visit(block.paths[lane], &block.diffuse(lane), block.hits[lane].primitive);
+                    let (path, primitive) = (block.paths[lane], block.hits[lane].primitive);
+                    block.paths[lane] = self.visit(path, &block.diffuse(lane), primitive, samples.len());
                 }
             }
         } else {
@@ -123,7 +123,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
             block.bsdf.prepare(wo);
             let here = block.encounters.get(lane, block.bsdf.get(lane));
             if N::SHARES {
-                path = self.reuse.visit(path, &here, block.hits[lane].primitive);
+                path = self.visit(path, &here, block.hits[lane].primitive, samples.len());
             }
             path.meet(here.bsdf().again());
             if self.guide.is_some() {

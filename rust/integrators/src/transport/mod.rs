@@ -16,7 +16,6 @@ mod matt;
 mod meet;
 mod path_state;
 mod resampling;
-mod reuse;
 mod shade;
 mod splitting;
 mod waves;
@@ -112,8 +111,8 @@ impl Settings {
     /// Begins with stages over columns where they have what the scene and these settings need, and otherwise with the
     /// variant that has it.
     pub fn begin<'a>(self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a> {
-        if self.are_plain() && !self.shares && !self.guided && Wavefront::takes(job.scene) {
-            return Box::new(Wavefront::new(job, self.max_depth, self.roulette_depth));
+        if self.are_plain() && !self.guided && Wavefront::takes(job.scene) {
+            return Box::new(Wavefront::new(job, self.max_depth, self.roulette_depth, self.shares));
         }
         self.begin_as(job, job.scene.plan().variant(), cancel)
     }

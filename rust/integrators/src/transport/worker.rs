@@ -8,10 +8,10 @@ use super::features::{Carried, Features};
 use super::guided::{Arrival, arrive};
 use super::known::MattLight;
 use super::path_state::{PathState, Queue};
-use super::reuse::Reuse;
 use crate::dimensions::Dimensions;
 use crate::nesting::MediumStack;
 use crate::passing::Passing;
+use crate::path_sharing::{PathSharing, SharingPoint};
 use crate::shadows::Shadows;
 use crate::{CameraSample, Guide, Job, LocalGuide, Worker, is_matt};
 use raywright_base::math::{Hit, LANES};
@@ -49,7 +49,7 @@ pub(super) struct TransportWorker<'a, N> {
     pub(super) shadows: Shadows,
     /// What is drawn of each of few lights.
     pub(super) each: Vec<LightLanes>,
-    pub(super) reuse: Reuse,
+    pub(super) sharing: PathSharing,
     /// The wavelengths of samples; none where they find red, green and blue.
     pub(super) waves: Vec<Waves>,
     /// What samples find for themselves, and then what they find for sharing.
@@ -61,11 +61,12 @@ impl<'a, N: Features> TransportWorker<'a, N> {
     pub fn new(settings: Settings, job: &Job<'a>, guide: Option<&'a Guide>, known: Option<&'a dyn MattLight>) -> Self {
         let &Job { scene, footprint, .. } = job;
         let needs = scene.plan().needs();
+        let level = Level::current().unwrap_or(Level::Scalar);
         let widths = N::GENERAL && needs.points.width;
         Self {
             settings,
             scene,
-            level: Level::current().unwrap_or(Level::Scalar),
+            level,
             footprint,
             passing: Passing::new(N::GENERAL && needs.masks, N::GENERAL && needs.nested),
             widths,
@@ -79,7 +80,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
             block: None,
             shadows: Shadows::default(),
             each: Vec::new(),
-            reuse: Reuse::default(),
+            sharing: PathSharing::new(level),
             waves: Vec::new(),
             found: Vec::new(),
             features: PhantomData,
@@ -133,6 +134,41 @@ impl<'a, N: Features> TransportWorker<'a, N> {
     pub(super) fn own(sample: u32, samples: usize) -> usize {
         let index = sample as usize;
         if N::SHARES && index >= samples { index - samples } else { index }
+    }
+
+    /// A path comes to a surface, on a primitive of the scene. Where what it finds from there on is shared, it goes on as
+    /// the path of a sample of number `samples` or more.
+    #[inline]
+    pub(super) fn visit<S: Bsdf>(
+        &mut self,
+        mut path: PathState,
+        here: &SurfaceInteraction<S>,
+        primitive: u32,
+        samples: usize,
+    ) -> PathState {
+        if path.bounce > 1 {
+            return path;
+        }
+        let Some(reflectance) = here.bsdf().diffuse().filter(|_| !here.is_as_given()) else { return path };
+        // A surface that one normal shows from above and the other from below scatters nothing.
+        if here.cosine() <= 0.0 || reflectance.is_black() {
+            return path;
+        }
+        let (normal, position) = (here.normal(), here.position());
+        let point = SharingPoint {
+            position,
+            origin: here.ray_origin().ray(normal).origin,
+            shading: here.shading_normal().as_vec3(),
+            normal: normal.as_vec3(),
+            primitive,
+        };
+        if path.bounce == 0 {
+            self.sharing.add_first(path.sample, &point, path.throughput * reflectance);
+        } else if !here.is_bent() && self.sharing.add_second(path.sample, &point, path.throughput) {
+            path.throughput = Rgb::ONE;
+            path.sample += samples as u32;
+        }
+        path
     }
 
     /// Where light comes from by way of what is sharp, at a point that a path has come to; and whether the path goes on
@@ -208,12 +244,12 @@ impl<N: Features> Worker for TransportWorker<'_, N> {
         let mut found = std::mem::take(&mut self.found);
         found.clear();
         found.resize(2 * samples.len(), Rgb::ZERO);
-        self.reuse.begin(samples.len());
+        self.sharing.begin(samples.len());
         self.follow(samples, cancel, &mut found);
         let (own, shared) = found.split_at(samples.len());
         radiance.copy_from_slice(own);
         let chance = |sample: u32| samples[sample as usize].sampler.one(Dimensions::SHARING);
-        self.reuse.share(self.scene, groups, shared, cancel, radiance, chance);
+        self.sharing.share(self.scene, groups, shared, cancel, radiance, chance);
         self.found = found;
     }
 }

@@ -71,7 +71,8 @@ pub(super) fn add_emitted(scene: &Scene, queue: &PathQueue, surfaces: &SurfaceBl
             1.0
         } else {
             let ray = Ray::new(queue.rays.origin(i), queue.rays.direction(i));
-            let hit = Hit { t: surfaces.t[lane].into(), primitive: surfaces.primitive[lane], ..Hit::MISS };
+            let t = (surfaces.position.get(lane) - ray.origin).length();
+            let hit = Hit { t, primitive: surfaces.primitive[lane], ..Hit::MISS };
             let drawn = lights.surface_pdf(scene.geometry(), &receiver(queue, i), &ray, &hit, cosine);
             power_heuristic(pdf, drawn as f32)
         };

@@ -57,3 +57,13 @@ loops! {
         }
     }
 }
+
+loops! {
+    /// All bits where a path goes on.
+    pub(super) fn survive(throughput: &SingleLanes, pdf: &[f32; LANES], goes_on: &mut [u32; LANES]) {
+        for i in 0..LANES {
+            let t = throughput.get(i);
+            goes_on[i] = mask(t.x + t.y + t.z > 0.0) & mask(pdf[i] > 0.0);
+        }
+    }
+}

@@ -18,15 +18,16 @@ pub(super) struct Wavefront<'a> {
     job: Job<'a>,
     max_depth: Option<u32>,
     roulette_depth: u32,
+    shares: bool,
 }
 
 /// Radiances that f32 holds, with the squares of what follows from them.
 const RADIANCES: std::ops::Range<f64> = 1e-15..1e15;
 
 impl<'a> Wavefront<'a> {
-    /// Path tracing of a picture to a depth, with Russian roulette from a depth on.
-    pub fn new(job: Job<'a>, max_depth: Option<u32>, roulette_depth: u32) -> Self {
-        Self { job, max_depth, roulette_depth }
+    /// Path tracing of a picture to a depth, with Russian roulette from a depth on. Paths of a group may share.
+    pub fn new(job: Job<'a>, max_depth: Option<u32>, roulette_depth: u32, shares: bool) -> Self {
+        Self { job, max_depth, roulette_depth, shares }
     }
 
     /// Whether a scene has what stages know, and nothing else: triangles that reflect diffusely.
@@ -40,6 +41,6 @@ impl<'a> Wavefront<'a> {
 
 impl Session for Wavefront<'_> {
     fn worker(&self) -> Box<dyn Worker + '_> {
-        Box::new(WavefrontWorker::new(&self.job, self.max_depth, self.roulette_depth))
+        Box::new(WavefrontWorker::new(&self.job, self.max_depth, self.roulette_depth, self.shares))
     }
 }

@@ -1,7 +1,7 @@
 //! Rays of a camera, sixteen at a time.
 
 use super::CameraRay;
-use raywright_base::math::{LANES, Ray, VectorLanes};
+use raywright_base::math::{LANES, VectorLanes};
 use raywright_base::sampling::Pairs;
 
 /// Rays of a camera, a lane each, as [`CameraRay`] has them.
@@ -18,11 +18,28 @@ impl CameraRayLanes {
     pub const NONE: Self =
         Self { origin: VectorLanes::ZERO, direction: VectorLanes::ZERO, time: [0.0; LANES], weight: [0.0; LANES] };
 
-    /// That of a lane.
+    /// Origins of the rays, by axis.
     #[inline(always)]
-    pub fn get(&self, lane: usize) -> CameraRay {
-        let ray = Ray { time: self.time[lane], ..Ray::new(self.origin.get(lane), self.direction.get(lane)) };
-        CameraRay { ray, weight: self.weight[lane] }
+    pub fn origin(&self) -> [&[f64; LANES]; 3] {
+        self.origin.by_axis()
+    }
+
+    /// Unit directions of the rays, by axis.
+    #[inline(always)]
+    pub fn direction(&self) -> [&[f64; LANES]; 3] {
+        self.direction.by_axis()
+    }
+
+    /// When each sees the scene.
+    #[inline(always)]
+    pub fn time(&self) -> &[f64; LANES] {
+        &self.time
+    }
+
+    /// How much each counts; 0 where there is no ray.
+    #[inline(always)]
+    pub fn weight(&self) -> &[f64; LANES] {
+        &self.weight
     }
 
     /// Takes that of each lane by itself.

@@ -1,8 +1,9 @@
 //! Where rays of paths meet triangles, sixteen at a time.
 
-use super::{Geometry, Vertices, error_among, unit_normal};
+use super::{Geometry, Vertices, unit_normal};
 use crate::RayOrigin;
 use raywright_accel::Primitives;
+use raywright_base::math::robust::greater as largest;
 use raywright_base::math::single::{greater, lesser, mask};
 use raywright_base::math::{DVec3, LANES, PathRays, SingleLanes, Vec3, VectorLanes, gather};
 use raywright_base::simd::{Level, loops};
@@ -16,8 +17,6 @@ pub struct SurfaceBlock {
     pub index: [u32; LANES],
     /// Unit directions of the rays.
     pub direction: SingleLanes,
-    /// Distance along the rays.
-    pub t: [f32; LANES],
     /// The points, to within a rounding of their triangles' planes.
     pub position: VectorLanes,
     /// Where rays leave to the side that the ray came from.
@@ -46,7 +45,6 @@ impl SurfaceBlock {
         count: 0,
         index: [0; LANES],
         direction: SingleLanes::ZERO,
-        t: [0.0; LANES],
         position: VectorLanes::ZERO,
         origin: VectorLanes::ZERO,
         normal: SingleLanes::ZERO,
@@ -66,6 +64,15 @@ loops! {
     }
 }
 
+/// What [`super::error_among`] gives for corners that are no NaN.
+#[inline(always)]
+fn error_of_lanes(a: DVec3, b: DVec3, c: DVec3) -> f64 {
+    let x = largest(largest(a.x.abs(), b.x.abs()), c.x.abs());
+    let y = largest(largest(a.y.abs(), b.y.abs()), c.y.abs());
+    let z = largest(largest(a.z.abs(), b.z.abs()), c.z.abs());
+    8.0 * f64::EPSILON * largest(largest(x, y), z)
+}
+
 loops! {
     /// Where rays meet triangles, by Möller and Trumbore ("Fast, Minimum Storage Ray/Triangle Intersection", 1997).
     /// That they do is known, so the weights of corners are brought into their range: the point lies on its triangle
@@ -75,7 +82,6 @@ loops! {
         triangles: &Corners,
         origin: &VectorLanes,
         direction: &SingleLanes,
-        t: &mut [f32; LANES],
         position: &mut VectorLanes,
         leaves: &mut VectorLanes,
         normal: &mut SingleLanes,
@@ -85,6 +91,7 @@ loops! {
         for i in 0..LANES {
             let (a, b, c) = (triangles.corners[0].get(i), triangles.corners[1].get(i), triangles.corners[2].get(i));
             let of_triangle = triangles.normal.get(i);
+            let error = error_of_lanes(a, b, c);
             let d = direction.get(i);
             let from_a = origin.get(i) - a;
             let (first, second, from) = ((b - a).as_vec3(), (c - a).as_vec3(), from_a.as_vec3());
@@ -96,13 +103,20 @@ loops! {
             let (v, w) = (greater(v, 0.0), greater(w, 0.0));
             let sum = 1.0 / greater(v + w, 1.0);
             let (v, w) = (f64::from(lesser(v * sum, 1.0)), f64::from(lesser(w * sum, 1.0)));
+            // A second step from that point: on a large triangle it is off by 2⁻²³ of the triangle's size, and now by as
+            // much of the ray's length.
+            let rest = (origin.get(i) - (a * (1.0 - v - w) + b * v + c * w)).as_vec3();
+            let v = v + f64::from(rest.dot(across) * inverse);
+            let w = w + f64::from(d.dot(rest.cross(first)) * inverse);
+            let (v, w) = (largest(v, 0.0), largest(w, 0.0));
+            let (v, w) = (if v < 1.0 { v } else { 1.0 }, if w < 1.0 { w } else { 1.0 });
+            let excess = 0.5 * largest(v + w - 1.0, 0.0);
+            let (v, w) = (largest(v - excess, 0.0), largest(w - excess, 0.0));
             let point = a * (1.0 - v - w) + b * v + c * w;
-            let way = (from_a - (point - a)).as_vec3();
             let slope = of_triangle.as_vec3().dot(d);
             let front = mask(slope < 0.0);
             let side = if slope < 0.0 { 1.0 } else { -1.0 };
-            let off = RayOrigin::off(point, error_among([a, b, c]), of_triangle * side);
-            t[i] = way.length();
+            let off = RayOrigin::off(point, error, of_triangle * side);
             position.set(i, point);
             leaves.set(i, off.outside());
             normal.set(i, of_triangle.as_vec3() * side as f32);
@@ -163,7 +177,7 @@ impl Geometry {
         if !has_facets {
             normals(level, &triangles.corners, &mut triangles.normal);
         }
-        let SurfaceBlock { direction, t, position, origin: leaves, normal, cosine, is_front, .. } = surfaces;
-        meet(level, &triangles, &origin, direction, t, position, leaves, normal, cosine, is_front);
+        let SurfaceBlock { direction, position, origin: leaves, normal, cosine, is_front, .. } = surfaces;
+        meet(level, &triangles, &origin, direction, position, leaves, normal, cosine, is_front);
     }
 }

@@ -8,7 +8,7 @@ use crate::{Geometry, RayOrigin};
 use raywright_base::math::single::{
     choose, choose_vector, cosine_hemisphere, greater, mask, sin_cos_quarters, to_world, uniform_triangle, upper_angle,
 };
-use raywright_base::math::{DVec3, LANES, Ray, SingleLanes, Vec3, VectorLanes, select};
+use raywright_base::math::{DVec3, LANES, PathRays, Ray, SingleLanes, Vec3, VectorLanes, select};
 use raywright_base::simd::{Level, loops};
 use raywright_optics::Rgb;
 use std::f32::consts::{FRAC_1_PI, PI};
@@ -28,10 +28,6 @@ pub struct LightBlock {
     /// On which triangle it sets out, or [`Ray::NO_TRIANGLE`].
     pub primitive: [u32; LANES],
 }
-
-/// A shadow ray ends at this share of the way to its light. Directions in f32 miss the drawn point by 2⁻²³ of the way,
-/// so surfaces right behind the light must not block it; what lies within 2⁻²⁰ of the way before it does not either.
-const WAY: f64 = 1.0 - 1.0 / (1u64 << 20) as f64;
 
 /// A triangle that shines alike everywhere.
 #[derive(Clone, Copy, Debug)]
@@ -263,6 +259,21 @@ impl Lights {
         lamps
     }
 
+    /// Whether lights are chosen so that the digits of f32 are enough: there is one, or there are few lamps of which none
+    /// is chosen less than once in a thousand times.
+    pub fn choices_are_even(&self) -> bool {
+        /// One over the probability.
+        const RAREST: f32 = 1000.0;
+        let are_even = || self.lamps.iter().all(|lamp| lamp.rarity < RAREST || lamp.rarity == f32::INFINITY);
+        match &self.choice {
+            None => self.infinite.lights().len() <= 1,
+            Some(Choice::Power(_)) => {
+                self.infinite.is_dark() && !self.lamps.is_empty() && self.lamps.len() <= FEW_LAMPS && are_even()
+            }
+            Some(Choice::Tree(_)) => false,
+        }
+    }
+
     /// Whether a choice among lights, or the light of one, depends on the normal of who asks.
     pub fn ask_for_normals(&self) -> bool {
         matches!(self.choice, Some(Choice::Tree(_))) || !self.infinite.is_dark()
@@ -306,7 +317,7 @@ impl Lights {
             lights.direction.set(lane, sample.direction.as_vec3());
             lights.weight.set(lane, sample.weight.as_vec3());
             lights.pdf[lane] = sample.pdf as f32;
-            let source = |source: RayOrigin| WAY * (source.position() - receiver.position).length();
+            let source = |source: RayOrigin| PathRays::END * (source.position() - receiver.position).length();
             lights.t_max[lane] = sample.source.map_or(f64::INFINITY, source);
             lights.primitive[lane] = sample.primitive;
         }
@@ -351,7 +362,7 @@ impl Lights {
         let mut distance = [0.0; LANES];
         draw(level, &lamps, u, &mut lights.direction, &mut lights.weight, &mut lights.pdf, &mut distance);
         for lane in 0..LANES {
-            lights.t_max[lane] = WAY * f64::from(distance[lane]);
+            lights.t_max[lane] = PathRays::END * f64::from(distance[lane]);
         }
     }
 }

@@ -5,8 +5,8 @@ use super::filter::{Edges, Filter};
 use raywright_base::math::LANES;
 use raywright_base::sampling::{SamplerKind, SamplerLanes};
 use raywright_base::simd::Level;
-use raywright_integrators::{CameraSample, Session};
-use raywright_scene::{Camera, CameraRay, CameraRayLanes, Scene};
+use raywright_integrators::{CameraSamples, Session};
+use raywright_scene::{Camera, CameraRayLanes, Scene};
 use std::array::from_fn;
 
 /// A sample that is to be taken: of which pixel, and its number among the samples of that.
@@ -50,7 +50,7 @@ impl<'a> CameraSampler<'a> {
 
     /// Takes samples, and says of each how much it counts, by the filter and the camera: also of those for which the
     /// camera has no ray, and which are not among the samples.
-    pub fn take(&self, wanted: &[Wanted], samples: &mut Vec<CameraSample>, weights: &mut Vec<f64>) {
+    pub fn take(&self, wanted: &[Wanted], samples: &mut CameraSamples, weights: &mut Vec<f64>) {
         let (mut u, mut offsets, mut counts) = ([[0.0; LANES]; 2], [[0.0; LANES]; 2], [0.0; LANES]);
         let (mut lens, mut time, mut rays) = ([[0.5; LANES]; 2], [0.0; LANES], CameraRayLanes::NONE);
         for wanted in wanted.chunks(LANES) {
@@ -85,14 +85,10 @@ impl<'a> CameraSampler<'a> {
                 from_fn(|lane| f64::from(of[lane].position.1) + (0.5 + down[lane])),
             ];
             self.camera.rays(self.level, &film, &lens, &time, &mut rays);
-            for (lane, wanted) in wanted.iter().enumerate() {
-                let CameraRay { ray, weight } = rays.get(lane);
-                let weight = counts[lane] * factors[lane] * weight;
-                weights.push(weight);
-                if weight != 0.0 {
-                    samples.push(CameraSample { ray, sampler: samplers.get(lane, wanted.number) });
-                }
-            }
+            let weight: [f64; LANES] = from_fn(|lane| counts[lane] * factors[lane] * rays.weight()[lane]);
+            weights.extend_from_slice(&weight[..wanted.len()]);
+            let is_seen = |lane: usize| u32::from(lane < wanted.len() && weight[lane] != 0.0) << lane;
+            samples.push(self.level, (0..LANES).map(is_seen).sum(), &rays, &samplers, &numbers);
         }
     }
 }
