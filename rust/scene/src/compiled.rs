@@ -22,27 +22,27 @@ pub struct Scene {
     materials: Vec<Arc<dyn Material>>,
     lights: Lights,
     plan: Plan,
-    /// What others have made of it, each of a type of its own.
+    /// Values derived from the scene by other crates, at most one of each type.
     kept: Mutex<Vec<Arc<dyn Any + Send + Sync>>>,
     accelerator: Box<dyn Accelerator>,
-    /// Where there are few triangles and nothing else, what rays of paths are tested against.
+    /// The triangles as a flat list for path rays, if they are few and the scene has nothing else.
     few: Option<FewTriangles>,
     region: Region,
-    /// What fills the space in which nothing else is.
+    /// The medium outside all closed surfaces.
     surrounding: Option<Arc<dyn Medium>>,
     /// The accelerator's cost when it was built.
     built_cost: f64,
 }
 
-/// What [`Scene::solids`] has found last, the latest first.
+/// Results of [`Scene::solids`], the latest first.
 #[derive(Default)]
 struct LastSolids(Mutex<Vec<(Enclosing, Arc<Solids>)>>);
 
-/// How much of it is kept.
+/// Number of results kept.
 const MOST_SOLIDS: usize = 4;
 
-/// Ways out for [`Scene::contains`]: in no special position relative to anything that people make, and with a largest
-/// coordinate between 1 and 2, so that `t` is not scaled.
+/// Ray directions of [`Scene::contains`]. They avoid special positions relative to man-made geometry. Their largest
+/// coordinate is between 1 and 2, so that `t` is not scaled.
 const WAYS_OUT: [DVec3; 7] = [
     DVec3::new(1.289_430_857_193_402_8, 0.371_920_584_301_275_66, 0.587_109_384_750_921_3),
     DVec3::new(-1.289_430_857_193_402_8, -0.371_920_584_301_275_66, -0.587_109_384_750_921_3),
@@ -54,10 +54,10 @@ const WAYS_OUT: [DVec3; 7] = [
 ];
 
 impl Scene {
-    /// Compiles a description, with an accelerator made for its geometry.
+    /// Compiles a description and builds an accelerator over its geometry.
     ///
     /// # Panics
-    /// If a mesh is no mesh; see [`Geometry::new`].
+    /// If a mesh is invalid; see [`Geometry::new`].
     pub fn new(
         description: SceneDescription,
         accelerator: impl FnOnce(&dyn Primitives) -> Box<dyn Accelerator>,
@@ -65,7 +65,7 @@ impl Scene {
         Self::watched(description, accelerator, Work::UNWATCHED)
     }
 
-    /// The same, as work that may be stopped, which is an error.
+    /// Like [`Scene::new`], but interruptible; interruption is an error.
     ///
     /// # Panics
     /// As [`Scene::new`].
@@ -84,8 +84,8 @@ impl Scene {
         Ok(Self::with(accelerator, None, parts.geometry, parts.materials, lights))
     }
 
-    /// The same scene over meshes that have moved, with the accelerator fitted to them. `None` if that cannot be done
-    /// ([`Accelerator::refitted`]).
+    /// Rebuilds the scene over meshes that have moved, with the accelerator refitted. Returns `None` if the accelerator
+    /// cannot be refitted ([`Accelerator::refitted`]).
     ///
     /// # Panics
     /// As [`Scene::new`].
@@ -112,26 +112,25 @@ impl Scene {
         Self { geometry, materials, lights, plan, kept, accelerator, few, region, surrounding: None, built_cost }
     }
 
-    /// The same with a medium in all space in which nothing else is.
+    /// Sets the medium outside all closed surfaces.
     pub fn surrounded_by(self, medium: Option<Arc<dyn Medium>>) -> Self {
         let plan = self.plan.with_medium_around(medium.as_deref());
         Self { plan, surrounding: medium, ..self }
     }
 
-    /// The same with all shading normals taken as they are given.
+    /// Uses all shading normals as given, without correction.
     pub fn with_normals_as_given(self) -> Self {
         let plan = self.plan.clone().with_normals_as_given(&self.geometry);
         Self { plan, ..self }
     }
 
-    /// What fills the space in which nothing else is; none if it is empty.
+    /// The medium outside all closed surfaces; `None` for vacuum.
     #[inline]
     pub fn surrounding(&self) -> Option<&dyn Medium> {
         self.surrounding.as_deref()
     }
 
-    /// What the accelerator costs over what it did when it was built, by the surface-area heuristic; 1 until it is
-    /// refitted.
+    /// Surface-area-heuristic cost of the accelerator over its cost when built; 1 until it is refitted.
     pub fn growth(&self) -> f64 {
         let cost = self.accelerator.info().sah_cost;
         if cost == self.built_cost { 1.0 } else { cost / self.built_cost }
@@ -147,12 +146,12 @@ impl Scene {
         self.accelerator.intersect_one(ray)
     }
 
-    /// Whether each ray hits anything.
+    /// Tests each ray for any hit.
     pub fn occluded(&self, rays: &[Ray], occluded: &mut [bool]) {
         self.accelerator.occluded(rays, occluded);
     }
 
-    /// The primitive that each of the rays of paths hits first, or [`Ray::NO_TRIANGLE`]. Both have room for sixteen
+    /// The first primitive that each path ray hits, or [`Ray::NO_TRIANGLE`]. Both arrays have room for sixteen elements
     /// more than there are rays.
     pub fn first_primitives(&self, level: Level, rays: &PathRays, primitives: &mut [u32]) {
         if let Some(few) = &self.few {
@@ -196,7 +195,7 @@ impl Scene {
         }
     }
 
-    /// Whether each ray of a queue hits anything.
+    /// Tests each ray of a queue for any hit.
     pub fn occluded_queue(&self, rays: &mut RayQueue, occluded: &mut [bool]) {
         match self.accelerator.by_columns() {
             Some(tree) => tree.occluded(&rays.columns(), occluded),
@@ -209,11 +208,11 @@ impl Scene {
         self.accelerator.crossings(rays)
     }
 
-    /// Whether each point is inside of something closed or on it.
+    /// Tests whether each point is inside a closed surface or on it.
     ///
-    /// Any way out of a closed surface tells the same: one will do where all surfaces close to the last bit. Where they
-    /// do so to rounding alone, one way and the opposite one agree unless it has left a crack there, and then most of
-    /// seven ways decide.
+    /// By crossing parity, every direction gives the same result for a watertight surface, so one ray is enough if all
+    /// surfaces close to the last bit. If they close only to rounding, a ray may leave through a crack: one direction
+    /// and its opposite are compared, and if they disagree, the majority of seven directions decides.
     pub fn contains(&self, points: &[DVec3], enclosing: &Enclosing, inside: &mut [bool]) {
         assert_eq!(points.len(), inside.len(), "an answer for each point");
         inside.fill(false);
@@ -250,10 +249,11 @@ impl Scene {
         }
     }
 
-    /// What is enclosed by what counts. The last of what was asked is kept.
+    /// The solids that the counted surfaces enclose. The latest results are cached.
     pub fn solids(&self, enclosing: &Enclosing) -> Arc<Solids> {
         let kept = self.kept(|| Some(LastSolids::default())).expect("it is made");
-        // Not within the lock: threads that wait for others take up work of theirs, which may come here too.
+        // Computed outside the lock: a thread that waits for others may take up their tasks, and those may call this
+        // function.
         let find = |all: &[(Enclosing, Arc<Solids>)]| {
             all.iter().find(|(known, _)| known == enclosing).map(|(_, solids)| solids.clone())
         };
@@ -269,8 +269,8 @@ impl Scene {
         })
     }
 
-    /// The nearest point to each point, within its greatest distance: one for all of them, or one each; of the shapes
-    /// that count, which all do without `shapes`.
+    /// The nearest point to each point, within a maximum distance: one for all points, or one each. `shapes` restricts
+    /// the search to some shapes.
     pub fn nearest(&self, points: &[DVec3], max_distances: &[f64], shapes: Option<&[bool]>, nearest: &mut [Nearest]) {
         let of_shapes = |primitive: u32| {
             let shape = self.geometry.locate(primitive).0 as usize;
@@ -290,28 +290,28 @@ impl Scene {
         self.accelerator.touched(cones)
     }
 
-    /// What finding the closest hit of each ray takes.
+    /// Counts the traversal steps for the closest hit of each ray.
     pub fn cost(&self, rays: &[Ray], costs: &mut [Cost]) {
         self.accelerator.cost(rays, costs);
     }
 
-    /// Its surfaces.
+    /// The surfaces.
     pub fn geometry(&self) -> &Geometry {
         &self.geometry
     }
 
-    /// Its lights.
+    /// The lights.
     pub fn lights(&self) -> &Lights {
         &self.lights
     }
 
-    /// What it needs of those who shade it.
+    /// The features that shading this scene needs.
     #[inline]
     pub fn plan(&self) -> &Plan {
         &self.plan
     }
 
-    /// What is made of the scene, and kept with it for whoever asks next: one of each type. `None` if nothing was made.
+    /// Returns the cached value of type `T`, or makes and caches it. Returns `None` if `make` does.
     pub fn kept<T: Any + Send + Sync>(&self, make: impl FnOnce() -> Option<T>) -> Option<Arc<T>> {
         let lock = || self.kept.lock().unwrap_or_else(PoisonError::into_inner);
         let find =
@@ -319,8 +319,8 @@ impl Scene {
         if let Some(found) = find(&lock()) {
             return Some(found);
         }
-        // Not within the lock: threads that wait for others take up work of theirs, which may come here too. Of what
-        // several have made, all get the first.
+        // Made outside the lock: a thread that waits for others may take up their tasks, and those may call this
+        // function. If several threads make a value, all get the first one stored.
         let made = Arc::new(make()?);
         let mut kept = lock();
         Some(find(&kept).unwrap_or_else(|| {
@@ -329,13 +329,13 @@ impl Scene {
         }))
     }
 
-    /// What a shape is made of.
+    /// The material of a shape.
     #[inline]
     pub fn material(&self, shape: u32) -> &dyn Material {
         &*self.materials[shape as usize]
     }
 
-    /// What a point of a surface is made of.
+    /// The material at a surface point.
     #[inline]
     pub fn material_at(&self, surface: &SurfacePoint) -> &dyn Material {
         match surface.inner {
@@ -344,7 +344,7 @@ impl Scene {
         }
     }
 
-    /// What that is made of which a ray has hit.
+    /// The material at a hit.
     #[inline]
     pub fn material_of(&self, hit: &Hit) -> &dyn Material {
         let shape = self.geometry.locate(hit.primitive).0;
@@ -355,7 +355,7 @@ impl Scene {
         }
     }
 
-    /// How a point of a surface shines.
+    /// The emission at a surface point.
     #[inline]
     pub fn emission_at(&self, surface: &SurfacePoint) -> &Emission {
         match surface.inner {
@@ -364,8 +364,7 @@ impl Scene {
         }
     }
 
-    /// Of a shape that is instances of a prototype, what the primitive of a flattened number is made of, and how it
-    /// shines.
+    /// Material and emission of a primitive, by its flattened number, in a shape that is instances of a prototype.
     fn appearance(&self, shape: u32, inner: u32) -> (&dyn Material, &Emission) {
         match self.geometry.instances_of(shape) {
             Some(instances) => instances.prototype().appearance(inner),
@@ -373,27 +372,27 @@ impl Scene {
         }
     }
 
-    /// What finds its hits.
+    /// The acceleration structure.
     pub fn accelerator(&self) -> &dyn Accelerator {
         self.accelerator.as_ref()
     }
 
-    /// What light that sets out is drawn from; `None` if nothing shines that could be drawn.
+    /// The distribution of light emission; `None` if no emitter can be sampled.
     pub fn emitters(&self) -> Option<Emitters<'_>> {
         Emitters::new(&self.lights, &self.geometry, &self.region)
     }
 
-    /// Why light cannot all be drawn as it sets out, if so.
+    /// The reason why emission cannot be sampled from all lights, if there is one.
     pub fn not_drawn(&self) -> Option<String> {
         not_drawn(&self.lights, &self.geometry)
     }
 
-    /// Why light does not all come from lights, if so.
+    /// The reason why some light does not come from emitters, if there is one.
     pub fn glow(&self) -> Option<String> {
         self.plan.needs().glow.then(|| "a medium glows".to_owned())
     }
 
-    /// Where all that can be hit lies.
+    /// Bounds of all geometry.
     pub fn region(&self) -> &Region {
         &self.region
     }
@@ -413,7 +412,7 @@ mod tests {
         let cube = furnace(0.5, 0.0);
         let ways = (-2..=2).flat_map(|x| (-2..=2).flat_map(move |y| (-2..=2).map(move |z| [x, y, z])));
         let ways: Vec<_> = ways.map(|w| DVec3::from_array(w.map(f64::from))).filter(|w| *w != DVec3::ZERO).collect();
-        // Through corners, edges, middles of faces, and within faces.
+        // Rays through corners, edges, face centers and face interiors.
         let rays: Vec<_> =
             ways.iter().flat_map(|&at| ways.iter().map(move |&way| Ray::new(at - 8.0 * way, way))).collect();
         let crossings = cube.crossings(&rays);
@@ -452,7 +451,7 @@ mod tests {
 
     #[test]
     fn queues_meet_objects_and_triangles_as_brute_force_has_it() {
-        // Few balls, and more than few; with something that has no end.
+        // Few spheres, and many; without and with an infinite plane.
         for (balls, has_plane) in [(1, false), (5, true), (16, false), (40, true)] {
             let mut numbers = raywright_base::sampling::Sampler::new(17, balls, 0);
             let mut draw = |dimension| {
@@ -529,7 +528,7 @@ mod tests {
         let light = |s: &Scene| s.lights().sample(s.geometry(), &receiver, 0.5, [0.5; 2]).unwrap().direction;
         assert_eq!(light(&refitted), light(&moved));
         assert_ne!(light(&refitted), light(&still));
-        // Another number of faces is another scene.
+        // A different number of faces cannot be refitted.
         let fewer = SceneDescription { shapes: vec![Shape::default()], ..Default::default() };
         assert!(still.refitted(fewer, Work::UNWATCHED).unwrap().is_none());
     }

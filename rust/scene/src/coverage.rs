@@ -1,9 +1,10 @@
-//! What a solid cone meets, nearest first, and how much of it each has (Amanatides, "Ray Tracing with Cones", 1984).
+//! The primitives in a solid cone, nearest first, and the share of the cone that each covers (Amanatides, "Ray Tracing
+//! with Cones", 1984).
 //!
-//! Faces are seen on a plane across the axis, where each is cut out of what the nearer ones have left of the cone. So
-//! of faces that share edges none is counted twice and no gap is between them; the solid angle that the cone has in
-//! common with what is cut out is exact ([`Cap`]), and so is that of a sphere. What only the order of objects can tell
-//! is blended: of what is behind a sphere that has a share s of the cone, 1 − s is left, wherever in the cone it is.
+//! Faces are projected onto a plane perpendicular to the axis and clipped to the part of the cone that nearer faces
+//! leave free. So faces that share edges neither overlap nor leave gaps. The solid angle of each clipped part within
+//! the cone is exact ([`Cap`]), and so is that of a sphere. Occlusion by spheres is blended: behind a sphere that
+//! covers a share s of the cone, all coverage is scaled by 1 − s, wherever it is in the cone.
 
 use super::Scene;
 use raywright_accel::Primitives;
@@ -13,42 +14,42 @@ use raywright_base::math::{DVec2, DVec3, Frame};
 use raywright_shapes::Ball;
 use raywright_shapes::triangle::SolidCone;
 
-/// A scene of meshes and spheres, for cones.
+/// A scene of meshes and spheres, for cone queries.
 pub struct Coverage<'a> {
     scene: &'a Scene,
-    /// Spheres, by their primitives.
+    /// The spheres, by primitive number.
     balls: Vec<(u32, Ball)>,
 }
 
 /// A primitive that a cone meets.
 #[derive(Clone, Copy, Debug)]
 pub struct Covering {
-    /// Which primitive.
+    /// Primitive number.
     pub primitive: u32,
-    /// The share that it has of the cone's directions.
+    /// Share of the cone's directions that it covers.
     pub share: f64,
-    /// A direction of the cone in the midst of that, of unit length.
+    /// A unit direction of the cone near the middle of the covered part.
     pub direction: DVec3,
 }
 
-/// What of the scene counts for a cone.
+/// Filter of a cone query.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Counted {
-    /// A shape that does not.
+    /// A shape that is ignored.
     pub without: Option<u32>,
-    /// A normal n and an offset: only where n · x is above it.
+    /// A normal n and an offset: only points x with n · x above the offset count.
     pub beyond: Option<(DVec3, f64)>,
 }
 
-/// In radii of the cone on the plane across its axis: corners so near to a line are on it, and what has less area than
-/// the square of that is nothing.
+/// Tolerance in radii of the cone, on the plane perpendicular to its axis. Corners within it of a line are on the line;
+/// a polygon with less area than its square is empty.
 const NOTHING: f64 = 1e-11;
 
 /// Corners of the polygon around the cone on that plane.
 const AROUND: usize = 8;
 
 impl<'a> Coverage<'a> {
-    /// Readies a scene; an error is the number of a shape that is neither a mesh nor a sphere.
+    /// Prepares a scene; the error is the number of a shape that is neither a mesh nor a sphere.
     pub fn new(scene: &'a Scene) -> Result<Self, u32> {
         let geometry = scene.geometry();
         let mut balls = Vec::new();
@@ -65,14 +66,14 @@ impl<'a> Coverage<'a> {
         Ok(Self { scene, balls })
     }
 
-    /// The share of a cone's directions that meet something; NaN for a cone without an angle.
+    /// The share of a cone's directions that hit something; NaN for a cone without an angle.
     pub fn share(&self, cone: &SolidCone, counted: Counted) -> f64 {
         let mut all = 0.0;
         self.meet(cone, counted, |covering| all += covering.share);
         all.min(1.0)
     }
 
-    /// Calls with each primitive that a cone meets.
+    /// Calls `each` with every primitive in a cone.
     pub fn meet(&self, cone: &SolidCone, counted: Counted, mut each: impl FnMut(Covering)) {
         let geometry = self.scene.geometry();
         let counts = |primitive: u32| counted.without != Some(geometry.locate(primitive).0);
@@ -102,25 +103,25 @@ impl<'a> Coverage<'a> {
     }
 }
 
-/// Whether the middle of a ball counts.
+/// Returns whether the center of a sphere counts.
 fn is_beyond(ball: &Ball, counted: Counted) -> bool {
     counted.beyond.is_none_or(|(normal, offset)| normal.dot(ball.center) > offset)
 }
 
-/// What is left of a cone.
+/// The uncovered part of a cone.
 struct Left {
     apex: DVec3,
     frame: Frame,
     cap: Cap,
-    /// Of half the opening, and the angle itself.
+    /// Tangent of the half angle, and the half angle.
     tangent: f64,
     angle: f64,
     window: Vec<HalfPlane>,
-    /// Where faces have left something, on the plane across the axis, in radii of the cone.
+    /// The part that faces leave free, on the plane perpendicular to the axis, in radii of the cone.
     parts: Vec<Convex>,
-    /// The share that faces have left.
+    /// The share that faces leave free.
     free: f64,
-    /// The share of everything that spheres have left.
+    /// The share of everything that spheres leave free.
     weight: f64,
 }
 
@@ -142,12 +143,12 @@ impl Left {
         }
     }
 
-    /// The direction to a place on the plane, in the frame.
+    /// The direction to a point of the plane, in the cone's frame.
     fn direction(&self, at: DVec2) -> DVec3 {
         (at * self.tangent).extend(1.0)
     }
 
-    /// Takes out what a face has, and tells its share and its middle, if it has any.
+    /// Subtracts a face from the free part. Returns its share and a direction in the middle of it, if it has any.
     fn take_face(&mut self, corners: [DVec3; 3], beyond: Option<(DVec3, f64)>) -> Option<(f64, DVec3)> {
         let mut outline = corners.to_vec();
         if let Some((normal, offset)) = beyond {
@@ -183,23 +184,23 @@ impl Left {
         let share = (angle / self.cap.solid_angle()).min(self.free);
         self.free -= share;
         let middle = middle / angle;
-        // The middle of a part that reaches out of the cone may be outside.
+        // The centroid of a part that reaches out of the cone may be outside the cone.
         let middle = middle / middle.length().max(1.0);
         let direction = self.frame.to_world(self.direction(middle)).normalize();
         (share > 0.0).then_some((share * self.weight, direction))
     }
 
-    /// The same of a sphere.
+    /// Subtracts a sphere from the free part; see `take_face`.
     fn take_ball(&mut self, ball: &Ball) -> Option<(f64, DVec3)> {
         let way = self.frame.to_local(ball.center - self.apex);
         let (distance, across) = (way.length(), way.truncate().length());
         let sine = ball.radius / distance;
-        // On its surface it is half of all, within rounding; inside all.
+        // From a point on the sphere it covers a hemisphere, within rounding; from inside it covers everything.
         let half = if sine > 1.0 + 1e-9 { std::f64::consts::PI } else { sine.min(1.0).asin() };
         let between = across.atan2(way.z);
         let share = shared(self.angle, half, between) / self.cap.solid_angle();
         let share = share.min(1.0);
-        // In the middle of what both have of the circle through their middles.
+        // The middle of the overlap of both disks, on the great circle through their centers.
         let at = 0.5 * ((between - half).max(-self.angle) + (between + half).min(self.angle));
         let out = if across > 0.0 { way.truncate() / across } else { DVec2::X };
         let direction = self.frame.to_world((out * at.sin()).extend(at.cos()));

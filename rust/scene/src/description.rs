@@ -1,4 +1,4 @@
-//! A scene as it is described, before it is compiled.
+//! The description of a scene before it is compiled.
 
 use super::geometry::Watched;
 use super::textures::Needs;
@@ -8,19 +8,19 @@ use raywright_base::work::{Stopped, Work};
 use std::fmt;
 use std::sync::Arc;
 
-/// One surface, what it is made of, and how it shines.
+/// A surface with its material and emission.
 #[derive(Clone, Debug)]
 pub struct Shape {
-    /// What rays hit.
+    /// Geometry.
     pub surface: Surface,
-    /// What it is made of.
+    /// Material.
     pub material: Arc<dyn Material>,
-    /// How it shines.
+    /// Emission.
     pub emission: Emission,
 }
 
 impl Default for Shape {
-    /// Nothing, of half grey.
+    /// An empty mesh, of 50 % grey.
     fn default() -> Self {
         let material = Arc::new(DiffuseMaterial::default());
         Self { surface: Surface::default(), material, emission: Emission::default() }
@@ -28,35 +28,35 @@ impl Default for Shape {
 }
 
 impl Shape {
-    /// What must be known of a point of it to shade it.
+    /// The lookup data that shading a point of the shape needs.
     pub fn needs(&self) -> Needs {
-        // What is dark is not asked how it shines.
+        // Emission textures of a dark shape are never evaluated.
         let emission = if self.emission.is_dark() { Needs::NONE } else { self.emission.needs() };
         self.material.needs() | emission
     }
 }
 
-/// All that is in a scene.
+/// A scene before compilation.
 #[derive(Clone, Debug, Default)]
 pub struct SceneDescription {
     /// Surfaces; the index of one is its shape number.
     pub shapes: Vec<Shape>,
-    /// Lights that are no surfaces.
+    /// Lights that are not surfaces.
     pub lights: Vec<Arc<dyn Light>>,
 }
 
-/// Why there can be no such scene.
+/// The reason why a description is invalid.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum DescriptionError {
-    /// What is wrong with the material of this shape.
+    /// The material of this shape is invalid, for this reason.
     Material(usize, String),
-    /// This shape emits less than nothing, or NaN, or infinitely much.
+    /// This shape emits a negative, NaN or infinite radiance.
     Emission(usize),
-    /// What is wrong with this light that is no surface.
+    /// This light, which is not a surface, is invalid, for this reason.
     Light(usize, String),
-    /// A prototype has so many primitives, all copies in it counted.
+    /// A prototype has this many primitives, with all instances in it flattened; that is too many.
     TooMany(u64),
-    /// None: nobody wanted it any more before it was built.
+    /// The build was interrupted.
     Stopped,
 }
 
@@ -78,7 +78,7 @@ impl fmt::Display for DescriptionError {
 impl std::error::Error for DescriptionError {}
 
 impl SceneDescription {
-    /// Whether there can be such a scene.
+    /// Checks that the description is valid.
     pub fn validate(&self) -> Result<(), DescriptionError> {
         for (i, shape) in self.shapes.iter().enumerate() {
             shape.material.validate().map_err(|why| DescriptionError::Material(i, why))?;
@@ -96,10 +96,10 @@ impl SceneDescription {
         Ok(())
     }
 
-    /// Its surfaces joined, without what nobody asks of them.
+    /// Joins the surfaces, without vertex attributes that no material reads.
     ///
     /// # Panics
-    /// If a mesh is no mesh; see [`Geometry::new`].
+    /// If a mesh is invalid; see [`Geometry::new`].
     pub(super) fn joined(self) -> Result<Parts, DescriptionError> {
         self.validate()?;
         let (mut surfaces, mut materials, mut emission) = (Vec::new(), Vec::new(), Vec::new());
@@ -113,22 +113,22 @@ impl SceneDescription {
     }
 }
 
-/// What a description is made into, before it has an accelerator.
+/// The parts of a description before an accelerator is built.
 pub(super) struct Parts {
     pub geometry: Geometry,
-    /// What each shape is made of.
+    /// Material of each shape.
     pub materials: Vec<Arc<dyn Material>>,
-    /// How each shape shines.
+    /// Emission of each shape.
     pub emission: Vec<Emission>,
-    /// Lights that are no surfaces.
+    /// Lights that are not surfaces.
     pub lights: Vec<Arc<dyn Light>>,
 }
 
 impl Prototype {
-    /// Compiles shapes, with an accelerator made for their geometry.
+    /// Compiles shapes and builds an accelerator over their geometry.
     ///
     /// # Errors
-    /// If a shape's material is impossible, or there are 2³¹ primitives or more, flattened: arrays count them as int32.
+    /// If a shape's material is invalid, or there are 2³¹ primitives or more, flattened: arrays count them as int32.
     pub fn new(
         shapes: Vec<Shape>,
         accelerator: impl FnOnce(&dyn Primitives) -> Box<dyn Accelerator>,
@@ -136,10 +136,10 @@ impl Prototype {
         Self::watched(shapes, accelerator, Work::UNWATCHED)
     }
 
-    /// The same, as work that may be stopped.
+    /// Like [`Prototype::new`], but interruptible.
     ///
     /// # Errors
-    /// If it was stopped, too.
+    /// As [`Prototype::new`], and if it was interrupted.
     pub fn watched(
         shapes: Vec<Shape>,
         accelerator: impl FnOnce(&dyn Primitives) -> Box<dyn Accelerator>,

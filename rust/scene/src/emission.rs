@@ -1,23 +1,24 @@
-//! How a surface shines.
+//! Emission of surfaces.
 
 use crate::textures::{Needs, TexturePoint, Value};
 use raywright_base::math::DVec3;
 use raywright_optics::Rgb;
 
-/// Which sides of a surface shine.
+/// The emitting sides of a surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Sides {
-    /// That to which the normals point: the outside of what is closed.
+    /// The side of the normals: the outside of a closed surface.
     #[default]
     Front,
-    /// The other: the inside of what is closed.
+    /// The opposite side: the inside of a closed surface.
     Back,
-    /// Either.
+    /// Both sides.
     Both,
 }
 
 impl Sides {
-    /// Whether there is light on the side on which the cosine to the normal, or what has its sign, is this.
+    /// Returns whether a direction is on an emitting side. `cosine` is its cosine to the normal, or any number of that
+    /// sign.
     #[inline]
     pub fn shine(self, cosine: f64) -> bool {
         match self {
@@ -27,7 +28,7 @@ impl Sides {
         }
     }
 
-    /// The way that a surface of this normal shines; none if it shines both ways.
+    /// The normal of the emitting side, for a surface of this normal; `None` if both sides emit.
     pub fn facing(self, normal: DVec3) -> Option<DVec3> {
         match self {
             Self::Front => Some(normal),
@@ -36,23 +37,23 @@ impl Sides {
         }
     }
 
-    /// How many they are.
+    /// Number of emitting sides.
     pub fn count(self) -> f64 {
         if self == Self::Both { 2.0 } else { 1.0 }
     }
 }
 
-/// The light that a surface gives off by itself.
+/// Radiance emitted by a surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Emission {
-    /// Radiance into every direction.
+    /// Emitted radiance, equal in all directions.
     pub radiance: Value,
-    /// Where it shines.
+    /// Emitting sides.
     pub sides: Sides,
 }
 
 impl Default for Emission {
-    /// None.
+    /// No emission.
     fn default() -> Self {
         Self { radiance: Value::ZERO, sides: Sides::Front }
     }
@@ -65,23 +66,23 @@ impl From<Rgb> for Emission {
 }
 
 impl Emission {
-    /// Whether it gives off nothing.
+    /// Returns whether the emission is zero everywhere.
     pub fn is_dark(&self) -> bool {
         self.radiance.is_black()
     }
 
-    /// The radiance from a point towards where the cosine to its normal is this.
+    /// Radiance emitted from a point in a direction with this cosine to the normal.
     #[inline]
     pub fn towards(&self, cosine: f64, point: &TexturePoint) -> Rgb {
         if self.sides.shine(cosine) { self.radiance.at(point) } else { Rgb::ZERO }
     }
 
-    /// What it must know of a point.
+    /// The lookup data that evaluation needs.
     pub fn needs(&self) -> Needs {
         self.radiance.needs()
     }
 
-    /// Whether it can be: finite and not negative.
+    /// Returns whether the radiance is finite and not negative.
     pub fn is_physical(&self) -> bool {
         self.radiance.range().into_iter().all(Rgb::is_radiance)
     }

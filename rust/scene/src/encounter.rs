@@ -1,26 +1,24 @@
-//! What a path asks of where it has come to.
+//! Interface of path vertices for direct lighting and scattering.
 
 use super::{LightSampleContext, RayOrigin};
 use raywright_base::math::DVec3;
 use raywright_optics::{BsdfSample, Rgb};
 
-/// Where a path has come to, whatever that is, a point of a surface or of a medium: all that direct light and
-/// continuation ask.
+/// A path vertex: a point of a surface or of a medium. It has all that direct lighting and path continuation need.
 pub trait Encounter {
-    /// The point.
+    /// Position.
     fn position(&self) -> DVec3;
 
-    /// Where rays leave from.
+    /// Origin of rays that leave the vertex.
     fn ray_origin(&self) -> RayOrigin;
 
-    /// What light is drawn for.
+    /// Reference point for light sampling.
     fn light_context(&self) -> LightSampleContext;
 
-    /// How much of the light from a direction is scattered back along the path, with the cosine where there is one, and
-    /// the density of [`Encounter::sample`] there.
+    /// Evaluates scattering from a direction back along the path, including the cosine at surfaces. Also returns the
+    /// density of [`Encounter::sample`] for that direction.
     fn evaluate(&self, direction: DVec3) -> (Rgb, f64);
 
-    /// Samples the direction of the path, in the world: `choice` and `u` as [`raywright_optics::Bsdf::sample`] takes
-    /// them.
+    /// Samples a continuation direction in world space. `choice` and `u` are as in [`raywright_optics::Bsdf::sample`].
     fn sample(&self, choice: &mut dyn FnMut() -> f64, u: [f64; 2]) -> Option<BsdfSample>;
 }

@@ -1,4 +1,4 @@
-//! What of a scene counts for rays: some of its shapes, or what faces the ray.
+//! Filtered ray queries: a subset of shapes, or front faces only.
 
 use super::geometry::{is_front_of, scaled};
 use super::{Geometry, Scene};
@@ -6,17 +6,17 @@ use raywright_accel::{Crossings, Primitives};
 use raywright_base::math::{Hit, Ray};
 use raywright_shapes::Candidate;
 
-/// What counts for rays: all goes as it would if all else were not there.
+/// A filter on hits. Results equal those of a scene without the filtered surfaces.
 #[derive(Clone, Debug, Default)]
 pub struct Filter {
-    /// Whether each shape counts; all do without it. One that is not told of does not.
+    /// One flag per shape: true if it counts. `None` counts all shapes; a shape beyond the end does not count.
     pub shapes: Option<Vec<bool>>,
-    /// Whether a surface counts only where its geometric normal is against the ray.
+    /// Counts a surface only if its geometric normal points against the ray.
     pub is_front_only: bool,
 }
 
 impl Filter {
-    /// The closest hit of each ray or, if `any` will do, one of them.
+    /// The closest hit of each ray or, if `any` is set, any hit.
     pub fn intersect(&self, scene: &Scene, rays: &[Ray], any: bool, hits: &mut [Hit]) {
         let counts =
             |i: usize, primitive: u32, met: &Candidate| self.counts(scene.geometry(), &rays[i], primitive, met);
@@ -40,8 +40,8 @@ impl Filter {
     }
 }
 
-/// Whether a ray comes to the side to which the geometric normal points. Of triangles that is decided without error;
-/// of curved shapes and copies by the normal as f64 has it.
+/// Returns whether a ray arrives on the side of the geometric normal. The decision is exact for triangles; curved
+/// shapes and instances use the normal in f64.
 fn is_front(geometry: &Geometry, ray: &Ray, primitive: u32, met: &Candidate) -> bool {
     if geometry.shape(primitive).is_none() && geometry.instance(primitive).is_none() {
         return is_front_of(geometry.corners(primitive), ray);
@@ -62,7 +62,7 @@ mod tests {
     use raywright_base::sampling::{Sampler, warp};
     use raywright_base::simd::Level;
 
-    /// Triangles as flat as a needle's shadow, large and small, far from the origin and near it.
+    /// Triangles from regular to needle-thin, large and small, near the origin and far from it.
     fn corners(seed: u32) -> [DVec3; 3] {
         let (mut sampler, mut dimension) = (Sampler::new(5, 0, seed), 0);
         let mut next = || {

@@ -1,15 +1,15 @@
-//! What a camera sees, by rasterising: a z-buffer of primitives (Catmull, "A subdivision algorithm for computer display
-//! of curved surfaces", 1974) in which every pixel's decision is that of its ray.
+//! First hits of a camera by rasterisation: a z-buffer of primitives (Catmull, "A subdivision algorithm for computer
+//! display of curved surfaces", 1974). Every pixel's decision equals that of its ray.
 //!
-//! Each triangle is projected once, to a rectangle of pixels that holds all whose rays can meet it (`view.rs`). The
-//! picture is cut into tiles. In a tile, triangles come nearest first; of those pixels of their rectangles that are not
-//! certainly passed by an edge, or certainly hidden by what is met already, the ray is asked: whether it meets the
-//! triangle, and at which `t`, is decided as everywhere ([`EdgeRay`]), so that hits are those of
-//! [`Scene::intersect`](super::Scene::intersect), bit for bit.
+//! Each triangle is projected once, to a rectangle of pixels that contains all rays that can hit it (`view.rs`). The
+//! picture is cut into tiles, and the triangles of a tile are processed nearest first. A conservative test rejects
+//! pixels that an edge certainly misses, or that are certainly hidden by an earlier hit. For the others the exact
+//! ray-triangle test ([`EdgeRay`]) decides the hit and its `t`, so hits equal those of
+//! [`Scene::intersect`](super::Scene::intersect) bit for bit.
 //!
-//! Where the triangles of a tile are so many or so large that looking at them takes longer than asking the tree would,
-//! the tree answers the tile. It answers the whole picture where there are too many triangles to look at each, or
-//! something is no triangle, or the camera is anything but a pinhole that stands still.
+//! A tile falls back to the BVH if its triangles are so many or so large that rasterising them takes longer. The whole
+//! picture falls back if there are too many triangles for its pixels, if a shape is not a mesh, or if the camera is not
+//! a pinhole at rest.
 
 use super::Scene;
 use super::cameras::{Camera, Perspective};
@@ -21,44 +21,44 @@ use raywright_base::simd::{Dispatch, Kernel, Level, Simd};
 use raywright_shapes::triangle::{ALL, Column, EdgeRay, EdgeRays, RAYS, bits};
 use std::ops::Range;
 
-/// Pixels on a tile's side: the rays of a row are asked together.
+/// Pixels along a tile's side: the rays of a row are tested together.
 const SIDE: usize = RAYS;
 
-/// Of a tile.
+/// Pixels of a tile.
 const TILE: usize = SIDE * SIDE;
 
-/// So many pixels a triangle, or more, make it worth while to project all triangles.
+/// Projecting all triangles pays off from this number of pixels per triangle.
 const PIXELS: usize = 4;
 
-/// A triangle that may be met.
+/// A triangle that may be hit.
 #[derive(Clone, Copy, Debug)]
 struct Projected {
     primitive: u32,
-    /// Its least distance along the view, or less.
+    /// Lower bound on its distance along the view.
     depth: f32,
     pixels: Pixels,
 }
 
-/// A camera's picture, ready to be asked for its first hits, band by band.
+/// Prepares a camera's picture to find its first hits band by band.
 pub struct FirstHits<'a> {
     scene: &'a Scene,
     camera: &'a dyn Camera,
-    /// Where in the pixels: one for all of them, or one each.
+    /// Position in the pixel: one for all pixels, or one each.
     offsets: &'a [[f64; 2]],
-    /// A pinhole that stands still, and its view; of any other camera the tree is asked.
+    /// A pinhole at rest and its view; other cameras use the BVH.
     view: Option<(&'a Perspective, View)>,
     projected: Vec<Projected>,
-    /// Indices of those in each band of tiles, and where each band's begin.
+    /// Triangle indices of each band of tiles, and the start of each band's list.
     in_band: Vec<u32>,
     splits: Vec<usize>,
-    /// Whether tiles may be answered without the tree.
+    /// True if tiles may be rasterised.
     is_plain: bool,
     level: Level,
 }
 
 impl<'a> FirstHits<'a> {
-    /// Projects all triangles of a scene, on the current pool of threads. `offsets` are where in the pixels rays go,
-    /// (0, 0) the upper left of one: one for all of them, or one each.
+    /// Projects all triangles of a scene on the current thread pool. `offsets` are ray positions in the pixel, (0, 0)
+    /// at its upper left: one for all pixels, or one each.
     ///
     /// # Panics
     /// If there is another number of offsets.
@@ -94,12 +94,12 @@ impl<'a> FirstHits<'a> {
         Self { scene, camera, offsets, view, projected, in_band, splits, is_plain, level }
     }
 
-    /// Pixels of a band, in whole rows; the last may have fewer.
+    /// Pixels of a band, in whole rows; the last band may have fewer.
     pub fn band(&self) -> usize {
         SIDE * self.camera.width() as usize
     }
 
-    /// The first hits of a band, row by row. Returns how many of them the tree was asked for.
+    /// Finds the first hits of a band, row by row. Returns the number of pixels that used the BVH.
     pub fn answer(&self, band: usize, hits: &mut [Hit]) -> usize {
         let width = self.camera.width() as usize;
         let rows = hits.len() / width;
@@ -125,7 +125,8 @@ impl<'a> FirstHits<'a> {
     }
 }
 
-/// Sorts `count` things into lists, of which each is in several: indices list by list, and where each list begins.
+/// Sorts `count` items into lists; an item may be in several. Returns the indices list by list, and the start of each
+/// list.
 fn lists(lists: usize, count: usize, of: impl Fn(usize) -> std::ops::RangeInclusive<usize>) -> (Vec<usize>, Vec<u32>) {
     let mut splits = vec![0; lists + 1];
     for i in 0..count {
@@ -149,9 +150,9 @@ fn lists(lists: usize, count: usize, of: impl Fn(usize) -> std::ops::RangeInclus
 
 /// A tile of the picture.
 struct Tile {
-    /// Row by row.
+    /// The rays, row by row.
     rays: Vec<Ray>,
-    /// The same; while triangles are looked at, with a `t` along the scaled direction.
+    /// The hits, row by row. During rasterisation their `t` is along the scaled direction.
     hits: Vec<Hit>,
     triangles: Vec<Projected>,
     rows: Vec<Row>,
@@ -161,13 +162,13 @@ struct Tile {
 #[derive(Clone)]
 struct Row {
     edges: EdgeRays,
-    /// Whether they can be asked together.
+    /// True if they can be tested together.
     is_plain: bool,
-    /// Where they pass the film.
+    /// Their film positions.
     film: [Column<f64>; 2],
-    /// What is farther along the view cannot be met before what is met already.
+    /// Distance along the view beyond which no triangle can replace the current hit.
     beyond: Column<f64>,
-    /// From `t` along the scaled direction to that of the ray.
+    /// Factor from `t` along the scaled direction to `t` of the ray.
     scale: Column<f64>,
 }
 
@@ -181,14 +182,14 @@ impl Default for Tile {
 }
 
 impl Tile {
-    /// The first hits of some pixels; returns for how many of them the tree was asked.
+    /// Finds the first hits of some pixels. Returns the number of pixels that used the BVH.
     fn answer(&mut self, of: &FirstHits, pixels: Pixels, triangles: impl Iterator<Item = Projected>) -> usize {
         let count = pixels.count();
         self.hits.clear();
         self.hits.resize(count, Hit::MISS);
         self.triangles.clear();
-        // A triangle is made ready for the tile, and then its rows are looked at: each takes about as long. A ray that
-        // asks the tree takes a little longer than either.
+        // Cost model: preparing a triangle for the tile and rasterising one row of it take about as long. A ray in the
+        // BVH takes slightly longer than either.
         let most = count + count / 4;
         let mut work = if of.is_plain { 0 } else { most + 1 };
         for triangle in triangles {
@@ -211,7 +212,7 @@ impl Tile {
         0
     }
 
-    /// Makes the rays of some pixels.
+    /// Generates the rays of some pixels.
     fn aim(&mut self, of: &FirstHits, pixels: Pixels) {
         let width = of.camera.width() as usize;
         self.rays.clear();
@@ -232,7 +233,7 @@ impl Tile {
         }
     }
 
-    /// Asks the tree, neighbours in both directions together.
+    /// Intersects the rays with the BVH, in blocks of adjacent pixels.
     fn ask_tree(&mut self, of: &FirstHits, across: usize) {
         let count = self.rays.len();
         let mut places = [0; TILE];
@@ -247,7 +248,7 @@ impl Tile {
     }
 }
 
-/// Looks at one triangle of a tile after the other.
+/// Rasterises the triangles of a tile one by one.
 struct Rasterise<'a, 'b> {
     tile: &'a mut Tile,
     of: &'a FirstHits<'b>,
@@ -257,10 +258,11 @@ struct Rasterise<'a, 'b> {
 impl Kernel<4> for Rasterise<'_, '_> {
     type Output = ();
 
-    // No lane is named: the loops over a row are made for the level by the compiler, with the same bits at all of them.
+    // The lane type is not used: the compiler vectorises the row loops for the level, and the bits are the same at
+    // every level.
     #[inline(always)]
     fn run<S: Simd<4>>(self, _: S) {
-        /// So many rays or fewer are asked one by one.
+        /// This many rays or fewer are tested one by one.
         const FEW: u32 = 2;
         let Self { tile: Tile { rays, hits, triangles, rows }, of, pixels } = self;
         let Some((pinhole, view)) = &of.view else { return };
@@ -327,8 +329,8 @@ impl Kernel<4> for Rasterise<'_, '_> {
 }
 
 impl Row {
-    /// The rays that do not certainly pass a triangle by, with one edge on their left and another on their right, and
-    /// are not certain to meet something before that depth.
+    /// Mask of the rays that may hit a triangle, with one edge on their left and another on their right, and that have
+    /// no certain hit nearer than this depth.
     #[inline(always)]
     fn not_passed(&self, sides: &[DVec3; 3], above: f64, depth: f64) -> u32 {
         let mut left = [0u32; RAYS];
@@ -343,10 +345,9 @@ impl Row {
         bits(&left)
     }
 
-    /// Takes a hit of ray `i` if it is closer; of equal `t`, that of the lowest primitive.
+    /// Records a hit of ray `i` if it is closer; at equal `t` the lowest primitive wins.
     ///
-    /// This `t` and any that it is compared with may be off by [`EdgeRay::T_ERROR`] of the largest coordinate each, and
-    /// the depth by a few roundings.
+    /// Each `t` has an error of at most [`EdgeRay::T_ERROR`] of the largest coordinate, and the depth a few roundings.
     #[inline(always)]
     fn offer(&mut self, i: usize, hit: Hit, scale: f64, ray: &Ray, forward: DVec3, best: &mut Hit) {
         const ROOM: f64 = 1.0 + 1.0 / (1u64 << 40) as f64;
@@ -368,8 +369,8 @@ mod tests {
     use proptest::prelude::*;
     use raywright_base::math::Vec3;
 
-    /// Hits by rasterising at every level, which are those of rays, bit for bit; returns for how many pixels the tree
-    /// was asked.
+    /// Rasterises at every level and checks that hits equal those of rays bit for bit. Returns the number of pixels
+    /// that used the BVH.
     fn agreed(scene: &Scene, camera: &dyn Camera, offsets: &[[f64; 2]]) -> usize {
         let (width, height) = (camera.width() as usize, camera.height() as usize);
         let ray = |i: usize| {
@@ -400,7 +401,7 @@ mod tests {
         for (position, target, fov) in [
             (at(0.1, 0.2, 0.3), at(0.9, 0.1, -0.8), 70.0),
             (at(0.0, 0.0, 0.0), at(1.0, 1.0, 1.0), 170.0),
-            // On a wall, at a corner, outside.
+            // Cameras on a wall, at a corner and outside.
             (at(-1.0, 0.0, 0.0), at(0.0, 0.0, 1.0), 100.0),
             (at(-1.0, -1.0, -1.0), at(0.0, 0.1, 0.0), 90.0),
             (at(5.0, 4.0, 3.0), at(0.0, 0.0, 0.0), 30.0),
@@ -408,7 +409,8 @@ mod tests {
         ] {
             let camera = Perspective::looking_at(position, target, DVec3::Y, fov, 53, 37).unwrap();
             let asked = agreed(&room, &camera, &[[0.5, 0.5]]);
-            // All but the last tiles of rows, five pixels wide, whose walls are as much to look at as their pixels.
+            // All tiles but the last of each row rasterise: those are five pixels wide, and their walls cost as much as
+            // their pixels.
             assert!(asked <= 5 * 37, "{asked} pixels of the tree");
         }
     }

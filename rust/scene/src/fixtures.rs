@@ -1,4 +1,4 @@
-//! Scenes that tests share.
+//! Scenes shared by tests.
 
 use super::{DiffuseMaterial, Mesh, Perspective, Scene, SceneDescription, Shape};
 use raywright_accel::bvh::Options;
@@ -8,7 +8,7 @@ use raywright_base::simd::Level;
 use raywright_optics::Rgb;
 use std::sync::Arc;
 
-/// A scene on the default accelerator.
+/// Builds a scene on the default accelerator.
 pub fn scene(description: SceneDescription) -> Scene {
     let level = Level::current().expect("a level");
     let compiled = Scene::new(description, |geometry| trees::over(geometry, &Options::default(), level));
@@ -26,14 +26,14 @@ pub fn rectangle(corner: [f32; 3], side: [f32; 3], other: [f32; 3]) -> Mesh {
     }
 }
 
-/// A surface of one colour that may shine.
+/// A diffuse surface of one colour that may emit.
 pub fn shape(mesh: Mesh, reflectance: impl Into<[f64; 3]>, emission: f64) -> Shape {
     let reflectance = Rgb::from_array(reflectance.into()).into();
     let material = Arc::new(DiffuseMaterial { reflectance });
     Shape { surface: mesh.into(), material, emission: Rgb::splat(emission).into() }
 }
 
-/// A box from −1 to 1 whose faces look inwards, of one reflectance and emission.
+/// A box from −1 to 1 whose faces point inwards, with one reflectance and emission.
 pub fn furnace(reflectance: f64, emission: f64) -> Scene {
     let shapes = inward_box([-1.0; 3], [2.0; 3]).map(|mesh| shape(mesh, [reflectance; 3], emission)).into();
     scene(SceneDescription { shapes, ..Default::default() })
@@ -53,7 +53,7 @@ pub fn inward_box(low: [f32; 3], size: [f32; 3]) -> [Mesh; 6] {
     ]
 }
 
-/// A box standing on the floor, turned about y, its faces outwards.
+/// A box that stands on the floor, rotated about y, with its faces outwards.
 fn standing_box(centre: [f32; 2], half: f32, height: f32, degrees: f32) -> Mesh {
     let (sin, cos) = degrees.to_radians().sin_cos();
     let corner = |i: usize| {
@@ -70,8 +70,7 @@ fn standing_box(centre: [f32; 2], half: f32, height: f32, degrees: f32) -> Mesh 
     }
 }
 
-/// The box that everybody renders: red and green walls, two blocks, a small light at the ceiling; it is open to the
-/// camera's side.
+/// A Cornell box: red and green walls, two blocks, a small area light at the ceiling, open towards the camera.
 pub fn cornell(width: u32, height: u32) -> (Scene, Perspective) {
     let white = [0.73, 0.73, 0.73];
     let [left, right, floor, ceiling, back, _] = inward_box([0.0; 3], [1.0; 3]);

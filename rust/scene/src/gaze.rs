@@ -1,13 +1,13 @@
-//! How points are looked at.
+//! Context of a texture or light lookup.
 
 use raywright_optics::spectra::Waves;
 
-/// How a point is looked at: what matters of it beside where it is.
+/// Context of a lookup besides the position: filter width and wavelengths.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Gaze {
-    /// How wide the bundle of neighbouring rays is there; 0 if nobody asks.
+    /// Width of the ray footprint there; 0 if it is not needed.
     pub width: f64,
-    /// At which wavelengths; none for red, green and blue.
+    /// Wavelengths; `None` for red, green and blue.
     pub waves: Option<Waves>,
 }
 

@@ -1,4 +1,4 @@
-//! Floor 3: what a scene is made of, compiled for rays.
+//! Floor 3: scenes and their compilation for ray tracing.
 
 pub mod cameras;
 mod compiled;
@@ -8,7 +8,7 @@ mod emission;
 mod encounter;
 mod filter;
 mod first_hits;
-// For the tests of the crates above: what is not called is not linked.
+// For the tests of dependent crates; unused code is not linked.
 #[doc(hidden)]
 pub mod fixtures;
 mod gaze;

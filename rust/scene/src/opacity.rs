@@ -1,10 +1,10 @@
-//! The opacity of a surface where a ray meets it.
+//! Opacity of a surface at a hit.
 
 use super::materials::Material;
 use super::{Geometry, ShadingPoint, SurfacePoint};
 use raywright_base::math::{Hit, Ray};
 
-/// Returns the share of rays like this one that the surface stops where it is hit.
+/// Returns the probability that the surface stops a ray at a hit.
 pub fn opacity_at(material: &dyn Material, geometry: &Geometry, ray: &Ray, hit: &Hit, surface: &SurfacePoint) -> f64 {
     if material.is_opaque() {
         return 1.0;

@@ -1,26 +1,26 @@
-//! Faces cut into patches, each of which has one value.
+//! Subdivision of faces into patches.
 
-/// The primitives of a scene, each cut into patches: a triangle into n² that are similar to it, by lines along its
-/// sides; what is no triangle stays whole. Which patch a hit lies in follows from its coordinates alone.
+/// A subdivision of a scene's primitives into patches. A triangle is cut by lines parallel to its sides into n² similar
+/// triangles; other shapes stay whole. The patch of a hit depends only on its coordinates.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Patches {
-    /// Into how many strips each primitive is cut.
+    /// Number of strips of each primitive.
     cuts: Vec<u32>,
-    /// The first patch of each, and the number of all at the end.
+    /// First patch of each primitive, and the total number at the end.
     first: Vec<u32>,
 }
 
-/// A patch of a triangle: its three corners, as the weights of the triangle's second and third.
+/// A patch of a triangle: its corners as barycentric coordinates of the triangle's second and third corner.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cell {
-    /// Which primitive it is of.
+    /// Primitive number.
     pub primitive: u32,
-    /// The corners, in the order of the triangle's own: the middle ones of a face are turned by half a turn.
+    /// Corners in the triangle's order; inner patches are rotated by 180 degrees.
     pub corners: [[f64; 2]; 3],
 }
 
 impl Cell {
-    /// The point of given weights for the second and third corner.
+    /// Maps barycentric coordinates of the patch to those of the triangle.
     #[inline]
     pub fn at(&self, [u, v]: [f64; 2]) -> [f64; 2] {
         let [a, b, c] = self.corners;
@@ -29,13 +29,13 @@ impl Cell {
 }
 
 impl Patches {
-    /// Patches that may be told apart.
+    /// Maximum number of patches.
     const MOST: u64 = 1 << 30;
 
-    /// Cuts primitive after primitive into so many strips, at least one.
+    /// Cuts each primitive into a number of strips, at least one.
     ///
     /// # Errors
-    /// If there are more than 2³⁰ patches in all.
+    /// If there are more than 2³⁰ patches in total.
     pub fn new(cuts: Vec<u32>) -> Result<Self, String> {
         let mut first = vec![0];
         let mut count = 0u64;
@@ -49,39 +49,39 @@ impl Patches {
         Ok(Self { cuts, first })
     }
 
-    /// How many there are.
+    /// Number of patches.
     pub fn count(&self) -> usize {
         self.first[self.cuts.len()] as usize
     }
 
-    /// How many primitives were cut.
+    /// Number of primitives.
     pub fn primitives(&self) -> usize {
         self.cuts.len()
     }
 
-    /// The patch at a point of a primitive, and where in it: the weights of its second and third corner.
+    /// The patch at a point of a primitive, and the barycentric coordinates within it.
     #[inline]
     pub fn find(&self, primitive: u32, [u, v]: [f64; 2]) -> (u32, [f64; 2]) {
         let (n, first) = (self.cuts[primitive as usize], self.first[primitive as usize]);
         if n <= 1 {
             return (first, [u, v]);
         }
-        // Rounding may carry a point on the border a little beyond it.
+        // Rounding may move a point on the border slightly beyond it.
         let (x, y) = (u * f64::from(n), v * f64::from(n));
         let i = (x as u32).min(n - 1);
         let j = (y as u32).min(n - 1 - i);
         let (a, b) = (x - f64::from(i), y - f64::from(j));
         let is_turned = a + b > 1.0 && i + j + 2 <= n;
-        // A strip of k upright cells has k − 1 turned ones between them: 2 n i − i² stand before strip i.
+        // A strip with k upright patches has k − 1 rotated ones between them, so 2 n i − i² patches precede strip i.
         let patch = first + 2 * n * i - i * i + 2 * j + u32::from(is_turned);
         (patch, if is_turned { [1.0 - a, 1.0 - b] } else { [a, b] })
     }
 
-    /// What a patch is of its primitive.
+    /// Geometry of a patch within its primitive.
     pub fn cell(&self, patch: u32) -> Cell {
         let primitive = self.first.partition_point(|&first| first <= patch) - 1;
         let (n, k) = (u64::from(self.cuts[primitive].max(1)), u64::from(patch - self.first[primitive]));
-        // From strip i on there are (n − i)² of them.
+        // From strip i on there are (n − i)² patches.
         let left = n * n - k;
         let root = left.isqrt();
         let i = n - if root * root < left { root + 1 } else { root };
@@ -96,7 +96,7 @@ impl Patches {
         Cell { primitive: primitive as u32, corners }
     }
 
-    /// What share of its primitive's area a patch has.
+    /// Area of a patch relative to its primitive.
     pub fn share(&self, primitive: u32) -> f64 {
         1.0 / f64::from(self.cuts[primitive as usize].max(1)).powi(2)
     }

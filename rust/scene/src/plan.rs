@@ -1,4 +1,4 @@
-//! What a scene needs, what is left out, and which variant of shading it takes.
+//! The features a scene needs, and the shading variant selected by them.
 
 use super::materials::BsdfMix;
 use super::media::Medium;
@@ -11,46 +11,46 @@ use std::borrow::Cow;
 use std::ops::BitOr;
 use std::sync::Arc;
 
-/// What there is in a scene that costs something to those who shade it. Found once, when it is compiled.
+/// Features of a scene that make shading more expensive, found at compilation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SceneNeeds {
-    /// What materials and lights must know of a point, all together.
+    /// Union of the lookup data of materials and lights.
     pub points: Needs,
-    /// Materials that are not the same diffuse one at every point of a shape.
+    /// A material other than one diffuse BSDF per shape.
     pub scattering: bool,
-    /// Materials that some rays pass as if nothing were there.
+    /// A material with partial opacity.
     pub masks: bool,
-    /// Shapes that enclose a medium with an index of refraction of its own.
+    /// A closed shape with its own index of refraction.
     pub interiors: bool,
-    /// Several of those, which may lie in one another, or one with something in it that scatters by what is around it.
+    /// Several interiors, which may be nested, or one that may contain a sheet whose BSDF depends on its surroundings.
     pub nested: bool,
-    /// Which of them share space, as far as their boxes tell.
+    /// Shapes that may overlap interiors, by their boxes.
     pub standing: Standing,
-    /// What dims or scatters light between surfaces.
+    /// A participating medium.
     pub media: bool,
-    /// What is the same everywhere, of that, and scatters light.
+    /// A homogeneous medium that scatters.
     pub even_media: bool,
-    /// What glows between surfaces.
+    /// An emissive medium.
     pub glow: bool,
     /// Emission that varies over a surface.
     pub patterned_lights: bool,
     /// Shading normals.
     pub smooth: bool,
-    /// Shapes that are no meshes.
+    /// Shapes that are not meshes.
     pub shapes: bool,
     /// Instances of prototypes.
     pub instances: bool,
-    /// What moves while the shutter is open.
+    /// Motion while the shutter is open.
     pub motion: bool,
-    /// Vertices with more digits than f32 has.
+    /// Vertices that f32 cannot represent.
     pub double: bool,
-    /// Anything that shines.
+    /// Any light.
     pub light: bool,
-    /// Wavelengths in place of red, green and blue.
+    /// Spectral rendering instead of RGB.
     pub waves: bool,
 }
 
-/// Whether a medium is the same everywhere, and scatters.
+/// Returns whether a medium is homogeneous and scatters.
 fn scatters_evenly(medium: &dyn Medium) -> bool {
     medium.is_even() && medium.scatters()
 }
@@ -64,7 +64,7 @@ impl BitOr for SceneNeeds {
             scattering: self.scattering | other.scattering,
             masks: self.masks | other.masks,
             interiors: self.interiors | other.interiors,
-            // Two of what encloses something may overlap.
+            // Two interiors may overlap.
             nested: self.nested | other.nested | (self.interiors & other.interiors),
             standing: self.standing | other.standing,
             media: self.media | other.media,
@@ -82,22 +82,22 @@ impl BitOr for SceneNeeds {
     }
 }
 
-/// A loop over a batch of paths, compiled with what some scenes need and no more.
+/// A shading loop over a batch of paths, compiled for a subset of features.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ShadingVariant {
-    /// One diffuse colour a shape: no material is asked, and nothing is passed through.
+    /// One diffuse colour per shape: no material evaluation, no pass-through surfaces.
     Plain,
-    /// Any material and any texture that is asked for points: no masks, no media in one another, no widths of rays.
+    /// Any material and texture; no masks, nested interiors or ray footprints.
     Open,
-    /// All that can be.
+    /// All features.
     General,
 }
 
 impl ShadingVariant {
-    /// Every one, from the one that can do least on.
+    /// All variants, from least to most features.
     pub const ALL: [Self; 3] = [Self::Plain, Self::Open, Self::General];
 
-    /// What it is called.
+    /// Name of the variant.
     pub fn name(self) -> &'static str {
         match self {
             Self::Plain => "plain",
@@ -107,36 +107,36 @@ impl ShadingVariant {
     }
 }
 
-/// What a scene needs, and what follows from it.
+/// The features a scene needs, and data derived from them.
 #[derive(Clone, Debug)]
 pub struct Plan {
     needs: SceneNeeds,
-    /// What rounding to f32 did to vertices, or would have done: of the mesh, in prototypes too, to which that is most.
+    /// Greatest loss of a mesh by rounding to f32, prototypes included.
     rounding: Rounding,
-    /// How many lights are asked one by one where light is scattered sharply; 0 where one of all is asked.
+    /// Number of lights sampled one by one at glossy surfaces; 0 if one light is selected instead.
     few: u32,
-    /// How each shape scatters on either side, if it does so alike everywhere ([`Material::constant_sides`]).
+    /// Constant BSDFs of each shape, front and back ([`Material::constant_sides`]).
     constants: Vec<Option<[BsdfMix; 2]>>,
-    /// Of those that are diffuse, what each reflects.
+    /// Reflectances of each diffuse shape.
     diffuse: Vec<Option<[Rgb; 2]>>,
-    /// By which kinds of functions each scatters, on the front and on the back.
+    /// BSDF kinds of each shape, front and back.
     kinds: Vec<[u8; 2]>,
-    /// Whether shading normals are taken as they are given.
+    /// True if shading normals are used as given.
     as_given: bool,
 }
 
-/// What has less than this roughness, but does not scatter into single directions, counts as glossy. Over rougher
-/// surfaces, asking each of a few lights costs as much time as it saves.
+/// Upper bound on the roughness of a glossy, non-delta BSDF. On rougher surfaces, sampling each of a few lights costs
+/// as much time as it saves.
 const GLOSS: f64 = 0.35;
 
-/// What becomes of shading normals unless they are taken as given.
+/// Treatment of shading normals, unless they are used as given.
 const FADED: &str = "interpolated, and faded at the terminator";
 
-/// A line of a plan: what it is about, whether the scene has it, and what that means.
+/// A row of the plan's table: the feature, whether the scene has it, and its effect.
 pub type PlanRow = (&'static str, bool, Cow<'static, str>);
 
 impl Plan {
-    /// The plan of a scene.
+    /// Computes the plan of a scene.
     pub(super) fn new(geometry: &Geometry, materials: &[Arc<dyn Material>], lights: &Lights) -> Self {
         let mut needs = SceneNeeds {
             smooth: geometry.is_smooth(),
@@ -197,7 +197,7 @@ impl Plan {
         }
     }
 
-    /// Of a prototype: with an interior in it, its instances may overlap.
+    /// Features of a prototype. If it has an interior, its instances may overlap.
     fn of_copies(prototype: &super::Prototype, rounding: &mut Rounding) -> SceneNeeds {
         let geometry = prototype.geometry();
         *rounding = rounding.worst(geometry.rounding());
@@ -213,7 +213,7 @@ impl Plan {
         SceneNeeds { nested: needs.nested | needs.interiors, ..needs }
     }
 
-    /// The same plan of a scene that has a medium around all that is in it, or none.
+    /// Returns the plan with a medium around everything, or none.
     pub(super) fn with_medium_around(&self, medium: Option<&dyn Medium>) -> Self {
         let (media, glow) = (medium.is_some(), medium.is_some_and(Medium::glows));
         let (even_media, waves) = (medium.is_some_and(scatters_evenly), medium.is_some_and(Medium::has_waves));
@@ -221,10 +221,10 @@ impl Plan {
         Self { needs: self.needs | around, ..self.clone() }
     }
 
-    /// The same plan of a scene whose shading normals are taken as they are given. Shapes that may have any are asked
-    /// at each point.
+    /// Returns the plan with shading normals as given. Shapes that may have shading normals are evaluated at each
+    /// point.
     pub(super) fn with_normals_as_given(mut self, geometry: &Geometry) -> Self {
-        // Bumps and maps need to know of tangents.
+        // Bump and normal maps need tangents.
         self.as_given = self.needs.smooth || self.needs.points.tangents;
         if !self.as_given {
             return self;
@@ -233,7 +233,7 @@ impl Plan {
             if geometry.has_normals(shape as u32) {
                 self.constants[shape] = None;
             }
-            // What is diffuse everywhere has its own loops, which know of faded normals only.
+            // The loops for constant diffuse surfaces only support faded normals.
             if self.constants[shape].is_none() {
                 self.diffuse[shape] = None;
                 self.kinds[shape] = [Self::MIXED as u8; 2];
@@ -243,24 +243,23 @@ impl Plan {
         self
     }
 
-    /// Whether shading normals are taken as they are given, and there are any: light does not fade at horizons, and no
-    /// normal is bent.
+    /// Returns whether shading normals are used as given and there are any: no fading at horizons, no bending.
     #[inline]
     pub fn normals_as_given(&self) -> bool {
         self.as_given
     }
 
-    /// What the scene needs.
+    /// The features the scene needs.
     pub fn needs(&self) -> SceneNeeds {
         self.needs
     }
 
-    /// What rounding to f32 has done to vertices, where that is a loss.
+    /// Rounding of vertices to f32, if it is a loss.
     pub fn loss(&self) -> Option<Rounding> {
         (!self.needs.double && self.rounding.is_loss()).then_some(self.rounding)
     }
 
-    /// Which digits of vertices are kept, and why.
+    /// Precision of vertices, with its reason.
     fn digits(&self) -> Cow<'static, str> {
         let Rounding { moved, .. } = self.rounding;
         let figure = || format!("{moved:.1e}, {:.1e} of its mesh's extent", self.rounding.share());
@@ -272,50 +271,49 @@ impl Plan {
         }
     }
 
-    /// Whether each of few lights is asked ([`Lights::sample_one`]), and one of them gets the shadow ray, at a point
-    /// that scatters light with this roughness ([`raywright_optics::Bsdf::roughness`]). At a matt surface the positions
-    /// of lights predict their contributions well enough to choose one of them ([`Lights::sample`]); at a glossy one
-    /// only their evaluation does.
+    /// Returns whether a point with this roughness ([`raywright_optics::Bsdf::roughness`]) samples each of few lights
+    /// ([`Lights::sample_one`]) and resamples one of them for the shadow ray. On a diffuse surface, light positions
+    /// predict contributions well enough to select one ([`Lights::sample`]); on a glossy surface only the BSDF does.
     #[inline]
     pub fn asks_each(&self, roughness: impl FnOnce() -> f64) -> bool {
         self.few > 0 && (f64::MIN_POSITIVE..=GLOSS).contains(&roughness())
     }
 
-    /// How a shape scatters that is surrounded by nothing, if it does so alike everywhere; in a scene of
-    /// [`ShadingVariant::Plain`] each does, and is diffuse.
+    /// The BSDF of a shape in vacuum, if it is constant. Under [`ShadingVariant::Plain`] every shape has one, and it is
+    /// diffuse.
     #[inline]
     pub fn constant(&self, shape: u32, is_front: bool) -> Option<&BsdfMix> {
         self.constants[shape as usize].as_ref().map(|[front, back]| if is_front { front } else { back })
     }
 
-    /// What a shape reflects on the front and on the back, if each side scatters light by one diffuse colour.
+    /// Reflectances of front and back, if both sides have one diffuse colour.
     #[inline]
     pub fn diffuse(&self, shape: u32) -> Option<[Rgb; 2]> {
         self.diffuse[shape as usize]
     }
 
-    /// How many kinds there are of what scatters: those of [`AnyBsdf`], and what is of no one of them.
+    /// Number of BSDF kinds: those of [`AnyBsdf`], and [`Plan::MIXED`].
     pub const KINDS: usize = AnyBsdf::KINDS + 1;
 
-    /// The kind of what scatters by one colour at a point.
+    /// Kind of a diffuse BSDF.
     pub const DIFFUSE: usize = AnyBsdf::DIFFUSE;
 
-    /// In place of the kind of what is not known beforehand, or scatters by several.
+    /// Kind of a mixture, or of a BSDF that is not known in advance.
     pub const MIXED: usize = AnyBsdf::KINDS;
 
-    /// By which kind of function a shape scatters that is surrounded by nothing; it may be another on the back.
+    /// Kind of a shape's BSDF in vacuum, on the front or the back.
     #[inline]
     pub fn kind(&self, shape: u32, is_front: impl FnOnce() -> bool) -> usize {
         let [front, back] = self.kinds[shape as usize];
         (if front == back || is_front() { front } else { back }).into()
     }
 
-    /// The variant of shading that has what the scene needs, and the least beyond.
+    /// The variant with the fewest features that the scene's needs fit in.
     pub fn variant(&self) -> ShadingVariant {
         ShadingVariant::ALL.into_iter().find(|&variant| self.suits(variant)).unwrap_or(ShadingVariant::General)
     }
 
-    /// Whether a variant has what the scene needs.
+    /// Returns whether a variant has the features the scene needs.
     pub fn suits(&self, variant: ShadingVariant) -> bool {
         let needs = &self.needs;
         match variant {
@@ -377,7 +375,7 @@ impl Plan {
             row("motion", needs.motion, "rays are spread over the shutter's time", "all rays at one time"),
             ("float64 vertices", needs.double, self.digits()),
         ];
-        // Said of those only who have it.
+        // Only listed if the scene has them.
         if needs.standing.sheets || needs.standing.glass {
             rows.push(("shapes in glass", true, "surfaces scatter by the index around them".into()));
         }
@@ -405,7 +403,7 @@ mod tests {
         }
     }
 
-    /// What encloses something, or may be passed.
+    /// A material that may have an interior or partial opacity.
     #[derive(Debug)]
     struct Odd {
         interior: Option<Interior>,

@@ -1,68 +1,68 @@
-//! Rays that leave a surface.
+//! Origins of rays that leave a surface.
 
 use super::SurfacePoint;
 use raywright_base::math::{DVec3, Ray, select};
 
-/// A point on a surface that rays leave from, or that they are sent to.
+/// A point on a surface where rays start or end.
 ///
-/// Such a ray must not hit the surface it leaves, nor start behind one close by. So it starts a little off the surface:
-/// as far as rounding can matter and no farther, whatever the scale (Pharr, Jakob and Humphreys, "Physically Based
-/// Rendering", 4th ed., 2023, 6.8.6), rather than a fixed distance off.
+/// A ray must neither hit the surface it leaves, nor start behind another one close by. So its origin is offset from
+/// the surface by just the bound on rounding errors, at any scale (Pharr, Jakob and Humphreys, "Physically Based
+/// Rendering", 4th ed., 2023, 6.8.6), rather than by a fixed distance.
 #[derive(Clone, Copy, Debug)]
 pub struct RayOrigin {
     position: DVec3,
-    /// The way off the surface, on the side of its normal.
+    /// Offset from the surface, on the side of its normal.
     offset: DVec3,
 }
 
 impl RayOrigin {
-    /// How many times the error of the position a ray starts off the surface. With M the largest coordinate of the
-    /// primitive, the position is within 8 ε M = 2⁻⁴⁹ M of its plane in each coordinate, at most 2⁻⁴⁸ M along the
-    /// normal. The ray's own test takes the corners relative to its origin, up to 2 M long, and its distance from them
-    /// by sums of products, with at most 16 roundings of ε/2: another 2⁻⁴⁸ M. Twice the sum of both is 2⁻⁴⁶ M. On a
-    /// sliver the products weigh more than the distance, but where that could make a difference the test takes exact
-    /// ones, and then this is plenty ([`raywright_shapes::triangle::EdgeRay`]).
+    /// Ratio of the offset to the position's error. With M the largest coordinate of the primitive, the position is
+    /// within 8 ε M = 2⁻⁴⁹ M of its plane in each coordinate, at most 2⁻⁴⁸ M along the normal. The ray's own test
+    /// computes the corners relative to its origin, up to 2 M long, and its distance from them by sums of products.
+    /// These take at most 16 roundings of ε/2: another 2⁻⁴⁸ M. Twice the sum of both is 2⁻⁴⁶ M. On a sliver the
+    /// products outweigh the distance, but there the test uses exact products if they could matter, and the offset is
+    /// ample ([`raywright_shapes::triangle::EdgeRay`]).
     const SAFETY: f64 = 8.0;
 
-    /// Where a segment ends, as a share of its way. What is left to the surface that it goes to is more than the error
-    /// of that surface's test in f64, whose bounds are within 2⁻⁴⁶ of the way except where it is grazed. So most shapes
-    /// can tell without longer numbers that they do not shadow themselves.
+    /// End of a segment, relative to its length. The remaining gap exceeds the f64 error of the end surface's
+    /// intersection test, which is bounded by 2⁻⁴⁶ of the length except at grazing angles. So most shapes can rule out
+    /// self-shadowing without extended precision.
     const END: f64 = 1.0 - 1.0 / (1u64 << 45) as f64;
 
-    /// Where rays from a point of a surface start.
+    /// The origin of rays from a surface point.
     #[inline(always)]
     pub fn new(surface: &SurfacePoint) -> Self {
         Self::off(surface.position, surface.error, surface.normal)
     }
 
-    /// Where rays start from a point of a surface of this normal, of which each coordinate is known to within `error`.
+    /// The origin of rays from a point with this normal, where each coordinate has at most this error.
     #[inline(always)]
     pub fn off(position: DVec3, error: f64, normal: DVec3) -> Self {
         Self { position, offset: normal * (Self::SAFETY * error) }
     }
 
-    /// A point, and the way off its surface.
+    /// A point with a given offset.
     #[inline(always)]
     pub(super) fn with(position: DVec3, offset: DVec3) -> Self {
         Self { position, offset }
     }
 
-    /// The way off the surface.
+    /// Offset from the surface.
     #[inline(always)]
     pub(super) fn offset(&self) -> DVec3 {
         self.offset
     }
 
-    /// How far around a hit of a ray, in lengths of its direction, surfaces count as one with the surface hit: rays
-    /// that leave it start beyond them.
+    /// Radius around a hit, in lengths of the ray's direction, within which surfaces count as one with the hit surface.
+    /// Rays that leave it start beyond them.
     #[inline]
     pub fn reach(surface: &SurfacePoint, ray: &Ray) -> f64 {
-        // The offset along the normal, as the ray meets the plane; bounded for rays that graze it.
+        // The offset along the normal, projected onto the ray; bounded for grazing rays.
         let slope = ray.direction.dot(surface.normal).abs().max(1e-3 * ray.direction.length());
         Self::SAFETY * surface.error / slope
     }
 
-    /// The point itself.
+    /// The surface point itself.
     #[inline(always)]
     pub fn position(&self) -> DVec3 {
         self.position
@@ -74,26 +74,26 @@ impl RayOrigin {
         Self { position, offset: DVec3::ZERO }
     }
 
-    /// The point a ray starts or ends at when it leaves or arrives along `direction`, which points away from here.
+    /// The start or end of a ray with this `direction` away from the surface.
     #[inline(always)]
     fn towards(&self, direction: DVec3) -> DVec3 {
         let offset = select(self.offset.dot(direction) < 0.0, -self.offset, self.offset);
         self.position + offset
     }
 
-    /// Where rays start that leave on the side of the normal.
+    /// Origin of rays that leave on the side of the normal.
     #[inline(always)]
     pub(super) fn outside(&self) -> DVec3 {
         self.position + self.offset
     }
 
-    /// The ray that leaves along a direction.
+    /// The ray that leaves in a direction.
     #[inline(always)]
     pub fn ray(&self, direction: DVec3) -> Ray {
         Ray::new(self.towards(direction), direction)
     }
 
-    /// The segment from here to there: what lies on it shadows the one from the other.
+    /// The segment to another point, for visibility tests.
     #[inline(always)]
     pub fn segment(&self, there: &Self) -> Ray {
         let direction = there.position - self.position;
@@ -109,7 +109,7 @@ mod tests {
     use raywright_base::math::Vec3;
     use raywright_base::sampling::{Sampler, warp};
 
-    /// A triangle of this size and place, turned at random.
+    /// A triangle with this size and position, randomly rotated.
     fn triangle(size: f64, place: f64, sample: u32) -> Mesh {
         let mut sampler = Sampler::new(1, 0, sample);
         let place = warp::uniform_sphere(sampler.two(0)) * place;
@@ -135,7 +135,7 @@ mod tests {
                     let mut sampler = Sampler::new(2, sample, draw);
                     let uv = warp::uniform_triangle(sampler.two(0));
                     let surface = scene.geometry().on_triangle(0, uv);
-                    // Half of them graze the plane, down to an angle of 10⁻¹².
+                    // Half of the rays graze the plane, down to an angle of 10⁻¹².
                     let direction = warp::uniform_sphere(sampler.two(1));
                     let departure = RayOrigin::new(&surface);
                     if draw % 2 == 0 {
@@ -162,7 +162,7 @@ mod tests {
             let [start, along, across] = [0, 1, 2].map(|d| warp::uniform_sphere(sampler.two(d)));
             let (start, across) = (start * place, across.reject_from(along) / aspect);
             let vertices = Vertices::Double(vec![start, start + along, start + 0.3 * along + across]);
-            // In a large scene, too, whose bounds on errors are larger.
+            // Also in a large scene, which has larger error bounds.
             let far = if sample % 2 == 0 { 0.0 } else { 1e3 };
             let other = Mesh { faces: vec![[0, 0, 0]], ..triangle(1.0, far, sample) };
             let shapes = [Mesh { vertices, faces: vec![[0, 1, 2]], ..Mesh::default() }, other];
@@ -173,7 +173,7 @@ mod tests {
                 let mut sampler = Sampler::new(6, sample, draw);
                 let surface = scene.geometry().on_triangle(0, warp::uniform_triangle(sampler.two(0)));
                 let direction = warp::uniform_sphere(sampler.two(1));
-                // The normal is known to within the aspect times a rounding: what is flatter has no side.
+                // The normal is accurate to the aspect ratio times a rounding; a flatter direction has no defined side.
                 if direction.dot(surface.normal).abs() > 64.0 * f64::EPSILON * aspect * (1.0 + place) {
                     rays.push(RayOrigin::new(&surface).ray(direction));
                 }

@@ -1,46 +1,46 @@
-//! All that shading may want to know of a point.
+//! Input of material evaluation at a surface point.
 
 use super::SurfacePoint;
 use super::textures::TexturePoint;
 use raywright_base::math::DVec3;
 
-/// A point that is shaded, and how the surface lies there. What nobody needs is not computed
+/// A shaded point and its local geometry. Data that no material needs is not computed
 /// ([`Needs`](super::textures::Needs)).
 #[derive(Clone, Copy, Debug)]
 pub struct ShadingPoint {
-    /// The point.
+    /// The surface point.
     pub point: SurfacePoint,
-    /// Where textures are asked. Where texture coordinates are not needed, coordinates on the shape stand for them: of
-    /// a triangle the weights of its second and third corner.
+    /// Texture lookup data. If texture coordinates are not needed, surface coordinates replace them; for a triangle
+    /// these are barycentric.
     pub texture: TexturePoint,
-    /// How the point changes with the texture coordinates; zero where they do not tell points apart.
+    /// Derivatives of the position by the texture coordinates; zero if these are degenerate.
     pub dp: [DVec3; 2],
-    /// How the unit shading normal does.
+    /// Derivatives of the unit shading normal by the texture coordinates.
     pub dn: [DVec3; 2],
-    /// How the point in the space of its shape does.
+    /// Derivatives of the position in its shape's space.
     pub object_dp: [DVec3; 2],
-    /// By how much lengths there differ from those of the world, about.
+    /// Approximate ratio of lengths there to those in the world.
     pub scale: f64,
-    /// Whether it is seen from the side that the normal points to.
+    /// True if the point is seen from the side of its normal.
     pub is_front: bool,
-    /// The index of refraction on the side of the normal.
+    /// Index of refraction on the side of the normal.
     pub outside: f64,
-    /// Whether normals are taken as they are given: none is kept on the side of the point's.
+    /// True if normals are used as given, on either side of the geometric normal.
     pub as_given: bool,
 }
 
-/// How wide a bundle of neighbouring rays is: a cone around the ray (Akenine-Möller et al., "Texture Level of Detail
-/// Strategies for Real-Time Ray Tracing", 2019).
+/// Footprint of a ray: a cone around it (Akenine-Möller et al., "Texture Level of Detail Strategies for Real-Time Ray
+/// Tracing", 2019).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Footprint {
-    /// At the ray's origin.
+    /// Width at the ray's origin.
     pub width: f64,
-    /// By how much it widens per length; negative where rays come together.
+    /// Growth of the width per length; negative if rays converge.
     pub spread: f64,
 }
 
 impl Footprint {
-    /// Further along.
+    /// The footprint at a distance.
     #[inline]
     pub fn at(self, distance: f64) -> Self {
         Self { width: (self.width + self.spread * distance).abs(), ..self }
@@ -48,7 +48,7 @@ impl Footprint {
 }
 
 impl ShadingPoint {
-    /// What is known of a point from the front without asking for more.
+    /// Shading data without derivatives, seen from the front.
     #[inline]
     pub fn plain(point: SurfacePoint) -> Self {
         Self {

@@ -1,16 +1,16 @@
-//! What stands in glass.
+//! Detection of shapes inside other dielectrics.
 
 use super::{Geometry, Material, Prototype};
 use raywright_accel::Primitives;
 use raywright_base::math::DVec3;
 use std::ops::BitOr;
 
-/// Which shapes may stand within what has an index of refraction of its own, or at its surface, as far as boxes tell.
+/// Flags for shapes that may be inside an interior or touch it, by their boxes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Standing {
-    /// Shapes that enclose nothing and scatter by what is around them.
+    /// A sheet without interior whose BSDF depends on its surroundings.
     pub sheets: bool,
-    /// Others that have an index of refraction of their own.
+    /// A second interior with its own index of refraction.
     pub glass: bool,
 }
 
@@ -22,11 +22,11 @@ impl BitOr for Standing {
     }
 }
 
-/// A box from its least corner to its greatest.
+/// A box by its lower and upper corner.
 type Extent = [DVec3; 2];
 
 impl Standing {
-    /// Of all shapes of a geometry, of these materials.
+    /// Computes the flags of all shapes of a geometry with these materials.
     pub fn of<'a>(geometry: &Geometry, materials: impl Iterator<Item = &'a dyn Material>) -> Self {
         let (mut glass, mut sheets) = (Vec::new(), Vec::new());
         let mut found = Self::default();
@@ -55,14 +55,14 @@ impl Standing {
         found | Self { sheets: share(glass, sheets), glass: share(glass, &[]) }
     }
 
-    /// Within a prototype.
+    /// Computes the flags within a prototype.
     fn within(prototype: &Prototype) -> Self {
         Self::of(prototype.geometry(), prototype.appearances().map(|(material, _)| material))
     }
 }
 
-/// Whether anything in a prototype has an index of refraction of its own, and whether anything else scatters by what is
-/// around it.
+/// Returns whether a prototype contains an interior, and whether it contains a sheet whose BSDF depends on its
+/// surroundings.
 fn contents(prototype: &Prototype) -> [bool; 2] {
     let geometry = prototype.geometry();
     let each =
@@ -77,8 +77,8 @@ fn union(a: Extent, b: Extent) -> Extent {
     [a[0].min(b[0]), a[1].max(b[1])]
 }
 
-/// Whether two of some boxes have a point in common or, if there are others, one of some and one of the others: along
-/// an axis, those that begin before another ends are looked at.
+/// Returns whether any two of `some` boxes overlap or, with `others`, one of each. A sweep along an axis tests boxes
+/// that begin before another ends.
 fn share(some: &[Extent], others: &[Extent]) -> bool {
     let mut all: Vec<(Extent, bool)> = some.iter().map(|&one| (one, false)).collect();
     all.extend(others.iter().map(|&one| (one, true)));

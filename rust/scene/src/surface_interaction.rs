@@ -1,4 +1,4 @@
-//! A path's encounter with a surface.
+//! Interaction of a path with a surface.
 
 mod as_given;
 mod lanes;
@@ -11,36 +11,36 @@ use super::{Encounter, Gaze, LightSampleContext, RayOrigin, Scene, ShadingPoint,
 use raywright_base::math::{DVec3, Frame, Hit, Ray, select};
 use raywright_optics::{Bsdf, BsdfSample, Rgb};
 
-/// Where a ray has met a surface.
+/// A surface interaction: the hit point with its BSDF.
 ///
-/// Scattering is computed in the shading frame, whose z is on the side of the winding's normal, so that what transmits
-/// knows by the sign of a direction on which side it lies. Which side that is in truth is the geometric normal's to
-/// say: otherwise light leaks through wherever the two normals disagree (Veach, "Robust Monte Carlo Methods for Light
-/// Transport Simulation", 1997, 5.3). What is cut off so would show the facets of a coarse mesh as hard steps where
-/// light grazes them; it fades out before instead (see `fading`).
+/// Scattering is computed in the shading frame, with z on the side of the winding's normal. So the sign of a
+/// direction's z tells a transmissive BSDF the side. The geometric normal decides the true side; otherwise light leaks
+/// where the two normals disagree (Veach, "Robust Monte Carlo Methods for Light Transport Simulation", 1997, 5.3). A
+/// hard cut there would show the facets of a coarse mesh at the terminator, so light fades out before it (see
+/// `fading`).
 #[derive(Clone, Debug)]
 pub struct SurfaceInteraction<B = BsdfMix> {
     surface: SurfacePoint,
     /// Shading frame.
     frame: Frame,
     bsdf: B,
-    /// Back along the ray, in the shading frame.
+    /// Direction back along the ray, in the shading frame.
     wo: DVec3,
-    /// 1 where the ray comes from the side of the winding's normal, −1 on the other.
+    /// 1 if the ray arrives on the side of the winding's normal, otherwise −1.
     side: f64,
-    /// Whether the two normals are one.
+    /// True if shading and geometric normal are equal.
     is_flat: bool,
-    /// Whether the shading normal was bent towards the ray.
+    /// True if the shading normal was bent towards the ray.
     is_bent: bool,
-    /// Whether the shading normal is taken as it is given ([`Plan::normals_as_given`](super::Plan::normals_as_given)).
+    /// True if the shading normal is used as given ([`Plan::normals_as_given`](super::Plan::normals_as_given)).
     as_given: bool,
-    /// Mean curvature, positive where the surface bulges towards the ray; 0 unless it was asked for.
+    /// Mean curvature, positive where the surface is convex towards the ray; 0 unless a footprint was given.
     curvature: f64,
 }
 
 impl SurfaceInteraction {
-    /// What a ray of unit direction meets at a hit, by how it is looked at; `outside` is the index of refraction on the
-    /// other side of what the surface encloses.
+    /// The interaction of a ray of unit direction at a hit, for a lookup context. `outside` is the index of refraction
+    /// on the side opposite to the surface's interior.
     #[inline]
     pub fn new(
         scene: &Scene,
@@ -61,7 +61,7 @@ impl SurfaceInteraction {
         Self::mapped(scene, ray, hit, surface, gaze, outside)
     }
 
-    /// The same where the material has to be asked.
+    /// The interaction for a material that must be evaluated at the point.
     fn mapped(scene: &Scene, ray: &Ray, hit: &Hit, surface: SurfacePoint, gaze: Gaze, outside: f64) -> Self {
         let material = scene.material_at(&surface);
         let mut needs = material.needs();
@@ -80,7 +80,7 @@ impl SurfaceInteraction {
         here
     }
 
-    /// Looks up a hit and what is there.
+    /// The interaction at a hit, without context and in vacuum.
     #[inline]
     pub fn at(scene: &Scene, ray: &Ray, hit: &Hit) -> Self {
         Self::new(scene, ray, hit, scene.geometry().surface(ray, hit), 0.0, 1.0)
@@ -88,19 +88,19 @@ impl SurfaceInteraction {
 }
 
 impl<B: Bsdf> SurfaceInteraction<B> {
-    /// The smallest cosine between shading normal and view. Beyond the horizon of the shading normal a surface would
-    /// turn black though it faces the viewer, so there the normal is bent towards the viewer until it just faces him.
+    /// Minimum cosine between shading normal and view. Beyond the horizon of the shading normal a surface would be
+    /// black although it faces the viewer. There the normal is bent towards the viewer until it just faces him.
     pub const GRAZING: f64 = 1e-3;
 
-    /// What a ray of unit direction meets at a point of a surface, given the shading normal there, the direction that
-    /// the frame's x should have if that matters, and how the surface scatters.
+    /// The interaction of a ray of unit direction at a surface point, from its shading normal, the x axis of the frame
+    /// if it matters, and the BSDF.
     #[inline(always)]
     pub fn with(ray: &Ray, surface: SurfacePoint, (shading, tangent): (DVec3, Option<DVec3>), bsdf: B) -> Self {
         let back = -ray.direction;
         let side = 1f64.copysign(back.dot(surface.normal));
         let other = surface.normal;
         let is_flat = (shading.x == other.x) & (shading.y == other.y) & (shading.z == other.z);
-        // Both are computed, and one is taken: lanes have no branches.
+        // Both are computed and one is selected, because lanes have no branches.
         let cosine = shading.dot(back) * side;
         let is_bent = !is_flat & (cosine < Self::GRAZING);
         let bent = (shading + back * (side * (Self::GRAZING - cosine))).normalize();
@@ -113,8 +113,8 @@ impl<B: Bsdf> SurfaceInteraction<B> {
         Self { surface, frame, bsdf, wo, side, is_flat, is_bent, as_given: false, curvature: 0.0 }
     }
 
-    /// The same as somebody meets it whose rays come back along a direction; `None` where more than that would differ:
-    /// on the other side, and where a normal is bent for the one or the other.
+    /// The same interaction for another outgoing direction. Returns `None` if more than that would differ: on the other
+    /// side, or if a normal is bent for either direction.
     pub fn met_from(&self, direction: DVec3) -> Option<SurfaceInteraction<&B>> {
         if self.as_given {
             return self.met_as_given(direction);
@@ -127,123 +127,122 @@ impl<B: Bsdf> SurfaceInteraction<B> {
         (is_same_side && !is_bent).then_some(met)
     }
 
-    /// The share of ambient light that is reflected here ([`Material::ambient`](super::Material::ambient)); the other
-    /// arguments are those that [`SurfaceInteraction::new`] was given.
+    /// Reflectance of ambient light ([`Material::ambient`](super::Material::ambient)); the other arguments are those of
+    /// [`SurfaceInteraction::new`].
     pub fn ambient(&self, scene: &Scene, ray: &Ray, hit: &Hit, gaze: impl Into<Gaze>, outside: f64) -> Rgb {
         let material = scene.material_at(&self.surface);
         material.ambient(&shading_point(scene, ray, hit, self.surface, material.needs(), gaze, outside))
     }
 
-    /// The geometric normal on the side that the ray came from.
+    /// The geometric normal on the ray's side.
     #[inline(always)]
     pub fn normal(&self) -> DVec3 {
         self.surface.normal * self.side
     }
 
-    /// What is known of the point.
+    /// The surface point.
     #[inline(always)]
     pub fn surface(&self) -> &SurfacePoint {
         &self.surface
     }
 
-    /// The shading normal on the side that the ray came from.
+    /// The shading normal on the ray's side.
     #[inline(always)]
     pub fn shading_normal(&self) -> DVec3 {
         self.frame.normal * self.shading_side()
     }
 
-    /// The cosine between the ray, back along it, and the shading normal on its side.
+    /// Cosine of the outgoing direction to the shading normal on its side.
     #[inline(always)]
     pub fn cosine(&self) -> f64 {
         self.wo.z * self.shading_side()
     }
 
-    /// On which side of the shading normal the ray is taken to have come: from that of the geometric one, or where it
-    /// is given from whichever it does.
+    /// The side of the shading normal that the ray counts on: that of the geometric normal, or its own side if normals
+    /// are used as given.
     #[inline(always)]
     fn shading_side(&self) -> f64 {
         if self.as_given { 1f64.copysign(self.wo.z) } else { self.side }
     }
 
-    /// Whether the shading normal is taken as it is given: no light fades.
+    /// Returns whether the shading normal is used as given, without fading.
     #[inline(always)]
     pub fn is_as_given(&self) -> bool {
         self.as_given
     }
 
-    /// Whether the two normals are one.
+    /// Returns whether shading and geometric normal are equal.
     #[inline(always)]
     pub fn is_flat(&self) -> bool {
         self.is_flat
     }
 
-    /// Whether the shading normal was bent towards the ray, and is another for rays of other directions.
+    /// Returns whether the shading normal was bent towards the ray, so that it depends on the ray's direction.
     #[inline(always)]
     pub fn is_bent(&self) -> bool {
         self.is_bent
     }
 
-    /// How the point scatters, and nothing else.
+    /// Extracts the BSDF.
     pub fn into_bsdf(self) -> B {
         self.bsdf
     }
 
-    /// How the point scatters.
+    /// The BSDF.
     #[inline(always)]
     pub fn bsdf(&self) -> &B {
         &self.bsdf
     }
 
-    /// Back along the ray, in the shading frame.
+    /// Direction back along the ray, in the shading frame.
     #[inline(always)]
     pub fn wo(&self) -> DVec3 {
         self.wo
     }
 
-    /// Mean curvature, positive where the surface bulges towards the ray; 0 unless a width was given.
+    /// Mean curvature, positive where the surface is convex towards the ray; 0 unless a width was given.
     #[inline(always)]
     pub fn curvature(&self) -> f64 {
         self.curvature
     }
 
-    /// Whether a direction points to the other side of the surface than the ray came from.
+    /// Returns whether a direction is on the opposite side of the surface from the ray.
     #[inline(always)]
     pub fn is_through(&self, direction: DVec3) -> bool {
         self.surface.normal.dot(direction) * self.side < 0.0
     }
 
-    /// What was drawn in the shading frame, in the world.
+    /// Transforms a sample from the shading frame to the world.
     #[inline(always)]
     pub fn to_world(&self, drawn: BsdfSample) -> Option<BsdfSample> {
         let (wi, fading) = self.goes_to(drawn.wi, drawn.is_delta());
         (fading > 0.0).then(|| BsdfSample { wi, weight: drawn.weight * fading, ..drawn })
     }
 
-    /// Where a direction of the shading frame goes in the world, and how much of what is drawn there counts.
+    /// Transforms a direction of the shading frame to the world; also returns its fading factor.
     #[inline(always)]
     pub fn goes_to(&self, wi: DVec3, is_delta: bool) -> (DVec3, f64) {
         let direction = self.frame.to_world(wi);
         let fading = self.fading(wi, direction);
-        // A single direction is not cut off along a line, and need not fade.
+        // A delta direction produces no visible cut, so it need not fade.
         (direction, if is_delta & (fading > 0.0) & !self.as_given { 1.0 } else { fading })
     }
 
-    /// A direction of the world in the shading frame, and how much light from there counts: 0 where it is not seen.
+    /// Transforms a direction to the shading frame; also returns its fading factor, 0 below a horizon.
     #[inline(always)]
     pub fn seen_from(&self, direction: DVec3) -> (DVec3, f64) {
         let wi = self.frame.to_local(direction);
         (wi, self.fading(wi, direction))
     }
 
-    /// How much light from a direction counts as that nears the horizon of either normal: 0 where it lies above the one
-    /// and below the other.
+    /// Fading factor of a direction near the horizon of either normal: 0 if it is above one and below the other.
     ///
-    /// Where the normals differ, and light comes from the ray's side, it fades by −G³ + G² + G with G = min(1, (ng·ω) /
-    /// ((ns·ω) (ng·ns))), and so reaches 0 at the geometric horizon with a slope, not a step (Chiang, Li and Burley,
-    /// "Taming the Shadow Terminator", 2019). It is 1 exactly on what is flat, where nothing is biased, and at most 1,
-    /// so that energy is never made. Reciprocity is lost where the normals differ, as it is by any shading normal.
-    /// Moving the origin of shadow rays instead (Hanika, "Hacking the Shadow Terminator", 2021) lets light through near
-    /// contacts, and needs the light that the geometric horizon cuts off.
+    /// If the normals differ and light comes from the ray's side, the factor is −G³ + G² + G with G = min(1, (ng·ω) /
+    /// ((ns·ω) (ng·ns))). It reaches 0 at the geometric horizon with a slope, not a step (Chiang, Li and Burley,
+    /// "Taming the Shadow Terminator", 2019). It is exactly 1 on flat surfaces, which adds no bias, and at most 1, so
+    /// energy is never created. Reciprocity is lost where the normals differ, as with any shading normal. The
+    /// alternative of moving the origin of shadow rays (Hanika, "Hacking the Shadow Terminator", 2021) leaks light near
+    /// contacts, and needs the light beyond the geometric horizon.
     #[inline(always)]
     fn fading(&self, wi: DVec3, direction: DVec3) -> f64 {
         if self.as_given {
@@ -272,11 +271,11 @@ impl<B: Bsdf> Encounter for SurfaceInteraction<B> {
         RayOrigin::new(&self.surface)
     }
 
-    /// For the side that the ray came from, or both where light goes through.
+    /// The receiver has the normal of the ray's side, or none if light is transmitted.
     ///
-    /// A side is asked for where rays to it leave from. On the wall of a hollow ball that shines, nothing else tells
-    /// whether light is asked for inside of it or outside, and the density of rays that meet the wall is asked from
-    /// there too.
+    /// Its position is offset to that side, as are ray origins. On the inner wall of an emissive hollow sphere only the
+    /// offset tells whether the receiver is inside, and the density of rays that hit the wall must use the same
+    /// position.
     #[inline(always)]
     fn light_context(&self) -> LightSampleContext {
         if self.bsdf.transmits() {
@@ -302,16 +301,16 @@ impl<B: Bsdf> Encounter for SurfaceInteraction<B> {
     }
 }
 
-/// How much light counts near the horizon of the geometric normal, as [`SurfaceInteraction`] has it: by its cosines to
-/// the geometric and to the shading normal, both positive and up to the same factor, and that between the two.
+/// Fading factor near the geometric horizon, as in [`SurfaceInteraction`]. `geometric` and `shading` are a direction's
+/// cosines to the two normals, positive and up to a common factor; `between` is the cosine between the normals.
 #[inline(always)]
 pub fn fading(geometric: f64, shading: f64, between: f64) -> f64 {
     let g = geometric / (shading * between);
-    // A shading normal of the other side, as a bump may have, has no such horizon.
+    // A shading normal on the other side, as a bump map may produce, has no such horizon.
     if between <= 0.0 || g >= 1.0 { 1.0 } else { ((1.0 - g) * g + 1.0) * g }
 }
 
-/// What a material is told of the point.
+/// Input of material evaluation at the point.
 fn shading_point(
     scene: &Scene,
     ray: &Ray,
@@ -323,18 +322,17 @@ fn shading_point(
 ) -> ShadingPoint {
     let point = ShadingPoint::new(scene.geometry(), ray, hit, surface, needs, gaze);
     if scene.plan().normals_as_given() {
-        // What is seen is the side of the shading normal.
+        // The visible side is that of the shading normal.
         let is_front = ray.direction.dot(surface.shading_normal) <= 0.0;
         return ShadingPoint { outside, is_front, as_given: true, ..point };
     }
     ShadingPoint { outside, ..point }
 }
 
-/// The mean curvature of a surface, positive where it bulges to the side of its normal; 0 where it is not known how it
-/// lies.
+/// Mean curvature, positive where the surface is convex on the side of its normal; 0 if its derivatives are unknown.
 fn mean_curvature(point: &ShadingPoint) -> f64 {
     let ([u, v], [du, dv]) = (point.dp, point.dn);
-    // The trace of the shape operator, by the two fundamental forms.
+    // Half the trace of the shape operator, from both fundamental forms.
     let (e, f, g) = (u.dot(u), u.dot(v), v.dot(v));
     let area = e * g - f * f;
     let sum = du.dot(u) * g - (du.dot(v) + dv.dot(u)) * f + dv.dot(v) * e;
@@ -388,7 +386,7 @@ mod tests {
 
     #[test]
     fn a_surface_that_faces_the_viewer_is_not_black() {
-        // Seen from beyond the horizon of the shading normal, from either side.
+        // Views from beyond the horizon of the shading normal, on both sides.
         let floor = floor(DVec3::new(0.8, 0.0, 0.6));
         for side in [1.0, -1.0] {
             let here = look(&floor, DVec3::new(-side, 0.0, 0.2 * side));

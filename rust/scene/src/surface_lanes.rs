@@ -1,9 +1,9 @@
-//! Points of surfaces by lane.
+//! Surface points in structure-of-arrays form.
 
 use super::SurfacePoint;
 use raywright_base::math::{LANES, VectorLanes};
 
-/// What surfaces are where rays have met them, a lane each.
+/// Surface points, one per lane.
 #[derive(Clone, Debug)]
 pub struct SurfaceLanes {
     pub(super) position: VectorLanes,
@@ -15,7 +15,7 @@ pub struct SurfaceLanes {
 }
 
 impl SurfaceLanes {
-    /// Nowhere.
+    /// Sixteen undefined points.
     pub const NONE: Self = Self {
         position: VectorLanes::ZERO,
         error: [0.0; LANES],
@@ -25,7 +25,7 @@ impl SurfaceLanes {
         inner: [None; LANES],
     };
 
-    /// The point of a lane.
+    /// The surface point of a lane.
     #[inline(always)]
     pub fn get(&self, lane: usize) -> SurfacePoint {
         SurfacePoint {
@@ -38,13 +38,13 @@ impl SurfaceLanes {
         }
     }
 
-    /// Of which shape that of a lane is.
+    /// Shape number of a lane.
     #[inline(always)]
     pub fn shape(&self, lane: usize) -> u32 {
         self.shape[lane]
     }
 
-    /// Sets the point of a lane.
+    /// Sets the surface point of a lane.
     #[inline(always)]
     pub fn set(&mut self, lane: usize, point: &SurfacePoint) {
         self.position.set(lane, point.position);

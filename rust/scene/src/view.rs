@@ -1,34 +1,34 @@
-//! Triangles as a camera sees them: which pixels they may cover, certain to include all that they do.
+//! Conservative projection of triangles to pixels.
 //!
-//! In view space a point relative to the camera has the coordinates (X, Y, W) along the picture's width and height and
-//! the view, such that a ray through (x, y), each from −1 to 1 across the picture, goes along (x, y, 1).
+//! In view space a point relative to the camera has coordinates (X, Y, W) along the picture's width, its height and the
+//! view. A ray through (x, y), each from −1 to 1 across the picture, has direction (x, y, 1).
 //!
-//! The bound. Let u = 2⁻⁵³, |q| the distance of the farthest corner, and s the greatest of 1 and the inverse half width
-//! and half height of the picture at distance 1, or more where the picture's middle is not that of the view
-//! ([`super::cameras::Window::onto_film`]). A relative corner errs by u|q|, its product with an axis by 4u|q| more, and
-//! axes are at right angles to within 4u, so that no coordinate errs by more than 16us|q|; a ray's direction, three
-//! sums, a normalisation and three quotients, goes through a point off by less than 16us. 64us|q| is allowed for both,
-//! and called the slack.
+//! Error bound. Let u = 2⁻⁵³ and |q| the distance of the farthest corner. Let s be the greatest of 1 and the inverse
+//! half width and half height of the picture at distance 1, or more if the picture is not centered on the view
+//! ([`super::cameras::Window::onto_film`]). A relative corner has an error of u|q|, and its dot product with an axis
+//! 4u|q| more. Axes are orthogonal to within 4u. So the error of each coordinate is at most 16us|q|. A ray's direction
+//! takes three sums, a normalisation and three divisions, and passes through a point displaced by less than 16us. For
+//! both together 64us|q| is allowed, called the slack.
 
 use super::cameras::{Camera, Perspective};
 use raywright_base::math::DVec3;
 use raywright_base::math::robust::{greater, lesser};
 
-/// A camera's picture, and where in its pixels rays go.
+/// A camera's picture, and the ray offsets in its pixels.
 #[derive(Clone, Debug)]
 pub(super) struct View {
     position: DVec3,
     forward: DVec3,
-    /// What gives the first two coordinates.
+    /// Linear forms of the first two coordinates.
     right: DVec3,
     up: DVec3,
     size: [f64; 2],
-    /// Least and greatest offset in a pixel, by axis.
+    /// Minimum and maximum offset in a pixel, by axis.
     offsets: [[f64; 2]; 2],
-    /// What bounds all three, as a multiple of the distance: see
+    /// Bound on all three forms, as a multiple of the distance; see
     /// [`Window::onto_film`](super::cameras::Window::onto_film).
     stretch: f64,
-    /// How far behind the camera something may lie and be met nevertheless, for the rounding of `t`.
+    /// Distance behind the camera at which a triangle may still be hit, because of rounding in `t`.
     behind: f64,
 }
 
@@ -36,11 +36,11 @@ pub(super) struct View {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Seen {
     pub corners: [DVec3; 3],
-    /// What each coordinate, or a ray past it, may be off by.
+    /// Error bound of each coordinate, or of a ray's passing point.
     pub slack: f64,
-    /// The distance of the farthest corner, times the picture's stretch: bounds every coordinate.
+    /// Distance of the farthest corner times the picture's stretch; bounds every coordinate.
     pub reach: f64,
-    /// No point of it that is met is nearer, along the view; −∞ if it may reach behind the camera.
+    /// Lower bound of a hit's distance along the view; −∞ if the triangle may reach behind the camera.
     pub depth: f64,
 }
 
@@ -52,14 +52,14 @@ pub(super) struct Pixels {
 }
 
 impl Pixels {
-    /// What both have; none if that is nothing.
+    /// The intersection of two rectangles; `None` if it is empty.
     pub fn shared(self, other: Self) -> Option<Self> {
         let within = |a: [u16; 2], b: [u16; 2]| [a[0].max(b[0]), a[1].min(b[1])];
         let both = Self { x: within(self.x, other.x), y: within(self.y, other.y) };
         (both.x[0] <= both.x[1] && both.y[0] <= both.y[1]).then_some(both)
     }
 
-    /// How many.
+    /// Number of pixels.
     pub fn count(self) -> usize {
         let length = |[first, last]: [u16; 2]| usize::from(last - first) + 1;
         length(self.x) * length(self.y)
@@ -69,12 +69,12 @@ impl Pixels {
 const SLACK: f64 = 1.0 / (1u64 << 47) as f64;
 
 impl View {
-    /// The view of a camera whose rays go through its pixels at these offsets; `reach` bounds how far the scene is, and
-    /// `t_error` is how far, as a part of that, `t` may be off.
+    /// The view of a camera with these ray offsets. `reach` bounds the distance of the scene, and `t_error` is the
+    /// error of `t` relative to it.
     pub fn new(camera: &Perspective, offsets: &[[f64; 2]], reach: f64, t_error: f64) -> Self {
         let position = camera.viewpoint().position;
         let ([right, up, forward], stretch) = camera.window().onto_film(camera.viewpoint());
-        // Rays through what is no finite point hit nothing.
+        // Rays through non-finite offsets hit nothing.
         let finite = || offsets.iter().filter(|o| o[0].is_finite() && o[1].is_finite());
         let range = |axis: usize| {
             finite().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], o| [lesser(o[axis], a), greater(o[axis], b)])
@@ -91,7 +91,7 @@ impl View {
         }
     }
 
-    /// A triangle in view space; none if all of it is behind the camera.
+    /// Transforms a triangle to view space; `None` if all of it is behind the camera.
     #[inline]
     pub fn see(&self, corners: [DVec3; 3]) -> Option<Seen> {
         let to = corners.map(|c| c - self.position);
@@ -109,14 +109,14 @@ impl View {
         Some(Seen { corners, slack, reach, depth })
     }
 
-    /// The picture from −1 to 1 at a place in pixels, along x to the right and along y upwards, as
-    /// [`Perspective::ray_through`] has it.
+    /// Converts a pixel position to film coordinates from −1 to 1, x to the right and y up, as in
+    /// [`Perspective::ray_through`].
     #[inline(always)]
     pub fn film(&self, x: f64, y: f64) -> [f64; 2] {
         [2.0 * x / self.size[0] - 1.0, 1.0 - 2.0 * y / self.size[1]]
     }
 
-    /// The places on the film that rays through some pixels may go to, by axis.
+    /// Range of film positions of rays through some pixels, by axis.
     pub fn window(&self, pixels: Pixels) -> [[f64; 2]; 2] {
         let [x, y] = [pixels.x, pixels.y].map(|p| p.map(f64::from));
         let [ox, oy] = self.offsets;
@@ -125,8 +125,8 @@ impl View {
         [[left, right], [bottom, top]]
     }
 
-    /// Whether no ray through a window of the film can meet a triangle: all of it lies beyond one of the four planes
-    /// through the window's sides.
+    /// Returns whether no ray through a window of the film can hit a triangle, because it lies beyond one of the four
+    /// planes through the window's sides.
     #[inline]
     pub fn is_beside(&self, seen: &Seen, window: &[[f64; 2]; 2]) -> bool {
         let behind = if seen.depth > 0.0 { 0.0 } else { self.behind };
@@ -138,7 +138,7 @@ impl View {
         })
     }
 
-    /// The pixels whose rays may meet a triangle; none if there are none.
+    /// The pixels whose rays may hit a triangle; `None` if there are none.
     #[inline]
     pub fn pixels(&self, seen: &Seen) -> Option<Pixels> {
         let whole = Pixels { x: [0, (self.size[0] - 1.0) as u16], y: [0, (self.size[1] - 1.0) as u16] };
@@ -154,12 +154,12 @@ impl View {
             let (low, high) = (lesser(lesser(at[0], at[1]), at[2]), greater(greater(at[0], at[1]), at[2]));
             let farthest = 1.0 + greater(low.abs(), high.abs());
             let room = farthest * (4.0 * seen.slack / seen.depth + 2.0 * SLACK);
-            // Rows are counted from above.
+            // Rows are counted from the top.
             let (low, high) = if axis == 0 { (low, high) } else { (-high, -low) };
             let half = 0.5 * self.size[axis];
             let first = (half * (1.0 + low - room) - self.offsets[axis][1]).ceil();
             let last = (half * (1.0 + high + room) - self.offsets[axis][0]).floor();
-            // What is no number, since it is too large for one, may be anywhere.
+            // Overflow to infinity or NaN rules out no pixel.
             if first > last || last < 0.0 || first > self.size[axis] - 1.0 {
                 return None;
             }
@@ -171,16 +171,17 @@ impl View {
 }
 
 impl Seen {
-    /// By edge, what is multiplied by a ray's (x, y, 1) to tell on which side of the edge it passes.
+    /// For each edge, a vector whose dot product with a ray's (x, y, 1) has the sign of the side on which the ray
+    /// passes.
     #[inline(always)]
     pub fn sides(&self) -> [DVec3; 3] {
         let [a, b, c] = self.corners;
         [b.cross(c), c.cross(a), a.cross(b)]
     }
 
-    /// What such a product may be off by, for x and y whose magnitudes add up to no more than `most`. With Q the reach,
-    /// in which the stretch s is, a coordinate errs by 64uQ, a side by 4·65uQ² + 4uQ², its product with (x, y, 1) by
-    /// 300uQ² times 1 + `most`, and the ray is off by 16us in each of x and y, which moves it by 2·16us·2Q².
+    /// Error bound of such a dot product, for x and y with |x| + |y| ≤ `most`. Let Q be the reach, which includes the
+    /// stretch s. A coordinate has an error of 64uQ, a side vector 4·65uQ² + 4uQ², and its dot product with (x, y, 1)
+    /// 300uQ² times 1 + `most`. The ray is displaced by 16us in each of x and y, which adds 2·16us·2Q².
     #[inline(always)]
     pub fn side_error(&self, view: &View, most: f64) -> f64 {
         const ERROR: f64 = 1.0 / (1u64 << 43) as f64;

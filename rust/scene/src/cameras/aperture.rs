@@ -1,4 +1,4 @@
-//! What of a lens is open.
+//! The opening of a lens.
 
 use super::CameraError;
 use raywright_base::sampling::warp::uniform_disk;
@@ -8,15 +8,15 @@ use std::f64::consts::TAU;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aperture {
     radius: f64,
-    /// How many sides the polygon has; 0 for a disk.
+    /// Number of sides of the polygon; 0 for a disk.
     blades: u32,
-    /// By how much the polygon is turned, counterclockwise as the camera looks, from where a corner is to the right.
+    /// Rotation of the polygon in radians, counterclockwise as the camera looks. At 0 a corner is to the right.
     rotation: f64,
 }
 
 impl Aperture {
-    /// A disk of a radius; or with `blades` a polygon with so many sides, turned counterclockwise as the camera looks
-    /// by an angle in radians.
+    /// Creates a disk of this radius. With `blades` it is a regular polygon with that many sides, turned
+    /// counterclockwise as the camera looks by an angle in radians.
     ///
     /// # Errors
     /// If the radius is negative or not finite, the angle is not finite, or there are one or two blades.
@@ -27,20 +27,20 @@ impl Aperture {
         Ok(Self { radius, blades, rotation })
     }
 
-    /// Of its edge, or the corners.
+    /// Radius of the disk, or of the circle through the polygon's corners.
     pub fn radius(&self) -> f64 {
         self.radius
     }
 
-    /// A point of it, uniform in area, to the right and upwards of its middle. The middle of the square is the middle.
+    /// Samples a point uniformly by area, right and up from the center. The center of the square maps to the center.
     pub fn point(&self, u: [f64; 2]) -> [f64; 2] {
         let disk = uniform_disk(u) * self.radius;
         if self.blades == 0 {
             return disk.to_array();
         }
-        // The square of a disk's radius and its angle are uniform each. Taken along the polygon's edge, at an even pace
-        // on every side, and from the middle to there, they are uniform in each of the triangles between the middle and
-        // a side.
+        // The squared radius and the angle of a uniform point of a disk are uniform and independent. The angle chooses
+        // a point on the polygon's edge, uniform on each side; the radius scales it towards the center. The result is
+        // uniform in each of the triangles between the center and a side.
         let sides = f64::from(self.blades);
         let along = (disk.y.atan2(disk.x) / TAU).rem_euclid(1.0) * sides;
         let side = along.floor();
@@ -59,8 +59,8 @@ mod tests {
     use raywright_base::sampling::chi_square::assert_frequencies;
     use std::f64::consts::PI;
 
-    /// Whether a point is in a polygon, and how far it is from leaving it: the least distance to a side over that of
-    /// the middle.
+    /// Returns whether a point is in the polygon, and its least distance to a side over the center's distance to a
+    /// side.
     fn within([x, y]: [f64; 2], blades: u32, rotation: f64) -> f64 {
         let inner = (PI / f64::from(blades)).cos();
         (0..blades)
@@ -73,8 +73,8 @@ mod tests {
 
     #[test]
     fn polygons_are_filled_evenly() {
-        // Cells between equal areas from the middle, and halves of the polygon's sides. The chance of failing by luck
-        // is that of `assert_frequencies`, for each number of blades; the seed is fixed.
+        // Cells are rings of equal area, cut into halves of the polygon's sides. The probability of a false alarm is
+        // that of `assert_frequencies`, for each number of blades; the seed is fixed.
         for (blades, rotation) in [(3, 0.0), (5, 0.3), (6, -2.0), (9, 7.0)] {
             let aperture = Aperture::new(1.0, blades, rotation).unwrap();
             let (rings, sectors) = (6, 2 * blades as usize);

@@ -1,9 +1,9 @@
-//! What every camera has: the size of its picture, where it is, and when its shutter is open.
+//! The parts common to all cameras: picture size, viewpoint and shutter.
 
 use super::viewpoint::Way;
 use super::{CameraError, Viewpoint};
 
-/// A picture's size, a place that may move, and a shutter.
+/// Picture size, a viewpoint that may move, and a shutter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Body {
     width: u32,
@@ -11,12 +11,12 @@ pub struct Body {
     start: Viewpoint,
     way: Option<Way>,
     open: f64,
-    /// How long it stays open.
+    /// Exposure time.
     duration: f64,
 }
 
 impl Body {
-    /// A camera that stays where it is, and whose shutter is open from 0 to 1 of the scene's time.
+    /// Creates a camera body at rest. Its shutter is open from 0 to 1 of the scene's time.
     ///
     /// # Errors
     /// If there is no pixel, or 2³¹ or more.
@@ -27,10 +27,10 @@ impl Body {
         Ok(Self { width, height, start: viewpoint, way: None, open: 0.0, duration: 1.0 })
     }
 
-    /// The same with a shutter that is open from one of the scene's times to another, both from 0 to 1.
+    /// Sets the scene times at which the shutter opens and closes, both from 0 to 1.
     ///
     /// # Errors
-    /// If it closes before it opens, or is open outside of that.
+    /// If it closes before it opens, or a time is outside [0, 1].
     pub fn with_shutter(self, [open, close]: [f64; 2]) -> Result<Self, CameraError> {
         if !(0.0 <= open && open <= close && close <= 1.0) {
             return Err(CameraError::Shutter);
@@ -38,38 +38,38 @@ impl Body {
         Ok(Self { open, duration: close - open, ..self })
     }
 
-    /// The same, moving so as to be at another viewpoint as the shutter closes.
+    /// Sets the viewpoint at shutter close; the camera moves there from its first viewpoint.
     pub fn moved_to(self, end: Viewpoint) -> Self {
         Self { way: (end != self.start).then(|| Way::new(self.start, end)), ..self }
     }
 
-    /// Pixels in a row.
+    /// Number of columns.
     pub fn width(&self) -> u32 {
         self.width
     }
 
-    /// Rows.
+    /// Number of rows.
     pub fn height(&self) -> u32 {
         self.height
     }
 
-    /// Width and height.
+    /// Width and height in pixels.
     #[inline(always)]
     pub fn size(&self) -> [f64; 2] {
         [f64::from(self.width), f64::from(self.height)]
     }
 
-    /// Whether it moves.
+    /// Returns whether the camera moves.
     pub fn moves(&self) -> bool {
         self.way.is_some()
     }
 
-    /// Where it is as the shutter opens.
+    /// Viewpoint at shutter open.
     pub fn start(&self) -> &Viewpoint {
         &self.start
     }
 
-    /// Where it is at a time from 0 as the shutter opens to 1 as it closes.
+    /// Viewpoint at a time from 0 (shutter open) to 1 (shutter close).
     #[inline]
     pub fn at(&self, time: f64) -> Viewpoint {
         match &self.way {
@@ -78,7 +78,7 @@ impl Body {
         }
     }
 
-    /// The scene's time at a time of the shutter.
+    /// Scene time at a time of the shutter.
     #[inline(always)]
     pub fn scene_time(&self, time: f64) -> f64 {
         self.open + self.duration * time

@@ -1,33 +1,34 @@
-//! Points as a camera sees them: the way from the scene to the film.
+//! Connections from a point of the scene to the film.
 
 use super::Viewpoint;
 use raywright_base::math::DVec3;
 
-/// How a camera sees a point of the scene: which of its rays goes there, and how much of the film that point takes.
+/// A connection from a point of the scene to the film, for light tracing and bidirectional methods.
 ///
-/// [`Camera::ray`](super::Camera::ray) goes from the film to the scene, and this is its inverse, for light that comes
-/// to a camera from elsewhere. A pixel is a mean over the film, so what a camera is importance to (Veach, "Robust Monte
-/// Carlo Methods for Light Transport Simulation", 1997, 8.1) is counted in pixels.
+/// It inverts [`Camera::ray`](super::Camera::ray), which maps the film to the scene. Importance (Veach, "Robust Monte
+/// Carlo Methods for Light Transport Simulation", 1997, 8.1) is measured in pixels, because a pixel is a mean over the
+/// film.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraConnection {
-    /// Where on the film the point is seen, in pixels: beyond the picture too, as a pixel's filter may reach there.
+    /// Film position of the point in pixels. It may lie outside the picture, within reach of a pixel's filter.
     pub film: [f64; 2],
-    /// Where the ray that meets the point starts.
+    /// Origin of the ray that meets the point.
     pub origin: DVec3,
-    /// How many pixels an area at the point has, for areas across the ray, in one over the scene's unit squared: the
-    /// importance of a pixel over the square of the distance.
+    /// Pixels per area at the point, perpendicular to the ray, in one over the scene's unit squared. It equals the
+    /// importance of a pixel over the squared distance.
     pub density: f64,
 }
 
 impl CameraConnection {
-    /// The same where that is a number: where a point is too near or too far for one, nothing is seen.
+    /// Returns the connection if its numbers are finite and its density positive. A point too near or too far overflows
+    /// and is not connected.
     pub(super) fn if_finite(self) -> Option<Self> {
         let numbers = [self.film[0], self.film[1], self.density];
         (numbers.iter().all(|n| n.is_finite()) && self.density > 0.0).then_some(self)
     }
 }
 
-/// How far a point is from a viewpoint to the right, upwards and along the view.
+/// Coordinates of a point relative to a viewpoint: right, up and forward.
 pub(super) fn relative(from: &Viewpoint, point: DVec3) -> [f64; 3] {
     let way = point - from.position;
     [way.dot(from.right), way.dot(from.up), way.dot(from.forward)]
@@ -40,7 +41,7 @@ mod tests {
     use super::*;
     use raywright_base::sampling::Sampler;
 
-    /// Each kind, still and moving, and those with more than one way to see.
+    /// Every kind of camera, at rest and moving, with each of its mappings.
     fn cameras() -> Vec<Box<dyn Camera>> {
         let start = Viewpoint::look_at(DVec3::new(1.0, 2.0, 3.0), DVec3::new(-1.0, 0.5, 0.0), DVec3::Y).unwrap();
         let end = Viewpoint::look_at(DVec3::new(1.5, 2.0, 2.0), DVec3::new(0.0, 0.5, 0.3), DVec3::Y).unwrap();
@@ -63,8 +64,8 @@ mod tests {
         all
     }
 
-    /// A point of a ray is seen where the ray came from; and its density is one over the area that the rays of a square
-    /// of the film cut from the plane across, by differences.
+    /// A point on a ray connects back to the film point of that ray. Its density is one over the perpendicular area of
+    /// the rays through a unit square of film, by finite differences.
     #[test]
     fn connections_are_the_inverse_of_rays() {
         for (number, camera) in (0u32..).zip(cameras()) {

@@ -1,29 +1,29 @@
-//! What is no camera.
+//! Errors in the description of a camera.
 
 use std::fmt;
 
-/// Why there is no such camera.
+/// The reason why a camera cannot be built.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CameraError {
     /// A coordinate is NaN or infinite.
     NotFinite,
-    /// The target is where the camera is, or the direction is zero.
+    /// The target equals the position, or the direction is zero.
     NoDirection,
-    /// The direction that is up is the one it looks in.
+    /// The up vector is parallel to the viewing direction.
     NoUp,
-    /// The field of view is not one that the kind of camera can have.
+    /// The field of view is outside the range of this kind of camera.
     FieldOfView,
-    /// There is no pixel, or 2³¹ of them or more.
+    /// The picture has no pixel, or 2³¹ or more.
     Size,
-    /// The shutter closes before it opens, or is open outside of the scene's time.
+    /// The shutter closes before it opens, or a time is outside [0, 1].
     Shutter,
-    /// A focal length is zero, or the film's numbers are not finite.
+    /// A focal length is zero, or a parameter of the film is not finite.
     Film,
     /// The lens has a negative radius, or one or two blades.
     Aperture,
-    /// What is in focus is not in front of the camera.
+    /// The focus distance is not positive and finite.
     Focus,
-    /// The picture shows nothing, or all there is.
+    /// The scale is not positive and finite.
     Scale,
 }
 

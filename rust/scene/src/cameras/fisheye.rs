@@ -1,26 +1,26 @@
-//! Wide angles in a circle.
+//! A fisheye camera.
 
 use super::connection::relative;
 use super::{Body, Camera, CameraConnection, CameraError, CameraRay, Measured, Spread};
 use raywright_base::math::{DVec3, Ray};
 
-/// How far from the middle of the picture a direction is seen, by its angle θ from the view
-/// (Miyamoto, "Fish Eye Lens", 1964; names as in ISO and photography).
+/// Radius in the picture as a function of the angle θ from the viewing direction (Miyamoto, "Fish Eye Lens", 1964;
+/// names as in ISO and photography).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Mapping {
-    /// As θ.
+    /// θ.
     #[default]
     Equidistant,
-    /// As 2 sin(θ/2): equal solid angles have equal areas.
+    /// 2 sin(θ/2). Areas are proportional to solid angles.
     Equisolid,
-    /// As 2 tan(θ/2): angles are kept.
+    /// 2 tan(θ/2). The mapping is conformal.
     Stereographic,
-    /// As sin θ: the hemisphere projected onto the plane of the film, so that areas are irradiances.
+    /// sin θ: the hemisphere projected onto the film plane, so that areas are proportional to irradiance.
     Orthographic,
 }
 
 impl Mapping {
-    /// The widest angle of view in degrees, and whether that angle itself can be had.
+    /// Upper limit of the angle of view in degrees, and whether the limit itself is allowed.
     pub fn widest(self) -> (f64, bool) {
         match self {
             Self::Equidistant | Self::Equisolid => (360.0, true),
@@ -29,7 +29,7 @@ impl Mapping {
         }
     }
 
-    /// How far from the middle an angle is seen: near the middle, the angle itself.
+    /// Picture radius of an angle; near the center it equals the angle.
     fn radius(self, angle: f64) -> f64 {
         match self {
             Self::Equidistant => angle,
@@ -39,8 +39,7 @@ impl Mapping {
         }
     }
 
-    /// How much of the picture a solid angle takes at an angle θ, as a multiple of what it takes in the middle:
-    /// r (dr/dθ) / sin θ.
+    /// Picture area per solid angle at an angle θ, relative to the center: r (dr/dθ) / sin θ.
     fn crowding(self, angle: f64) -> f64 {
         match self {
             Self::Equidistant => {
@@ -53,12 +52,12 @@ impl Mapping {
         }
     }
 
-    /// Sine and cosine of the angle at a distance from the middle.
+    /// Sine and cosine of the angle at a radius.
     fn angle(self, radius: f64) -> (f64, f64) {
         match self {
             Self::Equidistant => radius.sin_cos(),
             Self::Equisolid => {
-                // The sine of half the angle, from which the whole is had without an arc sine.
+                // The sine of half the angle; double-angle formulas give the rest without an arc sine.
                 let half = (0.5 * radius).min(1.0);
                 (2.0 * half * ((1.0 - half) * (1.0 + half)).sqrt(), 1.0 - 2.0 * half * half)
             }
@@ -74,23 +73,23 @@ impl Mapping {
     }
 }
 
-/// A camera whose angle of view is seen in a circle about the middle of its picture; it sees nothing beyond.
+/// A camera that maps its angle of view to a disk about the center of its picture. Pixels outside the disk are black.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fisheye {
     body: Body,
     mapping: Mapping,
-    /// The mapping's radius at the edge of the circle.
+    /// The mapping's radius at the edge of the disk.
     edge: f64,
-    /// From pixels to that.
+    /// Factor from pixels to the mapping's radius.
     scale: f64,
 }
 
 impl Fisheye {
-    /// A camera with an angle of view, in degrees, in the circle whose diameter is one of its picture's lengths: all of
-    /// the circle is in the picture if it is the smaller, the circle is around the picture if it is the diagonal.
+    /// Creates a fisheye camera with an angle of view in degrees. The disk's diameter is one of the picture's lengths:
+    /// the smaller fits the disk into the picture, the diagonal puts it around the picture.
     ///
     /// # Errors
-    /// If the angle is not positive, or wider than the mapping can show.
+    /// If the angle is not positive, or wider than the mapping allows.
     pub fn new(body: Body, fov: f64, mapping: Mapping, along: Measured) -> Result<Self, CameraError> {
         let (widest, has_widest) = mapping.widest();
         if !(fov > 0.0 && (fov < widest || has_widest && fov == widest)) {
@@ -108,14 +107,14 @@ impl Camera for Fisheye {
     }
 
     fn ray(&self, [x, y]: [f64; 2], _: [f64; 2], time: f64) -> CameraRay {
-        /// The circle's own edge is seen, whatever was rounded on the way there.
+        /// Bound on rounding, so that points on the disk's edge are visible.
         const ROOM: f64 = 1.0 + 4.0 * f64::EPSILON;
         let [width, height] = self.body.size();
         let [right, up] = [x - 0.5 * width, 0.5 * height - y];
         let pixels = right.hypot(up);
         let radius = self.scale * pixels;
         let (from, time) = (self.body.at(time), self.body.scene_time(time));
-        // NaN is not seen either.
+        // Comparison with NaN is false, so NaN is not visible.
         let is_seen = radius <= self.edge * ROOM;
         if !is_seen {
             return CameraRay::unseen(from.position, time);
@@ -131,7 +130,7 @@ impl Camera for Fisheye {
         let [right, up, along] = relative(&from, point);
         let aside = right.hypot(up);
         let angle = aside.atan2(along);
-        // What folds back, as sin θ beyond a right angle, is not seen twice.
+        // The orthographic mapping sin θ folds back beyond a right angle; those directions are excluded.
         let radius = self.mapping.radius(angle);
         let is_seen = radius <= self.edge && (self.mapping != Mapping::Orthographic || along > 0.0);
         let pixels = if aside > 0.0 { radius / (self.scale * aside) } else { 0.0 };
@@ -141,7 +140,7 @@ impl Camera for Fisheye {
     }
 
     fn spread(&self) -> Spread {
-        // In the middle every mapping's radius is the angle.
+        // Every mapping's radius is the angle itself near the center.
         Spread { angle: self.scale, width: 0.0 }
     }
 }
@@ -174,8 +173,8 @@ mod tests {
                 let (sin, cos) = (0.7 * f64::from(i)).sin_cos();
                 let seen = camera.ray([80.0 + 60.0 * part * cos, 60.0 - 60.0 * part * sin], [0.5; 2], 0.0);
                 let expected = DVec3::new(cos * theta.sin(), sin * theta.sin(), -theta.cos());
-                // Where the radius hardly grows with the angle, at the edge of some, the angle is known to the root of
-                // a rounding.
+                // At the edge of some mappings dr/dθ is 0, and the angle is accurate only to the square root of a
+                // rounding.
                 let slow = matches!(mapping, Mapping::Equisolid if fov == 360.0)
                     || mapping == Mapping::Orthographic && fov == 180.0;
                 let bound = if slow && i > 44 { 1e-7 } else { 2e-14 };
@@ -196,7 +195,7 @@ mod tests {
             let seen = camera.ray([x, y], [0.5; 2], 0.0);
             assert!(seen.weight == 0.0 && seen.ray.direction.is_nan());
         }
-        // The circle around the picture has a diameter of 200.
+        // The disk around the picture has a diameter of 200.
         let around = fisheye(180.0, Mapping::Equidistant, Measured::Diagonal).unwrap();
         for (x, y) in [(0.0, 0.0), (160.0, 0.0), (0.0, 120.0), (160.0, 120.0)] {
             let seen = around.ray([x, y], [0.5; 2], 0.0);

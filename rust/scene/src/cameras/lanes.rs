@@ -1,10 +1,10 @@
-//! Rays of a camera, sixteen at a time.
+//! Camera rays in batches of sixteen lanes.
 
 use super::CameraRay;
 use raywright_base::math::{LANES, VectorLanes};
 use raywright_base::sampling::Pairs;
 
-/// Rays of a camera, a lane each, as [`CameraRay`] has them.
+/// Camera rays in structure-of-arrays form; each lane is a [`CameraRay`].
 #[derive(Clone, Debug)]
 pub struct CameraRayLanes {
     pub(super) origin: VectorLanes,
@@ -14,11 +14,11 @@ pub struct CameraRayLanes {
 }
 
 impl CameraRayLanes {
-    /// No rays.
+    /// Sixteen empty rays.
     pub const NONE: Self =
         Self { origin: VectorLanes::ZERO, direction: VectorLanes::ZERO, time: [0.0; LANES], weight: [0.0; LANES] };
 
-    /// Origins of the rays, by axis.
+    /// The ray in a lane.
     #[inline(always)]
     pub fn origin(&self) -> [&[f64; LANES]; 3] {
         self.origin.by_axis()
@@ -42,7 +42,7 @@ impl CameraRayLanes {
         &self.weight
     }
 
-    /// Takes that of each lane by itself.
+    /// Generates the ray of each lane by a scalar function.
     pub(super) fn take_each(
         &mut self,
         film: &Pairs,
@@ -56,7 +56,7 @@ impl CameraRayLanes {
         }
     }
 
-    /// Sets that of a lane.
+    /// Sets the ray in a lane.
     #[inline(always)]
     fn set(&mut self, lane: usize, CameraRay { ray, weight }: &CameraRay) {
         self.origin.set(lane, ray.origin);

@@ -1,4 +1,4 @@
-//! Where a picture is seen from: cameras, one file each.
+//! Cameras, one file each.
 
 mod aperture;
 mod body;
@@ -31,90 +31,88 @@ use raywright_base::sampling::Pairs;
 use raywright_base::simd::Level;
 use std::fmt::Debug;
 
-/// What turns points of a picture into rays.
+/// A camera maps points of the film to rays.
 ///
-/// A point of the film is told in pixels, x from the left and y from the top, so that the centre of the first pixel is
-/// at (0.5, 0.5).
+/// Film positions are in pixels, x from the left and y from the top; the center of the first pixel is (0.5, 0.5).
 pub trait Camera: Debug + Send + Sync {
-    /// The picture's size, and where the camera is over time.
+    /// Picture size, viewpoint and shutter.
     fn body(&self) -> &Body;
 
-    /// The ray through a point of the film and a point of the lens, each coordinate in (0, 1) and its centre at
-    /// (0.5, 0.5), at a time from 0 as the shutter opens to 1 as it closes.
+    /// Generates the ray through a point of the film and a point of the lens, at a time from 0 (shutter open) to 1
+    /// (shutter close). Lens coordinates are in (0, 1); the lens center is (0.5, 0.5).
     fn ray(&self, film: [f64; 2], lens: [f64; 2], time: f64) -> CameraRay;
 
-    /// What [`Camera::ray`] gives for a point of the film, a point of the lens and a time of each lane.
+    /// Generates rays of sixteen lanes; each lane's result equals that of [`Camera::ray`].
     fn rays(&self, _: Level, film: &Pairs, lens: &Pairs, time: &[f64; LANES], rays: &mut CameraRayLanes) {
         rays.take_each(film, lens, time, |film, lens, time| self.ray(film, lens, time));
     }
 
-    /// How the camera sees a point of the scene from a point of the lens, at a time as [`Camera::ray`] has it; `None`
-    /// where it does not, whatever lies between.
+    /// Connects a point of the scene to the film, through a point of the lens and at a time of the shutter. Returns
+    /// `None` if the point is outside the view. Visibility is not tested.
     fn connect(&self, point: DVec3, lens: [f64; 2], time: f64) -> Option<CameraConnection>;
 
-    /// What a pixel covers.
+    /// Footprint of a pixel.
     fn spread(&self) -> Spread;
 
-    /// Whether the point of the lens matters.
+    /// Returns whether rays depend on the point of the lens.
     fn uses_lens(&self) -> bool {
         false
     }
 
-    /// Whether the camera itself moves, so that the time matters in a scene where nothing does.
+    /// Returns whether the camera itself moves, so that the time matters even in a scene at rest.
     fn uses_time(&self) -> bool {
         self.body().moves()
     }
 
-    /// The camera as a pinhole that stays where it is, whose pictures can be rasterised; none if it is no such one.
+    /// Returns the camera as a pinhole at rest, whose primary hits can be rasterised; `None` for other cameras.
     fn as_perspective(&self) -> Option<&Perspective> {
         None
     }
 
-    /// Pixels in a row.
+    /// Number of columns.
     fn width(&self) -> u32 {
         self.body().width()
     }
 
-    /// Rows.
+    /// Number of rows.
     fn height(&self) -> u32 {
         self.body().height()
     }
 }
 
-/// A ray of a camera, and how much it counts.
+/// A camera ray and its weight.
 #[derive(Clone, Copy, Debug)]
 pub struct CameraRay {
-    /// Of unit direction, at a time of the scene. Where the weight is 0 it is none: its direction is NaN, and it hits
-    /// nothing.
+    /// The ray, with unit direction and a scene time. If the weight is 0, its direction is NaN and it hits nothing.
     pub ray: Ray,
-    /// What the radiance along it is multiplied by; 0 where the camera sees nothing.
+    /// Factor on the radiance along the ray; 0 outside the view.
     pub weight: f64,
 }
 
 impl CameraRay {
-    /// A ray that counts in full.
+    /// A ray of weight 1.
     #[inline(always)]
     fn seen(ray: Ray) -> Self {
         Self { ray, weight: 1.0 }
     }
 
-    /// No ray, of a point of the film that shows nothing.
+    /// An empty ray, for a film point outside the view.
     fn unseen(origin: DVec3, time: f64) -> Self {
         Self { ray: Ray { time, ..Ray::new(origin, DVec3::NAN) }, weight: 0.0 }
     }
 }
 
-/// How far apart the rays of neighbouring pixels are: at a distance t, by `width + angle * t`. Where that differs over
-/// the picture, it is that of its middle.
+/// Distance between the rays of adjacent pixels: `width + angle * t` at a distance t. If it varies over the picture,
+/// this is its value at the center.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spread {
-    /// Between directions, in radians.
+    /// Angle between adjacent rays, in radians.
     pub angle: f64,
-    /// At the camera, in the scene's unit.
+    /// Distance at the camera, in the scene's unit.
     pub width: f64,
 }
 
-/// The unit vector along `v`, of whatever length; `None` for zero.
+/// Normalises a vector without overflow or underflow; returns `None` for zero.
 fn unit(v: DVec3) -> Option<DVec3> {
     let largest = v.abs().max_element();
     (largest > 0.0).then(|| (v / largest).normalize())

@@ -1,21 +1,21 @@
-//! A camera of parallel rays.
+//! An orthographic camera.
 
 use super::connection::relative;
 use super::window::{from_middle, to_pixels};
 use super::{Body, Camera, CameraConnection, CameraError, CameraRay, Measured, Spread};
 use raywright_base::math::{DVec3, Ray};
 
-/// A camera whose rays are parallel. They start in the plane through its position, so that what is behind it is not
-/// seen.
+/// A camera with parallel rays. They start in the plane through its position, so it sees nothing behind that plane.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Orthographic {
     body: Body,
-    /// Half the width and half the height of what is seen.
+    /// Half the width and half the height of the view, in the scene's unit.
     half: [f64; 2],
 }
 
 impl Orthographic {
-    /// A camera that sees `scale` of the scene along one of its picture's lengths. Pixels are square.
+    /// Creates a camera whose view covers `scale` units of the scene along one of its picture's lengths. Pixels are
+    /// square.
     ///
     /// # Errors
     /// If the scale is not positive and finite.
@@ -47,7 +47,7 @@ impl Camera for Orthographic {
         let [width, height] = self.half;
         let density = size[0] * size[1] / (4.0 * width * height);
         let film = to_pixels([right / width, up / height], size);
-        // Where it starts does not depend on how far away the point is, which has more digits.
+        // The origin is computed without the distance of the point, which would add rounding errors.
         let origin = from.position + from.right * right + from.up * up;
         CameraConnection { film, origin, density }.if_finite().filter(|_| along > 0.0)
     }

@@ -1,23 +1,23 @@
-//! All directions at once.
+//! An equirectangular camera of the whole sphere.
 
 use super::connection::relative;
 use super::{Body, Camera, CameraConnection, CameraRay, Spread};
 use raywright_base::math::{DVec3, Ray};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// A camera that sees the whole sphere, in an equirectangular picture: columns are longitudes and rows latitudes. The
-/// middle of the picture is where the camera looks, the top row is up, a quarter of the width to the right of the
-/// middle is to the right, and the left and the right edge are what is behind.
+/// A camera of the whole sphere with an equirectangular mapping: columns are longitudes, rows are latitudes. The
+/// viewing direction is at the center of the picture and up is the top row. Right is a quarter of the width to the
+/// right of the center; both side edges show the direction backwards.
 ///
-/// So the picture of a camera that looks along −z with +y up has, at the fractions (u, v) of its width from the left
-/// and of its height from the top, the direction (sin φ sin θ, cos θ, −cos φ sin θ) with φ = 2π (u − ½) and θ = π v.
+/// For a camera that looks along −z with +y up, the picture at fractions (u, v) of its width from the left and of its
+/// height from the top has direction (sin φ sin θ, cos θ, −cos φ sin θ) with φ = 2π (u − ½) and θ = π v.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Panorama {
     body: Body,
 }
 
 impl Panorama {
-    /// A camera; its viewpoint says what is in the middle.
+    /// Creates a camera; its viewpoint determines the center of the picture.
     pub fn new(body: Body) -> Self {
         Self { body }
     }
@@ -32,7 +32,7 @@ impl Camera for Panorama {
         let [width, height] = self.body.size();
         let from = self.body.at(time);
         let (sin, cos) = (TAU * (x / width - 0.5)).sin_cos();
-        // From the horizon, not from the pole: so the middle row is level to the last bit.
+        // The angle is measured from the horizon, not from the pole, so that the middle row is level to the last bit.
         let (up, level) = (FRAC_PI_2 - PI * y / height).sin_cos();
         let direction: DVec3 = from.direction(sin * level, up, cos * level);
         CameraRay::seen(Ray { time: self.body.scene_time(time), ..Ray::new(from.position, direction.normalize()) })
@@ -43,7 +43,7 @@ impl Camera for Panorama {
         let [right, up, along] = relative(&from, point);
         let level = right.hypot(along);
         let film = [width * (0.5 + right.atan2(along) / TAU), height * (0.5 - up.atan2(level) / PI)];
-        // A solid angle takes one over the sine of the colatitude as much of the picture as it would at the horizon.
+        // Picture area per solid angle grows by one over the sine of the colatitude, relative to the horizon.
         let distance = level.hypot(up);
         let density = width * height / (TAU * PI * level * distance);
         CameraConnection { film, origin: from.position, density }.if_finite()

@@ -1,4 +1,4 @@
-//! The pinhole.
+//! A pinhole camera.
 
 use super::connection::relative;
 use super::window::from_middle;
@@ -14,23 +14,22 @@ use raywright_base::simd::{Level, loops};
 pub struct Perspective {
     body: Body,
     window: Window,
-    /// The film at distance 1 as the shutter opens: its middle, half its width to the right, and half its height
-    /// upwards.
+    /// The film at distance 1 at shutter open: its center, half its width to the right, and half its height up.
     film: [DVec3; 3],
 }
 
 impl Perspective {
-    /// A camera that sees a window.
+    /// Creates a camera with this window.
     pub fn new(body: Body, window: Window) -> Self {
         let film = window.axes(body.start());
         Self { body, window, film }
     }
 
-    /// A camera at `position` that looks at `target`, turned so that `up` points upwards in the picture, with a
-    /// vertical field of view in degrees and square pixels.
+    /// Creates a camera at `position` that looks at `target`, with `up` upwards in the picture, a vertical field of
+    /// view in degrees, and square pixels.
     ///
     /// # Errors
-    /// If there is no such camera.
+    /// If an argument is invalid; see [`CameraError`].
     pub fn looking_at(
         position: DVec3,
         target: DVec3,
@@ -44,18 +43,18 @@ impl Perspective {
         Ok(Self::new(body, window))
     }
 
-    /// Where it is as the shutter opens.
+    /// Viewpoint at shutter open.
     pub fn viewpoint(&self) -> &Viewpoint {
         self.body.start()
     }
 
-    /// What it sees.
+    /// The visible window.
     pub fn window(&self) -> &Window {
         &self.window
     }
 
-    /// The ray, of unit direction, through a point of the film as the shutter opens: `x` in pixels from the left, `y`
-    /// from the top.
+    /// Ray of unit direction through a point of the film at shutter open: `x` in pixels from the left, `y` from the
+    /// top.
     #[inline]
     pub fn ray_through(&self, x: f64, y: f64) -> Ray {
         self.ray_by(self.body.start().position, &self.film, [x, y], 0.0)
@@ -68,7 +67,7 @@ impl Perspective {
     }
 }
 
-/// The way to a point of the film, which is at distance 1.
+/// Unit direction to a point of the film, which is at distance 1.
 #[inline(always)]
 fn towards([middle, right, up]: &[DVec3; 3], film: [f64; 2], size: [f64; 2]) -> DVec3 {
     let [x, y] = from_middle(film, size);
@@ -76,7 +75,7 @@ fn towards([middle, right, up]: &[DVec3; 3], film: [f64; 2], size: [f64; 2]) -> 
 }
 
 loops! {
-    /// Ways to points of a film.
+    /// Unit directions to sixteen points of a film.
     fn all_towards(
         film: &[DVec3; 3],
         size: [f64; 2],
@@ -158,8 +157,8 @@ mod tests {
     }
 
     proptest! {
-        /// The formula of a still pinhole with square pixels about the middle, written down by itself: pictures are
-        /// kept to the bit.
+        /// Independent formula of a pinhole at rest with square pixels about the center; rays must equal it bit for
+        /// bit.
         #[test]
         fn rays_keep_their_bits(
             position in prop::array::uniform3(-9.0..9.0f64), target in prop::array::uniform3(-9.0..9.0f64),

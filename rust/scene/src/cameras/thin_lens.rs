@@ -1,4 +1,4 @@
-//! A lens that is in focus at one distance.
+//! A thin lens with depth of field.
 
 use super::connection::relative;
 use super::window::from_middle;
@@ -6,24 +6,24 @@ use super::{Aperture, Body, Camera, CameraConnection, CameraError, CameraRay, Sp
 use raywright_base::math::{DVec3, Ray};
 
 /// A camera with a thin lens (Potmesil and Chakravarty, "A Lens and Aperture Camera Model for Synthetic Image
-/// Generation", 1981): what lies in a plane across the view is sharp, and the rest is blurred, the more the wider the
-/// lens is.
+/// Generation", 1981). Points in a plane perpendicular to the view are in focus; others blur in proportion to the lens
+/// radius.
 ///
-/// What its picture holds of that plane is what a pinhole at its middle sees.
+/// The focal plane projects to the same film points as through a pinhole at the lens center.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ThinLens {
     body: Body,
     window: Window,
     aperture: Aperture,
-    /// From the lens to the plane, along the view.
+    /// Distance from the lens to the focal plane, along the view.
     focus: f64,
 }
 
 impl ThinLens {
-    /// A camera in focus at a distance along its view.
+    /// Creates a camera that is in focus at a distance along its view.
     ///
     /// # Errors
-    /// If that is not positive and finite.
+    /// If the distance is not positive and finite.
     pub fn new(body: Body, window: Window, aperture: Aperture, focus: f64) -> Result<Self, CameraError> {
         if !(focus > 0.0 && focus.is_finite()) {
             return Err(CameraError::Focus);
@@ -42,13 +42,13 @@ impl Camera for ThinLens {
         let [x, y] = self.window.point(from_middle(film, self.body.size()));
         let [right, up] = self.aperture.point(lens);
         let origin = from.position + from.right * right + from.up * up;
-        // From the lens to the point in focus, over the distance there. No position is in it, so that it is just as
-        // right far from the origin.
+        // Direction from the lens point to the point in focus, divided by the focus distance. The formula omits the
+        // camera's position, so it stays accurate far from the origin.
         let direction = from.direction(x - right / self.focus, y - up / self.focus, 1.0).normalize();
         CameraRay::seen(Ray { time: self.body.scene_time(time), ..Ray::new(origin, direction) })
     }
 
-    /// A point of the lens sees as a pinhole does that is there, but for a film that is moved.
+    /// Each lens point is a pinhole with a shifted film.
     fn connect(&self, point: DVec3, lens: [f64; 2], time: f64) -> Option<CameraConnection> {
         let from = self.body.at(time);
         let [right, up] = self.aperture.point(lens);
@@ -106,17 +106,17 @@ mod tests {
 
     #[test]
     fn the_circle_of_confusion_is_that_of_a_thin_lens() {
-        // A lens of focal length f and diameter A, in focus at s, has the film at v = s f / (s − f), and shows a point
-        // at distance d as a circle with a diameter of c = A f |d − s| / (d (s − f)). At distance 1 that is c / v =
-        // A |d − s| / (d s).
+        // A lens of focal length f and diameter A, in focus at s, has the film at v = s f / (s − f). It images a point
+        // at distance d as a circle of diameter c = A f |d − s| / (d (s − f)). At distance 1 the diameter is c / v = A
+        // |d − s| / (d s).
         let (focus, focal) = (4.0, 0.1);
         let (camera, pinhole) = lens(0.25, 0, focus);
         let from = *pinhole.viewpoint();
         for distance in [1.0, 2.0, 3.9, 4.0, 5.0, 100.0] {
             let confusion = 0.5 * focal * f64::abs(distance - focus) / (distance * (focus - focal));
             let film = focus * focal / (focus - focal);
-            // By points on opposite edges of the lens: how far apart their rays are at the distance is how far apart on
-            // the film they see one point there.
+            // Rays from opposite edges of the lens: their separation at a distance equals the separation of their film
+            // points for one point at that distance.
             let edge = 2f64.powi(-33);
             let [a, b] = [[edge, 0.5], [1.0 - edge, 0.5]].map(|u| {
                 let ray = camera.ray([20.0, 15.0], u, 0.0).ray;

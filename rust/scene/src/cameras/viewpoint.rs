@@ -1,24 +1,24 @@
-//! Where a camera stands and how it is turned, and how it goes from one such place to another.
+//! Camera poses and their interpolation.
 
 use super::{CameraError, unit};
 use glam::{DMat3, DQuat};
 use raywright_base::math::DVec3;
 
-/// A place and three unit axes at right angles to each other.
+/// A position and three orthonormal axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Viewpoint {
-    /// Where it is.
+    /// Position.
     pub position: DVec3,
-    /// What it looks along.
+    /// Viewing direction.
     pub forward: DVec3,
-    /// To the right in the picture.
+    /// Direction to the right in the picture.
     pub right: DVec3,
-    /// Upwards in the picture.
+    /// Direction upwards in the picture.
     pub up: DVec3,
 }
 
 impl Viewpoint {
-    /// At `position`, looking at `target`, turned so that `up` points upwards in the picture.
+    /// Creates a viewpoint at `position` that looks at `target`, with `up` upwards in the picture.
     ///
     /// # Errors
     /// If a number is not finite, both points are the same, or `up` is zero or parallel to the view.
@@ -30,7 +30,7 @@ impl Viewpoint {
         Self::towards(position, 0.5 * target - 0.5 * position, up)
     }
 
-    /// At `position`, looking along `direction`, of whatever length. Errors are as with [`Self::look_at`].
+    /// Creates a viewpoint at `position` that looks along `direction`, which may have any length.
     ///
     /// # Errors
     /// If a number is not finite, the direction is zero, or `up` is zero or parallel to it.
@@ -40,26 +40,26 @@ impl Viewpoint {
         }
         let forward = unit(direction).ok_or(CameraError::NoDirection)?;
         let up = unit(up).ok_or(CameraError::NoUp)?;
-        // Closer than 10⁻⁸ radians to the view, the rounding of the view would decide what is up.
+        // Within 10⁻⁸ radians of the view, rounding of the view would determine the up direction.
         let right = Some(forward.cross(up)).filter(|r| r.length() > 1e-8).ok_or(CameraError::NoUp)?.normalize();
         Ok(Self { position, forward, right, up: right.cross(forward) })
     }
 
-    /// The direction with these parts to the right, upwards and forward.
+    /// Direction with these components to the right, up and forward.
     #[inline(always)]
     pub fn direction(&self, right: f64, up: f64, forward: f64) -> DVec3 {
         self.right * right + self.up * up + self.forward * forward
     }
 }
 
-/// A way from one viewpoint to another: on a straight line at an even pace, turning about one axis at an even pace
-/// (slerp; Shoemake, "Animating Rotation with Quaternion Curves", 1985), by 180 degrees at most.
+/// A path between two viewpoints at constant speed: linear in position, and a rotation about one axis (slerp; Shoemake,
+/// "Animating Rotation with Quaternion Curves", 1985) by 180 degrees at most.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Way {
     start: Viewpoint,
     end: Viewpoint,
     axis: DVec3,
-    /// About the axis, from start to end, in radians.
+    /// Rotation angle about the axis from start to end, in radians.
     angle: f64,
 }
 
@@ -69,13 +69,13 @@ impl Way {
         let turn = DQuat::from_mat3(&(to * from.transpose()));
         let (axis, half) = (turn.xyz(), turn.w);
         let sine = axis.length();
-        // A quaternion and its negative are the same turn; that of a positive real part is the short way.
+        // A quaternion and its negative are the same rotation; the one with positive real part takes the short way.
         let angle = 2.0 * sine.atan2(half.abs());
         let axis = if sine > 0.0 { axis * (1f64.copysign(half) / sine) } else { DVec3::X };
         Self { start, end, axis, angle }
     }
 
-    /// Where it is at a time from 0 to 1; both ends are exact.
+    /// Viewpoint at a time from 0 to 1; both ends are exact.
     pub fn at(&self, time: f64) -> Viewpoint {
         if time >= 1.0 {
             return self.end;
@@ -157,7 +157,7 @@ mod tests {
         assert_eq!(half.position, DVec3::X);
         assert!(close(half.forward, DVec3::new(sin, 0.0, -cos)) && close(half.up, DVec3::Y));
         assert_eq!((way.at(0.0), way.at(1.0), way.at(f64::NAN)), (start, end, start));
-        // Without a turn there is none.
+        // Equal viewpoints: no rotation.
         let still = Way::new(start, start);
         assert_eq!(still.at(0.3), start);
     }
@@ -174,8 +174,8 @@ mod tests {
             let way = Way::new(start, end);
             let here = way.at(time);
             prop_assert!(is_right_handed(&here));
-            // The turn from the start is that share of the whole, about the same axis: each of the axes stays as far
-            // from it as it is.
+            // The rotation from the start is that share of the whole, about the same axis: each camera axis keeps its
+            // angle to the axis of rotation.
             let axes = |v: &Viewpoint| [v.right, v.up, v.forward];
             for ((from, now), to) in axes(&start).into_iter().zip(axes(&here)).zip(axes(&end)) {
                 prop_assert!((from.dot(way.axis) - now.dot(way.axis)).abs() < 1e-13);

@@ -1,26 +1,26 @@
-//! What a camera with straight lines sees: a window at distance 1 in front of it.
+//! The film of a rectilinear camera, as a window at distance 1.
 
 use super::{CameraError, Viewpoint};
 use raywright_base::math::DVec3;
 
-/// Which length of a picture an angle of view, or a scale, is measured along.
+/// The picture length along which an angle of view or a scale is measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Measured {
-    /// Its width.
+    /// Width.
     Width,
-    /// Its height.
+    /// Height.
     #[default]
     Height,
-    /// The smaller of these; the height if they are equal.
+    /// The smaller of both; the height if they are equal.
     Smaller,
-    /// The larger of these; the height if they are equal.
+    /// The larger of both; the height if they are equal.
     Larger,
-    /// From corner to corner.
+    /// Diagonal.
     Diagonal,
 }
 
 impl Measured {
-    /// That length of a picture of this size.
+    /// This length of a picture of a size.
     pub fn of(self, [width, height]: [f64; 2]) -> f64 {
         match self {
             Self::Width => width,
@@ -32,21 +32,20 @@ impl Measured {
     }
 }
 
-/// The film of a pinhole or a lens, seen at distance 1: its point at (x, y), each from −1 to 1, x to the right and y
-/// upwards, is `centre + (half width · x + skew · y, half height · y)` to the right of and above the middle of the
-/// view.
+/// The film of a pinhole or a lens, projected to distance 1. Its point at (x, y), each from −1 to 1, x to the right and
+/// y up, is `centre + (half width · x + skew · y, half height · y)` right of and above the view's center.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Window {
-    /// Half its width and half its height; negative where the picture is mirrored.
+    /// Half its width and half its height; negative if the picture is mirrored.
     half: [f64; 2],
-    /// Where its middle is.
+    /// Its center.
     centre: [f64; 2],
-    /// How far its upper edge is shifted to the right.
+    /// Shift of the upper edge to the right.
     skew: f64,
 }
 
 impl Window {
-    /// Of square pixels, with an angle of view in degrees along one of a picture's lengths.
+    /// Creates a window with square pixels, from an angle of view in degrees along one of a picture's lengths.
     ///
     /// # Errors
     /// If the angle is not between 0 and 180 degrees.
@@ -56,7 +55,7 @@ impl Window {
         }
         let half = (0.5 * fov).to_radians().tan();
         let [width, height] = size;
-        // Exact along the length that is measured.
+        // Each branch is exact along the measured length.
         let length = along.of(size);
         let half = match length {
             _ if length == height => [half * width / height, half],
@@ -66,9 +65,9 @@ impl Window {
         Ok(Self { half, centre: [0.0; 2], skew: 0.0 })
     }
 
-    /// Of a camera matrix: focal lengths in pixels, the principal point in pixels from the film's left and top, and the
-    /// skew, so that a point at (x, y) to the right and below at distance 1 is seen at
-    /// `focal[0] x + skew y + principal[0]`, `focal[1] y + principal[1]`. Negative focal lengths mirror the picture.
+    /// Creates a window from a camera matrix: focal lengths in pixels, the principal point in pixels from the film's
+    /// left and top, and the skew. A point at (x, y) right and down at distance 1 projects to `focal[0] x + skew y +
+    /// principal[0]`, `focal[1] y + principal[1]`. Negative focal lengths mirror the picture.
     ///
     /// # Errors
     /// If a focal length is zero, or a number is not finite.
@@ -83,8 +82,7 @@ impl Window {
         window.seen_from(principal, [width, height])
     }
 
-    /// The same, shifted so that the middle of the view is seen at a point of the film, in pixels from the left and the
-    /// top.
+    /// Shifts the window so that the view's center projects to a film point, in pixels from the left and the top.
     ///
     /// # Errors
     /// If a number is not finite.
@@ -95,25 +93,25 @@ impl Window {
         if !numbers.iter().all(|n| n.is_finite()) || self.half.contains(&0.0) {
             return Err(CameraError::Film);
         }
-        // Not −0, which is as much in the middle.
+        // Adding 0 turns −0 into 0, so that equal windows compare equal.
         Ok(Self { centre: centre.map(|c| c + 0.0), ..self })
     }
 
-    /// Where a point of the film, from −1 to 1, is at distance 1: to the right, and upwards.
+    /// Position at distance 1, right and up, of a film point from −1 to 1.
     #[inline(always)]
     pub fn point(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         [self.centre[0] + self.half[0] * x + self.skew * y, self.centre[1] + self.half[1] * y]
     }
 
-    /// The point of the film that is there: the inverse of [`Window::point`].
+    /// The inverse of [`Window::point`].
     pub(super) fn film(&self, [right, up]: [f64; 2]) -> [f64; 2] {
         let y = (up - self.centre[1]) / self.half[1];
         [(right - self.centre[0] - self.skew * y) / self.half[0], y]
     }
 
-    /// How a point this far to the right, upwards and along the view is seen from where these are counted, through the
-    /// film moved so far to the right and upwards, in pixels of a picture of this size, and the density of
-    /// [`CameraConnection`](super::CameraConnection); `None` for what is not in front.
+    /// Projects a point given by its right, up and forward coordinates onto a film shifted right and up. Returns the
+    /// film position in pixels and the density of [`CameraConnection`](super::CameraConnection), or `None` for points
+    /// that are not in front.
     pub(super) fn connect(
         &self,
         [right, up, along]: [f64; 3],
@@ -124,14 +122,14 @@ impl Window {
             return None;
         }
         let film = to_pixels(self.film([right / along + shift[0], up / along + shift[1]]), size);
-        // Pixels over area at distance 1. An area across the ray takes cos θ / z² times as much there, by the slant of
-        // the ray to the film's plane and the distance along the view, with cos θ = z / d.
+        // Pixels over area at distance 1. An area perpendicular to the ray projects there with a factor cos θ / z²: the
+        // ray's slant to the film plane, and the distance z along the view. Here cos θ = z / d.
         let pixels = size[0] * size[1] / (4.0 * self.half[0] * self.half[1]).abs();
         let slant = DVec3::new(right, up, along).length() / along;
         Some((film, pixels * slant / (along * along)))
     }
 
-    /// From a viewpoint: the middle of the film, and what x and y add to it.
+    /// The film's center seen from a viewpoint, and the vectors that x and y multiply.
     pub fn axes(&self, from: &Viewpoint) -> [DVec3; 3] {
         let [x, y] = self.centre;
         let middle = if self.centre == [0.0; 2] { from.forward } else { from.direction(x, y, 1.0) };
@@ -140,8 +138,8 @@ impl Window {
         [middle, from.right * self.half[0], up]
     }
 
-    /// What a point relative to a viewpoint is multiplied by to give its x, its y, and its distance along the view,
-    /// such that it is seen at x and y over the distance; and what bounds each of these, and how roundings grow, as
+    /// Linear forms that map a point relative to a viewpoint to its x, its y and its distance along the view. The film
+    /// position is x and y over that distance. Also returns a bound on each form and on its rounding error, as
     /// multiples of the point's distance.
     pub fn onto_film(&self, from: &Viewpoint) -> ([DVec3; 3], f64) {
         let ([width, height], [x, y], skew) = (self.half, self.centre, self.skew);
@@ -152,13 +150,13 @@ impl Window {
         ([right, up, from.forward], stretch.max(1.0))
     }
 
-    /// Between the rays of neighbouring pixels in the middle, in radians.
+    /// Angle between adjacent rays at the center, in radians.
     pub fn pixel_angle(&self, [width, height]: [f64; 2]) -> f64 {
         (2.0 * self.half[0] / width * (2.0 * self.half[1] / height)).abs().sqrt()
     }
 }
 
-/// A point of the film from −1 to 1, x to the right and y upwards, of one in pixels from the left and the top.
+/// Converts pixels from the left and the top to a film point from −1 to 1, x to the right and y up.
 #[inline(always)]
 pub(super) fn from_middle([x, y]: [f64; 2], [width, height]: [f64; 2]) -> [f64; 2] {
     [2.0 * x / width - 1.0, 1.0 - 2.0 * y / height]
@@ -202,7 +200,7 @@ mod tests {
             let [right, up] = window.point(from_middle(pixel, size));
             assert!((right - x).abs() < 1e-15 * 8.0 && (up + y).abs() < 1e-15 * 8.0, "{right} {up}");
         }
-        // Square pixels about the middle are those of an angle of view.
+        // Square pixels about the center equal those of an angle of view.
         let plain = Window::of_matrix([48.0; 2], [64.0, 48.0], 0.0, size).unwrap();
         let view = Window::of_view(90.0, Measured::Height, size).unwrap();
         assert!((plain.half[0] - view.half[0]).abs() < 1e-15 && (plain.half[1] - view.half[1]).abs() < 1e-15);

@@ -1,48 +1,48 @@
-//! What is asked of a triangle at every hit.
+//! Per-triangle data that every hit reads.
 
 use raywright_base::math::{DVec3, Vec3};
 
-/// A face, in a cache line: its corners, its normal, and which shape it is of.
+/// A face in one cache line: its corners, normal and shape number.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub(super) struct Facet {
-    /// Unit normal as the winding gives it; NaN for a face without area.
+    /// Unit normal by the winding; NaN for a face without area.
     pub normal: DVec3,
-    /// Where they have no more digits than these; NaN otherwise, and for what is no face.
+    /// The corners, if f32 holds them exactly; otherwise NaN, and NaN for a primitive that is not a face.
     pub corners: [Vec3; 3],
-    /// Which shape.
+    /// Shape number.
     pub shape: u32,
 }
 
-/// Those of all primitives of a geometry of few. A normal takes a root and six quotients, and the shape a search; of
-/// more faces than the processor's second cache holds, to read them would be to wait for memory, and would push out of
-/// the cache what else is needed.
+/// The facets of all primitives, for a geometry with few of them. Recomputing a normal takes a square root and six
+/// divisions, and finding the shape a search. With more faces than the second-level cache holds, reading facets would
+/// wait for memory and evict other data.
 #[derive(Debug, Default)]
 pub(super) struct Facets(Vec<Facet>);
 
 impl Facets {
-    /// Primitives that count as few: half a megabyte of facets.
+    /// Largest number of primitives with facets: half a megabyte.
     const FEW: usize = 1 << 13;
 
-    /// Of so many primitives, by what they are computed from; none if there are many.
+    /// Computes the facets of `count` primitives; keeps none if there are many.
     pub fn new(count: usize, of: impl Fn(u32) -> Facet) -> Self {
         let few = if count <= Self::FEW { count as u32 } else { 0 };
         Self((0..few).map(of).collect())
     }
 
-    /// That of a primitive, if they are kept.
+    /// The facet of a primitive, if it is kept.
     #[inline]
     pub fn get(&self, primitive: u32) -> Option<&Facet> {
         self.0.get(primitive as usize)
     }
 
-    /// Whether none are kept.
+    /// Returns whether no facet is kept.
     #[inline]
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// The memory held.
+    /// Memory in bytes.
     pub fn bytes(&self) -> usize {
         size_of_val(self.0.as_slice())
     }
@@ -53,7 +53,7 @@ mod tests {
     use super::*;
     use crate::{Geometry, Mesh};
 
-    /// So many askew triangles, in meshes of a hundred, and one without area at the end.
+    /// `count` arbitrary triangles in meshes of a hundred, with one without area at the end.
     fn geometry(count: u32) -> Geometry {
         let corner = |i: u32| Vec3::new((i as f32).sin(), (2.3 * i as f32).cos(), (0.7 * i as f32).sin());
         let mesh = |first: u32| Mesh {

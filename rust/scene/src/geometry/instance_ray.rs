@@ -1,16 +1,16 @@
-//! A ray in an instance: `t` as the world has it, and the ends of the ray, which are compared with that `t`.
+//! A ray in an instance: `t` in world space, and the comparison of the ray's ends with that `t`.
 //!
-//! The ray as it is taken to the prototype's space ([`super::pose`]) decides what is hit and in which order. Its `t` is
-//! off by those roundings, so that of a triangle is computed anew from the ray as given and the map as given: with q
-//! the point of the triangle that the weights of the hit tell, x = L q + s − o − t d, and n the triangle's normal in
-//! the world, the plane lies at t + n · x / n · d. Of x nearly all cancels: it is summed up in twice the digits (Ogita,
-//! Rump and Oishi, "Accurate Sum and Dot Product", 2005), errs by some u² of its terms, and is itself some u of them.
-//! So `n` may be rounded, and the last addition leaves the f64 nearest to the exact `t`, but for ties within some u of
-//! a unit in its last place. What is no triangle keeps its `t`.
+//! The ray in the prototype's space ([`super::pose`]) determines the hits and their order. Its `t` carries the rounding
+//! errors of the transform, so `t` of a triangle is recomputed from the given ray and map. Let q be the point of the
+//! triangle at the hit's barycentric coordinates, x = L q + s − o − t d, and n the triangle's normal in the world. Then
+//! the plane is at t + n · x / n · d. Nearly all of x cancels, so it is summed in twice the digits (Ogita, Rump and
+//! Oishi, "Accurate Sum and Dot Product", 2005): its error is some u² of its terms, and its value some u of them. So
+//! `n` may be rounded, and the last addition yields the f64 nearest to the exact `t`, except for ties within some u of
+//! a unit in the last place. Other shapes keep their `t`.
 //!
-//! The new `t` differs from the old by no more than [`InstanceRay::room`], and has its sign; where it would not, as at
-//! grazing angles, the old one stays. So it depends on nothing but the ray and what is hit; what lies farther than that
-//! from an end of the ray need not be compared anew; and an end at 0 is the same for both.
+//! The new `t` differs from the old one by at most [`InstanceRay::room`] and has its sign; if it would not, as at
+//! grazing angles, the old one stays. So `t` depends only on the ray and the primitive. A hit farther than that from an
+//! end of the ray needs no second comparison, and an end at 0 is the same in both spaces.
 
 use super::pose::Pose;
 use super::prototype::Prototype;
@@ -18,47 +18,49 @@ use raywright_accel::Meeting;
 use raywright_base::math::{Hit, Ray};
 use raywright_shapes::{Candidate, Contact};
 
-/// A ray asked of one instance.
+/// A ray and one instance.
 pub struct InstanceRay<'a> {
     prototype: &'a Prototype,
     pose: &'a Pose,
-    /// As given.
+    /// The ray as given, in world space.
     outside: &'a Ray,
-    /// As the prototype's space has it, with the ends of the ray as given.
+    /// The ray in the prototype's space, with its ends unchanged.
     inside: Ray,
 }
 
 impl<'a> InstanceRay<'a> {
-    /// A ray that is asked of an instance which stands so.
+    /// Transforms a ray into the space of an instance with this pose.
     #[inline]
     pub fn new(prototype: &'a Prototype, pose: &'a Pose, ray: &'a Ray) -> Self {
         Self { prototype, pose, outside: ray, inside: pose.enter(ray) }
     }
 
-    /// The ray as the prototype's space has it.
+    /// The ray in the prototype's space.
     pub fn inside(&self) -> &Ray {
         &self.inside
     }
 
-    /// How far apart `t` as found and as told may lie, about a `t`.
+    /// Bound on the difference of `t` in both spaces, near a `t`.
     fn room(&self, t: f64) -> f64 {
         const ROOM: f64 = 1.0 / (1u64 << 36) as f64;
         let reach = self.inside.origin.abs().max_element() / self.inside.direction.abs().max_element();
         ROOM * (t.abs() + if reach.is_finite() { reach } else { 0.0 })
     }
 
-    /// An end of the ray, moved by `steps` times the room. An end at 0 or at infinity is the same for both, and stays.
+    /// An end of the ray, moved by `steps` times the bound. An end at 0 or at infinity is the same in both spaces and
+    /// stays.
     fn end(&self, t: f64, steps: f64) -> f64 {
         if t == 0.0 || t.is_infinite() { t } else { t + steps * self.room(t) }
     }
 
-    /// The ray as the prototype's space has it, with ends between which lies all whose `t` as told counts.
-    // With R the share of the room, |t' − t| ≤ R (reach + |t'|) is at most R / (1 − R) of reach + |t|.
+    /// The ray in the prototype's space, widened so that it contains every hit that is within the ends in world space.
+    // With R the relative bound, |t' − t| ≤ R (reach + |t'|) is at most R / (1 − R) of reach + |t|.
     pub fn widened(&self) -> Ray {
         Ray { t_min: self.end(self.inside.t_min, -2.0), t_max: self.end(self.inside.t_max, 2.0), ..self.inside }
     }
 
-    /// A hit by the prototype's ray as it is told, with its flattened number; none if it lies beyond an end of the ray.
+    /// Converts a hit of the prototype's ray to world space, with its flattened primitive number. Returns `None` if it
+    /// is beyond an end of the ray.
     pub fn told(&self, hit: &Hit, contact: Contact) -> Option<Candidate> {
         let inner = self.prototype.flatten(hit);
         let Hit { mut t, uv, .. } = *hit;
@@ -71,7 +73,7 @@ impl<'a> InstanceRay<'a> {
         counts.then_some(Candidate { t, uv, contact, inner })
     }
 
-    /// Whether the ray may meet something within a few times the room of a `t`.
+    /// Returns whether the ray may hit something within a few bounds of a `t`.
     fn may_meet_about(&self, t: f64) -> bool {
         let Some(bounds) = self.prototype.bounds() else { return false };
         let Ray { origin, direction, .. } = self.inside;
@@ -79,7 +81,7 @@ impl<'a> InstanceRay<'a> {
         (point + room).cmpge(bounds.min).all() && (point - room).cmple(bounds.max).all()
     }
 
-    /// All that a ray in the prototype's space meets.
+    /// All hits of a ray in the prototype's space.
     pub fn met(&self, ray: &Ray) -> impl Iterator<Item = (Hit, Contact)> + use<> {
         let all = self.prototype.accelerator().met(std::slice::from_ref(ray));
         let scale = all.rays[0].0;
@@ -100,7 +102,7 @@ impl<'a> InstanceRay<'a> {
             if told.is_some() {
                 return told;
             }
-            // It lies within the room of an end, where its neighbours may lie between them.
+            // The hit is near an end, where a neighbouring hit may be inside the ends instead.
             let last = hit.t + 2.0 * self.room(hit.t);
             let near = self.met(&Ray { t_min: hit.t, t_max: last.min(ray.t_max), ..ray });
             let first = near.filter_map(|(hit, _)| Some((hit.t, self.told(&hit, Contact::Inside)?)));
@@ -112,7 +114,7 @@ impl<'a> InstanceRay<'a> {
         }
     }
 
-    /// Whether anything is hit.
+    /// Tests for any hit.
     pub fn is_occluded(&self) -> bool {
         let accelerator = self.prototype.accelerator();
         let (all, Ray { t_min, t_max, .. }) = (self.widened(), self.inside);
@@ -120,7 +122,7 @@ impl<'a> InstanceRay<'a> {
         if first <= last && accelerator.occluded_one(&Ray { t_min: first, t_max: last, ..all }) {
             return true;
         }
-        // About the ends it has to be seen what `t` is told.
+        // Near the ends, only the world-space `t` decides.
         let about = |t_min: f64, t_max: f64| {
             let ray = Ray { t_min, t_max, ..all };
             (first > last || self.may_meet_about(t_min))

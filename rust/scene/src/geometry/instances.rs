@@ -1,4 +1,4 @@
-//! A prototype put to many places.
+//! Instances of a prototype.
 
 use super::instance_ray::InstanceRay;
 use super::pose::{Pose, between, carried_by};
@@ -14,12 +14,12 @@ use std::sync::Arc;
 /// An affine map of points (x, y, z, 1) by its first three rows.
 pub type Matrix = [[f64; 4]; 3];
 
-/// Instances of a prototype, each of them a primitive: 168 bytes for one that stands still, or 24 if all are
-/// only shifted.
+/// Instances of a prototype, each of them a primitive. An instance at rest takes 168 bytes, or 24 if all are only
+/// translated.
 ///
-/// A ray is taken to the prototype's space and asked of the prototype's accelerator there. So what is hit is what is
-/// hit in the prototype by the ray as it is taken there, and that is decided exactly, whatever finds the instances. Its
-/// `t` is told, and compared with the ends of the ray, as the ray and the map are given (`instance_ray.rs`).
+/// A ray is transformed into the prototype's space and intersected by the prototype's accelerator. Hits are decided
+/// exactly for that transformed ray, whichever accelerator finds the instances. Their `t` is reported, and compared
+/// with the ends of the ray, for the given ray and map (`instance_ray.rs`).
 #[derive(Clone, Debug)]
 pub struct Instances {
     prototype: Arc<Prototype>,
@@ -28,19 +28,19 @@ pub struct Instances {
 
 #[derive(Debug)]
 enum Places {
-    /// Still, and neither turned nor scaled.
+    /// At rest and only translated.
     Shifted(Vec<DVec3>),
     Still(Vec<Pose>),
-    /// As the shutter opens, and as it closes; between, matrices are interpolated number by number.
+    /// At shutter open and close; in between, matrices are interpolated entry by entry.
     Moving(Vec<[Matrix; 2]>),
 }
 
-/// Which transform is of no use, and why.
+/// A transform without an inverse.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BadTransform {
-    /// Its index.
+    /// Index of the transform.
     pub index: usize,
-    /// What is wrong with it.
+    /// The reason.
     pub why: Singular,
 }
 
@@ -52,7 +52,7 @@ impl std::fmt::Display for BadTransform {
 
 impl std::error::Error for BadTransform {}
 
-/// All of what is made of the items, or the error of the first that has one.
+/// Maps all items in parallel, or returns the error of the first that fails.
 fn each<A: Sync, B: Send>(
     items: &[A],
     make: impl Fn(&A) -> Result<B, Singular> + Sync,
@@ -64,7 +64,7 @@ fn each<A: Sync, B: Send>(
     })
 }
 
-/// Whether every matrix has an inverse.
+/// Checks that every matrix has an inverse.
 ///
 /// # Errors
 /// If one has none: the first.
@@ -72,18 +72,18 @@ pub fn check_transforms(matrices: &[Matrix]) -> Result<(), BadTransform> {
     each(matrices, |matrix| Pose::new(matrix).map(drop)).map(drop)
 }
 
-/// A `t` at which a ray counts, and that is a number.
+/// A finite `t` within the ray's ends.
 fn some_t(ray: &Ray) -> f64 {
     if ray.t_min.is_finite() { ray.t_min } else { ray.t_max.min(0.0) }
 }
 
-/// That something is met there, of which nothing else is asked.
+/// A hit at `t` for occlusion tests, without other data.
 fn anywhere(t: f64) -> Candidate {
     Candidate { t, uv: [0.0; 2], contact: Contact::Inside, inner: 0 }
 }
 
 impl Instances {
-    /// Instances of a prototype that stand still.
+    /// Instances at rest.
     ///
     /// # Errors
     /// If a matrix has no inverse.
@@ -94,9 +94,8 @@ impl Instances {
         Ok(Self { prototype, places: Arc::new(places) })
     }
 
-    /// Instances that move while the shutter is open: the matrix of each at its opening and at its closing. Every point
-    /// moves on a straight line; should the matrix between have no inverse at some moment, the instance is not seen
-    /// then.
+    /// Instances that move while the shutter is open, with a matrix at its opening and one at its closing. Every point
+    /// moves on a straight line. An instance is invisible at a time when its interpolated matrix has no inverse.
     ///
     /// # Errors
     /// If one of the matrices given has no inverse.
@@ -105,12 +104,12 @@ impl Instances {
         Ok(Self { prototype, places: Arc::new(Places::Moving(matrices)) })
     }
 
-    /// What is copied.
+    /// The prototype.
     pub fn prototype(&self) -> &Arc<Prototype> {
         &self.prototype
     }
 
-    /// How many there are.
+    /// Number of instances.
     pub fn count(&self) -> usize {
         match &*self.places {
             Places::Shifted(shifts) => shifts.len(),
@@ -119,17 +118,17 @@ impl Instances {
         }
     }
 
-    /// Whether they move, or anything in them.
+    /// Returns whether the instances move, or anything in the prototype does.
     pub fn moves(&self) -> bool {
         matches!(&*self.places, Places::Moving(_)) || self.prototype.moves()
     }
 
-    /// Whether none of them moves as a whole.
+    /// Returns whether no instance moves as a whole.
     pub(crate) fn stand_still(&self) -> bool {
         !matches!(&*self.places, Places::Moving(_))
     }
 
-    /// Memory held without the prototype's.
+    /// Memory in bytes, without the prototype's.
     pub fn bytes(&self) -> usize {
         match &*self.places {
             Places::Shifted(shifts) => size_of_val(shifts.as_slice()),
@@ -138,7 +137,7 @@ impl Instances {
         }
     }
 
-    /// Where an instance stands at a time; none at a moment when its matrix has no inverse.
+    /// Pose of an instance at a time; `None` when its matrix has no inverse.
     #[inline]
     pub(crate) fn pose(&self, instance: u32, time: f64) -> Option<Pose> {
         match &*self.places {
@@ -151,8 +150,8 @@ impl Instances {
         }
     }
 
-    /// The boxes around an instance as the shutter opens and as it closes; between the two, interpolated number by
-    /// number, they hold it too. None if nothing in it can be hit.
+    /// Bounds of an instance at shutter open and close; interpolating them linearly bounds it in between. `None` if the
+    /// prototype is empty.
     pub fn ends(&self, instance: u32) -> Option<[Bounds; 2]> {
         let inside = self.prototype.bounds()?;
         match &*self.places {
@@ -161,13 +160,13 @@ impl Instances {
         }
     }
 
-    /// The box around an instance at any time.
+    /// Bounds of an instance over all times.
     pub fn bounds(&self, instance: u32) -> Option<Bounds> {
         let [a, b] = self.ends(instance)?;
         Some(Bounds { min: a.min.min(b.min), max: a.max.max(b.max) })
     }
 
-    /// As [`raywright_accel::UserGeometry::inside`] has it.
+    /// See [`raywright_accel::UserGeometry::inside`].
     pub fn inside(&self, instance: u32) -> Option<Placed<'_>> {
         if self.moves() {
             return None;
@@ -177,7 +176,7 @@ impl Instances {
         Some(Placed { id, primitives: self.prototype.geometry(), rows, shift })
     }
 
-    /// As [`raywright_accel::UserGeometry::meet`] has it.
+    /// See [`raywright_accel::UserGeometry::meet`].
     pub fn meet(&self, instance: u32, wanted: Wanted, ray: &Ray, met: &mut dyn FnMut(Candidate) -> bool) -> bool {
         let place;
         let pose = match &*self.places {
@@ -194,7 +193,7 @@ impl Instances {
             Wanted::Any => ray.is_occluded() && met(anywhere(some_t(ray.inside()))),
             Wanted::Every => {
                 let hits = self.prototype.accelerator().crossings(&[ray.widened()]).hits;
-                // What is only touched is told twice there, and has to be here.
+                // The accelerator reports a touching hit twice; a hit with its contact is reported once here.
                 let twice = hits.chunk_by(|a, b| a == b);
                 let each =
                     twice.map(|same| (&same[0], if same.len() == 1 { Contact::Inside } else { Contact::Touching }));
@@ -209,20 +208,20 @@ impl Instances {
         }
     }
 
-    /// What is where a ray hits an instance.
+    /// The surface point where a ray hits an instance.
     ///
     /// # Panics
-    /// If it does not.
+    /// If it does not hit.
     pub fn surface(&self, instance: u32, ray: &Ray, hit: &Hit) -> SurfacePoint {
         let pose = self.pose(instance, ray.time).expect("what is hit has a place");
         let inside = self.prototype.surface(&pose.enter(ray), hit);
         pose.point(&inside)
     }
 
-    /// What is needed of the point where a ray hits an instance.
+    /// The shading data of the point where a ray hits an instance.
     ///
     /// # Panics
-    /// If it does not.
+    /// If it does not hit.
     pub(super) fn shading_point(
         &self,
         instance: u32,
@@ -272,7 +271,7 @@ mod tests {
         }
     }
 
-    /// Any map: sheared, mirrored, of scales 1e-6 to 1e6, up to `far` away.
+    /// An arbitrary map: sheared, mirrored, with scales 1e-6 to 1e6, up to `far` away.
     fn hostile(sample: u32, far: f64) -> Matrix {
         let mut next = draw(sample);
         let rows = DVec3::AXES.map(|axis| axis + next());
@@ -280,7 +279,7 @@ mod tests {
         std::array::from_fn(|i| [0, 1, 2, 3].map(|j| if j == 3 { shift[i] } else { rows[i][j] * 10f64.powf(scale.x) }))
     }
 
-    /// A map that does not change much.
+    /// A map with moderate scale and shear.
     fn mild(sample: u32, far: f64) -> Matrix {
         let mut next = draw(sample);
         let (rows, shift) = (DVec3::AXES.map(|axis| 1.5 * axis + 0.6 * next()), next() * far);
@@ -314,7 +313,7 @@ mod tests {
         ] {
             let prototype = Arc::new(Prototype::new(soup(), within).unwrap());
             let few = Instances::new(prototype.clone(), &[0, 1, 2].map(|i| mild(i, 2.0)));
-            // The same again within another prototype, among triangles, some of which move.
+            // The same nested in another prototype, among triangles; some of those move.
             let mut inner = soup();
             inner.push(copied(few.unwrap()));
             let nested = Arc::new(Prototype::new(inner, outside).unwrap());
@@ -371,7 +370,7 @@ mod tests {
                 let direction = warp::uniform_sphere(sampler.two(1));
                 let departure = RayOrigin::new(&surface);
                 rays.push(departure.ray(direction));
-                // Grazing the plane, down to an angle of 10⁻¹².
+                // Rays that graze the plane, down to an angle of 10⁻¹².
                 let along = direction.cross(surface.normal).normalize();
                 rays.push(departure.ray(along + surface.normal * 10f64.powf(-12.0 * sampler.one(2))));
             }
@@ -385,7 +384,8 @@ mod tests {
     fn points_are_inside_of_copies_to_the_last_bit() {
         let cube = || inward_box([-1.0; 3], [2.0; 3]).map(|mesh| shape(mesh, [0.5; 3], 0.0)).into();
         let prototype = Arc::new(Prototype::new(cube(), tree).unwrap());
-        // A cube of side 4 around (8, 0, 0), turned by a quarter, and within another prototype at (8, 0, 16), mirrored.
+        // A cube of side 4 around (8, 0, 0), rotated by 90 degrees, and nested in another prototype at (8, 0, 16),
+        // mirrored.
         let matrix: Matrix = [[0.0, -2.0, 0.0, 8.0], [2.0, 0.0, 0.0, 0.0], [0.0, 0.0, 2.0, 0.0]];
         let once = Instances::new(prototype, &[matrix]).unwrap();
         let nested = Arc::new(Prototype::new(vec![copied(once.clone())], tree).unwrap());

@@ -1,4 +1,4 @@
-//! Points where rays have met surfaces, sixteen at a time.
+//! Surface points of hits in batches of sixteen lanes.
 
 use super::{Geometry, NO_FACE, error_among, unit_normal};
 use crate::SurfaceLanes;
@@ -8,7 +8,7 @@ use raywright_base::sampling::Pairs;
 use raywright_base::simd::{Level, loops};
 
 loops! {
-    /// Normals of triangles, by their corners.
+    /// Unit normals of triangles.
     fn normals(corners: &[VectorLanes; 3], normal: &mut VectorLanes) {
         for i in 0..LANES {
             normal.set(i, unit_normal([corners[0].get(i), corners[1].get(i), corners[2].get(i)]));
@@ -17,7 +17,7 @@ loops! {
 }
 
 loops! {
-    /// Points of triangles, by their weights.
+    /// Points of triangles at barycentric coordinates.
     fn points(
         corners: &[VectorLanes; 3],
         uv: &Pairs,
@@ -34,7 +34,7 @@ loops! {
 }
 
 impl Geometry {
-    /// What [`Geometry::surface`] gives for a ray and its hit, a lane each.
+    /// Computes the surface points of sixteen hits; each lane's result equals that of [`Geometry::surface`].
     ///
     /// # Panics
     /// If one is a miss.

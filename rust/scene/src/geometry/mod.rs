@@ -1,4 +1,4 @@
-//! The surfaces of a scene: every mesh's corners and faces, one after the other, and shapes among them.
+//! The surfaces of a scene: corners and faces of all meshes, one after the other, and other shapes among them.
 
 mod facets;
 mod front;
@@ -42,25 +42,25 @@ use std::ops::Range;
 use std::ptr;
 use std::sync::{Arc, OnceLock};
 
-/// One triangle mesh as it is described.
+/// A triangle mesh as described by the user.
 #[derive(Clone, Debug, Default)]
 pub struct Mesh {
     /// Corners.
     pub vertices: Vertices,
-    /// What rounding them to f32 did to the mesh, or would have done; nothing where nobody looked.
+    /// Changes that rounding to f32 made to the vertices, or would make; zero if not measured.
     pub rounding: Rounding,
-    /// Three indices into `vertices` a face.
+    /// Three indices into `vertices` per face.
     pub faces: Vec<[u32; 3]>,
-    /// Shading normals, one a vertex.
+    /// Shading normals, one per vertex.
     pub normals: Option<Vec<Vec3>>,
-    /// Texture coordinates, a pair a vertex.
+    /// Texture coordinates, a pair per vertex.
     pub uvs: Option<Vec<[f32; 2]>>,
-    /// Colours, one a vertex.
+    /// Colours, one per vertex.
     pub colours: Option<Vec<[f32; 3]>>,
 }
 
 impl Mesh {
-    /// The mesh without what nobody asks of its vertices.
+    /// Removes vertex attributes that are not needed.
     pub fn with_only(mut self, needs: Needs) -> Self {
         self.uvs = self.uvs.filter(|_| needs.uv);
         self.colours = self.colours.filter(|_| needs.colours);
@@ -68,14 +68,14 @@ impl Mesh {
     }
 }
 
-/// What rays can hit.
+/// Geometry that rays can hit.
 #[derive(Clone, Debug)]
 pub enum Surface {
     /// Triangles.
     Mesh(Mesh),
-    /// Anything else.
+    /// Another shape.
     Shape(Arc<dyn Shape>),
-    /// Other surfaces, put to many places.
+    /// Instances of a prototype.
     Instances(Instances),
 }
 
@@ -86,7 +86,7 @@ impl Default for Surface {
 }
 
 impl Surface {
-    /// The surface without what nobody asks of it.
+    /// Removes vertex attributes that are not needed.
     pub fn with_only(self, needs: Needs) -> Self {
         match self {
             Self::Mesh(mesh) => Self::Mesh(mesh.with_only(needs)),
@@ -113,12 +113,12 @@ impl From<Instances> for Surface {
     }
 }
 
-/// Primitives that have no entry among the faces: instances, which are many.
+/// A range of primitives without entries in `faces`: instances, which may be many.
 #[derive(Clone, Copy, Debug)]
 struct Gap {
-    /// The first of them, and the first after them.
+    /// First primitive, and one past the last.
     primitives: [u32; 2],
-    /// How many primitives before its end have no entry.
+    /// Number of primitives without entry up to its end.
     before: u32,
 }
 
@@ -129,19 +129,19 @@ pub(crate) fn error_among([a, b, c]: [DVec3; 3]) -> f64 {
     8.0 * f64::EPSILON * a.abs().max(b.abs()).max(c.abs()).max_element()
 }
 
-/// The face that stands for a shape that is no mesh.
+/// Marks the entry of a shape that is not a mesh.
 const NO_FACE: [u32; 3] = [u32::MAX; 3];
 
-/// All surfaces of a scene in one: a primitive is a face, or a shape that is no mesh, numbered through from the first
-/// shape to the last.
+/// All surfaces of a scene. A primitive is a face, or a shape that is not a mesh, numbered from the first shape to the
+/// last.
 #[derive(Debug, Default)]
 pub struct Geometry {
     vertices: Vertices,
-    /// Indices into `vertices`, for all shapes; [`NO_FACE`] for what is no mesh.
+    /// Indices into `vertices`, for all shapes; [`NO_FACE`] for shapes that are not meshes.
     faces: Vec<[u32; 3]>,
-    /// Where primitives have no entry in `faces`, by their numbers.
+    /// Ranges of primitives without entries in `faces`, in order.
     gaps: Vec<Gap>,
-    /// What is no mesh; none if all are.
+    /// Shapes that are not meshes; `None` if all are.
     others: Option<Arc<Objects>>,
     /// Shading normals.
     normals: PerVertex<Vec3>,
@@ -149,23 +149,23 @@ pub struct Geometry {
     uvs: PerVertex<[f32; 2]>,
     /// Colours.
     colours: PerVertex<[f32; 3]>,
-    /// The first primitive of each shape, and the number of all at the end.
+    /// The first primitive of each shape, and the total number at the end.
     first: Vec<u32>,
-    /// What is asked of a face at every hit, where there are few.
+    /// Per-face data of every hit, if there are few faces.
     facets: Facets,
-    /// Corners of the same faces, if vertices have more digits than facets hold.
+    /// Corners of the same faces, if vertices are f64 and facets hold only f32.
     few_corners: Vec<[DVec3; 3]>,
     dropped: usize,
-    /// Of the mesh that it does most to.
+    /// The rounding of the mesh that changes most.
     rounding: Rounding,
-    /// Where all of it lies, once that was asked.
+    /// Bounds of everything, computed on first use.
     region: OnceLock<Region>,
-    /// What is no mesh, and all of it, by how far it is, once that was asked.
+    /// Box trees for nearest-point queries over shapes that are not meshes, and over everything; built on first use.
     near_others: OnceLock<BoxTree>,
     near_all: OnceLock<BoxTree>,
 }
 
-/// Twice the area of a triangle along its unit normal, as the winding gives it.
+/// Twice the area of a triangle along its unit normal, by the winding.
 #[inline(always)]
 fn area_vector([a, b, c]: [DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a)
@@ -199,7 +199,7 @@ impl Primitives for Geometry {
         if face == NO_FACE {
             return [DVec3::NAN; 3];
         }
-        // Which floats they are is asked once, so that the corners need not pass through memory.
+        // Branching on the precision once keeps the corners in registers.
         match &self.vertices {
             Vertices::Single(v) => face.map(|i| v[i as usize].as_dvec3()),
             Vertices::Double(v) => face.map(|i| v[i as usize]),
@@ -211,7 +211,8 @@ impl Primitives for Geometry {
     }
 
     fn region(&self) -> Region {
-        // Not within the lock: threads that wait for others take up work of theirs, which may come here too.
+        // Computed outside the lock: a thread that waits for others may take up their tasks, and those may call this
+        // function.
         let region = self.region.get().copied().unwrap_or_else(|| region(self.count(), &|p| self.bounds(p)));
         let _ = self.region.set(region);
         region
@@ -223,10 +224,10 @@ impl Primitives for Geometry {
 }
 
 impl Geometry {
-    /// Joins surfaces; the index of one becomes its shape number.
+    /// Joins surfaces; their index becomes the shape number.
     ///
     /// # Panics
-    /// If a face names a vertex that its mesh does not have, there is not a value for each vertex, or there are 2³¹
+    /// If a face names a vertex that its mesh lacks, an attribute has not one value per vertex, or there are 2³¹
     /// primitives or 2³² vertices in all.
     pub fn new<S: Into<Surface>>(surfaces: impl IntoIterator<Item = S>) -> Self {
         let mut all = Self { first: vec![0], ..Self::default() };
@@ -271,7 +272,7 @@ impl Geometry {
             let all_own = parallel::map_chunks(mesh.faces.len(), CHUNK, |some| mesh.faces[some].iter().all(names_own));
             assert!(!all_own.contains(&false), "a face names a vertex that its mesh has");
             if all.faces.is_empty() && base == 0 {
-                // The only mesh of many scenes, which may be large.
+                // The first mesh is moved, not copied: it may be large and the only one.
                 all.faces = mesh.faces;
             } else {
                 all.faces.extend(mesh.faces.into_iter().map(|face| face.map(|v| v + base)));
@@ -285,7 +286,7 @@ impl Geometry {
         let is_dropped = |face: &&[u32; 3]| **face != NO_FACE && !face.iter().all(|&v| is_finite(v));
         let dropped = |some: Range<usize>| all.faces[some].iter().filter(is_dropped).count();
         all.dropped = parallel::map_chunks(all.faces.len(), CHUNK, dropped).into_iter().sum();
-        // Instances are many, and each shall be small.
+        // Instances may be many, and each should take little memory, so a geometry with instances has no facets.
         let faces = if all.gaps.is_empty() { all.count() } else { 0 };
         all.facets = Facets::new(faces, |primitive| all.facet(primitive));
         if matches!(all.vertices, Vertices::Double(_)) && !all.facets.is_empty() {
@@ -294,7 +295,7 @@ impl Geometry {
         all
     }
 
-    /// What is kept of a face where there are few.
+    /// Computes the facet of a primitive.
     fn facet(&self, primitive: u32) -> Facet {
         let corners = match &self.vertices {
             Vertices::Single(_) => self.corners(primitive).map(|corner| corner.as_vec3()),
@@ -303,7 +304,7 @@ impl Geometry {
         Facet { normal: self.computed_normal(primitive), corners, shape: self.located(primitive).0 }
     }
 
-    /// Gives memory back that was reserved for more.
+    /// Frees unused capacity.
     fn shrink_to_fit(&mut self) {
         self.vertices.shrink_to_fit();
         self.faces.shrink_to_fit();
@@ -313,32 +314,32 @@ impl Geometry {
         self.colours.shrink_to_fit();
     }
 
-    /// The first shape that is no mesh, by its number among shapes.
+    /// Shape number of the first shape that is not a mesh.
     pub fn first_other(&self) -> Option<u32> {
         self.others.as_ref()?.first().map(|first| self.locate(first).0)
     }
 
-    /// Whether there is a mesh that has vertices.
+    /// Returns whether any mesh has vertices.
     pub(crate) fn has_vertices(&self) -> bool {
         !self.vertices.is_empty()
     }
 
-    /// How many shapes there are.
+    /// Number of shapes.
     pub fn shapes(&self) -> usize {
         self.first.len() - 1
     }
 
-    /// How many faces have a corner that is NaN or infinite: no ray can hit them.
+    /// Number of faces with a NaN or infinite corner; rays never hit them.
     pub fn dropped(&self) -> usize {
         self.dropped
     }
 
-    /// What rounding to f32 did to vertices, or would have done: of the mesh to which that is most.
+    /// Changes that rounding to f32 made to vertices, or would make, for the mesh with the greatest loss.
     pub fn rounding(&self) -> Rounding {
         self.rounding
     }
 
-    /// The corners of a primitive's face.
+    /// The vertex indices of a primitive.
     #[inline]
     fn face(&self, primitive: u32) -> [u32; 3] {
         if self.gaps.is_empty() {
@@ -352,38 +353,38 @@ impl Geometry {
         self.faces[(primitive - before) as usize]
     }
 
-    /// Whether a mesh among them has shading normals.
+    /// Returns whether any mesh has shading normals.
     pub fn is_smooth(&self) -> bool {
         !self.normals.is_empty()
     }
 
-    /// Whether a shape is a mesh that has shading normals.
+    /// Returns whether a shape is a mesh with shading normals.
     pub fn has_normals(&self, shape: u32) -> bool {
         self.is_smooth() && self.primitives_of(shape).any(|primitive| self.normals_of(primitive).is_some())
     }
 
-    /// Whether there are instances of prototypes.
+    /// Returns whether there are instances of prototypes.
     pub fn has_instances(&self) -> bool {
         self.others.as_ref().is_some_and(|others| others.has_instances())
     }
 
-    /// The instances that a shape is, if it is.
+    /// The instances of a shape, if it is instances.
     #[inline]
     pub fn instances_of(&self, shape: u32) -> Option<&Instances> {
         self.others.as_ref()?.instance(self.first[shape as usize]).map(|(instances, _)| instances)
     }
 
-    /// Whether anything moves while the shutter is open.
+    /// Returns whether anything moves while the shutter is open.
     pub fn moves(&self) -> bool {
         self.others.as_ref().is_some_and(|others| others.moves())
     }
 
-    /// The memory held, what is reserved for more included.
+    /// Memory in bytes, including unused capacity.
     pub fn bytes(&self) -> usize {
         self.bytes_but(&mut Vec::new())
     }
 
-    /// The memory held, without prototypes that were `seen`; those in it count as seen from then on.
+    /// Memory in bytes, excluding prototypes in `seen`; prototypes found here are added to it.
     pub fn bytes_but(&self, seen: &mut Vec<*const Prototype>) -> usize {
         self.vertices.bytes()
             + self.normals.bytes()
@@ -402,8 +403,8 @@ impl Geometry {
             + self.others.as_ref().map_or(0, |others| others.bytes(seen))
     }
 
-    /// Says that a primitive will be asked about, and, if its `corners` are wanted, that this was said before: what is
-    /// kept of it is fetched meanwhile. Of few primitives all is at hand.
+    /// Prefetches the data of a primitive. The second call, with `corners`, loads the corners through the indices that
+    /// the first call fetched. With facets, all data is in cache.
     #[inline]
     pub fn expect(&self, primitive: u32, corners: bool) {
         if !self.facets.is_empty() || !self.gaps.is_empty() {
@@ -425,7 +426,7 @@ impl Geometry {
         }
     }
 
-    /// Which shape a primitive belongs to, and its index there.
+    /// Shape number of a primitive, and its index within the shape.
     #[inline]
     pub fn locate(&self, primitive: u32) -> (u32, u32) {
         match self.facets.get(primitive) {
@@ -444,28 +445,28 @@ impl Geometry {
         (shape as u32, primitive - self.first[shape])
     }
 
-    /// The primitives of a shape, as numbered among all.
+    /// Range of primitive numbers of a shape.
     pub fn primitives_of(&self, shape: u32) -> std::ops::Range<u32> {
         self.first[shape as usize]..self.first[shape as usize + 1]
     }
 
-    /// Which instance of what a primitive is, if it is one.
+    /// The instances that a primitive belongs to, and its number among them, if it is an instance.
     #[inline]
     pub fn instance(&self, primitive: u32) -> Option<(&Instances, u32)> {
         self.others.as_ref()?.instance(primitive)
     }
 
-    /// A ray in the space in which the shape was described that a primitive belongs to, and of an instance the
-    /// primitive in it of a flattened number: the world's, or that of a prototype. The same `t` are the same points.
-    /// None at a moment when there is no such place.
+    /// Transforms a ray into the space where the shape of a primitive was described: the world's, or a prototype's for
+    /// the primitive with flattened number `inner` of an instance. Equal `t` are the same points. Returns `None` at a
+    /// time when a transform has no inverse.
     pub fn entered(&self, ray: &Ray, primitive: u32, inner: u32) -> Option<Ray> {
         let Some((instances, number)) = self.instance(primitive) else { return Some(*ray) };
         let (within, inner) = instances.prototype().split(inner);
         instances.prototype().geometry().entered(&instances.pose(number, ray.time)?.enter(ray), within, inner)
     }
 
-    /// The first primitive of the same shape, and of an instance of the same shape in the same copy: what stands for
-    /// the whole.
+    /// A representative of the whole object: the first primitive of the same shape, or of the same shape in the same
+    /// instance.
     pub fn first_alike(&self, primitive: u32, inner: u32) -> (u32, u32) {
         match self.instance(primitive) {
             Some((instances, _)) => (primitive, instances.prototype().first_alike(inner)),
@@ -473,13 +474,13 @@ impl Geometry {
         }
     }
 
-    /// A primitive that is no triangle.
+    /// The shape of a primitive that is not a triangle.
     #[inline]
     pub fn shape(&self, primitive: u32) -> Option<&dyn Shape> {
         self.others.as_ref()?.get(primitive)
     }
 
-    /// The area of a primitive; no finite number if nothing can hit it, or it has no end.
+    /// Area of a primitive; not finite if rays cannot hit it or it is unbounded.
     pub fn area(&self, primitive: u32) -> f64 {
         match self.shape(primitive) {
             Some(shape) => shape.area(),
@@ -487,18 +488,18 @@ impl Geometry {
         }
     }
 
-    /// The point of a triangle with weights `uv` for its second and third corner.
+    /// Point of a triangle with barycentric coordinates `uv` for its second and third corner.
     pub fn position(&self, primitive: u32, uv: [f64; 2]) -> DVec3 {
         let [a, b, c] = self.corners(primitive);
         a * (1.0 - uv[0] - uv[1]) + b * uv[0] + c * uv[1]
     }
 
-    /// Bound on the error of each coordinate of a point of a triangle, as [`SurfacePoint::error`].
+    /// Bound on the error of each coordinate of a point on a triangle, as [`SurfacePoint::error`].
     pub fn error(&self, primitive: u32) -> f64 {
         error_among(self.corners(primitive))
     }
 
-    /// Twice the area of a triangle along its unit normal, as the winding gives it. Exact but for the f64 roundings.
+    /// Twice the area of a triangle along its unit normal, by the winding, to within f64 roundings.
     pub fn area_vector(&self, primitive: u32) -> DVec3 {
         area_vector(self.corners(primitive))
     }
@@ -513,7 +514,7 @@ impl Geometry {
         unit_normal(self.corners(primitive))
     }
 
-    /// All that shading needs at a hit of a ray.
+    /// The surface point of a hit.
     ///
     /// # Panics
     /// If it is a miss.
@@ -530,13 +531,13 @@ impl Geometry {
         }
     }
 
-    /// A point of a shape, as shading needs it.
+    /// The surface point at a site of a shape.
     pub fn on_shape(&self, primitive: u32, site: &Site) -> SurfacePoint {
         let Site { position, error, normal } = *site;
         SurfacePoint { position, error, normal, shading_normal: normal, shape: self.locate(primitive).0, inner: None }
     }
 
-    /// A point of a triangle, as shading needs it.
+    /// The surface point of a triangle at barycentric coordinates.
     pub fn on_triangle(&self, primitive: u32, uv: [f64; 2]) -> SurfacePoint {
         let [a, b, c] = self.corners(primitive);
         let weights = [1.0 - uv[0] - uv[1], uv[0], uv[1]];
@@ -550,23 +551,23 @@ impl Geometry {
         SurfacePoint { position, error, normal, shading_normal, shape, inner: None }
     }
 
-    /// The shading normals of a triangle's corners, if there are any.
+    /// Shading normals of a triangle's corners, if it has any.
     fn normals_of(&self, primitive: u32) -> Option<[DVec3; 3]> {
         self.normals.of(self.face(primitive)).map(|corners| corners.map(Vec3::as_dvec3))
     }
 
-    /// The texture coordinates of a triangle's corners, if there are any.
+    /// Texture coordinates of a triangle's corners, if it has any.
     fn uvs_of(&self, primitive: u32) -> Option<[[f32; 2]; 3]> {
-        // Those that are NaN are none.
+        // NaN marks missing coordinates.
         self.uvs.of(self.face(primitive)).filter(|corners| !corners.as_flattened().iter().any(|x| x.is_nan()))
     }
 
-    /// The colours of a triangle's corners, if there are any.
+    /// Colours of a triangle's corners, if it has any.
     fn colours_of(&self, primitive: u32) -> Option<[[f32; 3]; 3]> {
         self.colours.of(self.face(primitive))
     }
 
-    /// The interpolated normal of the vertices, on the side of `normal`; `normal` where there is none to be had.
+    /// The interpolated vertex normal on the side of `normal`; `normal` itself if there is none.
     fn shading_normal(&self, primitive: u32, weights: [f64; 3], normal: DVec3) -> DVec3 {
         let Some([i, j, k]) = self.normals_of(primitive) else { return normal };
         match (i * weights[0] + j * weights[1] + k * weights[2]).try_normalize() {

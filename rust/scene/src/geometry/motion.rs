@@ -1,11 +1,11 @@
-//! Where a point of a surface goes while the shutter is open.
+//! Motion of surface points while the shutter is open.
 
 use super::Geometry;
 use crate::SurfacePoint;
 use raywright_base::math::{DVec3, Hit, Ray};
 
 impl Geometry {
-    /// Where the point of a surface that a ray hits is at each of two times of the scene.
+    /// Positions of the hit surface point at two scene times.
     ///
     /// # Panics
     /// If it is a miss.
@@ -16,7 +16,7 @@ impl Geometry {
         self.points(ray, hit, times).map(|point| point.position)
     }
 
-    /// The same with all that is known of the point.
+    /// The full surface points at two scene times.
     fn points(&self, ray: &Ray, hit: &Hit, times: [f64; 2]) -> [SurfacePoint; 2] {
         let Some((instances, instance)) = self.instance(hit.primitive) else { return [self.surface(ray, hit); 2] };
         let prototype = instances.prototype();
@@ -46,7 +46,7 @@ mod tests {
         let sheet = shape(rectangle([-1.0, -1.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0]), [0.5; 3], 0.0);
         let prototype = |shapes| Arc::new(Prototype::new(shapes, |g| BruteForce::over(g, Level::Scalar)).unwrap());
         let still: Matrix = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
-        // Twice as large at the end, and moved; and all of that moved once more.
+        // Twice as large and translated at shutter close; all of that translated once more.
         let grown: Matrix = [[2.0, 0.0, 0.0, 0.5], [0.0, 2.0, 0.0, 0.0], [0.0, 0.0, 2.0, 0.25]];
         let moved: Matrix = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 3.0], [0.0, 0.0, 1.0, 0.0]];
         let inner = Instances::moving(prototype(vec![sheet]), vec![[still, grown]]).unwrap();
@@ -60,7 +60,7 @@ mod tests {
         };
         let whole = way(0.0, 1.0);
         assert!((whole - DVec3::new(0.75, 2.5, 0.25)).length() < 1e-12, "{whole}");
-        // Matrices are blended, so a point goes straight, and in half of the time half of the way.
+        // Matrices are interpolated linearly, so a point moves on a straight line at constant speed.
         assert!((way(0.5, 1.0) - whole / 2.0).length() < 1e-12);
         assert_eq!(way(0.25, 0.25), DVec3::ZERO);
     }

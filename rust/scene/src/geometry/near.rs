@@ -1,8 +1,8 @@
-//! The nearest point of what stands in a geometry: of shapes, of instances, and of all that is in those.
+//! The nearest point on shapes and instances.
 //!
-//! A tree of boxes is gone through, what is nearer first. In an instance all is measured where it stands, corners and
-//! boxes mapped on the way: a map that scales some lengths more than others changes what is nearest, so that no answer
-//! in the prototype's own space would do.
+//! A box tree is traversed nearest first. Distances within an instance are measured in world space, with corners and
+//! boxes mapped on the way. A non-uniform scaling changes the nearest point, so a search in the prototype's space would
+//! be wrong.
 
 use super::Geometry;
 use raywright_accel::{BoxTree, Nearest, PrimitiveFilter, Primitives};
@@ -10,22 +10,22 @@ use raywright_base::math::{Affine, DVec3, Hit};
 use raywright_shapes::gap_under;
 use raywright_shapes::triangle::{length, nearest_point, point_of};
 
-/// What is asked for.
+/// A nearest-point query.
 #[derive(Clone, Copy)]
 struct Quest {
     place: DVec3,
-    /// What is farther does not count.
+    /// Maximum distance.
     most: f64,
     found: Nearest,
 }
 
 impl Quest {
-    /// How far it is still to be looked.
+    /// The current search radius.
     fn left(&self) -> f64 {
         self.found.distance.min(self.most)
     }
 
-    /// Takes what is nearer than what was found, or as near and of a lower number.
+    /// Accepts a point that is nearer than the best, or as near with a lower number.
     fn offer(&mut self, other: Nearest) {
         let key = |nearest: &Nearest| (nearest.distance, nearest.primitive, nearest.inner);
         if other.distance <= self.most && other.distance.is_finite() && key(&other) < key(&self.found) {
@@ -35,8 +35,8 @@ impl Quest {
 }
 
 impl Geometry {
-    /// Puts the nearest points of shapes that are no meshes, and of instances, in the place of what was found on meshes
-    /// and is farther, if they count. What moves is where it is as the shutter opens.
+    /// Replaces the nearest points on meshes by points of other shapes and instances that are nearer, among those that
+    /// `counts` accepts. Moving objects are placed as at shutter open.
     pub(crate) fn nearest_of_others(
         &self,
         points: &[DVec3],
@@ -46,7 +46,7 @@ impl Geometry {
     ) {
         let Some(tree) = self.tree_of_others() else { return };
         for (i, (&place, found)) in points.iter().zip(found).enumerate() {
-            // One for all, or one a point.
+            // One for all points, or one per point.
             let most = most[if most.len() == 1 { 0 } else { i }];
             if place.is_finite() && most >= 0.0 {
                 let mut quest = Quest { place, most, found: *found };
@@ -67,7 +67,7 @@ impl Geometry {
         self.near_all.get_or_init(|| BoxTree::new((0..self.count() as u32).filter_map(boxed)))
     }
 
-    /// Looks through a tree of what stands here, under a map.
+    /// Searches a tree of this geometry under a map.
     fn look(&self, tree: &BoxTree, map: Option<&Affine>, counts: PrimitiveFilter<'_>, quest: &mut Quest) {
         let place = quest.place;
         let gap = |bounds: &_| gap_under(map, bounds, place);
@@ -80,7 +80,7 @@ impl Geometry {
         });
     }
 
-    /// The nearest point of a primitive under a map; none where there is none, or none within what is left.
+    /// The nearest point of a primitive under a map, if it is within the search radius.
     fn nearest_on(&self, primitive: u32, map: Option<&Affine>, quest: &Quest) -> Option<Nearest> {
         let place = quest.place;
         if let Some((instances, number)) = self.instance(primitive) {
@@ -114,8 +114,8 @@ impl Geometry {
         Some(Nearest { distance: on.distance, position: point_of(corners, on.uv), uv: on.uv, primitive, inner: 0 })
     }
 
-    /// The unit normal of a primitive at a point of it, and a bound on the error of each of the point's coordinates; of
-    /// an instance, those of the primitive of a flattened number in it, as it stands when the shutter opens.
+    /// Unit normal at a point of a primitive, and a bound on the error of each coordinate. For an instance the
+    /// primitive is given by its flattened number, placed as at shutter open.
     pub fn site(&self, primitive: u32, inner: u32, position: DVec3, uv: [f64; 2]) -> (DVec3, f64) {
         if let Some((instances, number)) = self.instance(primitive) {
             let none = (DVec3::NAN, f64::NAN);
@@ -124,14 +124,14 @@ impl Geometry {
             let prototype = instances.prototype();
             let (own, within) = prototype.split(inner);
             let (normal, error) = prototype.geometry().site(own, within, inverse.point(position), uv);
-            // The point itself was rounded where it stands.
+            // The point was rounded in world space.
             let rounded = 8.0 * f64::EPSILON * position.abs().max_element();
             return (map.normal(normal).normalize(), map.spread(error) + rounded);
         }
         match self.shape(primitive) {
             Some(shape) => {
                 let point = shape.point(&raywright_base::math::Ray::new(position, DVec3::X), 0.0, uv);
-                // What is nearest is found by a few roundings more than a point of given coordinates.
+                // Finding the nearest point takes a few more roundings than evaluating a point at given coordinates.
                 (point.normal, 4.0 * point.error)
             }
             None => (self.normal(primitive), self.error(primitive)),

@@ -1,4 +1,4 @@
-//! What is in a scene and is no mesh, as accelerators see it: shapes, and instances of prototypes.
+//! Shapes that are not meshes, and instances, in the form that accelerators use.
 
 use super::instances::Instances;
 use super::prototype::Prototype;
@@ -7,12 +7,12 @@ use raywright_base::math::Ray;
 use raywright_shapes::{Ball, Bounds, Candidate, Shape};
 use std::sync::Arc;
 
-/// Shapes by their numbers among all primitives, which increase.
+/// Shapes by their increasing primitive numbers.
 #[derive(Clone, Debug, Default)]
 pub struct Objects {
     numbers: Vec<u32>,
     shapes: Vec<Arc<dyn Shape>>,
-    /// With the number of the first of each.
+    /// Instances, each with its first primitive number.
     instances: Vec<(u32, Instances)>,
 }
 
@@ -24,22 +24,22 @@ impl Objects {
         self.shapes.push(shape);
     }
 
-    /// Adds instances of a prototype, the first with a number greater than any before.
+    /// Adds instances of a prototype; the first primitive number is greater than any before.
     pub fn push_instances(&mut self, number: u32, instances: Instances) {
         self.instances.push((number, instances));
     }
 
-    /// Whether there are none.
+    /// Returns whether there are no objects.
     pub fn is_empty(&self) -> bool {
         self.numbers.is_empty() && self.instances.is_empty()
     }
 
-    /// Whether there are instances among them.
+    /// Returns whether there are instances.
     pub fn has_instances(&self) -> bool {
         !self.instances.is_empty()
     }
 
-    /// Which instance of what a number is; none for what is no instance.
+    /// The instances of a primitive number, and its index among them; `None` if it is not an instance.
     #[inline]
     pub fn instance(&self, number: u32) -> Option<(&Instances, u32)> {
         let before = self.instances.partition_point(|&(first, _)| first <= number);
@@ -48,26 +48,25 @@ impl Objects {
         ((instance as usize) < instances.count()).then_some((instances, instance))
     }
 
-    /// The least of the numbers.
+    /// The smallest primitive number.
     pub fn first(&self) -> Option<u32> {
         let instances = self.instances.first().map(|&(first, _)| first);
         self.numbers.first().copied().into_iter().chain(instances).min()
     }
 
-    /// The shape of a number; none for a triangle.
+    /// The shape of a primitive number; `None` for a triangle.
     #[inline]
     pub fn get(&self, number: u32) -> Option<&dyn Shape> {
         self.numbers.binary_search(&number).ok().map(|i| self.shapes[i].as_ref())
     }
 
-    /// The numbers of all of them.
+    /// All primitive numbers.
     pub fn all(&self) -> impl Iterator<Item = u32> {
         let copies = self.instances.iter().flat_map(|(first, instances)| *first..first + instances.count() as u32);
         self.numbers.iter().copied().chain(copies)
     }
 
-    /// Memory held, without that of shapes themselves, and without prototypes that were `seen`; those here count as
-    /// seen from then on.
+    /// Memory in bytes, excluding shapes themselves and prototypes in `seen`; prototypes found here are added to it.
     pub fn bytes(&self, seen: &mut Vec<*const Prototype>) -> usize {
         let of_copies = |(_, instances): &(u32, Instances)| instances.bytes() + instances.prototype().bytes(seen);
         size_of_val(self.numbers.as_slice())
@@ -119,7 +118,7 @@ impl UserGeometry for Objects {
                 let mut answered = false;
                 shape.meet(ray, &mut |candidate| {
                     answered = met(candidate);
-                    // Of one shape the first that is told is the closest: the others need not be computed.
+                    // A shape reports its hits in order, so the first is the closest.
                     answered || matches!(wanted, Wanted::Closest)
                 });
                 answered

@@ -1,19 +1,19 @@
-//! What meshes may know of their vertices beside where they are.
+//! Optional vertex attributes.
 
-/// Values of the vertices of those meshes that have some; nothing is kept of the others.
+/// Values of one attribute; meshes without it take no memory.
 #[derive(Debug)]
 pub(super) struct PerVertex<T> {
     values: Vec<T>,
-    /// Vertices that have values, in order; meshes with values that follow each other are in one.
+    /// Ranges of vertices with values, in order; adjacent meshes with values share a range.
     runs: Vec<Run>,
 }
 
-/// Neighbouring vertices that all have a value.
+/// A range of vertices that all have a value.
 #[derive(Clone, Copy, Debug)]
 struct Run {
-    /// The first vertex, and the first after them.
+    /// First vertex, and one past the last.
     vertices: [u32; 2],
-    /// How many vertices before them have none.
+    /// Number of vertices before the range that have no value.
     without: u32,
 }
 
@@ -24,8 +24,8 @@ impl<T> Default for PerVertex<T> {
 }
 
 impl<T: Copy> PerVertex<T> {
-    /// Adds those of a mesh, if it has some. Its vertices are numbered from `first` on, after those of all meshes
-    /// before.
+    /// Adds the values of a mesh, if it has any. Its vertices are numbered from `first`, after those of all earlier
+    /// meshes.
     pub fn extend(&mut self, first: u32, values: Option<Vec<T>>) {
         let Some(values) = values.filter(|values| !values.is_empty()) else { return };
         let end = first + values.len() as u32;
@@ -40,16 +40,16 @@ impl<T: Copy> PerVertex<T> {
         }
     }
 
-    /// Gives memory back that was reserved for more.
+    /// Frees unused capacity.
     pub fn shrink_to_fit(&mut self) {
         self.values.shrink_to_fit();
         self.runs.shrink_to_fit();
     }
 
-    /// Those of a face's corners; none if its mesh has none.
+    /// Values at a face's corners; `None` if its mesh has none.
     #[inline]
     pub fn of(&self, face: [u32; 3]) -> Option<[T; 3]> {
-        // The corners of a face are of one mesh, so what holds of one holds of all.
+        // All corners of a face belong to one mesh, so one lookup is enough.
         let run = match &*self.runs {
             [] => return None,
             [run] => run,
@@ -59,12 +59,12 @@ impl<T: Copy> PerVertex<T> {
         (first <= face[0] && face[0] < end).then(|| face.map(|v| self.values[(v - run.without) as usize]))
     }
 
-    /// Whether no mesh has any.
+    /// Returns whether no mesh has values.
     pub fn is_empty(&self) -> bool {
         self.values.is_empty()
     }
 
-    /// The memory held.
+    /// Memory in bytes.
     pub fn bytes(&self) -> usize {
         self.values.capacity() * size_of::<T>() + self.runs.capacity() * size_of::<Run>()
     }
@@ -79,7 +79,7 @@ mod tests {
     fn is_kept_only_where_a_mesh_has_some() {
         let mut all = PerVertex::<u8>::default();
         assert_eq!((all.of([0, 1, 2]), all.bytes(), all.is_empty()), (None, 0, true));
-        // Three vertices without, two with, one without.
+        // Three vertices without values, two with, one without.
         all.extend(0, None);
         all.extend(3, Some(vec![7, 8]));
         all.extend(5, None);

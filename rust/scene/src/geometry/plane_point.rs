@@ -1,8 +1,8 @@
-//! Points of planes to twice the digits, by sums whose roundings are kept.
+//! Points of planes in double-double arithmetic, from error-free sums.
 
 use raywright_base::math::{DVec3, Ray, two_product, two_sum};
 
-/// A sum of two f64, the second of which holds what rounding took from the first.
+/// An unevaluated sum of two f64; the second is the rounding error of the first.
 #[derive(Clone, Copy, Default)]
 struct Sum {
     high: f64,
@@ -24,7 +24,7 @@ impl Sum {
     }
 }
 
-/// A point of a triangle's plane to twice the digits, and a normal of the plane of any length.
+/// A point of a triangle's plane in double-double precision, and a normal of any length.
 #[derive(Clone, Copy)]
 pub struct PlanePoint {
     point: [Sum; 3],
@@ -32,7 +32,7 @@ pub struct PlanePoint {
 }
 
 impl PlanePoint {
-    /// The point of a triangle that the weights of its second and third corner tell.
+    /// The point of a triangle with these barycentric coordinates of its second and third corner.
     pub fn of([a, b, c]: [DVec3; 3], [v, w]: [f64; 2]) -> Self {
         let point = [0, 1, 2].map(|i| {
             let ((e, e_low), (f, f_low)) = (two_sum(b[i], -a[i]), two_sum(c[i], -a[i]));
@@ -42,7 +42,7 @@ impl PlanePoint {
         Self { point, normal: (b - a).cross(c - a) }
     }
 
-    /// The same under a map, given with the inverse of its linear part.
+    /// The point under a map, given with the inverse of its linear part.
     pub fn under(&self, linear: &[DVec3; 3], inverse: &[DVec3; 3], shift: DVec3) -> Self {
         let [x, y, z] = self.point;
         let point = [0, 1, 2].map(|i| {
@@ -55,7 +55,7 @@ impl PlanePoint {
         Self { point, normal: inverse[0] * n.x + inverse[1] * n.y + inverse[2] * n.z }
     }
 
-    /// How much farther than `t` a ray comes to the plane.
+    /// Difference between the ray's `t` at the plane and `t`.
     pub fn beyond(&self, ray: &Ray, t: f64) -> f64 {
         let from = [0, 1, 2].map(|i| {
             let sum = self.point[i].add(-ray.origin[i]).add_product(-t, ray.direction[i]);

@@ -1,16 +1,15 @@
-//! Where an instance stands: the map from a prototype's space to that which it is put into, as rays and as points take
-//! it.
+//! Pose of an instance: the map from a prototype's space to its parent space, applied to rays and points.
 //!
-//! A ray is taken to the prototype's space by a matrix `M` and the shift `s` of the map: `o' = M (o − s)`, `d' = M d`,
-//! with its direction as long as it comes out, so that `t` is the same on both sides but for rounding. `M` is the
-//! inverse of the map's linear part `L`, rounded once. What a ray hits is decided by the ray as it is taken over; `t`
-//! is then told as `L` has it ([`super::instance_ray`]).
+//! A ray enters the prototype's space by a matrix `M` and the map's translation `s`: `o' = M (o − s)`, `d' = M d`. The
+//! direction is not normalised, so `t` is the same in both spaces to within rounding. `M` is the inverse of the map's
+//! linear part `L`, rounded once. The transformed ray decides the hit; its `t` is then recomputed with `L`
+//! ([`super::instance_ray`]).
 //!
-//! The bounds, with u = 2⁻⁵³ and κ the greatest row sum of |L| |M|, at least 1, and for a turn at most 3. A coordinate
-//! of `o'` errs by less than 4u (|M| |o − s|), of which the world sees 4uκ |o − s|, and so for `d'`; three products and
-//! their sum are five roundings, and the difference one. A point `p` of the prototype is at `L p + s`. How far `M` is
-//! from the inverse of `L` is known by the residual `R = 1 − L M`: for rays the point is off by `|R| |L p|`, and `R` is
-//! computed to within 4uκ.
+//! Error bounds, with u = 2⁻⁵³ and κ the greatest row sum of |L| |M|. κ is at least 1, and at most 3 for a rotation. A
+//! coordinate of `o'` has an error below 4u (|M| |o − s|), which is 4uκ |o − s| in world space; the same holds for
+//! `d'`. Three products and their sum take five roundings, and the difference one. A point `p` of the prototype is at
+//! `L p + s`. The residual `R = 1 − L M` measures how far `M` is from the inverse of `L`: for rays the point is
+//! displaced by `|R| |L p|`. `R` is computed to within 4uκ.
 
 use super::plane_point::PlanePoint;
 use crate::{ShadingPoint, SurfacePoint};
@@ -18,28 +17,28 @@ use raywright_base::math::robust::UNIT;
 use raywright_base::math::{Affine, DVec3, Ray, Singular};
 use raywright_shapes::Bounds;
 
-/// A linear map by its rows.
+/// The rows of a linear map.
 pub type Rows = [DVec3; 3];
 
-/// A map from a prototype's space to another, ready for rays.
+/// A map from a prototype's space to its parent space, prepared for rays.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct Pose {
     /// The inverse of the linear part.
     inverse: Rows,
-    /// Where the prototype's origin is.
+    /// Position of the prototype's origin.
     shift: DVec3,
-    /// The linear part, which only hits are asked for.
+    /// The linear part, used only at hits.
     linear: Rows,
 }
 
-/// Up to here the quick inverse is as good as any.
+/// Up to this condition number the quick inverse is as accurate as the exact one.
 const WELL_CONDITIONED: f64 = 64.0;
 
-/// The greatest κ of a map that rays are taken through: from up to 2⁷ sizes of an instance away they meet its box where
-/// they hit it ([`Pose::around`]), and are off by less than 2⁻³¹ of that distance.
+/// The largest accepted κ. From up to 2⁷ sizes of an instance away, rays that hit it also hit its box
+/// ([`Pose::around`]), with an error below 2⁻³¹ of that distance.
 ///
-/// κ does not depend on how the axes of the prototype are scaled: it is at most 3 for a scaling and a turn after it.
+/// κ does not depend on a scaling of the prototype's axes: for a scaling followed by a rotation it is at most 3.
 pub const MOST_CONDITION: f64 = (1 << 20) as f64;
 
 #[inline(always)]
@@ -59,11 +58,11 @@ fn condition(a: &Rows, b: &Rows) -> f64 {
     times(&abs(a), sums).max_element()
 }
 
-/// The inverse of a linear map, to within some roundings of its largest numbers where it is well conditioned, and each
-/// number to within an ulp where not.
+/// Inverts a linear map: to within some roundings of its largest entries if it is well conditioned, and each entry to
+/// within an ulp otherwise.
 ///
 /// # Errors
-/// If there is none, decided exactly, or f64 cannot hold it.
+/// If it is singular, decided exactly, or f64 cannot hold the inverse.
 #[inline]
 pub fn inverse(rows: &Rows) -> Result<Rows, Singular> {
     let [a, b, c] = *rows;
@@ -72,7 +71,7 @@ pub fn inverse(rows: &Rows) -> Result<Rows, Singular> {
     let [x, y, z] = columns.map(|column| column / determinant);
     let inverse = [DVec3::new(x.x, y.x, z.x), DVec3::new(x.y, y.y, z.y), DVec3::new(x.z, y.z, z.z)];
     let largest = a.abs().max(b.abs()).max(c.abs()).max_element();
-    // No product of three then underflows that matters, and none overflows.
+    // In this range products of three neither overflow nor underflow noticeably.
     if largest > 1e-75 && largest < 1e75 && condition(rows, &inverse) <= WELL_CONDITIONED {
         return Ok(inverse);
     }
@@ -86,7 +85,7 @@ fn inverse_of_any(rows: &Rows) -> Result<Rows, Singular> {
 }
 
 impl Pose {
-    /// Of a map by its rows, each of three numbers of the linear part and one of the shift.
+    /// Creates the pose of a map by its rows, each three numbers of the linear part and one of the translation.
     ///
     /// # Errors
     /// If it has no inverse, a number is not finite, or κ is more than [`MOST_CONDITION`].
@@ -104,57 +103,57 @@ impl Pose {
         Ok(Self { linear: rows, inverse, shift })
     }
 
-    /// Of a map that only moves.
+    /// Creates a translation.
     #[inline(always)]
     pub const fn shifted(shift: DVec3) -> Self {
         Self { linear: DVec3::AXES, inverse: DVec3::AXES, shift }
     }
 
-    /// Where the map is to, if it only moves.
+    /// The translation, if the map is nothing else.
     pub fn shift_alone(&self) -> Option<DVec3> {
         (self.linear == DVec3::AXES).then_some(self.shift)
     }
 
-    /// A ray as the prototype's space has it.
+    /// Transforms a ray into the prototype's space.
     #[inline(always)]
     pub fn enter(&self, ray: &Ray) -> Ray {
         Ray {
             origin: times(&self.inverse, ray.origin - self.shift),
             direction: times(&self.inverse, ray.direction),
-            // The prototype's primitives have numbers of their own.
+            // The prototype numbers its own primitives.
             misses: [Ray::NO_TRIANGLE; 2],
             ..*ray
         }
     }
 
-    /// A point of a plane of the prototype in the space that it is put into.
+    /// Maps a point of a plane to the parent space.
     #[inline]
     pub fn plane_point(&self, plane: &PlanePoint) -> PlanePoint {
         plane.under(&self.linear, &self.inverse, self.shift)
     }
 
-    /// The linear map that takes points to the prototype's space, once the shift is taken off.
+    /// The linear map to the prototype's space, and the translation that is subtracted first.
     pub fn to_prototype(self) -> (Rows, DVec3) {
         (self.inverse, self.shift)
     }
 
-    /// The box around a box that is put there, with room: it is larger by 2⁻²² of itself.
+    /// Bounds of a mapped box, enlarged by 2⁻²² of its size.
     ///
-    /// The room is for `t`, which in the prototype's space may be off by 2⁻²⁶ of nine radii at most
-    /// ([`raywright_shapes::triangle::EdgeRay::T_ERROR`]), and for a ray's own roundings, 8uκ of how far it comes. So
-    /// whatever a ray hits as it is taken back, it meets in the box too, if κ is at most 16, of which box tests take
-    /// care at any distance, or κ times the distance at most 2²⁷ times the size of the instance. Beyond, what it grazes
-    /// within its roundings may be found by one accelerator and not by another.
+    /// The margin covers the error of `t` in the prototype's space, which is 2⁻²⁶ of nine radii at most
+    /// ([`raywright_shapes::triangle::EdgeRay::T_ERROR`]), and the ray's own roundings, 8uκ of its distance. So every
+    /// ray that hits in the prototype's space also hits this box, if κ is at most 16 (box tests tolerate that at any
+    /// distance), or if κ times the distance is at most 2²⁷ times the instance's size. Beyond that, accelerators may
+    /// disagree on hits that graze within rounding.
     pub fn around(&self, bounds: &Bounds) -> Bounds {
         carried(&self.linear, self.shift, bounds)
     }
 
-    /// A point of the prototype's surface in the space that it is put into.
+    /// Maps a point of the prototype's surface to the parent space.
     ///
-    /// With M the size of what it stands on, which the error of a point tells (8ε M of a triangle, as much as the
-    /// coordinates of a point itself at least), the point errs by what it was off before, by the residual, and by the
-    /// roundings here. A ray that leaves is taken back with an error of 8uκ |L| M along the surface's extent: 32uκ |L|
-    /// M are allowed for all of it.
+    /// Let M be the size of the surface, known from the point's error: 8ε M for a triangle, and at least that share of
+    /// the coordinates themselves. The mapped point has the error it had before, the residual's, and the roundings made
+    /// here. A leaving ray is transformed back with an error of 8uκ |L| M along the surface's extent. In total 32uκ |L|
+    /// M are allowed.
     pub fn point(&self, point: &SurfacePoint) -> SurfacePoint {
         let rows = self.linear;
         let kappa = condition(&rows, &self.inverse);
@@ -168,7 +167,7 @@ impl Pose {
         let error = 2.0 * norm * point.error
             + (residual + 32.0 * UNIT * kappa) * norm * size
             + 4.0 * UNIT * position.abs().max(self.shift.abs()).max_element();
-        // Normals go with the transpose of the inverse, and stay on the side of what was outside.
+        // Normals transform by the inverse transpose and keep their side.
         let turned = |n: DVec3| {
             let n = self.inverse[0] * n.x + self.inverse[1] * n.y + self.inverse[2] * n.z;
             let n = n / n.abs().max_element();
@@ -181,10 +180,11 @@ impl Pose {
 }
 
 impl Pose {
-    /// How a unit normal changes in the space that it is put into, of which it is known how it does in the prototype's.
+    /// Derivatives of a unit normal in the parent space, from those in the prototype's space.
     fn turning(&self, normal: DVec3, dn: [DVec3; 2]) -> [DVec3; 2] {
         let across = |n: DVec3| self.inverse[0] * n.x + self.inverse[1] * n.y + self.inverse[2] * n.z;
-        // The normal before it is made unit again; of its change only what turns it is left.
+        // Derivative of a normalised vector: the mapped derivative without its component along the normal, over the
+        // mapped normal's length.
         let outside = across(normal);
         let length = outside.length();
         let outside = outside / length;
@@ -194,19 +194,18 @@ impl Pose {
         })
     }
 
-    /// How much solid angle of the prototype's space there is to one of the space that it is put into, about a unit
-    /// direction of the latter.
+    /// Ratio of solid angle in the prototype's space to that in the parent space, about a unit direction of the latter.
     pub(crate) fn crowding(&self, direction: DVec3) -> f64 {
         let [a, b, c] = self.inverse;
         a.dot(b.cross(c)).abs() / times(&self.inverse, direction).length().powi(3)
     }
 
-    /// The map itself.
+    /// The affine map.
     pub(crate) fn map(&self) -> Affine {
         Affine::new(self.linear, self.shift)
     }
 
-    /// How the surface of the prototype lies in the space that it is put into, of which there is `point` there.
+    /// Maps the shading data of the prototype to the parent space, where the mapped surface point is `point`.
     pub(super) fn shading_point(&self, within: ShadingPoint, point: SurfacePoint) -> ShadingPoint {
         let rows = self.linear;
         let volume = rows[0].dot(rows[1].cross(rows[2])).abs();
@@ -220,13 +219,13 @@ impl Pose {
     }
 }
 
-/// A matrix taken apart: the rows of its linear part, and its shift.
+/// Splits a matrix into the rows of its linear part and its translation.
 #[inline(always)]
 fn parts(matrix: &[[f64; 4]; 3]) -> (Rows, DVec3) {
     (matrix.map(|[x, y, z, _]| DVec3::new(x, y, z)), DVec3::from_array(matrix.map(|row| row[3])))
 }
 
-/// The box around a box under a map; see [`Pose::around`].
+/// Bounds of a box under a map; see [`Pose::around`].
 pub fn carried_by(matrix: &[[f64; 4]; 3], bounds: &Bounds) -> Bounds {
     let (rows, shift) = parts(matrix);
     carried(&rows, shift, bounds)
@@ -238,7 +237,7 @@ fn carried(rows: &Rows, shift: DVec3, bounds: &Bounds) -> Bounds {
     let (centre, half) = (bounds.min / 2.0 + bounds.max / 2.0, bounds.max / 2.0 - bounds.min / 2.0);
     let middle = times(rows, centre) + shift;
     let roundings = 16.0 * UNIT * (times(&sizes, centre.abs()) + shift.abs());
-    // Without end along an axis is without end wherever that goes, and zero times it is nothing.
+    // An infinite extent stays infinite along each axis it contributes to; zero times infinity must give zero.
     let part = |row: DVec3| DVec3::select(row.cmpeq(DVec3::ZERO), DVec3::ZERO, row * half).element_sum();
     let reach = DVec3::from_array(sizes.map(part)) * (1.0 + 16.0 * UNIT);
     let room = times(&sizes, DVec3::splat(half.max_element().min(f64::MAX))) * ROOM;
@@ -250,7 +249,7 @@ fn carried(rows: &Rows, shift: DVec3, bounds: &Bounds) -> Bounds {
     }
 }
 
-/// The matrix at a time from 0 to 1, between one and another: every point moves on a straight line.
+/// Interpolates two matrices at a time from 0 to 1, so that every point moves on a straight line.
 #[inline]
 pub fn between(start: &[[f64; 4]; 3], end: &[[f64; 4]; 3], time: f64) -> [[f64; 4]; 3] {
     if time >= 1.0 {
@@ -270,7 +269,7 @@ mod tests {
         prop::array::uniform3(-size..size).prop_map(DVec3::from_array)
     }
 
-    /// Turned, sheared, mirrored, and scaled from 1e-6 to 1e6, each axis by itself; up to 1e7 away.
+    /// Rotated, sheared, mirrored, and scaled from 1e-6 to 1e6 per axis; up to 1e7 away.
     fn matrix() -> impl Strategy<Value = [[f64; 4]; 3]> {
         let scale = prop::array::uniform3((-6.0..6.0f64, any::<bool>()));
         (prop::array::uniform3(vector(1.0)), scale, vector(1.0), -7.0..7.0f64).prop_map(|(rows, scale, shift, far)| {
@@ -312,18 +311,18 @@ mod tests {
             matrix in matrix(), p in vector(3.0), way in vector(1.0), t in 0.1..10.0f64,
         ) {
             let Ok(pose) = Pose::new(&matrix) else { return Err(TestCaseError::reject("singular")) };
-            // A point of the prototype, as one of a triangle of this size.
+            // A point of the prototype with the error of one on a triangle of this size.
             let own = SurfacePoint {
                 position: p, error: 16.0 * UNIT * 3.0, normal: DVec3::X, shading_normal: DVec3::X,
                 shape: 0, inner: None,
             };
             let world = pose.point(&own);
-            // Exactly where it is, by twice the digits.
+            // The exact position, in double-double precision.
             let map = Affine::new(pose.inverse, DVec3::ZERO).inverse().unwrap();
             let exact = Affine::new(map.rows, pose.shift).point(p);
             let off = (world.position - exact).abs().max_element();
             prop_assert!(off <= world.error, "{} {}", world.position, world.error);
-            // A ray towards it passes it in the prototype's space by no more than the error told, which is small.
+            // A ray towards the point passes it in the prototype's space by at most the reported error, which is small.
             let ray = Ray::new(world.position - way * t, way);
             let taken = pose.enter(&ray);
             let off = (taken.origin + taken.direction * t - p).abs();
@@ -346,7 +345,7 @@ mod tests {
                 let (point, exact) = (times(&rows, p) + shift, Affine::new(rows, shift).point(p));
                 prop_assert!(holds(&around, exact) && holds(&carried_by(&matrix, &bounds), exact), "{point}");
             }
-            // Of a point nothing is left but roundings.
+            // The box of a single point has only the size of roundings.
             let least = pose.around(&Bounds { min: a, max: a });
             let size = times(&abs(&rows), a.abs()) + shift.abs();
             prop_assert!((least.max - least.min).cmple(size * 1e-12 * condition(&rows, &pose.inverse)).all());
@@ -380,7 +379,7 @@ mod tests {
         let flat = [[1.0, 2.0, 3.0, 0.0], [2.0, 4.0, 6.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
         assert_eq!(Pose::new(&flat), Err(Singular::ZeroDeterminant));
         assert_eq!(Pose::new(&flat.map(|row| row.map(|x| x / 0.0))), Err(Singular::NotFinite));
-        // Sheared by as much: κ is some 4 over what is left of the determinant. Scaled by as much, it is 1.
+        // Shear by this amount: κ is some 4 over the remaining determinant. For scaling by this amount it is 1.
         let sheared = |by: f64| Pose::new(&[[1.0, 1.0, 0.0, 0.0], [1.0, 1.0 + by, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]]);
         assert!(sheared(1e-5).is_ok());
         for by in [1e-6, 1e-12, 1e-15] {

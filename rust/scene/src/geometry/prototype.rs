@@ -1,4 +1,4 @@
-//! What is put into a scene many times: shapes in a space of their own, with an accelerator of their own.
+//! Prototypes of instances: shapes in a local space with an accelerator over them.
 
 use super::plane_point::PlanePoint;
 use super::{Enclosing, Geometry, Solids};
@@ -11,22 +11,21 @@ use raywright_shapes::Bounds;
 use std::fmt;
 use std::sync::{Arc, OnceLock};
 
-/// Shapes that are put elsewhere together, compiled once.
+/// Shapes that are instanced together, compiled once.
 ///
-/// Their primitives are numbered through, *flattened*: shape after shape; a mesh has its faces, a shape that is no mesh
-/// one, and instances of a prototype for every instance, from the first to the last, all primitives of that prototype
-/// as it numbers them.
+/// Their primitives are numbered consecutively, *flattened*, shape by shape. A mesh contributes its faces and another
+/// shape one primitive. Instances contribute all primitives of their prototype once per instance, in order.
 pub struct Prototype {
     geometry: Geometry,
     accelerator: Box<dyn Accelerator>,
     materials: Vec<Arc<dyn Material>>,
     emission: Vec<Emission>,
-    /// The flattened number of each shape's first primitive, and how many there are.
+    /// The flattened number of each shape's first primitive, and the total at the end.
     first: Vec<u64>,
     has_instances: bool,
     moves: bool,
     bounds: Option<Bounds>,
-    /// What is closed in it, once that was asked.
+    /// The closed solids in it, computed on first use.
     solids: OnceLock<Arc<Solids>>,
 }
 
@@ -37,10 +36,10 @@ impl fmt::Debug for Prototype {
 }
 
 impl Prototype {
-    /// Of surfaces, what each is made of and how it shines, with an accelerator made for them.
+    /// Creates a prototype from surfaces with their materials and emission, and builds an accelerator.
     ///
     /// # Errors
-    /// If there are 2³¹ primitives or more, flattened: how many.
+    /// If there are 2³¹ primitives or more, flattened: their number.
     pub(crate) fn of(
         geometry: Geometry,
         materials: Vec<Arc<dyn Material>>,
@@ -70,32 +69,32 @@ impl Prototype {
         Ok(Self { geometry, accelerator, materials, emission, first, has_instances, moves, bounds, solids })
     }
 
-    /// How many primitives there are, flattened.
+    /// Number of primitives, flattened.
     pub fn count(&self) -> u32 {
         self.first[self.first.len() - 1] as u32
     }
 
-    /// The box around all, at any time; none if nothing can be hit.
+    /// Bounds over all times; `None` if rays can hit nothing.
     pub fn bounds(&self) -> Option<Bounds> {
         self.bounds
     }
 
-    /// Whether anything in it moves.
+    /// Returns whether anything in it moves.
     pub fn moves(&self) -> bool {
         self.moves
     }
 
-    /// Its surfaces.
+    /// The surfaces.
     pub fn geometry(&self) -> &Geometry {
         &self.geometry
     }
 
-    /// What finds its hits.
+    /// The acceleration structure.
     pub fn accelerator(&self) -> &dyn Accelerator {
         self.accelerator.as_ref()
     }
 
-    /// The flattened number of what was hit.
+    /// The flattened primitive number of a hit.
     #[inline]
     pub fn flatten(&self, hit: &Hit) -> u32 {
         if !self.has_instances {
@@ -109,7 +108,7 @@ impl Prototype {
         self.first[shape as usize] as u32 + within
     }
 
-    /// The primitive of a flattened number, and which in it.
+    /// The primitive of a flattened number, and the flattened number within it.
     #[inline]
     pub fn split(&self, flat: u32) -> (u32, u32) {
         if !self.has_instances {
@@ -124,27 +123,27 @@ impl Prototype {
         (self.geometry.primitives_of(shape as u32).start + number, inner)
     }
 
-    /// Of all primitives that belong to the same shape, copy by copy, as that of a flattened number, the first.
+    /// The flattened number of the first primitive in the same shape of the same instance.
     pub fn first_alike(&self, flat: u32) -> u32 {
         let (primitive, inner) = self.split(flat);
         let (primitive, inner) = self.geometry.first_alike(primitive, inner);
         self.flatten(&Hit { primitive, inner, ..Hit::MISS })
     }
 
-    /// Where a ray in its space meets the primitive of a flattened number, `inner`, and how the surface lies there.
+    /// The surface point where a ray in the prototype's space hits the primitive with flattened number `inner`.
     pub fn surface(&self, ray: &Ray, hit: &Hit) -> SurfacePoint {
         let (primitive, inner) = self.split(hit.inner);
         self.geometry.surface(ray, &Hit { primitive, inner, ..*hit })
     }
 
-    /// What is needed of the point where a ray in its space hits the primitive of a flattened number, `inner`.
+    /// The shading data where a ray in the prototype's space hits the primitive with flattened number `inner`.
     pub(super) fn shading_point(&self, ray: &Ray, hit: &Hit, needs: Needs) -> ShadingPoint {
         let (primitive, inner) = self.split(hit.inner);
         let hit = Hit { primitive, inner, ..*hit };
         self.geometry.shading_point(ray, &hit, self.geometry.surface(ray, &hit), needs)
     }
 
-    /// A point of the triangle of a flattened number, by the weights of its corners; none of what is no triangle.
+    /// A point of the triangle with a flattened number, at barycentric coordinates; `None` if it is not a triangle.
     pub(super) fn plane_point(&self, flat: u32, uv: [f64; 2], time: f64) -> Option<PlanePoint> {
         let (primitive, inner) = self.split(flat);
         if let Some((instances, instance)) = self.geometry.instance(primitive) {
@@ -155,7 +154,7 @@ impl Prototype {
         corners[0].is_finite().then(|| PlanePoint::of(corners, uv))
     }
 
-    /// What the primitive of a flattened number is made of, and how it shines.
+    /// Material and emission of the primitive with a flattened number.
     pub fn appearance(&self, flat: u32) -> (&dyn Material, &Emission) {
         let (primitive, inner) = self.split(flat);
         let (shape, _) = self.geometry.locate(primitive);
@@ -165,26 +164,27 @@ impl Prototype {
         }
     }
 
-    /// What each of its shapes is made of, and how it shines.
+    /// Material and emission of each shape.
     pub fn appearances(&self) -> impl Iterator<Item = (&dyn Material, &Emission)> {
         self.materials.iter().map(|material| &**material).zip(&self.emission)
     }
 
-    /// On which side of what is closed in it the origin of a ray in its space lies, by the crossings from there on.
+    /// The side of the closed solids on which a ray's origin lies, by the surfaces that the ray crosses.
     pub fn side(&self, ray: &Ray) -> Side {
         self.solids().sides(&self.geometry, self.accelerator(), std::slice::from_ref(ray))[0]
     }
 
-    /// What is enclosed in it.
+    /// The closed solids.
     pub fn solids(&self) -> Arc<Solids> {
-        // Not within the lock: threads that wait for others take up work of theirs, which may come here too.
+        // Computed outside the lock: a thread that waits for others may take up their tasks, and those may call this
+        // function.
         let solids = || Arc::new(Solids::new(&self.geometry, self.accelerator(), &Enclosing::default()));
         let solids = self.solids.get().cloned().unwrap_or_else(solids);
         let _ = self.solids.set(solids.clone());
         solids
     }
 
-    /// Memory held, without prototypes in it that were `seen`; it and they count as seen from then on.
+    /// Memory in bytes, excluding prototypes in `seen`; this one and those in it are added to it.
     pub fn bytes(&self, seen: &mut Vec<*const Self>) -> usize {
         let me = std::ptr::from_ref(self);
         if seen.contains(&me) {
@@ -227,7 +227,7 @@ mod tests {
         let all =
             prototype(vec![sheet(3.0), instances(&pair, 3), sheet(4.0), instances(&pair, 0), sheet(5.0)]).unwrap();
         assert_eq!((pair.count(), all.count()), (4, 2 + 12 + 2 + 2));
-        // Shape, number in the shape, and which in that, of each flattened number in turn.
+        // Shape, number within it and inner number of each flattened number.
         let mut flat = 0;
         for (shape, each, inner, emission) in
             [(0, 2, 1, [3.0; 2]), (1, 3, 4, [1.0, 2.0]), (2, 2, 1, [4.0; 2]), (4, 2, 1, [5.0; 2])]

@@ -1,22 +1,22 @@
-//! What rounding to f32 does to the vertices of a mesh, and whether that is a loss.
+//! Rounding of a mesh's vertices to f32, and a test for loss.
 
 use super::Vertices;
 use raywright_base::math::{DVec3, Vec3};
 
-/// How precisely vertices are kept.
+/// Precision of stored vertices.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Precision {
-    /// As f32 where that moves no vertex of any mesh, with all of their digits otherwise.
+    /// f32 if that changes no vertex of any mesh, f64 otherwise.
     #[default]
     Auto,
-    /// As f32.
+    /// f32.
     Single,
-    /// With all of their digits.
+    /// f64.
     Double,
 }
 
 impl Precision {
-    /// Whether meshes keep all of their digits where rounding does this to one of them.
+    /// Returns whether vertices stay f64, given the rounding of one mesh.
     pub fn is_double(self, rounding: Rounding) -> bool {
         match self {
             Self::Auto => rounding.moved > 0.0,
@@ -26,43 +26,43 @@ impl Precision {
     }
 }
 
-/// What rounding its vertices to f32 does to a mesh; nothing by default.
+/// Effect of rounding a mesh's vertices to f32; zero by default.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Rounding {
-    /// The most by which a coordinate of a vertex changes; infinite where f32 has no number as large.
+    /// Greatest change of a vertex coordinate; infinite if it overflows f32.
     pub moved: f64,
-    /// The longest side of the box around the vertices as they are given.
+    /// Longest side of the bounds of the vertices as given.
     pub extent: f64,
 }
 
 impl Rounding {
-    /// The share of its extent by which a mesh that is to be kept as f32 may change without a warning. f32 rounds by
-    /// 2⁻²⁵ to 2⁻²⁴ of a number: by 6e-8 of the extent of what reaches the origin, and by more than this of what stands
-    /// two or three of its extents away.
+    /// Relative change above which storing a mesh as f32 causes a warning. f32 rounds by 2⁻²⁵ to 2⁻²⁴ of a number. That
+    /// is 6e-8 of the extent of a mesh that reaches the origin, and more than this bound if the mesh is two or three of
+    /// its extents away.
     pub const MOST: f64 = 1e-7;
 
-    /// Whether that is worth a warning.
+    /// Returns whether the change deserves a warning.
     pub fn is_loss(self) -> bool {
         self.share() > Self::MOST
     }
 
-    /// How far vertices are moved, as a share of the extent.
+    /// Greatest change over the extent.
     pub fn share(self) -> f64 {
         if self.moved == 0.0 { 0.0 } else { self.moved / self.extent }
     }
 
-    /// The greater of two by their shares.
+    /// The greater of two relative changes.
     pub fn worst(self, other: Self) -> Self {
-        // A share may be too small for an f64.
+        // The relative change may underflow to zero.
         if (other.share(), other.moved) > (self.share(), self.moved) { other } else { self }
     }
 }
 
-/// Vertices rounded to f32, and what that does to those that are finite and in use: what lies about unused has no say
-/// in how large a mesh is.
+/// Rounds vertices to f32 and measures the change of those that are finite and in use. Unused vertices do not affect
+/// the extent.
 ///
 /// # Panics
-/// If a face names a vertex that there is not.
+/// If a face names a vertex that does not exist.
 pub fn rounded(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> (Vertices, Rounding) {
     let mut is_used = vec![false; vertices.len()];
     for &v in faces.as_flattened() {
@@ -79,7 +79,7 @@ pub fn rounded(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> (Vertices, Rounding
         single
     };
     let single: Vec<_> = vertices.iter().zip(&is_used).map(one).collect();
-    // Without vertices it is less than nothing, and of the largest numbers more than there is.
+    // Without vertices the extent is negative infinity, and with the largest numbers it overflows.
     let extent = (max - min).max_element().clamp(0.0, f64::MAX);
     (Vertices::Single(single), Rounding { moved: moved.max_element(), extent })
 }
@@ -90,14 +90,14 @@ mod tests {
 
     const FACE: [[u32; 3]; 1] = [[0, 1, 2]];
 
-    /// A triangle of this extent whose corners are f32 but for one that is off by so much.
+    /// A triangle of this extent with f32 corners, except one that is displaced by `by`.
     fn off(extent: f64, by: f64) -> Rounding {
         rounded(&[[0.0; 3], [extent, 0.0, 0.0], [0.5, 1.0 + by, 0.0]], &FACE).1
     }
 
     #[test]
     fn the_bound_is_met_from_both_sides() {
-        // A corner at 4 that is off by half the step of f32 there, 2⁻²², in a mesh of an extent about 2⁻²² / 1e-7.
+        // A corner at 4 that is displaced by half the f32 step there, 2⁻²², in a mesh of an extent about 2⁻²² / 1e-7.
         let step = f64::from(f32::EPSILON) * 4.0;
         for (factor, is_loss) in [(1.0 + 1e-12, false), (1.0 - 1e-12, true)] {
             let far = 4.0 + step / 2.0;
@@ -116,7 +116,7 @@ mod tests {
         assert_eq!(off(4.0, ulp / 4.0).moved, ulp / 4.0);
         assert_eq!(off(4.0, ulp), Rounding { moved: 0.0, extent: 4.0 });
         assert!(!Precision::Auto.is_double(off(4.0, ulp)) && Precision::Auto.is_double(off(4.0, ulp / 4.0)));
-        // Not even in a mesh so large that this is no share of it.
+        // Not even if the mesh is so large that the relative change underflows.
         let tiny = Rounding { moved: f64::from_bits(1), extent: 1e300 };
         assert!(Precision::Auto.is_double(Rounding::default().worst(tiny)));
     }
@@ -151,10 +151,10 @@ mod tests {
     fn nothing_and_the_largest_and_least_numbers() {
         assert_eq!(rounded(&[], &[]).1, Rounding::default());
         assert!(!Rounding::default().is_loss() && Rounding::default().share() == 0.0);
-        // f32 has no number as large.
+        // The coordinate overflows f32.
         let huge = rounded(&[[-1.7e308, 0.0, 0.0], [1.7e308, 0.0, 0.0], [0.0, 1.0, 0.0]], &FACE).1;
         assert!(huge.is_loss() && huge.share() == f64::INFINITY);
-        // None as small either.
+        // The coordinate underflows f32.
         let tiny = rounded(&[[0.0; 3], [1e-60, 0.0, 0.0], [0.0, 1e-60, 0.0]], &FACE).1;
         assert_eq!((tiny.is_loss(), tiny.share()), (true, 1.0));
         // A point has no extent to compare with.

@@ -1,5 +1,4 @@
-//! How a surface lies where a ray meets it, and what textures know of the point: coordinates, colours, and where it is
-//! in the space of its shape.
+//! Shading data of hits: derivatives, texture coordinates, colours and local position.
 
 use super::Geometry;
 use crate::textures::{Needs, TexturePoint};
@@ -9,7 +8,7 @@ use raywright_base::math::{DVec3, Hit, Ray};
 use raywright_optics::Rgb;
 
 impl Geometry {
-    /// What is needed of the point where a ray hits a surface, as seen from the front.
+    /// Computes the shading data of a hit as seen from the front.
     ///
     /// # Panics
     /// If the ray misses.
@@ -30,7 +29,8 @@ impl Geometry {
         if needs.uv
             && let Some(corners) = self.uvs_of(hit.primitive)
         {
-            // From changes with weights to changes with coordinates: by the inverse of a matrix of two rows.
+            // Derivatives by barycentric coordinates become derivatives by texture coordinates, by the inverse of a 2 ×
+            // 2 matrix.
             let [b, c] = [1, 2].map(|i| [0, 1].map(|k| f64::from(corners[i][k]) - f64::from(corners[0][k])));
             let determinant = b[0] * c[1] - b[1] * c[0];
             let per_uv = |by: [DVec3; 2]| {
@@ -43,7 +43,8 @@ impl Geometry {
         here
     }
 
-    /// The weights of a triangle's second and third corner at a point of its plane, moved into the triangle.
+    /// Barycentric coordinates of the second and third corner at a point of a triangle's plane, clamped to the
+    /// triangle.
     pub fn weights(&self, primitive: u32, at: DVec3) -> [f64; 2] {
         let [a, b, c] = self.corners(primitive);
         let (u, v, w) = (b - a, c - a, at - a);
@@ -54,7 +55,7 @@ impl Geometry {
         [second / sum, third / sum]
     }
 
-    /// What textures know of a hit of a triangle.
+    /// The texture lookup data of a triangle hit.
     fn textured(&self, hit: &Hit, needs: Needs, plain: TexturePoint) -> TexturePoint {
         let mut texture = TexturePoint { uv: hit.uv, ..plain };
         let weights = [1.0 - hit.uv[0] - hit.uv[1], hit.uv[0], hit.uv[1]];
@@ -71,11 +72,11 @@ impl Geometry {
         texture
     }
 
-    /// How the shading normal of a triangle, which is `unit` there, changes with either coordinate.
+    /// Derivatives of a triangle's shading normal by barycentric coordinates; the normal is `unit` there.
     fn turning(&self, primitive: u32, uv: [f64; 2], unit: DVec3) -> [DVec3; 2] {
         let Some([a, b, c]) = self.normals_of(primitive) else { return [DVec3::ZERO; 2] };
         let sum = a * (1.0 - uv[0] - uv[1]) + b * uv[0] + c * uv[1];
-        // Turned round if the shading normal was. Of the change only what turns it is left when it is made unit.
+        // Negated if the shading normal was. Normalisation removes the component along the normal.
         let length = sum.dot(unit);
         if length == 0.0 {
             return [DVec3::ZERO; 2];
@@ -85,7 +86,7 @@ impl Geometry {
 }
 
 impl ShadingPoint {
-    /// What is needed of the point where a ray hits a surface, by how it is looked at.
+    /// Computes the shading data of a hit for a lookup context.
     pub fn new(
         geometry: &Geometry,
         ray: &Ray,
@@ -102,7 +103,8 @@ impl ShadingPoint {
         here.is_front = point.is_front(ray);
         here.texture.waves = waves;
         if needs.width {
-            // An ellipse on the surface whose short axis is the width; the mean of its axes is taken for its size.
+            // The footprint on the surface is an ellipse whose short axis is the width; its size is the geometric mean
+            // of both axes.
             let cosine = ray.direction.dot(point.normal).abs().max(1e-3);
             let size = width / cosine.sqrt();
             let area = here.dp[0].cross(here.dp[1]).length();
@@ -148,7 +150,7 @@ mod tests {
     #[test]
     fn tangents_are_what_differences_say_in_copies_too() {
         let place: Matrix = [[2.0, 0.5, 0.0, 7.0], [-1.0, 1.0, 0.3, 1.0], [0.0, 0.2, 1.5, -5.0]];
-        // Nothing is kept of vertices that no material asks for.
+        // Attributes of vertices that no material reads are dropped.
         let checker = Between { a: 0.2.into(), b: 0.8.into(), pattern: Checker(Domain::Uv(UvTransform::default())) };
         let both = ProductTexture { a: Value::Texture(Arc::new(checker)), b: Value::Texture(Arc::new(VertexColours)) };
         let material = Arc::new(DiffuseMaterial { reflectance: Value::Texture(Arc::new(both)) });

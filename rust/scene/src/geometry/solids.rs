@@ -1,4 +1,4 @@
-//! The parts of space that surfaces enclose.
+//! Solids enclosed by surfaces.
 
 use super::Geometry;
 use super::front::is_front_of;
@@ -6,39 +6,40 @@ use crate::topology::{FaceKind, NONE, Topology, rounding};
 use raywright_accel::{Accelerator, Exit, Exits, Primitives, Side};
 use raywright_base::math::{DVec3, Ray};
 
-/// What is no face, and encloses a part of space by itself.
+/// Marks a primitive that is not a face and encloses a solid by itself.
 const OBJECT: u32 = NONE - 1;
-/// How many corners are looked at to find out whether a mesh is the wall of a cavity.
+/// Maximum number of corners tested to decide whether a mesh is the wall of a cavity.
 const LOOKED_AT: usize = 256;
-/// A direction in no special position relative to anything that people make, with a largest coordinate between 1 and 2.
+/// A direction that avoids special positions relative to man-made geometry; its largest coordinate is between 1 and 2.
 const WAY: DVec3 = DVec3::new(1.289_430_857_193_402_8, 0.371_920_584_301_275_66, 0.587_109_384_750_921_3);
 
-/// Which of a scene's shapes count, and how close their corners are one; [`crate::topology::rounding`] if it is none.
+/// Options of solid queries. Corners within a tolerance are merged; the default is [`crate::topology::rounding`].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Enclosing {
-    /// Whether each shape counts; all do without it.
+    /// One flag per shape: true if it counts. `None` counts all shapes.
     pub shapes: Option<Vec<bool>>,
-    /// In the unit of length.
+    /// Distance in the scene's unit.
     pub tolerance: Option<f64>,
-    /// Whether all surfaces count as one, closed or not, of which an odd number is crossed on the way out from inside.
+    /// Treats all surfaces, closed or not, as one under the even-odd rule: a point is inside if rays from it cross an
+    /// odd number of surfaces.
     pub is_even_odd: bool,
 }
 
-/// What closed shapes enclose: a point is inside if it is in one of them.
+/// The solids enclosed by closed shapes: a point is inside if it is in one of them.
 ///
-/// A mesh is taken apart into faces that hang together, of which those without an open edge enclose what has a winding
-/// number about them, or an odd number of crossings where faces are turned; so what is within a cavity of the mesh is
-/// outside, and where parts of it overlap is inside. Meshes that close only together, as the walls of a room, are taken
-/// as one. A mesh whose normals point in is the wall of a cavity if it lies within another, and otherwise a solid.
+/// A mesh is split into connected components. A component without open edges encloses the points with non-zero winding
+/// number or, if its faces are not consistently oriented, with an odd number of crossings. So cavities of a mesh are
+/// outside, and overlaps of its parts inside. Meshes that close only together, such as the walls of a room, are merged.
+/// A mesh with inward normals is the wall of a cavity if it lies within another solid, and a solid otherwise.
 #[derive(Debug, Default)]
 pub struct Solids {
-    /// The body of each face, [`NONE`] of what counts for nothing, [`OBJECT`] of others.
+    /// The body of each face; [`NONE`] for ignored faces, [`OBJECT`] for other shapes.
     of: Vec<u32>,
     bodies: Vec<Body>,
     groups: Vec<Group>,
-    /// The shapes whose normals all point in, and that are no cavities of others.
+    /// Shapes whose normals all point inwards and that are not cavities of others.
     inverted: Vec<u32>,
-    /// Whether all of it closes to the last bit.
+    /// True if all surfaces close to the last bit.
     is_exact: bool,
 }
 
@@ -46,23 +47,23 @@ pub struct Solids {
 struct Body {
     group: u32,
     is_oriented: bool,
-    /// 1, or −1 where normals point in.
+    /// 1, or −1 if normals point inwards.
     sign: i32,
 }
 
-/// Bodies whose winding numbers add up.
+/// Bodies whose winding numbers are summed.
 #[derive(Clone, Debug)]
 struct Group {
-    /// The mesh; none of bodies of several.
+    /// The mesh; `None` if the bodies span several.
     shape: Option<u32>,
     volume: f64,
-    /// Whether all of its bodies are.
+    /// True if all of its bodies are oriented.
     is_oriented: bool,
     is_cavity: bool,
 }
 
 impl Solids {
-    /// What of the geometry that the accelerator holds is closed.
+    /// Finds the closed parts of a geometry.
     pub fn new(geometry: &Geometry, accelerator: &dyn Accelerator, enclosing: &Enclosing) -> Self {
         let mut solids = Self { of: vec![NONE; geometry.count()], is_exact: true, ..Self::default() };
         let counts = |shape: u32| {
@@ -105,7 +106,8 @@ impl Solids {
             for (mesh, is_open) in &open {
                 all.extend(mesh, is_open);
             }
-            // Of one mesh that is far larger than another, rounding may be larger than all of that one.
+            // Meshes may differ greatly in size; the smallest rounding is used, because that of a large mesh may exceed
+            // a small mesh.
             let least = || open.iter().map(|(mesh, _)| rounding(&mesh.points, &mesh.faces)).fold(f64::MAX, f64::min);
             let tolerance = enclosing.tolerance.unwrap_or_else(least);
             let topology = Topology::new(&all.points, &all.faces, Some(tolerance));
@@ -116,7 +118,7 @@ impl Solids {
         solids
     }
 
-    /// One more group: the bodies of faces, of which the primitives are told.
+    /// Adds a group: the bodies of faces with these primitive numbers.
     fn add(&mut self, primitives: &[u32], topology: &Topology, shape: Option<u32>) {
         if topology.bodies.is_empty() {
             return;
@@ -139,7 +141,7 @@ impl Solids {
         self.groups.push(Group { shape, volume, is_oriented, is_cavity: false });
     }
 
-    /// Finds the meshes whose normals point in and that lie within others whose normals do not.
+    /// Finds meshes with inward normals that lie within solids whose normals point outwards.
     fn find_cavities(&mut self, geometry: &Geometry, accelerator: &dyn Accelerator) {
         let is_inverted: Vec<bool> = self.groups.iter().map(|group| group.volume < 0.0).collect();
         if !is_inverted.contains(&true) || (is_inverted.iter().all(|&is| is) && !self.of.contains(&OBJECT)) {
@@ -163,7 +165,7 @@ impl Solids {
         }
     }
 
-    /// Finds the meshes, and the instances of such, whose normals point in.
+    /// Finds meshes with inward normals, and instances of them.
     fn find_inverted(&mut self, geometry: &Geometry) {
         let is_inverted = |group: &&Group| group.volume < 0.0 && group.is_oriented && !group.is_cavity;
         self.inverted = self.groups.iter().filter(is_inverted).filter_map(|group| group.shape).collect();
@@ -179,22 +181,23 @@ impl Solids {
         self.inverted.sort_unstable();
     }
 
-    /// The shapes whose normals all point in, and that are no cavities of others; instances with such a shape in them.
+    /// Shapes whose normals all point inwards and that are not cavities of others, and instances with such shapes.
     pub fn inverted(&self) -> &[u32] {
         &self.inverted
     }
 
-    /// Whether each way out finds the same to the last bit: surfaces are triangles whose edges have equal ends.
+    /// Returns whether every ray direction gives the same result: all surfaces are triangles whose shared edges have
+    /// bit-identical ends.
     pub fn is_exact(&self) -> bool {
         self.is_exact
     }
 
-    /// Whether nothing is enclosed.
+    /// Returns whether nothing is enclosed.
     pub fn is_empty(&self) -> bool {
         self.of.iter().all(|&of| of == NONE)
     }
 
-    /// On which side of what is closed the origins of rays lie, by what is crossed from there on.
+    /// The side of the solids on which each ray's origin lies, by the surfaces that the ray crosses.
     pub fn sides(&self, geometry: &Geometry, accelerator: &dyn Accelerator, rays: &[Ray]) -> Vec<Side> {
         let counts = |primitive: u32| self.of[primitive as usize] != NONE;
         let Exits { crossed, on_surface } = accelerator.exits(&counts, rays);
@@ -210,16 +213,16 @@ impl Solids {
         sides
     }
 
-    /// Whether a ray that crosses these starts in a solid, and in fewer cavities.
+    /// Returns whether a ray with these crossings starts inside a solid and in fewer cavities.
     fn is_inside(&self, geometry: &Geometry, ray: &Ray, exits: &[Exit], wound: &mut Vec<(u64, u32, i32)>) -> bool {
         if let [exit] = exits {
-            // Most often there is one, and whichever way it is crossed matters only for which side is called inner.
+            // The common case is one crossing; its orientation only tells which side counts as inner.
             let body = self.bodies.get(self.of[exit.primitive as usize] as usize);
             return body.is_none_or(|body| !self.groups[body.group as usize].is_cavity);
         }
         let first = self.of[exits[0].primitive as usize];
         if exits.len() % 2 == 1 && exits.iter().all(|exit| self.of[exit.primitive as usize] == first) {
-            // An odd number of ones of either sign is not zero. Of objects there are many, and one body.
+            // An odd number of terms ±1 has a non-zero sum. [`OBJECT`] stands for many shapes, a body for one.
             if let Some(body) = self.bodies.get(first as usize) {
                 return !self.groups[body.group as usize].is_cavity;
             }
@@ -251,7 +254,7 @@ impl Solids {
     }
 }
 
-/// Faces of meshes, with the primitive that each is.
+/// Faces of meshes, with their primitive numbers.
 #[derive(Debug, Default)]
 struct Mesh {
     points: Vec<DVec3>,
@@ -272,7 +275,7 @@ impl Mesh {
         }
     }
 
-    /// Adds some of another's faces.
+    /// Adds some of another mesh's faces.
     fn extend(&mut self, other: &Self, counts: &[bool]) {
         let base = self.points.len() as u32;
         self.points.extend(&other.points);

@@ -1,8 +1,8 @@
-//! Corners of triangles.
+//! Corners of triangles, in f32 or f64.
 
 use raywright_base::math::{DVec3, Vec3};
 
-/// Corners of triangles, as precisely as they are known.
+/// Corners of triangles in their stored precision.
 #[derive(Clone, Debug)]
 pub enum Vertices {
     /// f32.
@@ -30,7 +30,7 @@ impl FromIterator<Vec3> for Vertices {
 }
 
 impl Vertices {
-    /// How many.
+    /// Number of vertices.
     pub fn len(&self) -> usize {
         match self {
             Self::Single(v) => v.len(),
@@ -38,12 +38,12 @@ impl Vertices {
         }
     }
 
-    /// Whether there are none.
+    /// Returns whether there are no vertices.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// One of them.
+    /// A vertex in f64.
     #[inline]
     pub fn get(&self, i: u32) -> DVec3 {
         match self {
@@ -52,9 +52,9 @@ impl Vertices {
         }
     }
 
-    /// Kept as f32 if nothing is lost by it: that takes half the memory, and decisions on it are as exact.
+    /// Converts to f32 if that is lossless. It halves the memory, and hits stay exact.
     pub(super) fn shortened(self) -> Self {
-        // NaN is no number that could be lost.
+        // NaN has no value to lose.
         let fits = |x: f64| f64::from(x as f32) == x || x.is_nan();
         match self {
             Self::Double(v) if v.iter().all(|p| p.to_array().into_iter().all(fits)) => {
@@ -64,7 +64,7 @@ impl Vertices {
         }
     }
 
-    /// Both, one after the other; f64 if either is.
+    /// Concatenates both; the result is f64 if either is.
     pub(super) fn joined(self, more: Self) -> Self {
         let widened = |v: Vec<Vec3>| v.into_iter().map(Vec3::as_dvec3);
         match (self, more) {
@@ -85,7 +85,7 @@ impl Vertices {
         }
     }
 
-    /// Gives memory back that was reserved for more.
+    /// Frees unused capacity.
     pub(super) fn shrink_to_fit(&mut self) {
         match self {
             Self::Single(v) => v.shrink_to_fit(),
@@ -93,7 +93,7 @@ impl Vertices {
         }
     }
 
-    /// The memory held.
+    /// Memory in bytes.
     pub(super) fn bytes(&self) -> usize {
         match self {
             Self::Single(v) => v.capacity() * size_of::<Vec3>(),

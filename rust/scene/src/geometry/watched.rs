@@ -1,4 +1,4 @@
-//! Surfaces while something is built over them that is watched.
+//! Geometry during an interruptible build.
 
 use super::Geometry;
 use raywright_accel::{Primitives, UserGeometry};
@@ -7,7 +7,7 @@ use raywright_base::work::Work;
 use raywright_shapes::Bounds;
 use std::sync::Arc;
 
-/// A geometry, and the work that is done over it.
+/// A geometry, and the interruptible work over it.
 #[derive(Clone, Copy)]
 pub(crate) struct Watched<'a> {
     pub geometry: &'a Geometry,

@@ -1,46 +1,47 @@
-//! Balls that light which sets out is aimed at.
+//! Guided emission: light paths aimed at spheres around specular objects.
 
 use raywright_base::math::turn::sin_cos_turn;
 use raywright_base::math::{DVec3, Frame};
 use std::f64::consts::TAU;
 
-/// Balls that are worth aiming at: about mirrors and glass, which gather light, and of which lights know nothing.
+/// Spheres around mirrors and glass. These cause caustics, but emission sampling alone rarely hits them.
 ///
-/// What falls beside them matters as well, so that directions are drawn from cones to the balls or as a light shines,
-/// and weighed by the density of both together (Veach and Guibas, 1995: the one-sample model). The more a place sees of
-/// the balls, the less it aims; what is within one of them does not.
+/// Light outside the spheres contributes too. Directions are sampled either from the cones towards the spheres or from
+/// the light's own distribution, and weighted by the density of the mixture (Veach and Guibas, 1995: the one-sample
+/// model). The larger the solid angle of the spheres at a position, the smaller the share of aimed samples. Inside a
+/// sphere nothing is aimed.
 #[derive(Clone, Debug, Default)]
 pub struct Aim {
-    /// The middle and the radius of each.
+    /// Center and radius of each sphere.
     balls: Vec<(DVec3, f64)>,
 }
 
-/// The cones from a place to balls.
+/// The cones from a position to the spheres.
 pub(super) struct Cones<'a> {
     balls: &'a [(DVec3, f64)],
     place: DVec3,
-    /// The sum of their solid angles.
+    /// Sum of their solid angles.
     angle: f64,
-    /// How often to aim.
+    /// Probability of sampling from the cones.
     share: f64,
 }
 
-/// 1 - cos θ of the cone to a ball in which a place is not, without the cancellation of small ones.
+/// 1 - cos θ of the cone to a sphere from a position outside it, without cancellation for small cones.
 fn height((middle, radius): (DVec3, f64), place: DVec3) -> f64 {
     let square = radius * radius / middle.distance_squared(place);
     square / (1.0 + (1.0 - square).sqrt())
 }
 
 impl Aim {
-    /// How often light aims at most.
+    /// Maximum probability of aiming.
     const SHARE: f64 = 0.5;
 
-    /// At balls of these middles and radii.
+    /// Creates a distribution for spheres with these centers and radii.
     pub fn at(balls: Vec<(DVec3, f64)>) -> Self {
         Self { balls }
     }
 
-    /// What is aimed at from a place; `None` where that is nothing.
+    /// The cones from a position; `None` if nothing is aimed there.
     #[inline]
     pub(super) fn from(&self, place: DVec3) -> Option<Cones<'_>> {
         let mut angle = 0.0;
@@ -50,19 +51,19 @@ impl Aim {
             }
             angle += TAU * height((middle, radius), place);
         }
-        // As much as a surface can see of anything.
+        // TAU is the solid angle of the hemisphere, the most that a surface can see.
         let share = Self::SHARE * (1.0 - angle / TAU);
         (angle > 0.0 && share > 0.0).then_some(Cones { balls: &self.balls, place, angle, share })
     }
 }
 
 impl Cones<'_> {
-    /// How often to aim.
+    /// Probability of sampling from the cones.
     pub fn share(&self) -> f64 {
         self.share
     }
 
-    /// Draws a direction into one of the cones, by numbers that are uniform in [0, 1).
+    /// Samples a direction from one of the cones, by numbers that are uniform in [0, 1).
     pub fn sample(&self, [choice, v]: [f64; 2]) -> DVec3 {
         let mut left = choice * self.angle;
         let mut chosen = (DVec3::Z, 0.0);
@@ -75,7 +76,7 @@ impl Cones<'_> {
             left -= TAU * height;
         }
         let (middle, height) = chosen;
-        // What is left of the choice is uniform in the cone again; roundings must not lead beyond it.
+        // The remainder of the choice is uniform in the cone and is reused; clamped against rounding.
         let down = (left / TAU).min(height);
         let across = (down * (2.0 - down)).sqrt();
         let [sin, cos] = sin_cos_turn(v);
@@ -83,7 +84,7 @@ impl Cones<'_> {
         Frame::new(axis).to_world(DVec3::new(across * cos, across * sin, 1.0 - down))
     }
 
-    /// The density with which a unit direction is drawn in either way, by solid angle, where a light has this one.
+    /// Density of the mixture for a unit direction, by solid angle, where `lights` is the light's own density.
     pub fn density(&self, direction: DVec3, lights: f64) -> f64 {
         let mut within = 0.0;
         for &(middle, radius) in self.balls {
@@ -114,7 +115,7 @@ mod tests {
         let place = DVec3::new(0.1, -0.2, 0.3);
         let cones = aim.from(place).unwrap();
         let even = 0.25 / PI;
-        // The density over all directions is 1, for those that a light draws alike too.
+        // The density integrates to 1, also for directions that the light samples uniformly.
         let (mut all, mut means, count) = (0.0, [DVec3::ZERO; 2], 1 << 20);
         for number in 0..count {
             let mut sampler = Sampler::new(5, 0, number);
@@ -131,7 +132,7 @@ mod tests {
             assert!(cones.density(drawn, 0.0) >= 0.0);
             means[1] += drawn / f64::from(count);
         }
-        // The small ball fills 2e-7 of all: what is drawn towards it is seen in the second mean alone.
+        // The small sphere covers 2e-7 of all directions: only the second mean includes the samples towards it.
         let small = 0.5 * TAU * height(aim.balls[2], place) / cones.angle;
         assert!((all - 1.0).abs() < 0.02, "{all}");
         assert!((means[0] - means[1]).length() < 0.01 + small, "{means:?}");
@@ -162,7 +163,7 @@ mod tests {
         assert!(Aim::default().from(DVec3::ZERO).is_none());
         let around = Aim::at(vec![(DVec3::X, 0.99), (-DVec3::X, 0.99)]);
         assert!(around.from(DVec3::ZERO).is_none());
-        // From far away the ball is small, and its cone as exact as anywhere.
+        // From far away the sphere is small, and its cone is as accurate as elsewhere.
         let far = Aim::at(vec![(DVec3::new(1e9, 0.0, 0.0), 1.0)]);
         let cones = far.from(DVec3::ZERO).unwrap();
         assert!((cones.angle / (PI * 1e-18) - 1.0).abs() < 1e-12);

@@ -1,4 +1,4 @@
-//! The choice among the lights within a scene.
+//! Light selection among the lights within a scene.
 
 use super::{LightBounds, LightContextLanes, LightSampleContext, LightTree, Sides};
 use raywright_base::math::{DVec3, LANES};
@@ -6,33 +6,34 @@ use raywright_base::sampling::AliasTable;
 use raywright_base::simd::Level;
 use std::f64::consts::PI;
 
-/// What a light is chosen by.
+/// Data for the selection of a light.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Strength {
-    /// Its power, a mean of the channels; 0 if it is never to be chosen.
+    /// Power, a mean of the channels; 0 if it is never to be selected.
     pub power: f64,
-    /// Where it is and where it shines to.
+    /// Spatial and directional bounds.
     pub bounds: LightBounds,
 }
 
-/// How a light within a scene is chosen.
+/// Distribution over the lights within a scene.
 #[derive(Debug)]
 pub(super) enum Choice {
-    /// By power, wherever it is asked.
+    /// By power, independent of the receiver.
     Power(AliasTable),
-    /// By what it brings.
+    /// By estimated contribution to the receiver.
     Tree(LightTree),
 }
 
-/// The greatest power that is told from greater ones: the sum of as many as there can be is still finite.
+/// Cap on powers: the sum of the maximum number of lights is still finite.
 pub(super) const MOST: f64 = 1e290;
 
-/// From so many lights on there is a tree: among three lamps over a floor it already takes most of the variance of the
-/// choice away, for two importances a level. The two triangles of a single lamp are seen alike, and have none.
+/// Minimum number of lights for a tree. With three lamps over a floor it already removes most of the variance of the
+/// selection, at the cost of two importances per level. The two triangles of a single lamp have nearly equal importance
+/// and need none.
 const MANY: usize = 3;
 
 impl Strength {
-    /// Of what never shines.
+    /// Strength of a light that never emits.
     pub const NONE: Self = Self {
         power: 0.0,
         bounds: LightBounds {
@@ -45,19 +46,19 @@ impl Strength {
         },
     };
 
-    /// Of a triangle that faces to where its corners turn anticlockwise, or the other way if it is `turned`.
+    /// Strength of a triangle whose normal follows the anticlockwise winding, or is opposite if `turned`.
     pub fn of_triangle([a, b, c]: [DVec3; 3], turned: bool, radiance: f64, sides: Sides) -> Self {
         let cross = (b - a).cross(c - a);
         let normal = cross.try_normalize().map(|n| if turned { -n } else { n });
         Self::of_shape(0.5 * cross.length(), [a.min(b).min(c), a.max(b).max(c)], normal, radiance, sides)
     }
 
-    /// Of a surface of an area in a box that faces one way, or any.
+    /// Strength of a surface of an area in a box, with one normal or none.
     pub fn of_shape(area: f64, bounds: [DVec3; 2], facing: Option<DVec3>, radiance: f64, sides: Sides) -> Self {
         if !(area.is_finite() && bounds[0].is_finite() && bounds[1].is_finite()) {
             return Self::NONE;
         }
-        // Of what is round, a quarter of the area is seen (Cauchy).
+        // The mean projected area of a convex body is a quarter of its surface (Cauchy).
         let seen = if facing.is_some() { 1.0 } else { 0.25 };
         let facing = facing.and_then(|normal| sides.facing(normal));
         let power = PI * area * radiance * sides.count();
@@ -66,7 +67,7 @@ impl Strength {
 }
 
 impl Choice {
-    /// Among lights by their strengths; `None` if none is to be chosen.
+    /// Builds a distribution over lights; `None` if all have strength 0.
     pub fn new(strengths: &[Strength]) -> Option<Self> {
         let shine = strengths.iter().filter(|s| s.power > 0.0).count();
         if shine >= MANY { Self::by_tree(strengths) } else { Self::by_power(strengths) }
@@ -82,7 +83,7 @@ impl Choice {
         LightTree::new(&bounds).map(Self::Tree)
     }
 
-    /// A light for a receiver by a number in [0, 1), and its probability.
+    /// Samples a light for a receiver by a number in [0, 1); returns it with its probability.
     #[inline]
     pub fn sample(&self, receiver: &LightSampleContext, u: f64) -> Option<(usize, f64)> {
         match self {
@@ -94,7 +95,7 @@ impl Choice {
         }
     }
 
-    /// The same for a lane each.
+    /// Samples a light for each of sixteen receivers.
     pub fn sample_lanes(
         &self,
         level: Level,
@@ -113,7 +114,7 @@ impl Choice {
         }
     }
 
-    /// The probability of a light.
+    /// Probability of selecting a light.
     #[inline]
     pub fn probability(&self, light: usize, receiver: &LightSampleContext) -> f64 {
         match self {
@@ -122,7 +123,7 @@ impl Choice {
         }
     }
 
-    /// The memory held.
+    /// Memory in bytes.
     pub fn bytes(&self) -> usize {
         match self {
             Self::Power(table) => table.bytes(),

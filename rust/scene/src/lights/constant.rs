@@ -1,4 +1,4 @@
-//! The same light from everywhere.
+//! A constant environment.
 
 use super::light::strength;
 use super::{Light, LightContextLanes, LightLanes, LightSample, LightSampleContext, Reach};
@@ -9,27 +9,27 @@ use raywright_base::simd::{Level, loops};
 use raywright_optics::{Rgb, RgbLanes};
 use std::f64::consts::PI;
 
-/// The same radiance from every direction that the scene leaves open. It is best drawn by the cosine of its arrival.
+/// The same radiance from all directions. It is sampled by the cosine at the receiver.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ConstantEnvironment {
-    /// Its radiance, W·sr⁻¹·m⁻².
+    /// Radiance, W·sr⁻¹·m⁻².
     pub radiance: Rgb,
 }
 
-/// A direction by the cosine of its arrival at a receiver of this normal.
+/// Samples a direction in proportion to the cosine at a receiver with this normal.
 #[inline(always)]
 fn arriving(normal: DVec3, u: [f64; 2]) -> DVec3 {
     Frame::new(normal).to_world(cosine_hemisphere(u))
 }
 
-/// The density with which it is drawn.
+/// Density of that direction.
 #[inline(always)]
 fn arriving_pdf(normal: DVec3, direction: DVec3) -> f64 {
     normal.dot(direction).max(0.0) / PI
 }
 
 loops! {
-    /// What is drawn for receivers none of which is free.
+    /// Samples directions for receivers that all have a normal.
     fn draw(
         radiance: Rgb,
         normal: &VectorLanes,
@@ -62,7 +62,7 @@ impl Light for ConstantEnvironment {
     fn sample(&self, receiver: &LightSampleContext, u: [f64; 2]) -> Option<LightSample> {
         let direction = if receiver.is_free() { uniform_sphere(u) } else { arriving(receiver.normal, u) };
         let pdf = self.infinite_pdf(receiver, direction);
-        // Rounding may turn a direction in the plane to below it.
+        // Rounding may move a direction in the tangent plane below it.
         (pdf > 0.0).then(|| LightSample::of_infinite(direction, self.radiance / pdf, pdf))
     }
 

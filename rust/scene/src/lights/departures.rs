@@ -1,8 +1,8 @@
-//! The densities with which a path's way is drawn from the light that it ends at, by those who came from elsewhere.
+//! Sampling densities of the path segment at a light, for multiple importance sampling.
 //!
-//! A path that is found in several ways is weighed by the densities of all ([`Emitters::sample`], which lets light set
-//! out, and [`Lights::sample`], which asks for it). Each is told here by what is known from either end, so that both
-//! ends weigh by the same numbers.
+//! A path may be sampled from the light ([`Emitters::sample`]) or from the camera with next-event estimation
+//! ([`Lights::sample`]). Each density is computed here from data known at either end, so that both strategies use
+//! identical MIS weights.
 
 use super::emission_sample::{EmissionSample, Source};
 use super::{Emitters, LightSample, LightSampleContext, Lights};
@@ -10,29 +10,29 @@ use crate::{Geometry, SurfacePoint};
 use raywright_base::math::{DVec3, Frame, Hit, Ray};
 use std::f64::consts::PI;
 
-/// How likely light sets out along a ray.
+/// Density of emission along a ray.
 ///
-/// What has a single place or direction has a probability in place of a density, in this and in
-/// [`Emitters::asked_from`] alike: only their ratio counts.
+/// A light with a single position or direction has a probability in place of a density. [`Emitters::asked_from`] uses
+/// the same convention, so the ratio of both is correct.
 #[derive(Clone, Copy, Debug)]
 pub struct EmissionDensity {
-    /// From what.
+    /// The emitter.
     pub source: Source,
-    /// The density of the place, by area, times that of the direction, by solid angle.
+    /// Density of the position by area, times density of the direction by solid angle.
     pub density: f64,
-    /// Of the angle to the surface's normal, positive; 1 where it leaves none.
+    /// Positive cosine of the angle to the surface's normal; 1 if the emitter is not a surface.
     pub cosine: f64,
 }
 
 impl EmissionDensity {
-    /// Whether no ray can come upon it by chance.
+    /// Returns whether the light is a delta distribution, so that rays never hit it by chance.
     pub fn is_single(&self) -> bool {
         matches!(self.source, Source::Point(_) | Source::Direction(_))
     }
 }
 
 impl Emitters<'_> {
-    /// That of light that was drawn as it sets out.
+    /// Density of a sampled emission.
     pub fn of_sample(&self, sample: &EmissionSample) -> EmissionDensity {
         let direction = sample.ray.direction;
         match sample.source {
@@ -44,20 +44,20 @@ impl Emitters<'_> {
         }
     }
 
-    /// That of light from a surface, along a ray back to it; none from what is never drawn.
+    /// Density of emission from a hit surface back along the ray; `None` if the surface is never sampled.
     pub fn of_hit(&self, ray: &Ray, hit: &Hit, surface: &SurfacePoint) -> Option<EmissionDensity> {
         let light = self.lights.number_of(self.geometry, hit)?;
         let way = (surface.position, -ray.direction);
         Some(self.emission_of_surface(light as u32, way.1.dot(surface.normal), way))
     }
 
-    /// That of light from outside that comes from a direction.
+    /// Density of emission from outside along a direction.
     pub fn of_environment(&self, direction: DVec3) -> EmissionDensity {
         self.emission_of_infinite(Source::Infinite, direction)
     }
 
-    /// Draws light as [`Lights::sample`] does, and tells how likely it sets out; and the density of the draw, as
-    /// [`Emitters::asked_from`] has it.
+    /// Samples light like [`Lights::sample`]. Also returns the emission density and the density of
+    /// [`Emitters::asked_from`].
     pub fn sample_direct(
         &self,
         receiver: &LightSampleContext,
@@ -88,7 +88,7 @@ impl Emitters<'_> {
             let departure = self.emission_of_point(Source::Point(point as u32), -drawn.direction);
             return Some((drawn, departure, probability * distance * distance));
         }
-        // The way off a surface is along its normal.
+        // The offset of the ray's origin is along the surface normal.
         let off = source.offset();
         let largest = off.abs().max_element();
         let normal = if largest > 0.0 { (off / largest).normalize() } else { drawn.direction };
@@ -96,9 +96,8 @@ impl Emitters<'_> {
         Some((drawn, self.emission_of_surface(number as u32, normal.dot(drawn.direction), way), drawn.pdf))
     }
 
-    /// The density with which [`Lights::sample`] draws, for a receiver, the direction of light that comes to it along a
-    /// ray from such a distance, by solid angle; from a point, what stands for that: the probability over the solid
-    /// angle that an area of 1 has.
+    /// Density with which [`Lights::sample`] samples the direction of incoming light at a receiver, by solid angle, for
+    /// light at this distance. For a point light it is the probability over the solid angle of a unit area.
     pub fn asked_from(
         &self,
         receiver: &LightSampleContext,
@@ -128,7 +127,7 @@ impl Emitters<'_> {
         }
     }
 
-    /// Light from a surface, from a place along a direction.
+    /// Density of emission from a position on a surface in a direction.
     fn emission_of_surface(&self, light: u32, cosine: f64, (place, direction): (DVec3, DVec3)) -> EmissionDensity {
         let (probability, cosine) = (self.choice.probability(light as usize), cosine.abs());
         let density = match self.lights.extent(light as usize, self.geometry) {
@@ -150,7 +149,7 @@ impl Emitters<'_> {
         EmissionDensity { source, density, cosine: 1.0 }
     }
 
-    /// Light that comes from a direction.
+    /// Density of emission from outside along a direction.
     fn emission_of_infinite(&self, source: Source, direction: DVec3) -> EmissionDensity {
         let [across, other] = self.covered(&Frame::new(direction));
         let infinite = &self.lights.infinite;
@@ -164,7 +163,7 @@ impl Emitters<'_> {
 }
 
 impl Lights {
-    /// The primitive of the scene that has the light of a number, which is a surface.
+    /// The primitive of a surface light, by light number.
     fn primitive(&self, number: usize) -> u32 {
         match self.surfaces.get(number) {
             Some(&primitive) => primitive,
@@ -172,7 +171,7 @@ impl Lights {
         }
     }
 
-    /// How many sides of the light of a number shine, which is a surface, and about how large it is.
+    /// Number of emitting sides of a surface light, and its approximate area.
     fn extent(&self, number: usize, geometry: &Geometry) -> Option<(f64, f64)> {
         let Some(&primitive) = self.surfaces.get(number) else {
             return self.copied.extent(number - self.surfaces.len(), geometry);

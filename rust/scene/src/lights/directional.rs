@@ -1,11 +1,11 @@
-//! Light from a single direction.
+//! A directional light.
 
 use super::light::strength;
 use super::{Light, LightSample, LightSampleContext, Place, Reach};
 use raywright_base::math::DVec3;
 use raywright_optics::Rgb;
 
-/// Light from outside along a single direction, as of a star.
+/// Light from a single direction, such as a distant star.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DirectionalLight {
     from: DVec3,
@@ -13,7 +13,8 @@ pub struct DirectionalLight {
 }
 
 impl DirectionalLight {
-    /// Light that travels along a direction of any length but 0, and brings an irradiance, W·m⁻², to what faces it.
+    /// Creates a light that travels along a direction of any non-zero length, with an irradiance, W·m⁻², on surfaces
+    /// perpendicular to it.
     pub fn new(direction: DVec3, irradiance: Rgb) -> Self {
         Self { from: -(direction / direction.abs().max_element()).normalize(), irradiance }
     }

@@ -1,55 +1,54 @@
-//! Light that sets out.
+//! Samples of light emission, the first segment of light paths.
 
 use raywright_base::math::{DVec3, Ray};
 use raywright_optics::Rgb;
 
-/// Light that sets out from a light along a ray, drawn with regard to nothing that it falls on.
+/// Light emitted along a ray, sampled independently of any receiver.
 #[derive(Clone, Copy, Debug)]
 pub struct EmissionSample {
-    /// Its way, of unit direction.
+    /// Ray of unit direction.
     pub ray: Ray,
-    /// The flux, W, that it stands for: radiance times the cosine over the density, or intensity over that of the
-    /// direction.
+    /// Flux of the sample, W: radiance times cosine over density, or intensity over the density of the direction.
     pub weight: Rgb,
-    /// With which it is drawn.
+    /// Densities of the sample.
     pub pdf: EmissionPdf,
-    /// The unit normal of the surface that it leaves, on that side; zero where it leaves none.
+    /// Unit normal of the emitting surface on the emitting side; zero if the emitter is not a surface.
     pub normal: DVec3,
-    /// What it comes from.
+    /// The emitter.
     pub source: Source,
-    /// Whether it comes from outside the scene: its place is one of the plane across its direction.
+    /// True if the light is at infinity; its position is then on a plane perpendicular to the direction.
     pub is_infinite: bool,
 }
 
-/// What light comes from.
+/// The emitter of a light sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
-    /// A surface: the number of the light.
+    /// A surface, by light number.
     Surface(u32),
-    /// A light that is a single point, by its number among those.
+    /// A point light, by its number among the lights that are not surfaces.
     Point(u32),
-    /// Any of the infinite lights, by a direction that several may have.
+    /// All infinite lights; several may share a direction.
     Infinite,
-    /// The single direction of an infinite light, by its number among those.
+    /// The delta direction of an infinite light, by its number among those.
     Direction(u32),
 }
 
-/// The density with which light that sets out is drawn: the product of the two.
+/// Density of an emission sample: the product of both parts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EmissionPdf {
-    /// Of the place, by area: on a surface, or of light from outside on a plane across its direction. The probability
-    /// of a light that is a single point.
+    /// Density of the position by area: on the surface, or on the plane perpendicular to an infinite light's direction.
+    /// For a point light, its selection probability.
     pub place: f64,
-    /// Of the direction, by solid angle; infinite where it is a single one.
+    /// Density of the direction by solid angle; infinite for a delta direction.
     pub direction: f64,
 }
 
-/// Light that sets out from a single point, drawn from a light that is one.
+/// Emission from a single point, sampled from a point light.
 #[derive(Clone, Copy, Debug)]
 pub struct PointEmission {
-    /// The point.
+    /// Position.
     pub position: DVec3,
-    /// Where it goes to, as a unit vector.
+    /// Unit direction.
     pub direction: DVec3,
     /// Intensity over density.
     pub weight: Rgb,

@@ -1,4 +1,4 @@
-//! Light that sets out from the lights of a scene, drawn by their power.
+//! Emission sampling over all lights of a scene, by power.
 
 use super::aim::Cones;
 use super::choice::MOST;
@@ -13,45 +13,45 @@ use raywright_base::sampling::warp::{cosine_hemisphere, uniform_triangle};
 use raywright_optics::spectra::Waves;
 use std::f64::consts::PI;
 
-/// What light that sets out is drawn from: surfaces, points, and the plane across any direction that light comes from
-/// outside along, of which a rectangle is taken that holds all that the scene's box covers.
+/// Distribution of emitted light over surfaces, points and infinite lights. For an infinite light the position is on a
+/// rectangle perpendicular to the direction that contains the projection of the scene's box.
 ///
-/// A light is chosen by its power, a place on it by area, and a direction by the cosine (Dutré, Lafortune and Willems,
-/// "Monte Carlo Light Tracing with Direct Computation of Pixel Intensities", 1993).
+/// A light is selected by power, a position by area, and a direction by cosine (Dutré, Lafortune and Willems, "Monte
+/// Carlo Light Tracing with Direct Computation of Pixel Intensities", 1993).
 pub struct Emitters<'a> {
     pub(super) lights: &'a Lights,
     pub(super) geometry: &'a Geometry,
-    /// Over the lights within the scene, and after them all that comes from outside.
+    /// Over the lights within the scene, followed by one entry for all infinite lights.
     pub(super) choice: AliasTable,
-    /// How many are within.
+    /// Number of lights within the scene.
     pub(super) within: usize,
-    /// The scene's box: its middle, and half its size.
+    /// The scene's box: its center, and half its size.
     pub(super) middle: DVec3,
     half: DVec3,
-    /// What light from surfaces and points is aimed at.
+    /// Guiding of emission from surfaces and points.
     pub(super) aim: Aim,
 }
 
-/// The numbers that light that sets out is drawn by, each in [0, 1).
+/// Random numbers of an emission sample, each in [0, 1).
 #[derive(Clone, Copy, Debug)]
 pub struct EmissionNumbers {
-    /// Which light.
+    /// Selection of the light.
     pub choice: f64,
-    /// Which of the lights outside.
+    /// Selection among the infinite lights.
     pub outside: f64,
-    /// Where on it; of light from outside, along which direction.
+    /// Position on the light; for infinite lights the direction.
     pub place: [f64; 2],
-    /// Into which direction; of light from outside, where across it.
+    /// Direction; for infinite lights the position on the rectangle.
     pub direction: [f64; 2],
 }
 
 impl<'a> Emitters<'a> {
-    /// Those of a scene of these lights that lies in a region; `None` if nothing shines that could be drawn.
+    /// Builds the distribution for the lights of a scene in a region; `None` if no emitter can be sampled.
     pub fn new(lights: &'a Lights, geometry: &'a Geometry, region: &Region) -> Option<Self> {
         let half = (region.max - region.min).max(DVec3::ZERO) * 0.5;
         let mut powers: Vec<f64> = lights.strengths(geometry).iter().map(|one| one.power.min(MOST)).collect();
         let within = powers.len();
-        // What a box covers across a direction, in the mean over all of them: a quarter of its surface (Cauchy).
+        // The mean projected area of a box over all directions is a quarter of its surface (Cauchy).
         let covered = 2.0 * (half.x * half.y + half.y * half.z + half.z * half.x);
         let from_outside = lights.infinite.lights().iter().map(|light| match light.reach() {
             Reach::Infinite { flux, .. } => flux * covered,
@@ -63,12 +63,12 @@ impl<'a> Emitters<'a> {
         Some(Self { lights, geometry, choice: AliasTable::new(&powers)?, within, middle, half, aim: Aim::default() })
     }
 
-    /// The same, where light from surfaces and points is aimed.
+    /// Adds guiding of emission from surfaces and points.
     pub fn aimed(self, aim: Aim) -> Self {
         Self { aim, ..self }
     }
 
-    /// Draws light that sets out, at some wavelengths or as red, green and blue; `None` if the draw gives none.
+    /// Samples emission, at some wavelengths or as red, green and blue; `None` if the sample carries no light.
     pub fn sample(&self, numbers: &EmissionNumbers, waves: Option<&Waves>) -> Option<EmissionSample> {
         let chosen = self.choice.sample(numbers.choice);
         let probability = self.choice.probability(chosen);
@@ -94,7 +94,7 @@ impl<'a> Emitters<'a> {
         is_any.then_some(EmissionSample { weight, pdf, ..drawn })
     }
 
-    /// From a light that is a single point.
+    /// Samples emission from a point light.
     fn of_point(&self, number: usize, numbers: &EmissionNumbers, waves: Option<&Waves>) -> Option<EmissionSample> {
         let drawn = self.aimed_point(number, numbers.direction, waves)?;
         Some(EmissionSample {
@@ -107,7 +107,7 @@ impl<'a> Emitters<'a> {
         })
     }
 
-    /// Light from a point, drawn by how it shines or by what is aimed at from there.
+    /// Samples emission from a point light, from its own distribution or towards the guiding spheres.
     fn aimed_point(&self, number: usize, [u, v]: [f64; 2], waves: Option<&Waves>) -> Option<PointEmission> {
         let light = &self.lights.inside[number];
         let Some((position, cones)) = self.aim_of_point(number) else { return light.sample_emission_at([u, v], waves) };
@@ -123,13 +123,13 @@ impl<'a> Emitters<'a> {
         Some(PointEmission { position, direction, weight: intensity / pdf, pdf })
     }
 
-    /// What is aimed at from a light that is a point, and that.
+    /// Position of a point light and its guiding cones, if there are any.
     pub(super) fn aim_of_point(&self, number: usize) -> Option<(DVec3, Cones<'_>)> {
         let Some(Place::Point(position)) = self.lights.inside[number].place() else { return None };
         self.aim.from(position).map(|cones| (position, cones))
     }
 
-    /// From a primitive of the scene that is no instance.
+    /// Samples emission from a primitive that is not an instance.
     fn of_primitive(
         &self,
         luminous: &Luminous,
@@ -151,8 +151,8 @@ impl<'a> Emitters<'a> {
         self.of_surface(luminous, (light, &surface), hit, pdf, (numbers.direction, waves))
     }
 
-    /// From a point of a surface, a light of this number, that was drawn with a density, by area; the hit is that of a
-    /// ray that meets it from at distance 1.
+    /// Samples emission from a surface point of a light, whose area density is given. The hit is that of a ray that
+    /// arrives from distance 1.
     fn of_surface(
         &self,
         luminous: &Luminous,
@@ -187,7 +187,7 @@ impl<'a> Emitters<'a> {
                 (normal, Frame::new(normal).to_world(local), local.z)
             }
         };
-        // What a ray back along it would see.
+        // The radiance that a ray back along it would see.
         let back = Ray::new(surface.position + direction, -direction);
         let radiance = luminous.sent(self.geometry, &back, &hit, surface, || waves.copied());
         let sides = sides.count();
@@ -197,7 +197,8 @@ impl<'a> Emitters<'a> {
         let towards = cones.as_ref().map_or(own, |cones| cones.density(direction, own));
         is_drawn.then(|| EmissionSample {
             ray,
-            // What is not aimed is worth the same in all directions, to the last digit.
+            // Unguided directions are cosine-distributed, so the weight does not depend on the direction, to the last
+            // digit.
             weight: radiance * if cones.is_some() { cosine / (towards * pdf) } else { PI * sides / pdf },
             pdf: EmissionPdf { place: pdf, direction: towards },
             normal,
@@ -206,7 +207,7 @@ impl<'a> Emitters<'a> {
         })
     }
 
-    /// From outside: a direction, and a place on a rectangle across it from which all of the box is reached.
+    /// Samples emission from outside: a direction, and a position on a perpendicular rectangle that covers the box.
     fn of_infinite(&self, numbers: &EmissionNumbers, waves: Option<&Waves>) -> Option<EmissionSample> {
         let receiver = LightSampleContext { waves: waves.copied(), ..LightSampleContext::free(self.middle) };
         let chosen = self.lights.infinite.choose(numbers.outside);
@@ -214,7 +215,7 @@ impl<'a> Emitters<'a> {
         let frame = Frame::new(drawn.direction);
         let [across, other] = self.covered(&frame);
         let [x, y] = numbers.direction.map(|u| 2.0 * u - 1.0);
-        // A little before the box, so that nothing of it is left out.
+        // The origin is slightly in front of the box, so that the whole box is reached.
         let back = drawn.direction.abs().dot(self.half) + 0.01 * self.half.length();
         let origin =
             self.middle + frame.tangent * (across * x) + frame.bitangent * (other * y) + drawn.direction * back;
@@ -229,14 +230,14 @@ impl<'a> Emitters<'a> {
         })
     }
 
-    /// Half of what the scene's box covers along the two axes across a direction.
+    /// Half the extents of the scene's projected box along both axes perpendicular to a direction.
     pub(super) fn covered(&self, frame: &Frame) -> [f64; 2] {
         [frame.tangent, frame.bitangent].map(|axis| axis.abs().dot(self.half))
     }
 }
 
-/// Why the light of a scene cannot all be drawn as it sets out, if so: what shines has no end, moves within instances
-/// or is in too many of them, or light from outside falls on what has no end.
+/// The reason why emission cannot be sampled from all lights, if there is one: an unbounded emitter, emitters in moving
+/// or too many instances, or infinite lights on unbounded geometry.
 pub fn not_drawn(lights: &Lights, geometry: &Geometry) -> Option<String> {
     let endless = |primitive: u32| geometry.shape(primitive).is_some_and(|shape| !shape.bounds().is_finite());
     (0..geometry.shapes() as u32).find_map(|shape| {

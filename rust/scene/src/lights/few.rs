@@ -1,4 +1,4 @@
-//! Few lights, each of which is asked.
+//! Sampling of every light separately, for scenes with few lights.
 
 use super::choice::{MOST, Strength};
 use super::{Light, LightSample, LightSampleContext, Lights};
@@ -6,22 +6,22 @@ use crate::Geometry;
 use raywright_base::math::{DVec3, Hit, Ray};
 use raywright_optics::Rgb;
 
-/// The lights that are asked one by one, where there are few.
+/// The lights that are sampled one by one.
 #[derive(Debug, Default)]
 pub(super) struct Few {
-    /// Those within the scene that can be drawn.
+    /// Lights within the scene that can be sampled.
     within: Vec<Lamp>,
-    /// How many there are, those outside included; 0 if it is one, or more than few.
+    /// Number of lights, including infinite ones; 0 if there is one, or too many.
     count: u32,
 }
 
-/// One within the scene.
+/// A light within the scene.
 #[derive(Clone, Copy, Debug)]
 struct Lamp {
-    /// Its number, or the numbers of the two triangles that make a mesh: one of these is drawn, so that a panel is
-    /// asked once.
+    /// Its number, or the numbers of the two triangles of a mesh. One of them is selected, so that a panel takes one
+    /// sample.
     numbers: [u32; 2],
-    /// How often it is the first.
+    /// Probability of the first number.
     share: f64,
 }
 
@@ -35,7 +35,7 @@ impl Lamp {
         Self { numbers: [first, first + 1], share: 1.0 / (1.0 + b / a) }
     }
 
-    /// Which it is by a number in [0, 1), how likely that is, and the number that is left.
+    /// Selects a light number by a number in [0, 1); returns it with its probability and the remaining random number.
     #[inline]
     fn drawn(&self, x: f64) -> (usize, f64, f64) {
         let ([first, second], share) = (self.numbers, self.share);
@@ -49,7 +49,7 @@ impl Lamp {
         }
     }
 
-    /// How often it is the one of this number.
+    /// Probability of a light number.
     #[inline]
     fn share_of(&self, number: u32) -> f64 {
         if number == self.numbers[0] {
@@ -63,13 +63,13 @@ impl Lamp {
 }
 
 impl Few {
-    /// The most that are asked one by one: over metal of alpha 0.1, that halves error times time among 4, 8 and 12
-    /// panels, and leaves 0.6 of it among 16. Among more, four candidates of one choice each were tried, of which one
-    /// got the shadow ray: for half the error they took twice the time.
+    /// Maximum number of lights sampled one by one. On metal of alpha 0.1 that halves error times time with 4, 8 and 12
+    /// panels, and reduces it to 0.6 with 16. For more lights, resampling one shadow ray out of four candidates was
+    /// tried: it halved the error at twice the time.
     const MOST: usize = 16;
 
-    /// Of lights with these strengths within a scene, and so many outside. `pairs` are the numbers of those that are
-    /// the first of the two triangles of a mesh.
+    /// Builds the list from the strengths of lights within the scene and the number of infinite lights. `pairs` are the
+    /// first numbers of meshes of two triangles.
     pub fn new(strengths: &[Strength], pairs: &[u32], outside: usize) -> Self {
         let mut within = Vec::new();
         let mut number = 0;
@@ -90,23 +90,23 @@ impl Few {
         if (2..=Self::MOST).contains(&count) { Self { within, count: count as u32 } } else { Self::default() }
     }
 
-    /// The memory held.
+    /// Memory in bytes.
     pub fn bytes(&self) -> usize {
         size_of_val(self.within.as_slice())
     }
 }
 
-/// What is asked of lights one by one. Densities are each light's own, with no choice among lights in them.
+/// Sampling of lights one by one. Densities are per light, without a selection probability.
 impl Lights {
-    /// How many lights [`Lights::sample_one`] knows, where a panel of two triangles counts as one. 0 where there is
-    /// only one, which needs no choice, or where there are more than a few.
+    /// Number of lights for [`Lights::sample_one`], where a panel of two triangles counts as one. 0 if there is a
+    /// single light, which needs no selection, or too many.
     #[inline]
     pub fn few(&self) -> u32 {
         self.few.count
     }
 
-    /// Draws light of one of the few that reaches a receiver: `choice`, uniform in [0, 1), decides whether it is asked
-    /// at all (only asked for where it is not always), `u` for the direction. `None` if the draw gives none.
+    /// Samples one light for a receiver. `choice`, uniform in [0, 1), decides whether the light is sampled at all and
+    /// is called only if needed; `u` selects the direction. Returns `None` if the sample carries no light.
     #[inline]
     pub fn sample_one(
         &self,
@@ -128,21 +128,21 @@ impl Lights {
         Some(self.sample_within(number, geometry, receiver, [x, u[1]])?.chosen(share))
     }
 
-    /// Whether one of the few is within the scene.
+    /// Returns whether a light of the list is within the scene.
     #[inline]
     pub(super) fn is_within(&self, one: u32) -> bool {
         (one as usize) < self.few.within.len()
     }
 
-    /// Of one that is, the number of the light that is drawn by a number in [0, 1), how likely that is, and the number
-    /// that is left.
+    /// Selects a light number of a list entry within the scene, by a number in [0, 1). Returns it with its probability
+    /// and the remaining random number.
     #[inline]
     pub(super) fn one_within(&self, one: u32, x: f64) -> (usize, f64, f64) {
         self.few.within[one as usize].drawn(x)
     }
 
-    /// The density with which [`Lights::sample_one`] draws, for a receiver, the direction of a ray from there, of the
-    /// light that it meets: as [`Lights::surface_pdf`] has it, without the choice.
+    /// Density with which [`Lights::sample_one`] samples the direction of a ray at a receiver, for the light that the
+    /// ray hits: [`Lights::surface_pdf`] without the selection probability.
     #[inline]
     pub fn own_pdf(
         &self,
@@ -157,8 +157,8 @@ impl Lights {
         share.map_or(0.0, |share| share * self.pdf_within(number, geometry, receiver, (ray, hit), cosine))
     }
 
-    /// Radiance that comes from outside along a unit direction to a receiver, that of each light there times a weight,
-    /// by the density with which [`Lights::sample_one`] draws the direction.
+    /// Radiance of infinite lights along a unit direction at a receiver. Each light is multiplied by a weight, which is
+    /// a function of its [`Lights::sample_one`] density.
     #[inline]
     pub fn outside_weighed(&self, receiver: &LightSampleContext, direction: DVec3, weight: impl Fn(f64) -> f64) -> Rgb {
         let each = self

@@ -1,4 +1,4 @@
-//! What comes from outside a scene: environments, suns, distant lights.
+//! Infinite lights: environments, suns and distant lights.
 
 use super::{Light, LightSample, LightSampleContext};
 use raywright_base::math::DVec3;
@@ -6,34 +6,35 @@ use raywright_optics::Rgb;
 use raywright_optics::spectra::Waves;
 use std::sync::Arc;
 
-/// All lights that shine from outside.
+/// All infinite lights.
 #[derive(Debug, Default)]
 pub(super) struct InfiniteLights {
     lights: Vec<Arc<dyn Light>>,
-    /// With which probability each is chosen, given that one is.
+    /// Conditional selection probability of each.
     probabilities: Vec<f64>,
-    /// With which one is.
+    /// Probability of selecting an infinite light.
     share: f64,
     /// See [`InfiniteLights::own_share`].
     own_shares: Vec<f64>,
 }
 
-/// How often the sky is chosen where there are lights inside, if it is the same everywhere. In a studio with a lamp and
-/// such a sky, shares of 0.1, 0.25, 0.5 and 0.7 gave relMSE of 1.4, 2.0, 3.9 and 7.7 thousandths.
+/// Selection probability of a constant sky if there are lights inside. In a studio with a lamp and such a sky,
+/// probabilities of 0.1, 0.25, 0.5 and 0.7 gave relMSE of 1.4, 2.0, 3.9 and 7.7 thousandths.
 ///
-/// What an environment sends into a scene grows with the scene's extent, and falls mostly on floors far away: chosen by
-/// its power, it would leave next to nothing for a lamp. It needs no more than a fixed share, since scattering finds it
-/// well by itself.
+/// The power of an environment grows with the scene's extent and mostly reaches distant ground. Selection by power
+/// would leave next to no samples for a lamp. A small fixed share is enough, because BSDF sampling already finds a
+/// smooth sky well.
 const SHARE: f64 = 0.1;
 
-/// The share of light that comes from a single direction, which scattering never finds.
+/// Selection probability of light from a delta direction, which BSDF sampling never finds.
 const SHARP_SHARE: f64 = 0.5;
 
 impl InfiniteLights {
-    /// Lights with their flux and spread ([`super::Reach::Infinite`]), where there are others inside or not.
+    /// Builds the list from lights with their flux and spread ([`super::Reach::Infinite`]); `others` tells whether
+    /// there are lights inside.
     pub fn new(lights: Vec<(Arc<dyn Light>, f64, f64)>, others: bool) -> Self {
         let most = lights.iter().map(|(_, flux, _)| *flux).fold(0.0, f64::max);
-        // Odds beside all that is inside. Among each other they go by their flux.
+        // Odds relative to all lights inside. Among each other they are weighted by flux.
         let odds = |share: f64| share / (1.0 - share);
         let odds = |spread: f64| odds(SHARP_SHARE) + (odds(SHARE) - odds(SHARP_SHARE)) * spread.clamp(0.0, 1.0);
         let weight = |(_, flux, spread): &(_, f64, f64)| if most > 0.0 { odds(*spread) * (flux / most) } else { 0.0 };
@@ -50,31 +51,31 @@ impl InfiniteLights {
         Self { lights, probabilities, share, own_shares }
     }
 
-    /// Whether there is none.
+    /// Returns whether there is none.
     pub fn is_dark(&self) -> bool {
         self.lights.is_empty()
     }
 
-    /// Each of them.
+    /// The lights.
     #[inline]
     pub fn lights(&self) -> &[Arc<dyn Light>] {
         &self.lights
     }
 
-    /// How often one is asked where each of all lights is. What is found well by scattering need not be, and would take
-    /// the shadow ray from what is not.
+    /// Probability of sampling this light when all lights are sampled one by one. A light that BSDF sampling finds well
+    /// needs few shadow rays.
     #[inline]
     pub fn own_share(&self, one: usize) -> f64 {
         self.own_shares[one]
     }
 
-    /// How often one of them is to be chosen rather than a light inside.
+    /// Probability of selecting an infinite light rather than a light inside.
     #[inline]
     pub fn share(&self) -> f64 {
         self.share
     }
 
-    /// The sum of all radiance along a direction.
+    /// Sum of all radiance along a direction.
     #[inline]
     pub fn radiance(&self, direction: DVec3, waves: Option<&Waves>) -> Rgb {
         self.lights.iter().map(|light| light.infinite_radiance_at(direction, waves)).sum()
@@ -87,7 +88,7 @@ impl InfiniteLights {
         each.map(|(light, probability)| probability * light.infinite_pdf(receiver, direction)).sum()
     }
 
-    /// Which of them is chosen by a number in [0, 1).
+    /// Selects a light by a number in [0, 1).
     #[inline]
     pub fn choose(&self, mut choice: f64) -> usize {
         let mut chosen = 0;
@@ -98,20 +99,20 @@ impl InfiniteLights {
         chosen
     }
 
-    /// The probability of one, given that one is chosen.
+    /// Conditional selection probability of a light.
     #[inline]
     pub fn probability(&self, one: usize) -> f64 {
         self.probabilities[one]
     }
 
-    /// Draws light from one of them. Where several may have been the one, the density is that of all, and so is the
-    /// radiance.
+    /// Samples one of the lights. Other lights may emit along the same direction, so density and radiance are those of
+    /// all.
     #[inline]
     pub fn sample(&self, receiver: &LightSampleContext, choice: f64, u: [f64; 2]) -> Option<LightSample> {
         self.sample_of(self.choose(choice), receiver, u)
     }
 
-    /// The same from the one that was chosen.
+    /// Samples a given light.
     #[inline]
     pub fn sample_of(&self, chosen: usize, receiver: &LightSampleContext, u: [f64; 2]) -> Option<LightSample> {
         let probability = self.probabilities[chosen];
@@ -130,7 +131,7 @@ impl InfiniteLights {
         })
     }
 
-    /// The memory held.
+    /// Memory in bytes.
     pub fn bytes(&self) -> usize {
         size_of_val(self.probabilities.as_slice())
             + size_of_val(self.own_shares.as_slice())

@@ -1,4 +1,4 @@
-//! Light from surfaces in instances of prototypes.
+//! Emissive surfaces in instances.
 
 use super::choice::Strength;
 use super::triangle::SeenTriangle;
@@ -9,43 +9,42 @@ use raywright_base::math::{DVec3, Hit, Ray};
 use raywright_base::sampling::warp::uniform_triangle;
 use raywright_shapes::{Bounds, Site};
 
-/// The primitives that shine in instances of prototypes, each of every instance a light of its own: those of instances
-/// that stand still, and of what stands in a prototype itself, not in instances within it. Where there would be more
-/// than [`Copied::MOST`], the shapes that come last are left out. What is left out is found by rays that meet it by
-/// chance.
+/// Emissive primitives in instances of prototypes; each primitive of each instance is a light. Only instances at rest
+/// count, and only primitives directly in a prototype, not in nested instances. Beyond [`Copied::MOST`] lights the last
+/// shapes are left out. Rays still hit emitters that are left out by chance.
 #[derive(Debug, Default)]
 pub(super) struct Copied {
-    /// The shapes that are instances whose lights are here, in order.
+    /// The instance shapes with lights listed here, in order.
     shapes: Vec<Glow>,
     lights: Vec<Light>,
 }
 
-/// A shape that is instances of a prototype in which something shines.
+/// A shape that is instances of a prototype with emissive primitives.
 #[derive(Debug)]
 struct Glow {
     shape: u32,
-    /// The first light.
+    /// Number of its first light.
     first: u32,
-    /// The primitives of the prototype that shine, flattened, in order.
+    /// Emissive primitives of the prototype, flattened, in order.
     flat: Vec<u32>,
 }
 
 /// One primitive of one instance.
 #[derive(Debug)]
 struct Light {
-    /// The instance.
+    /// Primitive number of the instance.
     primitive: u32,
-    /// Flattened.
+    /// Flattened primitive number in the prototype.
     inner: u32,
-    /// Of a triangle, its corners in the world; NaN of another shape.
+    /// World-space corners of a triangle; NaN for another shape.
     corners: [DVec3; 3],
 }
 
 impl Copied {
-    /// The most lights in instances, in a scene.
+    /// Maximum number of lights in instances per scene.
     pub const MOST: usize = 4096;
 
-    /// Those of a geometry, and how strong each is.
+    /// Finds the lights of a geometry and their strengths.
     pub fn new(geometry: &Geometry) -> (Self, Vec<Strength>) {
         let (mut all, mut strengths) = (Self::default(), Vec::new());
         if !geometry.has_instances() {
@@ -72,7 +71,7 @@ impl Copied {
         (all, strengths)
     }
 
-    /// How strong each is.
+    /// Strength of each light.
     pub fn strengths(&self, geometry: &Geometry) -> impl Iterator<Item = Strength> {
         self.lights.iter().map(|light| match geometry.instance(light.primitive) {
             Some((instances, _)) => Light::new(geometry, instances, light.primitive, light.inner).1,
@@ -80,13 +79,12 @@ impl Copied {
         })
     }
 
-    /// Whether the lights of a shape are among them.
+    /// Returns whether the lights of a shape are listed.
     pub fn has(&self, shape: u32) -> bool {
         self.shapes.binary_search_by_key(&shape, |glow| glow.shape).is_ok()
     }
 
-    /// Draws a point of one by area, and gives how it shines, the point, a hit there from at distance 1, and the
-    /// density.
+    /// Samples a point of a light by area. Returns its emission, the point, a hit from distance 1, and the density.
     pub fn place<'a>(
         &self,
         light: usize,
@@ -107,20 +105,20 @@ impl Copied {
                 (prototype.geometry().on_triangle(own, uv), uv, 1.0 / prototype.geometry().area(own))
             }
         };
-        // An area there is so many times as large in the world.
+        // Area scale from the prototype's space to the world.
         let stretch = pose.map().normal(point.normal).length();
         let mut surface = pose.point(&point);
         (surface.shape, surface.inner) = (geometry.locate(primitive).0, Some(inner));
         Some((prototype.luminous(inner), surface, Hit { t: 1.0, uv, primitive, inner }, pdf / stretch))
     }
 
-    /// Which instance one is in.
+    /// Primitive number of a light's instance.
     pub fn primitive(&self, light: usize) -> u32 {
         self.lights[light].primitive
     }
 
-    /// How many sides of one shine, and about how large it is: what is no triangle as if its instance stretched it
-    /// alike in each direction.
+    /// Number of emitting sides of a light, and its approximate area. For a shape that is not a triangle, the
+    /// instance's scaling is taken as uniform.
     pub fn extent(&self, light: usize, geometry: &Geometry) -> Option<(f64, f64)> {
         let Light { primitive, inner, corners: [a, b, c] } = &self.lights[light];
         let (instances, instance) = geometry.instance(*primitive)?;
@@ -133,12 +131,12 @@ impl Copied {
         Some((sides, shape.area() * stretch * stretch))
     }
 
-    /// How many there are.
+    /// Number of lights.
     pub fn len(&self) -> usize {
         self.lights.len()
     }
 
-    /// The light that was hit in an instance, if it is one.
+    /// The light number of a hit in an instance, if it is a light.
     #[inline]
     pub fn find(&self, shape: u32, instance: u32, inner: u32) -> Option<usize> {
         let glow = &self.shapes[self.shapes.binary_search_by_key(&shape, |glow| glow.shape).ok()?];
@@ -146,7 +144,7 @@ impl Copied {
         Some(glow.first as usize + instance as usize * glow.flat.len() + within)
     }
 
-    /// Draws light from one.
+    /// Samples light from one light.
     pub fn sample(
         &self,
         light: usize,
@@ -178,8 +176,8 @@ impl Copied {
         }
     }
 
-    /// The density with which [`Copied::sample`] draws the direction of a ray that meets a light under the cosine of an
-    /// angle to its normal.
+    /// Density with which [`Copied::sample`] samples the direction of a ray that hits a light; the cosine is that to
+    /// the light's normal.
     pub fn pdf(
         &self,
         light: usize,
@@ -201,7 +199,7 @@ impl Copied {
         }
     }
 
-    /// The memory held.
+    /// Memory in bytes.
     pub fn bytes(&self) -> usize {
         size_of_val(self.lights.as_slice())
             + self.shapes.iter().map(|glow| size_of::<Glow>() + size_of_val(glow.flat.as_slice())).sum::<usize>()
@@ -209,13 +207,13 @@ impl Copied {
 }
 
 impl Prototype {
-    /// How a primitive shines, by its flattened number.
+    /// Emission of a primitive, by its flattened number.
     fn luminous(&self, inner: u32) -> Luminous<'_> {
         let (material, emission) = self.appearance(inner);
         Luminous::new(emission, material)
     }
 
-    /// The primitives that shine, flattened, in order, without those in instances.
+    /// The emissive primitives, flattened, in order, without those in instances.
     fn shining(&self) -> impl Iterator<Item = u32> {
         let own = |shape: &u32| self.geometry().instances_of(*shape).is_none();
         let flat = |shape: u32| {

@@ -1,4 +1,4 @@
-//! Light drawn for sixteen receivers at a time.
+//! Light sampling in batches of sixteen lanes.
 
 use super::plain::Figure;
 use super::triangle::SeenTriangle;
@@ -12,18 +12,18 @@ use raywright_optics::RgbLanes;
 use raywright_shapes::{Seen, Sphere};
 use std::array::from_fn;
 
-/// What shines, a lane each, and how likely each was chosen.
+/// Emitters, one per lane, with their selection probabilities.
 struct Lamps {
-    /// Of a triangle.
+    /// Normals of triangles.
     normal: VectorLanes,
     radiance: RgbLanes,
-    /// Whether the front shines, and the back.
+    /// One flag per lane and side: true if the front, or the back, emits.
     sides: [[bool; LANES]; 2],
     probability: [f64; LANES],
 }
 
 loops! {
-    /// What is drawn of them.
+    /// Samples triangles, one per lane.
     fn draw(
         receivers: &LightContextLanes,
         corners: &[VectorLanes; 3],
@@ -44,7 +44,7 @@ loops! {
             let direction = way / distance;
             let pdf = seen.pdf(distance, direction.dot(normal));
             let cosine = -direction.dot(normal);
-            // Also false where the distance is 0 and the direction NaN.
+            // Also false if the distance is 0 and the direction NaN.
             let is_lit = shine(seen.height()) & shine(cosine) & (pdf > 0.0) & (pdf < f64::INFINITY);
             let from = RayOrigin::off(position, error_among(corners), normal);
             lights.direction.set(i, direction);
@@ -57,15 +57,15 @@ loops! {
     }
 }
 
-/// Spheres that shine, a lane each.
+/// Emissive spheres, one per lane.
 struct Balls {
     center: VectorLanes,
     radius: [f64; LANES],
 }
 
 loops! {
-    /// What is drawn of them; of receivers inside, and of those on them, nothing is said. `outside` is 1 for the
-    /// others.
+    /// Samples spheres, one per lane, from receivers outside them. `outside` is 1 in those lanes; other lanes are
+    /// undefined.
     fn draw_balls(
         receivers: &LightContextLanes,
         balls: &Balls,
@@ -85,7 +85,7 @@ loops! {
             let (Seen { site, pdf: density }, is_outside) = sphere.sight_from_outside(place, [u[0][i], u[1][i]]);
             let way = site.position - place;
             let towards = way / way.length();
-            // Also false where the distance is 0 and the direction NaN.
+            // Also false if the distance is 0 and the direction NaN.
             let is_lit = shine(-towards.dot(site.normal)) & (density > 0.0) & (density < f64::INFINITY);
             let from = RayOrigin::off(site.position, site.error, site.normal);
             direction.set(i, towards);
@@ -99,7 +99,8 @@ loops! {
 }
 
 impl Lights {
-    /// What [`Lights::sample`] gives, a lane each: `choice` and `u` are the numbers that it takes.
+    /// Samples light for sixteen receivers; each lane's result equals that of [`Lights::sample`] with its `choice` and
+    /// `u`.
     pub fn sample_lanes(
         &self,
         level: Level,
@@ -124,7 +125,7 @@ impl Lights {
         self.sample_chosen(level, geometry, receivers, &chosen, u, lights);
     }
 
-    /// What [`Lights::sample_one`] gives, a lane each.
+    /// Samples one light for sixteen receivers; each lane's result equals that of [`Lights::sample_one`].
     #[allow(clippy::too_many_arguments)]
     pub fn sample_one_lanes(
         &self,
@@ -152,7 +153,7 @@ impl Lights {
         self.sample_chosen(level, geometry, receivers, &chosen, &own, lights);
     }
 
-    /// Draws light of those within the scene, by their numbers and how likely each was chosen.
+    /// Samples lights within the scene, given by their numbers and selection probabilities.
     fn sample_chosen(
         &self,
         level: Level,
@@ -162,12 +163,12 @@ impl Lights {
         u: &Pairs,
         lights: &mut LightLanes,
     ) {
-        // Apart, as what is zeroed at once and has more than 2048 bytes takes a road that is slow to start.
+        // Separate arrays: zeroing a single value of more than 2048 bytes takes a path that is slow to start.
         let mut corners = [VectorLanes::ZERO; 3];
         let mut lamps = Lamps {
             normal: VectorLanes::ZERO,
             radiance: RgbLanes::ZERO,
-            // A lane without a light has sides that do not shine.
+            // Lanes without a light do not emit on either side.
             sides: [[false; LANES]; 2],
             probability: [0.0; LANES],
         };

@@ -1,4 +1,4 @@
-//! Receivers of light and light that was drawn, by lane.
+//! Receivers and light samples in structure-of-arrays form.
 
 use super::{LightSample, LightSampleContext};
 use crate::RayOrigin;
@@ -7,7 +7,7 @@ use raywright_base::sampling::Pairs;
 use raywright_optics::spectra::Waves;
 use raywright_optics::{Rgb, RgbLanes};
 
-/// Receivers, a lane each.
+/// Receivers, one per lane.
 #[derive(Clone, Debug)]
 pub struct LightContextLanes {
     pub(super) position: VectorLanes,
@@ -16,10 +16,10 @@ pub struct LightContextLanes {
 }
 
 impl LightContextLanes {
-    /// Nowhere.
+    /// Sixteen receivers without position.
     pub const NONE: Self = Self { position: VectorLanes::ZERO, normal: VectorLanes::ZERO, waves: [None; LANES] };
 
-    /// That of a lane.
+    /// The receiver in a lane.
     #[inline(always)]
     pub fn get(&self, lane: usize) -> LightSampleContext {
         let (position, normal) = (self.position.get(lane), self.normal.get(lane));
@@ -32,7 +32,7 @@ impl LightContextLanes {
         self.waves[lane] = waves;
     }
 
-    /// Sets that of a lane, but for its wavelengths.
+    /// Sets the receiver of a lane, except its wavelengths.
     #[inline(always)]
     pub fn set(&mut self, lane: usize, receiver: &LightSampleContext) {
         self.position.set(lane, receiver.position);
@@ -40,24 +40,24 @@ impl LightContextLanes {
     }
 }
 
-/// Light on its way to receivers, a lane each.
+/// Light samples, one per lane.
 #[derive(Clone, Debug)]
 pub struct LightLanes {
     pub(super) direction: VectorLanes,
     pub(super) weight: RgbLanes,
-    /// 0 where the draw gave none.
+    /// 0 if the sample carries no light.
     pub(super) pdf: [f64; LANES],
-    /// Where it sets out, and the way off the surface there.
+    /// Position on the light, and the ray offset from its surface.
     pub(super) position: VectorLanes,
     pub(super) offset: VectorLanes,
-    /// Whether that is within the scene.
+    /// True if the light is within the scene.
     pub(super) is_within: [bool; LANES],
-    /// On which primitive that is, as [`LightSample`] has it.
+    /// Primitive of the light, as in [`LightSample`].
     pub(super) primitive: [u32; LANES],
 }
 
 impl LightLanes {
-    /// No light.
+    /// Sixteen empty samples.
     pub const NONE: Self = Self {
         direction: VectorLanes::ZERO,
         weight: RgbLanes::ZERO,
@@ -68,33 +68,32 @@ impl LightLanes {
         primitive: [Ray::NO_TRIANGLE; LANES],
     };
 
-    /// The direction that a lane's light comes from, and its weight and density, as [`LightSample`] has them; the
-    /// density is 0 where there is none.
+    /// Direction to a lane's light, weight and density, as in [`LightSample`]; the density of an empty sample is 0.
     #[inline(always)]
     pub fn get(&self, lane: usize) -> (DVec3, Rgb, f64) {
         (self.direction.get(lane), self.weight.get(lane), self.pdf[lane])
     }
 
-    /// Where a lane's light sets out, and whether that is within the scene.
+    /// Ray origin on a lane's light, and whether the light is within the scene.
     #[inline(always)]
     pub fn source(&self, lane: usize) -> (RayOrigin, bool) {
         (RayOrigin::with(self.position.get(lane), self.offset.get(lane)), self.is_within[lane])
     }
 
-    /// On which primitive a lane's light sets out, as [`LightSample`] has it.
+    /// Primitive of a lane's light, as in [`LightSample`].
     #[inline(always)]
     pub fn primitive(&self, lane: usize) -> u32 {
         self.primitive[lane]
     }
 
-    /// The light of a lane; none where the draw gave none.
+    /// The sample of a lane; `None` if it carries no light.
     pub fn sample(&self, lane: usize) -> Option<LightSample> {
         let ((direction, weight, pdf), (source, is_within)) = (self.get(lane), self.source(lane));
         let (source, primitive) = (is_within.then_some(source), self.primitive[lane]);
         (pdf > 0.0).then_some(LightSample { direction, weight, pdf, source, primitive })
     }
 
-    /// Draws that of each lane by itself.
+    /// Samples each lane by a scalar function.
     pub(super) fn draw_each(
         &mut self,
         receivers: &LightContextLanes,
@@ -106,7 +105,7 @@ impl LightLanes {
         }
     }
 
-    /// Takes that of a lane from others.
+    /// Copies the sample of a lane.
     pub fn copy(&mut self, lane: usize, others: &Self) {
         self.direction.set(lane, others.direction.get(lane));
         self.weight.set(lane, others.weight.get(lane));
@@ -116,7 +115,7 @@ impl LightLanes {
         (self.is_within[lane], self.primitive[lane]) = (others.is_within[lane], others.primitive[lane]);
     }
 
-    /// Sets that of a lane.
+    /// Sets the sample of a lane.
     pub(super) fn set(&mut self, lane: usize, sample: Option<LightSample>) {
         let Some(LightSample { direction, weight, pdf, source, primitive }) = sample else {
             self.pdf[lane] = 0.0;

@@ -1,35 +1,34 @@
-//! Light that was drawn.
+//! Samples of incident light.
 
 use super::LightSampleContext;
 use crate::RayOrigin;
 use raywright_base::math::{DVec3, Ray};
 use raywright_optics::Rgb;
 
-/// Light on its way to a point, drawn from a light.
+/// A sample of incident light at a receiver.
 #[derive(Clone, Copy, Debug)]
 pub struct LightSample {
-    /// Where it comes from, as a unit vector.
+    /// Unit direction to the light.
     pub direction: DVec3,
-    /// Radiance over density, were nothing in between.
+    /// Unoccluded radiance over density.
     pub weight: Rgb,
-    /// Density in solid angle. Infinite where a single direction has all of it, as with a point light: weighed against
-    /// any other way to find this direction, such a sample then gets all the weight.
+    /// Density by solid angle. It is infinite for a delta light, so that MIS gives the sample all the weight.
     pub pdf: f64,
-    /// Where it sets out; `None` if from outside the scene.
+    /// Position on the light; `None` for infinite lights.
     pub source: Option<RayOrigin>,
-    /// On which primitive of the scene that is; [`Ray::NO_TRIANGLE`] if on none.
+    /// Primitive of the light; [`Ray::NO_TRIANGLE`] if the light is not a primitive.
     pub primitive: u32,
 }
 
 impl LightSample {
-    /// Light from outside the scene.
+    /// Light from an infinite light.
     #[inline]
     pub(super) fn of_infinite(direction: DVec3, weight: Rgb, pdf: f64) -> Self {
         Self { direction, weight, pdf, source: None, primitive: Ray::NO_TRIANGLE }
     }
 
-    /// Light from a point of this intensity along a direction away from it; `None` where that is 0, or at the point
-    /// itself.
+    /// Light from a point light whose intensity depends on the direction away from it. `None` if the intensity is 0, or
+    /// the receiver is at the light itself.
     #[inline]
     pub(super) fn of_point(
         position: DVec3,
@@ -38,7 +37,7 @@ impl LightSample {
     ) -> Option<Self> {
         let way = position - receiver.position;
         let distance = way.length();
-        // At the light itself there is no direction.
+        // At the light itself the direction is undefined.
         if distance == 0.0 {
             return None;
         }
@@ -49,7 +48,7 @@ impl LightSample {
         (!weight.is_black()).then_some(one)
     }
 
-    /// The same, when its light is one of several and was chosen with a probability; above 1, one of so many draws.
+    /// Accounts for the selection probability of the light, or for the number of samples if it is above 1.
     #[inline]
     pub fn chosen(self, probability: f64) -> Self {
         Self { weight: self.weight / probability, pdf: self.pdf * probability, ..self }

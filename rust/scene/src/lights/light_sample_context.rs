@@ -1,30 +1,30 @@
-//! What light falls on.
+//! Receivers of light samples.
 
 use raywright_base::math::DVec3;
 use raywright_optics::spectra::Waves;
 
-/// A point that light is asked for.
+/// Reference point of light sampling.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightSampleContext {
-    /// Where it is.
+    /// Position.
     pub position: DVec3,
-    /// The unit shading normal on the side that light counts on; zero where light from everywhere does, as at surfaces
-    /// that let light through, and in media.
+    /// Unit shading normal of the hemisphere that contributes; zero if all directions do, as for transmissive surfaces
+    /// and media.
     pub normal: DVec3,
-    /// The wavelengths at which it is asked for; none for red, green and blue.
+    /// Wavelengths; `None` for red, green and blue.
     pub waves: Option<Waves>,
 }
 
 impl LightSampleContext {
-    /// A point that light reaches from everywhere.
+    /// A receiver that light reaches from all directions.
     pub fn free(position: DVec3) -> Self {
         Self { position, normal: DVec3::ZERO, waves: None }
     }
 
-    /// Whether light from everywhere counts.
+    /// Returns whether all directions contribute.
     #[inline(always)]
     pub fn is_free(&self) -> bool {
-        // Without a branch, for lanes.
+        // Branch-free, for lanes.
         (self.normal.x == 0.0) & (self.normal.y == 0.0) & (self.normal.z == 0.0)
     }
 }

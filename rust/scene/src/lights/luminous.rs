@@ -1,4 +1,4 @@
-//! Surfaces that shine and let rays go on through them: masks, and what light passes straight.
+//! Emissive surfaces that transmit straight rays: alpha masks and medium boundaries.
 
 use super::Emission;
 use super::choice::{MOST, Strength};
@@ -10,20 +10,20 @@ use raywright_base::math::{DVec3, Hit, Ray};
 use raywright_optics::Rgb;
 use raywright_shapes::{Point, Shape};
 
-/// How a surface shines, and the material of one that rays may go on through.
+/// Emission of a surface, and its material if rays may pass straight through.
 #[derive(Clone, Copy)]
 pub(super) struct Luminous<'a> {
     pub emission: &'a Emission,
     pub open: Option<&'a dyn Material>,
 }
 
-/// Whether rays that meet a material may go on through it as if it were not there.
+/// Returns whether rays may pass straight through a material.
 pub(super) fn is_open(material: &dyn Material) -> bool {
     !material.is_opaque() || material.boundary().is_some()
 }
 
-/// The least share of light that is taken to get through a surface to the next one. What a surface hides from one
-/// receiver it need not hide from another, so that no point may be left out.
+/// Lower bound on the transmission used for selecting a point on an emitter. A surface that hides a point from one
+/// receiver need not hide it from another, so no point may have probability 0.
 const LEAST: f64 = 1.0 / 16.0;
 
 impl<'a> Luminous<'a> {
@@ -31,18 +31,18 @@ impl<'a> Luminous<'a> {
         Self { emission, open: is_open(material).then_some(material) }
     }
 
-    /// A strength as seen through its mask: the mean opacity of it.
+    /// A strength reduced by the mask's mean opacity.
     pub fn strength(&self, of: impl FnOnce(f64) -> Strength) -> Strength {
         let radiance = strength(self.emission.radiance.mean());
         of(self.open.map_or(radiance, |material| radiance * material.mean_opacity()))
     }
 
-    /// What must be known of a point.
+    /// The lookup data that evaluation needs.
     pub fn needs(&self) -> Needs {
         self.open.map_or(self.emission.needs(), |material| self.emission.needs() | material.needs())
     }
 
-    /// The radiance that the surface sends back along a ray of unit direction: that of its emission times its opacity.
+    /// Radiance back along a ray of unit direction: emission times opacity.
     #[inline]
     pub fn sent<G: Into<Gaze>>(
         &self,
@@ -60,11 +60,11 @@ impl<'a> Luminous<'a> {
     }
 }
 
-/// Chooses one of all points of a shape that lie along a direction from a place, by a number in [0, 1), and returns it
-/// with its probability: in proportion to what is sent from there, dimmed by the points before. `sends` returns both,
-/// and the opacity of the point. None where nothing is sent.
+/// Samples one of the points of a shape along a direction from a position, by a number in [0, 1), and returns it with
+/// its probability. The probability is proportional to the point's radiance times the transmission of the points in
+/// front. `sends` returns radiance and opacity of a point. Returns `None` if no point emits.
 ///
-/// The density of the direction counts all of its points ([`Shape::sample_from`]).
+/// The density of the direction accounts for all of its points ([`Shape::sample_from`]).
 pub(super) fn along(
     shape: &dyn Shape,
     (place, way): (DVec3, DVec3),
@@ -76,7 +76,7 @@ pub(super) fn along(
     let (mut chosen, mut sum, mut through) = (None, 0.0, 1.0);
     shape.meet(&ray, &mut |met| {
         let point = shape.point(&ray, met.t, met.uv);
-        // A place on the shape is not seen from itself, though rounding may have moved it off the surface.
+        // A position on the shape does not see itself, even if rounding has moved it off the surface.
         if met.t * length <= 4.0 * point.error {
             return false;
         }
@@ -84,7 +84,7 @@ pub(super) fn along(
         let brings = sent.mean().min(MOST) * through;
         through *= (1.0 - opacity).max(LEAST);
         if brings > 0.0 {
-            // One pass keeps each with its share of the sum so far (Chao, 1982); what is left of the number is uniform.
+            // One-pass weighted reservoir sampling (Chao, 1982); the remaining random number is uniform.
             sum += brings;
             let share = brings / sum;
             if u < share {
@@ -98,7 +98,7 @@ pub(super) fn along(
     chosen.map(|(point, brings)| (point, brings / sum))
 }
 
-/// A number in [0, 1) from the digits of another that directions hardly depend on.
+/// A number in [0, 1) from the low digits of another, which barely affect its direction.
 pub(super) fn fine_digits(u: f64) -> f64 {
     (u * f64::from(1 << 16)).fract()
 }

@@ -1,4 +1,4 @@
-//! A picture of all that surrounds a scene.
+//! An image-based environment.
 
 use super::light::strength;
 use super::pyramid::{Pyramid, linear};
@@ -8,32 +8,32 @@ use raywright_optics::Rgb;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-/// An equirectangular picture all around a scene: its middle is seen along −z, its top at +y, and to the right of the
-/// middle lies +x, in a space of its own.
+/// An equirectangular environment map. In the picture's space its center is at −z, its top at +y, and +x is to the
+/// right of the center.
 ///
-/// Between the middles of texels, radiance is interpolated, around the picture's sides too; at its top and bottom it
-/// goes on as the last row is. A cell between four middles is drawn by the light from it, and a point in the cell by
-/// what is interpolated there: exactly so across, and downwards by a line between the products of radiance and sine of
-/// the colatitude at either end. So radiance over density varies by a small factor in one cell, and by colour: a bright
-/// texel is never met by chance with a density that does not know of it.
+/// Radiance is interpolated bilinearly between texel centers and wraps around at the sides; at the top and bottom the
+/// last row is extended. A cell between four centers is sampled by its flux, and a point in the cell by the
+/// interpolated radiance. The sampling is exact horizontally. Vertically the density is linear between the products of
+/// radiance and sine of the colatitude at both ends. So radiance over density varies by a small factor within a cell,
+/// and by colour, and no bright texel has a density that ignores it.
 #[derive(Clone, Debug)]
 pub struct EnvironmentMap {
     picture: Arc<Picture>,
-    /// From the world's to the picture's space, orthonormal.
+    /// From world space to the picture's space, orthonormal.
     to_picture: [DVec3; 3],
     scale: f64,
-    /// Over cells; `None` if all is black.
+    /// Distribution over cells; `None` if all is black.
     pyramid: Option<Pyramid>,
-    /// The sines of the colatitudes between which each row of cells lies.
+    /// Sines of the colatitudes between rows of cells.
     sines: Vec<f64>,
-    /// Strength integrated over all directions, and how spread it is, as [`Reach::Infinite`] has them, up to scale.
+    /// Flux and spread as in [`Reach::Infinite`], before scaling.
     flux: f64,
     spread: f64,
 }
 
 impl EnvironmentMap {
-    /// A picture whose radiance, W·sr⁻¹·m⁻², is `scale` times its colours, turned into the world by an orthonormal
-    /// matrix of three rows.
+    /// Creates a map from a picture. Its radiance, W·sr⁻¹·m⁻², is `scale` times the colours, rotated into the world by
+    /// an orthonormal matrix of three rows.
     pub fn new(picture: Arc<Picture>, to_world: [DVec3; 3], scale: f64) -> Self {
         let to_picture = [0, 1, 2].map(|i| DVec3::from_array(to_world.map(|row| row[i])));
         let height = picture.height();
@@ -59,7 +59,7 @@ impl EnvironmentMap {
         map
     }
 
-    /// The colours at the corners of a cell: left and right of its upper row, then of its lower.
+    /// Colours at the corners of a cell: left and right of its upper row, then of its lower.
     #[inline]
     fn corners(&self, column: usize, row: usize) -> [Rgb; 4] {
         let (width, last) = (self.picture.width(), self.picture.height() - 1);
@@ -69,7 +69,7 @@ impl EnvironmentMap {
         [at(column, upper), at(next, upper), at(column, lower), at(next, lower)]
     }
 
-    /// What a cell is drawn by: the light from it, by the ends of it.
+    /// Sampling weight of a cell: its flux by the radiance at its corners.
     #[inline]
     fn weight(&self, column: usize, row: usize) -> f64 {
         let [a, b, c, d] = self.corners(column, row).map(strength);
@@ -77,12 +77,12 @@ impl EnvironmentMap {
         tall * ((a + b) * self.sines[row] + (c + d) * self.sines[row + 1])
     }
 
-    /// The cell of a direction, where in it the direction is, and the sine of its colatitude.
+    /// The cell of a direction, the position within it, and the sine of the colatitude.
     #[inline]
     fn place(&self, direction: DVec3) -> ([usize; 2], [f64; 2], f64) {
         let [x, y, z] = self.to_picture.map(|row| row.dot(direction));
         let (width, height) = (self.picture.width(), self.picture.height());
-        // Not at a pole itself, where a density in solid angle has no value.
+        // Clamped, because the density by solid angle is undefined at a pole.
         let sine = x.hypot(z).max(1e-9);
         let column = (0.5 + x.atan2(-z) / TAU) * width as f64 - 0.5;
         let row = sine.atan2(y) / PI * height as f64 + 0.5;
@@ -98,14 +98,14 @@ impl EnvironmentMap {
         ([index, top], [column - left, down.clamp(0.0, 1.0)], sine)
     }
 
-    /// The radiance in a cell, up to scale, and the density in solid angle.
+    /// Radiance within a cell, before scaling, and density by solid angle.
     #[inline]
     fn within(&self, pyramid: &Pyramid, [column, row]: [usize; 2], [x, y]: [f64; 2], sine: f64) -> (Rgb, f64) {
         let corners = self.corners(column, row);
         let radiance = between(corners, [x, y]);
         let [a, b, c, d] = corners.map(strength);
         let (upper, lower) = (a + b, c + d);
-        // Downwards a density goes from one end of the cell to the other, and on in the next.
+        // Vertically the density is linear from one end of the cell to the other, and continuous across cells.
         let (from, to) = (upper * self.sines[row], lower * self.sines[row + 1]);
         let along = 2.0 * (from + (to - from) * y);
         let across = strength(radiance) / (0.5 * (upper + (lower - upper) * y));
@@ -115,7 +115,7 @@ impl EnvironmentMap {
     }
 }
 
-/// What lies between the corners of a cell.
+/// Bilinear interpolation between the corners of a cell.
 #[inline]
 fn between([a, b, c, d]: [Rgb; 4], [x, y]: [f64; 2]) -> Rgb {
     (a * (1.0 - x) + b * x) * (1.0 - y) + (c * (1.0 - x) + d * x) * y
@@ -151,7 +151,7 @@ impl Light for EnvironmentMap {
         let y = linear(v, (a + b) * self.sines[cell[1]], (c + d) * self.sines[cell[1] + 1]);
         let x = linear(u, a + (c - a) * y, b + (d - b) * y);
         let (width, height) = (self.picture.width() as f64, self.picture.height());
-        // The row above the first middle begins at the top, and that below the last ends at the bottom.
+        // The first row of cells begins at the top edge, and the last ends at the bottom edge.
         let row = match cell[1] {
             0 => 0.5 * y,
             last if last == height => last as f64 - 0.5 + 0.5 * y,

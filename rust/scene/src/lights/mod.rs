@@ -1,4 +1,4 @@
-//! All lights of a scene, and the choice among them.
+//! The lights of a scene, and the selection among them.
 
 mod aim;
 mod bounds;
@@ -71,41 +71,41 @@ use raywright_optics::Rgb;
 use raywright_optics::spectra::Waves;
 use std::sync::Arc;
 
-/// The lights of a scene: emitting surfaces, others that stand within it, and what comes from outside.
+/// The lights of a scene: emissive surfaces, other lights within it, and infinite lights.
 ///
-/// Those within are numbered: first the emitting primitives, shape after shape, then those in instances of prototypes,
-/// then what is no surface. One of them is chosen by its power or, where there are many, by what it brings to where it
-/// is asked for.
+/// Lights within the scene are numbered: emissive primitives shape by shape, then those in instances of prototypes,
+/// then lights that are not surfaces. A light is selected by power or, if there are many, by its estimated contribution
+/// to the receiver.
 #[derive(Debug)]
 pub struct Lights {
-    /// How each shape shines, and whether it does.
+    /// Emission of each shape, and whether it is not zero.
     emission: Vec<Emission>,
     shines: Vec<bool>,
-    /// The materials of those that shine and that rays may go on through; none where there are no such shapes.
+    /// Materials of emissive shapes that rays may pass straight through; empty if there are no such shapes.
     open: Vec<Option<Arc<dyn Material>>>,
-    /// For each shape, the number of its first primitive among lights; it means nothing for one that is dark.
+    /// For each shape, the light number of its first primitive; undefined for a dark shape.
     first: Vec<u32>,
-    /// The primitives that emit.
+    /// The emissive primitives.
     surfaces: Vec<u32>,
     copied: Copied,
     inside: Vec<Arc<dyn Light>>,
-    /// `None` if nothing within the scene shines.
+    /// `None` if no light within the scene emits.
     choice: Option<Choice>,
     infinite: InfiniteLights,
     few: Few,
-    /// Each primitive that emits, if it is a triangle or a sphere that shines alike everywhere; nothing where there are
-    /// more than [`Lights::KEPT`].
+    /// Precomputed data of each emissive primitive, if it is a triangle or sphere of uniform emission; empty if there
+    /// are more than [`Lights::KEPT`].
     kept: Vec<Option<PlainLight>>,
-    /// What shines within the scene, if all of it is triangles that shine alike everywhere.
+    /// The lights within the scene, if all are triangles of uniform emission.
     lamps: Vec<TriangleLamp>,
 }
 
 impl Lights {
-    /// Surfaces that shine alike everywhere are kept as they are drawn from where there are so many at most: 2/3 of a
-    /// megabyte.
+    /// Maximum number of precomputed emitters: 2/3 of a megabyte.
     const KEPT: usize = 1 << 12;
 
-    /// Numbers the lights: the emission of each shape of a geometry, of these materials, and what is no surface.
+    /// Numbers the lights: the emission of each shape of a geometry with these materials, and lights that are not
+    /// surfaces.
     pub(super) fn new(
         geometry: &Geometry,
         materials: &[Arc<dyn Material>],
@@ -160,8 +160,8 @@ impl Lights {
         all
     }
 
-    /// How strong a primitive of the scene is. What no ray can hit must not shine either, and from what has no end no
-    /// point can be drawn: its light is found by rays that meet it.
+    /// Strength of a primitive. A primitive that rays cannot hit has none, and neither has an unbounded one, because it
+    /// has no uniform distribution over its area. Only BSDF sampling finds the latter.
     fn of_primitive(geometry: &Geometry, primitive: u32, luminous: &Luminous) -> Strength {
         let sides = luminous.emission.sides;
         luminous.strength(|radiance| match geometry.shape(primitive) {
@@ -173,13 +173,13 @@ impl Lights {
         })
     }
 
-    /// How a primitive that is no instance shines.
+    /// Emission of a primitive that is not an instance.
     #[inline]
     fn luminous(&self, geometry: &Geometry, primitive: u32) -> Luminous<'_> {
         luminous(&self.emission, &self.open, geometry.locate(primitive).0)
     }
 
-    /// How strong each light within the scene is, by its number.
+    /// Strength of each light within the scene, by number.
     fn strengths(&self, geometry: &Geometry) -> Vec<Strength> {
         let of_primitive =
             |&primitive: &u32| Self::of_primitive(geometry, primitive, &self.luminous(geometry, primitive));
@@ -191,12 +191,12 @@ impl Lights {
         surfaces.chain(self.copied.strengths(geometry)).chain(self.inside.iter().map(of_light)).collect()
     }
 
-    /// Whether nothing shines that could be drawn.
+    /// Returns whether no light can be sampled.
     pub fn is_dark(&self) -> bool {
         self.choice.is_none() && self.infinite.is_dark()
     }
 
-    /// The memory held.
+    /// Memory in bytes.
     pub fn bytes(&self) -> usize {
         size_of_val(self.emission.as_slice())
             + size_of_val(self.shines.as_slice())
@@ -212,7 +212,7 @@ impl Lights {
             + self.few.bytes()
     }
 
-    /// How bright each light is: a mean of its channels, of radiance on surfaces and of whatever else of others.
+    /// Brightness of each light: the mean channel of a surface's radiance, or of another light's power or flux.
     pub fn radiances(&self) -> impl Iterator<Item = f64> {
         let of_surfaces = self.emission.iter().map(|emission| emission.radiance.at(&TexturePoint::NOWHERE).mean());
         let of_others = self.others().map(|light| match light.reach() {
@@ -222,37 +222,37 @@ impl Lights {
         of_surfaces.chain(of_others)
     }
 
-    /// Those that are no surfaces.
+    /// Lights that are not surfaces.
     pub fn others(&self) -> impl Iterator<Item = &dyn Light> {
         self.inside.iter().chain(self.infinite.lights()).map(|light| &**light)
     }
 
-    /// How a shape shines.
+    /// Emission of a shape.
     #[inline]
     pub fn emission(&self, shape: u32) -> &Emission {
         &self.emission[shape as usize]
     }
 
-    /// Whether a shape shines.
+    /// Returns whether a shape emits.
     #[inline]
     pub fn shines(&self, shape: u32) -> bool {
         self.shines[shape as usize]
     }
 
-    /// Radiance that comes from outside along a unit direction, of all lights there.
+    /// Sum of radiance from infinite lights along a unit direction.
     #[inline]
     pub fn infinite_radiance(&self, direction: DVec3) -> Rgb {
         self.infinite.radiance(direction, None)
     }
 
-    /// The same at some wavelengths.
+    /// Sum of radiance from infinite lights at these wavelengths.
     #[inline]
     pub fn infinite_radiance_at(&self, direction: DVec3, waves: Option<&Waves>) -> Rgb {
         self.infinite.radiance(direction, waves)
     }
 
-    /// Draws light that reaches a receiver: a light by `choice`, and of that a direction by `u`. `None` if the draw
-    /// gives none.
+    /// Samples incident light at a receiver: a light by `choice`, a direction by `u`. Returns `None` if the sample
+    /// carries no light.
     #[inline]
     pub fn sample(
         &self,
@@ -270,7 +270,7 @@ impl Lights {
         Some(self.sample_within(chosen, geometry, receiver, u)?.chosen((1.0 - share) * probability))
     }
 
-    /// Draws light of one that is within the scene, by its number, as if it were the only one.
+    /// Samples a light within the scene, by its number, as if it were the only one.
     #[inline]
     fn sample_within(
         &self,
@@ -289,9 +289,9 @@ impl Lights {
         self.inside[number - self.copied.len()].sample(receiver, u)
     }
 
-    /// The density with which [`Lights::sample`] draws, for a receiver, the direction of a ray from there, which is
-    /// unit and meets an emitting primitive under the cosine of an angle to its normal. 0 for what shines in instances
-    /// that move, or in instances of instances, or in too many: it is never drawn, and found by rays that meet it.
+    /// Density with which [`Lights::sample`] samples the unit direction of a ray that leaves a receiver and hits an
+    /// emissive primitive; the cosine is that to its normal. It is 0 for emitters that are never sampled: those in
+    /// moving, nested or too many instances.
     #[inline]
     pub fn surface_pdf(
         &self,
@@ -311,7 +311,7 @@ impl Lights {
         }
     }
 
-    /// The surface of a number, if it shines alike everywhere.
+    /// Precomputed data of a surface light, if its emission is uniform.
     #[inline]
     fn plain(&self, geometry: &Geometry, number: usize) -> Option<PlainLight> {
         if let Some(kept) = self.kept.get(number) {
@@ -321,7 +321,7 @@ impl Lights {
         PlainLight::new(geometry, &self.luminous(geometry, primitive), primitive)
     }
 
-    /// The number of the light that was hit; none if it is in instances and never drawn.
+    /// The number of a hit light; `None` if it is in instances and never sampled.
     #[inline]
     fn number_of(&self, geometry: &Geometry, hit: &Hit) -> Option<usize> {
         let (shape, number) = geometry.locate(hit.primitive);
@@ -331,7 +331,7 @@ impl Lights {
         Some((self.first[shape as usize] + number) as usize)
     }
 
-    /// The density of [`Lights::sample_within`].
+    /// Density of [`Lights::sample_within`].
     #[inline]
     fn pdf_within(
         &self,
@@ -347,14 +347,14 @@ impl Lights {
         self.copied.pdf(number - self.surfaces.len(), geometry, receiver, (ray, hit), cosine)
     }
 
-    /// The density with which [`Lights::sample`], for a receiver, draws a unit direction that leaves the scene.
+    /// Density with which [`Lights::sample`] samples, for a receiver, a unit direction that leaves the scene.
     #[inline]
     pub fn infinite_pdf(&self, receiver: &LightSampleContext, direction: DVec3) -> f64 {
         self.infinite.share() * self.infinite.pdf(receiver, direction)
     }
 }
 
-/// How a shape shines, of these emissions and open materials.
+/// Emission of a shape, from lists of emission and open materials.
 #[inline]
 fn luminous<'a>(emission: &'a [Emission], open: &'a [Option<Arc<dyn Material>>], shape: u32) -> Luminous<'a> {
     let shape = shape as usize;

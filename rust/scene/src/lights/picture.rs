@@ -1,8 +1,8 @@
-//! Pictures of light.
+//! Images of radiance or intensity.
 
 use raywright_optics::Rgb;
 
-/// A picture of linear colours, row after row from its top.
+/// An image of linear colours, row by row from its top.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
     width: usize,
@@ -10,10 +10,10 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// Of so many colours a row.
+    /// Creates an image with `width` colours per row.
     ///
     /// # Errors
-    /// If there are none, or not a whole number of rows, or one is negative or not finite; in a few words.
+    /// A short reason if there are no texels, not a whole number of rows, or a value is negative or not finite.
     pub fn new(width: usize, texels: Vec<[f32; 3]>) -> Result<Self, String> {
         if width == 0 || texels.is_empty() || !texels.len().is_multiple_of(width) {
             return Err(format!("a picture must have whole rows, and at least one: {} of {width}", texels.len()));
@@ -30,24 +30,24 @@ impl Picture {
         }
     }
 
-    /// How many colours there are in a row.
+    /// Number of colours per row.
     pub fn width(&self) -> usize {
         self.width
     }
 
-    /// How many rows there are.
+    /// Number of rows.
     pub fn height(&self) -> usize {
         self.texels.len() / self.width
     }
 
-    /// One of its colours.
+    /// A texel.
     #[inline]
     pub fn at(&self, column: usize, row: usize) -> Rgb {
         let [red, green, blue] = self.texels[row * self.width + column].map(f64::from);
         Rgb::new(red, green, blue)
     }
 
-    /// The memory held.
+    /// Memory in bytes.
     pub fn bytes(&self) -> usize {
         size_of_val(self.texels.as_slice())
     }

@@ -1,4 +1,4 @@
-//! Surfaces that shine alike everywhere, as they are drawn from.
+//! Precomputed data of surfaces with uniform emission.
 
 use super::{Luminous, Sides};
 use crate::Geometry;
@@ -7,17 +7,17 @@ use raywright_accel::Primitives;
 use raywright_base::math::DVec3;
 use raywright_optics::Rgb;
 
-/// A triangle or a sphere that shines alike everywhere.
+/// A triangle or a sphere of uniform emission.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PlainLight {
     pub primitive: u32,
     pub figure: Figure,
     pub radiance: Rgb,
-    /// Whether the front shines, and the back.
+    /// True if the front, or the back, emits.
     pub sides: [bool; 2],
 }
 
-/// Where it is.
+/// Geometry of the emitter.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Figure {
     Triangle { corners: [DVec3; 3], normal: DVec3 },
@@ -25,7 +25,7 @@ pub(super) enum Figure {
 }
 
 impl PlainLight {
-    /// One of a geometry, if it is one that no ray goes on through.
+    /// Computes the data of a primitive, if it is a triangle or sphere of uniform emission and opaque to straight rays.
     #[inline]
     pub fn new(geometry: &Geometry, luminous: &Luminous, primitive: u32) -> Option<Self> {
         let Luminous { emission, open: None } = luminous else { return None };

@@ -1,4 +1,4 @@
-//! A point that shines evenly.
+//! An isotropic point light.
 
 use super::light::strength;
 use super::{Light, LightBounds, LightSample, LightSampleContext, Place, PointEmission, Reach};
@@ -8,10 +8,10 @@ use raywright_optics::Rgb;
 use raywright_optics::spectra::Waves;
 use std::f64::consts::PI;
 
-/// A light without extent that shines equally in all directions.
+/// A point light of equal intensity in all directions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointLight {
-    /// Where it is.
+    /// Position.
     pub position: DVec3,
     /// Radiant intensity, W·sr⁻¹.
     pub intensity: Rgb,

@@ -1,4 +1,4 @@
-//! A picture that is thrown.
+//! A projector light.
 
 use super::light::strength;
 use super::{Light, LightBounds, LightSample, LightSampleContext, Picture, Place, PointEmission, Reach};
@@ -7,28 +7,28 @@ use raywright_optics::Rgb;
 use raywright_optics::spectra::Waves;
 use std::sync::Arc;
 
-/// A slide projector: a point from which light goes through a picture.
+/// A slide projector: a point light whose intensity is an image.
 ///
-/// On a screen at right angles to its axis the picture is as bright at the corners as in the middle: the intensity goes
-/// with the inverse cube of the cosine to the axis, which makes up for the distance and the slant.
+/// On a screen perpendicular to its axis, the corners are as bright as the center. The intensity is proportional to the
+/// inverse cube of the cosine to the axis, which compensates distance and slant.
 #[derive(Clone, Debug)]
 pub struct Projector {
     picture: Arc<Picture>,
     position: DVec3,
-    /// Unit vectors to the right and to the top of the picture as it is thrown, and along the axis.
+    /// Unit vectors to the right and the top of the projected image, and along the axis.
     axes: [DVec3; 3],
-    /// The tangents of half the angles that the picture takes, across and up.
+    /// Tangents of the half angles of the image, horizontal and vertical.
     half: [f64; 2],
-    /// Intensity along the axis where the picture is 1, W·sr⁻¹.
+    /// Intensity along the axis where the image is 1, W·sr⁻¹.
     intensity: Rgb,
 }
 
 impl Projector {
-    /// Throws a picture from a position towards another, upright as `up` has it, under a vertical angle of `fov`
-    /// radians. Between the middles of its texels the picture is interpolated.
+    /// Creates a projector from a position to a target, upright along `up`, with a vertical angle of `fov` radians. The
+    /// image is interpolated between texel centers.
     ///
     /// # Errors
-    /// If the positions are the same, or `up` points along their line; in a few words.
+    /// A short reason if the positions are the same, or `up` is parallel to their line.
     pub fn new(
         picture: Arc<Picture>,
         [position, target, up]: [DVec3; 3],
@@ -42,7 +42,7 @@ impl Projector {
         Ok(Self { picture, position, axes: [right, right.cross(axis), axis], half, intensity })
     }
 
-    /// The intensity into a unit direction.
+    /// Intensity in a unit direction.
     fn towards(&self, direction: DVec3) -> Rgb {
         let [right, up, ahead] = self.axes.map(|axis| axis.dot(direction));
         let (x, y) = (right / ahead / self.half[0], up / ahead / self.half[1]);
@@ -76,8 +76,8 @@ impl Light for Projector {
         }
     }
 
-    /// Over the plane at distance 1, the inverse cube of the cosine is what a solid angle takes there: the power is the
-    /// mean of the picture, but for its edges, times its area there.
+    /// The inverse cube of the cosine is the area on the plane at distance 1 per solid angle. So the power is the
+    /// image's mean, neglecting its edges, times its area there.
     fn reach(&self) -> Reach {
         let [x, y] = self.half;
         let (width, height) = (self.picture.width(), self.picture.height());
@@ -98,14 +98,14 @@ impl Light for Projector {
         LightSample::of_point(self.position, receiver, |direction| self.towards(direction))
     }
 
-    /// Even in the picture as it is thrown.
+    /// Samples positions uniformly in the projected image.
     fn sample_emission(&self, u: [f64; 2]) -> Option<PointEmission> {
         let ([x, y], [right, up, ahead]) = (self.half, self.axes);
         let [across, along] = u.map(|u| 2.0 * u - 1.0);
         let way = ahead + right * (x * across) + up * (y * along);
         let (direction, length) = (way.normalize(), way.length());
-        // A solid angle is the cube of the cosine, of one over the length, times what it takes of the plane at
-        // distance 1.
+        // A solid angle is the area on the plane at distance 1 times the cosine cubed, and the cosine is one over the
+        // length.
         let pdf = length * length * length / (4.0 * x * y);
         Some(PointEmission { position: self.position, direction, weight: self.towards(direction) / pdf, pdf })
     }
@@ -118,7 +118,7 @@ impl Light for Projector {
         self.towards(direction)
     }
 
-    /// Beside the picture it does not matter: nothing is sent there.
+    /// The value outside the image is irrelevant, because the intensity there is 0.
     fn emission_pdf(&self, direction: DVec3) -> f64 {
         let (ahead, [x, y]) = (self.axes[2].dot(direction), self.half);
         if ahead > 0.0 { 1.0 / (ahead * ahead * ahead * 4.0 * x * y) } else { 0.0 }

@@ -1,9 +1,9 @@
-//! Cells of a grid, drawn by their weights.
+//! Hierarchical sampling of grid cells.
 
-/// Sums of the weights of a grid's cells, over 2 × 2 of them, 4 × 4, and so on up to all. Going down again, a cell is
-/// drawn from two numbers that are used up one choice at a time (Clarberg et al., "Wavelet Importance Sampling", 2005,
-/// in its simplest form): numbers that are near each other give cells that are, so that what is even about a set of
-/// numbers stays so. The weights themselves are asked for, so that it takes no more than 8/3 bytes a cell.
+/// A pyramid of sums of cell weights, over 2 × 2 cells, 4 × 4, and so on. Sampling descends the pyramid and consumes
+/// two random numbers one decision at a time (Clarberg et al., "Wavelet Importance Sampling", 2005, in its simplest
+/// form). Neighbouring numbers map to neighbouring cells, which preserves stratification. The finest weights are
+/// recomputed by the caller, so a cell takes at most 8/3 bytes.
 #[derive(Clone, Debug)]
 pub struct Pyramid {
     size: [usize; 2],
@@ -18,11 +18,11 @@ struct Level {
     sums: Vec<f64>,
 }
 
-/// One below 1, the greatest.
+/// The largest f64 below 1.
 const BELOW_ONE: f64 = 1.0 - f64::EPSILON / 2.0;
 
 impl Pyramid {
-    /// Over a grid of so many columns and rows, whose weights are finite and not negative; `None` if all are 0.
+    /// Builds a pyramid over a grid of columns and rows with finite, non-negative weights; `None` if all are 0.
     pub fn new(size: [usize; 2], weight: impl Fn(usize, usize) -> f64) -> Option<Self> {
         let mut levels: Vec<Level> = Vec::new();
         let [mut width, mut height] = size;
@@ -48,13 +48,13 @@ impl Pyramid {
         (total > 0.0 && total.is_finite()).then_some(Self { size, levels, total })
     }
 
-    /// The sum of all weights.
+    /// Sum of all weights.
     pub fn total(&self) -> f64 {
         self.total
     }
 
-    /// A cell with probability weight / total, and what is left of the two numbers, which is even in it. The weights
-    /// are those that it was made with.
+    /// Samples a cell with probability weight / total. Also returns the remaining two numbers, which are uniform in the
+    /// cell. `weight` must be the function the pyramid was built with.
     #[inline]
     pub fn sample(&self, [mut u, mut v]: [f64; 2], weight: impl Fn(usize, usize) -> f64) -> ([usize; 2], [f64; 2]) {
         let (mut i, mut j) = (0, 0);
@@ -79,13 +79,13 @@ impl Pyramid {
         ([i, j], [u, v])
     }
 
-    /// The memory held.
+    /// Memory in bytes.
     pub fn bytes(&self) -> usize {
         self.levels.iter().map(|level| size_of_val(level.sums.as_slice())).sum()
     }
 }
 
-/// The first or the second of two, and what is left of the number that decides.
+/// Selects the first or second of two, and rescales the random number.
 #[inline]
 fn choose(u: f64, first: f64, second: f64) -> (usize, f64) {
     let share = first / (first + second);
@@ -96,7 +96,7 @@ fn choose(u: f64, first: f64, second: f64) -> (usize, f64) {
     }
 }
 
-/// A number in [0, 1] with a density that goes linearly from one weight to another, not both 0.
+/// Samples a number in [0, 1] with a density that is linear between two weights, not both 0.
 #[inline]
 pub fn linear(u: f64, from: f64, to: f64) -> f64 {
     let root = (from * from + u * (to * to - from * from)).max(0.0).sqrt();
@@ -139,7 +139,8 @@ mod tests {
         let pyramid = Pyramid::new([128, 64], weight).unwrap();
         let bright = |sample| pyramid.sample(Sampler::new(9, 0, sample).two(0), weight).0 == [70, 33];
         let others = (0..200_000).filter(|&sample| !bright(sample)).count() as f64;
-        // 164 expected; five standard deviations, which chance exceeds once in two million.
+        // 164 expected; the bound is five standard deviations, with a probability of exceeding it of one in two
+        // million.
         let expected = 200_000.0 * 8191.0 / (1e7 + 8191.0);
         assert!((others - expected).abs() < 5.0 * expected.sqrt(), "{others} {expected}");
     }

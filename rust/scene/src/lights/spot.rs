@@ -1,4 +1,4 @@
-//! A point that shines into a cone.
+//! A spot light.
 
 use super::light::strength;
 use super::{Light, LightBounds, LightSample, LightSampleContext, Place, PointEmission, Reach};
@@ -7,22 +7,22 @@ use raywright_optics::Rgb;
 use raywright_optics::spectra::Waves;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// How light falls off towards the rim of a cone.
+/// Falloff profile towards the rim of the cone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Profile {
-    /// A cubic of the cosine to the axis, with level ends.
+    /// A cubic of the cosine to the axis, with zero slope at both ends.
     Smooth,
-    /// Evenly with the angle to the axis.
+    /// Linear in the angle to the axis.
     Linear,
 }
 
-/// A light without extent that shines into a cone: evenly in its middle, then falling off to its rim.
+/// A point light that emits into a cone: uniform in its center, with a falloff to its rim.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpotLight {
     position: DVec3,
     axis: DVec3,
     intensity: Rgb,
-    /// The cosines of the angles to the axis up to which all shines, and from which on nothing does.
+    /// Cosines of the angles to the axis where the falloff begins and ends.
     cosines: [f64; 2],
     angle: f64,
     falloff: f64,
@@ -30,22 +30,22 @@ pub struct SpotLight {
 }
 
 impl SpotLight {
-    /// A spot at a position that shines along an axis of any length but 0 with a radiant intensity, W·sr⁻¹, into
-    /// directions within `angle` of it, radians, in the last `falloff` of which it falls off.
+    /// Creates a spot at a position along an axis of any non-zero length. It emits a radiant intensity, W·sr⁻¹, within
+    /// `angle` radians of the axis and falls off over the last `falloff` radians.
     pub fn new(position: DVec3, axis: DVec3, intensity: Rgb, angle: f64, falloff: f64) -> Self {
         let axis = (axis / axis.abs().max_element()).normalize();
-        // A cosine of next to nothing is 0 at a right angle: what is in its plane is not lit.
+        // At a right angle the cosine rounds to a tiny positive number; 0 keeps the plane of the light dark.
         let cosine = |a: f64| if a >= FRAC_PI_2 { 0.0 } else { a.cos() };
         let cosines = [cosine(angle - falloff), cosine(angle)];
         Self { position, axis, intensity, cosines, angle, falloff, profile: Profile::Smooth }
     }
 
-    /// The same spot, falling off in another way.
+    /// Sets the falloff profile.
     pub fn with_profile(self, profile: Profile) -> Self {
         Self { profile, ..self }
     }
 
-    /// The share of the intensity along a unit direction.
+    /// Relative intensity in a unit direction.
     fn share(&self, direction: DVec3) -> f64 {
         let cosine = self.axis.dot(direction);
         let [inner, outer] = self.cosines;
@@ -65,7 +65,7 @@ impl SpotLight {
 }
 
 impl SpotLight {
-    /// 1 − cos of the cone, by half the angle, which keeps its digits where the cone is narrow.
+    /// 1 − cos of the cone from half the angle, which keeps its digits for a narrow cone.
     fn height(&self) -> f64 {
         if self.cosines[1] == 0.0 { 1.0 } else { 2.0 * (0.5 * self.angle).sin().powi(2) }
     }
@@ -86,9 +86,9 @@ impl Light for SpotLight {
         }
     }
 
-    /// The power is exact. Of the smooth falloff, which is odd about its middle, the mean over cosines is a half; of
-    /// the linear one, ∫ (b − θ) / (b − a) sin θ dθ from a to b is cos a less the mean of cos θ, which is written so
-    /// that it keeps its digits however near a and b are.
+    /// The power is exact. The smooth falloff is odd about its middle, so its mean over cosines is one half. For the
+    /// linear one, ∫ (b − θ) / (b − a) sin θ dθ from a to b is cos a minus the mean of cos θ; the form used keeps its
+    /// digits however close a and b are.
     fn reach(&self) -> Reach {
         let intensity = strength(self.intensity);
         let [inner, outer] = self.cosines;
@@ -108,7 +108,7 @@ impl Light for SpotLight {
         LightSample::of_point(self.position, receiver, |direction| self.intensity * self.share(direction))
     }
 
-    /// Even in the cone.
+    /// Samples directions uniformly in the cone.
     fn sample_emission(&self, [u, v]: [f64; 2]) -> Option<PointEmission> {
         let most = self.height();
         let height = most * u;
@@ -127,7 +127,7 @@ impl Light for SpotLight {
         self.intensity * self.share(direction)
     }
 
-    /// Beyond the cone it does not matter: nothing is sent there.
+    /// The value outside the cone is irrelevant, because the intensity there is 0.
     fn emission_pdf(&self, _: DVec3) -> f64 {
         1.0 / (TAU * self.height())
     }

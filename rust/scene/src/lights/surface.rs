@@ -1,4 +1,4 @@
-//! Light from surfaces.
+//! Emission sampling of surfaces.
 
 use super::luminous::{along, fine_digits};
 use super::triangle::SeenTriangle;
@@ -11,8 +11,8 @@ use raywright_optics::Rgb;
 use raywright_shapes::{Drawn, Point, Seen, Shape, Site};
 
 impl Emission {
-    /// What a surface sends back along a ray of unit direction that meets it; `gaze` is how it is looked at there, if
-    /// anybody asks.
+    /// Radiance of a surface back along a ray of unit direction that hits it; `gaze` computes the lookup context if
+    /// needed.
     #[inline]
     pub fn sent<G: Into<Gaze>>(
         &self,
@@ -30,7 +30,7 @@ impl Emission {
     }
 }
 
-/// Draws a point of a shape as seen from a place, and says where it lies in coordinates if that is needed.
+/// Samples a point of a shape as seen from a position, with surface coordinates if they are needed.
 #[inline]
 fn seen(shape: &dyn Shape, needs: Needs, place: DVec3, u: [f64; 2]) -> Option<(Seen, [f64; 2])> {
     if !needs.any() {
@@ -40,7 +40,7 @@ fn seen(shape: &dyn Shape, needs: Needs, place: DVec3, u: [f64; 2]) -> Option<(S
     Some((Seen { site: point.site(), pdf }, point.uv))
 }
 
-/// Light from a point drawn on a primitive. The last is what it sends, asked by the ray to it.
+/// Light from a sampled point of a primitive. The last argument computes its radiance from the ray to it.
 #[inline]
 pub(super) fn sample(
     receiver: &LightSampleContext,
@@ -55,7 +55,7 @@ pub(super) fn sample(
     let direction = way / distance;
     let ray = Ray::new(receiver.position, direction);
     let radiance = radiance(&ray, &Hit { t: distance, uv, primitive, inner });
-    // Also false where the distance is 0 and the direction NaN.
+    // Also false if the distance is 0 and the direction NaN.
     if radiance.is_black() || direction.is_nan() {
         return None;
     }
@@ -69,8 +69,8 @@ pub(super) fn sample(
     })
 }
 
-/// Light from a shape, from a place of its space where the receiver is. `in_world` gives points of the shape as the
-/// scene has them, `crowding` how much denser directions are in the world than in that space.
+/// Samples light from a shape, from the receiver's position in the shape's space. `in_world` maps points of the shape
+/// to the scene, and `crowding` is the ratio of directional densities in the world and in that space.
 pub(super) fn sample_shape(
     (geometry, shape): (&Geometry, &dyn Shape),
     luminous: &Luminous,
@@ -87,7 +87,7 @@ pub(super) fn sample_shape(
         let sends = |ray: &Ray, hit: &Hit| luminous.sent(geometry, ray, hit, &surface, || receiver.waves);
         return sample(receiver, &surface, place, uv, density, sends);
     };
-    // Light from behind the first point may get through it.
+    // Light from behind the first point may pass through it.
     let sends = |point: &Point| {
         let surface = in_world(&point.site())?;
         let way = surface.position - receiver.position;
@@ -103,7 +103,7 @@ pub(super) fn sample_shape(
     sample(receiver, &surface, place, point.uv, density, sends)
 }
 
-/// Light from a primitive of the scene that is no instance.
+/// Samples light from a primitive that is not an instance.
 #[inline]
 pub(super) fn sample_primitive(
     geometry: &Geometry,
@@ -132,8 +132,8 @@ pub(super) fn sample_primitive(
     }
 }
 
-/// The density with which [`sample_primitive`] draws the direction of a ray that meets the primitive under the cosine
-/// of an angle to its normal.
+/// Density with which [`sample_primitive`] samples the direction of a ray that hits the primitive; the cosine is that
+/// to its normal.
 #[inline]
 pub(super) fn primitive_pdf(
     geometry: &Geometry,

@@ -1,17 +1,17 @@
-//! A tree over lights, which chooses among thousands by what each brings to a place.
+//! A light tree: selection among thousands of lights by estimated contribution.
 
 use super::{LightBounds, LightContextLanes, LightSampleContext};
 use raywright_base::math::{DVec3, LANES};
 use raywright_base::simd::{Level, loops};
 
-/// A binary tree over lights (Conty Estevez and Kulla, 2018; with pdfs as in Pharr, Jakob and Humphreys, "Physically
-/// Based Rendering", 4th edition, 2023, 12.6.3): from the root on, one of two children is taken with a probability that
-/// goes by what each may bring.
+/// A binary tree over lights (Conty Estevez and Kulla, 2018; with densities as in Pharr, Jakob and Humphreys,
+/// "Physically Based Rendering", 4th edition, 2023, 12.6.3). Traversal selects one of two children with a probability
+/// proportional to their importance.
 #[derive(Debug)]
 pub struct LightTree {
-    /// Depth first: the first child of an inner node is the next one.
+    /// Depth first: the first child of an inner node follows it.
     nodes: Vec<Node>,
-    /// For each light, which way leads to it from the root: bit i is set if at depth i it is the second child's.
+    /// For each light, its path from the root: bit i is set if the path takes the second child at depth i.
     trails: Vec<u64>,
 }
 
@@ -26,17 +26,16 @@ impl Node {
     const LEAF: u32 = 1 << 31;
 }
 
-/// The trail of a light that is not in the tree.
+/// The path of a light that is not in the tree.
 const NOWHERE: u64 = u64::MAX;
 
-/// Down to this depth, parts are split by their cost; from there on by halves, of which there are 31 at most: a trail
-/// has 64 bits.
+/// Down to this depth nodes are split by cost; below it by median, with at most 31 levels. A path has 64 bits.
 const DEEPEST_SPLIT: u32 = 28;
 
-/// Into how many slices a part is cut to find where to split it.
+/// Number of bins in the search for a split.
 const SLICES: usize = 12;
 
-/// A light that is to be put somewhere.
+/// A light to be inserted.
 #[derive(Clone, Copy)]
 struct Item {
     bounds: LightBounds,
@@ -45,7 +44,7 @@ struct Item {
 }
 
 loops! {
-    /// What a part of a tree may bring to each receiver.
+    /// Importance of a node to each receiver.
     fn importances(of: &LightBounds, receivers: &LightContextLanes, brings: &mut [f64; LANES]) {
         for i in 0..LANES {
             brings[i] = of.importance(&receivers.get(i));
@@ -54,12 +53,12 @@ loops! {
 }
 
 impl LightTree {
-    /// A tree over all lights that have bounds and shine; `None` if there is none.
+    /// Builds a tree over all lights with bounds and positive intensity; `None` if there is none.
     pub fn new(lights: &[Option<LightBounds>]) -> Option<Self> {
         assert!(lights.len() < Node::LEAF as usize, "fewer than 2^31 lights");
         let all = || (0u32..).zip(lights).filter_map(|(light, bounds)| bounds.map(|bounds| (light, bounds)));
         let greatest = all().map(|(_, bounds)| bounds.intensity).fold(0.0, f64::max);
-        // Relative to the greatest, no importance overflows.
+        // Normalised by the greatest, so that no importance overflows.
         let item = |(light, bounds): (u32, LightBounds)| {
             let bounds = LightBounds { intensity: bounds.intensity / greatest, ..bounds };
             Item { bounds, centre: bounds.centre(), light }
@@ -73,7 +72,7 @@ impl LightTree {
         Some(tree)
     }
 
-    /// Builds a part at a trail, and tells what is around it.
+    /// Builds the node of a path, and returns its bounds.
     fn build(&mut self, items: &mut [Item], trail: u64, depth: u32) -> LightBounds {
         let here = self.nodes.len();
         if let [item] = items {
@@ -91,14 +90,15 @@ impl LightTree {
         self.nodes[here].bounds
     }
 
-    /// Chooses a light for a receiver by a number in [0, 1), and tells its probability. `None` if none brings anything
-    /// there.
+    /// Selects a light for a receiver by a number in [0, 1); returns it with its probability. `None` if no light
+    /// contributes there.
     #[inline]
     pub fn sample(&self, receiver: &LightSampleContext, u: f64) -> Option<(usize, f64)> {
         self.walk(u, |node| self.nodes[node].bounds.importance(receiver))
     }
 
-    /// The same for a lane each: what each part of a small tree may bring is computed for all of them at once.
+    /// Selects a light for each of sixteen receivers. The importances of a small tree are computed for all lanes at
+    /// once.
     pub fn sample_lanes(
         &self,
         level: Level,
@@ -106,7 +106,7 @@ impl LightTree {
         u: &[f64; LANES],
         chosen: &mut [Option<(usize, f64)>; LANES],
     ) {
-        /// Parts of a tree of eight lights. In a larger one, few of all parts are passed on the way to a light.
+        /// Nodes of a tree of eight lights. In a larger tree a path visits only a small share of all nodes.
         const MOST: usize = 15;
         if self.nodes.len() > MOST {
             for lane in 0..LANES {
@@ -115,7 +115,7 @@ impl LightTree {
             return;
         }
         let mut brings = [[0.0; LANES]; MOST];
-        // Nobody asks about the root.
+        // The root's importance is never used.
         for (node, brings) in self.nodes.iter().zip(&mut brings).skip(1) {
             importances(level, &node.bounds, receivers, brings);
         }
@@ -124,7 +124,7 @@ impl LightTree {
         }
     }
 
-    /// Goes from the root to a light, by what each part may bring.
+    /// Descends from the root to a light, by the importance of each node.
     #[inline(always)]
     fn walk(&self, mut u: f64, importance: impl Fn(usize) -> f64) -> Option<(usize, f64)> {
         let (mut here, mut probability) = (0, 1.0);
@@ -139,12 +139,12 @@ impl LightTree {
             } else {
                 (here, u, probability) = (link as usize, (u - share) / (1.0 - share), probability * (1.0 - share));
             }
-            // A quotient may be rounded up to 1.
+            // The quotient may be rounded up to 1.
             u = u.min(1.0 - f64::EPSILON / 2.0);
         }
     }
 
-    /// The probability with which a light is chosen for a receiver.
+    /// Probability of selecting a light for a receiver.
     #[inline]
     pub fn probability(&self, light: usize, receiver: &LightSampleContext) -> f64 {
         let mut trail = self.trails[light];
@@ -171,7 +171,7 @@ impl LightTree {
         }
     }
 
-    /// The share of an inner node's first child; `None` if neither child brings anything.
+    /// Probability of an inner node's first child; `None` if neither child contributes.
     #[inline(always)]
     fn share(&self, node: usize, importance: impl Fn(usize) -> f64) -> Option<f64> {
         let first = importance(node + 1);
@@ -180,13 +180,13 @@ impl LightTree {
         (sum > 0.0).then(|| first / sum)
     }
 
-    /// The memory held.
+    /// Memory in bytes.
     pub fn bytes(&self) -> usize {
         size_of_val(self.nodes.as_slice()) + size_of_val(self.trails.as_slice())
     }
 }
 
-/// Sorts items into two parts, none of them empty, and tells where the second begins.
+/// Partitions items into two non-empty parts, and returns the start of the second.
 fn split(items: &mut [Item], depth: u32) -> usize {
     let (low, high) = items.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), item| {
         (low.min(item.centre), high.max(item.centre))
@@ -198,7 +198,7 @@ fn split(items: &mut [Item], depth: u32) -> usize {
             if extent[axis] > 0.0 {
                 let slice = |item: &Item| slice_of(item.centre[axis], low[axis], extent[axis]);
                 let Some((cost, at)) = best_slice(items, slice) else { continue };
-                // Thin parts are costly: they are seen alike from afar only along one axis.
+                // Thin parts cost more, because they look compact from afar only along one axis.
                 let cost = cost * extent.max_element() / extent[axis];
                 if best.is_none_or(|(least, ..)| cost < least) {
                     best = Some((cost, axis, at));
@@ -226,7 +226,7 @@ fn slice_of(x: f64, low: f64, extent: f64) -> usize {
     (((x - low) / extent * SLICES as f64) as usize).min(SLICES - 1)
 }
 
-/// The slice that the second part best begins with, and the cost; `None` if all are in one.
+/// The best first bin of the second part, and its cost; `None` if all items are in one bin.
 fn best_slice(items: &[Item], slice: impl Fn(&Item) -> usize) -> Option<(f64, usize)> {
     let mut slices: [Option<LightBounds>; SLICES] = [None; SLICES];
     let joined = |a: Option<LightBounds>, b: Option<LightBounds>| match (a, b) {

@@ -1,4 +1,4 @@
-//! Lights by wavelength.
+//! Spectral lights.
 
 use super::{Light, LightSample, LightSampleContext, Place, PointEmission, Reach};
 use raywright_base::math::DVec3;
@@ -6,17 +6,17 @@ use raywright_optics::Rgb;
 use raywright_optics::spectra::{Role, Smooth, Spectrum, Waves};
 use std::sync::Arc;
 
-/// A light that is no surface, by wavelength.
+/// A spectral light that is not a surface.
 #[derive(Clone, Debug)]
 pub struct Waved {
     light: Arc<dyn Light>,
-    /// Whether it has colours of its own, which shine by their smooth spectra; if not, it is grey.
+    /// True if the light has colours, each of which is upsampled to a smooth spectrum; otherwise it is grey.
     is_coloured: bool,
-    /// What it is multiplied by beside.
+    /// A spectral factor.
     tint: Option<Tint>,
 }
 
-/// A spectrum, what stands for it in red, green and blue, and the mean of that, which the light has already.
+/// A spectrum, its RGB colour, and the colour's mean, which the light already includes.
 #[derive(Clone, Debug)]
 struct Tint {
     spectrum: Arc<Spectrum>,
@@ -25,16 +25,16 @@ struct Tint {
 }
 
 impl Waved {
-    /// A light of many colours, each by its smooth spectrum.
+    /// A light with many colours; each is upsampled to a smooth spectrum.
     pub fn coloured(light: Arc<dyn Light>) -> Self {
         Self { light, is_coloured: true, tint: None }
     }
 
-    /// A light, grey or of many colours, by a spectrum. It is made as bright as this number says, and a colour stands
-    /// for the spectrum in red, green and blue.
+    /// A light, grey or with many colours, times a spectrum. `make` creates it with the given brightness; `colour` is
+    /// the spectrum in red, green and blue.
     ///
     /// # Errors
-    /// If it cannot be made.
+    /// If `make` fails.
     pub fn tinted<E>(
         (spectrum, colour): (Arc<Spectrum>, Rgb),
         is_coloured: bool,

@@ -1,4 +1,4 @@
-//! Blinn's form of Phong's model.
+//! The Blinn-Phong material.
 
 use super::phong::{parts, shares};
 use super::{BsdfMix, Material};
@@ -6,16 +6,16 @@ use crate::ShadingPoint;
 use crate::textures::{Needs, TexturePoint, Value};
 use raywright_optics::{AnyBsdf, BlinnPhong, Rgb};
 
-/// A matt surface with highlights where the normal halves the way between light and viewer, on both sides.
+/// A diffuse surface with highlights around the half vector of light and view, on both sides.
 #[derive(Clone, Debug)]
 pub struct BlinnPhongMaterial {
-    /// The share of light that is reflected diffusely, 0 to 1 in each channel.
+    /// Diffuse reflectance, 0 to 1 in each channel.
     pub diffuse: Value,
-    /// The share that makes highlights, 0 to 1; with the other at most 1.
+    /// Specular reflectance, 0 to 1; the sum with the diffuse one is at most 1.
     pub specular: Value,
-    /// The power of the cosine, not negative.
+    /// Exponent of the cosine, not negative.
     pub exponent: Value<f64>,
-    /// The share of ambient light that is reflected, for integrators that know one.
+    /// Ambient reflectance, for integrators with ambient light.
     pub ambient: Value,
 }
 

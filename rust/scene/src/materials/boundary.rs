@@ -1,4 +1,4 @@
-//! The end of a medium that has no surface.
+//! The boundary of a medium without a surface.
 
 use super::{BsdfMix, Material};
 use crate::ShadingPoint;
@@ -7,12 +7,12 @@ use crate::textures::{Needs, TexturePoint};
 use raywright_optics::{Rgb, Transparent};
 use std::sync::Arc;
 
-/// Where a medium ends, as smoke or a cloud does: light passes as if nothing were there. Its normals point out.
+/// A boundary of a medium such as smoke or a cloud; light passes through it unchanged. Its normals point outwards.
 #[derive(Clone, Debug)]
 pub struct BoundaryMaterial {
-    /// What it encloses.
+    /// The enclosed medium.
     pub medium: Arc<dyn Medium>,
-    /// Where several overlap, the medium of the greatest priority is there.
+    /// If several media overlap, the one with the greatest priority applies.
     pub priority: i32,
 }
 
@@ -29,7 +29,7 @@ impl Material for BoundaryMaterial {
         Ok(())
     }
 
-    /// Whoever knows of no media goes through it as through a hole.
+    /// Integrators without media pass through it as through a hole.
     fn opacity(&self, _at: &TexturePoint) -> f64 {
         0.0
     }

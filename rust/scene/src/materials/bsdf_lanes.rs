@@ -1,4 +1,4 @@
-//! How sixteen points scatter light.
+//! BSDFs in batches of sixteen lanes.
 
 use super::BsdfMix;
 use super::bsdf_mix::{Chosen, weighed, with_part};
@@ -9,35 +9,35 @@ use raywright_optics::{AnyBsdf, AnyBsdfLanes, BsdfColumns, BsdfSampleLanes, Rgb,
 use std::array::from_fn;
 use std::borrow::Cow;
 
-/// How points scatter light, a lane each; there may be fewer than lanes.
+/// BSDFs of points, one per lane; some lanes may be empty.
 ///
-/// What all of them scatter by stands in columns. Where several are weighed, the first parts stand together, and the
-/// second ones, and so on.
+/// Their parameters are in structure-of-arrays form. For mixtures, one array holds the first components of all lanes,
+/// another the second ones, and so on.
 #[derive(Clone, Debug, Default)]
 pub struct BsdfLanes<'a> {
-    /// Borrowed where it is how all of a surface scatters.
+    /// The BSDF of each lane, borrowed if it is constant over its surface.
     each: Vec<Cow<'a, BsdfMix>>,
-    /// As many as any lane has had.
+    /// Mixture components, as many as any lane has had.
     parts: Vec<Part>,
     is_mixed: [bool; LANES],
 }
 
-/// One of what is weighed, a lane each.
+/// One component of the mixtures, in every lane.
 #[derive(Clone, Debug)]
 struct Part {
     bsdf: AnyBsdfLanes,
     weight: RgbLanes,
-    /// The probability that it is drawn from.
+    /// Sampling probability.
     probability: [f64; LANES],
 }
 
 impl Part {
-    /// Of nothing yet.
+    /// An empty component.
     const NONE: Self = Self { bsdf: AnyBsdfLanes::NONE, weight: RgbLanes::ZERO, probability: [0.0; LANES] };
 }
 
 loops! {
-    /// Adds what a part scatters.
+    /// Adds the value of a component.
     fn add(
         weight: &RgbLanes,
         probability: &[f64; LANES],
@@ -56,7 +56,7 @@ loops! {
 }
 
 loops! {
-    /// What throughputs are multiplied by, of single directions by what was drawn, of others by what is scattered.
+    /// Factor on throughputs: of delta directions the sampled component's value, of others the value of the mixture.
     fn weigh(
         single: &[f64; LANES],
         times: &RgbLanes,
@@ -74,7 +74,7 @@ loops! {
     }
 }
 
-/// The part of a number.
+/// A component by its index.
 #[inline]
 fn part(bsdf: &BsdfMix, number: usize) -> Option<&AnyBsdf> {
     match bsdf {
@@ -84,25 +84,25 @@ fn part(bsdf: &BsdfMix, number: usize) -> Option<&AnyBsdf> {
 }
 
 impl<'a> BsdfLanes<'a> {
-    /// Forgets all.
+    /// Empties all lanes.
     pub fn clear(&mut self) {
         self.each.clear();
     }
 
-    /// Puts one into the next lane.
+    /// Fills the next lane.
     #[inline]
     pub fn push(&mut self, bsdf: Cow<'a, BsdfMix>) {
         self.each.push(bsdf);
     }
 
-    /// That of a lane.
+    /// The BSDF of a lane.
     #[inline]
     pub fn get(&self, lane: usize) -> &BsdfMix {
         &self.each[lane]
     }
 
-    /// Puts that of the last lane, and a direction in its shading frame that light goes to, into columns: only such
-    /// lanes may ask.
+    /// Copies the BSDF of the last lane, with an outgoing direction in its shading frame, into the arrays. Only
+    /// prepared lanes may be evaluated or sampled.
     #[inline]
     pub fn prepare(&mut self, wo: DVec3) {
         let lane = self.each.len() - 1;
@@ -129,8 +129,8 @@ impl<'a> BsdfLanes<'a> {
         }
     }
 
-    /// [`raywright_optics::Bsdf::evaluate`] for the directions that they were prepared for and others, in shading
-    /// frames, in the lanes that ask; 0 in the others.
+    /// [`raywright_optics::Bsdf::evaluate`] for the prepared directions and others, in shading frames. Lanes whose flag
+    /// is not set get 0.
     pub fn evaluate(
         &self,
         level: Level,
@@ -161,8 +161,8 @@ impl<'a> BsdfLanes<'a> {
         }
     }
 
-    /// [`raywright_optics::Bsdf::sample`] for the directions that they were prepared for, in shading frames, in the
-    /// lanes that ask; nothing in the others.
+    /// [`raywright_optics::Bsdf::sample`] for the prepared directions, in shading frames. Lanes whose flag is not set
+    /// get no sample.
     pub fn sample(
         &self,
         level: Level,
@@ -206,7 +206,7 @@ impl<'a> BsdfLanes<'a> {
         drawn.take(&mixed, &of_mixed);
     }
 
-    /// Of the lanes that ask, those of several parts, and the others.
+    /// Splits the lanes with a set flag into mixtures and single BSDFs.
     #[inline]
     fn are_mixed(&self, asks: &[bool; LANES]) -> [[bool; LANES]; 2] {
         [true, false].map(|mixed| from_fn(|lane| asks[lane] && self.is_mixed[lane] == mixed))
@@ -260,7 +260,7 @@ mod tests {
     };
     use std::array::from_fn;
 
-    /// What scatters in a lane: one of some kinds, or two or three of them, of which single directions may be one.
+    /// The BSDF of a lane: one of several kinds, or a mixture of two or three that may include a delta BSDF.
     fn bsdf(turn: u32, lane: usize) -> BsdfMix {
         let one = |kind: usize| -> BsdfMix {
             let colour = [Rgb::new(0.2, 0.4, 0.9), Rgb::ONE, Rgb::new(0.0, 1.0, 0.5)][(kind + lane) % 3];
@@ -285,7 +285,7 @@ mod tests {
         }
     }
 
-    /// Two directions: any, grazing, straight, in the plane, mirrored, opposite, or about the critical angle.
+    /// Two directions: arbitrary, grazing, normal, in the plane, mirrored, opposite, or near the critical angle.
     fn directions(turn: u32, sampler: &mut Sampler) -> [DVec3; 2] {
         let [wo, wi] = [1, 3].map(|dimension| uniform_sphere(sampler.two(dimension)));
         match turn % 8 {
@@ -305,7 +305,7 @@ mod tests {
             let mut sampler: [Sampler; LANES] = from_fn(|lane| Sampler::new(8, turn, lane as u32));
             let (mut all, mut to, mut from, mut u) =
                 (BsdfLanes::default(), VectorLanes::ZERO, VectorLanes::ZERO, [[0.0; LANES]; 2]);
-            // Fewer than lanes.
+            // Some lanes stay empty.
             for lane in 0..LANES - 3 {
                 let [wo, wi] = directions(turn + lane as u32, &mut sampler[lane]);
                 to.set(lane, wo);

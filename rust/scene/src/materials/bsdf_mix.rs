@@ -1,15 +1,15 @@
-//! All that scatters light at a point.
+//! Mixtures of BSDFs.
 
 use raywright_base::math::DVec3;
 use raywright_optics::{AnyBsdf, Bsdf, BsdfSample, Conductor, Rgb};
 
-/// All that scatters light at a point: one kind, or several that are weighed.
+/// The BSDF of a point: a single one, or a weighted mixture.
 #[derive(Clone, Debug)]
 #[expect(clippy::large_enum_variant, reason = "what most surfaces have must not be allocated at every hit")]
 pub enum BsdfMix {
-    /// What most surfaces have.
+    /// A single BSDF, the common case.
     One(AnyBsdf),
-    /// Several, of each its weight.
+    /// Several BSDFs with their weights.
     Several(Vec<(Rgb, AnyBsdf)>),
 }
 
@@ -21,7 +21,7 @@ impl<B: Into<AnyBsdf>> From<B> for BsdfMix {
 }
 
 impl BsdfMix {
-    /// Two of them together, each with a weight.
+    /// A weighted mixture of two.
     pub fn mixed(a: (Rgb, Self), b: (Rgb, Self)) -> Self {
         let mut all = Vec::new();
         for (weight, bsdf) in [a, b] {
@@ -33,7 +33,7 @@ impl BsdfMix {
                 Self::Several(parts) => all.extend(parts.into_iter().map(|(w, bsdf)| (w * weight, bsdf))),
             }
         }
-        // What scatters nothing draws nothing, whatever its density says: it must not be chosen.
+        // A component that scatters nothing must not be selected, because its sampled density would be meaningless.
         all.retain(|(_, bsdf)| !bsdf.albedo().is_black());
         match all[..] {
             [(Rgb::ONE, bsdf)] => Self::One(bsdf),
@@ -41,7 +41,7 @@ impl BsdfMix {
         }
     }
 
-    /// About the share of light from everywhere that is scattered into other than single directions.
+    /// Approximate albedo of the non-delta components.
     pub fn matt_albedo(&self) -> Rgb {
         let of_one = |bsdf: &AnyBsdf| if bsdf.is_delta() { Rgb::ZERO } else { bsdf.albedo() };
         match self {
@@ -50,7 +50,7 @@ impl BsdfMix {
         }
     }
 
-    /// Calls with each rough metal, and its weight.
+    /// Calls `each` with every rough conductor and its weight.
     pub fn dull_lobes(&self, mut each: impl FnMut(Rgb, &Conductor)) {
         let mut of_one = |weight: Rgb, bsdf: &AnyBsdf| match bsdf {
             AnyBsdf::Conductor(metal) if !metal.is_delta() => each(weight, metal),
@@ -62,8 +62,7 @@ impl BsdfMix {
         }
     }
 
-    /// Every single direction that light is scattered into, each with all of its weight, not over the chance to be
-    /// drawn.
+    /// Calls `each` with every delta direction. Weights are not divided by the sampling probability.
     pub fn delta_lobes(&self, wo: DVec3, mut each: impl FnMut(BsdfSample)) {
         match self {
             Self::One(bsdf) => delta_lobes(bsdf, Rgb::ONE, wo, &mut each),
@@ -72,7 +71,7 @@ impl BsdfMix {
     }
 }
 
-/// Those of one kind, which have the least choices: one after the other.
+/// Enumerates the delta directions of one BSDF in the order of their choice numbers.
 fn delta_lobes(bsdf: &AnyBsdf, weight: Rgb, wo: DVec3, each: &mut dyn FnMut(BsdfSample)) {
     let mut choice = 0.0;
     while choice < 1.0
@@ -125,7 +124,7 @@ impl Bsdf for BsdfMix {
         }
     }
 
-    /// Of several, as much as their shares ask for.
+    /// For a mixture, 1 minus the weighted sum of the components' differences from 1.
     #[inline]
     fn again(&self) -> Rgb {
         match self {
@@ -166,38 +165,38 @@ impl Bsdf for BsdfMix {
     }
 }
 
-/// How often a part of this weight is chosen, over that of the others.
+/// Sampling weight of a component.
 fn share(weight: Rgb) -> f64 {
     weight.max()
 }
 
-/// Parts, of each its weight and the probability that it is drawn from: none of those without any.
+/// Components with their weights and sampling probabilities; components of probability 0 are skipped.
 pub(super) fn weighed(parts: &[(Rgb, AnyBsdf)]) -> impl Iterator<Item = (Rgb, f64, &AnyBsdf)> {
     let total: f64 = parts.iter().map(|(weight, _)| share(*weight)).sum();
     let all = if total > 0.0 { parts } else { &[] };
     all.iter().map(move |(weight, bsdf)| (*weight, share(*weight) / total, bsdf))
 }
 
-/// What is scattered, and its density, with that of one more part, of a weight and a probability.
+/// Adds a component with a weight and a probability to a value and a density.
 #[inline(always)]
 pub(super) fn with_part(sum: (Rgb, f64), (weight, probability): (Rgb, f64), part: (Rgb, f64)) -> (Rgb, f64) {
     (sum.0 + weight * part.0, sum.1 + probability * part.1)
 }
 
-/// A part that is drawn from.
+/// A sampled component.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Chosen {
-    /// Its number.
+    /// Its index.
     pub part: usize,
-    /// What is left of the choice, which is as good as a new one.
+    /// The remaining random number, uniform again.
     pub rest: f64,
-    /// The shares of those before it, its own, and that of all.
+    /// Sampling weights: the sum before it, its own, and the total.
     shares: [f64; 3],
     is_last: bool,
 }
 
 impl Chosen {
-    /// One of some parts; none where nothing has a weight.
+    /// Selects a component; `None` if all weights are 0.
     pub fn new(parts: &[(Rgb, AnyBsdf)], choice: f64) -> Option<Self> {
         let total: f64 = parts.iter().map(|(weight, _)| share(*weight)).sum();
         let last = parts.iter().rposition(|(weight, _)| share(*weight) > 0.0)?;
@@ -216,13 +215,13 @@ impl Chosen {
         Some(Self { part, rest, shares: [before, mine, total], is_last: part == last })
     }
 
-    /// The probability that it is drawn from.
+    /// Probability of the component.
     #[inline]
     pub fn probability(&self) -> f64 {
         self.shares[1] / self.shares[2]
     }
 
-    /// What a choice within it is among all.
+    /// Maps a choice number within the component to one of the mixture.
     fn among_all(&self, choice: f64) -> f64 {
         let [before, mine, total] = self.shares;
         if self.is_last && choice == 1.0 { 1.0 } else { (before + choice * mine) / total }

@@ -1,4 +1,4 @@
-//! Bumps.
+//! Bump mapping.
 
 use super::checks::{number, within};
 use super::{BsdfMix, Interior, Material};
@@ -9,22 +9,22 @@ use raywright_base::math::DVec3;
 use raywright_optics::Rgb;
 use std::sync::Arc;
 
-/// A material on a surface that looks as if it were raised, by a height at each point (Blinn, "Simulation of Wrinkled
-/// Surfaces", 1978). What is hit is the surface as it was: only its normals change.
+/// Bump mapping: perturbs the shading normal by a height field (Blinn, "Simulation of Wrinkled Surfaces", 1978). The
+/// geometry that rays hit is unchanged.
 #[derive(Clone, Debug)]
 pub struct BumpMap {
-    /// The material.
+    /// The base material.
     pub material: Arc<dyn Material>,
-    /// The height along the normal.
+    /// Height along the normal.
     pub height: Value<f64>,
-    /// What heights are multiplied by, to be lengths of the scene's unit; negative where they are depths.
+    /// Factor from heights to the scene's unit; negative for depths.
     pub scale: f64,
 }
 
-/// The smallest cosine between a normal of its own and the geometric one.
+/// Minimum cosine between a perturbed normal and the geometric one.
 const GRAZING: f64 = 1e-3;
 
-/// The normal, bent as far as it must be to lie on the side of the surface, unless it is taken as it is given.
+/// Bends a normal to the side of the geometric normal, unless normals are used as given.
 pub(super) fn on_its_side(normal: DVec3, at: &ShadingPoint) -> DVec3 {
     let geometric = at.point.normal;
     let cosine = normal.dot(geometric);
@@ -32,23 +32,24 @@ pub(super) fn on_its_side(normal: DVec3, at: &ShadingPoint) -> DVec3 {
 }
 
 impl BumpMap {
-    /// How far apart heights are compared, in texture coordinates, where the width of rays is not known: the mean slope
-    /// over this is off by its square.
+    /// Finite-difference step in texture coordinates if the footprint is unknown; the error of the slope is quadratic
+    /// in it.
     const STEP: f64 = 5e-4;
 
-    /// How far apart they are at least, so that enough of their digits differ.
+    /// Minimum step, so that heights differ in enough digits.
     const LEAST: f64 = 1e-6;
 
     fn height(&self, point: &TexturePoint) -> f64 {
         self.scale * self.height.at(point)
     }
 
-    /// How far to go for another height, in texture coordinates.
+    /// Finite-difference step in texture coordinates.
     fn step(&self, at: &ShadingPoint) -> f64 {
         if at.texture.width > 0.0 {
             return (0.5 * at.texture.width).max(Self::LEAST);
         }
-        // Where only the position counts, coordinates are those of whatever triangle it is.
+        // A height field that depends only on position needs a step in world space, because texture coordinates depend
+        // on the triangle.
         let needs = self.height.needs();
         let longest = at.object_dp[0].length().max(at.object_dp[1].length());
         if needs.uv || longest == 0.0 { Self::STEP } else { Self::STEP / longest }
@@ -97,7 +98,7 @@ impl Material for BumpMap {
     fn normal(&self, at: &ShadingPoint) -> Option<DVec3> {
         let own = self.material.normal(at);
         let normal = own.unwrap_or(at.point.shading_normal);
-        // Where coordinates tell no points apart there is no slope.
+        // Degenerate texture coordinates define no slope.
         if at.dp[0].cross(at.dp[1]) == DVec3::ZERO {
             return own;
         }
@@ -114,8 +115,8 @@ impl Material for BumpMap {
             slopes[k] = (after - before) / (2.0 * step);
             mean += 0.25 * (before + after);
         }
-        // The tangents of the raised surface (Blinn, 1978; Pharr, Jakob and Humphreys, 2023, 10.5.3).
-        // With normals as given, what a height does as such is left out: only slopes count.
+        // Tangents of the displaced surface (Blinn, 1978; Pharr, Jakob and Humphreys, 2023, 10.5.3). With normals as
+        // given, the absolute height is ignored and only slopes count.
         let mean = if at.as_given { 0.0 } else { mean };
         let [du, dv] = [0, 1].map(|k| at.dp[k] + normal * slopes[k] + at.dn[k] * mean);
         let Some(raised) = du.cross(dv).try_normalize() else { return own };

@@ -1,4 +1,4 @@
-//! What parameters of materials may be, in words.
+//! Range checks of material parameters.
 
 use crate::textures::{Quantity, Value};
 
@@ -12,10 +12,10 @@ fn expected(least: f64, most: f64) -> String {
     }
 }
 
-/// Whether all values lie between two numbers.
+/// Checks that all values are within a range.
 ///
 /// # Errors
-/// What they are, and what was expected.
+/// The range of the values, and the expected range.
 pub(super) fn within<T: Quantity>(name: &str, value: &Value<T>, least: f64, most: f64) -> Result<(), String> {
     if value.is_within(least, most) {
         return Ok(());
@@ -24,7 +24,7 @@ pub(super) fn within<T: Quantity>(name: &str, value: &Value<T>, least: f64, most
     Err(format!("{name} must {}, got {low} to {high}", expected(least, most)))
 }
 
-/// Whether a number lies between two.
+/// Checks that a number is within a range.
 ///
 /// # Errors
 /// As [`within`].

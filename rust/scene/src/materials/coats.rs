@@ -1,23 +1,22 @@
-//! What goes through the rough coats of plastics.
+//! Precomputed transmittance of rough plastic coats.
 
 use raywright_optics::{Facets, Through};
 use std::sync::{Arc, PoisonError, RwLock};
 
-/// What goes through the coat of a plastic whose facets scatter once, made ready for each index of refraction that is
-/// asked of it.
+/// Transmittance of a plastic's single-scattering coat, precomputed for each relative index of refraction that occurs.
 #[derive(Debug, Default)]
 pub struct Coats {
     ready: RwLock<Vec<(f64, Arc<[Through]>)>>,
 }
 
 impl Coats {
-    /// What goes through facets of roughness `alpha`, one within `range`, which is always the same, and the index below
-    /// over that above.
+    /// Transmittance at a roughness `alpha` within `range`, which must be the same in all calls, and a relative index
+    /// of refraction, inside over outside.
     pub fn through<F: Facets>(&self, range: [f64; 2], alpha: f64, eta: f64) -> Through {
         let all = self.of::<F>(range, eta);
         let [low, high] = range.map(f64::sqrt);
         let at = (alpha.sqrt() - low) / (high - low) * (all.len() - 1) as f64;
-        // Also of a range that is none.
+        // Also valid for an empty range.
         let below = (at.max(0.0) as usize).min(all.len().saturating_sub(2));
         match all.get(below + 1) {
             Some(above) => Through::between(&all[below], above, (at - below as f64).clamp(0.0, 1.0)),
@@ -25,11 +24,11 @@ impl Coats {
         }
     }
 
-    /// That of roughnesses spread evenly, by their roots, over a range.
+    /// Transmittances at roughnesses with equally spaced square roots over a range.
     fn of<F: Facets>(&self, range: [f64; 2], eta: f64) -> Arc<[Through]> {
         let find =
             |ready: &[(f64, Arc<[Through]>)]| ready.iter().find(|(index, _)| *index == eta).map(|(_, all)| all.clone());
-        // What panicked left nothing half done.
+        // A poisoned lock is safe: a panic cannot leave a partial entry.
         if let Some(all) = find(&self.ready.read().unwrap_or_else(PoisonError::into_inner)) {
             return all;
         }
@@ -45,5 +44,5 @@ impl Coats {
     }
 }
 
-/// How many parts the whole range of roughness is cut into.
+/// Number of steps over the whole range of roughness.
 const STEPS: f64 = 24.0;

@@ -1,4 +1,4 @@
-//! Metal.
+//! The conductor material.
 
 use super::checks::within;
 use super::{BsdfMix, FacetKind, Material, Roughness};
@@ -9,31 +9,31 @@ use raywright_optics::conductors::{Metal, Reflectance};
 use raywright_optics::fresnel::ConductorIndex;
 use raywright_optics::{AnyBsdf, Beckmann, Conductor, Facets, Ggx, Once};
 
-/// A metal, smooth or rough, which may be brushed: rougher along one direction than across. Both sides reflect.
+/// A metal, smooth or rough, possibly anisotropic (brushed). Both sides reflect.
 #[derive(Clone, Debug)]
 pub struct ConductorMaterial {
-    /// What it is of.
+    /// Complex index of refraction.
     pub index: Index,
-    /// How rough it is.
+    /// Roughness.
     pub roughness: Roughness,
 }
 
-/// An index of refraction.
+/// A complex index of refraction.
 #[derive(Clone, Debug)]
 pub enum Index {
-    /// In red, green and blue.
+    /// Constants for red, green and blue.
     Constants {
-        /// The real part, above 0.
+        /// Real part, above 0.
         eta: Value,
-        /// The imaginary part, not negative.
+        /// Imaginary part, not negative.
         k: Value,
     },
-    /// As it was measured, by wavelength; and whether paths carry wavelengths.
+    /// A measured spectrum; true if paths are spectral.
     Measured(&'static Metal, bool),
 }
 
 impl ConductorMaterial {
-    /// How it scatters at a point, in a medium of index `outside`.
+    /// The BSDF at a point, in a medium of index `outside`.
     #[inline]
     pub(super) fn bare(&self, point: &TexturePoint, outside: f64) -> AnyBsdf {
         let fresnel = match &self.index {
@@ -51,7 +51,7 @@ impl ConductorMaterial {
         self.reflecting(fresnel, point)
     }
 
-    /// The same of what its facets reflect.
+    /// The BSDF at a point for given facet reflectance.
     #[inline]
     pub(super) fn reflecting(&self, fresnel: Reflectance, point: &TexturePoint) -> AnyBsdf {
         let alpha = self.roughness.alpha(point);

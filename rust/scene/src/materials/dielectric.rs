@@ -1,4 +1,4 @@
-//! Glass, water, diamond.
+//! The dielectric material.
 
 use super::checks::number;
 use super::{BsdfMix, FacetKind, Interior, Material, Roughness};
@@ -8,19 +8,19 @@ use crate::textures::{Needs, TexturePoint};
 use raywright_optics::{AnyBsdf, Beckmann, Dielectric, Facets, Ggx, Once};
 use std::sync::Arc;
 
-/// The surface of a clear solid or liquid, smooth or rough, which reflects and refracts. Its normals point out.
+/// The interface of a clear solid or liquid, smooth or rough, that reflects and refracts. Its normals point outwards.
 #[derive(Clone, Debug)]
 pub struct DielectricMaterial {
-    /// What is within.
+    /// The interior.
     pub interior: Interior,
-    /// How rough the surface is, alike in all directions.
+    /// Isotropic roughness.
     pub roughness: Roughness,
-    /// What dims and scatters light within; none where it is clear.
+    /// Participating medium inside; `None` if it is clear.
     pub medium: Option<Arc<dyn Medium>>,
 }
 
 impl DielectricMaterial {
-    /// How it scatters at a point, in a medium of index `outside`.
+    /// The BSDF at a point, in a medium of index `outside`.
     #[inline]
     pub(super) fn bare(&self, point: &TexturePoint, outside: f64) -> AnyBsdf {
         let ([alpha, _], eta) = (self.roughness.alpha(point), self.interior.ior_at(point.waves.as_ref()) / outside);

@@ -1,4 +1,4 @@
-//! A matt surface.
+//! The diffuse material.
 
 use super::checks::within;
 use super::{BsdfMix, Material};
@@ -6,15 +6,15 @@ use crate::ShadingPoint;
 use crate::textures::{Needs, Value};
 use raywright_optics::{AnyBsdf, Diffuse, Rgb};
 
-/// Scatters by Lambert's law, on both sides.
+/// A Lambertian surface on both sides.
 #[derive(Clone, Debug)]
 pub struct DiffuseMaterial {
-    /// The share of the light that is reflected, 0 to 1 in each channel.
+    /// Reflectance, 0 to 1 in each channel.
     pub reflectance: Value,
 }
 
 impl Default for DiffuseMaterial {
-    /// Half grey.
+    /// 50 % grey.
     fn default() -> Self {
         Self { reflectance: Rgb::splat(0.5).into() }
     }

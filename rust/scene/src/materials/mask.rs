@@ -1,4 +1,4 @@
-//! Holes.
+//! Alpha masks.
 
 use super::checks::within;
 use super::{BsdfMix, Interior, Material};
@@ -9,12 +9,13 @@ use raywright_base::math::DVec3;
 use raywright_optics::Rgb;
 use std::sync::Arc;
 
-/// A material with holes: leaves, lace, fences. Where it is partly there, rays go through it in proportion.
+/// A material with holes, such as leaves, lace or fences. Where the opacity is fractional, rays pass with the remaining
+/// probability.
 #[derive(Clone, Debug)]
 pub struct Mask {
-    /// What is between the holes.
+    /// The material of the opaque part.
     pub material: Arc<dyn Material>,
-    /// How much of it is there: 0 in a hole, 1 beside it.
+    /// Opacity: 0 in a hole, 1 elsewhere.
     pub opacity: Value<f64>,
 }
 
@@ -41,7 +42,7 @@ impl Material for Mask {
     }
 
     fn mean_opacity(&self) -> f64 {
-        // The mean of a texture is rough: what is there somewhere must not vanish.
+        // A texture's mean is approximate; the lower bound keeps a partly opaque mask from vanishing.
         let [_, most] = self.opacity.range();
         self.opacity.mean().clamp(1e-3 * most.clamp(0.0, 1.0), 1.0) * self.material.mean_opacity()
     }

@@ -1,4 +1,4 @@
-//! The model of glTF.
+//! The metallic-roughness material of glTF.
 
 use super::checks::within;
 use super::{BsdfMix, Material};
@@ -6,14 +6,14 @@ use crate::ShadingPoint;
 use crate::textures::{Needs, TexturePoint, Value};
 use raywright_optics::{AnyBsdf, MetallicRough};
 
-/// The metallic-roughness model of glTF 2.0: from plastic to metal, in three numbers. Both sides reflect.
+/// The metallic-roughness model of glTF 2.0: from plastic to metal, in three parameters. Both sides reflect.
 #[derive(Clone, Debug)]
 pub struct MetallicRoughMaterial {
-    /// The colour, 0 to 1 in each channel: of what is matt, or of what the metal reflects.
+    /// Base color, 0 to 1 in each channel: diffuse albedo, or reflectance of the metal.
     pub base_colour: Value,
-    /// From 0, none, to 1, metal.
+    /// From 0, dielectric, to 1, metal.
     pub metallic: Value<f64>,
-    /// From 0 to 1; its square is the facets' α.
+    /// From 0 to 1; the facets' α is its square.
     pub roughness: Value<f64>,
 }
 

@@ -6,10 +6,10 @@ use crate::ShadingPoint;
 use crate::textures::{Needs, TexturePoint, Value};
 use raywright_optics::{AnyBsdf, Mirror};
 
-/// Reflects into one direction, on both sides, the same share from every angle.
+/// Reflects specularly on both sides, with the same reflectance at all angles.
 #[derive(Clone, Debug)]
 pub struct MirrorMaterial {
-    /// That share, 0 to 1 in each channel.
+    /// Reflectance, 0 to 1 in each channel.
     pub reflectance: Value,
 }
 

@@ -1,4 +1,4 @@
-//! Two materials at once.
+//! Mixtures of two materials.
 
 use super::checks::within;
 use super::{BsdfMix, Interior, Material};
@@ -9,22 +9,21 @@ use raywright_base::math::DVec3;
 use raywright_optics::Rgb;
 use std::sync::Arc;
 
-/// A share of one material, and the rest of another, finely mixed.
+/// A linear mixture of two materials.
 ///
-/// What fills it is what fills the first of them that is filled; where they have normals of their own, these are mixed
-/// too.
+/// Its interior is that of the first material that has one. If the materials perturb normals, these are mixed too.
 #[derive(Clone, Debug)]
 pub struct MixMaterial {
-    /// The one.
+    /// The first material.
     pub a: Arc<dyn Material>,
-    /// The other.
+    /// The second material.
     pub b: Arc<dyn Material>,
     /// The share of `b`, 0 to 1.
     pub amount: Value<f64>,
 }
 
 impl MixMaterial {
-    /// How much of either there is: of all, or of what is met where not all is.
+    /// Shares of both materials, among the opaque part if not all is opaque.
     fn shares(&self, point: &TexturePoint) -> [f64; 2] {
         let amount = self.amount.at(point).clamp(0.0, 1.0);
         let shares = [1.0 - amount, amount];
@@ -39,7 +38,7 @@ impl MixMaterial {
 impl Material for MixMaterial {
     fn bsdf(&self, at: &ShadingPoint) -> BsdfMix {
         let [a, b] = self.shares(&at.texture);
-        // Of what is not there nothing need be known.
+        // A material with share 0 is not evaluated.
         if b == 0.0 {
             return self.a.bsdf(at);
         }
@@ -89,7 +88,7 @@ impl Material for MixMaterial {
         }
         let [a, b] = normals.map(|normal| normal.unwrap_or(at.point.shading_normal));
         let [of_a, of_b] = self.shares(&at.texture);
-        // Two on one side of a plane are never opposite.
+        // Two normals on the same side of a plane are never opposite.
         (a * of_a + b * of_b).try_normalize()
     }
 

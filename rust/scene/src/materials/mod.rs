@@ -1,4 +1,4 @@
-//! What surfaces are made of: one interface over all materials.
+//! Materials: one interface, and one file each.
 
 mod blinn_phong;
 mod boundary;
@@ -62,129 +62,127 @@ use raywright_optics::{AnyBsdf, Dispersive, Rgb};
 use std::fmt::Debug;
 use std::sync::Arc;
 
-/// What a surface is made of: says how light is scattered at each of its points.
+/// The material of a surface; evaluates to a BSDF at each point.
 pub trait Material: Debug + Send + Sync {
-    /// How it scatters at a point.
+    /// The BSDF at a point.
     fn bsdf(&self, at: &ShadingPoint) -> BsdfMix;
 
-    /// What it must know of a point.
+    /// The lookup data that evaluation needs.
     fn needs(&self) -> Needs;
 
-    /// How it scatters where nothing else is around, of index of refraction 1, if that is the same at every point and
-    /// on both sides, and it has neither a normal nor a tangent of its own.
+    /// The BSDF in vacuum, if it is the same at every point and on both sides, and the material changes neither normal
+    /// nor tangent.
     fn constant(&self) -> Option<AnyBsdf> {
         None
     }
 
-    /// The same where the sides may differ: on the front and on the back.
+    /// The constant BSDFs of front and back, which may differ.
     fn constant_sides(&self) -> Option<[AnyBsdf; 2]> {
         self.constant().map(|bsdf| [bsdf; 2])
     }
 
-    /// The kinds of functions, as [`AnyBsdf::kind`] has them, by which it scatters at every point, on the front and on
-    /// the back, if they are known beforehand; at few points it may be by others, unless it is [`AnyBsdf::DIFFUSE`].
+    /// The BSDF kinds ([`AnyBsdf::kind`]) of front and back, if they are known in advance. A few points may differ,
+    /// unless the kind is [`AnyBsdf::DIFFUSE`].
     fn kinds(&self) -> Option<[usize; 2]> {
         Some(self.constant_sides()?.map(|bsdf| bsdf.kind()))
     }
 
-    /// What is wrong with it, in a few words; `Ok` if nothing is.
+    /// Returns a short reason if the material is invalid.
     fn validate(&self) -> Result<(), String>;
 
-    /// The share of rays that meet it, 0 to 1: the others go on as if nothing were there.
+    /// Probability that a ray hits the surface, 0 to 1; other rays pass through.
     fn opacity(&self, _at: &TexturePoint) -> f64 {
         1.0
     }
 
-    /// The mean of its opacity, about; above 0 unless no ray meets it anywhere.
+    /// Approximate mean opacity; above 0 unless all rays pass everywhere.
     fn mean_opacity(&self) -> f64 {
         1.0
     }
 
-    /// Whether all rays meet it everywhere.
+    /// Returns whether the opacity is 1 everywhere.
     fn is_opaque(&self) -> bool {
         true
     }
 
-    /// Whether light that meets it may go on on its other side.
+    /// Returns whether light may be transmitted.
     fn transmits(&self) -> bool {
         false
     }
 
-    /// A shading normal of its own, unit and on the side of the point's, as bump and normal maps have it.
+    /// A perturbed shading normal (bump or normal map): a unit vector on the side of the point's normal.
     fn normal(&self, _at: &ShadingPoint) -> Option<DVec3> {
         None
     }
 
-    /// Where the x axis of its shading frame is to point, if that makes a difference: about along a vector of any
-    /// length.
+    /// Approximate x axis of the shading frame, of any length, if the BSDF depends on it.
     fn tangent(&self, _at: &ShadingPoint) -> Option<DVec3> {
         None
     }
 
-    /// What fills what it encloses; none for what encloses nothing, as a sheet.
+    /// Interior of a closed surface; `None` for a sheet.
     fn interior(&self) -> Option<Interior> {
         None
     }
 
-    /// Whether it scatters otherwise in a medium of another index of refraction, though it encloses nothing.
+    /// Returns whether a sheet's BSDF depends on the surrounding index of refraction.
     fn minds_outside(&self) -> bool {
         false
     }
 
-    /// What fills it that dims and scatters light; none of what is clear.
+    /// Participating medium inside; `None` if it is clear.
     fn medium(&self) -> Option<&Arc<dyn Medium>> {
         None
     }
 
-    /// Whether light passes it straight and whole where the same index of refraction is on both sides.
+    /// Returns whether light passes unchanged if the index of refraction is the same on both sides.
     fn is_clear(&self) -> bool {
         false
     }
 
-    /// The priority of what it encloses where that has the index of refraction of what is around it.
+    /// Priority of the interior, for a surface whose interior has the index of refraction of its surroundings.
     fn boundary(&self) -> Option<i32> {
         None
     }
 
-    /// The share of light that goes straight on into what it encloses and out of it, as through a pane, where that has
-    /// the index of refraction of what is around it. Whoever follows light among media counts that as no scattering, so
-    /// that what the surface scatters is the rest, over its share. For light at such a cosine to the normal.
+    /// Fraction of light that passes straight through the surface, as through a pane, when both sides have the same
+    /// index of refraction. Integrators with media do not count that as scattering; the surface scatters the rest,
+    /// divided by its share. `cosine` is that to the normal.
     fn straight(&self, _cosine: f64, _outside: f64) -> f64 {
         0.0
     }
 
-    /// Whether it is no surface, and what is within begins there.
+    /// Returns whether the surface only bounds a medium.
     fn is_passed(&self) -> bool {
         false
     }
 
-    /// The share of an even light from nowhere that it reflects: the ambient coefficient of the classic models of light
-    /// (Phong, "Illumination for Computer Generated Pictures", 1975). Where these have no word for it, the share of
-    /// light from everywhere that it scatters into other than single directions.
+    /// Reflectance of ambient light: the ambient coefficient of classic shading models (Phong, "Illumination for
+    /// Computer Generated Pictures", 1975). Other materials use the albedo of their non-delta components.
     fn ambient(&self, at: &ShadingPoint) -> Rgb {
         self.bsdf(at).matt_albedo()
     }
 }
 
-/// What fills a closed surface.
+/// The interior of a closed surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interior {
-    /// Its index of refraction, that of yellow light where it goes with wavelength.
+    /// Index of refraction; for yellow light if it depends on the wavelength.
     pub ior: f64,
-    /// How it goes with wavelength.
+    /// Dispersion.
     pub dispersion: Dispersive,
-    /// Where several overlap, that of the greatest priority is there (Schmidt and Budge, "Simple Nested Dielectrics in
-    /// Ray Traced Images", 2002).
+    /// If several interiors overlap, the one with the greatest priority applies (Schmidt and Budge, "Simple Nested
+    /// Dielectrics in Ray Traced Images", 2002).
     pub priority: i32,
 }
 
 impl Interior {
-    /// What has an index of refraction that is the same at all wavelengths.
+    /// An interior without dispersion.
     pub const fn new(ior: f64, priority: i32) -> Self {
         Self { ior, dispersion: Dispersive::NONE, priority }
     }
 
-    /// The index of refraction for the hero of a path's wavelengths.
+    /// Index of refraction at a path's hero wavelength.
     #[inline]
     pub fn ior_at(&self, waves: Option<&Waves>) -> f64 {
         waves.and_then(|waves| self.dispersion.at(waves.hero())).unwrap_or(self.ior)

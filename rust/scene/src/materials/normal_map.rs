@@ -1,4 +1,4 @@
-//! Normals from a picture.
+//! Normal mapping.
 
 use super::bump::on_its_side;
 use super::checks::{number, within};
@@ -10,15 +10,14 @@ use raywright_base::math::DVec3;
 use raywright_optics::Rgb;
 use std::sync::Arc;
 
-/// A material whose normals a texture turns: red, green and blue from 0 to 1 are −1 to 1 along u, along v and along the
-/// normal, as in glTF.
+/// Normal mapping: red, green and blue from 0 to 1 are −1 to 1 along u, v and the normal, as in glTF.
 #[derive(Clone, Debug)]
 pub struct NormalMap {
-    /// The material.
+    /// The base material.
     pub material: Arc<dyn Material>,
-    /// The normals, not sRGB.
+    /// The normals, in linear colour.
     pub normals: Value,
-    /// How much they turn: what lies along u and v is multiplied by it.
+    /// Factor on the components along u and v.
     pub scale: f64,
 }
 
@@ -69,7 +68,7 @@ impl Material for NormalMap {
         if x == 0.0 && y == 0.0 {
             return own;
         }
-        // Along u as far as the normal lets it, and at right angles to both on the side of v.
+        // The tangent is u without its normal component; the bitangent is perpendicular to both, on the side of v.
         let Some(u) = (at.dp[0] - normal * normal.dot(at.dp[0])).try_normalize() else { return own };
         let v = normal.cross(u);
         let v = if v.dot(at.dp[1]) < 0.0 { -v } else { v };

@@ -1,4 +1,4 @@
-//! A rough matt surface.
+//! The Oren-Nayar material.
 
 use super::checks::within;
 use super::{BsdfMix, Material};
@@ -6,12 +6,13 @@ use crate::ShadingPoint;
 use crate::textures::{Needs, TexturePoint, Value};
 use raywright_optics::{AnyBsdf, OrenNayar};
 
-/// Scatters as matt facets do, brighter towards the light: clay, plaster, the moon. Both sides do.
+/// A rough diffuse surface of Lambertian facets, brighter towards the light: clay, plaster, the moon. Both sides
+/// scatter.
 #[derive(Clone, Debug)]
 pub struct OrenNayarMaterial {
-    /// The share of the light that a facet reflects, 0 to 1 in each channel.
+    /// Reflectance of a facet, 0 to 1 in each channel.
     pub reflectance: Value,
-    /// From 0, Lambert's law, to 1. It is no facets' α.
+    /// From 0, Lambertian, to 1. It is not a microfacet α.
     pub roughness: Value<f64>,
 }
 

@@ -1,4 +1,4 @@
-//! Phong's model.
+//! The Phong material.
 
 use super::checks::within;
 use super::{BsdfMix, Material};
@@ -6,30 +6,30 @@ use crate::ShadingPoint;
 use crate::textures::{Needs, TexturePoint, Value};
 use raywright_optics::{AnyBsdf, Phong, Rgb};
 
-/// A matt surface with highlights about the mirror direction, on both sides.
+/// A diffuse surface with highlights around the mirror direction, on both sides.
 #[derive(Clone, Debug)]
 pub struct PhongMaterial {
-    /// The share of light that is reflected diffusely, 0 to 1 in each channel.
+    /// Diffuse reflectance, 0 to 1 in each channel.
     pub diffuse: Value,
-    /// The share that makes highlights, 0 to 1; with the other at most 1.
+    /// Specular reflectance, 0 to 1; the sum with the diffuse one is at most 1.
     pub specular: Value,
-    /// The power of the cosine, not negative.
+    /// Exponent of the cosine, not negative.
     pub exponent: Value<f64>,
-    /// The share of ambient light that is reflected, for integrators that know one.
+    /// Ambient reflectance, for integrators with ambient light.
     pub ambient: Value,
 }
 
-/// Whether two shares may stand beside each other. Where both are the same everywhere they add up to no more than 1.
+/// Checks the ranges of the parameters, and that constant reflectances add up to at most 1.
 ///
 /// # Errors
-/// What is wrong with them.
+/// A message about the first invalid parameter.
 pub(super) fn shares(diffuse: &Value, specular: &Value, exponent: &Value<f64>, ambient: &Value) -> Result<(), String> {
     within("diffuse", diffuse, 0.0, 1.0)?;
     within("specular", specular, 0.0, 1.0)?;
     within("exponent", exponent, 0.0, f64::MAX)?;
     within("ambient", ambient, 0.0, f64::MAX)?;
     match (diffuse, specular) {
-        // Sums of shares such as 0.9 and 0.1 may be rounded up.
+        // A sum of reflectances such as 0.9 and 0.1 may be rounded up.
         (Value::Constant(d), Value::Constant(s)) if (*d + *s).max() > 1.0 + 1e-12 => {
             Err(format!("diffuse and specular must add up to at most 1, got {}", *d + *s))
         }
@@ -37,8 +37,7 @@ pub(super) fn shares(diffuse: &Value, specular: &Value, exponent: &Value<f64>, a
     }
 }
 
-/// The classic shares at a point. Where textures say more than 1 together, highlights leave the rest to what is
-/// diffuse.
+/// Diffuse and specular reflectance at a point. If textures add up to more than 1, the diffuse one is reduced.
 pub(super) fn parts(point: &TexturePoint, diffuse: &Value, specular: &Value) -> (Rgb, Rgb) {
     let specular = specular.at(point);
     (diffuse.at(point).at_most(Rgb::ONE - specular), specular)

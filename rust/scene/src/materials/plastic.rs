@@ -1,4 +1,4 @@
-//! Plastic, glaze, varnish.
+//! The plastic material: a diffuse base under a clear coat.
 
 use super::checks::{number, within};
 use super::{BsdfMix, Coats, FacetKind, Material, Roughness};
@@ -7,16 +7,16 @@ use crate::textures::{Needs, TexturePoint, Value};
 use raywright_optics::{AnyBsdf, Beckmann, Coated, CoatedOnce, Facets, Ggx, Once, Rgb};
 use std::sync::Arc;
 
-/// Something matt under a clear coat, smooth or rough. Both sides are alike.
+/// A diffuse base under a clear coat, smooth or rough: plastic, glaze, varnish. Both sides are alike.
 #[derive(Clone, Debug)]
 pub struct PlasticMaterial {
-    /// The share of the light that reaches what is under the coat and leaves it again, 0 to 1 in each channel.
+    /// Albedo of the base, 0 to 1 in each channel.
     pub reflectance: Value,
-    /// The coat's index of refraction, at least 1; where what is around has a greater one, there is no coat to be seen.
+    /// The coat's index of refraction, at least 1. If that of the surroundings is greater, the coat is invisible.
     pub ior: f64,
-    /// How rough the coat is, alike in all directions.
+    /// Isotropic roughness of the coat.
     pub roughness: Roughness,
-    /// What goes through it, where its facets scatter once: to be begun with none.
+    /// Precomputed transmittance of a single-scattering coat; initially empty.
     pub coats: Arc<Coats>,
 }
 
@@ -33,7 +33,7 @@ impl PlasticMaterial {
         }
     }
 
-    /// Of a coat whose facets scatter once; of one without facets, if it is smooth.
+    /// The BSDF with a single-scattering coat, or a smooth coat without facets.
     fn once<F: Facets>(&self, reflectance: Rgb, eta: f64, alpha: f64) -> AnyBsdf
     where
         AnyBsdf: From<CoatedOnce<F>>,

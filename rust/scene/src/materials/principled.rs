@@ -1,4 +1,4 @@
-//! The principled models.
+//! The principled materials.
 
 use super::checks::{number, within};
 use super::{BsdfMix, Interior, Material};
@@ -7,26 +7,26 @@ use crate::textures::{Needs, TexturePoint, Value};
 use raywright_base::math::DVec3;
 use raywright_optics::{AnyBsdf, LayeredPrincipled, LayeredPrincipledThin, Look, Principled, PrincipledThin};
 
-/// What the principled models have in common, each 0 to 1: see [`Look`].
+/// Parameters that both principled materials share, each 0 to 1; see [`Look`].
 #[derive(Clone, Debug)]
 pub struct LookTextures {
-    /// The colour.
+    /// Base color.
     pub base_color: Value,
-    /// Its square is the facets' α.
+    /// Roughness; the facets' α is its square.
     pub roughness: Value<f64>,
-    /// How much longer highlights are along the one direction than along the other.
+    /// Anisotropy of highlights.
     pub anisotropic: Value<f64>,
-    /// The share that goes through.
+    /// Transmitted share.
     pub transmission: Value<f64>,
-    /// How much of the colour highlights have.
+    /// Tint of highlights by the base color.
     pub specular_tint: Value<f64>,
-    /// Light along the edges.
+    /// Sheen, at grazing angles.
     pub sheen: Value<f64>,
-    /// How much of the colour that has.
+    /// Tint of the sheen by the base color.
     pub sheen_tint: Value<f64>,
-    /// How much is as flat as what light gets deep into.
+    /// Share of the flat lobe that approximates subsurface scattering.
     pub flatness: Value<f64>,
-    /// Whether what is white gives back all of its light, neither more nor less.
+    /// True if a white surface conserves energy exactly.
     pub conserves: bool,
 }
 
@@ -62,12 +62,12 @@ impl LookTextures {
         self.numbers().into_iter().fold(self.base_color.needs() | along, |needs, (_, value)| needs | value.needs())
     }
 
-    /// Whether highlights are the same in all directions.
+    /// Returns whether highlights are isotropic.
     fn is_alike(&self) -> bool {
         self.anisotropic.range()[1] <= 0.0
     }
 
-    /// Where u goes, if it makes a difference.
+    /// The u direction, if highlights are anisotropic.
     fn tangent(&self, at: &ShadingPoint) -> Option<DVec3> {
         (!self.is_alike()).then_some(at.dp[0])
     }
@@ -78,31 +78,32 @@ impl LookTextures {
     }
 }
 
-/// The principled model: from plastic to metal to glass, under a clear coat.
+/// The principled material: from plastic to metal to glass, under a clear coat.
 #[derive(Clone, Debug)]
 pub struct PrincipledMaterial {
-    /// What it looks like.
+    /// Shared parameters.
     pub looks: LookTextures,
-    /// What is within.
+    /// The interior.
     pub interior: Interior,
-    /// From 0, none, to 1, metal.
+    /// From 0, dielectric, to 1, metal.
     pub metallic: Value<f64>,
-    /// How much of a clear coat there is, 0 to 1.
+    /// Weight of the clear coat, 0 to 1.
     pub clearcoat: Value<f64>,
-    /// How glossy that is, 0 to 1.
+    /// Gloss of the clear coat, 0 to 1.
     pub clearcoat_gloss: Value<f64>,
 }
 
 impl PrincipledMaterial {
     fn bsdf(&self, point: &TexturePoint, outside: f64) -> AnyBsdf {
         let solid = self.is_solid();
-        // What is opaque mirrors by the index of yellow light, and not at all where what is around has a greater one.
+        // An opaque material reflects with the index of yellow light, and not at all if that of the surroundings is
+        // greater.
         let eta = if solid {
             self.interior.ior_at(point.waves.as_ref()) / outside
         } else {
             self.interior.ior / outside.min(self.interior.ior.max(1.0))
         };
-        // A coat has the index 1.5, and mirrors by that relative to what is around as it does head-on.
+        // The coat has index 1.5; its reflectance is scaled by that at normal incidence in the surroundings.
         let coating = (5.0 * (1.5 - outside) / (1.5 + outside)).clamp(0.0, 1.0).powi(2);
         let coat = [self.clearcoat.at(point) * coating, self.clearcoat_gloss.at(point)];
         let (look, metallic) = (self.looks.at(point), self.metallic.at(point));
@@ -113,7 +114,7 @@ impl PrincipledMaterial {
         }
     }
 
-    /// Whether light goes through anywhere.
+    /// Returns whether any light is transmitted.
     fn is_solid(&self) -> bool {
         self.looks.transmission.range()[1] > 0.0
     }
@@ -162,14 +163,14 @@ impl Material for PrincipledMaterial {
     }
 }
 
-/// The principled model of a sheet.
+/// The principled material of a thin sheet.
 #[derive(Clone, Debug)]
 pub struct PrincipledThinMaterial {
-    /// What it looks like.
+    /// Shared parameters.
     pub looks: LookTextures,
-    /// The index of refraction.
+    /// Index of refraction.
     pub ior: f64,
-    /// The share of what is matt that is scattered on the other side, 0 to 1.
+    /// Share of diffuse light that is transmitted, 0 to 1.
     pub diffuse_transmission: Value<f64>,
 }
 

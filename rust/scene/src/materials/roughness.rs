@@ -1,34 +1,33 @@
-//! How rough a surface is.
+//! Roughness parameters of microfacet materials.
 
 use super::checks::within;
 use crate::ShadingPoint;
 use crate::textures::{Needs, TexturePoint, Value};
 use raywright_base::math::DVec3;
 
-/// How rough a surface of small facets is, along u and along v: as an artist's number between 0 and 1, whose square is
-/// the α of the facets' distribution (Burley, "Physically-Based Shading at Disney", 2012; glTF has it so too), or as α
-/// itself.
+/// Roughness of a microfacet surface along u and v. It is either a perceptual number between 0 and 1, whose square is
+/// the α of the facet distribution (Burley, "Physically-Based Shading at Disney", 2012; also glTF), or α itself.
 #[derive(Clone, Debug)]
 pub struct Roughness {
-    /// Along u and along v; the same value twice for what is alike in all directions.
+    /// Along u and along v; equal for an isotropic surface.
     pub along: [Value<f64>; 2],
-    /// Whether it is α itself.
+    /// True if the values are α.
     pub is_alpha: bool,
-    /// Of which facets.
+    /// Facet distribution.
     pub facets: FacetKind,
 }
 
-/// Which facets a rough surface is made of, and what becomes of light that they throw on each other.
+/// Facet distribution, and the treatment of interreflection between facets.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum FacetKind {
-    /// GGX's, with all of the light.
+    /// GGX with multiple scattering.
     #[default]
     Ggx,
-    /// Beckmann's, with all of the light.
+    /// Beckmann with multiple scattering.
     Beckmann,
-    /// GGX's, with what is scattered once.
+    /// GGX with single scattering.
     GgxOnce,
-    /// Beckmann's, with what is scattered once.
+    /// Beckmann with single scattering.
     BeckmannOnce,
 }
 
@@ -40,7 +39,7 @@ impl Default for Roughness {
 }
 
 impl From<f64> for Roughness {
-    /// Alike in all directions.
+    /// Isotropic.
     fn from(roughness: f64) -> Self {
         Value::<f64>::from(roughness).into()
     }
@@ -64,7 +63,7 @@ impl Roughness {
         if self.is_alike() { [first; 2] } else { [first, alpha(&self.along[1])] }
     }
 
-    /// The least and the greatest α along u.
+    /// Minimum and maximum α along u.
     pub fn alpha_range(&self) -> [f64; 2] {
         self.along[0].range().map(|r| {
             let r = r.clamp(0.0, 1.0);
@@ -72,36 +71,36 @@ impl Roughness {
         })
     }
 
-    /// Whether it is the same in all directions.
+    /// Returns whether it is isotropic.
     #[inline]
     pub fn is_alike(&self) -> bool {
         self.along[0] == self.along[1]
     }
 
-    /// Where u goes, if it makes a difference.
+    /// The u direction, if the surface is anisotropic.
     #[inline]
     pub fn tangent(&self, at: &ShadingPoint) -> Option<DVec3> {
         (!self.is_alike()).then_some(at.dp[0])
     }
 
-    /// What it must know of a point.
+    /// The lookup data that evaluation needs.
     pub fn needs(&self) -> Needs {
         let along = if self.is_alike() { Needs::NONE } else { Needs { uv: true, tangents: true, ..Needs::NONE } };
         self.along[0].needs() | self.along[1].needs() | along
     }
 
-    /// Whether it lies between 0 and 1.
+    /// Checks that the values are between 0 and 1.
     ///
     /// # Errors
-    /// If it does not.
+    /// If they are not.
     pub fn validate(&self) -> Result<(), String> {
         self.along.iter().try_for_each(|value| within(self.name(), value, 0.0, 1.0))
     }
 
-    /// Whether it lies between 0 and 1, the same in all directions.
+    /// Checks that the values are between 0 and 1 and isotropic.
     ///
     /// # Errors
-    /// If it does not.
+    /// If they are not.
     pub fn validate_alike(&self) -> Result<(), String> {
         self.validate()?;
         let alike = self.is_alike().then_some(());

@@ -1,4 +1,4 @@
-//! A soap bubble's skin.
+//! The film of a soap bubble.
 
 use super::checks::{number, within};
 use super::{BsdfMix, Material};
@@ -6,15 +6,14 @@ use crate::ShadingPoint;
 use crate::textures::{Needs, TexturePoint, Value};
 use raywright_optics::{AnyBsdf, SoapFilm};
 
-/// A film with the same medium on both sides, of the colours of its thickness: the skin of a soap bubble. It encloses
-/// nothing.
+/// A thin film with the same medium on both sides and interference colours: a soap bubble. It has no interior.
 #[derive(Clone, Debug)]
 pub struct SoapFilmMaterial {
-    /// How thick it is, in nm.
+    /// Thickness in nm.
     pub thickness: Value<f64>,
-    /// The index of refraction within.
+    /// Index of refraction of the film.
     pub ior: f64,
-    /// Whether paths carry wavelengths.
+    /// True if paths are spectral.
     pub by_wave: bool,
 }
 

@@ -1,4 +1,4 @@
-//! What materials do to light at a point, through what they give of scattering, normals and opacity.
+//! Materials: their BSDFs, normals and opacity.
 
 use super::*;
 use crate::textures::{Between, Checker, Domain, Noise, ObjectTransform, Texture, UvTransform, Value};
@@ -10,7 +10,7 @@ use raywright_optics::{Bsdf, Diffuse, Rgb, Transparent};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-/// A point of the plane z = 0 at texture coordinates u and v, which are x and y.
+/// A point of the plane z = 0 with texture coordinates u and v equal to x and y.
 fn at(u: f64, v: f64) -> ShadingPoint {
     let position = DVec3::new(u, v, 0.0);
     let (normal, shading_normal) = (DVec3::Z, DVec3::Z);
@@ -23,7 +23,7 @@ fn at(u: f64, v: f64) -> ShadingPoint {
     }
 }
 
-/// The same with another shading normal.
+/// The point with another shading normal.
 fn tilted(shading_normal: DVec3, u: f64, v: f64) -> ShadingPoint {
     let here = at(u, v);
     ShadingPoint { point: SurfacePoint { shading_normal, ..here.point }, ..here }
@@ -56,7 +56,7 @@ fn glass(roughness: f64) -> DielectricMaterial {
     DielectricMaterial { interior: Interior::new(1.5, 0), roughness: roughness.into(), medium: None }
 }
 
-/// One of each kind, and of most with a texture.
+/// One of each kind, most with a texture.
 fn all() -> Vec<Arc<dyn Material>> {
     let phong = PhongMaterial {
         diffuse: checker(0.1, 0.9),
@@ -114,7 +114,7 @@ fn no_material_gives_more_light_than_it_gets() {
                 let u = sampler.two(0);
                 let Some(drawn) = bsdf.sample(wo, &mut || sampler.one(1), u) else { continue };
                 assert!((drawn.wi.length() - 1.0).abs() < 1e-9, "{material:?}");
-                // Radiance grows by the square of the index where it is squeezed into less of a solid angle.
+                // Radiance scales by the squared index, as its solid angle is compressed.
                 let energy = drawn.weight * drawn.eta * drawn.eta;
                 assert!(energy.is_radiance(), "{material:?} {drawn:?}");
                 sum += energy;
@@ -128,7 +128,7 @@ fn no_material_gives_more_light_than_it_gets() {
             }
             let mean = sum / f64::from(draws);
             let error = ((squares / f64::from(draws) - mean * mean) / f64::from(draws)).at_least(Rgb::ZERO)[0].sqrt();
-            // Tables are good to 0.5 %; chance exceeds five standard errors once in two million.
+            // Tables are accurate to 0.5 %; the probability of exceeding five standard errors is one in two million.
             assert!(mean.max() <= 1.005 + 5.0 * error, "{material:?} {mean} ± {error}");
         }
     }
@@ -146,7 +146,7 @@ fn a_mix_is_linear() {
         assert!((value - expected).abs().max() < 1e-15);
         assert!((pdf - alone(&a).1 * (1.0 - amount) - alone(&b).1 * amount).abs() < 1e-15);
     }
-    // A mix within a mix, and of nothing but one.
+    // A nested mixture, and a mixture with share 0 or 1.
     let inner = Arc::new(MixMaterial { a: a.clone(), b: b.clone(), amount: 0.5.into() });
     let outer = MixMaterial { a: inner, b: a.clone(), amount: 0.25.into() };
     let expected = alone(&a).0 * 0.625 + alone(&b).0 * 0.375;
@@ -163,7 +163,7 @@ fn draws_of_mixes_have_their_density() {
     let mix = MixMaterial { a: rough, b: grey(0.8), amount: 0.4.into() };
     let bsdf = mix.bsdf(&at(0.5, 0.5));
     let (rows, columns, draws) = (12, 16, 100_000);
-    // The last is for draws that scatter nothing.
+    // The last cell counts draws without a sample.
     let mut counts = vec![0; rows * columns + 1];
     for sample in 0..draws {
         let mut sampler = Sampler::new(32, 3, sample);
@@ -176,7 +176,7 @@ fn draws_of_mixes_have_their_density() {
         let turn = (drawn.wi.y.atan2(drawn.wi.x) + PI) / TAU;
         counts[row * columns + ((turn * columns as f64) as usize).min(columns - 1)] += 1;
     }
-    // Integrals over cells by a midpoint rule of 32 × 32.
+    // Cell integrals by a 32 × 32 midpoint rule.
     let steps = 32;
     let mut expected: Vec<f64> = (0..rows * columns)
         .map(|cell| {
@@ -238,19 +238,19 @@ fn masks_let_their_share_through() {
     assert!(!mask(checker(0.0, 1.0).number()).is_opaque() && mask(1.0.into()).is_opaque());
     let twice = Mask { material: Arc::new(mask(0.5.into())), opacity: 0.5.into() };
     assert_eq!(twice.opacity(&at(0.0, 0.0).texture), 0.25);
-    // Of a mix of what is there and a hole, all that is met is what is there.
+    // In a mixture with a hole, only the other material is hit.
     let mix = MixMaterial { a: grey(0.3), b: Arc::new(mask(0.0.into())), amount: 0.75.into() };
     assert_eq!(mix.opacity(&at(0.0, 0.0).texture), 0.25);
     let met = mix.bsdf(&at(0.0, 0.0));
     assert!(matches!(met, BsdfMix::One(AnyBsdf::Diffuse(Diffuse { reflectance })) if reflectance == Rgb::splat(0.3)));
     let half = Mask { material: grey(0.9), opacity: 0.5.into() };
     let mix = MixMaterial { a: grey(0.3), b: Arc::new(half), amount: 0.5.into() };
-    // Three quarters are met: two thirds of one, a third of the other.
+    // Opacity 0.75: two thirds of one material, a third of the other.
     assert_eq!(mix.opacity(&at(0.0, 0.0).texture), 0.75);
     assert!((mix.bsdf(&at(0.0, 0.0)).albedo()[0] - (0.6 + 0.9) / 3.0).abs() < 1e-15);
 }
 
-/// Heights of a wave.
+/// A sinusoidal height field.
 #[derive(Debug)]
 struct Wave;
 
@@ -278,7 +278,7 @@ fn bumps_have_the_normals_of_the_height_field() {
             let expected = DVec3::new(-scale * du, -scale * dv, 1.0).normalize();
             let normal = bump(scale).normal(&at(u, v)).unwrap();
             assert!((normal - expected).length() < 1e-6, "{normal} {expected}");
-            // Seen through a mirror: coordinates that run the other way round change nothing.
+            // Mirrored texture coordinates have no effect.
             let mirrored = ShadingPoint { dp: [DVec3::X, -DVec3::Y], ..at(u, v) };
             let normal = bump(scale).normal(&mirrored).unwrap();
             assert!((normal - expected * DVec3::new(1.0, -1.0, 1.0)).length() < 1e-6);
@@ -288,7 +288,7 @@ fn bumps_have_the_normals_of_the_height_field() {
 
 #[test]
 fn a_raised_sphere_keeps_its_normals() {
-    // A constant height over a curved surface: tangents grow, their directions stay.
+    // A constant height on a curved surface scales tangents and keeps their directions.
     let bump = BumpMap { material: grey(0.5), height: 0.3.into(), scale: 1.0 };
     let n = DVec3::new(0.48, 0.6, 0.64);
     let frame = Frame::new(n);
@@ -300,8 +300,7 @@ fn a_raised_sphere_keeps_its_normals() {
 
 #[test]
 fn bumps_of_space_follow_it() {
-    // Heights by the position, where texture coordinates have another scale: their normals are those of the noise's
-    // slope.
+    // Heights by position, with texture coordinates of another scale: normals follow the noise's slope.
     let pattern = Noise { domain: Domain::Object(ObjectTransform::default()), seed: 5 };
     let height = Between { a: 0.0.into(), b: 1.0.into(), pattern };
     let value = |x: f64, y: f64| height.at(&at(x, y).texture)[0];
@@ -327,7 +326,7 @@ fn normal_maps_turn_normals() {
     assert!((turned - DVec3::new(0.6, 0.0, 0.8)).length() < 1e-15);
     let turned = map(Rgb::new(0.5, 0.2, 0.9), 0.5).normal(&at(0.0, 0.0)).unwrap();
     assert!((turned - DVec3::new(0.0, -0.3, 0.8).normalize()).length() < 1e-15);
-    // Where coordinates run the other way round, up is still towards greater v.
+    // With mirrored texture coordinates, up still points to greater v.
     let mirrored = ShadingPoint { dp: [DVec3::X, -DVec3::Y], ..at(0.0, 0.0) };
     let turned = map(Rgb::new(0.5, 0.2, 0.9), 1.0).normal(&mirrored).unwrap();
     assert!((turned - DVec3::new(0.0, 0.6, 0.8)).length() < 1e-15);
@@ -365,7 +364,7 @@ fn sides_have_their_own() {
 fn glass_is_relative_to_what_is_outside() {
     let wo = DVec3::new(0.6, 0.0, 0.8);
     let within = |outside| glass(0.0).bsdf(&ShadingPoint { outside, ..at(0.0, 0.0) });
-    // By Snell's law the sine is divided by the ratio; of the same index nothing is bent.
+    // By Snell's law the sine is divided by the ratio; equal indices do not bend.
     for outside in [1.0, 1.2, 1.5, 2.0] {
         let refracted = (0..100).find_map(|i| {
             within(outside).sample(wo, &mut || (f64::from(i) + 0.5) / 100.0, [0.5; 2]).filter(|drawn| drawn.wi.z < 0.0)
@@ -397,7 +396,7 @@ fn what_is_the_same_everywhere_is_told_as_at_any_point() {
         }
     }
     assert_eq!(told, 5);
-    // Brushed metal has a direction, and a texture has points.
+    // Brushed metal depends on direction, and a texture on the point.
     let brushed = Roughness { along: [0.1.into(), 0.4.into()], is_alpha: false, facets: FacetKind::Ggx };
     assert!(gold(brushed).constant().is_none() && gold(checker(0.1, 0.4).number()).constant().is_none());
     assert!(gold(0.3).constant().is_some() && glass(0.3).constant().is_some());
@@ -432,7 +431,7 @@ fn ambient_light_is_reflected_by_its_own_share() {
     };
     let share = |material: &dyn Material| material.ambient(&at(0.0, 0.0));
     assert_eq!(share(&*phong(0.1)), Rgb::splat(0.1));
-    // What has no share of its own reflects it as any light, and what is smooth does not.
+    // Materials without an ambient coefficient use their albedo; smooth ones reflect none.
     assert_eq!((share(&*grey(0.3)), share(&*mirror())), (Rgb::splat(0.3), Rgb::ZERO));
     let mixed = |b: Arc<dyn Material>| share(&MixMaterial { a: phong(0.1), b, amount: 0.5.into() });
     assert!((mixed(grey(0.3)) - 0.2).abs().max() < 1e-15);
@@ -484,7 +483,7 @@ fn what_cannot_be_is_refused_in_a_line() {
 
 #[test]
 fn a_hole_in_scattering_is_no_mask() {
-    // What lets light straight through may stand in a mix like any other kind.
+    // A transparent component may be mixed like any other.
     let through = BsdfMix::from(Transparent { transmittance: Rgb::ONE });
     let half = BsdfMix::mixed((Rgb::splat(0.5), through), (Rgb::splat(0.5), Diffuse { reflectance: Rgb::ONE }.into()));
     assert!(half.transmits() && !half.is_delta());

@@ -1,4 +1,4 @@
-//! A pane of glass.
+//! The thin dielectric material.
 
 use super::checks::number;
 use super::{BsdfMix, Material};
@@ -8,12 +8,12 @@ use crate::textures::Needs;
 use raywright_optics::{AnyBsdf, Mirror, Rgb, ThinDielectric};
 use std::sync::Arc;
 
-/// A clear sheet too thin to bend what is seen through it: a window, a soap bubble without colours.
+/// A clear sheet too thin to displace refracted rays: a window, a soap bubble without interference colours.
 #[derive(Clone, Debug)]
 pub struct ThinDielectricMaterial {
-    /// The index of refraction within the sheet.
+    /// Index of refraction of the sheet.
     pub ior: f64,
-    /// What it encloses, as a flask does smoke, and its priority; none where that is nothing.
+    /// Enclosed medium and its priority, such as smoke in a flask; `None` if there is none.
     pub within: Option<(Arc<dyn Medium>, i32)>,
 }
 
@@ -21,7 +21,7 @@ impl Material for ThinDielectricMaterial {
     fn bsdf(&self, at: &ShadingPoint) -> BsdfMix {
         match self.within {
             None => ThinDielectric::new(self.ior / at.outside).into(),
-            // What does not go straight on.
+            // The straight part is handled separately ([`Material::straight`]), so only the reflected part remains.
             Some(_) => Mirror { reflectance: Rgb::ONE }.into(),
         }
     }

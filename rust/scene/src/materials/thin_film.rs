@@ -1,4 +1,4 @@
-//! Films on glass and on metal.
+//! Thin films on dielectrics and conductors.
 
 use super::checks::{number, within};
 use super::{BsdfMix, ConductorMaterial, DielectricMaterial, FacetKind, Index, Interior, Material};
@@ -11,26 +11,26 @@ use raywright_optics::conductors::{FilmedCurve, FilmedMetal, Metal, Reflectance}
 use raywright_optics::{AnyBsdf, Beckmann, Dielectric, Facets, Filmed, Ggx, Once};
 use std::sync::{Arc, PoisonError, RwLock};
 
-/// A film on something, of the colours of its thickness: oil on water, a coat on a lens, oxide on metal. Where it has
-/// no thickness, what it lies on is bare.
+/// A thin film with interference colours on a base: oil on water, a lens coating, oxide on metal. Where the thickness
+/// is 0 the base is bare.
 #[derive(Debug)]
 pub struct ThinFilmMaterial {
-    /// How thick it is, in nm.
+    /// Thickness in nm.
     pub thickness: Value<f64>,
-    /// The index of refraction within.
+    /// Index of refraction of the film.
     pub ior: f64,
-    /// What it lies on.
+    /// The base.
     pub base: FilmBase,
-    /// Whether paths carry wavelengths.
+    /// True if paths are spectral.
     pub by_wave: bool,
 }
 
-/// What a film lies on.
+/// The base of a film.
 #[derive(Debug)]
 pub enum FilmBase {
-    /// Something clear, on its outside.
+    /// A dielectric, on its outside.
     Dielectric(DielectricMaterial),
-    /// Metal, on both sides of a sheet of it; of one that was measured, with what is made ready of it.
+    /// A conductor, on both sides of a sheet; a measured one has precomputed data.
     Conductor(ConductorMaterial, FilmedMetals),
 }
 
@@ -43,18 +43,18 @@ impl FilmBase {
     }
 }
 
-/// Measured metals under a film whose thickness varies, made ready for each index of refraction around them that is
-/// asked for.
+/// Measured metals under a film of varying thickness, precomputed for each surrounding index of refraction that occurs.
 #[derive(Debug, Default)]
 pub struct FilmedMetals {
     ready: RwLock<Vec<FilmedIn>>,
 }
 
-/// An index of refraction around a metal, and what is made ready for it.
+/// A surrounding index of refraction, and the data precomputed for it.
 type FilmedIn = (f64, Arc<[&'static FilmedCurve]>);
 
 impl FilmedMetals {
-    /// Under a film of index `film` and a thickness in nm, one within `range`, which is always the same.
+    /// Reflectance under a film of index `film` and a thickness in nm within `range`, which must be the same in all
+    /// calls.
     fn at(&self, metal: &'static Metal, thickness: f64, range: [f64; 2], film: f64, outside: f64) -> FilmedMetal {
         let all = self.of(metal, range, film, outside);
         let step = FilmedMetal::step(film);
@@ -69,10 +69,10 @@ impl FilmedMetals {
         }
     }
 
-    /// All that are needed over a range: one of the thickness itself if there is only one, else of even steps.
+    /// All entries for a range: a single one for constant thickness, equal steps otherwise.
     fn of(&self, metal: &'static Metal, range: [f64; 2], film: f64, outside: f64) -> Arc<[&'static FilmedCurve]> {
         let find = |ready: &[FilmedIn]| ready.iter().find(|(index, _)| *index == outside).map(|(_, all)| all.clone());
-        // What panicked left nothing half done.
+        // A poisoned lock is safe: a panic cannot leave a partial entry.
         if let Some(all) = find(&self.ready.read().unwrap_or_else(PoisonError::into_inner)) {
             return all;
         }
@@ -93,8 +93,8 @@ impl FilmedMetals {
     }
 }
 
-/// The first and the last of steps that are needed over a range, for cubics through four: one before it where there is
-/// one, and one beyond. What is thicker than fringes are seen of is as thick as that.
+/// First and last step for a range with cubic interpolation through four entries: one step before it, if there is one,
+/// and one after. A film too thick for visible fringes is clamped.
 fn steps(range: [f64; 2], step: f64) -> [f64; 2] {
     let [low, high] = range.map(|thickness| (thickness / step).min(FilmedMetal::MOST));
     let first = (low.floor() - 1.0).max(0.0);
@@ -156,7 +156,7 @@ impl Material for ThinFilmMaterial {
     }
 
     fn kinds(&self) -> Option<[usize; 2]> {
-        // Where there is no film, what is clear is of another kind. Metals are made ready here.
+        // A bare dielectric has another kind. Precomputes the data of metals.
         let is_one = matches!(self.base, FilmBase::Conductor(..)) || self.thickness.range()[0] > 0.0;
         is_one.then(|| [self.bsdf(&TexturePoint::default(), 1.0).kind(); 2])
     }

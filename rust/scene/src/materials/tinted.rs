@@ -1,4 +1,4 @@
-//! Glass with a colour at its surface.
+//! Tinted dielectrics.
 
 use super::checks::within;
 use super::{BsdfMix, DielectricMaterial, FacetKind, Interior, Material};
@@ -8,24 +8,23 @@ use crate::textures::{Needs, TexturePoint, Value};
 use raywright_optics::{AnyBsdf, Beckmann, Bsdf, Dielectric, Facets, Ggx, Once, ThinDielectric, Tinted};
 use std::sync::Arc;
 
-/// Glass or a pane of which a share is left of what its surface reflects, and of what goes through: stained glass, a
-/// painted window.
+/// Glass or a pane whose reflection and transmission are tinted at the surface: stained glass, a painted window.
 #[derive(Clone, Debug)]
 pub struct TintedMaterial {
-    /// What it is without its colour.
+    /// The material without tint.
     pub base: TintedBase,
-    /// The share that is left of what is reflected, 0 to 1 in each channel.
+    /// Factor on reflection, 0 to 1 in each channel.
     pub reflectance: Value,
-    /// The share that is left of what goes through, at every crossing.
+    /// Factor on transmission at each crossing.
     pub transmittance: Value,
 }
 
-/// What has a tint.
+/// The base of a tint.
 #[derive(Clone, Debug)]
 pub enum TintedBase {
-    /// Something clear, on its outside.
+    /// A dielectric, on its outside.
     Dielectric(DielectricMaterial),
-    /// A pane of this index of refraction, which encloses nothing.
+    /// A thin pane with this index of refraction and no interior.
     Pane(f64),
 }
 

@@ -1,4 +1,4 @@
-//! One material on the front and another on the back.
+//! Different materials on front and back.
 
 use super::{BsdfMix, Material};
 use crate::ShadingPoint;
@@ -7,12 +7,12 @@ use raywright_base::math::DVec3;
 use raywright_optics::{AnyBsdf, Rgb};
 use std::sync::Arc;
 
-/// A sheet that is made of one thing where its normals point to, and of another behind. Neither lets light through.
+/// A sheet with one material on the side of its normals and another behind. Neither transmits light.
 #[derive(Clone, Debug)]
 pub struct TwoSided {
-    /// On the side of the normals.
+    /// Material on the side of the normals.
     pub front: Arc<dyn Material>,
-    /// On the other.
+    /// Material on the opposite side.
     pub back: Arc<dyn Material>,
 }
 

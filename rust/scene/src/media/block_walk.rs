@@ -1,38 +1,38 @@
-//! The way of a ray through the blocks of a grid.
+//! Traversal of a ray through a grid's majorant blocks.
 
 use super::stretch::{Content, Stretch};
 use super::{Coefficients, Field, Glow};
 use raywright_base::math::{Affine, DVec3};
 use raywright_optics::Rgb;
 
-/// The most that there is in each of many equal blocks of a grid.
+/// Bounds on the density of a grid medium in equal blocks.
 ///
-/// Rays go through it block by block (after Amanatides and Woo, "A Fast Voxel Traversal Algorithm for Ray Tracing",
-/// 1987), so that what is empty costs nothing, and what is the same throughout a block next to nothing. In others they
-/// go cell by cell, where densities are polynomials along them.
+/// Rays traverse it block by block (after Amanatides and Woo, "A Fast Voxel Traversal Algorithm for Ray Tracing",
+/// 1987). Empty blocks cost nothing and constant ones next to nothing. Other blocks are traversed cell by cell, where
+/// densities are polynomials along the ray.
 #[derive(Clone, Debug)]
 pub(super) struct Majorants {
     blocks: [usize; 3],
-    /// The least and the greatest density in each, the last axis fastest.
+    /// Minimum and maximum density of each block, the last axis fastest.
     ranges: Vec<[[f32; 3]; 2]>,
-    /// Whether the medium is the same throughout each.
+    /// One flag per block: true if the medium is constant in it.
     even: Vec<bool>,
-    /// Along each axis, the steps of the grid at 0 and at 1, and the last number.
+    /// Along each axis, grid coordinates at 0 and at 1, and that of the last value.
     steps: [([f64; 2], f64); 3],
-    /// Whether anything glows in each whatever the density; none where nothing does.
+    /// One flag per block: true if anything in it emits independently of the density; empty if nothing does.
     bright: Vec<bool>,
-    /// What the medium does to light at unit density.
+    /// Coefficients at unit density.
     coefficients: Coefficients,
-    /// How long a block is across at most, in the space of the grid.
+    /// Maximum size of a block in grid space.
     across: f64,
 }
 
 impl Majorants {
-    /// How many numbers a block has along an axis, about.
+    /// Approximate number of values of a block along an axis.
     const BLOCK: usize = 8;
 
-    /// Of a density, of what glows beside it, and of what the medium does to light at unit density; `has_albedo` if the
-    /// share that is scattered has a grid. `place` takes the unit cube to the grid.
+    /// Computes the bounds of a density, density-independent emission, and coefficients at unit density. `has_albedo`
+    /// tells whether the albedo is a grid. `place` maps the unit cube to the grid.
     pub fn new(
         density: &Field,
         glow: Option<&Glow>,
@@ -53,13 +53,13 @@ impl Majorants {
         Self { blocks, ranges, even, steps, bright, coefficients: *coefficients, across }
     }
 
-    /// The greatest density of each colour.
+    /// Maximum density of each channel.
     pub fn densest(&self) -> Rgb {
         let most = |a: [f32; 3], [_, b]: &[[f32; 3]; 2]| [0, 1, 2].map(|i: usize| a[i].max(b[i]));
         Rgb::from_array(self.ranges.iter().fold([0.0; 3], most).map(f64::from))
     }
 
-    /// Whether anything glows anywhere whatever the density.
+    /// Returns whether anything emits independently of the density.
     pub fn glows(&self) -> bool {
         self.bright.contains(&true)
     }
@@ -72,12 +72,12 @@ impl Majorants {
         size_of_val(self.ranges.as_slice()) + size_of_val(self.even.as_slice()) + size_of_val(self.bright.as_slice())
     }
 
-    /// Blocks across which the optical depth varies by more than this are gone through cell by cell. In others, so few
-    /// points tell of their extinction that residual ratio tracking takes a fraction of the time, and leaves an error
-    /// that hardly counts.
+    /// Blocks whose optical depth varies by more than this are traversed cell by cell. In others residual ratio
+    /// tracking needs so few lookups of the extinction that it takes a fraction of the time, and its error is
+    /// negligible.
     const DEEP: f64 = 4.0;
 
-    /// What there is in a block.
+    /// The content of a block.
     #[inline]
     fn content(&self, block: usize, spectra: Spectra) -> Content {
         let range = self.ranges[block].map(|density| Rgb::from_array(density.map(f64::from)));
@@ -89,57 +89,57 @@ impl Majorants {
         if spectra != Spectra::OfColours && is_deep {
             return Content::Cubic;
         }
-        // Where it glows, it is asked for about once in a block, however thin it is.
+        // In an emissive block, the majorant allows for about one lookup, however thin the medium is.
         let glows = !self.coefficients.emission.is_black() || self.bright.get(block).is_some_and(|&glows| glows);
         let most = if glows { most.at_least(Rgb::splat(1.0 / self.across)) } else { most };
         Content::Varies([if spectra == Spectra::OfColours { Rgb::ZERO } else { least }, most])
     }
 }
 
-/// How what a medium does to light follows from its coefficients at a point.
+/// Relation between the medium's extinction and its coefficients at a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Spectra {
-    /// They are that, or in proportion to that.
+    /// Equal, or proportional.
     Linear,
-    /// It is in proportion to the density.
+    /// Proportional to the density.
     OfDensity,
-    /// The same, and all of it is to be closed.
+    /// Proportional to the density, in segments with closed forms only.
     Closed,
-    /// It follows from spectra of their colours, which are in no proportion to them.
+    /// Not proportional: extinction follows from the spectra of the coefficients' colours.
     OfColours,
 }
 
-/// A ray on its way through the cells of a block.
+/// Traversal of the cells of a block.
 #[derive(Clone, Copy, Debug)]
 struct CellWalk {
-    /// Where the cell begins and the block ends.
+    /// Start of the cell and end of the block.
     t: f64,
     end: f64,
-    /// The next border of a cell along each axis, and the `t` at which it is met.
+    /// Next cell border along each axis, and its `t`.
     next: [f64; 3],
     at: [f64; 3],
 }
 
-/// A ray on its way through the blocks of a grid.
+/// Traversal of the blocks of a grid.
 #[derive(Clone, Debug)]
 pub(super) struct BlockWalk<'m> {
     majorants: &'m Majorants,
     spectra: Spectra,
-    /// Its steps of the grid along each axis where `t` is 0, and how many they are in a unit of it.
+    /// Grid coordinates along each axis at `t` 0, and their rate per `t`.
     origin: [f64; 3],
     rate: [f64; 3],
-    /// The `t` that it has come to, and the cells that it goes through there.
+    /// Current `t`, and the traversal of the cells there.
     t: f64,
     cells: Option<CellWalk>,
-    /// Whether there is nothing left but what lies outside.
+    /// True if only the space outside remains.
     is_past: bool,
-    /// Where it enters the grid, if it has not yet.
+    /// Entry into the grid, until it is reached.
     enters: Option<f64>,
-    /// Where it leaves the grid, or ends in it.
+    /// Exit from the grid, or the end within it.
     leaves: f64,
     end: f64,
     block: [usize; 3],
-    /// The `t` at which it comes to the next block along each axis, and how far that is from one to the next.
+    /// The `t` of the next block border along each axis, and the distance between borders.
     next: [f64; 3],
     step: [f64; 3],
     is_up: [bool; 3],
@@ -202,7 +202,7 @@ impl<'m> BlockWalk<'m> {
         walk
     }
 
-    /// Enters the cells of a block that ends at a `t`.
+    /// Starts the traversal of cells in a block that ends at a `t`.
     fn enter(&self, end: f64) -> CellWalk {
         let mut cells = CellWalk { t: self.t, end, next: [f64::NAN; 3], at: [f64::INFINITY; 3] };
         for axis in 0..3 {
@@ -217,14 +217,14 @@ impl<'m> BlockWalk<'m> {
         cells
     }
 
-    /// Finds where the next border along an axis is met.
+    /// Finds the `t` of the next border along an axis.
     fn find(&self, axis: usize, cells: &mut CellWalk) {
         let next = cells.next[axis];
         let is_within = (0.0..=self.majorants.steps[axis].1).contains(&next);
         cells.at[axis] = if is_within { (next - self.origin[axis]) / self.rate[axis] } else { f64::INFINITY };
     }
 
-    /// The end of the next cell, and whether that is the block's.
+    /// End of the next cell; true if the block ends there.
     #[inline]
     fn cell(&self, cells: &mut CellWalk) -> (f64, bool) {
         loop {
@@ -242,7 +242,7 @@ impl<'m> BlockWalk<'m> {
             }
             cells.next[axis] += 1f64.copysign(self.rate[axis]);
             self.find(axis, cells);
-            // What rounding puts before where it has come to is no cell.
+            // Rounding may place a border before the current `t`; such a cell is empty.
             if end > cells.t {
                 cells.t = end;
                 return (end, false);
@@ -250,7 +250,7 @@ impl<'m> BlockWalk<'m> {
         }
     }
 
-    /// The next block.
+    /// Advances to the next block.
     #[inline]
     fn block(&mut self) -> Option<Stretch> {
         let nothing = Content::Even(Coefficients::NONE);
@@ -278,7 +278,7 @@ impl<'m> BlockWalk<'m> {
         }
         self.next[axis] += self.step[axis];
         let (block, count) = (self.block[axis], self.majorants.blocks[axis]);
-        // What rounding puts a hair's breadth beyond the last block is in it still.
+        // Rounding may step just beyond the last block; clamp to it.
         self.block[axis] = if self.is_up[axis] { (block + 1).min(count - 1) } else { block.saturating_sub(1) };
         Some(Stretch { end, content })
     }

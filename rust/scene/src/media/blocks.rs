@@ -1,25 +1,25 @@
-//! Numbers at the points of a grid, of which those that are all 0 take no memory.
+//! A sparse grid of numbers.
 
 use std::ops::Range;
 
-/// `C` numbers at each point of a grid, in blocks of 8 points along an axis, or as many as there are; blocks in which
-/// all are 0 are not kept.
+/// `C` numbers at each point of a grid, in blocks of 8 points along an axis, or fewer in small grids. Blocks of zeros
+/// take no memory.
 ///
-/// Built from parts ([`Building`]); the same numbers make the same blocks, in whatever order they come.
+/// A grid is built from parts ([`Building`]); equal numbers give equal blocks in any order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Blocks<const C: usize> {
     size: [usize; 3],
-    /// The logarithm to the base 2 of how many points a block has along each axis.
+    /// Base-2 logarithm of a block's points along each axis.
     shift: [u32; 3],
-    /// How many blocks there are along each axis.
+    /// Number of blocks along each axis.
     count: [usize; 3],
-    /// Which of those that are kept each block is, the last axis fastest; 0 is one of zeros.
+    /// Storage index of each block, the last axis fastest; 0 is the block of zeros.
     places: Vec<u32>,
     numbers: Vec<[f32; C]>,
 }
 
 impl<const C: usize> Blocks<C> {
-    /// Of all numbers, the last axis fastest.
+    /// Creates a grid from all numbers, the last axis fastest.
     ///
     /// # Errors
     /// As [`Building::new`] and [`Building::put`].
@@ -29,12 +29,12 @@ impl<const C: usize> Blocks<C> {
         Ok(building.finish())
     }
 
-    /// How many points there are along each axis.
+    /// Number of points along each axis.
     pub fn size(&self) -> [usize; 3] {
         self.size
     }
 
-    /// How many points a block has along each axis.
+    /// Points of a block along each axis.
     fn side(&self) -> [usize; 3] {
         self.shift.map(|shift| 1 << shift)
     }
@@ -43,13 +43,13 @@ impl<const C: usize> Blocks<C> {
         1 << (self.shift[0] + self.shift[1] + self.shift[2])
     }
 
-    /// Which of the kept a block is.
+    /// Storage index of a block.
     #[inline]
     fn place(&self, [x, y, z]: [usize; 3]) -> usize {
         self.places[(x * self.count[1] + y) * self.count[2] + z] as usize
     }
 
-    /// Which block a point is in, and where in that.
+    /// The block of a point, and the point's offsets within it.
     #[inline]
     fn split(&self, [x, y, z]: [usize; 3]) -> [[usize; 3]; 2] {
         let [a, b, c] = self.shift;
@@ -57,10 +57,10 @@ impl<const C: usize> Blocks<C> {
         [[x >> a, y >> b, z >> c], [within(x, a) << (b + c), within(y, b) << c, within(z, c)]]
     }
 
-    /// The numbers at the corners of a cell, the last axis fastest; none where all are 0.
+    /// Numbers at the corners of a cell, the last axis fastest; `None` if all are 0.
     #[inline]
     pub fn cell(&self, low: [usize; 3], high: [usize; 3]) -> Option<[[f32; C]; 8]> {
-        // Written out, for calls of closures over arrays take most of the time.
+        // Written out, because calls of closures over arrays took most of the time.
         let ([from, [a, b, c]], [to, [d, e, f]]) = (self.split(low), self.split(high));
         if from == to {
             let place = self.place(from);
@@ -81,7 +81,7 @@ impl<const C: usize> Blocks<C> {
         (any != 0).then_some(found)
     }
 
-    /// The least and the greatest of each of `C` in a part.
+    /// Minimum and maximum of each of the `C` numbers in a part.
     pub fn range(&self, part: [Range<usize>; 3]) -> [[f32; C]; 2] {
         let [mut least, mut most] = [[f32::INFINITY; C], [0.0f32; C]];
         self.parts(&part, |place, rows| {
@@ -101,7 +101,7 @@ impl<const C: usize> Blocks<C> {
         [least, most]
     }
 
-    /// Goes through the blocks of a part: which of the kept each is, and which rows of it lie in the part.
+    /// Iterates over the blocks of a part, with their storage index and the rows within the part.
     fn parts(&self, part: &[Range<usize>; 3], mut each: impl FnMut(usize, &mut dyn Iterator<Item = Range<usize>>)) {
         let side = self.side();
         let blocks = |axis: usize| part[axis].start / side[axis]..part[axis].end.div_ceil(side[axis]);
@@ -127,7 +127,7 @@ impl<const C: usize> Blocks<C> {
         }
     }
 
-    /// The numbers of a part, the last axis fastest.
+    /// Numbers of a part, the last axis fastest.
     pub fn part(&self, part: [Range<usize>; 3]) -> Vec<[f32; C]> {
         let mut found = Vec::with_capacity(part.iter().map(ExactSizeIterator::len).product());
         let [x, y, z] = part;
@@ -143,7 +143,7 @@ impl<const C: usize> Blocks<C> {
         found
     }
 
-    /// The least and greatest corner of each block that is kept, the greatest one beyond its last point.
+    /// Lower corner of each stored block, and the corner one past its last point.
     pub fn kept(&self) -> impl Iterator<Item = [[usize; 3]; 2]> + '_ {
         let [_, y, z] = self.count;
         let side = self.side();
@@ -155,21 +155,21 @@ impl<const C: usize> Blocks<C> {
         })
     }
 
-    /// The memory held.
+    /// Memory in bytes.
     pub fn bytes(&self) -> usize {
         size_of_val(self.numbers.as_slice()) + size_of_val(self.places.as_slice())
     }
 }
 
-/// Blocks on their way, of zeros at first.
+/// A grid under construction, initially zero.
 #[derive(Clone, Debug)]
 pub struct Building<const C: usize>(Blocks<C>);
 
 impl<const C: usize> Building<C> {
-    /// Of so many points along each axis.
+    /// Creates a grid with this number of points along each axis.
     ///
     /// # Errors
-    /// If there are none, or more than can be counted, in a few words.
+    /// A short reason if a size is zero, or the grid is too large to count.
     pub fn new(size: [usize; 3]) -> Result<Self, String> {
         let told = || format!("{} x {} x {} numbers", size[0], size[1], size[2]);
         if size.contains(&0) {
@@ -183,11 +183,11 @@ impl<const C: usize> Building<C> {
         Ok(Self(Blocks { size, shift, count, places: vec![0; blocks], numbers: zeros }))
     }
 
-    /// Sets the numbers of a part, which begins at a point and has so many along each axis, the last axis fastest.
+    /// Sets the numbers of a part, given by its first point and its size, the last axis fastest.
     ///
     /// # Errors
-    /// If the part reaches beyond the grid, or has another number of numbers, or one of them is negative or not finite:
-    /// which, in a few words.
+    /// A short reason if the part reaches beyond the grid, the number of values differs from its size, or a value is
+    /// negative or not finite.
     pub fn put(&mut self, from: [usize; 3], size: [usize; 3], numbers: &[[f32; C]]) -> Result<(), String> {
         let all = size[0].checked_mul(size[1]).and_then(|n| n.checked_mul(size[2]));
         if all != Some(numbers.len()) {
@@ -215,7 +215,7 @@ impl<const C: usize> Building<C> {
         Ok(())
     }
 
-    /// Sets what a block has of a part.
+    /// Sets the overlap of a block with a part.
     fn put_into(&mut self, block: [usize; 3], from: [usize; 3], size: [usize; 3], numbers: &[[f32; C]]) {
         let side = self.0.side();
         let span = |axis: usize| {
@@ -247,7 +247,7 @@ impl<const C: usize> Building<C> {
         }
     }
 
-    /// The blocks, of which those that have become zeros are left out.
+    /// Finishes the grid and removes blocks that are all zero.
     pub fn finish(self) -> Blocks<C> {
         let Self(mut blocks) = self;
         let length = blocks.length();
@@ -277,7 +277,7 @@ mod tests {
 
     const SIZE: [usize; 3] = [19, 9, 30];
 
-    /// Numbers of which many blocks have none.
+    /// Numbers with many empty blocks.
     fn numbers() -> Vec<[f32; 1]> {
         let point = |i: usize| [i / 30 / 9, i / 30 % 9, i % 30];
         let number = |i: usize| {
@@ -292,7 +292,7 @@ mod tests {
         let all = numbers();
         let blocks = Blocks::new(SIZE, &all).unwrap();
         assert_eq!(blocks.part([0..19, 0..9, 0..30]), all);
-        // 3 x 2 x 4 blocks, of which one layer of four is empty, and where x and y are small all of the column.
+        // 3 x 2 x 4 blocks: one layer of four is empty, and one column at small x and y.
         assert_eq!(blocks.kept().count(), 5 * 3);
         assert_eq!(blocks.bytes(), 4 * (512 * 16 + 24));
         let at = |[x, y, z]: [usize; 3]| all[(x * 9 + y) * 30 + z];
@@ -315,7 +315,7 @@ mod tests {
         let all = numbers();
         let whole = Blocks::new(SIZE, &all).unwrap();
         let mut building = Building::new(SIZE).unwrap();
-        // Something that is written over again, by zeros in part.
+        // Parts that overwrite earlier ones, partly with zeros.
         building.put([0, 0, 0], [8, 8, 8], &[[2.0]; 512]).unwrap();
         for x in (0..19).rev() {
             for z in [10..30, 0..10] {

@@ -1,28 +1,28 @@
-//! What a medium does to light on a way so short that it happens once at most.
+//! Coefficients of participating media.
 
 use raywright_optics::Rgb;
 
-/// What a medium does to light, per unit of length.
+/// Coefficients of a medium, per unit length.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coefficients {
-    /// The share of it that is absorbed or scattered.
+    /// Extinction coefficient: absorption plus scattering.
     pub extinction: Rgb,
-    /// The share of it that is scattered.
+    /// Scattering coefficient.
     pub scattering: Rgb,
-    /// The radiance that it gives off by itself, into every direction.
+    /// Emitted radiance per unit length, equal in all directions.
     pub emission: Rgb,
 }
 
 impl Coefficients {
-    /// Those of nothing.
+    /// Coefficients of vacuum.
     pub const NONE: Self = Self { extinction: Rgb::ZERO, scattering: Rgb::ZERO, emission: Rgb::ZERO };
 
-    /// Of what is absorbed, scattered and given off.
+    /// Coefficients from absorption, scattering and emission.
     pub fn new(absorption: Rgb, scattering: Rgb, emission: Rgb) -> Self {
         Self { extinction: absorption + scattering, scattering, emission }
     }
 
-    /// So many times as much of it, for each colour.
+    /// Scales the medium by a density per channel.
     #[inline]
     pub fn times(&self, density: Rgb) -> Self {
         Self {
@@ -32,13 +32,13 @@ impl Coefficients {
         }
     }
 
-    /// The share of light that gets as far as this, by Beer's and Lambert's law; the distance may be infinite.
+    /// Transmittance over a distance by the Beer-Lambert law; the distance may be infinite.
     #[inline]
     pub fn left(&self, distance: f64) -> Rgb {
         left(self.extinction, distance)
     }
 
-    /// What arrives at one end of a way through it of what it gives off there: ∫ j e^(−σs) ds.
+    /// Emitted radiance that arrives at one end of a segment: ∫ j e^(−σs) ds.
     #[inline]
     pub fn glow(&self, distance: f64) -> Rgb {
         let of = |channel: usize| {
@@ -46,23 +46,23 @@ impl Coefficients {
             match (glow, sigma) {
                 (0.0, _) => 0.0,
                 (_, 0.0) => glow * distance,
-                // (1 − e^(−σd)) / σ, in which nothing cancels.
+                // (1 − e^(−σd)) / σ without cancellation.
                 _ => glow * -(-sigma * distance).exp_m1() / sigma,
             }
         };
         Rgb::new(of(0), of(1), of(2))
     }
 
-    /// Whether all are finite and none is negative, so that it can be.
+    /// Returns whether all coefficients are finite and not negative.
     pub fn is_physical(&self) -> bool {
         [self.extinction, self.scattering, self.emission].into_iter().all(Rgb::is_radiance)
     }
 }
 
-/// The share of light that gets through an extinction over a distance, which may be infinite.
+/// Transmittance of an extinction over a distance, which may be infinite.
 #[inline]
 pub(super) fn left(extinction: Rgb, distance: f64) -> Rgb {
-    // 0 times infinity is no number: where nothing dims, all is left.
+    // 0 times infinity is NaN; without extinction the transmittance is 1.
     extinction.map(|sigma| if sigma == 0.0 { 1.0 } else { (-sigma * distance).exp() })
 }
 
@@ -78,7 +78,7 @@ mod tests {
             (1.0, 0.36787944117144233),
             (5.0, 0.006737946999085467),
             (10.0, 4.5399929762484854e-05),
-            // e⁻¹⁰⁰⁰⁰ is below what f64 holds.
+            // e⁻¹⁰⁰⁰⁰ underflows.
             (1e4, 0.0),
         ] {
             assert!((of(depth).left(1.0) - expected).abs().max() <= 1e-15 * f64::max(expected, 1e-6), "{depth}");
@@ -89,7 +89,7 @@ mod tests {
 
     #[test]
     fn glowing_gas_is_as_bright_as_its_source_where_it_is_deep() {
-        // A source of 2, an extinction of 0.8, a way of 3 and a wall of 5 behind: 2 (1 − e^−2.4) + 5 e^−2.4.
+        // Source function 2, extinction 0.8, distance 3 and a wall of radiance 5 behind: 2 (1 − e^−2.4) + 5 e^−2.4.
         let gas = Coefficients::new(Rgb::splat(0.8), Rgb::ZERO, Rgb::splat(1.6));
         let seen = gas.glow(3.0) + gas.left(3.0) * 5.0;
         assert!((seen - 2.27215385986824).abs().max() < 1e-12);

@@ -1,14 +1,13 @@
-//! Extinctions that are polynomials of the third degree along a ray, as in the cells of a grid.
+//! Cubic polynomials of extinction along a ray, as in the cells of a grid.
 
 use raywright_optics::Rgb;
 
-/// An extinction along a part of a ray, as a polynomial of the third degree in the share of the part, 0 to 1: its
-/// coefficients, the constant first.
+/// Extinction along a segment as a cubic polynomial of the position, 0 to 1; coefficients with the constant first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cubic(pub [Rgb; 4]);
 
 impl Cubic {
-    /// The one that has these values at 0, 1/3, 2/3 and 1.
+    /// The polynomial with these values at 0, 1/3, 2/3 and 1.
     pub fn through([a, b, c, d]: [Rgb; 4]) -> Self {
         let linear = (a * -11.0 + b * 18.0 - c * 9.0 + d * 2.0) * 0.5;
         let square = (a * 18.0 - b * 45.0 + c * 36.0 - d * 9.0) * 0.5;
@@ -16,31 +15,31 @@ impl Cubic {
         Self([a, linear, square, cube])
     }
 
-    /// So many times as much of it, for each colour.
+    /// Scales it per channel.
     #[inline]
     pub fn times(&self, by: Rgb) -> Self {
         let [a, b, c, d] = self.0;
         Self([by * a, by * b, by * c, by * d])
     }
 
-    /// Its mean over the part.
+    /// Mean over the segment.
     #[inline]
     pub fn mean(&self) -> Rgb {
         let [a, b, c, d] = self.0;
         a + b / 2.0 + c / 3.0 + d / 4.0
     }
 
-    /// Its integral up to a share of the part, of all three.
+    /// Integral from 0 to a position, for all channels.
     #[inline]
     pub fn up_to(&self, share: f64) -> Rgb {
         let [a, b, c, d] = self.0;
         (a + (b / 2.0 + (c / 3.0 + d * (share / 4.0)) * share) * share) * share
     }
 
-    /// The share at which its integral for a channel is this, which is less than that of all of it: by Newton's method,
-    /// kept between bounds that close in on it.
+    /// Position where the integral of a channel reaches a value below its total, by Newton's method within shrinking
+    /// bounds.
     pub fn reach(&self, channel: usize, integral: f64) -> f64 {
-        /// Far more than are ever needed: from the 60th halving on nothing is left between the bounds.
+        /// Iteration limit; after the 60th bisection the bounds coincide.
         const MOST: u32 = 100;
         let [a, b, c, d] = [self.0[0][channel], self.0[1][channel], self.0[2][channel], self.0[3][channel]];
         let value = |s: f64| a + (b + (c + d * s) * s) * s;
@@ -70,7 +69,7 @@ mod tests {
 
     #[test]
     fn is_the_cubic_of_its_values_and_integrates_it() {
-        // 2 − 3 s + s² + 4 s³ of all three, times 1, 2 and 3.
+        // 2 − 3 s + s² + 4 s³ in all three channels, times 1, 2 and 3.
         let value = |s: f64| Rgb::new(1.0, 2.0, 3.0) * (2.0 - 3.0 * s + s * s + 4.0 * s * s * s);
         let cubic = Cubic::through([0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0].map(value));
         for (term, expected) in cubic.0.into_iter().zip([2.0, -3.0, 1.0, 4.0]) {
@@ -88,7 +87,7 @@ mod tests {
 
     #[test]
     fn what_begins_with_nothing_is_reached() {
-        // s³, whose slope is none where it begins: s⁴ / 4.
+        // s³ has slope 0 at its start; its integral is s⁴ / 4.
         let cubic = Cubic([Rgb::ZERO, Rgb::ZERO, Rgb::ZERO, Rgb::ONE]);
         for share in [1e-3, 0.1, 0.5, 0.999] {
             assert!((cubic.reach(0, f64::powi(share, 4) / 4.0) / share - 1.0).abs() < 1e-10, "{share}");

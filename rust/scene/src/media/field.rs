@@ -1,25 +1,25 @@
-//! Numbers on a grid, for all colours alike or for each of its own.
+//! Grids of grey or RGB numbers.
 
 use super::{Cubic, Values};
 use raywright_base::math::DVec3;
 use raywright_optics::Rgb;
 
-/// Numbers on a grid over the unit cube, for all colours alike or for each of its own.
+/// Numbers on a grid over the unit cube, grey or RGB.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Field {
-    /// One for all colours.
+    /// One number for all channels.
     Grey(Values<1>),
-    /// One for each.
+    /// One number per channel.
     Coloured(Values<3>),
 }
 
 impl Field {
-    /// Whether colours have numbers of their own.
+    /// Returns whether it is RGB.
     pub fn is_coloured(&self) -> bool {
         matches!(self, Self::Coloured(_))
     }
 
-    /// How many numbers there are along each axis.
+    /// Number of values along each axis.
     pub fn size(&self) -> [usize; 3] {
         match self {
             Self::Grey(values) => values.size(),
@@ -27,7 +27,7 @@ impl Field {
         }
     }
 
-    /// What is at a point of the unit cube, of which one outside counts as the nearest within.
+    /// Interpolated value at a point of the unit cube; points outside are clamped to it.
     #[inline]
     pub fn at(&self, point: DVec3) -> Rgb {
         match self {
@@ -36,7 +36,7 @@ impl Field {
         }
     }
 
-    /// What is between two points of the unit cube that lie in one cell.
+    /// Interpolated values between two points in the same cell, as a polynomial.
     #[inline]
     pub fn cubic(&self, ends: [DVec3; 2]) -> Cubic {
         match self {
@@ -51,8 +51,7 @@ impl Field {
         }
     }
 
-    /// The least and the greatest number of each colour in each of so many equal blocks of the unit cube, the last axis
-    /// fastest.
+    /// Minimum and maximum of each channel in equal blocks of the unit cube, the last axis fastest.
     pub fn ranges(&self, blocks: [usize; 3]) -> Vec<[[f32; 3]; 2]> {
         match self {
             Self::Grey(values) => values.ranges(blocks).map(|range| range.map(|[one]| [one; 3])).collect(),
@@ -60,8 +59,8 @@ impl Field {
         }
     }
 
-    /// Steps of the grid along an axis as a linear function of a coordinate of the unit cube: its value at 0 and at 1.
-    /// Cells end where it is a whole number, from 0 to that of the last number.
+    /// Grid coordinates along an axis as a linear function of the unit cube: their values at 0 and at 1. Cell borders
+    /// are the integers from 0 to that of the last value.
     pub fn steps(&self, axis: usize) -> [f64; 2] {
         match self {
             Self::Grey(values) => values.line(axis),
@@ -69,7 +68,7 @@ impl Field {
         }
     }
 
-    /// The memory held.
+    /// Memory in bytes.
     pub fn bytes(&self) -> usize {
         match self {
             Self::Grey(values) => values.bytes(),

@@ -1,27 +1,27 @@
-//! What a medium on a grid gives off by itself.
+//! Emission of a grid medium.
 
 use super::{Field, Values};
 use raywright_base::math::DVec3;
 use raywright_optics::Rgb;
 use raywright_optics::spectra::{COLDEST, Role, Smooth, Waves, black_body, black_body_colour, white};
 
-/// What a medium on a grid gives off by itself, other than in proportion to its density.
+/// Emission of a grid medium that is not proportional to its density.
 #[derive(Clone, Debug)]
 pub enum Glow {
-    /// So much radiance per unit of length.
+    /// Radiance per unit length.
     Radiance(Field),
-    /// What is as hot as this, in kelvin, radiates as a black body does, as far as it absorbs (Kirchhoff, 1860): so
-    /// many times Planck's curve over its greatest value.
+    /// Black-body emission at a temperature in kelvin, times the absorption (Kirchhoff, 1860). Planck's curve is
+    /// normalised to its maximum and multiplied by `brightness`.
     Heat {
-        /// How hot it is.
+        /// Temperature in kelvin.
         kelvin: Values<1>,
-        /// How many times.
+        /// Factor.
         brightness: f64,
     },
 }
 
 impl Glow {
-    /// What it gives off at a point of the unit cube, where so much is absorbed.
+    /// Emission at a point of the unit cube; `absorbed` is the absorption coefficient there.
     #[inline]
     pub fn at(&self, within: DVec3, absorbed: impl FnOnce() -> Rgb) -> Rgb {
         match self {
@@ -33,7 +33,7 @@ impl Glow {
         }
     }
 
-    /// The same at a path's wavelengths.
+    /// Emission at a path's wavelengths.
     pub fn at_waves(&self, within: DVec3, absorbed: impl FnOnce() -> Rgb, waves: &Waves) -> Rgb {
         match self {
             Self::Radiance(field) => Smooth::looked_up(field.at(within), Role::Amount).lanes(waves),
@@ -42,13 +42,13 @@ impl Glow {
                 if kelvin < COLDEST {
                     return Rgb::ZERO;
                 }
-                // Light is told relative to daylight.
+                // Radiance is relative to daylight.
                 absorbed() * waves.lanes(|wavelength| brightness * black_body(wavelength, kelvin) / white(wavelength))
             }
         }
     }
 
-    /// Whether there is any of it in each of so many equal blocks of the unit cube, the last axis fastest.
+    /// One flag per block of the unit cube, the last axis fastest: true if anything in it emits.
     pub fn bright(&self, blocks: [usize; 3]) -> Vec<bool> {
         match self {
             Self::Radiance(field) => field.ranges(blocks).into_iter().map(|[_, most]| most != [0.0; 3]).collect(),
@@ -59,7 +59,7 @@ impl Glow {
         }
     }
 
-    /// The memory held.
+    /// Memory in bytes.
     pub fn bytes(&self) -> usize {
         match self {
             Self::Radiance(field) => field.bytes(),

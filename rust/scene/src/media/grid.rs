@@ -1,27 +1,27 @@
-//! A medium that differs from place to place, by numbers on a grid.
+//! A heterogeneous medium on a grid.
 
 use super::block_walk::{BlockWalk, Majorants, Spectra};
 use super::{Coefficients, Cubic, Field, Glow, Medium, Stretches};
 use raywright_base::math::{Affine, DVec3, Ray};
 use raywright_optics::{Phase, Rgb};
 
-/// A medium whose density is given on a regular grid: where the density is 1, it does to light what its coefficients
-/// say. Outside of the grid there is nothing.
+/// A medium with its density on a regular grid. Its coefficients are those at density 1, scaled by the density; outside
+/// the grid is vacuum.
 #[derive(Clone, Debug)]
 pub struct GridMedium {
     density: Field,
-    /// The share of what is dimmed that is scattered, where that differs from place to place.
+    /// Single-scattering albedo, if it varies.
     albedo: Option<Field>,
-    /// What it gives off by itself, if that does not go with the density.
+    /// Emission that is not proportional to the density.
     glow: Option<Glow>,
     coefficients: Coefficients,
     phase: Phase,
-    /// From the space of the grid to the unit cube.
+    /// Map from grid space to the unit cube.
     into: Affine,
     majorants: Majorants,
 }
 
-/// What a grid has at a point.
+/// Values of the grids at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Here {
     pub density: Rgb,
@@ -29,12 +29,11 @@ pub(super) struct Here {
 }
 
 impl GridMedium {
-    /// A medium of a density, of what it does to light where that is 1, and of what it gives off by itself beside. The
-    /// matrix takes the unit cube to the grid. Where the share that is scattered has a grid of its own, it is a share
-    /// of the extinction of the coefficients.
+    /// Creates a medium from a density, coefficients at density 1, and density-independent emission. The matrix maps
+    /// the unit cube to the grid. An albedo grid gives the scattered share of the extinction.
     ///
     /// # Errors
-    /// If something is negative or not finite, or the matrix has no inverse: what, in a few words.
+    /// A short reason if something is negative or not finite, or the matrix has no inverse.
     pub fn new(
         density: Field,
         albedo: Option<Field>,
@@ -58,39 +57,39 @@ impl GridMedium {
         Ok(medium)
     }
 
-    /// Whether its density has a colour at each point.
+    /// Returns whether the density is RGB.
     pub(super) fn is_coloured(&self) -> bool {
         self.density.is_coloured()
     }
 
-    /// Whether the share that is scattered has a grid.
+    /// Returns whether the albedo is a grid.
     pub(super) fn has_albedo(&self) -> bool {
         self.albedo.is_some()
     }
 
-    /// How long a block is across at most, in the space of the grid.
+    /// Maximum size of a block in grid space.
     pub(super) fn across(&self) -> f64 {
         self.majorants.across()
     }
 
-    /// What is at a point of the unit cube.
+    /// Values of the grids at a point of the unit cube.
     pub(super) fn here(&self, within: DVec3) -> Here {
         let albedo = self.albedo.as_ref().map(|albedo| albedo.at(within));
         Here { density: self.density.at(within), albedo }
     }
 
-    /// A point as the unit cube has it.
+    /// Maps a point to the unit cube.
     pub(super) fn within(&self, point: DVec3) -> DVec3 {
         self.into.point(point)
     }
 
-    /// What lies on a ray between two `t`, where what the medium does to light follows from its coefficients in a way.
+    /// Segments of a ray between two `t`, for a relation between extinction and coefficients.
     pub(super) fn stretches_by(&self, spectra: Spectra, ray: &Ray, span: [f64; 2]) -> Stretches<'_> {
         let (origin, direction) = (self.into.point(ray.origin), self.into.vector(ray.direction));
         Stretches::blocks(BlockWalk::new(&self.majorants, spectra, origin, direction, span))
     }
 
-    /// What it gives off by itself, if that does not go with the density.
+    /// Emission that is not proportional to the density.
     pub(super) fn glow(&self) -> Option<&Glow> {
         self.glow.as_ref()
     }
@@ -124,8 +123,8 @@ impl Medium for GridMedium {
 
     #[inline]
     fn cubic(&self, [from, to]: [DVec3; 2]) -> Cubic {
-        // In plain f64: rounding moves points by no more than the ray's own does, and what is between numbers hardly
-        // changes by that.
+        // Plain f64 is enough: its rounding moves points no more than the ray's own rounding, which barely changes
+        // interpolated values.
         let within = |point: DVec3| self.into.vector(point) + self.into.shift;
         self.density.cubic([within(from), within(to)]).times(self.coefficients.extinction)
     }
@@ -165,7 +164,7 @@ mod tests {
         GridMedium::new(Field::Grey(values), None, None, absorbing, Phase::Isotropic, matrix).unwrap()
     }
 
-    /// The optical depth along a ray to `t`, by a rule that is exact where densities are cubic between so many points.
+    /// Optical depth along a ray to `t`, by a quadrature that is exact if densities are cubic between `pieces` points.
     fn depth(medium: &GridMedium, ray: &Ray, to: f64, pieces: u32) -> f64 {
         let step = to / f64::from(pieces);
         let [(a, wa), (b, wb)] = [(-(1.0f64 / 3.0).sqrt(), 0.5), ((1.0f64 / 3.0).sqrt(), 0.5)];
@@ -184,7 +183,7 @@ mod tests {
         {
             assert_eq!(cube.at(DVec3::new(x, y, z)).extinction, Rgb::splat(value));
         }
-        // In the middle of cells, they are those of the cells up to the faces.
+        // With cell-centered values, the outer half cells are constant.
         let cells = grid([2, 1, 1], At::Centres, vec![1.0, 3.0], UNIT);
         for (x, value) in [(0.0, 1.0), (0.25, 1.0), (0.5, 2.0), (0.75, 3.0), (1.0, 3.0)] {
             assert_eq!(cells.at(DVec3::new(x, 0.3, 0.9)).extinction, Rgb::splat(value));
@@ -195,10 +194,10 @@ mod tests {
     fn optical_depths_are_those_of_the_densities() {
         // 0.4 z from 0 to 3: linear, as the grid is.
         let linear = grid([1, 1, 2], At::Corners, vec![0.0, 1.2], [UNIT[0], UNIT[1], [0.0, 0.0, 3.0, 0.0]]);
-        // Of a number that f32 rounds.
+        // The number is rounded to f32.
         assert!((depth(&linear, &Ray::new(DVec3::ZERO, DVec3::Z), 3.0, 1) - 1.8).abs() < 1e-7);
-        // 1 + 0.9 sin 20x, and 3 exp(−(0.7² + s²) / 0.5) from s = −1 to 2: so many numbers that what lies between is
-        // off by less than their rounding.
+        // 1 + 0.9 sin 20x, and 3 exp(−(0.7² + s²) / 0.5) from s = −1 to 2. With this many values the interpolation
+        // error is below their rounding.
         let count = 20_001;
         let along =
             |f: &dyn Fn(f64) -> f64| (0..count).map(|i| f(f64::from(i) / f64::from(count - 1)) as f32).collect();
@@ -234,11 +233,11 @@ mod tests {
                     let at = |step: i32| start + (stretch.end - start) * (f64::from(step) + 0.5) / 5.0;
                     let density = |step: i32| medium.at(ray.at(at(step))).extinction[0];
                     match stretch.content {
-                        // The fourth differences of a polynomial of the third degree are none.
+                        // The fourth differences of a cubic polynomial are 0.
                         Content::Cubic => {
                             let [a, b, c, d, e] = [0, 1, 2, 3, 4].map(density);
                             assert!((a - 4.0 * b + 6.0 * c - 4.0 * d + e).abs() < 1e-11);
-                            // By the rule of Gauss and Legendre, which is exact of those.
+                            // Gauss-Legendre quadrature, which is exact for cubics.
                             let cubic = medium.cubic([start, stretch.end].map(|t| ray.at(t)));
                             let point = |side: f64| start + (stretch.end - start) * 0.5 * (1.0 + side / 3f64.sqrt());
                             let [a, b] = [-1.0, 1.0].map(|side| medium.at(ray.at(point(side))).extinction[0]);
@@ -254,7 +253,7 @@ mod tests {
                     start = stretch.end;
                 }
                 assert_eq!(start, 9.0);
-                // Where what it does to light is in no proportion to the density, the most of each block is known.
+                // Where extinction is not proportional to the density, the majorant of each block is known.
                 start = 0.25;
                 for stretch in medium.stretches_by(Spectra::OfColours, &ray, [0.25, 9.0]) {
                     let middle = medium.at(ray.at(0.5 * (start + stretch.end))).extinction[0];
@@ -272,7 +271,7 @@ mod tests {
         numbers[23 * 64] = 0.75;
         let medium = grid([24, 8, 8], At::Centres, numbers, UNIT);
         let ray = Ray::new(DVec3::new(-1.0, 0.3, 0.4), DVec3::X);
-        // Without what rounding leaves between the last block and the end of the grid.
+        // Drops the sliver that rounding leaves between the last block and the end of the grid.
         let long = |all: super::super::Stretches<'_>| -> Vec<Stretch> {
             let mut start = 0.0;
             all.filter(|stretch| stretch.end - std::mem::replace(&mut start, stretch.end) > 1e-12).collect()
@@ -283,10 +282,10 @@ mod tests {
             _ => false,
         };
         assert!(even(&contents[0], 0.0) && even(&contents[1], 0.5) && even(&contents[2], 0.5));
-        // So little it varies that a few points tell.
+        // The variation is small enough for a few lookups.
         assert!(matches!(contents[3].content, Content::Varies(range) if range == [Rgb::splat(0.5), Rgb::splat(0.75)]));
         assert!(even(&contents[4], 0.0) && contents.len() == 5);
-        // Numbers stand in the middles of 24 cells, of which each block has eight.
+        // Values are at the centers of 24 cells, eight per block.
         assert_eq!(long(medium.closed_stretches(&ray, [0.0, 9.0])).len(), 2 + 3 * 9);
     }
 
@@ -304,7 +303,7 @@ mod tests {
 
     #[test]
     fn memory_is_that_of_the_numbers_and_little_more() {
-        // Of 512³ numbers the blocks take 1/128 more: 541 MB in all.
+        // For 512³ values the blocks take 1/128 more: 541 MB in total.
         let medium = grid([64; 3], At::Corners, vec![1.0; 1 << 18], UNIT);
         let whole = medium.bytes() * 512;
         assert!(whole <= 600_000_000, "{whole}");

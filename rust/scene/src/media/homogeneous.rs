@@ -1,11 +1,11 @@
-//! A medium that is the same everywhere.
+//! A homogeneous medium.
 
 use super::stretch::{Content, Stretch};
 use super::{Coefficients, Medium, Stretches};
 use raywright_base::math::{DVec3, Ray};
 use raywright_optics::{Phase, Rgb};
 
-/// A medium that is the same everywhere.
+/// A homogeneous medium.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Homogeneous {
     coefficients: Coefficients,
@@ -13,7 +13,7 @@ pub struct Homogeneous {
 }
 
 impl Homogeneous {
-    /// A medium by what it absorbs, scatters and gives off. `None` if one of it is negative or not finite.
+    /// Creates a medium from absorption, scattering and emission. `None` if one of them is negative or not finite.
     pub fn new(absorption: Rgb, scattering: Rgb, emission: Rgb, phase: Phase) -> Option<Self> {
         let coefficients = Coefficients::new(absorption, scattering, emission);
         (absorption.is_radiance() && coefficients.is_physical()).then_some(Self { coefficients, phase })

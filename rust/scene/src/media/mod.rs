@@ -1,4 +1,4 @@
-//! What fills space: one interface over all media.
+//! Participating media: one interface, and one file each.
 
 mod block_walk;
 mod blocks;
@@ -31,77 +31,77 @@ use raywright_optics::spectra::Waves;
 use raywright_optics::{Phase, Rgb};
 use std::fmt::Debug;
 
-/// What fills space, and dims and scatters light on its way.
+/// A participating medium.
 ///
-/// Coefficients are per unit of length in the world. Where a medium differs from place to place, places are those of
-/// the space that its shape is described in, which is not the world's in an instance.
+/// Coefficients are per unit length in world space. Positions of a heterogeneous medium are in the space where its
+/// shape is described, which for an instance is the prototype's.
 pub trait Medium: Debug + Send + Sync {
-    /// How it scatters.
+    /// Phase function.
     fn phase(&self) -> Phase;
 
-    /// Whether it scatters anything anywhere.
+    /// Returns whether the medium scatters anywhere.
     fn scatters(&self) -> bool;
 
-    /// Whether it gives off light anywhere by itself.
+    /// Returns whether the medium emits anywhere.
     fn glows(&self) -> bool;
 
-    /// Whether it is the same everywhere.
+    /// Returns whether the medium is homogeneous.
     fn is_even(&self) -> bool {
         false
     }
 
-    /// What lies on a ray, one stretch after the other, between two `t` of it.
+    /// Consecutive segments of a ray between two `t`.
     fn stretches(&self, ray: &Ray, span: [f64; 2]) -> Stretches<'_>;
 
-    /// The same in red, green and blue, where that may be in more and shorter stretches with closed forms.
+    /// Segments for RGB rendering; there may be more and shorter ones, with closed forms.
     fn closed_stretches(&self, ray: &Ray, span: [f64; 2]) -> Stretches<'_> {
         self.stretches(ray, span)
     }
 
-    /// What there is at a point.
+    /// Coefficients at a point.
     fn at(&self, point: DVec3) -> Coefficients;
 
-    /// The extinction at a point.
+    /// Extinction at a point.
     fn extinction(&self, point: DVec3) -> Rgb {
         self.at(point).extinction
     }
 
-    /// The extinction between two points where that is a polynomial of the third degree.
+    /// Extinction between two points as a polynomial, where it is cubic.
     fn cubic(&self, [from, to]: [DVec3; 2]) -> Cubic {
         let at = |share: f64| self.extinction(from + (to - from) * share);
         Cubic::through([at(0.0), at(1.0 / 3.0), at(2.0 / 3.0), at(1.0)])
     }
 
-    /// What there is at a point, at a path's wavelengths, where it is told by wavelength.
+    /// Coefficients at a point at a path's wavelengths, if the medium is spectral.
     fn at_waves(&self, point: DVec3, waves: &Waves) -> Coefficients {
         self.by_waves(self.at(point), waves)
     }
 
-    /// What there is at a point is this, at a path's wavelengths, where it is told by wavelength.
+    /// Converts coefficients at a point to a path's wavelengths, if the medium is spectral.
     fn by_waves(&self, here: Coefficients, _waves: &Waves) -> Coefficients {
         here
     }
 
-    /// The same of the least extinction in a stretch, or less.
+    /// Converts the minimum extinction of a segment, or a lower bound.
     fn least_by_waves(&self, _least: Rgb, _waves: &Waves) -> Rgb {
         Rgb::ZERO
     }
 
-    /// The same of the greatest extinction in a stretch.
+    /// Converts the maximum extinction of a segment.
     fn most_by_waves(&self, most: Rgb, _waves: &Waves) -> Rgb {
         most
     }
 
-    /// Whether it is told by wavelength.
+    /// Returns whether the medium is spectral.
     fn has_waves(&self) -> bool {
         false
     }
 
-    /// The memory held.
+    /// Memory in bytes.
     fn bytes(&self) -> usize;
 }
 
-/// All stretches of a ray through a medium.
+/// Iterator over the segments of a ray through a medium.
 #[derive(Clone, Debug)]
 pub struct Stretches<'m>(Kind<'m>);
 
@@ -112,12 +112,12 @@ enum Kind<'m> {
 }
 
 impl<'m> Stretches<'m> {
-    /// One, from end to end.
+    /// A single segment.
     fn whole(stretch: Stretch) -> Self {
         Self(Kind::Whole(Some(stretch)))
     }
 
-    /// Those of blocks.
+    /// The segments of a block traversal.
     fn blocks(walk: BlockWalk<'m>) -> Self {
         Self(Kind::Blocks(walk))
     }

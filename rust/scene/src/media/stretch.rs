@@ -1,27 +1,26 @@
-//! A part of a ray in a medium.
+//! Segments of a ray in a medium.
 
 use super::Coefficients;
 use raywright_optics::Rgb;
 
-/// A part of a ray in a medium.
+/// A segment of a ray in a medium.
 #[derive(Clone, Copy, Debug)]
 pub struct Stretch {
-    /// The `t` where it ends; it begins where the one before ended.
+    /// The `t` of its end; it begins at the end of the previous segment.
     pub end: f64,
-    /// What is there.
+    /// The medium in it.
     pub content: Content,
 }
 
-/// What is on a stretch of a ray.
+/// The medium in a segment.
 #[derive(Clone, Copy, Debug)]
 pub enum Content {
-    /// The same everywhere.
+    /// Homogeneous.
     Even(Coefficients),
-    /// Something that must be asked for at each point, with an extinction that is a polynomial of the third degree
-    /// along the ray, as numbers are that are interpolated along each axis of a cell.
+    /// Heterogeneous, with an extinction that is a cubic polynomial along the ray: trilinear interpolation within a
+    /// cell.
     Cubic,
-    /// Something that must be asked for at each point, with an extinction that is nowhere below the first of these and
-    /// nowhere above the second. Where it glows without dimming light, the second is above 0 too, so that points there
-    /// are asked for.
+    /// Heterogeneous, with a lower and an upper bound on the extinction. In an emissive segment without extinction the
+    /// upper bound is positive too, so that emission is sampled.
     Varies([Rgb; 2]),
 }

@@ -1,20 +1,20 @@
-//! Numbers on a regular grid over the unit cube, and what lies between.
+//! Interpolated numbers on a regular grid over the unit cube.
 
 use super::Blocks;
 use raywright_base::math::DVec3;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Where in the cells of a grid its numbers stand.
+/// Placement of a grid's values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum At {
-    /// At their corners: the outermost on the faces of the cube.
+    /// Cell corners: the outermost values are on the faces of the cube.
     Corners,
-    /// In the middle of each: within half a cell of a face, what is there is that of the cell.
+    /// Cell centers: within half a cell of a face, the value is constant.
     Centres,
 }
 
-/// Numbers on a regular grid over the unit cube, `C` of them at a point, interpolated linearly along each axis.
+/// Numbers on a regular grid over the unit cube, `C` per point, interpolated trilinearly.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Values<const C: usize> {
     blocks: Arc<Blocks<C>>,
@@ -22,17 +22,17 @@ pub struct Values<const C: usize> {
 }
 
 impl<const C: usize> Values<C> {
-    /// Of blocks, which may be shared.
+    /// Creates a grid from blocks, which may be shared.
     pub fn new(blocks: Arc<Blocks<C>>, at: At) -> Self {
         Self { blocks, at }
     }
 
-    /// How many numbers there are along each axis.
+    /// Number of values along each axis.
     pub fn size(&self) -> [usize; 3] {
         self.blocks.size()
     }
 
-    /// A coordinate of the unit cube in steps of the grid along an axis, from the first number on.
+    /// Converts a coordinate of the unit cube to grid coordinates, from the first value on.
     #[inline]
     fn steps(&self, axis: usize, u: f64) -> f64 {
         let last = (self.size()[axis] - 1) as f64;
@@ -42,7 +42,7 @@ impl<const C: usize> Values<C> {
         }
     }
 
-    /// The same at 0 and at 1, without the ends.
+    /// Unclamped grid coordinates at 0 and at 1.
     pub fn line(&self, axis: usize) -> [f64; 2] {
         let count = self.size()[axis] as f64;
         match self.at {
@@ -51,7 +51,7 @@ impl<const C: usize> Values<C> {
         }
     }
 
-    /// What is at a point of the unit cube, of which one outside counts as the nearest within.
+    /// Interpolated value at a point of the unit cube; points outside are clamped to it.
     #[inline]
     pub fn value(&self, point: DVec3) -> [f64; C] {
         let mut low = [0; 3];
@@ -79,16 +79,16 @@ impl<const C: usize> Values<C> {
         sum
     }
 
-    /// What is between two points of the unit cube that lie in one cell: the coefficients of a polynomial in the share
-    /// of the way, the constant first.
+    /// Interpolated values between two points in the same cell: coefficients of a polynomial in the position, the
+    /// constant first.
     #[inline]
     pub fn cubic(&self, ends: [DVec3; 2]) -> [[f64; C]; 4] {
         let (mut low, mut high) = ([0; 3], [0; 3]);
-        // Where in the cell it begins, and how far it goes from there.
+        // Position in the cell where the segment begins, and its length there.
         let (mut from, mut by) = ([0.0; 3], [0.0; 3]);
         for axis in 0..3 {
             let (start, end) = (self.steps(axis, ends[0][axis]), self.steps(axis, ends[1][axis]));
-            // Rounding may put an end a hair's breadth beyond a border, but not the middle.
+            // Rounding may place an end slightly beyond a border, but not the middle.
             low[axis] = (0.5 * (start + end)) as usize;
             high[axis] = (low[axis] + 1).min(self.size()[axis] - 1);
             (from[axis], by[axis]) = (start - low[axis] as f64, end - start);
@@ -97,7 +97,7 @@ impl<const C: usize> Values<C> {
         let Some(corners) = self.blocks.cell(low, high) else { return terms };
         for channel in 0..C {
             let value = |corner: usize| f64::from(corners[corner][channel]);
-            // Interpolated along the last axis it is of the first degree, and of one more with each further axis.
+            // Interpolation along the last axis is linear; each further axis raises the degree by one.
             let line = |i: usize| {
                 let slope = value(i + 1) - value(i);
                 [value(i) + slope * from[2], slope * by[2]]
@@ -116,13 +116,12 @@ impl<const C: usize> Values<C> {
         terms
     }
 
-    /// The least and the greatest number of each kind in each of so many equal blocks of the unit cube, the last axis
-    /// fastest.
+    /// Minimum and maximum of each number in equal blocks of the unit cube, the last axis fastest.
     pub fn ranges(&self, blocks: [usize; 3]) -> impl Iterator<Item = [[f32; C]; 2]> + '_ {
-        // Which numbers count in a part of the cube: those within, and the next on either side.
+        // Indices that affect a block: those within, and the next on either side.
         let counting = move |axis: usize, block: usize| -> Range<usize> {
             let [from, to] = [block, block + 1].map(|b| self.steps(axis, b as f64 / blocks[axis] as f64));
-            // What rounding may have moved to the other side of a number counts too.
+            // Widened for values that rounding may have moved to the other side.
             let last = (self.size()[axis] - 1) as f64;
             let [from, to] = [from * (1.0 - 1e-12), (to * (1.0 + 1e-12)).min(last)];
             from.floor() as usize..to.ceil() as usize + 1
@@ -133,7 +132,7 @@ impl<const C: usize> Values<C> {
         })
     }
 
-    /// The memory held.
+    /// Memory in bytes.
     pub fn bytes(&self) -> usize {
         self.blocks.bytes()
     }

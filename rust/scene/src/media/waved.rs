@@ -1,4 +1,4 @@
-//! Media by wavelength.
+//! Spectral media.
 
 use super::{Coefficients, Cubic, Medium, Stretches};
 use raywright_base::math::{DVec3, Ray};
@@ -6,17 +6,17 @@ use raywright_optics::spectra::{Role, Smooth, Spectrum, Waves};
 use raywright_optics::{Phase, Rgb};
 use std::sync::Arc;
 
-/// A medium that absorbs and scatters by spectra, everywhere the same ones, as much as there is of it.
+/// A medium with constant absorption and scattering spectra, scaled by its density.
 #[derive(Clone, Debug)]
 pub struct WavedMedium {
     medium: Arc<dyn Medium>,
     absorption: Tint,
     scattering: Tint,
-    /// What it gives off; none where that has a colour at each point.
+    /// Emission spectrum; `None` if the emission has a colour per point.
     emission: Option<Tint>,
 }
 
-/// A spectrum, and the mean of the channels that the medium has for it.
+/// A spectrum, and the mean of the RGB channels that represent it in the medium.
 #[derive(Clone, Debug)]
 struct Tint {
     spectrum: Arc<Spectrum>,
@@ -28,15 +28,15 @@ impl Tint {
         Self { spectrum, mean: colour.mean() }
     }
 
-    /// As often as the medium has its channels.
+    /// The spectrum, scaled by the ratio of the mean channels.
     fn lanes(&self, here: Rgb, waves: &Waves) -> Rgb {
         if self.mean > 0.0 { self.spectrum.lanes(waves) * (here.mean() / self.mean) } else { Rgb::ZERO }
     }
 }
 
 impl WavedMedium {
-    /// Of a medium in red, green and blue, and what these stand for: what is absorbed, scattered and given off at unit
-    /// density, each as a spectrum and in the colour that the medium has for it.
+    /// Creates a spectral medium from one in RGB. Absorption, scattering and emission at unit density are given as
+    /// spectra, with the RGB colours that represent them.
     pub fn new(
         medium: Arc<dyn Medium>,
         [absorption, scattering]: [(Arc<Spectrum>, Rgb); 2],
@@ -93,7 +93,7 @@ impl Medium for WavedMedium {
     fn most_by_waves(&self, most: Rgb, waves: &Waves) -> Rgb {
         let of = |tint: &Tint| tint.lanes(Rgb::splat(tint.mean), waves);
         let mean = self.absorption.mean + self.scattering.mean;
-        // A little more, for rounding.
+        // Slightly increased, to bound rounding.
         if mean > 0.0 {
             (of(&self.absorption) + of(&self.scattering)) * (most.mean() / mean * (1.0 + 1e-12))
         } else {
@@ -102,7 +102,7 @@ impl Medium for WavedMedium {
     }
 
     fn least_by_waves(&self, least: Rgb, waves: &Waves) -> Rgb {
-        // A little less, for rounding.
+        // Slightly decreased, to bound rounding.
         self.most_by_waves(least, waves) * (1.0 - 1e-11)
     }
 

@@ -1,4 +1,4 @@
-//! Media on grids by wavelength, where they have other colours at other points.
+//! Spectral grid media with a colour per point.
 
 use super::block_walk::Spectra;
 use super::grid::Here;
@@ -8,24 +8,24 @@ use raywright_optics::spectra::{Role, Smooth, Spectrum, Waves};
 use raywright_optics::{Phase, Rgb};
 use std::sync::Arc;
 
-/// A medium on a grid that absorbs and scatters by spectra and, where it has colours at its points, by the smooth
-/// spectra of these too.
+/// A spectral medium on a grid. Its spectra are constant and, where the grid has RGB values, multiplied by the smooth
+/// spectra of these.
 #[derive(Clone, Debug)]
 pub struct WavedGrid {
-    /// Its density alone: coefficients of 1, or of 0 where there is none of something.
+    /// The density alone: coefficients are 1, or 0 for effects that are absent.
     grid: GridMedium,
-    /// What is absorbed, scattered and given off at unit density; all that is dimmed for what is absorbed, where the
-    /// share that is scattered has a grid.
+    /// Absorption, scattering and emission spectra at unit density. With an albedo grid, `absorption` holds the whole
+    /// extinction.
     absorption: Arc<Spectrum>,
     scattering: Arc<Spectrum>,
     emission: Option<Arc<Spectrum>>,
-    /// The colour of all that is dimmed.
+    /// RGB colour of the extinction.
     colour: Rgb,
 }
 
 impl WavedGrid {
-    /// Of a medium that does at unit density 1 to all light, as far as it does anything, and what that 1 stands for,
-    /// each as a spectrum and in its colour.
+    /// Creates a spectral medium from a grid with coefficients of 1, or 0 for absent effects. Each 1 stands for a
+    /// spectrum, given with its RGB colour.
     pub fn new(
         grid: GridMedium,
         [absorption, scattering]: [(Arc<Spectrum>, Rgb); 2],
@@ -35,7 +35,7 @@ impl WavedGrid {
         Self { grid, absorption: absorption.0, scattering: scattering.0, emission, colour }
     }
 
-    /// What is dimmed and scattered at unit density.
+    /// Extinction and scattering at unit density.
     fn plain(&self, waves: &Waves, has_albedo: bool) -> [Rgb; 2] {
         let absorbed = self.absorption.lanes(waves);
         let scattered = if has_albedo { Rgb::ZERO } else { self.scattering.lanes(waves) };
@@ -95,7 +95,7 @@ impl Medium for WavedGrid {
 
     fn most_by_waves(&self, most: Rgb, waves: &Waves) -> Rgb {
         let [dimmed, _] = self.plain(waves, self.grid.has_albedo());
-        // The smooth spectrum of a colour is nowhere above twice its greatest channel.
+        // The smooth spectrum of a colour never exceeds twice its greatest channel.
         let more = if self.grid.is_coloured() { 2.0 } else { 1.0 };
         let most = dimmed * (most.max() * more * (1.0 + 1e-12));
         if self.glows() { most.at_least(Rgb::splat(1.0 / self.grid.across())) } else { most }

@@ -1,15 +1,14 @@
-//! Shading normals that are taken as they are given: light does not fade at the geometric horizon, and no normal is
-//! bent towards the viewer.
+//! Shading normals used as given: no fading at the geometric horizon, and no bending towards the viewer.
 
 use super::SurfaceInteraction;
 use crate::SurfacePoint;
 use raywright_base::math::{DVec3, Frame, Ray};
 use raywright_optics::Bsdf;
 
-/// The share of light that arrives under a normal that leans from that of its surface, by the cosine between the two
-/// and that between the surface's and the light. What leans so is taken for one of many facets, of a roughness that
-/// would lean them as much, which stand in one another's light (Estevez, Lecocq and Stein, "A Microfacet-Based
-/// Shadowing Function to Solve the Bump Terminator Problem", 2019).
+/// Shadowing of a shading normal that deviates from its surface's, by the cosine between the two and the light's cosine
+/// to the latter. The deviating normal is treated as one facet of a microfacet surface of corresponding roughness,
+/// whose facets shadow each other (Estevez, Lecocq and Stein, "A Microfacet-Based Shadowing Function to Solve the Bump
+/// Terminator Problem", 2019).
 fn shadowing(leaning: f64, light: f64) -> f64 {
     let tangent = |cosine: f64| (1.0 - cosine * cosine).max(0.0) / (cosine * cosine);
     let alpha = (0.125 * tangent(leaning)).min(1.0);
@@ -17,9 +16,10 @@ fn shadowing(leaning: f64, light: f64) -> f64 {
 }
 
 impl<B: Bsdf> SurfaceInteraction<B> {
-    /// As [`SurfaceInteraction::with`], by a normal that is taken as it is given.
+    /// [`SurfaceInteraction::with`] for a normal that is used as given.
     ///
-    /// One that the ray would see from another side than the surface's own shading normal is turned half round that.
+    /// A given normal that faces away while the surface's own shading normal faces the ray, or the reverse, is
+    /// reflected about the own one.
     pub fn as_given(ray: &Ray, surface: SurfacePoint, (given, tangent): (DVec3, Option<DVec3>), bsdf: B) -> Self {
         let back = -ray.direction;
         let (side, own) = (1f64.copysign(back.dot(surface.normal)), surface.shading_normal);
@@ -30,13 +30,13 @@ impl<B: Bsdf> SurfaceInteraction<B> {
             None => Frame::new(shading),
         };
         let is_flat = shading == surface.normal;
-        // Others may see what a bump makes of it from other sides.
+        // A perturbed normal may be visible from other sides for other directions.
         let is_bent = given != own;
         Self { surface, frame, bsdf, wo: frame.to_local(back), side, is_flat, is_bent, as_given: true, curvature: 0.0 }
     }
 
-    /// How much light from a direction counts: none of what would have to go through the surface to be reflected, or
-    /// would not have to be let through, and none that is seen from other sides by two normals of the surface.
+    /// Weight of a direction without fading. It is 0 if the sides by shading and geometric normal disagree on
+    /// transmission, or if the two shading normals see the light on different sides.
     pub(super) fn unfaded(&self, wi: DVec3, direction: DVec3) -> f64 {
         if (wi.z * self.wo.z < 0.0) != self.is_through(direction) {
             return 0.0;
@@ -49,7 +49,7 @@ impl<B: Bsdf> SurfaceInteraction<B> {
         if wi.z * light <= 0.0 { 0.0 } else { shadowing(own.dot(shading), light) }
     }
 
-    /// The same as those see it whose rays come back along a direction; `None` where more than that would differ.
+    /// The same interaction for another outgoing direction; `None` if more than that would differ.
     pub(super) fn met_as_given(&self, direction: DVec3) -> Option<SurfaceInteraction<&B>> {
         let &Self { surface, frame, ref bsdf, side, is_flat, is_bent, as_given, .. } = self;
         let wo = frame.to_local(direction);

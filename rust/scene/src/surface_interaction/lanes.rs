@@ -1,29 +1,29 @@
-//! Encounters by lane.
+//! Surface interactions in structure-of-arrays form.
 
 use super::SurfaceInteraction;
 use crate::{SurfaceLanes, SurfacePoint};
 use raywright_base::math::{Frame, LANES, VectorLanes};
 use raywright_optics::Bsdf;
 
-/// Encounters, a lane each, but for how they scatter.
+/// Surface interactions without their BSDFs, one per lane.
 #[derive(Clone, Debug)]
 pub struct SurfaceInteractionLanes {
     surface: SurfaceLanes,
     tangent: VectorLanes,
     bitangent: VectorLanes,
-    /// The z of the shading frame.
+    /// z axis of the shading frame.
     up: VectorLanes,
     wo: VectorLanes,
     side: [f64; LANES],
     curvature: [f64; LANES],
-    // Yes or no, as wide as the rest of a lane.
+    // Flags as wide as the other elements of a lane.
     is_flat: [u64; LANES],
     is_bent: [u64; LANES],
     as_given: [u64; LANES],
 }
 
 impl SurfaceInteractionLanes {
-    /// At these points; all else is to be set.
+    /// Interactions at these points; all other fields must be set.
     pub fn at(surface: &SurfaceLanes) -> Self {
         let nothing = VectorLanes::ZERO;
         Self {
@@ -40,25 +40,25 @@ impl SurfaceInteractionLanes {
         }
     }
 
-    /// Moves to other points; all else is to be set.
+    /// Replaces the points; all other fields must be set.
     pub fn set_surfaces(&mut self, surface: &SurfaceLanes) {
         self.surface.clone_from(surface);
     }
 
-    /// The encounter of a lane, with what scatters there.
+    /// The interaction in a lane, with its BSDF.
     #[inline(always)]
     pub fn get<B: Bsdf>(&self, lane: usize, bsdf: B) -> SurfaceInteraction<B> {
         SurfaceInteraction { as_given: self.is_as_given(lane), ..self.faded(lane, bsdf) }
     }
 
-    /// Whether the shading normal of a lane is taken as it is given.
+    /// Returns whether the shading normal of a lane is used as given.
     #[inline(always)]
     pub fn is_as_given(&self, lane: usize) -> bool {
         self.as_given[lane] != 0
     }
 
-    /// The same as if no normal were taken as it is given: loops over lanes have no code for those, which are few, and
-    /// are seen to afterwards.
+    /// The interaction in a lane, treated as if its normal were not used as given. Lane loops have no code for the few
+    /// that are; these are corrected afterwards.
     #[inline(always)]
     pub fn faded<B: Bsdf>(&self, lane: usize, bsdf: B) -> SurfaceInteraction<B> {
         SurfaceInteraction {
@@ -78,25 +78,25 @@ impl SurfaceInteractionLanes {
         }
     }
 
-    /// The point of a lane.
+    /// The surface point of a lane.
     #[inline(always)]
     pub fn surface(&self, lane: usize) -> SurfacePoint {
         self.surface.get(lane)
     }
 
-    /// Back along the rays of all lanes, in the shading frames.
+    /// Directions back along the rays of all lanes, in the shading frames.
     #[inline(always)]
     pub fn wo_lanes(&self) -> &VectorLanes {
         &self.wo
     }
 
-    /// The mean curvature of a lane, as [`SurfaceInteraction::curvature`] has it.
+    /// Mean curvature of a lane; see [`SurfaceInteraction::curvature`].
     #[inline(always)]
     pub fn curvature(&self, lane: usize) -> f64 {
         self.curvature[lane]
     }
 
-    /// Sets the encounter of a lane, but for its point.
+    /// Sets the interaction of a lane, except its point.
     #[inline(always)]
     pub fn set<B: Bsdf>(&mut self, lane: usize, here: &SurfaceInteraction<B>) {
         self.tangent.set(lane, here.frame.tangent);

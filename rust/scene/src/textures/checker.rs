@@ -1,13 +1,13 @@
-//! Cells of two kinds in turn.
+//! Checkerboards.
 
 use super::waves::pulse;
 use super::{Domain, Needs, Pattern, TexturePoint};
 
-/// Unit cells that are 0 and 1 in turn along each axis, averaged over a box in closed form: far away they become even
-/// grey.
+/// Unit cells that alternate between 0 and 1 along each axis, box-filtered in closed form, so that they become uniform
+/// grey in the distance.
 ///
-/// In texture coordinates these are squares, and the one at the lower left is 0; in space they are cubes, and a surface
-/// that lies exactly between two layers has no say in which it shows.
+/// In texture coordinates the cells are squares, with 0 at the lower left. In space they are cubes; on a surface
+/// exactly between two layers the result is arbitrary.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Checker(pub Domain);
 
@@ -15,7 +15,8 @@ impl Pattern for Checker {
     #[inline]
     fn amount(&self, point: &TexturePoint) -> f64 {
         let place = self.0.place(point);
-        // A checker is a product of waves of 1 and −1, so its mean over a box is the product of theirs.
+        // A checkerboard is a product of square waves of 1 and −1, so its mean over a box is the product of their
+        // means.
         let wave = |axis: usize| 2.0 * pulse(0.5 * place.point[axis], 0.5 * place.widths[axis], 0.5) - 1.0;
         let product: f64 = (0..place.axes).map(wave).product();
         0.5 - 0.5 * product
@@ -49,7 +50,7 @@ mod tests {
                     checker.amount(&at(u + by(i % steps), v + by(i / steps), 0.0))
                 })
                 .sum();
-            // Each edge that crosses the box may be off by half a row of it.
+            // Each edge that crosses the box adds an error of half a row.
             let mean = sum / f64::from(steps * steps);
             prop_assert!((checker.amount(&at(u, v, width)) - mean).abs() < 5.0 / f64::from(steps));
         }
@@ -61,7 +62,7 @@ mod tests {
         for (i, j) in (0..16).flat_map(|i| (0..16).map(move |j| (i - 8, j - 8))) {
             let middle = |k: i32| (f64::from(k) + 0.5) / 8.0;
             assert_eq!(checker.amount(&at(middle(i), middle(j), 0.0)), f64::from((i + j).rem_euclid(2)));
-            // A width within the cell changes nothing.
+            // A footprint within the cell has no effect.
             assert_eq!(checker.amount(&at(middle(i), middle(j), 0.12)), f64::from((i + j).rem_euclid(2)));
         }
         assert!((checker.amount(&at(0.3, 0.7, 1.0)) - 0.5).abs() < 1e-12);

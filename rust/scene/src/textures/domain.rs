@@ -1,4 +1,4 @@
-//! Where procedural textures live: in texture coordinates, or in the space of the shape.
+//! Domains of procedural textures: texture coordinates, or the shape's space.
 
 use super::{Needs, TexturePoint};
 use raywright_base::math::DVec3;
@@ -8,26 +8,26 @@ use raywright_base::math::DVec3;
 pub struct UvTransform(pub [[f64; 3]; 2]);
 
 impl Default for UvTransform {
-    /// The one that changes nothing.
+    /// The identity.
     fn default() -> Self {
         Self([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
     }
 }
 
 impl UvTransform {
-    /// Where coordinates go.
+    /// Maps texture coordinates.
     #[inline]
     pub fn point(&self, [u, v]: [f64; 2]) -> [f64; 2] {
         self.0.map(|[a, b, c]| a * u + b * v + c)
     }
 
-    /// By how much it widens a round spot, along each of the new coordinates.
+    /// Factors by which a circle widens along each of the mapped coordinates.
     #[inline]
     pub fn stretch(&self) -> [f64; 2] {
         self.0.map(|[a, b, _]| a.hypot(b))
     }
 
-    /// The determinant of its linear part.
+    /// Determinant of the linear part.
     #[inline]
     pub fn determinant(&self) -> f64 {
         let [[a, b, _], [c, d, _]] = self.0;
@@ -40,18 +40,18 @@ impl UvTransform {
 pub struct ObjectTransform(pub [[f64; 4]; 3]);
 
 impl Default for ObjectTransform {
-    /// The one that changes nothing.
+    /// The identity.
     fn default() -> Self {
         Self([[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]])
     }
 }
 
-/// Where a procedural texture lives.
+/// The domain of a procedural texture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Domain {
     /// On the surface: x and y are texture coordinates, z is 0.
     Uv(UvTransform),
-    /// In space, as if the shape were cut from a block of it.
+    /// In space, as if the shape were carved from a block.
     Object(ObjectTransform),
 }
 
@@ -59,14 +59,14 @@ pub enum Domain {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Place {
     pub point: DVec3,
-    /// How far neighbouring rays are apart along each axis.
+    /// Distance of adjacent rays along each axis.
     pub widths: DVec3,
-    /// How many of the axes mean something: 2 or 3.
+    /// Number of axes in use: 2 or 3.
     pub axes: usize,
 }
 
 impl Place {
-    /// How far neighbouring rays are apart, as one number: the root mean square over the axes.
+    /// Distance of adjacent rays as one number: the root mean square over the axes.
     #[inline]
     pub fn size(&self) -> f64 {
         (self.widths.length_squared() / self.axes as f64).sqrt()
@@ -74,7 +74,7 @@ impl Place {
 }
 
 impl Domain {
-    /// Where a point lies in it.
+    /// Maps a lookup point to the domain.
     #[inline]
     pub(super) fn place(&self, point: &TexturePoint) -> Place {
         match self {
@@ -92,7 +92,7 @@ impl Domain {
         }
     }
 
-    /// What must be known of a point to place it.
+    /// The lookup data that the map needs.
     pub(super) fn needs(&self) -> Needs {
         match self {
             Self::Uv(_) => Needs { uv: true, width: true, ..Needs::NONE },
@@ -119,7 +119,7 @@ mod tests {
         let rows = [[0.0, 2.0, 0.0, 1.0], [3.0, 0.0, 4.0, 0.0], [0.0, 0.0, -1.0, 9.0]];
         let inside = Domain::Object(ObjectTransform(rows)).place(&point);
         assert_eq!((inside.point, inside.widths), (DVec3::new(5.0, 15.0, 6.0), DVec3::new(1.0, 2.5, 0.5)));
-        // A map that scales evenly scales the size.
+        // A uniform scaling scales the size.
         let even = ObjectTransform([[0.0, 7.0, 0.0, 0.0], [7.0, 0.0, 0.0, 0.0], [0.0, 0.0, 7.0, 0.0]]);
         assert!((Domain::Object(even).place(&point).size() - 3.5).abs() < 1e-15);
         assert!((Domain::Uv(UvTransform::default()).place(&point).size() - 0.1).abs() < 1e-16);

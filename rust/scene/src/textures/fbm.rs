@@ -1,44 +1,44 @@
-//! Noise of many sizes.
+//! Fractal noise.
 
 use super::{Domain, Needs, Pattern, TexturePoint, perlin};
 use raywright_base::math::DVec3;
 
-/// Noise in octaves, each finer and weaker than the one before.
+/// Octaves of noise, each finer and weaker than the one before.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Octaves {
-    /// How many.
+    /// Number of octaves.
     pub count: u32,
-    /// How many times finer each is than the one before.
+    /// Ratio of frequencies of consecutive octaves.
     pub lacunarity: f64,
-    /// How many times as strong.
+    /// Ratio of amplitudes of consecutive octaves.
     pub gain: f64,
-    /// Which of all noises.
+    /// Random seed.
     pub seed: u32,
 }
 
 impl Default for Octaves {
-    /// Eight, each twice as fine and half as strong.
+    /// Eight octaves, each twice as fine and half as strong.
     fn default() -> Self {
         Self { count: 8, lacunarity: 2.0, gain: 0.5, seed: 0 }
     }
 }
 
 impl Octaves {
-    /// Widths, in cells, from which on a noise fades, and at which it is gone. A noise has no frequencies to speak of
-    /// above one a cell, which two samples a cell still tell.
+    /// Footprints in cells between which noise fades out. Noise has hardly any frequencies above one per cell, which
+    /// two samples per cell resolve.
     const FADES: [f64; 2] = [0.5, 1.0];
 
-    /// The sum at a point, of which neighbours are `size` apart: what is finer is left out, as its mean is 0.
+    /// The sum at a point with a footprint of `size`. Unresolved octaves are dropped, because their mean is 0.
     #[inline]
     pub fn sum(&self, point: DVec3, size: f64) -> f64 {
         let (mut sum, mut strength, mut frequency) = (0.0, 1.0, 1.0);
         for octave in 0..self.count {
             let left = Self::left(size * frequency);
             if left == 0.0 {
-                // Coarser ones, should they come, are rarely asked for: a lacunarity is above 1.
+                // The lacunarity is above 1 in practice, so later octaves are unresolved too.
                 break;
             }
-            // Without a shift the zeros of all lattices would meet in the origin.
+            // Without an offset, the zeros of all lattices would coincide at the origin.
             let shift = DVec3::new(0.618_034, 0.414_214, 0.732_051) * f64::from(octave);
             sum += left * strength * perlin(point * frequency + shift, self.seed.wrapping_add(octave));
             strength *= self.gain;
@@ -47,8 +47,7 @@ impl Octaves {
         sum
     }
 
-    /// How fast the sum changes with the point, as a root mean square, of what is left at this size. A noise changes by
-    /// about 1 a cell.
+    /// Root-mean-square slope of the sum at this footprint. The slope of noise is about 1 per cell.
     #[inline]
     pub(super) fn slope(&self, size: f64) -> f64 {
         let (mut squares, mut each, mut frequency) = (0.0, 1.0, 1.0);
@@ -69,12 +68,12 @@ impl Octaves {
 }
 
 /// Fractional Brownian motion: clouds, stains, terrain (Mandelbrot and Van Ness, 1968; as a sum of noises: Perlin, "An
-/// Image Synthesizer", 1985). A sum beyond ±1, which is rare, counts as that.
+/// Image Synthesizer", 1985). The rare values beyond ±1 are clamped.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fbm {
-    /// Where it lies.
+    /// Domain.
     pub domain: Domain,
-    /// What it is summed of.
+    /// Octaves of the sum.
     pub octaves: Octaves,
 }
 
@@ -95,7 +94,7 @@ mod tests {
     use super::super::ObjectTransform;
     use super::*;
 
-    /// Points spread evenly through some thousand cells.
+    /// Points distributed uniformly over some thousand cells.
     fn points() -> impl Iterator<Item = DVec3> {
         (1..20_000u32).map(|i| {
             let way = |step: f64| (f64::from(i) * step).fract() * 40.0;
@@ -107,7 +106,7 @@ mod tests {
     fn octaves_finer_than_the_size_are_cut() {
         let octaves = |count| Octaves { count, ..Octaves::default() };
         for p in points().take(100) {
-            // At a size of 1/8, octaves of frequency up to 4 are whole, and from 8 on nothing is left.
+            // At a size of 1/8, octaves up to frequency 4 are resolved, and those from 8 on vanish.
             assert_eq!(octaves(8).sum(p, 0.125), octaves(3).sum(p, 0.0));
             assert_eq!(octaves(8).sum(p, 1.0), 0.0);
             let whole: f64 = octaves(5).sum(p, 0.0);
@@ -126,7 +125,7 @@ mod tests {
                 sum += amount;
                 count += 1.0;
             }
-            // Of 64,000 cells with a deviation of about 0.15 each: five of its standard deviations are 0.003.
+            // 64,000 cells with a deviation of about 0.15 each: five standard deviations are 0.003.
             assert!((sum / count - 0.5).abs() < 0.006, "{}", sum / count);
         }
     }

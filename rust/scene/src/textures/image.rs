@@ -1,48 +1,48 @@
-//! Pictures on surfaces.
+//! Image textures.
 
 use super::picture::Level;
 use super::{Needs, Picture, Texture, TexturePoint, UvTransform};
 use raywright_optics::Rgb;
 use std::sync::Arc;
 
-/// What is beyond the edges of a picture.
+/// Treatment of coordinates beyond the edges of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wrap {
-    /// The same again.
+    /// Repeat the picture.
     Repeat,
-    /// The points at its edge.
+    /// Clamp to the edge.
     Clamp,
-    /// The same again, mirrored every other time.
+    /// Repeat the picture, mirrored every other time.
     Mirror,
 }
 
-/// How a value is made of the points of a picture.
+/// Filtering of texels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Filter {
-    /// The nearest point.
+    /// The nearest texel.
     Nearest,
-    /// The four around, in proportion.
+    /// Bilinear interpolation of four texels.
     Bilinear,
-    /// The four around in the two sizes of the picture whose points are about as wide as what is asked for (Williams,
-    /// "Pyramidal Parametrics", 1983).
+    /// Bilinear interpolation in the two mipmap levels closest to the footprint (Williams, "Pyramidal Parametrics",
+    /// 1983).
     Trilinear,
 }
 
-/// A picture, over texture coordinates from (0, 0) at its lower left to (1, 1).
+/// A picture over texture coordinates from (0, 0) at its lower left to (1, 1).
 #[derive(Clone, Debug)]
 pub struct ImageTexture {
-    /// The picture; with smaller copies for [`Filter::Trilinear`].
+    /// The picture; with mipmap levels for [`Filter::Trilinear`].
     pub picture: Arc<Picture>,
-    /// From the surface's coordinates to those of the picture.
+    /// Map from the surface's coordinates to those of the picture.
     pub uv: UvTransform,
-    /// What is beyond it, along u and along v.
+    /// Wrapping along u and along v.
     pub wrap: [Wrap; 2],
-    /// How values are made of points.
+    /// Filter.
     pub filter: Filter,
 }
 
 impl Wrap {
-    /// A coordinate not far from the picture that stands for this one: so that no digit is lost on the way to points.
+    /// An equivalent coordinate near the picture, so that converting it to texels loses no digits.
     #[inline]
     fn near(self, x: f64) -> f64 {
         match self {
@@ -52,7 +52,7 @@ impl Wrap {
         }
     }
 
-    /// The point that stands for the `i`th of a row of `n`.
+    /// The texel index that replaces `i` in a row of `n`.
     #[inline]
     fn index(self, i: i64, n: usize) -> usize {
         let n = n as i64;
@@ -69,7 +69,7 @@ impl Wrap {
 }
 
 impl ImageTexture {
-    /// The value in one size of the picture, at a place from its upper left (0, 0) to (1, 1).
+    /// Value in a mipmap level, at a position from its upper left (0, 0) to (1, 1).
     #[inline]
     fn bilinear(&self, level: &Level, [s, t]: [f64; 2]) -> Rgb {
         let (x, y) = (s * level.width as f64 - 0.5, t * level.height as f64 - 0.5);
@@ -83,12 +83,12 @@ impl ImageTexture {
         upper + (lower - upper) * (y - top)
     }
 
-    /// How many times the picture is to be halved for its points to be this wide, in texture coordinates.
+    /// Mipmap level at which a texel has this width in texture coordinates.
     #[inline]
     fn halvings(&self, width: f64) -> f64 {
         let full = self.picture.level(0);
-        // Points of a picture that lies on a surface without distortion are as wide as high there, whatever its sides:
-        // so what counts is how many of them an area holds.
+        // On a surface without distortion, texels are as wide as high, whatever the picture's aspect ratio. So the
+        // number of texels per area determines the level.
         let texels = width * (self.uv.determinant().abs() * (full.width * full.height) as f64).sqrt();
         if texels > 1.0 { texels.log2() } else { 0.0 }
     }
@@ -117,7 +117,7 @@ impl Texture for ImageTexture {
                 }
             }
         };
-        // Sums of shares may be rounded out of the range.
+        // Rounding of the weighted sum may leave the range.
         let [low, high] = self.picture.range();
         value.at_least(low).at_most(high)
     }
@@ -154,7 +154,7 @@ mod tests {
         #[test]
         fn ramps_come_out_as_they_went_in(u in 0.1..0.9f64, v in 0.1..0.9f64, dark in -1.0..1.0f32) {
             let (w, h) = (16u32, 8u32);
-            // A linear function at the middle of each point; rows from the top.
+            // A linear function at texel centers, rows from the top.
             let f = |u: f32, v: f32| [dark + u, 2.0 * v - u, 0.25 * v];
             let all = (0..w * h).map(|i| {
                 let middle = |k: u32, n: u32| (k as f32 + 0.5) / n as f32;
@@ -189,7 +189,7 @@ mod tests {
         }
         let image = texture(2, 2, corners, Wrap::Repeat, Filter::Bilinear);
         assert_eq!(image.at(&at(0.5, 0.5, 0.0)), Rgb::splat(1.5));
-        // Over the edge, where it begins anew.
+        // Across the edge, where it repeats.
         assert_eq!(image.at(&at(0.0, 0.25, 0.0)), Rgb::splat(2.5));
         assert_eq!(image.at(&at(-7.0, 1e9 + 0.25, 0.0)), Rgb::splat(2.5));
     }
@@ -213,12 +213,12 @@ mod tests {
         assert_eq!(image.at(&at(0.3, 0.4, 1.0)), Rgb::splat(0.5));
         assert_eq!(image.at(&at(0.3, 0.4, 2.0 / 8.0)), Rgb::splat(0.5));
         assert_eq!(image.at(&at(0.3, 0.4, 1e9)), image.mean());
-        // Between two sizes in proportion to the logarithm: the finer shows the point, the coarser the mean.
+        // Between two levels, linear in the logarithm: the finer shows the texel, the coarser the mean.
         let middle = |width: f64| image.at(&at(1.5 / 8.0, 0.5 / 8.0, width))[0];
         let whole = middle(0.0);
         assert!(whole == 0.0 || whole == 1.0);
         assert!((middle(2f64.sqrt() / 8.0) - (0.5 * whole + 0.25)).abs() < 1e-12);
-        // A map that repeats the picture makes its points smaller.
+        // A map that repeats the picture makes its texels smaller.
         let finer = ImageTexture { uv: UvTransform([[4.0, 0.0, 0.0], [0.0, 4.0, 0.0]]), ..image };
         assert_eq!(finer.halvings(2.0 / 8.0), 3.0);
     }

@@ -4,13 +4,13 @@ use super::waves::sine;
 use super::{Domain, Needs, Octaves, Pattern, TexturePoint};
 use std::f64::consts::TAU;
 
-/// Veins: bands across the x axis, one each unit, bent by noise (Perlin, "An Image Synthesizer", 1985). Bands that are
-/// too fine for the width fade to their mean.
+/// Marble: veins across the x axis with period 1, distorted by noise (Perlin, "An Image Synthesizer", 1985). Veins
+/// below the footprint fade to their mean.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Marble {
-    /// Where it lies.
+    /// Domain.
     pub domain: Domain,
-    /// How far the noise moves the bands, in units.
+    /// Amplitude of the distortion, in units.
     pub distortion: f64,
     /// The noise.
     pub octaves: Octaves,
@@ -22,8 +22,8 @@ impl Pattern for Marble {
         let place = self.domain.place(point);
         let size = place.size();
         let bent = place.point.x + self.distortion * self.octaves.sum(place.point, size);
-        // Over the width the noise bends the bands by this much, as a standard deviation (that of an even spread is its
-        // width over √12), in a way that is as good as Gaussian: so much is left of a sine by that.
+        // Standard deviation of the veins' phase over the footprint (that of a uniform distribution is its width over
+        // √12). The phase is approximately Gaussian, which attenuates the sine by this factor.
         let spread = TAU * size * self.distortion * self.octaves.slope(size);
         let left = (-spread * spread / 24.0).exp();
         0.5 + 0.5 * sine(bent, place.widths.x) * left
@@ -65,7 +65,7 @@ mod tests {
                 .sum::<f64>()
                 / 500.0
         };
-        // The mean distance of a sine from its mean is 2/π of its amplitude.
+        // The mean absolute deviation of a sine is 2/π of its amplitude.
         assert!((spread(0.0) - std::f64::consts::FRAC_1_PI).abs() < 0.03, "{}", spread(0.0));
         assert!(spread(0.4) < 0.1 * spread(0.0));
     }

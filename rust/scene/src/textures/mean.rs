@@ -1,4 +1,4 @@
-//! Colours as numbers.
+//! Conversion of color textures to numbers.
 
 use super::{Needs, Texture, TexturePoint};
 use raywright_optics::Rgb;

@@ -1,17 +1,17 @@
-//! Two textures by a third.
+//! Mixtures of two textures by a third.
 
 use super::pattern::{blend, either};
 use super::{Needs, Texture, TexturePoint, Value};
 use raywright_optics::Rgb;
 
-/// Two values, weighed by a third, channel by channel.
+/// A linear interpolation of two values by a third, channel by channel.
 #[derive(Clone, Debug)]
 pub struct MixTexture {
-    /// What is where the amount is 0.
+    /// Value at amount 0.
     pub a: Value,
-    /// What is where it is 1.
+    /// Value at amount 1.
     pub b: Value,
-    /// How much of `b`; below 0 it counts as 0, above 1 as 1.
+    /// Share of `b`, clamped to [0, 1].
     pub amount: Value,
 }
 

@@ -1,4 +1,4 @@
-//! What varies over surfaces: one interface over all textures.
+//! Textures: one interface, and one file each.
 
 mod checker;
 mod domain;
@@ -45,26 +45,25 @@ use raywright_optics::Rgb;
 use raywright_optics::spectra::Waves;
 use std::fmt::Debug;
 
-/// Where a texture is asked.
+/// Data of a texture lookup.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TexturePoint {
     /// Texture coordinates; (0, 0) is the lower left of a picture.
     pub uv: [f64; 2],
-    /// How far apart in `uv` the points are that neighbouring rays meet, about: what is smaller cannot be told apart,
-    /// and is to be averaged over. 0 for a point.
+    /// Approximate footprint of the ray in `uv`, over which textures average. 0 for a point.
     pub width: f64,
-    /// The point in the space that its shape was described in: of what stands in an instance, in that of its prototype.
+    /// Position in the space where the shape was described; for an instance, that of its prototype.
     pub position: DVec3,
-    /// As `width`, of the position.
+    /// Footprint in terms of the position.
     pub size: f64,
-    /// The colour of the mesh's vertices there; white where it has none.
+    /// Interpolated vertex colour; white if the mesh has none.
     pub colour: Rgb,
-    /// The wavelengths that are asked for, a lane each; none for red, green and blue.
+    /// Wavelengths, one per lane; `None` for red, green and blue.
     pub waves: Option<Waves>,
 }
 
 impl TexturePoint {
-    /// For what asks nothing of a point.
+    /// For constants, which ignore the lookup data.
     pub const NOWHERE: Self =
         Self { uv: [0.0; 2], width: 0.0, position: DVec3::ZERO, size: 0.0, colour: Rgb::ONE, waves: None };
 }
@@ -75,17 +74,17 @@ impl Default for TexturePoint {
     }
 }
 
-/// What varies over surfaces: a colour, as of reflectance or radiance, or a number, as of roughness.
+/// A texture: a colour, such as reflectance or radiance, or a number, such as roughness.
 pub trait Texture<T = Rgb>: Debug + Send + Sync {
-    /// The value at a point, averaged over its width.
+    /// The value at a point, averaged over the footprint.
     fn at(&self, point: &TexturePoint) -> T;
 
-    /// What its values lie between, channel by channel.
+    /// Lower and upper bound of its values, per channel.
     fn range(&self) -> [T; 2];
 
-    /// Its mean over what it is put on, about: lights are chosen by it.
+    /// Approximate mean over the surface, for light selection.
     fn mean(&self) -> T;
 
-    /// What it must know of a point.
+    /// The lookup data that evaluation needs.
     fn needs(&self) -> Needs;
 }

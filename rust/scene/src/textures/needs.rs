@@ -1,35 +1,35 @@
-//! What must be known of a point to shade it.
+//! Flags for the data of a lookup.
 
 use std::ops::BitOr;
 
-/// What must be known of a point to shade it: what nobody asks for is neither kept nor computed.
+/// Flags for the data of a lookup; unused data is neither stored nor computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Needs {
     /// Texture coordinates.
     pub uv: bool,
-    /// Colours of vertices.
+    /// Vertex colours.
     pub colours: bool,
-    /// The point in its shape's space.
+    /// Position in the shape's space.
     pub position: bool,
-    /// How far apart neighbouring rays meet the surface.
+    /// Ray footprint.
     pub width: bool,
-    /// How the point and the shading normal change with the texture coordinates.
+    /// Derivatives of position and shading normal by the texture coordinates.
     pub tangents: bool,
-    /// The wavelengths that the path carries which has come there.
+    /// Wavelengths of the path.
     pub waves: bool,
 }
 
 impl Needs {
-    /// Nothing.
+    /// No data.
     pub const NONE: Self =
         Self { uv: false, colours: false, position: false, width: false, tangents: false, waves: false };
 
-    /// Whether anything is.
+    /// Returns whether any data is needed.
     pub fn any(self) -> bool {
         self != Self::NONE
     }
 
-    /// Whether anything is of where it lies.
+    /// Returns whether any data about the position is needed.
     pub fn of_place(self) -> bool {
         Self { waves: false, ..self }.any()
     }

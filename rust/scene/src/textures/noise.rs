@@ -1,14 +1,13 @@
-//! Noise of one size.
+//! Single-scale noise.
 
 use super::{Domain, Needs, Octaves, Pattern, TexturePoint};
 
-/// Smooth random spots about a unit in size ([`super::perlin`]), which fade to their mean where they cannot be told
-/// apart.
+/// Smooth random features of about unit size ([`super::perlin`]), which fade to their mean below the footprint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Noise {
-    /// Where they lie.
+    /// Domain.
     pub domain: Domain,
-    /// Which of all noises.
+    /// Random seed.
     pub seed: u32,
 }
 

@@ -1,31 +1,31 @@
-//! Two values, and a pattern that says how much of each.
+//! Interpolation of two values by a pattern.
 
 use super::{Needs, Texture, TexturePoint, Value};
 use raywright_optics::Rgb;
 use std::fmt::Debug;
 
-/// Says how far a texture has gone from one value to another.
+/// A pattern that interpolates between two values.
 pub trait Pattern: Debug + Send + Sync {
-    /// 0 for the one, 1 for the other, and between them; averaged over the point's width.
+    /// The amount between 0 and 1, averaged over the footprint.
     fn amount(&self, point: &TexturePoint) -> f64;
 
-    /// Its mean over what it is put on, about.
+    /// Approximate mean over the surface.
     fn mean(&self) -> f64 {
         0.5
     }
 
-    /// What it must know of a point.
+    /// The lookup data that evaluation needs.
     fn needs(&self) -> Needs;
 }
 
-/// A texture of two values, which may be textures themselves, by a pattern.
+/// A texture of two values, which may be textures themselves, interpolated by a pattern.
 #[derive(Clone, Debug)]
 pub struct Between<P> {
-    /// What is where the pattern is 0.
+    /// Value at amount 0.
     pub a: Value,
-    /// What is where it is 1.
+    /// Value at amount 1.
     pub b: Value,
-    /// How much of each.
+    /// The interpolation.
     pub pattern: P,
 }
 
@@ -47,13 +47,13 @@ impl<P: Pattern> Texture for Between<P> {
     }
 }
 
-/// What lies between two colours, channel by channel, and never outside them however sums are rounded.
+/// Interpolates two colours, channel by channel, and clamps the result between them against rounding.
 #[inline]
 pub(super) fn blend(a: Rgb, b: Rgb, amount: Rgb) -> Rgb {
     (a + (b - a) * amount).at_least(a.at_most(b)).at_most(a.at_least(b))
 }
 
-/// The range of what is one of two values, or between them.
+/// Range of an interpolation of two values.
 pub(super) fn either(a: &Value, b: &Value) -> [Rgb; 2] {
     let ([low, high], [least, most]) = (a.range(), b.range());
     [low.at_most(least), high.at_least(most)]

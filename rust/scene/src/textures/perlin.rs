@@ -2,18 +2,18 @@
 
 use raywright_base::math::DVec3;
 
-/// The most that eight corners' gradients may add up to, each in the worst direction: found by maximising their sum
-/// over the cell, where it is 1.036353811… at (0.3524, ½, ½) and its images.
+/// Maximum of the sum over the eight corners' gradients, each in the worst direction. Maximising over the cell gave
+/// 1.036353811… at (0.3524, ½, ½) and its images.
 const MOST: f64 = 1.036_353_9;
 
-/// Improved noise (Perlin, "Improving Noise", 2002), with a hash of its own instead of a table, so that it never
-/// repeats within 2³² units and every seed is another noise. Between −1 and 1, 0 on the lattice of integers, with
-/// continuous second derivatives, and of features about a unit in size.
+/// Improved noise (Perlin, "Improving Noise", 2002) with a hash instead of a table, so that it does not repeat within
+/// 2³² units and every seed gives another noise. Its values are between −1 and 1 and 0 on the integer lattice. Second
+/// derivatives are continuous, and features are about a unit in size.
 #[inline]
 pub fn perlin(p: DVec3, seed: u32) -> f64 {
     let cell = p.floor();
     let f = p - cell;
-    // Wraps far out, where neighbouring numbers are further apart than cells.
+    // Wraps around far from the origin, where the spacing of floats exceeds the cells.
     let corner = cell.to_array().map(|x| x as i64 as u32);
     let fade = f * f * f * (f * (f * 6.0 - 15.0) + 10.0);
     let mut sum = [0.0; 8];
@@ -33,10 +33,10 @@ pub fn perlin(p: DVec3, seed: u32) -> f64 {
     sum[0] / MOST
 }
 
-/// The scalar product with one of the twelve directions to the middles of a cube's edges.
+/// Dot product with one of the twelve directions to the edge centers of a cube.
 #[inline]
 fn along(hash: u32, d: DVec3) -> f64 {
-    // Multiplying maps a uniform hash to 0..12 without the four directions that 16 would have twice.
+    // The multiplication maps a uniform hash to 0..12 without the four duplicates of Perlin's 16 directions.
     let which = ((u64::from(hash) * 12) >> 32) as u32;
     let signed = |x: f64, bit: u32| if which & bit == 0 { x } else { -x };
     let (a, b) = match which >> 2 {
@@ -47,8 +47,8 @@ fn along(hash: u32, d: DVec3) -> f64 {
     signed(a, 1) + signed(b, 2)
 }
 
-/// Three coordinates and a seed to 32 bits that look like chance: odd multipliers, then shifts and products until every
-/// bit of the input has a say in every bit of the output.
+/// Hashes three coordinates and a seed to 32 bits: odd multipliers, then shifts and products until every input bit
+/// affects every output bit.
 #[inline]
 fn mixed([x, y, z]: [u32; 3], seed: u32) -> u32 {
     let mut h = seed.wrapping_mul(0x9E37_79B1) ^ 0x5BD1_E995;
@@ -85,8 +85,8 @@ mod tests {
 
         #[test]
         fn changes_no_faster_than_its_bound(p in point(50.0), by in point(1e-3), seed: u32) {
-            // Along an axis the mean of gradients adds at most 1, and the change of weights at most 15/8 of the
-            // difference of two values of at most 1.0364: less than 4.9.
+            // Along an axis the mean gradient contributes at most 1. The change of weights contributes at most 15/8 of
+            // the difference of two values of at most 1.0364. The total is below 4.9.
             let difference = (perlin(p + by, seed) - perlin(p, seed)).abs();
             prop_assert!(difference <= 4.9 / MOST * by.abs().element_sum() + 1e-12);
         }
@@ -100,7 +100,7 @@ mod tests {
             let h = 1e-4;
             let at = |x: f64| perlin(p + DVec3::AXES[axis] * x, seed);
             prop_assert!((at(h) - at(-h)).abs() < 10.0 * h);
-            // First derivatives from either side agree to O(h).
+            // One-sided first derivatives agree to O(h).
             let (left, right) = ((at(0.0) - at(-h)) / h, (at(h) - at(0.0)) / h);
             prop_assert!((left - right).abs() < 0.01, "{} {}", left, right);
         }
@@ -108,7 +108,7 @@ mod tests {
 
     #[test]
     fn its_bound_is_that_of_the_worst_gradients() {
-        // The sum over corners of weight times the greatest product with a direction to an edge, over a grid of the
+        // The sum over corners of weight times the greatest dot product with an edge direction, over a grid of the
         // cell.
         let steps = 64;
         let mut most: f64 = 0.0;

@@ -1,28 +1,27 @@
-//! Pictures in memory, and smaller and smaller copies of them.
+//! Pictures and their mipmaps.
 
 use raywright_base::parallel;
 use raywright_optics::Rgb;
 use std::fmt;
 use std::sync::LazyLock;
 
-/// The values of 8 bits: as shares of 255, and by the sRGB transfer (IEC 61966-2-1).
+/// Decoded 8-bit values: linear, and by the sRGB transfer function (IEC 61966-2-1).
 static DECODED: LazyLock<[[f64; 256]; 2]> = LazyLock::new(|| {
     let share = |i: usize| i as f64 / 255.0;
     let srgb = |c: f64| if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) };
     [std::array::from_fn(share), std::array::from_fn(|i| srgb(share(i)))]
 });
 
-/// The points of a picture, row after row from the top, as they came: of 8 bits or of floats, one number each or red,
-/// green and blue.
+/// Texels row by row from the top, in their input format: 8 bits or floats, grey or RGB.
 #[derive(Clone)]
 pub enum Texels {
-    /// 8 bits of one number, and whether they are sRGB.
+    /// 8-bit grey; true if sRGB.
     Grey8(Vec<u8>, bool),
-    /// 8 bits a channel, and whether they are sRGB.
+    /// 8-bit RGB; true if sRGB.
     Colour8(Vec<[u8; 3]>, bool),
-    /// One number.
+    /// Grey floats.
     Grey(Vec<f32>),
-    /// Red, green and blue.
+    /// RGB floats.
     Colour(Vec<[f32; 3]>),
 }
 
@@ -64,7 +63,7 @@ impl Texels {
     }
 }
 
-/// One size of a picture.
+/// A mipmap level.
 pub(super) struct Level {
     pub width: usize,
     pub height: usize,
@@ -72,15 +71,15 @@ pub(super) struct Level {
 }
 
 impl Level {
-    /// The point in a column and a row from the top.
+    /// The texel in a column and a row from the top.
     #[inline]
     pub fn texel(&self, x: usize, y: usize) -> Rgb {
         self.texels.get(y * self.width + x)
     }
 
-    /// Half as wide and as high, rounded down, each point the mean of its part of the picture. Where a number is odd,
-    /// parts end within points, which count in proportion (Guthe and Heckbert, "Non-Power-of-Two Mipmapping", 2005): so
-    /// the mean stays what it was.
+    /// Halves width and height, rounded down; each texel is the mean of its part of the picture. For odd sizes, parts
+    /// end within texels, which contribute proportionally (Guthe and Heckbert, "Non-Power-of-Two Mipmapping", 2005), so
+    /// the mean is preserved.
     fn halved(&self) -> Self {
         let (width, height) = ((self.width / 2).max(1), (self.height / 2).max(1));
         let row = |y: usize| {
@@ -107,7 +106,8 @@ impl Level {
     }
 }
 
-/// Of `n` points in a row made into `m`: the first that the `i`th is made of, and the weights of that and the next two.
+/// Weights for reducing a row of `n` texels to `m`: the first texel of the `i`th, and the weights of that and the next
+/// two.
 fn taps(n: usize, m: usize, i: usize) -> (usize, [f64; 3]) {
     if n == 1 {
         (0, [1.0, 0.0, 0.0])
@@ -118,7 +118,7 @@ fn taps(n: usize, m: usize, i: usize) -> (usize, [f64; 3]) {
     }
 }
 
-/// A picture, with smaller copies of it where these are wanted, down to a single point.
+/// A picture, with mipmap levels down to a single texel if they are needed.
 pub struct Picture {
     levels: Vec<Level>,
     range: [Rgb; 2],
@@ -132,10 +132,10 @@ impl fmt::Debug for Picture {
     }
 }
 
-/// Why there can be no such picture.
+/// The reason why a picture is invalid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PictureError {
-    /// It has no points, or another number of them than its width times its height.
+    /// It has no texels, or their number is not width times height.
     Size,
     /// A number in this row and column is NaN or infinite.
     NotFinite(usize, usize),
@@ -155,10 +155,10 @@ impl fmt::Display for PictureError {
 impl std::error::Error for PictureError {}
 
 impl Picture {
-    /// A picture of these points; with `smaller` copies, which are of floats: a third more points.
+    /// Creates a picture; `smaller` adds mipmap levels in floats, a third more texels.
     ///
     /// # Errors
-    /// If the number of points is another, or one is not finite.
+    /// If the number of texels is wrong, or one is not finite.
     pub fn new(width: usize, height: usize, texels: Texels, smaller: bool) -> Result<Self, PictureError> {
         if texels.len() == 0 || width.checked_mul(height) != Some(texels.len()) {
             return Err(PictureError::Size);
@@ -180,28 +180,28 @@ impl Picture {
         Ok(Self { levels, range, mean })
     }
 
-    /// One of its sizes: 0 is its own, the greatest a single point.
+    /// A mipmap level: 0 is the picture, the last a single texel.
     #[inline]
     pub(super) fn level(&self, i: usize) -> &Level {
         &self.levels[i.min(self.levels.len() - 1)]
     }
 
-    /// How many sizes there are.
+    /// Number of mipmap levels.
     pub fn levels(&self) -> usize {
         self.levels.len()
     }
 
-    /// What its values lie between, channel by channel.
+    /// Lower and upper bound of its values, per channel.
     pub fn range(&self) -> [Rgb; 2] {
         self.range
     }
 
-    /// The mean of its points.
+    /// Mean of all texels.
     pub fn mean(&self) -> Rgb {
         self.mean
     }
 
-    /// The memory held.
+    /// Memory in bytes.
     #[cfg(test)]
     fn bytes(&self) -> usize {
         self.levels.iter().map(|level| level.texels.bytes() + size_of::<Level>()).sum()
@@ -248,7 +248,7 @@ mod tests {
         let texels = Texels::Colour8(vec![[0, 128, 255]; 64 * 32], true);
         let picture = Picture::new(64, 32, texels.clone(), false).unwrap();
         assert_eq!(picture.bytes(), 64 * 32 * 3 + size_of::<Level>());
-        // 12 bytes a point of a third as many.
+        // A third more texels of 12 bytes.
         let more = Picture::new(64, 32, texels, true).unwrap().bytes();
         assert!(more < 64 * 32 * (3 + 4) + 600, "{more}");
     }

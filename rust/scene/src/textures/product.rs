@@ -1,14 +1,14 @@
-//! Textures times each other.
+//! Products of textures.
 
 use super::{Needs, Texture, TexturePoint, Value};
 use raywright_optics::Rgb;
 
-/// The product of two values, channel by channel; with a constant, a texture made brighter or darker.
+/// The product of two values, channel by channel; with a constant it brightens or darkens a texture.
 #[derive(Clone, Debug)]
 pub struct ProductTexture {
-    /// The one.
+    /// First factor.
     pub a: Value,
-    /// The other.
+    /// Second factor.
     pub b: Value,
 }
 
@@ -19,7 +19,7 @@ impl Texture for ProductTexture {
 
     fn range(&self) -> [Rgb; 2] {
         let ([a, b], [c, d]) = (self.a.range(), self.b.range());
-        // The ends of a product of intervals are products of their ends, and rounding keeps order.
+        // The bounds of a product of intervals are products of their bounds, and rounding is monotonic.
         let ends = [a * c, a * d, b * c, b * d];
         [ends.into_iter().reduce(Rgb::at_most), ends.into_iter().reduce(Rgb::at_least)]
             .map(|end| end.unwrap_or(Rgb::splat(f64::NAN)))

@@ -1,14 +1,14 @@
-//! What textures give.
+//! Value types of textures.
 
 use raywright_optics::Rgb;
 use std::fmt::{Debug, Display};
 
 /// A colour, or a number.
 pub trait Quantity: Copy + Debug + Display + PartialEq + Send + Sync + 'static {
-    /// Nothing of it.
+    /// Zero.
     const ZERO: Self;
 
-    /// Whether something holds for it, for each channel of a colour.
+    /// Returns whether a predicate holds for all channels.
     fn all(self, holds: impl Fn(f64) -> bool) -> bool;
 }
 

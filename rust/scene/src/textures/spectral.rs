@@ -1,26 +1,26 @@
-//! Colours by wavelength.
+//! Spectral textures.
 
 use super::{Needs, Texture, TexturePoint, Value};
 use raywright_optics::Rgb;
 use raywright_optics::spectra::{Role, Smooth, Spectrum};
 use std::sync::Arc;
 
-/// A spectrum, the same everywhere.
+/// A constant spectrum.
 #[derive(Clone, Debug)]
 pub struct Spectral {
     spectrum: Arc<Spectrum>,
     range: [f64; 2],
-    /// What it looks like.
+    /// Its RGB colour.
     colour: Rgb,
 }
 
 impl Spectral {
-    /// Of a spectrum.
+    /// Creates a texture from a spectrum.
     pub fn new(spectrum: Arc<Spectrum>) -> Self {
         Self { range: spectrum.range(), colour: spectrum.seen().at_least(Rgb::ZERO), spectrum }
     }
 
-    /// The smooth spectrum of a colour; its own value where that is the same at all wavelengths, as of greys.
+    /// The smooth spectrum of a colour; a plain constant if the spectrum is flat, as for greys.
     pub fn of(colour: Rgb, role: Role) -> Value {
         match Smooth::of(colour, role) {
             smooth if smooth.is_flat() => colour.into(),
@@ -50,12 +50,12 @@ impl Texture for Spectral {
     }
 }
 
-/// A texture of colours, each by its smooth spectrum.
+/// A texture whose colours are upsampled to smooth spectra.
 #[derive(Clone, Debug)]
 pub struct Upsampled {
     /// The colours.
     pub colours: Arc<dyn Texture>,
-    /// What they are of.
+    /// The physical quantity of the colours.
     pub role: Role,
 }
 

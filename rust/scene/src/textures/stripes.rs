@@ -3,12 +3,12 @@
 use super::waves::pulse;
 use super::{Domain, Needs, Pattern, TexturePoint};
 
-/// Stripes across the x axis, one each unit, averaged over the width in closed form.
+/// Stripes across the x axis with period 1, box-filtered in closed form.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stripes {
-    /// Where they lie.
+    /// Domain.
     pub domain: Domain,
-    /// The share of each unit, at its end, that is 1; between 0 and 1.
+    /// Share of each period, at its end, that is 1; between 0 and 1.
     pub fraction: f64,
 }
 

@@ -1,16 +1,16 @@
-//! What may be the same everywhere or a texture.
+//! Parameters that are constants or textures.
 
 use super::mean::Mean;
 use super::{Needs, Quantity, Texture, TexturePoint};
 use raywright_optics::Rgb;
 use std::sync::Arc;
 
-/// A parameter of a material or a light, a colour or a number: the same everywhere, or a texture.
+/// A parameter of a material or a light, a colour or a number: constant, or a texture.
 #[derive(Clone, Debug)]
 pub enum Value<T = Rgb> {
-    /// The same everywhere.
+    /// A constant.
     Constant(T),
-    /// What varies.
+    /// A texture.
     Texture(Arc<dyn Texture<T>>),
 }
 
@@ -27,7 +27,7 @@ impl<T: Quantity> Value<T> {
         }
     }
 
-    /// What its values lie between, channel by channel.
+    /// Lower and upper bound of its values, per channel.
     pub fn range(&self) -> [T; 2] {
         match self {
             Self::Constant(value) => [*value; 2],
@@ -35,13 +35,13 @@ impl<T: Quantity> Value<T> {
         }
     }
 
-    /// Whether all its values lie between two numbers; NaN does not.
+    /// Returns whether all its values are within a range; false for NaN.
     pub fn is_within(&self, least: f64, most: f64) -> bool {
         let [low, high] = self.range();
         low.all(|low| low >= least) && high.all(|high| high <= most)
     }
 
-    /// Its mean, about.
+    /// Approximate mean.
     pub fn mean(&self) -> T {
         match self {
             Self::Constant(value) => *value,
@@ -49,7 +49,7 @@ impl<T: Quantity> Value<T> {
         }
     }
 
-    /// What it must know of a point.
+    /// The lookup data that evaluation needs.
     pub fn needs(&self) -> Needs {
         match self {
             Self::Constant(_) => Needs::NONE,
@@ -57,14 +57,14 @@ impl<T: Quantity> Value<T> {
         }
     }
 
-    /// Whether it is black, or 0, everywhere.
+    /// Returns whether it is black, or 0, everywhere.
     pub fn is_black(&self) -> bool {
         self.range() == [T::ZERO; 2]
     }
 }
 
 impl Value {
-    /// As a number: the mean of the channels.
+    /// Converts a colour to a number: the mean of its channels.
     pub fn number(&self) -> Value<f64> {
         match self {
             Self::Constant(rgb) => Value::Constant(rgb.mean()),
@@ -91,7 +91,7 @@ impl From<f64> for Value<f64> {
     }
 }
 
-/// Constants by their value, textures by identity.
+/// Constants compare by value, textures by identity.
 impl<T: Quantity> PartialEq for Value<T> {
     fn eq(&self, other: &Self) -> bool {
         match (self, other) {

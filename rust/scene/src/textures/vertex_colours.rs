@@ -1,16 +1,15 @@
-//! The colours of a mesh's vertices.
+//! Vertex colours as a texture.
 
 use super::{Needs, Texture, TexturePoint};
 use raywright_optics::Rgb;
 
-/// The colour of the mesh's vertices, between them in proportion; white on what has none. Beyond 0 and 1 it counts as
-/// these.
+/// The interpolated vertex colour, clamped to [0, 1]; white on meshes without vertex colours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct VertexColours;
 
 impl Texture for VertexColours {
     fn at(&self, point: &TexturePoint) -> Rgb {
-        // Colours of one alike may come out a rounding apart from it.
+        // Interpolating equal colours may differ from them by a rounding.
         point.colour.at_least(Rgb::ZERO).at_most(Rgb::ONE)
     }
 

@@ -1,12 +1,12 @@
-//! Periodic functions of period 1, and their means over an interval in closed form.
+//! Periodic functions of period 1 with closed-form means over an interval.
 
 use std::f64::consts::{PI, TAU};
 
-/// The share of the interval of this width around `x` that lies in the first `fraction` of the periods [n, n + 1).
+/// Share of the interval with this width around `x` that lies in the first `fraction` of the periods [n, n + 1).
 #[inline]
 pub(super) fn pulse(x: f64, width: f64, fraction: f64) -> f64 {
     let (low, high) = (x - 0.5 * width, x + 0.5 * width);
-    // What is left of the width after rounding; where an interval ends within a piece, shares are exact then.
+    // The width after rounding, so that the result is exact if the interval ends within a piece.
     let width = high - low;
     let first = x - x.floor();
     if width.is_nan() || width <= 0.0 {
@@ -17,13 +17,13 @@ pub(super) fn pulse(x: f64, width: f64, fraction: f64) -> f64 {
     ((whole + rest(high) - rest(low)) / width).clamp(0.0, 1.0)
 }
 
-/// The mean over the interval of this width around `x` of what rises evenly from 0 to 1 in the first `rise` of each
-/// period and falls in the rest; `rise` lies between 0 and 1.
+/// Mean over the interval with this width around `x` of a triangle wave. It rises linearly from 0 to 1 in the first
+/// `rise` of each period and falls in the rest; `rise` is between 0 and 1.
 #[inline]
 pub(super) fn ramp(x: f64, width: f64, rise: f64) -> f64 {
     let at = |f: f64| if f < rise { f / rise } else { (1.0 - f) / (1.0 - rise) };
-    // Below this, the mean differs from the middle's value by less than 1e-6 / min(rise, 1 − rise), and its quotient
-    // loses digits.
+    // Below this width, the mean differs from the center's value by less than 1e-6 / min(rise, 1 − rise), and its
+    // quotient loses digits.
     if width.is_nan() || width <= 1e-6 {
         return at(x - x.floor());
     }
@@ -35,7 +35,7 @@ pub(super) fn ramp(x: f64, width: f64, rise: f64) -> f64 {
     ((0.5 * (high.floor() - low.floor()) + rest(high) - rest(low)) / width).clamp(0.0, 1.0)
 }
 
-/// The mean of sin 2πx over the interval of this width around `x`.
+/// Mean of sin 2πx over the interval with this width around `x`.
 #[inline]
 pub(super) fn sine(x: f64, width: f64) -> f64 {
     let half = PI * width;
@@ -58,7 +58,7 @@ mod tests {
     proptest! {
         #[test]
         fn means_are_what_quadrature_finds(x in -9.0..9.0f64, width in 0.001..5.0f64, part in 0.05..0.95f64) {
-            // Of the midpoint rule: a step of the function costs at most a step of the rule.
+            // Error of the midpoint rule: a jump of the function costs at most one of its steps.
             let error = 15.0 / 20_000.0;
             prop_assert!((pulse(x, width, part) - quadrature(|x| pulse(x, 0.0, part), x, width)).abs() < error);
             prop_assert!((ramp(x, width, part) - quadrature(|x| ramp(x, 0.0, part), x, width)).abs() < 1e-6);

@@ -4,24 +4,24 @@ use super::waves::ramp;
 use super::{Domain, Needs, Octaves, Pattern, TexturePoint};
 use raywright_base::math::DVec3;
 
-/// Rings about the z axis, one each unit of the radius, from light early wood to dark late wood and quickly back, bent
-/// by noise (Perlin, "An Image Synthesizer", 1985; after Peachey, "Solid Texturing of Complex Surfaces", 1985). Rings
-/// that are too fine for the width fade to their mean.
+/// Growth rings about the z axis with period 1 in radius, from light early wood to dark late wood and sharply back,
+/// distorted by noise (Perlin, "An Image Synthesizer", 1985; after Peachey, "Solid Texturing of Complex Surfaces",
+/// 1985). Rings below the footprint fade to their mean.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wood {
-    /// Where it lies.
+    /// Domain.
     pub domain: Domain,
-    /// How far the noise moves the rings, in units.
+    /// Amplitude of the distortion, in units.
     pub distortion: f64,
-    /// The noise, which is drawn out along the trunk.
+    /// The noise, stretched along the trunk.
     pub octaves: Octaves,
 }
 
 impl Wood {
-    /// The share of a ring in which it darkens.
+    /// Share of a ring in which it darkens.
     const RISE: f64 = 0.85;
 
-    /// How many times longer the noise is along the trunk than across.
+    /// Stretch of the noise along the trunk.
     const ALONG: f64 = 8.0;
 }
 

@@ -1,22 +1,22 @@
-//! The area that closed lines in a plane cover.
+//! The area enclosed by closed curves in a plane.
 
 use raywright_base::math::DVec2;
 
-/// What lines cover.
+/// Fill rule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rule {
-    /// What has a winding number other than 0; it counts as negative where that is.
+    /// Points with non-zero winding number; their area is negative if the number is.
     Winding,
-    /// What an odd number of lines surround.
+    /// Points surrounded by an odd number of curves.
     EvenOdd,
 }
 
-/// A segment of a line, from its lower end to its upper.
+/// A segment of a curve, from its lower end to its upper.
 #[derive(Clone, Copy, Debug)]
 struct Rising {
     low: DVec2,
     high: DVec2,
-    /// What the winding number grows by from its left to its right.
+    /// Change of the winding number from its left to its right.
     step: i32,
 }
 
@@ -32,10 +32,10 @@ impl Rising {
     }
 }
 
-/// The area that segments of closed lines cover.
+/// The area enclosed by the segments of closed curves.
 ///
-/// Between two heights at which segments end or cross they stand side by side, and what lies between two of them is a
-/// trapezoid.
+/// The plane is cut into slabs at the heights of all ends and crossings. Within a slab segments do not cross, and the
+/// region between two adjacent ones is a trapezoid.
 pub fn covered(segments: &[[DVec2; 2]], rule: Rule) -> f64 {
     let mut rising: Vec<Rising> = segments
         .iter()
@@ -63,7 +63,7 @@ pub fn covered(segments: &[[DVec2; 2]], rule: Rule) -> f64 {
     area
 }
 
-/// What is covered between two heights between which no segment ends.
+/// Area within a slab that no segment ends in.
 fn slab(open: &[Rising], bottom: f64, top: f64, rule: Rule) -> f64 {
     let mut spans: Vec<(f64, f64, i32)> = open.iter().map(|r| (r.at(bottom), r.at(top), r.step)).collect();
     spans.sort_by(|a, b| (a.0 + a.1).total_cmp(&(b.0 + b.1)));
@@ -89,7 +89,7 @@ fn slab(open: &[Rising], bottom: f64, top: f64, rule: Rule) -> f64 {
     parts.sum::<f64>() * (top - bottom)
 }
 
-/// The mean width that is covered, times the share of the height, from one share of it to another.
+/// Mean enclosed width times relative height, between two relative heights.
 fn between(spans: &[(f64, f64, i32)], from: f64, to: f64, rule: Rule) -> f64 {
     let middle = |span: &(f64, f64, i32)| span.0 + (span.1 - span.0) * 0.5 * (from + to);
     let (mut number, mut width) = (0, 0.0);
@@ -126,7 +126,7 @@ mod tests {
             (vec![square(0.0, 1.0, false), square(0.0, 1.0, false)], 1.0, 0.0),
         ] {
             let all = parts.concat();
-            // Turned, so that edges cross within heights.
+            // Rotated, so that segments cross within slabs.
             for angle in [0.0, 0.3, 1.9] {
                 let turned: Vec<_> = all.iter().map(|e| e.map(|p| DVec2::from_angle(angle).rotate(p))).collect();
                 for (rule, wanted) in [(Rule::Winding, winding), (Rule::EvenOdd, even_odd)] {

@@ -1,23 +1,23 @@
-//! The edges of faces, and which faces share them.
+//! Edge-face adjacency.
 
 use std::collections::HashMap;
 
-/// Edges by number, and the faces on both sides of them, some of which may be taken away.
+/// Numbered edges with their adjacent faces; faces can be removed.
 #[derive(Clone, Debug)]
 pub struct Edges {
-    /// The lesser corner of each, and the greater.
+    /// Lower and higher corner number of each edge.
     pub ends: Vec<[u32; 2]>,
-    /// What faces have of edges: those of face `i` from `first[i]` to `first[i + 1]`.
+    /// Edges of each face: those of face `i` from `first[i]` to `first[i + 1]`.
     sides: Vec<Along>,
     first: Vec<u32>,
-    /// The faces at each edge, in the same way, and how many of them are left.
+    /// Faces at each edge, stored alike, and the number of them that remain.
     faces: Vec<u32>,
     first_at: Vec<u32>,
     counts: Vec<u32>,
     is_left: Vec<bool>,
 }
 
-/// An edge, and whether a face runs along it from the lesser corner to the greater.
+/// An edge of a face; true if the face traverses it from the lower corner number to the higher.
 #[derive(Clone, Copy, Debug)]
 struct Along {
     edge: u32,
@@ -25,8 +25,8 @@ struct Along {
 }
 
 impl Edges {
-    /// Of some faces, with those of the edges that have corners within them cut there: `chains` tells these from the
-    /// lesser end to the greater.
+    /// Builds the adjacency of faces. Edges with corners within them are cut there; `chains` lists these corners from
+    /// the lower end to the higher.
     pub fn new(faces: impl Iterator<Item = [u32; 3]>, chains: &HashMap<[u32; 2], Vec<u32>>) -> Self {
         let (mut pieces, mut first): (Vec<([u32; 2], u32, u32)>, _) = (Vec::new(), vec![0]);
         let mut is_forward = Vec::new();
@@ -67,28 +67,28 @@ impl Edges {
         Self { ends, sides, first, faces, first_at, counts, is_left }
     }
 
-    /// How many faces are left at an edge.
+    /// Number of remaining faces at an edge.
     pub fn count(&self, edge: u32) -> u32 {
         self.counts[edge as usize]
     }
 
-    /// Whether a face is left.
+    /// Returns whether a face remains.
     pub fn is_left(&self, face: u32) -> bool {
         self.is_left[face as usize]
     }
 
-    /// Those that an odd number of faces are left at.
+    /// Edges with an odd number of remaining faces.
     pub fn odd(&self) -> impl Iterator<Item = u32> {
         (0..self.ends.len() as u32).filter(|&edge| self.counts[edge as usize] % 2 == 1)
     }
 
-    /// The faces that are left at an edge.
+    /// Remaining faces at an edge.
     pub fn faces_at(&self, edge: u32) -> impl Iterator<Item = u32> {
         let [from, to] = [0, 1].map(|i| self.first_at[edge as usize + i] as usize);
         self.faces[from..to].iter().copied().filter(|&face| self.is_left(face))
     }
 
-    /// The edges of a face.
+    /// Edges of a face.
     pub fn of_face(&self, face: u32) -> impl Iterator<Item = u32> {
         self.along(face).iter().map(|side| side.edge)
     }
@@ -98,7 +98,7 @@ impl Edges {
         &self.sides[from..to]
     }
 
-    /// How many more faces run along an edge forwards than backwards.
+    /// Number of faces that traverse an edge forwards, minus those that traverse it backwards.
     pub fn balance(&self, edge: u32) -> i32 {
         let run = |face: u32| -> i32 {
             let here = self.along(face).iter().filter(|side| side.edge == edge);
@@ -107,12 +107,12 @@ impl Edges {
         self.faces_at(edge).map(run).sum()
     }
 
-    /// Whether two faces share an edge along which both run the same way.
+    /// Returns whether an edge has two faces that traverse it in the same direction.
     pub fn is_turned(&self, edge: u32) -> bool {
         self.count(edge) == 2 && self.balance(edge) != 0
     }
 
-    /// Takes a face away.
+    /// Removes a face.
     pub fn remove(&mut self, face: u32) {
         self.is_left[face as usize] = false;
         let [from, to] = [0, 1].map(|i| self.first[face as usize + i] as usize);
@@ -121,7 +121,7 @@ impl Edges {
         }
     }
 
-    /// Takes away all faces that have an edge alone, until none has.
+    /// Repeatedly removes faces with an edge of their own, until none is left.
     pub fn peel(&mut self) {
         let mut alone: Vec<u32> = (0..self.ends.len() as u32).filter(|&edge| self.count(edge) == 1).collect();
         while let Some(edge) = alone.pop() {
@@ -132,12 +132,12 @@ impl Edges {
         }
     }
 
-    /// For each face the first of those that hang together with it by edges.
+    /// Connected components: for each face, the first face of its component.
     pub fn parts(&self) -> Vec<u32> {
         self.joined(|_, _| true)
     }
 
-    /// The same of edges and faces at them that count.
+    /// Connected components across the edge-face pairs that `counts` accepts.
     pub fn joined(&self, counts: impl Fn(u32, u32) -> bool) -> Vec<u32> {
         let mut parents: Vec<u32> = (0..self.is_left.len() as u32).collect();
         for edge in 0..self.ends.len() as u32 {
@@ -152,7 +152,7 @@ impl Edges {
     }
 }
 
-/// The first face of those that hang together with one, by parents that are shortened on the way.
+/// The representative of a face's component, with path halving.
 pub fn root(parents: &mut [u32], mut face: u32) -> u32 {
     while parents[face as usize] != face {
         let above = parents[parents[face as usize] as usize];

@@ -1,11 +1,11 @@
-//! Where the corner of one face lies within the edge of another.
+//! T-junctions: corners of one face within the edge of another.
 
 use raywright_base::math::DVec3;
 use std::collections::HashMap;
 
-/// For each edge the corners of all of them that lie within it, to a tolerance, from its first end to its second.
+/// For each edge, the corners within it to a tolerance, in order from its first end to its second.
 ///
-/// Corners stand in cells as large as the mean edge, and edges are followed from cell to cell.
+/// Corners are hashed into cells of the mean edge length, and edges are followed from cell to cell.
 pub fn within(points: &[DVec3], edges: &[[u32; 2]], tolerance: f64) -> Vec<Vec<u32>> {
     let ends = |edge: &[u32; 2]| edge.map(|v| points[v as usize]);
     let length = |edge: &[u32; 2]| {
@@ -25,7 +25,7 @@ pub fn within(points: &[DVec3], edges: &[[u32; 2]], tolerance: f64) -> Vec<Vec<u
     for corner in corners {
         cells.entry(place(points[corner as usize])).or_default().push(corner);
     }
-    // What lies within a step of an edge is nearer to one of its ends than this, along every axis.
+    // A corner near a step of the edge is closer than this to one of the step's ends, along every axis.
     let reach = 0.5 * cell + tolerance;
     let of_edge = |edge: &[u32; 2]| {
         let ([a, b], steps) = (ends(edge), (length(edge) / cell).ceil() as usize);
@@ -49,7 +49,7 @@ pub fn within(points: &[DVec3], edges: &[[u32; 2]], tolerance: f64) -> Vec<Vec<u
     edges.iter().map(of_edge).collect()
 }
 
-/// Where along a segment a point lies, from 0 to 1, if it does, and at neither end.
+/// Position of a point along a segment, from 0 to 1, if it is on the segment and not at an end.
 fn along(point: DVec3, [a, b]: [DVec3; 2], tolerance: f64) -> Option<f64> {
     let (way, to) = (b - a, point - a);
     let share = to.dot(way) / way.length_squared();

@@ -1,16 +1,16 @@
-//! Meshes of which every edge lies between two faces that run along it in opposite directions, as most do.
+//! Fast path for oriented manifold meshes: every edge has two faces that traverse it in opposite directions.
 
 use super::edges::root;
 
-/// For each face the first of those that hang together with it, in linear time. `None` if a face has a corner twice, an
-/// edge has other than two faces, one each way, or two faces have the same corners.
+/// Connected components in linear time: for each face, the first face of its component. Returns `None` if a face
+/// repeats a corner, an edge has not exactly two opposite faces, or two faces have the same corners.
 pub fn parts(faces: &[[u32; 3]], corners: usize) -> Option<Vec<u32>> {
     if faces.len() >= 1 << 31 || faces.iter().any(|&[a, b, c]| a == b || b == c || c == a) {
         return None;
     }
     let edges = || faces.iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]);
-    // Edges stand with the lesser of their ends: those of corner `i` from `first[i]` to `first[i + 1]`, once they are
-    // there.
+    // Edges are stored at their lower corner number: those of corner `i` from `first[i]` to `first[i + 1]` once filled
+    // in.
     let mut first = vec![0u32; corners + 2];
     edges().for_each(|(from, to)| first[from.min(to) as usize + 2] += 1);
     for i in 2..first.len() {
@@ -38,6 +38,6 @@ pub fn parts(faces: &[[u32; 3]], corners: usize) -> Option<Vec<u32>> {
     let (parts, mut sizes): (Vec<u32>, _) =
         ((0..faces.len() as u32).map(|face| root(&mut parents, face)).collect(), vec![0u32; faces.len()]);
     parts.iter().for_each(|&part| sizes[part as usize] += 1);
-    // Two faces that share all of their edges are a part by themselves.
+    // Two faces that share all their edges form a component of size 2.
     (!sizes.contains(&2)).then_some(parts)
 }

@@ -1,4 +1,4 @@
-//! Which faces of meshes enclose space, and what keeps the others from it.
+//! Classification of faces into closed bodies and defects.
 
 mod covered;
 mod edges;
@@ -18,60 +18,60 @@ use raywright_base::math::DVec3;
 use std::collections::HashMap;
 use weld::welded_among;
 
-/// No body.
+/// Marks a face without body.
 pub const NONE: u32 = u32::MAX;
 
-/// Faces that hang together by edges that an even number of them share.
+/// A connected set of faces in which every edge has an even number of faces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Body {
-    /// What it encloses; negative where normals point in, unless each face is there from both sides, and of no use
-    /// where it is not oriented.
+    /// Enclosed volume; negative if normals point inwards. Not meaningful if each face occurs in both orientations, or
+    /// the body is not oriented.
     pub volume: f64,
-    /// Whether as many faces run along each edge one way as the other, so that winding numbers are whole.
+    /// True if every edge is traversed equally often in both directions, so that winding numbers are integers.
     pub is_oriented: bool,
 }
 
-/// What a face is.
+/// Classification of a face.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FaceKind {
-    /// One of a body, by its number.
+    /// A face of a body, by its number.
     Closed(u32),
-    /// Bounded by an edge that leads nowhere.
+    /// A face on an open boundary.
     Open,
-    /// A wall that parts what a body encloses.
+    /// A wall between parts of a body's interior.
     Inner,
-    /// It has the corners of another face.
+    /// It repeats the corners of another face.
     Duplicate,
-    /// Two of its corners are one, or one is not finite.
+    /// Two of its corners coincide, or one is not finite.
     Degenerate,
 }
 
-/// Faces by how they hang together.
+/// The classified faces of a mesh.
 #[derive(Clone, Debug, Default)]
 pub struct Topology {
-    /// For each corner the number of the one that stands for it.
+    /// Representative of each corner after merging.
     pub corners: Vec<u32>,
-    /// What each face is.
+    /// Classification of each face.
     pub faces: Vec<FaceKind>,
-    /// Of each face that is neither a duplicate nor degenerate, how many more faces with its corners turn as it does
-    /// than the other way.
+    /// For each face that is neither duplicate nor degenerate, the number of faces with its corners and orientation
+    /// minus those with the opposite one.
     pub votes: Vec<i32>,
-    /// What is enclosed.
+    /// The closed bodies.
     pub bodies: Vec<Body>,
-    /// Edges that an odd number of faces share, by the corners at their ends.
+    /// Edges with an odd number of faces, by their corners.
     pub cracks: Vec<[u32; 2]>,
-    /// Corners of faces within edges of others.
+    /// T-junctions: corners within edges of other faces.
     pub junctions: Vec<u32>,
-    /// Edges of two faces that run along them the same way: one of the two is turned.
+    /// Number of edges whose two faces traverse them in the same direction: one of the faces is flipped.
     pub turned: usize,
-    /// How close corners are one.
+    /// Distance within which corners were merged.
     pub tolerance: f64,
-    /// Whether bodies close to the last bit: by corners that are equal, without junctions.
+    /// True if bodies close to the last bit: by equal corners, without T-junctions.
     pub is_exact: bool,
 }
 
 impl Topology {
-    /// Of faces whose corners are one within a tolerance; within [`rounding`] if there is none.
+    /// Classifies faces after merging corners within a tolerance; the default is [`rounding`].
     pub fn new(points: &[DVec3], faces: &[[u32; 3]], tolerance: Option<f64>) -> Self {
         let tolerance = tolerance.unwrap_or_else(|| rounding(points, faces));
         let equal = joined(points);
@@ -84,7 +84,7 @@ impl Topology {
         }
     }
 
-    /// Of faces of which all are of bodies.
+    /// Classification if all faces belong to bodies.
     fn of_manifold(points: &[DVec3], corners: Vec<u32>, faces: &[[u32; 3]], parts: &[u32], tolerance: f64) -> Self {
         let (mut kinds, votes) = (vec![FaceKind::Open; faces.len()], vec![1; faces.len()]);
         let kept: Vec<u32> = (0..faces.len() as u32).collect();
@@ -135,8 +135,8 @@ impl Topology {
     }
 }
 
-/// What faces are by their corners alone, those that may be of a body [`FaceKind::Open`] yet; and of each of these how
-/// many have its corners, and how many more of them turn as it does than the other way.
+/// Classifies faces by their corners alone; candidates for bodies stay [`FaceKind::Open`]. Also returns, for each
+/// candidate, the number of faces with its corners, and that number with opposite orientations subtracted.
 fn sorted_out(points: &[DVec3], faces: &[[u32; 3]]) -> (Vec<FaceKind>, Vec<u32>, Vec<i32>) {
     let mut kinds = vec![FaceKind::Open; faces.len()];
     let mut order = Vec::with_capacity(faces.len());
@@ -152,7 +152,7 @@ fn sorted_out(points: &[DVec3], faces: &[[u32; 3]]) -> (Vec<FaceKind>, Vec<u32>,
     }
     order.sort_unstable();
     let (mut copies, mut votes) = (vec![0; faces.len()], vec![0; faces.len()]);
-    // Whether its corners rise in turn, from whichever of them.
+    // Parity of the permutation that sorts the corners.
     let turn = |&(_, f): &([u32; 3], u32)| {
         let [a, b, c] = faces[f as usize];
         if u8::from(a < b) + u8::from(b < c) + u8::from(c < a) == 2 { 1 } else { -1 }
@@ -168,8 +168,8 @@ fn sorted_out(points: &[DVec3], faces: &[[u32; 3]]) -> (Vec<FaceKind>, Vec<u32>,
     (kinds, copies, votes)
 }
 
-/// For each face the first of those that hang together with it; and by that one whether they are oriented, `None` if
-/// they are not closed.
+/// Connected components: for each face, the first face of its component. For that face also returns whether the
+/// component is oriented, or `None` if it is not closed.
 fn closed_parts(edges: &Edges) -> (Vec<u32>, Vec<Option<bool>>) {
     let parts = edges.parts();
     let mut whole = vec![Some(true); parts.len()];
@@ -182,8 +182,8 @@ fn closed_parts(edges: &Edges) -> (Vec<u32>, Vec<Option<bool>>) {
     (parts, whole)
 }
 
-/// The bodies that the faces kept make, which are told to the faces. For each of these `part` tells the first of those
-/// that hang together with it and whether they are oriented; `None` of what is of no body.
+/// Builds the bodies of the faces kept, and sets these faces' kinds. For each face, `part` returns the first face of
+/// its component and whether the component is oriented, or `None` if it belongs to no body.
 fn bodies(
     points: &[DVec3],
     named: &[[u32; 3]],
@@ -271,7 +271,7 @@ mod tests {
 
     #[test]
     fn corners_that_rounding_moved_are_one_and_no_others() {
-        // Every face with corners of its own, moved by next to nothing.
+        // Every face with its own corners, displaced by roundings.
         let moved = |by: f64, seed: u32| -> Vec<DVec3> {
             let mut random = seed;
             let all = corners(DVec3::ZERO);
@@ -290,7 +290,7 @@ mod tests {
         }
         let single: Vec<DVec3> = moved(2e-7, 3).iter().map(|v| v.as_vec3().as_dvec3()).collect();
         assert_eq!(Topology::new(&single, &faces, None).bodies.len(), 1);
-        // A closed film stays what it is, though it is thinner than the tolerance.
+        // A closed film stays closed, although it is thinner than the tolerance.
         let thin: Vec<DVec3> = corners(DVec3::ZERO).into_iter().map(|v| v * DVec3::new(1.0, 1.0, 1e-9)).collect();
         let found = Topology::new(&thin, &BOX, Some(1e-3));
         assert_eq!((closed(&found), found.corners.len()), (12, 8));
@@ -300,13 +300,13 @@ mod tests {
     fn what_leads_nowhere_is_open() {
         let mut points = corners(DVec3::ZERO);
         assert_eq!(closed(&Topology::new(&points, &BOX[..11], None)), 0);
-        // A sheet beside the box, which shares an edge with it, and a face without area.
+        // A sheet beside the box that shares an edge with it, and a degenerate face.
         points.extend([DVec3::new(0.0, -5.0, 0.0), DVec3::new(1.0, -5.0, 0.0)]);
         let faces = [&BOX[..], &[[0, 1, 8], [1, 9, 8], [3, 3, 4]]].concat();
         let found = Topology::new(&points, &faces, None);
         assert_eq!(closed(&found), 12);
         assert_eq!(found.faces[12..], [Open, Open, Degenerate]);
-        // The edge of three faces, and the three of the sheet alone.
+        // The edge with three faces, and the three boundary edges of the sheet.
         assert_eq!(found.cracks.len(), 4);
     }
 
@@ -315,7 +315,7 @@ mod tests {
         let points = [corners(DVec3::ZERO), corners(DVec3::X)].concat();
         let other: Vec<[u32; 3]> = BOX.iter().map(|face| face.map(|v| v + 8)).collect();
         let found = Topology::new(&points, &[&BOX[..], &other].concat(), None);
-        // What both have is on no side of the surface.
+        // The shared wall is not part of the surface.
         assert_eq!((closed(&found), found.cracks.len()), (20, 0));
         assert!((found.bodies.iter().map(|body| body.volume).sum::<f64>() - 2.0).abs() < 1e-14);
     }
@@ -345,7 +345,7 @@ mod tests {
 
     #[test]
     fn corners_within_edges_close_them_to_rounding() {
-        // The edge from 0 to 1 is cut at a third by the face below, and not by the one beside it.
+        // The face below splits the edge from 0 to 1 at a third; the adjacent face does not.
         let mut points = corners(DVec3::new(0.1, 0.2, 0.3));
         points.push(points[0].lerp(points[1], 1.0 / 3.0));
         let faces = [&BOX[1..], &[[0, 2, 8], [8, 2, 1]]].concat();
@@ -373,7 +373,7 @@ mod tests {
             assert_eq!((quick.bodies.len(), quick.is_exact, any.is_exact), (3, true, true));
             assert!(manifold::parts(&faces, 24).is_some());
         }
-        // A face missing, twice, or turned; a corner twice; a sheet of two faces back to back.
+        // A missing, duplicated or flipped face; a repeated corner; a sheet of two opposite faces.
         let mut one_turned = BOX.to_vec();
         one_turned[0].swap(0, 1);
         let both = |extra: [u32; 3]| [&BOX[..], &[extra]].concat();

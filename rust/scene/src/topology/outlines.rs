@@ -1,23 +1,23 @@
-//! Segments that share their ends, joined to lines.
+//! Joining of segments into polylines.
 
 use std::collections::VecDeque;
 
-/// A line by the points that it goes through. The last of a closed one is the first again.
+/// A polyline by its point numbers. A closed one repeats its first point at the end.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Outline {
-    /// In order.
+    /// Points in order.
     pub points: Vec<u32>,
-    /// The segments between them, and whether each is gone along as it was given.
+    /// Segments between them; true if the segment is traversed forwards.
     pub segments: Vec<(u32, bool)>,
 }
 
 impl Outline {
-    /// Whether it ends where it begins.
+    /// Returns whether it is closed.
     pub fn is_closed(&self) -> bool {
         self.points.len() > 1 && self.points.first() == self.points.last()
     }
 
-    /// The line the other way round.
+    /// The reversed polyline.
     pub fn reversed(mut self) -> Self {
         self.points.reverse();
         self.segments.reverse();
@@ -26,9 +26,9 @@ impl Outline {
     }
 }
 
-/// Joins segments between so many points to lines, whichever way they run: open ones first, from points where an odd
-/// number of segments end. Where more than two do, a line goes on along one that runs as it does, if there is one; what
-/// comes back to a point of the line is a line of its own.
+/// Joins segments between numbered points into polylines, in either direction. Open ones come first, starting at points
+/// where an odd number of segments end. At a point with more than two segments, a polyline prefers one that continues
+/// in its direction. If it returns to one of its points, the loop is split off as a polyline of its own.
 pub fn outlines(points: usize, segments: &[[u32; 2]]) -> Vec<Outline> {
     const ELSEWHERE: u32 = u32::MAX;
     let mut at: Vec<VecDeque<u32>> = vec![VecDeque::new(); points];
@@ -39,7 +39,7 @@ pub fn outlines(points: usize, segments: &[[u32; 2]]) -> Vec<Outline> {
     let odd: Vec<u32> = (0..points as u32).filter(|&point| at[point as usize].len() % 2 == 1).collect();
     let mut is_used = vec![false; segments.len()];
     let (mut lines, mut loops) = (Vec::new(), Vec::new());
-    // Where on the line each point is.
+    // Position of each point on the polyline.
     let mut places = vec![ELSEWHERE; points];
     for begin in odd.into_iter().chain(segments.iter().map(|&[from, _]| from)) {
         let mut line = Outline { points: vec![begin], segments: Vec::new() };
@@ -88,7 +88,7 @@ mod tests {
         assert!(found[0].is_closed());
         let ways: i32 = found[0].segments.iter().map(|(_, is)| if *is { 1 } else { -1 }).sum();
         assert_eq!((found[0].points.len(), ways), (5, 0));
-        // Two loops that share a point, and an open line.
+        // Two loops that share a point, and an open polyline.
         let found = outlines(8, &[[6, 7], [0, 1], [1, 2], [2, 0], [2, 3], [3, 4], [4, 2]]);
         let mut told: Vec<_> = found.iter().map(|line| (line.is_closed(), line.segments.len())).collect();
         told.sort_unstable();

@@ -1,17 +1,18 @@
-//! Faces between edges that more than two share: walls that part what others enclose.
+//! Patches between non-manifold edges: walls within bodies.
 
 use super::edges::Edges;
 use std::collections::HashMap;
 
-/// The faces that are no part of any surface: of those that are there an even number of times, and hang together, all
-/// where the edges that they share with others are odd with them rather than without. A wall between two bodies is
-/// such; the surface of a mesh of which each face is told from both sides is not.
+/// Duplicated faces that do not belong to any surface. These form components of faces that occur an even number of
+/// times. A component is returned if most of its edges shared with other faces have an odd face count with it, and an
+/// even one without. A wall between two bodies qualifies; the surface of a mesh with every face in both orientations
+/// does not.
 pub fn doubled(edges: &Edges, is_copied: &[bool]) -> Vec<u32> {
     if !is_copied.contains(&true) {
         return Vec::new();
     }
     let parts = edges.joined(|_, face| is_copied[face as usize]);
-    // By part: how many more of its edges with others are odd than even.
+    // Per component: number of odd shared edges minus even ones.
     let mut odd = vec![0i64; is_copied.len()];
     for edge in 0..edges.ends.len() as u32 {
         if edges.faces_at(edge).all(|face| is_copied[face as usize]) {
@@ -25,9 +26,9 @@ pub fn doubled(edges: &Edges, is_copied: &[bool]) -> Vec<u32> {
     (0..is_copied.len() as u32).filter(is_doubled).collect()
 }
 
-/// The faces of walls within bodies: between edges that two share, from the least area on, all of those that hang
-/// together where more of the edges that they share with others are odd with them than without. What spans a rim within
-/// a body is less than what encloses it.
+/// Faces of walls within bodies. Patches are components across edges with two faces, processed in order of area. A
+/// patch is removed if most of its shared edges have an odd face count with it and an even one without. A wall that
+/// spans a rim within a body has less area than the surface around it.
 pub fn partitions(edges: &Edges, area: impl Fn(u32) -> f64) -> Vec<u32> {
     if edges.odd().next().is_none() {
         return Vec::new();

@@ -1,4 +1,4 @@
-//! Where planes cut meshes.
+//! Plane sections of meshes.
 
 use super::covered::{Rule, covered};
 use super::outlines::{Outline, outlines};
@@ -9,54 +9,53 @@ use raywright_shapes::Bounds;
 use std::collections::HashMap;
 use std::sync::OnceLock;
 
-/// From so many planes on a tree of the faces is worth it.
+/// Minimum number of planes for which a tree over the faces pays off.
 const FOR_A_TREE: usize = 8;
 
-/// Where an edge ends within another, a plane that goes nearly along them cuts both in points that are so many times
-/// farther apart than they are.
+/// At a T-junction, a plane nearly parallel to the edges cuts them at points this many times farther apart than the
+/// edges are.
 const ALONG_A_CRACK: f64 = 8.0;
 
-/// A line in which a plane cuts a mesh.
+/// A polyline of a section.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cut {
-    /// The last of a closed one is the first again.
+    /// A closed polyline repeats its first point at the end.
     pub points: Vec<DVec3>,
-    /// Whether it ends where it begins.
+    /// True if it is closed.
     pub is_closed: bool,
 }
 
-/// All of them.
+/// The section of a mesh with a plane.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Section {
-    /// Open lines, then closed ones. Closed ones turn anticlockwise about what is inside, as seen against the normal.
+    /// Open polylines, then closed ones. Closed ones are anticlockwise around the inside, as seen against the normal.
     pub lines: Vec<Cut>,
-    /// What closed lines cover.
+    /// Area enclosed by the closed polylines.
     pub area: f64,
 }
 
-/// Faces ready to be cut.
+/// A mesh prepared for sections.
 pub struct Cutter<'a> {
     points: &'a [DVec3],
     given: &'a [[u32; 3]],
     tolerance: Option<f64>,
     faces: Faces,
-    /// With corners joined that rounding has moved, and walls between bodies left out: what is taken where lines do
-    /// not close without.
+    /// The mesh with rounded corners welded and inner walls removed, used if polylines do not close otherwise.
     welded: OnceLock<(Faces, f64)>,
     tree: Option<BoxTree>,
 }
 
-/// Faces by the corners that stand for theirs.
+/// Faces by representative corners.
 struct Faces {
     faces: Vec<[u32; 3]>,
     is_left: Vec<bool>,
-    /// How many more faces turn as each does than the other way, where those with the same corners are left out.
+    /// For each face, faces with its orientation minus those with the opposite one, if duplicates are removed.
     votes: Option<Vec<i32>>,
 }
 
 impl<'a> Cutter<'a> {
-    /// Of faces that are cut by so many planes. Corners are one within a tolerance; within [`super::rounding`] if there
-    /// is none.
+    /// Prepares a mesh for a number of sections. Corners are merged within a tolerance; the default is
+    /// [`super::rounding`].
     pub fn new(points: &'a [DVec3], given: &'a [[u32; 3]], tolerance: Option<f64>, planes: usize) -> Self {
         let corners = joined(points);
         let is_finite = |face: &[u32; 3]| face.iter().all(|&v| points[v as usize].is_finite());
@@ -67,7 +66,7 @@ impl<'a> Cutter<'a> {
         };
         let around = |face: &[u32; 3]| {
             let [a, b, c] = face.map(|v| points[v as usize]);
-            // Corners that are joined may lie a little farther.
+            // Merged corners may lie slightly outside the face's box.
             let (min, max) = (a.min(b).min(c), a.max(b).max(c));
             let room = tolerance.unwrap_or(0.0) + 1e-6 * min.abs().max(max.abs()).max_element();
             Bounds { min: min - room, max: max + room }
@@ -77,10 +76,10 @@ impl<'a> Cutter<'a> {
         Self { points, given, tolerance, faces, welded: OnceLock::new(), tree }
     }
 
-    /// Where a plane cuts them, and how much that covers. The normal must be a unit vector.
+    /// The section with a plane, and its area. The normal must be a unit vector.
     ///
-    /// On which side of the plane a corner lies is decided once for all faces that share it, and a corner exactly on it
-    /// counts as above (Edelsbrunner and Mücke, "Simulation of Simplicity", 1990).
+    /// The side of a corner is decided once for all faces that share it. A corner exactly on the plane counts as above
+    /// (Edelsbrunner and Mücke, "Simulation of Simplicity", 1990).
     pub fn cut(&self, origin: DVec3, normal: DVec3, rule: Rule) -> Section {
         let near = self.tree.as_ref().map(|tree| {
             let mut near = Vec::new();
@@ -115,20 +114,20 @@ impl<'a> Cutter<'a> {
     }
 }
 
-/// Whether a plane may cut what is in a box.
+/// Returns whether a plane may intersect a box.
 fn is_cut(bounds: &Bounds, origin: DVec3, normal: DVec3) -> bool {
     let (middle, half) = (0.5 * bounds.min + 0.5 * bounds.max - origin, 0.5 * bounds.max - 0.5 * bounds.min);
     let size = middle.abs().dot(normal.abs());
     middle.dot(normal).abs() <= half.dot(normal.abs()) + 1e-12 * size
 }
 
-/// What a plane cuts of faces.
+/// Segments of the section.
 #[derive(Default)]
 struct Segments {
     points: Vec<DVec3>,
-    /// By points, with the inside on the left.
+    /// Point numbers of each segment, with the inside on the left.
     ends: Vec<[u32; 2]>,
-    /// How many more faces say so than the other way round.
+    /// For each segment, faces with this orientation minus those with the opposite one.
     votes: Vec<i32>,
 }
 
@@ -146,7 +145,8 @@ impl Segments {
             if count == 0 || count == 3 {
                 continue;
             }
-            // The corner that is alone on its side; equal ones are on one side, so its edges have two ends.
+            // The corner that is alone on its side. Equal corners are on the same side, so its edges have distinct
+            // ends.
             let i = (0..3).find(|&i| above[i] == (count == 1)).unwrap_or(0);
             let [a, b, c] = [i, (i + 1) % 3, (i + 2) % 3];
             if face[b] == face[c] {
@@ -164,7 +164,7 @@ impl Segments {
             let ends = if above[a] { [first, second] } else { [second, first] };
             let mut key = face;
             key.sort_unstable();
-            // Faces with the same corners are one.
+            // Faces with the same corners count once.
             let segment = *known.entry(key).or_insert_with(|| {
                 all.ends.push(ends);
                 all.votes.push(0);
@@ -176,7 +176,7 @@ impl Segments {
         all
     }
 
-    /// Lines, with points where an odd number of segments end made one within a distance.
+    /// Joins segments into polylines, merging points with an odd number of segments within a distance.
     fn outlines(mut self, joining: f64) -> (Self, Vec<Outline>) {
         if joining > 0.0 {
             self.join_ends(joining);
@@ -185,7 +185,7 @@ impl Segments {
         (self, lines)
     }
 
-    /// Pairs points where an odd number of segments end, the nearest of those that are left within a distance.
+    /// Pairs points with an odd number of segments, nearest pairs first, within a distance.
     fn join_ends(&mut self, joining: f64) {
         let mut is_odd = vec![false; self.points.len()];
         self.ends.iter().flatten().for_each(|&p| is_odd[p as usize] ^= true);
@@ -210,7 +210,7 @@ impl Segments {
         }
     }
 
-    /// The lines where they are, turned as most of their length is, and what they cover.
+    /// The polylines in space, oriented by the majority of their length, and the enclosed area.
     fn section(&self, lines: Vec<Outline>, normal: DVec3, rule: Rule) -> Section {
         let across = normal.any_orthonormal_vector();
         let along = normal.cross(across);
@@ -238,7 +238,7 @@ impl Segments {
         for (i, line) in turned.iter_mut().enumerate().filter(|(i, _)| is_closed[*i]) {
             let mut ring: Vec<[DVec2; 2]> = flats[i].windows(2).map(|ends| [ends[0], ends[1]]).collect();
             if unsure.binary_search(&i).is_ok() {
-                // Outlines turn anticlockwise, those of holes in them clockwise.
+                // Outer boundaries are anticlockwise, and those of holes clockwise.
                 let others = flats.iter().enumerate().filter(|(j, _)| *j != i && is_closed[*j]);
                 let depth = others.filter(|(_, other)| surrounds(other, flats[i][0])).count();
                 if (doubled_area(&flats[i]) > 0.0) != (depth % 2 == 0) {
@@ -256,12 +256,12 @@ impl Segments {
     }
 }
 
-/// Twice what a line encloses, by the shoelace formula about its first point.
+/// Twice the area enclosed by a polyline, by the shoelace formula about its first point.
 fn doubled_area(line: &[DVec2]) -> f64 {
     line.windows(2).map(|ends| (ends[0] - line[0]).perp_dot(ends[1] - line[0])).sum()
 }
 
-/// Whether a closed line goes about a point an odd number of times.
+/// Returns whether a closed polyline surrounds a point an odd number of times.
 fn surrounds(line: &[DVec2], point: DVec2) -> bool {
     let crosses = |ends: &&[DVec2]| {
         let &&[a, b] = ends else { return false };

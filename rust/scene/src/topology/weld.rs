@@ -1,17 +1,18 @@
-//! Corners that are one but for rounding.
+//! Merging of corners that differ only by rounding.
 
 use super::manifold;
 use raywright_base::math::DVec3;
 use std::collections::HashMap;
 
-/// Units of the last place of the greatest coordinate within which corners that are float32 numbers are one.
+/// Merge distance for f32 corners, relative to the greatest coordinate: 8 ulps.
 const SINGLE: f64 = 8.0 / (1u64 << 24) as f64;
-/// The same of others: parts are turned and moved in float64, which takes some tens of roundings.
+/// Merge distance for other corners: rotating and translating parts in f64 takes some tens of roundings.
 const DOUBLE: f64 = 64.0 * f64::EPSILON / 2.0;
-/// Of the mean edge: where coordinates are so large that rounding moves corners by as much, none are joined.
+/// Upper bound relative to the mean edge: if coordinates are so large that rounding moves corners by this much, none
+/// are merged.
 const OF_EDGE: f64 = 1.0 / 64.0;
 
-/// For each point the number of the first that equals it. Points that are not finite equal none.
+/// For each point, the number of the first that equals it. Non-finite points equal none.
 pub fn joined(points: &[DVec3]) -> Vec<u32> {
     let bits = (2 * points.len()).next_power_of_two().max(2).trailing_zeros();
     let mut table = vec![u32::MAX; 1 << bits];
@@ -38,7 +39,7 @@ pub fn joined(points: &[DVec3]) -> Vec<u32> {
 
 fn hash(point: DVec3) -> u64 {
     const ODD: u64 = 0x9E37_79B9_7F4A_7C15;
-    // Adding 0 makes −0 equal to 0 in its bits as well.
+    // Adding 0 gives −0 the bits of 0.
     let mixed = (point + DVec3::ZERO)
         .to_array()
         .into_iter()
@@ -46,8 +47,8 @@ fn hash(point: DVec3) -> u64 {
     (mixed ^ (mixed >> 32)).wrapping_mul(ODD)
 }
 
-/// How close corners of a mesh are that differ by rounding: 2⁻²¹ of the greatest coordinate where all are float32
-/// numbers, and 2⁻⁴⁷ otherwise; but not more than a 64th of the mean edge.
+/// Distance between corners that differ by rounding: 2⁻²¹ of the greatest coordinate if all are float32 numbers, and
+/// 2⁻⁴⁷ otherwise, but at most a 64th of the mean edge.
 pub fn rounding(points: &[DVec3], faces: &[[u32; 3]]) -> f64 {
     let (mut largest, mut is_single, mut edges, mut count) = (0.0f64, true, 0.0, 0usize);
     for face in faces {
@@ -66,18 +67,18 @@ pub fn rounding(points: &[DVec3], faces: &[[u32; 3]]) -> f64 {
     if count == 0 { 0.0 } else { of_size.min(OF_EDGE * edges / count as f64) }
 }
 
-/// For each point the number of the one that stands for it: the first that equals it, or one within the tolerances of
-/// both: one for all points, or one each.
+/// For each point, the number of its representative: the first that equals it, or one within the tolerances of both.
+/// There is one tolerance for all points, or one each.
 ///
-/// Only corners on open edges are joined, those in the order of their numbers to the nearest one before them that
-/// stands for itself, and never two of one face: what is closed stays as it is, however thin.
+/// Only corners on open edges are merged, in order of their numbers, with the nearest earlier representative. Two
+/// corners of one face are never merged, so closed meshes stay unchanged, however thin.
 pub fn welded(points: &[DVec3], faces: &[[u32; 3]], tolerances: &[f64]) -> Vec<u32> {
     let all = joined(points);
     let named: Vec<[u32; 3]> = faces.iter().map(|face| face.map(|v| all[v as usize])).collect();
     if manifold::parts(&named, points.len()).is_some() { all } else { welded_among(all, points, faces, tolerances) }
 }
 
-/// The same, of points of which it is known which are equal.
+/// [`welded`], given the equal points.
 pub fn welded_among(mut all: Vec<u32>, points: &[DVec3], faces: &[[u32; 3]], tolerances: &[f64]) -> Vec<u32> {
     if !tolerances.iter().any(|&tolerance| is_some(tolerance)) {
         return all;
@@ -101,8 +102,7 @@ pub fn welded_among(mut all: Vec<u32>, points: &[DVec3], faces: &[[u32; 3]], tol
     all
 }
 
-/// The faces by the numbers that stand for their corners, without those that have no area by these or are not finite,
-/// and each once.
+/// Faces by representative corners, each once, without degenerate and non-finite ones.
 fn named(points: &[DVec3], faces: &[[u32; 3]], all: &[u32]) -> Vec<[u32; 3]> {
     let mut named: Vec<[u32; 3]> = faces
         .iter()
@@ -118,7 +118,7 @@ fn named(points: &[DVec3], faces: &[[u32; 3]], all: &[u32]) -> Vec<[u32; 3]> {
     named
 }
 
-/// The ends of edges that an odd number of faces share, in order. The corners of each face are in order.
+/// Ends of edges with an odd number of faces, in order. The corners of each face are sorted.
 fn rim(faces: &[[u32; 3]]) -> Vec<u32> {
     let mut edges: Vec<(u32, u32)> = faces.iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (a, c)]).collect();
     edges.sort_unstable();
@@ -133,12 +133,12 @@ fn is_some(tolerance: f64) -> bool {
     tolerance > 0.0 && tolerance.is_finite()
 }
 
-/// What stands for each of some corners.
+/// The representative of each of some corners.
 ///
-/// Those that stand for themselves are in cells some times as large as their tolerance, in a grid for each power of
-/// two, so that there are few of them in any, however tolerances differ.
+/// Representatives are hashed into cells some times as large as their tolerance, in one grid per power of two. So cells
+/// hold few of them, even if tolerances differ.
 fn leaders(points: &[DVec3], corners: &[u32], neighbours: &[(u32, u32)], tolerances: &[f64]) -> HashMap<u32, u32> {
-    // Popular coordinates, such as 0, are not where cells end.
+    // Offset, so that common coordinates such as 0 are not on cell borders.
     let place = |point: DVec3, size: i32| {
         let cell = (point / (4.0 * f64::from(size).exp2()) + 0.37).floor().to_array();
         cell.map(|x| x as i64)
@@ -194,7 +194,7 @@ mod tests {
 
     #[test]
     fn corners_are_one_within_the_lesser_of_their_tolerances() {
-        // Two strips of triangles side by side, of which each has a tolerance of its own.
+        // Two adjacent strips of triangles, each with its own tolerance.
         let strip = |x: f64, off: f64| (0..4).map(move |i| DVec3::new(x + off * f64::from(i), f64::from(i / 2), 0.0));
         let gap = 1e-6;
         let points: Vec<DVec3> = [(0.0, 0.0), (1.0, 0.0)]

@@ -1,4 +1,4 @@
-//! Daylight.
+//! Daylight: sun and clear sky.
 
 mod perez;
 pub mod sun;
@@ -15,17 +15,16 @@ use raywright_base::math::{DVec3, Frame};
 use raywright_optics::Rgb;
 use std::f64::consts::{PI, TAU};
 
-/// A clear sky and the sun in it over a plain that reflects both evenly.
+/// A clear sky with the sun above a ground plane of uniform reflectance.
 ///
-/// The sun is a disk of even radiance, and its draws fill the cone of that. The sky above is drawn by a table, and the
-/// ground evenly.
+/// The sun is a disk of uniform radiance, sampled in its cone. The sky is sampled by a table, and the ground uniformly.
 #[derive(Clone, Debug)]
 pub struct SunSky {
-    /// Whose z is up.
+    /// Frame with z up.
     frame: Frame,
-    /// To the sun, unit.
+    /// Unit direction to the sun.
     sun: DVec3,
-    /// To the brightest of the sky: the sun or, once it has set, the horizon above it.
+    /// Direction to the brightest part of the sky: the sun or, after sunset, the horizon above it.
     glow: DVec3,
     sun_radiance: Rgb,
     sky: Perez,
@@ -35,8 +34,7 @@ pub struct SunSky {
     albedo: Rgb,
     /// Fluxes of sun, sky and ground, means of the channels.
     flux: [f64; 3],
-    /// What the cells of the sky are drawn by: sectors about the zenith, and bands of equal height from the horizon to
-    /// it.
+    /// Sampling weights of the sky's cells: sectors about the zenith, and bands of equal height from the horizon to it.
     weights: Vec<f64>,
     pyramid: Option<Pyramid>,
     spread: f64,
@@ -45,23 +43,23 @@ pub struct SunSky {
 const COLUMNS: usize = 128;
 const ROWS: usize = 64;
 
-/// How often the sun is chosen, where it is seen.
+/// Probability of sampling the sun, if it is visible.
 const SUN_SHARE: f64 = 0.5;
 
-/// The least weight of a cell beside the mean.
+/// Lower bound of a cell's weight, relative to the mean.
 const LEAST: f64 = 1e-3;
 
 impl SunSky {
-    /// For a sun in a direction of any length but 0; a turbidity from 2, clear, to 10, hazy; and a ground of a
-    /// reflectance. `scales` multiply the light of the sun and that of the sky. The formula of the sky ends where the
-    /// sun is at the horizon, as `up` has it: below, the sky is as it is then, and darker as twilight is.
+    /// Creates a sky for a sun in a direction of any non-zero length, a turbidity from 2, clear, to 10, hazy, and a
+    /// ground reflectance. `scales` multiply the light of sun and sky. The sky model ends with the sun at the horizon
+    /// defined by `up`. Below it, the sky at the horizon is darkened by a twilight model.
     ///
-    /// Radiance is in W·sr⁻¹·m⁻² as the eye weighs it: its luminance times 683 lm·W⁻¹ is in cd·m⁻².
+    /// Radiance is in W·sr⁻¹·m⁻², weighted by the eye's sensitivity: its luminance times 683 lm·W⁻¹ is in cd·m⁻².
     pub fn new([sun, up]: [DVec3; 2], turbidity: f64, albedo: Rgb, scales: [f64; 2]) -> Self {
         let unit = |v: DVec3| (v / v.abs().max_element()).normalize();
         let (sun, frame) = (unit(sun), Frame::new(unit(up)));
         let height = sun.dot(frame.normal);
-        // Of a sun straight below, the glow is as good on any side: there is no light left.
+        // With the sun straight below any side would do, because no light is left.
         let glow = if height < 0.0 { (sun - frame.normal * height).normalize_or(frame.tangent) } else { sun };
         let (sky, sky_scale) = (Perez::new(height.max(0.0), turbidity), scales[1] * twilight::share(height));
         let is_up = height > -sun::RADIUS.sin();
@@ -85,13 +83,13 @@ impl SunSky {
         all
     }
 
-    /// Weighs the sky, and adds up what falls on the ground.
+    /// Computes the weights of the sky, and the irradiance of the ground.
     fn survey(&mut self) {
         let cell = TAU / (COLUMNS * ROWS) as f64;
         let (mut sky, mut down, mut squares) = (Rgb::ZERO, Rgb::ZERO, 0.0);
         for row in 0..ROWS {
             for column in 0..COLUMNS {
-                // Four points of each cell: the greatest for its weight, all for the sums.
+                // Four points of each cell: the maximum gives its weight, and all contribute to the sums.
                 let mut most = 0.0f64;
                 for (x, y) in [(0.25, 0.25), (0.75, 0.25), (0.25, 0.75), (0.75, 0.75)] {
                     let direction = self.inside(column, row, [x, y]);
@@ -115,7 +113,7 @@ impl SunSky {
         self.spread = if squares > 0.0 { whole * whole / (2.0 * TAU * squares) } else { 1.0 };
     }
 
-    /// A direction in a cell of the sky.
+    /// A direction within a cell of the sky.
     fn inside(&self, column: usize, row: usize, [x, y]: [f64; 2]) -> DVec3 {
         let cosine = (row as f64 + y) / ROWS as f64;
         let (sin, cos) = ((column as f64 + x) / COLUMNS as f64 * TAU).sin_cos();
@@ -123,17 +121,18 @@ impl SunSky {
         self.frame.to_world(DVec3::new(sine * cos, sine * sin, cosine))
     }
 
-    /// The radiance of the sky alone, from above the horizon.
+    /// Radiance of the sky without the sun, above the horizon.
     fn sky_at(&self, direction: DVec3) -> Rgb {
         self.sky.radiance(direction.dot(self.frame.normal), direction.dot(self.glow)) * self.sky_scale
     }
 
-    /// Whether a direction goes to the sun: the chord between the two is twice the sine of half the angle.
+    /// Returns whether a direction is within the sun's disk. The chord between two unit vectors is twice the sine of
+    /// half their angle.
     fn is_sun(&self, direction: DVec3) -> bool {
         (direction - self.sun).length() <= 2.0 * (0.5 * sun::RADIUS).sin()
     }
 
-    /// How often the sun, the sky and the ground are drawn for a receiver.
+    /// Probabilities of sampling sun, sky and ground for a receiver.
     #[inline]
     fn shares(&self, receiver: &LightSampleContext) -> [f64; 3] {
         let (sees_sun, above) = if receiver.is_free() {
@@ -152,7 +151,7 @@ impl SunSky {
         if rest > 0.0 { [sun, (1.0 - sun) * (sky / rest), (1.0 - sun) * (ground / rest)] } else { [sun, 0.0, 0.0] }
     }
 
-    /// The density of the sky's table.
+    /// Density of the sky's table.
     fn sky_pdf(&self, local: DVec3) -> f64 {
         let Some(pyramid) = &self.pyramid else { return 0.0 };
         let turn = (local.y.atan2(local.x) / TAU).rem_euclid(1.0);
@@ -185,7 +184,7 @@ impl Light for SunSky {
         let [sun, sky, ground] = self.shares(receiver);
         let left = |from: f64, share: f64| ((u - from) / share).clamp(0.0, 1.0 - f64::EPSILON / 2.0);
         let direction = if u < sun {
-            // Even in the height of the cap, 1 − cos, up to 2 sin²(α / 2).
+            // Uniform in the height of the cap, 1 − cos, up to 2 sin²(α / 2).
             let height = 2.0 * (0.5 * sun::RADIUS).sin().powi(2) * left(0.0, sun);
             let ((sin, cos), out) = ((TAU * v).sin_cos(), (height * (2.0 - height)).sqrt());
             Frame::new(self.sun).to_world(DVec3::new(out * cos, out * sin, 1.0 - height))
@@ -205,7 +204,7 @@ impl Light for SunSky {
     }
 
     fn infinite_radiance(&self, direction: DVec3) -> Rgb {
-        // The plain hides what of the sun has set.
+        // The ground hides the part of the sun below the horizon.
         if direction.dot(self.frame.normal) <= 0.0 {
             self.ground
         } else if self.is_sun(direction) {

@@ -1,28 +1,28 @@
-//! Sunlight, and what of it the air lets through.
+//! Sunlight after transmission through the atmosphere.
 
 use raywright_optics::Rgb;
 use std::f64::consts::PI;
 
-/// Half the angle under which the sun is seen, radians: 0.53° in all.
+/// Half the angular diameter of the sun, radians; the diameter is 0.53°.
 pub const RADIUS: f64 = 0.265 * PI / 180.0;
 
-/// The solid angle of the sun.
+/// Solid angle of the sun.
 pub fn solid_angle() -> f64 {
     let sine = (0.5 * RADIUS).sin();
     4.0 * PI * sine * sine
 }
 
-/// Absorption of ozone, cm⁻¹, each 10 nm from 450 to 700 nm (Iqbal, "An Introduction to Solar Radiation", 1983, as
-/// Preetham et al. have it).
+/// Absorption of ozone, cm⁻¹, every 10 nm from 450 to 700 nm (Iqbal, "An Introduction to Solar Radiation", 1983, as in
+/// Preetham et al.).
 const OZONE: [f64; 26] = [
     0.003, 0.006, 0.009, 0.014, 0.021, 0.030, 0.040, 0.048, 0.063, 0.075, 0.085, 0.103, 0.120, 0.120, 0.115, 0.125,
     0.120, 0.105, 0.090, 0.079, 0.067, 0.057, 0.048, 0.036, 0.028, 0.023,
 ];
 
-/// How much ozone there is, cm.
+/// Thickness of the ozone layer, cm.
 const OZONE_DEPTH: f64 = 0.35;
 
-/// The radiance of a black body of a temperature in kelvin at a wavelength in nm, W·sr⁻¹·m⁻²·nm⁻¹ (Planck, 1900).
+/// Radiance of a black body with a temperature in kelvin at a wavelength in nm, W·sr⁻¹·m⁻²·nm⁻¹ (Planck, 1900).
 pub fn black_body(wavelength: f64, temperature: f64) -> f64 {
     const C1: f64 = 1.191_042_972e-16;
     const C2: f64 = 1.438_776_877e-2;
@@ -30,12 +30,11 @@ pub fn black_body(wavelength: f64, temperature: f64) -> f64 {
     C1 / metres.powi(5) / (C2 / (metres * temperature)).exp_m1() * 1e-9
 }
 
-/// The share of sunlight at a wavelength in nm that comes through clear air, for a sun at a height whose cosine to the
-/// zenith is this and a turbidity (Preetham, Shirley and Smits, "A Practical Analytic Model for Daylight", 1999,
-/// appendix 2): what molecules scatter, what dust does, and what ozone takes. Water and mixed gases take next to
-/// nothing of visible light.
+/// Transmittance of clear air at a wavelength in nm, by the cosine of the sun's zenith angle and a turbidity (Preetham,
+/// Shirley and Smits, "A Practical Analytic Model for Daylight", 1999, appendix 2). It includes Rayleigh scattering,
+/// aerosols and ozone. Water and mixed gases absorb next to no visible light.
 pub fn transmittance(wavelength: f64, cos_zenith: f64, turbidity: f64) -> f64 {
-    // Relative to the air above (Kasten, 1966).
+    // Relative air mass (Kasten, 1966).
     let degrees = cos_zenith.clamp(0.0, 1.0).acos().to_degrees();
     let mass = 1.0 / (cos_zenith.max(0.0) + 0.15 * (93.885 - degrees).powf(-1.253));
     let micrometres = wavelength * 1e-3;
@@ -52,8 +51,8 @@ pub fn transmittance(wavelength: f64, cos_zenith: f64, turbidity: f64) -> f64 {
     (-(molecules + dust + ozone) * mass).exp()
 }
 
-/// The colour-matching functions of the CIE's observer of 1931 at a wavelength in nm (Wyman, Sloan and Shirley, "Simple
-/// Analytic Approximations to the CIE XYZ Color Matching Functions", 2013).
+/// Colour-matching functions of the CIE 1931 observer at a wavelength in nm (Wyman, Sloan and Shirley, "Simple Analytic
+/// Approximations to the CIE XYZ Color Matching Functions", 2013).
 pub fn observer(wavelength: f64) -> [f64; 3] {
     let lobe = |middle: f64, left: f64, right: f64| {
         let x = (wavelength - middle) / if wavelength < middle { left } else { right };
@@ -66,7 +65,7 @@ pub fn observer(wavelength: f64) -> [f64; 3] {
     ]
 }
 
-/// Linear Rec. 709 of CIE XYZ, without what that cannot show.
+/// Converts CIE XYZ to linear Rec. 709, clamped to its gamut.
 pub fn from_xyz([x, y, z]: [f64; 3]) -> Rgb {
     Rgb::new(
         3.240_970 * x - 1.537_383 * y - 0.498_611 * z,
@@ -76,8 +75,7 @@ pub fn from_xyz([x, y, z]: [f64; 3]) -> Rgb {
     .at_least(Rgb::ZERO)
 }
 
-/// The radiance of the sun as it is seen from the ground: a black body of 5778 K through the air. Luminance over 683
-/// lm·W⁻¹.
+/// Radiance of the sun seen from the ground: a black body of 5778 K through the atmosphere. Luminance over 683 lm·W⁻¹.
 pub fn radiance(cos_zenith: f64, turbidity: f64) -> Rgb {
     let xyz = (360..=830).fold([0.0; 3], |mut sum, wavelength| {
         let wavelength = f64::from(wavelength);

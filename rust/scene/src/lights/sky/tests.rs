@@ -1,4 +1,4 @@
-//! Daylight against numbers known of it.
+//! Daylight against published values.
 
 use super::Perez;
 use super::sun::{black_body, from_xyz, observer, radiance, solid_angle, transmittance};
@@ -24,14 +24,15 @@ fn a_black_body_obeys_stefan_and_boltzmann() {
 
 #[test]
 fn the_suns_light_above_the_air_is_the_solar_constant() {
-    // 1361 W·m⁻² (Kopp and Lean, 2011); seen under 0.53° rather than 0.5332°, it is one percent less.
+    // The solar constant is 1361 W·m⁻² (Kopp and Lean, 2011). The model's diameter of 0.53° instead of 0.5332° makes it
+    // one percent less.
     let outside = 5.670_374_419e-8 * 5778f64.powi(4) / PI * solid_angle();
     assert!((outside / 1361.0 - 1.0).abs() < 0.015, "{outside}");
 }
 
 #[test]
 fn the_observer_is_the_cies() {
-    // Its values of 1931 at some wavelengths, which the fit has to within 0.03, and its integral of ȳ, 106.857.
+    // Values of 1931 at some wavelengths, which the fit meets to within 0.03, and the integral of ȳ, 106.857.
     for (wavelength, expected) in
         [(450.0, [0.3362, 0.038, 1.7721]), (555.0, [0.5121, 1.0, 0.0057]), (600.0, [1.0622, 0.631, 0.0008])]
     {
@@ -41,7 +42,7 @@ fn the_observer_is_the_cies() {
     }
     let sum: f64 = (360..=830).map(|w| observer(f64::from(w))[1]).sum();
     assert!((sum / 106.857 - 1.0).abs() < 0.01, "{sum}");
-    // The white of Rec. 709 is D65.
+    // The white point of Rec. 709 is D65.
     let white = from_xyz([0.950_456, 1.0, 1.089_058]);
     assert!((white - Rgb::ONE).abs().max() < 1e-4, "{white}");
 }
@@ -57,7 +58,7 @@ fn air_takes_more_the_more_there_is_and_blue_before_red() {
         assert!(through(550.0, 0.2) < through(550.0, 0.3));
         assert!(through(550.0, 0.5) > transmittance(550.0, 0.5, turbidity + 1.0));
     }
-    // At the zenith through air of turbidity 2, by hand: molecules 0.1001, dust 0.0463 · 0.55^−1.3, ozone 0.085 · 0.35.
+    // Zenith transmittance at turbidity 2, by hand: molecules 0.1001, aerosols 0.0463 · 0.55^−1.3, ozone 0.085 · 0.35.
     let depth: f64 = 0.008735 * 0.55f64.powf(-4.08) + 0.0463 * 0.55f64.powf(-1.3) + 0.085 * 0.35;
     let mass = 1.0 / (1.0 + 0.15 * 93.885f64.powf(-1.253));
     assert!((transmittance(550.0, 1.0, 2.0) / (-depth * mass).exp() - 1.0).abs() < 1e-12);
@@ -65,7 +66,7 @@ fn air_takes_more_the_more_there_is_and_blue_before_red() {
 
 #[test]
 fn a_high_sun_is_as_bright_as_meters_say() {
-    // Direct sunlight on what faces it is around 100 klx.
+    // Direct sunlight on a perpendicular surface is around 100 klx.
     let sun = radiance(1.0, 2.5).luminance() * solid_angle() * 683.0;
     assert!((70e3..120e3).contains(&sun), "{sun}");
 }
@@ -82,7 +83,7 @@ fn the_zenith_is_what_the_paper_has_and_skies_are_blue() {
         let zenith = Perez::new(0.7, t).radiance(1.0, 0.7);
         assert!(zenith[2] > zenith[1] && zenith[1] > zenith[0], "{zenith}");
     }
-    // Everywhere, at every hour, light and nothing else.
+    // The radiance is positive and finite in all directions at all hours.
     for t in [2.0, 4.0, 10.0] {
         for height in [0.0, 0.01, 0.3, 1.0] {
             let sky = Perez::new(height, t);

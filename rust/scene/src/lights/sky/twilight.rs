@@ -1,30 +1,28 @@
-//! What is left of daylight once the sun has set.
+//! Daylight after sunset.
 
 use std::f64::consts::PI;
 
-/// Where twilight ends, degrees below the horizon.
+/// End of twilight, degrees below the horizon.
 const NIGHT: f64 = 18.0;
 
-/// The illuminance of level ground under a clear sky: its logarithm to the base 10, in lux, as a polynomial of the
-/// sun's elevation over 90°, for elevations above that which stands first (Seidelmann, "Explanatory Supplement to the
-/// Astronomical Almanac", 1992, which has 2.70 and 13.84: with two more digits the pieces meet).
+/// Illuminance of level ground under a clear sky: its base-10 logarithm, in lux, as polynomials of the sun's elevation
+/// over 90°. Each piece applies above its first number (Seidelmann, "Explanatory Supplement to the Astronomical
+/// Almanac", 1992, with 2.70 and 13.84: two more digits make the pieces meet).
 const PIECES: [(f64, [f64; 4]); 3] = [
     (-5.0, [2.88, 21.81, -258.11, -858.36]),
     (-12.0, [2.7016, 12.17, -431.69, -1899.83]),
     (-NIGHT, [13.8373, 262.72, 1447.42, 2797.93]),
 ];
 
-/// The logarithm to the base 10 of the illuminance in lux for a sun at an elevation in degrees, from 18 below the
-/// horizon to 0.
+/// Base-10 logarithm of the illuminance in lux, for a sun at an elevation in degrees from −18 to 0.
 fn illuminance(degrees: f64) -> f64 {
     let x = degrees / 90.0;
     let (_, [a, b, c, d]) = PIECES.into_iter().find(|(above, _)| degrees > *above).unwrap_or(PIECES[2]);
     a + x * (b + x * (c + x * d))
 }
 
-/// The share of the light that the sky gives with the sun at the horizon, for a sun at a height whose cosine to the
-/// zenith is this: 1 above the horizon, and nothing from 18° below it on, where stars and the glow of the air would be
-/// brighter.
+/// Light of the sky relative to that with the sun at the horizon, by the cosine of the sun's zenith angle. It is 1
+/// above the horizon, and 0 below −18°, where starlight and airglow would be brighter.
 pub fn share(cos_zenith: f64) -> f64 {
     let degrees = cos_zenith.clamp(-1.0, 1.0).asin() * 180.0 / PI;
     if degrees >= 0.0 {
@@ -42,7 +40,7 @@ mod tests {
 
     #[test]
     fn the_ends_of_twilights_are_as_dark_as_almanacs_have_them() {
-        // Civil, nautical and astronomical, in lux.
+        // Civil, nautical and astronomical twilight, in lux.
         for (degrees, lux) in [(-6.0, 3.4), (-12.0, 0.008), (-18.0, 0.00065)] {
             let told = 10f64.powf(illuminance(degrees));
             assert!((told / lux - 1.0).abs() < 0.02, "{degrees}: {told}");

@@ -1,4 +1,4 @@
-//! What is told of the way of light from either of its ends is the same.
+//! Densities computed from both ends of a light segment agree.
 
 use super::super::{
     Aim, ConstantEnvironment, DirectionalLight, Emission, EmissionDensity, EmissionNumbers, Emitters, Light,
@@ -37,12 +37,12 @@ fn lit() -> Scene {
     scene(SceneDescription { shapes: vec![lamp, glowing(ball), glowing(disk)], lights })
 }
 
-/// Two balls to aim at, one of which holds a lamp.
+/// Two guiding spheres; one contains a lamp.
 fn balls() -> Aim {
     Aim::at(vec![(DVec3::new(0.6, 0.3, 0.1), 0.3), (DVec3::new(2.2, 0.4, 1.0), 0.6)])
 }
 
-/// Light that sets out as lights shine, and what is aimed at as well.
+/// Emission without and with guiding.
 fn each_aim(scene: &Scene) -> [Emitters<'_>; 2] {
     [Aim::default(), balls()].map(|aim| scene.emitters().unwrap().aimed(aim))
 }
@@ -121,7 +121,7 @@ fn asked_as_told(scene: &Scene, emitters: &Emitters<'_>) {
                 let surface = scene.geometry().surface(&ray, &hits[0]);
                 let found = emitters.of_hit(&ray, &hits[0], &surface).unwrap();
                 assert_eq!(found.source, departure.source);
-                // By the cosine, of which a point that is grazed is known to fewer digits.
+                // Divided by the cosine, because a grazing hit has fewer digits.
                 assert!((found.density / departure.density - 1.0).abs() < 1e-6 / departure.cosine.min(1.0));
                 met += 1;
             }

@@ -1,4 +1,4 @@
-//! Light that sets out brings what light that is asked for does.
+//! Emission sampling and light sampling give the same irradiance.
 
 use super::super::{
     ConstantEnvironment, DirectionalLight, Emission, EmissionNumbers, EmissionSample, Emitters, EnvironmentMap, Light,
@@ -32,7 +32,7 @@ fn emit(emitters: &Emitters, number: u32) -> Option<EmissionSample> {
     emitters.sample(&EmissionNumbers { choice, outside, place, direction }, None)
 }
 
-/// Mean and standard error of what falls on the patch from either side, by light that sets out, nothing in its way.
+/// Mean and standard error of the unoccluded flux onto the patch from both sides, by emission sampling.
 fn sent(scene: &Scene, draws: u32) -> (f64, f64) {
     let emitters = scene.emitters().expect("something shines");
     let (mut sum, mut squares) = (0.0, 0.0);
@@ -50,7 +50,7 @@ fn sent(scene: &Scene, draws: u32) -> (f64, f64) {
     (mean, ((squares / f64::from(draws) - mean * mean).max(0.0) / f64::from(draws)).sqrt())
 }
 
-/// The same by light that is asked for at points of the patch.
+/// Mean and standard error of the same flux, by light sampling at points of the patch.
 fn asked(scene: &Scene, draws: u32) -> (f64, f64) {
     let (mut sum, mut squares) = (0.0, 0.0);
     for number in 0..draws {
@@ -67,7 +67,7 @@ fn asked(scene: &Scene, draws: u32) -> (f64, f64) {
     (mean, ((squares / f64::from(draws) - mean * mean).max(0.0) / f64::from(draws)).sqrt())
 }
 
-/// Within five standard errors, which chance exceeds once in two million.
+/// Within five standard errors; the probability of exceeding them is one in two million.
 fn assert_alike(name: &str, scene: &Scene) {
     let (sent, asked) = (sent(scene, 60_000), asked(scene, 60_000));
     let error = sent.1.hypot(asked.1);
@@ -156,7 +156,7 @@ fn light_of_all_kinds_adds_up_to_its_power() {
     let point = PointLight { position: DVec3::Z, intensity: rgb };
     let scene = over_a_patch(vec![ball], vec![Arc::new(point)]);
     let emitters = scene.emitters().unwrap();
-    // Each is chosen by its power, so each draw of either stands for all of it.
+    // Lights are selected by power, so each sample represents the total power.
     for number in 0..100 {
         let weight = emit(&emitters, number).unwrap().weight.mean();
         assert!((weight - (PI * PI * 2.0 + 4.0 * PI * 2.0)).abs() < 1e-9 * weight, "{weight}");

@@ -1,4 +1,4 @@
-//! What surrounds a scene: its densities, and what it brings.
+//! Environments: densities and irradiances.
 
 use super::super::{ConstantEnvironment, EnvironmentMap, Light, LightSampleContext, Picture, PointLight, SunSky};
 use super::{FLOOR, Grid, assert_density, assert_near, irradiance_at, white};
@@ -21,7 +21,8 @@ fn under(lights: Vec<Arc<dyn Light>>) -> Scene {
     scene(SceneDescription { lights, ..Default::default() })
 }
 
-/// All sorts: even, patterned, black but for a texel at a pole or elsewhere, of a single texel, row or column.
+/// Maps of all kinds: constant, patterned, black except for a texel at a pole or elsewhere, and of a single texel, row
+/// or column.
 fn maps() -> Vec<EnvironmentMap> {
     vec![
         map(8, 4, |_, _| [1.0; 3]),
@@ -44,7 +45,7 @@ fn maps_are_drawn_by_their_density() {
 
 #[test]
 fn all_light_of_a_map_is_its_integral() {
-    // By the weights of draws, which are all but even, and by brute force.
+    // By sample weights, which are nearly constant, and by brute force.
     for map in maps() {
         let grid = Grid { rows: 8, columns: 12 };
         let expected: f64 = grid.integrals(60, |d| map.infinite_radiance(d)[1]).iter().sum();
@@ -57,11 +58,11 @@ fn all_light_of_a_map_is_its_integral() {
 fn a_map_is_upright_and_not_mirrored() {
     let map = map(4, 2, |i, j| [if j == 0 { 1.0 } else { 0.0 }, i as f32, 0.0]);
     let at = |d: DVec3| {
-        // The picture's y is the world's z.
+        // The picture's y axis is the world's z axis.
         map.infinite_radiance(d)
     };
     assert!((at(DVec3::Z)[0] - 1.0).abs() < 1e-12 && at(DVec3::NEG_Z)[0].abs() < 1e-12);
-    // Its middle lies between columns 1 and 2; a quarter of a turn to the right is between 2 and 3.
+    // Its center lies between columns 1 and 2; 90 degrees to the right lies between 2 and 3.
     let (middle, right) = (at(DVec3::Y)[1], at(DVec3::X)[1]);
     assert!((middle - 1.5).abs() < 1e-12 && (right - 2.5).abs() < 1e-12, "{middle} {right}");
     let behind = at(DVec3::NEG_Y)[1];
@@ -70,7 +71,7 @@ fn a_map_is_upright_and_not_mirrored() {
 
 #[test]
 fn a_sun_of_one_texel_leaves_no_heavy_tail() {
-    // A sun of 10⁷ in a sky of 1: every draw from above weighs nearly what the mean does.
+    // A sun of 10⁷ in a sky of 1: every sample from above has nearly the mean weight.
     let map = map(64, 32, |i, j| if (i, j) == (20, 6) { [1e7; 3] } else { [1.0; 3] });
     let grid = Grid { rows: 64, columns: 64 };
     let expected: f64 = grid.integrals(24, |d| map.infinite_radiance(d)[1] * d.z.max(0.0)).iter().sum();
@@ -122,12 +123,12 @@ fn environments_add_up() {
     let lit = under(all.clone());
     assert_near(irradiance_at(&lit, &FLOOR, 20_000), 2.3 * PI, 0.01);
     assert!((lit.lights().infinite_radiance(DVec3::X) - white(2.3)).abs().max() < 1e-12);
-    // With a lamp beside, and for light from everywhere.
+    // With a lamp, and for light from all directions.
     let lamp = PointLight { position: DVec3::Z, intensity: white(7.0) };
     let lit = under(all.into_iter().chain([Arc::new(lamp) as _]).collect());
     assert_near(irradiance_at(&lit, &FLOOR, 50_000), 2.3 * PI + 7.0, 0.02);
     assert_near(irradiance_at(&lit, &LightSampleContext::free(DVec3::ZERO), 50_000), 2.3 * 4.0 * PI + 7.0, 0.02);
-    // The density is that of the draws' directions, whichever light they come from.
+    // The density is that of sampled directions, whichever light they come from.
     let grid = Grid { rows: 8, columns: 12 };
     let sum: f64 = grid.integrals(40, |d| lit.lights().infinite_pdf(&FLOOR, d)).iter().sum();
     let outside = (0..20_000).filter_map(|n| super::draw(&lit, &FLOOR, n)).filter(|s| s.source.is_none()).count();
@@ -139,7 +140,7 @@ fn environments_add_up() {
 fn daylight_is_drawn_by_its_density() {
     for (height, turbidity) in [(1.0, 2.0), (0.5, 3.0), (0.0, 6.0), (0.1, 10.0)] {
         let sun = DVec3::new(0.6 * f64::sqrt(1.0 - height * height), -0.8 * f64::sqrt(1.0 - height * height), height);
-        // The sun's own part is too small for the grid: without it.
+        // The sun is too small for the grid, so the sky is tested without it.
         let sky = SunSky::new([sun, DVec3::Z], turbidity, white(0.3), [0.0, 1.0]);
         assert_eq!(sky.validate(), Ok(()));
         for receiver in [FLOOR, LightSampleContext::free(DVec3::ZERO), LightSampleContext { normal: DVec3::X, ..FLOOR }]
@@ -159,10 +160,10 @@ fn a_receiver_is_lit_by_sun_and_sky_as_integrals_say() {
     let disk = day.infinite_radiance(sun)[1] - sky.infinite_radiance(sun)[1];
     let from_sun = disk * super::super::sky::sun::solid_angle() * 0.6;
     assert_near(irradiance_at(&under(vec![Arc::new(day.clone())]), &FLOOR, 50_000), from_sky + from_sun, 0.01);
-    // The plain below is what it reflects.
+    // The ground's radiance is its reflected irradiance.
     let ground = day.infinite_radiance(DVec3::new(0.6, 0.0, -0.8))[1];
     assert!((ground / (0.2 * (from_sky + from_sun) / PI) - 1.0).abs() < 1e-3, "{ground}");
-    // What looks down sees no sun and no sky, and what looks away from the sun none of it.
+    // A receiver that faces down sees neither sun nor sky; one that faces away from the sun does not see the sun.
     let down = LightSampleContext { normal: DVec3::NEG_Z, ..FLOOR };
     assert_near(irradiance_at(&under(vec![Arc::new(day.clone())]), &down, 10_000), PI * ground, 0.02);
     let away = LightSampleContext { normal: -sun, ..FLOOR };
@@ -180,8 +181,8 @@ fn daylight_goes_out_as_the_sun_sets() {
     };
     let day = |degrees: f64| SunSky::new([way(degrees), DVec3::Z], 3.0, white(0.2), [1.0, 1.0]);
     let zenith = |degrees: f64| day(degrees).infinite_radiance(DVec3::Z)[1];
-    // No step at the horizon, the sky at 6 degrees below it as much darker as the ground is by the almanac, and then
-    // night.
+    // The sky is continuous at the horizon. At −6 degrees it is darker by the almanac's ratio of ground illuminance,
+    // and below −18 it is black.
     assert!((zenith(-1e-7) / zenith(1e-7) - 1.0).abs() < 1e-5, "{} {}", zenith(-1e-7), zenith(1e-7));
     assert!((zenith(-6.0) / zenith(0.0) * 10f64.powf(2.88) / 3.4 - 1.0).abs() < 0.02);
     for below in [18.5, 60.0, 90.0] {
@@ -192,7 +193,7 @@ fn daylight_goes_out_as_the_sun_sets() {
         }
         assert!(night.sample(&FLOOR, [0.3, 0.7]).is_none());
     }
-    // Twilight is drawn by its density, and the sun is there as long as an edge of it is above the plain.
+    // Twilight samples follow their density, and the sun is visible while its edge is above the horizon.
     assert_density(&day(-4.0), &FLOOR, 60, 2e-3);
     let edge = |degrees: f64| {
         let sky = SunSky::new([way(degrees), DVec3::Z], 3.0, white(0.2), [0.0, 1.0]);
@@ -200,7 +201,7 @@ fn daylight_goes_out_as_the_sun_sets() {
     };
     assert!(edge(0.0) > 0.0 && edge(-0.25) > 0.0);
     assert_eq!((edge(-0.27), edge(0.28)), (0.0, 0.0));
-    // Below the plain nothing of it is seen.
+    // Below the horizon the sun is hidden.
     assert_eq!(day(0.0).infinite_radiance(way(-0.1)), day(0.0).infinite_radiance(DVec3::NEG_Z));
 }
 

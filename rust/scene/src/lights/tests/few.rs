@@ -1,4 +1,4 @@
-//! Few lights, asked one by one.
+//! Scenes with few lights, sampled one by one.
 
 use super::super::{ConstantEnvironment, DirectionalLight, Light, LightSample, LightSampleContext, PointLight};
 use super::shapes::lambert;
@@ -11,8 +11,8 @@ use raywright_shapes::{Disk, Plane, Sphere};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-/// A square of side 2 that looks down from height 1, right above the point, and the irradiance it gives at radiance 1:
-/// four times that of a corner (Lambert, 1760).
+/// A square of side 2 that faces down from height 1 above the point, and its irradiance at radiance 1: four times that
+/// of a corner (Lambert, 1760).
 fn overhead() -> Mesh {
     rectangle([-1.0, -1.0, 1.0], [0.0, 2.0, 0.0], [2.0, 0.0, 0.0])
 }
@@ -41,7 +41,7 @@ fn draw(scene: &Scene, one: u32, receiver: &LightSampleContext, number: u32) -> 
     scene.lights().sample_one(one, scene.geometry(), receiver, &mut || sampler.one(0), u)
 }
 
-/// Mean and standard error of the irradiance of one.
+/// Mean and standard error of the irradiance of one light.
 fn irradiance(scene: &Scene, one: u32, draws: u32) -> (f64, f64) {
     let (mut sum, mut squares) = (0.0, 0.0);
     for number in 0..draws {
@@ -61,7 +61,7 @@ fn each_gives_its_own_irradiance() {
     let shapes = vec![dark(), shape(overhead(), [0.0; 3], 1.0), dark(), round(sphere, 3.0)];
     let all = lit(shapes, vec![point(), sky(0.2)]);
     assert_eq!(all.lights().few(), 4);
-    // A panel of two triangles is one, and a sphere right above gives π L (R/d)².
+    // A panel of two triangles counts as one light, and a sphere directly above gives π L (R/d)².
     let expected = [OVERHEAD, PI * 3.0 / 64.0, 0.353_553_390_593_273_73, 0.2 * PI];
     for (one, expected) in (0..4).zip(expected) {
         assert_near(irradiance(&all, one, 60_000), expected, 0.02);
@@ -70,7 +70,7 @@ fn each_gives_its_own_irradiance() {
 
 #[test]
 fn a_panel_of_unequal_halves_is_drawn_in_whole() {
-    // One triangle fifty times as large as the other, and two that lie in different planes.
+    // One triangle fifty times as large as the other, and two triangles in different planes.
     for corner in [DVec3::new(0.02, -0.02, 1.0), DVec3::new(0.9, -0.8, 1.5), DVec3::new(0.5, -0.9, 0.8)] {
         let mut mesh = overhead();
         let mut corners: Vec<_> = (0..4).map(|i| mesh.vertices.get(i)).collect();
@@ -97,7 +97,7 @@ fn a_draw_has_the_density_that_a_hit_is_told() {
         let Some(light) = draw(&lit, one, &FLOOR, number) else { continue };
         found[one as usize] += 1;
         if light.source.is_none() {
-            // Of two skies, each is weighed by itself.
+            // Each of two skies has its own weight.
             let both = lights.outside_weighed(&FLOOR, light.direction, |pdf| pdf / light.pdf);
             assert!((both - white(1.5)).abs().max() < 1e-12, "{both}");
             continue;
@@ -109,7 +109,7 @@ fn a_draw_has_the_density_that_a_hit_is_told() {
         let pdf = lights.own_pdf(lit.geometry(), &FLOOR, &ray, &hits[0], cosine);
         assert!((pdf / light.pdf - 1.0).abs() < 1e-9, "{pdf} {}", light.pdf);
     }
-    // Skies are asked one time in ten beside lamps.
+    // Beside lamps, skies are sampled with probability 0.1.
     assert!(found[..3].iter().all(|&n| n > 400) && found[3..].iter().all(|&n| (20..90).contains(&n)), "{found:?}");
 }
 
@@ -128,7 +128,7 @@ fn few_are_two_to_sixteen_that_can_be_drawn() {
     assert_eq!(few(panels(16), vec![]), 16);
     assert_eq!(few(panels(16), vec![point()]), 0);
     assert_eq!(few(panels(17), vec![]), 0);
-    // What cannot be drawn is none of them, and is given no density.
+    // An emitter that cannot be sampled is not counted and has no density.
     let endless = Plane { point: DVec3::Z, normal: DVec3::NEG_Z };
     let shapes = vec![panel(0), round(endless, 1.0), panel(1)];
     let lit = lit(shapes, vec![]);

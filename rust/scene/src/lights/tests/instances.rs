@@ -1,4 +1,4 @@
-//! Surfaces in instances of prototypes as lights.
+//! Emissive surfaces in instances.
 
 use super::super::{Emission, LightSampleContext, Sides};
 use super::{FLOOR, assert_near, draw, irradiance_at, white};
@@ -30,7 +30,7 @@ fn of_shape(surface: Arc<dyn raywright_shapes::Shape>) -> Shape {
     shining(Shape { surface: surface.into(), ..Shape::default() })
 }
 
-/// A dark panel, a bright one and a ball, put to places.
+/// Instances of a dark panel, a bright one and a sphere.
 fn copied(matrices: &[Matrix]) -> Scene {
     let inner = vec![
         shape(rectangle([0.0, 0.0, 9.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]), [0.5; 3], 0.0),
@@ -44,7 +44,7 @@ fn copied(matrices: &[Matrix]) -> Scene {
     scene(SceneDescription { shapes, ..Default::default() })
 }
 
-/// The same, each where it comes to be.
+/// The same scene without instances.
 fn flat(matrices: &[Matrix]) -> Scene {
     let mut shapes = Vec::new();
     for matrix in matrices {
@@ -81,12 +81,12 @@ fn a_draw_has_the_density_that_a_hit_of_a_copy_is_told() {
         let surface = lit.geometry().surface(&ray, &hits[0]);
         let cosine = -surface.normal.dot(light.direction);
         let pdf = lit.lights().surface_pdf(lit.geometry(), &FLOOR, &ray, &hits[0], cosine);
-        // Only if what was drawn is what is seen: else another light is met before.
+        // Only if the sampled point is visible; otherwise the ray hits another light first.
         if (pdf / light.pdf - 1.0).abs() < 1e-9 / cosine.abs() {
             found += 1;
         }
     }
-    // The panels hide a part of each other and of the balls.
+    // The panels hide parts of each other and of the spheres.
     assert!(found > 1000, "{found}");
 }
 

@@ -1,4 +1,4 @@
-//! Irradiances that have closed forms, and what densities say of draws.
+//! Irradiances with closed forms, and densities of samples.
 
 use super::super::{ConstantEnvironment, Light, LightSampleContext, PointLight};
 use super::{FLOOR, assert_near, irradiance_at};
@@ -16,7 +16,7 @@ fn sky(radiance: f64) -> Arc<dyn Light> {
     Arc::new(ConstantEnvironment { radiance: Rgb::splat(radiance) })
 }
 
-/// Asserts that a scene gives the floor an irradiance, to a percent.
+/// Asserts the irradiance of the floor to within a percent.
 fn assert_irradiance(scene: &Scene, expected: f64) {
     assert_near(irradiance_at(scene, &FLOOR, DRAWS), expected, 0.01);
 }
@@ -25,12 +25,12 @@ fn lit_by(shapes: Vec<Shape>) -> Scene {
     scene(SceneDescription { shapes, ..Default::default() })
 }
 
-/// A square of side 2 that looks down from height 1, right above the point.
+/// A square of side 2 that faces down from height 1 above the point.
 fn overhead() -> Mesh {
     rectangle([-1.0, -1.0, 1.0], [0.0, 2.0, 0.0], [2.0, 0.0, 0.0])
 }
 
-/// The irradiance it gives at radiance 1: four times that of a corner (Lambert, 1760).
+/// Its irradiance at radiance 1: four times that of a corner (Lambert, 1760).
 const OVERHEAD: f64 = 1.740_839_502_734_206;
 
 #[test]
@@ -129,13 +129,13 @@ fn what_cannot_be_hit_does_not_shine() {
 
 #[test]
 fn extreme_lights_give_their_irradiance() {
-    // A sheet of area 10⁻¹² and radiance 10¹² right above looks like a point of intensity 1.
+    // A sheet of area 10⁻¹² and radiance 10¹² directly above is a point light of intensity 1.
     let tiny = rectangle([-5e-7, -5e-7, 1.0], [0.0, 1e-6, 0.0], [1e-6, 0.0, 0.0]);
     let (mean, _) = irradiance_at(&lit_by(vec![shape(tiny, [0.0; 3], 1e12)]), &FLOOR, DRAWS);
     assert!((mean - 1.0).abs() < 1e-5, "{mean}");
     for strength in [1e-30, 1e30] {
         assert_irradiance(&lit_by(vec![shape(overhead(), [0.0; 3], strength)]), strength * OVERHEAD);
     }
-    // Its power is beyond what a number holds.
+    // Its power overflows.
     assert!(!lit_by(vec![shape(overhead(), [0.0; 3], 1e308); 3]).lights().is_dark());
 }

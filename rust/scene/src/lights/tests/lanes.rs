@@ -1,4 +1,4 @@
-//! Light drawn by lanes: the same as one draw after the other, to the bit.
+//! Light sampling by lanes equals scalar sampling bit for bit.
 
 use super::super::{ConstantEnvironment, DirectionalLight, Light, LightContextLanes, LightLanes, LightSampleContext};
 use super::{FLOOR, white};
@@ -19,7 +19,7 @@ fn round(surface: impl raywright_shapes::Shape + 'static) -> Shape {
     Shape { surface: surface.into(), emission: white(3.0).into(), ..Shape::default() }
 }
 
-/// A panel, balls, a disk and light from outside, as far as there are any.
+/// Scenes with combinations of a panel, spheres, a disk and infinite lights.
 fn scenes() -> Vec<Scene> {
     let panel = || shape(rectangle([-1.0, -1.0, 1.0], [0.0, 2.0, 0.0], [2.0, 0.0, 0.0]), [0.0; 3], 1.0);
     let small = Sphere { center: DVec3::new(1e3, 0.0, 1.0), radius: 1e-6 };
@@ -40,7 +40,7 @@ fn scenes() -> Vec<Scene> {
     ]
 }
 
-/// Anywhere about them: in the ball too, on it, and where light counts from everywhere.
+/// Receivers around them: also inside a sphere, on it, and with light from all directions.
 fn receiver(number: u32) -> LightSampleContext {
     let mut sampler = Sampler::new(3, 0, number);
     let normal = uniform_sphere(sampler.two(0));

@@ -1,4 +1,4 @@
-//! The choice among many lights.
+//! Light selection among many lights.
 
 use super::super::choice::{Choice, Strength};
 use super::super::{Light, LightBounds, LightSampleContext, LightTree, PointLight, Reach, Sides, SpotLight};
@@ -8,7 +8,7 @@ use raywright_base::sampling::Sampler;
 use raywright_base::sampling::chi_square::assert_frequencies;
 use raywright_base::sampling::warp::{uniform_sphere, uniform_triangle};
 
-/// A room of small panels, points and spots at random, of strengths that differ by thousands.
+/// Small panels, points and spots at random in a room, with strengths that differ by factors of thousands.
 fn strengths(count: u32) -> Vec<Strength> {
     (0..count)
         .map(|number| {
@@ -62,7 +62,7 @@ fn probabilities_are_those_of_draws_and_add_up_to_one() {
         for (name, receiver) in (0u32..).zip(receivers()) {
             let probabilities: Vec<f64> = (0..lights.len()).map(|i| choice.probability(i, &receiver)).collect();
             let sum: f64 = probabilities.iter().sum();
-            // Where a branch is dead, as all in it look away, what led there is lost.
+            // If all lights of a subtree face away, its probability is lost.
             assert!(sum < 1.0 + 1e-12 && probabilities.iter().all(|p| *p >= 0.0), "{sum}");
             let (mut counts, mut none) = (vec![0; lights.len()], 0);
             for number in 0..4000 {
@@ -78,7 +78,7 @@ fn probabilities_are_those_of_draws_and_add_up_to_one() {
             let expected: Vec<f64> = probabilities.into_iter().chain([(1.0 - sum).max(0.0)]).collect();
             let frequent = expected.iter().filter(|p| **p * 4000.0 >= 5.0).count();
             if frequent > 1 {
-                // What rounding leaves over of 1 is drawn by none.
+                // A probability below rounding error is never drawn.
                 let expected: Vec<f64> = expected.iter().map(|&p| if p < 1e-12 { 0.0 } else { p }).collect();
                 if counts.iter().zip(&expected).all(|(&c, &p)| p > 0.0 || c == 0) {
                     assert_frequencies(&counts, &expected);
@@ -88,11 +88,11 @@ fn probabilities_are_those_of_draws_and_add_up_to_one() {
     }
 }
 
-/// What a light brings to a receiver at most: to be told apart from nothing.
+/// Returns whether a light may contribute to a receiver.
 fn brings(strength: &Strength, receiver: &LightSampleContext, number: u32) -> bool {
     let bounds = &strength.bounds;
     let mut sampler = Sampler::new(15, 0, number);
-    // A point of a triangle lies in its box; all of the box is asked for more.
+    // A point of a triangle is inside its box; the whole box is tested.
     let [x, y] = uniform_triangle(sampler.two(0));
     let at = bounds.min + (bounds.max - bounds.min) * DVec3::new(x, y, sampler.one(1));
     let way = (receiver.position - at).normalize();
@@ -137,8 +137,8 @@ fn bounds_hold_both_that_they_are_of() {
     assert!(both.cos_cone < 1e-5, "half of all directions at least");
 }
 
-/// Mean and variance of the irradiance of point lights at a receiver, over an even grid of the choice: no chance is in
-/// it.
+/// Mean and variance of the irradiance of point lights at a receiver, over a regular grid of choices, hence
+/// deterministic.
 fn estimate(choice: &Choice, lights: &[PointLight], receiver: &LightSampleContext) -> (f64, f64) {
     const DRAWS: u32 = 200_000;
     let (mut sum, mut squares) = (0.0, 0.0);
@@ -156,7 +156,7 @@ fn estimate(choice: &Choice, lights: &[PointLight], receiver: &LightSampleContex
 
 #[test]
 fn in_a_hall_of_lamps_a_tree_leaves_a_small_part_of_the_variance() {
-    // A thousand lamps over a long floor: by power, nearly all draws go to lamps far away.
+    // A thousand lamps over a long floor: selection by power wastes nearly all samples on distant lamps.
     let lamp = |i: u32| PointLight {
         position: DVec3::new(f64::from(i % 100), f64::from(i / 100), 1.0 + f64::from(i % 7) / 7.0),
         intensity: white(1.0 + f64::from(i % 5)),
@@ -179,7 +179,7 @@ fn in_a_hall_of_lamps_a_tree_leaves_a_small_part_of_the_variance() {
 
 #[test]
 fn degenerate_lights_have_a_tree() {
-    // Thousands in one place, in a row, of one strength beside next to none, and none at all.
+    // Thousands at one position, in a row, with extreme ratios of strength, and none at all.
     let point = |x: f64, strong: f64| inside(&PointLight { position: DVec3::X * x, intensity: white(strong) });
     let same: Vec<_> = (0..3000).map(|_| point(1.0, 1.0)).collect();
     let row: Vec<_> = (0..3000).map(|i| point(f64::from(i).exp2().min(1e100), 1.0)).collect();

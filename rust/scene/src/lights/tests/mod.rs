@@ -1,5 +1,4 @@
-//! What is asked of all lights: that what they bring is what closed forms say, and that densities are those of their
-//! draws.
+//! Tests of all lights: irradiances against closed forms, and densities against samples.
 
 mod departures;
 mod emission;
@@ -23,15 +22,14 @@ use std::f64::consts::TAU;
 /// The origin on a plane that faces up.
 const FLOOR: LightSampleContext = LightSampleContext { position: DVec3::ZERO, normal: DVec3::Z, waves: None };
 
-/// A draw of a scene's lights.
+/// A light sample of a scene.
 fn draw(scene: &Scene, receiver: &LightSampleContext, number: u32) -> Option<LightSample> {
     let mut sampler = Sampler::new(1, 0, number);
     let (choice, u) = (sampler.one(0), sampler.two(1));
     scene.lights().sample(scene.geometry(), receiver, choice, u)
 }
 
-/// Mean and standard error of the irradiance at a receiver, nothing shadowing: for a free one, of all light that comes
-/// to it.
+/// Mean and standard error of the unoccluded irradiance at a receiver; of the fluence for a receiver without normal.
 fn irradiance_at(scene: &Scene, receiver: &LightSampleContext, draws: u32) -> (f64, f64) {
     let (mut sum, mut squares) = (0.0, 0.0);
     for number in 0..draws {
@@ -47,15 +45,14 @@ fn irradiance_at(scene: &Scene, receiver: &LightSampleContext, draws: u32) -> (f
     (mean, ((squares / f64::from(draws) - mean * mean).max(0.0) / f64::from(draws)).sqrt())
 }
 
-/// Asserts that a mean is within five standard errors, which chance exceeds once in two million, and that the standard
-/// error is at most a share of what is expected. What is drawn without error must be right but for the roundings of a
-/// sum of so many.
+/// Asserts that a mean is within five standard errors, with a false alarm in two million, and that the standard error
+/// is at most a share of the expected value. A deterministic estimate must agree up to the roundings of its sum.
 fn assert_near((mean, error): (f64, f64), expected: f64, share: f64) {
     assert!((mean - expected).abs() <= 5.0 * error + 1e-10 * expected, "{mean} ± {error}, not {expected}");
     assert!(error <= share * expected, "{error} of {expected}");
 }
 
-/// Directions in a grid of equal cells, bands of equal height and sectors.
+/// Directions in a grid of equal cells: bands of equal height, and sectors.
 struct Grid {
     rows: usize,
     columns: usize,
@@ -68,8 +65,8 @@ impl Grid {
         row * self.columns + column.min(self.columns - 1)
     }
 
-    /// The integral of a function over each cell, by the midpoints of so many parts each way, of the colatitude and of
-    /// the turn: what goes with the inverse of the sine becomes smooth.
+    /// The integral of a function over each cell, by midpoints of `parts` subdivisions in each dimension, in colatitude
+    /// and azimuth. These coordinates smooth integrands that grow with the inverse of the sine.
     fn integrals(&self, parts: usize, of: impl Fn(DVec3) -> f64) -> Vec<f64> {
         let mut sums = vec![0.0; self.rows * self.columns];
         for row in 0..self.rows {
@@ -89,7 +86,7 @@ impl Grid {
     }
 }
 
-/// Asserts that the density from outside integrates to 1, to within a share, and is that of the draws.
+/// Asserts that the density of an infinite light integrates to 1, to within a share, and matches its samples.
 fn assert_density(light: &dyn Light, receiver: &LightSampleContext, parts: usize, share: f64) {
     let grid = Grid { rows: 8, columns: 12 };
     let expected = grid.integrals(parts, |d| light.infinite_pdf(receiver, d));
@@ -104,7 +101,7 @@ fn assert_density(light: &dyn Light, receiver: &LightSampleContext, parts: usize
         let weight = light.infinite_radiance(sample.direction) / pdf;
         assert!((weight - sample.weight).abs().max() <= 1e-6 * weight.max(), "{weight}");
     }
-    // The rest of the integral is its own error.
+    // Normalised, because the integral has its own error.
     let expected: Vec<f64> = expected.iter().map(|p| p / sum).collect();
     assert_frequencies(&counts, &expected);
 }

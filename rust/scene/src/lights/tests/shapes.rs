@@ -1,4 +1,4 @@
-//! Surfaces of all kinds as lights: by solid angle, however small, distant, near or edge-on.
+//! Surfaces of all kinds as lights, by solid angle: tiny, distant, near and edge-on.
 
 use super::super::{Emission, LightSampleContext, Sides};
 use super::{FLOOR, Grid, assert_near, draw, irradiance_at, white};
@@ -21,8 +21,8 @@ fn round(surface: Arc<dyn raywright_shapes::Shape>, radiance: f64) -> Scene {
     scene(SceneDescription { shapes, ..Default::default() })
 }
 
-/// The irradiance of a triangle of radiance 1, as a vector (Lambert, 1760): half the sum over edges of the angle
-/// between its ends times the unit normal of the plane through it and the place. It must be above the horizon.
+/// Irradiance of a triangle of radiance 1 (Lambert, 1760): half the sum over edges of the subtended angle times the
+/// unit normal of the plane through edge and receiver, as a vector. The triangle must be above the horizon.
 pub(super) fn lambert(corners: [DVec3; 3], receiver: &LightSampleContext) -> f64 {
     let c = corners.map(|corner| (corner - receiver.position).normalize());
     let edge = |a: DVec3, b: DVec3| {
@@ -32,23 +32,23 @@ pub(super) fn lambert(corners: [DVec3; 3], receiver: &LightSampleContext) -> f64
     (0.5 * (edge(c[0], c[1]) + edge(c[1], c[2]) + edge(c[2], c[0])).dot(receiver.normal)).abs()
 }
 
-/// A triangle that faces the floor, turned and stretched.
+/// A triangle that faces the floor, rotated and stretched.
 const LAMP: [DVec3; 3] = [DVec3::new(0.3, -0.2, 0.5), DVec3::new(-0.4, 0.9, 0.8), DVec3::new(1.1, 0.4, 0.3)];
 
 #[test]
 fn triangles_give_lamberts_irradiance_at_any_distance() {
     for scale in [1e-2, 0.05, 0.2, 0.5, 1.0, 1.5] {
-        // As large as before, moved up: near ones by solid angle, distant ones by area.
+        // The same size, moved up: near ones by solid angle, distant ones by area.
         let corners = LAMP.map(|c| (c - LAMP[0]) * scale + DVec3::new(0.1, 0.0, 0.4));
         let expected = lambert(corners, &FLOOR);
         assert_near(irradiance_at(&triangle(corners, 1.0), &FLOOR, 20_000), expected, 0.01);
     }
-    // 10⁷ away, where its solid angle is 10⁻¹⁴.
+    // At a distance of 10⁷, where its solid angle is 10⁻¹⁴.
     let far = LAMP.map(|c| c + DVec3::new(0.0, 0.0, 1e7));
     let area = 0.5 * (LAMP[1] - LAMP[0]).cross(LAMP[2] - LAMP[0]).z.abs();
     let found = irradiance_at(&triangle(far, 1.0), &FLOOR, 1000).0;
     assert!((found / (area * 1e-14) - 1.0).abs() < 1e-6, "{found}");
-    // Of area 10⁻¹⁴, as if all of it were in one place.
+    // With an area of 10⁻¹⁴, like a point light.
     let tiny = LAMP.map(|c| (c - LAMP[0]) * 1e-7 + DVec3::Z);
     let found = irradiance_at(&triangle(tiny, 1.0), &FLOOR, 1000).0;
     assert!((found / (area * 1e-14) - 1.0).abs() < 1e-6, "{found}");
@@ -56,8 +56,8 @@ fn triangles_give_lamberts_irradiance_at_any_distance() {
 
 #[test]
 fn next_to_its_plane_a_triangle_keeps_its_digits() {
-    // Above its plane by less and less, until it is drawn by area. All of its light is its solid angle (van Oosterom
-    // and Strackee, 1983), in which the determinant of the corners is the height.
+    // The receiver approaches the triangle's plane until points are sampled by area. The total light equals the solid
+    // angle (van Oosterom and Strackee, 1983), where the determinant of the corners is the height.
     let corners = [DVec3::ZERO, DVec3::X, DVec3::Y];
     for height in [1e-1, 1e-3, 1e-6, 1e-8, 1e-10, 1e-14] {
         for (x, y) in [(-0.01, 0.5), (0.7, 0.7), (0.25, 0.25), (-0.3, -0.3)] {
@@ -72,9 +72,9 @@ fn next_to_its_plane_a_triangle_keeps_its_digits() {
                 (found.0 - expected).abs() <= 5.0 * found.1 + 1e-6 * expected,
                 "{height:e} {x} {y}: {found:?} {expected}"
             );
-            // Drawn evenly, all draws bring the same.
+            // With uniform sampling all samples have equal weight.
             assert!(found.1 <= if expected > 1e-8 { 1e-6 } else { 0.2 } * expected, "{height:e} {x} {y}: {found:?}");
-            // Where they come from: Lambert's formula has digits left where the height is not too small.
+            // With a cosine: Lambert's formula keeps enough digits if the height is not too small.
             let towards = LightSampleContext {
                 position,
                 normal: (DVec3::new(0.3, 0.3, 0.0) - position).normalize(),
@@ -87,7 +87,7 @@ fn next_to_its_plane_a_triangle_keeps_its_digits() {
             }
         }
     }
-    // In the plane itself there is nothing to see, and nothing is found.
+    // In the plane itself the triangle is invisible.
     for (x, y) in [(0.25, 0.25), (2.0, 2.0), (0.0, 0.0)] {
         let receiver = LightSampleContext { position: DVec3::new(x, y, 0.0), normal: DVec3::X, waves: None };
         assert_eq!(irradiance_at(&triangle(corners, 1.0), &receiver, 200).0, 0.0);
@@ -107,7 +107,7 @@ fn near_triangles_are_drawn_evenly_by_solid_angle() {
     for number in 0..20_000 {
         counts[grid.cell(draw(&lit, &FLOOR, number).unwrap().direction)] += 1;
     }
-    // Cells that the triangle's border crosses are measured roughly: they count as one.
+    // Cells on the triangle's border are measured roughly and merged into one.
     let whole: f64 = seen.iter().sum();
     let full = 4.0 * PI / seen.len() as f64 * (1.0 - 1e-9);
     let (mut sure, mut expected, mut rest) = (vec![0], vec![0.0], 0);
@@ -148,7 +148,7 @@ fn sides_shine_where_they_are_to() {
 
 #[test]
 fn within_what_shines_inwards_there_is_light_from_everywhere() {
-    // π L on whatever stands within, wherever it is and however it is turned, and nothing outside.
+    // Irradiance π L everywhere inside, for any orientation, and none outside.
     let map = Affine::from_matrix([[1.5, 0.2, 0.0, 0.1], [-0.4, 0.8, 0.3, -0.2], [0.1, 0.2, 2.0, 0.3]]);
     let closed: [Arc<dyn raywright_shapes::Shape>; 4] = [
         Arc::new(Sphere { center: DVec3::new(0.1, 0.2, 0.0), radius: 1.0 }),
@@ -177,7 +177,7 @@ fn within_what_shines_inwards_there_is_light_from_everywhere() {
 
 #[test]
 fn disks_give_the_textbook_irradiance() {
-    // E = π L r² / (r² + h²) below the middle (Howell, C-41 with one small disk), down to a disk of area 10⁻¹².
+    // E = π L r² / (r² + h²) below the center (Howell, C-41 with one small disk), down to a disk of area 10⁻¹².
     for (radius, height) in
         [(1.0, 1.0), (1.0, 0.3), (1.0, 1e-3), (0.01, 1.0), (5.641_895_835_477_563e-7, 1.0), (2.0, 1e7)]
     {
@@ -192,11 +192,11 @@ fn disks_give_the_textbook_irradiance() {
 
 #[test]
 fn near_a_disk_drawing_by_solid_angle_leaves_a_fraction_of_the_variance() {
-    // Beside and above it: the density is the inverse of the solid angle but for a small factor, where that of an area
-    // goes with the square of the distance.
+    // Beside and above the disk the density is within a small factor of the inverse solid angle, while that of area
+    // sampling varies with the squared distance.
     let disk = Disk { center: DVec3::ZERO, normal: DVec3::Z, radius: 1.0, inner_radius: 0.0 };
     for place in [DVec3::new(0.2, 0.1, 0.01), DVec3::new(1.3, 0.0, 0.05), DVec3::new(0.0, 0.9, 0.3)] {
-        // Mean and variance of the solid angle, over an even grid of draws: no chance is in it.
+        // Mean and variance of the solid angle over a regular grid of samples, hence deterministic.
         let moments = |side: u32, solid_angle: &dyn Fn([f64; 2]) -> f64| {
             let (mut sum, mut squares, count) = (0.0, 0.0, f64::from(side * side));
             for i in 0..side {
@@ -221,10 +221,10 @@ fn near_a_disk_drawing_by_solid_angle_leaves_a_fraction_of_the_variance() {
 
 #[test]
 fn spheres_give_the_textbook_irradiance_down_to_points() {
-    // E = π L (R/d)² for a sphere right above; at a constant power one of radius 10⁻⁵ is a point.
+    // E = π L (R/d)² for a sphere directly above; at constant power a radius of 10⁻⁵ is a point light.
     for (radius, distance) in [(0.5, 2.0), (1e-5, 1.0), (1e-5, 1e7), (1e6, 1e6 + 1.0)] {
         let sphere = Sphere { center: DVec3::Z * distance, radius };
-        // Of intensity 1: π R² L.
+        // Intensity 1: π R² L.
         let radiance = 1.0 / (PI * radius * radius);
         let expected = 1.0 / (distance * distance);
         let share = if radius > distance / 2.0 { 0.01 } else { 0.002 };

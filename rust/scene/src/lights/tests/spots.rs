@@ -1,4 +1,4 @@
-//! Lights without extent: their power, and which are refused.
+//! Delta lights: their power, and invalid parameters.
 
 use super::super::{
     DirectionalLight, Light, LightSample, LightSampleContext, Picture, PointLight, Profile, Projector, Reach, SpotLight,
@@ -10,7 +10,7 @@ use raywright_optics::Rgb;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::Arc;
 
-/// The mean over all directions of what a light at the origin sends a length away, times 4π: its power.
+/// Power of a light at the origin: its mean intensity over all directions times 4π.
 fn power(light: &dyn Light) -> f64 {
     const SIDE: u32 = 600;
     let cell = |i: u32| (f64::from(i) + 0.5) / f64::from(SIDE);
@@ -39,13 +39,13 @@ fn powers_are_the_integrals_of_intensities() {
     for (angle, falloff) in [(90.0, 0.0), (90.0, 90.0), (40.0, 10.0), (60.0, 60.0), (25.0, 0.0)] {
         let light = spot(angle, falloff);
         let (sum, told) = (power(&light), told_power(&light));
-        // The grid's own error at a sharp rim.
+        // Error of the grid at a sharp rim.
         assert!((sum / told - 1.0).abs() < 5e-3, "{angle} {falloff}: {sum} {told}");
         let light = light.with_profile(Profile::Linear);
         let (sum, told) = (power(&light), told_power(&light));
         assert!((sum / told - 1.0).abs() < 5e-3, "linear, {angle} {falloff}: {sum} {told}");
     }
-    // A hemisphere, exactly: 2π I.
+    // A hemisphere has exactly 2π I.
     assert!((told_power(&spot(90.0, 0.0)) - 4.0 * PI).abs() < 1e-12);
     let point = PointLight { position: DVec3::ZERO, intensity: Rgb::new(1.0, 2.0, 3.0) };
     assert!((power(&point) / told_power(&point) - 1.0).abs() < 1e-12);
@@ -53,7 +53,7 @@ fn powers_are_the_integrals_of_intensities() {
     let picture = Arc::new(Picture::new(4, texels).unwrap());
     let places = [DVec3::ZERO, DVec3::new(0.3, 1.0, 0.2), DVec3::Z];
     let projector = Projector::new(picture, places, 1.2, Rgb::ONE).unwrap();
-    // Interpolated to its edges, the picture has nearly the mean of its texels.
+    // Interpolated to its edges, the image has nearly the mean of its texels.
     assert!((power(&projector) / told_power(&projector) - 1.0).abs() < 5e-3);
 }
 
@@ -71,10 +71,10 @@ fn a_spot_shines_within_its_cone_and_falls_off_between() {
     assert!((at(middle) - 0.5).abs() < 1e-12);
     let falling: Vec<f64> = (0..=100).map(|i| at(0.4 + 0.002 * f64::from(i))).collect();
     assert!(falling.windows(2).all(|pair| pair[0] >= pair[1]));
-    // A falloff next to nothing takes next to nothing away.
+    // A negligible falloff removes negligible power.
     let sharp = SpotLight::new(DVec3::Z, DVec3::NEG_Z, Rgb::ONE, 0.6, 1e-15).with_profile(Profile::Linear);
     assert!((told_power(&sharp) - 2.0 * PI * (1.0 - 0.6f64.cos())).abs() < 1e-12);
-    // In angles, evenly.
+    // Linear in the angle.
     let straight = light.with_profile(Profile::Linear);
     for (angle, share) in [(0.0, 1.0), (0.4, 1.0), (0.45, 0.75), (0.5, 0.5), (0.59, 0.05), (0.61, 0.0)] {
         let receiver = LightSampleContext::free(DVec3::new(f64::tan(angle), 0.0, 0.0));
@@ -82,14 +82,14 @@ fn a_spot_shines_within_its_cone_and_falls_off_between() {
         let found = straight.sample(&receiver, [0.5; 2]).map_or(0.0, |sample| sample.weight[1] * square);
         assert!((found - share).abs() < 1e-12, "{angle}: {found}");
     }
-    // Behind the light, and at it.
+    // Receivers behind the light, and at it.
     assert!(light.sample(&LightSampleContext::free(DVec3::Z * 2.0), [0.5; 2]).is_none());
     assert!(light.sample(&LightSampleContext::free(DVec3::Z), [0.5; 2]).is_none());
 }
 
 #[test]
 fn a_slide_is_thrown_upright_and_evenly() {
-    // Red above green, blue to the left above, seen from the projector; the screen is at a right angle.
+    // Red above green, blue at the upper left, seen from the projector; the screen is perpendicular.
     let texels = vec![[0.0, 0.0, 9.0], [9.0, 0.0, 0.0], [0.0, 9.0, 0.0], [0.0, 9.0, 0.0]];
     let picture = Arc::new(Picture::new(2, texels).unwrap());
     let projector = Projector::new(picture, [DVec3::ZERO, DVec3::NEG_Z, DVec3::Y], FRAC_PI_2, Rgb::splat(2.0)).unwrap();
