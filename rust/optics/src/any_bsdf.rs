@@ -1,4 +1,4 @@
-//! What scatters light at a point: one type for all kinds.
+//! An enum over all kinds of BSDFs.
 
 use super::one_of::one_of;
 use super::{
@@ -10,48 +10,48 @@ use super::{
 one_of! {
     /// A bidirectional scattering distribution function of any kind.
     ///
-    /// A kind is one file and one line of this list. A batch calls it through a `match`, which predicts well and
-    /// inlines, rather than through a pointer.
+    /// A kind is one file and one line of this list. Batches call it through a `match`, which predicts and inlines
+    /// well, instead of a pointer.
     AnyBsdf, inline,
-    /// What is known of functions of all kinds, a lane each, and of a direction that light goes to.
+    /// BSDFs of all kinds in structure-of-arrays form, each with an outgoing direction.
     AnyBsdfLanes, {
-        /// Lambert's: equally bright from everywhere.
+        /// Lambertian reflection.
         Diffuse(Diffuse),
-        /// Rough and matt: brighter towards the light.
+        /// Rough diffuse reflection, brighter towards the light.
         OrenNayar(OrenNayar),
-        /// Reflects into one direction.
+        /// Specular reflection.
         Mirror(Mirror),
-        /// Metal, smooth or rough.
+        /// A conductor, smooth or rough.
         Conductor(Conductor),
-        /// Glass or water, smooth or rough: reflects and refracts.
+        /// A dielectric, smooth or rough.
         Dielectric(Dielectric),
-        /// A pane of glass without thickness.
+        /// A thin dielectric pane.
         ThinDielectric(ThinDielectric),
-        /// Diffuse under a dielectric coat: plastic, varnish, glaze.
+        /// A diffuse base under a dielectric coat: plastic, varnish, glaze.
         Coated(Coated),
-        /// Diffuse and a lobe about the mirror direction.
+        /// Diffuse reflection and a lobe about the mirror direction.
         Phong(Phong),
-        /// Diffuse and a lobe about the half vector.
+        /// Diffuse reflection and a lobe about the half vector.
         BlinnPhong(BlinnPhong),
         /// The metallic-roughness model of glTF.
         MetallicRough(MetallicRough),
-        /// Rough surfaces of other facets, or of facets that scatter once only, principled ones, and thin films.
+        /// Less common kinds: other facet distributions, single-scattering facets, principled models and thin films.
         Faceted(Faceted),
-        /// Lets light straight through.
+        /// Straight transmission.
         Transparent(Transparent),
-        /// Scatters nothing.
+        /// No scattering.
         Null(Null),
     }
 }
 
 impl AnyBsdf {
-    /// The kind of [`Diffuse`], the first.
+    /// Index of [`Diffuse`], the first kind.
     pub const DIFFUSE: usize = 0;
 
-    /// How many kinds there are, with those of [`Faceted`].
+    /// Number of kinds, including those of [`Faceted`].
     pub const KINDS: usize = Self::VARIANTS + Faceted::VARIANTS;
 
-    /// The number of its kind among all.
+    /// Index of its kind among all.
     #[inline]
     pub fn kind(&self) -> usize {
         match self {
@@ -61,7 +61,7 @@ impl AnyBsdf {
     }
 }
 
-/// Makes [`AnyBsdf`] of less common facets too.
+/// Implements conversions to [`AnyBsdf`] for the less common kinds.
 macro_rules! faceted {
     ($($of:ty,)+) => {
         $(impl From<$of> for AnyBsdf {

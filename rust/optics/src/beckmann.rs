@@ -1,4 +1,4 @@
-//! Facets of a Gaussian surface.
+//! The Beckmann facet distribution.
 
 use super::Facets;
 use raywright_base::math::DVec3;
@@ -6,25 +6,25 @@ use raywright_base::math::erf::{FRAC_1_SQRT_PI, complement_integral, exceeded, s
 use raywright_base::math::exponential::exp;
 use std::f64::consts::FRAC_1_PI;
 
-/// The distribution of facets of a surface whose slopes are normally distributed (Beckmann and Spizzichino, "The
-/// Scattering of Electromagnetic Waves from Rough Surfaces", 1963), with variance α²/2 along x and y.
+/// The facet distribution of a surface with normally distributed slopes (Beckmann and Spizzichino, "The Scattering of
+/// Electromagnetic Waves from Rough Surfaces", 1963), with variance α²/2 along x and y.
 ///
-/// With q = √(αx² x² + αy² y²) and a = z / q, Smith's Λ is (exp(−a²) / (a √π) − erfc(a)) / 2, so that s(ω) = z + q
-/// i(a), with i the integral of erfc from a to infinity.
+/// With q = √(αx² x² + αy² y²) and a = z / q, Smith's Λ is (exp(−a²) / (a √π) − erfc(a)) / 2, so s(ω) = z + q i(a),
+/// where i is the integral of erfc from a to infinity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Beckmann {
     alpha: [f64; 2],
 }
 
 impl Beckmann {
-    /// exp(−e) times a number of some size is nothing from here on.
+    /// From this exponent on, exp(−e) times any factor that occurs underflows.
     const NOTHING: f64 = 700.0;
 
-    /// The density where slopes in units of α have the square `e`, and the normal a cosine of the square `square`.
+    /// Density of a normal whose slope in units of α has the square `e`, and whose cosine has the square `square`.
     #[inline(always)]
     fn at(&self, e: f64, square: f64) -> f64 {
         let [ax, ay] = self.alpha;
-        // Also false where a facet stands upright, and both are infinite or nothing.
+        // Also false for a vertical facet, whose `e` is infinite or NaN and whose `square` is 0.
         if e < Self::NOTHING { exp(-e) * FRAC_1_PI / (ax * ay * square * square) } else { 0.0 }
     }
 }
@@ -52,12 +52,12 @@ impl Facets for Beckmann {
         self.at((x * x + y * y) / square, square)
     }
 
-    /// By the half vector as it is, not unit, whose slopes are the same.
+    /// From the unnormalised half vector, which has the same slopes.
     #[inline(always)]
     fn mirroring(&self, wo: DVec3, wi: DVec3) -> (f64, f64) {
         let ([ax, ay], q) = (self.alpha, wo + wi);
         let length = q.length_squared();
-        // Of opposite directions next to the plane nothing is told by their sum.
+        // The sum of nearly opposite directions in the tangent plane has no accurate direction.
         if length < 1e-60 {
             return (self.density(DVec3::Z), wo.z);
         }
@@ -70,13 +70,13 @@ impl Facets for Beckmann {
         let ([ax, ay], z) = (self.alpha, w.z.abs());
         let (x, y) = (ax * w.x, ay * w.y);
         let q = (x * x + y * y).sqrt();
-        // Straight from above nothing is hidden.
+        // From directly above nothing is masked.
         if z > 7.0 * q { z } else { z + q * complement_integral(z / q) }
     }
 
-    /// Slopes along the way to `wo` and across it are independent of each other (Heitz and d'Eon, "Importance Sampling
-    /// Microfacet-Based BSDFs using the Distribution of Visible Normals", 2014): of those across a share is exceeded,
-    /// those along are found by `leaning`.
+    /// Slopes along the direction to `wo` and across it are independent (Heitz and d'Eon, "Importance Sampling
+    /// Microfacet-Based BSDFs using the Distribution of Visible Normals", 2014). Those across are sampled by inverting
+    /// the error function, those along by `leaning`.
     #[inline(always)]
     fn sample_visible(&self, wo: DVec3, u: [f64; 2]) -> DVec3 {
         let [ax, ay] = self.alpha;
@@ -88,28 +88,28 @@ impl Facets for Beckmann {
     }
 }
 
-/// A share of facets whose slope is finite: neither none nor all of them.
+/// Clamps a random number so that the slope is finite.
 #[inline(always)]
 fn share(u: f64) -> f64 {
     u.clamp(1e-19, 1.0 - f64::EPSILON)
 }
 
-/// The lean towards a viewer at height `z` and distance `q` that a share `u` of the facets seen exceeds, 0 < u < 1.
+/// Slope towards a viewer at height `z` and distance `q` that a share `u` of the visible facets exceeds, 0 < u < 1.
 ///
-/// Of those whose slope is t as many are seen as (z + q t) exp(−t²) says, where that is positive, so that those from x
-/// on are S(x) = z erfc(x) / 2 + q exp(−x²) / (2 √π). By Newton's method on ln S, which falls and is concave: wherever
-/// it starts, one step takes it beyond the solution, and each further one back towards it.
+/// The visible density of slope t is (z + q t) exp(−t²) where that is positive, so slopes above x have the share S(x) =
+/// z erfc(x) / 2 + q exp(−x²) / (2 √π). Newton's method on ln S, which is decreasing and concave: from any start, one
+/// step passes the solution, and each further step approaches it from there.
 fn leaning(z: f64, q: f64, u: f64) -> f64 {
     let half = 0.5 * q * FRAC_1_SQRT_PI;
-    // All that is seen, (z + s) / 2, and the logarithm of what is to be left.
+    // The total visible share, (z + s) / 2, and the logarithm of the target.
     let all = if z > 7.0 * q { z } else { z + 0.5 * q * complement_integral(z / q) };
     let wanted = (u * all).ln();
-    // From the horizon the solution is √(−ln u), and from elsewhere facets lean less.
+    // At the horizon the solution is √(−ln u); elsewhere the slope is less.
     let most = (-u.ln()).sqrt();
     let mut x = start(z, q, u, all, most);
     for _ in 0..STEPS {
         let tail = scaled_complement(x.abs());
-        // S and how fast it falls, both over exp(−x²), which cancels in their quotient; and the logarithm of S.
+        // S and its slope, both over exp(−x²), which cancels in their quotient; and the logarithm of S.
         let (left, logarithm) = if x >= 0.0 {
             let left = 0.5 * z * tail + half;
             (left, left.ln() - x * x)
@@ -120,7 +120,7 @@ fn leaning(z: f64, q: f64, u: f64) -> f64 {
         };
         let step = (logarithm - wanted) * left / ((z + q * x) * FRAC_1_SQRT_PI);
         let next = (x + step).min(most);
-        // As Newton's method doubles the digits, what is left is about the square of the last step.
+        // Newton's method converges quadratically, so the remaining error is about the square of the last step.
         if (next - x).abs() < 1e-6 {
             return next;
         }
@@ -129,18 +129,18 @@ fn leaning(z: f64, q: f64, u: f64) -> f64 {
     x
 }
 
-/// Far more than it takes: 3 or 4 mostly, and some 30 where the share is 1 but for roundings.
+/// Iteration limit. 3 or 4 iterations are typical, and some 30 if the share is 1 up to roundings.
 const STEPS: usize = 64;
 
-/// Where to start: between the solutions from the horizon and from straight above, or where these are of no use, next
-/// to the slope from which on facets are seen.
+/// Start of the iteration: between the solutions for the horizon and for directly above or, if these are poor, near the
+/// slope at which facets become visible.
 fn start(z: f64, q: f64, u: f64, all: f64, most: f64) -> f64 {
     let above = z / (z + q);
     let guess = most + above * (exceeded(u) - most);
     if q * guess > -0.8 * z {
         return guess;
     }
-    // Of the facets from there on at least (x + a)² exp(−a²) q / (2 √π) are left out, a = z / q.
+    // Facets from there on leave out at least (x + a)² exp(−a²) q / (2 √π), a = z / q.
     let edge = z / q;
     let beyond = (2.0 * (1.0 - u) * all / (q * FRAC_1_SQRT_PI)).sqrt() * (0.5 * edge * edge).exp();
     (beyond - edge).min(most)
@@ -160,7 +160,7 @@ mod tests {
 
     const COSINES: [f64; 9] = [1.0, 0.99, 0.8, 0.5, 0.2, 0.05, 1e-3, 1e-6, 1e-30];
 
-    /// The integral of a function of the slopes of facets in units of α, weighed by how many have them, by midpoints.
+    /// Integral of a function over the facets' slopes in units of α, weighted by the distribution, by midpoints.
     fn over_slopes(reach: f64, steps: u32, f: impl Fn(f64, f64) -> f64) -> f64 {
         let step = 2.0 * reach / f64::from(steps);
         let at = |i: u32| -reach + (f64::from(i) + 0.5) * step;
@@ -170,7 +170,7 @@ mod tests {
 
     #[test]
     fn facets_cover_the_surface() {
-        // ∫ D cos θ dω = 1, over slopes, of which αx αy dx dy are a solid angle of cos³ θ.
+        // ∫ D cos θ dω = 1 over slopes, where αx αy dx dy subtend a solid angle of cos³ θ.
         for alpha in [[0.001; 2], [0.1; 2], [1.0; 2], [0.02, 0.7]] {
             let facets = Beckmann::new(alpha);
             let step = 12.0 / 96.0;
@@ -209,7 +209,7 @@ mod tests {
                 let h = (wo + wi).normalize();
                 let (density, mirrored) = facets.mirroring(wo, wi);
                 let known = 1e-15 / (wo + wi).length();
-                // As well as the exponent is known, which is the square of a slope over α.
+                // To the accuracy of the exponent, which is the squared slope over α.
                 let slope = (h.x / alpha[0]).hypot(h.y / alpha[1]) / h.z;
                 let bound = (1e-13 + 16.0 * known / alpha[0]) * (1.0 + slope) + 1e-15 * slope * slope;
                 let expected = facets.density(h);
@@ -226,7 +226,8 @@ mod tests {
 
     #[test]
     fn masking_is_smiths() {
-        // G₁ = cos θ over the area of facets that face the viewer, ∫ max(0, w · h) D dω; and s = 2 cos θ / G₁ − cos θ.
+        // G₁ = cos θ over the projected area of facets that face the viewer, ∫ max(0, w · h) D dω; and s = 2 cos θ / G₁
+        // − cos θ.
         for alpha in [[0.1; 2], [0.5; 2], [1.0; 2], [0.2, 0.9]] {
             let facets = Beckmann::new(alpha);
             for cosine in [1.0, 0.8, 0.3, 0.05, 1e-6] {
@@ -242,7 +243,7 @@ mod tests {
             let found = Beckmann::new([alpha; 2]).masking(direction(cosine, 2.0));
             assert!((found - truth).abs() < 1e-11, "{alpha} {cosine} {found:.12}");
         }
-        // At the horizon s is α / √π, and straight from above 1.
+        // At the horizon s is α / √π, and directly above 1.
         for alpha in [Beckmann::SMOOTH, 0.1, 1.0] {
             let facets = Beckmann::new([alpha; 2]);
             assert!((facets.stretch(DVec3::X) / (alpha * FRAC_1_SQRT_PI) - 1.0).abs() < 1e-10);
@@ -268,7 +269,7 @@ mod tests {
                     let x = leaning(z, q, u);
                     assert!(q * x >= -z * (1.0 + 1e-12) && x < last + 1e-9, "{cosine} {alpha} {u} {x} {last}");
                     let found = left(x) / all;
-                    // A step of 10⁻¹² is a share of 10⁻¹² times twice the slope.
+                    // A step of 10⁻¹² changes the share by 10⁻¹² times twice the slope.
                     assert!((found / u - 1.0).abs() < 1e-9, "{cosine} {alpha} {u} {x} {found}");
                     last = x;
                 }
@@ -278,7 +279,7 @@ mod tests {
 
     #[test]
     fn visible_facets_are_drawn_as_they_are_seen() {
-        // In cells of slopes in units of α about those that are seen most, of which the density makes integrals.
+        // Cells over slopes in units of α around the most visible facets, integrated from the density.
         for (alpha, cosine) in [([0.3; 2], 0.9), ([0.3; 2], 0.4), ([1.0; 2], 0.1), ([0.01; 2], 1e-3), ([0.1, 0.8], 0.3)]
             .into_iter()
             .chain([([1.0; 2], 1e-9), ([0.5; 2], 1.0)])
@@ -314,7 +315,7 @@ mod tests {
 
     #[test]
     fn one_scattering_has_its_albedo() {
-        // Of white facets, by quadrature over slopes.
+        // White facets, by quadrature over slopes.
         let truths = [
             (0.1, [1.0, 0.99985, 0.91291]),
             (0.3, [0.99971, 0.92329, 0.94146]),

@@ -1,4 +1,4 @@
-//! Blinn's lobe about the half vector.
+//! The Blinn-Phong BRDF.
 
 use super::bsdf_columns::LaneBsdf;
 use super::lobes::{Lobes, diffuse, power_cosine};
@@ -8,9 +8,9 @@ use glam::DVec3;
 use std::f64::consts::{FRAC_1_PI, PI, TAU};
 
 /// Diffuse reflection and Blinn's form of Phong's lobe ("Models of Light Reflection for Computer Synthesized Pictures",
-/// 1977): kd / π + ks N cosⁿ θh, with θh the half vector's angle. N = (n + 2)(n + 4) / (8π (2^(−n/2) + n)) makes a
-/// specular share of 1 reflect all light at normal incidence, exactly (Giesen, "Phong and Blinn-Phong normalization
-/// factors", 2009), and less at every other angle. Both sides reflect.
+/// 1977): kd / π + ks N cosⁿ θh, with θh the half vector's angle. N = (n + 2)(n + 4) / (8π (2^(−n/2) + n)) normalises
+/// the lobe: a specular share of 1 reflects exactly all light at normal incidence (Giesen, "Phong and Blinn-Phong
+/// normalization factors", 2009), and less at every other angle. Both sides reflect.
 #[derive(Clone, Copy, Debug)]
 pub struct BlinnPhong {
     lobes: Lobes,
@@ -19,14 +19,14 @@ pub struct BlinnPhong {
 }
 
 impl BlinnPhong {
-    /// The diffuse and the specular share, which together should be at most 1, and the exponent n ≥ 0.
+    /// Creates the BRDF from diffuse and specular reflectance, whose sum should be at most 1, and the exponent n ≥ 0.
     pub fn new(diffuse: Rgb, specular: Rgb, exponent: f64) -> Self {
         let n = exponent;
         let scale = (n + 2.0) * (n + 4.0) / (8.0 * PI * ((-0.5 * n).exp2() + n));
         Self { lobes: Lobes::new(diffuse, specular), exponent, scale }
     }
 
-    /// cosⁿ θh and the cosine between half vector and `wo`; `None` for a half vector without direction.
+    /// cosⁿ θh and the cosine between half vector and `wo`; `None` if the half vector is undefined.
     #[inline(always)]
     fn lobe(&self, wo: DVec3, wi: DVec3) -> Option<(f64, f64)> {
         let h = (wo + wi).try_normalize()?;

@@ -1,65 +1,64 @@
-//! Bidirectional scattering distribution functions: what is asked of each, and what is drawn from it.
+//! Interface of bidirectional scattering distribution functions (BSDFs), and their samples.
 
 use super::Rgb;
 use glam::DVec3;
 
 /// The bidirectional scattering distribution function at a point of a surface.
 ///
-/// Directions are unit vectors in the shading frame, z along the normal, both pointing away from the surface: `wo` to
-/// where the light goes, `wi` to where it comes from. What only reflects does so on both sides. What transmits knows by
-/// the sign of `wo.z` on which side it is: above (z > 0) or below.
+/// Directions are unit vectors in the shading frame, with z along the normal. Both point away from the surface: `wo`
+/// towards the viewer, `wi` towards the light. BRDFs reflect on both sides. The sign of `wo.z` tells a transmissive
+/// BSDF the side: above (z > 0) or below.
 ///
-/// What scatters is radiance: where light crosses to another index of refraction, what is evaluated and every weight
-/// have the factor 1 / η² in them, with η the index where the light comes from over that where it goes to
-/// (Veach, "Robust Monte Carlo Methods for Light Transport Simulation", 1997, 5.2).
+/// Values are for radiance: across an interface, values and sample weights include the factor 1 / η², with η the index
+/// of refraction on the side of `wi` over that on the side of `wo` (Veach, "Robust Monte Carlo Methods for Light
+/// Transport Simulation", 1997, 5.2).
 pub trait Bsdf {
-    /// The function times |cos θ| of `wi`, and the density in solid angle with which [`Bsdf::sample`] draws `wi`, both
-    /// without what has a single direction. Whoever asks for the one mostly needs the other, and much of the work is
-    /// the same.
+    /// Evaluates the function times |cos θ| of `wi`, and the density of [`Bsdf::sample`] for `wi` by solid angle. Delta
+    /// components are excluded from both. One call computes both, because callers mostly need both and they share work.
     fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64);
 
-    /// Draws where the light comes from: `choice`, uniform in [0, 1), among the lobes that it has (only asked for when
-    /// there are several), `u` for the direction. `None` if the draw scatters nothing. Single directions have the least
-    /// choices.
+    /// Samples an incident direction. `choice`, uniform in [0, 1), selects the lobe and is called only if there are
+    /// several; `u` selects the direction. Returns `None` if the sample scatters nothing. Delta lobes have the smallest
+    /// choice numbers.
     fn sample(&self, wo: DVec3, choice: &mut dyn FnMut() -> f64, u: [f64; 2]) -> Option<BsdfSample>;
 
-    /// About the share of white light that is scattered, for pictures of it: that of even light where it is known.
+    /// Approximate albedo for white light; its cosine-weighted average if known.
     fn albedo(&self) -> Rgb;
 
-    /// What all of it is to be multiplied by for light that came to such a surface before: 1 unless it scatters more
-    /// than there is, in a channel ([`super::conductors::Curve::again`]).
+    /// Factor for light that such a surface has reflected before; 1 unless a channel's reflectance exceeds 1
+    /// ([`super::conductors::Curve::again`]).
     #[inline(always)]
     fn again(&self) -> Rgb {
         Rgb::ONE
     }
 
-    /// Whether all of it goes in single directions, so that [`Bsdf::evaluate`] is 0 everywhere.
+    /// Returns whether all components are deltas, so that [`Bsdf::evaluate`] is 0 everywhere.
     #[inline(always)]
     fn is_delta(&self) -> bool {
         false
     }
 
-    /// Whether light goes through to the other side.
+    /// Returns whether light is transmitted.
     #[inline(always)]
     fn transmits(&self) -> bool {
         false
     }
 
-    /// How rough its sharpest lobe is, as the α of a microfacet distribution: 0 for single directions, 1 for what is
-    /// about as wide as a hemisphere.
+    /// Roughness of the sharpest lobe, as the α of a microfacet distribution: 0 for a delta lobe, 1 for a hemispherical
+    /// one.
     #[inline(always)]
     fn roughness(&self) -> f64 {
         1.0
     }
 
-    /// What is reflected, if that is the same into every direction.
+    /// Reflectance of a Lambertian BRDF; `None` for others.
     #[inline(always)]
     fn diffuse(&self) -> Option<Rgb> {
         None
     }
 }
 
-/// One that is borrowed.
+/// A borrowed BSDF.
 impl<B: Bsdf> Bsdf for &B {
     #[inline(always)]
     fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64) {
@@ -102,64 +101,63 @@ impl<B: Bsdf> Bsdf for &B {
     }
 }
 
-/// A direction drawn from a [`Bsdf`].
+/// A sampled direction of a [`Bsdf`].
 #[derive(Clone, Copy, Debug)]
 pub struct BsdfSample {
-    /// Where the light comes from: in the shading frame, or in the world where an encounter with a surface drew it.
+    /// Incident direction, in the shading frame; or in the world if a surface interaction sampled it.
     pub wi: DVec3,
-    /// Scattering function times cosine over density: what the path's throughput is multiplied by.
+    /// BSDF times cosine over density, the factor on the path's throughput.
     pub weight: Rgb,
-    /// Density in solid angle. Infinite where a single direction has all of it, as with a mirror: weighed against any
-    /// other way to find this direction, such a sample then gets all the weight.
+    /// Density by solid angle. It is infinite for a delta direction, so that MIS gives the sample all the weight.
     pub pdf: f64,
-    /// The index of refraction on the side of `wi` over that on the side of `wo`: 1 unless light is refracted. A weight
-    /// has 1 / eta² in it, which Russian roulette should not take for light lost.
+    /// Index of refraction on the side of `wi` over that on the side of `wo`; 1 unless light is refracted. The weight
+    /// includes 1 / eta², which Russian roulette should not count as energy loss.
     pub eta: f64,
-    /// Whether `wi` is on the other side of the surface than `wo`.
+    /// True if `wi` is on the opposite side from `wo`.
     pub is_through: bool,
-    /// The choices, from and up to but not with, that lead to the lobe that it was drawn from.
+    /// Half-open range of choice numbers that select its lobe.
     pub choices: [f64; 2],
 }
 
 impl BsdfSample {
-    /// One on the side of `wo`, from the only lobe.
+    /// A sample of the only lobe, on the side of `wo`.
     #[inline(always)]
     pub fn new(wi: DVec3, weight: Rgb, pdf: f64) -> Self {
         Self { wi, weight, pdf, eta: 1.0, is_through: false, choices: [0.0, 1.0] }
     }
 
-    /// A single direction on the side of `wo`, from the only lobe.
+    /// A delta sample of the only lobe, on the side of `wo`.
     #[inline(always)]
     pub(super) fn delta(wi: DVec3, weight: Rgb) -> Self {
         Self::new(wi, weight, f64::INFINITY)
     }
 
-    /// The same on the other side, where the index of refraction is so many times as large.
+    /// Marks the sample as transmitted into a medium with `eta` times the index of refraction.
     #[inline(always)]
     pub(super) fn through(self, eta: f64) -> Self {
         Self { eta, is_through: true, ..self }
     }
 
-    /// The same of the lobe that has these choices.
+    /// Sets the range of choice numbers of its lobe.
     #[inline(always)]
     pub(super) fn of_lobe(self, choices: [f64; 2]) -> Self {
         Self { choices, ..self }
     }
 
-    /// The probability of the lobe that it was drawn from.
+    /// Probability of its lobe.
     #[inline]
     pub fn probability(&self) -> f64 {
         self.choices[1] - self.choices[0]
     }
 
-    /// Whether it is a single direction.
+    /// Returns whether it is a delta direction.
     #[inline]
     pub fn is_delta(&self) -> bool {
         self.pdf == f64::INFINITY
     }
 }
 
-/// The choices of the first of two lobes, of this probability, or of the second.
+/// Choice numbers of the first of two lobes, which has this probability, or of the second.
 #[inline(always)]
 pub(super) fn either(first: f64, is_first: bool) -> [f64; 2] {
     if is_first { [0.0, first] } else { [first, 1.0] }

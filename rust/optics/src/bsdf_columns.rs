@@ -1,4 +1,4 @@
-//! Bidirectional scattering distribution functions by lane: what is asked of sixteen at a time.
+//! Interface of BSDFs in batches of sixteen lanes.
 
 use super::{Bsdf, BsdfSampleLanes, RgbLanes};
 use raywright_base::math::{DVec3, LANES, VectorLanes};
@@ -6,27 +6,25 @@ use raywright_base::sampling::Pairs;
 use raywright_base::simd::Level;
 use std::fmt::Debug;
 
-/// A kind of functions of which sixteen are asked at a time.
+/// A kind of BSDF that can be evaluated sixteen at a time.
 pub trait LaneBsdf: Bsdf {
-    /// What is known of them.
+    /// Its structure-of-arrays form.
     type Lanes: BsdfColumns<Self>;
 }
 
-/// What is known of functions of a kind, a lane each, and of a direction in the shading frame of each that light goes
-/// to.
+/// BSDFs of one kind in structure-of-arrays form, each with an outgoing direction in its shading frame.
 ///
-/// What it answers are the bits that each function gives by itself ([`Bsdf`]), whatever the level: that of loops over
-/// lanes (`simd/loops.rs`). `each` gives the functions themselves, of which more may be asked than stands in
-/// columns.
+/// Results are bit-identical to those of each [`Bsdf`], at every level of loops over lanes (`simd/loops.rs`). `each`
+/// returns the BSDFs themselves, for data that is not stored in arrays.
 pub trait BsdfColumns<B: ?Sized>: Clone + Debug {
-    /// Of nothing yet.
+    /// Sixteen empty lanes.
     const NONE: Self;
 
-    /// Puts a function into a lane, and where light goes to.
+    /// Stores a BSDF and its outgoing direction in a lane.
     fn set(&mut self, lane: usize, of: &B, wo: DVec3);
 
-    /// What [`Bsdf::evaluate`] gives for directions that they were put there with, and others, in the lanes that ask;
-    /// 0 in the others.
+    /// [`Bsdf::evaluate`] for the stored outgoing directions and given incident ones. Lanes whose flag is not set get
+    /// 0.
     fn evaluate<'a>(
         &self,
         level: Level,
@@ -38,8 +36,8 @@ pub trait BsdfColumns<B: ?Sized>: Clone + Debug {
     ) where
         B: 'a;
 
-    /// What [`Bsdf::sample`] gives for directions that they were put there with, by a choice and two numbers each, in
-    /// the lanes that ask; nothing in the others.
+    /// [`Bsdf::sample`] for the stored outgoing directions, by a choice and two random numbers each. Lanes whose flag
+    /// is not set get no sample.
     fn sample<'a>(
         &self,
         level: Level,

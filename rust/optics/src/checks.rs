@@ -1,4 +1,4 @@
-//! What holds of every kind of scattering.
+//! Properties of every kind of BSDF.
 
 use super::conductors::Reflectance;
 use super::losses::Lossy;
@@ -18,14 +18,14 @@ fn direction(degrees: f64, turn: f64) -> DVec3 {
     DVec3::new(sin * turn.cos(), sin * turn.sin(), cos)
 }
 
-/// Silver's index of refraction about the middles of red, green and blue.
+/// Silver's index of refraction near the centers of red, green and blue.
 const SILVER: (Rgb, Rgb) = (Rgb::new(0.0569, 0.0540, 0.0469), Rgb::new(4.2543, 3.4290, 2.8028));
 
 fn gold(outside: f64, alpha: [f64; 2]) -> AnyBsdf {
     Conductor::metal(conductors::metal("gold").unwrap(), outside, alpha).into()
 }
 
-/// Silver and glass of some facets.
+/// Silver and glass with these facets.
 fn faceted<F: Lossy>(alpha: [f64; 2], eta: f64) -> [AnyBsdf; 2]
 where
     AnyBsdf: From<Conductor<F>> + From<Dielectric<F>>,
@@ -35,7 +35,7 @@ where
     [Conductor::of(silver, Some(brushed)).into(), Dielectric::of(eta, Some(alike)).into()]
 }
 
-/// Plastics whose coats scatter once. What goes through them is integrated, once.
+/// Plastics with single-scattering coats. Their transmittance is integrated once.
 fn plastics_once() -> &'static [AnyBsdf] {
     static MADE: OnceLock<Vec<AnyBsdf>> = OnceLock::new();
     fn made<F: Facets>(alpha: f64, eta: f64) -> AnyBsdf
@@ -51,12 +51,12 @@ fn plastics_once() -> &'static [AnyBsdf] {
     MADE.get_or_init(|| all.flat_map(both).collect())
 }
 
-/// Oil, a coat and a gap on what is clear, and oxide on silver and gold.
+/// Oil, a coating and a gap on dielectrics, and oxide on silver and gold.
 fn filmed<F: Lossy>(alpha: f64) -> Vec<AnyBsdf>
 where
     AnyBsdf: From<Dielectric<F, Filmed>> + From<Conductor<F>>,
 {
-    // A gap is smooth: facets that reflect where bare ones do not gain some light.
+    // The gap is smooth: rough facets that reflect where bare ones do not gain some energy.
     let last = if alpha == 0.0 { (80.0, [1.5, 1.0, 1.6]) } else { (80.0, [1.5, 1.55, 1.6]) };
     let clear = [(300.0, [1.0, 1.47, 1.33]), (99.6, [1.0, 1.38, 1.52]), last].map(|(thickness, indices)| {
         let eta = indices[2] / indices[0];
@@ -69,7 +69,7 @@ where
     clear.into_iter().chain(metal).collect()
 }
 
-/// One or more of each kind.
+/// One or more BSDFs of each kind.
 fn kinds() -> Vec<AnyBsdf> {
     let (grey, red) = (Rgb::splat(0.6), Rgb::new(0.9, 0.3, 0.1));
     let mut kinds: Vec<AnyBsdf> = vec![
@@ -119,7 +119,7 @@ fn kinds() -> Vec<AnyBsdf> {
     kinds
 }
 
-/// The index of refraction below it over that above.
+/// Index of refraction below over that above.
 fn index(bsdf: &AnyBsdf) -> f64 {
     match bsdf {
         AnyBsdf::Dielectric(d) => d.eta(),
@@ -134,7 +134,7 @@ fn index(bsdf: &AnyBsdf) -> f64 {
     }
 }
 
-/// Directions from straight above to grazing, and some from below.
+/// Directions from normal to grazing incidence, and some from below.
 fn directions() -> Vec<DVec3> {
     let mut directions = Vec::new();
     for (degrees, turn) in [(0.0, 0.0), (20.0, 1.0), (45.0, 0.0), (60.0, 2.0), (80.0, 4.0), (89.0, 5.0), (89.9, 0.3)] {
@@ -148,7 +148,7 @@ fn draw(bsdf: &AnyBsdf, wo: DVec3, numbers: &mut Sampler) -> Option<BsdfSample> 
     bsdf.sample(wo, &mut || choice, u)
 }
 
-/// The mean weight of draws without the 1 / η² of radiance, and its standard error: the share of light scattered.
+/// Mean sample weight without the 1 / η² of radiance, and its standard error: the directional albedo.
 fn share(bsdf: &AnyBsdf, wo: DVec3, draws: u32) -> (Rgb, f64) {
     let (mut sum, mut squares) = (Rgb::ZERO, 0.0);
     for i in 0..draws {
@@ -184,7 +184,8 @@ fn white_is_white_at_every_roughness_and_angle() {
         for (number, (bsdf, bound)) in white.into_iter().enumerate() {
             for wo in cases::every(2, number, directions()) {
                 let (mean, error) = share(&bsdf, wo, 4_000);
-                // Five standard errors beyond the bound: by luck one of these 4,900 means is, for one seed in 350.
+                // Five standard errors beyond the bound: the probability that one of these 4,900 means fails is 1 in
+                // 350 per seed.
                 let off = (mean - 1.0).abs().max();
                 assert!(off <= bound + 5.0 * error, "{mean} ± {error} {bsdf:?} {wo}");
             }
@@ -199,7 +200,7 @@ fn light_is_scattered_alike_in_both_directions() {
         a.rotate_left(3);
         b.extend(a.clone());
         for wo in a {
-            // What is close to a lobe, too: the direction of a draw, from both sides of the surface.
+            // Also near a lobe: the direction of a sample, from both sides of the surface.
             let drawn = bsdf.sample(wo, &mut || 0.9, [0.3, 0.4]).map(|s| s.wi);
             for &wi in b.iter().chain(drawn.as_ref()) {
                 // f(wo, wi) / η² of the side of wi is symmetric.
@@ -229,9 +230,9 @@ fn draws_weigh_what_is_evaluated() {
                 }
                 assert!(!bsdf.is_delta());
                 let (value, pdf) = bsdf.evaluate(wo, s.wi);
-                // Nothing is scattered where a facet's density underflows and nothing is lost.
+                // Values are 0 where a facet's density underflows and nothing is lost.
                 let off = (value - s.weight * s.pdf).abs().max() / value.max().max(f64::MIN_POSITIVE);
-                // Directions are right to 10⁻¹⁶; what is evaluated from them, to that over a lobe's width.
+                // Directions are accurate to 10⁻¹⁶, and values computed from them to that over a lobe's width.
                 let bound = 1e-9 + 1e-12 * s.pdf.sqrt();
                 assert!(off < bound && (pdf / s.pdf - 1.0).abs() < bound, "{off:e} {pdf} {s:?} {bsdf:?} {wo}");
             }
@@ -239,7 +240,7 @@ fn draws_weigh_what_is_evaluated() {
     }
 }
 
-/// Two directions: any, grazing, straight, in the plane, mirrored, opposite, or about the critical angle.
+/// Two directions: arbitrary, grazing, normal, in the plane, mirrored, opposite, or near the critical angle.
 fn two_directions(turn: u32, sampler: &mut Sampler) -> [DVec3; 2] {
     let [wo, wi] = [1, 3].map(|dimension| uniform_sphere(sampler.two(dimension)));
     match turn % 10 {
@@ -254,7 +255,7 @@ fn two_directions(turn: u32, sampler: &mut Sampler) -> [DVec3; 2] {
     }
 }
 
-/// That lanes answer as each function of them does by itself, at every level.
+/// Asserts that lanes equal scalar results at every level.
 fn assert_alike(turn: u32, each: &[AnyBsdf; LANES]) {
     let mut sampler: [Sampler; LANES] = from_fn(|lane| Sampler::new(8, turn, lane as u32));
     let (mut lanes, mut to, mut from, mut u) =
@@ -289,7 +290,7 @@ fn assert_alike(turn: u32, each: &[AnyBsdf; LANES]) {
     }
 }
 
-/// Principled surfaces and sheets, from matt and metal to glass.
+/// Principled surfaces and sheets, from diffuse and metal to glass.
 fn principled() -> Vec<AnyBsdf> {
     let look = |roughness: f64, transmission: f64| Look {
         base_color: Rgb::new(0.9, 0.4, 0.1),
@@ -327,7 +328,7 @@ fn lanes_answer_as_each_by_itself() {
     names.sort();
     names.dedup();
     for turn in 0..20 {
-        // Of one kind, smooth and rough, and of many.
+        // Lanes of one kind, smooth and rough, and of many kinds.
         for wanted in &names {
             let alike: Vec<&AnyBsdf> = kinds.iter().filter(|of| name(of) == *wanted).collect();
             assert_alike(turn, &from_fn(|lane| *alike[(lane + turn as usize) % alike.len()]));
@@ -347,7 +348,7 @@ fn choices_say_which_lobe_is_drawn() {
                 let Some(s) = drawn(choice) else { continue };
                 let [from, to] = s.choices;
                 assert!(0.0 <= from && from <= choice && choice < to && to <= 1.0, "{choice} {s:?} {bsdf:?} {wo}");
-                // All choices between the ends lead there, and none beyond them; a rounding may lie between.
+                // All choices inside the range select this lobe, and none outside; a rounding may lie between.
                 let rounding = if s.is_delta() { 0.0 } else { 1e-15 };
                 let is_same =
                     |choice| drawn(choice).is_some_and(|other| (other.wi, other.choices) == (s.wi, s.choices));
@@ -359,7 +360,7 @@ fn choices_say_which_lobe_is_drawn() {
                     assert!(!(0.0..1.0).contains(&outside) || !is_same(outside), "{outside} {s:?} {bsdf:?} {wo}");
                 }
                 assert_eq!(s.is_through, s.wi.z * wo.z < 0.0, "{s:?} {bsdf:?} {wo}");
-                // Single directions come first.
+                // Delta lobes come first.
                 let before = if from > 0.0 { drawn(0.0) } else { None };
                 assert!(!s.is_delta() || before.is_none_or(|first| first.is_delta()), "{s:?} {bsdf:?} {wo}");
             }
@@ -372,10 +373,10 @@ fn nothing_gains_light() {
     for (number, bsdf) in kinds().into_iter().enumerate() {
         for wo in cases::every(3, number, directions()) {
             let (mean, error) = share(&bsdf, wo, 5_000);
-            // What gains does so only once on its way.
+            // A surface may exceed 1 only once along a path.
             let again = mean * bsdf.again();
             assert!(again.max() < 1.005 + 5.0 * error, "{mean} {bsdf:?} {wo}");
-            // A film on gold may be of an orange that is purer than the bare metal's.
+            // A film on gold may have an orange that is purer than that of the bare metal.
             let most = if format!("{bsdf:?}").contains("FilmedMetal") { 1.1 } else { 1.03 };
             assert!(mean.max() < most + 5.0 * error, "{mean} {bsdf:?} {wo}");
         }
@@ -384,7 +385,7 @@ fn nothing_gains_light() {
 
 #[test]
 fn films_on_rough_glass_keep_nearly_all_light() {
-    // By roughness: under oil and a lens's coat, and under what reflects much more than glass does.
+    // By roughness: under oil and a lens coating, and under a film that reflects much more than glass.
     let (few, many) = ([0.002, 0.002, 0.005, 0.015], [0.005, 0.015, 0.07, 0.14]);
     for (indices, bounds) in [([1.0, 1.47, 1.33], few), ([1.0, 1.38, 1.52], few), ([1.0, 2.3, 1.5], many)] {
         for (alpha, most) in [0.05, 0.2, 0.5, 1.0].into_iter().zip(bounds) {
@@ -393,7 +394,7 @@ fn films_on_rough_glass_keep_nearly_all_light() {
                 let bsdf: AnyBsdf = Dielectric::with(indices[2], Ggx::rough([alpha; 2]), film).into();
                 for wo in directions() {
                     let (mean, error) = share(&bsdf, wo, 4_000);
-                    // Channels differ in how often they are drawn, and in their errors by at most so much.
+                    // Channels differ in sampling probability, and in their errors by at most this factor.
                     let off = (mean - 1.0).abs().max();
                     assert!(off <= most + 7.0 * error.max(1e-3), "{mean} ± {error} {indices:?} {alpha} {wo}");
                 }
@@ -412,7 +413,7 @@ fn nothing_is_negative_where_facets_are_as_open_as_they_are_seen() {
     }
 }
 
-/// Unit vectors, many of them in the plane, next to it, or next to the axes.
+/// Unit vectors, many of them in the plane, close to it, or close to the axes.
 fn any_direction() -> impl Strategy<Value = DVec3> {
     let tiny = prop_oneof![Just(0.0), Just(1e-300), Just(1e-12), Just(-1e-12), Just(1e-5), -1.0..1.0f64];
     (-1.0..1.0f64, -1.0..1.0f64, tiny).prop_filter_map("no direction", |(x, y, z)| DVec3::new(x, y, z).try_normalize())

@@ -1,4 +1,4 @@
-//! Draws have the density that they say.
+//! Samples follow their densities (chi-square tests).
 
 use super::conductors::Reflectance;
 use super::*;
@@ -11,10 +11,10 @@ use std::f64::consts::{PI, TAU};
 const DRAWS: u32 = 20_000;
 const ROWS: usize = 12;
 const COLUMNS: usize = 8;
-/// Midpoints in a cell, along either side.
+/// Midpoints per cell along each side.
 const FINE: usize = 24;
 
-/// Coordinates of directions in the unit square, and back with the solid angle per area.
+/// A map of directions to the unit square, and back with the solid angle per area.
 trait Chart {
     fn cell(&self, wi: DVec3) -> Option<[f64; 2]>;
     fn direction(&self, at: [f64; 2]) -> Option<(DVec3, f64)>;
@@ -35,17 +35,16 @@ impl Chart for Sphere {
     }
 }
 
-/// Slopes of the facet that reflects or refracts to `wo`, in units of α: however narrow a lobe is, it fills this
-/// square.
+/// Slopes of the facet that reflects or refracts to `wo`, in units of α, so that even a narrow lobe fills the square.
 struct Slopes {
     wo: DVec3,
     alpha: [f64; 2],
-    /// The index beyond the surface, to look at what is refracted.
+    /// Index of refraction beyond the surface, to test refraction.
     eta: Option<f64>,
 }
 
 impl Slopes {
-    /// Slopes above 3 α are no part of it: there is what lies far from a narrow lobe, and midpoints would not see it.
+    /// Slopes above 3 α are excluded: midpoints would miss the tail of a narrow lobe.
     const TAIL: f64 = 0.9;
 }
 
@@ -57,7 +56,7 @@ impl Chart for Slopes {
             _ => return None,
         };
         let h = if q.z < 0.0 { -q } else { q };
-        // Facets must face both, or the pair is one of another kind of light.
+        // The facet must face both directions; otherwise the pair belongs to the other of reflection and refraction.
         if self.eta.is_some() && (self.wo.dot(h) * self.wo.z <= 0.0 || wi.dot(h) * wi.z <= 0.0) {
             return None;
         }
@@ -78,7 +77,7 @@ impl Chart for Slopes {
         }
         let cosine = self.wo.dot(h);
         if cosine <= 0.0 {
-            // A facet that faces away is not seen.
+            // A facet that faces away is invisible.
             return None;
         }
         match self.eta {
@@ -95,8 +94,8 @@ impl Chart for Slopes {
     }
 }
 
-/// Fails if draws contradict the density, at an error rate of 10⁻⁴ a call. What has no cell, or single directions, is a
-/// class of its own that has the rest of the probability.
+/// Fails if samples contradict the density, with a false alarm rate of 10⁻⁴ per call. Directions without a cell and
+/// delta directions form one class with the remaining probability.
 fn assert_density(bsdf: &AnyBsdf, wo: DVec3, chart: &impl Chart) {
     let mut counts = vec![0; ROWS * COLUMNS + 1];
     for i in 0..DRAWS {
@@ -124,7 +123,7 @@ fn assert_density(bsdf: &AnyBsdf, wo: DVec3, chart: &impl Chart) {
         .collect();
     let sum: f64 = expected.iter().sum();
     assert!(sum < 1.003, "{sum} {bsdf:?} {wo}");
-    // Midpoints do not see the edge of what is drawn: a cell that holds next to nothing joins the rest.
+    // Midpoints miss the edge of the sampled region, so a nearly empty cell joins the remaining class.
     let mut rest = 1.0 - sum;
     for cell in 0..ROWS * COLUMNS {
         if expected[cell] < 1e-4 {
@@ -139,7 +138,7 @@ fn assert_density(bsdf: &AnyBsdf, wo: DVec3, chart: &impl Chart) {
     }
 }
 
-/// A direction at so many degrees, off the axes.
+/// Directions at these angles, off the axes.
 fn directions() -> [DVec3; 4] {
     [0.0f64, 40.0, 80.0, 89.9].map(|degrees| {
         let (sin, cos) = degrees.to_radians().sin_cos();
@@ -180,7 +179,7 @@ fn reflections_have_their_density() {
     }
 }
 
-/// Of metal and plastic whose facets scatter once.
+/// Tests a conductor and a plastic with single-scattering facets.
 fn once_reflected<F: Facets>(alpha: [f64; 2], wo: DVec3)
 where
     AnyBsdf: From<Conductor<Once<F>>> + From<CoatedOnce<F>>,

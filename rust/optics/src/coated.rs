@@ -1,4 +1,4 @@
-//! Plastic, varnish, glaze: a matt base under a clear coat.
+//! A diffuse base under a clear coat: plastic, varnish, glaze.
 
 mod lanes;
 
@@ -11,16 +11,16 @@ use super::{Bsdf, BsdfSample, Facets, Ggx, Rgb, fresnel};
 use glam::DVec3;
 use std::f64::consts::FRAC_1_PI;
 
-/// A dielectric coat, smooth or with microfacets, over a diffuse base. The coat reflects R(ω); the rest reaches the
-/// base, and light from there is reflected back to it under the coat any number of times (Wolff, Nayar and Oren,
-/// "Improved Diffuse Reflection Models for Computer Vision", 1998): with F̄ the mean reflectance of the coat from
-/// within, (1 − R(wo)) (1 − R(wi)) / (π (1 − R̄)) ρ (1 − F̄) / (1 − ρ F̄). Reciprocal, and a white base is white under
-/// any coat. Light that a rough coat's facets throw on facets is taken to reach the base. Both sides reflect.
+/// A dielectric coat, smooth or with microfacets, over a diffuse base. The coat reflects R(ω). The rest reaches the
+/// base and is reflected between base and coat any number of times (Wolff, Nayar and Oren, "Improved Diffuse Reflection
+/// Models for Computer Vision", 1998). With F̄ the mean internal reflectance of the coat, the base contributes (1 −
+/// R(wo)) (1 − R(wi)) / (π (1 − R̄)) ρ (1 − F̄) / (1 − ρ F̄). The BRDF is reciprocal, and a white base is white under
+/// any coat. Interreflection between facets of a rough coat is assumed to reach the base. Both sides reflect.
 #[derive(Clone, Copy, Debug)]
 pub struct Coated<F: Tabulated = Ggx> {
     eta: f64,
     rough: Option<Rough<F>>,
-    /// What the base gives back of the light that reaches it.
+    /// Albedo of the base under the coat.
     base: Rgb,
     /// Mean reflectance of the coat from outside.
     average: f64,
@@ -33,15 +33,15 @@ struct Rough<F> {
 }
 
 impl Coated {
-    /// Of a base's reflectance, 0 to 1, the coat's index of refraction relative to what is outside, `eta` ≥ 1, and its
-    /// roughness of GGX, 0 to 1. Below [`Facets::SMOOTH`] it reflects in one direction.
+    /// Creates the BRDF from a base reflectance, 0 to 1, the coat's relative index of refraction `eta` ≥ 1, and its GGX
+    /// roughness, 0 to 1. Below [`Facets::SMOOTH`] the coat is specular.
     pub fn new(reflectance: Rgb, eta: f64, alpha: f64) -> Self {
         Self::of(reflectance, eta, Ggx::rough([alpha; 2]))
     }
 }
 
 impl<F: Tabulated> Coated<F> {
-    /// Of facets that are alike in all directions; without them the coat reflects in one direction.
+    /// Creates the BRDF with isotropic facets; without them the coat is specular.
     pub fn of(reflectance: Rgb, eta: f64, facets: Option<F>) -> Self {
         let eta = fresnel::bounded(eta);
         let rough = facets.map(|facets| Rough { facets, coat: Coat::new(facets, eta) });
@@ -50,7 +50,7 @@ impl<F: Tabulated> Coated<F> {
         Self { eta, rough, base: reflectance * (1.0 - within) / (Rgb::ONE - reflectance * within), average }
     }
 
-    /// The share of light from `w` that the coat reflects.
+    /// Reflectance of the coat for direction `w`.
     #[inline]
     fn reflectance(&self, w: DVec3) -> f64 {
         match &self.rough {
@@ -59,23 +59,22 @@ impl<F: Tabulated> Coated<F> {
         }
     }
 
-    /// What the base scatters of light from `wi`, above, and the density of the draw, where one has the probability
-    /// `share` to be the coat's: by `base` and `average`, and what the coat reflects of light to and from there.
+    /// Value and density of the base for `wi`, above, from `base` and `average`. `share` is the sampling probability of
+    /// the coat; `reflectance` and `there` are the coat's reflectances for `wo` and `wi`.
     #[inline(always)]
     fn matt((base, average): (Rgb, f64), share: f64, wi: DVec3, [reflectance, there]: [f64; 2]) -> (Rgb, f64) {
         let reaching = (1.0 - reflectance) * (1.0 - there);
         (base * (reaching * FRAC_1_PI * wi.z / (1.0 - average)), (1.0 - share) * wi.z * FRAC_1_PI)
     }
 
-    /// What facets of a coat reflect between two directions above, and the density of the draw, by what
-    /// [`Facets::mirroring`] tells of them.
+    /// Value and density of the coat's facets between two directions above, from the result of [`Facets::mirroring`].
     #[inline(always)]
     fn glossy((facets, eta): (&F, f64), share: f64, [wo, wi]: [DVec3; 2], (density, cosine): (f64, f64)) -> (f64, f64) {
         let coat = fresnel::dielectric(cosine, eta) * density * facets.reflection_geometry(wo, wi);
         (coat, share * facets.reflected_pdf(wo, density))
     }
 
-    /// The probability with which a draw is reflected by the coat, of which it reflects this share.
+    /// Sampling probability of the coat, from its reflectance.
     #[inline]
     fn share(&self, reflectance: f64) -> f64 {
         let base = self.base.max() * (1.0 - reflectance);

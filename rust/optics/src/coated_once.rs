@@ -1,4 +1,4 @@
-//! Plastic whose coat scatters once each time it is met.
+//! Plastic with a single-scattering coat.
 
 use super::bsdf::either;
 use super::bsdf_columns::LaneBsdf;
@@ -9,10 +9,10 @@ use super::{Bsdf, BsdfSample, Facets, Once, Rgb, Through, fresnel};
 use glam::DVec3;
 use std::f64::consts::FRAC_1_PI;
 
-/// A rough dielectric coat over a diffuse base. Light that a facet refracts reaches the base; what comes back from
-/// there gets out by another, or is reflected by one to the base, any number of times: with T the share that is
-/// refracted from outside and F̄ what is reflected of even light from within, ρ T(wo) T(wi) / (π η² (1 − ρ F̄)). What
-/// facets throw on each other is lost at each of them. Both sides reflect.
+/// A rough dielectric coat over a diffuse base, with single scattering. Light refracted by a facet reaches the base.
+/// From there it leaves through another facet or is reflected back, any number of times. With T the transmittance from
+/// outside and F̄ the mean internal reflectance, the base contributes ρ T(wo) T(wi) / (π η² (1 − ρ F̄)).
+/// Interreflection between facets is lost at each scattering. Both sides reflect.
 #[derive(Clone, Copy, Debug)]
 pub struct CoatedOnce<F> {
     eta: f64,
@@ -23,15 +23,15 @@ pub struct CoatedOnce<F> {
 }
 
 impl<F: Facets> CoatedOnce<F> {
-    /// Of a base's reflectance, 0 to 1, the coat's index of refraction relative to what is outside, `eta` ≥ 1, its
-    /// facets, and what goes through these.
+    /// Creates the BRDF from a base reflectance, 0 to 1, the coat's relative index of refraction `eta` ≥ 1, its facets,
+    /// and their transmittance.
     pub fn new(reflectance: Rgb, eta: f64, facets: Once<F>, through: Through) -> Self {
         let eta = fresnel::bounded(eta);
         let base = reflectance / (Rgb::ONE - reflectance * through.within()) / (eta * eta);
         Self { eta, facets, through, base }
     }
 
-    /// The probability with which a draw is reflected by the coat, of which this share goes through.
+    /// Sampling probability of the coat, from its transmittance.
     #[inline(always)]
     fn share(&self, through: f64) -> f64 {
         let base = self.base.max() * self.through.average() * through;

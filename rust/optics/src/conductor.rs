@@ -1,4 +1,4 @@
-//! Metals.
+//! Conductors.
 
 mod lanes;
 
@@ -12,12 +12,12 @@ use super::{Bsdf, BsdfSample, Facets, Ggx, Rgb};
 use glam::DVec3;
 use std::f64::consts::{FRAC_1_PI, PI};
 
-/// A conductor, smooth or with microfacets. Light that facets throw on facets is made up for as far as these know of it
-/// (Kulla and Conty, "Revisiting Physically Based Shading at Imageworks", 2017): reciprocal, and a perfect conductor is
-/// white at every roughness. Both sides reflect.
+/// A conductor, smooth or with microfacets. Energy lost to interreflection between facets is compensated if the facets
+/// provide their loss (Kulla and Conty, "Revisiting Physically Based Shading at Imageworks", 2017). The BRDF is
+/// reciprocal, and a perfect conductor is white at every roughness. Both sides reflect.
 ///
-/// A measured metal has its colour by wavelength ([`super::conductors::Curve`]), of what is scattered once and of what
-/// is scattered more than once, and may have more than 1 in a channel.
+/// A measured metal has a spectral colour ([`super::conductors::Curve`]) for single and multiple scattering, and a
+/// channel may exceed 1.
 #[derive(Clone, Copy, Debug)]
 pub struct Conductor<F: Lossy = Ggx> {
     fresnel: Reflectance,
@@ -28,15 +28,15 @@ pub struct Conductor<F: Lossy = Ggx> {
 struct Rough<F: Lossy> {
     facets: F,
     loss: F::Mirror,
-    /// Where light goes that is scattered more than once.
+    /// Directional distribution of multiple scattering.
     grazing: Grazing,
-    /// What is scattered more than once, over π and the mean loss.
+    /// Multiple scattering, over π and the mean loss.
     multiple: Rgb,
 }
 
 impl<F: Lossy> Rough<F> {
-    /// What is scattered between two directions above, and the density of the draw: by what [`Facets::mirroring`] tells
-    /// of them, the reflectance there, and what is lost of light from either.
+    /// Value and density between two directions above, from the result of [`Facets::mirroring`], the reflectance there,
+    /// and the losses of both directions.
     #[inline(always)]
     fn scattered(
         (facets, multiple, grazing): (&F, Rgb, &Grazing),
@@ -51,20 +51,20 @@ impl<F: Lossy> Rough<F> {
 }
 
 impl Conductor {
-    /// Of the complex index `eta` + i `k` relative to the medium around it, and the roughness of GGX along x and y, 0
-    /// to 1. Below [`Facets::SMOOTH`] it is a mirror.
+    /// Creates a conductor with complex index `eta` + i `k` relative to its surroundings, and GGX roughness along x and
+    /// y, 0 to 1. Below [`Facets::SMOOTH`] it is specular.
     pub fn new(eta: Rgb, k: Rgb, alpha: [f64; 2]) -> Self {
         Self::of(Reflectance::Index(ConductorIndex::new(eta, k)), Ggx::rough(alpha))
     }
 
-    /// Of a measured metal in a medium of index `outside`, and the roughness of GGX.
+    /// Creates a measured metal in a medium of index `outside`, with GGX roughness.
     pub fn metal(metal: &'static Metal, outside: f64, alpha: [f64; 2]) -> Self {
         Self::of(Reflectance::of(metal, outside), Ggx::rough(alpha))
     }
 }
 
 impl<F: Lossy> Conductor<F> {
-    /// Of what it reflects smooth, and facets; a mirror without.
+    /// Creates a conductor from its smooth reflectance and facets; specular without facets.
     pub fn of(fresnel: Reflectance, facets: Option<F>) -> Self {
         let rough = facets.map(|facets| {
             let loss = facets.mirror();
@@ -74,22 +74,22 @@ impl<F: Lossy> Conductor<F> {
         Self { fresnel, rough }
     }
 
-    /// The share of light that is reflected at this cosine of incidence.
+    /// Reflectance at this cosine of incidence.
     #[inline]
     pub fn reflectance(&self, cosine: f64) -> Rgb {
         self.fresnel.at(cosine)
     }
 }
 
-/// What scattering more than once gives back of each unit lost, for facets of this mean loss and reflectance, over π
-/// and the mean loss: each further time, F̄ is left, and 1 − L̄ of it gets out.
+/// Multiple scattering per unit of lost energy, for facets with this mean loss and reflectance, over π and the mean
+/// loss. Each further scattering keeps F̄, and 1 − L̄ of that escapes.
 #[inline]
 pub(super) fn made_up(lost: f64, reflectance: Rgb) -> Rgb {
     let of = |share| made_up_of(lost, share);
     Rgb::new(of(reflectance[0]), of(reflectance[1]), of(reflectance[2]))
 }
 
-/// The same of one channel, or one wavelength.
+/// The same for one channel, or one wavelength.
 #[inline]
 fn made_up_of(lost: f64, reflectance: f64) -> f64 {
     if lost == 0.0 {
@@ -99,13 +99,13 @@ fn made_up_of(lost: f64, reflectance: f64) -> f64 {
     colour * (FRAC_1_PI / lost)
 }
 
-/// Whether facets mirror one direction to another: both are seen, on one side.
+/// Returns whether facets can mirror one direction to another: both visible, on one side.
 #[inline(always)]
 pub(super) fn mirrors<F: Facets>(wo: DVec3, wi: DVec3) -> bool {
     F::sees(wo) & F::sees(wi) & (wo.z * wi.z > 0.0)
 }
 
-/// As seen from above: a direction and its mirror image below the surface see the same.
+/// Mirrors a direction to the upper side, which is equivalent.
 #[inline(always)]
 pub(super) fn above(w: DVec3) -> DVec3 {
     DVec3::new(w.x, w.y, w.z.abs())

@@ -1,4 +1,4 @@
-//! Glass, water and the like.
+//! Dielectric interfaces such as glass and water.
 
 mod facet;
 mod lanes;
@@ -14,24 +14,24 @@ use super::{Bsdf, BsdfSample, Facets, Ggx, Rgb, fresnel};
 use facet::{Bent, Divided, Facet};
 use raywright_base::math::{DVec3, in_lanes, select};
 
-/// A dielectric interface, smooth or with isotropic microfacets (Walter et al., "Microfacet Models for Refraction
-/// through Rough Surfaces", 2007), which reflects and refracts.
+/// A dielectric interface, smooth or with isotropic microfacets, that reflects and refracts (Walter et al., "Microfacet
+/// Models for Refraction through Rough Surfaces", 2007).
 ///
-/// A refraction that starts at a facet seen from one side is mostly taken to get out where the facet is seen from the
-/// other ([`Facets::refraction_geometry`]): light that other facets stop goes through them too, the more nearly
-/// straight on the closer the index is to 1. So at index 1 a surface is clear however rough it is. What is still lost
-/// is given back as `LostBetween` says.
+/// A refraction at a facet visible from one side is mostly assumed to escape if the facet is visible from the other
+/// ([`Facets::refraction_geometry`]). Light blocked by other facets passes through them too, and the closer the index
+/// is to 1 the less it is deflected. So at index 1 a rough surface is clear. The remaining loss is compensated by
+/// `LostBetween`.
 #[derive(Clone, Copy, Debug)]
 pub struct Dielectric<F: Lossy = Ggx, S: Split = Bare> {
-    /// Index below over index above.
+    /// Index of refraction below over index above.
     eta: f64,
     rough: Option<Rough<F>>,
-    /// How facets divide light.
+    /// Division of light into reflection and transmission at a facet.
     split: S,
 }
 
-/// How much what bare facets would reflect counts for which way is drawn, beside what these do: where a film reflects
-/// nothing, they still do as far as other facets are in the way.
+/// Weight of the bare facets' reflectance in the sampling probability. A film may reflect nothing where bare facets, as
+/// far as other facets block them, still reflect.
 const BARE: f64 = 0.25;
 
 #[derive(Clone, Copy, Debug)]
@@ -45,20 +45,20 @@ impl<F: Lossy> Rough<F> {
         Self { facets, interface: facets.interface(eta) }
     }
 
-    /// How light goes on the side of `w` that facets lose and give back.
+    /// Directional distribution of the compensation lobe on the side of `w`.
     #[inline]
     fn grazing(&self, w: DVec3) -> Grazing {
         Grazing::new(self.interface.scale(w))
     }
 
-    /// What is known of light that goes to `wo`.
+    /// Precomputes the losses for `wo`.
     #[inline]
     fn known(&self, wo: DVec3) -> Known {
         Known { lost: self.interface.loss(wo), crossing: self.interface.crossing(wo) }
     }
 
-    /// Draws where light comes from that facets lost and give back, by a choice among what is lost; with the choices
-    /// that lead to its side. None in the plane.
+    /// Samples the compensation lobe with a choice within the lost energy. Also returns the range of choices of its
+    /// side. `None` for a direction in the tangent plane.
     #[inline]
     fn give_back(&self, known: &Known, wo: DVec3, choice: f64, u: [f64; 2]) -> Option<(DVec3, [f64; 2])> {
         let Known { lost, crossing } = *known;
@@ -70,38 +70,38 @@ impl<F: Lossy> Rough<F> {
     }
 }
 
-/// What is known of light that goes somewhere.
+/// Precomputed losses of a direction.
 #[derive(Clone, Copy, Debug)]
 struct Known {
-    /// The share that facets lose.
+    /// Share of energy lost by single scattering.
     lost: f64,
-    /// The share of that which is given back on the other side.
+    /// Share of the lost energy that the compensation transmits.
     crossing: f64,
 }
 
 in_lanes! {
-    /// What is known of light that goes somewhere, a lane each.
+    /// Precomputed losses, one per lane.
     KnownLanes of Known { lost: f64, crossing: f64 }
 }
 
-/// One of the two single directions of a smooth interface.
+/// A sampled delta direction of a smooth interface.
 struct Single<S> {
     wi: DVec3,
-    /// What is left of light from there.
+    /// Sample weight.
     weight: S,
-    /// Whether it is the one on the other side.
+    /// True for the transmitted direction.
     is_through: bool,
-    /// Whether there is one: none where all is reflected, of which roundings leave a choice beyond.
+    /// False if a rounding selects transmission under total reflection.
     is_any: bool,
 }
 
 impl<S: Share> Single<S> {
-    /// Chosen by a number, where this share is reflected, and with the index beyond over that on the side of `wo`.
+    /// Selects reflection or refraction by a choice number; `eta` is the index beyond over that on the side of `wo`.
     #[inline(always)]
     fn new(wo: DVec3, eta: f64, reflectance: S, choice: f64) -> Self {
         let chance = reflectance.chance();
         let is_mirrored = choice < chance;
-        // Both are computed, and one is taken: lanes have no branches.
+        // Both are computed and one is selected, because lanes have no branches.
         let (bent, is_total) = fresnel::refracted(wo, DVec3::new(0.0, 0.0, 1f64.copysign(wo.z)), eta);
         let left = (reflectance.rest() / chance.rest()) * (1.0 / (eta * eta));
         Self {
@@ -114,65 +114,65 @@ impl<S: Share> Single<S> {
 }
 
 impl Dielectric {
-    /// Of the index of refraction below the surface over that above, `eta` > 0, and the roughness of GGX, 0 to 1.
-    /// Below [`Facets::SMOOTH`], or with `eta` within 10⁻⁶ of 1, directions are single.
+    /// Creates an interface with relative index of refraction `eta` > 0, below over above, and GGX roughness, 0 to 1.
+    /// Below [`Facets::SMOOTH`], or with `eta` within 10⁻⁶ of 1, it is specular.
     pub fn new(eta: f64, alpha: f64) -> Self {
         Self::of(eta, Ggx::rough([alpha; 2]))
     }
 }
 
 impl<F: Lossy> Dielectric<F> {
-    /// Of the index of refraction below the surface over that above, `eta` > 0, and facets that are alike in all
-    /// directions. Without them, or with `eta` within 10⁻⁶ of 1, directions are single.
+    /// Creates an interface with relative index of refraction `eta` > 0, below over above, and isotropic facets.
+    /// Without them, or with `eta` within 10⁻⁶ of 1, it is specular.
     pub fn of(eta: f64, facets: Option<F>) -> Self {
         Self::with(eta, facets, Bare)
     }
 }
 
 impl<F: Lossy, S: Split> Dielectric<F, S> {
-    /// Nearer to 1 an index bends light by less than 10⁻⁶ radians at a rough surface, except within 10⁻³ of grazing. It
-    /// then counts as smooth: Fresnel's reflection is all that can be told.
+    /// Closer to 1, an index deflects light at a rough surface by less than 10⁻⁶ radians, except within 10⁻³ of
+    /// grazing. Such a surface is treated as smooth; only Fresnel's reflection is visible.
     const INVISIBLE: f64 = 1e-6;
 
-    /// As [`Dielectric::of`], of an interface that divides light as it says.
+    /// Like [`Dielectric::of`], with a given division of light.
     ///
-    /// What facets lose and give back is that of bare ones, where something gives back at all. So that nothing is lost
-    /// or gained, what lies on a facet changes how light is divided there only as far as none of it is stopped by other
-    /// facets on either way (`open::openness`): of that part as much more is reflected as less goes through.
+    /// Loss and compensation are those of bare facets. To conserve energy, a film changes the division at a facet only
+    /// for the light that no other facet blocks, reflected or refracted (`open::openness`). Within that part,
+    /// reflection gains the energy that transmission loses.
     pub fn with(eta: f64, facets: Option<F>, split: S) -> Self {
         let eta = fresnel::bounded(eta);
         let facets = facets.filter(|_| (eta - 1.0).abs() >= Self::INVISIBLE);
         Self { eta, rough: facets.map(|facets| Rough::new(facets, eta)), split }
     }
 
-    /// The index below over the index above.
+    /// Index of refraction below over index above.
     #[inline]
     pub fn eta(&self) -> f64 {
         self.eta
     }
 
-    /// The index beyond the surface over that on the side of `w`.
+    /// Index of refraction beyond the surface over that on the side of `w`.
     #[inline]
     fn beyond(&self, w: DVec3) -> f64 {
         beyond(self.eta, w)
     }
 
-    /// The share of light that is reflected at this cosine of incidence, on the side of `w`.
+    /// Reflectance at this cosine of incidence, on the side of `w`.
     #[inline]
     fn reflectance(&self, w: DVec3, cosine: f64) -> S::Share {
         self.split.reflectance(cosine, self.beyond(w), w.z > 0.0)
     }
 
-    /// Whether what bare facets would reflect counts beside what these do.
+    /// True if the bare facets' reflectance is needed too.
     const WEIGHS_BARE: bool = F::Interface::GIVES_BACK && S::DIFFERS;
 
-    /// How a facet on the side of `w` divides light at this cosine of incidence.
+    /// Division of light at a facet, for this cosine of incidence on the side of `w`.
     #[inline]
     fn divided(&self, w: DVec3, cosine: f64) -> Divided<S::Share> {
         self.divide(self.reflectance(w, cosine), w, cosine)
     }
 
-    /// The same, where it is known which share is reflected.
+    /// Division of light for a known reflectance.
     #[inline(always)]
     fn divide(&self, reflectance: S::Share, w: DVec3, cosine: f64) -> Divided<S::Share> {
         let divided = Divided::of(reflectance);
@@ -184,8 +184,8 @@ impl<F: Lossy, S: Split> Dielectric<F, S> {
         }
     }
 
-    /// What facets scatter between two directions that see each other by one of them, and what is given back of what
-    /// they lose: the scattering function with its cosine, for radiance, and the density of a draw.
+    /// Value and density between two mutually visible directions: single scattering by one facet, plus compensation.
+    /// The value includes the cosine and is for radiance.
     #[inline]
     fn scattered(&self, rough: &Rough<F>, known: &Known, [wo, wi]: [DVec3; 2], facet: &Facet) -> (S::Share, f64) {
         let (eta, divided) = (self.beyond(wo), self.divided(wo, facet.cosines[0]));
@@ -231,8 +231,8 @@ impl<F: Lossy, S: Split> Dielectric<F, S> {
 }
 
 impl Known {
-    /// With what is given back, `back`, of what facets lose, of light that goes to `wo` and comes from `wi`, on whose
-    /// side it goes about as `grazing` says; `eta` is the index beyond the surface.
+    /// Adds the compensation `back` for light from `wi` to `wo` to a value and density. `grazing` is the compensation's
+    /// distribution on the side of `wi`; `eta` is the index of refraction beyond the surface.
     #[inline(always)]
     fn with_given_back<S: Share>(
         &self,
@@ -248,7 +248,7 @@ impl Known {
         (value.plus(back), (1.0 - self.lost) * pdf + self.lost * share * grazing.pdf(wi.z.abs()))
     }
 
-    /// What is left of a choice among all, where it is not of what is lost.
+    /// Rescales a choice number that did not select the compensation lobe.
     #[inline(always)]
     fn rest(&self, choice: f64) -> f64 {
         (choice - self.lost) / (1.0 - self.lost)

@@ -1,4 +1,4 @@
-//! Lambert's law.
+//! Lambertian reflection.
 
 use super::bsdf_columns::LaneBsdf;
 use super::straight::Straight;
@@ -8,11 +8,11 @@ use raywright_base::math::in_lanes;
 use raywright_base::sampling::warp;
 use std::f64::consts::FRAC_1_PI;
 
-/// Reflects the same radiance into every direction of the side that the light came from (Lambert, 1760). Both sides
+/// Lambertian reflection: equal radiance in all directions on the side of the light (Lambert, 1760). Both sides
 /// reflect.
 #[derive(Clone, Copy, Debug)]
 pub struct Diffuse {
-    /// The share of the light that is reflected.
+    /// Reflectance.
     pub reflectance: Rgb,
 }
 
@@ -23,7 +23,7 @@ impl Bsdf for Diffuse {
         (self.reflectance * pdf, pdf)
     }
 
-    /// By the cosine, so that every draw weighs the reflectance.
+    /// Sampled by the cosine, so that every weight equals the reflectance.
     #[inline(always)]
     fn sample(&self, wo: DVec3, _choice: &mut dyn FnMut() -> f64, u: [f64; 2]) -> Option<BsdfSample> {
         if wo.z == 0.0 || self.reflectance.is_black() {
@@ -46,7 +46,7 @@ impl Bsdf for Diffuse {
 }
 
 in_lanes! {
-    /// What diffuse surfaces reflect, a lane each.
+    /// Reflectances, one per lane.
     DiffuseLanes of Diffuse { reflectance: Rgb }
 }
 
@@ -67,7 +67,7 @@ mod tests {
 
     #[test]
     fn reflects_what_it_should() {
-        // The hemisphere's integral of f cos θ, by uniform directions; its standard error is below 0.002 of it.
+        // Hemispherical integral of f cos θ by uniform directions; its standard error is below 0.002 of it.
         let (count, below) = (100_000, DVec3::new(0.6, 0.0, -0.8));
         for wo in [ABOVE, below] {
             let mut sum = Rgb::ZERO;
@@ -101,7 +101,7 @@ mod tests {
                 let row = (((s.wi.z + 1.0) * 10.0) as usize).min(19);
                 counts[row * 12 + (((s.wi.y.atan2(s.wi.x) + PI) / TAU * 12.0) as usize).min(11)] += 1;
             }
-            // The density is linear in the height, so its middle value in a band is its mean.
+            // The density is linear in the height, so its value at a band's center is its mean.
             let expected: Vec<f64> = (0..240)
                 .map(|i| {
                     let z = (f64::from(i / 12) + 0.5) / 10.0 - 1.0;

@@ -1,8 +1,8 @@
-//! Indices of refraction that go with wavelength.
+//! Dispersion of the index of refraction.
 
 use std::sync::OnceLock;
 
-/// How the index of refraction of what is clear goes with wavelength.
+/// Index of refraction as a function of wavelength.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Dispersion {
     /// n = B + C / λ², with λ in micrometres (Cauchy, 1836).
@@ -12,7 +12,7 @@ pub enum Dispersion {
 }
 
 impl Dispersion {
-    /// The index at a wavelength in nm.
+    /// Index of refraction at a wavelength in nm.
     #[inline]
     pub fn at(&self, wavelength: f64) -> f64 {
         let square = wavelength * wavelength * 1e-6;
@@ -25,7 +25,7 @@ impl Dispersion {
         }
     }
 
-    /// Whether it gives an index everywhere from one wavelength in nm to another.
+    /// Returns whether the index is finite and positive between two wavelengths in nm.
     pub fn is_physical(&self, first: f64, last: f64) -> bool {
         let steps = 1000;
         let at = |i: u32| self.at(first + (last - first) * f64::from(i) / f64::from(steps));
@@ -33,21 +33,20 @@ impl Dispersion {
     }
 }
 
-/// A dispersion by its number, so that what is within glass is told by a few bytes. Each is kept once, for as long as
-/// the process lives.
+/// A handle to a dispersion, so that materials stay small. Each dispersion is stored once and never freed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Dispersive(Option<std::num::NonZeroU16>);
 
-/// How many different ones there may be.
+/// Maximum number of different dispersions.
 const MOST: usize = 4096;
 
 static KEPT: [OnceLock<Dispersion>; MOST] = [const { OnceLock::new() }; MOST];
 
 impl Dispersive {
-    /// The same index at all wavelengths.
+    /// No dispersion.
     pub const NONE: Self = Self(None);
 
-    /// That of a dispersion; `None` if there are too many different ones.
+    /// The handle of a dispersion; `None` if there are too many different ones.
     pub fn of(dispersion: Dispersion) -> Option<Self> {
         for (number, slot) in KEPT.iter().enumerate() {
             if *slot.get_or_init(|| dispersion.clone()) == dispersion {
@@ -57,13 +56,13 @@ impl Dispersive {
         None
     }
 
-    /// Whether the index goes with wavelength.
+    /// Returns whether there is dispersion.
     #[inline]
     pub fn is_any(self) -> bool {
         self.0.is_some()
     }
 
-    /// The index at a wavelength in nm; none if it is the same everywhere.
+    /// Index of refraction at a wavelength in nm; `None` without dispersion.
     #[inline]
     pub fn at(self, wavelength: f64) -> Option<f64> {
         let kept = KEPT.get(usize::from(self.0?.get()) - 1)?;

@@ -1,4 +1,4 @@
-//! Rough surfaces that are not of GGX's facets, or not with all of the light, principled ones, and thin films.
+//! Less common BSDFs: other facet distributions, single-scattering facets, principled models and thin films.
 
 use super::one_of::one_of;
 use super::{
@@ -7,58 +7,57 @@ use super::{
 };
 
 one_of! {
-    /// A rough surface of less common facets, of many parts, or with a film on it: one of its kinds.
+    /// A less common BSDF: one of its kinds.
     ///
-    /// They are kept apart from the kinds of [`super::AnyBsdf`], and not inlined, so that these do not share their code
-    /// with what most scenes do not have.
+    /// They are separate from [`super::AnyBsdf`] and not inlined, so that the common kinds do not share their code.
     Faceted, inline(never),
-    /// What is known of sixteen of them, a lane each.
+    /// Less common BSDFs in structure-of-arrays form.
     FacetedLanes, {
-        /// Metal of Beckmann's facets.
+        /// Conductor with Beckmann facets.
         BeckmannConductor(Conductor<Beckmann>),
-        /// Glass of Beckmann's facets.
+        /// Dielectric with Beckmann facets.
         BeckmannDielectric(Dielectric<Beckmann>),
-        /// Plastic with a coat of Beckmann's facets.
+        /// Plastic with a coat of Beckmann facets.
         BeckmannCoated(Coated<Beckmann>),
-        /// Metal, scattering once.
+        /// Conductor with single scattering.
         ConductorOnce(Conductor<Once<Ggx>>),
-        /// Metal of Beckmann's facets, scattering once.
+        /// Conductor with Beckmann facets and single scattering.
         BeckmannConductorOnce(Conductor<Once<Beckmann>>),
-        /// Glass, scattering once.
+        /// Dielectric with single scattering.
         DielectricOnce(Dielectric<Once<Ggx>>),
-        /// Glass of Beckmann's facets, scattering once.
+        /// Dielectric with Beckmann facets and single scattering.
         BeckmannDielectricOnce(Dielectric<Once<Beckmann>>),
-        /// Plastic, its coat scattering once.
+        /// Plastic with a single-scattering coat.
         CoatedOnce(CoatedOnce<Ggx>),
-        /// Plastic with a coat of Beckmann's facets, scattering once.
+        /// Plastic with a single-scattering coat of Beckmann facets.
         BeckmannCoatedOnce(CoatedOnce<Beckmann>),
         /// The principled model.
         LayeredPrincipled(LayeredPrincipled),
-        /// That of a sheet.
+        /// The principled model of a thin sheet.
         LayeredPrincipledThin(LayeredPrincipledThin),
-        /// The principled model as it was published, with what it gains and loses.
+        /// The principled model as published, which does not conserve energy.
         Principled(Principled),
-        /// That of a sheet.
+        /// The principled model of a thin sheet, as published.
         PrincipledThin(PrincipledThin),
-        /// A film by itself.
+        /// A free film.
         SoapFilm(SoapFilm),
-        /// A film on glass.
+        /// A film on a dielectric.
         FilmedDielectric(Dielectric<Ggx, Filmed>),
-        /// A film on glass of Beckmann's facets.
+        /// A film on a dielectric with Beckmann facets.
         BeckmannFilmedDielectric(Dielectric<Beckmann, Filmed>),
-        /// A film on glass, scattering once.
+        /// A film on a dielectric with single scattering.
         FilmedDielectricOnce(Dielectric<Once<Ggx>, Filmed>),
-        /// A film on glass of Beckmann's facets, scattering once.
+        /// A film on a dielectric with Beckmann facets and single scattering.
         BeckmannFilmedDielectricOnce(Dielectric<Once<Beckmann>, Filmed>),
-        /// Glass with a colour at its surface.
+        /// A tinted dielectric.
         TintedDielectric(Tinted<Dielectric<Ggx>>),
-        /// The same of Beckmann's facets.
+        /// A tinted dielectric with Beckmann facets.
         BeckmannTintedDielectric(Tinted<Dielectric<Beckmann>>),
-        /// The same, scattering once.
+        /// A tinted dielectric with single scattering.
         TintedDielectricOnce(Tinted<Dielectric<Once<Ggx>>>),
-        /// The same of Beckmann's facets, scattering once.
+        /// A tinted dielectric with Beckmann facets and single scattering.
         BeckmannTintedDielectricOnce(Tinted<Dielectric<Once<Beckmann>>>),
-        /// A pane with a colour at its surface.
+        /// A tinted pane.
         TintedThinDielectric(Tinted<ThinDielectric>),
     }
 }

@@ -1,35 +1,35 @@
-//! Films on what is clear.
+//! Thin films on dielectrics.
 
 use super::Rgb;
 use super::spectra::Waves;
 use super::split::Split;
 use super::thin_film::{self, Complex};
 
-/// A film between two clear media. Each channel reflects what the integral over wavelengths says, as far as that lies
-/// between 0 and 1, and lets through the rest: nothing is lost, and no light is negative. What is cut off is at most
-/// some thousandths, where a colour is too pure for a screen.
+/// A film between two dielectrics. Each channel reflects the integral over wavelengths, clamped to [0, 1], and
+/// transmits the rest. So energy is conserved and no channel is negative. Clamping changes a channel by some
+/// thousandths at most, where a colour is out of gamut.
 #[derive(Clone, Copy, Debug)]
 pub struct Filmed {
-    /// How thick it is, in nm.
+    /// Thickness in nm.
     thickness: f64,
-    /// The indices of refraction above it, in it and below it.
+    /// Indices of refraction above, in and below the film.
     indices: [f64; 3],
-    /// The wavelengths that are asked for, a channel each; none for red, green and blue.
+    /// Wavelengths, one per channel; `None` for red, green and blue.
     waves: Option<Waves>,
 }
 
 impl Filmed {
-    /// Of a thickness in nm, and the indices of refraction above it, in it and below it.
+    /// Creates a film with a thickness in nm, and the indices of refraction above, in and below it.
     pub fn new(thickness: f64, indices: [f64; 3]) -> Self {
         Self { thickness, indices, waves: None }
     }
 
-    /// The same at some wavelengths, or for red, green and blue.
+    /// Sets the wavelengths, or red, green and blue.
     pub fn at(self, waves: Option<Waves>) -> Self {
         Self { waves, ..self }
     }
 
-    /// The share of light that is reflected at a `cosine` of incidence from above or from below.
+    /// Reflectance at a `cosine` of incidence from above or below.
     pub fn reflectance(&self, cosine: f64, is_above: bool) -> Rgb {
         let [above, film, below] = self.indices;
         let indices = if is_above { [above, film, below] } else { [below, film, above] };

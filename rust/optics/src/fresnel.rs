@@ -1,45 +1,46 @@
-//! How much light an interface reflects.
+//! Fresnel's equations.
 
 use super::Rgb;
 use glam::DVec3;
 
-/// The reflectance of a dielectric for unpolarised light (Fresnel, 1823): `cosine` of incidence, 0 to 1, and `eta`, the
-/// index of refraction beyond over that before the interface. 1 beyond the critical angle.
+/// Reflectance of a dielectric for unpolarised light (Fresnel, 1823), at a `cosine` of incidence, 0 to 1. `eta` is the
+/// index of refraction beyond the interface over that before it. The result is 1 beyond the critical angle.
 ///
-/// Differences of nearly equal terms are divided out: with e = η² − 1 and g = η cos θt = √(e + c²), c − g is −e / (c +
-/// g). So the result has a relative error of some 10⁻¹⁵ however close η is to 1.
+/// Differences of nearly equal terms are avoided: with e = η² − 1 and g = η cos θt = √(e + c²), c − g is −e / (c + g).
+/// So the relative error is some 10⁻¹⁵ however close η is to 1.
 #[inline(always)]
 pub fn dielectric(cosine: f64, eta: f64) -> f64 {
     let (c, e) = (cosine, (eta - 1.0) * (eta + 1.0));
     let square = e + c * c;
-    // Both are computed, and one is taken: lanes have no branches.
+    // Both are computed and one is selected, because lanes have no branches.
     let g = square.sqrt();
     let sum = c + g;
     let s = e / (sum * sum);
     let p = e * (c * sum - 1.0) / (sum * (eta * eta * c + g));
     let partial = 0.5 * (s * s + p * p);
-    // At η = 1 and exactly grazing nothing is there to reflect.
+    // At η = 1 and exactly grazing incidence there is no reflection.
     let all = if e == 0.0 { 0.0 } else { 1.0 };
     if square <= 0.0 { all } else { partial }
 }
 
-/// An index of refraction relative to another, as far as it counts: from 10⁻⁶ to 10⁶, beyond which all but some 10⁻⁵ of
-/// light is reflected, and squares of it soon overflow.
+/// Clamps a relative index of refraction to 10⁻⁶ to 10⁶. Beyond these, all but some 10⁻⁵ of light is reflected, and
+/// squares soon overflow.
 #[inline(always)]
 pub fn bounded(eta: f64) -> f64 {
     eta.clamp(1e-6, 1e6)
 }
 
-/// Where a ray comes from that leaves along `wo` after refraction at a facet of unit normal `h`, on the side of `wo`:
-/// `eta` is the index on the far side over that on the side of `wo`. `None` under total reflection. The direction is a
-/// unit vector as precisely as `wo` and `h` are, and it differs from −`wo` by as little as `eta` does from 1.
+/// Incident direction of light that leaves along `wo` after refraction at a facet with unit normal `h`, on the side of
+/// `wo`. `eta` is the index of refraction on the far side over that on the side of `wo`. Returns `None` under total
+/// reflection. The direction is normalised as accurately as `wo` and `h`, and its difference from −`wo` is accurate
+/// even if `eta` is close to 1.
 #[inline]
 pub fn refract(wo: DVec3, h: DVec3, eta: f64) -> Option<DVec3> {
     let (wi, is_total) = refracted(wo, h, eta);
     (!is_total).then_some(wi)
 }
 
-/// The same without a branch: a direction, and whether there is none because all is reflected.
+/// Branch-free refraction: a direction, and true under total reflection.
 #[inline(always)]
 pub(super) fn refracted(wo: DVec3, h: DVec3, eta: f64) -> (DVec3, bool) {
     let (c, e) = (wo.dot(h), (eta - 1.0) * (eta + 1.0));
@@ -47,21 +48,22 @@ pub(super) fn refracted(wo: DVec3, h: DVec3, eta: f64) -> (DVec3, bool) {
     (-(wo + h * (e / (c + square.sqrt()))) / eta, square <= 0.0)
 }
 
-/// The share of even light from a hemisphere that a dielectric reflects, ∫ 2 F(μ) μ dμ, in closed form (Walsh, 1926;
-/// Duntley, 1942). `eta` is the index beyond over that before the interface. The relative error is below 2e-3 from
-/// η = 1 + 1e-9 on, and below 1e-9 from η = 1.01 on.
+/// Cosine-weighted average of a dielectric's reflectance, ∫ 2 F(μ) μ dμ, in closed form (Walsh, 1926; Duntley, 1942).
+/// `eta` is the index of refraction beyond the interface over that before it. The relative error is below 2e-3 from η =
+/// 1 + 1e-9 on, and below 1e-9 from η = 1.01 on.
 pub fn dielectric_average(eta: f64) -> f64 {
     if eta < 1.0 {
-        // What gets out is what gets in, but for the solid angle, which is η² times as large in the denser medium.
+        // Transmission is equal in both directions, except for the solid angle, which is η² times larger in the denser
+        // medium.
         return 1.0 - (1.0 - dielectric_average(1.0 / eta)) * eta * eta;
     }
     let n = eta;
     if n - 1.0 < 1e-4 {
-        // The closed form cancels here. To the first order in e = η² − 1, ∫ 2 t (√(1 + t²) − t)⁴ dt = 1/6 is left.
+        // The closed form cancels here. To first order in e = η² − 1, the factor is ∫ 2 t (√(1 + t²) − t)⁴ dt = 1/6.
         return (n - 1.0) * (n + 1.0) / 6.0;
     }
     if n > 1e4 {
-        // All but 16 / (3η), to the first order, with powers of η out of the way.
+        // 1 − 16 / (3η) to first order, which avoids high powers of η.
         return 1.0 - 16.0 / (3.0 * n);
     }
     let (n2, n4) = (n * n, n * n * n * n);
@@ -72,36 +74,36 @@ pub fn dielectric_average(eta: f64) -> f64 {
         + 8.0 * n4 * (n4 + 1.0) / (plus * (n4 - 1.0).powi(2)) * n.ln()
 }
 
-/// A conductor's index of refraction η + ik, squared.
+/// The square of a conductor's index of refraction η + ik.
 #[derive(Clone, Copy, Debug)]
 pub struct ConductorIndex {
-    /// Its real part, η² − k².
+    /// Real part, η² − k².
     real: Rgb,
-    /// The square of its imaginary part, 4 η² k².
+    /// Square of the imaginary part, 4 η² k².
     imaginary2: Rgb,
 }
 
 impl ConductorIndex {
-    /// Of the index `eta` + i `k` relative to the medium before it, channel by channel.
+    /// Creates it from `eta` + i `k` relative to the surroundings, per channel.
     #[inline]
     pub fn new(eta: Rgb, k: Rgb) -> Self {
         let (eta2, k2) = (eta * eta, k * k);
         Self { real: eta2 - k2, imaginary2: 4.0 * eta2 * k2 }
     }
 
-    /// Of its parts.
+    /// Creates it from its parts.
     #[inline(always)]
     pub(super) fn with([real, imaginary2]: [Rgb; 2]) -> Self {
         Self { real, imaginary2 }
     }
 
-    /// What it consists of.
+    /// Its parts.
     #[inline(always)]
     pub(super) fn parts(&self) -> [Rgb; 2] {
         [self.real, self.imaginary2]
     }
 
-    /// The reflectance for unpolarised light of a `cosine` of incidence (Born and Wolf, "Principles of Optics", 14.2).
+    /// Reflectance of unpolarised light at a `cosine` of incidence (Born and Wolf, "Principles of Optics", 14.2).
     #[inline(always)]
     pub fn reflectance(&self, cosine: f64) -> Rgb {
         let (c, c2) = (cosine, cosine * cosine);
@@ -110,15 +112,15 @@ impl ConductorIndex {
         // a² + b² = |η² − sin²θ| for the complex η.
         let norm = root(real * real + self.imaginary2);
         let a = root(((norm + real) * 0.5).at_least(Rgb::ZERO));
-        // The one polarisation is (sum − twice) / (sum + twice), and the other that times (even − odd) / (even + odd):
-        // their mean.
+        // One polarisation is (sum − twice) / (sum + twice), and the other is that times (even − odd) / (even + odd);
+        // this is their mean.
         let (sum, twice) = (norm + c2, 2.0 * c * a);
         let (even, odd) = (c2 * norm + s2 * s2, s2 * twice);
         ((sum - twice) * even / ((sum + twice) * (even + odd))).clamp(Rgb::ZERO, Rgb::ONE)
     }
 
-    /// The share of even light from a hemisphere that is reflected, by Gauss's rule of four points for the weight 2μ.
-    /// The error is below 1e-3 for the metals in [`super::conductors`].
+    /// Cosine-weighted average of the reflectance, by Gauss's four-point rule for the weight 2μ. The error is below
+    /// 1e-3 for the metals in [`super::conductors`].
     pub fn average(&self) -> Rgb {
         let mut sum = Rgb::ZERO;
         for (node, weight) in GAUSS_COSINE {
@@ -128,13 +130,13 @@ impl ConductorIndex {
     }
 }
 
-/// The roots of all channels.
+/// Square roots of all channels.
 #[inline(always)]
 fn root(x: Rgb) -> Rgb {
     Rgb::new(x[0].sqrt(), x[1].sqrt(), x[2].sqrt())
 }
 
-/// The reflectance of a conductor of the index `eta` + i `k`, as [`ConductorIndex::reflectance`] has it.
+/// Reflectance of a conductor with index `eta` + i `k`; see [`ConductorIndex::reflectance`].
 #[inline]
 pub fn conductor(cosine: f64, eta: Rgb, k: Rgb) -> Rgb {
     ConductorIndex::new(eta, k).reflectance(cosine)
@@ -148,8 +150,8 @@ const GAUSS_COSINE: [(f64, f64); 4] = [
     (0.942_895_803_885_482_3, 0.271_013_826_862_976_04),
 ];
 
-/// Schlick's approximation of the weight with which a reflectance goes from its value at normal incidence to 1
-/// ("An Inexpensive BRDF Model for Physically-based Rendering", 1994): F = F₀ + (1 − F₀) (1 − cos θ)⁵.
+/// Schlick's weight between a reflectance at normal incidence and 1 ("An Inexpensive BRDF Model for Physically-based
+/// Rendering", 1994): F = F₀ + (1 − F₀) (1 − cos θ)⁵.
 #[inline(always)]
 pub fn schlick_weight(cosine: f64) -> f64 {
     let m = (1.0 - cosine).clamp(0.0, 1.0);
@@ -163,7 +165,7 @@ pub fn schlick(cosine: f64, f0: Rgb) -> Rgb {
     schlick_between(cosine, f0, 1.0)
 }
 
-/// The same with a reflectance `f90` at grazing incidence.
+/// Schlick's approximation with a reflectance `f90` at grazing incidence.
 #[inline(always)]
 pub fn schlick_between(cosine: f64, f0: Rgb, f90: f64) -> Rgb {
     f0 + (Rgb::splat(f90) - f0) * schlick_weight(cosine)
@@ -175,7 +177,7 @@ mod tests {
 
     #[test]
     fn glass_reflects_as_in_born_and_wolf() {
-        // n = 1.5 by Fresnel's equations, from outside and from within.
+        // n = 1.5 by Fresnel's equations, from outside and from inside.
         let truths = [(0.0, 0.04), (30.0, 0.041522626), (45.0, 0.050239911), (56.309932474, 0.073964497)];
         let grazing = [(60.0, 0.089186713), (75.0, 0.253060563), (85.0, 0.612799645), (89.99, 0.998985895)];
         for (degrees, truth) in truths.into_iter().chain(grazing) {
@@ -190,7 +192,7 @@ mod tests {
 
     #[test]
     fn keeps_its_digits_near_index_one_and_at_the_critical_angle() {
-        // At normal incidence ((η − 1) / (η + 1))².
+        // At normal incidence it is ((η − 1) / (η + 1))².
         for less in [1e-3f64, 1e-7, 1e-12] {
             let eta = 1.0 + less;
             let truth = ((eta - 1.0) / (eta + 1.0)).powi(2);
@@ -202,7 +204,7 @@ mod tests {
         for eta in [1.0f64 + 1e-7, 1.5, 10.0] {
             let critical = ((eta - 1.0) * (eta + 1.0)).sqrt() / eta;
             for near in [critical.next_down(), critical, critical.next_up()] {
-                // 1 − F goes as the root of the distance.
+                // 1 − F varies as the square root of the distance.
                 assert!((dielectric(near, 1.0 / eta) - 1.0).abs() < 1e-3);
             }
             assert_eq!(dielectric(critical * 0.99, 1.0 / eta), 1.0);
@@ -211,7 +213,7 @@ mod tests {
 
     #[test]
     fn both_ways_reflect_alike() {
-        // What arrives at θ and what arrives at the refracted angle from the other side (Stokes, 1849).
+        // Reflectance at θ equals that at the refracted angle from the other side (Stokes, 1849).
         for eta in [1.0 + 1e-9, 1.3, 4.0] {
             for cosine in [1e-6, 0.1, 0.7, 1.0f64] {
                 let wo = DVec3::new((1.0 - cosine * cosine).sqrt(), 0.0, cosine);
@@ -229,7 +231,7 @@ mod tests {
         // Walsh's and Duntley's value for 1.5.
         assert!((dielectric_average(1.5) - 0.09177795934235121).abs() < 1e-12);
         for eta in [1.0 + 1e-8, 1.00005, 1.0002, 1.01, 1.33, 3.0, 50.0, 2e4] {
-            // Midpoints in t, μ = t³: where an index near 1 reflects, there are many.
+            // Midpoints in t with μ = t³, dense where an index near 1 reflects.
             let steps = 200_000;
             let mean: f64 = (0..steps)
                 .map(|i| {
@@ -251,7 +253,7 @@ mod tests {
         assert!((conductor(1.0, eta, k)[0] - 0.9519519519519519).abs() < 1e-14);
         let truth = 0.5 * (0.991742522 + 0.905072375);
         assert!((conductor(f64::to_radians(80.0).cos(), eta, k)[0] - truth).abs() < 1e-9);
-        // Without absorption it is a dielectric.
+        // A conductor without absorption is a dielectric.
         for cosine in [0.0, 0.01, 0.4, 1.0] {
             let one = conductor(cosine, Rgb::splat(1.7), Rgb::ZERO)[1];
             assert!((one - dielectric(cosine, 1.7)).abs() < 1e-14);

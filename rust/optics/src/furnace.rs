@@ -1,28 +1,27 @@
-//! What a surface gives back in a white furnace, by quadrature.
+//! White furnace tests by quadrature.
 
 use super::{Bsdf, Facets, Ggx, fresnel};
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// The share of even light that is scattered towards `wo`, ∫ f(wo, wi) |cos θi| dωi with the η² of radiance taken out,
-/// in the first channel: 1 where nothing is lost or gained. `eta` is the index below over that above. What goes in
-/// single directions is not in it.
+/// Directional albedo of the first channel towards `wo`, ∫ f(wo, wi) |cos θi| dωi without the η² of radiance; 1 if
+/// energy is conserved. `eta` is the index of refraction below over that above. Delta components are excluded.
 ///
-/// It asks [`Bsdf::evaluate`] alone, in cells of elevation and azimuth that are halved until Gauss's rule of 3 by 3
-/// points agrees with that of the cell's quarters to `precision`. They are narrow, down to the `width` of its sharpest
-/// lobe, where light is mirrored or refracted to, and near the plane.
+/// The quadrature only uses [`Bsdf::evaluate`]. Cells in elevation and azimuth are subdivided until Gauss's rule of 3
+/// by 3 points agrees with that of the four subcells to `precision`. Cells are narrow, down to the `width` of the
+/// sharpest lobe, near reflected and refracted directions and near the tangent plane.
 pub fn directional_albedo(scatter: &impl Bsdf, eta: f64, wo: DVec3, width: f64, precision: f64) -> f64 {
     let width = width.max(Ggx::SMOOTH);
     let eta = if wo.z > 0.0 { eta } else { 1.0 / eta };
     let up = DVec3::new(wo.x, wo.y, wo.z.abs());
     let elevation = |z: f64| z.min(1.0).asin();
-    // Facets bend light that they refract by little where the index is nearly 1, and what grazes them by less.
+    // Facets deflect refracted light little if the index is nearly 1, and grazing light even less.
     let bent = width * (eta - 1.0).abs().min(1.0) * up.z.max(1e-6);
     let refracted = fresnel::refract(up, DVec3::Z, eta).map_or(0.0, |w| elevation(-w.z));
     let (mirrored, straight) = (elevation(up.z), elevation(up.z));
     let mut sum = side(scatter, wo, 1.0, &[mirrored], width, precision);
     if scatter.transmits() {
-        // Facets that are seen edge-on on both sides refract to the last of these.
+        // Facets seen edge-on from both sides refract to the last of these elevations.
         let mut lobes = [refracted, straight, elevation(up.z / eta)];
         lobes.sort_by(f64::total_cmp);
         sum += side(scatter, wo, -1.0, &lobes, bent, precision) * eta * eta;
@@ -30,9 +29,9 @@ pub fn directional_albedo(scatter: &impl Bsdf, eta: f64, wo: DVec3, width: f64, 
     sum
 }
 
-/// The same as the mean weight of so many draws, for lobes that are too thin for cells. Their numbers are Hammersley's
-/// ("Monte Carlo Methods for Solving Multivariable Problems", 1960): with 2¹⁴ the mean is right to some 10⁻⁴. (Those of
-/// a Kronecker sequence were off by 70 times as much.)
+/// Directional albedo as the mean weight of samples, for lobes that are too narrow for cells. Their numbers are
+/// Hammersley's ("Monte Carlo Methods for Solving Multivariable Problems", 1960): with 2¹⁴ the error of the mean is
+/// some 10⁻⁴. (With a Kronecker sequence it was 70 times larger.)
 pub fn drawn_albedo(scatter: &impl Bsdf, wo: DVec3, draws: u32) -> f64 {
     let weight = |i: u32| {
         let u = [(f64::from(i) + 0.5) / f64::from(draws), radical_inverse(i, 3)];
@@ -42,7 +41,7 @@ pub fn drawn_albedo(scatter: &impl Bsdf, wo: DVec3, draws: u32) -> f64 {
     (0..draws).map(weight).sum::<f64>() / f64::from(draws)
 }
 
-/// The digits of a number in a base, mirrored at the point.
+/// Radical inverse of a number in a base.
 fn radical_inverse(mut number: u32, base: u32) -> f64 {
     let (mut digits, mut place) = (0.0, 1.0);
     while number > 0 {
@@ -53,11 +52,11 @@ fn radical_inverse(mut number: u32, base: u32) -> f64 {
     digits
 }
 
-/// What comes from the side of `wo`, 1, or from beyond, −1, with lobes at these elevations.
+/// Contribution from the side of `wo`, 1, or the opposite side, −1, with lobes at these elevations.
 fn side(scatter: &impl Bsdf, wo: DVec3, side: f64, lobes: &[f64], width: f64, precision: f64) -> f64 {
     let radius = wo.x.hypot(wo.y);
     let ahead = if radius > 0.0 { [-wo.x / radius, -wo.y / radius] } else { [1.0, 0.0] };
-    // What grazes facets is moved sideways by the square of their slope.
+    // A direction grazing the facets is displaced sideways by the square of their slope.
     let around = Graded { from: 0.0, to: PI, width: width * wo.z.abs().max(1e-6) };
     let mut sum = 0.0;
     let mut last = 0.0;
@@ -86,7 +85,7 @@ fn side(scatter: &impl Bsdf, wo: DVec3, side: f64, lobes: &[f64], width: f64, pr
     sum
 }
 
-/// A variable that goes from one value to another, slowly at first: on the scale of a width.
+/// A variable that moves from one value to another, slowly at first, on the scale of a width.
 struct Graded {
     from: f64,
     to: f64,
@@ -94,7 +93,7 @@ struct Graded {
 }
 
 impl Graded {
-    /// Where it is and how fast it goes at `u`, 0 to 1.
+    /// Its value and derivative at `u`, 0 to 1.
     fn at(&self, u: f64) -> (f64, f64) {
         let length = (self.to - self.from).abs();
         let width = self.width.min(length);
@@ -117,7 +116,7 @@ fn gauss(f: &impl Fn(f64, f64) -> f64, at: [f64; 2], size: f64) -> f64 {
     sum * size * size
 }
 
-/// The integral over a square of which Gauss's rule says `whole`.
+/// Integral over a square; `whole` is its value by Gauss's rule.
 fn cell(f: &impl Fn(f64, f64) -> f64, at: [f64; 2], size: f64, whole: f64, precision: f64, depth: u32) -> f64 {
     let half = 0.5 * size;
     let corners = [[0.0, 0.0], [half, 0.0], [0.0, half], [half, half]].map(|[x, y]| [at[0] + x, at[1] + y]);
@@ -141,22 +140,22 @@ mod tests {
     use super::*;
     use raywright_base::{cases, parallel};
 
-    /// A direction of a cosine, along neither axis.
+    /// A direction with a cosine, off both axes.
     fn turned(cosine: f64) -> DVec3 {
         let sine = ((1.0 - cosine) * (1.0 + cosine)).sqrt();
         DVec3::new(0.8 * sine, 0.6 * sine, cosine)
     }
 
-    /// From straight above to grazing, and from below.
+    /// From normal to grazing incidence.
     const COSINES: [f64; 9] = [1.0, 0.93, 0.8, 0.6, 0.4, 0.2, 0.08, 0.02, 0.004];
 
-    /// From hardly rough to as rough as can be, mostly between the entries of tables.
+    /// From nearly smooth to fully rough, mostly between table entries.
     const ALPHAS: [f64; 9] = [0.001, 0.011, 0.05, 0.12, 0.21, 0.3, 0.47, 0.71, 1.0];
 
-    /// Asserts of materials by name that they give back all there is, each from all directions: an index, the width of
-    /// the sharpest lobe (none to draw instead), and the name.
+    /// Asserts that named materials conserve energy in all directions. Each has an index of refraction and the width of
+    /// its sharpest lobe (`None` to use samples instead).
     fn assert_white<S: Bsdf + Sync>(materials: Vec<(S, f64, Option<f64>, String)>) {
-        // Of each material some directions, which change from one to the next; all where `RAYWRIGHT_SLOW` is set.
+        // A subset of directions per material, which changes from one to the next; all if `RAYWRIGHT_SLOW` is set.
         let all = materials.iter().flat_map(|case| COSINES.map(|cosine| (case, cosine)));
         let asked: Vec<_> = cases::every(5, 0, all).collect();
         let wrong = parallel::map(asked.len(), |i| {
@@ -177,7 +176,7 @@ mod tests {
         assert!(wrong.is_empty(), "{} of {}: {wrong:#?}", wrong.len(), asked.len());
     }
 
-    /// What a material may gain or lose.
+    /// Tolerance of the albedo.
     const MOST: f64 = 0.002;
 
     fn glass<F: Tabulated + Send + Sync>()
@@ -257,7 +256,7 @@ mod tests {
             (MetallicRough::new(Rgb::ONE, metallic, alpha.sqrt()), 1.0, Some(alpha), name)
         };
         assert_white(all.map(gltf).collect());
-        // In water, and in what has its index.
+        // In water, and in a medium of its own index.
         let all = ALPHAS.iter().flat_map(|&alpha| [(0.0, 1.33), (0.4, 1.33), (0.0, 1.5)].map(|of| (alpha, of)));
         let within = |(alpha, (metallic, outside)): (f64, (f64, f64))| {
             let name = format!("glTF's, alpha {alpha}, metallic {metallic} in {outside}");
@@ -266,7 +265,7 @@ mod tests {
         assert_white(all.map(within).collect());
     }
 
-    /// White, of a roughness, and of numbers that should not matter.
+    /// A white surface with a roughness, and other parameters that should not matter.
     fn white(roughness: f64, transmission: f64, other: f64, anisotropic: f64) -> Look {
         Look {
             base_color: Rgb::ONE,
@@ -281,7 +280,7 @@ mod tests {
         }
     }
 
-    /// As [`assert_white`], by draws: of as many numbers as these have, quadrature would take long.
+    /// [`assert_white`] by samples, because quadrature over this many parameters would take long.
     fn assert_principled(made: impl Fn(f64, usize) -> Vec<(AnyBsdf, f64, String)>) {
         let all = ALPHAS.iter().enumerate().flat_map(|(k, &alpha)| made(alpha, k));
         assert_white(all.map(|(scatter, eta, name)| (scatter, eta, None, name)).collect());
@@ -297,7 +296,7 @@ mod tests {
             (0.7, 0.7, 0.5, [0.6, 0.9]),
         ];
         assert_principled(|alpha, k| {
-            // A few of all combinations, others for each roughness.
+            // A few of all combinations, different for each roughness.
             let case = |n: usize| {
                 let ((metallic, through), (eta, other, stretch, coat)) = (shares[(n + k) % 5], others[(n + k / 5) % 4]);
                 let name = format!("alpha {alpha}, {metallic} {through}, {eta} {other} {stretch} {coat:?}");
@@ -322,7 +321,7 @@ mod tests {
 
     #[test]
     fn what_is_even_is_integrated() {
-        // A diffuse surface gives back its reflectance, as precisely as is asked for.
+        // A diffuse surface has its reflectance as albedo, to the requested precision.
         let grey = Diffuse { reflectance: Rgb::splat(0.3) };
         for cosine in COSINES {
             let found = directional_albedo(&grey, 1.0, turned(cosine), 1.0, 1e-9);

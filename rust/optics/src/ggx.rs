@@ -1,20 +1,20 @@
-//! Facets of long tails.
+//! The GGX facet distribution.
 
 use super::Facets;
 use raywright_base::math::turn::sin_cos_turn;
 use raywright_base::math::{DVec3, in_lanes};
 use std::f64::consts::FRAC_1_PI;
 
-/// The distribution of slopes that Trowbridge and Reitz found (1975), later named GGX (Walter et al., "Microfacet
-/// Models for Refraction through Rough Surfaces", 2007): facets as the surface of an ellipsoid has them. Here s(ω) is
-/// the root √(z² + αx² x² + αy² y²).
+/// The distribution of slopes of Trowbridge and Reitz (1975), later named GGX (Walter et al., "Microfacet Models for
+/// Refraction through Rough Surfaces", 2007): facets oriented like the surface of an ellipsoid. Here s(ω) = √(z² + αx²
+/// x² + αy² y²).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ggx {
     alpha: [f64; 2],
 }
 
 in_lanes! {
-    /// Such facets, a lane each.
+    /// GGX facets, one per lane.
     GgxLanes of Ggx { alpha: [f64; 2] }
 }
 
@@ -42,8 +42,8 @@ impl Facets for Ggx {
         FRAC_1_PI / (ax * ay * square * square)
     }
 
-    /// By the half vector as it is, not unit, and with α² divided out: with q = wo + wi and p = αx αy it is
-    /// |q|⁴ p³ / (π (αy² qx² + αx² qy² + p² qz²)²), and the cosine is |q| / 2.
+    /// From the unnormalised half vector, with α² divided out. With q = wo + wi and p = αx αy the density is |q|⁴ p³ /
+    /// (π (αy² qx² + αx² qy² + p² qz²)²), and the cosine is |q| / 2.
     #[inline(always)]
     fn mirroring(&self, wo: DVec3, wi: DVec3) -> (f64, f64) {
         let ([ax, ay], q) = (self.alpha, wo + wi);
@@ -52,8 +52,8 @@ impl Facets for Ggx {
         let (x, y, z) = (ay * q.x, ax * q.y, product * q.z);
         let root = square * product / (x * x + y * y + z * z);
         let (density, cosine) = (FRAC_1_PI * product * (root * root), (0.5 * square.sqrt()).min(1.0));
-        // Of opposite directions next to the plane nothing is told by their sum. Both are computed: lanes have no
-        // branches.
+        // The sum of nearly opposite directions in the tangent plane has no accurate direction. Both cases are
+        // computed, because lanes have no branches.
         let is_flat = square < 1e-60;
         (if is_flat { self.density(DVec3::Z) } else { density }, if is_flat { wo.z } else { cosine })
     }
@@ -66,13 +66,13 @@ impl Facets for Ggx {
         (x * x + y * y + w.z * w.z).sqrt()
     }
 
-    /// Seen from a stretched direction, facets are a hemisphere of mirrors, which reflect to a uniform cap of the
-    /// sphere (Dupuy and Benyoub, "Sampling Visible GGX Normals with Spherical Caps", 2023).
+    /// From a stretched direction the facets are a hemisphere of mirrors, which reflect to a uniform spherical cap
+    /// (Dupuy and Benyoub, "Sampling Visible GGX Normals with Spherical Caps", 2023).
     #[inline(always)]
     fn sample_visible(&self, wo: DVec3, u: [f64; 2]) -> DVec3 {
         let [ax, ay] = self.alpha;
         let w = DVec3::new(ax * wo.x, ay * wo.y, wo.z) / self.stretch(wo);
-        // The cap has heights from −w.z to 1. Its direction plus w has height (1 − u) (1 + w.z), here without
+        // The cap has heights from −w.z to 1. Its direction plus w has height (1 − u) (1 + w.z), written without
         // cancellation.
         let depth = u[1] * (1.0 + w.z);
         let radius = (depth * (2.0 - depth)).max(0.0).sqrt();
@@ -117,8 +117,8 @@ mod tests {
                 let wi = direction(0.7 * wo.z, 0.3 + turn);
                 let h = (wo + wi).normalize();
                 let (density, cosine) = ggx.mirroring(wo, wi);
-                // A half vector is known to 10⁻¹⁶ over its length before it was made unit, and the density to that over
-                // a lobe's width.
+                // A half vector is accurate to 10⁻¹⁶ over its unnormalised length, and the density to that over a
+                // lobe's width.
                 let known = 1e-15 / (wo + wi).length();
                 assert!(
                     (density / ggx.density(h) - 1.0).abs() < 1e-13 + 16.0 * known / alpha[0],
@@ -127,8 +127,7 @@ mod tests {
                 assert!((cosine - wo.dot(h)).abs() < 1e-15 + known, "{wo} {wi}");
             }
         }
-        // Next to nothing is left of two directions that are opposite and in the plane: the facets are those of the
-        // plane.
+        // The half vector of two opposite directions in the plane is meaningless; the density at the normal is used.
         let (wo, wi) = (DVec3::new(1.0, 0.0, 1e-90), DVec3::new(-1.0, 0.0, 1e-90));
         assert_eq!(Ggx::new([0.3; 2]).mirroring(wo, wi), (Ggx::new([0.3; 2]).density(DVec3::Z), 1e-90));
     }

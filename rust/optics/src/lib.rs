@@ -1,4 +1,4 @@
-//! Floor 1: how much light there is, and how a surface or a medium scatters it.
+//! Floor 1: amounts of light, and its scattering by surfaces and media.
 
 pub mod albedo;
 mod any_bsdf;

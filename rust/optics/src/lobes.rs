@@ -1,4 +1,4 @@
-//! A diffuse part and a lobe, as the classic models have them.
+//! Diffuse reflection plus one lobe, as in the classic models.
 
 use super::Rgb;
 use super::bsdf::either;
@@ -8,12 +8,12 @@ use raywright_base::math::{Frame, in_lanes};
 use raywright_base::sampling::warp;
 use std::f64::consts::FRAC_1_PI;
 
-/// How much of each there is, and how often each is drawn from.
+/// Reflectances of both parts, and the sampling probability.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Lobes {
     pub diffuse: Rgb,
     pub specular: Rgb,
-    /// The probability of the specular part.
+    /// Sampling probability of the specular part.
     share: f64,
 }
 
@@ -33,25 +33,25 @@ impl Lobes {
         self.share == 1.0 || (self.share > 0.0 && choice() < self.share)
     }
 
-    /// The choices of the specular part, or of the other.
+    /// Choice numbers of the specular part, or of the diffuse one.
     #[inline(always)]
     pub fn choices(&self, is_specular: bool) -> [f64; 2] {
         either(self.share, is_specular)
     }
 
-    /// The density of a draw from either part.
+    /// Density of the mixture.
     #[inline(always)]
     pub fn mixed(&self, diffuse: f64, specular: f64) -> f64 {
         (1.0 - self.share) * diffuse + self.share * specular
     }
 
-    /// The roughness of an exponent as a microfacet distribution has it, α = √(2 / (n + 2)) (Walter et al., 2007).
+    /// The microfacet α of an exponent, √(2 / (n + 2)) (Walter et al., 2007).
     pub fn roughness(&self, exponent: f64) -> f64 {
         if self.specular.is_black() { 1.0 } else { (2.0 / (exponent + 2.0)).sqrt() }
     }
 }
 
-/// A direction on the side of `wo`, by the cosine.
+/// A cosine-distributed direction on the side of `wo`.
 #[inline(always)]
 pub(super) fn diffuse(wo: DVec3, u: [f64; 2]) -> DVec3 {
     let mut wi = warp::cosine_hemisphere(u);
@@ -62,16 +62,16 @@ pub(super) fn diffuse(wo: DVec3, u: [f64; 2]) -> DVec3 {
 /// A direction about `axis` with density (n + 1) / 2π cosⁿ.
 #[inline(always)]
 pub(super) fn power_cosine(axis: DVec3, exponent: f64, u: [f64; 2]) -> DVec3 {
-    // 1 − cos by expm1, so that a sharp lobe's width is not rounded away.
+    // 1 − cos by expm1, so that the width of a sharp lobe is not rounded away.
     let depth = -(u[1].ln() / (exponent + 1.0)).exp_m1();
     let radius = (depth * (2.0 - depth)).max(0.0).sqrt();
     let [sin, cos] = sin_cos_turn(u[0]);
     Frame::new(axis).to_world(DVec3::new(radius * cos, radius * sin, 1.0 - depth))
 }
 
-/// Directions near the plane. What facets lose and give back lies at cosines about their roughness, and falls off there
-/// as the inverse square: so do these, with density μ / (μ² + κ²) over the cosine μ for a scale κ. At κ = 1 it is
-/// nearly the cosine's.
+/// A distribution of grazing directions. Energy lost by facets concentrates at cosines near their roughness and falls
+/// off with the inverse square. This density follows it: μ / (μ² + κ²) over the cosine μ with scale κ. At κ = 1 it is
+/// nearly cosine-distributed.
 #[derive(Clone, Copy, Debug)]
 pub struct Grazing {
     /// κ².
@@ -81,7 +81,7 @@ pub struct Grazing {
 }
 
 in_lanes! {
-    /// Such directions, a lane each.
+    /// Such distributions, one per lane.
     GrazingLanes of Grazing { square: f64, log: f64 }
 }
 
@@ -92,7 +92,7 @@ impl Grazing {
         Self { square, log: square.recip().ln_1p() }
     }
 
-    /// Draws one.
+    /// Samples a direction.
     #[inline(always)]
     pub fn sample(&self, u: [f64; 2]) -> DVec3 {
         let square = (self.square * (u[1] * self.log).exp_m1()).min(1.0);
@@ -101,7 +101,7 @@ impl Grazing {
         DVec3::new(radius * cos, radius * sin, square.sqrt())
     }
 
-    /// The density in solid angle of one of this cosine.
+    /// Density by solid angle of a direction with this cosine.
     #[inline(always)]
     pub fn pdf(&self, cosine: f64) -> f64 {
         FRAC_1_PI * cosine / ((cosine * cosine + self.square) * self.log)

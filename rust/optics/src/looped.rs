@@ -1,4 +1,4 @@
-//! Functions that are asked one after the other.
+//! Scalar evaluation of BSDFs lane by lane.
 
 use super::bsdf_columns::BsdfColumns;
 use super::{Bsdf, BsdfSampleLanes, RgbLanes};
@@ -7,13 +7,13 @@ use raywright_base::sampling::Pairs;
 use raywright_base::simd::{Level, loops};
 use std::array::from_fn;
 
-/// Functions of a kind that looks up more than it computes, or that few scenes have: lanes ask one after the other,
-/// in a loop that is compiled for each level as any.
+/// BSDFs that consist mainly of table lookups, or that few scenes have: lanes are evaluated one by one, in a loop that
+/// is compiled for each level.
 #[derive(Clone, Copy, Debug)]
 pub struct Looped;
 
 loops! {
-    /// What each scatters, in the lanes that ask.
+    /// Evaluates the lanes with a set flag.
     fn scatter<B: Bsdf>(
         each: &[Option<&B>; LANES],
         wo: &VectorLanes,
@@ -32,7 +32,7 @@ loops! {
 }
 
 loops! {
-    /// What each draws, in the lanes that ask.
+    /// Samples the lanes with a set flag.
     fn draw<B: Bsdf>(
         each: &[Option<&B>; LANES],
         wo: &VectorLanes,

@@ -1,49 +1,50 @@
-//! What facets throw on facets, and what materials make of it.
+//! Energy lost by single scattering, and its compensation by materials.
 
 use super::albedo::{Interface, MirrorLoss, Tabulated};
 use super::{Facets, Once};
 use raywright_base::math::DVec3;
 use std::fmt::Debug;
 
-/// Facets, and what they lose in one scattering, which materials give back.
+/// Facets with their single-scattering energy loss, which materials compensate.
 pub trait Lossy: Facets {
-    /// What mirrors lose.
+    /// Loss of perfectly reflecting facets.
     type Mirror: Lost;
-    /// What an interface between dielectrics loses.
+    /// Loss of an interface between dielectrics.
     type Interface: LostBetween;
 
-    /// What they lose as perfect mirrors.
+    /// Looks up the loss of perfectly reflecting facets.
     fn mirror(self) -> Self::Mirror;
 
-    /// What they lose between dielectrics, alike in all directions, with `eta` the index below over that above.
+    /// Looks up the loss of an interface between dielectrics with isotropic facets; `eta` is the index of refraction
+    /// below over that above.
     fn interface(self, eta: f64) -> Self::Interface;
 }
 
-/// The share of white light that mirrors lose.
+/// Energy loss of perfectly reflecting facets for white light.
 pub trait Lost: Copy + Debug {
-    /// Of light from `w`.
+    /// Loss for direction `w`.
     fn of(&self, w: DVec3) -> f64;
 
-    /// Of even light.
+    /// Cosine-weighted average of the loss.
     fn average(&self) -> f64;
 }
 
-/// The share of light that an interface loses, and how it is given back: see [`Interface`].
+/// Energy loss of an interface, and its compensation; see [`Interface`].
 pub trait LostBetween: Copy + Debug {
-    /// Whether anything is given back.
+    /// True if losses are compensated.
     const GIVES_BACK: bool = true;
 
-    /// The share of light from `w` that is neither reflected nor refracted away by one facet.
+    /// Energy from direction `w` that single scattering neither reflects nor refracts away.
     fn loss(&self, w: DVec3) -> f64;
 
-    /// The share of what is lost on the side of `w` that is given back on the other side.
+    /// Share of the energy lost on the side of `w` that the compensation transmits.
     fn crossing(&self, w: DVec3) -> f64;
 
-    /// The cosine on the side of `w` about which light is lost.
+    /// Cosine scale of the loss on the side of `w`.
     fn scale(&self, w: DVec3) -> f64;
 
-    /// What is given back to `wo`, which loses `loss`, of light from `wi`, per solid angle, with the cosine of `wi` in
-    /// it and without the 1 / η² of radiance.
+    /// Compensation towards `wo`, whose loss is `loss`, from `wi`, per solid angle, including the cosine of `wi` but
+    /// not the 1 / η² of radiance.
     fn given_back(&self, loss: f64, wo: DVec3, wi: DVec3) -> f64;
 }
 
@@ -96,7 +97,7 @@ impl LostBetween for Interface {
     }
 }
 
-/// Nothing is given back, as if nothing were lost.
+/// No compensation, as if there were no loss.
 #[derive(Clone, Copy, Debug)]
 pub struct Nothing;
 

@@ -1,4 +1,4 @@
-//! The material of glTF.
+//! The metallic-roughness BRDF of glTF.
 
 mod lanes;
 
@@ -11,30 +11,30 @@ use glam::DVec3;
 use std::f64::consts::FRAC_1_PI;
 
 /// The metallic-roughness model (Khronos, "glTF 2.0", 2021, appendix B): GGX microfacets of roughness α = roughness²,
-/// whose reflectance F₀ at normal incidence goes from 0.04 to the base colour as `metallic` goes from 0 to 1, and a
-/// diffuse base under what is not metal, with Schlick's Fresnel term.
+/// with Schlick's Fresnel term. The reflectance F₀ at normal incidence is interpolated by `metallic` between 0.04 and
+/// the base colour. The dielectric part has a diffuse base.
 ///
-/// Where the specification leaves the coupling open, this is reciprocal and conserves energy: the base gets what the
-/// facets of a dielectric leave, (1 − R(wo)) (1 − R(wi)) / (π (1 − R̄)), and what facets of metal lose is made up for.
-/// A white base is white at every roughness and metalness. Both sides reflect.
+/// Where the specification leaves the coupling open, this BRDF is reciprocal and conserves energy. The base gets the
+/// light that dielectric facets transmit, (1 − R(wo)) (1 − R(wi)) / (π (1 − R̄)), and losses of metal facets are
+/// compensated. A white base is white at every roughness and metalness. Both sides reflect.
 ///
-/// What is not metal has the index 1.5 of the specification, and reflects by that relative to what is around it.
+/// The dielectric part has the specification's index of 1.5, and reflects by that relative to its surroundings.
 #[derive(Clone, Copy, Debug)]
 pub struct MetallicRough {
     rough: Option<Rough>,
-    /// The base's share, over π and the mean of what reaches it.
+    /// Base contribution, over π and the mean transmittance to it.
     base: Rgb,
-    /// What metal scatters more than once, over π and the mean loss.
+    /// Multiple scattering of metal, over π and the mean loss.
     multiple: Rgb,
-    /// The base colour.
+    /// Base colour.
     color: Rgb,
     metallic: f64,
     dielectric: Ends,
-    /// Where what metal scatters more than once goes to.
+    /// Directional distribution of multiple scattering.
     grazing: Grazing,
 }
 
-/// A reflectance at normal and at grazing incidence, between which Schlick's weight leads.
+/// Reflectances at normal and grazing incidence, interpolated by Schlick's weight.
 #[derive(Clone, Copy, Debug)]
 struct Ends {
     normal: f64,
@@ -42,8 +42,7 @@ struct Ends {
 }
 
 impl Ends {
-    /// The share of light that facets reflect once, by what they do if the reflectance is Schlick's weight, and if it
-    /// is 1.
+    /// Single-scattering albedo, from those with Schlick's weight and with reflectance 1.
     #[inline(always)]
     fn once(self, (schlick, kept): (f64, f64)) -> f64 {
         self.normal * kept + (self.grazing - self.normal) * schlick
@@ -64,17 +63,18 @@ impl Rough {
 }
 
 impl MetallicRough {
-    /// The reflectance of what is not metal in air, that of this index.
+    /// Reflectance of a dielectric in air, for this index of refraction.
     const DIELECTRIC: Ends = Ends { normal: 0.04, grazing: 1.0 };
     const IOR: f64 = 1.5;
 
-    /// Of a base colour, a metalness and a roughness, each 0 to 1. Where roughness² is below [`Ggx::SMOOTH`] facets
-    /// reflect in one direction.
+    /// Creates the BRDF from a base colour, a metalness and a roughness, each 0 to 1. Where roughness² is below
+    /// [`Ggx::SMOOTH`] it is specular.
     pub fn new(base_color: Rgb, metallic: f64, roughness: f64) -> Self {
         Self::of(base_color, metallic, roughness, Self::DIELECTRIC)
     }
 
-    /// The same in a medium of index `outside`. What is not metal is not to be seen where that is its own or greater.
+    /// Creates the BRDF in a medium of index `outside`. The dielectric is invisible if that is its own index or
+    /// greater.
     pub fn within(base_color: Rgb, metallic: f64, roughness: f64, outside: f64) -> Self {
         if outside == 1.0 {
             return Self::new(base_color, metallic, roughness);
@@ -82,9 +82,10 @@ impl MetallicRough {
         Self::of(base_color, metallic, roughness, Self::dielectric((Self::IOR / outside).max(1.0)))
     }
 
-    /// The reflectance of a relative index, at least 1: at normal incidence Fresnel's. At grazing incidence his is 1
-    /// for any, but rises to that the later the nearer the index is to 1, which Schlick's weight cannot. What it adds
-    /// is so much of what it adds in air as the mean over even light has it.
+    /// Reflectance of a dielectric with a relative index, at least 1. At normal incidence it is Fresnel's. At grazing
+    /// incidence Fresnel's reflectance is always 1, but the closer the index is to 1 the later it rises, which
+    /// Schlick's weight cannot follow. Its amplitude is scaled instead, by the ratio of cosine-weighted averages to
+    /// that in air.
     fn dielectric(eta: f64) -> Ends {
         let normal = |eta: f64| ((eta - 1.0) / (eta + 1.0)).powi(2);
         let added = |eta: f64| fresnel::dielectric_average(eta) - normal(eta);
@@ -95,7 +96,7 @@ impl MetallicRough {
     fn of(base_color: Rgb, metallic: f64, roughness: f64, dielectric: Ends) -> Self {
         let metallic = metallic.clamp(0.0, 1.0);
         let rough = Ggx::rough([roughness * roughness; 2]).map(Rough::new);
-        // Schlick's (1 − cos)⁵ has the mean 1/21 over even light.
+        // Schlick's (1 − cos)⁵ has a cosine-weighted average of 1/21.
         let lost = rough.as_ref().map_or(0.0, |rough| rough.loss.average());
         let schlick = rough.as_ref().map_or(1.0 / 21.0, |rough| rough.schlick.average());
         let average = dielectric.once((schlick, 1.0 - lost));
@@ -106,8 +107,8 @@ impl MetallicRough {
         Self { rough, base, multiple, color: base_color, metallic, dielectric, grazing }
     }
 
-    /// What the base and metal scatter widely of light from `wi`, above, by what facets reflect once of light to and
-    /// from there, and the densities of draws of metal and of the base, by the probabilities of facets and metal
+    /// Values of the base and of multiple scattering for `wi`, above, from the single-scattering albedos of `wo` and
+    /// `wi`. Also returns the densities of metal and base samples, by the probabilities of facets and metal
     /// ([`MetallicRough::shares`]).
     #[inline(always)]
     fn wide(
@@ -122,8 +123,7 @@ impl MetallicRough {
         ((base * reaching + multiple * lost) * wi.z, densities)
     }
 
-    /// What facets reflect between two directions above, and the density of the draw, by what [`Facets::mirroring`]
-    /// tells of them.
+    /// Value and density of facet reflection between two directions above, from the result of [`Facets::mirroring`].
     #[inline(always)]
     fn glossy((ggx, f0, f90): (&Ggx, Rgb, f64), facets: f64, [wo, wi]: [DVec3; 2], told: (f64, f64)) -> (Rgb, f64) {
         let (density, cosine) = told;
@@ -143,7 +143,7 @@ impl MetallicRough {
         1.0 - (1.0 - self.dielectric.grazing) * (1.0 - self.metallic)
     }
 
-    /// What facets reflect once of light from `w` whose reflectance is Schlick's term, and if it is 1.
+    /// Single-scattering albedos of direction `w` with Schlick's weight and with reflectance 1.
     #[inline]
     fn once(&self, w: DVec3) -> (f64, f64) {
         match &self.rough {
@@ -152,7 +152,7 @@ impl MetallicRough {
         }
     }
 
-    /// The probabilities with which a draw is one reflection by a facet, and what metal scatters more than once.
+    /// Sampling probabilities of single scattering and of multiple scattering by metal.
     #[inline]
     fn shares(&self, once: (f64, f64)) -> [f64; 2] {
         let facets = (self.f0() * once.1 + (Rgb::splat(self.f90()) - self.f0()) * once.0).max();

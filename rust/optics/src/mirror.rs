@@ -6,15 +6,14 @@ use super::{Bsdf, BsdfSample, Rgb};
 use glam::DVec3;
 use raywright_base::math::in_lanes;
 
-/// Reflects into the one direction that Euclid's law of reflection says, the same share at every angle. Both sides
-/// reflect.
+/// A perfect specular reflector with the same reflectance at every angle. Both sides reflect.
 #[derive(Clone, Copy, Debug)]
 pub struct Mirror {
-    /// The share of the light that is reflected, 0 to 1.
+    /// Reflectance, 0 to 1.
     pub reflectance: Rgb,
 }
 
-/// The mirror image of a direction about the normal.
+/// Mirrors a direction about the normal.
 #[inline(always)]
 pub(super) fn mirrored(w: DVec3) -> DVec3 {
     DVec3::new(-w.x, -w.y, w.z)
@@ -45,7 +44,7 @@ impl Bsdf for Mirror {
 }
 
 in_lanes! {
-    /// What mirrors reflect, a lane each.
+    /// Reflectances, one per lane.
     MirrorLanes of Mirror { reflectance: Rgb }
 }
 

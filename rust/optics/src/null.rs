@@ -1,12 +1,12 @@
-//! What scatters nothing.
+//! A perfectly black surface.
 
 use super::bsdf_columns::LaneBsdf;
 use super::looped::Looped;
 use super::{Bsdf, BsdfSample, Rgb};
 use glam::DVec3;
 
-/// Takes all light and gives none back: a black surface, or a lamp that only shines. What light passes as if it were
-/// not there is [`super::Transparent`].
+/// Absorbs all light: a black surface, or a pure emitter. For surfaces that light passes unchanged, see
+/// [`super::Transparent`].
 #[derive(Clone, Copy, Debug)]
 pub struct Null;
 

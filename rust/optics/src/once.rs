@@ -1,11 +1,10 @@
-//! Facets that scatter once.
+//! Single-scattering facets.
 
 use super::Facets;
 use raywright_base::math::{DVec3, InLanes};
 
-/// Facets whose masking and shadowing are independent of each other, G₂ = G₁(wo) G₁(wi), and which give nothing back of
-/// what they throw on each other: the model of Walter et al. ("Microfacet Models for Refraction through Rough
-/// Surfaces", 2007) as it stands.
+/// Facets with uncorrelated masking and shadowing, G₂ = G₁(wo) G₁(wi), and no compensation of interreflection: the
+/// original model of Walter et al. ("Microfacet Models for Refraction through Rough Surfaces", 2007).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Once<F>(F);
 
@@ -78,7 +77,7 @@ mod tests {
     use super::super::{Beckmann, Ggx};
     use super::*;
 
-    /// By midpoints over facets as they are seen, the tail spread out: 1 − u is this power.
+    /// By midpoints over visible facets, with a stretched tail: 1 − u is this power.
     fn albedo(facets: &impl Facets, cosine: f64, power: i32) -> f64 {
         let wo = DVec3::new((1.0 - cosine * cosine).sqrt(), 0.0, cosine);
         let mut sum = 0.0;
@@ -98,8 +97,7 @@ mod tests {
 
     #[test]
     fn one_scattering_has_its_albedo() {
-        // Of white facets, by quadratures over slopes and over facets as they are seen; of GGX's compare Heitz et al.
-        // (2016).
+        // White facets, by quadratures over slopes and over visible facets; for GGX compare Heitz et al. (2016).
         let truths = [
             (0.1, [0.98831, 0.96912, 0.87275], [1.0, 0.99985, 0.91232]),
             (0.3, [0.87736, 0.81813, 0.84233], [0.99971, 0.92329, 0.93141]),

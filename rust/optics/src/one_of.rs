@@ -1,30 +1,30 @@
-//! Several kinds of scattering as one type.
+//! A macro for enums of BSDF kinds.
 
 use raywright_base::math::LANES;
 
-/// Lanes that ask, by kind.
+/// Lanes with a set flag, by kind.
 pub(super) struct ByKind<'a> {
     kinds: &'a [u8; LANES],
     asks: &'a [bool; LANES],
-    /// The kinds of those that ask, a bit each.
+    /// Bit mask of the kinds among them.
     present: u64,
 }
 
 impl<'a> ByKind<'a> {
-    /// Of lanes of some kinds, of which these ask.
+    /// Groups the flagged lanes by kind.
     #[inline]
     pub fn new(kinds: &'a [u8; LANES], asks: &'a [bool; LANES]) -> Self {
         let kind = |lane: usize| if asks[lane] { 1u64 << (kinds[lane] & 63) } else { 0 };
         Self { kinds, asks, present: (0..LANES).fold(0, |all, lane| all | kind(lane)) }
     }
 
-    /// Whether all that ask are of one kind.
+    /// Returns whether all flagged lanes are of one kind.
     #[inline]
     pub fn is_one(&self) -> bool {
         self.present.is_power_of_two()
     }
 
-    /// Which lanes of a kind ask, if any do.
+    /// The flagged lanes of a kind; `None` if there are none.
     #[inline]
     pub fn asks(&self, kind: u8) -> Option<[bool; LANES]> {
         let asks = |lane: usize| self.asks[lane] && self.kinds[lane] == kind;
@@ -32,8 +32,8 @@ impl<'a> ByKind<'a> {
     }
 }
 
-/// Makes an enum of kinds that implement [`super::Bsdf`], which implements it too and numbers them, and columns for
-/// sixteen of it. `$inline` is how its functions are to be inlined.
+/// Defines an enum of kinds that implement [`super::Bsdf`], which implements it too and numbers them, and its
+/// structure-of-arrays form. `$inline` is the inline attribute of its functions.
 macro_rules! one_of {
     (
         $(#[$about:meta])* $name:ident, $inline:meta, $(#[$about_columns:meta])* $columns:ident,
@@ -46,10 +46,10 @@ macro_rules! one_of {
         }
 
         impl $name {
-            /// How many kinds there are here.
+            /// Number of kinds.
             pub const VARIANTS: usize = [$(stringify!($kind)),+].len();
 
-            /// The number of its kind among them.
+            /// Index of its kind.
             #[inline]
             pub fn variant(&self) -> usize {
                 enum Kind {
@@ -133,7 +133,7 @@ macro_rules! one_of {
         #[derive(Clone, Debug)]
         #[allow(non_snake_case, reason = "a field for each kind has its name")]
         pub struct $columns {
-            /// Of which kind each lane is; of none before the first.
+            /// Kind of each lane, initially none.
             kinds: [u8; raywright_base::math::LANES],
             $($kind: <$of as crate::bsdf_columns::LaneBsdf>::Lanes,)+
         }

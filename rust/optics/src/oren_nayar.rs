@@ -1,4 +1,4 @@
-//! Rough matt surfaces.
+//! The Oren-Nayar BRDF.
 
 use super::bsdf_columns::LaneBsdf;
 use super::straight::Straight;
@@ -8,28 +8,28 @@ use raywright_base::math::{DVec3, in_lanes};
 use raywright_base::sampling::warp;
 use std::f64::consts::{FRAC_1_PI, PI};
 
-/// A surface of Lambertian facets (Oren and Nayar, "Generalization of Lambert's Reflectance Model", 1994) in the form
-/// of Fujii with all light between facets made up for (Portsmouth, Kutz and Hill, "EON: A practical energy-preserving
-/// rough diffuse BRDF", 2024): reciprocal, and white at reflectance 1 for every roughness. Both sides reflect.
+/// A surface of Lambertian facets (Oren and Nayar, "Generalization of Lambert's Reflectance Model", 1994) in Fujii's
+/// form with compensation of interreflection (Portsmouth, Kutz and Hill, "EON: A practical energy-preserving rough
+/// diffuse BRDF", 2024): reciprocal, and white at reflectance 1 for every roughness. Both sides reflect.
 #[derive(Clone, Copy, Debug)]
 pub struct OrenNayar {
     reflectance: Rgb,
-    /// 1 / (1 + c₁ r): what a facet has of the light.
+    /// 1 / (1 + c₁ r): scale of single scattering.
     scale: f64,
     /// Roughness.
     r: f64,
-    /// What is scattered more than once, over π and the mean share of light that is.
+    /// Multiple scattering, over π and the mean loss of single scattering.
     multiple: Rgb,
 }
 
 impl OrenNayar {
-    /// Of a reflectance, 0 to 1, that of single facets, and a roughness from 0 (Lambert's law) to 1.
+    /// Creates the BRDF from the reflectance of single facets, 0 to 1, and a roughness from 0 (Lambertian) to 1.
     pub fn new(reflectance: Rgb, roughness: f64) -> Self {
         let r = roughness.clamp(0.0, 1.0);
         let scale = 1.0 / (1.0 + (0.5 - 2.0 / (3.0 * PI)) * r);
         let average = scale * (1.0 + (2.0 / 3.0 - 28.0 / (15.0 * PI)) * r);
         let lost = 1.0 - average;
-        // A roughness of 10⁻¹² loses nothing that f64 could tell from nothing.
+        // At a roughness of 10⁻¹² the loss is below f64 precision.
         let multiple = if lost > 1e-12 {
             let colour = reflectance * reflectance * average / (Rgb::ONE - reflectance * lost);
             colour * (FRAC_1_PI / lost)
@@ -39,12 +39,12 @@ impl OrenNayar {
         Self { reflectance, scale, r, multiple }
     }
 
-    /// The share of light from a direction that white facets scatter once.
+    /// Single-scattering albedo of white facets for a direction.
     #[inline(always)]
     fn single(&self, cosine: f64) -> f64 {
         let c = cosine.clamp(0.0, 1.0);
         let s = ((1.0 - c) * (1.0 + c)).sqrt();
-        // (1 − sin³) / cos without the cancellation at the horizon.
+        // (1 − sin³) / cos without cancellation at the horizon.
         let g = s * (upper_angle(s, c) - s * c) + 2.0 / 3.0 * s * (c * (1.0 + s + s * s) / (1.0 + s) - 1.0);
         self.scale * (1.0 + self.r * FRAC_1_PI * g)
     }
@@ -83,7 +83,7 @@ impl Bsdf for OrenNayar {
 }
 
 in_lanes! {
-    /// Such surfaces, a lane each.
+    /// Such BRDFs, one per lane.
     OrenNayarLanes of OrenNayar { reflectance: Rgb, scale: f64, r: f64, multiple: Rgb }
 }
 

@@ -1,24 +1,24 @@
-//! Into which directions a medium scatters.
+//! Phase functions of media.
 
 use raywright_base::math::{DVec3, Frame};
 use raywright_base::sampling::warp;
 use std::f64::consts::{FRAC_1_PI, TAU};
 
-/// How a medium scatters, by the angle that light turns by. Directions are unit and go with the path: `before` as it
-/// comes, `next` as it goes on.
+/// A phase function, by the scattering angle. Directions are unit vectors along the path: `before` scattering and
+/// `next` after it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Phase {
-    /// The same into every direction.
+    /// Isotropic scattering.
     #[default]
     Isotropic,
-    /// By a mean cosine.
+    /// Henyey-Greenstein scattering with a mean cosine.
     HenyeyGreenstein(HenyeyGreenstein),
-    /// As what is much smaller than a wavelength does.
+    /// Rayleigh scattering, by particles much smaller than a wavelength.
     Rayleigh,
 }
 
 impl Phase {
-    /// The density in solid angle of going on along `next`, which is all of the light that does.
+    /// Density by solid angle of continuing along `next`, which equals the value of the phase function.
     #[inline]
     pub fn pdf(&self, before: DVec3, next: DVec3) -> f64 {
         match self {
@@ -31,7 +31,7 @@ impl Phase {
         }
     }
 
-    /// Its greatest density: of going straight on, or back.
+    /// Maximum density, straight forwards or backwards.
     pub fn greatest(&self) -> f64 {
         match self {
             Self::Isotropic => 0.25 * FRAC_1_PI,
@@ -43,7 +43,7 @@ impl Phase {
         }
     }
 
-    /// Its terms.
+    /// Coefficients of the density.
     pub fn terms(&self) -> PhaseTerms {
         let even = PhaseTerms { scale: 0.25 * FRAC_1_PI, sign: 1.0, least: 1.0, chord: 0.0, square: 0.0 };
         match self {
@@ -57,16 +57,15 @@ impl Phase {
         }
     }
 
-    /// Draws a direction to go on along, with the density of [`Phase::pdf`].
+    /// Samples a direction with the density of [`Phase::pdf`].
     #[inline]
     pub fn sample(&self, before: DVec3, u: [f64; 2]) -> DVec3 {
         match self {
             Self::Isotropic => warp::uniform_sphere(u),
             Self::HenyeyGreenstein(by) => by.sample(before, u),
             Self::Rayleigh => {
-                // The distribution (μ³ + 3μ + 4) / 8 is inverted by Cardano's formula, from whose two roots nothing
-                // cancels where the greater comes first (Frisvad, "Importance Sampling the Rayleigh Phase Function",
-                // 2011).
+                // The distribution (μ³ + 3μ + 4) / 8 is inverted by Cardano's formula. Its two roots do not cancel if
+                // the greater comes first (Frisvad, "Importance Sampling the Rayleigh Phase Function", 2011).
                 let a = 4.0 * u[0] - 2.0;
                 let root = (a.abs() + (a * a + 1.0).sqrt()).cbrt();
                 let cosine = (root - 1.0 / root).copysign(a).clamp(-1.0, 1.0);
@@ -76,7 +75,7 @@ impl Phase {
     }
 }
 
-/// What is in the densities of any phase function, for loops that are one for all.
+/// Coefficients of the density of any phase function, for branch-free loops.
 #[derive(Clone, Copy, Debug)]
 pub struct PhaseTerms {
     scale: f64,
@@ -87,7 +86,7 @@ pub struct PhaseTerms {
 }
 
 impl PhaseTerms {
-    /// The density of going on along `next` after `before`, as [`Phase::pdf`] has it, but for rounding.
+    /// Density of continuing along `next` after `before`; equals [`Phase::pdf`] up to rounding.
     #[inline(always)]
     pub fn pdf(&self, before: [f64; 3], next: [f64; 3]) -> f64 {
         let [x, y, z] = [0, 1, 2].map(|axis| next[axis] - before[axis] * self.sign);
@@ -97,8 +96,7 @@ impl PhaseTerms {
     }
 }
 
-/// A unit direction turned by an angle, of which 1 − cos θ is given: so that a hair's breadth of turning is not lost in
-/// a sum with 1.
+/// Rotates a unit direction by an angle given as 1 − cos θ, so that a tiny rotation is not rounded away.
 #[inline]
 fn turned(before: DVec3, less: f64, u: f64) -> DVec3 {
     let sine = (less * (2.0 - less)).max(0.0).sqrt();
@@ -107,28 +105,27 @@ fn turned(before: DVec3, less: f64, u: f64) -> DVec3 {
     before + frame.tangent * (sine * cos) + frame.bitangent * (sine * sin) - before * less
 }
 
-/// The phase function of Henyey and Greenstein ("Diffuse Radiation in the Galaxy", 1941): by one number, the mean
-/// cosine.
+/// The phase function of Henyey and Greenstein ("Diffuse Radiation in the Galaxy", 1941), by its mean cosine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HenyeyGreenstein {
     g: f64,
 }
 
 impl HenyeyGreenstein {
-    /// Of a mean cosine between −1 (all light goes back) and 1 (all goes on), both excluded: `None` for another.
+    /// Creates it with a mean cosine between −1 (backwards) and 1 (forwards), both excluded: `None` for another.
     pub fn new(g: f64) -> Option<Self> {
         (g.abs() < 1.0).then_some(Self { g })
     }
 
-    /// The mean cosine.
+    /// Mean cosine.
     pub fn g(&self) -> f64 {
         self.g
     }
 
-    /// The density in solid angle of going on along `next` after `before`, both unit.
+    /// Density by solid angle of continuing along `next` after `before`, both unit.
     ///
-    /// 1 + g² − 2g cos θ is (1 − |g|)² + |g| times the square of the chord between `next` and where most light goes to,
-    /// two numbers that are not negative.
+    /// 1 + g² − 2g cos θ is (1 − |g|)² plus |g| times the squared chord between `next` and the peak direction, two
+    /// non-negative numbers.
     #[inline]
     pub fn pdf(&self, before: DVec3, next: DVec3) -> f64 {
         let g = self.g.abs();
@@ -137,10 +134,10 @@ impl HenyeyGreenstein {
         0.25 * FRAC_1_PI * (1.0 - g) * (1.0 + g) / (square * square.sqrt())
     }
 
-    /// Draws a direction to go on along, with the density of [`HenyeyGreenstein::pdf`].
+    /// Samples a direction with the density of [`HenyeyGreenstein::pdf`].
     ///
-    /// The inverse of the distribution is taken for 1 − cos θ, θ from where most light goes to, in which nothing
-    /// cancels, and g = 0 is no exception: 1 − cos θ = 2 (1 − u)(1 + gu) ((1 − g) / (1 − g + 2gu))².
+    /// The distribution is inverted for 1 − cos θ, with θ measured from the peak, which avoids cancellation and covers
+    /// g = 0: 1 − cos θ = 2 (1 − u)(1 + gu) ((1 − g) / (1 − g + 2gu))².
     #[inline]
     pub fn sample(&self, before: DVec3, u: [f64; 2]) -> DVec3 {
         let g = self.g.abs();
@@ -158,7 +155,7 @@ mod tests {
 
     const BEFORE: DVec3 = DVec3::new(0.48, -0.6, 0.64);
 
-    /// The share of light that turns by a cosine of at most `c`, in closed form.
+    /// Share of light with a scattering cosine of at most `c`, in closed form.
     fn share(g: f64, c: f64) -> f64 {
         if g.abs() < 1e-12 {
             return 0.5 * (1.0 + c);
@@ -184,7 +181,7 @@ mod tests {
                 counts[((share(g, cosine) * 20.0) as usize).min(19)] += 1;
             }
             assert_frequencies(&counts, &[0.05; 20]);
-            // A cosine's variance is at most 1: five standard errors, once in two million.
+            // A cosine's variance is at most 1: five standard errors, a false alarm in two million.
             assert!((sum / f64::from(count) - g).abs() < 5.0 / f64::from(count).sqrt());
         }
     }
@@ -194,7 +191,7 @@ mod tests {
         for g in [-0.999, -0.3, 0.0, 0.6, 0.999] {
             let phase = HenyeyGreenstein::new(g).unwrap();
             for step in 1..40 {
-                // Finer near where the density is sharpest.
+                // Finer near the peak of the density.
                 let near = f64::from(step) / 40.0;
                 let c: f64 = 1f64.copysign(g) * (1.0 - 2.0 * near.powi(4));
                 let h = 1e-3 * near.powi(4);
@@ -227,7 +224,8 @@ mod tests {
         for (next, value) in [(DVec3::X, 0.1193662073189215), (DVec3::Z, 0.05968310365946075)] {
             assert!((Phase::Rayleigh.pdf(DVec3::X, next) / value - 1.0).abs() < 1e-14);
         }
-        // Nearly all light in a needle: the density along it is (1 + g) / (4π (1 − g)²), and as sharp to either side.
+        // Nearly all light is in a needle: the density along it is (1 + g) / (4π (1 − g)²), and the sides are equally
+        // sharp.
         for g in [0.9999, -0.9999] {
             let needle = HenyeyGreenstein::new(g).unwrap();
             let ahead = BEFORE * 1f64.copysign(g);
@@ -250,7 +248,7 @@ mod tests {
 
     #[test]
     fn moments_and_shares_are_those_of_the_distribution() {
-        // Means of Legendre polynomials of the cosine, and the shares turned by less than 10 and 90 degrees.
+        // Means of Legendre polynomials of the cosine, and the shares scattered by less than 10 and 90 degrees.
         for (g, expected) in [
             (0.9, [0.9, 0.81, 0.729, 0.6561, 0.509346633039619, 0.977096729007244]),
             (-0.35, [-0.35, 0.1225, -0.042875, 0.01500625, 0.00272109416246281, 0.2546224395874]),
@@ -273,7 +271,7 @@ mod tests {
             for (sum, value) in sums.iter().zip(expected) {
                 let [mean, square] = sum.map(|s| s / f64::from(count));
                 let error = ((square - mean * mean) / f64::from(count)).sqrt();
-                // Four standard errors: chance exceeds them once in 16,000 cases.
+                // Four standard errors; the probability of exceeding them is 1 in 16,000.
                 assert!((mean - value).abs() < 4.0 * error, "{g}: {mean} ± {error}, not {value}");
             }
         }

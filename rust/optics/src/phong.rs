@@ -1,4 +1,4 @@
-//! Phong's lobe about the mirror direction.
+//! The Phong BRDF.
 
 use super::bsdf_columns::LaneBsdf;
 use super::lobes::{Lobes, diffuse};
@@ -18,7 +18,7 @@ pub struct Phong {
 }
 
 impl Phong {
-    /// The diffuse and the specular share, which together should be at most 1, and the exponent n ≥ 0.
+    /// Creates the BRDF from diffuse and specular reflectance, whose sum should be at most 1, and the exponent n ≥ 0.
     pub fn new(diffuse: Rgb, specular: Rgb, exponent: f64) -> Self {
         Self { lobes: Lobes::new(diffuse, specular), exponent }
     }

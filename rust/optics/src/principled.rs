@@ -1,4 +1,4 @@
-//! The principled models of the film studios: many looks by a few numbers.
+//! The principled BSDFs.
 
 mod coat;
 mod layered;
@@ -18,31 +18,31 @@ use super::{Bsdf, BsdfSample, Facets, Ggx, Once, Rgb, fresnel};
 use raywright_base::math::{DVec3, in_lanes, select};
 use std::f64::consts::FRAC_1_PI;
 
-/// What the principled models are told of a point, each number 0 to 1 unless it says otherwise.
+/// Parameters of the principled models at a point, each 0 to 1 unless stated otherwise.
 #[derive(Clone, Copy, Debug)]
 pub struct Look {
-    /// The colour of what is matt, of what metal reflects, and of what goes through.
+    /// Color of diffuse reflection, of metal and of transmission.
     pub base_color: Rgb,
-    /// How bright that is to the eye.
+    /// Luminance of the base color.
     pub luminance: f64,
-    /// Its square is the α of the facets, 0.001 at least.
+    /// Roughness; the facets' α is its square, at least 0.001.
     pub roughness: f64,
-    /// How much longer highlights are along x than along y.
+    /// Anisotropy: highlights are longer along x than along y.
     pub anisotropic: f64,
-    /// The share that goes through, of what is no metal.
+    /// Transmitted share of the dielectric part.
     pub transmission: f64,
-    /// How much of the colour highlights of what is no metal have.
+    /// Tint of dielectric highlights by the base color.
     pub specular_tint: f64,
-    /// Light along the edges of cloth.
+    /// Sheen of cloth at grazing angles.
     pub sheen: f64,
-    /// How much of the colour it has.
+    /// Tint of the sheen by the base color.
     pub sheen_tint: f64,
-    /// How much of what is matt is as flat as what light gets deep into.
+    /// Share of the flat lobe that approximates subsurface scattering.
     pub flatness: f64,
 }
 
 in_lanes! {
-    /// What they are told of points, a lane each.
+    /// Parameters, one set per lane.
     LookLanes of Look {
         base_color: Rgb,
         luminance: f64,
@@ -57,31 +57,30 @@ in_lanes! {
 }
 
 impl Look {
-    /// The α along x and y of a roughness, stretched.
+    /// α along x and y for a roughness, with anisotropy.
     fn slopes(&self, roughness: f64) -> [f64; 2] {
         let (alpha, aspect) = (roughness * roughness, (1.0 - 0.9 * self.anisotropic).sqrt());
         [(alpha / aspect).max(0.001), (alpha * aspect).max(0.001)]
     }
 
-    /// Facets of a roughness, stretched.
+    /// Facets of a roughness, with anisotropy.
     fn facets(&self, roughness: f64) -> Once<Ggx> {
         Once::new(self.slopes(roughness))
     }
 
-    /// The roughness of what goes through a sheet, which is spread the more the higher the index (Burley, 2015, figure
-    /// 15).
+    /// Roughness of transmission through a sheet, which grows with the index of refraction (Burley, 2015, figure 15).
     fn roughness_through(&self, eta: f64) -> f64 {
         (0.65 * eta - 0.35).max(0.0) * self.roughness
     }
 
-    /// The colour at a luminance of 1.
+    /// Base color normalised to luminance 1.
     #[inline(always)]
     fn tint(&self) -> Rgb {
         if self.luminance > 0.0 { self.base_color / self.luminance } else { Rgb::ONE }
     }
 
-    /// What is matt, with its cosine: Burley's diffuse reflection, part of it flattened as by Hanrahan and Krueger, and
-    /// sheen, between two directions above.
+    /// Diffuse part between two directions above, with its cosine: Burley's diffuse reflection, partly flattened after
+    /// Hanrahan and Krueger, plus sheen.
     #[inline(always)]
     fn matt(&self, wo: DVec3, wi: DVec3, shares: [f64; 2]) -> Rgb {
         let half = (wo + wi).normalize_or(DVec3::Z);
@@ -99,8 +98,8 @@ impl Look {
     }
 }
 
-/// Schlick's reflectance for what it is at normal incidence, of light that meets a facet at a cosine, with `eta` the
-/// index beyond over that before: towards the thinner side it is that of the angle within.
+/// Schlick's reflectance at a facet's cosine, from that at normal incidence. `eta` is the index beyond over that
+/// before; towards the thinner side the refracted cosine is used.
 #[inline(always)]
 fn schlick(normal: Rgb, cosine: f64, eta: f64) -> Rgb {
     let weight = if eta > 1.0 {
@@ -118,16 +117,16 @@ fn at_normal(eta: f64) -> f64 {
 }
 
 /// The principled model (Burley, "Physically Based Shading at Disney", 2012, and "Extending the Disney BRDF to a BSDF
-/// with Integrated Subsurface Scattering", 2015), as Mitsuba 3 has it: from plastic to metal to glass, under a clear
-/// coat. Facets are GGX's and scatter once, which is why rough ones lose light; grazing light may gain some.
+/// with Integrated Subsurface Scattering", 2015) as in Mitsuba 3: from plastic to metal to glass, under a clear coat.
+/// GGX facets scatter once, so rough surfaces lose energy; grazing light may gain some.
 ///
-/// What lets no light through is the same on both sides. What does has its front where the normals are, and its back
-/// reflects and refracts only.
+/// An opaque surface is the same on both sides. A transmissive one has its front on the side of the normals, and its
+/// back only reflects and refracts.
 #[derive(Clone, Copy, Debug)]
 pub struct Principled {
     look: Look,
     facets: Once<Ggx>,
-    /// The index below over that above.
+    /// Index of refraction below over that above.
     eta: f64,
     metallic: f64,
     coat: f64,
@@ -136,8 +135,8 @@ pub struct Principled {
 }
 
 impl Principled {
-    /// Of a look, the index of refraction below over that above, a metalness, a coat and its gloss. `solid`: whether
-    /// light goes through anywhere.
+    /// Creates the BSDF from its parameters, the index of refraction below over that above, a metalness, a coat and its
+    /// gloss. `solid` tells whether the material transmits anywhere.
     pub fn new(look: Look, eta: f64, metallic: f64, [coat, gloss]: [f64; 2], solid: bool) -> Self {
         // At an index of 1 there would be no surface.
         let eta = if (eta - 1.0).abs() < 1e-3 { 1.001 } else { fresnel::bounded(eta) };
@@ -145,19 +144,19 @@ impl Principled {
         Self { look, facets: look.facets(look.roughness), eta, metallic, coat, gloss, solid }
     }
 
-    /// The index below over that above.
+    /// Index of refraction below over that above.
     pub fn eta(&self) -> f64 {
         self.eta
     }
 
-    /// The shares of what is matt and of what goes through.
+    /// Weights of diffuse reflection and of transmission.
     #[inline(always)]
     fn bodies(&self) -> [f64; 2] {
         let through = self.look.transmission;
         [(1.0 - self.metallic) * (1.0 - through), (1.0 - self.metallic) * through]
     }
 
-    /// What facets reflect of light that meets them at a cosine.
+    /// Reflectance of facets at a cosine.
     #[inline(always)]
     fn reflectance(&self, is_front: bool, cosine: f64) -> Rgb {
         let look = &self.look;
@@ -170,7 +169,7 @@ impl Principled {
             + schlick(look.tint() * at_normal(self.eta), cosine, self.eta) * (plain * tint)
     }
 
-    /// The probabilities of the matt part and of the coat; the rest is the facets'.
+    /// Sampling probabilities of the diffuse part and of the coat; facets have the rest.
     #[inline(always)]
     fn shares(&self, is_front: bool) -> [f64; 2] {
         if !is_front {
@@ -182,7 +181,7 @@ impl Principled {
         [matt / sum, coat / sum]
     }
 
-    /// The probability that a facet drawn reflects, at a cosine.
+    /// Probability that a sampled facet reflects, at a cosine.
     #[inline(always)]
     fn reflecting(&self, is_front: bool, cosine: f64) -> f64 {
         let [_, through] = self.bodies();
@@ -193,7 +192,7 @@ impl Principled {
         }
     }
 
-    /// Whether a direction is on the side that all of it is on, and the index beyond it.
+    /// Returns whether a direction is on the front, and the index of refraction beyond the surface.
     #[inline(always)]
     fn side(&self, wo: DVec3) -> (bool, f64) {
         let is_front = wo.z > 0.0 || !self.solid;
@@ -277,7 +276,7 @@ impl Bsdf for Principled {
         let (choice, up) = (choice(), above(wo));
         let [matt, coat] = self.shares(is_front);
         let smooth = matt + coat;
-        // All are computed, and one is taken: lanes have no branches.
+        // All are computed and one is selected, because lanes have no branches.
         let (gloss, half) = (self.gloss.sample(u), self.facets.sample_visible(up, u));
         let cosine = up.dot(half);
         let between = smooth + (1.0 - smooth) * self.reflecting(is_front, cosine);
@@ -312,27 +311,28 @@ impl Bsdf for Principled {
     }
 }
 
-/// The principled model of a sheet (Burley, 2015), as Mitsuba 3 has it: a leaf, paper, a bubble. Both sides are alike,
-/// and light goes straight through or is scattered on the other side.
+/// The principled model of a thin sheet (Burley, 2015) as in Mitsuba 3: a leaf, paper, a bubble. Both sides are alike,
+/// and light is transmitted straight or scattered to the other side.
 #[derive(Clone, Copy, Debug)]
 pub struct PrincipledThin {
     look: Look,
-    /// Of what is reflected, and of what goes through.
+    /// Facets of reflection and of transmission.
     facets: [Once<Ggx>; 2],
     eta: f64,
-    /// The share of what is matt that is scattered on the other side.
+    /// Share of diffuse light that is transmitted.
     diffuse_transmission: f64,
 }
 
 impl PrincipledThin {
-    /// Of a look, the index of refraction, and the share of what is matt that goes through, 0 to 1.
+    /// Creates the BSDF from its parameters, the index of refraction, and the transmitted share of diffuse light, 0 to
+    /// 1.
     pub fn new(look: Look, eta: f64, diffuse_transmission: f64) -> Self {
         let eta = fresnel::bounded(eta);
         let through = look.facets(look.roughness_through(eta));
         Self { look, facets: [look.facets(look.roughness), through], eta, diffuse_transmission }
     }
 
-    /// The choices up to the end of each lobe: sharp and matt, of each what is reflected and what goes through.
+    /// Cumulative sampling probabilities of the lobes: specular and diffuse, each reflected and transmitted.
     #[inline(always)]
     fn ends(&self) -> [f64; 4] {
         let sharp = self.look.transmission;
@@ -380,7 +380,7 @@ impl Bsdf for PrincipledThin {
         let (choice, up) = (choice(), above(wo));
         let [mirrored, sharp, matt, all] = self.ends();
         let (is_sharp, is_first) = (choice < sharp, choice < if choice < sharp { mirrored } else { matt });
-        // Both are computed, and one is taken: lanes have no branches.
+        // Both are computed and one is selected, because lanes have no branches.
         let facets = if is_first { self.facets[0] } else { self.facets[1] };
         let mut wi = select(is_sharp, facets.sample_reflection(up, u), diffuse(up, u));
         if !(wi.z > 0.0 && Ggx::sees(wi)) {
@@ -410,7 +410,7 @@ impl Bsdf for PrincipledThin {
 }
 
 in_lanes! {
-    /// Such surfaces, a lane each.
+    /// Such BSDFs, one per lane.
     PrincipledLanes of Principled {
         look: Look,
         facets: Once<Ggx>,
@@ -427,7 +427,7 @@ impl LaneBsdf for Principled {
 }
 
 in_lanes! {
-    /// Such sheets, a lane each.
+    /// Such sheets, one per lane.
     PrincipledThinLanes of PrincipledThin { look: Look, facets: [Once<Ggx>; 2], eta: f64, diffuse_transmission: f64 }
 }
 

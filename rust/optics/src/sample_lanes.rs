@@ -1,25 +1,25 @@
-//! Directions drawn, by lane.
+//! BSDF samples in structure-of-arrays form.
 
 use super::{BsdfSample, RgbLanes};
 use raywright_base::math::{LANES, VectorLanes};
 
-/// What was drawn from functions, a lane each, as [`BsdfSample`] has it but for the choices.
+/// BSDF samples, one per lane; [`BsdfSample`] without choice numbers.
 #[derive(Clone, Debug)]
 pub struct BsdfSampleLanes {
-    /// Where light comes from.
+    /// Incident directions.
     pub wi: VectorLanes,
-    /// What a throughput is multiplied by.
+    /// Throughput factors.
     pub weight: RgbLanes,
-    /// The density; 0 where the draw scatters nothing.
+    /// Densities; 0 if the sample scatters nothing.
     pub pdf: [f64; LANES],
-    /// The index of refraction on the side of `wi` over that on the other.
+    /// Index of refraction on the side of `wi` over that on the opposite side.
     pub eta: [f64; LANES],
-    /// Whether `wi` is on the other side of the surface.
+    /// True if `wi` is on the opposite side of the surface.
     pub is_through: [bool; LANES],
 }
 
 impl BsdfSampleLanes {
-    /// Nothing.
+    /// Sixteen empty samples.
     pub const NONE: Self = Self {
         wi: VectorLanes::ZERO,
         weight: RgbLanes::ZERO,
@@ -28,7 +28,7 @@ impl BsdfSampleLanes {
         is_through: [false; LANES],
     };
 
-    /// That of a lane; none where nothing was drawn.
+    /// The sample of a lane; `None` if it is empty.
     #[inline]
     pub fn get(&self, lane: usize) -> Option<BsdfSample> {
         let drawn = BsdfSample::new(self.wi.get(lane), self.weight.get(lane), self.pdf[lane]);
@@ -36,7 +36,7 @@ impl BsdfSampleLanes {
         (drawn.pdf > 0.0).then_some(drawn)
     }
 
-    /// Takes some lanes from another.
+    /// Copies some lanes.
     #[inline]
     pub fn take(&mut self, lanes: &[bool; LANES], from: &Self) {
         for lane in (0..LANES).filter(|&lane| lanes[lane]) {
@@ -47,7 +47,7 @@ impl BsdfSampleLanes {
         }
     }
 
-    /// Sets that of a lane.
+    /// Sets the sample of a lane.
     #[inline]
     pub fn set(&mut self, lane: usize, drawn: Option<BsdfSample>) {
         let Some(BsdfSample { wi, weight, pdf, eta, is_through, .. }) = drawn else {

@@ -1,4 +1,4 @@
-//! A film by itself.
+//! A free film.
 
 use super::bsdf::either;
 use super::bsdf_columns::LaneBsdf;
@@ -9,21 +9,20 @@ use super::spectra::Waves;
 use super::{Bsdf, BsdfSample, Rgb};
 use glam::DVec3;
 
-/// A film with the same medium on both sides: light reflects in the colours of the film, and the rest goes straight
-/// through.
+/// A film with the same medium on both sides. It reflects in interference colours and transmits the rest straight.
 #[derive(Clone, Copy, Debug)]
 pub struct SoapFilm {
     film: Filmed,
 }
 
 impl SoapFilm {
-    /// Of a thickness in nm, and the indices of refraction of the film and of what is around it; at some wavelengths,
-    /// or for red, green and blue.
+    /// Creates a film from a thickness in nm and the indices of refraction of film and surroundings, at some
+    /// wavelengths, or for red, green and blue.
     pub fn new(thickness: f64, film: f64, around: f64, waves: Option<Waves>) -> Self {
         Self { film: Filmed::new(thickness, [around, film, around]).at(waves) }
     }
 
-    /// The share of light along `w` that is reflected.
+    /// Reflectance along `w`.
     #[inline]
     pub fn reflectance(&self, w: DVec3) -> Rgb {
         self.film.reflectance(w.z.abs(), true)

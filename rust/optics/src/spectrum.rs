@@ -1,4 +1,4 @@
-//! Amounts of light.
+//! RGB colours.
 
 use glam::{DVec3, Vec3};
 use raywright_base::math::{InLanes, VectorLanes};
@@ -12,18 +12,18 @@ use std::ops::{Add, AddAssign, Div, DivAssign, Index, IndexMut, Mul, MulAssign, 
 pub struct Rgb(DVec3);
 
 impl Rgb {
-    /// No light.
+    /// Black.
     pub const ZERO: Self = Self::splat(0.0);
-    /// All of it.
+    /// White.
     pub const ONE: Self = Self::splat(1.0);
 
-    /// In f32, as a vector.
+    /// Converts to an f32 vector.
     #[inline(always)]
     pub fn as_vec3(self) -> Vec3 {
         self.0.as_vec3()
     }
 
-    /// Of its channels.
+    /// Creates a colour from its channels.
     #[inline(always)]
     pub const fn new(red: f64, green: f64, blue: f64) -> Self {
         Self(DVec3::new(red, green, blue))
@@ -35,128 +35,128 @@ impl Rgb {
         Self(self.0.copysign(sign.0))
     }
 
-    /// The same in all channels.
+    /// The same value in all channels.
     #[inline(always)]
     pub const fn splat(value: f64) -> Self {
         Self(DVec3::splat(value))
     }
 
-    /// Of its channels.
+    /// Creates a colour from its channels.
     #[inline(always)]
     pub const fn from_array(channels: [f64; 3]) -> Self {
         Self(DVec3::from_array(channels))
     }
 
-    /// Its channels.
+    /// The channels.
     #[inline(always)]
     pub const fn to_array(self) -> [f64; 3] {
         self.0.to_array()
     }
 
-    /// One of two, without a branch.
+    /// Branch-free selection.
     #[inline(always)]
     pub fn select(first: bool, a: Self, b: Self) -> Self {
         Self(raywright_base::math::select(first, a.0, b.0))
     }
 
-    /// The mean of its channels.
+    /// Mean of the channels.
     #[inline(always)]
     pub fn mean(self) -> f64 {
         self.0.element_sum() / 3.0
     }
 
-    /// The sum of its channels.
+    /// Sum of the channels.
     #[inline(always)]
     pub fn sum(self) -> f64 {
         self.0.element_sum()
     }
 
-    /// The sum of its channels, each as often as another says.
+    /// Dot product of the channels.
     #[inline(always)]
     pub fn dot(self, other: Self) -> f64 {
         self.0.dot(other.0)
     }
 
-    /// The greatest of its channels.
+    /// Greatest channel.
     #[inline(always)]
     pub fn max(self) -> f64 {
         self.0.max_element()
     }
 
-    /// The least of its channels.
+    /// Least channel.
     #[inline(always)]
     pub fn min(self) -> f64 {
         self.0.min_element()
     }
 
-    /// Whether there is no light in any channel.
+    /// Returns whether all channels are 0.
     #[inline(always)]
     pub fn is_black(self) -> bool {
         self.0 == DVec3::ZERO
     }
 
-    /// Whether no channel is NaN or infinite.
+    /// Returns whether no channel is NaN or infinite.
     #[inline(always)]
     pub fn is_finite(self) -> bool {
         self.0.is_finite()
     }
 
-    /// Whether this can be an amount of light: finite and not negative in any channel.
+    /// Returns whether all channels are finite and not negative.
     #[inline(always)]
     pub fn is_radiance(self) -> bool {
         self.0.is_finite() && self.0.cmpge(DVec3::ZERO).all()
     }
 
-    /// In each channel, at least as much as another.
+    /// Maximum of both, per channel.
     #[inline(always)]
     pub fn at_least(self, other: Self) -> Self {
         Self(self.0.max(other.0))
     }
 
-    /// In each channel, at most as much as another.
+    /// Minimum of both, per channel.
     #[inline(always)]
     pub fn at_most(self, other: Self) -> Self {
         Self(self.0.min(other.0))
     }
 
-    /// In each channel, between two others.
+    /// Clamps each channel.
     #[inline(always)]
     pub fn clamp(self, least: Self, most: Self) -> Self {
         Self(self.0.clamp(least.0, most.0))
     }
 
-    /// Without signs.
+    /// Absolute value, per channel.
     #[inline(always)]
     pub fn abs(self) -> Self {
         Self(self.0.abs())
     }
 
-    /// One over each channel.
+    /// Reciprocal, per channel.
     #[inline(always)]
     pub fn recip(self) -> Self {
         Self(self.0.recip())
     }
 
-    /// The root of each channel.
+    /// Square root, per channel.
     #[inline(always)]
     pub fn sqrt(self) -> Self {
         self.map(f64::sqrt)
     }
 
-    /// A function of each channel.
+    /// Maps a function over the channels.
     #[inline(always)]
     pub fn map(self, f: impl Fn(f64) -> f64) -> Self {
         Self::new(f(self.0.x), f(self.0.y), f(self.0.z))
     }
 
-    /// The CIE luminance.
+    /// CIE luminance.
     #[inline(always)]
     pub fn luminance(self) -> f64 {
         self.0.dot(DVec3::new(0.212_639, 0.715_169, 0.072_192))
     }
 }
 
-/// A colour a lane.
+/// Colours, one per lane.
 #[derive(Clone, Copy, Debug)]
 #[repr(transparent)]
 pub struct RgbLanes(VectorLanes);
@@ -165,13 +165,13 @@ impl RgbLanes {
     /// Black in every lane.
     pub const ZERO: Self = Self(VectorLanes::ZERO);
 
-    /// That of a lane.
+    /// The colour of a lane.
     #[inline(always)]
     pub fn get(&self, lane: usize) -> Rgb {
         Rgb(self.0.get(lane))
     }
 
-    /// Sets that of a lane.
+    /// Sets the colour of a lane.
     #[inline(always)]
     pub fn set(&mut self, lane: usize, colour: Rgb) {
         self.0.set(lane, colour.0);
@@ -215,7 +215,7 @@ impl fmt::Display for Rgb {
     }
 }
 
-/// Arithmetic, channel by channel.
+/// Arithmetic, per channel.
 macro_rules! arithmetic {
     ($($of:ident $by:ident $assign:ident $assigned:ident,)+) => {
         $(impl $of for Rgb {

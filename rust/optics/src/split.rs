@@ -1,4 +1,4 @@
-//! How an interface divides light between two ways.
+//! Division of light into reflection and transmission at an interface.
 
 use super::{Rgb, fresnel};
 use raywright_base::math::{DVec3, InLanes, LANES, VectorLanes};
@@ -6,20 +6,20 @@ use raywright_base::simd::{Level, loops};
 use std::fmt::Debug;
 use std::ops::{Div, Mul};
 
-/// What is reflected at an interface between two media that are clear; the rest goes through.
+/// Reflectance of an interface between two clear media; the rest is transmitted.
 pub trait Split: Copy + Debug {
-    /// Whether something lies between the media, so that they alone would reflect another share.
+    /// True if something lies between the media, so that their own reflectance differs.
     const DIFFERS: bool = false;
 
-    /// A number where all light is divided alike, a colour where it is not.
+    /// A number if all channels are equal, otherwise a colour.
     type Share: Share;
 
-    /// The share of light that is reflected at a `cosine` of incidence, 0 to 1: `eta` is the index of refraction beyond
-    /// over that before, and light comes from above or from below the surface.
+    /// Reflectance at a `cosine` of incidence, 0 to 1. `eta` is the index of refraction beyond over that before the
+    /// interface; `is_above` tells whether light comes from above.
     fn reflectance(&self, cosine: f64, eta: f64, is_above: bool) -> Self::Share;
 
-    /// The same by lane, in those that ask, of light that goes to `wo`, with the index below the surface over that
-    /// above in `etas`.
+    /// Reflectances for outgoing directions `wo`, in lanes with a set flag; `etas` are indices below over above the
+    /// surface.
     #[inline]
     fn reflectances<'a>(
         _level: Level,
@@ -38,30 +38,30 @@ pub trait Split: Copy + Debug {
     }
 }
 
-/// The index beyond a surface over that on the side of `w`, for the index below over that above.
+/// Index of refraction beyond a surface over that on the side of `w`, from the index below over that above.
 #[inline(always)]
 pub(super) fn beyond(eta: f64, w: DVec3) -> f64 {
     if w.z > 0.0 { eta } else { 1.0 / eta }
 }
 
-/// A share of light, one for all of it or a colour.
+/// A share of light, grey or coloured.
 pub trait Share: Copy + InLanes + Mul<f64, Output = Self> + Div<f64, Output = Self> {
-    /// No light.
+    /// Zero.
     const NONE: Self;
 
-    /// What is left.
+    /// 1 minus the share.
     fn rest(self) -> Self;
 
-    /// How often it is drawn: 0 or 1 only where all or nothing of the rest is left.
+    /// Sampling probability: 0 or 1 only if the share is entirely 0 or 1.
     fn chance(self) -> f64;
 
-    /// One of two, without a branch.
+    /// Branch-free selection.
     fn select(first: bool, a: Self, b: Self) -> Self;
 
-    /// With as much more in each channel.
+    /// Adds a number to each channel.
     fn plus(self, more: f64) -> Self;
 
-    /// As a colour.
+    /// Converts to a colour.
     fn rgb(self) -> Rgb;
 }
 
@@ -123,7 +123,7 @@ impl Share for Rgb {
     }
 }
 
-/// Nothing but the two media: Fresnel's reflectance.
+/// A bare interface: Fresnel's reflectance.
 #[derive(Clone, Copy, Debug)]
 pub struct Bare;
 

@@ -1,4 +1,4 @@
-//! Functions that stand in columns as they are.
+//! BSDFs whose parameters are stored in lanes directly.
 
 use super::bsdf_columns::BsdfColumns;
 use super::{Bsdf, BsdfSample, BsdfSampleLanes, Rgb, RgbLanes};
@@ -6,13 +6,13 @@ use raywright_base::math::{DVec3, InLanes, LANES, VectorLanes};
 use raywright_base::sampling::Pairs;
 use raywright_base::simd::{Level, loops};
 
-/// Functions of a kind that looks nothing up and has few branches: all of its numbers stand in columns, and each lane
-/// asks what they make.
+/// BSDFs without lookups and with few branches: all parameters are stored in lanes, and each lane evaluates the scalar
+/// code.
 #[derive(Clone, Debug)]
 pub struct Straight<B: InLanes>(B::Lanes);
 
 loops! {
-    /// What each scatters, in the lanes that ask.
+    /// Evaluates the lanes with a set flag.
     fn scatter<B: Bsdf + InLanes>(
         all: &B::Lanes,
         asks: &[bool; LANES],
@@ -30,7 +30,7 @@ loops! {
 }
 
 loops! {
-    /// What each draws, in the lanes that ask.
+    /// Samples the lanes with a set flag.
     fn draw<B: Bsdf + InLanes>(
         all: &B::Lanes,
         asks: &[bool; LANES],

@@ -1,4 +1,4 @@
-//! A pane of glass.
+//! A thin dielectric pane.
 
 use super::bsdf::either;
 use super::bsdf_columns::LaneBsdf;
@@ -8,21 +8,21 @@ use super::{Bsdf, BsdfSample, Rgb, fresnel};
 use glam::DVec3;
 use raywright_base::math::{in_lanes, select};
 
-/// A plane-parallel dielectric plate without thickness, the same medium on both sides: light reflects and goes straight
-/// through, after all reflections within the plate (Stokes, 1862): with r = F(θ) they sum to R = 2r / (1 + r).
+/// A plane-parallel dielectric plate without thickness, with the same medium on both sides. Light reflects or goes
+/// straight through, after all internal reflections (Stokes, 1862): with r = F(θ) they sum to R = 2r / (1 + r).
 #[derive(Clone, Copy, Debug)]
 pub struct ThinDielectric {
     eta: f64,
 }
 
 impl ThinDielectric {
-    /// Of an index of refraction relative to that of the surroundings.
+    /// Creates a pane with an index of refraction relative to its surroundings.
     #[inline(always)]
     pub fn new(eta: f64) -> Self {
         Self { eta: fresnel::bounded(eta) }
     }
 
-    /// The share of light that is reflected at such a cosine to the normal, which is not negative.
+    /// Reflectance at a non-negative cosine to the normal.
     #[inline(always)]
     pub fn reflectance(&self, cosine: f64) -> f64 {
         let r = fresnel::dielectric(cosine, self.eta);
@@ -66,7 +66,7 @@ impl Bsdf for ThinDielectric {
 }
 
 in_lanes! {
-    /// The indices of refraction of panes, a lane each.
+    /// Indices of refraction, one per lane.
     ThinDielectricLanes of ThinDielectric { eta: f64 }
 }
 

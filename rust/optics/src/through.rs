@@ -1,30 +1,30 @@
-//! What rough coats let through in one scattering.
+//! Transmittance of rough coats with single scattering.
 
 use super::{Facets, fresnel};
 use raywright_base::math::DVec3;
 use raywright_base::math::gauss::gauss;
 
-/// How much light facets between dielectrics let through, each share by one refraction with masking on either side: of
-/// light from the thinner side, by its cosine; and how much they reflect from within.
+/// Transmittance of dielectric facets with single refraction and masking on both sides, for light from the thinner side
+/// by its cosine, and the mean internal reflectance.
 ///
-/// Nothing of it has a closed form. It is integrated when a material is made ready, by Gauss's rules over facets as
-/// they are seen, and kept at `NODES` cosines.
+/// There is no closed form. It is integrated when a material is prepared, by Gauss's rules over visible facets, and
+/// stored at `NODES` cosines.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Through {
     alpha: f64,
-    /// Of the part of a cosine's variable that goes by α.
+    /// Weight of the part of the table variable that depends on α.
     weight: f64,
     shares: [f32; NODES],
     average: f32,
     within: f32,
 }
 
-/// Shares are kept at so many cosines; between these they are within 0.0025 of the integral for indices from 1.05 on,
-/// and within 0.001 mostly.
+/// Number of stored cosines. Interpolation is within 0.0025 of the integral for indices from 1.05 on, and mostly within
+/// 0.001.
 const NODES: usize = 20;
 
 impl Through {
-    /// Of facets that are alike in all directions, and the index within over that outside, `eta` ≥ 1.
+    /// Integrates isotropic facets; `eta` ≥ 1 is the inner over the outer index of refraction.
     pub fn new(facets: &impl Facets, eta: f64) -> Self {
         let eta = fresnel::bounded(eta);
         let (alpha, seen) = (facets.mean_alpha(), Seen::new(facets));
@@ -35,14 +35,14 @@ impl Through {
             through.shares[i] = seen.refracted(direction(cosine), eta) as f32;
         }
         through.average = even_light(0.0, 1.0, |cosine| through.share(cosine)) as f32;
-        // From within, light stops going through about the critical angle: the integral is split there.
+        // Internal transmission stops near the critical angle, so the integral is split there.
         let critical = ((eta - 1.0) * (eta + 1.0)).max(0.0).sqrt() / eta;
         let within = |cosine| seen.reflected(direction(cosine), 1.0 / eta);
         through.within = (even_light(0.0, critical, within) + even_light(critical, 1.0, within)) as f32;
         through
     }
 
-    /// Of facets between two, which are smoother and rougher: a part of the way from the one to the other.
+    /// Interpolates between the transmittances of smoother and rougher facets.
     pub fn between(a: &Self, b: &Self, part: f64) -> Self {
         let mixed = |a: f64, b: f64| a + (b - a) * part;
         let single = |a: f32, b: f32| mixed(f64::from(a), f64::from(b)) as f32;
@@ -57,7 +57,7 @@ impl Through {
         }
     }
 
-    /// The share of light of a cosine that goes through, by cubics (Catmull and Rom, 1974).
+    /// Transmittance for a cosine, by cubic interpolation (Catmull and Rom, 1974).
     #[inline(always)]
     pub fn share(&self, cosine: f64) -> f64 {
         let at = self.variable(cosine).clamp(0.0, 1.0) * (NODES - 1) as f64;
@@ -65,33 +65,33 @@ impl Through {
         let f = at - low as f64;
         let value = |i: usize| f64::from(self.shares[i]);
         let (b, c) = (value(low), value(low + 1));
-        // Beyond either end as if the curve bent on there.
+        // Beyond either end the curvature is continued.
         let a = if low == 0 { 3.0 * (b - c) + value(2) } else { value(low - 1) };
         let d = if low == NODES - 2 { 3.0 * (c - b) + value(NODES - 3) } else { value(low + 2) };
         let cubic = b + 0.5 * f * (c - a + f * (2.0 * a - 5.0 * b + 4.0 * c - d + f * (3.0 * (b - c) + d - a)));
         cubic.clamp(0.0, 1.0)
     }
 
-    /// The share of even light that goes through.
+    /// Cosine-weighted average of the transmittance.
     #[inline(always)]
     pub fn average(&self) -> f64 {
         f64::from(self.average)
     }
 
-    /// The share of even light from within that is reflected.
+    /// Cosine-weighted average of the internal reflectance.
     #[inline(always)]
     pub fn within(&self) -> f64 {
         f64::from(self.within)
     }
 
-    /// A variable from 0 to 1 for a cosine: dense at grazing, and about α.
+    /// Table variable from 0 to 1 for a cosine: dense at grazing incidence, and around α.
     #[inline(always)]
     fn variable(&self, c: f64) -> f64 {
         let square = self.alpha * self.alpha;
         (1.0 - self.weight) * c.sqrt() + self.weight * c * ((1.0 + square) / (c * c + square)).sqrt()
     }
 
-    /// The cosine of a variable.
+    /// Cosine of a table variable.
     fn cosine(&self, variable: f64) -> f64 {
         let (mut low, mut high) = (0.0, 1.0);
         for _ in 0..60 {
@@ -106,7 +106,7 @@ fn direction(cosine: f64) -> DVec3 {
     DVec3::new(((1.0 - cosine) * (1.0 + cosine)).sqrt(), 0.0, cosine)
 }
 
-/// The integral over even light between two cosines, ∫ f(μ) 2μ dμ, dense at both.
+/// Cosine-weighted integral between two cosines, ∫ f(μ) 2μ dμ, dense at both.
 fn even_light(from: f64, to: f64, f: impl Fn(f64) -> f64) -> f64 {
     let length = to - from;
     let term = |(t, weight): (f64, f64)| {
@@ -116,10 +116,10 @@ fn even_light(from: f64, to: f64, f: impl Fn(f64) -> f64) -> f64 {
     gauss(32).into_iter().map(term).sum()
 }
 
-/// Facets as they are seen, by the points of Gauss's rules.
+/// Visible facets at the points of Gauss's rules.
 struct Seen<'a, F> {
     facets: &'a F,
-    /// The numbers that facets are drawn by, and weights.
+    /// Random numbers of the facets, and weights.
     draws: Vec<([f64; 2], f64)>,
 }
 
@@ -129,20 +129,19 @@ impl<'a, F: Facets> Seen<'a, F> {
 
     fn new(facets: &'a F) -> Self {
         let along = gauss(Self::ALONG);
-        // What is drawn first is the same on both sides of the plane of x and z; the tail of the other is spread out, 1
-        // − u = t³.
+        // The first number is symmetric about the xz plane; the tail of the second is stretched, 1 − u = t³.
         let draw = |x: f64, across: f64, t: f64, along: f64| ([0.5 * x, 1.0 - t * t * t], across * along * 3.0 * t * t);
         let of_row = |(x, across): (f64, f64)| along.iter().map(move |&(t, along)| draw(x, across, t, along));
         let draws = gauss(Self::ACROSS).into_iter().flat_map(of_row).collect();
         Self { facets, draws }
     }
 
-    /// The mean of a function of the facets' normals, over the facets that `w`, in the plane of x and z, sees.
+    /// Mean of a function of the facets' normals, over the facets visible from `w` in the xz plane.
     fn mean(&self, w: DVec3, value: impl Fn(DVec3) -> f64) -> f64 {
         self.draws.iter().map(|&(u, weight)| weight * value(self.facets.sample_visible(w, u))).sum()
     }
 
-    /// What is refracted of light from `w`, with the index beyond over that on the side of `w`.
+    /// Transmittance for direction `w`; the index is that beyond over that on the side of `w`.
     fn refracted(&self, w: DVec3, eta: f64) -> f64 {
         self.mean(w, |h| match fresnel::refract(w, h, eta) {
             Some(wi) if wi.z < 0.0 => (1.0 - fresnel::dielectric(w.dot(h), eta)) * self.facets.masking(wi),
@@ -150,7 +149,7 @@ impl<'a, F: Facets> Seen<'a, F> {
         })
     }
 
-    /// What is reflected of light from `w`.
+    /// Reflectance for direction `w`.
     fn reflected(&self, w: DVec3, eta: f64) -> f64 {
         self.mean(w, |h| {
             let wi = h * (2.0 * w.dot(h)) - w;
@@ -211,8 +210,8 @@ mod tests {
 
     #[test]
     fn what_goes_in_and_out_and_is_reflected_is_no_more_than_all() {
-        // What gets out of even light from within is what gets in, over η² (Stokes, 1849); the rest is lost, the more,
-        // the rougher the coat is.
+        // Diffuse transmittance from inside equals that from outside over η² (Stokes, 1849). The rest is lost, and the
+        // loss grows with the roughness of the coat.
         let kept = |through: Through, eta: f64| through.within() + through.average() / (eta * eta);
         for eta in [1.05, 1.5, 2.5] {
             let mut last = [1.002; 2];

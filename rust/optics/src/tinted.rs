@@ -1,4 +1,4 @@
-//! What is clear, with a colour at its surface.
+//! Dielectrics with tinted reflection and transmission.
 
 use super::bsdf_columns::{BsdfColumns, LaneBsdf};
 use super::{Bsdf, BsdfSample, BsdfSampleLanes, Rgb, RgbLanes};
@@ -6,14 +6,14 @@ use raywright_base::math::{DVec3, LANES, VectorLanes};
 use raywright_base::sampling::Pairs;
 use raywright_base::simd::{Level, loops};
 
-/// Scatters as another kind does, of which a share is left: one of what stays on its side, one of what goes through.
+/// A BSDF whose reflection and transmission are multiplied by colours.
 #[derive(Clone, Copy, Debug)]
 pub struct Tinted<B: Bsdf> {
-    /// What it is without its colour.
+    /// The BSDF without tint.
     pub inner: B,
-    /// The share that is left of what is reflected, 0 to 1.
+    /// Factor on reflection, 0 to 1.
     pub reflectance: Rgb,
-    /// The share that is left of what goes through, 0 to 1.
+    /// Factor on transmission, 0 to 1.
     pub transmittance: Rgb,
 }
 
@@ -57,7 +57,7 @@ impl<B: Bsdf> Bsdf for Tinted<B> {
     }
 }
 
-/// What is known of such functions, a lane each, and of a direction that light goes to.
+/// Tinted BSDFs in structure-of-arrays form, each with an outgoing direction.
 #[derive(Clone, Debug)]
 pub struct TintedLanes<L> {
     inner: L,
@@ -66,7 +66,7 @@ pub struct TintedLanes<L> {
 }
 
 loops! {
-    /// What is left of light from other directions.
+    /// Tints values of other directions.
     fn tint(
         reflectance: &RgbLanes,
         transmittance: &RgbLanes,
@@ -82,7 +82,7 @@ loops! {
 }
 
 loops! {
-    /// What is left of light that was drawn.
+    /// Tints samples.
     fn leave(
         reflectance: &RgbLanes,
         transmittance: &RgbLanes,

@@ -1,4 +1,4 @@
-//! What lets light straight through.
+//! Straight transmission.
 
 use super::bsdf_columns::LaneBsdf;
 use super::straight::Straight;
@@ -6,10 +6,10 @@ use super::{Bsdf, BsdfSample, Rgb};
 use glam::DVec3;
 use raywright_base::math::in_lanes;
 
-/// Lets light through as if nothing were there, or a share of it: the holes of a mask.
+/// Transmits light straight, entirely or partly: the holes of a mask.
 #[derive(Clone, Copy, Debug)]
 pub struct Transparent {
-    /// The share of the light that goes through, 0 to 1.
+    /// Transmittance, 0 to 1.
     pub transmittance: Rgb,
 }
 
@@ -42,7 +42,7 @@ impl Bsdf for Transparent {
 }
 
 in_lanes! {
-    /// What they let through, a lane each.
+    /// Transmittances, one per lane.
     TransparentLanes of Transparent { transmittance: Rgb }
 }
 

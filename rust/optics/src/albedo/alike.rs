@@ -1,11 +1,11 @@
-//! What facets of perfect mirrors lose that are alike in all directions.
+//! Single-scattering energy loss of isotropic, perfectly reflecting facets.
 
 use super::Tables;
 use super::cubic::Cubic;
 use super::tables::{MIRROR, MIRROR_AVERAGE};
 use super::variables::{of_alpha, of_cosine};
 
-/// Facets of one roughness, and where they are in the table.
+/// Facets of one roughness, with their position in the table.
 #[derive(Clone, Copy, Debug)]
 pub struct Alike {
     tables: &'static Tables,
@@ -14,13 +14,13 @@ pub struct Alike {
 }
 
 impl Alike {
-    /// Of these tables.
+    /// Looks up facets of a roughness in these tables.
     #[inline]
     pub fn new(tables: &'static Tables, alpha: f64) -> Self {
         Self { tables, alpha, column: Cubic::new(of_alpha(alpha), MIRROR[1]) }
     }
 
-    /// Of light of a cosine from 0 to 1, as [`super::MirrorLoss::of`].
+    /// Loss for a cosine from 0 to 1, as [`super::MirrorLoss::of`].
     #[inline(always)]
     pub fn of(&self, cosine: f64) -> f64 {
         let (square, sine) = (self.alpha * self.alpha, (1.0 - cosine) * (1.0 + cosine));
@@ -29,7 +29,7 @@ impl Alike {
         (most * self.tables.mirror.at(&row, &self.column)).clamp(0.0, 1.0)
     }
 
-    /// Its mean over even light.
+    /// Cosine-weighted average of the loss.
     pub fn average(&self) -> f64 {
         let at = Cubic::new(of_alpha(self.alpha), MIRROR_AVERAGE[0]);
         self.tables.mirror_average.at(&at).exp() * self.alpha * self.alpha

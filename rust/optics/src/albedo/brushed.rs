@@ -1,4 +1,4 @@
-//! What facets of perfect mirrors lose that are rougher along one direction than along the other.
+//! Single-scattering energy loss of anisotropic, perfectly reflecting facets.
 
 use super::Tables;
 use super::cubic::Cubic;
@@ -6,31 +6,30 @@ use super::tables::{BRUSHED, BRUSHED_AVERAGE};
 use super::variables::{EVEN, of_alpha, of_root};
 use glam::DVec3;
 
-/// How many times as rough a surface may be one way as the other: where it is rougher still, it loses as if it were
-/// not.
+/// Greatest ratio of both roughnesses in the table; a greater ratio is clamped.
 pub const STEEPEST: f64 = 1e3;
 
-/// How many times as smooth one way as the other facets of a variable are, as [`of_ratio`] has it.
+/// Ratio of the lesser to the greater roughness for a variable, the inverse of [`of_ratio`].
 #[cfg(test)]
 pub fn ratio(variable: f64) -> f64 {
     (1.0 - variable * (1.0 - STEEPEST.sqrt().recip())).powi(2)
 }
 
-/// Facets of two roughnesses. Where they are in the table is found anew each time: materials stay small so, and few
-/// are brushed.
+/// Facets of two roughnesses. The table position is recomputed at each lookup, which keeps materials small; few are
+/// anisotropic.
 #[derive(Clone, Copy, Debug)]
 pub struct Brushed {
     tables: &'static Tables,
     /// The lesser and the greater roughness.
     alpha: [f64; 2],
-    /// Whether the lesser is that along y.
+    /// True if the lesser is along y.
     turned: bool,
-    /// Over the logarithm of one over the other.
+    /// One over the logarithm of their ratio.
     scale: f64,
 }
 
 impl Brushed {
-    /// Of the roughness along x and y.
+    /// Looks up the roughnesses along x and y in these tables.
     pub fn new(tables: &'static Tables, [x, y]: [f64; 2]) -> Self {
         let rough = x.max(y);
         let smooth = x.min(y).max(rough / STEEPEST);
@@ -38,12 +37,12 @@ impl Brushed {
             tables,
             alpha: [smooth, rough],
             turned: y < x,
-            // Of all but the same roughness no azimuth differs from another.
+            // With equal roughnesses all azimuths are equivalent.
             scale: if of_ratio(smooth, rough) > 1e-9 { (rough / smooth).ln().recip() } else { 0.0 },
         }
     }
 
-    /// Of light from `w`, as [`super::MirrorLoss::of`].
+    /// Loss for direction `w`, as [`super::MirrorLoss::of`].
     #[inline(never)]
     pub fn of(&self, w: DVec3) -> f64 {
         let [a, b] = self.alpha;
@@ -58,7 +57,7 @@ impl Brushed {
         (most * self.tables.brushed.at(&cosine, &azimuth, &ratio, &rough)).clamp(0.0, 1.0)
     }
 
-    /// Its mean over even light.
+    /// Cosine-weighted average of the loss.
     pub fn average(&self) -> f64 {
         let [a, b] = self.alpha;
         let ratio = Cubic::new(of_ratio(a, b), BRUSHED_AVERAGE[0]);
@@ -72,22 +71,22 @@ pub fn mean_square([a, b]: [f64; 2]) -> f64 {
     0.5 * (a * a + b * b)
 }
 
-/// A variable from 0 to 1 for the lesser roughness beside the greater.
+/// Table variable from 0 to 1 for the ratio of both roughnesses.
 #[inline]
 pub fn of_ratio(smooth: f64, rough: f64) -> f64 {
     (1.0 - (smooth / rough).sqrt()) / (1.0 - STEEPEST.sqrt().recip())
 }
 
-/// A variable from 0 to 1 for a cosine at an azimuth at which this is the roughness, where the greatest is `rough`.
+/// Table variable from 0 to 1 for a cosine, where `along` is the roughness at its azimuth and `rough` the greatest.
 #[inline]
 pub fn of_cosine(along: f64, rough: f64, cosine: f64) -> f64 {
     let (root, even) = (cosine.sqrt(), EVEN * rough);
     even * cosine + (1.0 - even) * 0.5 * (of_root(root, along.sqrt()) + of_root(root, rough.sqrt()))
 }
 
-/// A variable from 0 to 1 for the roughness at an azimuth between the lesser and the greater: by its logarithm, for
-/// what happens along the lesser, and evenly, for what does along the greater. `scale` is one over the logarithm of one
-/// over the other.
+/// Table variable from 0 to 1 for the roughness at an azimuth. The mean of a logarithmic variable, which resolves the
+/// smoother direction, and a linear one, which resolves the rougher direction. `scale` is one over the logarithm of the
+/// ratio.
 #[inline]
 pub fn of_along(along: f64, [smooth, rough]: [f64; 2], scale: f64) -> f64 {
     if scale == 0.0 { 0.5 } else { 0.5 * ((along / smooth).ln() * scale + (along - smooth) / (rough - smooth)) }

@@ -1,4 +1,4 @@
-//! What a rough coat reflects once.
+//! Directional albedo of a rough dielectric coat with single scattering.
 
 use super::cubic::Cubic;
 use super::tables::{COAT, COAT_AVERAGE};
@@ -6,7 +6,7 @@ use super::variables::{DENSEST, effective_cosine, of_alpha, of_alpha_root, of_co
 use super::{Alike, Tables, Tabulated};
 use crate::fresnel;
 
-/// How much of light of a cosine the facets of a dielectric coat reflect out of the surface at once.
+/// Directional albedo of the facets of a dielectric coat with single scattering.
 #[derive(Clone, Copy, Debug)]
 pub struct Coat {
     tables: &'static Tables,
@@ -14,18 +14,18 @@ pub struct Coat {
     eta: f64,
     alpha: Cubic,
     index: Cubic,
-    /// What the facets would lose if they were mirrors.
+    /// Loss of the same facets if they reflected perfectly.
     loss: Alike,
 }
 
 impl Coat {
-    /// Of facets that are alike in all directions, with `eta` ≥ 1 the index within over that outside.
+    /// Looks up isotropic facets; `eta` ≥ 1 is the inner over the outer index of refraction.
     #[inline]
     pub fn new<F: Tabulated>(facets: F, eta: f64) -> Self {
         Self::with(F::TABLES, facets.alpha()[0], eta)
     }
 
-    /// Of these tables.
+    /// Looks up a roughness in these tables.
     #[inline]
     pub(super) fn with(tables: &'static Tables, roughness: f64, eta: f64) -> Self {
         let index = of_index(roughness, eta.min(DENSEST));
@@ -33,7 +33,7 @@ impl Coat {
         Self { tables, roughness, eta, alpha, index, loss: Alike::new(tables, roughness) }
     }
 
-    /// From a direction of this cosine. Without roughness it is Fresnel's own.
+    /// Albedo for a cosine. Without roughness it is Fresnel's reflectance.
     #[inline]
     pub fn of(&self, cosine: f64) -> f64 {
         let cosine = cosine.abs();
@@ -43,7 +43,7 @@ impl Coat {
         mean * (1.0 - self.loss.of(cosine))
     }
 
-    /// Its mean over even light.
+    /// Cosine-weighted average of the albedo.
     #[inline]
     pub fn average(&self) -> f64 {
         let alpha = Cubic::new(of_alpha(self.roughness), COAT_AVERAGE[0]);

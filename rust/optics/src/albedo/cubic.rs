@@ -1,11 +1,11 @@
-//! Values between the entries of a table.
+//! Cubic interpolation in tables.
 
 use glam::Vec4;
 use std::fmt;
 
-/// Where a variable lies between the entries of a table, and what each of the four about it counts for: the cubic
-/// through the middle two whose slopes are those of their neighbours' secants (Catmull and Rom, "A Class of Local
-/// Interpolating Splines", 1974). At an end the missing neighbour is that of the parabola through the last three.
+/// Position of a variable in a table, and the weights of the four entries around it: a Catmull-Rom spline ("A Class of
+/// Local Interpolating Splines", 1974), whose slopes are secants of the neighbours. At an end, the missing neighbour is
+/// extrapolated by the parabola through the last three entries.
 #[derive(Clone, Copy, Debug)]
 pub struct Cubic {
     first: u32,
@@ -13,11 +13,11 @@ pub struct Cubic {
 }
 
 impl Cubic {
-    /// Of a variable from 0 to 1 in a table with `count` ≥ 4 entries for it.
+    /// Computes the position of a variable from 0 to 1 in a table with `count` ≥ 4 entries for it.
     #[inline(always)]
     pub fn new(variable: f64, count: usize) -> Self {
         let at = variable.clamp(0.0, 1.0) * (count - 1) as f64;
-        // To 32 bits and back, which processors convert at once.
+        // Conversion to 32 bits and back takes one instruction each.
         let low = (at as i32).min(count as i32 - 2);
         let f = (at - f64::from(low)) as f32;
         let g = 1.0 - f;
@@ -39,14 +39,14 @@ impl Cubic {
     }
 }
 
-/// A table in a file: 16-bit numbers, the lower byte first, the last variable the fastest.
+/// A table from a file: 16-bit little-endian numbers, the last variable fastest.
 #[derive(Clone, Copy)]
 pub struct Table<const N: usize> {
     /// Its entries.
     pub bytes: &'static [u8],
-    /// How many there are for each variable.
+    /// Number of entries for each variable.
     pub sizes: [usize; N],
-    /// What 0 and 65535 stand for.
+    /// Values of the entries 0 and 65535.
     pub range: [f32; 2],
 }
 
@@ -57,17 +57,17 @@ impl<const N: usize> fmt::Debug for Table<N> {
 }
 
 impl<const N: usize> Table<N> {
-    /// The four entries from number `at` on.
+    /// Four consecutive entries from index `at`.
     #[inline(always)]
     fn four(&self, at: usize) -> Vec4 {
         let bytes = self.bytes[2 * at..].first_chunk().expect("four entries from there on");
-        // Written so, it is one load and one conversion of all four.
+        // This form compiles to one load and one conversion of all four.
         let four = u64::from_le_bytes(*bytes);
         let entries = [four as u16, (four >> 16) as u16, (four >> 32) as u16, (four >> 48) as u16];
         Vec4::from_array(entries.map(f32::from))
     }
 
-    /// What a sum of entries, of weights that sum to 1, stands for.
+    /// Converts a weighted sum of entries, with weights that sum to 1, to a value.
     #[inline]
     fn scaled(&self, sum: f32) -> f64 {
         let [low, high] = self.range;
@@ -82,7 +82,7 @@ fn dot(a: Vec4, b: [f32; 4]) -> f32 {
 }
 
 impl Table<1> {
-    /// The value between its entries.
+    /// Interpolated value.
     #[inline]
     pub fn at(&self, a: &Cubic) -> f64 {
         self.scaled(dot(self.four(a.first()), a.weights))
@@ -90,7 +90,7 @@ impl Table<1> {
 }
 
 impl Table<2> {
-    /// The value between its entries.
+    /// Interpolated value.
     #[inline(always)]
     pub fn at(&self, a: &Cubic, b: &Cubic) -> f64 {
         let mut sum = Vec4::ZERO;
@@ -102,7 +102,7 @@ impl Table<2> {
 }
 
 impl Table<3> {
-    /// The value between its entries.
+    /// Interpolated value.
     #[inline]
     pub fn at(&self, a: &Cubic, b: &Cubic, c: &Cubic) -> f64 {
         let [_, m, n] = self.sizes;
@@ -118,7 +118,7 @@ impl Table<3> {
 }
 
 impl Table<4> {
-    /// The value between its entries.
+    /// Interpolated value.
     #[inline]
     pub fn at(&self, a: &Cubic, b: &Cubic, c: &Cubic, d: &Cubic) -> f64 {
         let [_, l, m, n] = self.sizes;

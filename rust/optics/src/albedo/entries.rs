@@ -1,4 +1,4 @@
-//! The writing of the tables, and the check that they hold what they should.
+//! Generation of the tables, and a test of their contents.
 
 use super::brushed::{self, mean_square, ratio};
 use super::cubic::Table;
@@ -11,8 +11,8 @@ use glam::DVec3;
 use raywright_base::parallel;
 use std::f64::consts::FRAC_PI_2;
 
-/// A table with the values at its entries of a function of its variables. Where the environment variable TABLES has
-/// names, those that it does not name are left as they are.
+/// Computes a table from a function of its variables. If the environment variable TABLES lists names, other tables are
+/// left unchanged.
 fn filled<const N: usize>(name: &str, like: &Table<N>, value: impl Fn([f64; N]) -> f64 + Sync) -> Table<N> {
     if std::env::var("TABLES").is_ok_and(|names| !names.split(',').any(|wanted| wanted == name)) {
         return *like;
@@ -26,7 +26,7 @@ fn filled<const N: usize>(name: &str, like: &Table<N>, value: impl Fn([f64; N]) 
             rest /= like.sizes[k];
         }
         let value = value(variables);
-        // But for roundings, of which there is little else where hardly anything is lost.
+        // Tolerance for roundings, which dominate where the loss is tiny.
         let rounding = 1e-4 * (high - low);
         assert!((low - rounding..=high + rounding).contains(&value), "{value} at {variables:?}");
         (((value - low) / (high - low) * 65535.0).round() as u16).to_le_bytes()
@@ -35,9 +35,9 @@ fn filled<const N: usize>(name: &str, like: &Table<N>, value: impl Fn([f64; N]) 
     Table { bytes: bytes.concat().leak(), ..*like }
 }
 
-/// The tables of a distribution, by integrating, in the form of others.
+/// Integrates all tables of a distribution, with the sizes of others.
 fn integrated<F: Facets + Sync>(like: &Tables) -> &'static Tables {
-    // No cosine is so near the plane that something changes beyond it.
+    // Below this cosine nothing changes any more.
     let from = |cosine: f64, scale: f64| direction(cosine.max(1e-7 * scale));
     let alike = |alpha: f64| F::new([alpha; 2]);
     let mirror = filled("mirror", &like.mirror, |[v, a]| {
@@ -46,7 +46,7 @@ fn integrated<F: Facets + Sync>(like: &Tables) -> &'static Tables {
         mirror_loss(&alike(a), w) / (a * a) * (w.z * w.z + a * a * w.x * w.x)
     });
     let brushed = filled("brushed", &like.brushed, |[v, t, r, b]| {
-        // Far below 1 nothing but their ratio matters.
+        // For small roughnesses only their ratio matters.
         let b = alpha(b).max(Ggx::SMOOTH / ratio(r));
         let a = b * ratio(r);
         let along = if r > 0.0 {
@@ -89,8 +89,7 @@ fn integrated<F: Facets + Sync>(like: &Tables) -> &'static Tables {
     Box::leak(Box::new(Tables { mirror, brushed, thin, dense, coat, schlick, ..*like }))
 }
 
-/// The same tables with averages of what they give between their entries, so that what is given back sums to what is
-/// lost.
+/// Recomputes the averages from the interpolated tables, so that the energy given back equals the energy lost.
 fn averaged(once: &'static Tables) -> &'static Tables {
     let like = once;
     let mirror_average = filled("mirror_average", &like.mirror_average, |[a]| {
@@ -105,7 +104,7 @@ fn averaged(once: &'static Tables) -> &'static Tables {
         let steps = 48;
         let sum: f64 = (0..steps)
             .map(|k| {
-                // Dense along the direction of lesser roughness.
+                // Denser near the direction of lesser roughness.
                 let u = (f64::from(k) + 0.5) / f64::from(steps);
                 let (sin, cos) = (FRAC_PI_2 * u * u * u).sin_cos();
                 let along = (a * cos).hypot(b * sin);
@@ -149,7 +148,7 @@ fn averaged(once: &'static Tables) -> &'static Tables {
     }))
 }
 
-/// Writes the tables. Where their sizes have changed, files of the new sizes have to be there for it to be compiled.
+/// Writes the tables. If their sizes have changed, files of the new sizes must exist for the crate to compile.
 #[test]
 #[ignore = "writes files"]
 fn write_tables() {

@@ -1,4 +1,4 @@
-//! What facets between two dielectrics lose.
+//! Single-scattering energy loss of facets between two dielectrics.
 
 use super::cubic::Cubic;
 use super::tables::{INTERFACE_AVERAGE, THIN};
@@ -7,8 +7,8 @@ use super::{Rough, Tables, Tabulated};
 use crate::fresnel;
 use glam::DVec3;
 
-/// A rough interface between two dielectrics: what it loses of light from either side in one scattering, and how that
-/// light is given back so that nothing is lost and nothing depends on which way the light goes.
+/// A rough interface between two dielectrics: the energy lost per single scattering from either side, and a
+/// compensation lobe that is reciprocal and conserves energy.
 #[derive(Clone, Copy, Debug)]
 pub struct Interface {
     tables: &'static Tables,
@@ -19,23 +19,23 @@ pub struct Interface {
     sides: [Side; 2],
 }
 
-/// What holds on one side.
+/// Data of one side.
 #[derive(Clone, Copy, Debug)]
 struct Side {
     dense: bool,
-    /// Mean loss over even light.
+    /// Cosine-weighted average of the loss.
     average: f64,
-    /// The share of what is lost that is given back on the other side.
+    /// Share of the lost energy that the compensation transmits.
     crosses: f64,
 }
 
 impl Interface {
-    /// Of facets that are alike in all directions, with `eta` the index below over that above.
+    /// Looks up isotropic facets; `eta` is the index of refraction below over that above.
     pub fn new<F: Tabulated>(facets: F, eta: f64) -> Self {
         Self::with(F::TABLES, facets.alpha()[0], eta)
     }
 
-    /// Of these tables.
+    /// Looks up a roughness in these tables.
     pub(super) fn with(tables: &'static Tables, alpha: f64, eta: f64) -> Self {
         let dense = eta.max(1.0 / eta).min(DENSEST);
         let (rough, a, i) = (Rough::new(alpha, dense), of_alpha(alpha), of_index(alpha, dense));
@@ -47,8 +47,8 @@ impl Interface {
         };
         let averages = [average(eta < 1.0), average(eta > 1.0)];
         // A share t of a loss L̄ that crosses from side a to b is reciprocal if na² ta L̄a = nb² tb L̄b (Kulla and
-        // Conty, "Revisiting Physically Based Shading at Imageworks", 2017). A smooth interface lets through 1 − F̄,
-        // for which na² (1 − F̄a) = nb² (1 − F̄b): so t = (1 − F̄) / L̄ times what keeps both at most 1 − F̄.
+        // Conty, "Revisiting Physically Based Shading at Imageworks", 2017). A smooth interface transmits 1 − F̄, with
+        // na² (1 − F̄a) = nb² (1 − F̄b). So t = (1 − F̄) / L̄ times a factor that keeps both at most 1 − F̄.
         let least = averages[0].min(averages[1]);
         let side = |below: bool| {
             let (own, average) = (if below { 1.0 / eta } else { eta }, averages[usize::from(below)]);
@@ -64,7 +64,7 @@ impl Interface {
         &self.sides[usize::from(w.z < 0.0)]
     }
 
-    /// The share of light from `w` that is neither reflected nor refracted away by one facet.
+    /// Energy from direction `w` that single scattering neither reflects nor refracts away.
     #[inline]
     pub fn loss(&self, w: DVec3) -> f64 {
         let dense = self.side(w).dense;
@@ -73,26 +73,26 @@ impl Interface {
         (most * table.at(&self.alpha, &Cubic::new(cosine, table.sizes[1]), &self.index)).clamp(0.0, 1.0)
     }
 
-    /// The share of what is lost on the side of `w` that is given back on the other side.
+    /// Share of the energy lost on the side of `w` that the compensation transmits.
     #[inline]
     pub fn crossing(&self, w: DVec3) -> f64 {
         self.side(w).crosses
     }
 
-    /// The cosine on the side of `w` about which light is lost.
+    /// Cosine scale of the loss on the side of `w`.
     #[inline]
     pub fn scale(&self, w: DVec3) -> f64 {
         if self.side(w).dense { (self.rough.alpha * self.rough.bent).max(1e-8) } else { self.rough.alpha }
     }
 
-    /// What is given back to `wo` of light from `wi`, per solid angle, with the cosine of `wi` in it and without the 1
-    /// / η² of radiance. `loss` is that of `wo`.
+    /// Compensation towards `wo` from `wi`, per solid angle, including the cosine of `wi` but not the 1 / η² of
+    /// radiance. `loss` is that of `wo`.
     #[inline]
     pub fn given_back(&self, loss: f64, wo: DVec3, wi: DVec3) -> f64 {
         loss * self.given_back_density(wo, wi)
     }
 
-    /// The density over the sphere with which lost light is given back.
+    /// Density of the compensation lobe over the sphere.
     #[inline]
     pub fn given_back_density(&self, wo: DVec3, wi: DVec3) -> f64 {
         let (from, to) = (self.side(wo), self.side(wi));

@@ -1,9 +1,9 @@
-//! What facets of perfect mirrors lose.
+//! Single-scattering energy loss of perfectly reflecting facets.
 
 use super::{Alike, Brushed, Tables, Tabulated};
 use glam::DVec3;
 
-/// The share of white light that does not leave after one reflection, for facets of given roughness.
+/// Share of white light that does not leave after one reflection, for facets of given roughness.
 #[derive(Clone, Copy, Debug)]
 pub struct MirrorLoss(Kind);
 
@@ -14,20 +14,20 @@ enum Kind {
 }
 
 impl MirrorLoss {
-    /// Of these facets.
+    /// Looks up these facets.
     #[inline]
     pub fn new<F: Tabulated>(facets: F) -> Self {
         Self::with(F::TABLES, facets.alpha())
     }
 
-    /// Of these tables.
+    /// Looks up a roughness in these tables.
     #[inline]
     pub(super) fn with(tables: &'static Tables, alpha: [f64; 2]) -> Self {
         let [a, b] = alpha;
         Self(if a == b { Kind::Alike(Alike::new(tables, a)) } else { Kind::Brushed(Brushed::new(tables, alpha)) })
     }
 
-    /// Of light from `w`: 1 − ∫ D G₂ / (4 cos θ) dω.
+    /// Loss for direction `w`: 1 − ∫ D G₂ / (4 cos θ) dω.
     #[inline]
     pub fn of(&self, w: DVec3) -> f64 {
         match &self.0 {
@@ -36,7 +36,7 @@ impl MirrorLoss {
         }
     }
 
-    /// Its mean over even light, ∫ loss cos θ dω / π.
+    /// Cosine-weighted average of the loss, ∫ loss cos θ dω / π.
     #[inline]
     pub fn average(&self) -> f64 {
         match &self.0 {

@@ -1,11 +1,11 @@
-//! How much light microfacets scatter once: the rest meets further facets, and a rough surface has to make up for it.
+//! Directional albedo of microfacets with single scattering. Materials compensate the remaining energy, which meets
+//! further facets.
 //!
-//! What is lost has no closed form. It is tabulated by integrating once (`quadrature.rs` and `entries.rs`, in tests,
-//! which write the tables) in variables in which it is smooth, down to no roughness at all: near grazing a surface of
-//! roughness α behaves at cosine μ as every other with the same μ / α. Cubics go through the entries (`cubic.rs`), so
-//! that what is read is mostly within 0.0005 of the integral, and within 0.003 everywhere. A surface scatters as much
-//! light too much or too little as its table errs, for what is read is what is given back: its mean over even light is
-//! that of the table.
+//! The energy loss has no closed form. It is integrated once and tabulated (`quadrature.rs` and `entries.rs`, in tests,
+//! write the tables). The table variables make it smooth down to roughness 0: near grazing, a surface of roughness α
+//! behaves at cosine μ as every other with the same μ / α. Entries are interpolated by cubics (`cubic.rs`). Lookups are
+//! mostly within 0.0005 of the integral, and within 0.003 everywhere. A table's error becomes the surface's energy
+//! error. Loss and compensation use the same lookup, so the cosine-weighted average is exactly that of the table.
 
 mod alike;
 mod brushed;
@@ -33,9 +33,9 @@ use alike::Alike;
 use brushed::Brushed;
 use rough::Rough;
 
-/// Facets of a distribution that has tables.
+/// A facet distribution with tables.
 pub trait Tabulated: Facets {
-    /// What they hold.
+    /// Tables of the distribution.
     const TABLES: &'static Tables;
 }
 

@@ -1,25 +1,26 @@
-//! The integrals that the tables hold.
+//! The integrals in the tables.
 
 use crate::{Facets, fresnel};
 use glam::DVec3;
 
-/// So many points go to the facets' slope and to their azimuth: what is refracted ends at lines between the facets, to
-/// whose course the first of them owes its number. Means are within 10⁻⁴, and mostly within 10⁻⁵.
+/// Number of points over the facets' slope and azimuth. Refraction is discontinuous at lines between facets, whose
+/// shape requires the many slopes. Means are accurate to 10⁻⁴, and mostly to 10⁻⁵.
 const STEPS: [usize; 2] = [2500, 32];
 
-/// What is reflected changes less.
+/// Reflection is smoother.
 const FEWER: [usize; 2] = [800, 32];
 
-/// The mean over the facets that `w` sees of a function of their normal. Half the azimuths are enough by symmetry where
-/// `w` lies in the plane of x and z.
+/// Mean of a function of the normal over the facets visible from `w`. By symmetry half the azimuths suffice if `w` is
+/// in the xz plane.
 fn mean_over_facets(facets: &impl Facets, w: DVec3, steps: [usize; 2], value: impl Fn(DVec3) -> f64) -> f64 {
     let azimuths = if w.y == 0.0 { 0.5 } else { 1.0 };
     let mut sum = 0.0;
     for i in 0..steps[0] {
-        // 1 − u = s² spreads out the tail of the distribution, and s = t² puts points where lobes meet the horizon.
+        // 1 − u = s² stretches the tail of the distribution, and s = t² concentrates points where lobes meet the
+        // horizon.
         let t = (i as f64 + 0.5) / steps[0] as f64;
         let s = t * t;
-        // From row to row points are shifted by the golden section, so that no line lies along them.
+        // Rows are offset by the golden ratio, so that no discontinuity is aligned with the points.
         let shift = (i as f64 * 0.618_033_988_749_894_9).fract();
         let point = |j: usize| [(j as f64 + shift) / steps[1] as f64 * azimuths, 1.0 - s * s];
         let row: f64 = (0..steps[1]).map(|j| value(facets.sample_visible(w, point(j)))).sum();
@@ -42,12 +43,13 @@ fn refracted(facets: &impl Facets, wo: DVec3, h: DVec3, eta: f64) -> f64 {
     }
 }
 
-/// 1 − what perfect mirrors reflect once.
+/// 1 − directional albedo of perfectly reflecting facets.
 pub fn mirror_loss(facets: &impl Facets, w: DVec3) -> f64 {
     mean_over_facets(facets, w, FEWER, |h| 1.0 - reflected(facets, w, h))
 }
 
-/// 1 − what facets reflect and refract once; `w` is above, and `eta` the index below over that above.
+/// 1 − directional albedo of reflection and refraction; `w` is above, and `eta` is the index of refraction below over
+/// that above.
 pub fn interface_loss(facets: &impl Facets, eta: f64, w: DVec3) -> f64 {
     mean_over_facets(facets, w, STEPS, |h| {
         let f = fresnel::dielectric(w.dot(h), eta);
@@ -55,17 +57,17 @@ pub fn interface_loss(facets: &impl Facets, eta: f64, w: DVec3) -> f64 {
     })
 }
 
-/// What facets reflect once whose reflectance is a function of the cosine.
+/// Directional albedo of facets whose reflectance is a function of the cosine.
 pub fn reflected_share(facets: &impl Facets, w: DVec3, reflectance: impl Fn(f64) -> f64) -> f64 {
     mean_over_facets(facets, w, FEWER, |h| reflectance(w.dot(h)) * reflected(facets, w, h))
 }
 
-/// The direction in the plane of x and z of a cosine.
+/// The direction in the xz plane with a cosine.
 pub fn direction(cosine: f64) -> DVec3 {
     DVec3::new(((1.0 - cosine) * (1.0 + cosine)).sqrt(), 0.0, cosine)
 }
 
-/// The value between 0 and 1 at which an increasing function takes the value `at`.
+/// Inverts an increasing function on [0, 1].
 pub fn inverse(at: f64, f: impl Fn(f64) -> f64) -> f64 {
     let (mut low, mut high) = (0.0, 1.0);
     for _ in 0..100 {
@@ -75,11 +77,11 @@ pub fn inverse(at: f64, f: impl Fn(f64) -> f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// The mean over even light, ∫ f(μ) 2μ dμ, of what falls off from a scale on as 1 / μ² at the most: by midpoints of ln
-/// μ.
+/// Cosine-weighted average ∫ f(μ) 2μ dμ of a function that falls off at most as 1 / μ² beyond a scale, by midpoints of
+/// ln μ.
 pub fn even_light(scale: f64, f: impl Fn(f64) -> f64) -> f64 {
     const STEPS: usize = 2000;
-    // Next to nothing comes from below.
+    // The contribution from below is negligible.
     let least = 1e-4 * scale;
     let step = least.ln() / STEPS as f64;
     let term = |i: usize| {

@@ -1,27 +1,28 @@
-//! A roughness between two dielectrics: where light is lost there, and in what its tables are.
+//! Scaling of the tables for an interface between two dielectrics.
 
 use super::variables::{EVEN, of_cosine, of_root, scale};
 use glam::DVec3;
 
-/// Facets of a roughness between a dielectric and one that is denser.
+/// Facets of a roughness between a dielectric and a denser one.
 #[derive(Clone, Copy, Debug)]
 pub struct Rough {
     pub alpha: f64,
-    /// The part of x = μ / s(ω) in which light from the denser side is bent so far that it leaves the surface again, up
-    /// to 1.
+    /// Value of x = μ / s(ω), up to 1, below which light from the denser side is refracted so strongly that it leaves
+    /// the surface again.
     pub bent: f64,
-    /// The cosine of the critical angle.
+    /// Cosine of the critical angle.
     critical: f64,
-    /// Losses next to the critical angle, where what gets through grazes the surface and other facets stop it.
+    /// Height of the loss peak near the critical angle, where transmitted light grazes the surface and other facets
+    /// block it.
     peak: f64,
-    /// The root of the cosine up to which light is bent away.
+    /// Square root of the cosine up to which light leaves again.
     bent_root: f64,
-    /// [`Rough::near`] at grazing, and by how much more it is straight on.
+    /// [`Rough::near`] at grazing incidence, and its increase towards normal incidence.
     span: [f64; 2],
 }
 
 impl Rough {
-    /// Of the denser index over the other.
+    /// Computes the scaling for a relative index of refraction, denser over thinner.
     pub fn new(alpha: f64, eta: f64) -> Self {
         let square = scale(alpha, eta) * scale(alpha, eta);
         let bent = square / (2.0 + square);
@@ -33,13 +34,14 @@ impl Rough {
         rough
     }
 
-    /// What average losses are in units of.
+    /// Unit of average losses.
     #[inline]
     pub fn unit(&self) -> f64 {
         self.alpha * self.alpha * self.bent
     }
 
-    /// How far a cosine is from that of the critical angle on the scale of α, from −1 to 1, and how near, up to 1.
+    /// Signed distance of a cosine from that of the critical angle on the scale of α, from −1 to 1, and the closeness,
+    /// up to 1.
     #[inline]
     fn near(&self, cosine: f64) -> (f64, f64) {
         let off = cosine - self.critical;
@@ -47,14 +49,14 @@ impl Rough {
         (off * scale, self.alpha * scale)
     }
 
-    /// A variable from 0 to 1 for light from the thinner side, and about how much of it is lost.
+    /// Table variable from 0 to 1 for light from the thinner side, and the approximate loss.
     #[inline]
     pub fn thin(&self, w: DVec3) -> (f64, f64) {
         let square = self.alpha * self.alpha;
         (of_cosine(self.alpha, w.z.abs()), self.unit() / (w.z * w.z + square * (w.x * w.x + w.y * w.y)))
     }
 
-    /// The same for light from the denser side.
+    /// Table variable from 0 to 1 for light from the denser side, and the approximate loss.
     #[inline]
     pub fn dense(&self, w: DVec3) -> (f64, f64) {
         let (cosine, square) = (w.z.abs(), self.alpha * self.alpha);

@@ -1,4 +1,4 @@
-//! What facets reflect at grazing angles, for Schlick's Fresnel term.
+//! Directional albedo of facets with Schlick's Fresnel weight.
 
 use super::cubic::Cubic;
 use super::tables::{SCHLICK, SCHLICK_AVERAGE};
@@ -6,7 +6,7 @@ use super::variables::{effective_cosine, of_alpha, of_cosine};
 use super::{Tables, Tabulated};
 use crate::fresnel;
 
-/// How much of light of a cosine facets reflect out of the surface at once whose reflectance is Schlick's (1 − cos)⁵.
+/// Directional albedo of facets whose reflectance is Schlick's weight (1 − cos)⁵, with single scattering.
 #[derive(Clone, Copy, Debug)]
 pub struct SchlickShare {
     tables: &'static Tables,
@@ -15,19 +15,19 @@ pub struct SchlickShare {
 }
 
 impl SchlickShare {
-    /// Of facets that are alike in all directions.
+    /// Looks up isotropic facets.
     #[inline]
     pub fn new<F: Tabulated>(facets: F) -> Self {
         Self::with(F::TABLES, facets.alpha()[0])
     }
 
-    /// Of these tables.
+    /// Looks up a roughness in these tables.
     #[inline]
     pub(super) fn with(tables: &'static Tables, roughness: f64) -> Self {
         Self { tables, roughness, alpha: Cubic::new(of_alpha(roughness), SCHLICK[1]) }
     }
 
-    /// From a direction of this cosine. Without roughness it is Schlick's own.
+    /// Albedo for a cosine. Without roughness it is Schlick's weight.
     #[inline]
     pub fn of(&self, cosine: f64) -> f64 {
         let cosine = cosine.abs();
@@ -35,7 +35,7 @@ impl SchlickShare {
         (fresnel::schlick_weight(effective_cosine(self.roughness, cosine)) + more).clamp(0.0, 1.0)
     }
 
-    /// Its mean over even light.
+    /// Cosine-weighted average of the albedo.
     #[inline]
     pub fn average(&self) -> f64 {
         self.tables.schlick_average.at(&Cubic::new(of_alpha(self.roughness), SCHLICK_AVERAGE[0]))

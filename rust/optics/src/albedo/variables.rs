@@ -1,71 +1,72 @@
-//! The variables that tables go by, each from 0 to 1.
+//! Table variables, each from 0 to 1.
 
 use crate::{Facets, Ggx};
 
-/// What counts as the greatest index of refraction: facets of a greater one lose as if they were of this.
+/// Greatest relative index of refraction in the tables; greater ones are clamped.
 pub const DENSEST: f64 = 10.0;
 
-/// For a cosine that matters on a scale, both given by their roots: dense at grazing, where shares go as roots.
+/// Variable for a cosine with a characteristic scale, both given by their square roots. It is dense at grazing
+/// incidence, where shares vary as square roots.
 #[inline]
 pub fn of_root(cosine: f64, scale: f64) -> f64 {
     (1.0 + scale) * cosine / (cosine + scale)
 }
 
-/// For a cosine of light that facets of a roughness reflect, or of light from the thinner side.
+/// Variable for a cosine of light that facets of a roughness reflect, or of light from the thinner side.
 #[inline]
 pub fn of_cosine(alpha: f64, cosine: f64) -> f64 {
-    // The rougher, the more happens away from grazing.
+    // The rougher the surface, the more variation there is away from grazing.
     let even = EVEN * alpha;
     even * cosine + (1.0 - even) * of_root(cosine.sqrt(), alpha.sqrt())
 }
 
-/// How much of a variable goes evenly by the cosine, at α = 1.
+/// Linear share of the variable at α = 1.
 pub const EVEN: f64 = 0.3;
 
-/// For a roughness.
+/// Variable for a roughness.
 #[inline]
 pub fn of_alpha(alpha: f64) -> f64 {
     let least = Ggx::SMOOTH.sqrt();
     (alpha.sqrt() - least) / (1.0 - least)
 }
 
-/// The roughness of a variable.
+/// Roughness of a variable.
 #[cfg(test)]
 pub fn alpha(variable: f64) -> f64 {
     let least = Ggx::SMOOTH.sqrt();
     (least + variable * (1.0 - least)).powi(2)
 }
 
-/// For a roughness where what happens near none goes as α ln α.
+/// Variable for a roughness if the function varies as α ln α near 0.
 #[inline]
 pub fn of_alpha_root(alpha: f64) -> f64 {
     let least = Ggx::SMOOTH.cbrt();
     (alpha.cbrt() - least) / (1.0 - least)
 }
 
-/// The roughness of that variable.
+/// Roughness of that variable.
 #[cfg(test)]
 pub fn alpha_of_root(variable: f64) -> f64 {
     let least = Ggx::SMOOTH.cbrt();
     (least + variable * (1.0 - least)).powi(3)
 }
 
-/// w / α with w = √(η² − 1), for an index of refraction η ≥ 1: about w is the cosine at which reflection sets in
-/// towards grazing, and it matters on the scale of α.
+/// w / α with w = √(η² − 1), for a relative index of refraction η ≥ 1. The onset of reflection towards grazing is at a
+/// cosine of about w, and it varies on the scale of α.
 #[inline]
 pub fn scale(alpha: f64, eta: f64) -> f64 {
     ((eta - 1.0) * (eta + 1.0)).max(0.0).sqrt() / alpha
 }
 
-/// For an index of refraction from 1 to [`DENSEST`] at a roughness.
+/// Variable for a relative index of refraction from 1 to [`DENSEST`] at a roughness.
 #[inline]
 pub fn of_index(alpha: f64, eta: f64) -> f64 {
     let variable = |eta| 1.0 - (1.0 + scale(alpha, eta)).cbrt().recip();
     variable(eta) / variable(DENSEST)
 }
 
-/// The index of refraction of a variable at a roughness. In place of 1, where nothing is lost, stands one so near to it
-/// that what is lost does not change any more in units of what is.
+/// Relative index of refraction of a variable at a roughness. The loss vanishes at 1, so the smallest index is slightly
+/// above 1, where the loss in its unit has reached its limit.
 #[cfg(test)]
 pub fn index(alpha: f64, variable: f64) -> f64 {
     let top = 1.0 - (1.0 + scale(alpha, DENSEST)).cbrt().recip();
@@ -73,13 +74,13 @@ pub fn index(alpha: f64, variable: f64) -> f64 {
     (alpha * scale.max(0.003)).hypot(1.0)
 }
 
-/// About the cosine at which facets are met that reflect to a direction of this cosine: at grazing, that of a slope of
-/// α.
+/// Approximate cosine on the facets that reflect to a direction with this cosine; at grazing incidence, that of a facet
+/// with slope α.
 #[inline]
 pub fn effective_cosine(alpha: f64, cosine: f64) -> f64 {
     let square = FACET_SLOPE * alpha * alpha;
     ((cosine * cosine + square) / (1.0 + square)).sqrt()
 }
 
-/// What makes the tables of what differs from [`effective_cosine`]'s reflectance the flattest.
+/// Fitted so that the tables of differences from [`effective_cosine`]'s reflectance are flattest.
 const FACET_SLOPE: f64 = 0.6;

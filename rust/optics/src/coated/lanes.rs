@@ -1,4 +1,4 @@
-//! Plastic by lane.
+//! Coated BRDFs in batches of lanes.
 
 use super::{Coated, above, diffuse, mirrored, mirrors};
 use crate::albedo::Tabulated;
@@ -10,7 +10,7 @@ use raywright_base::simd::{Level, loops};
 use std::array::from_fn;
 use std::marker::PhantomData;
 
-/// What is known of plastics, a lane each, and of a direction that light goes to.
+/// Coated BRDFs in structure-of-arrays form, each with an outgoing direction.
 #[derive(Clone, Debug)]
 pub struct CoatedLanes<F> {
     is_rough: [bool; LANES],
@@ -19,7 +19,7 @@ pub struct CoatedLanes<F> {
     base: RgbLanes,
     average: [f64; LANES],
     wo: VectorLanes,
-    /// What the coat reflects of light to `wo`, and how often a draw is that.
+    /// Reflectance of the coat for `wo`, and sampling probability of the coat.
     reflectance: [f64; LANES],
     share: [f64; LANES],
     kind: PhantomData<F>,
@@ -30,7 +30,7 @@ impl<F: Tabulated> LaneBsdf for Coated<F> {
 }
 
 loops! {
-    /// How facets mirror between two directions, and what a coat without facets reflects of light from there.
+    /// Facets that mirror between two directions, and the reflectance of a smooth coat for the incident one.
     fn mirror<F: Tabulated>(
         of: &CoatedLanes<F>,
         wi: &VectorLanes,
@@ -47,7 +47,7 @@ loops! {
 }
 
 loops! {
-    /// What is scattered, by what was told and looked up.
+    /// BRDF values from the precomputed and looked-up data.
     fn scatter<F: Tabulated>(
         of: &CoatedLanes<F>,
         wi: &VectorLanes,
@@ -76,7 +76,7 @@ loops! {
 }
 
 loops! {
-    /// Where light comes from, in the lanes that ask and are seen: `is_single` where that is the mirror image.
+    /// Incident directions, in lanes with a set flag and a visible `wo`; `is_single` marks delta samples.
     fn draw<F: Tabulated>(
         of: &CoatedLanes<F>,
         choice: &[f64; LANES],
@@ -99,7 +99,7 @@ loops! {
 }
 
 loops! {
-    /// From what is scattered to what a throughput is multiplied by; of single directions it is the coat's.
+    /// Converts values to throughput factors; a delta sample has that of the coat.
     fn weigh<F: Tabulated>(
         of: &CoatedLanes<F>,
         is_single: &[bool; LANES],

@@ -1,4 +1,4 @@
-//! Metals by lane.
+//! Conductors in batches of lanes.
 
 use super::{Conductor, Rough, above, mirrored, mirrors};
 use crate::bsdf_columns::{BsdfColumns, LaneBsdf};
@@ -13,18 +13,18 @@ use raywright_base::simd::{Level, loops};
 use std::array::from_fn;
 use std::marker::PhantomData;
 
-/// What is known of metals, a lane each, and of a direction that light goes to.
+/// Conductors in structure-of-arrays form, each with an outgoing direction.
 #[derive(Clone, Debug)]
 pub struct ConductorLanes<F> {
     is_rough: [bool; LANES],
     alpha: [[f64; LANES]; 2],
     multiple: RgbLanes,
     grazing: GrazingLanes,
-    /// Of those that are told by an index, this; the others are looked up.
+    /// Complex index of refraction, in lanes that are given by one; others are looked up.
     index: [RgbLanes; 2],
     is_by_index: [bool; LANES],
     wo: VectorLanes,
-    /// What is lost of light to `wo`.
+    /// Loss for `wo`.
     lost: [f64; LANES],
     kind: PhantomData<F>,
 }
@@ -34,7 +34,7 @@ impl<F: Lossy> LaneBsdf for Conductor<F> {
 }
 
 loops! {
-    /// How facets mirror between two directions, of metals with an index by what it says.
+    /// Facets that mirror between two directions, with the reflectance of lanes given by an index.
     fn mirror<F: Lossy>(
         of: &ConductorLanes<F>,
         wi: &VectorLanes,
@@ -53,7 +53,7 @@ loops! {
 }
 
 loops! {
-    /// What smooth metals reflect, by their index.
+    /// Reflectance of smooth conductors given by an index.
     fn reflect<F: Lossy>(of: &ConductorLanes<F>, reflectance: &mut RgbLanes) {
         for i in 0..LANES {
             let index = ConductorIndex::with([of.index[0].get(i), of.index[1].get(i)]);
@@ -63,7 +63,7 @@ loops! {
 }
 
 loops! {
-    /// What is scattered, by what was told and looked up.
+    /// BRDF values from the precomputed and looked-up data.
     fn scatter<F: Lossy>(
         of: &ConductorLanes<F>,
         wi: &VectorLanes,
@@ -88,7 +88,7 @@ loops! {
 }
 
 loops! {
-    /// Directions from which facets reflect, above.
+    /// Samples incident directions by facet reflection, above.
     fn draw<F: Lossy>(of: &ConductorLanes<F>, u: &Pairs, wi: &mut VectorLanes) {
         for i in 0..LANES {
             wi.set(i, of.facets(i).sample_reflection(above(of.wo.get(i)), [u[0][i], u[1][i]]));
@@ -97,7 +97,7 @@ loops! {
 }
 
 loops! {
-    /// From directions above to those on the side of `wo`, in the lanes that ask and are seen.
+    /// Mirrors directions to the side of `wo`, in lanes with a set flag and a visible `wo`.
     fn turn<F: Lossy>(of: &ConductorLanes<F>, asks: &[bool; LANES], wi: &mut VectorLanes, goes: &mut [bool; LANES]) {
         for i in 0..LANES {
             let (wo, drawn) = (of.wo.get(i), wi.get(i));
@@ -108,7 +108,7 @@ loops! {
 }
 
 loops! {
-    /// From what is scattered to what a throughput is multiplied by.
+    /// Converts values to throughput factors.
     fn weigh(pdf: &[f64; LANES], value: &mut RgbLanes) {
         for i in 0..LANES {
             value.set(i, value.get(i) / pdf[i]);
@@ -117,7 +117,7 @@ loops! {
 }
 
 loops! {
-    /// Mirror images, in the lanes that ask.
+    /// Specular directions, in lanes with a set flag.
     fn mirror_all<F: Lossy>(
         of: &ConductorLanes<F>,
         asks: &[bool; LANES],
@@ -138,7 +138,7 @@ impl<F: Lossy> ConductorLanes<F> {
         F::with([self.alpha[0][lane], self.alpha[1][lane]])
     }
 
-    /// What is drawn in lanes that ask and have smooth metals.
+    /// Samples smooth conductors, in lanes with a set flag.
     fn sample_smooth<'a>(
         &self,
         level: Level,

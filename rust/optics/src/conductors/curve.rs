@@ -1,53 +1,53 @@
-//! The colour of a metal's reflection.
+//! RGB reflectance of measured metals.
 
 use crate::spectra::{Illuminant, Response};
 use crate::{Rgb, fresnel};
 use std::fmt;
 
-/// How a conductor of an index of refraction that varies with the wavelength reflects daylight, in linear Rec. 709.
+/// RGB reflectance of a conductor with a spectral index of refraction, in linear Rec. 709 under daylight.
 ///
-/// The reflectance is Fresnel's at each wavelength, and its colour that of daylight (D65) of such shares, where all of
-/// it is (1, 1, 1). So light of (1, 1, 1) on gold becomes (1.022, 0.782, 0.344) at normal incidence, as spectral
-/// renderers have it that take white for daylight. Under light that is even over wavelengths it would be (1.20, 0.75,
-/// 0.31), of an even light of (1.20, 0.95, 0.91).
+/// Fresnel's reflectance at each wavelength is integrated under daylight (D65), so that a perfect reflector is (1, 1,
+/// 1). White light on gold becomes (1.022, 0.782, 0.344) at normal incidence, as in spectral renderers with a daylight
+/// white point. Under an equal-energy illuminant, which is (1.20, 0.95, 0.91), it would be (1.20, 0.75, 0.31).
 ///
-/// A channel may exceed 1, as gold's red does: the screen's three lights cannot mix that orange, and it is told as more
-/// red than there is and less green. That is right for light that is reflected once. Its powers are not: they would
-/// grow without end in a closed box, though gold leaves at most 96.2 % of a wavelength from 400 to 700 nm each time. So
-/// what is scattered again and again within one rough surface is summed by wavelength ([`Curve::seen`]), and paths that
-/// come to such a metal from such a metal give back by [`Curve::again`] what they had gained.
+/// A channel may exceed 1, as gold's red does: its orange is outside the gamut, so red exceeds the incident light and
+/// green is too low. That is right for one reflection, but its powers would grow without bound in a closed box,
+/// although gold reflects at most 96.2 % at any wavelength from 400 to 700 nm. So multiple scattering within a rough
+/// surface is summed by wavelength ([`Curve::seen`]), and paths that go from one such metal to another apply the factor
+/// [`Curve::again`].
 pub struct Curve {
-    /// At cosines of incidence from 0 to 1, in even steps.
+    /// At equally spaced cosines of incidence from 0 to 1.
     values: Box<[Rgb; Self::STEPS + 1]>,
     lines: Vec<Line>,
     again: Rgb,
 }
 
-/// One wavelength for all near it.
+/// A representative wavelength.
 #[derive(Clone, Copy, Debug)]
 struct Line {
     weight: Rgb,
     eta: f64,
     k: f64,
-    /// Its mean reflectance for even light from a hemisphere.
+    /// Cosine-weighted average of its reflectance.
     mean: f64,
 }
 
 impl Curve {
-    /// Lines between so many steps of the cosine are within 0.03 % of the reflectance.
+    /// With this number of steps of the cosine, linear interpolation is within 0.03 % of the reflectance.
     const STEPS: usize = 256;
 
-    /// So many nm apart, wavelengths stand for all: gold, whose reflectance has the sharpest edge, errs by 0.05 %.
+    /// Distance of representative wavelengths in nm. For gold, whose reflectance has the sharpest edge, the error is
+    /// 0.05 %.
     const APART: u32 = 5;
 
-    /// Of what tells η and k at each wavelength that is seen.
+    /// Computes the curve from η and k as functions of the visible wavelength.
     pub fn new(index: impl Fn(f64) -> (f64, f64)) -> Self {
         let mut lines = Vec::new();
         let mut brightest: f64 = 0.0;
         for (wavelength, weight) in Response::new(Illuminant::Daylight, Self::APART).weights() {
             let (eta, k) = index(wavelength);
             let mean = mean(|cosine| at(cosine, eta, k));
-            // Beyond, hardly anything is seen.
+            // Outside this range the eye's response is negligible.
             if (400.0..=700.0).contains(&wavelength) {
                 brightest = brightest.max(at(1.0, eta, k));
             }
@@ -58,12 +58,12 @@ impl Curve {
             *value = sum(&lines, i as f64 / Self::STEPS as f64, 1.0);
         }
         let most = values.iter().fold(Rgb::ONE, |most, &value| most.at_least(value));
-        // What is 1 but for rounding, at grazing incidence, is 1.
+        // At grazing incidence the reflectance is 1 up to rounding.
         let factor = |most: f64| if most > 1.0 + 1e-6 { brightest / most } else { 1.0 };
         Self { values, lines, again: Rgb::new(factor(most[0]), factor(most[1]), factor(most[2])) }
     }
 
-    /// The reflectance for unpolarised light of a `cosine` of incidence, 0 to 1, in vacuum.
+    /// Reflectance of unpolarised light at a `cosine` of incidence, 0 to 1, in vacuum.
     #[inline]
     pub fn reflectance(&self, cosine: f64) -> Rgb {
         let steps = cosine * Self::STEPS as f64;
@@ -72,46 +72,45 @@ impl Curve {
         a + (b - a) * (steps - before as f64)
     }
 
-    /// The same in a medium of index `outside`, as the sum over wavelengths.
+    /// Reflectance in a medium of index `outside`, summed over wavelengths.
     pub fn reflectance_in(&self, outside: f64, cosine: f64) -> Rgb {
         sum(&self.lines, cosine, outside)
     }
 
-    /// What becomes of light by the mean reflectance of each wavelength for even light from a hemisphere, seen
-    /// together.
+    /// RGB colour of a function of each wavelength's average reflectance.
     pub fn seen(&self, of_mean: impl Fn(f64) -> f64) -> Rgb {
         self.lines.iter().map(|line| line.weight * of_mean(line.mean)).sum()
     }
 
-    /// The same in a medium of index `outside`, by means that are right to 1e-3.
+    /// The same in a medium of index `outside`; averages are accurate to 1e-3.
     pub fn seen_in(&self, outside: f64, of_mean: impl Fn(f64) -> f64) -> Rgb {
         let relative = |x: f64| Rgb::splat(x / outside);
         let mean = |line: &Line| fresnel::ConductorIndex::new(relative(line.eta), relative(line.k)).average()[0];
         self.lines.iter().map(|line| line.weight * of_mean(mean(line))).sum()
     }
 
-    /// What the reflectance is to be multiplied by for light that such a metal has reflected before. It is less than 1
-    /// in a channel that exceeds 1: then at most so much is left of that as of the wavelength that is reflected best,
-    /// at normal incidence. So the red of gold in gold is right to 3 % after two and after five reflections.
+    /// Factor on the reflectance for light that such a metal has reflected before. It is below 1 for a channel that
+    /// exceeds 1. It limits the channel to the best reflected wavelength at normal incidence. The red of gold in gold
+    /// is accurate to 3 % after two and after five reflections.
     #[inline]
     pub fn again(&self) -> Rgb {
         self.again
     }
 }
 
-/// What white light becomes at normal incidence: tables are not for printing.
+/// Prints the reflectance at normal incidence instead of the tables.
 impl fmt::Debug for Curve {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_tuple("Curve").field(&self.reflectance(1.0)).finish()
     }
 }
 
-/// The reflectance at one wavelength.
+/// Reflectance at one wavelength.
 fn at(cosine: f64, eta: f64, k: f64) -> f64 {
     fresnel::conductor(cosine, Rgb::splat(eta), Rgb::splat(k))[0]
 }
 
-/// The colour of a reflectance, in a medium of index `outside`.
+/// RGB reflectance in a medium of index `outside`.
 fn sum(lines: &[Line], cosine: f64, outside: f64) -> Rgb {
     let relative = 1.0 / outside;
     let of = |line: &Line| line.weight * at(cosine, line.eta * relative, line.k * relative);
@@ -138,8 +137,8 @@ mod tests {
     use crate::spectra::{daylight, matching, xyz_to_rgb};
     use glam::DVec3;
 
-    /// The integral over all that is seen, in steps of a tenth of a nm: Fresnel's equations in complex numbers, written
-    /// out.
+    /// Reference integral over all visible wavelengths, in steps of 0.1 nm, with Fresnel's equations in complex
+    /// numbers.
     fn integral(cosine: f64, outside: f64, index: impl Fn(f64) -> (f64, f64)) -> Rgb {
         let (mut seen, mut white) = (DVec3::ZERO, 0.0);
         for i in 0..=4700 {
@@ -152,14 +151,14 @@ mod tests {
         xyz_to_rgb(seen / white)
     }
 
-    /// |(cos θ − n cos θt) / (cos θ + n cos θt)|² and |(n cos θ − cos θt) / (n cos θ + cos θt)|², their mean, for n = η
-    /// + ik.
+    /// Mean of |(cos θ − n cos θt) / (cos θ + n cos θt)|² and |(n cos θ − cos θt) / (n cos θ + cos θt)|², for
+    /// n = η + ik.
     fn textbook(cosine: f64, eta: f64, k: f64) -> f64 {
         let times = |a: [f64; 2], b: [f64; 2]| [a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]];
         let square = |a: [f64; 2]| a[0] * a[0] + a[1] * a[1];
         let n = [eta, k];
         let n2 = times(n, n);
-        // n cos θt = √(n² − sin²θ), of a positive imaginary part.
+        // n cos θt = √(n² − sin²θ), with positive imaginary part.
         let of = [n2[0] - 1.0 + cosine * cosine, n2[1]];
         let length = square(of).sqrt().sqrt();
         let half = of[1].atan2(of[0]) / 2.0;
@@ -193,8 +192,8 @@ mod tests {
 
     #[test]
     fn metals_have_the_colours_of_their_spectra() {
-        // By numpy from the measurements as Mitsuba 3.9 comes with them, with the CIE's tables at every nm. Where the
-        // tables are not the same, as for copper and tungsten, they agree within 0.4 %.
+        // By numpy from the measurements of Mitsuba 3.9, with the CIE's tables at every nm. Where the measurements
+        // differ, as for copper and tungsten, results agree within 0.4 %.
         for (symbol, truth, bound) in [
             ("Ag", [0.97146, 0.95990, 0.91539], 5e-4),
             ("Al", [0.91320, 0.92150, 0.92450], 5e-4),
@@ -252,11 +251,11 @@ mod tests {
             let once = |mu: f64| curve.reflectance(mu);
             let most = (0..=100).map(|i| once(f64::from(i) / 100.0)).fold(Rgb::ZERO, Rgb::at_least);
             assert!((most * curve.again()).max() <= 1.0 + 1e-12 && most.max() < 1.03, "{metal:?}");
-            // The darkest is carbon, which is no metal.
+            // The darkest is carbon, which is not a metal.
             assert!((0..=100).all(|i| once(f64::from(i) / 100.0).min() > 0.1), "{metal:?}");
-            // Only gold's red is beyond the screen's.
+            // Only gold's red is outside the gamut.
             assert_eq!(curve.again() == Rgb::ONE, metal.symbol != "Au", "{metal:?}");
-            // What facets throw on facets for ever is what each wavelength's series gives.
+            // The sum of all interreflections between facets equals the geometric series per wavelength.
             for lost in [0.1, 0.5, 0.999] {
                 let all = curve.seen(|mean| (1.0 - lost) / (1.0 - lost * mean));
                 let series: Rgb = (0..4_000).map(|n| curve.seen(|mean| (1.0 - lost) * (lost * mean).powi(n))).sum();

@@ -1,4 +1,4 @@
-//! The colour of a metal under a film.
+//! RGB reflectance of metals under a thin film.
 
 use super::Metal;
 use crate::Rgb;
@@ -8,32 +8,32 @@ use std::collections::HashMap;
 use std::fmt;
 use std::sync::{LazyLock, PoisonError, RwLock};
 
-/// How a measured metal under a film of one thickness reflects daylight, in linear Rec. 709, as
-/// [`super::Curve`] has it of bare ones: Airy's sum at each wavelength, integrated. A channel that would be less than
-/// 0 is 0, and one may exceed 1.
+/// RGB reflectance of a measured metal under a film of one thickness, in linear Rec. 709 under daylight, like
+/// [`super::Curve`] for bare metals: Airy's sum at each wavelength, integrated. Negative channels are clamped to 0; a
+/// channel may exceed 1.
 pub struct FilmedCurve {
-    /// At cosines of incidence that are the squares of even steps from 0 to 1.
+    /// At cosines of incidence that are squares of equally spaced numbers from 0 to 1.
     values: Vec<Rgb>,
     mean: Rgb,
     again: Rgb,
 }
 
-/// A metal, its film's index and that of the medium around, as bits, and the thickness.
+/// A metal, and the bits of its film's index, the surrounding index and the thickness.
 type Key = (&'static str, [u64; 3]);
 
-/// Those that were asked for. They are few, and stay: scattering functions refer to them.
+/// Cache of all curves computed so far. They are few and never freed, because BSDFs refer to them.
 static KNOWN: LazyLock<RwLock<HashMap<Key, &'static FilmedCurve>>> = LazyLock::new(RwLock::default);
 
 impl FilmedCurve {
-    /// Cubics between so many steps are within 5e-5 of the integral.
+    /// With this number of steps, cubic interpolation is within 5e-5 of the integral.
     const STEPS: usize = 96;
 
-    /// Of a film of this thickness in nm and index in a medium of index `outside`; computed when it is first asked for.
+    /// The curve of a film with this thickness in nm and index, in a medium of index `outside`; computed on first use.
     pub fn of(metal: &'static Metal, thickness: f64, film: f64, outside: f64) -> &'static Self {
-        // Beyond, fringes are too close to be seen, and the film no longer matters.
+        // For thicker films fringes are too dense to be visible, and the thickness no longer matters.
         let thickness = thickness.min(FARTHEST / (2.0 * film));
         let key = (metal.symbol, [film, outside, thickness].map(f64::to_bits));
-        // What panicked left nothing half done.
+        // A poisoned lock is safe: a panic cannot leave a partial entry.
         if let Some(known) = KNOWN.read().unwrap_or_else(PoisonError::into_inner).get(&key) {
             return known;
         }
@@ -43,7 +43,7 @@ impl FilmedCurve {
     }
 
     fn new(index: impl Fn(f64) -> (f64, f64), thickness: f64, film: f64, outside: f64) -> Self {
-        // Every nm: a film on silver has fringes so narrow near grazing incidence.
+        // Every nm, because fringes of a film on silver are that narrow near grazing incidence.
         let lines: Vec<_> = Response::new(Illuminant::Daylight, 1)
             .weights()
             .map(|(nm, weight)| {
@@ -58,7 +58,7 @@ impl FilmedCurve {
         let value = |i| lines.iter().map(|&line| line.1 * at(cosine(i), line)).sum::<Rgb>().at_least(Rgb::ZERO);
         let values: Vec<Rgb> = (0..=Self::STEPS).map(value).collect();
         let most = values.iter().fold(Rgb::ONE, |most, &value| most.at_least(value));
-        // As of a bare metal: what gains light does so once.
+        // As for a bare metal: only one reflection may exceed 1.
         let seen = lines.iter().filter(|line| (400.0..=700.0).contains(&line.0));
         let brightest = seen.map(|&line| at(1.0, line)).fold(0.0, f64::max);
         let factor = |most: f64| if most > 1.0 + 1e-6 { brightest / most } else { 1.0 };
@@ -72,7 +72,7 @@ impl FilmedCurve {
         Self { values, mean, again: most.map(factor) }
     }
 
-    /// Between the values about a root of the cosine, in steps.
+    /// Interpolates the values about a square root of the cosine, in steps.
     #[inline]
     fn at(&self, before: usize, weights: &[f64; 4]) -> Rgb {
         let near = &self.values[before..before + 4];
@@ -80,36 +80,36 @@ impl FilmedCurve {
     }
 }
 
-/// What is white at normal incidence: tables are not for printing.
+/// Prints the reflectance at normal incidence instead of the tables.
 impl fmt::Debug for FilmedCurve {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_tuple("FilmedCurve").field(&self.values[Self::STEPS]).finish()
     }
 }
 
-/// How a measured metal reflects at a point where its film has some thickness.
+/// RGB reflectance of a measured metal at a point, for its film thickness there.
 #[derive(Clone, Copy, Debug)]
 pub enum FilmedMetal {
-    /// As this.
+    /// A single curve.
     One(&'static FilmedCurve),
-    /// Between four of even steps of thickness, and so much of a step beyond the second.
+    /// Cubic interpolation between four equally spaced thicknesses, at this fraction of a step beyond the second.
     Between([&'static FilmedCurve; 4], f64),
 }
 
 impl FilmedMetal {
-    /// The step in thickness, in nm, for a film of this index. Cubics between films that differ by so much are within
+    /// Step in thickness, in nm, for a film of this index. Cubic interpolation between films at these steps is within
     /// 3e-4 of the integral up to 66 degrees, within 2e-3 up to 87, and within 5e-3 beyond, where fringes are narrow.
     pub fn step(film: f64) -> f64 {
         Self::WAY / (2.0 * film)
     }
 
-    /// What a step is to light that goes there and back.
+    /// Optical path difference of a step.
     const WAY: f64 = 8.0;
 
-    /// As many steps as make a film so thick that its fringes are too close to be seen.
+    /// Number of steps at which fringes become too dense to be visible.
     pub const MOST: f64 = FARTHEST / Self::WAY;
 
-    /// For unpolarised light of a `cosine` of incidence, 0 to 1.
+    /// Reflectance of unpolarised light at a `cosine` of incidence, 0 to 1.
     pub fn reflectance(&self, cosine: f64) -> Rgb {
         let steps = cosine.clamp(0.0, 1.0).sqrt() * FilmedCurve::STEPS as f64;
         let before = (steps as usize).clamp(1, FilmedCurve::STEPS - 2) - 1;
@@ -122,7 +122,7 @@ impl FilmedMetal {
         value.at_least(Rgb::ZERO)
     }
 
-    /// The share of even light from a hemisphere that is reflected.
+    /// Cosine-weighted average of the reflectance.
     pub fn average(&self) -> Rgb {
         match self {
             Self::One(curve) => curve.mean,
@@ -143,7 +143,7 @@ fn weighed(values: [Rgb; 4], weights: &[f64; 4]) -> Rgb {
     values[0] * weights[0] + values[1] * weights[1] + values[2] * weights[2] + values[3] * weights[3]
 }
 
-/// The weights of values at −1, 0, 1 and 2 in the cubic through them.
+/// Weights of the values at −1, 0, 1 and 2 in the cubic through them.
 #[inline]
 fn cubic(t: f64) -> [f64; 4] {
     let (up, down, far) = (t + 1.0, 1.0 - t, 2.0 - t);
@@ -155,7 +155,7 @@ mod tests {
     use super::super::{METALS, metal};
     use super::*;
 
-    /// The integral over every nm.
+    /// Integral over every nm.
     fn integral(metal: &Metal, thickness: f64, film: f64, cosine: f64) -> Rgb {
         Response::new(Illuminant::Daylight, 1).seen(|nm| {
             let (eta, k) = metal.index_at(nm);

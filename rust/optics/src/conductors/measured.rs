@@ -1,14 +1,14 @@
-//! The measurements.
+//! Measured indices of refraction.
 
 use super::Metal;
 
-/// Every metal that is known, and carbon, which reflects as one does, by symbol: wavelength in nm, η and k.
+/// All known metals, and carbon, which reflects like one, by symbol: wavelength in nm, η and k.
 ///
-/// Those of "Handbook of Optical Constants of Solids", of metals of which it has the better measurements, are as
-/// luxpop.com has them; the others as refractiveindex.info does (Polyanskiy, 2024). Of finer tables those rows are kept
-/// between whose lines the others lie to 0.15 %.
+/// Data from the "Handbook of Optical Constants of Solids", where its measurements are better, is as on luxpop.com.
+/// Other data is from refractiveindex.info (Polyanskiy, 2024). Finer tables are thinned so that linear interpolation is
+/// within 0.15 % of the omitted rows.
 #[rustfmt::skip]
-// Tungsten's k only looks like e.
+// Tungsten's k resembles the constant e by chance.
 #[allow(clippy::approx_constant)]
 pub static METALS: [Metal; 32] = [
     // Lynch and Hunter, in Palik (ed.), "Handbook of Optical Constants of Solids", 1985.
@@ -27,8 +27,8 @@ pub static METALS: [Metal; 32] = [
         [619.92, 1.3, 7.48], [652.55, 1.49, 7.82], [688.8, 1.74, 8.21], [729.32, 2.14, 8.57], [774.9, 2.63, 8.6],
         [826.56, 2.74, 8.31], [885.6, 2.24, 8.21],
     ]),
-    // Lynch and Hunter, in Palik (ed.), "Handbook of Optical Constants of Solids", 1985; every other row is between
-    // two of theirs.
+    // Lynch and Hunter, in Palik (ed.), "Handbook of Optical Constants of Solids", 1985; every other row is
+    // interpolated between two of theirs.
     Metal::new("Au", "gold", &[
         [359.37, 1.7276, 1.8524], [364.66, 1.716, 1.862], [370.1, 1.7059, 1.883], [375.71, 1.696, 1.906],
         [381.49, 1.6848, 1.9225], [387.45, 1.674, 1.936], [393.6, 1.666, 1.9478], [399.95, 1.658, 1.956],

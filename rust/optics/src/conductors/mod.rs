@@ -1,4 +1,4 @@
-//! Metals as they were measured.
+//! Measured metals.
 
 mod curve;
 mod filmed;
@@ -14,14 +14,14 @@ use super::spectra;
 use std::fmt;
 use std::sync::OnceLock;
 
-/// A metal, whose complex index of refraction η + ik was measured at wavelengths from below [`spectra::FIRST`] to
-/// beyond [`spectra::LAST`].
+/// A metal whose complex index of refraction η + ik was measured at wavelengths from below [`spectra::FIRST`] to beyond
+/// [`spectra::LAST`].
 pub struct Metal {
     /// Chemical symbol.
     pub symbol: &'static str,
     /// English name.
     pub name: &'static str,
-    /// Wavelengths in nm, which rise, and η and k there.
+    /// Wavelengths in nm, increasing, with η and k.
     pub index: &'static [[f64; 3]],
     curve: OnceLock<Curve>,
 }
@@ -31,29 +31,29 @@ impl Metal {
         Self { symbol, name, index, curve: OnceLock::new() }
     }
 
-    /// η and k at a wavelength that is seen, linear between those measured.
+    /// η and k at a visible wavelength, linearly interpolated.
     ///
     /// # Panics
-    /// For one that is not seen.
+    /// For an invisible wavelength.
     pub fn index_at(&self, wavelength: f64) -> (f64, f64) {
         let [_, eta, k] = spectra::at(self.index, wavelength).expect("what is seen was measured");
         (eta, k)
     }
 
-    /// How it reflects in red, green and blue; computed when it is first asked for.
+    /// RGB reflectance; computed on first use.
     pub fn curve(&self) -> &Curve {
         self.curve.get_or_init(|| Curve::new(|wavelength| self.index_at(wavelength)))
     }
 }
 
-/// Its symbol: tables are not for printing.
+/// Prints the symbol instead of the tables.
 impl fmt::Debug for Metal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.symbol)
     }
 }
 
-/// The metal of a chemical symbol or an English name, in any case of letters.
+/// Finds a metal by chemical symbol or English name, case-insensitively.
 pub fn metal(name: &str) -> Option<&'static Metal> {
     METALS.iter().find(|metal| name.eq_ignore_ascii_case(metal.symbol) || name.eq_ignore_ascii_case(metal.name))
 }

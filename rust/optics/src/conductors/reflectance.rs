@@ -1,4 +1,4 @@
-//! What conductors reflect.
+//! Reflectance of conductors.
 
 use super::{Curve, FilmedMetal, Metal};
 use crate::Rgb;
@@ -6,37 +6,37 @@ use crate::fresnel::ConductorIndex;
 use crate::spectra::Waves;
 use crate::thin_film::{self, Complex};
 
-/// What a conductor reflects, by the cosine of incidence.
+/// Reflectance of a conductor as a function of the cosine of incidence.
 #[derive(Clone, Copy, Debug)]
 pub enum Reflectance {
-    /// By an index of refraction relative to the medium around it, channel by channel.
+    /// From a complex index of refraction relative to the surroundings, per channel.
     Index(ConductorIndex),
-    /// A measured metal's, by wavelength.
+    /// Of a measured metal in vacuum, integrated over wavelengths.
     Metal(&'static Curve),
-    /// The same in a medium of an index of refraction.
+    /// Of a measured metal in a medium with this index of refraction.
     Within(&'static Curve, f64),
-    /// By an index of refraction η + ik, channel by channel, under a film.
+    /// From a complex index of refraction η + ik per channel, under a film.
     Filmed {
-        /// How thick the film is, in nm.
+        /// Thickness of the film in nm.
         thickness: f64,
-        /// The indices of refraction of the medium around and of the film.
+        /// Indices of refraction of the surroundings and the film.
         layers: [f64; 2],
-        /// That of the conductor.
+        /// Index of refraction of the conductor.
         index: (Rgb, Rgb),
-        /// The wavelengths that the channels stand for; none for red, green and blue.
+        /// Wavelengths of the channels; `None` for red, green and blue.
         waves: Option<Waves>,
     },
-    /// A measured metal's under a film, by wavelength.
+    /// Of a measured metal under a film, integrated over wavelengths.
     FilmedMetal(FilmedMetal),
 }
 
 impl Reflectance {
-    /// Of a metal in a medium of index `outside`; 1 is vacuum.
+    /// Reflectance of a metal in a medium of index `outside`; 1 is vacuum.
     pub fn of(metal: &'static Metal, outside: f64) -> Self {
         if outside == 1.0 { Self::Metal(metal.curve()) } else { Self::Within(metal.curve(), outside) }
     }
 
-    /// For unpolarised light of a `cosine` of incidence, 0 to 1.
+    /// Reflectance of unpolarised light at a `cosine` of incidence, 0 to 1.
     #[inline]
     pub fn at(&self, cosine: f64) -> Rgb {
         match self {
@@ -57,7 +57,7 @@ impl Reflectance {
         }
     }
 
-    /// The share of even light from a hemisphere that is reflected.
+    /// Cosine-weighted average of the reflectance.
     pub fn average(&self) -> Rgb {
         match self {
             Self::Index(index) => index.average(),
@@ -67,8 +67,7 @@ impl Reflectance {
         }
     }
 
-    /// What becomes of light by the mean reflectance for even light from a hemisphere: channel by channel, or of a
-    /// bare metal by wavelength, seen together.
+    /// A function of the average reflectance: per channel or, for a bare metal, per wavelength and converted to RGB.
     pub fn seen(&self, of_mean: impl Fn(f64) -> f64) -> Rgb {
         match self {
             Self::Index(index) => index.average().map(of_mean),

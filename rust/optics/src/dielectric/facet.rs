@@ -1,4 +1,4 @@
-//! A facet of a rough interface, and what it does with light.
+//! Scattering by a single facet of a rough interface.
 
 use super::{above, open};
 use crate::split::Share;
@@ -8,27 +8,27 @@ use raywright_base::math::{DVec3, LANES, in_lanes, select};
 /// A facet that mirrors or refracts one direction to another.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Facet {
-    /// How dense facets are about its normal; 0 where there is none.
+    /// Facet density about its normal; 0 if there is no such facet.
     pub density: f64,
-    /// The cosines to both directions, each on its side of the facet.
+    /// Cosines to both directions, each on its side of the facet.
     pub cosines: [f64; 2],
-    /// |wo + η wi|², where it refracts.
+    /// |wo + η wi|², for refraction.
     pub square: f64,
 }
 
 in_lanes! {
-    /// Facets, a lane each.
+    /// Facets, one per lane.
     FacetLanes of Facet { density: f64, cosines: [f64; 2], square: f64 }
 }
 
 impl FacetLanes {
-    /// The cosines to where light goes to.
+    /// Cosines to the outgoing directions.
     pub(super) fn cosines(&self) -> &[f64; LANES] {
         &self.cosines[0]
     }
 }
 
-/// Draws the normal of a facet as seen from `wo`, on its side.
+/// Samples the normal of a facet visible from `wo`, on its side.
 #[inline(always)]
 pub(super) fn seen<F: Facets>(facets: &F, wo: DVec3, u: [f64; 2]) -> DVec3 {
     let h = facets.sample_visible(above(wo), u);
@@ -36,17 +36,18 @@ pub(super) fn seen<F: Facets>(facets: &F, wo: DVec3, u: [f64; 2]) -> DVec3 {
 }
 
 impl Facet {
-    /// That which mirrors.
+    /// The facet that mirrors one direction to another.
     #[inline(always)]
     pub fn mirroring<F: Facets>(facets: &F, [wo, wi]: [DVec3; 2]) -> Self {
         let (density, cosine) = facets.mirroring(above(wo), above(wi));
         Self { density, cosines: [cosine; 2], square: 1.0 }
     }
 
-    /// That which refracts, with `eta` the index beyond over that on the side of `wo`.
+    /// The facet that refracts one direction to another; `eta` is the index beyond over that on the side of `wo`.
     #[inline(always)]
     pub fn refracting<F: Facets>(facets: &F, eta: f64, [wo, wi]: [DVec3; 2]) -> Self {
-        // The facet's normal, on the side of wo; the length holds the Jacobian (Walter et al., 2007, eq. 16 and 17).
+        // The facet's normal, on the side of wo; its length is needed in the Jacobian (Walter et al., 2007, eq. 16 and
+        // 17).
         let q = wo + wi * eta;
         let q = select(q.z * wo.z < 0.0, -q, q);
         let square = q.length_squared();
@@ -57,14 +58,14 @@ impl Facet {
         Self { density, cosines: [o, i], square: if is_any { square } else { 1.0 } }
     }
 
-    /// That which does what the sides of the directions ask for.
+    /// The facet for the sides of both directions.
     #[inline]
     pub fn between<F: Facets>(facets: &F, eta: f64, directions: [DVec3; 2]) -> Self {
         let [wo, wi] = directions;
         if wo.z * wi.z < 0.0 { Self::refracting(facets, eta, directions) } else { Self::mirroring(facets, directions) }
     }
 
-    /// One of two, without a branch.
+    /// Branch-free selection.
     #[inline(always)]
     pub fn select(first: bool, a: Self, b: Self) -> Self {
         let of = |a: f64, b: f64| if first { a } else { b };
@@ -75,7 +76,7 @@ impl Facet {
         }
     }
 
-    /// What it mirrors of light, and the density of a draw; with `eta` the index beyond over that on the side of `wo`.
+    /// Value and density of reflection; `eta` is the index beyond over that on the side of `wo`.
     #[inline(always)]
     pub fn mirrored<F: Facets, S: Share>(
         &self,
@@ -90,7 +91,7 @@ impl Facet {
             None => divided.reflectance * self.density * geometry,
             Some(bare) => {
                 let open = open::openness(facets, wo, (wo + wi).normalize(), eta) / (4.0 * o.z);
-                // No more than that is open, but for rounding.
+                // The open part cannot exceed the geometry factor, except for rounding.
                 let open = open.min(geometry);
                 (divided.reflectance * open).plus(bare * (geometry - open)) * self.density
             }
@@ -98,7 +99,7 @@ impl Facet {
         (seen, facets.reflected_pdf(o, divided.chance * self.density))
     }
 
-    /// What it refracts, and the density of a draw; nothing where there is none.
+    /// Value and density of refraction; zero if there is none.
     #[inline(always)]
     pub fn refracted<F: Facets, S: Share>(
         &self,
@@ -125,45 +126,45 @@ impl Facet {
     }
 }
 
-/// How a facet divides light.
+/// Division of light at a facet.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Divided<S> {
-    /// The share that is reflected.
+    /// Reflectance.
     pub reflectance: S,
-    /// How often a reflection is drawn.
+    /// Sampling probability of reflection.
     pub chance: f64,
-    /// What a bare facet would reflect, where that is something else and what is lost is given back.
+    /// Reflectance of a bare facet, if it differs and losses are compensated.
     pub bare: Option<f64>,
 }
 
 impl<S: Share> Divided<S> {
-    /// By what is reflected alone.
+    /// Division from the reflectance alone.
     #[inline(always)]
     pub fn of(reflectance: S) -> Self {
         Self { reflectance, chance: reflectance.chance(), bare: None }
     }
 }
 
-/// Where light comes from that a facet sends to `wo`.
+/// An incident direction that a facet scatters to `wo`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bent {
     pub wi: DVec3,
     pub facet: Facet,
-    /// Whether it is refracted.
+    /// True for refraction.
     pub is_through: bool,
-    /// Whether there is such light: it is on the side that it should be.
+    /// True if the direction is on the correct side.
     pub is_any: bool,
 }
 
 impl Bent {
-    /// Mirrored or refracted at a facet of the normal `h`, on the side of `wo`, with `eta` the index beyond.
+    /// Reflects or refracts at a facet with normal `h`, on the side of `wo`; `eta` is the index beyond.
     #[inline(always)]
     pub fn new<F: Facets>(facets: &F, eta: f64, wo: DVec3, h: DVec3, is_mirrored: bool) -> Self {
         let o = wo.dot(h);
         let mirrored = h * (2.0 * o) - wo;
-        // Both are computed, and one is taken: lanes have no branches.
+        // Both are computed and one is selected, because lanes have no branches.
         let (bent, is_total) = fresnel::refracted(wo, h, eta);
-        // |wo + η wi| without the rounding of either: near index 1 it is all that tells directions apart.
+        // |wo + η wi| without rounding either; near index 1 the small difference carries all information.
         let e = (eta - 1.0) * (eta + 1.0);
         let g = (e + o * o).sqrt();
         let root = e / (o + g);

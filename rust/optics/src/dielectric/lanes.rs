@@ -1,4 +1,4 @@
-//! Glass by lane.
+//! Dielectric interfaces in batches of lanes.
 
 use super::facet::{Bent, Divided, Facet, FacetLanes, seen};
 use super::{Dielectric, Known, KnownLanes, Rough, Single};
@@ -13,15 +13,15 @@ use raywright_base::simd::{Level, loops};
 use std::array::from_fn;
 use std::marker::PhantomData;
 
-/// What is known of dielectric interfaces, a lane each, and of a direction that light goes to.
+/// Dielectric interfaces in structure-of-arrays form, each with an outgoing direction.
 #[derive(Clone, Debug)]
 pub struct DielectricLanes<F> {
-    /// The index below over the index above.
+    /// Index of refraction below over index above.
     etas: [f64; LANES],
     is_rough: [bool; LANES],
     alpha: [f64; LANES],
     known: KnownLanes,
-    /// Where light goes that is given back, above and below.
+    /// Distributions of the compensation lobe, above and below.
     grazing: [GrazingLanes; 2],
     kind: PhantomData<F>,
 }
@@ -31,7 +31,7 @@ impl<F: Lossy, S: Split> LaneBsdf for Dielectric<F, S> {
 }
 
 loops! {
-    /// The cosines of directions.
+    /// Cosines of directions.
     fn cosine(wo: &VectorLanes, cosines: &mut [f64; LANES]) {
         for i in 0..LANES {
             cosines[i] = wo.get(i).z.abs();
@@ -40,7 +40,7 @@ loops! {
 }
 
 loops! {
-    /// One of two directions in each lane that asks, where interfaces are smooth and reflect a share.
+    /// Samples smooth interfaces with the given reflectances, in lanes with a set flag.
     fn draw<F: Facets, S: Share>(
         of: &DielectricLanes<F>,
         wo: &VectorLanes,
@@ -67,7 +67,7 @@ loops! {
 }
 
 loops! {
-    /// Facets as they are seen, and the cosines to them.
+    /// Samples visible facets, and the cosines to them.
     fn look<F: Facets>(
         of: &DielectricLanes<F>,
         wo: &VectorLanes,
@@ -85,8 +85,8 @@ loops! {
 }
 
 loops! {
-    /// Where light comes from that they mirror or refract, by how often they are to mirror it, in the lanes that ask
-    /// and have such light.
+    /// Reflects or refracts at facets by the given probabilities of reflection. Only lanes with a set flag and a valid
+    /// direction are kept.
     fn bend<F: Facets>(
         of: &DielectricLanes<F>,
         wo: &VectorLanes,
@@ -110,7 +110,7 @@ loops! {
 }
 
 loops! {
-    /// The facets that scatter light between two directions.
+    /// Facets that scatter between two directions.
     fn meet<F: Facets>(of: &DielectricLanes<F>, wo: &VectorLanes, wi: &VectorLanes, facets: &mut FacetLanes) {
         for i in 0..LANES {
             let (directions, eta) = ([wo.get(i), wi.get(i)], beyond(of.etas[i], wo.get(i)));
@@ -122,7 +122,7 @@ loops! {
 }
 
 loops! {
-    /// What facets scatter, by what was looked up: how much they reflect, and what is given back.
+    /// Values of facets, from looked-up reflectances and losses.
     fn scatter<F: Facets, S: Share>(
         of: &DielectricLanes<F>,
         wo: &VectorLanes,
@@ -154,7 +154,7 @@ loops! {
 }
 
 loops! {
-    /// From what is scattered to what a throughput is multiplied by, and on which side.
+    /// Converts values to throughput factors, and finds the side.
     fn weigh<F: Facets>(
         of: &DielectricLanes<F>,
         wo: &VectorLanes,
@@ -180,7 +180,7 @@ impl<F: Facets> DielectricLanes<F> {
 }
 
 impl<F: Lossy> DielectricLanes<F> {
-    /// What facets scatter in the lanes that ask, of which both directions are seen.
+    /// Values of facets in lanes with a set flag and two visible directions.
     fn scattered<'a, S: Split + 'a>(
         &self,
         level: Level,
@@ -193,7 +193,7 @@ impl<F: Lossy> DielectricLanes<F> {
         F: 'a,
     {
         if Dielectric::<F, S>::WEIGHS_BARE {
-            // How open facets are asks for branches.
+            // The openness of facets needs branches.
             (*value, *pdf) = (RgbLanes::ZERO, [0.0; LANES]);
             for lane in (0..LANES).filter(|&lane| asks[lane]) {
                 let Some((of, rough)) = each(lane).and_then(|of| Some((of, of.rough.as_ref()?))) else { continue };
@@ -215,7 +215,7 @@ impl<F: Lossy> DielectricLanes<F> {
         scatter::<F, S::Share>(level, self, wo, wi, facets, &reflectance, &back, asks, value, pdf);
     }
 
-    /// The shares that interfaces reflect at cosines of incidence, in the lanes that ask.
+    /// Reflectances at cosines of incidence, in lanes with a set flag.
     fn reflectances<'a, S: Split + 'a>(
         &self,
         level: Level,
@@ -232,7 +232,7 @@ impl<F: Lossy> DielectricLanes<F> {
         shares
     }
 
-    /// How often facets are to mirror light at cosines of incidence, in the lanes that ask.
+    /// Sampling probabilities of reflection at cosines of incidence, in lanes with a set flag.
     fn chances<'a, S: Split + 'a>(
         &self,
         level: Level,
@@ -254,7 +254,7 @@ impl<F: Lossy> DielectricLanes<F> {
         })
     }
 
-    /// What is drawn in lanes that ask and are smooth.
+    /// Samples smooth interfaces, in lanes with a set flag.
     fn sample_smooth<'a, S: Split + 'a>(
         &self,
         level: Level,

@@ -1,14 +1,14 @@
-//! How much of what a facet divides nothing stops.
+//! Share of a facet's light that no other facet blocks.
 
 use super::above;
 use crate::{Facets, fresnel};
 use glam::DVec3;
 
-/// The share of the facets about `h` from which light gets away on either side, be it reflected or refracted: seen from
-/// `wo` and its mirror image, and from the two directions to which these are refracted, with `eta` the index beyond
-/// over that on the side of `wo`. It is the same for all four.
+/// Share of the facets about `h` whose light escapes on both sides, reflected or refracted. The four directions are
+/// `wo`, its mirror image, and the two directions that these refract to; `eta` is the index beyond over that on the
+/// side of `wo`. The share is the same from all four.
 ///
-/// It is the lesser of the shares that reflections on the two sides see of them, which is at most what refractions see.
+/// It is the smaller of the shares visible to reflections on both sides, and thus at most that of refractions.
 pub fn openness<F: Facets>(facets: &F, wo: DVec3, h: DVec3, eta: f64) -> f64 {
     let Some(through) = fresnel::refract(wo, h, eta) else { return 0.0 };
     let mirrored = |w: DVec3| h * (2.0 * w.dot(h)) - w;
@@ -38,11 +38,11 @@ mod tests {
             let mirrored = |w: DVec3| h * (2.0 * w.dot(h)) - w;
             let share = openness(&facets, wo, h, eta);
             open += i32::from(share > 0.0);
-            // From below the facet has the other side, and the index is that of the other way.
+            // From below, the facet has the opposite normal and the index is inverted.
             for (w, h, eta) in [(mirrored(wo), h, eta), (through, -h, 1.0 / eta), (mirrored(through), -h, 1.0 / eta)] {
                 assert!((openness(&facets, w, h, eta) - share).abs() < 1e-9, "{wo} {h} {eta}");
             }
-            // It is no more than any of the ways sees.
+            // It does not exceed the share of any path.
             let other = mirrored(wo);
             if other.z > 0.0 {
                 assert!(share <= facets.reflection_geometry(wo, other) * 4.0 * wo.z + 1e-12);

@@ -1,4 +1,4 @@
-//! The material of glTF by lane.
+//! Metallic-roughness BRDFs in batches of lanes.
 
 use super::{Ends, MetallicRough, above, diffuse, mirrored, mirrors};
 use crate::bsdf_columns::{BsdfColumns, LaneBsdf};
@@ -9,7 +9,7 @@ use raywright_base::sampling::Pairs;
 use raywright_base::simd::{Level, loops};
 use std::array::from_fn;
 
-/// What is known of such materials, a lane each, and of a direction that light goes to.
+/// Metallic-roughness BRDFs in structure-of-arrays form, each with an outgoing direction.
 #[derive(Clone, Debug)]
 pub struct MetallicRoughLanes {
     is_rough: [bool; LANES],
@@ -18,11 +18,11 @@ pub struct MetallicRoughLanes {
     multiple: RgbLanes,
     f0: RgbLanes,
     f90: [f64; LANES],
-    /// What is not metal reflects at normal and at grazing incidence.
+    /// Reflectances of the dielectric at normal and grazing incidence.
     dielectric: [[f64; LANES]; 2],
     grazing: GrazingLanes,
     wo: VectorLanes,
-    /// What facets reflect once of light to `wo`, and how often a draw is that, and what metal scatters more than once.
+    /// Single-scattering albedos of `wo`, and sampling probabilities of single and multiple scattering.
     once: [[f64; LANES]; 2],
     shares: [[f64; LANES]; 2],
 }
@@ -32,7 +32,7 @@ impl LaneBsdf for MetallicRough {
 }
 
 loops! {
-    /// How facets mirror between two directions, and Schlick's term of light from there.
+    /// Facets that mirror between two directions, and Schlick's weight of the incident one.
     fn mirror(
         of: &MetallicRoughLanes,
         wi: &VectorLanes,
@@ -49,7 +49,7 @@ loops! {
 }
 
 loops! {
-    /// What is scattered, by what was told and looked up.
+    /// BRDF values from the precomputed and looked-up data.
     fn scatter(
         of: &MetallicRoughLanes,
         wi: &VectorLanes,
@@ -82,7 +82,7 @@ loops! {
 }
 
 loops! {
-    /// Directions from which facets reflect, above, or by the cosine.
+    /// Samples incident directions above: by facet reflection, or by cosine.
     fn draw(of: &MetallicRoughLanes, choice: &[f64; LANES], u: &Pairs, wi: &mut VectorLanes) {
         for i in 0..LANES {
             let (up, u) = (above(of.wo.get(i)), [u[0][i], u[1][i]]);
@@ -93,8 +93,8 @@ loops! {
 }
 
 loops! {
-    /// From directions above to those on the side of `wo`, in the lanes that ask and are seen: `is_single` where that
-    /// is the mirror image.
+    /// Mirrors directions to the side of `wo`, in lanes with a set flag and a visible `wo`; `is_single` marks delta
+    /// samples.
     fn turn(
         of: &MetallicRoughLanes,
         choice: &[f64; LANES],
@@ -113,7 +113,7 @@ loops! {
 }
 
 loops! {
-    /// From what is scattered to what a throughput is multiplied by; of single directions it is the facets'.
+    /// Converts values to throughput factors; a delta sample has that of the facets.
     fn weigh(of: &MetallicRoughLanes, is_single: &[bool; LANES], pdf: &mut [f64; LANES], value: &mut RgbLanes) {
         for i in 0..LANES {
             let single = fresnel::schlick_between(of.wo.get(i).z.abs(), of.f0.get(i), of.f90[i]) / of.shares[0][i];

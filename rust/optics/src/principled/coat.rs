@@ -1,4 +1,4 @@
-//! Facets of a clear coat.
+//! The clear coat of the principled models.
 
 use crate::{Facets, Ggx, Rgb, fresnel};
 use raywright_base::math::exponential::exp;
@@ -6,7 +6,7 @@ use raywright_base::math::turn::sin_cos_turn;
 use raywright_base::math::{DVec3, in_lanes};
 use std::f64::consts::PI;
 
-/// Facets of tails so long that they glow, for coats: Burley's (2012) generalisation of GGX with an exponent of 1.
+/// A facet distribution with very long tails, for coats: GTR with exponent 1 (Burley, 2012).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Gtr1 {
     /// α², and its logarithm.
@@ -15,12 +15,12 @@ pub(super) struct Gtr1 {
 }
 
 in_lanes! {
-    /// Such facets, a lane each.
+    /// Such distributions, one per lane.
     Gtr1Lanes of Gtr1 { square: f64, log: f64 }
 }
 
 impl Gtr1 {
-    /// The coat's reflectance at normal incidence, and the roughness by which it is masked.
+    /// Reflectance of the coat at normal incidence, and the roughness of its masking term.
     pub(super) const COAT: f64 = 0.04;
     pub(super) const MASKED: f64 = 0.25;
 
@@ -29,21 +29,21 @@ impl Gtr1 {
         Self { square, log: square.ln() }
     }
 
-    /// Of a coat's gloss, 0 to 1.
+    /// Creates the distribution from a coat's gloss, 0 to 1.
     pub(super) fn of_gloss(gloss: f64) -> Self {
         Self::new(0.1 + (0.001 - 0.1) * gloss)
     }
 
-    /// What a whole coat reflects between two directions above, with its cosine, by how dense facets are that mirror
-    /// them, and the cosine to both.
+    /// Value of a full coat between two directions above, with its cosine, from the density of the mirroring facets and
+    /// the cosine to both.
     #[inline(always)]
     pub(super) fn reflected(&self, density: f64, cosine: f64, [o, i]: [DVec3; 2]) -> f64 {
         let masked = Ggx::new([Self::MASKED; 2]);
         fresnel::schlick(cosine, Rgb::splat(Self::COAT))[0] * density * masked.masking(o) * masked.masking(i) * i.z
     }
 
-    /// A quarter of what [`Gtr1::albedo`] is, as a polynomial in the cosine, of coefficients that are linear in 1 / ln
-    /// α². They were fitted to integrals, for α from 0.001 to 0.1, and are off by at most 0.0004.
+    /// Coefficients of a quarter of [`Gtr1::albedo`], a polynomial in the cosine. They are linear in 1 / ln α². They
+    /// were fitted to integrals for α from 0.001 to 0.1, with an error of at most 0.0004.
     #[inline(always)]
     fn terms(&self) -> [f64; 6] {
         const EVEN: [f64; 6] = [-0.03265, 0.81227, -2.94051, 4.50073, -3.106, 0.80561];
@@ -52,13 +52,13 @@ impl Gtr1 {
         std::array::from_fn(|k| 4.0 * (EVEN[k] + SLOPE[k] * width))
     }
 
-    /// The share of light of a cosine that a whole coat reflects.
+    /// Directional albedo of a full coat for a cosine.
     #[inline(always)]
     pub(super) fn albedo(&self, cosine: f64) -> f64 {
         self.terms().into_iter().rev().fold(0.0, |sum, term| (sum + term) * cosine).max(0.0)
     }
 
-    /// Its mean over even light.
+    /// Cosine-weighted average of the albedo.
     #[inline(always)]
     pub(super) fn albedo_average(&self) -> f64 {
         self.terms().into_iter().enumerate().map(|(k, term)| 2.0 * term / (k as f64 + 3.0)).sum()
@@ -70,7 +70,7 @@ impl Gtr1 {
         (square - 1.0) / (PI * self.log * (1.0 + (square - 1.0) * h.z * h.z))
     }
 
-    /// Draws a normal with density D cos θ.
+    /// Samples a normal with density D cos θ.
     #[inline(always)]
     pub(super) fn sample(&self, u: [f64; 2]) -> DVec3 {
         let height = ((1.0 - exp(self.log * (1.0 - u[1]))) / (1.0 - self.square)).clamp(0.0, 1.0);

@@ -1,4 +1,4 @@
-//! The principled model with all of its light.
+//! The energy-conserving principled BSDF.
 
 use super::shares::DielectricShares;
 use super::{Gtr1, Look};
@@ -11,44 +11,45 @@ use crate::{Bsdf, BsdfSample, Dielectric, Facets, Ggx, Rgb, Tinted, fresnel};
 use raywright_base::math::DVec3;
 use std::f64::consts::FRAC_1_PI;
 
-/// The principled model (Burley, 2012 and 2015) without gain or loss: a mixture of metal, of a matt base under a
-/// dielectric, and of clear dielectric, each of which gives back all of its light, with a clear coat on the former two.
+/// The principled model (Burley, 2012 and 2015) with energy conservation. It is a mixture of metal, of a diffuse base
+/// under a dielectric, and of a clear dielectric, each energy-conserving; the first two have a clear coat.
 ///
-/// What facets of metal lose is made up for (Kulla and Conty, 2017). The base gets what the facets above leave,
-/// (1 − R(wo)) (1 − R(wi)) / (π (1 − R̄)), and spreads it over azimuths as Burley's does. Clear dielectric is
-/// [`Dielectric`]. A coat that reflects E(ω), k at most, leaves 1 − k to what is below, and the rest is scattered
-/// evenly in the base's colour, (k − E(wo)) (k − E(wi)) / (π (k − Ē)). All is reciprocal, and white where the base is.
+/// Losses of metal facets are compensated (Kulla and Conty, 2017). The base gets the light that facets above transmit,
+/// (1 − R(wo)) (1 − R(wi)) / (π (1 − R̄)), and distributes it over azimuths like Burley's. The clear dielectric is
+/// [`Dielectric`]. A coat with reflectance E(ω), k at most, transmits 1 − k to the layer below. The rest is scattered
+/// diffusely in the base colour, (k − E(wo)) (k − E(wi)) / (π (k − Ē)). Everything is reciprocal, and white if the base
+/// is.
 ///
-/// What lets no light through is the same on both sides.
+/// An opaque surface is the same on both sides.
 #[derive(Clone, Copy, Debug)]
 pub struct LayeredPrincipled {
     look: Look,
-    /// Those of metal; of what is none they are alike in all directions.
+    /// Facets of metal; isotropic if there is no metal.
     facets: Ggx,
-    /// The index below over that above.
+    /// Index of refraction below over that above.
     eta: f64,
     metallic: f64,
-    /// How much of a coat there is.
+    /// Weight of the coat.
     coat: f64,
     gloss: Gtr1,
-    /// One over π and the mean of what reaches the base.
+    /// One over π and the mean transmittance to the base.
     base: Rgb,
-    /// What metal scatters more than once, over π and the mean loss.
+    /// Multiple scattering of metal, over π and the mean loss.
     multiple: Rgb,
 }
 
-/// What is known of light from a direction above.
+/// Precomputed data of a direction above.
 #[derive(Clone, Copy, Debug)]
 struct Known {
-    /// What facets of metal lose as mirrors.
+    /// Loss of perfectly reflecting metal facets.
     lost: f64,
-    /// What facets of the dielectric over the base reflect.
+    /// Albedo of the dielectric facets over the base.
     reflected: Rgb,
-    /// What the coat reflects.
+    /// Albedo of the coat.
     coated: f64,
 }
 
-/// The probabilities of the lobes; clear dielectric has the rest.
+/// Sampling probabilities of the lobes; the clear dielectric has the rest.
 #[derive(Clone, Copy, Debug)]
 struct Shares {
     /// Facets of metal, and of the dielectric over the base.
@@ -60,7 +61,7 @@ struct Shares {
 }
 
 impl Shares {
-    /// The choices up to the end of each.
+    /// Cumulative probabilities.
     #[inline(always)]
     fn ends(&self) -> [f64; 5] {
         let mut end = 0.0;
@@ -70,17 +71,18 @@ impl Shares {
         })
     }
 
-    /// That of clear dielectric.
+    /// Probability of the clear dielectric.
     #[inline(always)]
     fn clear(&self) -> f64 {
         let left = 1.0 - self.ends()[4];
-        // But for roundings.
+        // Drops a remainder that is only rounding.
         if left > 1e-12 { left } else { 0.0 }
     }
 }
 
 impl LayeredPrincipled {
-    /// Of a look, the index of refraction below over that above, a metalness, a coat and its gloss.
+    /// Creates the BSDF from its parameters, the index of refraction below over that above, a metalness, a coat and its
+    /// gloss.
     pub fn new(look: Look, eta: f64, metallic: f64, [coat, gloss]: [f64; 2]) -> Self {
         // At an index of 1 there would be no surface.
         let eta = if (eta - 1.0).abs() < 1e-3 { 1.001 } else { fresnel::bounded(eta) };
@@ -103,27 +105,28 @@ impl LayeredPrincipled {
         made
     }
 
-    /// The shares of metal, of what is matt, and of what is clear.
+    /// Weights of metal, diffuse base and clear dielectric.
     #[inline(always)]
     fn bodies(&self) -> [f64; 3] {
         let (plain, through) = (1.0 - self.metallic, self.look.transmission);
         [self.metallic, plain * (1.0 - through), plain * through]
     }
 
-    /// The dielectric over the base. From within the denser medium it is taken to reflect as from without.
+    /// The dielectric over the base. From inside the denser medium it is assumed to reflect as from outside.
     #[inline(always)]
     fn dielectric(&self) -> DielectricShares {
         DielectricShares::new(&self.look, self.look.roughness, self.eta.max(1.0 / self.eta))
     }
 
-    /// The clear part, of which what goes through has the root of the base's colour: it comes to two surfaces.
+    /// The clear dielectric. Its transmission has the square root of the base colour, because light crosses two
+    /// surfaces.
     #[inline(always)]
     fn clear(&self) -> Tinted<Dielectric> {
         let inner = Dielectric::of(self.eta, Some(self.dielectric().facets));
         Tinted { inner, reflectance: Rgb::ONE, transmittance: self.look.base_color.sqrt() }
     }
 
-    /// The most that the coat reflects, and the mean.
+    /// Maximum and mean albedo of the coat.
     #[inline(always)]
     fn coat_bounds(&self) -> [f64; 2] {
         [self.coat * self.gloss.albedo(1.0), self.coat * self.gloss.albedo_average()]
@@ -139,7 +142,7 @@ impl LayeredPrincipled {
         }
     }
 
-    /// Of light that goes to `wo`, above.
+    /// Sampling probabilities for `wo`, above.
     #[inline(always)]
     fn shares(&self, known: &Known, wo: DVec3) -> Shares {
         let ([metal, matt, clear], color) = (self.bodies(), self.look.base_color.max());
@@ -160,7 +163,7 @@ impl LayeredPrincipled {
         Shares { metal, dielectric, multiple, coat, matt }
     }
 
-    /// What all but the clear part scatters between two directions above, with its cosine, and the density of a draw.
+    /// Value and density without the clear dielectric, between two directions above, with the cosine.
     #[inline(always)]
     fn opaque(&self, shares: &Shares, [o, i]: [DVec3; 2], [of_o, of_i]: [&Known; 2]) -> (Rgb, f64) {
         let [metal, matt, _] = self.bodies();
@@ -194,7 +197,7 @@ impl LayeredPrincipled {
         (value, pdf)
     }
 
-    /// What all of it scatters.
+    /// Total value and density.
     #[inline(always)]
     fn scattered(&self, wo: DVec3, wi: DVec3, known: &Known, shares: &Shares) -> (Rgb, f64) {
         let [metal, matt, clear] = self.bodies();

@@ -1,4 +1,4 @@
-//! The principled model of a sheet with all of its light.
+//! The energy-conserving principled BSDF of a thin sheet.
 
 use super::Look;
 use super::shares::DielectricShares;
@@ -11,22 +11,23 @@ use crate::{Bsdf, BsdfSample, Facets, Ggx, Rgb, fresnel};
 use raywright_base::math::DVec3;
 use std::f64::consts::FRAC_1_PI;
 
-/// The principled model of a sheet (Burley, 2015) without gain or loss. Facets of one roughness reflect and let
-/// through; what they lose, D(ω), is given back on both sides alike, D(wo) D(wi) / (2π D̄). What is matt spreads its
-/// light over azimuths as Burley's does, and keeps it. Both sides are alike.
+/// The principled model of a thin sheet (Burley, 2015) with energy conservation. Facets of one roughness reflect and
+/// transmit. Their loss D(ω) is compensated equally on both sides, D(wo) D(wi) / (2π D̄). The diffuse part distributes
+/// its light over azimuths like Burley's and conserves it. Both sides are alike.
 #[derive(Clone, Copy, Debug)]
 pub struct LayeredPrincipledThin {
     look: Look,
-    /// What facets reflect.
+    /// Albedo of the facets.
     shares: DielectricShares,
-    /// The share of what is matt that is scattered on the other side.
+    /// Share of diffuse light that is transmitted.
     diffuse_transmission: f64,
-    /// One over 2π and the mean of what facets lose; 0 where that is nothing.
+    /// One over 2π and the facets' mean loss; 0 if there is none.
     given_back: f64,
 }
 
 impl LayeredPrincipledThin {
-    /// Of a look, the index of refraction, and the share of what is matt that goes through, 0 to 1.
+    /// Creates the BSDF from its parameters, the index of refraction, and the transmitted share of diffuse light, 0 to
+    /// 1.
     pub fn new(look: Look, eta: f64, diffuse_transmission: f64) -> Self {
         let eta = fresnel::bounded(eta);
         let shares = DielectricShares::new(&look, look.roughness, eta.max(1.0 / eta));
@@ -35,14 +36,13 @@ impl LayeredPrincipledThin {
         Self { look, shares, diffuse_transmission, given_back }
     }
 
-    /// What facets lose of light from `w`, above.
+    /// Loss of facets for direction `w`, above.
     #[inline(always)]
     fn lost(&self, w: DVec3) -> f64 {
         if self.look.transmission > 0.0 { MirrorLoss::new(self.shares.facets).of(w) } else { 0.0 }
     }
 
-    /// The probability of each lobe: facets, what these give back, and what is matt; of each what is reflected and what
-    /// goes through.
+    /// Sampling probabilities of facets, compensation and diffuse part, each reflected and transmitted.
     #[inline(always)]
     fn shares_of_lobes(&self, lost: f64) -> [[f64; 2]; 3] {
         let (sharp, across) = (self.look.transmission, self.diffuse_transmission);
@@ -51,7 +51,7 @@ impl LayeredPrincipledThin {
         [[0.5 * facets; 2], [0.5 * (sharp - facets); 2], [matt * (1.0 - across), matt * across]]
     }
 
-    /// Directions in which light is given back.
+    /// Directional distribution of the compensation lobe.
     #[inline(always)]
     fn grazing(&self) -> Grazing {
         Grazing::new(self.shares.facets.mean_alpha())

@@ -1,16 +1,15 @@
-//! What is matt of a principled surface that gives back all of its light.
+//! The diffuse part of the energy-conserving principled BSDFs.
 
 use super::Look;
 use crate::{Rgb, fresnel};
 use raywright_base::math::DVec3;
 
 impl Look {
-    /// The colour of what is matt between two directions above, and by how much more of it goes there than to others at
-    /// the same elevations.
+    /// Colour of the diffuse part between two directions above, relative to the mean over azimuths at the same
+    /// elevations.
     ///
-    /// This is Burley's diffuse reflection, flattened or not, over its mean over azimuths. So it sends light back to
-    /// where it came from as his does, and what is under a coat and white stays white. Sheen takes the place of the
-    /// base where facets are met at grazing angles.
+    /// This is Burley's diffuse reflection, partly flattened, over its mean over azimuths. So it has the same
+    /// retroreflection, and a white base under a coat stays white. At grazing facet angles sheen replaces the base.
     #[inline(always)]
     pub(super) fn spread(&self, wo: DVec3, wi: DVec3) -> Rgb {
         let turned = (1.0 + wo.dot(wi)).max(0.0);
@@ -31,7 +30,7 @@ impl Look {
         (self.base_color * (1.0 - cloth) + self.sheen_color() * cloth) * ((a + retro * (b + retro * c)) / mean)
     }
 
-    /// The colour of sheen: white, or the base's as bright as it can be.
+    /// Colour of the sheen: white, or the base colour normalised to its greatest channel.
     #[inline(always)]
     fn sheen_color(&self) -> Rgb {
         let greatest = self.base_color.max();

@@ -18,7 +18,7 @@ fn look() -> Look {
     }
 }
 
-/// Of metal under a coat, of coated glass and of a sheet, as published, and with all of their light.
+/// Metal under a coat, coated glass and a sheet, as published and with energy conservation.
 fn kinds() -> [AnyBsdf; 6] {
     let metal = Look {
         roughness: 0.4,
@@ -49,10 +49,10 @@ fn kinds() -> [AnyBsdf; 6] {
     ]
 }
 
-/// Which of these, wo, wi, the function with its cosine, and the density.
+/// Index of the BSDF, wo, wi, the value with its cosine, and the density.
 type Told = (usize, [f64; 3], [f64; 3], [f64; 3], f64);
 
-/// What Mitsuba 3.9.1 (scalar_rgb) says.
+/// Values of Mitsuba 3.9.1 (scalar_rgb).
 #[rustfmt::skip]
 const MITSUBA: [Told; 15] = [
     (0, [0.341881729, 0.227921153, 0.911684612], [-0.577350269, 0.115470054, 0.808290377],
@@ -90,11 +90,11 @@ const MITSUBA: [Told; 15] = [
 #[test]
 fn values_and_densities_are_those_of_mitsuba() {
     let kinds = kinds();
-    // Those that conserve energy are others.
+    // Energy-conserving variants have other values.
     for (which, wo, wi, value, density) in MITSUBA {
         let [wo, wi] = [wo, wi].map(|w| DVec3::from_array(w).normalize());
         let (found, pdf) = kinds[which].evaluate(wo, wi);
-        // It works in f32, and six digits of it are kept.
+        // Mitsuba computes in f32; six of its digits are kept.
         let near = |a: f64, b: f64| (a - b).abs() <= 3e-5 * b.abs();
         assert!((0..3).all(|c| near(found[c], value[c])), "{which} {wo} {wi} {found:?} {value:?}");
         assert!(near(pdf, density), "{which} {wo} {wi} {pdf} {density}");
@@ -120,8 +120,8 @@ fn light_can_go_either_way() {
             for (bsdf, eta) in
                 [(&metal, 1.0), (&glass, 1.6f64), (&sheet, 1.0), (&layered, 1.0), (&clear, 1.6), (&thin, 1.0)]
             {
-                // Coats and colours of glass are on its front alone: what it reflects behind is its facets' only, and
-                // both ways of a reflection are on the same side.
+                // Coats and colours of glass are on its front only. On the back only its facets reflect, and both
+                // directions of a reflection are on the same side.
                 let square = |w: DVec3| if w.z > 0.0 { 1.0 } else { eta * eta };
                 let there = bsdf.evaluate(a, b).0 * (a.z.abs() / square(a));
                 let back = bsdf.evaluate(b, a).0 * (b.z.abs() / square(b));
@@ -136,8 +136,8 @@ fn light_can_go_either_way() {
     }
 }
 
-/// Draws have the weight of their direction, and the densities of all directions are the share of draws that scatter:
-/// by as many uniform directions, within five standard errors.
+/// Sample weights match their directions, and the integral of the density equals the share of samples that scatter, by
+/// as many uniform directions, within five standard errors.
 #[test]
 fn draws_are_as_dense_as_they_say() {
     for bsdf in kinds() {
@@ -168,7 +168,7 @@ fn draws_are_as_dense_as_they_say() {
     }
 }
 
-/// Of a colour, no channel gives more than it gets: neither tints nor sheen are brighter than what comes.
+/// With a coloured base no channel gains energy, from tints or sheen.
 #[test]
 fn colours_gain_nothing() {
     for (base_color, specular_tint) in
@@ -200,7 +200,7 @@ fn colours_gain_nothing() {
     }
 }
 
-/// A coat's share of light is that of the integral, and its mean that of the share.
+/// A coat's albedo is that of the integral, and its mean that of the albedo.
 #[test]
 fn coats_reflect_what_they_are_taken_to() {
     for gloss in [0.0, 0.3, 0.8, 1.0] {
@@ -228,8 +228,8 @@ fn coats_reflect_what_they_are_taken_to() {
     }
 }
 
-/// What is white and matt gives more than it gets, as nothing takes from its base what its facets reflect (Burley,
-/// 2012): up to a sixth, and half towards grazing angles. It is no more than that.
+/// A white diffuse base gains energy, because nothing subtracts the facets' reflection from it (Burley, 2012): up to a
+/// sixth, and half at grazing angles. The gain does not exceed that.
 #[test]
 fn little_light_is_gained() {
     for roughness in [0.1, 0.5, 1.0] {

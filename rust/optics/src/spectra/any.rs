@@ -1,19 +1,19 @@
-//! Any spectrum.
+//! An enum over all spectra.
 
 use super::super::Rgb;
 use super::{Illuminant, Response, Smooth, Table, Waves};
 
-/// A spectrum that is kept: of light, relative to daylight.
+/// A spectrum; that of light is relative to daylight.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Spectrum {
-    /// The smooth one of a colour.
+    /// The smooth spectrum of a colour.
     Smooth(Smooth),
-    /// One by its values.
+    /// A tabulated spectrum.
     Table(Table),
 }
 
 impl Spectrum {
-    /// The value at a wavelength that is seen, nm.
+    /// Value at a visible wavelength, nm.
     #[inline]
     pub fn at(&self, wavelength: f64) -> f64 {
         match self {
@@ -22,7 +22,7 @@ impl Spectrum {
         }
     }
 
-    /// The values at those of a path.
+    /// Values at a path's wavelengths.
     #[inline]
     pub fn lanes(&self, waves: &Waves) -> Rgb {
         match self {
@@ -31,12 +31,12 @@ impl Spectrum {
         }
     }
 
-    /// What it looks like, in linear Rec. 709.
+    /// Its colour in linear Rec. 709.
     pub fn seen(&self) -> Rgb {
         Response::new(Illuminant::Daylight, 1).seen(|nm| self.at(nm))
     }
 
-    /// Its least and its greatest value.
+    /// Minimum and maximum value.
     pub fn range(&self) -> [f64; 2] {
         let values = (360..=830).map(|nm| self.at(f64::from(nm)));
         values.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], value| [least.min(value), most.max(value)])

@@ -1,26 +1,26 @@
-//! The light of what is hot.
+//! Black-body radiation.
 
 use super::super::Rgb;
 use super::{Illuminant, Response};
 use std::sync::LazyLock;
 
-/// How much a black body radiates at a wavelength in nm, over the most that it does at any (Planck, 1900).
+/// Radiance of a black body at a wavelength in nm, relative to its maximum over all wavelengths (Planck, 1900).
 pub fn black_body(wavelength: f64, kelvin: f64) -> f64 {
-    // Planck's constant times the speed of light over Boltzmann's, nm K (SI, 2019).
+    // Planck's constant times the speed of light over Boltzmann's constant, nm K (SI, 2019).
     const SECOND: f64 = 1.438_776_877_503_934e7;
-    // The most of x⁵ / (eˣ − 1), where x = 5 (1 − e⁻ˣ) (Wien, 1893).
+    // Maximum of x⁵ / (eˣ − 1), where x = 5 (1 − e⁻ˣ) (Wien, 1893).
     const MOST: f64 = 21.201_435_660_549_92;
     let x = SECOND / (wavelength * kelvin);
     x.powi(5) / x.exp_m1() / MOST
 }
 
-/// Nothing is seen of what is colder.
+/// Below this temperature a body's radiation is invisible.
 pub const COLDEST: f64 = 500.0;
 
-/// The hottest in the table.
+/// Highest temperature in the table.
 const HOTTEST: f64 = 50_000.0;
 
-/// How [`black_body`] looks as light: in linear Rec. 709, of which a channel below 0 is 0.
+/// Colour of [`black_body`] in linear Rec. 709; negative channels are clamped to 0.
 pub fn black_body_colour(kelvin: f64) -> Rgb {
     if kelvin.is_nan() || kelvin < COLDEST {
         return Rgb::ZERO;
@@ -30,21 +30,21 @@ pub fn black_body_colour(kelvin: f64) -> Rgb {
     }
     let steps = (kelvin / COLDEST).ln() / *STEP;
     let before = (steps as usize).min(COLOURS.len() - 2);
-    // Linear in the temperature between two.
+    // Linear in the temperature between two entries.
     let [from, to] = [before, before + 1].map(|step| COLDEST * (step as f64 * *STEP).exp());
     let share = ((kelvin - from) / (to - from)).clamp(0.0, 1.0);
     COLOURS[before] * (1.0 - share) + COLOURS[before + 1] * share
 }
 
-/// As `Blackbody` of the package has it: linear between every fifth nm.
+/// Like `Blackbody` of the Python package: linear between every fifth nm.
 fn seen(kelvin: f64) -> Rgb {
     RESPONSE.seen(|wavelength| black_body(wavelength, kelvin)).at_least(Rgb::ZERO)
 }
 
 static RESPONSE: LazyLock<Response> = LazyLock::new(|| Response::new(Illuminant::Even, 5));
 
-/// How many temperatures there are, of which each is so many times the one before: what lies between two is off by less
-/// than a ten-thousandth, and by a hundred-thousandth where it glows as flames do.
+/// Number of temperatures, in geometric progression. Interpolation has an error below 10⁻⁴, and 10⁻⁵ at the
+/// temperatures of flames.
 const COUNT: usize = 8192;
 
 static STEP: LazyLock<f64> = LazyLock::new(|| (HOTTEST / COLDEST).ln() / COUNT as f64);

@@ -1,10 +1,10 @@
-//! Daylight.
+//! The CIE standard illuminant D65.
 
 use super::{FIRST, LAST, matching};
 use std::sync::LazyLock;
 
-/// The power of daylight at a wavelength, relative to that at 560 nm, which is 100: the CIE's standard illuminant D65
-/// (CIE 015:2018), linear between every tenth nm, as it is defined. Zero outside of what is seen.
+/// Power of daylight at a wavelength, relative to 100 at 560 nm: the CIE's standard illuminant D65 (CIE 015:2018),
+/// linear between every tenth nm, as defined. Zero outside the visible range.
 #[inline]
 pub fn daylight(wavelength: f64) -> f64 {
     if !(FIRST..=LAST).contains(&wavelength) {
@@ -15,13 +15,13 @@ pub fn daylight(wavelength: f64) -> f64 {
     POWER[before] + (POWER[before + 1] - POWER[before]) * (steps - before as f64)
 }
 
-/// The same of as much daylight as has a luminance of 1, as light has whose power is 1 at all wavelengths.
+/// Daylight normalised to luminance 1, which is that of light with power 1 at all wavelengths.
 #[inline]
 pub fn white(wavelength: f64) -> f64 {
     daylight(wavelength) / *MEAN
 }
 
-/// The mean power of daylight as the eye weighs it.
+/// Mean power of daylight, weighted by the luminous efficiency.
 static MEAN: LazyLock<f64> = LazyLock::new(|| {
     let (mut sum, mut all) = (0.0, 0.0);
     for nm in (360..=830).map(f64::from) {

@@ -1,7 +1,7 @@
-//! Tables over wavelength.
+//! Linear interpolation in tables over wavelength.
 
-/// A row of a table between its rows, linear from one to the next: each starts with its wavelength, and these rise.
-/// `None` outside of what is tabulated.
+/// Interpolates a row of a table linearly. Each row starts with its wavelength, in increasing order. `None` outside the
+/// table.
 #[inline]
 pub fn at<const N: usize>(rows: &[[f64; N]], wavelength: f64) -> Option<[f64; N]> {
     let after = rows.partition_point(|row| row[0] <= wavelength);

@@ -1,6 +1,6 @@
-//! Light by wavelength, and what it looks like in red, green and blue.
+//! Spectra, and their conversion to red, green and blue.
 //!
-//! Wavelengths are in nm. What is seen lies between [`FIRST`] and [`LAST`], where the eye's response is tabulated.
+//! Wavelengths are in nm. The visible range is from [`FIRST`] to [`LAST`], where the eye's response is tabulated.
 
 mod any;
 mod black_body;
@@ -25,8 +25,8 @@ pub use sigmoid::{Role, Smooth};
 pub use table::{Table, Told};
 pub use waves::Waves;
 
-/// The shortest wavelength that is seen, nm.
+/// Shortest visible wavelength, nm.
 pub const FIRST: f64 = 360.0;
 
-/// The longest.
+/// Longest visible wavelength, nm.
 pub const LAST: f64 = 830.0;

@@ -1,4 +1,4 @@
-//! The response of the CIE's standard observer of 1931, for a field of 2 degrees.
+//! Table of the CIE 1931 standard observer, for a field of 2 degrees.
 
 /// x̄, ȳ and z̄ at every nm from 360 to 830 (CIE 018:2019, table 6).
 #[rustfmt::skip]

@@ -1,24 +1,23 @@
-//! What spectra look like.
+//! Conversion of spectra to colours.
 
 use super::super::Rgb;
 use super::{FIRST, LAST, daylight, matching, xyz_to_rgb};
 use std::sync::LazyLock;
 
-/// What light is made of by wavelength.
+/// An illuminant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Illuminant {
-    /// Daylight, of which a share of 1 at all wavelengths is white.
+    /// Daylight, the white point.
     Daylight,
-    /// The same power at each wavelength. It is somewhat red: (1.20, 0.95, 0.91).
+    /// Equal power at each wavelength. It is slightly red: (1.20, 0.95, 0.91).
     Even,
 }
 
-/// What is seen of a spectrum, in linear Rec. 709, as the sum of its values with these weights: of light, if its values
-/// say how many times as much there is as of the illuminant, or of a reflectance in that light. The illuminant has a
-/// luminance of 1.
+/// Weights that convert samples of a spectrum to linear Rec. 709. The spectrum is relative to the illuminant, or a
+/// reflectance under it. The illuminant has luminance 1.
 ///
-/// A value stands for its neighbours as far as the next, in hats over lines: sums are exact for spectra that are linear
-/// from one wavelength to the next, whatever bends the eye's response has in between.
+/// Weights are integrals of hat functions, so the conversion is exact for spectra that are piecewise linear between
+/// samples, whatever the eye's response is in between.
 #[derive(Clone, Debug)]
 pub struct Response {
     step: f64,
@@ -26,12 +25,12 @@ pub struct Response {
 }
 
 impl Response {
-    /// Of values at every so many nm from [`FIRST`] on, a divisor of their 470.
+    /// Creates weights for samples at every `step` nm from [`FIRST`] on; the step divides the range of 470 nm.
     pub fn new(illuminant: Illuminant, step: u32) -> Self {
         debug_assert!(step > 0 && ((LAST - FIRST) as u32).is_multiple_of(step));
         let fine = &FINE[illuminant as usize];
         let step = step as usize;
-        // Steps of 1 nm share out what lies between two values.
+        // Weights at 1 nm are distributed to the two adjacent samples.
         let mut weights = vec![Rgb::ZERO; (fine.len() - 1) / step + 1];
         for (nm, &seen) in fine.iter().enumerate() {
             let (before, share) = (nm / step, (nm % step) as f64 / step as f64);
@@ -48,13 +47,13 @@ impl Response {
         self.weights.iter().enumerate().map(|(i, &weight)| (FIRST + self.step * i as f64, weight))
     }
 
-    /// What a spectrum looks like.
+    /// Colour of a spectrum.
     pub fn seen(&self, spectrum: impl Fn(f64) -> f64) -> Rgb {
         self.weights().map(|(wavelength, weight)| weight * spectrum(wavelength)).sum()
     }
 }
 
-/// By illuminant, the weights of every nm.
+/// For each illuminant, the weights at every nm.
 static FINE: LazyLock<[Vec<Rgb>; 2]> = LazyLock::new(|| {
     [Illuminant::Daylight, Illuminant::Even].map(|illuminant| {
         let nm = FIRST as u32..=LAST as u32;
@@ -77,7 +76,7 @@ mod tests {
             // X = Y = Z = 1 by the matrix of IEC 61966-2-1.
             let even = Response::new(Illuminant::Even, step).seen(|_| 1.0);
             assert!((even - Rgb::new(1.2048, 0.9484, 0.9088)).abs().max() < 2e-3, "{even}");
-            // Light that is daylight looks alike, told either way.
+            // Daylight has the same colour, whether as a spectrum or as the illuminant.
             let day = Response::new(Illuminant::Even, step).seen(daylight);
             assert!((day / day[1] - Rgb::ONE).abs().max() < if step == 1 { 1e-13 } else { 2e-3 }, "{day}");
         }

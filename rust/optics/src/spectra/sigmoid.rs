@@ -1,4 +1,4 @@
-//! Smooth spectra of colours.
+//! Smooth spectra of RGB colours.
 
 use super::super::Rgb;
 use super::{FIRST, Illuminant, LAST, Response, Waves};
@@ -6,31 +6,31 @@ use glam::{DMat3, DVec3};
 use raywright_base::parallel;
 use std::sync::LazyLock;
 
-/// What a colour is of.
+/// The physical quantity of a colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Role {
-    /// A share of light: no wavelength of it exceeds 1 where no channel does.
+    /// A reflectance: no wavelength exceeds 1 if no channel does.
     Share,
-    /// An amount that has no bound: light, or a number per length.
+    /// An unbounded amount: light, or a coefficient per length.
     Amount,
 }
 
-/// A spectrum that looks like a colour in daylight: so many times a polynomial of degree 2 that goes through a sigmoid
-/// (Jakob and Hanika, "A Low-Dimensional Function Space for Efficient Spectral Upsampling", 2019). What is grey is the
-/// same at all wavelengths, to the last bit.
+/// A spectrum that has a given colour under daylight: a scaled sigmoid of a polynomial of degree 2 (Jakob and Hanika,
+/// "A Low-Dimensional Function Space for Efficient Spectral Upsampling", 2019). A grey colour has exactly the same
+/// value at all wavelengths.
 ///
-/// The sigmoid is that of the colour whose greatest channel is a half, which leaves it room to be smooth; of a share
-/// that exceeds a half, that of the colour itself.
+/// The sigmoid is that of the colour scaled to a greatest channel of one half, which keeps it smooth. For a reflectance
+/// above one half, it is that of the colour itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Smooth {
     scale: f64,
-    /// Of the squared, the plain and the zeroth power of the wavelength, from 0 to 1 over what is seen; none where it
-    /// is flat.
+    /// Coefficients of the squared, the linear and the constant term in the wavelength, scaled from 0 to 1 over the
+    /// visible range; `None` if the spectrum is flat.
     polynomial: Option<DVec3>,
 }
 
 impl Smooth {
-    /// Of a colour that is nowhere negative.
+    /// The spectrum of a non-negative colour.
     pub fn of(colour: Rgb, role: Role) -> Self {
         match Normal::of(colour, role) {
             Ok(Normal { scale, colour, .. }) => {
@@ -41,8 +41,8 @@ impl Smooth {
         }
     }
 
-    /// About the same, by a table: to a thousandth of the greatest channel in the mean, and to a hundredth where one is
-    /// next to nothing.
+    /// Approximation by a table: to a thousandth of the greatest channel on average, and to a hundredth if a channel is
+    /// nearly 0.
     pub fn looked_up(colour: Rgb, role: Role) -> Self {
         match Normal::of(colour, role) {
             Ok(normal) => Self { scale: normal.scale, polynomial: Some(TABLE.at(&normal)) },
@@ -50,18 +50,18 @@ impl Smooth {
         }
     }
 
-    /// Whether it is the same at all wavelengths.
+    /// Returns whether it is the same at all wavelengths.
     pub fn is_flat(&self) -> bool {
         self.polynomial.is_none()
     }
 
-    /// The value at a wavelength, nm.
+    /// Value at a wavelength, nm.
     #[inline]
     pub fn at(&self, wavelength: f64) -> f64 {
         self.polynomial.map_or(self.scale, |polynomial| self.scale * sigmoid(argument(polynomial, wavelength)))
     }
 
-    /// The values at those of a path.
+    /// Values at a path's wavelengths.
     #[inline]
     pub fn lanes(&self, waves: &Waves) -> Rgb {
         match self.polynomial {
@@ -71,25 +71,26 @@ impl Smooth {
     }
 }
 
-/// A colour whose greatest channel lies between [`LEAST`] and 1, and how many times as bright it is to be.
+/// A colour whose greatest channel is between [`LEAST`] and 1, and a scale.
 struct Normal {
     scale: f64,
     colour: Rgb,
-    /// Which channel is the greatest.
+    /// Index of the greatest channel.
     greatest: usize,
 }
 
-/// The greatest channel of the darkest colours that have a sigmoid of their own.
+/// Greatest channel of the darkest colours with a sigmoid of their own.
 const LEAST: f64 = 0.5;
 
-/// The greatest of the brightest: beyond, sigmoids of what is nearly white bend without end.
+/// Greatest channel of the brightest such colours; beyond it, sigmoids of nearly white colours become arbitrarily
+/// steep.
 const MOST: f64 = 0.98;
 
 impl Normal {
-    /// Or a spectrum that is the same everywhere, if the colour is grey.
+    /// Normalises a colour; the error is the flat spectrum of a grey.
     fn of(colour: Rgb, role: Role) -> Result<Self, Smooth> {
         let (most, least) = (colour.max(), colour.min());
-        // Rounding makes greys of sums slightly coloured.
+        // Rounding makes sums of greys slightly coloured.
         if most - least <= 1e-12 * most {
             return Err(Smooth { scale: most, polynomial: None });
         }
@@ -116,10 +117,10 @@ fn sigmoid(x: f64) -> f64 {
     0.5 + x / (2.0 * (1.0 + x * x).sqrt())
 }
 
-/// What is seen of wavelengths.
+/// Weights of wavelengths.
 type Seen = Vec<(f64, DVec3)>;
 
-/// Of every fifth nm, by which colours are told to a thousandth, and of every one.
+/// At every fifth nm, which is accurate to a thousandth, and at every nm.
 static COARSE: LazyLock<Seen> = LazyLock::new(|| every(5));
 static FINE: LazyLock<Seen> = LazyLock::new(|| every(1));
 
@@ -128,7 +129,7 @@ fn every(step: u32) -> Seen {
     all.weights().map(|(wavelength, weight)| (wavelength, DVec3::from_array(weight.to_array()))).collect()
 }
 
-/// What a polynomial's sigmoid looks like, and how that changes with each coefficient.
+/// Colour of a polynomial's sigmoid, and its derivatives by the coefficients.
 fn seen(polynomial: DVec3, by: &Seen) -> (DVec3, DMat3) {
     let (mut colour, mut slopes) = (DVec3::ZERO, DMat3::ZERO);
     for &(wavelength, weight) in by {
@@ -144,7 +145,7 @@ fn seen(polynomial: DVec3, by: &Seen) -> (DVec3, DMat3) {
     (colour, slopes)
 }
 
-/// The polynomial of a colour that is not grey, from one that is near it or from grey.
+/// Fits the polynomial of a colour that is not grey, starting from a nearby one or from grey.
 fn fit(colour: Rgb, near: Option<DVec3>) -> DVec3 {
     let target = DVec3::from_array(colour.to_array());
     let Some(near) = near else {
@@ -159,7 +160,7 @@ fn fit(colour: Rgb, near: Option<DVec3>) -> DVec3 {
     approach(near, target, &COARSE)
 }
 
-/// Goes from a polynomial to that of a colour, by damped steps of Gauss and Newton (Levenberg 1944, Marquardt 1963).
+/// Moves a polynomial towards a target colour, by damped Gauss-Newton steps (Levenberg 1944, Marquardt 1963).
 fn approach(mut polynomial: DVec3, target: DVec3, by: &Seen) -> DVec3 {
     let mut damping = 1e-4;
     let (mut colour, mut slopes) = seen(polynomial, by);
@@ -174,7 +175,7 @@ fn approach(mut polynomial: DVec3, target: DVec3, by: &Seen) -> DVec3 {
             normal + DMat3::from_diagonal(DVec3::new(normal.x_axis.x, normal.y_axis.y, normal.z_axis.z) * damping);
         let step = damped.inverse() * (slopes.transpose() * off);
         let next = polynomial + step;
-        // Beyond, a sigmoid is a step, and nothing is seen of how steep it is.
+        // Beyond this size the sigmoid is a step, and its steepness has no visible effect.
         if !step.is_finite() || next.abs().max_element() > 1e4 {
             damping *= 10.0;
             if damping > 1e8 {
@@ -196,7 +197,8 @@ fn approach(mut polynomial: DVec3, target: DVec3, by: &Seen) -> DVec3 {
     polynomial
 }
 
-/// Polynomials of normal colours: by which channel is the greatest, how great, and what the next two are over it.
+/// Polynomials of normalised colours: by the index of the greatest channel, its value, and the ratios of the next two
+/// channels to it.
 struct Table(Vec<DVec3>);
 
 const LEVELS: usize = 12;
@@ -206,10 +208,10 @@ static TABLE: LazyLock<Table> = LazyLock::new(|| {
     let rows: Vec<_> =
         (0..3).flat_map(|k| (0..LEVELS).flat_map(move |l| (0..SHARES).map(move |j| [k, l, j]))).collect();
     let of_row = |&[greatest, level, second]: &[usize; 3]| {
-        // Denser towards the brightest, whose polynomials go off the fastest.
+        // Denser towards the brightest, whose polynomials grow fastest.
         let level = MOST - (MOST - LEAST) * (1.0 - level as f64 / (LEVELS - 1) as f64).powi(2);
         let share = |i: usize| i as f64 / (SHARES - 1) as f64;
-        // From grey on, each starts from its neighbour.
+        // From grey on, each entry starts from its neighbour.
         let mut row: Vec<DVec3> = Vec::with_capacity(SHARES);
         for third in (0..SHARES).rev() {
             let mut colour = [level; 3];

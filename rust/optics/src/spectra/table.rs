@@ -1,28 +1,29 @@
-//! Spectra by their values.
+//! Tabulated spectra.
 
 use super::{FIRST, LAST, white};
 
-/// What the values of a spectrum are of.
+/// The physical quantity of a tabulated spectrum, which determines its extrapolation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Told {
-    /// Shares, of which there are none beyond the ends.
+    /// A reflectance: 0 beyond the ends.
     Shares,
-    /// The power of light, of which there is none beyond the ends.
+    /// The power of light: 0 beyond the ends.
     Power,
-    /// What does not end where it is told: it is as at the ends.
+    /// A property such as an index of refraction: constant beyond the ends.
     Index,
 }
 
-/// A spectrum by its values at wavelengths, linear between these; that of light relative to daylight.
+/// A spectrum by values at wavelengths, linearly interpolated; that of light is relative to daylight.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
-    /// At every so many nm from [`FIRST`] on.
+    /// At equal steps in nm from [`FIRST`] on.
     step: f64,
     values: Vec<f64>,
 }
 
 impl Table {
-    /// Of wavelengths in nm, which rise, and a value of each. `None` if there are none, or not as many.
+    /// Creates a spectrum from increasing wavelengths in nm and their values. `None` if there are none, or their
+    /// numbers differ.
     pub fn new(wavelengths: &[f64], values: &[f64], told: Told) -> Option<Self> {
         if wavelengths.is_empty() || wavelengths.len() != values.len() {
             return None;
@@ -50,10 +51,10 @@ impl Table {
         Some(Self { step: Self::STEP, values: values.collect() })
     }
 
-    /// How far apart values are kept, nm.
+    /// Step between stored values, nm.
     const STEP: f64 = 0.5;
 
-    /// The value at a wavelength that is seen.
+    /// Value at a visible wavelength.
     #[inline]
     pub fn at(&self, wavelength: f64) -> f64 {
         let steps = (wavelength - FIRST) / self.step;
@@ -71,7 +72,7 @@ mod tests {
 
     #[test]
     fn light_is_told_by_its_luminance_and_shares_by_daylight() {
-        // As the tables of 1 nm have it, of CIE 015:2018.
+        // Values of the 1 nm tables of CIE 015:2018.
         let even = Spectrum::Table(Table::new(&[360.0, 830.0], &[1.0; 2], Told::Power).unwrap()).seen();
         assert!((even - Rgb::new(1.205_07, 0.948_22, 0.908_98)).abs().max() < 1e-3, "{even}");
         let flat = Spectrum::Table(Table::new(&[500.0], &[0.4], Told::Index).unwrap());

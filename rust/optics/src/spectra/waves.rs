@@ -4,28 +4,28 @@ use super::super::Rgb;
 use super::{FIRST, Illuminant, LAST, Response};
 use std::sync::LazyLock;
 
-/// Three wavelengths that a path carries in place of red, green and blue (Wilkie et al., "Hero Wavelength Spectral
-/// Sampling", 2014), nm. Each by itself is drawn in proportion to how much of it is seen of white light, and all three
-/// share out what is seen evenly. The first is the hero: where wavelengths part, the path follows that one.
+/// Three wavelengths of a path in place of red, green and blue (Wilkie et al., "Hero Wavelength Spectral Sampling",
+/// 2014), nm. Each is sampled in proportion to the visibility of white light, and the three are stratified over it. The
+/// first is the hero: at dispersive interfaces the path follows it.
 ///
-/// What a path finds at them is told relative to daylight, of which a share of 1 at all wavelengths is white.
+/// Radiance at them is relative to daylight, so that a reflectance of 1 at all wavelengths is white.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Waves([f64; 3]);
 
 impl Waves {
-    /// Of a number in [0, 1).
+    /// Samples wavelengths by a number in [0, 1).
     pub fn of(u: f64) -> Self {
         let drawn = &*DRAWN;
         Self([0.0, 1.0, 2.0].map(|third| drawn.wavelength((u + third / 3.0).fract())))
     }
 
-    /// The wavelength that decides where they part.
+    /// The hero wavelength, which determines the path under dispersion.
     #[inline]
     pub fn hero(&self) -> f64 {
         self.0[0]
     }
 
-    /// The hero in place of all three.
+    /// Replaces all three by the hero.
     #[inline]
     pub fn alone(&self) -> Self {
         Self([self.0[0]; 3])
@@ -37,44 +37,45 @@ impl Waves {
         self.0
     }
 
-    /// What a function of wavelength is at each, a lane each.
+    /// Evaluates a function of wavelength at each.
     #[inline]
     pub fn lanes(&self, f: impl Fn(f64) -> f64) -> Rgb {
         Rgb::from_array(self.0.map(f))
     }
 
-    /// What stands for light of which so much was found at each, in linear Rec. 709: its mean over the draw is what is
-    /// seen of all of it. A single draw has the colour of its wavelengths, which is negative in some channels.
+    /// Converts radiance at the wavelengths to linear Rec. 709. Its expectation is the colour of the spectrum. A single
+    /// sample has the colour of its wavelengths, which is negative in some channels.
     #[inline]
     pub fn seen(&self, light: Rgb) -> Rgb {
         let of = |lane: usize| DRAWN.colours[cell(self.0[lane])] * light[lane];
         of(0) + of(1) + of(2)
     }
 
-    /// What carries the light of all wavelengths where only the hero goes on: its share stands for the three.
+    /// Radiance after termination of the secondary wavelengths: the hero's, times three.
     #[inline]
     pub fn ended(light: Rgb) -> Rgb {
         Rgb::new(3.0 * light[0], 0.0, 0.0)
     }
 
-    /// What two ways bring together on both of which only the hero goes on: it stands for the three once.
+    /// Radiance of two connected subpaths that both terminated the secondary wavelengths: the factor of three applies
+    /// only once.
     #[inline]
     pub fn joined(light: Rgb) -> Rgb {
         light / 3.0
     }
 }
 
-/// How wavelengths are drawn: each nm by a probability of its own, and evenly within.
+/// Distribution of wavelengths: a probability per nm, uniform within.
 struct Drawn {
-    /// With which probability one is drawn that comes before, and 1 in the end.
+    /// Cumulative probabilities, ending with 1.
     before: Vec<f64>,
-    /// What is seen of each nm, over the density of three draws.
+    /// Colour of each nm over the density of three samples.
     colours: Vec<Rgb>,
 }
 
 static DRAWN: LazyLock<Drawn> = LazyLock::new(|| {
     let seen: Vec<Rgb> = Response::new(Illuminant::Daylight, 1).weights().map(|(_, weight)| weight).collect();
-    // The errors of all three channels are least together for white light.
+    // Minimises the sum of the channels' variances for white light.
     let wanted: Vec<f64> = seen.iter().map(|colour| colour.dot(*colour).sqrt()).collect();
     let all: f64 = wanted.iter().sum();
     let mut before = vec![0.0];
@@ -97,7 +98,7 @@ impl Drawn {
     }
 }
 
-/// The nm that a wavelength belongs to.
+/// Index of the nm of a wavelength.
 #[inline]
 fn cell(wavelength: f64) -> usize {
     (wavelength - (FIRST - 0.5)) as usize
@@ -107,7 +108,7 @@ fn cell(wavelength: f64) -> usize {
 mod tests {
     use super::*;
 
-    /// The mean over draws that share out [0, 1) evenly.
+    /// Mean over stratified samples in [0, 1).
     fn mean(of: impl Fn(&Waves) -> Rgb) -> Rgb {
         let count = 30_000;
         (0..count).map(|i| of(&Waves::of((f64::from(i) + 0.5) / f64::from(count)))).sum::<Rgb>() / f64::from(count)

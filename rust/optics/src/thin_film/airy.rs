@@ -1,28 +1,28 @@
-//! Airy's sum.
+//! Airy's formula for thin films.
 
 use super::Complex;
 use std::f64::consts::TAU;
 
-/// What a film between two media reflects and lets through at one wavelength, of light polarised across the plane of
-/// incidence (s) and within it (p): the sum over all reflections within the film (Airy, 1833; Born and Wolf,
+/// Reflectance and transmittance of a film between two media at one wavelength, for light polarised perpendicular (s)
+/// and parallel (p) to the plane of incidence: the sum over all reflections within the film (Airy, 1833; Born and Wolf,
 /// "Principles of Optics", 7.6 and 1.6).
 #[derive(Clone, Copy, Debug)]
 pub struct Airy {
-    /// The shares that are reflected.
+    /// Reflectances of s and p.
     pub reflectance: [f64; 2],
-    /// The shares that arrive beyond the film: what is left, unless that absorbs.
+    /// Transmittances of s and p; the rest, unless the base absorbs.
     pub transmittance: [f64; 2],
 }
 
 impl Airy {
-    /// For light of a `wavelength` in vacuum that comes through a medium of index `outside` at a `cosine` of incidence,
-    /// 0 to 1, to a film of index `film` and a `thickness` in the unit of the wavelength, on a `base` of index η + ik.
+    /// Evaluates a film of index `film` and a `thickness` in the unit of the wavelength, on a `base` of index η + ik.
+    /// Light with a `wavelength` in vacuum arrives through a medium of index `outside` at a `cosine` of incidence, 0 to
+    /// 1.
     ///
-    /// Where the film is beyond its critical angle, light decays in it; powers of e are never of positive numbers, so
-    /// nothing overflows.
+    /// Beyond its critical angle, light decays in the film. Exponents are never positive, so nothing overflows.
     pub fn new(wavelength: f64, cosine: f64, thickness: f64, outside: f64, film: f64, base: Complex) -> Self {
         let along = outside * outside * (1.0 - cosine) * (1.0 + cosine);
-        // What each index makes of the way across the layers: n cos θ.
+        // n cos θ in each layer.
         let first = Complex::from(outside * cosine);
         let within = Complex::from((film - outside) * (film + outside) + first.re * first.re).sqrt();
         let beyond = (base * base - Complex::from(along)).sqrt();
@@ -32,13 +32,13 @@ impl Airy {
             if a.re == 0.0 {
                 return [1.0, 0.0];
             }
-            // Without a wave in the film there is none to come back from its other face.
+            // Without a wave in the film nothing returns from its far face.
             let (near, far) = ((a - b) / (a + b), if (b + c).square() == 0.0 { one } else { (b - c) / (b + c) });
             let twice = once * once;
             let all = one + near * far * twice;
             let reflected = (near + far * twice) / all;
             let through = (one + near) * (one + far) * once / all;
-            // Flux goes by the real part of the admittance.
+            // Flux is proportional to the real part of the admittance.
             [reflected.square(), through.square() * c.re / a.re]
         };
         let over = |q: Complex, n: Complex| q / (n * n);
@@ -48,7 +48,7 @@ impl Airy {
     }
 }
 
-/// The share of unpolarised light that is reflected, of what [`Airy::new`] is told.
+/// Reflectance of unpolarised light, with the arguments of [`Airy::new`].
 pub fn reflectance(wavelength: f64, cosine: f64, thickness: f64, outside: f64, film: f64, base: Complex) -> f64 {
     let [s, p] = Airy::new(wavelength, cosine, thickness, outside, film, base).reflectance;
     (0.5 * (s + p)).min(1.0)
@@ -59,8 +59,8 @@ mod tests {
     use super::*;
     use crate::{Rgb, fresnel};
 
-    /// Wavelength and thickness in nm, the indices, degrees, and Rs, Rp, Ts, Tp by 50 digits and by characteristic
-    /// matrices.
+    /// Wavelength and thickness in nm, the indices, degrees, and Rs, Rp, Ts, Tp by characteristic matrices with 50
+    /// digits.
     type Row = (f64, f64, [f64; 2], [f64; 2], f64, [f64; 4]);
 
     const ROWS: [Row; 13] = [
@@ -92,10 +92,10 @@ mod tests {
             89.0,
             [0.863233816802076, 0.6681898992359, 0.136766183197924, 0.3318101007641],
         ),
-        // Magnesium fluoride, a quarter of a wave of 550 nm, on glass.
+        // Magnesium fluoride on glass, a quarter wave at 550 nm.
         (450.0, 99.6376811594203, [1.0, 1.38], [1.52, 0.0], 0.0, same(0.0162043016042977, 0.983795698395702)),
         (650.0, 99.6376811594203, [1.0, 1.38], [1.52, 0.0], 0.0, same(0.0143683515898393, 0.985631648410161)),
-        // Half a wave, of any index: as if it were not there.
+        // Half a wave, of any index: it has no effect.
         (600.0, 130.434782608696, [1.0, 2.3], [1.5, 0.0], 0.0, same(0.04, 0.96)),
         // Oil on water.
         (
@@ -106,7 +106,7 @@ mod tests {
             30.0,
             [0.0692964437139319, 0.0311437219536463, 0.930703556286068, 0.968856278046354],
         ),
-        // A gap of air within glass, beyond the critical angle.
+        // An air gap in glass, beyond the critical angle.
         (550.0, 5000.0, [1.5, 1.0], [1.5, 0.0], 60.0, [1.0, 1.0, 2.88536188280328e-41, 1.39631879394639e-41]),
         // Silica on silicon.
         (
@@ -160,7 +160,7 @@ mod tests {
 
     #[test]
     fn over_all_phases_a_film_is_a_thick_plate() {
-        // 2r / (1 + r) and (1 − r) / (1 + r): means of equal steps over a period are exact but for powers of r far out.
+        // 2r / (1 + r) and (1 − r) / (1 + r): means over equal steps of a period are exact except for high powers of r.
         let period = 550.0 / (2.0 * 1.33);
         let (mut reflected, mut through) = (0.0, 0.0);
         for i in 0..64 {
@@ -204,7 +204,7 @@ mod tests {
 
     #[test]
     fn both_ways_reflect_alike() {
-        // Stokes, 1849: what comes from the other side at the refracted angle, and lossless both.
+        // Stokes, 1849: equal from the other side at the refracted angle, and both lossless.
         for [outside, film, below] in [[1.0f64, 1.33, 1.0], [1.0, 1.47, 1.33], [1.0, 1.2, 1.5], [1.33, 2.4, 1.5]] {
             for i in 1..=30 {
                 let cosine: f64 = f64::from(i) / 30.0;

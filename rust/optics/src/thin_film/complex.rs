@@ -12,7 +12,7 @@ pub struct Complex {
 }
 
 impl Complex {
-    /// Of its parts.
+    /// Creates a number from its parts.
     #[inline]
     pub const fn new(re: f64, im: f64) -> Self {
         Self { re, im }
@@ -24,17 +24,17 @@ impl Complex {
         self.re * self.re + self.im * self.im
     }
 
-    /// The same times a real number.
+    /// Times a real number.
     #[inline]
     pub fn scaled(self, by: f64) -> Self {
         Self::new(self.re * by, self.im * by)
     }
 
-    /// The root whose imaginary part is not negative: a wave of this number decays along its way.
+    /// Square root with non-negative imaginary part: a wave with this wave number decays along its path.
     #[inline]
     pub fn sqrt(self) -> Self {
         let length = self.re.hypot(self.im);
-        // The greater part first: the other is a quotient, and nothing cancels.
+        // The greater part first; the other is a quotient, so nothing cancels.
         let greater = (0.5 * (length + self.re.abs())).sqrt();
         if greater == 0.0 {
             return Self::new(0.0, 0.0);

@@ -1,28 +1,28 @@
-//! What the eye sees of fringes.
+//! Visibility of interference fringes.
 
 use crate::Rgb;
 use crate::spectra::{Illuminant, Response};
 use std::f64::consts::TAU;
 use std::sync::LazyLock;
 
-/// The way behind, in nm, from which on fringes are too close for the eye: what is left of them is below 0.0013.
+/// Optical path difference, in nm, beyond which fringes are invisible; their remaining contrast is below 0.0013.
 pub const FARTHEST: f64 = 48_000.0;
 
-/// Between entries, nm.
+/// Step between entries, nm.
 const STEP: f64 = 4.0;
 
-/// As many as reach one beyond [`FARTHEST`], and one before 0.
+/// Number of entries up to one beyond [`FARTHEST`], and one before 0.
 const COUNT: usize = (FARTHEST / STEP) as usize + 4;
 
-/// What daylight looks like of which a share of cos(2π x / λ), or of sin(2π x / λ), is there at each wavelength λ, by
-/// the way x that a part of the light is behind: the Fourier transforms of what the eye sees of daylight (Belcour and
-/// Barla, "A Practical Extension to Microfacet Theory for the Modeling of Varying Iridescence", 2017), with the same
-/// weights of every nm by which all spectra are seen. Cubics between entries err by at most 1e-6.
+/// Colour of daylight modulated by cos(2π x / λ), or by sin(2π x / λ), at each wavelength λ, for a path difference x:
+/// Fourier transforms of the eye's response to daylight (Belcour and Barla, "A Practical Extension to Microfacet Theory
+/// for the Modeling of Varying Iridescence", 2017). They use the weights at every nm, as all spectra do. Cubic
+/// interpolation has an error of at most 1e-6.
 static FRINGES: LazyLock<[Vec<Rgb>; 2]> = LazyLock::new(|| {
     let mut all = [vec![Rgb::ZERO; COUNT], vec![Rgb::ZERO; COUNT]];
     for (wavelength, weight) in Response::new(Illuminant::Daylight, 1).weights() {
         let (turn_sin, turn_cos) = (TAU * STEP / wavelength).sin_cos();
-        // From the entry before 0 on.
+        // Starts at the entry before 0.
         let (mut cos, mut sin) = (turn_cos, -turn_sin);
         let [cosines, sines] = &mut all;
         for (cosine, sine) in cosines.iter_mut().zip(sines) {
@@ -34,7 +34,7 @@ static FRINGES: LazyLock<[Vec<Rgb>; 2]> = LazyLock::new(|| {
     all
 });
 
-/// What is seen of the cosine and of the sine, for light that is `behind` by so many nm, not negative.
+/// Colours of the cosine and the sine, for a non-negative path difference in nm.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Fringes {
     cosines: &'static [Rgb],
@@ -42,27 +42,27 @@ pub(super) struct Fringes {
 }
 
 impl Fringes {
-    /// The tables, made when they are first asked for.
+    /// The tables, computed on first use.
     #[inline]
     pub fn get() -> Self {
         let [cosines, sines] = &*FRINGES;
         Self { cosines, sines }
     }
 
-    /// Of the cosine.
+    /// Colour of the cosine.
     #[inline]
     pub fn cosine(&self, behind: f64) -> Rgb {
         if behind < FARTHEST { between(self.cosines, behind) } else { Rgb::ZERO }
     }
 
-    /// Of the cosine and of the sine.
+    /// Colours of the cosine and of the sine.
     #[inline]
     pub fn both(&self, behind: f64) -> [Rgb; 2] {
         if behind < FARTHEST { [between(self.cosines, behind), between(self.sines, behind)] } else { [Rgb::ZERO; 2] }
     }
 }
 
-/// The cubic through four entries.
+/// Cubic interpolation of four entries.
 #[inline]
 fn between(table: &[Rgb], behind: f64) -> Rgb {
     let steps = behind * (1.0 / STEP);
@@ -84,7 +84,7 @@ mod tests {
         let daylight = Response::new(Illuminant::Daylight, 1);
         let fringes = Fringes::get();
         for i in 0..2000 {
-            // Denser towards 0, and nowhere on an entry.
+            // Denser towards 0, and never exactly at an entry.
             let behind = 47_990.0 * (f64::from(i) / 2000.0).powi(3) + 0.1234;
             let truth = [f64::cos, f64::sin].map(|wave| daylight.seen(|wavelength| wave(TAU * behind / wavelength)));
             let [cosine, sine] = fringes.both(behind);
@@ -92,7 +92,7 @@ mod tests {
             assert!(off < 1e-6 && fringes.cosine(behind) == cosine, "{behind} {off:e}");
         }
         assert!((fringes.cosine(0.0) - Rgb::ONE).abs().max() < 1e-12 && fringes.both(0.0)[1].abs().max() < 1e-12);
-        // What is left out.
+        // The contrast beyond the table.
         for i in 0..400 {
             let behind = FARTHEST + 97.0 * f64::from(i);
             for wave in [f64::cos, f64::sin] {

@@ -1,4 +1,4 @@
-//! The colours of films.
+//! Interference colours of films.
 
 use super::fringes::{FARTHEST, Fringes};
 use super::{Complex, reflectance};
@@ -7,43 +7,42 @@ use crate::spectra::{Illuminant, Response};
 use std::f64::consts::PI;
 use std::sync::LazyLock;
 
-/// What each wavelength of daylight adds, at every nm, and at every second.
+/// Weights of daylight at every nm, and at every second.
 static LINES: LazyLock<[Vec<(f64, Rgb)>; 2]> =
     LazyLock::new(|| [1, 2].map(|step| Response::new(Illuminant::Daylight, step).weights().collect()));
 
-/// So many reflections within a film are summed by colour; where it takes more, each wavelength is asked.
+/// Maximum number of internal reflections summed by colour; if more are needed, the sum is by wavelength.
 const TERMS: i32 = 64;
 
-/// What reflections that are left out may add up to.
+/// Bound on the contribution of reflections that are left out.
 const LEAST: f64 = 1e-7;
 
-/// The colour of what a film reflects of unpolarised daylight, in linear Rec. 709 with all of the light (1, 1, 1), as
-/// the integral over wavelengths has it: a channel may be less than 0 by some thousandths, or more than 1, since a
-/// screen's three lights do not mix every colour. `thickness` is in nm, and light comes through a medium of index
-/// `from` at a `cosine` of incidence, 0 to 1. No index depends on the wavelength.
+/// Colour of a film's reflection of unpolarised daylight, in linear Rec. 709 with a perfect reflector at (1, 1, 1),
+/// integrated over wavelengths. Out of gamut, a channel may be negative by some thousandths, or exceed 1. `thickness`
+/// is in nm, and light arrives through a medium of index `from` at a `cosine` of incidence, 0 to 1. Indices do not
+/// depend on the wavelength.
 ///
-/// At one wavelength λ what goes through is T₀ / (1 + 2ρ cos δ + ρ²), for a phase δ = 2π x / λ of light that is behind
-/// by x = 2 d n cos θ, which is T₀ / (1 − ρ²) times 1 + 2 Σ (−ρ)ᵐ cos mδ. So the colour is a sum over m of what is seen
-/// of fringes, by tables that all films share. Its error is below 1e-5 up to ways behind of 16 µm. Of light that is
-/// more than 48 µm behind, fringes are taken for too close to be seen; of thicker films that leaves an error below
-/// 0.0026 ρ.
+/// The transmittance at wavelength λ is T₀ / (1 + 2ρ cos δ + ρ²). Its phase is δ = 2π x / λ for a path difference x = 2
+/// d n cos θ. It equals T₀ / (1 − ρ²) times 1 + 2 Σ (−ρ)ᵐ cos mδ. So the colour is a sum over m of fringe colours, from
+/// tables that all films share. Its error is below 1e-5 up to path differences of 16 µm. Beyond 48 µm fringes are
+/// assumed invisible; for thicker films the error is below 0.0026 ρ.
 pub fn on_dielectric(thickness: f64, [from, film, to]: [f64; 3], cosine: f64) -> Rgb {
     let first = from * cosine;
     let squared = |index: f64| (index - from) * (index + from) + first * first;
     let beyond = squared(to);
     if beyond <= 0.0 || first <= 0.0 {
-        // No way out on the other side: whatever the film does, all comes back.
+        // Total reflection at the far side: whatever the film does, everything returns.
         return Rgb::ONE;
     }
     let within = squared(film);
     if within <= 0.0 {
-        // Light decays within the film, evenly over wavelengths.
+        // Light decays within the film, smoothly over wavelengths.
         return by_wavelength(&LINES[1], |wavelength| {
             reflectance(wavelength, cosine, thickness, from, film, to.into())
         });
     }
     let (within, beyond) = (within.sqrt(), beyond.sqrt());
-    // By polarisation, what the near and the far face reflect, and what both let through.
+    // For each polarisation, the reflection of near and far face, and the transmission of both.
     let faces = |[a, b, c]: [f64; 3]| {
         let (near, far) = (a + b, b + c);
         let through = [4.0 * (a / near) * (b / near), 4.0 * (b / far) * (c / far)];
@@ -55,7 +54,7 @@ pub fn on_dielectric(thickness: f64, [from, film, to]: [f64; 3], cosine: f64) ->
     if takes_many(&all, behind) {
         return by_wavelength(&LINES[0], reflected(&all, behind));
     }
-    // Each polarisation has half of the light.
+    // Each polarisation carries half of the light.
     let mut waves = all.map(|faces| 0.5 * faces.mean());
     let mut seen = Rgb::splat(1.0 - (waves[0] + waves[1]));
     let fringes = Fringes::get();
@@ -70,8 +69,8 @@ pub fn on_dielectric(thickness: f64, [from, film, to]: [f64; 3], cosine: f64) ->
     seen
 }
 
-/// The same of a film on a conductor whose index of refraction η + ik is told channel by channel: each channel is what
-/// is seen of one that has its index at all wavelengths. Light comes through a medium of index `outside`.
+/// Colour of a film on a conductor with index of refraction η + ik per channel. Each channel is that of a conductor
+/// with its index at all wavelengths. Light arrives through a medium of index `outside`.
 pub fn on_conductor(thickness: f64, [outside, film]: [f64; 2], (eta, k): (Rgb, Rgb), cosine: f64) -> Rgb {
     let first = outside * cosine;
     let within = (film - outside) * (film + outside) + first * first;
@@ -94,7 +93,7 @@ pub fn on_conductor(thickness: f64, [outside, film]: [f64; 2], (eta, k): (Rgb, R
     channels(&|channel| {
         let base = base(channel);
         let beyond = (base * base - Complex::from(along)).sqrt();
-        // The same as for a dielectric, with a phase that the far face adds.
+        // As for a dielectric, with an additional phase from the far face.
         let faces = |[a, b]: [f64; 2], c: Complex| {
             let (near, far) = (a + b, c + Complex::from(b));
             let far_face = (Complex::from(b) - c) / far;
@@ -122,32 +121,33 @@ pub fn on_conductor(thickness: f64, [outside, film]: [f64; 2], (eta, k): (Rgb, R
     })
 }
 
-/// An index of refraction beyond which all is a mirror, and powers are still numbers.
+/// An index of refraction beyond which everything is a mirror, and powers do not overflow.
 const HIGHEST: f64 = 1e40;
 
-/// The faces of a film, for light of one polarisation.
+/// The faces of a film, for one polarisation.
 #[derive(Clone, Copy)]
 struct Faces {
-    /// What both reflect of a wave: ρ with a phase.
+    /// Product of both reflection coefficients: ρ with a phase.
     both: Complex,
-    /// The shares of light that go through the near and the far one.
+    /// Transmittances of near and far face.
     through: [f64; 2],
 }
 
 impl Faces {
-    /// 1 − ρ², without a difference.
+    /// 1 − ρ², without cancellation.
     fn less(&self) -> f64 {
         let [near, far] = self.through;
         near + far - near * far
     }
 
-    /// What goes through both in the mean over all phases, T₀ / (1 − ρ²).
+    /// Transmittance averaged over all phases, T₀ / (1 − ρ²).
     fn mean(&self) -> f64 {
         over(self.through[0] * self.through[1], self.less())
     }
 }
 
-/// What is reflected at a wavelength, for light that is `behind`. With (1 − ρ)² + 4ρ cos² δ/2 below, nothing cancels.
+/// Reflectance at a wavelength, for a path difference `behind`. The form (1 − ρ)² + 4ρ cos² δ/2 of the denominator
+/// avoids cancellation.
 fn reflected(all: &[Faces; 2], behind: f64) -> impl Fn(f64) -> f64 {
     let ready = all.map(|faces| {
         let size = faces.both.square().sqrt();
@@ -165,23 +165,23 @@ fn reflected(all: &[Faces; 2], behind: f64) -> impl Fn(f64) -> f64 {
     }
 }
 
-/// A quotient of which nothing is nothing.
+/// A quotient where 0 / 0 is 0.
 fn over(part: f64, whole: f64) -> f64 {
     if part > 0.0 { part / whole } else { 0.0 }
 }
 
-/// Whether it takes more reflections within a film than are summed by colour, of which each is so much of the one
-/// before, and `behind` it.
+/// Returns whether more internal reflections are needed than are summed by colour. Each is smaller than the previous
+/// one by the product of both reflection coefficients, and has an additional path difference `behind`.
 fn takes_many(all: &[Faces; 2], behind: f64) -> bool {
     let greatest = all.map(|faces| faces.both.square()).into_iter().fold(0.0, f64::max).sqrt();
     if f64::from(TERMS) * behind < FARTHEST {
         return greatest.powi(TERMS) > LEAST * (1.0 - greatest);
     }
-    // What is left out is seen the less the farther it is behind.
+    // The visibility of what is left out decreases with its path difference.
     behind < FARTHEST / 3.0 && greatest.powi((FARTHEST / behind) as i32) > 5e-3
 }
 
-/// What is seen of a spectrum.
+/// Colour of a spectrum.
 #[cold]
 fn by_wavelength(lines: &[(f64, Rgb)], spectrum: impl Fn(f64) -> f64) -> Rgb {
     lines.iter().map(|&(wavelength, weight)| weight * spectrum(wavelength)).sum()
@@ -192,7 +192,7 @@ mod tests {
     use super::*;
     use crate::fresnel;
 
-    /// The integral itself.
+    /// The reference integral.
     fn integral(thickness: f64, [outside, film]: [f64; 2], base: Complex, cosine: f64) -> Rgb {
         by_wavelength(&LINES[0], |wavelength| reflectance(wavelength, cosine, thickness, outside, film, base))
     }
@@ -239,7 +239,7 @@ mod tests {
 
     #[test]
     fn three_wavelengths_are_no_colour() {
-        // What 650, 550 and 450 nm would give in place of integrals: it is told apart at each thickness.
+        // Results of single wavelengths at 650, 550 and 450 nm, which differ from the integral at each thickness.
         for (thickness, wrong) in [
             (300.0, [0.0346943504289, 0.0754302029968, 0.0344459899013]),
             (600.0, [0.0757214932735, 0.00764170047672, 0.0755913619499]),
@@ -267,7 +267,7 @@ mod tests {
             assert!((metal - fresnel::conductor(cosine, eta, k)).abs().max() < 1e-6);
         }
         assert!(on_dielectric(5.0, [1.0, 1.33, 1.0], 1.0).max() < 1e-3);
-        // What is thick is a plate without colours, 2r / (1 + r).
+        // A thick film is a plate without colours, 2r / (1 + r).
         let plate = Rgb::splat(0.0393296977138936);
         assert!((on_dielectric(1e9, [1.0, 1.33, 1.0], 1.0) - plate).abs().max() < 1e-9);
     }

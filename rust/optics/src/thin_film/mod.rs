@@ -1,9 +1,8 @@
-//! Films about as thick as a wave of light is long, and the colours that they have.
+//! Interference of thin films, about as thick as a wavelength of light.
 //!
-//! What the two faces of a film reflect comes together again and interferes, by the way that the one part is behind the
-//! other: Airy's sum over all reflections within the film. `airy` has it at one wavelength, exactly; `layers` has its
-//! colour, integrated over wavelengths, of films on what has one index of refraction for all of them, by tables of
-//! `fringes` that serve all such films.
+//! Reflections from both faces of a film interfere by their path difference: Airy's sum over all reflections within the
+//! film. `airy` evaluates it at one wavelength exactly. `layers` evaluates its colour, integrated over wavelengths, on
+//! bases with a constant index of refraction. It uses tables of `fringes` that all such films share.
 
 mod airy;
 mod complex;

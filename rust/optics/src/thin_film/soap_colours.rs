@@ -1,10 +1,10 @@
-//! Soap films as the CIE's observer sees them.
+//! Colours of soap films for the CIE's observer.
 
 use super::reflectance;
 use crate::spectra::matching;
 use glam::{DMat3, DVec3};
 
-/// From X, Y and Z to linear sRGB, by where its primaries and its white lie (IEC 61966-2-1).
+/// Matrix from X, Y and Z to linear sRGB, from its primaries and white point (IEC 61966-2-1).
 fn srgb() -> DMat3 {
     let primaries = DMat3::from_cols_array(&[0.64, 0.33, 0.03, 0.30, 0.60, 0.10, 0.15, 0.06, 0.79]);
     let white = DVec3::new(0.3127, 0.3290, 1.0 - 0.3127 - 0.3290) / 0.3290;
@@ -13,7 +13,7 @@ fn srgb() -> DMat3 {
 
 #[test]
 fn soap_films_have_their_colours() {
-    // Straight on, in light that is even over wavelengths, by thickness in nm: X, Y and Z with Y = 1 for a mirror, and
+    // Normal incidence under an equal-energy illuminant, by thickness in nm: X, Y and Z with Y = 1 for a mirror, and
     // linear sRGB (Born and Wolf, 7.6 and 1.6, summed over every nm from 360 to 830 with the CIE's table of 1931).
     let truths = [
         (0.0, [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]),

@@ -1,12 +1,12 @@
-//! Tables written by `entries.rs`: `cargo test write_tables -- --ignored` integrates them anew, which takes two cores
-//! some half an hour. With TABLES=coat,coat_average it writes these alone.
+//! Tables written by `entries.rs`. `cargo test write_tables -- --ignored` integrates them anew, which takes about half
+//! an hour on two cores. TABLES=coat,coat_average writes only these.
 
 use super::cubic::Table;
 
-/// How many entries tables have: by cosine and α, and the average by α.
+/// Table sizes: by cosine and α, and the average by α.
 pub(super) const MIRROR: [usize; 2] = [33, 17];
 pub(super) const MIRROR_AVERAGE: [usize; 1] = [33];
-/// By cosine, azimuth, one roughness over the other and the greater; the average by the last two.
+/// By cosine, azimuth, ratio of roughnesses and the greater roughness; the average by the last two.
 pub(super) const BRUSHED: [usize; 4] = [27, 11, 13, 13];
 pub(super) const BRUSHED_AVERAGE: [usize; 2] = [25, 25];
 /// By α, cosine and index, and the averages by α and index.
@@ -19,37 +19,37 @@ pub(super) const COAT_AVERAGE: [usize; 2] = [33, 33];
 pub(super) const SCHLICK: [usize; 2] = [33, 17];
 pub(super) const SCHLICK_AVERAGE: [usize; 1] = [33];
 
-/// All that is tabulated of one distribution of facets.
+/// All tables of one facet distribution.
 #[derive(Debug)]
 pub struct Tables {
-    /// Losses of mirrors, over about what they are.
+    /// Losses of perfectly reflecting facets, over an approximation.
     pub(super) mirror: Table<2>,
-    /// Logarithms of their means over even light, over α².
+    /// Logarithms of their cosine-weighted averages, over α².
     pub(super) mirror_average: Table<1>,
-    /// Losses of mirrors that are not alike in all directions, over about what they are.
+    /// Losses of anisotropic, perfectly reflecting facets, over an approximation.
     pub(super) brushed: Table<4>,
-    /// Logarithms of their means over even light, over the mean of α².
+    /// Logarithms of their cosine-weighted averages, over the mean of α².
     pub(super) brushed_average: Table<2>,
-    /// Losses of interfaces from the thinner side, over about what they are.
+    /// Losses of interfaces from the thinner side, over an approximation.
     pub(super) thin: Table<3>,
-    /// Losses of interfaces from the denser side, over about what they are.
+    /// Losses of interfaces from the denser side, over an approximation.
     pub(super) dense: Table<3>,
-    /// Logarithms of means over even light of the losses from the thinner side, over their unit.
+    /// Logarithms of cosine-weighted averages of the losses from the thinner side, over their unit.
     pub(super) thin_average: Table<2>,
     /// The same from the denser side.
     pub(super) dense_average: Table<2>,
-    /// Means of Fresnel's reflectance over what coats reflect once, less that of one facet.
+    /// Albedo of coats with single scattering, minus the reflectance of one facet.
     pub(super) coat: Table<3>,
-    /// Its mean over even light, less that of Fresnel's.
+    /// Its cosine-weighted average, minus that of Fresnel's reflectance.
     pub(super) coat_average: Table<2>,
-    /// What is reflected once with Schlick's term, less that term.
+    /// Albedo with Schlick's weight, minus that weight.
     pub(super) schlick: Table<2>,
-    /// Its mean over even light.
+    /// Its cosine-weighted average.
     pub(super) schlick_average: Table<1>,
 }
 
 impl Tables {
-    /// Their names and what is in their files.
+    /// Names and contents of the files.
     #[cfg(test)]
     pub(super) fn files(&self) -> [(&'static str, &'static [u8]); 12] {
         [
@@ -69,7 +69,7 @@ impl Tables {
     }
 }
 
-/// The tables in a folder.
+/// Loads the tables of a folder.
 macro_rules! tables {
     ($folder:literal) => {
         tables! {
@@ -99,8 +99,8 @@ macro_rules! tables {
     };
 }
 
-/// Those of [`crate::Ggx`].
+/// Tables of [`crate::Ggx`].
 pub(super) static GGX: Tables = tables!("ggx");
 
-/// Those of [`crate::Beckmann`].
+/// Tables of [`crate::Beckmann`].
 pub(super) static BECKMANN: Tables = tables!("beckmann");
