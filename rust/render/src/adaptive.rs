@@ -1,4 +1,4 @@
-//! Samples where they are needed.
+//! Adaptive sampling.
 
 use super::bytes::{Malformed, Reader, Writer, check};
 use super::denominators::{Denominators, cross};
@@ -7,51 +7,51 @@ use super::film::Film;
 use raywright_base::parallel::{self, CHUNK};
 use raywright_optics::Rgb;
 
-/// Decides how many samples each pixel gets, such that most go where most of the error is, and no pixel is biased by
-/// it.
+/// Decides the number of samples of each pixel, so that most samples go to pixels with large error and no pixel is
+/// biased.
 ///
-/// To give a pixel more samples if its first ones were unlike each other, and then to take the mean of all, is biased
-/// (Kirk and Arvo, "Unbiased Sampling Techniques for Image Synthesis", 1991): a bright sample brings about others that
-/// dilute it, and its absence is left as it is, so that what is rare and bright comes out too dark. Here each pixel has
-/// two halves, and *the samples of one half decide how many the other gets*. Which values a half holds says nothing of
-/// how many it holds, so its mean is unbiased, and so is the usual estimate of the variance of that. The pixel is the
-/// plain mean of the two means: to weigh them by their counts would let a half's samples have a say in its weight.
+/// Naive adaptive sampling gives a pixel more samples if its first ones vary and averages all of them. That is biased
+/// (Kirk and Arvo, "Unbiased Sampling Techniques for Image Synthesis", 1991): a bright sample causes further samples
+/// that dilute it, and its absence is not corrected, so rare bright events come out too dark. Here each pixel has two
+/// halves, and *the samples of one half decide the number of samples of the other*. The values of a half do not affect
+/// its own count, so its mean is unbiased, and so is the usual estimate of that mean's variance. The pixel is the plain
+/// mean of both means. Weighting by counts would let a half's samples affect its weight.
 ///
-/// Nor may the other half repeat what it was told. A half's count follows from *evidence* in the other: a number of
-/// samples that is the same for all pixels, whatever anyone decided, taken at the start of each epoch. The samples on
-/// top of those are for the mean only.
+/// The other half must not be correlated with its own count either. A half's count follows from *evidence* in the
+/// other: a number of samples that is equal for all pixels, whatever was decided, at the start of each epoch. Samples
+/// beyond the evidence only contribute to the mean.
 ///
-/// An epoch ends when the samples of all pixels have doubled. At its start, each half is allotted what it shall have at
-/// the end. The error of a sum of pixels is least for counts that are proportional to the root of what one sample of a
-/// pixel adds to it (Neyman, 1934), here to relMSE. That is estimated from few samples, and smoothed over the
-/// neighbours, without which as much is lost as is won. In a Cornell box, whose optimum would need 1.5 times fewer
-/// samples than the same number everywhere, it takes 1.3 to 1.35 times fewer.
+/// An epoch ends when the samples of all pixels have doubled. At its start, each half is allotted its samples up to the
+/// end. The error of a sum over pixels is least if counts are proportional to the square root of one sample's
+/// contribution to it (Neyman, 1934), here to relMSE. That contribution is estimated from few samples and smoothed over
+/// neighbours; without smoothing, as much is lost as is gained. A Cornell box with optimal counts would need 1.5 times
+/// fewer samples than uniform sampling; this method needs 1.3 to 1.35 times fewer.
 ///
-/// Pixels of a patch take their samples together, so they all have the same number: the mean of what each would have.
+/// Pixels of a patch take their samples together, so they all have the same number, the mean of their individual ones.
 ///
-/// How many samples a cell has depends on the seed and on the mean number of samples alone, not on passes or threads.
+/// A cell's number of samples depends only on the seed and on the mean number of samples, not on passes or threads.
 #[derive(Clone, Debug)]
 pub(super) struct Adaptive {
     epoch: Epoch,
-    /// Samples of each cell that are evidence when it ends.
+    /// Samples of each cell that are evidence at the end of the epoch.
     evidence: u32,
 }
 
 impl Adaptive {
-    /// Mean samples of a pixel before anything is decided.
+    /// Mean samples per pixel before the first decision.
     const FIRST: u32 = 16;
 
-    /// The part of an epoch's samples that is evidence for the next.
+    /// Share of an epoch's samples that is evidence for the next.
     const EVIDENCE: f64 = 0.25;
 
-    /// A cell's samples grow by this factor in an epoch at most, or to this multiple of the mean: whatever evidence
-    /// says.
+    /// Maximum growth of a cell's samples in an epoch, by this factor or to this multiple of the mean, whatever the
+    /// evidence.
     const GROWTH: f64 = 4.0;
 
-    /// The least weight of a pixel, as a share of the mean, whatever it was seen to do: it may only have been lucky.
+    /// Lower bound of a pixel's weight, relative to the mean, because low variance may be luck.
     const LEAST: f64 = 0.01;
 
-    /// The first epoch of an empty film in halves.
+    /// Starts the first epoch of an empty film in halves.
     pub fn new(film: &mut Film) -> Self {
         let first = Self::FIRST.max(2 * film.batch());
         film.take_evidence(first / 2);
@@ -59,31 +59,31 @@ impl Adaptive {
         Self { epoch: Epoch { from: 0, to: first, patch: film.patch(), shares }, evidence: first / 2 }
     }
 
-    /// Mean samples of a pixel up to which a film that has `done` can go at once.
+    /// Mean samples per pixel that a film with `done` samples can reach in one pass.
     pub fn limit(&self, done: u32) -> u32 {
         let end = self.epoch.to;
         if done < end { end } else { end.saturating_mul(2) }
     }
 
-    /// What was decided last.
+    /// The current epoch.
     pub fn epoch(&self) -> &Epoch {
         &self.epoch
     }
 
-    /// Begins the next epoch if the last is over.
+    /// Begins the next epoch if the current one is over.
     pub fn prepare(&mut self, film: &mut Film) {
         if film.samples() == self.epoch.to {
             self.decide(film, |half| 1 - half);
         }
     }
 
-    /// What was decided, as bytes.
+    /// Writes the current epoch as bytes.
     pub fn write(&self, to: &mut Writer) {
         to.word(self.evidence);
         self.epoch.write(0..self.epoch.shares.len(), to);
     }
 
-    /// Reads what was decided for the film, which has been read. If that fails, this plan is of no use.
+    /// Reads the epoch of a film that has been read. After an error, this plan is invalid.
     pub fn read(&mut self, film: &Film, from: &mut Reader) -> Result<(), Malformed> {
         self.evidence = from.word()?;
         self.epoch = Epoch::read(film.tiles().iter(), film.patch(), from)?;
@@ -91,12 +91,12 @@ impl Adaptive {
         check((*start..=*to).contains(&film.samples()), "an epoch ends before it begins")?;
         check(self.evidence > 0 && self.evidence <= *to, "there is no evidence")?;
         let all: u64 = shares.iter().flatten().map(|&[_, end]| u64::from(end)).sum();
-        // No one shall wait for a pass that never ends. Cells are rounded to whole batches.
+        // Bounds the length of a pass that malicious bytes may request. Cells are rounded to whole batches.
         let most = (u64::from(*to) + 2 * u64::from(film.batch())) * film.pixel_count() as u64;
         check(all <= most, "cells were given more samples than there are")
     }
 
-    /// Begins an epoch, in which the half `decider(half)` decides for each half.
+    /// Begins an epoch. The half `decider(half)` decides for each half.
     fn decide(&mut self, film: &mut Film, decider: impl Fn(usize) -> usize) {
         let (from, to, patch) = (self.epoch.to, self.epoch.to.saturating_mul(2), self.epoch.patch);
         let batch = film.batch();
@@ -129,14 +129,14 @@ impl Adaptive {
     }
 }
 
-/// The number of samples that each pixel should have, up to a factor, as so many samples of one of its halves see it.
+/// Relative number of samples that each pixel should have, from this number of samples of one half.
 fn weights(film: &Film, half: usize, samples: u32) -> Vec<f64> {
     let (width, count) = (film.width() as usize, f64::from(samples));
     let evidence = film.evidence(half);
     let means = parallel::collect(evidence.len(), |pixel| evidence[pixel].0 / count);
     let errors = parallel::collect(evidence.len(), |pixel| {
         let (sum, squares) = evidence[pixel];
-        // As of independent samples: where they are not, this is the wrong variance, and a fair guide.
+        // For independent samples; otherwise the variance is wrong, but a fair guide.
         let variance = ((squares - sum * sum / count) / (count * (count - 1.0))).at_least(Rgb::ZERO);
         let cross = cross(&means, width, pixel % width, pixel / width);
         variance.dot(Denominators::new(&cross, variance, count).inverse)
@@ -153,11 +153,11 @@ fn weights(film: &Film, half: usize, samples: u32) -> Vec<f64> {
     weights
 }
 
-/// Each value, and those up to two pixels away, by the weights 1, 4, 6, 4, 1 along both axes.
+/// Smooths values over two pixels in each direction, by the weights 1, 4, 6, 4, 1 along both axes.
 fn smoothed(values: &[f64], width: usize) -> Vec<f64> {
     const KERNEL: [f64; 5] = [0.0625, 0.25, 0.375, 0.25, 0.0625];
     let height = values.len() / width.max(1);
-    // At borders the outermost value stands in for what lies beyond.
+    // At borders the outermost value is repeated.
     let at = |i: usize, k: usize, size: usize| (i + k).saturating_sub(2).min(size - 1);
     let across: Vec<f64> = parallel::collect(values.len(), |i| {
         (0..5).map(|k| KERNEL[k] * values[i - i % width + at(i % width, k, width)]).sum()
@@ -167,7 +167,7 @@ fn smoothed(values: &[f64], width: usize) -> Vec<f64> {
     })
 }
 
-/// The mean over each patch of so many values a side, at each of its places.
+/// Mean over each patch with `patch` values per side, at every position in it.
 fn in_patches(mut values: Vec<f64>, width: usize, patch: usize) -> Vec<f64> {
     if patch > 1 && width > 0 {
         parallel::each_chunk_mut(&mut values, patch * width, &|_, band| {
@@ -185,12 +185,12 @@ fn in_patches(mut values: Vec<f64>, width: usize, patch: usize) -> Vec<f64> {
     values
 }
 
-/// The level by which the weights, multiplied and kept between their limits, sum up to `total`.
+/// Finds the factor by which the weights, clamped to their limits, sum to `total`.
 fn level(weights: &[f64], limits: &[[f64; 2]], total: f64) -> f64 {
     let sum = |level: f64| ordered_sum(weights.len(), |i| (level * weights[i]).clamp(limits[i][0], limits[i][1]));
     let mut low = total / ordered_sum(weights.len(), |i| weights[i]);
     let mut high = low;
-    // Limits at which no level gives the total do not keep this from ending.
+    // Bounded, in case no factor gives the total within the limits.
     for _ in 0..64 {
         if sum(low) <= total {
             break;
@@ -214,7 +214,7 @@ fn level(weights: &[f64], limits: &[[f64; 2]], total: f64) -> f64 {
     low
 }
 
-/// A sum of so many terms on all cores, in an order that depends on their number only.
+/// Sums terms on all cores, in an order that depends only on their number.
 fn ordered_sum(count: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
     const TOGETHER: usize = 4096;
     let parts = parallel::map_chunks(count, TOGETHER, |part| part.map(&term).sum::<f64>());
@@ -227,8 +227,8 @@ mod tests {
     use proptest::prelude::*;
     use raywright_base::sampling::Sampler;
 
-    /// A film of samples that are mostly 1 and rarely `1 / chance` more, exposed to so many samples by counts that the
-    /// half `decider(half)` decides.
+    /// A film of samples that are mostly 1 and rarely `1 / chance` more, with counts decided by the half
+    /// `decider(half)`.
     fn film(seed: u64, chance: f64, samples: u32, batch: u32, decider: fn(usize) -> usize) -> Film {
         let mut film = Film::new(8, 8, 4, batch, true, None);
         let mut plan = Adaptive::new(&mut film);
@@ -251,7 +251,7 @@ mod tests {
         film
     }
 
-    /// How many standard errors the mean over seeds is off, and the mean.
+    /// Deviation of the mean over seeds in standard errors, and the mean.
     fn deviation(seeds: u64, batch: u32, decider: fn(usize) -> usize) -> (f64, f64) {
         let brightness = |seed| film(seed, 0.01, 64, batch, decider).means().iter().map(|m| m[0]).sum::<f64>() / 64.0;
         let means = parallel::map(seeds as usize, |seed| brightness(seed as u64));
@@ -263,7 +263,8 @@ mod tests {
 
     #[test]
     fn no_mean_is_biased_by_decisions_of_the_other_half() {
-        // Chance exceeds four standard errors once in 16,000 cases. A sample in a hundred brings half of the light.
+        // The probability of exceeding four standard errors is 1 in 16,000. One sample in a hundred carries half of the
+        // light.
         for batch in [1, 4] {
             let (off, mean) = deviation(1000, batch, |half| 1 - half);
             assert!(off.abs() < 4.0, "{mean}: off by {off} standard errors");
@@ -290,11 +291,11 @@ mod tests {
             .collect();
         let mean = ratios.iter().sum::<f64>() / 10.0;
         let error = (ratios.iter().map(|r| (r - mean).powi(2)).sum::<f64>() / 90.0).sqrt();
-        // Student's t of nine degrees of freedom exceeds 4.3 once in 500 cases.
+        // Student's t with nine degrees of freedom exceeds 4.3 with probability 1 in 500.
         assert!((mean - 1.0).abs() < 4.3 * error && error < 0.02, "{mean} ± {error}");
     }
 
-    /// Exposes to a film whose noise is `noise(x)` in each column, independent of its brightness, which is 1.
+    /// Exposes a film of brightness 1 with noise `noise(x)` per column.
     fn columns(samples: u32, batch: u32, noise: impl Fn(u32) -> f64) -> Film {
         let mut film = Film::new(32, 32, 16, batch, true, None);
         let mut plan = Adaptive::new(&mut film);
@@ -317,7 +318,7 @@ mod tests {
 
     #[test]
     fn samples_go_by_the_root_of_what_they_bring() {
-        // Four times the deviation on one side: four times the samples there.
+        // Four times the deviation on one side requires four times the samples there.
         let film = columns(256, 1, |x| if x < 16 { 0.8 } else { 0.2 });
         let counts = film.counts();
         let mean = |columns: std::ops::Range<usize>| {
@@ -325,7 +326,7 @@ mod tests {
                 counts.chunks(32).flat_map(|row| row[columns.clone()].to_vec()).map(f64::from).collect();
             all.iter().sum::<f64>() / all.len() as f64
         };
-        // Evidence is the same for all, a quarter of the samples and the first sixteen, so the few have some more.
+        // Evidence is uniform: a quarter of the samples and the first sixteen, so quiet columns have slightly more.
         let (many, few) = (mean(0..12), mean(20..32));
         assert!((3.0..4.5).contains(&(many / few)), "{many} and {few}");
         assert!((mean(0..32) / 256.0 - 1.0).abs() < 0.01);

@@ -1,23 +1,23 @@
-//! How far a picture may be off because light is gathered from about a point, and not at it.
+//! Estimate of the bias of density estimation (photon gathering).
 
 use super::{Progress, RenderError, Settings, Until, render};
 use raywright_integrators::Integrator;
 use raywright_optics::Rgb;
 use raywright_scene::{Camera, Scene};
 
-/// Samples by which it is told, at most and at least.
+/// Maximum and minimum number of samples for the estimate.
 const SAMPLES: [u32; 2] = [16, 4];
 
-/// Groups of them, at most, each with photons of its own: their spread tells the noise.
+/// Maximum number of groups, each with its own photons; their spread measures the noise.
 const GROUPS: u32 = 8;
 
-/// The bias of each pixel of a picture of so many samples and its standard error, told by a few of them; `None` of an
-/// integrator that gathers no light from about.
+/// Estimates the bias of each pixel of a picture with this many samples, and its standard error, from a few samples.
+/// Returns `None` for an unbiased integrator.
 ///
-/// The same samples by the same photons are taken of disks of the radius r, of r/√2 and of r/2: noise that they share
-/// falls out of their differences. Where the law of the bias is r², the first two tell it, E − 2 E(r/√2) + E(r) less
-/// than E; and so do the last two, of a quarter of it, with some three times the noise. Where they do not agree, beyond
-/// what noise explains, the law is another, and the larger is told.
+/// The same samples and photons are evaluated with disks of radius r, r/√2 and r/2, so that common noise cancels in the
+/// differences. If the bias is proportional to r², the first two disks give it as 2 (E(r) − E(r/√2)), and the last two
+/// as 4 (E(r/√2) − E(r/2)), with some three times the noise. If the two estimates differ by more than noise explains,
+/// the law is another, and the larger is returned.
 pub fn bias(
     scene: &Scene,
     camera: &dyn Camera,
@@ -31,7 +31,7 @@ pub fn bias(
     let groups = few.min(GROUPS);
     let mut sums = Vec::new();
     for group in 0..groups {
-        // As far from other seeds as can be, which may be those of other pictures.
+        // Offset by the golden ratio, to be far from the seeds of other pictures.
         let seed = settings.seed.wrapping_add(u64::from(group).wrapping_mul(0x9e37_79b9_7f4a_7c15));
         let until = Until { samples: Some(few / groups), ..Until::default() };
         let settings = Settings { until, seed, ..settings.clone() };
@@ -48,8 +48,8 @@ pub fn bias(
     Ok(Some(sums.iter().map(|sums| sums.told(f64::from(groups))).collect()))
 }
 
-/// What groups of samples tell of a pixel: by the first two of three disks of which each has half the area of the one
-/// before, by the last two, and by how much more these do.
+/// Sums over groups of a pixel's estimates from three disks, each with half the area of the previous one: by the first
+/// two, by the last two, and their difference.
 #[derive(Clone, Copy, Debug, Default)]
 struct Sums {
     sums: [Rgb; 3],
@@ -57,10 +57,10 @@ struct Sums {
 }
 
 impl Sums {
-    /// The disagreement that counts, in standard errors.
+    /// Significant difference, in standard errors.
     const APART: f64 = 4.0;
 
-    /// Adds a group's estimates by the three disks.
+    /// Adds a group's estimates from the three disks.
     fn add(&mut self, whole: Rgb, half: Rgb, quarter: Rgb) {
         let (first, second) = (2.0 * (whole - half), 4.0 * (half - quarter));
         for (k, told) in [first, second, second - first].into_iter().enumerate() {
@@ -69,7 +69,7 @@ impl Sums {
         }
     }
 
-    /// The bias and its standard error.
+    /// Bias and its standard error.
     fn told(&self, groups: f64) -> [Rgb; 2] {
         let channel = |c: usize| {
             let [first, second, more] = [0, 1, 2].map(|k| {
@@ -95,7 +95,7 @@ mod tests {
     #[test]
     fn bias_is_told_by_its_law() {
         let law = |power: f64| [1.0, 0.5f64.sqrt(), 0.5].map(|r: f64| Rgb::splat(2.0 + r.powf(power)));
-        // r² exactly; r⁴ and r, which is nearer to half of it, by the larger.
+        // Exact for r²; for r⁴ and r the larger estimate, which is 1.5 and 0.83 of the bias.
         for (power, expected) in [(2.0, 1.0), (4.0, 1.5), (1.0, 0.828_427_124_746_19)] {
             let [whole, half, quarter] = law(power);
             let mut sums = Sums::default();
@@ -110,14 +110,14 @@ mod tests {
 
     #[test]
     fn noise_is_told_and_not_taken_for_another_law() {
-        // The smaller disks' noise is more than what they tell.
+        // The noise of the smaller disks exceeds their signal.
         let mut sums = Sums::default();
         for noise in [0.3, -0.2, 0.1, -0.3] {
             sums.add(Rgb::splat(2.0), Rgb::splat(1.9 + 0.1 * noise), Rgb::splat(1.8 + noise));
         }
         let [told, error] = sums.told(4.0);
         assert!((told.mean() - 0.205).abs() < 1e-12);
-        // 0.2 of the standard deviation of the four, over the root of their number.
+        // 0.2 of the standard deviation of the four, over the square root of their number.
         assert!((error.mean() - 0.2 * 0.275_378_527_364_305 / 2.0).abs() < 1e-12);
     }
 

@@ -1,10 +1,9 @@
-//! Numbers to bytes and back. Bytes may come from anyone: reading them neither panics nor takes memory that they do not
-//! fill.
+//! Serialisation of numbers. Input bytes are untrusted: reading never panics and allocates no more than they fill.
 
 use raywright_optics::Rgb;
 use std::fmt;
 
-/// Why bytes are not what they should be.
+/// The reason why bytes are invalid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Malformed(pub(super) &'static str);
 
@@ -16,17 +15,17 @@ impl fmt::Display for Malformed {
 
 impl std::error::Error for Malformed {}
 
-/// Says what is wrong unless it is as it should be.
+/// Returns an error with this message unless the condition holds.
 pub(super) fn check(right: bool, otherwise: &'static str) -> Result<(), Malformed> {
     if right { Ok(()) } else { Err(Malformed(otherwise)) }
 }
 
-/// A number that is stored as its bits, the least significant byte first.
+/// A number stored as its bits, in little-endian order.
 pub(super) trait Word: Copy + PartialEq {
-    /// Bytes that it takes.
+    /// Size in bytes.
     const SIZE: usize;
     fn put(self, to: &mut Vec<u8>);
-    /// From as many bytes as it takes.
+    /// Converts from its bytes.
     fn get(from: &[u8]) -> Self;
 }
 
@@ -48,11 +47,11 @@ macro_rules! words {
 
 words!(u32, u64);
 
-/// Bytes being written.
+/// A byte buffer for writing.
 #[derive(Default)]
 pub(super) struct Writer(pub Vec<u8>);
 
-/// How numbers of one kind are stored: all the same, or one by one.
+/// Storage of a sequence: one value for all, or each value.
 const SAME: u8 = 0;
 const EACH: u8 = 1;
 
@@ -69,7 +68,7 @@ impl Writer {
         self.word(value.to_bits());
     }
 
-    /// Numbers whose count the reader knows; those that are all the same take the room of one.
+    /// Writes numbers whose count the reader knows; equal numbers are stored once.
     pub fn words<W: Word>(&mut self, values: impl Iterator<Item = W> + Clone) {
         let mut rest = values.clone();
         let Some(first) = rest.next() else { return };
@@ -83,7 +82,7 @@ impl Writer {
         }
     }
 
-    /// Colours, channel by channel, as [`Writer::words`].
+    /// Writes colours, channel by channel, like [`Writer::words`].
     pub fn colours<T>(&mut self, of: &[T], colour: impl Fn(&T) -> Rgb) {
         for channel in 0..3 {
             self.words(of.iter().map(|entry| colour(entry)[channel].to_bits()));
@@ -91,7 +90,7 @@ impl Writer {
     }
 }
 
-/// Bytes being read.
+/// Bytes to be read.
 pub(super) struct Reader<'a>(pub &'a [u8]);
 
 impl<'a> Reader<'a> {
@@ -119,19 +118,19 @@ impl<'a> Reader<'a> {
         Ok(byte == 1)
     }
 
-    /// So many entries, of which each has room for `bytes` or more: no more than the bytes can hold.
+    /// Reads a number of entries of at least `bytes` each; bounded by the remaining bytes.
     pub fn length(&mut self, bytes: usize) -> Result<usize, Malformed> {
         let count = self.word::<u32>()? as usize;
         check(count <= self.0.len() / bytes, "they end too early")?;
         Ok(count)
     }
 
-    /// What [`Writer::words`] wrote: as many as `into` has.
+    /// Reads numbers written by [`Writer::words`], as many as `into` has.
     pub fn words<'b, W: Word + 'b>(&mut self, into: impl ExactSizeIterator<Item = &'b mut W>) -> Result<(), Malformed> {
         self.each(into, |entry, word| *entry = word)
     }
 
-    /// What [`Writer::colours`] wrote, into all that is in `into`.
+    /// Reads colours written by [`Writer::colours`] into all of `into`.
     pub fn colours<T>(&mut self, into: &mut [T], colour: impl Fn(&mut T) -> &mut Rgb) -> Result<(), Malformed> {
         for channel in 0..3 {
             self.each(into.iter_mut(), |entry, bits: u64| colour(entry)[channel] = f64::from_bits(bits))?;
@@ -162,7 +161,7 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// That nothing is left.
+    /// Checks that nothing is left.
     pub fn end(&self) -> Result<(), Malformed> {
         check(self.0.is_empty(), "they go on after their end")
     }

@@ -1,4 +1,4 @@
-//! Samples of pixels as a camera takes them, sixteen at a time.
+//! Generation of camera samples, sixteen at a time.
 
 use super::Settings;
 use super::filter::{Edges, Filter};
@@ -9,26 +9,26 @@ use raywright_integrators::{CameraSamples, Session};
 use raywright_scene::{Camera, CameraRayLanes, Scene};
 use std::array::from_fn;
 
-/// A sample that is to be taken: of which pixel, and its number among the samples of that.
+/// A requested sample: its pixel, and its number within the pixel.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Wanted {
     pub position: (u32, u32),
     pub number: u32,
 }
 
-/// What places samples: they lie where the filter says, and, where anything moves, anywhere in the time that the
-/// shutter is open, and on the lens if there is one.
+/// Generates camera samples: film positions by the filter, times while the shutter is open if anything moves, and lens
+/// positions if there is a lens.
 pub(super) struct CameraSampler<'a> {
     camera: &'a dyn Camera,
     session: &'a dyn Session,
     filter: &'a dyn Filter,
-    /// Where the filter ends with the film.
+    /// Cropping of the filter at the film's edges.
     edges: Option<Edges>,
     kind: SamplerKind,
     seed: u64,
-    /// Whether samples are spread over the time that the shutter is open.
+    /// True if samples are distributed over the shutter's opening time.
     moves: bool,
-    /// Whether samples are spread over the lens.
+    /// True if samples are distributed over the lens.
     uses_lens: bool,
     level: Level,
 }
@@ -54,7 +54,7 @@ impl<'a> CameraSampler<'a> {
         let (mut u, mut offsets, mut counts) = ([[0.0; LANES]; 2], [[0.0; LANES]; 2], [0.0; LANES]);
         let (mut lens, mut time, mut rays) = ([[0.5; LANES]; 2], [0.0; LANES], CameraRayLanes::NONE);
         for wanted in wanted.chunks(LANES) {
-            // The last stands in the lanes that are left.
+            // The last sample fills the remaining lanes.
             let of: [Wanted; LANES] = from_fn(|lane| wanted[lane.min(wanted.len() - 1)]);
             let pixels = of.map(|Wanted { position: (x, y), .. }| y * self.camera.width() + x);
             let numbers = of.map(|wanted| wanted.number);
@@ -79,7 +79,7 @@ impl<'a> CameraSampler<'a> {
                 }
             }
             let [right, down] = offsets;
-            // Offsets from the centre are added to the half first, so that those of the pixel's own square are exact.
+            // Offsets from the center are added to the half first, so that those of the pixel's own square are exact.
             let film = [
                 from_fn(|lane| f64::from(of[lane].position.0) + (0.5 + right[lane])),
                 from_fn(|lane| f64::from(of[lane].position.1) + (0.5 + down[lane])),

@@ -1,4 +1,4 @@
-//! What covers pixels, and how much of each.
+//! Coverage of pixels by shapes.
 
 use super::camera_sampler::{CameraSampler, Wanted};
 use super::tile::FilmTile;
@@ -8,16 +8,16 @@ use raywright_base::workers::Cancel;
 use raywright_integrators::{CameraSamples, FirstSeen, Integrator};
 use raywright_scene::{Camera, Scene};
 
-/// Samples looked at together.
+/// Samples processed together.
 const BATCH: usize = 4096;
 
-/// The shares of a pixel that shapes cover, by their numbers: the largest first, and of equal ones that of the lowest
-/// number. Filters of negative lobes may make a share negative, or more than the whole.
+/// Shares of a pixel covered by shapes, with shape numbers, in descending order; equal shares are ordered by number.
+/// Filters with negative lobes may give negative shares, or shares above 1.
 pub type Cover = Vec<(u32, f64)>;
 
-/// What covers each pixel of a film, row by row from the top: by the very samples that are on the film, and weighed as
-/// these are. So it is the same whoever took the samples, and however many each pixel has. With `each`, it is by so
-/// many in each cell instead, whatever is on the film. Returns soon after `cancel` is raised, with nothing of use.
+/// Coverage of each pixel of a film, row by row from the top. It uses the very samples of the film with their weights,
+/// so it does not depend on the process that took them or on counts per pixel. With `each`, it uses this number of
+/// samples per cell instead. Returns soon after `cancel` is raised, with an invalid result.
 pub fn cover(
     film: &Film,
     each: Option<u32>,
@@ -26,7 +26,7 @@ pub fn cover(
     settings: &Settings,
     cancel: &Cancel,
 ) -> Vec<Cover> {
-    // It may know when samples see the scene.
+    // The session may change when samples see the scene.
     let session = integrator.begin(settings.job(scene, camera), cancel);
     let sampler = CameraSampler::new(scene, camera, &*session, settings);
     let of_tile = |tile: &FilmTile| -> Vec<((u32, u32), Cover)> {
@@ -43,7 +43,7 @@ pub fn cover(
     all
 }
 
-/// How many samples each cell of a tile has, and the sums of their weights by what they see.
+/// Number of samples of each cell of a tile, and sums of their weights by shape.
 fn of_cells(
     tile: &FilmTile,
     each: Option<u32>,
@@ -90,7 +90,7 @@ fn add(cover: &mut Cover, shape: u32, share: f64) {
     }
 }
 
-/// The mean over the cells that have samples, as a film's colours are.
+/// Mean over the cells with samples, like a film's colours.
 fn of_pixel(cells: &[(u32, Cover)]) -> Cover {
     let counted = cells.iter().filter(|(count, _)| *count > 0).count().max(1) as f64;
     let mut cover = Cover::new();
@@ -115,7 +115,7 @@ mod tests {
     use raywright_scene::{ConstantEnvironment, Light, Perspective, SceneDescription};
     use std::sync::Arc;
 
-    /// Two walls that shine, of which the one before hides a part of the other, in a bright sky.
+    /// Two emissive walls, one partly in front of the other, under a bright sky.
     fn walls() -> (Scene, Perspective) {
         let back = rectangle([-9.0, -9.0, -4.0], [9.3, 0.0, 0.0], [0.0, 18.0, 0.0]);
         let front = rectangle([-0.31, -0.72, -2.0], [1.0, 0.1, 0.0], [0.2, 1.0, 0.0]);

@@ -1,12 +1,12 @@
-//! What errors are measured against: how bright each pixel is, as far as its samples and its neighbours tell.
+//! Denominators of relative errors: estimates of each pixel's squared brightness.
 
 use super::sightings::Chance;
 use raywright_optics::Rgb;
 
-/// What is added to the square of a brightness, so that the dark does not count infinitely.
+/// Added to the squared brightness, so that errors in black pixels have finite weight.
 pub(super) const FLOOR: f64 = 0.01;
 
-/// The brightness of a pixel, and of the four beside it; at the border, its own instead.
+/// Brightness of a pixel and its four neighbours; at the border, its own brightness instead.
 #[inline]
 pub(super) fn cross(means: &[Rgb], width: usize, x: usize, y: usize) -> [Rgb; 5] {
     let here = y * width + x;
@@ -20,46 +20,45 @@ pub(super) fn cross(means: &[Rgb], width: usize, x: usize, y: usize) -> [Rgb; 5]
     ]
 }
 
-/// What the squared errors of a pixel are divided by: an estimate of μ² + 0.01.
+/// Denominators of a pixel's squared errors: an estimate of μ² + 0.01.
 ///
-/// A pixel's own x will not do for μ: samples are skewed, so that the pixels which happen to have a large s² happen to
-/// be bright as well, and dividing the one by the other hides a part of the error. At 16 samples this makes it a sixth
-/// too small in a Cornell box, at 2 samples less than half, and more than twice too small with point-like highlights.
-/// Nor is it repaired by the usual corrections, of x² by s²/n or of 1/(x² + 0.01) by a Taylor series: the noise is too
-/// large for them (both were tried, as was the variance of one half of the samples over the mean of the other).
+/// A pixel's own mean x cannot replace μ. Samples are skewed, so pixels with a large s² tend to be bright as well, and
+/// dividing one by the other hides part of the error. At 16 samples the result is a sixth too small in a Cornell box,
+/// at 2 samples less than half, and more than twice too small with point-like highlights. The usual corrections, of x²
+/// by s²/n or of 1/(x² + 0.01) by a Taylor series, do not help, because the noise is too large for them. (Both were
+/// tried, as was the variance of one half of the samples over the mean of the other.)
 ///
-/// So μ is taken from the neighbourhood: the median of the pixel and the four beside it. A mean of neighbours is much
-/// too bright next to a light, so that errors there are lost (8 to 13 % of all at 16 samples); medians or trimmed means
-/// of all eight lose too much beside dark corners. Below 16 samples the pixel itself has no vote, which would cost 10 %
-/// of the error at 8 samples. From there on it has one: where neighbours have nothing to do with each other, it is
-/// worth more. Two bounds keep the median where it can be right.
+/// So μ is estimated from the neighbourhood: the median of the pixel and its four neighbours. A mean of neighbours is
+/// much too bright next to a light, which hides errors there (8 to 13 % of the total at 16 samples). Medians or trimmed
+/// means of all eight neighbours lose too much beside dark corners. Below 16 samples the pixel itself has no vote,
+/// because that would cost 10 % of the error at 8 samples. From 16 samples on it has one, which is more accurate where
+/// neighbours are unrelated. Two bounds limit the median.
 ///
-/// It may contradict the pixel's own mean by 5/√n standard errors at most. Weighed by s², a mean of n samples is off by
-/// γ/√n standard errors, where γ is the skewness of the samples, some 2 to 5 in global illumination: there is that much
-/// to mend and no more. So detail finer than a pixel is not smoothed away, and with more samples each pixel speaks for
-/// itself.
+/// First, it differs from the pixel's own mean by 5/√n standard errors at most. Weighted by s², a mean of n samples
+/// deviates by γ/√n standard errors, where γ is the skewness of the samples, some 2 to 5 in global illumination; a
+/// larger correction is not needed. So detail finer than a pixel is preserved, and with more samples each pixel relies
+/// on itself.
 ///
-/// And the denominator is at least a quarter of the one that the pixel gives. A pixel that one sample made bright may
-/// be a dark one with a stray sample or a bright one on the edge of a lamp; one sample cannot tell, and the error of a
-/// lamp over the square of its dark surroundings would drown all others in the sum. Of two samples this leaves a
-/// quarter of the error of a Cornell box out, and of four a tenth; with less of a bound, more than that would be made
-/// up where no lamp is near.
+/// Second, the denominator is at least a quarter of the pixel's own. A pixel with one bright sample may be dark with a
+/// stray sample, or bright on the edge of a lamp. One sample cannot tell, and the error of a lamp over the square of
+/// its dark surroundings would dominate the sum. With two samples this bound omits a quarter of the error of a Cornell
+/// box, and with four a tenth. A looser bound would overestimate by more than that where no lamp is near.
 pub(super) struct Denominators {
-    /// One over them.
+    /// One over the denominators.
     pub inverse: Rgb,
-    /// One over what the pixel's own mean would make them.
+    /// One over the denominators from the pixel's own mean.
     pub own: Rgb,
 }
 
 impl Denominators {
-    /// From the brightness of a cross of pixels, the first the one in the middle, and the variance of that one's mean,
-    /// which is of so many samples.
+    /// Computes denominators from a cross of pixel brightnesses, the center first, and the variance of its mean of
+    /// `samples` samples.
     #[inline]
     pub fn new(cross: &[Rgb; 5], variance: Rgb, samples: f64) -> Self {
         let [mean, a, b, c, d] = *cross;
         let leeway = 5.0 / samples.sqrt();
         let off = variance.sqrt() * leeway;
-        // The middle two of four: the larger of the two smaller, and the smaller of the two larger; then in order.
+        // The middle two of four, sorted: the larger of the two smaller, and the smaller of the two larger.
         let (low, high) = (a.at_most(b).at_least(c.at_most(d)), a.at_least(b).at_most(c.at_least(d)));
         let (low, high) = (low.at_most(high), low.at_least(high));
         let middle = if samples < 16.0 { (low + high) / 2.0 } else { mean.at_least(low).at_most(high) };
@@ -68,16 +67,16 @@ impl Denominators {
         Self { inverse: (likely * likely + FLOOR).at_least(by_itself / 4.0).recip(), own: by_itself.recip() }
     }
 
-    /// For what comes from the sample that stands out most in the pixel, whose mean is `without` if that one is left
-    /// out. `around` is the mean of the pixels around.
+    /// Denominators for the error from the pixel's brightest sample. `without` is the pixel's mean without it, and
+    /// `around` the mean of its neighbours.
     ///
-    /// A bright sample that is one of few makes its pixel's mean larger as well, and would divide its own error: where
-    /// light is found by one sample of a pixel, an error of 1 or 100 would pass for 1/n. So where the mean hangs on one
-    /// sample, that is weighed by what the others say (leave one out). It is believed as far as it has witnesses: the
-    /// pixels around, next to a lamp or in a caustic; or the whole picture, if what is as bright is mostly seen again
-    /// ([`Chance`]). Without them its denominator is that of the others alone, which is much too small for a lamp that
-    /// is smaller than a pixel. So errors are largest as the pixels around alone have it, and least by the most that
-    /// the picture says; and if few pixels are even darker than that, `jumps.rs` tells what they add.
+    /// A bright sample among few raises its pixel's mean and would thus divide its own error: light found by a single
+    /// sample would have an error of 1/n instead of 1 or 100. So if the mean depends on one sample, its denominator
+    /// comes from the other samples (leave one out). The sample is trusted as far as there is confirmation: by the
+    /// neighbours, next to a lamp or in a caustic; or by the whole picture, if samples of this brightness are mostly
+    /// seen again ([`Chance`]). Otherwise the denominator is that of the other samples alone, which is much too small
+    /// for a lamp smaller than a pixel. So the largest error uses the neighbours alone, and the least error uses the
+    /// upper bound from the whole picture. The contribution of a few even darker pixels is bounded in `jumps.rs`.
     #[inline]
     pub fn of_peak(&self, mean: Rgb, without: Rgb, around: Rgb, chance: &Chance, samples: f64) -> Peak {
         let (low, high) = (mean.at_most(without), mean.at_least(without));
@@ -105,24 +104,23 @@ impl Denominators {
     }
 }
 
-/// A mean hangs on one of so many samples if its square, and what is added, is larger by this factor than the samples
-/// without that one make it, and the pixels around. Of a few samples of any kind one is by far the largest.
+/// Ratio by which a mean's squared brightness plus floor must exceed that of the other samples and the neighbours for
+/// the mean to depend on one of `samples` samples. Among few samples of any distribution, one is by far the largest.
 fn hangs(samples: f64) -> f64 {
     (1.0 + 8.0 / samples).powi(2).max(2.0)
 }
 
-/// One over what is to stand below what a single sample brings: the likely one, and those that make the error least and
-/// largest.
+/// One over the denominators for a single sample's error: the likely one, and those of least and largest error.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Peak {
     pub likely: Rgb,
     pub least: Rgb,
     pub most: Rgb,
-    /// Whether the mean hangs on this one sample, whatever the pixels around say.
+    /// True if the mean depends on this one sample, whatever the neighbours show.
     pub hangs: bool,
 }
 
-/// The mean brightness of the up to eight pixels around one, `apart` from it along both axes; black if there are none.
+/// Mean brightness of the up to eight neighbours at distance `apart` along both axes; black if there are none.
 #[inline]
 pub(super) fn around(means: &[Rgb], width: usize, x: usize, y: usize, apart: usize) -> Rgb {
     let height = means.len() / width;
@@ -145,8 +143,8 @@ pub(super) fn around(means: &[Rgb], width: usize, x: usize, y: usize, apart: usi
 mod tests {
     use super::*;
 
-    /// Of a pixel of 0.1 in which one of 64 samples was 64, as the pixels around are so bright, and what is as bright
-    /// is seen again so often.
+    /// A pixel of 0.1 where one of 64 samples was 64, with neighbours of this brightness and these chances of similar
+    /// samples.
     fn peak(around: f64, likely: f64, most: f64) -> [f64; 3] {
         let [mean, without, around] = [1.1, 0.1, around].map(Rgb::splat);
         let denominators = Denominators::new(&[mean, around, around, around, around], Rgb::ONE, 64.0);
@@ -160,11 +158,11 @@ mod tests {
 
     #[test]
     fn a_bright_batch_is_believed_as_far_as_it_has_witnesses() {
-        // None: it may be the first of many, or a stray.
+        // No chance: it may be the first of many, or a stray sample.
         assert!(close(peak(0.1, 0.0, 1.0), [1.1, 0.1, 0.1]));
-        // The picture says that a quarter of it is to be expected, and a half at most.
+        // The picture predicts a chance of a quarter, and at most one half.
         assert!(close(peak(0.1, 0.25, 0.5), [0.6, 0.35, 0.1]));
-        // The pixels around are of the same brightness, or half as bright.
+        // Neighbours have the same brightness, or half of it.
         assert!(close(peak(1.1, 0.0, 0.0), [1.1, 1.1, 1.1]));
         assert!(close(peak(0.5, 0.0, 0.1), [0.5, 0.5, 0.5]));
     }

@@ -1,27 +1,27 @@
-//! What was decided on how many samples pixels get, for as long as it holds.
+//! Sample allocation of an adaptive epoch.
 
 use super::bytes::{Malformed, Reader, Writer, check};
 use super::tile::FilmTile;
 use std::ops::Range;
 
-/// Shares of the samples between two mean numbers, cell by cell.
+/// Numbers of samples at the start and the end of an epoch, cell by cell.
 ///
-/// How many samples a cell has on the way depends on the mean number alone, so that an epoch can be left anywhere and
-/// gone on with.
+/// In between, a cell's number of samples depends only on the mean number, so an epoch can be interrupted and resumed
+/// anywhere.
 #[derive(Clone, Debug)]
 pub(super) struct Epoch {
-    /// Mean samples of a pixel when it begins.
+    /// Mean samples per pixel at its start.
     pub from: u32,
-    /// Mean samples of a pixel when it ends.
+    /// Mean samples per pixel at its end.
     pub to: u32,
-    /// The side of the patches of pixels that get the same number.
+    /// Side of the patches of pixels with equal counts.
     pub patch: u32,
-    /// What each cell of each tile has when it begins, and when it ends.
+    /// Samples of each cell of each tile at the start and the end.
     pub shares: Vec<Vec<[u32; 2]>>,
 }
 
 impl Epoch {
-    /// How many samples a cell has when all pixels have `samples` on average.
+    /// Number of samples of a cell when all pixels have `samples` on average.
     #[inline]
     pub fn goal(&self, tile: usize, cell: usize, position: (u32, u32), samples: u32) -> u32 {
         let [start, end] = self.shares[tile][cell];
@@ -29,7 +29,7 @@ impl Epoch {
         start + (f64::from(end - start) * part + dither(position, self.patch, cell % 2)) as u32
     }
 
-    /// The shares of some tiles, as bytes.
+    /// Writes the shares of some tiles as bytes.
     pub fn write(&self, tiles: Range<usize>, to: &mut Writer) {
         for number in [self.from, self.to] {
             to.word(number);
@@ -41,7 +41,7 @@ impl Epoch {
         }
     }
 
-    /// What was written of the shares of some tiles, which have been read.
+    /// Reads the shares of tiles that have been read.
     pub fn read<'a>(
         tiles: impl Iterator<Item = &'a FilmTile>,
         patch: u32,
@@ -64,9 +64,9 @@ impl Epoch {
     }
 }
 
-/// What is added to a number of samples before it is rounded down: evenly spread over neighbours, so that hardly any
-/// are lost or won in sum (the R2 sequence of Roberts, 2018), and one half apart for the halves of a pixel. Neighbours
-/// are patches of so many pixels a side.
+/// Dither added to a number of samples before rounding down. It is uniform over neighbours, so that the total is hardly
+/// changed (the R2 sequence of Roberts, 2018), and offset by one half between the halves of a pixel. Neighbours are
+/// patches of `patch` pixels per side.
 pub(super) fn dither((x, y): (u32, u32), patch: u32, half: usize) -> f64 {
     let (x, y) = (x / patch, y / patch);
     (f64::from(x) * 0.754_877_666_246_692_8 + f64::from(y) * 0.569_840_290_998_053_3 + 0.5 * (1 - half) as f64).fract()

@@ -1,4 +1,4 @@
-//! How wrong a picture still is, told from the picture alone.
+//! Error estimate of a picture from its own samples.
 
 use super::Film;
 use super::denominators::{Denominators, around, cross};
@@ -10,44 +10,44 @@ use super::sightings::{Chances, Sightings};
 use raywright_base::parallel;
 use raywright_optics::Rgb;
 
-/// An estimate of relMSE, the mean over pixels and channels of (x − μ)² / (μ² + 0.01), where x is the picture and μ
-/// what it tends to. The interval holds the relMSE of this very picture in 95 of 100 cases.
+/// An estimate of relMSE, the mean over pixels and channels of (x − μ)² / (μ² + 0.01), where x is the picture and μ its
+/// expectation. The interval covers the relMSE of this very picture in 95 of 100 cases.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ErrorEstimate {
     /// The estimate.
     pub value: f64,
-    /// The lower end of the interval.
+    /// Lower end of the interval.
     pub low: f64,
-    /// Its upper end.
+    /// Upper end of the interval.
     pub high: f64,
-    /// The few samples that carry most of the estimate, which cannot be trusted then; `None` if many carry it, or what
-    /// the next pixels show as well.
+    /// The few samples that dominate the estimate, which is then unreliable; `None` if there are many, or neighbours
+    /// show the same brightness.
     pub carried: Option<Carried>,
 }
 
 impl ErrorEstimate {
-    /// The widest interval that tells something, as the ratio of its ends.
+    /// Widest meaningful interval, as the ratio of its ends.
     const WIDEST: f64 = 30.0;
 
-    /// Whether the estimate rests on many samples, and samples agree on it: if a few carry it, the next of their kind
-    /// would make it another, and if its interval is wide, what they found is too rare to be weighed.
+    /// Returns whether the estimate is reliable. If few samples dominate it, the next of their kind would change it. If
+    /// its interval is wide, the light is too rare to be estimated.
     pub fn is_trusted(&self) -> bool {
         self.carried.is_none() && (self.high <= Self::WIDEST * self.low || self.value <= ROUNDING)
     }
 }
 
-/// The error of a picture that is right to a millionth: what is left of it is mostly rounding, and what carries it
-/// tells nothing.
+/// Error of a picture that is accurate to a millionth; the remaining error is mostly rounding, and its distribution is
+/// meaningless.
 const ROUNDING: f64 = 1e-12;
 
-/// How many times too large an error may be told that takes samples for independent which are not. Placed with regard
-/// to each other they leave two thirds of it in batches of 8, and a third in batches of 32 (`benches/samplers.py`).
+/// Factor by which an error may be overestimated if stratified samples are treated as independent. Stratification
+/// leaves two thirds of the error in batches of 8, and a third in batches of 32 (`benches/samplers.py`).
 const EVENNESS: f64 = 4.0;
 
-/// Estimates the error of a film; `None` where a pixel has fewer than two samples, which say nothing of it.
+/// Estimates the error of a film; `None` if a pixel has fewer than two samples.
 ///
 /// The numerator is simple: the variance s²/n of a pixel's mean is an unbiased estimate of (x − μ)². The denominator is
-/// not, for μ is unknown: [`Denominators`] tells what stands in for it. Light that no sample has met is in neither.
+/// not, because μ is unknown; see [`Denominators`]. Light that no sample has found is in neither.
 pub(super) fn estimate(film: &Film) -> Option<ErrorEstimate> {
     let fewest = film.fewest();
     if fewest < 2 {
@@ -57,7 +57,7 @@ pub(super) fn estimate(film: &Film) -> Option<ErrorEstimate> {
     let width = film.width() as usize;
     let (patch, cells) = (film.patch(), film.cells());
     // Rows of patches are summed on all cores, and their sums in order, so that the estimate does not depend on the
-    // threads.
+    // number of threads.
     let (height, band) = (film.height() as usize, patch as usize);
     let seen: Vec<(Sightings, Vec<f64>)> = parallel::map_chunks(height, band, |rows| {
         let (mut seen, mut shown, mut spreads) = (Sightings::default(), Vec::new(), vec![Spread::default(); width]);
@@ -100,22 +100,22 @@ pub(super) fn estimate(film: &Film) -> Option<ErrorEstimate> {
 /// Sums over patches.
 #[derive(Clone, Copy, Default)]
 struct Sums {
-    /// The errors.
+    /// Errors.
     error: f64,
-    /// The errors with the denominators that make them least, and with those that make them largest.
+    /// Errors with the denominators that make them least, and with those that make them largest.
     least: f64,
     most: f64,
-    /// The errors with the same denominator for all samples of a pixel, and with the pixel's own mean in that.
+    /// Errors with the same denominator for all samples of a pixel, and with denominators from the pixel's own mean.
     alike: f64,
     own: f64,
-    /// Squares and cubes of the largest errors.
+    /// Sums of squares and cubes of the largest errors.
     squares: f64,
     cubes: f64,
-    /// What rare samples may add to the second and the third cumulant.
+    /// Possible contribution of rare samples to the second and third cumulant.
     rare: [f64; 2],
-    /// What single finds bring.
+    /// Largest contributions of single unconfirmed samples.
     largest: Largest,
-    /// What pixels may err more than the largest error has it.
+    /// Possible errors of pixels beyond the largest estimate.
     jumps: Jumps,
 }
 
@@ -127,17 +127,17 @@ struct Patch {
     most: f64,
     alike: f64,
     own: f64,
-    /// What the largest samples bring, by kind of cell: those of neighbours are mostly one and the same, which the
-    /// patch shares.
+    /// Contributions of the largest samples, per kind of cell. Neighbours mostly share one such sample within the
+    /// patch.
     peaks: [f64; 2],
-    /// What of that is shown nowhere beside.
+    /// The part of these that no neighbour confirms.
     finds: [f64; 2],
 }
 
-/// Where pixels are seen from: all of a picture.
+/// The whole picture, for neighbour lookups.
 struct Picture<'a> {
     means: &'a [Rgb],
-    /// How bright pixels are without what stands out in them.
+    /// Brightness of pixels without their outliers.
     shown: &'a [f64],
     width: usize,
     patch: usize,
@@ -151,7 +151,7 @@ impl Patch {
         let Picture { means, shown, width, patch, cells, chances } = *picture;
         let mean = means[y * width + x];
         let denominators = Denominators::new(&cross(means, width, x, y), spread.variance, spread.samples);
-        // Those of a patch share their samples, and are no witnesses for one another.
+        // Pixels of a patch share their samples and cannot confirm each other.
         let around = around(means, width, x, y, patch);
         let beside = beside(shown, width, x, y, patch);
         let (mut rest, samples) = (spread.variance, spread.samples / cells as f64);
@@ -171,7 +171,7 @@ impl Patch {
             self.most += most;
             rest -= peak.variance;
         }
-        // Rounding may leave less than nothing.
+        // Rounding may make it negative.
         let rest = rest.at_least(Rgb::ZERO);
         self.error += rest.dot(denominators.inverse);
         self.least += rest.dot(denominators.own);
@@ -191,7 +191,7 @@ impl Sums {
         self.own += patch.own;
         patch.finds.iter().for_each(|&find| self.largest.add(find));
         if patch.error > 0.0 {
-            // At most all of it: rounding may make it more.
+            // Rounding may make the share exceed 1.
             let share = (patch.peaks[0].max(patch.peaks[1]) / patch.error).min(1.0);
             let square = patch.most * patch.most;
             self.squares += square;
@@ -215,32 +215,31 @@ impl Sums {
         self.jumps.join(&other.jumps);
     }
 
-    /// The estimate, over so many values in all, where errors vary `evenness` times as much as if pixels of a patch
-    /// always erred together and others never ([`Patchwork::evenness`]).
+    /// The estimate over `count` values, where the variance of errors is `evenness` times that of fully correlated
+    /// pixels in fixed patches ([`Patchwork::evenness`]).
     ///
-    /// Three things are uncertain, and taken as independent.
+    /// Three sources of uncertainty are treated as independent.
     ///
-    /// The true error of each patch is one draw of (x − μ)², summed as if channels err together, as they nearly do, and
-    /// patches apart, as they do. (Pixels of a patch that take samples together err together; how much so is not known,
-    /// and where it is not fully so the interval is a little wide.) Let m be its mean, which the estimate tells. Of a
-    /// normal x, the cumulants are m, 2m² and 8m³. But means of few bright samples and many dark ones are skewed. If
-    /// there are λ bright ones, as in Poisson's distribution, the cumulants are m, (2 + 1/λ)m² and (8 + 22/λ + 1/λ²)m³,
-    /// and the share of the largest in the estimate is 1/λ. Samples of other kinds have smaller cumulants for that
-    /// share, which bounds Σδ⁴/(Σδ²)². All this comes from the rare large errors, so only the upper end goes by it. A
-    /// few such pixels, as on the rim of a lamp, may hold most of the variance; so the sum is skewed too, and an
-    /// interval that takes it for symmetric is missed above only.
+    /// First, the true error of each patch is one realisation of (x − μ)². Channels are summed as fully correlated, as
+    /// they nearly are, and patches as independent, as they are. (Pixels that take samples together are correlated to
+    /// an unknown degree; the interval is slightly wide if the correlation is partial.) Let m be its expectation, which
+    /// is the estimate. For a normal x the cumulants are m, 2m² and 8m³. Means of few bright and many dark samples are
+    /// skewed, however. With λ bright samples, Poisson-distributed, the cumulants are m, (2 + 1/λ)m² and (8 + 22/λ +
+    /// 1/λ²)m³, and the share of the largest sample in the estimate is 1/λ. Other distributions have smaller cumulants
+    /// for the same share, which bounds Σδ⁴/(Σδ²)². This affects only rare large errors, so only the upper end uses it.
+    /// A few such pixels, as on the rim of a lamp, may hold most of the variance. Then the sum is skewed too, and a
+    /// symmetric interval would be exceeded only above.
     ///
-    /// The estimate is a sum over samples, and its variance is m²/λ. That an outlier makes both the error and its
-    /// estimate larger does not bring them together: it makes its pixel's denominator larger as well.
+    /// Second, the estimate itself is a sum over samples with variance m²/λ. An outlier raises both the error and its
+    /// estimate, but they remain uncorrelated, because it also raises its pixel's denominator.
     ///
-    /// And denominators are in doubt by as much as choosing them has changed, pixel by pixel and in sum. Pixel by
-    /// pixel, the larger error counts for the upper end. In sum, the least error counts for the lower end; for the
-    /// upper it is what other denominators for all samples of a pixel have changed, as those that samples which stand
-    /// out may have are in the larger errors already.
+    /// Third, denominators are uncertain by the changes that alternative choices made, per pixel and in total. Per
+    /// pixel, the larger error counts for the upper end. In total, the least error counts for the lower end. For the
+    /// upper end it is the change from alternative denominators for all samples of a pixel; those of outliers are
+    /// already part of the larger errors.
     ///
-    /// All three are factors, and their logarithms are added as what is independent is. To them comes that one
-    /// pixel of many errs by much more than it can tell ([`Jumps`]): a term, which is added to the upper end in the
-    /// same manner.
+    /// All three are factors, and their logarithms are added in quadrature. In addition, one pixel of many may err by
+    /// far more than it shows ([`Jumps`]). That is a term, added in quadrature to the upper end.
     fn estimate(&self, count: f64, evenness: f64) -> ErrorEstimate {
         let value = self.error / count;
         if value == 0.0 {
@@ -250,8 +249,8 @@ impl Sums {
         let (variance, skewed) = (2.0 * self.squares * evenness, 8.0 * self.cubes * evenness.powi(2));
         let least = quantile(-1.96, variance / square, skewed / cube);
         let (variance, skewed) = ((variance + self.rare[0]) / square, (skewed + self.rare[1]) / cube);
-        // Where a few samples are all there is, how rare they are is not known either. A factor's logarithm goes
-        // further then, and elsewhere not so far.
+        // With very few samples, their rarity is uncertain too. The logarithm of the factor is then wider; otherwise it
+        // is narrower.
         let greatest = quantile(1.96, variance, skewed).max((1.96 * variance.sqrt()).exp());
         let estimate = 1.96 * (self.rare[0] / square).sqrt();
         let doubts = [self.least / self.error, self.own / self.alike];
@@ -263,16 +262,16 @@ impl Sums {
     }
 }
 
-/// The quantile of a sum of squares of mean 1, with these second and third cumulants, that a normal deviate stands for.
+/// Quantile of a sum of squares with mean 1 and these second and third cumulants, for a normal deviate.
 ///
-/// The sum is taken for χ², of as many degrees of freedom as make it as skewed (Pearson, 1959), by the approximation of
-/// Wilson and Hilferty (1931). That fails below one degree, and one is taken: at 1.96, fewer are as many standard
-/// deviations off within 4 %, down to a fifth of a degree.
+/// The sum is approximated by χ² with degrees of freedom that match the skewness (Pearson, 1959), and that by Wilson
+/// and Hilferty (1931). The approximation fails below one degree, so one is the minimum. At 1.96 the result, in
+/// standard deviations, is within 4 % down to a fifth of a degree.
 fn quantile(normal: f64, variance: f64, skewed: f64) -> f64 {
     let degrees = (8.0 * variance.powi(3) / (skewed * skewed)).max(1.0);
     let part = 2.0 / (9.0 * degrees);
     let cube = (1.0 - part + normal * part.sqrt()).powi(3);
-    // One normal deviate's square is above a thousandth of its mean in 975 of 1000 cases, and sums of them are so too.
+    // The square of one normal deviate exceeds a thousandth of its mean in 975 of 1000 cases, and so do sums of them.
     (1.0 + (variance * degrees / 2.0).sqrt() * (cube - 1.0)).max(0.001)
 }
 
@@ -283,7 +282,7 @@ mod tests {
     use raywright_base::cases;
     use raywright_base::sampling::Sampler;
 
-    /// A film whose samples are `brightness` of the pixel times a draw of mean 1, from 1/e on half of the time.
+    /// A film whose samples are the pixel's `brightness` times a random factor of mean 1, above 1/e half of the time.
     fn film(side: u32, samples: u32, seed: u64, brightness: impl Fn(u32, u32) -> f64) -> Film {
         let mut film = Film::new(side, side, 16, 1, false, None);
         for tile in film.extend_to(samples) {
@@ -298,7 +297,7 @@ mod tests {
         film
     }
 
-    /// The true relMSE of a film.
+    /// True relMSE of a film.
     fn truth(film: &Film, brightness: impl Fn(u32, u32) -> f64) -> f64 {
         let means = film.means();
         let sum: f64 = means
@@ -319,7 +318,7 @@ mod tests {
         let busy = |x: u32, y: u32| Sampler::new(77, x, y).one(0) + 0.1;
         let pictures: [&dyn Fn(u32, u32) -> f64; 3] = [&smooth, &edged, &busy];
         for (i, brightness) in pictures.into_iter().enumerate() {
-            // Of busy pictures nothing is promised below 16 samples: no pixel tells of its neighbours.
+            // For detailed pictures the estimate is unreliable below 16 samples, because neighbours are unrelated.
             let counts = if i < 2 { &[2, 4, 8, 16, 64, 256][..] } else { &[16, 64, 256] };
             for &samples in counts.iter().filter(|&&samples| samples < 256 || cases::are_all()) {
                 let (mut close, mut covered) = (0, 0);
@@ -329,13 +328,13 @@ mod tests {
                     close += u32::from((0.8..1.25).contains(&(estimate.value / truth)));
                     covered += u32::from((estimate.low..estimate.high).contains(&truth));
                 }
-                // One that holds in 95 of 100 fails 89 of 100 times or fewer with probability 0.01.
+                // For a 95 % interval, 89 or fewer hits of 100 have probability 0.01.
                 assert!(close >= 95 && covered >= 89, "picture {i}, {samples} samples: {close}, {covered}");
             }
         }
     }
 
-    /// A film in halves, whose cells have 16 to 64 samples: draws of mean 1.
+    /// A film in halves with 16 to 64 samples per cell: random factors of mean 1.
     fn uneven(seed: u64, draw: impl Fn(u32, u32, f64) -> f64) -> Film {
         let mut film = Film::new(16, 16, 16, 1, true, None);
         for tile in film.extend_to(80) {
@@ -353,7 +352,7 @@ mod tests {
     #[test]
     fn holds_on_both_sides_for_halves_of_differing_counts_and_few_rare_samples() {
         let exponential = |_: u32, _: u32, uniform: f64| -uniform.ln();
-        // One pixel in sixteen holds the error, half of its light in one sample in so many.
+        // One pixel in sixteen holds the error, with half of its light in one of `many` samples.
         let rims = [5.0, 10.0, 20.0].map(|many| {
             move |x: u32, y: u32, uniform: f64| {
                 let rim = x % 4 == 2 && y % 4 == 2;
@@ -368,14 +367,14 @@ mod tests {
                 [truth < estimate.low, truth > estimate.high]
             });
             let [below, above] = [0, 1].map(|side| off.iter().filter(|off| off[side]).count());
-            // Were it one in 40 on each side, chance would bring 15 or more of 300 once in 100 cases.
+            // For a rate of 1 in 40 on each side, 15 or more of 300 have probability 0.01.
             assert!(below < 15 && above < 15, "kind {i}: {below} below, {above} above");
         }
     }
 
     #[test]
     fn quantiles_are_those_of_chi_squared() {
-        // Of 1, 2, 5 and 20 degrees of freedom, over these: where one in 40 is below, and one in 40 above.
+        // For 1, 2, 5 and 20 degrees of freedom, over their number: the quantiles at 1/40 and 39/40.
         for (degrees, low, high) in
             [(1.0, 0.001, 5.024), (2.0, 0.0253, 3.689), (5.0, 0.1662, 2.567), (20.0, 0.4795, 1.708)]
         {
@@ -410,7 +409,7 @@ mod tests {
 
     #[test]
     fn what_the_next_pixels_show_by_all_their_samples_is_no_find() {
-        // A lamp, which two pixels on its rim meet by one sample of 16 each, and all samples agree elsewhere.
+        // A lamp that two pixels on its rim hit with one of 16 samples each; all other samples agree.
         let carried = |lamp: [f64; 2], batch: u32, patch: u32| {
             let mut film = Film::new(12, 12, 12, batch, false, None).in_patches(patch);
             for tile in film.extend_to(16) {
@@ -433,19 +432,19 @@ mod tests {
         for batch in [1, 4] {
             assert_eq!(carried([20.0, 20.0], batch, 1), None);
             assert_eq!(carried([20.0, 11.0], batch, 1), None);
-            // A brighter one than is shown, and one that nothing shows.
+            // A brighter sample than neighbours show, and one that nothing confirms.
             for shown in [9.0, 0.1] {
                 let carried = carried([20.0, shown], batch, 1).expect("two samples are all there is");
                 assert!(carried.samples <= 2 && carried.share > 0.5, "{carried:?}");
             }
         }
-        // Pixels of one patch took their samples together; the next patch is as good as the next pixel.
+        // Pixels of one patch share their samples; the next patch counts like the next pixel.
         assert_eq!(carried([20.0, 20.0], 1, 4), None);
     }
 
     #[test]
     fn is_bounded_by_a_lamp_in_the_dark() {
-        // One sample of one pixel meets a lamp; its own mean alone would make that an error of 1.
+        // One sample of one pixel hits a lamp; its own mean alone would make that an error of 1.
         let lamp = |lit: f64| {
             let mut film = Film::new(9, 9, 16, 1, false, None);
             for tile in film.extend_to(16) {

@@ -1,27 +1,27 @@
-//! Decoders of EXR chunks that go symbol by symbol: differences, run lengths, and PIZ (Huffman codes of a wavelet). The
-//! rest is zlib and arithmetic of whole arrays, in `python/raywright/io/exr/`.
+//! Decoders of EXR chunks that work symbol by symbol: differences, run lengths, and PIZ (Huffman codes of a wavelet).
+//! The rest is zlib and array arithmetic, in `python/raywright/io/exr/`.
 //!
 //! After `ImfZip.cpp`, `ImfRle.cpp`, `ImfHuf.cpp`, `ImfWav.cpp` and `ImfPizCompressor.cpp` of OpenEXR. Each function
-//! takes any bytes, and returns their content or an error; it allocates no more than a multiple of their number.
+//! accepts any bytes, and returns their content or an error. It allocates at most a multiple of their number.
 
-/// Number of 16-bit symbols, and the code after them that repeats the last one.
+/// Number of 16-bit symbols; the code after them repeats the last symbol.
 const SYMBOLS: usize = 1 << 16;
-/// Codes up to this length are decoded by one look-up.
+/// Codes up to this length are decoded by one table lookup.
 const TABLE_BITS: u32 = 14;
 const LONGEST_CODE: usize = 58;
-/// Code lengths from here on stand for runs of unused symbols: the last with 8 bits of length.
+/// Code lengths from here on encode runs of unused symbols: the last with 8 bits of length.
 const SHORT_RUN: u64 = 59;
 const LONG_RUN: u64 = 63;
 /// A run takes at least 9 bits and yields at most 255 symbols.
 const MOST_SYMBOLS_PER_BIT: usize = 255 / 9 + 1;
 
-/// Sum the differences that ZIP and RLE store, each with 128 added; the even bytes come before the odd ones.
+/// Sums the differences stored by ZIP and RLE, each with an offset of 128; the even bytes precede the odd ones.
 pub fn integrate(data: &[u8]) -> Vec<u8> {
     let mut out = vec![0; data.len()];
     let (even, odd) = data.split_at(data.len().div_ceil(2));
     let mut last = 128_u8;
     for (pair, difference) in out.chunks_mut(2).zip(even) {
-        // The highest bit is 128, and only the sum depends on the last byte: one addition each.
+        // The highest bit is 128, so the offset is an exclusive or, and only one addition depends on the last byte.
         last = last.wrapping_add(difference ^ 128);
         pair[0] = last;
     }
@@ -32,7 +32,7 @@ pub fn integrate(data: &[u8]) -> Vec<u8> {
     out
 }
 
-/// Decode `count` bytes of run lengths: n >= 0 repeats the next byte n + 1 times, n < 0 copies -n bytes.
+/// Decodes `count` bytes of run lengths: n >= 0 repeats the next byte n + 1 times, n < 0 copies -n bytes.
 ///
 /// # Errors
 /// If `data` holds fewer or more than `count` bytes.
@@ -61,8 +61,8 @@ pub fn run_lengths(data: &[u8], count: usize) -> Result<Vec<u8>, &'static str> {
     if out.len() == count { Ok(out) } else { Err("its runs are cut short") }
 }
 
-/// Decode a PIZ chunk of channels, each of so many columns and rows of samples of so many 16-bit words: all samples of
-/// the first channel, row by row, then those of the next.
+/// Decodes a PIZ chunk. `channels` are columns, rows and 16-bit words per sample. The result has all samples of the
+/// first channel, row by row, then those of the next.
 ///
 /// # Errors
 /// If `data` does not hold them.
@@ -78,7 +78,7 @@ pub fn piz(data: &[u8], channels: &[(usize, usize, usize)]) -> Result<Vec<u16>, 
         place.copy_from_slice(bytes);
         tail = after;
     }
-    // Zero is a value even where its bit is not set.
+    // Zero is a value even if its bit is not set.
     used[0] |= 1;
     let mut values: Vec<u16> = (0..=u16::MAX).filter(|&v| used[usize::from(v >> 3)] >> (v & 7) & 1 == 1).collect();
     let is_wide = values.len() > 1 << 14;
@@ -111,10 +111,10 @@ pub fn piz(data: &[u8], channels: &[(usize, usize, usize)]) -> Result<Vec<u16>, 
     Ok(out)
 }
 
-/// Decode `count` symbols of OpenEXR's canonical Huffman code, whose table of lengths comes first.
+/// Decodes `count` symbols of OpenEXR's canonical Huffman code, which starts with its table of lengths.
 ///
 /// # Errors
-/// If `data` does not hold them, or its table is none of a prefix code.
+/// If `data` does not hold them, or its table is not that of a prefix code.
 pub fn huffman(data: &[u8], count: usize) -> Result<Vec<u16>, &'static str> {
     if count == 0 {
         return Ok(Vec::new());
@@ -159,7 +159,7 @@ pub fn huffman(data: &[u8], count: usize) -> Result<Vec<u16>, &'static str> {
     Ok(out)
 }
 
-/// The lengths of `count` codes, and the number of bytes that they take.
+/// Lengths of `count` codes, and their size in bytes.
 fn code_lengths(data: &[u8], count: usize) -> Result<(Vec<u8>, usize), &'static str> {
     let mut reader = Bits::new(data);
     let mut lengths = Vec::with_capacity(count);
@@ -180,12 +180,12 @@ fn code_lengths(data: &[u8], count: usize) -> Result<(Vec<u8>, usize), &'static 
     Ok((lengths, reader.at.div_ceil(8)))
 }
 
-/// A canonical code: of each length the codes are consecutive numbers, in the order of their symbols, and longer codes
-/// come before shorter ones.
+/// A canonical code: codes of equal length are consecutive numbers in the order of their symbols, and longer codes
+/// precede shorter ones.
 struct Codes {
-    /// By the next `TABLE_BITS` bits, symbol and length of a code that is no longer; length 0 for longer ones.
+    /// Symbol and code length, indexed by the next `TABLE_BITS` bits; length 0 for longer codes.
     table: Vec<(u32, u8)>,
-    /// By length: the first code, and where its symbol stands among those of longer codes.
+    /// For each length, the first code, and the position of its symbol in `symbols`.
     starts: [(u64, usize); LONGEST_CODE + 2],
     /// Symbols by length, the longest codes first.
     symbols: Vec<u32>,
@@ -206,7 +206,7 @@ impl Codes {
             if code > 1 << length {
                 return Err("its table of codes is broken");
             }
-            // A shorter code begins where the longer ones with that prefix end.
+            // A shorter code begins after the longer ones with its prefix.
             code >>= 1;
         }
         let mut table = vec![(0, 0); 1 << TABLE_BITS];
@@ -226,7 +226,7 @@ impl Codes {
         Ok(Self { table, starts, symbols })
     }
 
-    /// The symbol of the code that the highest bits are, and its length.
+    /// Symbol of the code in the highest bits, and its length.
     fn decode(&self, bits: u64) -> Option<(usize, usize)> {
         let (symbol, length) = self.table[(bits >> (64 - TABLE_BITS)) as usize];
         if length > 0 {
@@ -234,7 +234,7 @@ impl Codes {
         }
         (TABLE_BITS as usize + 1..=LONGEST_CODE).find_map(|length| {
             let (first, place) = self.starts[length];
-            // The places of shorter codes follow.
+            // Symbols of shorter codes follow.
             let end = self.starts[length - 1].1;
             let within = (bits >> (64 - length)).checked_sub(first)?;
             let at = place + usize::try_from(within).ok()?;
@@ -243,7 +243,7 @@ impl Codes {
     }
 }
 
-/// Bits from the highest of each byte on; zeros behind the end.
+/// A bit reader, most significant bit first; zeros follow the end.
 struct Bits<'a> {
     data: &'a [u8],
     at: usize,
@@ -288,7 +288,8 @@ fn take_u32(data: &[u8]) -> Option<(usize, &[u8])> {
     Some((u32::from_le_bytes(*bytes) as usize, rest))
 }
 
-/// Undo the two-dimensional wavelet of `size` samples that are `stride` apart, from the coarsest level to the finest.
+/// Inverts the two-dimensional wavelet transform of `size` samples at distance `stride`, from the coarsest level to the
+/// finest.
 fn inverse_wavelet(data: &mut [u16], size: (usize, usize), stride: usize, pair: impl Fn(u16, u16) -> (u16, u16)) {
     let (width, rows) = size;
     let row = width * stride;
@@ -325,7 +326,7 @@ fn inverse_wavelet(data: &mut [u16], size: (usize, usize), stride: usize, pair: 
     }
 }
 
-/// Two samples from their mean and difference, where no sample has more than 14 bits.
+/// Two samples from their mean and difference, if no sample has more than 14 bits.
 fn plain_pair(mean: u16, difference: u16) -> (u16, u16) {
     let difference = difference as i16;
     let first = (mean as i16).wrapping_add(difference & 1).wrapping_add(difference >> 1);
@@ -358,7 +359,7 @@ mod tests {
         }
     }
 
-    /// Symbols 0 (code 1), 1 (code 00) and 2 (code 01), of which the last repeats.
+    /// Symbols 0 (code 1), 1 (code 00) and 2 (code 01); the last is the repeat code.
     fn three_symbols(bits: u32, packed: &[u8]) -> Vec<u8> {
         let mut data: Vec<u8> = [0, 2, 0, bits, 0].iter().flat_map(|n: &u32| n.to_le_bytes()).collect();
         // 000001 000010 000010, in three bytes.
@@ -369,13 +370,13 @@ mod tests {
 
     #[test]
     fn symbols_and_runs_are_decoded() {
-        // 1, 00, 01 00000011, 1: 0, 1, three more of it, 0.
+        // 1, 00, 01 00000011, 1: 0, 1, three repetitions, 0.
         let data = three_symbols(14, &[0b1000_1000, 0b0001_1100]);
         assert_eq!(huffman(&data, 6).unwrap(), [0, 1, 1, 1, 1, 0]);
         assert!(huffman(&data, 7).is_err());
         assert!(huffman(&data, 4).is_err());
         assert!(huffman(&data[..22], 6).is_err());
-        // The first symbol repeats nothing.
+        // There is nothing to repeat before the first symbol.
         assert!(huffman(&three_symbols(10, &[0b0100_0000, 0b1100_0000]), 3).is_err());
     }
 

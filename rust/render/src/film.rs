@@ -1,27 +1,25 @@
-//! What samples add up to.
+//! The film: sums of samples per pixel.
 
 use super::bytes::{Malformed, Reader, Writer};
 use super::tile::{Cell, FilmTile};
 use raywright_base::parallel;
 use raywright_optics::Rgb;
 
-/// The samples of a picture so far: for each pixel and channel their sum, and what it takes to know its error.
+/// The samples of a picture so far: for each pixel and channel their sum, and the sums for error estimates.
 ///
-/// The error comes from the spread of *batches* of samples that are independent of each other. A batch is one sample
-/// where all are independent, and several where they are placed with regard to each other. What single samples are like
-/// is kept as well: it tells of what is rare, and of the error while there are no two batches.
+/// Error estimates use the spread of independent *batches* of samples. A batch is one sample if samples are
+/// independent, and several if they are stratified. Moments of single samples are kept as well. They identify rare
+/// events, and give the error before there are two batches.
 ///
-/// A film may be in halves: each pixel then has two *cells*, whose samples are independent of each other and may differ
-/// in number, and the pixel is the mean of the two cells' means. What a film in halves is good for is told in
-/// `adaptive.rs`.
+/// A film may be in halves: each pixel then has two *cells*, with independent samples and possibly different counts,
+/// and the pixel is the mean of the two cells' means; see `adaptive.rs` for the purpose.
 ///
-/// Samples of the same number in a *patch*, a square of pixels, may have been taken together. A tile holds whole
-/// patches, and where `error.rs` asks where the error comes from, a patch counts as one.
+/// Samples with the same number in a *patch*, a square of pixels, may have been taken together. A tile holds whole
+/// patches, and the error estimate (`error.rs`) treats a patch as one unit.
 ///
-/// Sums depend on the order of adding, so the order is part of the film: samples are added up one by one in blocks of
-/// 16, or of a batch if that is more, and blocks one by one. Hence how samples are split into passes, who works on a
-/// tile and how large tiles are does not change a bit, and neither does appending films of single blocks, wherever
-/// these were made.
+/// Sums depend on the order of addition, so the order is fixed: samples are added one by one in blocks of 16, or of a
+/// batch if that is larger, and blocks one by one. So the bits do not depend on passes, threads or tile sizes, nor on
+/// appending films of single blocks from elsewhere.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Film {
     width: u32,
@@ -36,41 +34,41 @@ pub struct Film {
     tiles: Vec<FilmTile>,
 }
 
-/// What is known of a pixel.
+/// Statistics of a pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Spread {
-    /// How many samples.
+    /// Number of samples.
     pub samples: f64,
-    /// The estimated variance of its mean.
+    /// Estimated variance of its mean.
     pub variance: Rgb,
-    /// What that would be if samples were independent of each other.
+    /// That variance for independent samples.
     pub alone: Rgb,
-    /// Degrees of freedom of the variance: batches but for one of each cell, 0 where it is that of single samples.
+    /// Degrees of freedom of the variance: batches minus one per cell; 0 if it is that of single samples.
     pub degrees: f64,
-    /// The mean without the largest sample of each cell.
+    /// Mean without the largest sample of each cell.
     pub others: Rgb,
-    /// The largest sample of each cell; of all zeros where there is no cell.
+    /// Largest sample of each cell; zeros if there is no such cell.
     pub peaks: [Outlier; 2],
 }
 
 /// The largest sample of a cell.
 ///
-/// What is rare is found by one sample of a batch, whatever places the others. So its weight is told by samples, and is
-/// as well known from few batches as from many.
+/// A rare event is found by one sample of a batch, independent of stratification. So its variance is estimated from
+/// single samples, and its accuracy does not depend on the number of batches.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Outlier {
-    /// What of the variance of the pixel's mean comes from it: all, at most.
+    /// Its part of the variance of the pixel's mean, at most all.
     pub variance: Rgb,
-    /// The mean of the pixel without it.
+    /// Mean of the pixel without it.
     pub without: Rgb,
     /// Its largest channel.
     pub brightness: f64,
-    /// How many more of its size would make up for the squares of the others.
+    /// Squares of the other samples over its square.
     pub again: f64,
 }
 
 impl Film {
-    /// An empty film in square tiles, for batches of samples. With `clamp`, samples brighter than that are dimmed to
+    /// Creates an empty film in square tiles, for batches of samples. With `clamp`, brighter samples are scaled down to
     /// it.
     pub fn new(width: u32, height: u32, side: u32, batch: u32, halves: bool, clamp: Option<f64>) -> Self {
         let mut film = Self::without_tiles(width, height, side, batch, halves, clamp);
@@ -78,7 +76,7 @@ impl Film {
         film
     }
 
-    /// One that only knows what its tiles would be.
+    /// Creates a film that has a layout but no tiles.
     pub(super) fn without_tiles(
         width: u32,
         height: u32,
@@ -91,35 +89,34 @@ impl Film {
         Self { width, height, side, batch, halves, clamp, patch: 1, apart: false, samples: 0, tiles: Vec::new() }
     }
 
-    /// The same film, in patches of so many pixels a side, of which its tiles hold whole ones.
+    /// Sets the patch size; tiles hold whole patches.
     pub fn in_patches(self, patch: u32) -> Self {
         assert!(patch > 0 && self.side.is_multiple_of(patch), "whole patches");
         Self { patch, ..self }
     }
 
-    /// The same film, without samples yet, which keeps four parts of them apart if that is wanted
-    /// ([`Film::halves`]).
+    /// Sets whether four parts of the samples are kept apart ([`Film::halves`]); the film must be empty.
     pub fn kept_apart(self, apart: bool) -> Self {
         let tiles = if apart { self.tiles.into_iter().map(FilmTile::kept_apart).collect() } else { self.tiles };
         Self { apart, tiles, ..self }
     }
 
-    /// Whether parts of its samples are kept apart.
+    /// Returns whether parts of its samples are kept apart.
     pub(super) fn is_apart(&self) -> bool {
         self.apart
     }
 
-    /// The side of its patches.
+    /// Side of its patches.
     pub fn patch(&self) -> u32 {
         self.patch
     }
 
-    /// How many tiles it has.
+    /// Number of tiles.
     pub fn tile_count(&self) -> usize {
         self.width.div_ceil(self.side) as usize * self.height.div_ceil(self.side) as usize
     }
 
-    /// A tile as it was when the film was empty.
+    /// An empty tile.
     pub(super) fn empty_tile(&self, number: usize) -> FilmTile {
         let columns = self.width.div_ceil(self.side) as usize;
         let corner = [number % columns, number / columns].map(|n| n as u32 * self.side);
@@ -128,55 +125,55 @@ impl Film {
         if self.apart { tile.kept_apart() } else { tile }
     }
 
-    /// Pixels in a row.
+    /// Number of columns.
     pub fn width(&self) -> u32 {
         self.width
     }
 
-    /// Rows.
+    /// Number of rows.
     pub fn height(&self) -> u32 {
         self.height
     }
 
-    /// How many pixels there are.
+    /// Number of pixels.
     pub fn pixel_count(&self) -> usize {
         self.width as usize * self.height as usize
     }
 
-    /// Samples of each pixel, or as many as were asked for of all pixels on average.
+    /// Samples per pixel, or the mean number requested.
     pub fn samples(&self) -> u32 {
         self.samples
     }
 
-    /// Samples that belong together.
+    /// Samples per batch.
     pub fn batch(&self) -> u32 {
         self.batch
     }
 
-    /// Cells of each pixel: 2 if the film is in halves, else 1.
+    /// Cells per pixel: 2 if the film is in halves, else 1.
     pub fn cells(&self) -> usize {
         if self.halves { 2 } else { 1 }
     }
 
-    /// The memory held for its pixels: what batches, clamping and halves take is only there where they are.
+    /// Memory of its pixels in bytes; sums for batches, clamping and halves exist only if needed.
     #[cfg(test)]
     fn bytes(&self) -> usize {
         self.tiles.iter().map(FilmTile::bytes).sum()
     }
 
-    /// Samples that were NaN, infinite or negative, and count as black.
+    /// Number of samples that were NaN, infinite or negative, and count as black.
     pub fn dropped(&self) -> u64 {
         self.tiles.iter().map(FilmTile::dropped).sum()
     }
 
-    /// How many samples were clamped, and what share of the picture's radiance that took from it.
+    /// Number of clamped samples, and the share of the picture's radiance that clamping removed.
     pub fn clamped(&self) -> (u64, f64) {
         let count = self.tiles.iter().map(FilmTile::clamped).sum();
         if count == 0 {
             return (0, 0.0);
         }
         let mean = |of: fn(&Cell) -> Rgb| {
-            // Row by row, so that the sum is the same for tiles of any size.
+            // Row by row, so that the sum does not depend on the tile size.
             let means = self.pixels(|cells| average(cells, |cell| of(cell) / f64::from(cell.count.max(1))));
             means.iter().map(|rgb| rgb.sum()).sum::<f64>()
         };
@@ -200,64 +197,63 @@ impl Film {
         &mut self.tiles
     }
 
-    /// Its tiles, which it then has no more.
+    /// Takes the tiles out of the film.
     pub(super) fn take_tiles(&mut self) -> Vec<FilmTile> {
         std::mem::take(&mut self.tiles)
     }
 
-    /// Gives tiles to a film that has none.
+    /// Returns tiles to a film that has none.
     pub(super) fn put_tiles(&mut self, tiles: Vec<FilmTile>) {
         debug_assert!(self.tiles.is_empty() && tiles.len() == self.tile_count(), "its own tiles");
         self.tiles = tiles;
     }
 
-    /// The side of its tiles.
+    /// Side of its tiles.
     pub(super) fn side(&self) -> u32 {
         self.side
     }
 
-    /// The radiance to which brighter samples are dimmed.
+    /// Radiance that brighter samples are scaled down to.
     pub(super) fn clamp(&self) -> Option<f64> {
         self.clamp
     }
 
-    /// Samples in a block: passes that begin with a block can be worked on before those that come first are done.
+    /// Samples per block: passes that begin with a block can be computed before earlier ones are done.
     pub fn block(&self) -> u32 {
         FilmTile::BLOCK.max(self.batch)
     }
 
-    /// Whether samples of one block can be appended: halves do not fill their blocks at the same time.
+    /// Returns whether blocks can be appended; halves do not fill their blocks simultaneously.
     pub fn appends(&self) -> bool {
         !self.halves
     }
 
-    /// All that has been added to it, as bytes.
+    /// Writes all its sums as bytes.
     pub(super) fn write(&self, to: &mut Writer) {
         to.word(self.samples);
         self.tiles.iter().for_each(|tile| tile.write(to));
     }
 
-    /// Reads what was added to a film of the same shape. If that fails, this film is of no use.
+    /// Reads the sums of a film with the same layout. After an error, this film is invalid.
     pub(super) fn read(&mut self, from: &mut Reader) -> Result<(), Malformed> {
         self.samples = from.word()?;
         self.tiles.iter_mut().try_for_each(|tile| tile.read(from))
     }
 
-    /// Lets the next `count` samples of each cell be evidence: sums of their own are kept of those
-    /// ([`Film::evidence`]).
+    /// Starts keeping separate sums of the next `count` samples of each cell, as evidence ([`Film::evidence`]).
     pub(super) fn take_evidence(&mut self, count: u32) {
         parallel::each_mut(&mut self.tiles, &|_, tile| tile.take_evidence(count));
     }
 
-    /// Sum and sum of squares of the samples so far that were evidence, of one half of each pixel.
+    /// Sum and sum of squares of the evidence of one half of each pixel.
     pub(super) fn evidence(&self, half: usize) -> Vec<(Rgb, Rgb)> {
         self.pixels(|cells| cells[half].evidence)
     }
 
-    /// Adds the samples that follow those here.
+    /// Appends the samples that follow those here.
     ///
     /// # Panics
-    /// If the films differ in shape, or are in halves, or the last block here is not full.
+    /// If the films differ in layout, or are in halves, or the last block here is not full.
     #[cfg(test)]
     fn append(&mut self, next: &Self) {
         let shape = |f: &Self| (f.width, f.height, f.side, f.batch, f.halves, f.patch);
@@ -269,17 +265,16 @@ impl Film {
         }
     }
 
-    /// Something of each pixel, of which `of` gets the cells, row by row from the top.
+    /// Maps a function of its cells over all pixels, row by row from the top.
     fn pixels<T: Clone + Default + Send>(&self, of: impl Fn(&[Cell]) -> T + Sync) -> Vec<T> {
         let mut all = vec![T::default(); self.pixel_count()];
-        // Rows of no pixels would be chunks of nothing.
-        // Chunks of nothing are none.
+        // With width 0 there are no rows, and chunks must not be empty.
         let width = self.width.max(1) as usize;
         parallel::each_chunk_mut(&mut all, width, &|first, row| self.row((first / width) as u32, row, &of));
         all
     }
 
-    /// Something of each pixel of a row.
+    /// Maps a function of its cells over the pixels of a row.
     fn row<T>(&self, y: u32, row: &mut [T], of: impl Fn(&[Cell]) -> T) {
         let columns = self.width.div_ceil(self.side) as usize;
         let band = &self.tiles[(y / self.side) as usize * columns..][..columns];
@@ -292,33 +287,33 @@ impl Film {
         }
     }
 
-    /// The mean of each pixel; black without samples.
+    /// Mean of each pixel; black without samples.
     pub fn means(&self) -> Vec<Rgb> {
         self.pixels(|cells| average(cells, |cell| cell.sum / f64::from(cell.count.max(1))))
     }
 
-    /// How many samples each pixel has.
+    /// Number of samples of each pixel.
     pub fn counts(&self) -> Vec<u32> {
         self.pixels(|cells| cells.iter().map(|cell| cell.count).sum())
     }
 
-    /// Samples of the cell that has the fewest.
+    /// Minimum number of samples of a cell.
     pub(super) fn fewest(&self) -> u32 {
         self.tiles.iter().map(FilmTile::fewest).min().unwrap_or(0)
     }
 
-    /// The estimated variance of each pixel's mean: unbiased from two batches on, and before that, where samples are
-    /// taken for independent, too large if anything; `None` where a cell has fewer than two samples, which say nothing.
+    /// Estimated variance of each pixel's mean. It is unbiased from two batches on. Before that, it is the variance for
+    /// independent samples, which is at most too large. `None` if a cell has fewer than two samples.
     pub fn variances(&self) -> Option<Vec<Rgb>> {
         Some(self.all_spreads()?.iter().map(|spread| spread.variance).collect())
     }
 
-    /// What is known of each pixel; `None` where a cell has fewer than two samples.
+    /// Statistics of each pixel; `None` if a cell has fewer than two samples.
     pub(super) fn all_spreads(&self) -> Option<Vec<Spread>> {
         (self.fewest() >= 2).then(|| self.pixels(|cells| self.spread(cells)))
     }
 
-    /// What is known of the pixels of a row, each cell of which has two samples at least.
+    /// Statistics of the pixels of a row; each cell has at least two samples.
     pub(super) fn spreads(&self, y: u32, row: &mut [Spread]) {
         self.row(y, row, |cells| self.spread(cells));
     }
@@ -332,14 +327,13 @@ impl Film {
             let count = f64::from(cell.count);
             let others = cell.sum - cell.largest;
             let degrees = (count - 1.0) * count * cells_squared;
-            // Where all samples agree, rounding may leave less than nothing.
+            // If all samples agree, rounding may make it negative.
             let alone = ((cell.singles - cell.sum * cell.sum / count) / degrees).at_least(Rgb::ZERO);
             let batches = cell.count / self.batch;
             let variance = if batches < 2 || self.batch == 1 {
                 alone
             } else {
-                // A batch that is not full yet is not in the squares; the spread of those that are says what a sample
-                // is worth.
+                // An incomplete batch is not in the squares; the spread of complete ones gives the variance per sample.
                 let (batches, sum) = (f64::from(batches), cell.sum - cell.unfinished);
                 let degrees = (batches - 1.0) * f64::from(self.batch) * count * cells_squared;
                 ((cell.squares - sum * sum / batches) / degrees).at_least(Rgb::ZERO)
@@ -364,7 +358,7 @@ impl Film {
     }
 }
 
-/// The mean over those cells that have samples.
+/// Mean over the cells with samples.
 fn average(cells: &[Cell], of: impl Fn(&Cell) -> Rgb) -> Rgb {
     match cells {
         [one, other] if other.count > 0 => (of(one) + of(other)) / 2.0,
@@ -377,13 +371,13 @@ mod tests {
     use super::*;
     use raywright_base::sampling::Sampler;
 
-    /// Something skewed that needs all its bits.
+    /// A skewed value that needs all its bits.
     fn sample(pixel: u32, number: u32) -> Rgb {
         let mut sampler = Sampler::new(9, pixel, number);
         Rgb::new(sampler.one(0), sampler.one(1).powi(5), 1e-3 / sampler.two(2)[0])
     }
 
-    /// Adds the samples of these numbers to each cell.
+    /// Adds samples with these numbers to each cell.
     fn expose(film: &mut Film, first: u32, count: u32) {
         let (samples, cells) = (film.samples(), film.cells());
         for tile in film.extend_to(samples + count) {
@@ -435,8 +429,7 @@ mod tests {
         }
     }
 
-    /// Mean of the means of whole batches, their variance over their number, and the share of the largest in the
-    /// latter.
+    /// Mean of the means of whole batches, their variance over their number, and the share of the largest in it.
     fn textbook(values: &[f64], batch: usize) -> (f64, f64, f64) {
         let batches: Vec<f64> = values.chunks_exact(batch).map(|b| b.iter().sum::<f64>() / batch as f64).collect();
         let count = batches.len() as f64;
@@ -456,7 +449,7 @@ mod tests {
             let (mean, variance, _) = textbook(&green, batch as usize);
             assert!((film.means()[1][1] / mean - 1.0).abs() < 1e-14);
             assert!((film.variances().unwrap()[1][1] / variance - 1.0).abs() < 1e-12);
-            // The largest sample is the one with the largest channel: all of them, if all are alike.
+            // The largest sample is the one with the largest channel; here all channels are equal.
             let mut grey = film_of(&green, batch);
             let mut row = [Spread::default()];
             grey.spreads(0, &mut row);
@@ -557,14 +550,14 @@ mod tests {
             tile.add(0, value, 1.0);
         }
         assert_eq!(film.means(), [Rgb::new(5.0, 3.0, 3.0) / 4.0]);
-        // Nine of twenty were taken.
+        // Nine of twenty were removed.
         assert_eq!(film.clamped(), (1, 9.0 / 20.0));
     }
 
     #[test]
     fn what_is_not_asked_for_takes_no_memory() {
-        // A count, five colours; three colours more where samples belong together, two where they are clamped. Halves
-        // double all, and have evidence: two colours and a count.
+        // A count and five colours; three colours more with batches, two with clamping. Halves double everything and
+        // add evidence: two colours and a count.
         let (count, colour) = (size_of::<u32>(), size_of::<Rgb>());
         for (batch, halves, clamp, each) in [
             (1, false, None, count + 5 * colour),

@@ -1,28 +1,28 @@
-//! How much more than is told a few pixels may err, of many that cannot tell.
+//! Bound on the error of a few pixels that cannot reveal it themselves (heavy tails).
 
 use super::denominators::FLOOR;
 use raywright_optics::Rgb;
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
-/// Errors that one pixel may hide, by how large they are: how many pixels are to be expected that do.
+/// Expected numbers of pixels that may hide an error, by the size of the error.
 ///
-/// On the rim of a lamp a pixel is in part as bright as the next ones, and in which part its samples say. If one of n
-/// met the lamp, the part is 1/n, or a tenth of that: rarely, as rarely as a sample meets so little, but the error over
-/// the square of what the pixel is would be a hundred times what it seems to be. A picture has many such pixels, and
-/// one that is of the rare kind makes as much error as all others do. Variances say nothing of sums like that. What
-/// does is that they are large by their largest term: the sum is above x as often as one of its terms is (Embrechts,
-/// Klüppelberg and Mikosch, "Modelling Extremal Events", 1997, section 1.3).
+/// A pixel on the rim of a lamp is partly as bright as the lamp, and its samples estimate the covered share. If one of
+/// n samples hit the lamp, the share is likely about 1/n, but it may be a tenth of that. This is as rare as hitting
+/// such a small share, but then the error over the squared true brightness is a hundred times what it seems. A picture
+/// has many such pixels, and one of the rare kind contributes as much error as all others together. Variances do not
+/// describe such sums. They are large because of their largest term: the sum exceeds x as often as one of its terms
+/// does (Embrechts, Klüppelberg and Mikosch, "Modelling Extremal Events", 1997, section 1.3).
 ///
-/// Rims lie anywhere in pixels, so parts are uniform before there is a sample, and proportional to themselves after one
-/// of n met them: below t/n, for t < 1, with probability t²/2.
+/// Rims have arbitrary positions within pixels, so covered shares are uniform a priori. After one of n samples hit,
+/// their density is proportional to the share: a share below t/n, for t < 1, has probability t²/2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Jumps([f64; BINS]);
 
-/// Half octaves of errors that are told apart, the least of them 2⁻²⁴; what is smaller is not looked at.
+/// Number of half-octave bins of errors, and the exponent of the smallest, 2⁻²⁴; smaller errors are ignored.
 const BINS: usize = 128;
 const LEAST: i32 = -24;
 
-/// Parts that are told apart, two an octave. The last is so small that hundreds of pixels have none below it.
+/// Number of bins of covered shares, two per octave. The last is so small that hundreds of pixels have none below it.
 const PARTS: i32 = 14;
 
 /// The fourth root of a half.
@@ -35,13 +35,13 @@ impl Default for Jumps {
 }
 
 impl Jumps {
-    /// Counts in what a sample brings: the `variance` of its pixel's mean that comes from it, that `mean`, the mean
-    /// `without` the sample, and the `told` error.
+    /// Adds the contribution of a sample: the `variance` of its pixel's mean due to it, that `mean`, the mean `without`
+    /// it, and the error already reported, `told`.
     #[inline]
     pub fn add(&mut self, variance: Rgb, mean: Rgb, without: Rgb, told: f64) {
         let mut part = 1.0;
         for step in 0..=PARTS {
-            // In the middle of the parts between this and the next; below the last, none.
+            // The center of the bin between this share and the next; 0 below the last.
             let (next, middle) = if step == PARTS { (0.0, 0.0) } else { (part * FRAC_1_SQRT_2, part * MIDDLE) };
             let likely = without + (mean - without) * middle;
             let more = variance.dot((likely * likely + FLOOR).recip()) * (1.0 - middle).powi(2) - told;
@@ -52,12 +52,12 @@ impl Jumps {
         }
     }
 
-    /// Counts in all that another has counted.
+    /// Adds the counts of another.
     pub fn join(&mut self, other: &Self) {
         self.0.iter_mut().zip(&other.0).for_each(|(expected, more)| *expected += more);
     }
 
-    /// What pixels err more than they tell with this probability.
+    /// Error beyond the reported one that is exceeded with this probability.
     pub fn with(&self, probability: f64) -> f64 {
         let mut expected = 0.0;
         for (bin, count) in self.0.iter().enumerate().rev() {
@@ -70,7 +70,7 @@ impl Jumps {
     }
 }
 
-/// Where an error belongs; read from the bits, so that it is the same everywhere.
+/// Bin of an error; computed from its bits, so that it is the same on every machine.
 #[inline]
 fn bin(error: f64) -> Option<usize> {
     let exponent = (error.max(0.0).to_bits() >> 52) as i32 - 1023;
@@ -78,7 +78,7 @@ fn bin(error: f64) -> Option<usize> {
     (exponent >= LEAST).then(|| (2 * (exponent - LEAST) as usize + usize::from(upper)).min(BINS - 1))
 }
 
-/// The errors of a bin, which they are off by a fifth at most.
+/// Representative error of a bin, accurate to a fifth.
 fn middle(bin: usize) -> f64 {
     const QUARTER: f64 = MIDDLE * SQRT_2;
     f64::exp2(f64::from(bin as i32 / 2 + LEAST)) * if bin.is_multiple_of(2) { QUARTER } else { QUARTER * SQRT_2 }
@@ -99,7 +99,7 @@ mod tests {
         }
     }
 
-    /// What a pixel errs by of which this part is a lamp of 1000 on 0.1, and one of 16 samples met that.
+    /// Error of a pixel with this share of a lamp of 1000 on 0.1, if one of 16 samples hit the lamp.
     fn error(part: f64) -> f64 {
         let (off, truth) = (1000.0 * (1.0 / 16.0 - part), 0.1 + 1000.0 * part);
         off * off / (truth * truth + FLOOR)
@@ -107,7 +107,8 @@ mod tests {
 
     #[test]
     fn rims_that_were_met_once_err_by_as_much_as_often() {
-        // Of pixels with any part of the lamp: the error that one in so many of those exceeds that met it once.
+        // Pixels with random shares of the lamp: the error exceeded by this fraction of the pixels with exactly one
+        // hit.
         let mut errors = Vec::new();
         for pixel in 0..400_000u32 {
             let part = Sampler::new(5, pixel, 0).one(0);
@@ -122,7 +123,8 @@ mod tests {
             let red = Rgb::new(62.5f64.powi(2), 0.0, 0.0);
             (0..pixels).for_each(|_| jumps.add(red, mean, without, 0.0));
             let exceeded = errors[(errors.len() as f64 * probability / f64::from(pixels)) as usize];
-            // Parts are told apart by half octaves, and their errors go by the squares; samples take the part of 1/17.
+            // Shares are binned by half octaves, and errors vary with their squares; one of 16 hits suggests a share of
+            // 1/17.
             let ratio = jumps.with(probability) / exceeded;
             assert!((0.5..2.0).contains(&ratio), "{pixels} pixels, {probability}: {ratio}");
         }
@@ -132,7 +134,7 @@ mod tests {
     fn what_is_told_already_is_no_jump() {
         let [mean, without] = [2.0, 1.0].map(Rgb::splat);
         let mut jumps = Jumps::default();
-        // Three channels of variance 1 that are at least 1 bright.
+        // Three channels of variance 1 and brightness of at least 1.
         jumps.add(Rgb::ONE, mean, without, 3.0);
         assert_eq!(jumps, Jumps::default());
         assert_eq!(jumps.with(0.025), 0.0);

@@ -1,42 +1,42 @@
-//! Tiles that are worked on, and can be looked at meanwhile.
+//! A film shared between threads that render and threads that look.
 
 use super::{Film, FilmTile};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// A film whose tiles are worked on, each by one thread at a time, which holds it for as long as it counts what it
-/// wants or adds what it has, and not while it is taken. So whoever looks waits for no ray, and sees of each cell the
-/// first of its samples and nothing else.
+/// A film whose tiles are rendered, each by one thread at a time. A thread holds the lock of its tile while it counts
+/// samples to take or adds results, not while it traces rays. So an observer never waits for rays, and sees the first
+/// samples of each cell and nothing else.
 #[derive(Debug)]
 pub(super) struct LentFilm {
-    /// The same without tiles.
+    /// The film without tiles.
     film: Film,
     tiles: Vec<Mutex<FilmTile>>,
 }
 
-/// A tile, once nobody else holds it.
+/// Locks a tile.
 pub(super) fn held(tile: &Mutex<FilmTile>) -> MutexGuard<'_, FilmTile> {
-    // Samples are added to one cell after the other: who panics leaves a tile with fewer, and nothing else.
+    // Samples are added to one cell after another, so a panic leaves a tile with fewer samples but consistent.
     tile.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Tiles, to be worked on.
+/// Wraps tiles in locks.
 pub(super) fn lent(tiles: Vec<FilmTile>) -> Vec<Mutex<FilmTile>> {
     tiles.into_iter().map(Mutex::new).collect()
 }
 
-/// Tiles that nobody works on any more.
+/// Unwraps tiles when no thread holds them.
 pub(super) fn given_back(tiles: Vec<Mutex<FilmTile>>) -> Vec<FilmTile> {
     tiles.into_iter().map(|tile| tile.into_inner().unwrap_or_else(PoisonError::into_inner)).collect()
 }
 
 impl LentFilm {
-    /// The tiles of a film, which has none until they are given back.
+    /// Takes the tiles out of a film until they are returned.
     pub fn of(film: &mut Film) -> Self {
         let tiles = lent(film.take_tiles());
         Self { film: film.clone(), tiles }
     }
 
-    /// Gives the tiles back.
+    /// Returns the tiles.
     pub fn give_back(self, film: &mut Film) {
         film.put_tiles(given_back(self.tiles));
     }
@@ -51,14 +51,14 @@ impl LentFilm {
         self.film.clone()
     }
 
-    /// The film as it is now.
+    /// A copy of the film in its current state.
     pub fn copy(&self) -> Film {
         let mut film = self.film.clone();
         film.put_tiles(self.tiles.iter().map(|tile| held(tile).clone()).collect());
         film
     }
 
-    /// Something of each pixel, row by row from the top, of which `of` gets a tile and the number of its pixel.
+    /// Maps a function of tile and pixel index over all pixels, row by row from the top.
     fn pixels<T: Clone + Default>(&self, of: impl Fn(&FilmTile, usize) -> T) -> Vec<T> {
         let mut all = vec![T::default(); self.film.pixel_count()];
         for tile in &self.tiles {
@@ -70,37 +70,37 @@ impl LentFilm {
         all
     }
 
-    /// The mean of each pixel; black without samples.
+    /// Mean of each pixel; black without samples.
     pub fn means(&self) -> Vec<[f32; 3]> {
         self.pixels(|tile, pixel| tile.mean(pixel).to_array().map(|x| x as f32))
     }
 
-    /// How many samples each pixel has.
+    /// Number of samples of each pixel.
     pub fn counts(&self) -> Vec<u32> {
         let cells = self.film.cells();
         self.pixels(|tile, pixel| tile.counts()[pixel * cells..][..cells].iter().sum())
     }
 
-    /// Samples that were NaN, infinite or negative.
+    /// Number of samples that were NaN, infinite or negative.
     pub fn dropped(&self) -> u64 {
         self.tiles.iter().map(|tile| held(tile).dropped()).sum()
     }
 
-    /// How many samples were clamped.
+    /// Number of clamped samples.
     pub fn clamped(&self) -> u64 {
         self.tiles.iter().map(|tile| held(tile).clamped()).sum()
     }
 }
 
-/// A film on loan: its tiles come back to it when this is dropped, even if what works on them panics.
+/// A loan of a film: its tiles return when this is dropped, even after a panic.
 pub(super) struct Loan<'a> {
     film: &'a mut Film,
-    /// There until it is dropped.
+    /// Present until dropped.
     lent: Option<Arc<LentFilm>>,
 }
 
 impl<'a> Loan<'a> {
-    /// Lends the tiles of a film.
+    /// Borrows the tiles of a film.
     pub fn of(film: &'a mut Film) -> Self {
         let lent = Some(Arc::new(LentFilm::of(film)));
         Self { film, lent }
@@ -111,7 +111,7 @@ impl<'a> Loan<'a> {
         self.lent.as_ref().map_or(&[], |lent| lent.tiles())
     }
 
-    /// What others may look at, as long as they let go of it before the loan ends.
+    /// A shared view for observers, who must release it before the loan ends.
     pub fn shared(&self) -> Option<Arc<LentFilm>> {
         self.lent.clone()
     }

@@ -1,4 +1,4 @@
-//! Floor 5: pictures, how wrong they still are, and what they cost.
+//! Floor 5: rendering of pictures, their error estimates and denoising.
 
 mod adaptive;
 mod bias;

@@ -1,28 +1,28 @@
-//! Whether a few samples make most of an estimate.
+//! Detection of a few samples that dominate an error estimate.
 
-/// The few samples that carry most of an estimated error.
+/// The few samples that dominate an error estimate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Carried {
-    /// How many.
+    /// Number of samples.
     pub samples: u32,
     /// Their share of the estimate, above one half.
     pub share: f64,
 }
 
-/// How many samples are few. A sum of which eight like terms make one half has, by these alone, a standard error of
-/// √8/16, some 18 %: the next such sample, or its absence, moves it out of the factor of 1.25 that an estimate is
-/// worth.
+/// Maximum number of samples that count as few. If eight equal terms make up half of a sum, they alone give it a
+/// standard error of √8/16, some 18 %. The next such sample, or its absence, moves the estimate beyond its accuracy, a
+/// factor of 1.25.
 const FEW: usize = 8;
 
-/// The largest of many numbers, from the largest down.
+/// The largest of many numbers, in descending order.
 ///
-/// Only the largest sample of each cell is looked at, if it is a find. That is enough: an outlier is one of few in all
-/// of the picture, and two of them are hardly ever in the same cell.
+/// Only the largest sample of each cell is considered, if it is unconfirmed. That is enough, because outliers are rare
+/// in the whole picture, and two of them are hardly ever in the same cell.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Largest([f64; FEW]);
 
 impl Largest {
-    /// Counts a number in.
+    /// Adds a number.
     #[inline]
     pub fn add(&mut self, mut value: f64) {
         if value <= self.0[FEW - 1] {
@@ -35,14 +35,14 @@ impl Largest {
         }
     }
 
-    /// Counts all of another's numbers in.
+    /// Adds all numbers of another.
     pub fn join(&mut self, other: &Self) {
         for &value in &other.0 {
             self.add(value);
         }
     }
 
-    /// The fewest that make more than one half of a sum, if they are few.
+    /// The fewest numbers that make up more than half of a sum, if they are few.
     pub fn carry(&self, sum: f64) -> Option<Carried> {
         let mut share = 0.0;
         for (samples, value) in (1..).zip(&self.0) {
@@ -55,19 +55,19 @@ impl Largest {
     }
 }
 
-/// Whether a sample is a find: it stands out from the others of its pixel by more than twice what the pixels beside it
-/// do, at most.
+/// Returns whether a sample is unconfirmed by neighbours: it exceeds the other samples of its pixel by more than twice
+/// the excess of the brightest neighbour.
 ///
-/// The pixel on the rim of a lamp may meet it by one sample of many, and a few of these may carry the error: the more
-/// so if samples are placed, which leaves little error elsewhere. But how bright the lamp is, the next pixels show by
-/// all of their samples, and the next sample to meet it is no brighter. What is rare and unknown has no such witness:
-/// a lamp that is smaller than a pixel, light through a keyhole, a caustic that was met once.
+/// A pixel on the rim of a lamp may hit it with one sample of many, and a few such pixels may dominate the error,
+/// especially with stratified samples, which leave little error elsewhere. But the next pixel shows the lamp's
+/// brightness with all its samples, and the next sample to hit it is no brighter. Rare light without such confirmation
+/// is a lamp smaller than a pixel, light through a small opening, or a caustic that was hit once.
 #[inline]
 pub(super) fn is_find(brightness: f64, others: f64, beside: f64) -> bool {
     brightness - others > 2.0 * (beside - others).max(0.0)
 }
 
-/// The largest of what the up to eight pixels show that are `apart` from one along either axis, or both.
+/// The maximum over the up to eight neighbours at distance `apart` along one axis or both.
 #[inline]
 pub(super) fn beside(shown: &[f64], width: usize, x: usize, y: usize, apart: usize) -> f64 {
     let height = shown.len() / width;
@@ -113,13 +113,13 @@ mod tests {
 
     #[test]
     fn pixels_beside_are_those_around_in_the_picture() {
-        // Five columns and four rows, brighter from place to place.
+        // Five columns and four rows of increasing brightness.
         let shown: Vec<f64> = (0..20).map(f64::from).collect();
         let at = |x, y, apart| beside(&shown, 5, x, y, apart);
         assert_eq!([at(0, 0, 1), at(2, 1, 1), at(4, 3, 1), at(0, 3, 1)], [6.0, 13.0, 18.0, 16.0]);
         assert_eq!([at(0, 0, 2), at(2, 1, 2), at(4, 3, 2), at(0, 0, 8)], [12.0, 19.0, 17.0, 0.0]);
         assert!(is_find(2.1, 0.0, 1.0) && !is_find(2.0, 0.0, 1.0) && !is_find(0.0, 0.0, 0.0));
-        // A little more than all that is around, and than what is darker.
+        // Slightly brighter than its neighbours, and than darker ones.
         assert!(is_find(1.001, 1.0, 1.0) && is_find(1.001, 1.0, 0.5));
     }
 }

@@ -1,8 +1,8 @@
-//! Parts of a pass that are worked on elsewhere, in other processes or on other machines.
+//! Parts of a pass that are rendered by other processes or machines.
 //!
-//! What is asked for and what comes back are bytes. Samples that fill blocks of their own are asked for without telling
-//! what their cells have so far, and appended ([`FilmTile::append`]); else tiles travel as they are, and come back with
-//! more. Either way nobody can tell from the bits of a picture where its samples were taken.
+//! Requests and answers are bytes. Samples that fill whole blocks are requested without the existing sums, and appended
+//! ([`FilmTile::append`]). Otherwise tiles are sent with their sums and come back with more. In both cases the bits of
+//! a picture do not depend on where its samples were taken.
 
 use super::bytes::{Malformed, Reader, Writer, check};
 use super::epoch::Epoch;
@@ -16,7 +16,7 @@ use raywright_integrators::Integrator;
 use raywright_scene::{Camera, Scene};
 use std::ops::Range;
 
-/// Samples wanted of some tiles of a film.
+/// A request for samples of some tiles of a film.
 #[derive(Debug)]
 pub struct Request {
     first: u32,
@@ -26,25 +26,25 @@ pub struct Request {
 
 #[derive(Debug)]
 enum Wanted {
-    /// Those between two numbers, of cells that have none here.
+    /// Samples between two numbers, of cells that are empty here.
     Alone(u32, u32),
-    /// As many in each cell, counting those that it has, in a pass that begins with so many.
+    /// Equal counts per cell, including existing samples, in a pass that begins at `done`.
     Even { done: u32, samples: u32 },
-    /// As an epoch has it for so many on average, where all pixels have had as many on average.
+    /// Counts by an epoch for `samples` on average, when all pixels have `done` on average.
     Planned { epoch: Epoch, done: u32, samples: u32 },
 }
 
-/// How samples are wanted, as a byte.
+/// Kinds of requests, as a byte.
 const ALONE: u8 = 0;
 const EVEN: u8 = 1;
 const PLANNED: u8 = 2;
 
 impl Rendering {
-    /// Asks for the samples of some tiles that take them to `samples`. With `before`, these follow as many others,
-    /// which need not be there yet: blocks must be whole before, and the film must append ([`Film::appends`]).
+    /// Requests the samples that take some tiles to `samples`. With `before`, they follow that many others, which need
+    /// not exist yet. Blocks before must be whole, and the film must support appending ([`Film::appends`]).
     ///
     /// # Panics
-    /// If the film has no such tiles, or does not append.
+    /// If the film has no such tiles, or does not support appending.
     pub fn request(&self, tiles: Range<usize>, before: Option<u32>, samples: u32) -> Vec<u8> {
         let (film, mut to) = (&self.film, Writer::default());
         for size in [film.width(), film.height(), film.side(), film.batch()] {
@@ -77,7 +77,7 @@ impl Rendering {
         to.0
     }
 
-    /// Adds the samples that a [`Request`] brought.
+    /// Adds the samples of an answered [`Request`].
     pub fn take(&mut self, answer: &[u8]) -> Result<(), Malformed> {
         let mut from = Reader(answer);
         let (first, count) = (from.word::<u32>()? as usize, from.word::<u32>()? as usize);
@@ -108,7 +108,7 @@ impl Rendering {
 }
 
 impl Request {
-    /// From what [`Rendering::request`] gave for a picture of this size.
+    /// Reads the bytes of [`Rendering::request`] for a picture of this size.
     pub fn from_bytes(bytes: &[u8], width: u32, height: u32) -> Result<Self, Malformed> {
         let mut from = Reader(bytes);
         let size: [u32; 2] = [from.word()?, from.word()?];
@@ -153,8 +153,8 @@ impl Request {
         Ok(Self { first, tiles, wanted })
     }
 
-    /// Takes the samples, and gives what [`Rendering::take`] takes. A single thread is the calling one, so that many
-    /// calls at once do not wait for each other. Limits in `settings` are of no account.
+    /// Takes the samples, and returns the bytes for [`Rendering::take`]. With one thread the calling thread is used, so
+    /// that parallel calls do not wait for each other. Limits in `settings` are ignored.
     pub fn expose(
         mut self,
         scene: &Scene,

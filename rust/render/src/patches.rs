@@ -1,11 +1,11 @@
-//! Patches of pixels that take samples together, through all that a picture goes through.
+//! Tests of patches of pixels that take samples together, through all operations on a picture.
 
 use super::{Quiet, Rendering, Request, Settings, Until, render};
 use raywright_integrators::{Integrator, Path};
 use raywright_scene::Camera;
 use raywright_scene::fixtures::cornell;
 
-/// At two of its borders patches are cut.
+/// Patches are cut at two borders.
 const SIZE: [u32; 2] = [21, 13];
 
 const PATCHES: [u32; 3] = [2, 4, 8];
@@ -65,7 +65,7 @@ fn pixels_of_a_patch_have_as_many_samples() {
         kinds.dedup();
         assert!(kinds.len() > 3, "{kinds:?}");
         let all: u32 = counts.iter().sum();
-        // Patches are few, and counts of theirs are rounded.
+        // Patches are few, and their counts are rounded.
         assert!((f64::from(all) / (21.0 * 13.0 * 90.0) - 1.0).abs() < 0.02, "{all}");
     }
 }
@@ -107,7 +107,7 @@ fn patches_of_one_are_pixels() {
     for adaptive in [false, true] {
         let (scene, camera) = cornell(SIZE[0], SIZE[1]);
         let settings = settings(37, 2, adaptive);
-        // What shares nothing in a scene has the bits of what never does.
+        // Integrators that share nothing in a scene give the bits of those that never share.
         let still = Path { max_depth: Some(1), ..path(8) };
         let a = render(&scene, &camera, &still, &settings, &mut Quiet).unwrap();
         let b = render(&scene, &camera, &Path { reuse: 1, ..still }, &settings, &mut Quiet).unwrap();

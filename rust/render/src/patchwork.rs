@@ -1,23 +1,23 @@
-//! Which pixels take samples together.
+//! Patches of pixels that take samples together.
 
 use std::iter::once;
 use std::ops::Range;
 
-/// Patches that pixels work in, so many a side, cut elsewhere for each sample.
+/// A partition of the film into patches, `patch` pixels per side, shifted for each sample.
 ///
-/// Pixels of a patch err together. Cut at the same places for every sample, patches would show as blocks in a picture;
-/// so the cuts of each sample lie elsewhere, in the order of Bayer's matrix (1973), in which any few lie far from each
-/// other. What two pixels share then falls off with their distance, and noise is as coarse but has no edges. Nothing
-/// goes over the borders of tiles, so these are cuts of every sample; tiles are some patches wide, and cuts next to
-/// borders are left out, so that the pixels there have as many to share with as others.
+/// Errors of pixels in a patch are correlated. With the same partition for every sample, patches would be visible as
+/// blocks. So each sample has another shift, in the order of Bayer's matrix (1973), which spreads any few shifts far
+/// apart. The correlation between two pixels then falls off with their distance, and noise is equally coarse but has no
+/// edges. Patches never cross tile borders, which are cuts of every sample. Tiles are several patches wide, and cuts
+/// close to borders are omitted, so that pixels there share with as many others.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Patchwork {
-    /// Pixels a side: a power of two.
+    /// Pixels per side: a power of two.
     pub patch: u32,
 }
 
 impl Patchwork {
-    /// How far the cuts of a sample, by its number, are moved to the right and down.
+    /// Shift of the partition to the right and down, for a sample number.
     fn moved(self, number: u32) -> [u32; 2] {
         let (mut x, mut y) = (0, 0);
         let (mut bits, mut place) = (number, self.patch / 2);
@@ -30,7 +30,7 @@ impl Patchwork {
         [x, y]
     }
 
-    /// Pieces of a row or column of so many pixels, with cuts that are moved so far.
+    /// Intervals of a row or column of this length, with cuts at this shift.
     fn pieces(self, length: u32, moved: u32) -> impl Iterator<Item = Range<u32>> + Clone + use<> {
         let patch = self.patch;
         let is_wide = move |&cut: &u32| cut.min(length - cut) >= patch.div_ceil(2);
@@ -40,18 +40,17 @@ impl Patchwork {
         starts.zip(ends).map(|(start, end)| start..end)
     }
 
-    /// The patches of the pixels of a tile, in which they take the sample of a number: columns and rows.
+    /// Patches of a tile's pixels for a sample number, as columns and rows.
     pub fn patches(self, size: [u32; 2], number: u32) -> impl Iterator<Item = [Range<u32>; 2]> + use<> {
         let [x, y] = self.moved(number);
         let columns = self.pieces(size[0], x);
         self.pieces(size[1], y).flat_map(move |rows| columns.clone().map(move |columns| [columns, rows.clone()]))
     }
 
-    /// How much less errors of a picture vary in sum than if patches were cut at the same places for all samples.
+    /// Variance of a picture's total error, relative to that with a fixed partition.
     ///
-    /// Two pixels that are i apart along an axis are in one patch for the share 1 − i/p of all samples, and their
-    /// errors' squares are correlated by its square: summed over i, that is (2p² + 1) / 3p instead of p, along each
-    /// axis.
+    /// Two pixels at distance i along an axis share a patch in a share 1 − i/p of all samples, and the correlation of
+    /// their squared errors is its square. Summed over i, that is (2p² + 1) / 3p instead of p, along each axis.
     pub fn evenness(self) -> f64 {
         let square = f64::from(self.patch).powi(2);
         ((2.0 * square + 1.0) / (3.0 * square)).powi(2)
@@ -81,7 +80,7 @@ mod tests {
     #[test]
     fn evenness_is_what_counting_pairs_finds() {
         for patch in [1u32, 2, 4, 8] {
-            // Far from borders, over all cuts: how often each pixel of a row is with one in the middle.
+            // Far from borders, over all shifts: how often each pixel of a row is in the same patch as a central one.
             let work = Patchwork { patch };
             let mut with = [0.0f64; 64];
             for moved in 0..patch {

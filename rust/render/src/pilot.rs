@@ -1,4 +1,4 @@
-//! What ways to render a picture are worth, as a few samples of a few parts of it tell.
+//! Pilot renders that compare integrator variants on a few parts of a picture.
 
 use super::denominators::FLOOR;
 use super::lent::{given_back, lent};
@@ -14,26 +14,26 @@ use raywright_integrators::{Guide, Integrator, Path, is_matt};
 use raywright_optics::Rgb;
 use raywright_scene::{Camera, Scene, SurfaceInteraction};
 
-/// Pixels on the side of the parts that are looked at, and how many parts there are at most.
+/// Side of the sampled parts in pixels, and their maximum number.
 const SIDE: u32 = 16;
 const PARTS: u32 = 8;
 
-/// Samples of each pixel, in batches of half as many.
+/// Samples of each pixel, in two batches.
 const SAMPLES: u32 = 8;
 const BATCH: u32 = SAMPLES / 2;
 
-/// Samples that a pilot of a way takes at most.
+/// Maximum number of samples of a pilot per variant.
 pub const PILOT: u32 = PARTS * SIDE * SIDE * SAMPLES;
 
-/// About the relMSE that each of these ways leaves with 8 samples of each pixel, told from a few parts of the picture.
+/// Approximate relMSE of each variant with 8 samples per pixel, estimated on a few parts of the picture.
 ///
-/// All ways are measured by the same pixels, and against the same picture: the mean of what all of them find. What
-/// [`Path::caustics`] is there for is met by few of the paths that do not aim, and by none of so few most likely; so it
-/// is told by photons what such paths would have to find ([`raywright_integrators::LocalGuide::rarity`]), and that is
-/// added to the ways that do not.
+/// All variants are measured on the same pixels, relative to the same picture: the mean over all variants. Paths
+/// without guiding rarely find the caustics that [`Path::caustics`] handles, and most likely not in so few samples. So
+/// photons estimate the error of such paths ([`raywright_integrators::LocalGuide::rarity`]), which is added to unguided
+/// variants.
 ///
-/// It depends on the scene, the camera and the filter alone: not on seeds, times or threads. `settings` that are about
-/// other things are of no account.
+/// The result depends only on the scene, the camera and the filter, not on seeds, time or threads. Other `settings` are
+/// ignored.
 pub fn pilot(
     scene: &Scene,
     camera: &dyn Camera,
@@ -64,11 +64,11 @@ pub fn pilot(
     Ok(seen.errors(ways))
 }
 
-/// What was seen of the parts.
+/// Results on the parts.
 struct Seen {
-    /// By each of the ways.
+    /// Tiles of each variant.
     ways: Vec<Vec<FilmTile>>,
-    /// How rare the light is that comes by way of what is sharp, pixel by pixel, if any way aims at it.
+    /// Rarity of caustics per pixel, if any variant uses guiding.
     rare: Option<Vec<Vec<f64>>>,
 }
 
@@ -99,7 +99,8 @@ impl Seen {
     }
 }
 
-/// Where the parts lie: tiles of an empty film, spread evenly over the picture (the R2 sequence of Roberts, 2018).
+/// Positions of the parts: tiles of an empty film, spread uniformly over the picture (the R2 sequence of Roberts,
+/// 2018).
 fn parts(camera: &dyn Camera, clamp: Option<f64>) -> Vec<FilmTile> {
     let (width, height) = (camera.width(), camera.height());
     let film = Film::without_tiles(width, height, SIDE, BATCH, false, clamp);
@@ -120,8 +121,8 @@ fn expose(scene: &Scene, camera: &dyn Camera, way: &Path, settings: &Settings, s
     given_back(tiles)
 }
 
-/// For each part and pixel, [`raywright_integrators::LocalGuide::rarity`] at the point behind the pixel's center; 0
-/// where that is not matt or has no photons.
+/// For each part and pixel, [`raywright_integrators::LocalGuide::rarity`] at the point seen through the pixel's center;
+/// 0 if that point is not diffuse or has no photons.
 fn rarity(scene: &Scene, camera: &dyn Camera, guide: &Guide) -> Vec<Vec<f64>> {
     let tell = |position: (u32, u32)| {
         let at = [f64::from(position.0) + 0.5, f64::from(position.1) + 0.5];
@@ -150,7 +151,7 @@ fn mean(tile: &FilmTile, pixel: usize) -> Rgb {
     cell.sum / f64::from(cell.count.max(1))
 }
 
-/// The variance of a pixel's mean, as its two batches tell it.
+/// Variance of a pixel's mean, from its two batches.
 fn variance(tile: &FilmTile, pixel: usize) -> Rgb {
     let cell = tile.cell(pixel);
     let (sums, batches) = (cell.sum, f64::from(SAMPLES / BATCH));
@@ -158,7 +159,7 @@ fn variance(tile: &FilmTile, pixel: usize) -> Rgb {
     spread / (batches * (batches - 1.0) * f64::from(BATCH).powi(2))
 }
 
-/// The mean of a pixel and those beside it in its part.
+/// Mean of a pixel and its neighbours within the part.
 fn around(means: &[Rgb], [width, height]: [u32; 2], pixel: usize) -> Rgb {
     let (x, y) = (pixel as u32 % width, pixel as u32 / width);
     let span = |at: u32, size: u32| at.saturating_sub(1)..(at + 2).min(size);

@@ -1,4 +1,4 @@
-//! How uncertain pixels of few batches are, told from those around as well.
+//! Per-pixel uncertainty from few batches, pooled with neighbours.
 
 use super::Film;
 use super::film::Spread;
@@ -6,36 +6,38 @@ use super::student::{digamma, trigamma, trigamma_inverse};
 use raywright_base::parallel;
 use raywright_optics::Rgb;
 
-/// How uncertain each pixel is.
+/// Uncertainty of each pixel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Uncertainty {
-    /// The variance of its mean, from its own batches, without bias.
+    /// Unbiased variance of its mean, from its own batches.
     pub variances: Vec<Rgb>,
-    /// The same as far as pixels around tell of it too: a mean is off by its root, times Student's t.
+    /// Variance pooled with neighbours; a confidence interval is its square root times Student's t.
     pub pooled: Vec<Rgb>,
     /// Degrees of freedom of that t.
     pub degrees: Vec<f64>,
 }
 
-/// Pixels up to so many away tell of one.
+/// Radius of the pooled neighbourhood.
 const AWAY: usize = 2;
 
-/// The most degrees of freedom that neighbours are worth: t is hardly another from there on, and a pixel with as many
-/// of its own still has half of the say.
+/// Maximum degrees of freedom from neighbours. Beyond it t barely changes, and a pixel with as many of its own still
+/// has half the weight.
 const MOST: f64 = 60.0;
 
-/// How uncertain the pixels of a film are; `None` where a cell has fewer than two samples.
+/// Uncertainty of a film's pixels; `None` if a cell has fewer than two samples.
 ///
-/// Few large batches leave the least error, and of a pixel with four of them the variance has three degrees of freedom:
-/// 1.96 standard errors would hold the truth in 86 of 100 cases. But what samples bring without regard to each other is
-/// known well, from all of them, and only what their placing leaves of that, a ratio, is known from batches. It goes by
-/// what is seen, and so is much the same in pixels side by side. How much the same is seen from the picture: a pixel's
-/// ratio is taken for one draw of many, distributed about the mean of the pixels around as inverse χ² of `d0` degrees
-/// are, where `d0` is what explains how far log ratios are from that mean, beyond what their own degrees `d` do. Then
-/// the likely ratio, given the pixel's own as well, is a weighted mean of the two, and what the pixel's mean is off by,
-/// over the root of the variance, is Student's t of `d + d0` degrees (Smyth, "Linear Models and Empirical Bayes Methods
-/// for Assessing Differential Expression", 2004). Where pixels side by side differ, `d0` is small, and each speaks for
-/// itself. On the edge of a lamp, where placing leaves less than beside it, the variance comes out too large.
+/// Few large batches give the least error, but the variance from four batches has three degrees of freedom: 1.96
+/// standard errors would cover the truth in 86 of 100 cases. The variance for independent samples is known well, from
+/// all samples. Only its reduction by stratification, a ratio, depends on batches. This ratio varies with the visible
+/// content, so it is similar in adjacent pixels.
+///
+/// The similarity is estimated from the picture. A pixel's ratio is modelled as a realisation around the mean of its
+/// neighbours, distributed as inverse χ² with `d0` degrees of freedom. `d0` explains the scatter of log ratios about
+/// that mean beyond the scatter from their own degrees `d`. Given the pixel's own ratio, the posterior ratio is a
+/// weighted mean of both. The error of the pixel's mean over the resulting standard error follows Student's t with `d +
+/// d0` degrees (Smyth, "Linear Models and Empirical Bayes Methods for Assessing Differential Expression", 2004). If
+/// adjacent pixels differ, `d0` is small, and each pixel relies on itself. On the edge of a lamp, where stratification
+/// reduces the variance more than beside it, the variance is overestimated.
 pub(super) fn uncertainty(film: &Film) -> Option<Uncertainty> {
     let spreads = film.all_spreads()?;
     let cells = film.cells() as f64;
@@ -62,15 +64,15 @@ pub(super) fn uncertainty(film: &Film) -> Option<Uncertainty> {
     Some(Uncertainty { variances, pooled, degrees })
 }
 
-/// The logarithm of what the placing of samples leaves of a pixel's variance, without bias; `None` where there is none.
+/// Unbiased logarithm of the ratio by which stratification reduces a pixel's variance; `None` if it is undefined.
 fn log_ratio(spread: &Spread) -> Option<f64> {
     let (variance, alone) = (spread.variance.sum(), spread.alone.sum());
     let half = spread.degrees / 2.0;
-    // Batches that agree to the last bit say no more than that they agree well.
+    // Batches that agree to the last bit only show that they agree well.
     (half > 0.0 && alone > 0.0).then(|| (variance / alone).max(1e-12).ln() - digamma(half) + half.ln())
 }
 
-/// The mean of those around each pixel, without itself, if there are some.
+/// Mean of each pixel's neighbours, without itself, if there are enough.
 fn around(logs: &[Option<f64>], width: usize) -> Vec<Option<f64>> {
     let height = logs.len() / width.max(1);
     let near = |at: usize, size: usize| at.saturating_sub(AWAY)..(at + AWAY + 1).min(size);
@@ -82,13 +84,13 @@ fn around(logs: &[Option<f64>], width: usize) -> Vec<Option<f64>> {
             sum += log;
             count += 1.0;
         }
-        // Few would not tell more than the pixel itself does.
+        // Fewer would tell less than the pixel itself.
         (count >= 8.0).then(|| sum / count)
     };
     parallel::collect(logs.len(), mean)
 }
 
-/// How many degrees of freedom the mean of those around is worth.
+/// Degrees of freedom that the mean of the neighbours is worth.
 fn prior(spreads: &[Spread], logs: &[Option<f64>], around: &[Option<f64>]) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0);
     for ((spread, log), around) in spreads.iter().zip(logs).zip(around) {
@@ -97,7 +99,7 @@ fn prior(spreads: &[Spread], logs: &[Option<f64>], around: &[Option<f64>]) -> f6
             count += 1.0;
         }
     }
-    // What is left of the squares when chance in the pixel's own batches is taken off.
+    // Excess of the squares over the sampling variance of the pixel's own batches.
     let excess = if count > 0.0 { sum / count } else { f64::INFINITY };
     (2.0 * trigamma_inverse(excess)).clamp(1e-3, MOST)
 }
@@ -111,7 +113,8 @@ mod tests {
     const SIDE: u32 = 48;
     const BATCH: u32 = 8;
 
-    /// A film of draws of mean 1, so many batches of them, of whose variance their placing leaves `ratio(x, y)`.
+    /// A film of random values with mean 1 and this many batches; stratification reduces their variance to `ratio(x,
+    /// y)`.
     fn film(seed: u64, batches: u32, ratio: impl Fn(u32, u32) -> f64) -> Film {
         let mut film = Film::new(SIDE, SIDE, 16, BATCH, false, None);
         for tile in film.extend_to(batches * BATCH) {
@@ -127,7 +130,7 @@ mod tests {
         film
     }
 
-    /// The variances told over those that there are, what share of intervals of 95 % holds, and degrees of freedom.
+    /// Ratio of estimated to true variances, coverage of 95 % intervals, and degrees of freedom.
     fn judged(batches: u32, ratio: fn(u32, u32) -> f64) -> [f64; 3] {
         let (mut told, mut are, mut held, mut degrees) = (0.0, 0.0, 0.0, 0.0);
         for seed in 0..4 {
@@ -149,7 +152,7 @@ mod tests {
 
     #[test]
     fn few_batches_are_enough_where_pixels_are_alike() {
-        // Of 9216 pixels chance leaves 94.1 to 95.9 % once in 16,000 cases; the bounds leave as much again.
+        // For 9216 pixels, 94.1 to 95.9 % are exceeded with probability 1 in 16,000; the bounds leave as much again.
         for batches in [4, 8] {
             let [told, held, degrees] = judged(batches, |x, _| if x < 24 { 0.5 } else { 0.2 });
             assert!((0.95..1.05).contains(&told), "{batches} batches: {told}");
@@ -160,7 +163,7 @@ mod tests {
 
     #[test]
     fn pixels_that_differ_speak_for_themselves() {
-        // Side by side, a hundred times more and less.
+        // Adjacent pixels that differ by a factor of a hundred.
         let [told, held, degrees] = judged(8, |x, y| if (x * 7 + y * 11) % 5 < 2 { 1.0 } else { 0.01 });
         assert!((0.95..1.05).contains(&told), "{told}");
         assert!((0.93..0.97).contains(&held), "{held}");

@@ -1,28 +1,28 @@
-//! What watches a render.
+//! Interface of progress observers.
 
 use super::HistoryRow;
 use std::ops::ControlFlow;
 
-/// Watches a render from the thread that asked for it, and may end it.
+/// Observes a render from the thread that started it, and may end it.
 pub trait Progress {
-    /// A pass is done, and its error is to be trusted or not.
+    /// Called after each pass; `trusted` tells whether its error is reliable.
     fn pass(&mut self, row: &HistoryRow, trusted: bool) -> ControlFlow<()>;
 
-    /// Called many times a second while a pass is being worked on.
+    /// Called many times a second during a pass.
     fn poll(&mut self) -> ControlFlow<()>;
 
-    /// Called as often: whether to leave the render for now, when what has been begun is done.
+    /// Called equally often: returns whether to pause the render once work in progress is done.
     fn pauses(&mut self) -> bool {
         false
     }
 
-    /// Called after a pass: whether to leave the render for now.
+    /// Called after a pass: returns whether to pause the render.
     fn rests(&mut self) -> bool {
         self.pauses()
     }
 }
 
-/// Lets a render go on to its end.
+/// An observer that does nothing.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Quiet;
 

@@ -1,26 +1,26 @@
-//! Four independent parts of each pixel's samples, kept apart.
+//! Sums over four independent parts of each pixel's samples.
 
 use super::bytes::{Malformed, Reader, Writer};
 use raywright_optics::Rgb;
 
-/// Sums over the quarters of the samples of cells, and of the squares of samples over the halves that these make.
+/// Sums over quarters of the samples of cells, and sums of squares over the halves that they form.
 ///
-/// Whole batches go to quarters in turns, so that no two quarters share anything. The first two of a cell make one half
-/// of its samples and the last two the other; of a film that is in halves already, a cell is a half, and has two
+/// Whole batches are assigned to quarters in turn, so that quarters are independent. The first two quarters of a cell
+/// form one half of its samples, and the last two the other. If the film is in halves, a cell is a half and has two
 /// quarters.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Quarters {
-    /// Those of whole blocks, and of the one that is being filled, as a tile has it; empty if nothing is kept apart.
+    /// Sums of whole blocks, and of the block being filled, as in a tile; empty if quarters are not kept.
     whole: Vec<Sums>,
     now: Vec<Sums>,
 }
 
-/// Those of a cell.
+/// Sums of a cell.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Sums {
-    /// Of each quarter.
+    /// Sum of each quarter.
     pub sums: [Rgb; 4],
-    /// The squares of samples, of each half.
+    /// Sum of squares of each half.
     pub squares: [Rgb; 2],
 }
 
@@ -31,14 +31,14 @@ impl Sums {
     }
 }
 
-/// The quarter that batches of a number go to, of a cell that is a half of its pixel or has two.
+/// Quarter of a batch number, in a cell that is a half of its pixel or has two halves.
 #[inline]
 fn quarter_of(batch: u32, is_half: bool) -> usize {
     const TURNS: [usize; 4] = [0, 2, 1, 3];
     if is_half { (batch % 2) as usize } else { TURNS[(batch % 4) as usize] }
 }
 
-/// How many samples each quarter of a cell has, of so many in batches.
+/// Samples per quarter of a cell with this many samples in batches.
 pub(super) fn counts(samples: u32, batch: u32, is_half: bool) -> [u32; 4] {
     let mut counts = [0; 4];
     let turns = if is_half { 2 } else { 4 };
@@ -50,18 +50,18 @@ pub(super) fn counts(samples: u32, batch: u32, is_half: bool) -> [u32; 4] {
 }
 
 impl Quarters {
-    /// Those of so many cells without samples.
+    /// Creates empty sums for a number of cells.
     pub fn new(cells: usize) -> Self {
         Self { whole: vec![Sums::default(); cells], now: vec![Sums::default(); cells] }
     }
 
-    /// Whether anything is kept.
+    /// Returns whether quarters are kept.
     #[inline]
     pub fn are_kept(&self) -> bool {
         !self.now.is_empty()
     }
 
-    /// Counts in a sample of a batch.
+    /// Adds a sample of a batch.
     #[inline]
     pub fn add(&mut self, cell: usize, sample: Rgb, batch: u32, is_half: bool) {
         let (sums, quarter) = (&mut self.now[cell], quarter_of(batch, is_half));
@@ -75,20 +75,20 @@ impl Quarters {
         self.whole[cell].add(&std::mem::take(&mut self.now[cell]));
     }
 
-    /// All of a cell.
+    /// Total sums of a cell.
     pub fn of(&self, cell: usize) -> Option<Sums> {
         let mut sums = *self.whole.get(cell)?;
         sums.add(&self.now[cell]);
         Some(sums)
     }
 
-    /// Counts in the blocks that follow.
+    /// Appends subsequent blocks.
     pub fn append(&mut self, next: &Self) {
         self.whole.iter_mut().zip(&next.whole).for_each(|(whole, next)| whole.add(next));
         self.now.clone_from(&next.now);
     }
 
-    /// The memory held for them.
+    /// Memory in bytes.
     #[cfg(test)]
     pub fn bytes(&self) -> usize {
         (self.whole.capacity() + self.now.capacity()) * size_of::<Sums>()

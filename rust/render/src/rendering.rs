@@ -1,4 +1,4 @@
-//! A render as it stands: a picture that can be taken further.
+//! State of a render: a picture that can be continued.
 
 use super::adaptive::Adaptive;
 use super::bytes::{Malformed, Reader, Writer, check};
@@ -13,38 +13,38 @@ use raywright_optics::Rgb;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
-/// How far a render was after a pass.
+/// Progress of a render after a pass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HistoryRow {
     /// Wall-clock time since the start.
     pub seconds: f64,
-    /// Samples of each pixel, or of all on average.
+    /// Samples per pixel, or on average.
     pub samples: u32,
-    /// Estimated relMSE; NaN as long as nothing can be said.
+    /// Estimated relMSE; NaN if it is not known yet.
     pub error: f64,
 }
 
-/// A render: its picture so far, and what it takes to go on with it, here or elsewhere, now or later.
+/// A render: its picture so far, and the state needed to continue it, here or elsewhere.
 ///
-/// It is worked on in passes. Within one, some cells have more samples already and others have not; each has the first
-/// of its samples and nothing else, so a pass can be left at any time and gone on with, and no bit tells of it.
+/// A render proceeds in passes. During a pass, some cells have more samples than others. Each cell has the first of its
+/// samples and nothing else, so a pass can be interrupted and resumed at any time without changing a bit.
 #[derive(Debug)]
 pub struct Rendering {
     /// The picture.
     pub film: Film,
-    /// How wrong it was after the last pass; `None` if it has too few samples to say.
+    /// Error after the last pass; `None` if there are too few samples.
     pub error: Option<ErrorEstimate>,
-    /// How it went, a row a pass.
+    /// Progress, one row per pass.
     pub history: Vec<HistoryRow>,
-    /// Wall-clock time it took.
+    /// Wall-clock time used.
     pub seconds: f64,
-    /// Samples that the film has after the pass that is being worked on, or has if there is none.
+    /// Samples of the film after the current pass, or now if there is none.
     aim: u32,
     plan: Option<Adaptive>,
     sight: Sight,
 }
 
-/// What can be seen of a render while a pass is worked on, from any thread.
+/// A view of a render during a pass, usable from any thread.
 #[derive(Clone, Debug, Default)]
 pub struct Sight(Arc<Mutex<Option<Shown>>>);
 
@@ -53,11 +53,11 @@ struct Shown {
     film: Arc<LentFilm>,
     error: Option<ErrorEstimate>,
     history: Vec<HistoryRow>,
-    /// How long it took before, and since when it is worked on.
+    /// Time used before, and start of the current work.
     seconds: f64,
     since: Instant,
     aim: u32,
-    /// Whether all of the work is done, so that whoever looks is waited for.
+    /// True if all work is done, so that the render waits for observers.
     is_done: bool,
 }
 
@@ -74,22 +74,22 @@ impl Sight {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Whether there is anything to be seen: a pass is worked on.
+    /// Returns whether a pass is in progress.
     pub fn is_open(&self) -> bool {
         self.shown().is_some()
     }
 
-    /// Whether the pass is done, so that nobody works any more: whoever looks is waited for.
+    /// Returns whether the pass is complete, so that the render waits for observers.
     pub fn is_done(&self) -> bool {
         self.shown().as_ref().is_none_or(|shown| shown.is_done)
     }
 
-    /// What the render knows of itself, and none of its pixels.
+    /// The render's state without pixels.
     pub fn outline(&self) -> Option<Rendering> {
         self.shown().as_ref().map(|shown| shown.rendering(shown.film.without_tiles()))
     }
 
-    /// All of it as it is now, to be looked at: it is as large as the render.
+    /// A full copy of the current state, as large as the render.
     pub fn copy(&self) -> Option<Rendering> {
         self.shown().as_ref().map(|shown| shown.rendering(shown.film.copy()))
     }
@@ -99,25 +99,25 @@ impl Sight {
         self.shown().as_ref().map(|shown| shown.film.means())
     }
 
-    /// How many samples each pixel has.
+    /// Number of samples of each pixel.
     pub fn counts(&self) -> Option<Vec<u32>> {
         self.shown().as_ref().map(|shown| shown.film.counts())
     }
 
-    /// Samples that were not finite or negative, and samples that were clamped.
+    /// Number of samples that were not finite or negative, and number of clamped samples.
     pub fn amiss(&self) -> Option<[u64; 2]> {
         self.shown().as_ref().map(|shown| [shown.film.dropped(), shown.film.clamped()])
     }
 }
 
-/// Tiles of a render that are worked on, in sight of others.
+/// Tiles of a render during a pass, visible to observers.
 pub(super) struct Work<'a> {
     pub tiles: Loan<'a>,
     sight: &'a Sight,
 }
 
 impl Work<'_> {
-    /// Says that the work is done.
+    /// Marks the work as done.
     pub fn end(&self) {
         if let Some(shown) = &mut *self.sight.shown() {
             shown.is_done = true;
@@ -127,13 +127,13 @@ impl Work<'_> {
 
 impl Drop for Work<'_> {
     fn drop(&mut self) {
-        // Whoever looks has to let go, before the tiles come back.
+        // Observers must release the tiles before these return.
         *self.sight.shown() = None;
     }
 }
 
 impl Rendering {
-    /// One of an empty film. If that is in halves, more samples will go where more of the error is.
+    /// Creates a render with an empty film. If the film is in halves, sampling is adaptive.
     pub fn new(mut film: Film) -> Self {
         let plan = (film.cells() > 1).then(|| Adaptive::new(&mut film));
         Self { film, error: None, history: Vec::new(), seconds: 0.0, aim: 0, plan, sight: Sight::default() }
@@ -144,12 +144,12 @@ impl Rendering {
         single(self.film.means())
     }
 
-    /// How uncertain each pixel is; `None` if it has too few samples to say.
+    /// Uncertainty of each pixel; `None` if there are too few samples.
     pub fn uncertainty(&self) -> Option<Uncertainty> {
         uncertainty(&self.film)
     }
 
-    /// The standard error of each pixel; NaN if it has too few samples to say.
+    /// Standard error of each pixel; NaN if there are too few samples.
     pub fn standard_error(&self) -> Vec<[f32; 3]> {
         match self.film.variances() {
             Some(variances) => roots(variances),
@@ -157,17 +157,17 @@ impl Rendering {
         }
     }
 
-    /// Whether its error can be trusted, or nothing is said of it.
+    /// Returns whether its error is reliable, or unknown.
     pub fn is_trusted(&self) -> bool {
         self.error.is_none_or(|error| error.is_trusted())
     }
 
-    /// Samples that the film has after the pass that is being worked on; as many as it has if none is.
+    /// Samples of the film after the current pass; its current number if there is none.
     pub fn aim(&self) -> u32 {
         self.aim
     }
 
-    /// Seconds that a sample of all pixels took in the last pass; 0 before there was one.
+    /// Seconds per sample of all pixels in the last pass; 0 before the first.
     pub fn rate(&self) -> f64 {
         let none = HistoryRow { seconds: 0.0, samples: 0, error: f64::NAN };
         match self.history[..] {
@@ -177,9 +177,8 @@ impl Rendering {
         }
     }
 
-    /// How many samples there are after the next pass, if there are `after` before it; the same number if the render
-    /// ends there. A pass that has been begun comes first. `elapsed` and `rate` are as in [`Until`], for which `after`
-    /// may be later than now.
+    /// Number of samples after the next pass, if there are `after` before it; equal to `after` if the render ends
+    /// there. A pass in progress comes first. `elapsed` and `rate` are as in [`Until`]; `after` may be in the future.
     pub fn next_aim(&self, until: &Until, after: u32, elapsed: f64, rate: f64) -> u32 {
         if after < self.aim {
             return self.aim;
@@ -191,7 +190,7 @@ impl Rendering {
         after + until.next_pass(after, self.film.batch(), elapsed, rate, error, above).min(limit.saturating_sub(after))
     }
 
-    /// Begins a pass to so many samples, or goes on with it.
+    /// Begins or continues a pass to this number of samples.
     pub fn begin(&mut self, aim: u32) {
         if let Some(plan) = &mut self.plan {
             plan.prepare(&mut self.film);
@@ -199,12 +198,12 @@ impl Rendering {
         self.aim = aim;
     }
 
-    /// What can be seen of it while it is worked on.
+    /// A view for observers.
     pub fn sight(&self) -> Sight {
         self.sight.clone()
     }
 
-    /// The tiles, to be worked on in sight of others, and what they shall have after the pass.
+    /// The tiles, visible to observers, and their target after the pass.
     pub(super) fn goal(&mut self) -> (Work<'_>, Goal<'_>) {
         let (done, samples) = (self.film.samples(), self.aim);
         let goal = match &self.plan {
@@ -218,12 +217,12 @@ impl Rendering {
         (Work { tiles, sight: &self.sight }, goal)
     }
 
-    /// Who gets how many samples, where that is not the same for all.
+    /// The adaptive sample allocation, if there is one.
     pub(super) fn epoch(&self) -> Option<&Epoch> {
         self.plan.as_ref().map(Adaptive::epoch)
     }
 
-    /// Ends a pass, whose samples are all there, after so much time in all.
+    /// Ends a complete pass, after this total time.
     pub fn end(&mut self, seconds: f64) -> HistoryRow {
         self.film.extend_to(self.aim);
         self.error = estimate(&self.film);
@@ -234,7 +233,7 @@ impl Rendering {
         row
     }
 
-    /// The render as bytes, which tell neither what it is a picture of nor how large that is.
+    /// Serialises the render, without its scene and picture size.
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut to = Writer::default();
         to.word(self.film.side());
@@ -253,18 +252,17 @@ impl Rendering {
         to.0
     }
 
-    /// How many bytes [`Rendering::to_bytes`] gives at most, for a film of this size and with a history of a million
-    /// passes.
+    /// Maximum size of [`Rendering::to_bytes`] for a film of this size and a history of a million passes.
     pub fn most_bytes(width: u32, height: u32, halves: bool, apart: bool) -> usize {
-        // Of a cell 39 numbers of 8 bytes, 36 more where parts are kept apart, and 4 of 4; and as much again for what
-        // stands before them in the smallest tile.
+        // Per cell: 39 numbers of 8 bytes, 36 more if quarters are kept, and 4 of 4 bytes. Twice that covers the
+        // headers of the smallest tiles.
         let cells = width as usize * height as usize * if halves { 2 } else { 1 };
         let numbers = if apart { 39 + 36 } else { 39 };
         cells * 2 * (numbers * 8 + 4 * 4) + 20_000_000 + 1024
     }
 
-    /// From what [`Rendering::to_bytes`] gave for a film of the same size, batches, halves, clamping, patches and
-    /// parts, whoever it comes from.
+    /// Reads the bytes of [`Rendering::to_bytes`] for a film with the same size, batches, halves, clamping, patches and
+    /// quarters. The bytes are untrusted.
     #[allow(clippy::too_many_arguments)]
     pub fn from_bytes(
         bytes: &[u8],
@@ -280,7 +278,7 @@ impl Rendering {
         let side: u32 = from.word()?;
         check((1..=64).contains(&side), "tiles have no size")?;
         check(side.is_multiple_of(patch), "tiles hold parts of patches")?;
-        // The least that a film takes, so that memory is not taken for one that is not there.
+        // Minimum size of a film, so that no memory is allocated for one that is not there.
         let tiles = width.div_ceil(side) as usize * height.div_ceil(side) as usize;
         check(bytes.len() / 32 >= tiles, "they end too early")?;
         let film = Film::new(width, height, side, batch, halves, clamp).in_patches(patch).kept_apart(apart);
@@ -304,7 +302,7 @@ impl Rendering {
     fn check_passes(&self) -> Result<(), Malformed> {
         let (done, aim) = (self.film.samples(), self.aim);
         check(done <= aim && aim <= FilmTile::MOST, "a pass ends before it begins")?;
-        // No one shall wait for a pass that never ends.
+        // Bounds the length of a pass that malicious bytes may request.
         check(aim - done <= self.film.block(), "a pass is too long")?;
         let decided = self.plan.as_ref().is_none_or(|plan| aim == done || aim <= plan.epoch().to);
         check(decided, "a pass goes on after its epoch")?;
@@ -323,7 +321,7 @@ fn step(before: &HistoryRow, after: &HistoryRow) -> f64 {
     (after.seconds - before.seconds) / f64::from(after.samples - before.samples)
 }
 
-/// Roots, in single precision.
+/// Square roots in single precision.
 pub fn roots(variances: Vec<Rgb>) -> Vec<[f32; 3]> {
     single(variances.into_iter().map(|variance| variance.map(f64::sqrt)).collect())
 }
@@ -375,7 +373,7 @@ mod tests {
                 assert_eq!(back.to_bytes(), bytes);
                 let settings = Settings { threads: Some(1), ..settings(72, adaptive, clamp) };
                 assert!(go_on(&mut back, &scene, &camera, &Path::default(), &settings, &mut Quiet).unwrap());
-                // Errors are told after other passes where one ended early.
+                // Errors are estimated after other passes if one ended early.
                 assert_eq!((&back.film, back.error), (&whole.film, whole.error));
             }
         }
@@ -393,7 +391,7 @@ mod tests {
         assert!(Rendering::from_bytes(&bytes, SIZE[0], SIZE[1], 4, false, None, 1, false).is_err());
     }
 
-    /// Of a render that was even, and one that was adaptive.
+    /// Bytes of a uniform and of an adaptive render.
     fn stored(adaptive: bool) -> &'static [u8] {
         static STORED: [OnceLock<Vec<u8>>; 2] = [const { OnceLock::new() }; 2];
         STORED[usize::from(adaptive)].get_or_init(|| {
@@ -403,7 +401,7 @@ mod tests {
         })
     }
 
-    /// Whatever it holds can be asked for and gone on with.
+    /// Queries everything that bytes may contain, and continues the render.
     fn use_up(mut rendering: Rendering) {
         let (scene, camera) = cornell(SIZE[0], SIZE[1]);
         let bytes = rendering.to_bytes();
@@ -433,7 +431,7 @@ mod tests {
         ) {
             let mut bytes = stored(adaptive).to_vec();
             for (at, value) in changes {
-                // Most of it is sums, and what could go wrong is counts: those of the first tile, and what comes last.
+                // Most bytes are sums; counts are more fragile: those of the first tile, and the end.
                 let at = at.index(if value % 2 == 0 { bytes.len() } else { 200 });
                 let at = if value % 4 == 3 { bytes.len() - 1 - at } else { at };
                 bytes[at] = value;

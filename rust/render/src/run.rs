@@ -1,4 +1,4 @@
-//! A render from start to end.
+//! The render loop.
 
 use super::tiles::{Exposure, Stop};
 use super::{Progress, Rendering, Settings};
@@ -8,14 +8,14 @@ use raywright_scene::{Camera, Scene};
 use std::fmt;
 use std::time::Instant;
 
-/// Why there is no picture.
+/// The reason why there is no picture.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum RenderError {
     /// Its [`Progress`] ended the render.
     Interrupted,
-    /// The threads asked for are not to be had.
+    /// The requested threads are not available.
     Threads(String),
-    /// The integrator cannot take this picture.
+    /// The integrator does not support this scene or camera.
     Unsuited(String),
 }
 
@@ -30,12 +30,12 @@ impl fmt::Display for RenderError {
 
 impl std::error::Error for RenderError {}
 
-/// Renders until the first of `settings.until` is met. `progress` is called on this thread. All work is done on others,
-/// but for an integrator that [`Integrator::runs_on_caller`].
+/// Renders until the first limit of `settings.until` is met. `progress` is called on this thread. All other work is on
+/// other threads, except for an integrator that [`Integrator::runs_on_caller`].
 ///
-/// To end at an estimated error is to look at the samples that the picture is made of, and a picture that happens to be
-/// darker ends sooner. That bias is far below the error: the estimate is a sum over all pixels, in which each hardly
-/// counts.
+/// Ending at an estimated error is a stopping rule that depends on the samples, and a picture that happens to be darker
+/// ends sooner. This bias is far below the error, because the estimate is a sum over all pixels with little weight for
+/// each.
 pub fn render(
     scene: &Scene,
     camera: &dyn Camera,
@@ -49,9 +49,8 @@ pub fn render(
     Ok(rendering)
 }
 
-/// As [`render`], from where a render is. True if it has ended, false if its `progress` wants it to be left for now.
-/// After that, and after an error, it can be gone on with. Limits are looked at after each pass; one that was begun is
-/// done first.
+/// Continues a render. Returns true if it has ended, and false if `progress` asked for a pause. After a pause or an
+/// error it can be continued. Limits are checked after each pass; a pass in progress is finished first.
 pub fn go_on(
     rendering: &mut Rendering,
     scene: &Scene,
@@ -83,14 +82,14 @@ pub fn go_on(
         if progress.pass(&row, rendering.is_trusted()).is_break() {
             return Err(RenderError::Interrupted);
         }
-        // Passes may be too short for anyone to look up during one.
+        // Passes may be too short for a poll during one.
         if progress.rests() {
             return Ok(false);
         }
     }
 }
 
-/// Whether an integrator can take a picture.
+/// Checks whether an integrator supports a picture.
 pub(super) fn check(
     integrator: &dyn Integrator,
     (scene, camera): (&Scene, &dyn Camera),
@@ -119,7 +118,7 @@ pub(super) fn check(
     objection.map_or(Ok(()), |why| Err(RenderError::Unsuited(why)))
 }
 
-/// Begins to work on a picture, on as many threads.
+/// Begins a picture on this number of threads.
 pub(super) fn begin<'a>(
     integrator: &'a dyn Integrator,
     job: Job<'a>,
@@ -135,7 +134,7 @@ pub(super) fn begin<'a>(
     if goes_on { Ok(session) } else { Err(RenderError::Interrupted) }
 }
 
-/// Works on a pass, and says whether it is done: if not, it is to be left for now.
+/// Works on a pass; returns whether it is complete, or paused otherwise.
 fn pass(
     exposure: &Exposure,
     rendering: &mut Rendering,
@@ -167,7 +166,7 @@ fn pass(
             }
             !ended
         };
-        // Whoever watches may still end a pass that has just been done.
+        // The observer may still end a pass that has just been finished.
         let expose = |_: &Cancel| {
             let reached = exposure.expose(tiles, done, goal, &stop);
             work.end();
@@ -175,7 +174,7 @@ fn pass(
         };
         watched(threads, expose, watch).map_err(RenderError::Threads)? && !ended
     };
-    // It is raised by whoever watches, or by an integrator that cannot go on.
+    // Raised by the observer, or by an integrator that cannot continue.
     if stop.cancel.is_raised() { Err(RenderError::Interrupted) } else { Ok(reached) }
 }
 
@@ -210,7 +209,7 @@ mod tests {
             let errors = |r: &Rendering| r.history.iter().map(|row| row.error.to_bits()).collect::<Vec<_>>();
             assert_eq!(errors(&other), errors(&one));
         }
-        // Ending by time makes other passes. However far it came, the same samples make the same picture.
+        // A time limit leads to other passes. For any number of samples, the same samples give the same picture.
         let until = Until { seconds: Some(0.05), ..Until::default() };
         let timed = run(Settings { until, ..settings(0, 2) });
         let again = run(settings(timed.film.samples(), 1));
@@ -253,7 +252,7 @@ mod tests {
         assert!(adaptive(samples(16), 1).film.counts().iter().all(|&count| count == 16));
     }
 
-    /// Works where it is told, and remembers the largest batch that it was given.
+    /// An integrator that checks its thread and records its largest batch.
     struct Here(std::thread::ThreadId, std::sync::atomic::AtomicUsize);
 
     struct HereSession<'a>(&'a Here, Box<dyn Session + 'a>);
@@ -286,7 +285,7 @@ mod tests {
         }
     }
 
-    /// Notes at which numbers of samples passes begin.
+    /// Records the numbers of samples at which passes begin.
     #[derive(Default)]
     struct Noting(std::sync::Mutex<Vec<u32>>);
 
@@ -332,17 +331,17 @@ mod tests {
             let mine = render(&scene, &camera, &here, &settings, &mut Quiet).unwrap();
             let theirs = render(&scene, &camera, &Path::default(), &settings, &mut Quiet).unwrap();
             assert_eq!((mine.rgb(), mine.error), (theirs.rgb(), theirs.error));
-            // The pass from 8 to 16 samples is 34,160 paths.
+            // The pass from 8 to 16 samples has 34,160 paths.
             assert_eq!(here.1.into_inner(), 70 * 61 * 8);
-            // It can end the render.
+            // The integrator can end the render.
             let here = Here(std::thread::current().id(), usize::MAX.into());
             let result = render(&scene, &camera, &here, &settings, &mut Quiet);
             assert_eq!(result.err(), Some(RenderError::Interrupted));
-            // So can whoever watches.
+            // So can the observer.
             let (here, (_, large)) = (Here(std::thread::current().id(), Default::default()), cornell(300, 300));
             let result = render(&scene, &large, &here, &settings, &mut Impatient(None));
             assert_eq!(result.err(), Some(RenderError::Interrupted));
-            // After the first part, or before it where the machine has other things to do.
+            // After the first part, or before it on a busy machine.
             let taken = here.1.into_inner();
             assert!(taken == 65_536 || taken == 0, "{taken}");
         }
@@ -394,7 +393,7 @@ mod tests {
 
     #[test]
     fn ends_at_once_when_asked() {
-        // A pass of this takes seconds: paths of thousands of bounces.
+        // A pass of this scene takes seconds: paths have thousands of bounces.
         let scene = furnace(1.0, 1.0);
         let (_, camera) = cornell(256, 256);
         let mut progress = Impatient(None);
@@ -404,7 +403,7 @@ mod tests {
         assert!(waited < Duration::from_millis(100), "{waited:?}");
     }
 
-    /// Leaves the render, or ends it, at every n-th look.
+    /// Pauses the render, or ends it, at every n-th poll.
     struct Restless {
         looks: u32,
         every: u32,
@@ -451,7 +450,7 @@ mod tests {
                         Err(error) => assert!(ends && error == RenderError::Interrupted),
                     }
                     left += 1;
-                    // What is being worked on is lost where it is ended: that must not always come too early.
+                    // Ending a render loses work in progress, so it must not always end too early.
                     progress = Restless { looks: 0, every: 1 << (left / 2), ends };
                 }
                 assert!(left > 0 || !ends);

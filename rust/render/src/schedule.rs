@@ -1,38 +1,38 @@
-//! When a render ends, and how many samples the next pass takes.
+//! Stopping criteria and pass sizes.
 
 use super::ErrorEstimate;
 
-/// When to end: the first that is met does.
+/// Stopping criteria; the first one met ends the render.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Until {
-    /// Samples of each pixel, or of all on average.
+    /// Samples per pixel, or on average.
     pub samples: Option<u32>,
-    /// relMSE of the picture: met when the whole 95 % interval of its estimate is at or below, and can be trusted; or
-    /// when the estimate has been below, without being trusted, since so many samples that more will hardly help.
+    /// relMSE of the picture. Met when the whole 95 % interval of a reliable estimate is at or below. Also met when an
+    /// unreliable estimate has been below for so many samples that more will hardly help.
     pub error: Option<f64>,
     /// Wall-clock time.
     pub seconds: Option<f64>,
 }
 
 impl Until {
-    /// Samples below which an estimated error ends nothing: what has not been found yet is not in the estimate.
+    /// Minimum samples for ending at an estimated error, which does not include light not found yet.
     const LEAST_FOR_ERROR: u32 = 16;
 
-    /// How many times the samples may become, while an estimate that is not trusted stays below an error, before that
-    /// ends a render all the same: what is found once in as many samples has come many times by then, and what is
-    /// rarer may never come.
+    /// Factor by which samples may grow, while an unreliable estimate stays below the target error, before the render
+    /// ends anyway. Light found once in the initial samples has been found many times by then, and rarer light may
+    /// never be found.
     const PATIENCE: u32 = 64;
 
-    /// Samples of a pass, once there are enough.
+    /// Samples per pass, after the first passes.
     const PASS: u32 = 16;
 
-    /// How many samples the next pass takes, after `done` in `elapsed` seconds, the last ones at `rate` seconds each; 0
-    /// to end. `batch` of them belong together. When there were `above`, the error was larger than is wanted for the
-    /// last time.
+    /// Number of samples of the next pass, after `done` in `elapsed` seconds with the last ones at `rate` seconds each;
+    /// 0 to end. Batches have `batch` samples. `above` is the number of samples when the error last exceeded the
+    /// target.
     ///
-    /// Passes double (1, 1, 2, 4, 8) so that there is soon something to see, then keep to 16, or to a batch if that is
-    /// more. Their sizes do not depend on time unless that is limited, so that an error ends a render at the same
-    /// picture anywhere.
+    /// Passes double (1, 1, 2, 4, 8) so that there is soon a picture, and then stay at 16, or at a batch if that is
+    /// larger. Their sizes depend on time only if time is limited, so that a target error gives the same picture on
+    /// every machine.
     pub(super) fn next_pass(
         &self,
         done: u32,
@@ -50,7 +50,7 @@ impl Until {
             return 0;
         }
         let most = Self::PASS.max(batch);
-        // A render that ended within a pass and goes on is back in step after the next.
+        // A render that ended within a pass realigns with the schedule after the next.
         let mut next = done.clamp(1, most - done % most);
         if let Some(samples) = self.samples {
             next = next.min(samples.saturating_sub(done));
@@ -58,7 +58,7 @@ impl Until {
         if let Some(seconds) = self.seconds
             && done > 0
         {
-            // To the nearest sample: one that would end a little late is as good as one that would end a little early.
+            // Rounded to nearest: ending slightly late is as good as ending slightly early.
             let affordable = (seconds - elapsed) / rate + 0.5;
             next = next.min(affordable.max(0.0) as u32);
         }
@@ -70,7 +70,7 @@ impl Until {
 mod tests {
     use super::*;
 
-    /// The passes of a render whose samples take `rate` seconds and whose error is `1 / samples`.
+    /// Passes of a render with `rate` seconds per sample and an error of `1 / samples`.
     fn passes(until: Until, rate: f64) -> Vec<u32> {
         let (mut all, mut done) = (Vec::new(), 0);
         loop {
@@ -123,7 +123,7 @@ mod tests {
         for error in [few, wide] {
             let next = |done, above| until.next_pass(done, 1, 0.0, 0.0, Some(&error), above);
             assert_eq!([1008, 1024].map(|done| next(done, 0)), [16, 0]);
-            // Found anew, light takes as many times what it took to be found.
+            // If light is found again, the patience starts anew.
             assert_eq!([1024, 6384, 6400].map(|done| next(done, 100)), [16, 16, 0]);
             let limited = Until { samples: Some(20), ..until };
             assert_eq!(limited.next_pass(20, 1, 0.0, 0.0, Some(&error), 0), 0);

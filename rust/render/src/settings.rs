@@ -1,4 +1,4 @@
-//! How to render.
+//! Render settings.
 
 use super::filter::{self, Filter};
 use super::{Film, Until};
@@ -7,24 +7,24 @@ use raywright_integrators::Job;
 use raywright_scene::{Camera, Scene};
 use std::sync::Arc;
 
-/// How to render.
+/// Render settings.
 #[derive(Clone, Debug)]
 pub struct Settings {
-    /// When to end. With nothing set, the render goes on until its [`Progress`](super::Progress) ends it.
+    /// Stopping criteria. Without any, the render continues until its [`Progress`](super::Progress) ends it.
     pub until: Until,
-    /// Which of all possible pictures.
+    /// Random seed.
     pub seed: u64,
-    /// How many threads work; `None` for as many as there are cores.
+    /// Number of threads; `None` for the number of cores.
     pub threads: Option<usize>,
-    /// Where the random numbers come from.
+    /// Sampler.
     pub sampler: SamplerKind,
-    /// Whether more samples go where more of the error is; else all pixels have the same number.
+    /// True for adaptive sampling; otherwise all pixels have the same number of samples.
     pub adaptive: bool,
-    /// Whether four parts of the samples are kept apart, by which pictures are denoised.
+    /// True if four parts of the samples are kept apart for denoising.
     pub apart: bool,
-    /// The radiance to which brighter samples are dimmed, which biases the picture; `None` takes all as they are.
+    /// Radiance that brighter samples are scaled down to, which biases the picture; `None` for no clamping.
     pub clamp: Option<f64>,
-    /// What part of the film a pixel is the mean of.
+    /// Reconstruction filter.
     pub filter: Arc<dyn Filter>,
 }
 
@@ -44,19 +44,19 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// What an integrator is told of a picture of a scene by a camera.
+    /// The integrator's job for a scene and a camera.
     pub(super) fn job<'a>(&self, scene: &'a Scene, camera: &'a dyn Camera) -> Job<'a> {
         Job::new(scene, camera, self.seed, self.sampler.batch())
     }
 
-    /// An empty film for the pictures of a camera, in patches as the integrator has them
+    /// Creates an empty film for a camera, with the integrator's patch size
     /// ([`Integrator::patch`](raywright_integrators::Integrator::patch)).
     ///
-    /// Tiles have 16 pixels a side, or less where that would leave some of so many threads without work. Where pixels
-    /// work together, nothing goes over the borders of tiles: so these depend on the picture alone, and hold some
-    /// patches a side, for the borders would be seen.
+    /// Tiles have 16 pixels per side, or less if some threads would have no work. If pixels share samples, patches do
+    /// not cross tile borders, so tile sizes depend only on the picture. They then hold several patches per side,
+    /// because the borders would be visible otherwise.
     pub fn film(&self, camera: &dyn Camera, threads: usize, patch: u32) -> Film {
-        /// Patches a side that a tile has at least, and tiles of a picture, where there may be as many.
+        /// Minimum patches per side of a tile, and minimum number of tiles if the picture allows it.
         const PATCHES: u32 = 4;
         const TILES: usize = 64;
         let (width, height) = (camera.width(), camera.height());

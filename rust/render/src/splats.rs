@@ -1,8 +1,8 @@
-//! Light that comes to the film by itself, on paths that start at lights.
+//! Light tracing: contributions to the film from paths that start at lights.
 //!
-//! Each sample of a picture has one such path for each pixel, and what these bring to a pixel is part of that pixel's
-//! sample of the same number. So a pixel's samples are as independent of each other as before, and its error is told by
-//! them; how samples are split into passes, or sent elsewhere, changes no bit.
+//! Each sample of a picture has one such path per pixel, and its contribution to a pixel is part of that pixel's sample
+//! with the same number. So a pixel's samples stay independent, and the error estimate includes light paths. The bits
+//! do not depend on passes or on where samples are taken.
 
 use super::Settings;
 use super::filter::{Edges, Filter};
@@ -15,20 +15,20 @@ use raywright_scene::Camera;
 use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
-/// Paths that are followed together. It is part of the order in which light is added up, and so of the bits.
+/// Light paths traced together. It determines the order of summation, and thus the bits.
 const TOGETHER: u32 = 4096;
 
-/// Pixels, of all samples together, that light is kept for at a time: 50 MB.
+/// Maximum number of pixels, over all samples together, in memory at a time: 50 MB.
 const AT_ONCE: usize = 1 << 21;
 
-/// Chunks whose light is kept before it is added up: of about as much.
+/// Maximum number of chunks stored before summation, of about the same size.
 const CHUNKS: usize = 256;
 
-/// What follows paths from lights, for all samples of a picture.
+/// Traces light paths for all samples of a picture.
 pub(super) struct LightTracer<'a> {
     session: &'a dyn Session,
     filter: &'a dyn Filter,
-    /// Where the filter ends with the film.
+    /// Cropping of the filter at the film's edges.
     edges: Option<Edges>,
     kind: SamplerKind,
     seed: u64,
@@ -37,13 +37,13 @@ pub(super) struct LightTracer<'a> {
     idle: Mutex<Vec<Bench<'a>>>,
 }
 
-/// What a thread works with.
+/// State of a thread.
 struct Bench<'a> {
     worker: Box<dyn LightWorker + 'a>,
     samplers: Vec<Sampler>,
 }
 
-/// What light brings to each pixel in samples of some numbers.
+/// Contributions of light paths to each pixel, for a range of sample numbers.
 pub(super) struct Brought {
     first: u32,
     width: u32,
@@ -51,7 +51,7 @@ pub(super) struct Brought {
 }
 
 impl Brought {
-    /// To a pixel, in its sample of a number.
+    /// Contribution to a pixel in its sample with this number.
     #[inline]
     pub fn to(&self, (x, y): (u32, u32), number: u32) -> Rgb {
         self.pictures[(number - self.first) as usize][y as usize * self.width as usize + x as usize]
@@ -59,7 +59,7 @@ impl Brought {
 }
 
 impl<'a> LightTracer<'a> {
-    /// That of a session in which paths start at lights; else none.
+    /// Creates the tracer if the session has light paths.
     pub fn new(camera: &dyn Camera, session: &'a dyn Session, settings: &'a Settings) -> Option<Self> {
         let worker = session.light_worker()?;
         Some(Self {
@@ -74,7 +74,7 @@ impl<'a> LightTracer<'a> {
         })
     }
 
-    /// How many samples are brought light at a time.
+    /// Number of samples traced at a time.
     pub fn at_once(&self) -> u32 {
         (AT_ONCE / self.pixel_count().max(1)).clamp(1, 1 << 10) as u32
     }
@@ -83,8 +83,8 @@ impl<'a> LightTracer<'a> {
         self.width as usize * self.height as usize
     }
 
-    /// What light brings in samples of these numbers, worked on by all threads of the current pool or by this one
-    /// alone. Of no use once it is cancelled.
+    /// Contributions of light paths to samples with these numbers, computed by the current thread pool or by this
+    /// thread alone. Invalid once cancelled.
     pub fn trace(&self, numbers: Range<u32>, alone: bool, cancel: &Cancel) -> Brought {
         let paths = self.pixel_count() as u32;
         let of_number = |number: u32| (0..paths.div_ceil(TOGETHER)).map(move |chunk| (number, chunk));
@@ -111,9 +111,9 @@ impl<'a> LightTracer<'a> {
         Brought { first: numbers.start, width: self.width, pictures }
     }
 
-    /// Follows some of the paths of a sample.
+    /// Traces some of the paths of a sample.
     fn follow(&self, number: u32, paths: Range<u32>, cancel: &Cancel) -> Vec<Splat> {
-        /// Paths from lights are numbered as pixels that no picture has.
+        /// Light paths use pixel numbers beyond those of any picture.
         const BEYOND: u32 = 1 << 31;
         let mut splats = Vec::new();
         if cancel.is_raised() {
@@ -129,10 +129,10 @@ impl<'a> LightTracer<'a> {
         splats
     }
 
-    /// Adds light to all pixels whose filters reach to where it has come.
+    /// Adds a splat to all pixels whose filters contain it.
     fn add(&self, splat: &Splat, picture: &mut [Rgb]) {
         let (radius, light) = (self.filter.radius(), splat.light / self.pixel_count() as f64);
-        // Pixels whose middles are near enough; a cast takes what lies before the first for the first.
+        // Pixels whose centers are close enough; the cast clamps negative values to 0.
         let near = |at: f64, count: u32| {
             let (first, end) = ((at - 0.5 - radius).ceil().max(0.0), (at - 0.5 + radius).floor() + 1.0);
             first as u32..(end.max(0.0) as u32).min(count)
@@ -181,13 +181,13 @@ mod tests {
         let within = || (y..y + side).flat_map(|y| (x..x + side).map(move |x| (y * width + x) as usize));
         let count = f64::from(side * side);
         let mean = within().map(|i| means[i].mean()).sum::<f64>() / count;
-        // Channels of one pixel go together: the largest of their errors is not too small.
+        // Channels of a pixel are correlated, so the largest of their variances is a safe bound.
         let variance = within().map(|i| variances[i].max()).sum::<f64>() / (count * count);
         (mean, variance.sqrt())
     }
 
-    /// Light traced from lights and paths from the camera make the same picture: each block of 4 × 4 pixels agrees
-    /// within five of the joint standard errors, which chance exceeds once in two million.
+    /// Light tracing and path tracing give the same picture: each block of 4 × 4 pixels agrees within five joint
+    /// standard errors, which have a probability of one in two million.
     fn assert_same_picture(scene: &Scene, camera: &dyn Camera, settings: &Settings) {
         let light = run(scene, camera, &LightTraced::default(), settings);
         let path = run(scene, camera, &Path::default(), settings);
@@ -205,7 +205,7 @@ mod tests {
 
     #[test]
     fn a_furnace_shines_by_its_series_at_every_depth() {
-        // From within a closed box no light is lost: what comes back is as much as the series says, everywhere.
+        // In a closed box no light is lost: the radiance is the partial geometric series everywhere.
         let scene = furnace(0.5, 1.0);
         let camera = Perspective::looking_at(DVec3::new(0.3, -0.2, 0.1), DVec3::NEG_Z, DVec3::Y, 90.0, 8, 8).unwrap();
         for depth in [0, 1, 2, 5] {

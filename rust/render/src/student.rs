@@ -1,8 +1,8 @@
-//! Student's t, and the functions of gamma that go with it.
+//! Student's t distribution, and the gamma functions it needs.
 
 use std::f64::consts::TAU;
 
-/// The derivative of ln Γ, for x > 0.
+/// Derivative of ln Γ, for x > 0.
 pub(super) fn digamma(mut x: f64) -> f64 {
     let mut sum = 0.0;
     while x < 10.0 {
@@ -10,11 +10,11 @@ pub(super) fn digamma(mut x: f64) -> f64 {
         x += 1.0;
     }
     let y = 1.0 / (x * x);
-    // Stirling's series: what is left out is below 1e-13.
+    // Stirling's series; the remainder is below 1e-13.
     sum + x.ln() - 0.5 / x - y * (1.0 / 12.0 - y * (1.0 / 120.0 - y * (1.0 / 252.0 - y * (1.0 / 240.0 - y / 132.0))))
 }
 
-/// The derivative of [`digamma`], for x > 0.
+/// Derivative of [`digamma`], for x > 0.
 pub(super) fn trigamma(mut x: f64) -> f64 {
     let mut sum = 0.0;
     while x < 10.0 {
@@ -26,24 +26,24 @@ pub(super) fn trigamma(mut x: f64) -> f64 {
     sum + 1.0 / x + y / 2.0 + y / x * series
 }
 
-/// The x > 0 at which [`trigamma`] is y; infinite if that is not above 0.
+/// The x > 0 where [`trigamma`] is y; infinite if y is not positive.
 pub(super) fn trigamma_inverse(y: f64) -> f64 {
     if y <= 0.0 {
         return f64::INFINITY;
     }
-    // Of 1/x and 1/x² the larger is below it, and their sum above.
+    // The larger of 1/x and 1/x² is a lower bound, and their sum an upper bound.
     let root = 1.0 / y.sqrt();
     halved([(1.0 / y).max(root) / 2.0, 2.0 * (1.0 / y).max(root)], |x| trigamma(x) > y)
 }
 
-/// How many standard errors either way hold a mean in a share `level` of all cases, if its variance is known by so many
-/// degrees of freedom: the quantile of Student's t at (1 + level) / 2.
+/// Half width, in standard errors, of a confidence interval of `level`, if the variance has these degrees of freedom:
+/// the quantile of Student's t at (1 + level) / 2.
 pub fn quantile(level: f64, degrees: f64) -> f64 {
-    // Up to Cauchy's, of one degree, t is below 1/(1 - level).
+    // For at least one degree (Cauchy), t is below 1/(1 - level).
     halved([1e-12, 1.0 / (1.0 - level) + 1.0], |t| outside(t, degrees.max(1.0)) > 1.0 - level)
 }
 
-/// The point between two, both above 0, up to which something is so.
+/// Bisection between two positive points, for the end of the range where a predicate holds.
 fn halved([mut low, mut high]: [f64; 2], is_below: impl Fn(f64) -> bool) -> f64 {
     for _ in 0..100 {
         let middle = (low * high).sqrt();
@@ -56,13 +56,13 @@ fn halved([mut low, mut high]: [f64; 2], is_below: impl Fn(f64) -> bool) -> f64 
     low
 }
 
-/// The chance that Student's t is farther from 0 than `t`: a regularised incomplete beta function, by its continued
-/// fraction (Didonato and Morris, 1992).
+/// Probability that |t| exceeds `t`: a regularised incomplete beta function, by its continued fraction (Didonato and
+/// Morris, 1992).
 fn outside(t: f64, degrees: f64) -> f64 {
     let x = degrees / (degrees + t * t);
     let (a, b) = (degrees / 2.0, 0.5);
     let front = a * x.ln() + b * (t * t / (degrees + t * t)).ln() - ln_gamma(a) - ln_gamma(b) + ln_gamma(a + b);
-    // It converges where x is below the mean of the distribution; elsewhere its mirror image does.
+    // The fraction converges where x is below the distribution's mean; elsewhere its mirror image does.
     if x < (a + 1.0) / (a + b + 2.0) {
         front.exp() * fraction(a, b, x) / a
     } else {
@@ -71,7 +71,7 @@ fn outside(t: f64, degrees: f64) -> f64 {
 }
 
 fn fraction(a: f64, b: f64, x: f64) -> f64 {
-    // From the far end, whose terms are below 1e-15 by then.
+    // From the far end, where terms are below 1e-15.
     (1..=400)
         .rev()
         .fold(1.0, |rest, m| {
@@ -119,7 +119,8 @@ mod tests {
 
     #[test]
     fn quantiles_are_those_of_the_tables() {
-        // Of one degree tan(π level / 2), of two √2 level / √(1 - level²); for ever more those of a normal deviate.
+        // For one degree tan(π level / 2), for two √2 level / √(1 - level²), and in the limit those of a normal
+        // deviate.
         for level in [0.1, 0.5, 0.9, 0.95, 0.999] {
             assert!(close(quantile(level, 1.0), (PI * level / 2.0).tan()), "{level}");
             let two = 2f64.sqrt() * level / (1.0 - level * level).sqrt();

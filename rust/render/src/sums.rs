@@ -1,4 +1,4 @@
-//! Samples that were taken and added up elsewhere, as by a graphics processor.
+//! Samples taken and summed elsewhere, such as on a GPU.
 
 use super::Rendering;
 use super::bytes::{Malformed, check};
@@ -7,12 +7,13 @@ use raywright_base::parallel;
 use raywright_optics::Rgb;
 
 impl Rendering {
-    /// Adds so many samples of each pixel, which follow those here: of each pixel, row by row from the top, their sum,
-    /// the sum of their squares, and the largest; and how many of all were no radiance, and count as black.
+    /// Adds `count` samples of each pixel, which follow those here. For each pixel, row by row from the top, they are
+    /// given as their sum, the sum of their squares, and the largest. `dropped` samples were invalid and count as
+    /// black.
     ///
     /// # Errors
-    /// If the film keeps more of samples than that, the pass does not have as many, or there are too few or too many
-    /// numbers, or some are no sums.
+    /// If the film keeps more than these sums, the pass has another number of samples, the number of sums is wrong, or
+    /// some are invalid.
     pub fn add(&mut self, count: u32, sums: &[[f64; 9]], dropped: u64) -> Result<(), Malformed> {
         let film = &self.film;
         let (batch, clamp, apart) = (film.batch(), film.clamp(), film.is_apart());
@@ -44,7 +45,7 @@ mod tests {
 
     #[test]
     fn sums_are_worth_their_samples() {
-        // Whole numbers, so that no order of adding matters.
+        // Whole numbers, so that the order of addition does not matter.
         let sample = |x: u32, y: u32, number: u32| Rgb::new(f64::from(x + number), f64::from(y), f64::from(number % 3));
         let film = || Film::new(7, 5, 4, 1, false, None);
         let mut one_by_one = film();

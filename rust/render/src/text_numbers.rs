@@ -1,11 +1,11 @@
-//! Numbers in texts.
+//! Parsing of numbers in text.
 
-/// The numbers at the beginning of a text, and whether nothing else follows them. White space of ASCII parts them, and
-/// words that are listed in `skipped` may stand between them.
+/// Parses the numbers at the beginning of a text, and returns whether nothing else follows. Numbers are separated by
+/// ASCII white space; words listed in `skipped` may occur between them.
 ///
 /// Numbers are rounded correctly; `inf` and `nan` are numbers.
 pub fn leading_numbers(text: &[u8], skipped: &[&[u8]]) -> (Vec<f64>, bool) {
-    // A number and what parts it from the next take two bytes at least, and usually more.
+    // A number and its separator take at least two bytes, and usually more.
     let mut numbers = Vec::with_capacity(text.len() / 8);
     for word in text.split(|&byte| byte.is_ascii_whitespace() || byte == 0x0b) {
         if word.is_empty() || (word[0].is_ascii_alphabetic() && skipped.contains(&word)) {

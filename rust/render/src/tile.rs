@@ -1,16 +1,16 @@
-//! A rectangle of a film.
+//! Tiles of the film.
 
 use super::bytes::{Malformed, Reader, Writer, check};
 use super::patchwork::Patchwork;
 use super::quarters::{Quarters, Sums};
 use raywright_optics::Rgb;
 
-/// Sums that a mean and its error are computed from.
+/// Sums for a mean and its error.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Moments {
     /// Sum of samples.
     sum: Rgb,
-    /// Sum of the squares of batches' sums.
+    /// Sum of the squares of batch sums.
     squares: Rgb,
 }
 
@@ -21,9 +21,9 @@ impl Moments {
     }
 }
 
-/// A rectangle of a film, which one thread works on at a time.
+/// A rectangle of a film, rendered by one thread at a time.
 ///
-/// Its cells lie pixel by pixel, row by row: one a pixel, or two where the film is in halves.
+/// Its cells are stored pixel by pixel, row by row: one per pixel, or two if the film is in halves.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FilmTile {
     corner: [u32; 2],
@@ -33,34 +33,34 @@ pub struct FilmTile {
     clamp: f64,
     /// Samples of each cell.
     counts: Vec<u32>,
-    /// Whole blocks, of each cell.
+    /// Sums of whole blocks of each cell.
     total: Vec<Moments>,
-    /// The block that is being filled.
+    /// Sums of the block being filled.
     partial: Vec<Moments>,
-    /// The largest sample, by its largest channel.
+    /// Largest sample, by its largest channel.
     largest: Vec<Rgb>,
-    /// Squares of samples of whole blocks, and of the one that is being filled; empty if each sample is a batch.
+    /// Squares of samples of whole blocks, and of the block being filled; empty if each sample is a batch.
     singles: Vec<[Rgb; 2]>,
-    /// The batch that is being filled; empty if each sample is one.
+    /// Sum of the batch being filled; empty if each sample is a batch.
     unfinished: Vec<Rgb>,
-    /// What clamping took from whole blocks, and from the one that is being filled; empty without.
+    /// Radiance removed by clamping from whole blocks, and from the block being filled; empty without clamping.
     taken: Vec<[Rgb; 2]>,
     /// Sums of samples and their squares, and the count up to which they are kept; empty unless the film is in halves.
     evidence: Vec<(Rgb, Rgb)>,
     evidence_until: Vec<u32>,
-    /// Parts of the samples; none unless they are kept apart.
+    /// Quarters of the samples; empty unless they are kept apart.
     quarters: Quarters,
     dropped: u64,
     clamped: u64,
 }
 
-/// All that is kept of a cell.
+/// All sums of a cell.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Cell {
     pub count: u32,
     pub sum: Rgb,
     pub squares: Rgb,
-    /// The sum of the squares of samples.
+    /// Sum of the squares of samples.
     pub singles: Rgb,
     pub largest: Rgb,
     pub unfinished: Rgb,
@@ -69,10 +69,10 @@ pub(super) struct Cell {
 }
 
 impl FilmTile {
-    /// Samples that are added up before they are added to the total, or a batch if that is more.
+    /// Samples summed before they are added to the total, or a batch if that is larger.
     pub(super) const BLOCK: u32 = 16;
 
-    /// The greatest sample that counts: pictures are stored in single precision, in which more would be infinite.
+    /// Greatest valid sample, because pictures are stored in single precision.
     const GREATEST: f64 = f32::MAX as f64;
 
     pub(super) fn new(corner: [u32; 2], size: [u32; 2], batch: u32, halves: bool, clamp: Option<f64>) -> Self {
@@ -99,29 +99,29 @@ impl FilmTile {
         }
     }
 
-    /// The same tile, without samples yet, with parts of them kept apart.
+    /// Sets the tile to keep quarters apart; it must be empty.
     pub(super) fn kept_apart(self) -> Self {
         Self { quarters: Quarters::new(self.counts.len()), ..self }
     }
 
-    /// Sums over the quarters of a cell's samples, where they are kept apart.
+    /// Sums over the quarters of a cell's samples, if they are kept.
     pub(super) fn quarters(&self, cell: usize) -> Option<Sums> {
         self.quarters.of(cell)
     }
 
-    /// The positions of its pixels on the film, row by row.
+    /// Film positions of its pixels, row by row.
     pub fn pixels(&self) -> impl Iterator<Item = (u32, u32)> + use<> {
         let ([left, top], [width, height]) = (self.corner, self.size);
         (top..top + height).flat_map(move |y| (left..left + width).map(move |x| (x, y)))
     }
 
-    /// The position on the film of the pixel that a cell belongs to.
+    /// Film position of a cell's pixel.
     pub fn position(&self, cell: usize) -> (u32, u32) {
         let pixel = if self.halves { cell / 2 } else { cell } as u32;
         (self.corner[0] + pixel % self.size[0], self.corner[1] + pixel / self.size[0])
     }
 
-    /// Its cells, patch by patch as they take the sample of a number, and one kind of cell after the other.
+    /// Its cells, patch by patch for a sample number, and one kind of cell after the other.
     pub(super) fn together(
         &self,
         patchwork: Patchwork,
@@ -137,7 +137,7 @@ impl FilmTile {
         })
     }
 
-    /// Pixels in a row of it, and rows.
+    /// Numbers of columns and rows.
     pub(super) fn size(&self) -> [u32; 2] {
         self.size
     }
@@ -147,7 +147,7 @@ impl FilmTile {
         &self.counts
     }
 
-    /// The mean of a pixel, over those of its cells that have samples; black without any.
+    /// Mean of a pixel over its cells with samples; black without any.
     pub(super) fn mean(&self, pixel: usize) -> Rgb {
         let of = |cell: usize| (self.total[cell].sum + self.partial[cell].sum) / f64::from(self.counts[cell].max(1));
         match self.halves {
@@ -157,8 +157,8 @@ impl FilmTile {
         }
     }
 
-    /// The number, among all samples of its pixel, of the sample that is number `nth` of its cell. Halves take turns by
-    /// the batch, so no batch is in both.
+    /// Converts the index `nth` of a sample in its cell to its number in the pixel. Halves alternate by batches, so no
+    /// batch is split.
     #[inline]
     pub fn number(&self, cell: usize, nth: u32) -> u32 {
         if self.halves {
@@ -169,15 +169,15 @@ impl FilmTile {
         }
     }
 
-    /// Adds the next sample of a cell: radiance, times the weight that the film's filter gives it.
+    /// Adds the next sample of a cell: radiance times the filter's weight.
     #[inline]
     pub fn add(&mut self, cell: usize, radiance: Rgb, weight: f64) {
         let sample = self.allowed(cell, radiance) * weight;
         self.add_sample(cell, sample);
     }
 
-    /// The same with light that came to the pixel by itself, which the filter has weighed, and which may be negative
-    /// where that is.
+    /// Adds a sample with the contribution of light paths, which includes the filter and may be negative where the
+    /// filter is.
     #[inline]
     pub fn add_with(&mut self, cell: usize, radiance: Rgb, weight: f64, brought: Rgb) {
         let brought = self.allowed(cell, brought.abs()).copysign(brought);
@@ -225,7 +225,7 @@ impl FilmTile {
         }
     }
 
-    /// What of a sample's radiance counts.
+    /// Clamps a sample's radiance, and replaces invalid samples by black.
     #[inline]
     fn allowed(&mut self, cell: usize, radiance: Rgb) -> Rgb {
         let greatest = radiance.max();
@@ -242,7 +242,7 @@ impl FilmTile {
         left
     }
 
-    /// The memory held for its cells.
+    /// Memory of its cells in bytes.
     #[cfg(test)]
     pub(super) fn bytes(&self) -> usize {
         self.counts.capacity() * size_of::<u32>()
@@ -262,7 +262,7 @@ impl FilmTile {
         self.clamped
     }
 
-    /// Samples of the cell that has the fewest.
+    /// Minimum number of samples of a cell.
     pub(super) fn fewest(&self) -> u32 {
         self.counts.iter().copied().min().unwrap_or(u32::MAX)
     }
@@ -291,7 +291,7 @@ impl FilmTile {
         }
     }
 
-    /// Adds the samples that follow those here, which are whole blocks.
+    /// Appends the samples that follow those here; all blocks here are whole.
     pub(super) fn append(&mut self, next: &Self) {
         for (total, next) in self.total.iter_mut().zip(&next.total) {
             total.add(next);
@@ -315,11 +315,11 @@ impl FilmTile {
         self.clamped += next.clamped;
     }
 
-    /// Adds samples to each cell, each a batch, that were added up elsewhere: by the position of its pixel, their sum,
-    /// the sum of their squares, and the largest.
+    /// Adds samples to each cell that were summed elsewhere, each a batch: by the pixel's position, their sum, the sum
+    /// of their squares, and the largest.
     ///
     /// # Panics
-    /// If the film is in halves, or has batches of several samples, or keeps more of them than these.
+    /// If the film is in halves, has batches of several samples, or keeps more than these sums.
     pub(super) fn add_sums(&mut self, count: u32, of: impl Fn((u32, u32)) -> [Rgb; 3]) {
         assert!(self.batch == 1 && !self.halves && self.taken.is_empty() && !self.quarters.are_kept(), "sums alone");
         for cell in 0..self.counts.len() {
@@ -335,10 +335,10 @@ impl FilmTile {
         self.dropped += count;
     }
 
-    /// The most samples of a cell that bytes may tell of: sums of them stay far below what numbers hold.
+    /// Maximum number of samples of a cell in serialised data, so that sums cannot overflow.
     pub(super) const MOST: u32 = u32::MAX / 4;
 
-    /// All that has been added to it, as bytes.
+    /// Writes all its sums as bytes.
     pub(super) fn write(&self, to: &mut Writer) {
         to.words(self.counts.iter().copied());
         for moments in [&self.total, &self.partial] {
@@ -359,7 +359,7 @@ impl FilmTile {
         to.word(self.clamped);
     }
 
-    /// Reads what was added to a tile of the same place and shape. If that fails, this tile is of no use.
+    /// Reads the sums of a tile with the same position and layout. After an error, this tile is invalid.
     pub(super) fn read(&mut self, from: &mut Reader) -> Result<(), Malformed> {
         from.words(self.counts.iter_mut())?;
         check(self.counts.iter().all(|&count| count <= Self::MOST), "a cell has too many samples")?;
@@ -383,7 +383,7 @@ impl FilmTile {
     }
 }
 
-/// Keeps the sample with the larger channel; filters may weigh samples negatively.
+/// Keeps the sample with the larger channel by magnitude; filters may have negative weights.
 #[inline]
 fn keep_largest(largest: &mut Rgb, sample: Rgb) {
     if sample.abs().max() > largest.abs().max() {

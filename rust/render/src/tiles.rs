@@ -1,4 +1,4 @@
-//! Work on a pass: samples of all pixels, tile by tile over the threads.
+//! Execution of a pass: samples of all pixels, tile by tile on all threads.
 
 use super::camera_sampler::{CameraSampler, Wanted};
 use super::epoch::Epoch;
@@ -16,40 +16,40 @@ use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 use std::{iter, slice};
 
-/// Paths advanced together at most: enough to keep the accelerator's kernels full, few enough to stay in cache.
+/// Maximum number of paths in flight: enough to fill the accelerator's kernels, few enough to stay in cache.
 const BATCH: usize = 4096;
 
-/// Paths handed together to an integrator that works on the calling thread, where a call costs more than a path.
+/// Paths per call of an integrator that runs on the calling thread, where a call costs more than a path.
 const LARGE_BATCH: usize = 65_536;
 
-/// A picture being taken: everything that stays the same from pass to pass.
+/// A picture being rendered: everything that is constant over its passes.
 pub(super) struct Exposure<'a> {
     session: &'a dyn Session,
-    /// Whether all work is to be done on the calling thread.
+    /// True if all work must be on the calling thread.
     pub stays: bool,
     samples: CameraSampler<'a>,
-    /// Whether samples may be negative.
+    /// True if samples may be negative.
     signed: bool,
-    /// What follows paths from lights, if there are any.
+    /// Tracer of light paths, if there are any.
     light: Option<LightTracer<'a>>,
-    /// Whose samples work together.
+    /// Pixels that share samples.
     patchwork: Patchwork,
-    /// Workers that no thread is using: their memory is used again.
+    /// Idle workers, kept to reuse their memory.
     idle: Mutex<Vec<Bench<'a>>>,
 }
 
-/// How many samples cells shall have. It is reached in steps, of one sample of all pixels on average, in each of which
-/// pixels of a patch work together: who works with whom depends on nothing but the step.
+/// Target numbers of samples. Targets are reached in steps of one sample per pixel on average. Pixels of a patch share
+/// samples within a step, so the partition depends only on the step.
 #[derive(Clone, Copy)]
 pub(super) enum Goal<'a> {
-    /// The same number in all, counted with the `before` that are on another film.
+    /// The same number in all cells, including `before` samples on another film.
     Even { before: u32, samples: u32 },
-    /// As it is decided for so many on average, where all pixels have had `done` on average.
+    /// By an epoch for `samples` on average, when all pixels have `done` on average.
     Planned { epoch: &'a Epoch, done: u32, samples: u32 },
 }
 
 impl Goal<'_> {
-    /// How many samples a cell of a tile has after so many on average.
+    /// Number of samples of a cell after this number on average.
     #[inline]
     fn at(&self, number: usize, tile: &FilmTile, cell: usize, samples: u32) -> u32 {
         match *self {
@@ -58,7 +58,7 @@ impl Goal<'_> {
         }
     }
 
-    /// The steps that a tile has to go.
+    /// Remaining steps of a tile.
     fn steps(&self, tile: &FilmTile) -> Range<u32> {
         match *self {
             Self::Even { before, samples } => before + tile.fewest()..samples,
@@ -71,29 +71,29 @@ impl Goal<'_> {
     }
 }
 
-/// A goal, and the light that comes to the film by itself on the way there.
+/// A target, and the contributions of light paths on the way to it.
 #[derive(Clone, Copy)]
 struct Part<'a> {
     goal: Goal<'a>,
     light: Option<&'a Brought>,
-    /// Whether a session was made ready for it.
+    /// True if the session was prepared for it.
     is_ready: bool,
 }
 
 impl Part<'_> {
-    /// Whether it is to be left: light that was brought, or what a session was made ready with, is used up first, or a
-    /// pause that comes sooner would leave nothing done.
+    /// Returns whether to stop. Computed light paths and a prepared session are used up first, so that frequent pauses
+    /// still make progress.
     fn is_ended(&self, stop: &Stop) -> bool {
         stop.cancel.is_raised() || self.light.is_none() && !self.is_ready && stop.pause.is_raised()
     }
 }
 
-/// What may keep a goal from being reached.
+/// Signals that stop a pass.
 #[derive(Default)]
 pub(super) struct Stop {
-    /// Raised to end all work at once, by whoever watches or by an integrator that cannot go on.
+    /// Ends all work at once; raised by an observer or by an integrator that cannot continue.
     pub cancel: Cancel,
-    /// Raised to end it when what has been begun is done.
+    /// Ends it once work in progress is done.
     pub pause: Cancel,
 }
 
@@ -103,12 +103,12 @@ impl Stop {
     }
 }
 
-/// What a thread works with.
+/// State of a thread.
 struct Bench<'a> {
     worker: Box<dyn Worker + 'a>,
-    /// Whether samples may be negative.
+    /// True if samples may be negative.
     signed: bool,
-    /// What is to be taken next.
+    /// Samples to be taken next.
     wanted: Vec<Wanted>,
     samples: CameraSamples,
     /// The same one after the other, for whom that serves.
@@ -117,12 +117,11 @@ struct Bench<'a> {
     /// integrator is not asked.
     weights: Vec<f64>,
     radiance: Vec<Rgb>,
-    /// Where each group of samples that work together ends among those that are to be taken; empty where each is on its
-    /// own.
+    /// End of each group of samples that share, among those to be taken; empty if none share.
     ends: Vec<usize>,
-    /// How many they are.
+    /// Sizes of the groups.
     groups: Vec<u32>,
-    /// Whose the samples are.
+    /// Cells of the samples.
     runs: Vec<Run>,
 }
 
@@ -130,14 +129,14 @@ struct Bench<'a> {
 struct Member {
     cell: usize,
     position: (u32, u32),
-    /// Those of a step.
+    /// Its samples in a step.
     samples: Range<u32>,
-    /// How many it has.
+    /// Its current number of samples.
     count: u32,
 }
 
 impl Member {
-    /// Its own number of a sample of a step, if that is there and has not been taken.
+    /// Its own number of a sample of a step, if that exists and has not been taken.
     #[inline]
     fn wants(&self, of_step: u32) -> Option<u32> {
         let nth = self.samples.start + of_step;
@@ -153,7 +152,7 @@ struct Run {
 }
 
 impl<'a> Exposure<'a> {
-    /// One of a scene by a camera, in a session of an integrator.
+    /// Begins a picture of a scene by a camera, in a session of an integrator.
     pub fn new(
         scene: &Scene,
         camera: &'a dyn Camera,
@@ -168,9 +167,9 @@ impl<'a> Exposure<'a> {
         Self { session, stays, samples, signed, light, patchwork, idle: Mutex::default() }
     }
 
-    /// Adds samples until the goal is reached, and says whether it was: it returns soon when it is asked to stop. Even
-    /// then each cell has the first of its samples and nothing else, and can be taken further. Before this, each pixel
-    /// has `done` samples, or all have on average.
+    /// Adds samples until the target is reached or `stop` is raised; returns whether it was reached. In either case
+    /// each cell has the first of its samples and nothing else, and can be continued. Before this, each pixel has
+    /// `done` samples, or all have on average.
     pub fn expose(&self, tiles: &[Mutex<FilmTile>], done: u32, goal: Goal, stop: &Stop) -> bool {
         self.session.before_pass(done, &stop.cancel);
         self.in_parts(tiles, goal, false, stop, |tiles, part| {
@@ -194,8 +193,8 @@ impl<'a> Exposure<'a> {
         })
     }
 
-    /// As [`Exposure::expose`], with the integrator on this thread alone. After each batch, which is large for an
-    /// integrator that wants to be here, `poll` is called, which may ask to stop.
+    /// Like [`Exposure::expose`], with the integrator on this thread alone. After each batch, which is large for such
+    /// an integrator, `poll` is called and may request a stop.
     pub fn expose_here(
         &self,
         tiles: &[Mutex<FilmTile>],
@@ -214,8 +213,8 @@ impl<'a> Exposure<'a> {
         })
     }
 
-    /// Works towards a goal: at once, or, where light comes to the film by itself or a session is made ready, in parts
-    /// of as many samples as that is kept for. Says whether all parts were done.
+    /// Works towards a target: at once or, with light paths or a prepared session, in parts of as many samples as these
+    /// hold. Returns whether all parts were done.
     fn in_parts(
         &self,
         tiles: &[Mutex<FilmTile>],
@@ -265,7 +264,7 @@ impl<'a> Exposure<'a> {
         self.idle.lock().unwrap_or_else(PoisonError::into_inner).push(bench);
     }
 
-    /// Brings tiles, of which the first has this number, to the goal in batches of `most` paths.
+    /// Takes tiles, numbered from `first`, to the target in batches of at most `most` paths.
     #[allow(clippy::too_many_arguments)]
     fn expose_tiles(
         &self,
@@ -285,7 +284,7 @@ impl<'a> Exposure<'a> {
         for index in 0..tiles.len() {
             let mut tile = held(&tiles[index]);
             let (number, steps) = (first + index, goal.steps(&tile));
-            // Pixels on their own take all of their samples one after the other: the rays of one are near each other.
+            // Pixels that do not share take all their samples consecutively, because their rays are coherent.
             let stride = if works_together { 1 } else { steps.len().max(1) as u32 };
             for step in steps.clone().step_by(stride as usize) {
                 let end = steps.end.min(step + stride);
@@ -307,7 +306,7 @@ impl<'a> Exposure<'a> {
                             bench.ends.push(bench.wanted.len());
                         }
                         if bench.wanted.len() + members.len() > most {
-                            // Whoever looks at it need not wait for rays.
+                            // Released, so that observers need not wait for rays.
                             drop(tile);
                             let developed = bench.develop(&self.samples, tiles, part.light, &stop.cancel);
                             poll();
@@ -334,7 +333,7 @@ impl Bench<'_> {
         self.runs.clear();
     }
 
-    /// Has a sample of a cell taken next.
+    /// Adds a sample of a cell to the batch.
     #[inline]
     fn add(&mut self, tile: usize, cell: usize, wanted: Wanted) {
         self.wanted.push(wanted);
@@ -344,8 +343,8 @@ impl Bench<'_> {
         }
     }
 
-    /// Takes the samples, adds their radiance to their cells, and clears them away. Says whether it did: what a
-    /// cancelled integrator says is not heard.
+    /// Takes the samples, adds their radiance to their cells, and clears the batch. Returns whether it did; results of
+    /// a cancelled integrator are discarded.
     fn develop(
         &mut self,
         sampler: &CameraSampler,
@@ -379,7 +378,7 @@ impl Bench<'_> {
                     let seen = if weight == 0.0 { None } else { radiance.next() };
                     let seen = seen.copied().unwrap_or(Rgb::ZERO);
                     match light {
-                        // What a wavelength looks like is less than nothing in some channels.
+                        // A wavelength's colour is negative in some channels.
                         None if self.signed => tile.add_with(run.cell, Rgb::ZERO, weight, seen * weight),
                         None => tile.add(run.cell, seen, weight),
                         Some(light) if self.signed => {

@@ -1,27 +1,27 @@
-//! What is seen first, with less noise.
+//! Prefiltering of auxiliary features.
 
 use super::planes::{Area, Size, away, blurred};
 use super::similarity::{Comparing, Guide};
 use raywright_base::parallel;
 use raywright_base::workers::Cancel;
 
-/// Numbers that are known of a pixel besides its light: albedo, normal, and nearness.
+/// Number of features per pixel: albedo, normal, and inverse distance.
 pub const FEATURES: usize = 7;
 
-/// The groups that are filtered together: a channel after the other.
+/// Feature channels that are filtered together.
 const GROUPS: [std::ops::Range<usize>; 3] = [0..3, 3..6, 6..7];
 
-/// How far filters reach, and how far the patches that are compared.
+/// Filter radius, and patch radius of the comparison.
 const REACH: isize = 3;
 const PATCH: usize = 1;
 
-/// What two features of the same pixel differ by, beyond their noise, before they are other ones.
+/// Tolerance for differences of features beyond their noise.
 const LEAST: f64 = 1e-4;
 
-/// A plane for each feature, from two independent pictures of all features of a pixel after the other.
+/// Prefilters features: a plane for each, from two independent pictures with all features pixel by pixel.
 ///
-/// Features are exact but for edges, depth of field and motion. Each picture is filtered by weights of the other
-/// (Rousselle, Manzi and Zwicker, "Robust Denoising using Feature and Color Information", 2013).
+/// Features are noise-free except at edges and under depth of field or motion blur. Each picture is filtered with
+/// weights from the other (Rousselle, Manzi and Zwicker, "Robust Denoising using Feature and Color Information", 2013).
 pub(super) fn prefiltered(pictures: &[Vec<f64>; 2], size: Size, cancel: &Cancel) -> Vec<Vec<f64>> {
     let planes = |picture: &[f64]| -> Vec<Vec<f64>> {
         (0..FEATURES).map(|feature| picture.iter().skip(feature).step_by(FEATURES).copied().collect()).collect()
@@ -42,7 +42,7 @@ pub(super) fn prefiltered(pictures: &[Vec<f64>; 2], size: Size, cancel: &Cancel)
     all
 }
 
-/// Planes filtered by how alike a guide finds pixels.
+/// Filters planes by the similarity of pixels in a guide.
 fn filtered(guide: &Guide, planes: &[Vec<f64>], size: Size, cancel: &Cancel) -> Vec<Vec<f64>> {
     let of_tile = |area: &Area| {
         let mut comparing = Comparing::default();
@@ -70,7 +70,7 @@ fn filtered(guide: &Guide, planes: &[Vec<f64>], size: Size, cancel: &Cancel) -> 
         for (plane, sums) in all.iter_mut().zip(&sums) {
             let places = area.rows.clone().flat_map(|y| area.columns.clone().map(move |x| y * size.width + x));
             for ((place, sum), weight) in places.zip(sums).zip(weights) {
-                // A pixel is always like itself.
+                // Never zero, because a pixel has full weight for itself.
                 plane[place] = sum / weight;
             }
         }

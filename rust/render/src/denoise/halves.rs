@@ -1,36 +1,36 @@
-//! A picture in two halves of samples, each in two quarters.
+//! A picture in two halves of its samples, each in two quarters.
 
 use super::super::Film;
 use super::super::quarters::{Sums, counts};
 use raywright_optics::Rgb;
 
-/// A picture in two halves of samples, each in two quarters: all four are independent of each other.
+/// A picture in two halves of its samples, each in two quarters; all four are independent.
 #[derive(Clone, Debug)]
 pub struct Halves {
-    /// Pixels of a row.
+    /// Number of columns.
     pub width: usize,
-    /// Rows.
+    /// Number of rows.
     pub height: usize,
-    /// The side of the squares of pixels that err together.
+    /// Side of the patches of correlated pixels.
     pub patch: usize,
-    /// Samples of a pixel.
+    /// Samples per pixel.
     pub samples: f64,
-    /// The means of quarters: the first two are one half.
+    /// Means of the quarters; the first two form one half.
     pub quarters: [Vec<Rgb>; 4],
-    /// The variance of the mean of either half, if its samples were independent.
+    /// Variance of the mean of each half, for independent samples.
     pub variances: [Vec<Rgb>; 2],
 }
 
 impl Halves {
-    /// The mean of a half.
+    /// Mean of a half.
     pub(super) fn mean(&self, half: usize) -> Vec<Rgb> {
         self.quarters[2 * half].iter().zip(&self.quarters[2 * half + 1]).map(|(a, b)| (*a + *b) / 2.0).collect()
     }
 
-    /// The variance of the mean of a half, in the sum over channels.
+    /// Variance of the mean of a half, summed over channels.
     ///
-    /// What samples bring without regard to each other is known pixel by pixel, and what their placing leaves of that
-    /// from the quarters: a ratio, for the whole picture.
+    /// The variance for independent samples is known per pixel. Its reduction by stratification is estimated from the
+    /// quarters, as one ratio for the whole picture.
     pub(super) fn variance(&self, half: usize) -> Vec<f64> {
         let [one, other] = [&self.quarters[2 * half], &self.quarters[2 * half + 1]];
         let (mut apart, mut alone) = (0.0, 0.0);
@@ -46,7 +46,7 @@ impl Halves {
 }
 
 impl Film {
-    /// The halves of its samples, if parts of these are kept apart; `None` where a quarter has no whole batch.
+    /// The halves of the film's samples, if quarters are kept; `None` if a quarter has no whole batch.
     pub fn halves(&self) -> Option<Halves> {
         let (width, height) = (self.width() as usize, self.height() as usize);
         let none = || vec![Rgb::ZERO; width * height];
@@ -82,7 +82,7 @@ impl Film {
 }
 
 impl Halves {
-    /// Sets a half of a pixel, from one of those of a cell.
+    /// Sets a half of a pixel from one of the halves of a cell.
     fn set(&mut self, pixel: usize, half: usize, sums: &Sums, from: usize, counts: &[u32; 4]) {
         let counts = [0, 1].map(|quarter| f64::from(counts[2 * from + quarter]));
         let [one, other] = [0, 1].map(|quarter| sums.sums[2 * from + quarter]);

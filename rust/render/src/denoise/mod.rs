@@ -1,8 +1,8 @@
-//! Pictures filtered by parts of their own samples, such that the other parts tell the error of what comes out.
+//! Denoising with an unbiased error estimate, by cross-validation between parts of the samples.
 //!
-//! A picture is in two halves of samples, each in two quarters ([`Halves`]). Each half is filtered by itself, in some
-//! ways ([`candidates`]); which way is best where, a quarter of the other half says; and how wrong the outcome is, the
-//! quarter that is left ([`settle`]). So nothing is judged by what it was made of.
+//! A picture consists of two halves of its samples, each of two quarters ([`Halves`]). Each half is filtered in several
+//! ways ([`candidates`]). A quarter of the other half selects the best candidate per pixel, and the remaining quarter
+//! estimates the error ([`settle`]). So no data is judged by itself.
 
 mod features;
 mod halves;
@@ -20,16 +20,16 @@ use planes::Size;
 use raywright_base::workers::Cancel;
 use raywright_optics::Rgb;
 
-/// How much pixels may differ, in standard deviations of their noise, to be taken for the same: one way to filter each.
+/// Bandwidths of the filters, in standard deviations of the noise within which pixels count as equal.
 const BANDWIDTHS: [f64; 2] = [0.5, 1.0];
 
-/// Each half of a picture in some ways: as it is, and filtered by what is alike in it and in what is seen there first.
+/// Filters each half of a picture: unfiltered, and with weights by similarity of colour and features.
 ///
-/// That is the nonlinearly weighted first-order regression of Bitterli, Rousselle, Moon, Iglesias-Guitián, Adler,
+/// The filter is the nonlinearly weighted first-order regression of Bitterli, Rousselle, Moon, Iglesias-Guitián, Adler,
 /// Mitchell, Jarosz and Novák ("Nonlinearly Weighted First-Order Regression for Denoising Monte Carlo Renderings",
-/// 2016), but that its weights come from one quarter for the values of the other, and not from one half for the other:
-/// so halves stay independent. `features` are two independent pictures of [`FEATURES`] numbers a pixel, each number
-/// between about −1 and 1. Returns soon after `cancel` is raised, with nothing of use.
+/// 2016). Unlike there, weights for one quarter come from the other quarter of the same half, so that halves stay
+/// independent. `features` are two independent pictures of [`FEATURES`] numbers per pixel, each between about −1 and 1.
+/// Returns soon after `cancel` is raised, with an invalid result.
 pub fn candidates(halves: &Halves, features: &[Vec<f64>; 2], cancel: &Cancel) -> [Vec<Vec<Rgb>>; 2] {
     let size = Size { width: halves.width, height: halves.height };
     let features = features::prefiltered(features, size, cancel);

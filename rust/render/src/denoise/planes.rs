@@ -1,16 +1,16 @@
-//! Pictures of one number a pixel, row by row.
+//! Pictures of one number per pixel, row by row.
 
 use raywright_base::parallel;
 use std::ops::Range;
 
-/// Pixels of a row, and rows.
+/// Numbers of columns and rows.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Size {
     pub width: usize,
     pub height: usize,
 }
 
-/// Some columns of some rows.
+/// A rectangle of pixels.
 #[derive(Clone, Debug)]
 pub(super) struct Area {
     pub columns: Range<usize>,
@@ -22,7 +22,7 @@ impl Size {
         self.width * self.height
     }
 
-    /// Squares of so many pixels a side, that cover it.
+    /// Square tiles with this side that cover the picture.
     pub fn tiles(self, side: usize) -> Vec<Area> {
         let pieces = |length: usize| (0..length).step_by(side).map(move |start| start..length.min(start + side));
         pieces(self.height)
@@ -36,13 +36,13 @@ impl Area {
         self.columns.len() * self.rows.len()
     }
 
-    /// With so many pixels more on each side, as far as there are.
+    /// Grows by this number of pixels on each side, within the picture.
     pub fn wider(&self, by: usize, size: Size) -> Self {
         let of = |range: &Range<usize>, length: usize| range.start.saturating_sub(by)..length.min(range.end + by);
         Self { columns: of(&self.columns, size.width), rows: of(&self.rows, size.height) }
     }
 
-    /// The part of it from which something so far away is on the picture.
+    /// The part whose pixels at this offset are within the picture.
     pub fn with(&self, [dx, dy]: [isize; 2], size: Size) -> Self {
         let of = |range: &Range<usize>, away: isize, length: usize| {
             let start = range.start.max(away.min(0).unsigned_abs());
@@ -53,13 +53,13 @@ impl Area {
     }
 }
 
-/// The index of the pixel so far from another: both are on the picture.
+/// Index of the pixel at an offset from another; both are within the picture.
 #[inline]
 pub(super) fn away(index: usize, [dx, dy]: [isize; 2], size: Size) -> usize {
     (index as isize + dy * size.width as isize + dx) as usize
 }
 
-/// The mean over squares of pixels, up to so many away along each axis, as far as they are on the picture.
+/// Box filter with this radius, restricted to the picture.
 pub(super) fn blurred(values: &[f64], size: Size, reach: usize) -> Vec<f64> {
     let mut across = vec![0.0; values.len()];
     let near = |at: usize, length: usize| at.saturating_sub(reach)..length.min(at + reach + 1);

@@ -1,4 +1,4 @@
-//! Each pixel as what is alike around it has it, by way of what is seen there first.
+//! Weighted linear regression of pixels on features.
 
 use super::features::FEATURES;
 use super::planes::{Area, Size};
@@ -7,32 +7,31 @@ use raywright_base::parallel;
 use raywright_base::workers::Cancel;
 use raywright_optics::Rgb;
 
-/// How far away what counts may be, and how far the patches go that are compared.
+/// Filter radius, and patch radius of the comparison.
 const REACH: isize = 7;
 const PATCH: usize = 1;
 
-/// Pixels a side that are worked on at once: what is summed for them stays in the cache.
+/// Side of the tiles, chosen so that their sums stay in cache.
 const SIDE: usize = 32;
 
-/// Numbers a pixel that the fit goes by: one, and the features.
+/// Regressors per pixel: a constant, and the features.
 const TERMS: usize = FEATURES + 1;
 
-/// What is summed for a pixel: products of two terms, and of a term and a channel.
+/// Sums per pixel: products of two regressors, and of a regressor and a channel.
 const PRODUCTS: usize = TERMS * (TERMS + 1) / 2;
 const MOMENTS: usize = PRODUCTS + 3 * TERMS;
 
-/// What features vary by, squared, where they do not vary: slopes are not told by less.
+/// Ridge on the squared variation of features; slopes over smaller variation are suppressed.
 const RIDGE: f64 = 1e-4;
 
-/// Weights below this one are left out.
+/// Weights below this one are skipped.
 const FAINTEST: f64 = 1e-4;
 
-/// The variances of a guide are taken for no less.
+/// Lower bound of the guide's variances.
 const LEAST: f64 = 1e-10;
 
-/// The values of a picture, by linear fits to the features of the pixels around each, weighed by how alike a guide
-/// finds them: one for each bandwidth. `variance` is that of the mean of the guide and the values, which are two
-/// independent parts of equal size.
+/// Filters a picture by linear fits to the features around each pixel, weighted by similarity in a guide, for each
+/// bandwidth. `variance` is that of the mean of guide and values, two independent parts of equal size.
 pub(super) fn filtered(
     guide: &[Rgb],
     variance: &[f64],
@@ -119,7 +118,7 @@ fn of_tile(
     sums.iter().map(fitted).collect()
 }
 
-/// The products of what pixels of an area have, a plane for each.
+/// Products of regressors and channels in an area, a plane for each.
 fn products(values: &[Rgb], features: &[Vec<f64>], size: Size, area: &Area) -> Vec<f64> {
     let mut all = vec![0.0; MOMENTS * area.pixels()];
     let places = area.rows.clone().flat_map(|y| area.columns.clone().map(move |x| y * size.width + x));
@@ -136,13 +135,13 @@ fn products(values: &[Rgb], features: &[Vec<f64>], size: Size, area: &Area) -> V
     all
 }
 
-/// Where the product of two terms stands.
+/// Index of the product of two regressors.
 const fn index(a: usize, b: usize) -> usize {
     let (a, b) = if a < b { (a, b) } else { (b, a) };
     a * TERMS - a * (a + 1) / 2 + b
 }
 
-/// The value at some features of the linear fit of least squares that has these moments.
+/// Value of the least-squares fit with these moments at some features.
 fn at(moments: &[f64; MOMENTS], features: &[f64; FEATURES]) -> Rgb {
     let (products, values) = moments.split_at(PRODUCTS);
     let value = |term: usize| Rgb::new(values[3 * term], values[3 * term + 1], values[3 * term + 2]);
@@ -150,7 +149,7 @@ fn at(moments: &[f64; MOMENTS], features: &[f64; FEATURES]) -> Rgb {
     if all <= 0.0 {
         return Rgb::ZERO;
     }
-    // About the features here, the fit's value is its constant.
+    // Relative to the features here, the fit's value is its constant.
     let first: [f64; FEATURES] = std::array::from_fn(|i| products[index(0, i + 1)]);
     let centred: [f64; FEATURES] = std::array::from_fn(|i| first[i] - features[i] * all);
     let sums: [Rgb; FEATURES] = std::array::from_fn(|i| value(i + 1) - value(0) * features[i]);
@@ -180,8 +179,8 @@ fn at(moments: &[f64; MOMENTS], features: &[f64; FEATURES]) -> Rgb {
 
 type Matrix = [[f64; FEATURES]; FEATURES];
 
-/// The lower triangle whose square a matrix is (Cholesky), of which the lower half is read; `None` where it is not
-/// positive.
+/// Cholesky decomposition: the lower triangular factor of a matrix, whose lower half is read; `None` if it is not
+/// positive definite.
 fn root(mut matrix: Matrix) -> Option<Matrix> {
     for i in 0..FEATURES {
         for j in 0..=i {
@@ -200,7 +199,7 @@ fn root(mut matrix: Matrix) -> Option<Matrix> {
     Some(matrix)
 }
 
-/// The solution of a lower triangle.
+/// Forward substitution with a lower triangular matrix.
 fn forward(root: &Matrix, mut right: [f64; FEATURES]) -> [f64; FEATURES] {
     for i in 0..FEATURES {
         let inner: f64 = (0..i).map(|k| root[i][k] * right[k]).sum();
@@ -242,7 +241,7 @@ mod tests {
         let draws = draws(3, size.pixels());
         let truth = |i: usize| if i % 20 < 10 { 1.0 } else { 3.0 };
         let values: Vec<Rgb> = draws.iter().enumerate().map(|(i, d)| Rgb::splat(truth(i) + 0.2 * (d - 0.5))).collect();
-        // The variance of a mean of two, in three channels that are alike.
+        // Variance of a mean of two, in three equal channels.
         let variance = vec![0.04 / 12.0 * 3.0 / 2.0; size.pixels()];
         let found = filtered(&values, &variance, &values, &features, size, &[1.0], &Cancel::default());
         let off = |of: &dyn Fn(usize) -> f64| {

@@ -1,24 +1,24 @@
-//! Which way to filter is best where.
+//! Selection of the best filter per pixel.
 
 use super::super::denominators::{Denominators, cross};
 use super::planes::{Size, blurred};
 use raywright_base::parallel;
 use raywright_optics::Rgb;
 
-/// Errors are compared over squares that go so far, twice one after the other.
+/// Radius of the box over which errors are compared; applied twice.
 const REACH: usize = 1;
 
-/// What was chosen passes into each other over so many pixels.
+/// Radius of the blend between different selections.
 const SEAM: usize = 1;
 
-/// A picture of the candidates, each where an independent and unbiased picture finds it the best.
+/// Selects per pixel the candidate with the least error against an independent unbiased picture.
 ///
-/// The squared difference of a candidate from that picture is its squared error, and the picture's variance, which is
-/// the same for all. So their differences are without bias, and many pixels together tell which candidate errs least.
-/// They count by how bright the picture is, as far as the half of which the candidates were made (the first is that)
-/// and the other picture, of half as many samples, tell: a lamp that only one of them has met is bright, and beside it
-/// the dark counts by the dark, so that no filter is good where it spills light. `variance` is that of the half, which
-/// has so many `samples`.
+/// The squared difference from that picture is the candidate's squared error plus the picture's variance, which is
+/// equal for all candidates. So differences between candidates are unbiased, and sums over many pixels identify the
+/// best. Errors are relative to brightness, estimated from the half that the candidates were made from (the first is
+/// that half) and from the other picture, which has half as many samples. A lamp that only one of them has hit counts
+/// as bright, and dark pixels beside it count as dark, so that no filter is preferred where it leaks light. `variance`
+/// is that of the half, which has this number of `samples`.
 pub(super) fn selected(
     candidates: &[Vec<Rgb>],
     witness: &[Rgb],
@@ -75,7 +75,7 @@ mod tests {
         let candidates = [off(0.5, 0.5), off(0.0, 0.8), off(0.8, 0.0)];
         let found = selected(&candidates, &witness, &variance, 8.0, size);
         let wrong = found.iter().filter(|rgb| (**rgb - Rgb::ONE).abs().max() > 0.1).count();
-        // Up to three columns beside where they change.
+        // Up to three columns beside the transition.
         assert!(wrong <= 3 * 40, "{wrong}");
     }
 }

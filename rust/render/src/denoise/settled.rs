@@ -1,4 +1,4 @@
-//! The picture that comes out, and how wrong it is.
+//! The denoised picture and its error estimate.
 
 use super::super::ErrorEstimate;
 use super::super::denominators::{Denominators, cross};
@@ -10,53 +10,53 @@ use super::selection::selected;
 use raywright_base::parallel;
 use raywright_optics::Rgb;
 
-/// A picture that was filtered, and what is known of its error.
+/// A denoised picture with its error estimate.
 #[derive(Clone, Debug)]
 pub struct Denoised {
     /// The picture.
     pub means: Vec<Rgb>,
-    /// What its pixels are off by, squared, as the pixels around tell.
+    /// Squared errors per pixel, averaged over neighbours.
     pub squares: Vec<Rgb>,
-    /// Its error.
+    /// Error of the picture.
     pub error: ErrorEstimate,
 }
 
-/// Errors of a pixel are told by squares that go so far, twice one after the other.
+/// Radius of the box over which squared errors are averaged; applied twice.
 const REACH: usize = 3;
 
-/// Settles for one of the candidates of each half, pixel by pixel, and tells the error of the outcome.
+/// Selects among the candidates of each half, pixel by pixel, and estimates the error of the result.
 ///
-/// One quarter b of the other half chooses among the candidates of a half, and the other, b′, tells what was chosen. Of
-/// a picture x that knows nothing of b′, (x − b′)² is (x − μ)² and the variance of b′, on average; and (b − b′)² / 2 is
-/// that variance on average, whatever x took from b, for x is not in it. So (x − b′)² − (b − b′)² / 2 is the squared
-/// error of x without bias, whatever filter x comes from and however it was chosen. There are four such pictures: of
-/// two halves, each chosen by two quarters. What comes out is their mean, whose squared error is the mean of theirs
-/// less their own variance about it. No variance is known beforehand, and nothing is assumed of filters.
+/// One quarter b of the other half selects among the candidates of a half, and the other quarter, b′, estimates the
+/// error. For a picture x that is independent of b′, the expectation of (x − b′)² is (x − μ)² plus the variance of b′.
+/// The expectation of (b − b′)² / 2 is that variance, even if x depends on b, because x does not occur in it. So (x −
+/// b′)² − (b − b′)² / 2 is an unbiased estimate of the squared error of x, for any filter and selection. There are four
+/// such pictures: two halves, each selected by two quarters. The result is their mean, whose squared error is the mean
+/// of theirs minus their variance about it. No variance needs to be known, and filters may be arbitrary.
 ///
-/// The denominators are as in every other error (`denominators.rs`), but that the filtered picture stands for the
+/// Denominators are as in all error estimates (`denominators.rs`), except that the filtered picture replaces the
 /// neighbours.
 pub fn settle(halves: &Halves, candidates: &[Vec<Vec<Rgb>>; 2]) -> Denoised {
     let size = Size { width: halves.width, height: halves.height };
     let Outcome { picture, errors, apart } = outcome(halves, candidates, size);
-    // Two halves that were filtered apart vary apart: by that much the picture is off at least.
+    // Independently filtered halves differ by their own noise, which bounds the error from below.
     let varies = smooth(&apart, size);
     let squares = smooth(&errors, size).iter().zip(&varies).map(|(error, least)| error.at_least(*least)).collect();
     let error = told(halves, &picture, &errors, &varies);
     Denoised { means: picture, squares, error }
 }
 
-/// What came of the candidates.
+/// Result of the selection.
 struct Outcome {
     picture: Vec<Rgb>,
-    /// The squared errors of its pixels, without bias.
+    /// Unbiased squared errors of its pixels.
     errors: Vec<Rgb>,
-    /// The squares of what the halves differ from it.
+    /// Squared differences of the halves from it.
     apart: Vec<Rgb>,
 }
 
 fn outcome(halves: &Halves, candidates: &[Vec<Vec<Rgb>>; 2], size: Size) -> Outcome {
     let quarters = &halves.quarters;
-    // Whose candidates, who chooses, who tells.
+    // Half of the candidates, quarter that selects, quarter that estimates.
     let ways = [(0, 2, 3), (0, 3, 2), (1, 0, 1), (1, 1, 0)];
     let chosen = ways.map(|(half, chooser, _)| {
         selected(&candidates[half], &quarters[chooser], &halves.variances[half], halves.samples / 2.0, size)
@@ -90,15 +90,15 @@ fn smooth(values: &[Rgb], size: Size) -> Vec<Rgb> {
     (0..values.len()).map(|i| Rgb::new(red[i], green[i], blue[i])).collect()
 }
 
-/// The error of a picture from what its pixels' squared errors are, each without bias and with much noise.
+/// Estimates the error of a picture from unbiased but noisy squared errors of its pixels.
 ///
-/// The noise of each is independent of that of others but for patches, and their squares tell how large that of the sum
-/// is. Denominators are in doubt by as much as others would change: those of the filtered picture alone, where it may
-/// be bright by light that was spilt, with its neighbours and without, and those of the picture with its noise. Few
-/// pixels that carry much count as such if they met what the next ones do not show.
+/// Their noise is independent except within patches, so their squares give the noise of the sum. The uncertainty of
+/// denominators is the change that alternatives would make: those of the filtered picture alone, which may be too
+/// bright by leaked light, with and without neighbours, and those of the noisy picture. A few dominant pixels are
+/// reported if they contain light that their neighbours do not show.
 ///
-/// Squares are skewed: where the sum happens to be small, so do the squares that tell its noise. So the upper end is as
-/// many times the estimate as a logarithm that is as uncertain has it.
+/// The squares are skewed: if the sum happens to be small, so are the squares that estimate its noise. So the upper end
+/// uses the ratio that a logarithm with the same uncertainty would have.
 fn told(halves: &Halves, picture: &[Rgb], errors: &[Rgb], varies: &[Rgb]) -> ErrorEstimate {
     let (width, patch) = (halves.width, halves.patch);
     let across = width.div_ceil(patch);
@@ -140,9 +140,9 @@ fn told(halves: &Halves, picture: &[Rgb], errors: &[Rgb], varies: &[Rgb]) -> Err
     }
 }
 
-/// The upper end of a sum that is uncertain by so much.
+/// Upper end of a sum with this uncertainty.
 fn greatest(sum: f64, away: f64) -> f64 {
-    /// More than that is no longer told by the sum.
+    /// Beyond this ratio the sum carries no information.
     const MOST: f64 = 4.0;
     let times = if sum > 0.0 { (away / sum).min(MOST).exp() } else { 0.0 };
     (sum + away).max(sum * times).max(0.0)
@@ -155,11 +155,11 @@ mod tests {
 
     const SIDE: usize = 24;
 
-    /// Halves whose quarters are 1 and noise, and of a variance that is known.
+    /// Halves whose quarters are 1 plus noise of known variance.
     fn halves(seed: u64) -> Halves {
         let noise = |quarter: u32, i: usize| {
             let mut sampler = Sampler::new(seed, i as u32, quarter);
-            // Skewed, of variance 1.
+            // Skewed noise of variance 1.
             Rgb::new(-sampler.one(0).ln(), -sampler.one(1).ln(), -sampler.one(2).ln())
         };
         let count = SIDE * SIDE;
@@ -175,7 +175,7 @@ mod tests {
 
     #[test]
     fn errors_are_told_without_bias_whatever_was_chosen() {
-        // Candidates: as it is, a part of it, and too bright everywhere.
+        // Candidates: unchanged, an independent part, and too bright everywhere.
         let size = Size { width: SIDE, height: SIDE };
         let (mut told, mut are, mut held) = (0.0, 0.0, 0);
         for seed in 0..60 {
@@ -193,9 +193,9 @@ mod tests {
             let relative = truth / (3 * SIDE * SIDE) as f64 / 1.01;
             held += usize::from((error.low..=error.high).contains(&relative));
         }
-        // A squared error is known to about 0.7, and that of 60 pictures to a fortieth of itself.
+        // A squared error is accurate to about 0.7 of itself, and that of 60 pictures to 1/40.
         assert!((told / are - 1.0).abs() < 0.1, "{told} {are}");
-        // Of intervals that hold in 95 of 100 cases, 51 of 60 or fewer do so once in 600.
+        // For 95 % intervals, 51 of 60 hits or fewer have a probability of 1 in 600.
         assert!(held > 51, "{held}");
     }
 }

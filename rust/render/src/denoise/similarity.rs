@@ -1,18 +1,18 @@
-//! How alike the surroundings of two pixels are.
+//! Similarity of patches around two pixels.
 
 use super::planes::{Area, Size, away};
 
-/// What pixels are compared by.
+/// The data that pixels are compared by.
 pub(super) struct Guide<'a> {
-    /// Channels, one after the other.
+    /// Channels, one plane each.
     pub channels: &'a [Vec<f64>],
-    /// The variance of each pixel, in the sum over channels.
+    /// Variance of each pixel, summed over channels.
     pub variance: &'a [f64],
-    /// What is added to variances, so that what has none can be compared.
+    /// Added to variances, so that noise-free data can be compared.
     pub least: f64,
 }
 
-/// Compares patches; its memory is used again.
+/// Compares patches; its buffers are reused.
 #[derive(Default)]
 pub(super) struct Comparing {
     points: Vec<f64>,
@@ -20,10 +20,10 @@ pub(super) struct Comparing {
 }
 
 impl Comparing {
-    /// For each pixel of an area, how far its patch is from that about the pixel `offset` away: the squared difference
-    /// less what noise makes of it, over the variance of both, and its mean over the patch (Rousselle, Knaus and
-    /// Zwicker, "Adaptive Rendering with Non-Local Means Filtering", 2012). Infinite where there is no such pixel.
-    /// Patches go `reach` pixels each way.
+    /// For each pixel of an area, the distance of its patch from that at `offset`: the squared difference minus its
+    /// expectation from noise, over the variance of both, averaged over the patch (Rousselle, Knaus and Zwicker,
+    /// "Adaptive Rendering with Non-Local Means Filtering", 2012). Infinite if the other pixel is outside the picture.
+    /// Patches extend `reach` pixels in each direction.
     pub fn distances(
         &mut self,
         guide: &Guide,

@@ -1,8 +1,8 @@
-//! Blackman and Harris's window.
+//! The Blackman-Harris filter.
 
 use super::{Profile, length};
 
-/// A sum of four cosines with hardly any side lobes, nowhere negative (Harris, "On the Use of Windows for Harmonic
+/// A sum of four cosines with almost no side lobes, nowhere negative (Harris, "On the Use of Windows for Harmonic
 /// Analysis with the Discrete Fourier Transform", 1978: the minimum four-term window).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BlackmanHarris {
@@ -10,7 +10,7 @@ pub struct BlackmanHarris {
 }
 
 impl BlackmanHarris {
-    /// A window that ends at `radius`.
+    /// Creates a window that ends at `radius`.
     pub fn new(radius: f64) -> Result<Self, String> {
         Ok(Self { radius: length("radius", radius)? })
     }
@@ -22,7 +22,7 @@ impl Profile for BlackmanHarris {
     }
 
     fn evaluate(&self, x: f64) -> f64 {
-        // All cosines from the first, by Chebyshev's polynomials.
+        // All cosines from the first, by Chebyshev polynomials.
         let c = (std::f64::consts::PI * x / self.radius).cos();
         0.35875 + c * 0.48829 + (2.0 * c * c - 1.0) * 0.14128 + c * (4.0 * c * c - 3.0) * 0.01168
     }

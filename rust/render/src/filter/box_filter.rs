@@ -1,15 +1,15 @@
-//! The mean over a square.
+//! The box filter.
 
 use super::{Filter, length};
 
-/// The mean over a square: with a radius of half a pixel, what a pixel of a sensor sees. Every sample has the weight 1.
+/// The mean over a square; with a radius of half a pixel, that of an ideal sensor. Every sample has weight 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Box {
     radius: f64,
 }
 
 impl Box {
-    /// A square of side 2 · `radius`.
+    /// Creates a square of side 2 · `radius`.
     pub fn new(radius: f64) -> Result<Self, String> {
         Ok(Self { radius: length("radius", radius)? })
     }
@@ -33,7 +33,7 @@ impl Filter for Box {
 
     #[inline]
     fn sample(&self, u: [f64; 2]) -> ([f64; 2], f64) {
-        // Exact for the default radius, as u has few enough bits.
+        // Exact for the default radius, because u has few enough bits.
         (u.map(|u| (u - 0.5) * (2.0 * self.radius)), 1.0)
     }
 }

@@ -1,9 +1,9 @@
-//! A filter that ends where the film does.
+//! Filters cropped at the edges of the film.
 
 use super::Filter;
 use std::boxed::Box as Boxed;
 
-/// Another filter, of which pixels near the edge of the film take the part that lies on it, as if it were the whole.
+/// Another filter; near the edge of the film, pixels renormalise its part within the film.
 #[derive(Debug)]
 pub struct Cropped(pub Boxed<dyn Filter>);
 
@@ -25,10 +25,10 @@ impl Filter for Cropped {
     }
 }
 
-/// The part of a filter along one axis that lies on the film, for a pixel.
+/// The part of a filter along one axis that lies within the film, for a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Part {
-    /// Which random numbers draw it.
+    /// Range of random numbers that sample it.
     ends: [f64; 2],
     /// Its integral.
     integral: f64,
@@ -37,14 +37,14 @@ struct Part {
 impl Part {
     const WHOLE: Self = Self { ends: [0.0, 1.0], integral: 1.0 };
 
-    /// Of a pixel whose centre is at these distances from the ends of the film.
+    /// Computes the part for a pixel whose center is at these distances from the ends of the film.
     fn new(filter: &dyn Filter, to_ends: [f64; 2]) -> Self {
         let radius = filter.radius();
         if to_ends.iter().all(|&to| to >= radius) {
             return Self::WHOLE;
         }
         let [low, high] = [-to_ends[0].min(radius), to_ends[1].min(radius)];
-        // Offsets grow with u: halved until no number lies between.
+        // Offsets increase with u, so bisection converges.
         let number_of = |offset: f64| {
             let [mut below, mut above] = [0.0, 1.0];
             for _ in 0..60 {
@@ -60,20 +60,20 @@ impl Part {
     }
 }
 
-/// The integral of a filter along x at y = 0.
+/// Integral of a filter along x at y = 0.
 fn integral(filter: &dyn Filter, low: f64, high: f64) -> f64 {
-    // By midpoints, of which a few lie between kinks.
+    // By midpoints, several between kinks.
     const STEPS: u32 = 1 << 12;
     let step = (high - low) / f64::from(STEPS);
     (0..STEPS).map(|i| filter.evaluate(low + (f64::from(i) + 0.5) * step, 0.0)).sum::<f64>() * step
 }
 
-/// How a film's pixels draw by a filter that is the product of one along either axis.
+/// Cropping of a separable filter for every row and column of a film.
 #[derive(Debug)]
 pub struct Edges([Vec<Part>; 2]);
 
 impl Edges {
-    /// For a film of so many pixels; none where its edges make no difference.
+    /// Computes the cropping for a film size; `None` if the edges have no effect.
     pub fn new(filter: &dyn Filter, size: [u32; 2]) -> Option<Self> {
         let part = |pixel: u32, size: u32| {
             let centre = f64::from(pixel) + 0.5;
@@ -82,15 +82,15 @@ impl Edges {
         filter.is_cropped().then(|| Self(size.map(|size| (0..size).map(|pixel| part(pixel, size)).collect())))
     }
 
-    /// What a uniform point of the unit square becomes for a pixel, so that what is drawn with it lies on the film; and
-    /// by what its weight is multiplied.
+    /// Maps a point of the unit square so that a pixel's sample lies within the film. Also returns the factor on its
+    /// weight.
     pub fn on_film(&self, pixel: [u32; 2], u: [f64; 2]) -> ([f64; 2], f64) {
         let parts = [0, 1].map(|axis| self.0[axis][pixel[axis] as usize]);
         let weight = parts.iter().map(|part| (part.ends[1] - part.ends[0]) / part.integral).product();
         ([0, 1].map(|axis| parts[axis].ends[0] + u[axis] * (parts[axis].ends[1] - parts[axis].ends[0])), weight)
     }
 
-    /// How much of the filter of a pixel lies on the film.
+    /// Share of a pixel's filter within the film.
     pub fn share(&self, [x, y]: [u32; 2]) -> f64 {
         self.0[0][x as usize].integral * self.0[1][y as usize].integral
     }
@@ -108,7 +108,7 @@ mod tests {
         let flat = Box::new(1.5).unwrap();
         let filters: [Boxed<dyn Filter>; 3] = [Boxed::new(bell()), Boxed::new(ringing()), Boxed::new(flat)];
         for filter in filters.map(Cropped) {
-            // Far from the ends of y, where the middle weighs the root of what it does on both axes.
+            // Far from the ends of y, where the center's weight is the square root of that on both axes.
             let edges = Edges::new(&filter, [7, 9]).unwrap();
             let middle = filter.sample([0.5; 2]).1.sqrt();
             for (column, way) in [(0, 1.0), (1, 1.0), (3, 0.0), (6, -1.0)] {
@@ -123,7 +123,7 @@ mod tests {
                     mean += weight * factor / middle * x / f64::from(STEPS);
                 }
                 assert!((weights - 1.0).abs() < 2e-4, "{filter:?} {column} {weights}");
-                // The centre of what is left lies inwards, unless what is lost was negative.
+                // The centroid of the remaining part is shifted inwards, unless the removed part was negative.
                 if column != 1 {
                     assert!((mean.abs() > 0.05) == (way != 0.0) && mean * way >= 0.0, "{filter:?} {column} {mean}");
                 }
@@ -137,7 +137,7 @@ mod tests {
         let edges = Edges::new(&filter, [9, 9]).unwrap();
         assert_eq!(edges.on_film([4, 4], [0.3, 0.7]), ([0.3, 0.7], 1.0));
         assert_eq!(edges.share([4, 4]), 1.0);
-        // Half a pixel and one and a half from the edge, by the bell less its value at its radius.
+        // Half a pixel and one and a half from the edge, by the Gaussian minus its value at its radius.
         let part = |to: f64| Part::new(&filter, [to, 9.0]).integral;
         let bell = |x: f64| (-2.0 * x * x).exp() - (-8f64).exp();
         let at = |low: f64, i: i32| bell(low + (f64::from(i) + 0.5) * (2.0 - low) / 4e3);

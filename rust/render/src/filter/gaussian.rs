@@ -1,8 +1,8 @@
-//! The bell.
+//! The Gaussian filter.
 
 use super::{Profile, length};
 
-/// A normal distribution, less its value at the radius, so that it ends without a step (Pharr, Jakob and Humphreys,
+/// A normal distribution minus its value at the radius, so that it is continuous there (Pharr, Jakob and Humphreys,
 /// "Physically Based Rendering", 4th edition, 2023, section 8.8.4).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gaussian {
@@ -11,7 +11,7 @@ pub struct Gaussian {
 }
 
 impl Gaussian {
-    /// A bell of standard deviation `sigma`, cut off at `radius`.
+    /// Creates a Gaussian of standard deviation `sigma`, cut off at `radius`.
     pub fn new(radius: f64, sigma: f64) -> Result<Self, String> {
         Ok(Self { radius: length("radius", radius)?, sigma: length("sigma", sigma)? })
     }
@@ -28,11 +28,11 @@ impl Profile for Gaussian {
         if end < -0.5 * WHOLE * WHOLE {
             here.exp()
         } else {
-            // exp(here) − exp(end), keeping its digits where the bell is much wider than the radius.
+            // exp(here) − exp(end), which keeps its digits if the Gaussian is much wider than the radius.
             end.exp() * (here - end).exp_m1()
         }
     }
 }
 
-/// So many standard deviations from its centre, a bell is less than rounding is at the centre.
+/// Beyond this number of standard deviations, the value is below the rounding error at the center.
 const WHOLE: f64 = 9.0;

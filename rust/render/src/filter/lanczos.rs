@@ -1,20 +1,20 @@
-//! The windowed sinc.
+//! The Lanczos filter: a windowed sinc.
 
 use super::Profile;
 use std::f64::consts::PI;
 
-/// sinc(x) · sinc(x / n), cut off at its n-th zero: the ideal filter under the middle of another one (Duchon, "Lanczos
-/// Filtering in One and Two Dimensions", 1979). Sharpest of all, and rings most.
+/// sinc(x) · sinc(x / n), cut off at its n-th zero: the ideal filter windowed by the central lobe of another (Duchon,
+/// "Lanczos Filtering in One and Two Dimensions", 1979). It is the sharpest filter here and rings most.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Lanczos {
     lobes: u32,
 }
 
 impl Lanczos {
-    /// The greatest number of lobes.
+    /// Maximum number of lobes.
     pub const MOST: u32 = 16;
 
-    /// A filter that ends at `lobes` pixels.
+    /// Creates a filter that ends at `lobes` pixels.
     pub fn new(lobes: u32) -> Result<Self, String> {
         if (1..=Self::MOST).contains(&lobes) {
             Ok(Self { lobes })
@@ -30,7 +30,7 @@ impl Profile for Lanczos {
     }
 
     fn evaluate(&self, x: f64) -> f64 {
-        // The sine of π x by its distance to the nearest zero, so that zeros are exact.
+        // The sine of π x from the distance to the nearest zero, so that zeros are exact.
         let whole = x.round();
         let sine = (PI * (x - whole)).sin() * if whole as i64 % 2 == 0 { 1.0 } else { -1.0 };
         let sinc = if x == 0.0 { 1.0 } else { sine / (PI * x) };

@@ -1,9 +1,9 @@
-//! Mitchell and Netravali's cubics.
+//! The Mitchell-Netravali filter.
 
 use super::{Profile, length};
 
 /// A cubic spline with a negative lobe, which sharpens (Mitchell and Netravali, "Reconstruction Filters in Computer
-/// Graphics", 1988). B blurs, C rings; they advise B + 2C = 1, and B = C = 1/3 of these.
+/// Graphics", 1988). B blurs, C rings; the authors advise B + 2C = 1, and B = C = 1/3 among these.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mitchell {
     radius: f64,
@@ -12,7 +12,7 @@ pub struct Mitchell {
 }
 
 impl Mitchell {
-    /// A spline that ends at `radius`: 2 pixels make it the one that was published.
+    /// Creates a spline that ends at `radius`; 2 pixels give the published filter.
     pub fn new(radius: f64, b: f64, c: f64) -> Result<Self, String> {
         for (name, value) in [("b", b), ("c", c)] {
             if !(0.0..=1.0).contains(&value) {
@@ -33,7 +33,7 @@ impl Profile for Mitchell {
         if x < 1.0 {
             ((12.0 - 9.0 * b - 6.0 * c) * x + (-18.0 + 12.0 * b + 6.0 * c)) * x * x + (6.0 - 2.0 * b)
         } else {
-            // The outer cubic by its powers of 2 − x, so that it ends at 0.
+            // The outer cubic in powers of 2 − x, so that it ends at exactly 0.
             let y = 2.0 - x;
             ((b + 6.0 * c) * y - 6.0 * c) * y * y
         }

@@ -1,8 +1,8 @@
-//! What part of the film a pixel is the mean of.
+//! Reconstruction filters.
 //!
-//! Each pixel takes its own samples, and places them by its filter: an offset from the pixel's centre is drawn, and its
-//! sample counts with the weight that this draw calls for (Ernst, Stamminger and Greiner, "Filter Importance Sampling",
-//! 2006). No sample is shared by pixels, so their errors stay independent.
+//! Each pixel takes its own samples, placed by its filter: an offset from the pixel's center is sampled, and the sample
+//! has a weight (Ernst, Stamminger and Greiner, "Filter Importance Sampling", 2006). Pixels share no samples, so their
+//! errors are independent.
 
 mod blackman_harris;
 mod box_filter;
@@ -26,19 +26,19 @@ use raywright_base::math::LANES;
 use raywright_base::sampling::Pairs;
 use std::fmt::Debug;
 
-/// A reconstruction filter, centred on its pixel. Lengths are in pixels.
+/// A reconstruction filter, centered on its pixel. Lengths are in pixels.
 pub trait Filter: Debug + Send + Sync {
-    /// It is 0 where |x| or |y| exceeds this.
+    /// The filter is 0 where |x| or |y| exceeds this radius.
     fn radius(&self) -> f64;
 
-    /// Its value at an offset from the centre. It integrates to 1 over the plane, and may be negative.
+    /// Value at an offset from the center. It integrates to 1 over the plane, and may be negative.
     fn evaluate(&self, x: f64, y: f64) -> f64;
 
-    /// An offset for a uniform point of the unit square, and the weight of what is found there: the filter over the
-    /// density of the draw, whose mean is 1. It is negative where the filter is.
+    /// Samples an offset by a point of the unit square; the weight is the filter over the density, with mean 1. It is
+    /// negative where the filter is.
     fn sample(&self, u: [f64; 2]) -> ([f64; 2], f64);
 
-    /// The same for a point of each lane.
+    /// Samples offsets for each lane.
     fn sample_lanes(&self, u: &Pairs, offsets: &mut Pairs, weights: &mut [f64; LANES]) {
         for lane in 0..LANES {
             let offset;
@@ -47,13 +47,13 @@ pub trait Filter: Debug + Send + Sync {
         }
     }
 
-    /// Whether pixels near the edge of the film take only what lies on it ([`Edges`]).
+    /// Returns whether pixels near the edge of the film use only the part within it ([`Edges`]).
     fn is_cropped(&self) -> bool {
         false
     }
 }
 
-/// A length that makes sense, or why it does not.
+/// Checks that a length is in range; the error says why not.
 fn length(name: &str, value: f64) -> Result<f64, String> {
     if LENGTHS.contains(&value) {
         Ok(value)
@@ -62,7 +62,7 @@ fn length(name: &str, value: f64) -> Result<f64, String> {
     }
 }
 
-/// No picture is helped by less or by more.
+/// Beyond this range a filter makes no sense.
 const LENGTHS: std::ops::RangeInclusive<f64> = 1e-6..=64.0;
 
 #[cfg(test)]

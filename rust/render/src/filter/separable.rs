@@ -1,45 +1,44 @@
-//! Filters that are a product of one function of x and the same function of y.
+//! Separable filters: a product of the same function of x and of y.
 
 use super::Filter;
 use std::fmt;
 
-/// A filter along one axis, even in x. Its scale is arbitrary, its integral must not be 0.
+/// A filter along one axis, even in x. Its scale is arbitrary; its integral must not be 0.
 pub trait Profile: fmt::Debug + Send + Sync {
-    /// It is 0 beyond.
+    /// The profile is 0 beyond this radius.
     fn radius(&self) -> f64;
 
-    /// Its value at 0 ≤ x ≤ radius.
+    /// Value at 0 ≤ x ≤ radius.
     fn evaluate(&self, x: f64) -> f64;
 
-    /// Into how many equal parts the radius is cut, at least: what has kinks or zeros inside has them where parts meet.
+    /// Minimum number of equal parts of the radius, chosen so that kinks and zeros lie between parts.
     fn parts(&self) -> usize {
         1
     }
 }
 
-/// A filter made of its profile along each axis.
+/// A separable filter made of its profile.
 ///
-/// What is drawn has a density that is linear between the nodes of a table, and there agrees with |f|: its integral is
-/// inverted in closed form, it is known exactly at every point, and so is the weight f / density, which stays within a
-/// thousandth of the same size wherever f is not near 0. Stratified numbers give stratified offsets, as the map grows
-/// with u.
+/// Offsets have a density that is linear between the nodes of a table and equals |f| there. Its integral is inverted in
+/// closed form. The weight f / density is exact, and its magnitude is constant to a thousandth wherever f is not near
+/// 0. The map increases with u, so stratified numbers give stratified offsets.
 #[derive(Clone)]
 pub struct Separable<P> {
     profile: P,
     radius: f64,
     /// 1 over the integral of the profile.
     scale: f64,
-    /// |f| at the nodes, scaled so that it integrates to 1 as it is interpolated.
+    /// |f| at the nodes, scaled so that its interpolation integrates to 1.
     density: Vec<f64>,
-    /// The integral of the density up to each node.
+    /// Integral of the density up to each node.
     cumulative: Vec<f64>,
-    /// The last cell that begins at or before each of as many equal steps of u as there are cells (Chen and Asau,
-    /// 1974).
+    /// For equal steps of u, as many as there are cells, the last cell that begins at or before the step (Chen and
+    /// Asau, 1974).
     guide: Vec<u16>,
 }
 
 impl<P: Profile> Separable<P> {
-    /// Cells over the whole width, at least.
+    /// Minimum number of cells over the whole width.
     const CELLS: usize = 256;
 
     /// Tabulates a profile.
@@ -64,13 +63,13 @@ impl<P: Profile> Separable<P> {
         Self { radius, scale: 1.0 / integral, profile, density, cumulative, guide }
     }
 
-    /// Its value along one axis; integrates to 1.
+    /// Value along one axis; integrates to 1.
     #[inline]
     pub fn along(&self, x: f64) -> f64 {
         if x.abs() <= self.radius { self.scale * self.profile.evaluate(x.abs()) } else { 0.0 }
     }
 
-    /// An offset along one axis for u in (0, 1), and the density of the draw there.
+    /// Samples an offset along one axis for u in (0, 1); also returns its density.
     #[inline]
     fn draw(&self, u: f64) -> (f64, f64) {
         let cells = self.guide.len();
@@ -80,9 +79,9 @@ impl<P: Profile> Separable<P> {
         }
         let (low, high) = (self.density[cell], self.density[cell + 1]);
         let span = self.cumulative[cell + 1] - self.cumulative[cell];
-        // Not quite at a node, where the density may be 0, and with it the filter.
+        // Not exactly at a node, where the density and the filter may be 0.
         let share = ((u - self.cumulative[cell]) / span).clamp(1e-12, 1.0 - 1e-12);
-        // The root of the quadratic, written without a difference of what is nearly equal.
+        // Root of the quadratic, without cancellation.
         let root = ((1.0 - share) * low * low + share * high * high).sqrt();
         let within = (share * (low + high) / (low + root)).min(1.0);
         let half = 0.5 * cells as f64;
@@ -97,7 +96,7 @@ impl<P: fmt::Debug> fmt::Debug for Separable<P> {
     }
 }
 
-/// The integral of a profile over `start..start + step`, by Gauss and Legendre's five points: exact up to degree 9.
+/// Integral of a profile over `start..start + step`, by the five-point Gauss-Legendre rule: exact up to degree 9.
 fn quadrature(profile: &impl Profile, start: f64, step: f64) -> f64 {
     const POINTS: [(f64, f64); 3] = [
         (0.0, 0.568_888_888_888_888_9),
@@ -130,9 +129,9 @@ mod tests {
     use super::super::{BlackmanHarris, Gaussian, Lanczos, Mitchell, Triangle};
     use super::*;
 
-    /// The integrals over u of the weight and of the weight times the offset, along one axis.
+    /// Integrals over u of the weight and of the weight times the offset, along one axis.
     fn moments<P: Profile>(filter: &Separable<P>) -> [f64; 2] {
-        // By midpoints cell by cell, since weights have kinks between cells.
+        // By midpoints within each cell, because weights have kinks between cells.
         const STEPS: u32 = 1024;
         let mut moments = [0.0; 2];
         for ends in filter.cumulative.windows(2) {
@@ -153,7 +152,7 @@ mod tests {
     fn assert_moments<P: Profile>(profile: P) {
         let filter = Separable::new(profile);
         let [mean, first] = moments(&filter);
-        // Midpoints leave at most 1/24 of the square of the step times the second derivative.
+        // The midpoint rule has an error of at most 1/24 of the squared step times the second derivative.
         assert!((mean - 1.0).abs() < 1e-8, "{filter:?}: {mean}");
         assert!(first.abs() < 1e-13 * filter.radius(), "{filter:?}: {first}");
     }

@@ -1,4 +1,4 @@
-//! What holds of every filter.
+//! Properties of every filter.
 
 use super::*;
 use raywright_base::sampling::chi_square::assert_frequencies;
@@ -21,7 +21,7 @@ fn filters() -> Vec<std::boxed::Box<dyn Filter>> {
     all
 }
 
-/// The mean of a function over (0, 1), by midpoints.
+/// Mean of a function over (0, 1), by midpoints.
 fn mean(of: impl Fn(f64) -> f64) -> f64 {
     const STEPS: u32 = 1 << 16;
     (0..STEPS).map(|i| of((f64::from(i) + 0.5) / f64::from(STEPS))).sum::<f64>() / f64::from(STEPS)
@@ -31,7 +31,7 @@ fn mean(of: impl Fn(f64) -> f64) -> f64 {
 fn integrates_to_1_and_is_symmetric() {
     for filter in filters() {
         let radius = filter.radius();
-        // Simpson's rule along x at y = 0, over what the same gives along the diagonal of axes.
+        // Simpson's rule along x at y = 0, over the square root of the center's value.
         let along = |x: f64| filter.evaluate(x, 0.0) / filter.evaluate(0.0, 0.0).sqrt();
         let steps = 4 * 840;
         let step = radius / f64::from(steps);
@@ -61,8 +61,7 @@ fn draws_by_the_size_of_the_filter() {
             let cell = |x: f64| (((x / radius + 1.0) * SIDE as f64 / 2.0) as usize).min(SIDE - 1);
             counts[cell(x) * SIDE + cell(y)] += 1;
         }
-        // |f| over each cell along one axis, by midpoints; the table that is drawn from differs by less than a
-        // thousandth.
+        // |f| over each cell along one axis, by midpoints; the sampling table differs by less than a thousandth.
         let steps = 2000;
         let share = |cell: usize| {
             let at = |i: usize| (2.0 * (cell as f64 + (i as f64 + 0.5) / steps as f64) / SIDE as f64 - 1.0) * radius;
@@ -85,7 +84,7 @@ fn offsets_grow_with_u_and_weights_hardly_vary() {
             assert!(x >= last, "{filter:?} at {i}");
             last = x;
         }
-        // The mean square of the weight is as if it were of one size, ∫|f| over ∫f, but for what the table leaves.
+        // The mean squared weight is that of a constant magnitude, ∫|f| over ∫f, up to the table's error.
         let (of, squares) = (mean(|u| filter.sample([u, 0.5]).1.abs()), mean(|u| filter.sample([u, 0.5]).1.powi(2)));
         assert!(squares / (of * of) - 1.0 < 2e-3, "{filter:?}: {}", squares / (of * of) - 1.0);
     }
@@ -93,7 +92,7 @@ fn offsets_grow_with_u_and_weights_hardly_vary() {
 
 #[test]
 fn a_ramp_comes_out_as_it_is() {
-    // Over whole batches, means of weight · (a + b·x + c·y), within five standard errors.
+    // Means of weight · (a + b·x + c·y) over whole batches, within five standard errors.
     for filter in filters() {
         let kind = SamplerKind::Sobol(BatchSize::new(64).unwrap());
         let ramp = |x: f64, y: f64| 3.0 + 0.5 * x - 0.25 * y;
@@ -118,7 +117,7 @@ fn a_ramp_comes_out_as_it_is() {
 fn profiles_at_known_places() {
     let close = |a: f64, b: f64| assert!((a - b).abs() < 1e-14, "{a}, not {b}");
     let mitchell = Mitchell::new(2.0, 1.0 / 3.0, 1.0 / 3.0).unwrap();
-    // 8/9, 1/18 and −1/32 at 0, 1 and 3/2 (times the 6 that the cubics are written with).
+    // 8/9, 1/18 and −1/32 at 0, 1 and 3/2 (times the factor of 6 in the cubics).
     for (x, value) in [(0.0, 16.0 / 3.0), (1.0, 1.0 / 3.0), (1.5, -0.208_333_333_333_333_34), (2.0, 0.0)] {
         close(mitchell.evaluate(x), value);
     }
@@ -132,7 +131,7 @@ fn profiles_at_known_places() {
     close(BlackmanHarris::new(2.0).unwrap().evaluate(2.0), 0.000_06);
     close(Gaussian::new(1.5, 0.5).unwrap().evaluate(0.0), 1.0 - (-4.5f64).exp());
     assert_eq!(Gaussian::new(1.5, 0.5).unwrap().evaluate(1.5), 0.0);
-    // A wide bell is a parabola but for σ⁻², and a narrow one is whole.
+    // A wide Gaussian is a parabola up to σ⁻², and a narrow one is complete.
     let middle = |radius, sigma| Separable::new(Gaussian::new(radius, sigma).unwrap()).along(0.0);
     assert!((middle(1.0, 64.0) / 0.75 - 1.0).abs() < 1.0 / 4096.0);
     for sigma in [1e-6, 1e-3, 1.0] {

@@ -1,15 +1,15 @@
-//! The tent.
+//! The triangle (tent) filter.
 
 use super::{Profile, length};
 
-/// Falls evenly from the centre to 0 at the radius: with a radius of one pixel, linear interpolation.
+/// A linear falloff from the center to 0 at the radius; with a radius of one pixel, linear interpolation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Triangle {
     radius: f64,
 }
 
 impl Triangle {
-    /// A tent of this half width.
+    /// Creates a tent of this half width.
     pub fn new(radius: f64) -> Result<Self, String> {
         Ok(Self { radius: length("radius", radius)? })
     }
