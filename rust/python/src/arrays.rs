@@ -1,4 +1,4 @@
-//! numpy arrays as slices of numbers or of vectors.
+//! Conversion of numpy arrays to slices of numbers or vectors.
 
 use numpy::{
     Element, PyArrayDyn, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArrayDyn, PyReadwriteArrayDyn,
@@ -35,7 +35,7 @@ impl<'py> FromPyObject<'_, 'py> for Triples<'py> {
     }
 }
 
-/// The rows of a [`Triples`], which threads may share.
+/// The rows of a [`Triples`], shareable between threads.
 #[derive(Clone, Copy)]
 pub enum Rows<'a> {
     /// float64.
@@ -46,9 +46,9 @@ pub enum Rows<'a> {
 
 /// A row of three numbers.
 pub trait Row: Copy {
-    /// The row as a vector.
+    /// Converts the row to a vector.
     fn vector(self) -> DVec3;
-    /// A vector as a row, rounded to its type.
+    /// Converts a vector to a row, rounded to its type.
     fn of(vector: DVec3) -> Self;
 }
 
@@ -75,7 +75,7 @@ impl Row for [f32; 3] {
 }
 
 impl Triples<'_> {
-    /// Its rows, and which of them each ray has if it is broadcast.
+    /// Its rows and, if they are broadcast, the row of each ray.
     pub fn repeated(&self, name: &str) -> PyResult<(Rows<'_>, Option<Repeats>)> {
         let shape = match self {
             Self::Double(array) => array.shape(),
@@ -96,7 +96,7 @@ impl Triples<'_> {
         })
     }
 
-    /// Its rows; `name` is the argument's, for the error if it is not what the package promised.
+    /// Its rows; `name` is the argument's, for the error if the layout is wrong.
     pub fn rows(&self, name: &str) -> PyResult<Rows<'_>> {
         Ok(match self {
             Self::Double(array) => Rows::Double(vectors(name, array)?),
@@ -106,7 +106,7 @@ impl Triples<'_> {
 }
 
 impl<'a> Rows<'a> {
-    /// Some of them, or the one that serves for all.
+    /// A range of rows, or the single row for all.
     pub fn some(self, start: usize, count: usize) -> Self {
         match self {
             Rows::Single(rows) => Rows::Single(if rows.len() == 1 { rows } else { &rows[start..][..count] }),
@@ -116,7 +116,7 @@ impl<'a> Rows<'a> {
 }
 
 impl Rows<'_> {
-    /// How many there are.
+    /// Number of rows.
     pub fn len(&self) -> usize {
         match self {
             Self::Double(rows) => rows.len(),
@@ -124,7 +124,7 @@ impl Rows<'_> {
         }
     }
 
-    /// One of them.
+    /// A row as a vector.
     #[inline(always)]
     pub fn get(&self, i: usize) -> DVec3 {
         match self {
@@ -133,7 +133,7 @@ impl Rows<'_> {
         }
     }
 
-    /// All of them as vertices, with all of their digits.
+    /// All rows as vertices, without rounding.
     pub fn vertices(self) -> Vertices {
         match self {
             Self::Double(rows) => Vertices::Double(rows.iter().map(|&r| DVec3::from_array(r)).collect()),
@@ -141,7 +141,7 @@ impl Rows<'_> {
         }
     }
 
-    /// All of them, rounded to f32.
+    /// All rows, rounded to f32.
     pub fn to_single(self) -> Vec<Vec3> {
         match self {
             Self::Double(rows) => rows.iter().map(|&r| DVec3::from_array(r).as_vec3()).collect(),
@@ -150,7 +150,7 @@ impl Rows<'_> {
     }
 }
 
-/// A number for all rays, or an array of one for each.
+/// One number for all rays, or an array with one per ray.
 pub enum Numbers<'py> {
     /// A float.
     One([f64; 1]),
@@ -170,7 +170,7 @@ impl<'py> FromPyObject<'_, 'py> for Numbers<'py> {
 }
 
 impl Numbers<'_> {
-    /// All of them, or the only one, and which of them each ray has if they are broadcast.
+    /// All numbers, or the single one and, if they are broadcast, the index of each ray.
     pub fn repeated(&self, name: &str) -> PyResult<(&[f64], Option<Repeats>)> {
         match self {
             Self::One(number) => Ok((number, None)),
@@ -178,7 +178,7 @@ impl Numbers<'_> {
         }
     }
 
-    /// All of them, or the only one; `name` is the argument's.
+    /// All numbers, or the single one; `name` is the argument's.
     pub fn slice(&self, name: &str) -> PyResult<&[f64]> {
         match self {
             Self::One(number) => Ok(number),
@@ -194,7 +194,7 @@ fn contiguous<'a, T: Element>(name: &str, array: &'a PyReadonlyArrayDyn<'_, T>) 
     }
 }
 
-/// The vectors of a (..., K) array.
+/// Vectors of a (..., K) array.
 pub fn vectors<'a, T: Element, const K: usize>(
     name: &str,
     array: &'a PyReadonlyArrayDyn<'_, T>,
@@ -205,7 +205,7 @@ pub fn vectors<'a, T: Element, const K: usize>(
     }
 }
 
-/// The rows of an (N, 2) array of either float type, rounded to f32.
+/// Rows of an (N, 2) array of either float type, rounded to f32.
 pub fn pairs(name: &str, array: &Bound<'_, PyAny>) -> PyResult<Vec<[f32; 2]>> {
     if let Ok(doubles) = array.extract::<PyReadonlyArray2<'_, f64>>() {
         return Ok(rows::<f64, 2>(name, &doubles)?.iter().map(|row| row.map(|x| x as f32)).collect());
@@ -213,7 +213,7 @@ pub fn pairs(name: &str, array: &Bound<'_, PyAny>) -> PyResult<Vec<[f32; 2]>> {
     Ok(rows::<f32, 2>(name, &array.extract()?)?.to_vec())
 }
 
-/// The rows of an (N,K) array.
+/// Rows of an (N, K) array.
 pub fn rows<'a, T: Element, const K: usize>(name: &str, array: &'a PyReadonlyArray2<'_, T>) -> PyResult<&'a [[T; K]]> {
     match array.as_slice() {
         Ok(all) if array.shape()[1] == K => Ok(all.as_chunks().0),
@@ -223,20 +223,19 @@ pub fn rows<'a, T: Element, const K: usize>(name: &str, array: &'a PyReadonlyArr
     }
 }
 
-/// The numbers of an (N,) array.
+/// Numbers of an (N,) array.
 pub fn numbers<'a, T: Element>(name: &str, array: &'a PyReadonlyArray1<'_, T>) -> PyResult<&'a [T]> {
     array.as_slice().map_err(|_| PyValueError::new_err(format!("{name} must be C-contiguous")))
 }
 
-/// An array with the leading shape `lead`, and `width` entries a row if that is not none. Its entries are anything, and
-/// it is for the caller to write every one: to write zeros first would be one more pass over memory, and by one thread
-/// alone.
+/// An uninitialised array with leading shape `lead`, and `width` entries per row if it is given. The caller must write
+/// every entry. Zeroing would add a single-threaded pass over memory.
 pub fn unwritten<'py, T: Element>(
     py: Python<'py>,
     lead: &[usize],
     width: Option<usize>,
 ) -> PyResult<Bound<'py, PyArrayDyn<T>>> {
-    // Zeros take less time than a call of a Python function up to here.
+    // For small arrays zeroing is faster than the call of a Python function.
     const SMALL: usize = 4096;
     static EMPTY: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
     let shape: Vec<usize> = lead.iter().copied().chain(width).collect();
@@ -247,8 +246,8 @@ pub fn unwritten<'py, T: Element>(
     Ok(empty.call1((PyTuple::new(py, shape)?, T::get_dtype(py)))?.cast_into()?)
 }
 
-/// The array, to be written to: of the shape that [`unwritten`] would give it, C-contiguous, and shared with none that
-/// is read meanwhile. `name` is the argument's.
+/// Borrows an array for writing. It must have the shape that [`unwritten`] would give it, be C-contiguous, and not
+/// overlap with arrays that are read. `name` is the argument's.
 pub fn writable<'py, T: Element>(
     name: &str,
     array: &Bound<'py, PyArrayDyn<T>>,
@@ -264,7 +263,7 @@ pub fn writable<'py, T: Element>(
     array.try_readwrite().map_err(|_| PyValueError::new_err(format!("{name} cannot be written to: it {why}")))
 }
 
-/// The array, which can be read only from now on.
+/// Makes the array read-only.
 pub fn sealed<'py, T: Element>(array: Bound<'py, PyArrayDyn<T>>) -> PyResult<Bound<'py, PyArrayDyn<T>>> {
     array.try_readwrite()?.make_nonwriteable();
     Ok(array)

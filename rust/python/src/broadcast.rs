@@ -1,20 +1,20 @@
-//! Arrays that are broadcast to the shape of all rays, read a chunk of rays at a time: what repeats is held once.
+//! Broadcast arrays, read a chunk of rays at a time without expanding them.
 
 use numpy::ndarray::Axis;
 use numpy::{Element, PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::PyResult;
 use pyo3::exceptions::PyValueError;
 
-/// Which row each ray has of an array that is broadcast along some dimensions.
+/// Maps rays to the rows of an array that is broadcast along some dimensions.
 #[derive(Clone, Debug)]
 pub struct Repeats {
-    /// Dimensions, those next to each other that are alike as one, and how many rows farther an entry of each is: 0
-    /// where it repeats. The last is 0 or 1.
+    /// Dimensions, merged where possible, with their strides in rows: 0 if the dimension is broadcast. The last stride
+    /// is 0 or 1.
     axes: Vec<(usize, usize)>,
 }
 
 impl Repeats {
-    /// The rows of `row` entries that an array holds in a sequence, and which of them each ray has if some repeat.
+    /// The rows of `row` entries in an array's memory and, if they are broadcast, the row of each ray.
     pub fn of<'a, T: Element>(
         name: &str,
         array: &'a PyReadonlyArrayDyn<'_, T>,
@@ -47,7 +47,7 @@ impl Repeats {
         Ok((view.to_slice().ok_or_else(wrong)?, Some(Self { axes })))
     }
 
-    /// The rows of some rays, one after the other.
+    /// Copies the rows of a range of rays.
     pub fn rows<T: Copy>(&self, rows: &[T], start: usize, count: usize) -> Vec<T> {
         let mut to = Vec::with_capacity(count);
         let Some((&(length, step), outer)) = self.axes.split_last() else { return vec![rows[0]; count] };
@@ -69,7 +69,7 @@ impl Repeats {
     }
 }
 
-/// What some rays have each: the one that serves for all, that of an array with one for each, or as they repeat.
+/// Values of a range of rays: the single one, one per ray, or broadcast.
 pub fn some_of<T: Copy>(repeats: Option<&Repeats>, all: &[T], start: usize, count: usize) -> Vec<T> {
     match repeats {
         Some(repeats) => repeats.rows(all, start, count),

@@ -1,4 +1,4 @@
-//! Builds as Python sees them: with the interpreter detached, signals heard, and told how far they are.
+//! Builds without the interpreter lock, with signal handling and progress reports.
 
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
@@ -9,23 +9,23 @@ use raywright::scene::{self, DescriptionError, Surface};
 use raywright::work::{Watch, Work};
 use raywright::workers;
 
-/// What is built for one scene: it, and before it prototypes that it needs and nobody has yet.
+/// The builds of one scene: the scene's, and before it those of prototypes that are not cached.
 pub struct Builds {
-    /// Called with the share of all that is done.
+    /// Called with the finished share of all builds.
     progress: Option<Py<PyAny>>,
-    /// How much there is to build in all.
+    /// Total size of the builds.
     whole: usize,
     state: Mutex<State>,
 }
 
 struct State {
-    /// How much is built.
+    /// Size of finished builds.
     done: usize,
-    /// When it was told last how far it is.
+    /// Time of the last progress report.
     told: Instant,
 }
 
-/// How much there is to build over shapes, prototypes in them aside.
+/// Size of a build over shapes, without prototypes.
 pub fn size(shapes: &[scene::Shape]) -> usize {
     let of = |shape: &scene::Shape| match &shape.surface {
         Surface::Mesh(mesh) => mesh.faces.len(),
@@ -36,15 +36,15 @@ pub fn size(shapes: &[scene::Shape]) -> usize {
 }
 
 impl Builds {
-    /// Nobody is told more often.
+    /// Minimum interval between progress reports.
     const TELLS: Duration = Duration::from_millis(100);
 
-    /// Of so much in all. What `progress` raises ends them.
+    /// Creates builds of a total size. Exceptions raised by `progress` end them.
     pub fn new(progress: Option<Py<PyAny>>, whole: usize) -> Self {
         Self { progress, whole: whole.max(1), state: Mutex::new(State { done: 0, told: Instant::now() }) }
     }
 
-    /// Makes something of this size. When a signal raises an exception, nobody waits for it any longer.
+    /// Runs a build of this size. If a signal handler raises an exception, the build is abandoned.
     pub fn build<T: Send + 'static>(
         &self,
         py: Python<'_>,
@@ -71,7 +71,7 @@ impl Builds {
         made.map_err(|e| PyValueError::new_err(e.to_string()))
     }
 
-    /// Hears signals, and now and then tells how far it is.
+    /// Handles signals and reports progress now and then.
     fn look(&self, py: Python<'_>, size: usize, share: f32) -> PyResult<()> {
         py.check_signals()?;
         let Some(progress) = &self.progress else { return Ok(()) };

@@ -1,4 +1,4 @@
-//! Cameras as the package describes them, read by attribute, and their rays.
+//! Camera descriptions of the Python package, read by attribute, and camera rays.
 
 use numpy::{Element, PyArrayMethods, PyReadonlyArrayDyn};
 use pyo3::exceptions::{PyTypeError, PyValueError};
@@ -12,10 +12,10 @@ use raywright::scene::cameras::{
     Viewpoint, Window,
 };
 
-/// Makes a kind of camera of its description and what it shares with all others.
+/// Creates a kind of camera from its description and the common parts.
 type Kind = fn(&Bound<'_, PyAny>, Body) -> PyResult<Box<dyn Camera>>;
 
-/// Every kind, by the `kind` of its class.
+/// All kinds, by the `kind` of their class.
 const KINDS: [(&str, Kind); 5] = [
     ("perspective", perspective),
     ("thin lens", thin_lens),
@@ -24,7 +24,7 @@ const KINDS: [(&str, Kind); 5] = [
     ("panorama", panorama),
 ];
 
-/// Any camera that is described by its attributes.
+/// Any camera, read from its attributes.
 pub struct AnyCamera(pub Box<dyn Camera>);
 
 /// `raywright.Pose`.
@@ -36,7 +36,7 @@ struct Pose {
     up: [f64; 3],
 }
 
-/// What all cameras have.
+/// Attributes of all cameras.
 #[derive(FromPyObject)]
 struct Common {
     kind: String,
@@ -84,7 +84,7 @@ fn made<C: Camera + 'static>(camera: Result<C, CameraError>) -> PyResult<Box<dyn
     camera.map(|camera| Box::new(camera) as Box<dyn Camera>).map_err(refused)
 }
 
-/// What an angle or a scale is measured along.
+/// The axis of an angle of view or a scale.
 struct Axis(Measured);
 
 impl FromPyObject<'_, '_> for Axis {
@@ -123,7 +123,7 @@ fn perspective(camera: &Bound<'_, PyAny>, body: Body) -> PyResult<Box<dyn Camera
     made(window.map(|window| Perspective::new(body, window)))
 }
 
-/// Of an angle of view, and of the point of the film at which the middle of the view is seen.
+/// Creates a window from an angle of view and the film position of the view's center.
 fn of_view((fov, along): (f64, Axis), principal: Option<[f64; 2]>, size: [f64; 2]) -> Result<Window, CameraError> {
     let centred = Window::of_view(fov, along.0, size)?;
     principal.map_or(Ok(centred), |principal| centred.seen_from(principal, size))
@@ -187,10 +187,10 @@ fn panorama(_: &Bound<'_, PyAny>, body: Body) -> PyResult<Box<dyn Camera>> {
 /// Origins and directions, of one array type.
 type CameraRays<'py> = (Bound<'py, PyAny>, Bound<'py, PyAny>);
 
-/// Points of the film, of the lens, and times, each one for all rays or one for each.
+/// Film points, lens points and times, each one for all rays or one per ray.
 struct Points<'a> {
     film: &'a [[f64; 2]],
-    /// The width of the picture, if points of the film count from the upper left of each pixel.
+    /// Width of the picture if film points are relative to the upper left of each pixel.
     pixels: Option<usize>,
     lens: &'a [[f64; 2]],
     time: &'a [f64],
@@ -205,7 +205,7 @@ impl Points<'_> {
         }
     }
 
-    /// Rays of either type, made by all threads.
+    /// Generates rays of either type on all threads.
     fn rays<'py, T: Element + Send>(
         &self,
         py: Python<'py>,
@@ -222,7 +222,7 @@ impl Points<'_> {
             let (mut origins, mut directions) = (origins.readwrite(), directions.readwrite());
             let parts = (origins.as_slice_mut()?.as_chunks_mut().0, directions.as_slice_mut()?.as_chunks_mut().0);
             answer(py, count, share(count), None, parts, |start, (origins, directions)| {
-                // Where the ray's pixel begins; counted, since a division takes as long as the ray.
+                // Pixel position of the ray; counted, because a division takes as long as the ray.
                 let width = self.pixels.unwrap_or(usize::MAX);
                 let (mut column, mut row) = if self.pixels.is_some() { (start % width, start / width) } else { (0, 0) };
                 for (i, (origin, direction)) in (start..).zip(origins.iter_mut().zip(directions)) {
@@ -243,15 +243,14 @@ impl Points<'_> {
     }
 }
 
-/// That of ray `i`: each its own, or one for all.
+/// The value of ray `i`: its own, or one for all.
 #[inline(always)]
 fn of<T: Copy>(all: &[T], i: usize) -> T {
     if all.len() == 1 { all[0] } else { all[i] }
 }
 
 /// Origins and directions (H,W,3) through the pixels, as float32 if `single`, else float64; row 0 is the top. `offsets`
-/// is where in the pixel, `lens` where in the lens, `time` when while the shutter is open: one for all, or one for
-/// each.
+/// are positions in the pixel, `lens` points of the lens, and `time` times of the shutter: one for all, or one per ray.
 #[pyfunction]
 pub fn camera_rays<'py>(
     py: Python<'py>,
@@ -272,8 +271,8 @@ pub fn camera_rays<'py>(
     if single { points.rays::<f32>(py, camera, &lead) } else { points.rays::<f64>(py, camera, &lead) }
 }
 
-/// Origins and directions (N,3) through `points` (N,2) of the film, in pixels from its left and from its top. `lens`
-/// and `time` are one for all, or one for each.
+/// Origins and directions (N,3) through `points` (N,2) of the film, in pixels from its left and top. `lens` and `time`
+/// are one for all, or one per ray.
 #[pyfunction]
 pub fn camera_rays_through<'py>(
     py: Python<'py>,

@@ -1,4 +1,4 @@
-//! Rays of arrays by columns, and their closest hits back to arrays.
+//! Ray arrays in columns, and their closest hits back in arrays.
 
 use super::arrays::Rows;
 use super::rays::{BATCH, RayArrays};
@@ -10,29 +10,29 @@ use raywright::scene::Geometry;
 use raywright::simd::{ask_for, columns_of_four};
 use std::cell::Cell;
 
-/// Where t, shape_id, primitive and uv of some rays are written.
+/// Output arrays of t, shape_id, primitive and uv.
 pub type HitParts<'a> = (&'a mut [f64], &'a mut [i32], &'a mut [i32], &'a mut [[f64; 2]]);
 
-/// Rays that are asked together, of a chunk of `count`.
+/// Rays traced together, from a chunk of `count`.
 #[derive(Clone, Copy)]
 struct Part<'a> {
     tiling: Tiling,
     from: usize,
     len: usize,
     count: usize,
-    /// Which runs of neighbours after `window` they are, if they are asked in an order that is neither theirs nor an
-    /// image's. What is left of a window that is no whole run stands last.
+    /// Order of runs of neighbours after `window`, if it is neither sequential nor an image's tiling. The remainder of
+    /// a window, shorter than a run, is last.
     order: Option<&'a [u16]>,
     window: usize,
 }
 
 impl Part<'_> {
-    /// Whether they are asked in the order in which they lie.
+    /// Returns whether the order is sequential.
     fn is_sequence(&self) -> bool {
         self.tiling.is_sequence() && self.order.is_none()
     }
 
-    /// Where they lie in the chunk.
+    /// Positions in the chunk.
     #[inline(always)]
     fn runs(&self, mut each: impl FnMut(Run)) {
         let Some(order) = self.order else { return self.tiling.runs(self.from, self.len, self.count, each) };
@@ -45,26 +45,26 @@ impl Part<'_> {
         }
     }
 
-    /// Copies what belongs to them from where it lies to the order in which they are asked.
+    /// Gathers values into traversal order.
     #[inline(always)]
     fn read<T: Copy>(&self, from: &[T], to: &mut [T]) {
         self.runs(|Run { place, at, len }| copy(&from[place..][..len], &mut to[at..][..len]));
     }
 
-    /// The same the other way.
+    /// Scatters values back from traversal order.
     #[inline(always)]
     fn write<T: Copy>(&self, from: &[T], to: &mut [T]) {
         self.runs(|Run { place, at, len }| copy(&from[at..][..len], &mut to[place..][..len]));
     }
 }
 
-/// So many rays further along a row they are asked for: the next tiles but three.
+/// Prefetch distance in rays along a row: four tiles ahead.
 const AHEAD: usize = 32;
 
-/// Fewer rays than these are as near to each other as they can be.
+/// Fewer rays than these are not reordered.
 const FEW: usize = 256;
 
-/// What a thread needs for the rays that it asks together; kept, since to make it anew takes as long as many rays.
+/// Buffers of a thread for rays traced together. They are kept, because allocating them takes as long as many rays.
 #[derive(Default)]
 struct Room {
     single: [[Vec<f32>; 3]; 2],
@@ -75,7 +75,7 @@ struct Room {
     gathering: Gathering,
 }
 
-/// Room for answers in the order in which rays are asked.
+/// Buffers for results in traversal order.
 #[derive(Default)]
 struct Answers {
     t: Vec<f64>,
@@ -89,9 +89,9 @@ thread_local! {
     static ROOM: Cell<Option<Box<Room>>> = const { Cell::new(None) };
 }
 
-/// Numbers that vectors are made of.
+/// Number type of vectors.
 trait Coordinate: Copy + Default {
-    /// Some neighbours by axis.
+    /// Transposes a run of vectors.
     fn columns(rows: &[[Self; 3]; RUN]) -> [[Self; RUN]; 3];
 }
 
@@ -109,7 +109,7 @@ impl Coordinate for f64 {
     }
 }
 
-/// Copies as many numbers as there are: mostly [`RUN`], and then without a call.
+/// Copies numbers, mostly [`RUN`] at a time without a call.
 #[inline(always)]
 fn copy<T: Copy>(from: &[T], to: &mut [T]) {
     let ((fours, others), (to_fours, to_others)) = (from.as_chunks::<RUN>(), to.as_chunks_mut::<RUN>());
@@ -121,7 +121,7 @@ fn copy<T: Copy>(from: &[T], to: &mut [T]) {
     }
 }
 
-/// Of some room, as much as is needed.
+/// A buffer of this size, grown if necessary.
 fn some<T: Clone + Default>(room: &mut Vec<T>, count: usize) -> &mut [T] {
     if room.len() < count {
         room.resize(count, T::default());
@@ -136,7 +136,7 @@ fn spread(rows: Rows<'_>) -> Spread {
     }
 }
 
-/// The rows of a part of a chunk, by axis.
+/// Rows of a part of a chunk, transposed.
 fn vectors<'a>(
     single: &'a mut [Vec<f32>; 3],
     double: &'a mut [Vec<f64>; 3],
@@ -153,7 +153,7 @@ fn vectors<'a>(
 fn fill<'a, T: Coordinate>(room: &'a mut [Vec<T>; 3], rows: &[[T; 3]], start: usize, part: &Part<'_>) -> [&'a [T]; 3] {
     let [x, y, z] = room;
     let (x, y, z) = (some(x, part.len), some(y, part.len), some(z, part.len));
-    // One that serves for all.
+    // One row for all.
     if let [row] = rows {
         for (column, number) in [&mut *x, &mut *y, &mut *z].into_iter().zip(row) {
             column.fill(*number);
@@ -176,7 +176,7 @@ fn fill<'a, T: Coordinate>(room: &'a mut [Vec<T>; 3], rows: &[[T; 3]], start: us
     [x, y, z]
 }
 
-/// The numbers of a part of a chunk; `room` holds them where their order is another.
+/// Numbers of a part of a chunk; `room` holds them if they are reordered.
 fn numbers<'a>(all: &'a [f64], start: usize, part: &Part<'_>, room: &'a mut Vec<f64>) -> Numbers<'a> {
     if let [one] = all {
         return Numbers::One(*one);
@@ -191,8 +191,8 @@ fn numbers<'a>(all: &'a [f64], start: usize, part: &Part<'_>, room: &'a mut Vec<
 }
 
 impl RayArrays<'_> {
-    /// Calls `answer` with up to [`BATCH`] rays at a time of the `count` from `start` on, with where they lie among
-    /// them, and with room.
+    /// Calls `answer` with up to [`BATCH`] rays at a time of the `count` from `start` on, with their positions and with
+    /// buffers.
     fn columns(
         &self,
         tree: &dyn ByColumns,
@@ -221,7 +221,7 @@ impl RayArrays<'_> {
         ROOM.set(Some(room));
     }
 
-    /// An order of some rays in which those near each other stand together, if that helps.
+    /// A coherent order of some rays, if reordering pays off.
     fn gather_near<'a>(
         &self,
         tree: &dyn ByColumns,
@@ -248,7 +248,7 @@ impl RayArrays<'_> {
         })
     }
 
-    /// The closest hits of the rays from `start` on, of which there are as many as there is room for.
+    /// Closest hits of the rays from `start` on, as many as `to` has room for.
     pub fn closest(&self, geometry: &Geometry, tree: &dyn ByColumns, start: usize, to: HitParts<'_>) {
         let (t, shape, primitive, uv) = to;
         self.columns(tree, start, t.len(), |rays, part, room| {
@@ -269,7 +269,7 @@ impl RayArrays<'_> {
         });
     }
 
-    /// Whether the rays from `start` on hit anything, of which there are as many as there is room for.
+    /// Occlusion of the rays from `start` on, as many as `to` has room for.
     pub fn occluded(&self, tree: &dyn ByColumns, start: usize, to: &mut [bool]) {
         self.columns(tree, start, to.len(), |rays, part, room| {
             if part.is_sequence() {
@@ -282,7 +282,7 @@ impl RayArrays<'_> {
     }
 }
 
-/// The shape of a primitive and its number there; −1 for none.
+/// Shape and primitive number within it; −1 for none.
 #[inline(always)]
 fn located(geometry: &Geometry, primitive: i32) -> (i32, i32) {
     if primitive < 0 {
@@ -292,11 +292,11 @@ fn located(geometry: &Geometry, primitive: i32) -> (i32, i32) {
     (shape as i32, primitive as i32)
 }
 
-/// Takes primitives as numbered among all to the shapes that they are of.
+/// Converts global primitive numbers to numbers within their shapes.
 fn locate(geometry: &Geometry, shape: &mut [i32], primitive: &mut [i32]) {
     if geometry.shapes() == 1 {
         for (shape, &primitive) in shape.iter_mut().zip(&*primitive) {
-            // 0, or −1 where there is none.
+            // 0, or −1 for none.
             *shape = primitive >> 31;
         }
         return;

@@ -1,4 +1,4 @@
-//! What cones touch, from arrays to arrays.
+//! Cone queries from arrays to arrays.
 
 use numpy::{PyArrayDyn, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
@@ -11,7 +11,7 @@ use raywright::accel::Touches;
 use raywright::scene::{Counted, Coverage};
 use raywright::shapes::triangle::SolidCone;
 
-/// Splits (N+1,), and distance (K,), shape_id (K,) and primitive (K,) of all that is touched.
+/// Splits (N+1,), and distance (K,), shape_id (K,) and primitive (K,) of all touched triangles.
 type Touched<'py> = (
     Bound<'py, PyArrayDyn<i64>>,
     Bound<'py, PyArrayDyn<f64>>,
@@ -19,12 +19,12 @@ type Touched<'py> = (
     Bound<'py, PyArrayDyn<i32>>,
 );
 
-/// Cones that a thread takes at a time, of so many: each may touch much, so that few are already worth the hand-over.
+/// Cones per task: each may touch many triangles, so a few already outweigh the cost of a task.
 fn share(count: usize) -> usize {
     (count / 64).clamp(16, 1024)
 }
 
-/// Cones as they came: each part one for all cones, or one a cone.
+/// Cones in array form: each part one for all cones, or one per cone.
 struct Cones<'a> {
     apexes: Rows<'a>,
     axes: Rows<'a>,
@@ -59,7 +59,7 @@ impl<'a> Cones<'a> {
         SolidCone::new(apex, axis, self.angles[of(self.angles.len())], self.most[of(self.most.len())])
     }
 
-    /// Whether a part of one is NaN.
+    /// Returns whether any part of a cone is NaN.
     fn is_nan(&self, i: usize) -> bool {
         let of = |n: usize| if n == 1 { 0 } else { i };
         let (apex, axis) = (self.apexes.get(of(self.apexes.len())), self.axes.get(of(self.axes.len())));
@@ -68,7 +68,7 @@ impl<'a> Cones<'a> {
     }
 }
 
-/// What cones touch, nearest first. Each array has one row, or one for each cone; `half_angle` is in degrees.
+/// Triangles touched by each cone, nearest first. Each array has one row, or one per cone; `half_angle` is in degrees.
 #[pyfunction]
 #[allow(clippy::too_many_arguments)]
 pub fn cones<'py>(
@@ -111,8 +111,8 @@ pub fn cones<'py>(
     Ok((sealed(splits)?, sealed(distance)?, sealed(shape)?, sealed(primitive)?))
 }
 
-/// The share of each cone's directions that meet something, (N,): 0 for a cone without a direction, which touches
-/// nothing, and NaN for one with NaN. Arguments as [`cones`].
+/// Share of each cone's directions that hit something, (N,): 0 for a cone without a direction, and NaN for one with
+/// NaN. Arguments as [`cones`].
 #[pyfunction]
 #[allow(clippy::too_many_arguments)]
 pub fn cone_coverage<'py>(

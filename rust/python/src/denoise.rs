@@ -1,4 +1,4 @@
-//! Pictures filtered by parts of their samples.
+//! Denoising by parts of the samples.
 
 use numpy::{PyArray1, PyArray3, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
@@ -8,8 +8,8 @@ use super::signals::heard;
 use raywright::optics::Rgb;
 use raywright::render::{self, denoise};
 
-/// A picture in two halves of samples, each in two quarters: `quarters` are (4, H, W, 3), and `variances`, those of the
-/// means of halves, (2, H, W, 3).
+/// A picture in two halves of samples, each in two quarters. `quarters` are (4, H, W, 3); `variances`, those of the
+/// halves' means, are (2, H, W, 3).
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub struct Halves<'py> {
@@ -61,7 +61,7 @@ fn flat(pictures: impl IntoIterator<Item = Vec<Rgb>>) -> Vec<f32> {
     pictures.into_iter().flatten().flat_map(|rgb| rgb.to_array()).map(|x| x as f32).collect()
 }
 
-/// The halves of a film as arrays of (4, H, W, 3) and (2, H, W, 3).
+/// Quarters and variances of a film as arrays of (4, H, W, 3) and (2, H, W, 3).
 pub(super) type Parts<'py> = (Bound<'py, PyArrayDyn<f32>>, Bound<'py, PyArrayDyn<f32>>);
 
 /// The halves of a film, if it keeps them and has enough samples.
@@ -73,8 +73,8 @@ pub(super) fn halves<'py>(py: Python<'py>, film: &render::Film) -> PyResult<Opti
     Ok(Some((quarters, variances)))
 }
 
-/// Each half of a picture as it is and filtered in some ways, (2, ways, H, W, 3), by two independent pictures of what
-/// is seen first, (2, H, W, 7).
+/// Filters each half of a picture in several ways, the first unfiltered, (2, ways, H, W, 3). `features` are two
+/// independent pictures of auxiliary features, (2, H, W, 7).
 #[pyfunction]
 pub fn denoise_candidates<'py>(
     py: Python<'py>,
@@ -95,11 +95,11 @@ pub fn denoise_candidates<'py>(
     PyArray1::from_vec(py, flat(found.into_iter().flatten())).reshape(&[2, ways, height, width, 3][..])
 }
 
-/// A picture, what its pixels are off by as those around tell, its error with the ends of its interval, and whether
-/// that is to be trusted.
+/// A picture, the errors of its pixels averaged over neighbours, its error with the ends of its interval, and whether
+/// that is reliable.
 type Settled<'py> = (Bound<'py, PyArray3<f32>>, Bound<'py, PyArray3<f32>>, (f64, f64, f64), bool);
 
-/// The best of candidates for each half, (2, ways, H, W, 3), of which the first are the halves as they are.
+/// Selects the best candidate for each half, (2, ways, H, W, 3); the first are the unfiltered halves.
 #[pyfunction]
 pub fn denoise_settle<'py>(
     py: Python<'py>,

@@ -1,4 +1,4 @@
-//! Scenes, cameras and integrators as the package describes them, read by attribute.
+//! Scene descriptions of the Python package, read by attribute.
 
 use numpy::PyReadonlyArray2;
 use pyo3::exceptions::PyValueError;
@@ -25,14 +25,14 @@ pub struct Scene<'py> {
     environment: Option<Bound<'py, PyAny>>,
     medium: Option<Bound<'py, PyAny>>,
     precision: String,
-    /// Why paths are to carry wavelengths; none for red, green and blue.
+    /// Reason for spectral rendering; `None` for red, green and blue.
     wavelengths: Option<String>,
-    /// The tuple of `shapes` itself.
+    /// The `shapes` tuple itself.
     #[pyo3(attribute("shapes"))]
     pub all_shapes: Py<PyAny>,
-    /// How much the build may take for rays to be fast.
+    /// Build effort of the accelerator.
     pub quality: String,
-    /// What becomes of shading normals.
+    /// Treatment of shading normals.
     shading_normals: String,
 }
 
@@ -47,14 +47,14 @@ struct Mesh<'py> {
 }
 
 impl Scene<'_> {
-    /// Whether shading normals are taken as they are given.
+    /// Returns whether shading normals are used as given.
     pub fn normals_as_given(&self) -> bool {
         self.shading_normals == "as given"
     }
 
-    /// The core's own description of it, and what has to live as long as what is made of it.
+    /// Converts to the core's description. Also returns the objects that must live as long as the result.
     ///
-    /// Groups in it that nobody has yet are among the `builds`.
+    /// Prototypes that are not cached are built as part of `builds`.
     pub fn describe(self, builds: &Builds) -> PyResult<(SceneDescription, Vec<Py<PyAny>>)> {
         let precision = match self.precision.as_str() {
             "auto" => Precision::Auto,
@@ -75,26 +75,26 @@ impl Scene<'_> {
         Ok((SceneDescription { shapes, lights: all }, kept))
     }
 
-    /// What fills the space in which nothing else is.
+    /// The medium outside all closed surfaces.
     pub fn surrounding(&self) -> PyResult<Option<Arc<dyn Medium>>> {
         self.medium.as_ref().map(|medium| media::read(medium, self.wavelengths.is_some())).transpose()
     }
 
-    /// How much there is to build, prototypes included.
+    /// Size of the build, prototypes included.
     pub fn size(&self) -> PyResult<usize> {
         instances::size(&self.shapes, &mut HashSet::new())
     }
 }
 
-/// How any shape appearances.
+/// Attributes of all shapes that determine their appearance.
 #[derive(FromPyObject)]
 struct Appearance<'py> {
     material: Bound<'py, PyAny>,
     emission: Option<Bound<'py, PyAny>>,
 }
 
-/// Reads the shapes of a scene, or of a prototype in it. Vertices are rounded as they are read, and read again where
-/// that is a loss: all of them, so that meshes which share some still do.
+/// Reads the shapes of a scene, or of a prototype in it. Vertices are rounded as they are read. If that is a loss, all
+/// are read again, so that meshes that share vertices still do.
 fn read(
     all: &[Bound<'_, PyAny>],
     wishes: Wishes<'_>,
@@ -123,7 +123,7 @@ fn read(
     Ok(shapes)
 }
 
-/// Reads any shape: a mesh, or what is none; and of a mesh whose vertices were rounded, all of their digits.
+/// Reads a mesh or another shape. A mesh whose vertices were rounded is read with all digits.
 fn describe<'py>(
     shape: &Bound<'py, PyAny>,
     precision: Precision,
@@ -145,7 +145,7 @@ fn describe<'py>(
 }
 
 impl Mesh<'_> {
-    /// Of what the vertices have beside their places, only what is needed is read.
+    /// Reads only the vertex attributes that are needed.
     fn describe(&self, precision: Precision, needs: Needs) -> PyResult<scene::Mesh> {
         let (given, faces) = (self.vertices.rows("vertices")?, rows("faces", &self.faces)?.to_vec());
         let count = given.len();

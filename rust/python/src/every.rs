@@ -1,4 +1,4 @@
-//! All hits of all rays, from chunks that know theirs to arrays that hold everyone's.
+//! All hits of all rays: per-chunk results joined into arrays.
 
 use numpy::{PyArrayDyn, PyArrayMethods};
 use pyo3::prelude::*;
@@ -10,17 +10,17 @@ use super::rays::{RayArrays, RayBatch, chunks, each};
 use raywright::math::Hit;
 use raywright::scene::{Filter, Scene};
 
-/// The hits of a chunk of rays, in the order of the rays.
+/// Hits of a chunk of rays, in ray order.
 #[derive(Default)]
 struct Chunk {
-    /// Of each ray.
+    /// Number of hits of each ray.
     lengths: Vec<u32>,
     hits: Vec<Hit>,
 }
 
 impl Chunk {
     fn of(scene: &Scene, rays: &RayArrays<'_>, start: usize, count: usize, filter: Option<&Filter>) -> Self {
-        // An image comes in the order of its tiles.
+        // Images are traced in tile order.
         let mut batches = Vec::new();
         let mut lengths = vec![0u32; count];
         rays.gathered(start, count, |batch, places| {
@@ -61,7 +61,7 @@ pub type AllHits<'py> = (
     Option<Bound<'py, PyArrayDyn<i32>>>,
 );
 
-/// All hits of all rays, of what counts alone where a filter says so.
+/// All hits of all rays, optionally filtered.
 pub fn intersect_all<'py>(
     py: Python<'py>,
     scene: &Scene,
@@ -87,8 +87,7 @@ pub fn intersect_all<'py>(
         before[0] = 0;
         let (mut t, mut shape) = (t.as_slice_mut()?, shape.as_slice_mut()?);
         let (mut primitive, mut uv) = (primitive.as_slice_mut()?, uv.as_slice_mut()?.as_chunks_mut().0);
-        // Each with the places it fills: a chunk's hits are dropped once they are written down, so that they are never
-        // held twice.
+        // Each chunk is freed once it is written, so that hits are never in memory twice.
         let mut from = 0i64;
         let places = found.iter_mut().map(take).map(|chunk| {
             let (rays, hits) = (chunk.lengths.len(), chunk.hits.len());
@@ -128,14 +127,14 @@ type Place<'a> = (
     Option<&'a mut [i32]>,
 );
 
-/// Takes the first so many off a slice.
+/// Splits off the first `count` elements of a slice.
 fn first<'a, T>(rest: &mut &'a mut [T], count: usize) -> &'a mut [T] {
     let (first, others) = take(rest).split_at_mut(count);
     *rest = others;
     first
 }
 
-/// How many hits each ray has.
+/// Number of hits of each ray.
 pub fn count(scene: &Scene, rays: &RayArrays<'_>, start: usize, counts: &mut [i32]) {
     rays.gathered(start, counts.len(), |batch, places| {
         let crossings = scene.crossings(batch);

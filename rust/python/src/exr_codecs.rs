@@ -1,4 +1,4 @@
-//! Bytes of EXR chunks to bytes and numbers.
+//! EXR decoders for Python.
 
 use numpy::PyArray1;
 use pyo3::exceptions::PyValueError;
@@ -33,8 +33,8 @@ pub fn exr_huffman<'py>(py: Python<'py>, data: &[u8], count: usize) -> PyResult<
     Ok(PyArray1::from_vec(py, found))
 }
 
-/// Decode a PIZ chunk of channels, each of so many columns and rows of samples of so many 16-bit words: channel by
-/// channel, row by row.
+/// Decode a PIZ chunk. `channels` are columns, rows and 16-bit words per sample; the result is channel by channel, row
+/// by row.
 ///
 /// # Errors
 /// A `ValueError` if `data` does not hold them.

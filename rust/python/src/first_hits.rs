@@ -1,4 +1,4 @@
-//! The first hits of a camera's pixels, from a camera to arrays.
+//! First hits of a camera's pixels, as arrays.
 
 use numpy::{PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
@@ -14,7 +14,7 @@ use raywright::math::Hit;
 use raywright::scene::FirstHits;
 use raywright::workers;
 
-/// t, shape_id and primitive (H,W), uv (H,W,2), and of how many pixels the tree was asked.
+/// t, shape_id and primitive (H,W), uv (H,W,2), and the number of pixels that used the BVH.
 type Seen<'py> = (
     Bound<'py, PyArrayDyn<f64>>,
     Bound<'py, PyArrayDyn<i32>>,
@@ -23,7 +23,7 @@ type Seen<'py> = (
     usize,
 );
 
-/// The closest hit of the ray through each pixel, by rasterising. `offsets` (2,) or (H,W,2) is where in the pixel.
+/// Closest hit of the ray through each pixel, by rasterisation. `offsets` (2,) or (H,W,2) are positions in the pixel.
 #[pyfunction]
 pub fn first_hits<'py>(
     py: Python<'py>,

@@ -1,4 +1,4 @@
-//! A scene as flat arrays, and what kernels over these need of the core: rays made ready, and candidates decided.
+//! A scene as flat arrays for GPU kernels, with ray setup and exact evaluation of candidates.
 
 use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
@@ -24,14 +24,15 @@ pub struct FlatScene {
     flat: Flat,
 }
 
-/// Which rays hit anything, of how many that had to be decided, and how many were asked of the scene.
+/// Occlusion of rays, the number of rays whose candidates were evaluated, and the number that used the scene's own
+/// accelerator.
 type Occluded<'py> = (Bound<'py, PyArrayDyn<bool>>, (usize, usize));
 
 #[pymethods]
 #[allow(clippy::too_many_arguments)]
 impl FlatScene {
-    /// Builds a tree over a scene's geometry, as an accelerator's description and a quality say, and over prototypes if
-    /// these are wanted.
+    /// Builds a tree over a scene's geometry, by an accelerator description and a quality, and over prototypes if these
+    /// are wanted.
     #[new]
     fn new(
         py: Python<'_>,
@@ -82,19 +83,19 @@ impl FlatScene {
         table(py, self.flat.instances.len(), rows)
     }
 
-    /// How many of the nodes and of the triangles are the scene's own.
+    /// Numbers of nodes and of triangles that belong to the scene itself, not to prototypes.
     #[getter]
     fn own(&self) -> (usize, usize) {
         (self.flat.own[0], self.flat.own[1])
     }
 
-    /// What has no end.
+    /// Unbounded primitives.
     #[getter]
     fn unbounded<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
         PyArray1::from_slice(py, &self.flat.unbounded)
     }
 
-    /// The first primitive of each shape, and how many there are in all.
+    /// First primitive of each shape, and the total number.
     #[getter]
     fn first(&self) -> Vec<u32> {
         let geometry = self.scene.get().scene().geometry();
@@ -107,19 +108,19 @@ impl FlatScene {
         self.flat.depth
     }
 
-    /// The middle of box units.
+    /// Center of box units.
     #[getter]
     fn centre<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_slice(py, &self.flat.region.centre.to_array())
     }
 
-    /// From the scene's units to box units.
+    /// Factor from the scene's units to box units.
     #[getter]
     fn scale(&self) -> f64 {
         self.flat.region.scale
     }
 
-    /// Rays as kernels take them: (N, 8) float32.
+    /// Rays in the kernels' format, (N, 8) float32.
     fn rays<'py>(&self, py: Python<'py>, rays: RayArguments<'py>) -> PyResult<Bound<'py, PyArrayDyn<f32>>> {
         let (threads, rays) = (rays.threads, rays.rays()?);
         let out = unwritten(py, &[rays.count()], Some(8))?;
@@ -142,8 +143,8 @@ impl FlatScene {
         Ok(out)
     }
 
-    /// The closest hits among candidates, (N, 4) uint32; and of how many rays the candidates had to be decided, and how
-    /// many were asked of the scene's own accelerator.
+    /// Closest hits among candidates, (N, 4) uint32. Also returns the number of rays whose candidates were evaluated,
+    /// and the number that used the scene's own accelerator.
     fn intersect<'py>(
         &self,
         py: Python<'py>,
@@ -188,8 +189,8 @@ impl FlatScene {
         Ok((hits, (decided.into_inner(), walked.into_inner())))
     }
 
-    /// Whether rays hit anything, of which (N,) uint32 tells what they may hit; and of how many rays that had to be
-    /// decided, and how many were asked of the scene's own accelerator.
+    /// Occlusion of rays from candidates, (N,) uint32. Also returns the number of rays whose candidates were evaluated,
+    /// and the number that used the scene's own accelerator.
     fn occluded<'py>(
         &self,
         py: Python<'py>,
@@ -204,7 +205,7 @@ impl FlatScene {
         let out = unwritten(py, lead, None)?;
         let (decided, walked) = (AtomicUsize::new(0), AtomicUsize::new(0));
         answer(py, rays.count(), share(rays.count()), threads, out.readwrite().as_slice_mut()?, |start, out| {
-            // Most are answered already: only of the others is the ray wanted.
+            // Most rays are decided already; only the others are needed.
             let (mut open, mut places, mut mine) = (Vec::new(), Vec::new(), Vec::new());
             let is_open = |told: u32| told != CERTAIN && (told != NO_CANDIDATE || !self.flat.unbounded.is_empty());
             let (count, told) = (out.len(), &told[start..]);
@@ -229,7 +230,7 @@ impl FlatScene {
 }
 
 impl FlatScene {
-    /// Refuses what is told of another number of rays, so many numbers each, or of primitives that there are not.
+    /// Rejects candidates for another number of rays, and primitives that do not exist.
     fn check<const K: usize>(&self, rays: &RayBatch<'_>, told: &[[u32; K]]) -> PyResult<()> {
         if rays.count() != told.len() {
             let count = told.len();

@@ -1,4 +1,4 @@
-//! Toruses, polygons and implicit surfaces, as the package describes them, read by attribute.
+//! Tori, polygons and implicit surfaces of the Python package, read by attribute.
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -36,7 +36,7 @@ fn polygon(outline: Vec<[f64; 3]>, holes: Vec<Vec<[f64; 3]>>) -> Result<Polygon,
     Polygon::new(ring(outline), holes.into_iter().map(ring).collect())
 }
 
-/// The shape in its own space, if the name of its class is one of these.
+/// The shape in its own space, if the class name is one of these.
 pub fn read(name: &str, shape: &Bound<'_, PyAny>) -> PyResult<Option<Arc<dyn Shape>>> {
     let vector = DVec3::from_array;
     Ok(Some(match name {
@@ -57,13 +57,13 @@ pub fn read(name: &str, shape: &Bound<'_, PyAny>) -> PyResult<Option<Arc<dyn Sha
     }))
 }
 
-/// What is wrong with a polygon, or None if nothing is.
+/// The reason why a polygon is invalid, or None.
 #[pyfunction]
 pub fn polygon_trouble(outline: Vec<[f64; 3]>, holes: Vec<Vec<[f64; 3]>>) -> Option<String> {
     polygon(outline, holes).err()
 }
 
-/// What is wrong with an expression or its box, or None if nothing is.
+/// The reason why an expression or its box is invalid, or None.
 #[pyfunction]
 pub fn implicit_trouble(expression: &str, min: [f64; 3], max: [f64; 3]) -> Option<String> {
     Implicit::new(expression, DVec3::from_array(min), DVec3::from_array(max)).err()

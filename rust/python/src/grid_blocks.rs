@@ -1,4 +1,4 @@
-//! Numbers on grids, held by the core.
+//! Grids of numbers, stored by the core.
 
 use numpy::{PyArray1, PyArray3, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
@@ -7,11 +7,11 @@ use std::sync::Arc;
 
 use raywright::scene::media::{Blocks, Building};
 
-/// Numbers on a grid, one or three a point, of which zeros take no memory.
+/// Numbers on a grid, one or three per point; blocks of zeros take no memory.
 #[pyclass(frozen, module = "raywright._core")]
 pub struct GridBlocks(pub Kept);
 
-/// What it holds.
+/// The stored grid.
 pub enum Kept {
     Grey(Arc<Blocks<1>>),
     Coloured(Arc<Blocks<3>>),
@@ -19,8 +19,8 @@ pub enum Kept {
 
 #[pymethods]
 impl GridBlocks {
-    /// Of so many along each axis, one or three a point, from parts: of each where it begins and its numbers, as an
-    /// array.
+    /// Creates a grid with this size, one or three numbers per point, from parts: the start of each and its numbers as
+    /// an array.
     #[new]
     fn new(size: [usize; 3], coloured: bool, parts: &Bound<'_, PyAny>) -> PyResult<Self> {
         Ok(Self(if coloured {
@@ -30,7 +30,7 @@ impl GridBlocks {
         }))
     }
 
-    /// The memory held.
+    /// Memory in bytes.
     fn bytes(&self) -> usize {
         match &self.0 {
             Kept::Grey(blocks) => blocks.bytes(),
@@ -38,7 +38,7 @@ impl GridBlocks {
         }
     }
 
-    /// The least and greatest corners of what is not all zero, (N, 2, 3).
+    /// Lower and upper corners of the stored blocks, (N, 2, 3).
     fn kept<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<i64>>> {
         let kept: Vec<[[usize; 3]; 2]> = match &self.0 {
             Kept::Grey(blocks) => blocks.kept().collect(),
@@ -48,7 +48,7 @@ impl GridBlocks {
         PyArray1::from_vec(py, flat).reshape([kept.len(), 2, 3])
     }
 
-    /// The numbers of a part, all of a point after one another.
+    /// Numbers of a part, point by point.
     fn part<'py>(&self, py: Python<'py>, low: [usize; 3], high: [usize; 3]) -> PyResult<Bound<'py, PyArray1<f32>>> {
         let size = match &self.0 {
             Kept::Grey(blocks) => blocks.size(),
@@ -65,7 +65,7 @@ impl GridBlocks {
         Ok(PyArray1::from_vec(py, numbers))
     }
 
-    /// The greatest number.
+    /// Greatest number.
     fn greatest(&self) -> f32 {
         match &self.0 {
             Kept::Grey(blocks) => blocks.range(blocks.size().map(|n| 0..n))[1][0],
@@ -73,7 +73,7 @@ impl GridBlocks {
         }
     }
 
-    /// Whether all numbers are those of another.
+    /// Returns whether all numbers equal those of another.
     fn same(&self, other: &Self) -> bool {
         match (&self.0, &other.0) {
             (Kept::Grey(a), Kept::Grey(b)) => a == b,

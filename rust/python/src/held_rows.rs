@@ -1,20 +1,20 @@
-//! Rows of some rays: in their array, or copied from where it repeats.
+//! Rows of some rays: borrowed from their array, or copied if they are broadcast.
 
 use super::arrays::Rows;
 use super::broadcast::Repeats;
 
-/// Rows of some rays that are held as long as they are used.
+/// Rows of some rays, valid while they are used.
 pub enum Held<'a> {
-    /// In the array itself.
+    /// Borrowed from the array.
     There(Rows<'a>),
-    /// float64, copied from where they repeat.
+    /// float64, copied from a broadcast array.
     Double(Vec<[f64; 3]>),
-    /// float32, likewise.
+    /// float32, copied from a broadcast array.
     Single(Vec<[f32; 3]>),
 }
 
 impl<'a> Held<'a> {
-    /// Those of some rays.
+    /// The rows of a range of rays.
     pub fn of(repeats: Option<&Repeats>, rows: Rows<'a>, start: usize, count: usize) -> Self {
         match (repeats, rows) {
             (None, rows) => Self::There(rows.some(start, count)),
@@ -23,7 +23,7 @@ impl<'a> Held<'a> {
         }
     }
 
-    /// The same as rows.
+    /// Borrows the rows.
     pub fn rows(&self) -> Rows<'_> {
         match self {
             Self::There(rows) => *rows,

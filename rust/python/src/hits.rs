@@ -1,4 +1,4 @@
-//! Arrays of hits: new ones, or those that a caller has had before.
+//! Arrays of hits: new ones, or those given by the caller.
 
 use numpy::PyArrayDyn;
 use pyo3::prelude::*;
@@ -16,17 +16,17 @@ pub(super) type Hits<'py> = (
     Option<Bound<'py, PyArrayDyn<i32>>>,
 );
 
-/// All of it to be written: the last is of which instance each hit is, where a scene has any.
+/// Mutable parts of all arrays; the last holds instance numbers if the scene has instances.
 pub(super) type AllParts<'a> = (HitParts<'a>, Option<&'a mut [i32]>);
 
-/// Where the hits of a batch of rays are written, and their leading shape.
+/// Output arrays for a batch of rays, and their leading shape.
 pub(super) struct HitArrays<'a, 'py> {
     arrays: Hits<'py>,
     lead: &'a [usize],
 }
 
 impl<'a, 'py> HitArrays<'a, 'py> {
-    /// In arrays that are given, or else in new ones.
+    /// Uses the given arrays, or creates new ones.
     pub fn new(py: Python<'py>, scene: &Scene, lead: &'a [usize], out: Option<Hits<'py>>) -> PyResult<Self> {
         let (t, shape, primitive, uv, instance) = match out {
             Some(out) => out,
@@ -42,7 +42,7 @@ impl<'a, 'py> HitArrays<'a, 'py> {
         Ok(Self { arrays: (t, shape, primitive, uv, instance), lead })
     }
 
-    /// The arrays after a function has written them. What leads back into the scene cannot be written any more.
+    /// Writes the arrays by a function and returns them. Arrays of indices into the scene become read-only.
     pub fn written(self, write: impl FnOnce(AllParts<'_>) -> PyResult<()>) -> PyResult<Hits<'py>> {
         let (t, shape, primitive, uv, instance) = &self.arrays;
         let lead = self.lead;

@@ -1,10 +1,10 @@
-//! What an accelerator came to be, for people to read.
+//! Statistics of an accelerator.
 
 use pyo3::prelude::*;
 
 use raywright::accel::Info;
 
-/// What the compiled accelerator looks like.
+/// Statistics of the compiled accelerator.
 #[pyclass(frozen, module = "raywright._core")]
 pub struct AcceleratorInfo(pub Info);
 

@@ -1,4 +1,4 @@
-//! Instances as the package describes them: prototypes compiled once for whoever shares their shapes.
+//! Instances of the Python package; prototypes are compiled once and cached.
 
 use numpy::{PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
@@ -23,21 +23,20 @@ struct Instance<'py> {
     accelerator: Bound<'py, PyAny>,
 }
 
-/// How a scene wants its prototypes.
+/// Options of a scene for its prototypes.
 #[derive(Clone, Copy)]
 pub struct Wishes<'a> {
-    /// How precisely vertices are kept.
+    /// Precision of vertices.
     pub precision: Precision,
-    /// How much a build may take.
+    /// Build effort.
     pub quality: &'a str,
-    /// Whether colours are told by wavelength.
+    /// True for spectral rendering.
     pub waves: bool,
-    /// How they are built.
+    /// Builds in progress.
     pub builds: &'a Builds,
 }
 
-/// What makes two prototypes the same: the objects that their shapes are, their accelerator's description, and what the
-/// scene wishes.
+/// Cache key of a prototype: the identities of its shapes, its accelerator's description, and the scene's options.
 #[derive(Clone, PartialEq, Eq, Hash)]
 struct Key {
     shapes: Vec<usize>,
@@ -47,11 +46,11 @@ struct Key {
     waves: bool,
 }
 
-/// Groups that some scene holds. An object is known by its address, which no other object can get while the prototype
-/// lives: whoever holds a prototype holds its shapes ([`CompiledScene::kept`]).
+/// Cache of prototypes held by some scene. An object is identified by its address, which is not reused while the
+/// prototype lives, because its owners keep its shapes alive ([`CompiledScene::kept`]).
 static GROUPS: LazyLock<Mutex<HashMap<Key, Weak<Prototype>>>> = LazyLock::new(Mutex::default);
 
-/// The rows of (4, 4) or (N, 4, 4) matrices but for the last of each.
+/// Rows of (4, 4) or (N, 4, 4) matrices without the last row of each.
 fn matrices(name: &str, array: &PyReadonlyArrayDyn<'_, f64>) -> PyResult<Vec<Matrix>> {
     let rows = vectors::<f64, 4>(name, array)?;
     if !rows.len().is_multiple_of(4) {
@@ -60,16 +59,16 @@ fn matrices(name: &str, array: &PyReadonlyArrayDyn<'_, f64>) -> PyResult<Vec<Mat
     Ok(rows.as_chunks::<4>().0.iter().map(|&[x, y, z, _]| [x, y, z]).collect())
 }
 
-/// Whether a description is that of an instance.
+/// Returns whether a description is an instance.
 pub fn is_instance(shape: &Bound<'_, PyAny>) -> PyResult<bool> {
     Ok(shape.get_type().name()?.to_str()? == "Instance")
 }
 
-/// What reads the shapes of a prototype; what has to live as long as prototypes among them is added to the last
-/// argument.
+/// Reads the shapes of a prototype; objects that must live as long as nested prototypes are added to the last argument.
 type ReadShapes<'a> = &'a dyn Fn(&[Bound<'_, PyAny>], &mut Vec<Py<PyAny>>) -> PyResult<Vec<scene::Shape>>;
 
-/// Reads an instance. `read_shapes` reads what is in it; what has to live as long as the prototype is added to `kept`.
+/// Reads an instance. `read_shapes` reads its shapes; objects that must live as long as the prototype are added to
+/// `kept`.
 pub fn read(
     instance: &Bound<'_, PyAny>,
     wishes: Wishes<'_>,
@@ -95,7 +94,7 @@ pub fn read(
     Ok(scene::Shape { surface: Surface::Instances(instances), ..scene::Shape::default() })
 }
 
-/// The prototype of an instance, which may be there already.
+/// The prototype of an instance, possibly cached.
 fn prototype(
     shapes: &Bound<'_, PyTuple>,
     accelerator: &Bound<'_, PyAny>,
@@ -111,7 +110,7 @@ fn prototype(
         quality: wishes.quality.to_owned(),
         waves: wishes.waves,
     };
-    // Before it is looked for: from here on no other objects can stand at these addresses.
+    // Kept before the lookup, so that from here on no other objects can have these addresses.
     kept.push(shapes.clone().into_any().unbind());
     let known = || GROUPS.lock().expect("nobody panics here");
     if let Some(prototype) = known().get(&key).and_then(Weak::upgrade) {
@@ -127,7 +126,7 @@ fn prototype(
     Ok(prototype)
 }
 
-/// How much there is to build over shapes: faces, instances and others, and what is in prototypes once.
+/// Size of a build over shapes: faces, instances and others, and the contents of prototypes once.
 pub fn size(shapes: &[Bound<'_, PyAny>], seen: &mut HashSet<usize>) -> PyResult<usize> {
     let mut size = 0;
     for shape in shapes {
@@ -148,7 +147,7 @@ fn in_pool<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResult
     py.detach(|| workers::pool(None).map(|pool| pool.install(work))).map_err(PyRuntimeError::new_err)
 }
 
-/// The first of some matrices, (4, 4) or (N, 4, 4), that has no inverse, and why; None if all have one.
+/// The first of some matrices, (4, 4) or (N, 4, 4), that has no inverse, and the reason; None if all have one.
 #[pyfunction]
 pub fn singular_transform(py: Python<'_>, transform: PyReadonlyArrayDyn<'_, f64>) -> PyResult<Option<(usize, String)>> {
     let matrices = matrices("transform", &transform)?;
@@ -156,15 +155,14 @@ pub fn singular_transform(py: Python<'_>, transform: PyReadonlyArrayDyn<'_, f64>
     Ok(checked.err().map(|bad| (bad.index, bad.why.to_string())))
 }
 
-/// Writes down which instances were hit, and what in them: `primitive` is that in the prototype, `instance` −1 where
-/// there is none.
+/// Writes the instance of each hit, −1 for none, and the primitive number in its prototype.
 pub fn write(scene: &scene::Scene, hits: &[Hit], places: &[usize], instance: &mut [i32], primitive: &mut [i32]) {
     for (hit, &i) in hits.iter().zip(places) {
         (instance[i], primitive[i]) = located(scene, hit, primitive[i]);
     }
 }
 
-/// The copy that was hit and what in it; −1 and `number` where it is none.
+/// Instance of a hit and primitive number within it; −1 and `number` if there is none.
 pub fn located(scene: &scene::Scene, hit: &Hit, number: i32) -> (i32, i32) {
     if !hit.is_hit() || scene.geometry().instances_of(scene.geometry().locate(hit.primitive).0).is_none() {
         return (-1, number);

@@ -1,4 +1,4 @@
-//! Integrators as the package describes them, read by attribute, and pictures of what is seen first.
+//! Integrator descriptions of the Python package, read by attribute, and auxiliary buffers (AOVs).
 
 use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyReadonlyArray1, PyReadonlyArrayDyn};
 use pyo3::conversion::FromPyObjectOwned;
@@ -28,7 +28,7 @@ fn rgb(of: &Bound<'_, PyAny>, name: &str) -> PyResult<Rgb> {
     attribute::<[f64; 3]>(of, name).map(Rgb::from_array)
 }
 
-/// How photons count by their distance.
+/// Kernel of photon density estimation.
 fn kernel(of: &Bound<'_, PyAny>) -> PyResult<Kernel> {
     match attribute::<String>(of, "filter")?.as_str() {
         "cone" => Ok(Kernel::Cone),
@@ -37,7 +37,7 @@ fn kernel(of: &Bound<'_, PyAny>) -> PyResult<Kernel> {
     }
 }
 
-/// How paths from both ends are merged, if they are.
+/// Options of vertex merging, if it is enabled.
 fn merge(of: &Bound<'_, PyAny>) -> PyResult<Option<Merge>> {
     if !attribute::<bool>(of, "merge")? {
         return Ok(None);
@@ -46,7 +46,7 @@ fn merge(of: &Bound<'_, PyAny>) -> PyResult<Option<Merge>> {
     Ok(Some(Merge { radius, photons, ..Merge::default() }))
 }
 
-/// A path tracer; what it leaves open is plain where nobody has chosen.
+/// A path tracer; options left open get plain defaults.
 pub fn path(of: &Bound<'_, PyAny>) -> PyResult<Path> {
     Ok(Path {
         max_depth: attribute(of, "max_depth")?,
@@ -56,8 +56,9 @@ pub fn path(of: &Bound<'_, PyAny>) -> PyResult<Path> {
     })
 }
 
-/// What is looked up: cuts (F,), the first face of each primitive of the scene (N + 1,), which faces are mirrored (F,),
-/// irradiance at three corners (S,3,3), whether there are backs, and the area of what stands in no copy.
+/// Data of a radiosity lookup: cuts (F,), the first face of each primitive of the scene (N + 1,), flags of mirrored
+/// faces (F,), irradiance at three corners (S,3,3), whether there are back sides, and the area of surfaces that are not
+/// instances.
 type Table<'py> = (
     PyReadonlyArray1<'py, u32>,
     PyReadonlyArray1<'py, u32>,
@@ -165,7 +166,7 @@ impl<'a, 'py> FromPyObject<'a, 'py> for AnyIntegrator {
     }
 }
 
-/// Pictures of channels by their names, float64 (H,W) or (H,W,n), in the order asked for.
+/// AOVs by name, float64 (H,W) or (H,W,n), in the requested order.
 #[pyfunction]
 pub fn aovs<'py>(
     py: Python<'py>,
@@ -194,7 +195,7 @@ pub fn aovs<'py>(
     channels.iter().zip(pictures).map(array).collect()
 }
 
-/// What a scene needs and which kernel shades it: the kernel's name, and rows of what, whether, and what follows.
+/// The scene's plan: the name of its shading variant, and rows of feature, presence and effect.
 #[pyfunction]
 pub fn plan(scene: &Bound<'_, CompiledScene>) -> (&'static str, Vec<PlanRow>) {
     let plan = scene.get().0.plan();

@@ -1,4 +1,4 @@
-//! Batches of encounters with surfaces, for integrators that are written in Python.
+//! Batches of surface interactions, for integrators written in Python.
 
 use numpy::{PyArrayDyn, PyArrayMethods, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
@@ -14,23 +14,23 @@ use raywright::scene::{Encounter, Scene, ShadingPoint, SurfaceInteraction};
 
 type Vectors<'py> = Bound<'py, PyArrayDyn<f64>>;
 
-/// What a batch of rays has met: one entry a ray, which may have met nothing.
+/// Surface interactions of a batch of rays, one entry per ray, including misses.
 #[pyclass(frozen, module = "raywright._core")]
 pub struct Interactions {
     scene: Py<CompiledScene>,
     entries: Vec<Entry>,
 }
 
-/// What a ray has met.
+/// The interaction of a ray.
 #[derive(Clone)]
 struct Entry {
     ray: Ray,
     hit: Hit,
-    /// None if it has met nothing.
+    /// None for a miss.
     here: Option<Box<SurfaceInteraction>>,
-    /// What comes along the ray from there.
+    /// Radiance emitted along the ray.
     emission: Rgb,
-    /// Cosine between the way back and the normal.
+    /// Cosine between the direction back along the ray and the normal.
     cosine: f64,
 }
 
@@ -50,7 +50,7 @@ impl Entry {
     }
 }
 
-/// An array with a row a ray, each made by its own function call.
+/// An array with a row per ray, each computed by its own call.
 fn filled<'py, const K: usize>(
     py: Python<'py>,
     count: usize,
@@ -69,7 +69,7 @@ fn filled<'py, const K: usize>(
     sealed(array)
 }
 
-/// The same for several arrays at once.
+/// Several arrays at once.
 fn all_filled<'py, const N: usize>(
     py: Python<'py>,
     count: usize,
@@ -99,7 +99,7 @@ fn all_filled<'py, const N: usize>(
     Ok((vectors, sealed(single)?))
 }
 
-/// Several arrays of vectors that are shared out together.
+/// Several arrays of vectors that are split together.
 struct Columns<'a>(Vec<&'a mut [[f64; 3]]>);
 
 impl Parts for Columns<'_> {
@@ -109,7 +109,7 @@ impl Parts for Columns<'_> {
     }
 }
 
-/// What rays of unit direction meet: (N,3) origins and directions, and a time for all or each.
+/// Interactions of rays of unit direction: (N,3) origins and directions, and one time or one per ray.
 #[pyfunction]
 pub fn interactions<'py>(
     py: Python<'py>,
@@ -145,7 +145,7 @@ pub fn interactions<'py>(
 }
 
 impl Interactions {
-    /// As many rows as there are rays.
+    /// Checks that there are as many rows as rays.
     fn check(&self, name: &str, count: usize) -> PyResult<()> {
         let expected = self.entries.len();
         if count == expected {
@@ -169,7 +169,7 @@ impl Interactions {
         self.entries.len()
     }
 
-    /// Those at some indices.
+    /// The entries at some indices.
     fn take(&self, py: Python<'_>, indices: PyReadonlyArray1<'_, i64>) -> PyResult<Self> {
         let indices = numbers("indices", &indices)?;
         let count = self.entries.len();
@@ -197,7 +197,7 @@ impl Interactions {
         sealed(array)
     }
 
-    /// Which face of its shape; −1 for a miss.
+    /// Face number within its shape; −1 for a miss.
     #[getter]
     fn primitive<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<i32>>> {
         let geometry = self.scene.get().scene().geometry();
@@ -215,14 +215,14 @@ impl Interactions {
         filled(py, self.entries.len(), |i| uv(&self.entries[i]))
     }
 
-    /// About the share of white light that is scattered.
+    /// Approximate albedo for white light.
     #[getter]
     fn albedo<'py>(&self, py: Python<'py>) -> PyResult<Vectors<'py>> {
         let albedo = |here: &SurfaceInteraction| DVec3::from_array(here.bsdf().albedo().to_array());
         self.vectors(py, albedo)
     }
 
-    /// The index of refraction of what the surface encloses, 1 of what encloses nothing.
+    /// Index of refraction of the enclosed medium; 1 if there is none.
     #[getter]
     fn ior<'py>(&self, py: Python<'py>) -> PyResult<Vectors<'py>> {
         let scene = self.scene.get().scene();
@@ -231,8 +231,7 @@ impl Interactions {
         filled(py, self.entries.len(), |i| [ior(&self.entries[i])])
     }
 
-    /// Where all light of a single direction comes from, reflected or from the other side, and its weight; pdf is
-    /// infinite where there is any.
+    /// Incident delta direction, reflected or transmitted, and its weight; pdf is infinite if there is one.
     fn single<'py>(&self, py: Python<'py>, is_through: bool) -> PyResult<(Vectors<'py>, Vectors<'py>, Vectors<'py>)> {
         let single = |entry: &Entry| {
             let here = entry.here.as_ref()?;
@@ -241,7 +240,7 @@ impl Interactions {
                 let Some(lobe) = here.to_world(lobe).filter(|lobe| lobe.is_through == is_through) else { return };
                 match &mut found {
                     None => found = Some(lobe),
-                    // Of several parts of a material, those that bend light otherwise are left out.
+                    // If several components are deltas, those with another refraction are left out.
                     Some(first) if first.eta == lobe.eta => first.weight += lobe.weight,
                     Some(_) => {}
                 }
@@ -270,13 +269,13 @@ impl Interactions {
         self.vectors(py, SurfaceInteraction::shading_normal)
     }
 
-    /// What comes along each ray without a bounce: of a miss, from outside the scene.
+    /// Radiance emitted along each ray; for a miss, that of infinite lights.
     #[getter]
     fn emission<'py>(&self, py: Python<'py>) -> PyResult<Vectors<'py>> {
         filled(py, self.entries.len(), |i| self.entries[i].emission.to_array())
     }
 
-    /// Where rays along these directions start.
+    /// Origins of rays along these directions.
     fn leave<'py>(&self, py: Python<'py>, directions: Triples<'py>) -> PyResult<Vectors<'py>> {
         let directions = directions.rows("directions")?;
         self.check("directions", directions.len())?;
@@ -286,7 +285,7 @@ impl Interactions {
         })
     }
 
-    /// Scattering function times cosine, and the density of `sample`.
+    /// BSDF times cosine, and the density of `sample`.
     fn evaluate<'py>(&self, py: Python<'py>, directions: Triples<'py>) -> PyResult<(Vectors<'py>, Vectors<'py>)> {
         let directions = directions.rows("directions")?;
         self.check("directions", directions.len())?;
@@ -317,8 +316,8 @@ impl Interactions {
         Ok((direction, weight, pdf))
     }
 
-    /// Light on its way: directions, weights, and the segments that must be free, as origins and directions with `t` up
-    /// to 1 or, from outside the scene, infinity; last its density.
+    /// Light samples: directions, weights, and visibility segments as origins and directions with `t` up to 1 or, for
+    /// infinite lights, infinity; finally their densities.
     #[allow(clippy::type_complexity)]
     fn light<'py>(
         &self,
@@ -350,7 +349,7 @@ impl Interactions {
         Ok((four, most, pdf))
     }
 
-    /// The density with which `light` of where the rays come from would have drawn each ray's direction.
+    /// Density with which `light` of `before` would have sampled each ray's direction.
     fn light_pdf<'py>(&self, py: Python<'py>, before: &Self) -> PyResult<Vectors<'py>> {
         self.check("before", before.entries.len())?;
         let scene = self.scene.get().scene();

@@ -1,4 +1,4 @@
-//! What a picture is made by, as the package describes it.
+//! Render jobs of the Python package.
 
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -13,23 +13,23 @@ use raywright::integrators::{Integrator, Transparent};
 use raywright::render::{Request, Settings, Until};
 use raywright::scene::Camera;
 
-/// All that a picture is made by but for the scene, which is compiled when it is needed: read once.
+/// Everything that determines a picture except the scene, which is compiled when needed: read once.
 #[pyclass(module = "raywright._core", frozen)]
 pub struct Job {
     camera: AnyCamera,
     integrator: Chosen,
     settings: Settings,
-    /// Whether the background is left out where the camera sees it directly.
+    /// True if the background is transparent where the camera sees it directly.
     transparent: bool,
 }
 
-/// An integrator of the package, or one that is written in Python.
+/// An integrator of the package, or one written in Python.
 enum Chosen {
     Own(Box<dyn Integrator>),
     Written { integrator: Py<PyAny>, described: Py<PyAny>, seed: u64 },
 }
 
-/// The integrator of a job at work: what one that is written in Python raises is of this work alone.
+/// The integrator of a running job; exceptions of one written in Python belong to this run alone.
 pub(super) enum Working<'a> {
     Own(&'a dyn Integrator),
     Written(Box<Written>),
@@ -59,12 +59,12 @@ impl Job {
         }
     }
 
-    /// How to render, until a limit and on so many threads.
+    /// Settings with these stopping criteria and threads.
     pub(super) fn settings(&self, until: Until, threads: Option<usize>) -> Settings {
         Settings { until, threads, ..self.settings.clone() }
     }
 
-    /// Does something with an integrator that shows as much of the background as the picture is to have.
+    /// Runs `work` with the integrator, wrapped for a transparent background if requested.
     pub(super) fn showing<T>(&self, integrator: &dyn Integrator, work: impl FnOnce(&dyn Integrator) -> T) -> T {
         if self.transparent { work(&Transparent(integrator)) } else { work(integrator) }
     }
@@ -76,7 +76,7 @@ impl Job {
 
 #[pymethods]
 impl Job {
-    /// `scene` is the one that is described, for integrators that are written in Python.
+    /// `scene` is the Python description, for integrators written in Python.
     #[new]
     #[allow(clippy::too_many_arguments)]
     fn new(
@@ -106,12 +106,12 @@ impl Job {
         })
     }
 
-    /// The side of the patches of pixels whose samples the integrator takes together.
+    /// Side of the patches of pixels whose samples the integrator takes together.
     fn patch(&self, py: Python<'_>, scene: &Bound<'_, CompiledScene>) -> u32 {
         self.integrator(py).get().patch(&scene.get().0)
     }
 
-    /// Takes the samples that a request of `Rendering.request` wants, and gives what `Rendering.take` takes.
+    /// Takes the samples of a request of `Rendering.request`, and returns the bytes for `Rendering.take`.
     fn expose(
         &self,
         py: Python<'_>,

@@ -1,4 +1,4 @@
-//! Rays that leave points of surfaces.
+//! Origins of rays that leave surface points.
 
 use numpy::{PyArrayDyn, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
@@ -9,8 +9,8 @@ use super::rays::{answer, share};
 use raywright::math::DVec3;
 use raywright::scene::RayOrigin;
 
-/// Where rays along some directions start, of leading shape `shape`: from the points that `which` names, or from all in
-/// turn, over and over. NaN for what is no point.
+/// Origins of rays along directions of leading shape `shape`, from the points indexed by `which`, or from all points
+/// cyclically. NaN for the points of misses.
 #[pyfunction]
 pub fn leave<'py>(
     py: Python<'py>,

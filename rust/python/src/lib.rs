@@ -1,4 +1,4 @@
-//! Floor 6: the bindings. Arrays in, arrays out, errors mapped; no algorithm lives here.
+//! Floor 6: the bindings. They convert arrays and map errors, and hold no algorithms.
 
 mod accelerators;
 mod arrays;
@@ -53,19 +53,19 @@ use pyo3::prelude::*;
 
 use raywright::simd::Level;
 
-/// The level that kernels run at, or a `ValueError` that says what is wrong with the one asked for.
+/// The SIMD level of the kernels, or a `ValueError` if the requested one is invalid.
 fn level() -> PyResult<Level> {
     Level::current().map_err(PyValueError::new_err)
 }
 
-/// The SIMD level the kernels run at.
+/// The SIMD level of the kernels.
 #[pyfunction]
 fn simd() -> PyResult<&'static str> {
     Ok(level()?.name())
 }
 
-// Free-threaded interpreters keep their lock off: what threads share is frozen, behind a mutex, or borrowed at
-// run time, and no unsafe code relies on the lock.
+// Free-threaded interpreters keep their lock disabled: shared data is frozen, behind a mutex, or borrowed at run time,
+// and no unsafe code relies on the lock.
 #[pymodule(gil_used = false)]
 mod _core {
     #[pymodule_export]
@@ -135,7 +135,7 @@ mod _core {
     use super::tree::tree;
     #[pymodule_export]
     use super::view_factors::{coincident_faces, view_factor_matrix, view_factor_rows};
-    /// The most samples that a pilot takes of each way.
+    /// Maximum number of samples of a pilot per variant.
     #[pymodule_export]
     const PILOT: u32 = raywright::render::PILOT;
     #[pymodule_export]

@@ -1,4 +1,4 @@
-//! Lights as the package describes them: a dataclass a kind, read by attribute; and how surfaces shine.
+//! Light descriptions of the Python package, one dataclass per kind, read by attribute; and emission of surfaces.
 
 use numpy::PyReadonlyArrayDyn;
 use pyo3::exceptions::{PyTypeError, PyValueError};
@@ -85,7 +85,7 @@ struct PyEmission<'py> {
     side: String,
 }
 
-/// Reads a light, or an environment, by the name of its class; by wavelength where it is to be.
+/// Reads a light or an environment by the name of its class; spectral if `waves`.
 pub fn read(light: &Bound<'_, PyAny>, waves: bool) -> PyResult<Arc<dyn Light>> {
     let (vector, rgb) = (DVec3::from_array, Rgb::from_array);
     let name = light.get_type().name()?;
@@ -142,13 +142,13 @@ pub fn read(light: &Bound<'_, PyAny>, waves: bool) -> PyResult<Arc<dyn Light>> {
     })
 }
 
-/// A light by its colours, or by their smooth spectra.
+/// A light with its RGB colours or, if `waves`, with their smooth spectra.
 fn coloured(light: impl Light + 'static, waves: bool) -> Arc<dyn Light> {
     let light = Arc::new(light);
     if waves { Arc::new(Waved::coloured(light)) } else { light }
 }
 
-/// A light as bright as three numbers or a `raywright.Spectrum` says, made of a colour; whether it has colours beside.
+/// A light scaled by three numbers or a `raywright.Spectrum`; `has_colours` tells whether it has colours besides.
 fn shining(
     given: &Bound<'_, PyAny>,
     waves: bool,
@@ -158,7 +158,7 @@ fn shining(
     if let Ok(colour) = given.extract::<[f64; 3]>() {
         let colour = Rgb::from_array(colour);
         let is_grey = colour == Rgb::splat(colour[0]);
-        // What is negative or not a number is told of elsewhere.
+        // Negative and NaN values are reported elsewhere.
         if !waves || has_colours || is_grey || !colour.is_radiance() {
             let light = make(colour)?;
             return Ok(if waves && has_colours { Arc::new(Waved::coloured(light)) } else { light });
@@ -168,7 +168,7 @@ fn shining(
     Ok(Arc::new(Waved::tinted(tint, has_colours, |mean| make(Rgb::splat(mean)))?))
 }
 
-/// What surrounds a scene: nothing, one environment, or a tuple of them.
+/// Reads the environment: none, one, or a tuple of several.
 pub fn read_environment(environment: Option<Bound<'_, PyAny>>, waves: bool) -> PyResult<Vec<Arc<dyn Light>>> {
     match environment {
         None => Ok(Vec::new()),
@@ -179,7 +179,7 @@ pub fn read_environment(environment: Option<Bound<'_, PyAny>>, waves: bool) -> P
     }
 }
 
-/// How a shape shines: a radiance, or a `raywright.Emission`.
+/// Reads the emission of a shape: a radiance, or a `raywright.Emission`.
 pub fn read_emission(emission: &Bound<'_, PyAny>, textures: &Textures) -> PyResult<Emission> {
     if emission.get_type().name()?.to_str()? != "Emission" {
         return Ok(Emission { radiance: textures.value(emission, Meaning::Light)?, ..Emission::default() });

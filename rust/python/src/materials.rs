@@ -1,4 +1,4 @@
-//! Materials as the package describes them, read by attribute.
+//! Material descriptions of the Python package, read by attribute.
 
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -17,29 +17,29 @@ use raywright::scene::materials::{
 };
 use raywright::scene::media::Medium;
 
-/// Reads materials and textures: one that many shapes share is read once.
+/// Reads materials and textures; a shared one is read once.
 pub struct Appearances {
     materials: Cache<Arc<dyn Material>>,
     media: Cache<Arc<dyn Medium>>,
-    /// What materials and lights vary by.
+    /// Textures of materials and lights.
     pub textures: Textures,
 }
 
 impl Appearances {
-    /// Those of a scene that needs wavelengths, or none.
+    /// Creates a reader; spectral if `waves`.
     pub fn new(waves: bool) -> Self {
         Self { materials: Cache::default(), media: Cache::default(), textures: Textures::new(waves) }
     }
 
-    /// The material of a description.
+    /// Reads a material.
     ///
     /// # Errors
-    /// A `TypeError` for what is none, and what reading its textures raises.
+    /// A `TypeError` if it is not a material, and errors of reading its textures.
     pub fn material(&self, given: &Bound<'_, PyAny>) -> PyResult<Arc<dyn Material>> {
         self.materials.of(given, || self.read(given))
     }
 
-    /// The material of a description, by the name of its class.
+    /// Reads a material by the name of its class.
     fn read(&self, given: &Bound<'_, PyAny>) -> PyResult<Arc<dyn Material>> {
         let name = given.get_type().name()?;
         let value = |name: &str| self.textures.attribute(given, name, Meaning::Share);
@@ -146,7 +146,7 @@ impl Appearances {
         Ok(DielectricMaterial { interior, roughness: self.roughness(given)?, medium: self.medium(given)? })
     }
 
-    /// What a film lies on.
+    /// Reads the base of a film.
     fn film_base(&self, given: &Bound<'_, PyAny>) -> PyResult<FilmBase> {
         Ok(match given.get_type().name()?.to_str()? {
             "Dielectric" => FilmBase::Dielectric(self.dielectric(given)?),
@@ -157,7 +157,7 @@ impl Appearances {
         })
     }
 
-    /// What has a tint.
+    /// Reads the base of a tint.
     fn tinted_base(&self, given: &Bound<'_, PyAny>) -> PyResult<TintedBase> {
         Ok(match given.get_type().name()?.to_str()? {
             "Dielectric" => TintedBase::Dielectric(self.dielectric(given)?),
@@ -170,7 +170,7 @@ impl Appearances {
         })
     }
 
-    /// What fills what a material encloses.
+    /// Reads the participating medium inside a material.
     fn medium(&self, given: &Bound<'_, PyAny>) -> PyResult<Option<Arc<dyn Medium>>> {
         let interior = given.getattr("interior")?;
         if interior.is_none() {
@@ -180,7 +180,7 @@ impl Appearances {
         }
     }
 
-    /// What the principled materials have in common.
+    /// Reads the parameters that the principled materials share.
     fn looks(&self, given: &Bound<'_, PyAny>) -> PyResult<LookTextures> {
         let number = |name: &str| self.textures.number(given, name);
         Ok(LookTextures {
@@ -196,7 +196,7 @@ impl Appearances {
         })
     }
 
-    /// Roughness, or alpha where there is one, alike in all directions or of two; and of which facets.
+    /// Reads roughness, or alpha if given, isotropic or anisotropic, and the facet distribution.
     fn roughness(&self, given: &Bound<'_, PyAny>) -> PyResult<Roughness> {
         let alpha = given.getattr("alpha")?;
         let is_alpha = !alpha.is_none();
@@ -219,17 +219,16 @@ impl Appearances {
     }
 }
 
-/// The metals that are known: symbol and name.
+/// Symbols and names of the known metals.
 #[pyfunction]
 pub fn metals() -> Vec<(&'static str, &'static str)> {
     METALS.iter().map(|metal| (metal.symbol, metal.name)).collect()
 }
 
-/// What was measured of a metal: wavelength in nm, and the real and the imaginary part of the index of refraction
-/// there.
+/// Measurements of a metal: wavelength in nm, and real and imaginary part of the index of refraction.
 ///
 /// # Errors
-/// A `ValueError` for a metal that is not known.
+/// A `ValueError` for an unknown metal.
 #[pyfunction]
 pub fn metal_index(name: &str) -> PyResult<Vec<[f64; 3]>> {
     metal(name).map(|metal| metal.index.to_vec()).ok_or_else(|| unknown(name))
@@ -239,7 +238,7 @@ fn unknown(name: &str) -> PyErr {
     PyValueError::new_err(format!("metal must be one that is known, got '{name}'"))
 }
 
-/// What fills a solid.
+/// Reads the interior of a solid.
 fn interior(given: &Bound<'_, PyAny>) -> PyResult<Interior> {
     let (ior, dispersion) = spectra::index(&given.getattr("ior")?)?;
     Ok(Interior { ior, dispersion, priority: given.getattr("priority")?.extract()? })

@@ -1,4 +1,4 @@
-//! Media as the package describes them, read by attribute.
+//! Medium descriptions of the Python package, read by attribute.
 
 use numpy::{PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
@@ -13,7 +13,7 @@ use raywright::scene::media::{
     At, Blocks, Coefficients, Field, Glow, GridMedium, Homogeneous, Medium, Values, WavedGrid, WavedMedium,
 };
 
-/// What all media have.
+/// Attributes of all media.
 #[derive(FromPyObject)]
 struct PyMedium<'py> {
     absorption: Bound<'py, PyAny>,
@@ -21,10 +21,10 @@ struct PyMedium<'py> {
     phase: Bound<'py, PyAny>,
 }
 
-/// The medium of a description, by wavelength where it is to be.
+/// Reads a medium; spectral if `waves`.
 ///
 /// # Errors
-/// A `TypeError` for what is none, a `ValueError` for one that cannot be.
+/// A `TypeError` if it is not a medium, a `ValueError` if it is invalid.
 pub fn read(given: &Bound<'_, PyAny>, waves: bool) -> PyResult<Arc<dyn Medium>> {
     let name = given.get_type().name()?;
     let PyMedium { absorption, scattering, phase } = given.extract()?;
@@ -44,7 +44,7 @@ pub fn read(given: &Bound<'_, PyAny>, waves: bool) -> PyResult<Arc<dyn Medium>> 
     }
 }
 
-/// A spectrum, which nobody asks for unless it is by wavelength, and the colour that stands for it.
+/// A spectrum, used only if spectral, and the RGB colour that represents it.
 fn tint(told: &Bound<'_, PyAny>, meaning: Meaning, waves: bool) -> PyResult<(Arc<Spectrum>, Rgb)> {
     if waves { spectra::tint(told, meaning) } else { Ok((flat(), Rgb::from_array(told.extract()?))) }
 }
@@ -53,7 +53,7 @@ fn flat() -> Arc<Spectrum> {
     Arc::new(Spectrum::Smooth(Smooth::of(Rgb::ONE, Role::Amount)))
 }
 
-/// What is absorbed and scattered: spectra, and the colours that stand for them.
+/// Absorption and scattering: spectra, and the RGB colours that represent them.
 type Told = [(Arc<Spectrum>, Rgb); 2];
 
 /// A medium on a grid.
@@ -81,7 +81,7 @@ fn read_grid(given: &Bound<'_, PyAny>, waves: bool, told: Told, phase: Phase) ->
     let matrix = given.call_method0("_place")?.extract()?;
     let told = match albedo {
         None => told,
-        // All that is dimmed, in place of what is absorbed.
+        // With an albedo grid, the extinction replaces the absorption.
         Some(_) => [tint(&given.getattr("extinction")?, Meaning::Amount, waves)?, (flat(), Rgb::ZERO)],
     };
     let is_heat = matches!(glow, Some(Glow::Heat { .. }));
@@ -99,7 +99,7 @@ fn read_grid(given: &Bound<'_, PyAny>, waves: bool, told: Told, phase: Phase) ->
     Ok(if waves { Arc::new(WavedMedium::new(medium, told, shines)) } else { medium })
 }
 
-/// The numbers of a grid: of an array, (X, Y, Z) or (X, Y, Z, 3), or blocks that the package has.
+/// The numbers of a grid: an array, (X, Y, Z) or (X, Y, Z, 3), or blocks held by the package.
 fn field(name: &str, given: &Bound<'_, PyAny>, at: At) -> PyResult<Field> {
     if let Ok(blocks) = given.getattr("_blocks") {
         let blocks = blocks.cast_into::<GridBlocks>()?;
@@ -124,7 +124,7 @@ fn field(name: &str, given: &Bound<'_, PyAny>, at: At) -> PyResult<Field> {
     }
 }
 
-/// How a medium scatters.
+/// Reads a phase function.
 fn read_phase(given: &Bound<'_, PyAny>) -> PyResult<Phase> {
     match given.get_type().name()?.to_str()? {
         "Isotropic" => Ok(Phase::Isotropic),

@@ -1,4 +1,4 @@
-//! Photons of a scene, from numbers to arrays.
+//! Photons of a scene, as arrays.
 
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
@@ -11,8 +11,8 @@ use raywright::integrators::{Photon, photons as follow};
 /// Rows of three numbers.
 type Rows<'py> = Bound<'py, PyArray2<f64>>;
 
-/// Positions, directions, normals and powers (K,3); shape_id, primitive, path and bounces (K,); sharp and adrift (K,);
-/// what is emitted, what escapes and what media absorb.
+/// Positions, directions, normals and powers (K,3); shape_id, primitive, path and bounces (K,); bit masks of the
+/// bounces that were sharp and of those in media (K,); and emitted, escaped and absorbed power.
 type Found<'py> = (
     (Rows<'py>, Rows<'py>, Rows<'py>, Rows<'py>),
     (Bound<'py, PyArray1<i32>>, Bound<'py, PyArray1<i32>>, Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<i64>>),
@@ -20,7 +20,7 @@ type Found<'py> = (
     ([f64; 3], [f64; 3], [f64; 3]),
 );
 
-/// Light at each surface that it comes to, and where media take or scatter it, on so many paths.
+/// Photons at surfaces, and at absorption and scattering in media, from this number of paths.
 #[pyfunction]
 pub fn photons<'py>(
     py: Python<'py>,

@@ -1,4 +1,4 @@
-//! All about the points where rays meet surfaces.
+//! Surface data of hits.
 
 use numpy::{PyArrayDyn, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
@@ -22,7 +22,7 @@ type Points<'py> = (
     Bound<'py, PyArrayDyn<f64>>,
 );
 
-/// All about some hits, NaN for misses. `ray` says which ray each is of, where they are not in turn.
+/// Surface data of hits, NaN for misses. `ray` gives the ray of each hit, if they are not in ray order.
 #[pyfunction]
 #[allow(clippy::too_many_arguments)]
 pub fn points<'py>(

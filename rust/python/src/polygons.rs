@@ -1,4 +1,4 @@
-//! Polygons to triangles.
+//! Triangulation of polygons.
 
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use super::arrays::{numbers, rows};
 use raywright::shapes::triangulate;
 
-/// Triangulate polygons with so many corners each: (T, 3) indices of corners, which are indices of points.
+/// Triangulate polygons with these numbers of corners: (T, 3) indices of corners, which are indices of points.
 #[pyfunction]
 pub fn triangulate_polygons<'py>(
     py: Python<'py>,

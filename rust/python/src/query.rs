@@ -1,4 +1,4 @@
-//! A compiled scene's answers, from arrays to arrays.
+//! Queries on a compiled scene, from arrays to arrays.
 
 use numpy::{PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
@@ -28,14 +28,14 @@ use std::sync::Arc;
 #[pyclass(frozen, module = "raywright._core")]
 pub struct CompiledScene(
     pub scene::Scene,
-    /// What prototypes in it are known by: see `instances`.
+    /// Objects whose addresses identify its prototypes; see `instances`.
     #[expect(dead_code, reason = "it is only held")]
     Vec<Py<PyAny>>,
-    /// The shapes that it was compiled from, as Python has them.
+    /// The Python shapes that it was compiled from.
     Py<PyAny>,
 );
 
-/// Whether each shape counts, and whether only what faces the ray does.
+/// Flags of the shapes that count, and whether only front faces do.
 #[derive(FromPyObject)]
 struct Counted(Option<Vec<bool>>, bool);
 
@@ -45,7 +45,7 @@ impl From<Counted> for scene::Filter {
     }
 }
 
-/// What a scene is told when it is compiled: what fills it, and whether shading normals are taken as they are given.
+/// Options of a scene's compilation: the surrounding medium, and whether shading normals are used as given.
 struct Around {
     medium: Option<Arc<dyn Medium>>,
     as_given: bool,
@@ -58,7 +58,7 @@ impl Around {
     }
 }
 
-/// Nodes and primitives.
+/// Numbers of nodes and primitives.
 type Costs<'py> = (Bound<'py, PyArrayDyn<i32>>, Bound<'py, PyArrayDyn<i32>>);
 
 /// Distance, position, shape_id, primitive and uv.
@@ -74,7 +74,7 @@ type ClosestPoints<'py> = (
 #[pymethods]
 #[allow(clippy::too_many_arguments)]
 impl CompiledScene {
-    /// `progress` is called now and then with the share of the build that is done, and may raise to end it.
+    /// `progress` is called now and then with the finished share of the build, and may raise to end it.
     #[new]
     #[pyo3(signature = (scene, accelerator, progress=None))]
     fn new(
@@ -274,7 +274,7 @@ impl CompiledScene {
         let out = unwritten(py, &shape, None)?;
         let count = shape.iter().product();
         let enclosing = scene::Enclosing { shapes, tolerance, is_even_odd };
-        // Made once, before threads ask for it.
+        // Computed once, before threads use it.
         py.detach(|| self.0.solids(&enclosing));
         answer(py, count, share(count), threads, out.readwrite().as_slice_mut()?, |start, out| {
             let some: Vec<_> = (start..start + out.len()).map(|i| points.get(i)).collect();
@@ -283,7 +283,7 @@ impl CompiledScene {
         Ok(out)
     }
 
-    /// The meshes whose normals point into them.
+    /// Meshes whose normals point inwards.
     #[pyo3(signature = (shapes=None, tolerance=None))]
     fn inverted(&self, py: Python<'_>, shapes: Option<Vec<bool>>, tolerance: Option<f64>) -> Vec<u32> {
         py.detach(|| self.0.solids(&scene::Enclosing { shapes, tolerance, is_even_odd: false }).inverted().to_vec())
@@ -346,8 +346,8 @@ impl CompiledScene {
         Ok((distance, position, sealed(shape)?, sealed(primitive)?, uv, instance))
     }
 
-    /// The radii of the largest balls, of at most `radius`, that touch meshes at points, have their middles along unit
-    /// vectors from there, and no triangle inside.
+    /// Radii of the largest spheres, up to `radius`, that touch meshes at points, have centers along unit vectors from
+    /// there, and contain no triangle.
     fn tangent_balls<'py>(
         &self,
         py: Python<'py>,
@@ -399,7 +399,7 @@ impl CompiledScene {
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let (uv, position) = (rows("uv", &uv)?, rows("position", &position)?);
         let instance = instance.as_ref().map(|instance| numbers("instance", instance)).transpose()?;
-        // What there is of a shape of instances is their number, and what is in them.
+        // For a shape of instances, primitives are numbered by instance; those inside come from `primitive`.
         let copy_of = |i: usize| instance.and_then(|all| u32::try_from(all[i]).ok());
         let inside = numbers("primitive", &primitive)?.to_vec();
         let which: Vec<i32> = (0..inside.len()).map(|i| copy_of(i).map_or(inside[i], |copy| copy as i32)).collect();
@@ -429,7 +429,7 @@ impl CompiledScene {
         self.of_primitives(py, &shape_id, &primitive, |geometry, p, _| [geometry.error(p)])
     }
 
-    /// The shapes that it was compiled from, as Python has them.
+    /// The Python shapes that it was compiled from.
     #[getter]
     fn shapes(&self, py: Python<'_>) -> Py<PyAny> {
         self.2.clone_ref(py)
@@ -445,7 +445,7 @@ impl CompiledScene {
         AcceleratorInfo(self.0.accelerator().info().clone())
     }
 
-    /// Whether anything in it is no mesh.
+    /// Returns whether any shape is not a mesh.
     #[getter]
     fn curved(&self) -> bool {
         self.0.geometry().first_other().is_some()
@@ -456,13 +456,13 @@ impl CompiledScene {
         self.0.geometry().dropped()
     }
 
-    /// Whether rounding to f32 has moved vertices.
+    /// Returns whether rounding to f32 has moved vertices.
     #[getter]
     fn is_rounded(&self) -> bool {
         self.0.geometry().is_single() && self.0.geometry().rounding().moved > 0.0
     }
 
-    /// How far rounding to f32 has moved vertices, and what share of their mesh's extent that is, where it is a loss.
+    /// Displacement of vertices by rounding to f32, and its share of the mesh's extent, if it is a loss.
     #[getter]
     fn loss(&self) -> Option<(f64, f64)> {
         self.0.plan().loss().map(|rounding| (rounding.moved, rounding.share()))
@@ -489,7 +489,7 @@ impl CompiledScene {
         &self.0
     }
 
-    /// So many numbers of each primitive, NaN for misses.
+    /// `K` numbers of each primitive, NaN for misses.
     fn of_primitives<'py, const K: usize>(
         &self,
         py: Python<'py>,
@@ -519,11 +519,11 @@ impl CompiledScene {
     }
 }
 
-/// Writes hits down where they belong.
-// On its own, or the loop's pointers do not fit into registers.
+/// Writes hits to their positions.
+// A separate function, because otherwise the loop's pointers do not fit into registers.
 #[inline(never)]
 pub(super) fn write(scene: &scene::Scene, hits: &[Hit], places: &[usize], (t, shape, primitive, uv): HitParts<'_>) {
-    // Told to be as long, so that one comparison serves all four.
+    // Slices of equal length, so that one bounds check serves all four.
     let count = t.len();
     let (shape, primitive, uv) = (&mut shape[..count], &mut primitive[..count], &mut uv[..count]);
     for (hit, &i) in hits.iter().zip(places) {
@@ -532,7 +532,7 @@ pub(super) fn write(scene: &scene::Scene, hits: &[Hit], places: &[usize], (t, sh
     }
 }
 
-/// The shape and the face of a primitive, as arrays say it: −1 for none.
+/// Shape and face of a primitive as in arrays: −1 for none.
 fn located(scene: &scene::Scene, primitive: u32) -> (i32, i32) {
     if primitive == Hit::MISS.primitive {
         return (-1, -1);

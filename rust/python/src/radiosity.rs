@@ -1,4 +1,4 @@
-//! Radiosity on its way, from arrays to arrays.
+//! Progressive radiosity, as arrays.
 
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
@@ -16,7 +16,7 @@ use raywright::scene::Patches;
 #[pyclass(module = "raywright._core")]
 pub struct RadiosityShots {
     scene: Py<CompiledScene>,
-    /// A scene of lights that are no surfaces, and nothing else.
+    /// A scene with only the lights that are not surfaces.
     lamps: Option<Py<CompiledScene>>,
     enclosure: Enclosure,
     seed: u64,
@@ -29,8 +29,8 @@ fn colours(name: &str, array: &PyReadonlyArray2<'_, f64>) -> PyResult<Vec<Rgb>> 
 
 #[pymethods]
 impl RadiosityShots {
-    /// `cuts` (F,) says into how many strips each primitive is cut; `looks`, emission and reflectance by side, stand
-    /// for what the scene says.
+    /// `cuts` (F,) gives the number of strips of each primitive; `looks`, emission and reflectance by side, override
+    /// the scene's.
     #[new]
     #[pyo3(signature = (scene, lamps, cuts, both, looks=None, threads=None))]
     fn new(
@@ -56,7 +56,7 @@ impl RadiosityShots {
         Ok(Self { scene, lamps, enclosure, seed: 0, replicates: Vec::new() })
     }
 
-    /// Begins so many replicates anew, and draws so many rays for the light of each that comes from no surface.
+    /// Restarts this number of replicates, and traces rays for the lights that are not surfaces.
     fn begin(
         &mut self,
         py: Python<'_>,
@@ -75,7 +75,7 @@ impl RadiosityShots {
         Ok(())
     }
 
-    /// Shoots all unshot power; of each replicate so many rays would go if all were unshot.
+    /// Shoots all unshot power; `rays` is the number per replicate if all power were unshot.
     fn shoot_all(&mut self, py: Python<'_>, rays: u64, threads: Option<usize>) -> PyResult<()> {
         let (scene, enclosure, seed) = (&self.scene.get().0, &self.enclosure, self.seed);
         let replicates = &mut self.replicates;
@@ -84,7 +84,7 @@ impl RadiosityShots {
         })
     }
 
-    /// Shoots so many sides of patches, each time that of most unshot power.
+    /// Shoots this number of sides of patches, each time the one with the most unshot power.
     fn shoot_greatest(&mut self, py: Python<'_>, count: u32, rays: u64, threads: Option<usize>) -> PyResult<()> {
         let (scene, enclosure, seed) = (&self.scene.get().0, &self.enclosure, self.seed);
         let replicates = &mut self.replicates;
@@ -93,25 +93,25 @@ impl RadiosityShots {
         })
     }
 
-    /// The area of each patch, (P,), m².
+    /// Area of each patch, (P,), m².
     #[getter]
     fn areas<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_slice(py, self.enclosure.areas())
     }
 
-    /// The radiosity by emission of each side, (S,3), W/m².
+    /// Emitted radiosity of each side, (S,3), W/m².
     #[getter]
     fn emission<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         table(py, self.enclosure.emission())
     }
 
-    /// The share of light that each side reflects, (S,3).
+    /// Reflectance of each side, (S,3).
     #[getter]
     fn reflectance<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         table(py, self.enclosure.reflectance())
     }
 
-    /// The corners of each patch, (P,3,3); NaN for what is no triangle.
+    /// Corners of each patch, (P,3,3); NaN if it is not a triangle.
     #[getter]
     fn corners<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
         let (geometry, patches) = (self.scene.get().0.geometry(), self.enclosure.patches());
@@ -125,21 +125,21 @@ impl RadiosityShots {
         PyArray1::from_vec(py, corners.collect()).reshape([patches.count(), 3, 3])
     }
 
-    /// The power that has come to each side, (R,S,3), W.
+    /// Incident power of each side, (R,S,3), W.
     #[getter]
     fn arrived<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
         let all = self.replicates.iter().flat_map(|one| one.arrived().iter().flat_map(|power| power.to_array()));
         PyArray1::from_vec(py, all.collect()).reshape([self.replicates.len(), self.enclosure.sources(), 3])
     }
 
-    /// The power that each side has not shot, (R,S,3), W.
+    /// Unshot power of each side, (R,S,3), W.
     #[getter]
     fn unshot<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
         let all = self.replicates.iter().flat_map(|one| one.unshot().iter().flat_map(|power| power.to_array()));
         PyArray1::from_vec(py, all.collect()).reshape([self.replicates.len(), self.enclosure.sources(), 3])
     }
 
-    /// The power that set out, is unshot, has left, and has come to black sides, (R,4,3), W.
+    /// Energy balance: emitted, unshot, escaped, and absorbed by black sides, (R,4,3), W.
     #[getter]
     fn books<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
         let all = self.replicates.iter().flat_map(|one| {
@@ -150,7 +150,7 @@ impl RadiosityShots {
         PyArray1::from_vec(py, all.collect()).reshape([self.replicates.len(), 4, 3])
     }
 
-    /// The rays of all replicates.
+    /// Number of rays of all replicates.
     #[getter]
     fn rays(&self) -> u64 {
         self.replicates.iter().map(Shots::rays).sum()

@@ -1,4 +1,4 @@
-//! The numbers of samples, for integrators that are written in Python.
+//! Random numbers of samples, for integrators written in Python.
 
 use numpy::{PyArrayDyn, PyArrayMethods, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
@@ -7,8 +7,8 @@ use pyo3::prelude::*;
 use super::arrays::{numbers, sealed, unwritten};
 use raywright::sampling::{CAMERA_DIMENSIONS, SamplerKind};
 
-/// One number, or a pair if `pair`, of a dimension of each sample of a pixel: (N,) or (N,2). The dimensions that the
-/// camera uses come before the first.
+/// One number, or a pair if `pair`, of a dimension of each sample of a pixel: (N,) or (N,2). Dimension numbers start
+/// after those of the camera.
 #[pyfunction]
 pub fn random_numbers<'py>(
     py: Python<'py>,

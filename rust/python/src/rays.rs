@@ -1,4 +1,4 @@
-//! Batches of rays as they come, and their answers shared out among threads.
+//! Batches of rays in array form, distributed over threads.
 
 use numpy::PyReadonlyArrayDyn;
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
@@ -11,20 +11,20 @@ use raywright::math::gathering::WINDOW;
 use raywright::math::{Ray, Tiling, row_length};
 use raywright::{parallel, workers};
 
-/// Rays that are gathered from the arrays and asked together, at most: few enough to stay in a near cache and for
-/// Ctrl-C to be heard, and enough that a wave of rays in flight is seldom run down. (512 take 2 to 5 % longer where
-/// rays are scattered, and as long where they are not; 8192 gain no more.)
+/// Maximum number of rays gathered and traced together: few enough to stay in a near cache and for Ctrl-C to be
+/// handled, and enough to keep rays in flight. (512 takes 2 to 5 % longer for scattered rays, and the same for others;
+/// 8192 gains nothing.)
 pub const BATCH: usize = 2048;
 
-/// So many go to a thread where there are not many: enough to make the hand-over free.
+/// Minimum rays per task, enough to make the hand-over negligible.
 const LEAST: usize = 1024;
 
-/// Rays or points that a thread takes at a time, of so many.
+/// Rays or points per task, for this total number.
 pub fn share(count: usize) -> usize {
     (count / 32).clamp(LEAST, BATCH)
 }
 
-/// A batch of rays as it came: each part one for all rays, or one a ray.
+/// A batch of rays in array form: each part one for all rays, or one per ray.
 #[derive(Clone, Copy)]
 pub struct RayArrays<'a> {
     pub(super) origins: Rows<'a>,
@@ -32,13 +32,13 @@ pub struct RayArrays<'a> {
     pub(super) t_min: &'a [f64],
     pub(super) t_max: &'a [f64],
     time: &'a [f64],
-    /// How many rays.
+    /// Number of rays.
     pub count: usize,
     pub(super) tiling: Tiling,
 }
 
-/// What the package gives for a batch of rays, as one tuple: arrays and numbers, the leading shape of all, and on how
-/// many threads they are traced.
+/// The ray arguments of the Python package as one tuple: arrays and numbers, their common leading shape, and the number
+/// of threads.
 pub struct RayArguments<'py> {
     pub origins: Triples<'py>,
     pub directions: Triples<'py>,
@@ -48,7 +48,7 @@ pub struct RayArguments<'py> {
     pub threads: Option<usize>,
     /// None is 0 for all.
     pub time: Option<Numbers<'py>>,
-    /// Which of them are asked, or all: the others meet nothing.
+    /// Rays to be traced, or all; others hit nothing.
     pub mask: Option<PyReadonlyArrayDyn<'py, bool>>,
 }
 
@@ -82,7 +82,7 @@ impl RayArguments<'_> {
                 "origins, directions, t_min, t_max and time have lengths {lengths:?}, expected 1 or {count}"
             )));
         }
-        // The rays of an image are traced in tiles, where neighbours share more than along a row.
+        // The rays of an image are traced in tiles, which are more coherent than rows.
         let row = match self.shape.as_slice() {
             [_, .., row] => *row,
             _ => match row_length(directions.len(), |i| directions.get(i)) {
@@ -102,32 +102,32 @@ impl RayArguments<'_> {
     }
 }
 
-/// All rays of a call. What is broadcast is held once, and copied for a chunk of rays at a time, so that a call takes
-/// memory for its answer and no more.
+/// All rays of a call. Broadcast arrays are not expanded, but copied for a chunk of rays at a time, so a call needs
+/// memory only for its results.
 pub struct RayBatch<'a> {
     rays: RayArrays<'a>,
     mask: Option<(&'a [bool], Option<Repeats>)>,
-    /// Of origins, directions, `t_min`, `t_max` and time; none if no array repeats and there is no mask.
+    /// For origins, directions, `t_min`, `t_max` and time; `None` if nothing is broadcast and there is no mask.
     repeats: Option<Box<[Option<Repeats>; 5]>>,
 }
 
 impl RayBatch<'_> {
-    /// How many rays.
+    /// Number of rays.
     pub fn count(&self) -> usize {
         self.rays.count
     }
 
-    /// Rays that a thread takes at a time.
+    /// Rays per task.
     pub fn chunk(&self) -> usize {
         self.rays.chunk()
     }
 
-    /// The same where rays are put in an order of their own.
+    /// Rays per task if they are reordered.
     pub fn window(&self) -> usize {
         self.rays.window()
     }
 
-    /// Gives the rays from `start` on, as arrays and where in these they begin.
+    /// Calls `work` with the rays from `start` on, as arrays and a start index within them.
     #[inline(always)]
     pub fn part<T>(&self, start: usize, count: usize, work: impl FnOnce(&RayArrays<'_>, usize) -> T) -> T {
         let Some(repeats) = &self.repeats else { return work(&self.rays, start) };
@@ -142,7 +142,7 @@ impl RayBatch<'_> {
                 t_max = vec![t_max[0]; count];
             }
             for (i, far) in t_max.iter_mut().enumerate() {
-                // No t lies before minus infinity.
+                // No t is below minus infinity.
                 if !asked[if asked.len() == 1 { 0 } else { i }] {
                     *far = f64::NEG_INFINITY;
                 }
@@ -155,12 +155,12 @@ impl RayBatch<'_> {
 }
 
 impl RayArrays<'_> {
-    /// Rays that a thread takes at a time.
+    /// Rays per task.
     pub fn chunk(&self) -> usize {
         self.tiling.chunk(share(self.count))
     }
 
-    /// The same where rays are put in an order of their own.
+    /// Rays per task if they are reordered.
     pub fn window(&self) -> usize {
         self.tiling.chunk(if self.tiling.is_sequence() {
             (self.count / 32).clamp(LEAST, WINDOW)
@@ -169,7 +169,7 @@ impl RayArrays<'_> {
         })
     }
 
-    /// One of them.
+    /// A ray.
     pub fn ray(&self, i: usize) -> Ray {
         let of = |length: usize| if length == 1 { 0 } else { i };
         let Self { t_min, t_max, time, .. } = *self;
@@ -181,8 +181,7 @@ impl RayArrays<'_> {
         }
     }
 
-    /// Calls `answer` with up to [`BATCH`] rays at a time of the `count` from `start` on, and with where each lies
-    /// among them.
+    /// Calls `answer` with up to [`BATCH`] rays at a time of the `count` from `start` on, and with their positions.
     #[inline(always)]
     pub fn gathered(&self, start: usize, count: usize, mut answer: impl FnMut(&[Ray], &[usize])) {
         let some = BATCH.min(count);
@@ -191,7 +190,7 @@ impl RayArrays<'_> {
             let places = &mut places[..BATCH.min(count - from)];
             self.tiling.places(from, count, places);
             rays.clear();
-            // Which floats they are is asked once, not for each ray.
+            // Branches on the float types once, not per ray.
             match (self.origins, self.directions) {
                 (Rows::Single(o), Rows::Single(d)) => self.gather(o, d, start, places, &mut rays),
                 (Rows::Single(o), Rows::Double(d)) => self.gather(o, d, start, places, &mut rays),
@@ -202,7 +201,7 @@ impl RayArrays<'_> {
         }
     }
 
-    /// The rays that lie at some places after `start`.
+    /// Gathers the rays at some positions after `start`.
     fn gather<O: Row, D: Row>(
         &self,
         origins: &[O],
@@ -212,11 +211,11 @@ impl RayArrays<'_> {
         rays: &mut Vec<Ray>,
     ) {
         let Self { t_min, t_max, time, .. } = *self;
-        // One that serves for all is at no distance from itself.
+        // A single row has stride 0.
         let step = |length: usize| usize::from(length != 1);
         let [origin, direction] = [step(origins.len()), step(directions.len())];
         let [near, far, when] = [step(t_min.len()), step(t_max.len()), step(time.len())];
-        // What it reads must not be thought to lie where it writes: `move`.
+        // `move` tells the compiler that inputs do not alias the output.
         rays.extend(places.iter().map(move |&place| {
             let i = start + place;
             Ray {
@@ -231,9 +230,9 @@ impl RayArrays<'_> {
     }
 }
 
-/// Arrays of answers that can be shared out among threads.
+/// Output arrays that can be split among threads.
 pub trait Parts: Send + Sized {
-    /// Those of the first so many rays, and the others.
+    /// Splits off the part of the first `at` rays.
     fn split(self, at: usize) -> (Self, Self);
 }
 
@@ -266,7 +265,7 @@ impl<A: Parts, B: Parts, C: Parts, D: Parts> Parts for (A, B, C, D) {
     }
 }
 
-/// Fills `n` answers, `chunk` at a time, with the interpreter detached and signals heard.
+/// Fills `n` results, `chunk` at a time, without the interpreter lock and with signal handling.
 pub fn answer<P: Parts>(
     py: Python<'_>,
     n: usize,
@@ -285,13 +284,13 @@ pub fn answer<P: Parts>(
     each(py, threads, chunks, |(start, part)| fill(start, part)).map(drop)
 }
 
-/// The chunks of `n` rays: where each starts, and how many it has.
+/// Chunks of `n` rays: the start and length of each.
 pub fn chunks(n: usize, chunk: usize) -> Vec<(usize, usize)> {
     (0..n).step_by(chunk).map(|start| (start, chunk.min(n - start))).collect()
 }
 
-/// What `work` makes of each of the chunks, in their order, with the interpreter detached and signals heard. One chunk
-/// alone is the calling thread's: waking others takes longer.
+/// Maps `work` over chunks in order, without the interpreter lock and with signal handling. A single chunk runs on the
+/// calling thread, because waking others takes longer.
 pub fn each<C: Send, T: Send>(
     py: Python<'_>,
     threads: Option<usize>,

@@ -1,4 +1,4 @@
-//! Scenes to pictures.
+//! Rendering for Python.
 
 use numpy::{PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray2};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
@@ -19,19 +19,19 @@ use raywright::integrators::{Guide, Integrator, Path};
 use raywright::render::{self, Progress, RenderError, Settings, Until};
 use raywright::workers::{Cancel, onlookers, pool, watched};
 
-/// What is told of a film, by threads that do not work on any.
+/// Reads a film on threads that never render.
 fn looked_at<T: Send>(py: Python<'_>, tell: impl FnOnce() -> T + Send) -> PyResult<T> {
     let pool = onlookers().map_err(PyRuntimeError::new_err)?;
     Ok(py.detach(|| pool.install(tell)))
 }
 
-/// A render: its picture so far, and what it takes to go on with it.
+/// A render: its picture so far, and the state needed to continue it.
 #[pyclass(module = "raywright._core")]
 pub struct Rendering(pub(super) render::Rendering);
 
 #[pymethods]
 impl Rendering {
-    /// One of a job, that has not begun.
+    /// Creates the render of a job, not begun.
     #[new]
     fn new(job: &Bound<'_, Job>, threads: Option<usize>, patch: u32) -> PyResult<Self> {
         let (job, cores) = (job.get(), pool(threads).map_err(PyRuntimeError::new_err)?.threads());
@@ -39,7 +39,7 @@ impl Rendering {
         Ok(Self(render::Rendering::new(settings.film(job.camera(), cores, patch.max(1)))))
     }
 
-    /// One of a job, from what `to_bytes` gave; a `ValueError` says why bytes are not that.
+    /// Reads a render of a job from the bytes of `to_bytes`; a `ValueError` tells why they are invalid.
     #[staticmethod]
     fn from_bytes(
         py: Python<'_>,
@@ -56,7 +56,7 @@ impl Rendering {
         py.detach(|| pool.install(read)).map(Self).map_err(malformed)
     }
 
-    /// How many bytes `to_bytes` gives at most for a job.
+    /// Maximum size of `to_bytes` for a job.
     #[staticmethod]
     fn most_bytes(job: &Bound<'_, Job>) -> usize {
         let (camera, settings) = (job.get().camera(), job.get().settings(Until::default(), None));
@@ -72,8 +72,8 @@ impl Rendering {
         let pixels = looked_at(py, || self.0.rgb())?;
         self.picture(py, pixels)
     }
-    /// The standard error of each pixel, the same as far as pixels around tell of it, and degrees of freedom of that;
-    /// `None` where there are too few samples to say.
+    /// Standard error of each pixel, the same pooled with neighbours, and its degrees of freedom; `None` if there are
+    /// too few samples.
     #[getter]
     #[allow(clippy::type_complexity)]
     fn uncertainty<'py>(
@@ -103,7 +103,7 @@ impl Rendering {
     fn seconds(&self) -> f64 {
         self.0.seconds
     }
-    /// Counts time that was spent on it elsewhere.
+    /// Adds time that was spent elsewhere.
     fn spend(&mut self, seconds: f64) {
         self.0.seconds += seconds.max(0.0);
     }
@@ -134,8 +134,8 @@ impl Rendering {
         looked_at(py, || self.0.film.clamped())
     }
 
-    /// Four independent parts of the samples, (4, H, W, 3), and the variances of the halves that they make, (2, H, W,
-    /// 3); `None` where they were not kept, or a part has no whole batch.
+    /// Four independent parts of the samples, (4, H, W, 3), and the variances of the halves that they form, (2, H, W,
+    /// 3). `None` if they were not kept, or a part has no whole batch.
     #[getter]
     fn halves<'py>(&self, py: Python<'py>) -> PyResult<Option<denoise::Parts<'py>>> {
         denoise::halves(py, &self.0.film)
@@ -216,8 +216,8 @@ impl Rendering {
         py.detach(|| pool.install(|| self.0.add(count, rows, dropped))).map_err(malformed)
     }
 
-    /// What covers each pixel, by the samples that there are, or by so many `samples` each: the share of it that
-    /// anything does, and of so many shapes that cover most of it their numbers, -1 where there are fewer, and shares.
+    /// Coverage of each pixel, by the existing samples or by `samples` each: the covered share, and the numbers, -1 for
+    /// none, and shares of the shapes that cover most of it.
     #[allow(clippy::type_complexity)]
     fn cover<'py>(
         &self,
@@ -245,9 +245,9 @@ impl Rendering {
         ))
     }
 
-    /// Goes on until the first of `samples` (per pixel), `error` (relMSE) or `seconds` is met, or until it has been at
-    /// it for `pause` seconds; says whether one was met. `look` is called whenever signals are heard, and may raise to
-    /// end the render, or say true to have it left after the pass.
+    /// Continues until the first of `samples` (per pixel), `error` (relMSE) or `seconds` is met, or for `pause`
+    /// seconds; returns whether one was met. `look` is called whenever signals are handled. It may raise to end the
+    /// render, or return true to pause it after the pass.
     #[allow(clippy::too_many_arguments)]
     fn go_on(
         &mut self,
@@ -276,8 +276,8 @@ impl Rendering {
         result.map_err(|error| watcher.error(error))
     }
 
-    /// The bias of each pixel where light is gathered from about it and its standard error, else `None`. `look` is
-    /// called whenever signals are heard, and may raise to end it.
+    /// Bias of each pixel by density estimation and its standard error, or `None` for an unbiased integrator. `look` is
+    /// called whenever signals are handled, and may raise to end it.
     fn bias<'py>(
         &self,
         py: Python<'py>,
@@ -305,7 +305,7 @@ impl Rendering {
     }
 }
 
-/// How many standard errors either way hold a mean in a share of all cases, for each of these degrees of freedom.
+/// Half widths of confidence intervals of `level` in standard errors, for each of these degrees of freedom.
 #[pyfunction]
 pub fn student<'py>(
     py: Python<'py>,
@@ -316,9 +316,9 @@ pub fn student<'py>(
     numpy::PyArray1::from_vec(py, quantiles)
 }
 
-/// Whether paths could share what they find in a scene, and whether there is anything to aim at by way of mirrors and
-/// glass, whatever the path says of the two; photons are sent for the latter. `look` is called whenever signals are
-/// heard, and may raise to end it.
+/// Returns whether paths could share samples in a scene, and whether there are specular objects to guide light to,
+/// whatever the path's options; photons are traced for the latter. `look` is called whenever signals are handled, and
+/// may raise to end it.
 #[pyfunction]
 pub fn chances(
     py: Python<'_>,
@@ -342,8 +342,8 @@ pub fn chances(
     if goes_on { Ok((any.patch(scene) > 1, aims)) } else { Err(watcher.error(RenderError::Interrupted)) }
 }
 
-/// About the relMSE that each of some path tracers leaves with few samples, told from a few parts of a picture. `look`
-/// is called whenever signals are heard, and may raise to end it.
+/// Approximate relMSE of some path tracers with few samples, estimated on a few parts of a picture. `look` is called
+/// whenever signals are handled, and may raise to end it.
 #[pyfunction]
 #[allow(clippy::too_many_arguments)]
 pub fn pilot(
@@ -365,8 +365,8 @@ pub fn pilot(
     result.map_err(|error| watcher.error(error))
 }
 
-/// Nanoseconds by part of what has been rendered since this was last asked, and at how many surfaces paths have been;
-/// there with the feature `timing` alone.
+/// Nanoseconds by part of the rendering since the last call, and the number of surface vertices of paths; only with the
+/// feature `timing`.
 #[cfg(feature = "timing")]
 #[pyfunction]
 pub fn timing() -> (Vec<(&'static str, f64)>, u64) {

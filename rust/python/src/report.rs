@@ -1,4 +1,4 @@
-//! What reports are made of: routines run side by side, and what they answer.
+//! Reports: routines compared side by side.
 
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
 use pyo3::exceptions::{PyIndexError, PyValueError};
@@ -8,7 +8,7 @@ use super::arrays::rows;
 use raywright::math::Vec3;
 use raywright::shapes::triangle::routines::{Contest, Meeting, SingleRay};
 
-/// The triangle routines on the same pairs of a ray and a triangle.
+/// The triangle routines on the same ray-triangle pairs.
 #[pyclass(frozen, module = "raywright._core")]
 pub struct KernelContest(Contest);
 

@@ -1,4 +1,4 @@
-//! Samplers and filters, as the package describes them: a dataclass a kind, read by attribute.
+//! Sampler and filter descriptions of the Python package, one dataclass per kind, read by attribute.
 
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -6,13 +6,13 @@ use pyo3::prelude::*;
 use raywright::render::filter::{self, Filter, Profile, Separable};
 use raywright::sampling::{BatchSize, SamplerKind};
 
-/// What a sampler with batches says of them.
+/// Attributes of samplers with batches.
 #[derive(FromPyObject)]
 struct Batched {
     batch: Option<u32>,
 }
 
-/// The samples of a batch for a number of samples a pixel, if that is known.
+/// Samples per batch for a number of samples per pixel, if that is known.
 #[pyfunction]
 #[pyo3(signature = (samples))]
 pub fn batch_for(samples: Option<u32>) -> u32 {

@@ -1,4 +1,4 @@
-//! Shapes that are no meshes, as the package describes them, read by attribute.
+//! Descriptions of shapes that are not meshes, read by attribute.
 
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -72,11 +72,11 @@ struct PyParaboloid {
     capped: bool,
 }
 
-/// The shape of a description, under its transform if it has one.
+/// Reads a shape, under its transform if it has one.
 ///
 /// # Errors
 ///
-/// A `TypeError` for what is no shape, and a `ValueError` for a transform without an inverse.
+/// A `TypeError` if it is not a shape, and a `ValueError` for a transform without an inverse.
 pub fn read(shape: &Bound<'_, PyAny>) -> PyResult<Arc<dyn Shape>> {
     let own = read_own(shape)?;
     match shape.getattr("transform")?.extract::<Option<[[f64; 4]; 4]>>()? {
@@ -133,7 +133,7 @@ fn read_own(shape: &Bound<'_, PyAny>) -> PyResult<Arc<dyn Shape>> {
     })
 }
 
-/// Least and greatest corner of a shape under its transform, rounded outwards.
+/// Lower and upper corner of a shape's bounds under its transform, rounded outwards.
 #[pyfunction]
 pub fn shape_bounds(shape: &Bound<'_, PyAny>) -> PyResult<[[f64; 3]; 2]> {
     let bounds = read(shape)?.bounds();
@@ -146,7 +146,7 @@ pub fn shape_area(shape: &Bound<'_, PyAny>) -> PyResult<f64> {
     Ok(read(shape)?.area())
 }
 
-/// Why an affine matrix has no inverse, or None if it has one.
+/// The reason why an affine matrix has no inverse, or None if it has one.
 #[pyfunction]
 pub fn matrix_trouble(matrix: [[f64; 4]; 4]) -> Option<String> {
     let [x, y, z, _] = matrix;

@@ -1,4 +1,4 @@
-//! Renders that are looked at while they go on.
+//! Views of renders in progress.
 
 use numpy::{PyArray2, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
@@ -6,8 +6,7 @@ use pyo3::prelude::*;
 use super::render::Rendering;
 use raywright::render;
 
-/// What can be seen of a render from outside while a pass is worked on; `None` of everything between passes, when the
-/// render itself can be asked.
+/// A view of a render during a pass; everything is `None` between passes, when the render itself is accessible.
 #[pyclass(module = "raywright._core", frozen)]
 pub struct Sight {
     of: render::Sight,
@@ -28,7 +27,7 @@ impl Sight {
         self.of.is_open()
     }
 
-    /// Whether nobody works on it: whoever looks is waited for.
+    /// Returns whether no thread works on it; the render then waits for observers.
     #[getter]
     fn is_done(&self) -> bool {
         self.of.is_done()
@@ -39,7 +38,7 @@ impl Sight {
         self.of.outline().map(Rendering)
     }
 
-    /// All of the render as it is now, to be looked at.
+    /// A full copy of the current state.
     fn copy(&self, py: Python<'_>) -> Option<Rendering> {
         py.detach(|| self.of.copy()).map(Rendering)
     }
@@ -56,7 +55,7 @@ impl Sight {
         numpy::PyArray1::from_vec(py, counts).reshape([self.height, self.width]).map(Some)
     }
 
-    /// Samples that were not finite or negative, and samples that were clamped.
+    /// Number of samples that were not finite or negative, and number of clamped samples.
     #[getter]
     fn amiss(&self) -> Option<(u64, u64)> {
         self.of.amiss().map(|[dropped, clamped]| (dropped, clamped))

@@ -1,12 +1,12 @@
-//! Work that Ctrl-C ends.
+//! Interruptible work (Ctrl-C).
 
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 
 use raywright::workers::{Cancel, watched};
 
-/// Does work on the pool of so many threads without the interpreter, while signals are heard: what one of them raises
-/// ends it.
+/// Runs work on the pool with this number of threads, without the interpreter lock and with signal handling; an
+/// exception from a signal handler ends it.
 pub fn heard<T: Send>(py: Python<'_>, threads: Option<usize>, work: impl FnOnce(&Cancel) -> T + Send) -> PyResult<T> {
     let mut raised = None;
     let done = py.detach(|| {

@@ -1,4 +1,4 @@
-//! Spectra and indices of refraction as the package describes them, read by attribute, and the colours of spectra.
+//! Spectra and indices of refraction of the Python package, read by attribute, and colours of spectra.
 
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -8,9 +8,8 @@ use raywright::optics::spectra::{self, FIRST, Illuminant, LAST, Response, Role, 
 use raywright::optics::thin_film::{self, Complex};
 use raywright::optics::{Dispersion, Dispersive, Rgb};
 
-/// The linear Rec. 709 of values at wavelengths in nm, which rise: linear between them, and 0 outside. They say how
-/// much there is of daylight, or, unless `of_daylight`, of light that is even over wavelengths and has a luminance of
-/// 1.
+/// Linear Rec. 709 colour of values at increasing wavelengths in nm, linear between them, and 0 outside. They are
+/// relative to daylight or, unless `of_daylight`, to equal-energy light of luminance 1.
 #[pyfunction]
 pub fn spectrum_rgb(rows: Vec<[f64; 2]>, of_daylight: bool) -> [f64; 3] {
     let illuminant = if of_daylight { Illuminant::Daylight } else { Illuminant::Even };
@@ -18,8 +17,8 @@ pub fn spectrum_rgb(rows: Vec<[f64; 2]>, of_daylight: bool) -> [f64; 3] {
     Response::new(illuminant, 1).seen(value).to_array()
 }
 
-/// The luminance of light of such power at wavelengths in nm, which rise: linear between them, and 0 outside. It is 1
-/// where that is 1 everywhere.
+/// Luminance of power values at increasing wavelengths in nm, linear between them, and 0 outside. It is 1 for a power
+/// of 1 everywhere.
 #[pyfunction]
 pub fn spectrum_luminance(rows: Vec<[f64; 2]>) -> f64 {
     let (mut seen, mut all) = (0.0, 0.0);
@@ -37,9 +36,8 @@ pub fn daylight_power() -> Vec<f64> {
     (FIRST as u32..=LAST as u32).map(|nm| spectra::daylight(nm.into())).collect()
 }
 
-/// The share of unpolarised light that films reflect at one wavelength each. Rows have the wavelength and the thickness
-/// in nm, the cosine of incidence, the indices of what is around a film and within it, and the real and the imaginary
-/// part of that of what it lies on.
+/// Reflectance of films for unpolarised light, one wavelength per row. Rows have wavelength and thickness in nm, cosine
+/// of incidence, indices of the surroundings and the film, and real and imaginary part of the base's index.
 #[pyfunction]
 pub fn film_reflectance(rows: Vec<[f64; 7]>) -> Vec<f64> {
     let each = |[wavelength, thickness, cosine, outside, film, eta, k]: [f64; 7]| {
@@ -48,10 +46,10 @@ pub fn film_reflectance(rows: Vec<[f64; 7]>) -> Vec<f64> {
     rows.into_iter().map(each).collect()
 }
 
-/// The smooth spectrum of a colour, a share of light at most or an amount without a bound, at wavelengths in nm.
+/// Smooth spectrum of a colour at wavelengths in nm; `bounded` for a reflectance, otherwise an unbounded amount.
 ///
 /// # Errors
-/// A `ValueError` for a colour that is negative somewhere.
+/// A `ValueError` for a colour with negative channels.
 #[pyfunction]
 pub fn smooth_spectrum(colour: [f64; 3], bounded: bool, looked_up: bool, wavelengths: Vec<f64>) -> PyResult<Vec<f64>> {
     let colour = Rgb::from_array(colour);
@@ -63,20 +61,20 @@ pub fn smooth_spectrum(colour: [f64; 3], bounded: bool, looked_up: bool, wavelen
     Ok(wavelengths.into_iter().map(|nm| smooth.at(nm)).collect())
 }
 
-/// What the numbers of a texture stand for.
+/// Physical quantity of a texture's numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Meaning {
-    /// Shares of light.
+    /// Reflectances.
     Share,
     /// Amounts of light.
     Light,
-    /// Other amounts without a bound, as indices of refraction.
+    /// Other unbounded amounts, such as indices of refraction.
     Amount,
-    /// No colours.
+    /// Plain numbers without a spectrum.
     Numbers,
 }
 
-/// A `raywright.Spectrum`.
+/// Reads a `raywright.Spectrum`.
 ///
 /// # Errors
 /// A `ValueError` for one without values.
@@ -93,8 +91,7 @@ pub fn table(given: &Bound<'_, PyAny>, meaning: Meaning) -> PyResult<Arc<Spectru
         .ok_or_else(|| PyValueError::new_err("a spectrum must have values"))
 }
 
-/// The spectrum of a colour, and the colour that stands for it in red, green and blue: of three numbers the smooth one,
-/// or a `raywright.Spectrum`.
+/// A spectrum and its RGB colour: of three numbers the smooth spectrum, or a `raywright.Spectrum`.
 ///
 /// # Errors
 /// As [`table`].
@@ -109,11 +106,11 @@ pub fn tint(given: &Bound<'_, PyAny>, meaning: Meaning) -> PyResult<(Arc<Spectru
     Ok((spectrum, colour))
 }
 
-/// An index of refraction, that of yellow light where it goes with wavelength, and how it does.
+/// Reads an index of refraction, for yellow light if it varies, and its dispersion.
 ///
 /// # Errors
-/// A `TypeError` for what is none, a `ValueError` for a formula that gives none for some of the light that is seen, or
-/// if there are too many.
+/// A `TypeError` if it is not an index, a `ValueError` for a formula that is invalid at some visible wavelength, or if
+/// there are too many.
 pub fn index(given: &Bound<'_, PyAny>) -> PyResult<(f64, Dispersive)> {
     if let Ok(number) = given.extract::<f64>() {
         return Ok((number, Dispersive::NONE));

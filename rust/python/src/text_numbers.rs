@@ -1,11 +1,11 @@
-//! Numbers in the texts of files.
+//! Parsing of numbers in text files.
 
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
 use raywright::render::text_numbers;
 
-/// Return the numbers at the beginning of a text, and whether nothing else follows them; words of `skipped` may stand
+/// Return the numbers at the beginning of a text, and whether nothing else follows; words of `skipped` may occur
 /// between them.
 #[pyfunction]
 #[allow(clippy::needless_pass_by_value)]

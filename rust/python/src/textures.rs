@@ -1,4 +1,4 @@
-//! Textures as the package describes them, read by attribute.
+//! Texture descriptions of the Python package, read by attribute.
 
 use numpy::PyReadonlyArrayDyn;
 use pyo3::exceptions::{PyTypeError, PyValueError};
@@ -16,13 +16,13 @@ use raywright::scene::textures::{
     Wrap,
 };
 
-/// What has been made of an object, which stays alive beside it so that no other can have its address.
+/// A converted object; the original stays alive so that its address is not reused.
 struct Known<T> {
     _object: Py<PyAny>,
     made: T,
 }
 
-/// What has been made of objects, by their addresses: one that many share is read once.
+/// Cache of converted objects by address; a shared one is read once.
 pub struct Cache<T>(RefCell<HashMap<usize, Known<T>>>);
 
 impl<T> Default for Cache<T> {
@@ -32,7 +32,7 @@ impl<T> Default for Cache<T> {
 }
 
 impl<T: Clone> Cache<T> {
-    /// What has been made of an object before, or is made of it now.
+    /// The converted object, cached or made now.
     ///
     /// # Errors
     /// If it cannot be made.
@@ -47,18 +47,17 @@ impl<T: Clone> Cache<T> {
     }
 }
 
-/// What makes two pictures the same: where their numbers are, which channel is taken, whether it is decoded, and
-/// whether there are smaller ones.
+/// Cache key of a picture: address of its data, selected channel, whether it is decoded, and whether it has mipmaps.
 type PictureKey = (usize, Option<usize>, bool, bool);
 
-/// Width, height, and the points of a picture: of one channel, or of three.
+/// Width, height, and texels of a picture: of one channel, or of three.
 type Taken<T> = (usize, usize, Result<Vec<T>, Vec<[T; 3]>>);
 
 /// Reads textures.
 pub struct Textures {
-    /// Whether colours are told by wavelength.
+    /// True for spectral rendering.
     waves: bool,
-    /// By what their numbers stand for.
+    /// Caches by the quantity of their numbers.
     textures: [Cache<Arc<dyn Texture>>; 4],
     pictures: RefCell<HashMap<PictureKey, Known<Arc<Picture>>>>,
 }
@@ -93,7 +92,7 @@ impl From<PyTransform> for Domain {
     }
 }
 
-/// What all sums of noises have.
+/// Attributes of all fractal noises.
 #[derive(FromPyObject)]
 struct PyOctaves {
     octaves: u32,
@@ -121,20 +120,20 @@ struct PyImage<'py> {
 }
 
 impl Textures {
-    /// Those of a scene that needs wavelengths, or none.
+    /// Creates a reader; spectral if `waves`.
     pub fn new(waves: bool) -> Self {
         Self { waves, textures: Default::default(), pictures: RefCell::default() }
     }
 
-    /// Whether colours are told by wavelength.
+    /// Returns whether rendering is spectral.
     pub fn has_waves(&self) -> bool {
         self.waves
     }
 
-    /// A number, three of them, a spectrum, or a texture.
+    /// Reads a number, three numbers, a spectrum, or a texture.
     ///
     /// # Errors
-    /// A `TypeError` for what is none of these, and what reading a texture raises.
+    /// A `TypeError` if it is none of these, and errors of reading a texture.
     pub fn value(&self, given: &Bound<'_, PyAny>, meaning: Meaning) -> PyResult<Value> {
         if let Ok(number) = given.extract::<f64>() {
             return Ok(number.into());
@@ -145,7 +144,7 @@ impl Textures {
         self.textures[meaning as usize].of(given, || self.read(given, meaning)).map(Value::Texture)
     }
 
-    /// The same for what stands for no colour.
+    /// Reads a value that is not a colour.
     ///
     /// # Errors
     /// As [`Textures::value`].
@@ -153,7 +152,7 @@ impl Textures {
         self.value(given, Meaning::Numbers)
     }
 
-    /// An attribute that is a number, three of them, a spectrum, or a texture.
+    /// Reads an attribute that is a number, three numbers, a spectrum, or a texture.
     ///
     /// # Errors
     /// As [`Textures::value`].
@@ -161,7 +160,7 @@ impl Textures {
         self.value(&object.getattr(name)?, meaning)
     }
 
-    /// An attribute that is a number or a texture, of whose channels the mean counts.
+    /// Reads an attribute that is a number or a texture; the mean of its channels is used.
     ///
     /// # Errors
     /// As [`Textures::value`].
@@ -169,7 +168,7 @@ impl Textures {
         Ok(self.plain(&object.getattr(name)?)?.number())
     }
 
-    /// What colours stand for by wavelength; none where they are told in red, green and blue.
+    /// Role of colours in spectral rendering; `None` for red, green and blue.
     fn role(&self, meaning: Meaning) -> Option<Role> {
         match meaning {
             Meaning::Share if self.waves => Some(Role::Share),
@@ -185,7 +184,7 @@ impl Textures {
         }
     }
 
-    /// A texture that has colours of its own.
+    /// A texture with its own colours.
     fn coloured(&self, colours: impl Texture + 'static, meaning: Meaning) -> Arc<dyn Texture> {
         let colours = Arc::new(colours);
         match self.role(meaning) {
@@ -194,7 +193,7 @@ impl Textures {
         }
     }
 
-    /// The texture of a description, by the name of its class.
+    /// Reads a texture by the name of its class.
     fn read(&self, given: &Bound<'_, PyAny>, meaning: Meaning) -> PyResult<Arc<dyn Texture>> {
         let name = given.get_type().name()?;
         let domain = || given.getattr("transform")?.extract::<PyTransform>().map(Domain::from);
@@ -218,7 +217,7 @@ impl Textures {
             }
             "MixTexture" => {
                 let [a, b] = ["a", "b"].map(|name| self.attribute(given, name, meaning));
-                // A share of the one and of the other.
+                // Blend weights are shares.
                 let amount = if meaning == Meaning::Numbers { meaning } else { Meaning::Share };
                 let amount = self.attribute(given, "amount", amount);
                 Arc::new(MixTexture { a: a?, b: b?, amount: amount? })

@@ -1,4 +1,4 @@
-//! How faces hang together, and where planes cut them, from arrays to arrays.
+//! Mesh topology and plane sections, from arrays to arrays.
 
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
@@ -9,7 +9,7 @@ use super::rays::each;
 use raywright::math::DVec3;
 use raywright::scene::topology::{self, Cutter, FaceKind, Rule, Section, Topology};
 
-/// Corners and faces as they came, checked.
+/// Corners and faces in array form, validated.
 fn read<'a>(vertices: &'a Triples<'_>, faces: &'a PyReadonlyArray2<'_, u32>) -> PyResult<(Vec<DVec3>, &'a [[u32; 3]])> {
     let (given, faces): (_, &[[u32; 3]]) = (vertices.rows("vertices")?, rows("faces", faces)?);
     let points: Vec<DVec3> = (0..given.len()).map(|i| given.get(i)).collect();
@@ -19,7 +19,7 @@ fn read<'a>(vertices: &'a Triples<'_>, faces: &'a PyReadonlyArray2<'_, u32>) -> 
     }
 }
 
-/// For each corner the number of the one that stands for it, within one tolerance for all or one for each corner.
+/// For each corner, the number of its representative, within one tolerance for all or one per corner.
 #[pyfunction]
 pub fn weld<'py>(
     py: Python<'py>,
@@ -36,23 +36,23 @@ pub fn weld<'py>(
     Ok(PyArray1::from_vec(py, py.detach(|| topology::welded(&points, faces, tolerances))))
 }
 
-/// How close corners of a mesh are that differ by rounding.
+/// Distance between corners of a mesh that differ by rounding.
 #[pyfunction]
 pub fn weld_rounding<'py>(py: Python<'py>, vertices: Triples<'py>, faces: PyReadonlyArray2<'py, u32>) -> PyResult<f64> {
     let (points, faces) = read(&vertices, &faces)?;
     Ok(py.detach(|| topology::rounding(&points, faces)))
 }
 
-/// How the faces of a mesh hang together.
+/// Topology of a mesh.
 #[pyclass(frozen, get_all, module = "raywright._core")]
 pub struct MeshTopology {
-    /// The volume of each body, and whether its faces all turn alike.
+    /// Volume of each body, and whether it is oriented.
     volumes: Vec<f64>,
     is_oriented: Vec<bool>,
-    /// Edges by the corners at their ends, and corners.
+    /// Cracks, as edges between corners, and T-junctions, as corners.
     cracks: Vec<[u32; 2]>,
     junctions: Vec<u32>,
-    /// How many faces there are of each kind.
+    /// Numbers of faces by kind.
     closed: usize,
     open: usize,
     inner: usize,
@@ -87,10 +87,10 @@ pub fn mesh_topology<'py>(
     })
 }
 
-/// The points of all lines of a plane, where each line begins and ends, whether each is closed, and the area.
+/// Points of all polylines of a plane, the ends of each, whether each is closed, and the area.
 type Lines<'py> = (Bound<'py, PyArray2<f64>>, Vec<usize>, Vec<bool>, f64);
 
-/// Where planes cut faces, plane by plane.
+/// Sections of faces with planes, plane by plane.
 #[pyfunction]
 pub fn sections<'py>(
     py: Python<'py>,

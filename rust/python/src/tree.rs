@@ -1,4 +1,4 @@
-//! The boxes of a scene's tree, as arrays.
+//! Boxes of a scene's tree, as arrays.
 
 use numpy::{PyArrayDyn, PyArrayMethods};
 use pyo3::prelude::*;
@@ -9,8 +9,8 @@ use super::query::CompiledScene;
 /// Depth (K,), primitives (K,) and corners (K,24) of all boxes.
 type Boxes<'py> = (Bound<'py, PyArrayDyn<i32>>, Bound<'py, PyArrayDyn<i32>>, Bound<'py, PyArrayDyn<f64>>);
 
-/// The boxes of all nodes of the scene's accelerator, from the root down; −1 primitives of what is no leaf. `None` if
-/// it has no boxes.
+/// Boxes of all nodes of the scene's accelerator, from the root down; inner nodes have −1 primitives. `None` if it has
+/// no boxes.
 #[pyfunction]
 pub fn tree<'py>(py: Python<'py>, scene: &Bound<'py, CompiledScene>) -> PyResult<Option<Boxes<'py>>> {
     let scene = scene.get().scene();

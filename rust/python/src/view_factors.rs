@@ -1,4 +1,4 @@
-//! View factors of a scene, from numbers to arrays.
+//! View factors of a scene, as arrays.
 
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::exceptions::PyRuntimeError;
@@ -9,8 +9,8 @@ use raywright::exchange::{Aim, Fronts, areas, matrix, shared_planes, sparse};
 use raywright::work::{Stopped, Watch, Work};
 use raywright::workers::watched;
 
-/// Areas, factors by row, pairs that are sampled and their errors, how many pairs are closed, hidden and sampled, rays,
-/// and which rows are sampled and of a room that nothing leaves.
+/// Areas, factors by row, sampled pairs and their errors, numbers of closed-form, hidden and sampled pairs, rays, and
+/// flags of rows that are sampled and in a closed enclosure.
 type Dense<'py> = (
     Bound<'py, PyArray1<f64>>,
     Bound<'py, PyArray2<f64>>,
@@ -20,14 +20,14 @@ type Dense<'py> = (
     Bound<'py, PyArray1<bool>>,
 );
 
-/// Areas; where rows start, faces, factors and their errors; and rays.
+/// Areas; row starts, faces, factors and their errors; and rays.
 type ByRays<'py> = (
     Bound<'py, PyArray1<f64>>,
     (Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<i32>>, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f32>>),
     u64,
 );
 
-/// View factors between all faces: in closed form where nothing lies between, by rays elsewhere.
+/// View factors between all faces: in closed form if nothing is between, by rays otherwise.
 #[pyfunction]
 pub fn view_factor_matrix<'py>(
     py: Python<'py>,
@@ -81,8 +81,8 @@ pub fn view_factor_rows<'py>(
     Ok((PyArray1::from_vec(py, areas(scene)), rows, found.rays))
 }
 
-/// Pairs of faces that share a part of one plane, the areas in common, whether both look the same way, and whether they
-/// touch front to front, if that is wanted; and the areas of all faces.
+/// Pairs of coplanar overlapping faces, their common areas, whether both face the same way and, if requested, whether
+/// they touch front to front; and the areas of all faces.
 type Coincident<'py> = (
     Bound<'py, PyArray2<i64>>,
     Bound<'py, PyArray1<f64>>,
@@ -91,7 +91,7 @@ type Coincident<'py> = (
     Bound<'py, PyArray1<f64>>,
 );
 
-/// Faces that share a part of one plane.
+/// Coplanar overlapping faces.
 #[pyfunction]
 pub fn coincident_faces<'py>(
     py: Python<'py>,
@@ -115,8 +115,8 @@ pub fn coincident_faces<'py>(
     ))
 }
 
-/// Does work on the pool of so many threads without the interpreter. Signals are heard, and `progress` is called with
-/// the share that is done, ten times a second; what one of them raises ends it.
+/// Runs work on the pool with this number of threads, without the interpreter lock. Signals are handled, and `progress`
+/// is called with the finished share ten times a second; an exception from either ends it.
 fn told<T: Send>(
     py: Python<'_>,
     threads: Option<usize>,

@@ -1,4 +1,4 @@
-//! Renders as Python watches them, and what ends them.
+//! Progress observers in Python, and interruption of renders.
 
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
@@ -8,25 +8,25 @@ use std::time::Instant;
 use super::written::Written;
 use raywright::render::{HistoryRow, Malformed, Progress, RenderError};
 
-/// What is wrong with bytes, for Python.
+/// Converts an error about bytes for Python.
 pub(super) fn malformed(why: Malformed) -> PyErr {
     PyValueError::new_err(why.to_string())
 }
 
-/// Passes on how a render goes to a Python function, and hears signals and whoever else may end it.
+/// Forwards the progress of a render to a Python function, and handles signals and other interruptions.
 pub(super) struct Watcher<'a> {
     pub progress: Option<Py<PyAny>>,
     pub look: Option<Py<PyAny>>,
-    /// What the last look said: whether to leave the render after the pass.
+    /// Result of the last `look`: whether to pause the render after the pass.
     pub rests: bool,
     pub raised: Option<PyErr>,
-    /// When to leave the render for now.
+    /// When to pause the render.
     pub pause: Option<Instant>,
     pub written: Option<&'a Written>,
 }
 
 impl Watcher<'_> {
-    /// What ended the render, for Python.
+    /// Converts the reason why the render ended for Python.
     pub fn error(&mut self, error: RenderError) -> PyErr {
         let raised = self.raised.take().or_else(|| self.written.and_then(Written::raised));
         raised.unwrap_or_else(|| match error {
@@ -35,7 +35,7 @@ impl Watcher<'_> {
         })
     }
 
-    /// Goes on unless an exception is raised, which it keeps.
+    /// Continues unless an exception is raised, which is kept.
     fn unless_raised(&mut self, then: impl FnOnce(Python<'_>, Option<&Py<PyAny>>) -> PyResult<()>) -> ControlFlow<()> {
         let ask = |py: Python<'_>| {
             py.check_signals()?;

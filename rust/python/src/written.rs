@@ -1,4 +1,4 @@
-//! Integrators that are written in Python.
+//! Integrators written in Python.
 
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArrayDyn};
 use pyo3::exceptions::PyTypeError;
@@ -12,7 +12,7 @@ use raywright::math::DVec3;
 use raywright::optics::Rgb;
 use raywright::workers::Cancel;
 
-/// `raywright.Integrator`. What it raises ends the render.
+/// `raywright.Integrator`. An exception that it raises ends the render.
 pub struct Written {
     integrator: Py<PyAny>,
     /// `raywright.Scene`.
@@ -22,12 +22,12 @@ pub struct Written {
 }
 
 impl Written {
-    /// One that is asked about this scene.
+    /// Creates one for this scene.
     pub fn new(integrator: Py<PyAny>, scene: Py<PyAny>, seed: u64) -> Self {
         Self { integrator, scene, seed, raised: Mutex::new(None) }
     }
 
-    /// What it has raised, once.
+    /// Takes the exception that it has raised.
     pub fn raised(&self) -> Option<PyErr> {
         self.raised.lock().unwrap_or_else(PoisonError::into_inner).take()
     }
@@ -73,7 +73,7 @@ impl Integrator for Written {
         Box::new(At(self))
     }
 
-    /// It is told of red, green and blue, and of yellow light's index of refraction.
+    /// Such an integrator gets red, green and blue, and the index of refraction for yellow light.
     fn takes_waves(&self) -> bool {
         true
     }

@@ -29,17 +29,17 @@ pub struct Bvh {
     bounds: String,
 }
 
-/// The tree that rays go through, and how.
+/// Tree layout and traversal.
 enum Tree {
-    /// One of so many children a node, or of as many as suit the level.
+    /// With this number of children per node, or the best for the SIMD level.
     Wide(Option<usize>),
     Binary(Traversal),
-    /// As arrays without pointers.
+    /// Pointer-free arrays.
     Flat(flat::Way),
 }
 
 impl Bvh {
-    /// Reads what is to be built; `quality` decides what nothing else does.
+    /// Reads the build options; `quality` is the default of options that are not given.
     pub fn build(self, quality: &str, level: Level) -> PyResult<Build> {
         let options = self.options(quality)?;
         Ok(match self.tree(level)? {
@@ -50,7 +50,7 @@ impl Bvh {
         })
     }
 
-    /// Reads how a tree is built.
+    /// Reads the build options of the tree.
     pub fn options(&self, quality: &str) -> PyResult<bvh::Options> {
         let quality = match quality {
             "fast build" => Quality::FastBuild,

@@ -7,7 +7,7 @@ use raywright::accel::grid::{self, Resolution};
 use raywright::accel::walk::Mailbox;
 use raywright::simd::Level;
 
-/// Cells of a grid: along its longest side, or along each axis.
+/// Resolution of a grid: along its longest side, or along each axis.
 #[derive(FromPyObject)]
 enum Cells {
     Longest(u32),
@@ -33,7 +33,7 @@ pub struct NestedGrid {
 }
 
 impl Grid {
-    /// Reads what is to be built.
+    /// Reads the build options.
     pub fn build(self, level: Level) -> PyResult<Build> {
         let options = grid::uniform::Options { resolution: resolution(self.resolution, self.density) };
         let mailbox = mailbox(&self.mailbox)?;
@@ -42,7 +42,7 @@ impl Grid {
 }
 
 impl NestedGrid {
-    /// Reads what is to be built.
+    /// Reads the build options.
     pub fn build(self, level: Level) -> PyResult<Build> {
         let Self { density, leaf, depth, .. } = self;
         let options = grid::nested::Options { resolution: resolution(self.resolution, density), density, leaf, depth };

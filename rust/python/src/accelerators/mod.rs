@@ -1,4 +1,4 @@
-//! What to build over a scene's geometry, as the package describes it: a dataclass a kind, read by attribute.
+//! Accelerator descriptions of the Python package: one dataclass per kind, read by attribute.
 
 mod bvh;
 mod grid;
@@ -15,10 +15,10 @@ use raywright::accel::walk::{Built, Input, Mailbox};
 use raywright::accel::{Accelerator, BruteForce, Primitives, walked};
 use raywright::simd::Level;
 
-/// Builds an accelerator, in the thread pool that is current.
+/// Builds an accelerator in the current thread pool.
 pub type Build = Box<dyn FnOnce(&dyn Primitives) -> Box<dyn Accelerator> + Send>;
 
-/// Reads a choice by the name of its class; `quality` says how much the build may take.
+/// Reads an accelerator by the name of its class; `quality` sets the build effort.
 pub fn read(choice: &Bound<'_, PyAny>, quality: &str) -> PyResult<Build> {
     let (name, level) = (choice.get_type().name()?, level()?);
     match name.to_str()? {
@@ -33,7 +33,7 @@ pub fn read(choice: &Bound<'_, PyAny>, quality: &str) -> PyResult<Build> {
     }
 }
 
-/// How a choice builds a binary tree, if it is one of those that do; otherwise as the default does.
+/// Build options of a binary tree if the accelerator is one, otherwise the defaults.
 pub fn tree_options(choice: &Bound<'_, PyAny>, quality: &str) -> PyResult<Options> {
     match choice.get_type().name()?.to_str()? {
         "BVH" => choice.extract::<bvh::Bvh>()?.options(quality),
@@ -41,7 +41,7 @@ pub fn tree_options(choice: &Bound<'_, PyAny>, quality: &str) -> PyResult<Option
     }
 }
 
-/// A structure that one ray walks at a time.
+/// Builds a structure that is traversed one ray at a time.
 fn structure(level: Level, mailbox: Mailbox, build: impl Fn(&Input) -> Built + Send + 'static) -> Build {
     Box::new(move |geometry| walked(geometry, level, mailbox, &build))
 }

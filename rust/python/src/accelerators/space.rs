@@ -1,4 +1,4 @@
-//! Structures that divide space by planes: kD-trees, octrees and BSP trees.
+//! Space partitions by planes: k-d trees, octrees and BSP trees.
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -39,7 +39,7 @@ pub struct Bsp {
 }
 
 impl KdTree {
-    /// Reads what is to be built.
+    /// Reads the build options.
     pub fn build(self, level: Level) -> PyResult<Build> {
         let options = self.options()?;
         Ok(structure(level, Mailbox::Stamps, move |input| kdtree::build(input, &options)))
@@ -72,7 +72,7 @@ impl KdTree {
 }
 
 impl Octree {
-    /// Reads what is to be built.
+    /// Reads the build options.
     pub fn build(self, level: Level) -> PyResult<Build> {
         let options = self.options()?;
         Ok(structure(level, Mailbox::Stamps, move |input| octree::build(input, &options)))
@@ -86,7 +86,7 @@ impl Octree {
 }
 
 impl Bsp {
-    /// Reads what is to be built.
+    /// Reads the build options.
     pub fn build(self, level: Level) -> PyResult<Build> {
         let options = self.options()?;
         Ok(structure(level, Mailbox::Stamps, move |input| bsp::build(input, &options)))
@@ -108,7 +108,7 @@ fn refused<T>(why: String) -> PyResult<T> {
     Err(PyValueError::new_err(why))
 }
 
-/// Refuses costs that are nothing, or that an f32 cannot hold.
+/// Rejects costs that are not positive in single precision.
 fn costs(traversal_cost: f32, intersection_cost: f32) -> PyResult<()> {
     for (name, cost) in [("traversal_cost", traversal_cost), ("intersection_cost", intersection_cost)] {
         if !(cost > 0.0 && cost.is_finite()) {
@@ -118,7 +118,7 @@ fn costs(traversal_cost: f32, intersection_cost: f32) -> PyResult<()> {
     Ok(())
 }
 
-/// Refuses trees that are too deep, and leaves of nothing.
+/// Rejects excessive depths and empty leaves.
 fn limits(max_depth: Option<usize>, most: usize, leaf_size: usize) -> PyResult<()> {
     if let Some(depth) = max_depth.filter(|&depth| depth > most) {
         return refused(format!("max_depth is {depth}, expected 0 to {most}"));
