@@ -256,5 +256,5 @@ if not TYPE_CHECKING:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
     def __dir__() -> list[str]:
-        # Public names, imported or not, without subpackages and private names.
+        # Only public names, imported or not.
         return sorted({*__all__, *(name for name in globals() if name.startswith("__"))})

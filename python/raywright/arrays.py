@@ -18,7 +18,7 @@ Triple = tuple[float, float, float]
 # By name: numpy imports its random numbers when they are first used.
 SeedLike: TypeAlias = Union[int, "Generator", "SeedSequence"]
 
-# As many may be started on any machine, if they are asked for.
+# Any machine may start this many threads on request.
 _THREADS = 64
 
 _DOUBLE, _SINGLE = np.dtype(np.float64), np.dtype(np.float32)

@@ -5,14 +5,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-# What numpy says of nested lists whose lengths differ.
+# Parts of numpy's messages for nested lists of unequal lengths.
 _RAGGED = ("inhomogeneous", "could not broadcast", "setting an array element with a sequence")
-# What has no unit.
+# Types without a unit.
 _SCALARS = frozenset({float, int, bool, str, type(None), np.float64, np.float32, np.int64})
 _PLAIN = _SCALARS | {list, tuple, np.ndarray}
-# Libraries whose arrays have a unit.
+# Libraries with arrays that carry a unit.
 _WITH_UNITS = ("astropy", "pint", "unyt")
-# Memory that DLPack names and the CPU reads: its own, and that which CUDA or ROCm pins on the host.
+# DLPack's device types with memory that the CPU reads: its own, and host memory pinned by CUDA or ROCm.
 _HOST = (1, 3, 11)
 _DEVICES = {2: "CUDA", 4: "OpenCL", 7: "Vulkan", 8: "Metal", 10: "ROCm", 13: "CUDA", 14: "oneAPI"}
 
@@ -126,7 +126,7 @@ def _without_unit(name: str, value: Any) -> Any:
                 raise TypeError(
                     f"{name} must be numbers without a unit, got {kind.__name__} of {_with(entry, unit)}"
                 )
-        # Lists of lists have their units, if any, all through.
+        # In nested lists, the first entry shows whether there are units.
         if value and type(value[0]) in (list, tuple):
             _without_unit(name, value[0])
         return value
@@ -178,7 +178,7 @@ def _of_numpy(name: str, value: ArrayLike) -> NDArray[Any]:
     except MemoryError:
         raise
     except Exception as error:
-        # What numpy itself says of a list has no frame of Python below this one; what its entries say may.
+        # numpy's own error for a list has no Python frame below this one; errors from its entries may.
         is_own = isinstance(value, list | tuple) and error.__traceback__ and not error.__traceback__.tb_next
         if is_own and isinstance(error, ValueError) and any(words in str(error) for words in _RAGGED):
             raise ValueError(

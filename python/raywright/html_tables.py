@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-# Rows of a long table that are shown.
+# Rows shown of a long table.
 FEW = 10
 
 

@@ -50,7 +50,7 @@ class Lock:
         if self._holder == threading.get_ident():
             return
         is_abandoned = self._holder is not None
-        # The lock itself may be held although nobody is written down yet.
+        # The lock may be held before its holder is recorded.
         self._lock, self._holder, self._depth = threading.RLock(), None, 0
         if is_abandoned and self._abandoned is not None:
             self._abandoned()

@@ -12,7 +12,7 @@ Traversal = Literal[
 ]
 Volume = Literal["box", "oriented", "slabs"]
 _MOST_BUDGET = 8.0
-# Which builders an option is for; the others would ignore it.
+# Builders that use each option; the others would ignore it.
 _BINS, _BUDGET, _RADIUS = ("binned", "spatial"), ("spatial",), ("ploc",)
 
 
@@ -111,7 +111,7 @@ class BVH:
     orders: Literal[6, 8] | None = None
     bounds: Volume = "box"
 
-    # What an option needs of another one.
+    # Values of other options that each option requires.
     needs: ClassVar[dict[str, dict[str, str]]] = {"bounds": {"traversal": "stack"}}
 
     def __post_init__(self) -> None:

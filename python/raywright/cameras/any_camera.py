@@ -247,7 +247,7 @@ def resized(camera: AnyCamera, width: int, height: int) -> AnyCamera:
     """Return the camera with a picture of the same view that has so many pixels."""
     across, down = width / camera.width, height / camera.height
     changes: dict[str, Any] = {"width": width, "height": height}
-    # Lengths in pixels grow with their number.
+    # Lengths in pixels scale with the resolution.
     for name in ("focal", "principal"):
         if (lengths := getattr(camera, name, None)) is not None:
             changes[name] = (lengths[0] * across, lengths[1] * down)

@@ -9,7 +9,7 @@ from ..arrays import choice
 from .any_camera import AnyCamera, picture_axis, view_angle
 from .pose import Pose
 
-# By mapping: the widest angle of view in degrees, and whether it can be had itself.
+# By mapping: the widest field of view in degrees, and whether that limit itself is allowed.
 _WIDEST = {
     "equidistant": (360.0, True),
     "equisolid": (360.0, True),

@@ -9,14 +9,14 @@ from ..arrays import choice, real_array
 
 Matrix = NDArray[np.float64]
 
-# By convention: which way, along the camera's own x, y and z, is right, up and forward.
+# By convention: signs of the camera's x, y and z axes for right, up and forward.
 _AXES = {
     "gltf": (1, 1, -1),
     "mitsuba": (-1, 1, 1),
     "opencv": (1, -1, 1),
 }
 
-# How far a rotation may be from one.
+# Tolerance for a matrix to count as a rotation.
 _SKEWED = 1e-6
 
 

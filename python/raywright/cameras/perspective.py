@@ -196,7 +196,7 @@ class Camera(AnyCamera):
             If the array does not hold real numbers.
         """
         (across, skew, x), (_, down, y), _ = self.intrinsics
-        # From the camera, so that coordinates of maps lose no digits.
+        # Relative to the camera, so that large map coordinates lose no digits.
         seen = (last_axis("points", points, 3).astype(np.float64) - self.position) @ self.extrinsics[0].T
         ahead = np.where(seen[..., 2] > 0, seen[..., 2], np.nan)
         u, v = seen[..., 0] / ahead, seen[..., 1] / ahead

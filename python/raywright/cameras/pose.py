@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..arrays import Triple, triple
 from .matrices import Stand, of_extrinsics, of_world
 
-# Sine of the smallest angle between `up` and the view that still fixes which way is up.
+# Sine of the smallest angle between `up` and the view direction that still fixes the roll.
 _LEAST_SINE = 1e-8
 
 P = TypeVar("P", bound="Pose")
@@ -134,7 +134,7 @@ class Pose:
         """The unit direction of the view, (3,)."""
         if self.target is None:
             return _unit(np.array(self.direction))
-        # Halved, so that the difference of any two numbers is one.
+        # Halved, so that no difference overflows.
         return _unit(np.array(self.target) / 2 - np.array(self.position) / 2)
 
     @property
@@ -154,14 +154,14 @@ class Pose:
         return result
 
     def __repr__(self) -> str:
-        # What was given, and what need not be only where it was.
+        # Only attributes that differ from their defaults.
         told = ((f.name, getattr(self, f.name), f.default) for f in fields(self))
         parts = (f"{name}={value!r}" for name, value, default in told if value != default)
         return f"{type(self).__name__}({', '.join(parts)})"
 
 
 def _unit(vector: NDArray[np.float64]) -> NDArray[np.float64]:
-    # Scaled by its greatest part first, so that squares neither overflow nor vanish.
+    # Scaled by its greatest component first, so that squares neither overflow nor underflow.
     vector = vector / np.abs(vector).max()
     unit: NDArray[np.float64] = vector / np.linalg.norm(vector)
     return unit

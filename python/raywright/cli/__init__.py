@@ -14,7 +14,7 @@ from ..scene_files.load import has_camera, load
 from . import measures, pictures, reports
 from .options import Parser
 
-# As shells count it: 128 and the number of SIGINT.
+# The shells' convention: 128 plus the number of SIGINT.
 INTERRUPTED = 130
 
 
@@ -36,7 +36,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         return _fail("interrupted", INTERRUPTED)
     except BrokenPipeError:
-        # Whoever read our output has left; say nothing more, not even when stdout is closed at exit.
+        # The reader of our output has closed the pipe; print nothing more, not even when stdout closes at
+        # exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 1
     except MemoryError:

@@ -16,10 +16,10 @@ from ..viewer import view
 from .options import number
 
 DEMO_SECONDS = 10.0
-# What stands for the library's own Cornell box where a mesh file could.
+# Stands for the library's own Cornell box in place of a mesh file.
 CORNELL = "cornell"
 SCENES = "a scene (Mitsuba's XML, glTF), or any mesh file: PLY, OBJ, STL, ..."
-# What options and arguments of a render have the same names for.
+# Options of the command line and arguments of `render` that share a name.
 _HOW = ("samples", "error", "seconds", "seed", "threads", "adaptive", "clamp")
 
 
@@ -79,7 +79,7 @@ def _how(options: argparse.Namespace, shot: Shot) -> dict[str, Any]:
 
 
 def _picture(shot: Shot, options: argparse.Namespace) -> None:
-    # What a scene hides stays hidden.
+    # A background hidden by the scene stays hidden.
     background = shot.background if options.background == BACKGROUNDS[0] else options.background
     kept = {"checkpoint": options.checkpoint, "background": background, "denoise": options.denoise}
     image = shot.render(**_how(options, shot), **kept, progress=not options.quiet)

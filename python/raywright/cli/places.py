@@ -15,7 +15,7 @@ from ..scene_files.mitsuba.mesh_files import smooth_normals
 from ..shapes.mesh import Mesh
 
 Floats: TypeAlias = NDArray[np.float64]
-# What tables of points are read from.
+# File formats for tables of points.
 SUFFIXES = (".csv", ".tsv", ".txt", ".xyz", ".npy", ".npz")
 _PLACE, _NORMAL = ("x", "y", "z"), ("nx", "ny", "nz")
 

@@ -23,7 +23,7 @@ def add(verbs: Any) -> None:
 
 
 def _report_accelerators(options: argparse.Namespace) -> None:
-    # Reports are for those who ask for them: other verbs do not wait for their import.
+    # Imported here, because only this verb needs reports (import time).
     from ..report import accelerators
     from ..report.ray_sets import outside
 

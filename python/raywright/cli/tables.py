@@ -46,5 +46,5 @@ def write(path: Path | None, columns: Columns, value: NDArray[Any], mesh: Mesh) 
 def _table(file: Any, columns: Columns) -> None:
     rows = csv.writer(file, lineterminator="\n")
     rows.writerow(columns)
-    # Python's own numbers are written with as many digits as tell them apart from all others.
+    # Python's own floats print the fewest digits that round-trip.
     rows.writerows(zip(*(column.tolist() for column in columns.values()), strict=True))

@@ -84,5 +84,5 @@ class Kept:
         self.key = key
 
     def __reduce__(self) -> tuple[type[None], tuple[()]]:
-        # Nothing at all: the object that is pickled can be read where there is no raywright.
+        # None: a pickled object then loads without raywright.
         return type(None), ()

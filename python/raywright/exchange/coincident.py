@@ -16,9 +16,9 @@ from .copies import LaidOut
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
-# A face of which others leave a smaller share lies where they do.
+# A face coincides with others if they leave a smaller share of it uncovered.
 _LEFT = 1e-3
-# What does not tell where a shape is.
+# Fields of a shape that do not affect its geometry.
 _LOOKS = {"material", "emission", "name"}
 
 

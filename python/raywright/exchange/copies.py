@@ -13,7 +13,7 @@ from ..shapes import Shape
 from ..shapes.mesh import Mesh
 
 Integers = NDArray[np.int64]
-# Of the faces of an instance that is not copied: of which copy they are.
+# Copy number for faces of an instance that is not copied.
 NO_COPY = -1
 
 

@@ -5,8 +5,8 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 
-# Faces that meet at a sharper edge than this, in degrees, each keep their own light: a corner of a
-# room is none of a vault.
+# Faces that meet at a sharper edge than this, in degrees, are not smoothed: a corner of a room stays a
+# corner, a vault is smooth.
 _CREASE = 30.0
 
 
@@ -32,7 +32,7 @@ def at_corners(
     if not flat.size:
         return result
     places = corners[flat].reshape(-1, 3)
-    # Corners of neighbours are the same point but for roundings of what is computed from weights.
+    # Shared corners agree but for rounding, since they are computed from weights.
     grid = max(float(np.ptp(places, axis=0).max()), float(np.abs(places).max())) * 2.0**-40
     keys = np.column_stack([np.repeat(shapes[flat], 3), np.round(places / grid)])
     _, group = np.unique(keys, axis=0, return_inverse=True)

@@ -9,9 +9,9 @@ from .problem import EMITTED, ESCAPED, REPLICATES, Problem
 from .solution import Floats, RadiositySolution
 from .view_factors import ViewFactors, view_factors
 
-# The matrix and its factors take 24 bytes an entry: 1.6 GB.
+# The matrix and its factors take 24 bytes per entry: 1.6 GB.
 _MOST = 8192
-# Rays of a replicate to the lights, of a patch.
+# Rays per replicate and patch towards the lights.
 _LIGHT_RAYS = 256
 
 

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-# Rows and columns of the picture at most; beyond, each pixel is the mean of a block.
+# Most rows and columns of the picture; beyond, each pixel is the mean of a block.
 _MOST = 1024
 
 
@@ -34,7 +34,7 @@ def draw_matrix(ax: Any, matrix: Any, label: str, cmap: Any) -> None:
     means = block_means(matrix)
     draw_picture(ax, np.where(means > 0, means, np.nan), label, cmap)
     count = matrix.shape[0]
-    # Pixels are numbered as rows are.
+    # Axes count rows of the matrix.
     ax.images[-1].set_extent((-0.5, count - 0.5, count - 0.5, -0.5))
     ax.set_xlabel("to")
     ax.set_ylabel("from")

@@ -15,7 +15,7 @@ from .copies import LaidOut
 PATCH = np.dtype(
     [("shape", np.int32), ("copy", np.int32), ("face", np.int32), ("cell", np.int32), ("side", np.int8)]
 )
-# A face of so many strips has as many patches as fit into an array's int32 numbers.
+# The patches of a face with this many strips still fit int32 indices.
 _MOST = 2**15
 
 
@@ -68,7 +68,7 @@ def cut(scene: Scene, patch_size: float | None) -> NDArray[np.uint32]:
             continue
         corners = shape.vertices[shape.faces].astype(np.float64)
         sides = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1, initial=0.0)
-        # A side that is a whole number of sizes long is cut into as many, whatever rounding says.
+        # A side of a whole number of sizes is cut into that number, despite rounding.
         strips = np.ceil(np.where(np.isfinite(sides), sides, 0.0) / size * (1.0 - 1e-9))
         if strips.size and not strips.max() < _MOST:
             raise ValueError(

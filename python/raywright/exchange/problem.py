@@ -14,8 +14,8 @@ from .copies import LaidOut, laid_out
 from .patches import named
 from .solution import Floats, Method, Per, RadiositySolution, RadiosityStep
 
-# Independent solutions, whose spread is the error: with 7 degrees of freedom it is known to a quarter of
-# itself.
+# Independent solutions, whose spread is the error: with 7 degrees of freedom it is known to a quarter of its
+# value.
 REPLICATES = 8
 EMITTED, UNSHOT, ESCAPED, BEHIND = range(4)
 

@@ -24,13 +24,13 @@ ExchangeMethod: TypeAlias = Literal["matrix", "stochastic"]
 
 # W·m⁻²·K⁻⁴: exact in the SI since 2019, by 2 π⁵ k⁴ / (15 h³ c²).
 STEFAN_BOLTZMANN = 5.670374419184429e-8
-# Net fluxes are small differences, so that what is unshot must be next to nothing.
+# Net fluxes are small differences, so that the unshot flux must be negligible.
 _BIAS = 1e-5
-# Kelvin: of what is hotter the heat would be no finite number.
+# Kelvin: its fourth power, the heat, still is finite.
 _HOTTEST = 1e70
-# Rays of a replicate that look for a way out of a room: of a face on average, and at least.
+# Rays per replicate that test whether a room is closed: per face on average, and at least.
 _LOOKS, _LEAST_LOOKS = 8, 2**13
-# Up to so many faces the matrix is the default.
+# Up to this many faces the matrix is the default.
 _SMALL = 2048
 
 
@@ -231,7 +231,7 @@ def radiative_exchange(
     arrives, off = heat.irradiance[:, 0] + coldest, np.hypot(heat.irradiance_error[:, 0], doubt)
     absorbed, light_off = _light(laid, covered, cuts, both, light, solve)
     leaves = heat.radiosity[:, 0] + coldest
-    # What has no area loses nothing; what coincides with another face has its irradiance.
+    # A face without area loses nothing; a coincident face takes the irradiance of its partner.
     is_own = heat.areas > 0
     is_own.reshape(-1, sum(faces))[:, covered.faces] = True
     flux = np.where(is_own, sent - grey * arrives - absorbed, 0.0)
@@ -262,7 +262,7 @@ def _lost(problem: Problem) -> float | None:
     problem.core.shoot_all(rays, problem.threads)
     if problem.core.books[:, [ESCAPED, BEHIND]].any():
         return None
-    # The rule of three.
+    # Rule of three: the share is below 3 / n at 95 %, so that half of this is its standard error.
     return 1.5 / (REPLICATES * rays)
 
 

@@ -7,11 +7,11 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 
-# Steps of Newton's method, and those of conjugate gradients within each.
+# Steps of Newton's method, and steps of conjugate gradients within each.
 _STEPS, _INNER = 8, 24
-# How near sums of rows, as shares of what they are to be, come.
+# Relative tolerance for the sums of rows.
 _ENOUGH = 1e-13
-# Rows whose numbers are spelt out at a time.
+# Rows expanded at a time.
 _TOGETHER = 4096
 
 
@@ -33,7 +33,7 @@ def reciprocal(matrix: Any, variance: Any, areas: Floats) -> tuple[Any, Any]:
     both = _halves(matrix, areas)
     exchanged = both + both.T.tocsr()
     del both
-    # The variances carry the square of each weight.
+    # Variances scale with the square of each weight.
     spread = _halves(_halves(variance, areas), areas)
     spread = spread + spread.T.tocsr()
     _mend_diagonal(spread)

@@ -8,14 +8,14 @@ import numpy as np
 from .problem import REPLICATES, Problem
 from .solution import Floats, Method, RadiositySolution
 
-# What is wanted where nothing is named.
+# Default error.
 _ERROR = 0.01
-# The share of the wanted error that what is unshot may add.
+# Share of the wanted error that the unshot flux may add.
 _BIAS = 0.1
-# Rays of a replicate's first shot: of a patch on average, and at least.
+# Rays of a replicate's first shot: per patch on average, and at least.
 _A_PATCH, _LEAST = 8, 2**12
 _A_PATCH_PROGRESSIVE, _LEAST_PROGRESSIVE = 64, 2**16
-# A round takes at most so many times the rays of all before it: its error tells what is needed better.
+# A round takes at most this many times the rays of all rounds before: its error estimates the rest better.
 _GROWTH = 8
 
 
@@ -109,7 +109,7 @@ def _rounds(
         if wanted is None or off <= wanted or (rays is not None and done >= limit):
             return solution
         tell((wanted / off) ** 2)
-        # Errors fall as one over the root of the rays, and nearer to the wanted one they are known better.
+        # Errors fall as one over the root of the rays; nearer to the wanted error, the estimate is better.
         more = math.ceil(done * ((off / wanted) ** 2 * 1.1 - 1.0))
         mine = int(np.clip(more, done // 4 + 1, _GROWTH * done))
         if rays is not None:

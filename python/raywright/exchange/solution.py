@@ -306,7 +306,7 @@ class RadiositySolution(Tabular):
         return columns
 
     def __getstate__(self) -> dict[str, Any]:
-        # What is computed from the rest need not travel.
+        # Cached results are recomputed, not pickled.
         return {field.name: getattr(self, field.name) for field in fields(self)}
 
     def __repr__(self) -> str:

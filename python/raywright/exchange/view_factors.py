@@ -25,12 +25,12 @@ if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
 Per: TypeAlias = Literal["face", "shape"]
-# Of more faces than this, the matrix of all pairs takes more than 0.8 GB, and is sparse instead.
+# For more faces, the matrix of all pairs takes more than 0.8 GB and is sparse instead.
 _MOST_DENSE = 10_000
-# Of a pair, at first; and the error that is aimed at, as a share of the greatest factor of either row.
+# First number of rays per pair, and the target error relative to the greatest factor of either row.
 _RAYS = 16
 _RELATIVE = 0.006
-# A row by rays holds all that a face sees, so it takes more of them than a pair does.
+# A row by rays covers all faces in view, so it takes more rays than a pair.
 _CURVED_RAYS = 4096
 _FACE_RAYS = 16
 _MOST_RAYS = 2**26
@@ -69,9 +69,9 @@ class ViewFactors(Tabular):
     sampled: int
     rays: int
     dropped: int
-    # The squares of errors: rows, columns and values of those that are not 0, or as the matrix is.
+    # Squared standard errors: rows, columns and values of non-zero entries, or a matrix of the same kind.
     _variance: Any
-    # Which rows were sampled and are known to add up to one.
+    # True for rows that were sampled and add up to one.
     _closed: NDArray[np.bool_]
 
     @cached_property
@@ -317,7 +317,7 @@ def _first_faces(laid: LaidOut) -> NDArray[np.int64]:
     """Return the number of the first face of each shape, and of all faces; check that all can send."""
     start = 0
     for shape in laid.scene.shapes:
-        # Of an empty mesh there is nothing to check.
+        # An empty mesh needs no check.
         i = int(laid.shape[min(start, len(laid.shape) - 1)]) if len(laid.shape) else 0
         start += len(shape.faces) if isinstance(shape, Mesh) else 1
         if isinstance(shape, Plane):
@@ -436,7 +436,7 @@ def _of_shapes(faces: ViewFactors, covered: Covered, first: NDArray[np.int64]) -
         seen: Any = faces.matrix
         matrix = (columns.T @ (seen.multiply(shares[:, None]).tocsr() @ columns)).toarray()
         summed = (columns.T @ (faces._variance.multiply(shares[:, None] ** 2).tocsr() @ columns)).toarray()
-    # Within a shape, both entries of a pair are one estimate: they err together.
+    # Within a shape, both entries of a pair are one estimate, with one error.
     summed[np.diag_indices(count)] *= 2.0
     where = np.nonzero(summed)
     closed = np.ones(count, np.bool_)

@@ -31,7 +31,7 @@ def chosen(adapter: Any) -> Any:
             found = wgpu.gpu.request_adapter_sync(power_preference="high-performance")
         except RuntimeError:
             found = None
-        # OpenGL is what wgpu falls back to; it promises nothing of arithmetic.
+        # wgpu falls back to OpenGL, which guarantees no accuracy of arithmetic.
         if found is None or found.info["backend_type"] not in _FIT:
             raise RuntimeError(_NONE)
         return found

@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 _ULP = 2.0**-23
 _LEAST = 2.0**-126
-# What the results of probe.wgsl are called, in their order.
+# Names for the results of probe.wgsl, in their order.
 _CALLED = (
     *("a sum", "a difference", "a product", "a quotient"),
     *("a sum that cancels", "a minimum", "a maximum", "a magnitude"),
@@ -42,7 +42,7 @@ def trouble(given: NDArray[np.float32], results: NDArray[np.float32]) -> str | N
         axis=1,
     )
     zero = np.zeros_like(x)
-    # Roundings of what is added up, in the worst order.
+    # Magnitudes of the rounded terms, in the worst order.
     allowed = np.stack(
         [
             *(np.abs(x + y), np.abs(x - y), np.abs(x * y), 2.5 * np.abs(x / y)),
@@ -51,7 +51,7 @@ def trouble(given: NDArray[np.float32], results: NDArray[np.float32]) -> str | N
         ],
         axis=1,
     )
-    # The last part is for the roundings of all this.
+    # The relative 2⁻²⁰ and the last term cover the rounding of this check itself.
     room = allowed * _ULP * (1 + 2.0**-20) + np.where(allowed > 0, 4 * _LEAST, 0.0)
     with np.errstate(invalid="ignore"):
         wrong = ~(np.abs(results.astype(np.float64) - exact) <= room)

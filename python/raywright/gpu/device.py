@@ -18,7 +18,7 @@ from .packing import packed
 from .wavefront import Wavefront
 from .wgpu_api import changes_named
 
-# What kernels for pictures know nothing of, as `Scene.plan` calls it.
+# Features that the rendering kernels do not support, as `Scene.plan` names them.
 _LEFT = (
     "masks",
     "smoke and haze",
@@ -56,13 +56,13 @@ class Gpu:
     def __init__(self, adapter: Any = None) -> None:
         found = chosen(adapter)
         given = pairs()
-        # The first use of nearly all that is called.
+        # Covers the first use of nearly all wgpu calls.
         with changes_named():
             self._limits = limits_of(found)
             self._name, self._backend = name_of(found), str(found.info["backend_type"])
             self._device = found.request_device_sync(required_limits=self._limits)
             computed = probed(self._device, given)
-        # What bounds are multiplied by, and what a binding holds: tests change these.
+        # Scale of error bounds, and the largest binding: tests change both.
         self._bounds = 1.0
         self._most = min(self._limits["max-storage-buffer-binding-size"], self._limits["max-buffer-size"])
         self._pipelines: dict[str, Any] = {}

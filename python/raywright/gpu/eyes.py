@@ -9,7 +9,7 @@ from ..cameras import AnyCamera, Camera
 from ..query.flats import FlatArrays
 from .looks import LeftError, told
 
-# In box units: farther away float32 tells less than a pixel of a large picture.
+# In box units: farther away, float32 cannot resolve a pixel of a large picture.
 _FAR = 256.0
 
 
@@ -51,8 +51,8 @@ def eye_of(camera: AnyCamera, flat: FlatArrays) -> Eye:
     eye = (origins[0] - flat.centre) * flat.scale
     if not np.abs(eye).max() < _FAR:
         raise LeftError("the camera is far from all that it sees")
-    # Ways to the corners are unit. Before, they were those of a parallelogram: the first and the last made
-    # the same sum as the others.
+    # Directions to the corners have unit length. Before normalization they formed a parallelogram: opposite
+    # corners had equal sums.
     sizes = np.linalg.svd(np.stack([ways[0], -ways[1], -ways[2], ways[3]], axis=1))[2][-1]
     corner, right, low = (ways[i] * (sizes[i] / sizes[0]) for i in range(3))
     return Eye(eye, corner, right - corner, low - corner, width, height)

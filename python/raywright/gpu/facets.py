@@ -22,7 +22,7 @@ def fresnel(cosine: Floats, eta: float) -> Floats:
 
 def mean_fresnel(eta: float) -> float:
     """Return the share of even light that a dielectric reflects."""
-    # Dense where all begins to be reflected.
+    # Samples are denser near the onset of partial reflection.
     least = np.sqrt(max(1 - eta**2, 0.0))
     t = (np.arange(4096) + 0.5) / 4096
     cosine = least + (1 - least) * t**2
@@ -66,7 +66,7 @@ def _out(alpha: float, eta: float | None, z: float) -> tuple[float, float]:
     return float((4 * t**3 * share * seen).mean()), float((4 * t**3 * beyond).mean())
 
 
-# Not from the plane itself, where nothing is defined.
+# Never exactly grazing, where the loss is undefined.
 _COSINES: list[float] = np.maximum(np.linspace(0, 1, ENTRIES) ** 2, 1e-6).tolist()
 
 
@@ -89,5 +89,5 @@ def mean_of(table: Floats) -> float:
     """Return what is lost, or reflected, of even light, by a table as it is interpolated."""
     roots = (np.arange(4096) + 0.5) / 4096
     loss = np.interp(roots, np.linspace(0, 1, ENTRIES), table)
-    # With the cosine r^2, 2 c dc is 4 r^3 dr.
+    # With the cosine r², 2 c dc is 4 r³ dr.
     return float((loss * 4 * roots**3).mean())

@@ -18,7 +18,7 @@ from ..scene.scene import Scene
 from .kernels import Kernels
 from .stats import GpuStats
 
-# What the kernels say of rays that are the CPU's.
+# Kernels return this for rays that the CPU must trace.
 _OPEN = 0xFFFFFFFE
 
 
@@ -39,7 +39,7 @@ class GpuScene:
         arrays = flat_arrays(self._flat)
         self._bytes = arrays.bytes
         self._is_closed = False
-        # Buffers are the scene's, one batch of rays after the other.
+        # The buffers belong to the scene, so batches take turns.
         self._lock = Lock()
         self._kernels: Kernels | None = Kernels(
             device, arrays.nodes, arrays.triangles, arrays.depth, most, bounds, pipelines
@@ -120,7 +120,7 @@ class GpuScene:
             return told
         chunk = self._kernels.chunk
         before: tuple[int, int, Any] | None = None
-        # While the device is at work on some, the next are made ready.
+        # The host prepares the next batch while the device works on this one.
         for slot, start in enumerate(range(0, count + chunk, chunk)):
             stop = min(start + chunk, count)
             ready = self._flat.rays(_part(rays, count, start, stop)) if start < count else None
@@ -164,7 +164,7 @@ def _part(rays: AskedRays, count: int, start: int, stop: int) -> AskedRays:
         if array.flags.c_contiguous:
             array = array.reshape(-1, *columns)
             return array[start:stop] if len(array) == count and count > 1 else array
-        # Where rays repeat, no copy of all of them is made.
+        # Broadcast rays are not copied as a whole.
         return array[np.unravel_index(np.arange(start, stop), lead)]
 
     starts, ways = (some(array, (3,)) for array in (origins, directions))

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-# Buffers of the rays, the answers, and what else a kernel has besides the scene.
+# Bindings of a kernel besides the scene: rays, answers and others.
 _OTHERS = 3
 _GROUP = 64
 
@@ -44,7 +44,7 @@ class Parts:
 
         size = rows.dtype.itemsize
         self.rows = max(most // size, 1)
-        # A buffer of nothing cannot be bound.
+        # An empty buffer cannot be bound.
         some = rows if len(rows) else np.zeros(1, rows.dtype)
         pieces = [some[i : i + self.rows] for i in range(0, len(some), self.rows)]
         usage = wgpu.BufferUsage.STORAGE
@@ -116,7 +116,7 @@ class Kernels:
         first = _OTHERS + len(parts[0].buffers)
         bindings = f"{parts[0].declared('Node', _OTHERS)}\n{parts[1].declared('Triangle', first)}"
         shared = text("trace.wgsl").replace("BINDINGS", bindings).replace("SCALE", repr(float(bounds)))
-        # A path puts one child away a level. Most trees have the same text so.
+        # The stack holds one child per level. Rounding lets most trees share one shader.
         closest = text("closest.wgsl").replace("STACK", f"{(depth // 32 + 1) * 32}u")
         self._pipelines = {
             "closest": self._pipeline(shared.replace("ANSWER", "vec4<u32>") + closest, "closest"),

@@ -27,7 +27,7 @@ MATERIAL = np.dtype(
 )
 _NO = 0xFFFFFFFF
 _DIFFUSE, _MIRROR, _GLASS, _METAL, _ROUGH_METAL, _ROUGH_GLASS, _PLASTIC = range(7)
-# Below this a surface is a smooth one, and from the other on its lobes are as f32 has them.
+# Below the first alpha a surface is smooth; from the second on, f32 resolves its lobe.
 _SMOOTH, _LEAST = 1e-5, 2e-3
 _WRAPS = {"repeat": 1, "clamp": 2, "mirror": 3}
 
@@ -171,7 +171,7 @@ class Looks:
         alpha = _alpha(metal, what)
         row["kind"], row["colour"] = _METAL, 1.0
         if metal.metal is not None:
-            # The index is 0, which none is, and a table stands for it.
+            # An index of 0, which no metal has, stands for a table.
             table, row["colour"] = reflectances(metal.metal)
             row["table"] = self.add(table)
         else:

@@ -12,7 +12,7 @@ from ..shapes.mesh import Mesh
 
 # Steps of the cosine in a table of reflectances.
 STEPS = 256
-# Where anything much is seen of what a metal reflects best, nm.
+# Wavelengths where the eye is sensitive, nm.
 _SEEN = np.arange(400.0, 701.0, 5.0)
 
 
@@ -35,7 +35,7 @@ def reflectances(name: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     again : (3,)
         What they are multiplied by for light that such a metal has reflected before.
     """
-    # Not along the plate, which no ray meets.
+    # Never exactly grazing.
     cosines = np.maximum(np.linspace(0.0, 1.0, STEPS + 1), 1e-6)
     table = np.array(_met(Conductor(name), cosines).reflected().weight)
     index = metal_index(name)

@@ -17,8 +17,8 @@ from ..scene.scene import Scene
 from ..shapes.mesh import Mesh
 from .looks import LeftError, Looks, constant
 
-# 112 bytes a face, by its number among all primitives: a corner and two edges as a mesh winds them;
-# `material`, of its front, that of its back being the next; `light`, or NO; `has`, 1 for normals and 2 for
+# 112 bytes a face, by primitive number: a corner and two edges in the winding of the mesh. `material` is that
+# of the front, followed by that of the back. `light` is its light, or NO. `has` is 1 for normals plus 2 for
 # texture coordinates, which are u_a, u_b, u_c and v.
 FACE = np.dtype(
     [
@@ -38,9 +38,9 @@ FACE = np.dtype(
         ("reserved", "<f4"),
     ]
 )
-# 48 bytes a light: `kind`, 0 for a face that shines, 1 for a point, 2 for a direction; `radiance`, or
-# intensity (in box units), or irradiance; `until` and `share`, of all draws from what is not the sky, those
-# of all up to it and its own.
+# 48 bytes a light. `kind` is 0 for an emitting face, 1 for a point, 2 for a direction. `radiance` is that,
+# the intensity (in box units) or the irradiance. `share` is the probability to draw this light rather than
+# another, without the sky; `until` is the cumulative one.
 LIGHT = np.dtype(
     [
         ("radiance", "<f4", 3),
@@ -73,9 +73,9 @@ LIT = np.dtype(
 NO = 0xFFFFFFFF
 _LAMP, _POINT, _DIRECTION = 0, 1, 2
 _FRONT, _BACK = 1, 2
-# In box units: what is smaller has details that float32 does not tell from where rays leave it.
+# In box units: float32 does not resolve details of smaller scenes where rays leave them.
 _TINY = 1e-3
-# The share of draws that goes to the sky where there are lights too.
+# Probability to draw the sky if there are lights too.
 _SKY_SHARE = 0.5
 
 
@@ -227,14 +227,15 @@ def _delta(scene: Scene, flat: FlatArrays) -> NDArray[np.void]:
 def _share(lights: NDArray[np.void], lit: NDArray[np.void], faces: NDArray[np.void]) -> None:
     """Share draws among lights by about their power, and tell faces which light they are."""
     strength = lights["radiance"].astype(np.float64).max(axis=1, initial=0.0)
-    # Of what has no extent, all that goes through a ball as large as box units are.
+    # Lights without extent: the power through a ball of the size of a box unit.
     reach = np.full(len(lights), 4 * np.pi)
     lamp = lights["kind"] == _LAMP
     sides = np.where(lights["sides"][lamp] == (_FRONT | _BACK), 2, 1)
     reach[lamp] = np.pi * lights["area"][lamp] * sides
     power = strength * reach
     total = power.sum()
-    # Ends are rounded, and shares what is between them: so that what is drawn is what is told.
+    # Cumulative shares are rounded first and shares are their differences, so that sampled and stated
+    # probabilities agree.
     until = (np.cumsum(power) / (total if total > 0 else 1.0)).astype(np.float32)
     if len(until):
         until[-1] = 1.0
@@ -276,7 +277,7 @@ def _shares(image: NDArray[np.float32]) -> NDArray[np.float32]:
     """Return the shares of light of rows up to each, and in each row of columns up to each, in one array."""
     height = image.shape[0]
     light = image.max(axis=2).astype(np.float64)
-    # What lies in a texel is interpolated from those around.
+    # The light within a texel is interpolated from its neighbours.
     beside = np.pad(np.pad(light, ((1, 1), (0, 0)), "edge"), ((0, 0), (1, 1)), "wrap")
     across = (beside[:, :-2] + 6 * beside[:, 1:-1] + beside[:, 2:]) / 8
     mean = (across[:-2] + 6 * across[1:-1] + across[2:]) / 8

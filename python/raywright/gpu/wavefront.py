@@ -38,16 +38,16 @@ JOB = np.dtype(
 )
 _PATH, _SHADOW, _PIXEL = 80, 64, 80
 _LISTS, _GROUP = 8, 64
-# Paths at once, where a device has room for them.
+# Most paths in flight, if the device has room.
 _CAPACITY = 1 << 20
-# Seconds that a piece of work should take; paths at first, and at least.
+# Target seconds per dispatch; first and least number of paths.
 _PIECE, _FIRST, _LEAST = 0.25, 1 << 16, 1 << 15
-# Bounces between looks at how many paths are left.
+# Bounces between readbacks of the number of live paths.
 _BOUNCES = 8
-# The bindings before those of the scene.
+# Number of bindings before those of the scene.
 _OWN = 8
 _TO_LIGHT = 7
-# Of kernels that shade, their lists, and the kinds of materials that are for them; the sky is of none.
+# By shading kernel: its list, and the kinds of materials it handles; the sky needs none.
 _SHADING: dict[str, tuple[int, set[int]]] = {
     "leave_scene": (2, set()),
     "shade_matt": (3, {0}),
@@ -58,7 +58,7 @@ _SHADING: dict[str, tuple[int, set[int]]] = {
 _NO_LIMIT = 0xFFFFFFFF
 
 
-# A kernel, which list of rays is at work, and groups of threads, or None where a list tells.
+# A kernel, its list of rays, and its number of workgroups, or None for an indirect dispatch.
 Step: TypeAlias = tuple[str, int, int | None]
 
 
@@ -118,7 +118,7 @@ class Wavefront:
         }
         self._scene = [buffer for part in parts.values() for buffer in part.buffers]
         self._kinds = [kind for kind, part in parts.items() for _ in part.buffers]
-        # The most of one kernel: what shades has four bindings of its own.
+        # The kernel with the most bindings: shading has four of its own.
         used = len(self._scene) - len(parts["Node"].buffers) - len(parts["Triangle"].buffers) + 4
         have = device.limits["max-storage-buffers-per-shader-stage"]
         if used > have:
@@ -147,7 +147,7 @@ class Wavefront:
         self._job["seed"] = seed & 0xFFFFFFFF, seed >> 32
         self._max_depth = max_depth
         self._make(scene.lit)
-        # What the scene has none of is not asked, and not compiled.
+        # Kernels for absent materials are neither compiled nor run.
         kinds = set(scene.materials["kind"].tolist())
         self._shading = {
             entry: which
@@ -167,7 +167,7 @@ class Wavefront:
         )
         self._pipelines = {entry: self._pipeline(entry) for entry in entries}
         self._groups: dict[tuple[str, int], Any] = {}
-        # Drivers may compile when they are first asked.
+        # Drivers may compile at the first dispatch.
         self._wave = min(_FIRST, self._capacity)
         self._block(0, 1, 0, 1, lambda: None)
 

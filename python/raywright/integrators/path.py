@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from ..arrays import integer
 
-# Larger patches ask for more rays than they are worth.
+# Larger patches need more rays than they save.
 _SIDES = (1, 2, 4, 8)
 
 

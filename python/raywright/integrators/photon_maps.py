@@ -98,7 +98,7 @@ class PhotonMap:
         _settle(self)
         object.__setattr__(self, "photons", _photons(self.photons))
         if self.nearest is not None:
-            # Of one photon, the N - 1 that count are none.
+            # The estimate counts N - 1 photons: none of a single one.
             object.__setattr__(self, "nearest", integer("nearest", self.nearest, 2, counts.MOST_PHOTONS))
         object.__setattr__(self, "maps", integer("maps", self.maps, 1, _MOST_MAPS))
         if not isinstance(self.caustic, bool):

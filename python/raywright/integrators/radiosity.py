@@ -41,7 +41,7 @@ class Radiosity:
         solution = self.solution
         patches = solution.patches
         is_front = patches["side"] == 1
-        # A patch of each face, in their order, and where each primitive of the scene starts among them.
+        # One patch per face, in their order, and the first patch of each primitive.
         faces = patches[is_front & (patches["cell"] == 0)]
         starts = np.flatnonzero((faces["copy"] < 0) | (faces["face"] == 0))
         first = np.append(starts, len(faces)).astype(np.uint32)

@@ -13,7 +13,7 @@ from .quiet import quiet, reason
 from .radiance_hdr import read_hdr
 from .shown import FORMATS, check_format
 
-# Tags of TIFF files: bits of a sample, and whether it has a sign.
+# Tags of TIFF files for bits per sample and sample format, and the value for unsigned integers.
 _BITS, _SAMPLES, _UNSIGNED = 258, 339, 1
 SUFFIXES = (*FORMATS, ".exr", ".npy")
 
@@ -61,8 +61,7 @@ def check_writable(
         raise IsADirectoryError(errno.EISDIR, "is a folder", str(path))
     if not path.parent.exists():
         raise FileNotFoundError(errno.ENOENT, "no such folder", str(path.parent))
-    # Trying is the only true test: permissions read otherwise for root, and on read-only or full file
-    # systems.
+    # Only trying is reliable: root ignores permissions, and file systems may be read-only or full.
     try:
         with open(path, "xb"):
             pass
@@ -101,12 +100,12 @@ def read(path: str | PathLike[str]) -> NDArray[Any]:
     suffix = path.suffix.lower()
     try:
         if suffix == ".npy":
-            # A map of a file cannot be longer than the file is.
+            # A memory map cannot exceed the file, whatever size its header claims.
             array = np.array(np.load(path, mmap_mode="r", allow_pickle=False))
         elif suffix == ".hdr":
             array = read_hdr(path)
         elif suffix == ".exr":
-            # Whoever reads none does not wait for the import.
+            # Imported here, because only EXR files need it (import time).
             from .exr.reader import read_exr
 
             array = read_exr(path, _colours)
@@ -115,7 +114,7 @@ def read(path: str | PathLike[str]) -> NDArray[Any]:
     except (ImportError, MemoryError):
         raise
     except Exception as error:
-        # Parsers fail on bad bytes in every way there is; the caller needs one kind of error, and one line.
+        # Parsers raise any exception on bad bytes; the caller needs one type of error and one line.
         raise ValueError(f"{path} is not a picture that can be read ({reason(error)})") from error
     return np.asarray(array if array.ndim != 2 else array[..., np.newaxis])
 
@@ -168,7 +167,7 @@ def pixels_of(picture: Any) -> NDArray[Any]:
     most = Image.MAX_IMAGE_PIXELS
     if most is not None and picture.width * picture.height > most:
         raise ValueError(_TOO_MANY.format(most))
-    # Before pixels are read: what is read later forgets how they stand in the file.
+    # Before the pixels are decoded, because decoding drops the raw mode.
     key = _transparent(picture)
     if picture.mode == "I":
         array = _of_integers(picture)
@@ -194,11 +193,12 @@ def _transparent(picture: Any) -> tuple[int, ...] | None:
     levels = (told,) if isinstance(told, int) else told
     form = picture.tile[0][3] if getattr(picture, "tile", None) else ""
     form = form[0] if isinstance(form, tuple) else form
-    # PNG tells levels of as many bits as it stores; pixels are of 8 where it has 1, 2, 4, or 16 of a color.
+    # PNG states levels in its stored bit depth. Pixels have 8 bits for a depth of 1, 2, 4, and for colors of
+    # 16.
     bits = {"1": 1, "L;1": 1, "L;2": 2, "L;4": 4}.get(form, 8)
     shift = 8 if str(form).startswith("RGB;16") else 0
     most = 2**bits - 1
-    # Some versions of Pillow scale some of them.
+    # Some versions of Pillow scale some levels already.
     return tuple((level * 255 // most if level <= most else level) >> shift for level in levels)
 
 

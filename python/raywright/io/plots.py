@@ -48,7 +48,7 @@ def plotted(where: Any, draw: Callable[[Any], object], solid: bool = False, **fi
             from matplotlib.axes import Axes
             from matplotlib.figure import Figure
 
-            # Without pyplot, which would keep the figure and may want a screen.
+            # Without pyplot, which would keep the figure and may need a display.
             ax = where if file is None else Figure(**figure).subplots(subplot_kw=kind)
             if not isinstance(ax, Axes):
                 raise TypeError(f"ax must be matplotlib axes or a path, got {type(ax).__name__}")

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..locks import Lock
 
-# What a read in progress has switched off.
+# Logs and warnings that a read in progress has switched off.
 _silenced: list[ExitStack] = []
 
 
@@ -20,14 +20,14 @@ def _unsilence() -> None:
         _silenced.pop().close()
 
 
-# Switching off a log and Python's warnings is for the whole process, so reads take turns.
+# Logs and Python's warnings are switched off for the whole process, so reads take turns.
 _lock = Lock(abandoned=_unsilence)
 
 
 @contextmanager
 def quiet(strictly: type[Warning] | None = None) -> Iterator[None]:
     """Keep trimesh's log, and all warnings, from being heard; those of one kind may be errors instead."""
-    # Whoever reads nothing does not wait for the import.
+    # Imported here, because only readers need it (import time).
     import logging
 
     log = logging.getLogger("trimesh")
@@ -47,7 +47,7 @@ def quiet(strictly: type[Warning] | None = None) -> Iterator[None]:
 
 def warn_caller(message: str) -> None:
     """Warn at the line outside of this package from where it was called."""
-    # Decorators of numpy stand between.
+    # Decorators of numpy lie between this frame and the caller's.
     packages = __name__.partition(".")[0], "numpy"
     frame, level = sys._getframe(1), 2
     while frame.f_back is not None and frame.f_globals.get("__name__", "").partition(".")[0] in packages:
@@ -67,7 +67,7 @@ def reason(error: Exception, most: int = 120) -> str:
 
 def refused(path: Path, what: str, error: Exception) -> Exception:
     """Return what to raise for a file of which `error` says that it cannot be read as `what`."""
-    # A package that is missing is named already, but where it is another library that misses it.
+    # Our ImportError names the missing package; a ModuleNotFoundError comes from another library.
     if isinstance(error, OSError | MemoryError) or type(error) is ImportError:
         return error
     return ValueError(f"{path} is not a {what} that can be read ({reason(error, 160)})")

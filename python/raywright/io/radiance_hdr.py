@@ -63,14 +63,14 @@ def _upright(image: NDArray[np.float32], rows: bytes, columns: bytes) -> NDArray
     """Return a picture from the top row on, left to right, whose pixels go as its size line says."""
     if rows[1:] == b"X":
         image, rows, columns = image.transpose(1, 0, 2), columns, rows
-    # Y counts from the bottom.
+    # +Y means that rows run upwards.
     image = image[::-1] if rows == b"+Y" else image
     return np.ascontiguousarray(image[:, ::-1] if columns == b"-X" else image)
 
 
 def _pixels(body: bytes, width: int, height: int) -> NDArray[np.uint8]:
     """Return the four bytes of each pixel, in rows that are run-length encoded or not."""
-    # A run of 255 times the same number takes 4 bytes of the old encoding; of the new one, 127 take 2.
+    # 255 equal bytes take 4 bytes in the old encoding; 127 take 2 in the new one.
     least = min(4 * -(-width // 255), 4 + 8 * -(-width // 127))
     if min(width, height) < 1 or len(body) < height * min(least, 4 * width):
         raise ValueError

@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 
 from .tone import DEFAULT, toned
 
-# By the ending of a file, what Pillow calls the format.
+# Pillow's format name for each file name extension.
 FORMATS = {".png": "PNG", ".jpg": "JPEG", ".jpeg": "JPEG", ".webp": "WEBP", ".avif": "AVIF"}
-# Close to what cannot be told apart; without subsampling, which would smear colours over neighbours.
+# Almost visually lossless, and without chroma subsampling, which would bleed colours over neighbours.
 _HOW: dict[str, dict[str, Any]] = {
     "PNG": {},
     "JPEG": {"quality": 92, "subsampling": 0},
@@ -25,7 +25,7 @@ def check_format(suffix: str) -> None:
     if name in ("WEBP", "AVIF"):
         from PIL import features
 
-        # A Pillow that has never heard of a format warns of the question.
+        # Pillow warns if it does not know the queried feature.
         known = features.get_supported_modules() if name.lower() in features.modules else []
         if name.lower() not in known:
             raise ImportError(f"saving {suffix} needs a Pillow that has {name}: pip install 'Pillow>=11.3'")
@@ -46,7 +46,7 @@ def srgb(
         return _bytes(_transfer(toned(rgb, exposure, tone)))
     cover = np.clip(np.nan_to_num(np.asarray(alpha, np.float64), nan=0.0), 0.0, 1.0)[..., np.newaxis]
     whole = np.divide(rgb, cover, out=np.zeros(rgb.shape, np.float64), where=cover > 0)
-    # Alpha is no light, and is stored as it is.
+    # Alpha is no light and is stored linearly.
     return _bytes(np.concatenate([_transfer(toned(whole, exposure, tone)), cover], axis=-1))
 
 

@@ -8,16 +8,16 @@ from numpy.typing import NDArray
 from ..arrays import number
 
 TONES = ("filmic", "linear")
-# The tone of whatever shows a picture, unless it is told another.
+# Default tone curve of all viewers.
 DEFAULT = "filmic"
 
-# Up to here colours stay as they are.
+# Colours up to here are unchanged.
 _KNEE = 0.5
-# How soon bright colours turn white: that of the Khronos PBR Neutral tone mapper.
+# Rate at which bright colours turn white, from the Khronos PBR Neutral tone mapper.
 _DESATURATION = 0.15
-# What float32 holds.
+# Largest finite float32.
 _BRIGHTEST = float(np.finfo(np.float32).max)
-# More stops than any picture takes; far more would leave the range of float64.
+# More stops than any picture needs; far more would overflow float64.
 _MOST_STOPS = 100.0
 
 
@@ -52,12 +52,12 @@ def toned(rgb: NDArray[np.floating[Any]], exposure: float, tone: str) -> NDArray
     light = np.maximum(light, 0.0) * 2.0**exposure
     if tone == "linear":
         return np.asarray(np.minimum(light, 1.0))
-    # Beyond this all is white, and squares would leave the range.
+    # All is white beyond, and squares would overflow.
     light = np.minimum(light, 1e30)
     peak = light.max(axis=-1, keepdims=True)
     over = np.maximum(peak - _KNEE, 0.0)
     room = 1.0 - _KNEE
-    # Of slope 1 where it begins, and 1 at infinity.
+    # The curve has slope 1 at the knee and tends to 1 at infinity.
     shown = np.where(peak > _KNEE, 1.0 - room * room / (over + room), peak)
     scaled = light * (shown / np.where(peak > 0, peak, 1.0))
     white = 1.0 - 1.0 / (_DESATURATION * (peak - shown) + 1.0)

@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 Axis: TypeAlias = Literal["x", "y", "z"]
 AXES: tuple[Axis, ...] = ("x", "y", "z")
 COLORS = "viridis"
-# Where there is no value, and surfaces that have none.
+# Colors for missing values, and for surfaces without values.
 _NONE, _BARE = (0.6, 0.6, 0.6, 1.0), (0.82, 0.82, 0.82, 1.0)
-# Points are drawn in so many square points each, the fewer the larger.
+# Area of a marker in square points; more points get smaller ones.
 _LARGEST, _SMALLEST = 30.0, 1.0
 
 
@@ -25,7 +25,7 @@ def scale(values: NDArray[Any], cmap: Any = COLORS) -> Any:
     low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
     shown = colors.with_extremes(bad=_NONE)
     is_less, is_more = bool((values == -np.inf).any()), bool((values == np.inf).any())
-    # What color bars that are given nothing else take.
+    # matplotlib's attribute for the default ends of a color bar.
     shown.colorbar_extend = ("neither", "min", "max", "both")[is_less + 2 * is_more]
     mapped = ScalarMappable(Normalize(low, high), shown)
     # Infinity is masked as NaN is.
@@ -46,7 +46,7 @@ def draw_faces(ax: Any, corners: NDArray[np.float64], mapped: Any = None, up: Ax
     colors = np.tile(_BARE, (len(corners), 1)) if mapped is None else mapped.to_rgba(mapped.get_array())
     whole = np.isfinite(corners).all(axis=(1, 2))
     if whole.any():
-        # Colors tell values, so that light changes them by little.
+        # Colors encode values, so that shading changes them only a little.
         light = LightSource(azdeg=225, altdeg=45)
         faces = _turned(corners[whole], up)
         normals = np.cross(faces[:, 1] - faces[:, 0], faces[:, 2] - faces[:, 0])
@@ -73,7 +73,7 @@ def frame(ax: Any, places: NDArray[np.float64], up: Axis = "y") -> None:
     shown = shown[np.isfinite(shown).all(axis=1)]
     low, high = (shown.min(axis=0), shown.max(axis=0)) if len(shown) else (np.zeros(3), np.ones(3))
     largest = float((high - low).max())
-    # What is flat needs some room too.
+    # Flat extents need some room too.
     half = np.maximum(high - low, 0.05 * largest if largest > 0 else 1.0) / 2
     middle = (low + high) / 2
     for set_limits, center, reach in zip((ax.set_xlim, ax.set_ylim, ax.set_zlim), middle, half, strict=True):

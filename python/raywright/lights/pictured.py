@@ -13,7 +13,7 @@ from ..io.quiet import warn_caller
 
 Texels = NDArray[np.float32]
 
-# The share of negative light in a picture that is taken for rounding, or for colors outside of Rec. 709.
+# Share of negative light in a picture that passes for rounding or out-of-gamut colors of Rec. 709.
 _LITTLE = 1e-2
 
 
@@ -41,14 +41,14 @@ def texels(name: str, value: ArrayLike | str | PathLike[str]) -> Texels:
         array = np.repeat(array[..., None], 3, axis=2)
     if array.ndim != 3 or array.shape[2] != 3 or 0 in array.shape:
         raise ValueError(f"{name} must have shape (H, W, 3) or (H, W), and not be empty, got {array.shape}")
-    # What float32 cannot hold becomes infinite, and is told.
+    # Overflow to infinity is reported below.
     with np.errstate(over="ignore"):
         single = frozen(array.astype(np.float32))
     finite = np.isfinite(single)
     negative = finite & (single < 0)
     bad = ~finite | negative
     if bad.any() and np.array_equal(bad, negative) and (is_file or _is_little(single)):
-        # Programs leave these that resample pictures, or that know colors outside of Rec. 709.
+        # Resampling and wider gamuts leave small negative values.
         least = float(single.min())
         single = frozen(np.maximum(single, np.float32(0)))
         warn_caller(

@@ -42,7 +42,7 @@ def sun_positions(
     obliquity = np.radians(23.439 - 0.0000004 * days)
     ascension = np.arctan2(np.cos(obliquity) * np.sin(ecliptic), np.cos(ecliptic))
     declination = np.arcsin(np.sin(obliquity) * np.sin(ecliptic))
-    # Greenwich's mean sidereal time: in a day the Earth turns once and a 365th.
+    # Greenwich mean sidereal time: the Earth turns once and a 365th per day.
     hour = np.radians((280.46062 + 360.98564737 * days + east) % 360.0) - ascension
     phi = np.radians(place)
     height = np.sin(declination) * np.sin(phi) + np.cos(declination) * np.cos(phi) * np.cos(hour)

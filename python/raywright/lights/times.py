@@ -7,11 +7,11 @@ from typing import TypeAlias, Union
 import numpy as np
 from numpy.typing import NDArray
 
-# What stands for one time; datetime64 has no zone, and is in UTC as numpy has it.
+# One time; datetime64 has no time zone and means UTC, as in numpy.
 Time: TypeAlias = datetime | np.datetime64 | str
 Times: TypeAlias = Union[Iterable[Time], "NDArray[np.datetime64]"]
 
-# The years that a datetime has.
+# Years that a datetime can hold.
 _YEARS = np.datetime64("0001"), np.datetime64("9999")
 _KINDS = "a datetime, a numpy.datetime64, or ISO 8601 text"
 
@@ -45,7 +45,7 @@ def _one(name: str, value: object) -> datetime:
         time = value
     else:
         raise TypeError(f"{name} must be {_KINDS}, or a sequence of these, got {value!r}")
-    # pandas has a datetime that is none, and that does not equal itself.
+    # pandas's NaT is an instance of datetime, and does not equal itself.
     if time != time:
         raise ValueError(f"{name} must be a time, got {value!r}")
     if time.utcoffset() is None:
@@ -66,7 +66,7 @@ def _of_numpy(name: str, value: np.datetime64) -> datetime:
 
 def _of_text(name: str, value: str) -> datetime:
     try:
-        # Python 3.10 does not know Z.
+        # Python 3.10 cannot parse Z.
         return datetime.fromisoformat(value[:-1] + "+00:00" if value[-1:] in ("Z", "z") else value)
     except ValueError:
         raise ValueError(f"{name} must be ISO 8601, as '2025-06-21T12:00+02:00', got {value!r}") from None

@@ -123,7 +123,7 @@ def _tint(transmittance: ArrayLike | Spectrum, distance: float | None) -> Homoge
 def _tint_by_wavelength(transmittance: Spectrum, length: float) -> Homogeneous | None:
     seen = np.arange(360.0, 831.0)
     told = np.asarray(transmittance.wavelengths)
-    # What is absorbed is not linear where the share is: it is told of each nm.
+    # Absorption is not linear where transmittance is, so it is tabulated at each nm.
     nm = np.union1d(seen, told[(told >= seen[0]) & (told <= seen[-1])])
     left = np.asarray(transmittance.at(nm))
     if left.min() <= 0 or left.max() > 1:

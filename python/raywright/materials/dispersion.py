@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import number, positive, real_array
 
-# Fraunhofer's lines F, d and C, by which the dispersion of glass is told, micrometres.
+# Fraunhofer's lines F, d and C, micrometres; glass catalogues state dispersion by them.
 BLUE, YELLOW, RED = 0.4861327, 0.5875618, 0.6562725
 
 

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 
 from .dispersion import Sellmeier
 
-# The coefficients B and C of Sellmeier's formula. Of glass, those of Schott's data sheets.
+# The coefficients B and C of Sellmeier's formula. Those of glasses are from Schott's data sheets.
 _MEASURED: dict[str, tuple[tuple[float, ...], tuple[float, ...]]] = {
     "N-BK7": ((1.03961212, 0.231792344, 1.01046945), (0.00600069867, 0.0200179144, 103.560653)),
     "N-K5": ((1.08511833, 0.199562005, 0.930511663), (0.00661099503, 0.024110866, 111.982777)),

@@ -119,7 +119,7 @@ def cross_section(
     lead = common({"point": origins.shape[:-1], "normal": ways.shape[:-1]})
     if len(lead) > 1:
         raise ValueError(f"point and normal must be of shape (3,) or (N, 3), got planes of shape {lead}")
-    # Corners are welded where lines do not close without, which takes longer than to cut.
+    # Corners are welded only if some lines stay open, since welding takes longer than cutting.
     whole = scene if isinstance(scene, Scene) else Scene(scene, weld=None)
     corners, faces, tolerance = triangles(whole, whole._tolerance if whole is scene else None)
     places, normals = (

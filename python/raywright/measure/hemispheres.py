@@ -15,9 +15,9 @@ from ..scene.scene import Scene, SceneLike
 from .places import Floats, Places, frames, places, scene_of, unit
 from .plots import Plotted
 
-# Rays that are sent together: few enough to stay in some ten megabytes.
+# Rays per batch: their arrays take some ten megabytes.
 _TOGETHER = 1 << 19
-# Independent batches of directions, from whose spread the error is told.
+# Independent batches of directions; their spread is the error.
 _BATCHES = 16
 _GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
 
@@ -182,7 +182,7 @@ def _open_share(
     count = len(where)
     shares = np.empty((_BATCHES, count))
     lattice = np.stack([(np.arange(each) + 0.5) / each, np.arange(each) * _GOLDEN % 1.0], axis=-1)
-    # Points of all batches, or of one where that alone is enough.
+    # One call holds points of all batches, or of one batch if that alone is enough.
     batches = _BATCHES if count * each * _BATCHES <= _TOGETHER else 1
     step = max(_TOGETHER // (each * batches), 1)
     with watcher(progress, what) as report:
@@ -204,7 +204,7 @@ def _told_error(value: Floats, variance: Floats, rays: int) -> Floats:
     """Return the standard error of the mean of batches, whose variance was estimated from them."""
     freedom = _BATCHES - 1
     error = np.sqrt(freedom / (freedom - 2) * variance + 1.0 / rays**2)
-    # What no ray has met may still be there: the rule of three.
+    # Rule of three: an outcome that no ray saw has a share below 3 / n at 95 %.
     return np.where((value == 0) | (value == 1), 3.0 / rays, error)
 
 
@@ -229,7 +229,7 @@ def _share(
     x, y = np.moveaxis(_to_disk(square), -1, 0)
     first, second = frames(normals)
     height = np.sqrt(np.maximum(0.0, 1.0 - x * x - y * y))
-    # Of each batch, direction and point.
+    # By batch, direction and point.
     ways = x[..., None] * first + y[..., None] * second + height[..., None] * normals
     free = ~scene.occluded(origins, ways, t_max=most, threads=threads)
     if up is not None:

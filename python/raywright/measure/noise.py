@@ -32,7 +32,7 @@ def beams_of(middles: Floats, beams: NDArray[np.int64], divergence: float, rays:
         return middles[:, None]
     turn = 2.0 * math.pi * uniform(seed, beams, np.zeros(len(beams), np.int32), 0)
     angle = turn[:, None] + np.arange(rays) * _GOLDEN
-    # An angle's tangent, as far as the beam's edge.
+    # Tangents of angles up to the edge of the beam.
     radius = math.tan(math.radians(divergence) / 2.0) * np.sqrt((np.arange(rays) + 0.5) / rays)
     first, second = frames(middles)
     aside = np.cos(angle)[..., None] * first[:, None] + np.sin(angle)[..., None] * second[:, None]

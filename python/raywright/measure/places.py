@@ -13,14 +13,14 @@ from ..shapes.mesh import Mesh
 
 Floats: TypeAlias = NDArray[np.float64]
 
-# How many times the error of a point of a surface rays start off it, as `Hits.leave` has it.
+# Rays start at this multiple of the error of their point off the surface, as in `Hits.leave`.
 _SAFETY = 8.0
-# Up to how many times that error a point is off a surface that it is meant to lie on: 2**-40 of the largest
-# coordinate of the face, or 2**-22 where vertices were rounded to float32. Of its own where it is float32.
+# Tolerances for points on a surface, in multiples of that error: 2**-40 of the largest coordinate of the
+# face, or 2**-22 if vertices were rounded to float32. Points in float32 add 2**-22 of their own coordinates.
 _DOUBLE, _SINGLE, _NARROW = 2.0**9, 2.0**27, 2.0**-22
-# A normal that is steeper to the face nearest to its point is of another face, across an edge.
+# A normal steeper to the nearest face belongs to another face, across an edge.
 _STEEP = 0.125
-# How far a surface is looked for that points are meant to lie on, as a part of the largest coordinate.
+# Search radius for the surface below a point, relative to the largest coordinate.
 _REACH = 2.0**-10
 
 

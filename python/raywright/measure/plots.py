@@ -85,7 +85,7 @@ def plot(
             draw_faces(ax, corners, mapped, up)
             frame(ax, corners, up)
         else:
-            # Points are on the surface, and drawn after it.
+            # Points lie on the surface and are drawn after it.
             ax.computed_zorder = False
             draw_faces(ax, corners, None, up)
             draw_points(ax, places.reshape(-1, 3), mapped, up)
@@ -106,7 +106,7 @@ class Plotted(Tabular):
     """Values at points of a scene, which they remember as long as they are not pickled or copied."""
 
     _where: Where | None = None
-    # The names of the arrays that can be drawn, the main one first.
+    # Names of the arrays that can be drawn, the main one first.
     _drawn: ClassVar[tuple[str, ...]] = ()
 
     def plot(self, ax: Any = None, name: str | None = None, up: Axis = "y", cmap: Any = COLORS) -> Any:

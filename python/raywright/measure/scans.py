@@ -21,7 +21,7 @@ from .waveforms import peaks
 
 Lidar: TypeAlias = SpinningLidar | RasterLidar
 Returns: TypeAlias = Literal["all", "first", "last", "strongest"]
-# Rays that are sent together.
+# Rays per batch.
 _TOGETHER = 1 << 19
 # The largest incidence in degrees that counts: ranges vary by 10,000 times the width of the beam there.
 _GRAZING = 89.995
@@ -247,7 +247,7 @@ def _scanned(
     at = touching(scene, place, threads)
     starts = place if at.error == 0 else at.spread((1, 1), ways.shape[:-1]).beside(place, ways)
     hits = scene.intersect(starts, ways, at.slack()[0], scanner.max_range, threads)
-    # What is too near is not measured, and hides what is behind it.
+    # A target below the least range is not measured, but still hides all targets behind it.
     far = np.where(hits.t >= scanner.min_range, hits.t, np.inf)
     order = np.argsort(far, axis=1, kind="stable")
     t = np.take_along_axis(far, order, axis=1)
@@ -256,7 +256,7 @@ def _scanned(
     peak = peaks(t, _width(scanner, t, angle), scanner.resolution)
     is_new = is_met & (np.diff(peak, axis=1, prepend=-1) > 0)
     number = np.cumsum(is_new, axis=1) - 1
-    # Returns of all beams in a row, and which of them each ray is of.
+    # Returns of all beams in a row, and the return of each ray.
     group = (np.cumsum(is_new.reshape(-1)) - 1)[is_met.reshape(-1)]
     first = is_new.reshape(-1)
     total = int(first.sum())
@@ -306,7 +306,7 @@ def _chosen(
     last = np.append(beam[1:] != beam[:-1], True)
     if returns == "last":
         return last
-    # The nearest of those that are as strong: the last of each beam in the order of strength.
+    # The nearest among equally strong ones: the last of each beam in the order of strength.
     order = np.lexsort((-which, strength, beam))
     strongest = np.zeros(len(beam), np.bool_)
     strongest[order[last]] = True

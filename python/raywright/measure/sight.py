@@ -93,7 +93,7 @@ def line_of_sight(
             raise ValueError(f"margin must be at least 0 and less than 0.5, got {margin}")
         hits = scene.intersect(starts, way, t_min=least, t_max=1.0 - least, threads=threads)
     found = LineOfSight(~hits.hit, hits, np.asarray(far))
-    # Of one viewer and many points, the points tell more.
+    # The larger array: with one viewer and many points, the points.
     found._at(scene, starts if ends.size < starts.size else ends)
     return found
 

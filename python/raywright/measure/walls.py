@@ -12,11 +12,11 @@ from ..scene.scene import Scene, SceneLike
 from .places import Floats, Places, middles, places, scene_of
 
 Method = Literal["ray", "sphere"]
-# A ball shrinks towards its last size geometrically; so many steps are more than any took that was tried.
+# A ball shrinks towards its last size geometrically; no ball in tests took this many steps.
 _STEPS = 60
-# To how much of itself a ball of shapes that are no meshes is found.
+# Relative precision of balls among curved shapes.
 _EXACT = 1e-9
-# Points are asked so many at a time, between which progress is told.
+# Points per batch, between reports of progress.
 _TOGETHER = 1 << 17
 
 
@@ -85,7 +85,7 @@ def thickness(
         for first in range(0, len(out), _TOGETHER):
             some = slice(first, first + _TOGETHER)
             points, ways = sites[some], -out.normals[some]
-            # Rays start a little inside.
+            # Rays start slightly inside.
             skipped = np.linalg.norm(starts[some] - points, axis=1)
             across = scene.intersect(starts[some], ways, threads=threads).t + skipped
             if method == "sphere":
@@ -112,7 +112,7 @@ def _balls(scene: Scene, points: Floats, ways: Floats, across: Floats, threads: 
     """Return the diameters of the largest balls inside that touch the surface, from where ways go in."""
     known = np.isfinite(points).all(axis=1) & np.isfinite(across)
     radius = across / 2.0
-    # Where numbers were given, the surface may be a little off: nothing touches both.
+    # Given points may lie slightly off the surface; balls touch the surface.
     near = scene.closest_point(points[known], threads=threads)
     core = scene._compiled()
     if core.curved:
@@ -129,12 +129,13 @@ def _shrunk(scene: Scene, touch: ClosestPoints, ways: Floats, radius: Floats, th
         if not len(open_):
             break
         point, r = touch.position[open_], radius[open_]
-        # What is not told apart from touching the ball does not count: so far it need not be looked for.
+        # A point that touches the ball, to within its error, does not count, so the search ends before it.
         most = np.maximum(r - _EXACT * r - 2.0 * touch._error[open_], 0.0)
         near = scene.closest_point(point + r[:, None] * ways[open_], max_distance=most, threads=threads)
         is_near = near.found & (near.distance < most)
         away = np.where(is_near[:, None], near.position - point, 0.0)
-        # The ball through the point that also touches the nearest one: |q - p|^2 / 2 w·(q - p).
+        # Radius of the ball that touches the surface at p and passes through the nearest point q:
+        # |q - p|^2 / 2 w·(q - p).
         depth = (away * ways[open_]).sum(axis=1)
         smaller = np.divide((away * away).sum(axis=1), 2.0 * depth, out=r.copy(), where=depth > 0)
         is_less = smaller < r - _EXACT * r

@@ -7,12 +7,12 @@ from numpy.typing import NDArray
 
 from .places import Floats
 
-# The full width at half maximum of a normal distribution, in standard deviations.
+# Full width at half maximum of a normal distribution, in standard deviations.
 _WIDTH = 2.0 * math.sqrt(2.0 * math.log(2.0))
-# How much lower than a peak it must be before the next. Between two equal pulses a full width at half maximum
-# apart it is 1 / 17 lower.
+# Least dip between two peaks, relative to the lower one. Two equal pulses, a full width at half maximum
+# apart, have a dip of 1 / 17.
 _DIP = 0.05
-# Numbers of waveforms that are worked out together.
+# Waveform samples per batch.
 _TOGETHER = 1 << 22
 
 
@@ -40,7 +40,7 @@ def peaks(t: Floats, width: Floats, resolution: float) -> NDArray[np.int64]:
     is_met = np.isfinite(t)
     last = np.where(is_met, t, -np.inf).max(axis=1)
     sigma = resolution / _WIDTH
-    # Equal normal distributions within two deviations have one peak, and wider ones all the more.
+    # Equal normal distributions within two deviations have one peak; so have wider ones.
     several = np.flatnonzero(last - t[:, 0] > 2.0 * sigma)
     step = max(_TOGETHER // (16 * t.shape[1] ** 2), 1)
     for start in range(0, len(several), step):
@@ -75,7 +75,8 @@ def _sampled(t: Floats, wide: Floats) -> tuple[NDArray[np.int64], Floats]:
     """Return beams and ranges at which waveforms are looked at: at rays, and between those far apart."""
     gap = np.diff(t, axis=1, append=t[:, -1:])
     narrow = np.minimum(wide, np.roll(wide, -1, axis=1))
-    # Eight between two rays, from half a deviation on; rays of a quarter of one are looked at once.
+    # One sample per half deviation between two rays, at most eight. Rays within a quarter of one share a
+    # sample.
     between = np.clip(np.ceil(gap / (0.5 * narrow)), 1, 8).astype(np.int64)
     bins = np.floor((t - t[:, :1]) / (0.25 * wide.min(axis=1, keepdims=True)))
     is_new = np.diff(bins, axis=1, prepend=-1.0) > 0
@@ -93,7 +94,7 @@ def _valleys(heights: Floats, places: Floats) -> list[Floats]:
     peak, low = heights[:, 0].copy(), np.full(len(heights), np.inf)
     at = np.full(len(heights), np.inf)
     for height, place in zip(heights.T[1:], places.T[1:], strict=True):
-        # A dip is one only if it rises again behind it.
+        # A dip counts only if the waveform rises again behind it.
         is_next = (low < np.inf) & (low < (1.0 - _DIP) * height)
         if is_next.any():
             valleys.append(np.where(is_next, at, np.inf))

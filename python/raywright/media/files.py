@@ -39,7 +39,7 @@ def read_grids(path: str | PathLike[str], names: Mapping[str, str]) -> Found:
         If the path is none.
     """
     if isinstance(path, str | PathLike) and Path(fspath(path)).suffix == ".vdb":
-        # What few need is imported where it is used.
+        # Imported here, because few files need it (import time).
         from .vdb import read_vdb
 
         grids, place = read_vdb(Path(fspath(path)), tuple(dict.fromkeys(names.values())))
@@ -72,12 +72,12 @@ def read_density(path: str | PathLike[str]) -> tuple[NDArray[Any], Bounds | None
     if name.suffix != ".npy":
         raise ValueError(f"{name} must be a .npy, a .vol or a .vdb file")
     try:
-        # A map of a file cannot be longer than the file is, whatever its header says.
+        # A memory map cannot exceed the file, whatever its header claims.
         array = np.load(name, mmap_mode="r", allow_pickle=False)
     except (OSError, MemoryError):
         raise
     except Exception as error:
-        # Headers are read as Python is, and fail in every way there is.
+        # numpy parses headers as Python literals, which raises any exception.
         raise ValueError(f"{name} cannot be read: {reason(error)}") from error
     if not isinstance(array, np.ndarray):
         raise ValueError(f"{name} holds several arrays, expected one")

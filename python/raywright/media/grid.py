@@ -259,11 +259,11 @@ def _numbers(name: str, value: ArrayLike | SparseGrid, dimensions: tuple[int, ..
         raise ValueError(f"{name} must have shape {shape}, and not be empty, got {array.shape}")
     single = array
     if array.dtype != np.float32 or not array.flags.c_contiguous or array.flags.writeable:
-        # What float32 cannot hold becomes infinite, and is told.
+        # Overflow to infinity is reported below.
         with np.errstate(over="ignore"):
             single = array.astype(np.float32, order="C", copy=True, subok=False)
         single.setflags(write=False)
-    # NaN passes on through both.
+    # NaN fails both comparisons.
     if not (single.min() >= 0 and single.max() < np.inf):
         place = np.argwhere(~((single >= 0) & (single < np.inf)))[0]
         came, where = float(array[tuple(place)]), place.tolist()

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 from .. import _core
 from ..arrays import real_array
 
-# How many points blocks have along an axis.
+# Points of a block along each axis.
 BLOCK = 8
 
 
@@ -71,7 +71,7 @@ class SparseGrid:
                 raise ValueError(
                     f"a part of shape {found.shape} at {begins} lies beyond the grid of shape {self.shape}"
                 )
-            # What float32 cannot hold becomes infinite, and is told.
+            # Overflow to infinity is reported later.
             with np.errstate(over="ignore"):
                 yield begins, np.ascontiguousarray(found, np.float32)
 

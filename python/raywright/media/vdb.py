@@ -19,14 +19,14 @@ from .sparse_grid import SparseGrid
 _MAGIC = 0x56444220
 _VERSIONS = range(222, 226)
 _FLOATS = ("Tree_float_5_4_3", "Tree_float_5_4_3_HalfFloat")
-# What data is compressed by.
+# Flags of compression.
 _ZIP, _ACTIVE_MASK, _BLOSC = 1, 2, 4
-# What is said of the numbers of a node that are not active, which are not among its data.
+# Codes for the inactive values of a node, which its data omits.
 _ONE_VALUE, _MASK, _MASK_AND_ONE, _MASK_AND_TWO, _ALL = 2, 3, 4, 5, 6
-# Children along an axis, as powers of two, and how many numbers one has along it, from the root down.
+# From the root down: log2 of the children along an axis, and the values of one child along it.
 _LEVELS = ((5, 128), (4, 8))
 _LEAF = 8
-# Numbers in tiles, beyond which they are not for this machine's memory: 4 GB.
+# Most values in tiles: 4 GB.
 _MOST = 2**30
 
 
@@ -70,7 +70,7 @@ def read_vdb(path: Path, names: tuple[str, ...]) -> tuple[dict[str, SparseGrid],
         }
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from error
-    # Numbers stand in the middle of their cells.
+    # Values lie in the middle of their cells.
     corners = np.array([low, high]) - 0.5
     scale = np.diag(first)[:3]
     if np.array_equal(first[:3, :3], np.diag(scale)) and (scale > 0).all():
@@ -84,7 +84,7 @@ def _grids(file: "_Reader", names: tuple[str, ...]) -> dict[str, _Grid]:
     version = file.one("I")
     if version not in _VERSIONS:
         raise ValueError(f"it is of version {version}, expected one from {_VERSIONS[0]} to {_VERSIONS[-1]}")
-    # The library's version, whether grids have offsets, and a name that is the file's alone.
+    # The library's version, whether grids have offsets, and the UUID of the file.
     file.many("II")
     if not file.one("?"):
         raise ValueError("it is a stream, expected a file with offsets")
@@ -124,7 +124,7 @@ def _grid(file: "_Reader", is_half: bool) -> _Grid:
         origin, value, active = file.many("iii"), file.one("f"), file.one("?")
         if active and value != 0:
             raise ValueError(f"a tile of 4096³ at {origin} is {value:g}")
-    # The structure of all comes first, then the numbers of leaves in the same order.
+    # The topology of all nodes comes first, then the values of leaves in the same order.
     leaves: list[tuple[int, int, int]] = []
     for _ in range(children):
         _node(file, numbers, file.many("iii"), 0, leaves, parts)
@@ -180,7 +180,7 @@ def _transform(file: "_Reader") -> NDArray[np.float64]:
     elif kind == "TranslationMap":
         matrix[:3, 3] = file.many("3d")
     elif kind in ("AffineMap", "UnitaryMap"):
-        # Points are rows there.
+        # The file stores matrices for row vectors.
         matrix = np.array(file.many("16d")).reshape(4, 4).T
     else:
         raise ValueError(f"its transform is a {kind}, expected an affine one")
@@ -252,14 +252,14 @@ class _Numbers:
 
     def _data(self, count: int) -> NDArray[np.float32]:
         size = count * self._type.itemsize
-        # Of half precision nothing at all is written where there is nothing.
+        # Empty arrays of half precision are not written at all.
         if size == 0 and self._type.itemsize == 2:
             return np.empty(0, np.float32)
         if self._unpack is None:
             data = self._file.take(size)
         else:
             packed = self._file.one("q")
-            # Below 0 where it would not become smaller.
+            # A negative size marks data that compression would not shrink.
             data = self._file.take(-packed) if packed <= 0 else self._unpack(self._file.take(packed), size)
         if len(data) != size:
             raise ValueError(f"a node has {len(data)} bytes, expected {size}")
@@ -278,11 +278,11 @@ def _blosc(data: bytes, size: int) -> bytes:
         raise ImportError(
             "this OpenVDB file is compressed by Blosc, which wants: pip install 'raywright[vdb]'"
         ) from error
-    # Sizes before and after; the decoder takes both from the header and would read and write that far.
+    # Sizes before and after. The decoder trusts the header and would read and write that far.
     if len(data) < 16 or struct.unpack_from("<I4xI", data, 4) != (size, len(data)):
         raise ValueError(f"a node is no chunk of Blosc of {size} bytes")
     if size == 0:
-        # OpenVDB writes such chunks, which the decoder takes for an error.
+        # OpenVDB writes empty chunks, which the decoder rejects.
         return b""
     try:
         return bytes(codec.decode(data))

@@ -17,7 +17,7 @@ def beside(folder: Path, name: str) -> Path | None:
             if candidate and found.is_relative_to(root) and found.is_file():
                 return found
         except (OSError, ValueError, RuntimeError):
-            # No name of a file: too long, or with a character that none has.
+            # Not a valid file name: too long, or with a forbidden character.
             continue
     return None
 

@@ -10,7 +10,7 @@ from .pbr import IOR, Pbr, Picture, Within
 from .polygons import LeftOut
 
 _WRAPS: dict[str, Wrap] = {"REPEAT": "repeat", "EXTEND": "clamp", "CLIP": "clamp", "MIRROR": "mirror"}
-# Inputs of the principled shader that have no effect here, where they are not 0.
+# Inputs of the principled shader without effect here; values other than 0 are reported.
 _UNUSED = ("Subsurface Weight", "Coat Weight", "Sheen Weight", "Thin Film Thickness", "Anisotropic")
 
 
@@ -91,7 +91,7 @@ def _principled(node: Any, told: str, left_out: LeftOut) -> Pbr:
         both_sides=True,
         ior=_number(node, ("IOR",), IOR, told, left_out),
         transmission=transmission,
-        # What is clear is solid there.
+        # Transmission in Blender is through a solid.
         within=Within((1.0, 1.0, 1.0), float("inf"), None) if transmission > 0 else None,
     )
 
@@ -160,7 +160,7 @@ def _picture(node: Any, told: str, left_out: LeftOut) -> Picture | None:
         image.pixels.foreach_get(numbers)
     else:
         numbers[:] = image.pixels
-    # Their first row is the lowest.
+    # Blender's first row of pixels is the lowest.
     pixels: NDArray[Any] = numbers.reshape(height, width, image.channels)[::-1]
     if not image.is_float and image.colorspace_settings.name == "sRGB":
         pixels = np.rint(np.clip(pixels, 0.0, 1.0) * 255).astype(np.uint8)

@@ -15,7 +15,7 @@ from .textured import by_number, split_corners
 
 # Kinds of objects that have surfaces.
 _SURFACES = ("MESH", "CURVE", "SURFACE", "META", "FONT")
-# Of attributes, the property that holds a value, and how many numbers it has.
+# By type of attribute: the property with its value, and the number of components.
 _VALUES = {
     "FLOAT": ("value", 1),
     "INT": ("value", 1),

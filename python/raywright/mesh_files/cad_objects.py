@@ -65,9 +65,9 @@ def of_assembly(assembly: Any, tolerance: float | None) -> Iterator[Mesh]:
     As `of_workplane`.
     """
     parts = []
-    # Places, names and colors of parents are in it already.
+    # Each entry already includes the places, names and colors of its parents.
     for shape, name, place, color in assembly:
-        # Assemblies without a name have a long random one.
+        # An assembly without a name gets a long random one.
         parts.append((shape.moved(place).wrapped, name.removeprefix(f"{assembly.name}/"), color))
     yield from _several(parts, tolerance, assembly)
 
@@ -79,7 +79,7 @@ def of_labelled(shape: Any, tolerance: float | None) -> Iterator[Mesh]:
     -------------
     As `of_workplane`.
     """
-    # One without anything in it refuses to be asked for more.
+    # An empty shape raises if queried further.
     leaves = tuple(shape.leaves) if shape else ()
     if not leaves:
         raise ValueError(f"a shape must have faces to become a mesh, got an empty {type(shape).__name__}")
@@ -155,7 +155,7 @@ def _mesh(shape: Any, tolerance: float | None, name: str | None, color: Any) -> 
     from OCP.BRepMesh import BRepMesh_IncrementalMesh
 
     distance = _TOLERANCE * _diagonal(shape) if tolerance is None else tolerance
-    # Shapes keep the finest triangles that they were given. Those of a copy depend on the tolerance alone.
+    # A shape keeps its finest triangulation; that of a copy depends on the tolerance alone.
     shape = BRepBuilderAPI_Copy(shape, False, False).Shape()
     BRepMesh_IncrementalMesh(shape, distance, False, _RADIANS, True)
     points, corners, cells = [np.empty((0, 3))], [np.empty((0, 3), np.int64)], [np.empty(0, np.int64)]

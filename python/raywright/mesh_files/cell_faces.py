@@ -11,9 +11,9 @@ from .corners import distinct
 Integers: TypeAlias = NDArray[np.int64]
 Parts: TypeAlias = tuple[tuple[int, ...], ...]
 
-# Cells that are polygons as they stand.
+# Cells that are polygons already.
 FLAT = ("triangle", "quad", "polygon")
-# Odd numbers with bits as of chance (Steele, Lea and Flood, "Fast splittable pseudorandom number generators",
+# Odd multipliers with random bits (Steele, Lea and Flood, "Fast splittable pseudorandom number generators",
 # 2014).
 _FACTORS = (0x9E3779B97F4A7C15, 0xBF58476D1CE4E5B9, 0x94D049BB133111EB, 0xD6E8FEB86659FD93)
 # Nodes along a perimeter of six and of eight, corners and middles of edges in turn, as polygons.
@@ -56,8 +56,8 @@ def _curved(faces: Parts, edges: Sequence[tuple[int, int]], corners: int) -> Par
     )
 
 
-# The perimeters of the faces of volume cells. Which way they turn is decided by the cell's middle, since
-# programs number prisms both ways.
+# Perimeters of the faces of volume cells. The middle of a cell decides their orientation, since programs
+# number prisms both ways.
 VOLUME: dict[str, Parts] = {
     "tetra": _TETRA,
     "pyramid": ((0, 3, 2, 1), (0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)),
@@ -140,7 +140,7 @@ def _keys(faces: Integers) -> Integers:
 
 def _alone(keys: Integers) -> NDArray[np.bool_]:
     """Return which rows occur once."""
-    # Sorting one number a row takes a quarter of the time of sorting rows.
+    # Sorting one hash per row takes a quarter of the time of sorting rows.
     factors = np.array(_FACTORS, np.uint64)
     mixed = (keys.astype(np.uint64) * factors).sum(axis=1, dtype=np.uint64)
     order = np.argsort(mixed)
@@ -148,7 +148,7 @@ def _alone(keys: Integers) -> NDArray[np.bool_]:
     before, after = order[same], order[same + 1]
     result = np.ones(len(keys), np.bool_)
     if (keys[before] != keys[after]).any():
-        # Rows that differ have the same number: this has not been seen yet.
+        # Different rows have the same hash: never seen so far.
         _, place = distinct(list(keys.T))
         return np.asarray(np.bincount(place)[place] == 1)
     result[before] = result[after] = False
@@ -159,13 +159,13 @@ def _outwards(perimeter: Integers, nodes: Integers, points: NDArray[Any]) -> Int
     """Return perimeters that turn anticlockwise seen from outside of their cells."""
     flat = perimeter[:, :: _step(perimeter)]
     places = points[flat].astype(np.float64)
-    # Half of it is the area, of triangles as of quads.
+    # Twice the vector area, of triangles as of quads.
     normal = np.cross(places[:, 2] - places[:, 0], places[:, -1] - places[:, 1])
     if flat.shape[1] == 3:
         normal = np.cross(places[:, 1] - places[:, 0], places[:, 2] - places[:, 0])
     out = places.mean(axis=1) - points[nodes].astype(np.float64).mean(axis=1)
     inwards = (normal * out).sum(axis=1) < 0
-    # From the same corner the other way.
+    # Reversed, from the same first corner.
     turned = np.concatenate([perimeter[:, :1], perimeter[:, :0:-1]], axis=1)
     return np.where(inwards[:, None], turned, perimeter)
 

@@ -9,16 +9,16 @@ Integers = NDArray[np.int64]
 def distinct(columns: list[Integers]) -> tuple[Integers, Integers]:
     """Return where each distinct row stands first, in the order of points, and which one each row is."""
     key = columns[0]
-    # Many programs write the same number thrice.
+    # Many programs write the same index three times.
     others = [column for column in columns[1:] if not np.array_equal(column, key)]
     for column in others:
         size = int(column.max()) + 2
         if int(key.max()) >= 2**62 // size:
-            # Numbered anew, so that products stay below 2^63.
+            # Renumbered, so that products stay below 2^63.
             _, key = np.unique(key, return_inverse=True)
         key = key.reshape(-1) * size + column + 1
     if not others:
-        # As below, without sorting.
+        # Same result as below, without sorting.
         first = np.full(int(key.max()) + 1, -1)
         first[key[::-1]] = np.arange(len(key))[::-1]
         used = first >= 0

@@ -253,7 +253,7 @@ def _scanned(cells: _Cells, element: Element) -> tuple[Integers, dict[str, Integ
     """Return where each row begins, and how long each list is in it, and leave the cells behind the last."""
     steps: list[tuple[int, Callable[[int], int], int, list[int]]] = []
     counts: dict[str, list[int]] = {}
-    # Cells between one length and the next.
+    # Number of cells between one list length and the next.
     fixed = 0
     for one in element.properties:
         if one.count_type is None:

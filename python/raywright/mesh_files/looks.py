@@ -52,7 +52,7 @@ def _pbr(given: Any) -> Pbr:
     """Return what a PBRMaterial of trimesh says."""
     factor, emission = given.baseColorFactor, given.emissiveFactor
     return Pbr(
-        # 3.9.2: factors are linear already, unlike every other colour here.
+        # glTF 2.0, 3.9.2: factors are linear already, unlike all other colours here.
         color=None if factor is None else np.asarray(factor, np.float64) / 255,
         color_picture=_picture(given.baseColorTexture),
         metallic=None if given.metallicFactor is None else float(given.metallicFactor),

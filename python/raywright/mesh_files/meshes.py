@@ -12,9 +12,9 @@ from ..shapes.mesh import Mesh
 from ..shapes.welding import Weld, welded
 from .trimesh_objects import of_scene
 
-# The formats that a message names.
+# Formats that error messages name.
 _COMMON = ("3mf", "dae", "glb", "gltf", "obj", "off", "ply", "stl")
-# The Python package, or the program, with which trimesh reads further kinds of files.
+# The Python package or program that trimesh needs for each further format.
 _NEEDED = {
     "3dxml": "lxml and networkx",
     "3mf": "lxml and networkx",
@@ -136,7 +136,7 @@ def _read(path: Path) -> tuple[Mesh, ...]:
     except MemoryError:
         raise
     except Exception as error:
-        # Parsers fail on bad bytes in every way there is; the caller needs one kind of error, and one line.
+        # Parsers raise any exception on bad bytes; the caller needs one type of error and one line.
         if isinstance(error, OSError) and error.filename == str(path):
             raise
         raise ValueError(f"{path} is not a mesh that can be read ({reason(error)})") from error
@@ -144,7 +144,7 @@ def _read(path: Path) -> tuple[Mesh, ...]:
 
 def _joined(mesh: Mesh) -> Mesh:
     """Join corners that are exactly equal; trimesh's own way rounds to 1e-8, too coarse for small scenes."""
-    # Adding 0 makes -0 equal to 0 in its bits as well.
+    # Adding 0 turns -0 into 0, so that equal vertices have equal bits.
     rows = np.ascontiguousarray(mesh.vertices + 0.0)
     keys = rows.view(np.dtype((np.void, rows.dtype.itemsize * 3))).reshape(-1)
     _, first, inverse = np.unique(keys, return_index=True, return_inverse=True)

@@ -19,7 +19,7 @@ from .tokens import lines_of, plain_text
 
 Floats = NDArray[np.float64]
 
-# Some programs omit the white space behind it, and some the keyword.
+# Some programs omit the white space after the keyword, and some the keyword itself.
 _KEYWORD = re.compile(rb"\s*((?:ST|C|N|4|n)*OFF|(?:st|c|n|4)*off)")
 _BINARY = re.compile(rb"[ \t]*BINARY[^\n]*\n")
 _FACE = Property("vertex_indices", "i4", "i4")
@@ -80,7 +80,7 @@ def _mesh(path: Path) -> Mesh:
     if outside.any():
         raise ValueError(f"a face has vertex {corners[outside][0]}, but there are {len(points)} vertices")
     colors = columns("red", "green", "blue")
-    # Taken as sRGB.
+    # Colors are taken as sRGB.
     look = colored(None if colors is None else shares_of(colors))
     normals, uv = columns("nx", "ny", "nz"), columns("u", "v")
     looks: dict[str, Any] = {"material": look.material, "colors": look.colors, "name": path.name}
@@ -127,7 +127,7 @@ def _counts(body: bytes) -> tuple[int, int, bytes]:
     rest = body[words.end() :]
     edges = re.match(rb"\s*(\S+)", rest)
     first = lines_of(body)[0].split()
-    # Two counts in a line of their own are all of them, unless a third stands alone below.
+    # Two counts alone in a line are complete, unless a third stands alone below.
     if len(first) == 2 and edges is not None:
         below = rest[: rest.find(b"\n", edges.end())] if b"\n" in rest[edges.end() :] else rest
         edges = edges if len(below.split()) == 1 else None

@@ -14,9 +14,9 @@ from .pbr import Pbr, Picture
 from .polygons import LeftOut
 from .textured import by_number, split_corners
 
-# Texture maps that become part of a material here.
+# Texture maps that are converted.
 _MAPS = ("albedo", "normal", "metallic", "roughness", "ao_rough_metal")
-# Properties that have no effect here, but where they differ from these.
+# Properties without effect here, and their neutral values; other values are reported.
 _NEUTRAL = {"clear_coat": 0.0, "anisotropy": 0.0, "reflectance": 0.5}
 
 
@@ -41,7 +41,7 @@ def of_legacy(mesh: Any) -> Iterator[Mesh]:
         ids = np.zeros(len(faces), np.int64)
     colors = None if look.colors is None else look.colors[sources]
     made: dict[int, Material | None] = {
-        # Their first row is that of v = 0.
+        # Open3D's first row is that of v = 0.
         i: None if picture is None else Diffuse(ImageTexture(picture[::-1]))
         for i, picture in enumerate(pictures)
     }
@@ -76,7 +76,7 @@ def of_tensors(mesh: Any) -> Iterator[Mesh]:
     points = of_vertices.pop("positions", np.empty((0, 3), np.float32))
     faces = of_faces.pop("indices", np.empty((0, 3), np.int64))
     normals, colors, uv = (of_vertices.pop(name, None) for name in ("normals", "colors", "texture_uvs"))
-    # Open3D works them out; they say no more than the faces.
+    # Open3D computes normals of faces from the faces, so they add nothing.
     of_faces.pop("normals", None)
     look = Look() if colors is None else color_look(colors)
     given = _material(mesh, look.colors is not None, left_out)
@@ -129,7 +129,7 @@ def _material(mesh: Any, is_colored: bool, left_out: LeftOut) -> Pbr | None:
     is_plain = color is None or bool((color[:3] == 1).all())
     says_color = "albedo" in maps or not is_plain
     if not says_color and not maps and (emission is None or not emission[:3].any()) and is_colored:
-        # The defaults of a material say less than the colors.
+        # A default material says less than the colors.
         return None
     if not numbers and not vectors and not maps:
         return None

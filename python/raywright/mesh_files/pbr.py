@@ -31,7 +31,7 @@ from ..textures.texture import Number, Texture, Value
 from .look import linear
 
 _WHITE = (1.0, 1.0, 1.0)
-# Of what reflects 4 % at normal incidence, as the model has it (3.9.6, and KHR_materials_ior).
+# Reflects 4 % at normal incidence, as in the model of glTF (3.9.6, and KHR_materials_ior).
 IOR = 1.5
 
 
@@ -257,7 +257,7 @@ class Pbr(NamedTuple):
         roughness = 1.0 if self.roughness is None else self.roughness
         if self.rough_picture is None:
             return metallic, roughness
-        # No picture makes a metal of what is 0 times as metallic.
+        # With a factor of 0, the picture has no effect.
         blue = self.rough_picture.texture(linear=True, channel="b") if metallic else None
         green = self.rough_picture.texture(linear=True, channel="g")
         return (0.0 if blue is None else _scaled(blue, metallic)), _scaled(green, roughness)

@@ -53,7 +53,7 @@ def mesh_of_polygons(
         which = int(np.searchsorted(np.cumsum(counts), at, "right"))
         told = f"face {which} has vertex {corners[at]}, but there are {len(points)} vertices"
         raise ValueError(told) from None
-    # As meshes keep them, so that they are neither converted nor copied once more.
+    # In the types that meshes store, so that `Mesh` neither converts nor copies them.
     faces, polygon = corners.astype(np.uint32)[places], polygon_of(counts)
     for array in (faces, polygon):
         array.setflags(write=False)

@@ -46,7 +46,7 @@ def _solids(data: bytes) -> Iterator[tuple[str, Floats, NDArray[np.int64]]]:
     """Yield the name, corners and faces of each solid."""
     count = int.from_bytes(data[80:_HEAD], "little")
     end = _HEAD + _FACET.itemsize * count
-    # Some programs begin headers of bytes as those of text.
+    # Some programs begin binary headers with the keyword of text files.
     if len(data) != end and (data.startswith((b"\xff\xfe", b"\xfe\xff")) or b"\0" not in data[:_HEAD]):
         text = plain_text(data)
         if b"solid" in text.lower():
@@ -81,7 +81,7 @@ def _sections(text: bytes) -> Iterator[tuple[str, bytes]]:
             yield name, lower[begin : found - 3 if is_end else found]
         line = lower.find(b"\n", found)
         line = len(lower) if line < 0 else line
-        # All may stand in one line.
+        # A whole file may stand in one line.
         facet = _BEGIN.search(lower, found, line)
         at = line if facet is None else facet.start()
         begin = -1 if is_end else at

@@ -10,10 +10,10 @@ from .. import _core
 
 _UTF16 = (b"\xff\xfe", b"\xfe\xff")
 _UTF8 = b"\xef\xbb\xbf"
-# White space and ends of lines that are not of ASCII.
+# White space and line ends outside ASCII.
 _ODD_SPACE = re.compile("[\xa0\u1680\u2000-\u200a\u202f\u205f\u3000]")
 _ODD_LINE = re.compile("[\x85\u2028\u2029]")
-# ASCII's white space and separators besides spaces and line feeds.
+# ASCII's white space and separators other than spaces and line feeds.
 _WHITE = bytes.maketrans(b"\t\v\f\x1c\x1d\x1e\x1f", b" \n\n\n\n\n ")
 
 

@@ -43,6 +43,6 @@ def triangulate(points: NDArray[np.floating[Any]], corners: Integers, counts: In
 def polygon_of(counts: Integers) -> Integers:
     """Return the number of the polygon of each triangle of `triangulate`, (T,)."""
     triangles = np.maximum(np.asarray(counts, np.int64) - 2, 0)
-    # One number for all takes a fraction of the time.
+    # Repeating all by one number takes a fraction of the time.
     is_even = len(triangles) > 0 and bool((triangles == triangles[0]).all())
     return np.repeat(np.arange(len(triangles)), int(triangles[0]) if is_even else triangles)

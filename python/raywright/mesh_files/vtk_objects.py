@@ -14,10 +14,10 @@ from .polygons import LeftOut, mesh_of_polygons
 
 Integers = NDArray[np.integer[Any]]
 
-# The name of the numbers that the surface filter adds, and of what VTK itself adds.
+# Arrays added by the surface filter, and by VTK itself.
 _CELLS = "raywright cells"
 _OWN = (_CELLS, "vtkGhostType")
-# Point data that are colors by their names, as readers of VTK call them, and `Mesh.to_pyvista`.
+# Point arrays that hold colors, by the names of VTK's readers and of `Mesh.to_pyvista`.
 _COLORS = ("RGB", "RGBA", "Colors", "colors")
 
 
@@ -39,7 +39,7 @@ def of_vtk(data: Any) -> Iterator[Mesh]:
         Once, for all that is left out.
     """
     left_out = LeftOut(type(data).__name__)
-    # Blocks with nothing but points are no surfaces.
+    # Blocks of points only have no surface.
     found = [mesh for name, one in _data_sets(data, None) if (mesh := _mesh(one, name, left_out)) is not None]
     if not found:
         raise ValueError(f"a {type(data).__name__} must have faces to become a mesh, got {left_out.told()}")
@@ -102,7 +102,7 @@ def _mesh(data: Any, name: str | None, left_out: LeftOut) -> Mesh | None:
 
 def _look(data: Any, of_vertices: dict[str, NDArray[Any]]) -> Look:
     """Return the look by the texture that pyvista has kept with a mesh, or by colors among point data."""
-    # Versions before 0.43 had them; to_array has rows from the top.
+    # pyvista before 0.43 had textures; to_array has rows from the top.
     textures = list(dict(getattr(data, "textures", None) or {}).values())
     if textures:
         return Look(Diffuse(ImageTexture(np.asarray(textures[0].to_array()))))
@@ -141,7 +141,7 @@ def _polygons(surface: Any, left_out: LeftOut) -> tuple[Integers, Integers, Any]
         return corners, counts, slice(first, first + len(counts))
     ids = np.arange(first, first + len(counts))
     own = np.repeat(np.arange(len(lengths)), np.maximum(lengths - 2, 0))
-    # Every second triangle of a strip turns the other way.
+    # Every second triangle of a strip has reversed winding.
     place = np.arange(len(own)) - (np.cumsum(lengths - 2) - (lengths - 2))[own]
     start = (np.cumsum(lengths) - lengths)[own] + place
     odd = place % 2
@@ -165,7 +165,7 @@ def _values(data: Any, count: int, left_out: LeftOut) -> dict[str, NDArray[Any]]
     for i in range(data.GetNumberOfArrays()):
         name = data.GetArrayName(i)
         if name not in _OWN:
-            # Text has no array of numbers.
+            # Arrays of text have no numbers.
             array = data.GetArray(i)
             found[name or f"array_{i}"] = None if array is None else _array(array)
     return left_out.values(found, count, "array")

@@ -13,7 +13,7 @@ from . import rows
 from .hits import Hits, SurfacePoints, chosen, restored, sealed
 from .surface import Surface
 
-# What the arrays of hits hold for a miss.
+# Values of a miss.
 _MISSES = {"t": np.inf, "shape_id": -1, "primitive": -1, "uv": 0.0, "instance": -1}
 
 

@@ -18,7 +18,7 @@ from .surface import Surface
 from .tabular import Tabular
 from .values import cells, interpolated
 
-# What is asked of the compiled scene when it is wanted. A pickle keeps it if it was.
+# Attributes that the compiled scene computes on first access. A pickle keeps those already computed.
 _ASKED = ("position", "normal", "_error", "surface", "names", "cell")
 
 
@@ -30,13 +30,13 @@ class Known:
 
     primitive: NDArray[np.int32]
     _compiled: _core.CompiledScene
-    # Origins, directions and times, where shapes cannot tell their points without.
+    # Origins, directions and times, if shapes need them to compute hit points.
     _rays: tuple[Any, ...] | None
 
     @cached_property
     def instance(self) -> NDArray[np.int32]:
         """Which instance the point is on: (...) int32; -1 for none and for what is not instanced."""
-        # One number seen from every index: scenes without instances spend no memory on them.
+        # One element seen from every index: scenes without instances spend no memory on it.
         return np.broadcast_to(np.int32(-1), self.primitive.shape)
 
 
@@ -59,16 +59,16 @@ class SurfacePoints(Known, Tabular, PlottedPoints):
     shape_id: NDArray[np.int32]
     primitive: NDArray[np.int32]
     uv: NDArray[np.float64]
-    # A field, too, though it is made only when it is asked for.
+    # A field, too, although computed on first access.
     instance: NDArray[np.int32]
 
-    # What two of them are equal by.
+    # Fields that decide equality.
     _parts: ClassVar[tuple[str, ...]] = ("shape_id", "primitive", "uv")
 
     @cached_property
     def names(self) -> NDArray[np.str_]:
         """What the shape is called that the point is on: (...) str; "" for none, and where it has no name."""
-        # The last is that of shape -1.
+        # The last name is that of shape -1.
         known = names_of(self._known("names").shapes)
         return sealed(np.asarray(np.array([*known, ""])[self.shape_id]))
 
@@ -185,7 +185,7 @@ class SurfacePoints(Known, Tabular, PlottedPoints):
 
     def _surface(self, ray: NDArray[np.int64] | None) -> Surface:
         """Ask all about the points; `ray` says which ray each is of, where they are not in turn."""
-        # Meshes know their points by the weights alone.
+        # Hit points of meshes follow from barycentric weights alone.
         t = np.ascontiguousarray(getattr(self, "t", np.zeros(self.primitive.shape))).reshape(-1)
         origins, directions, time = self._rays or (np.zeros((1, 3)), np.ones((1, 3)), 0.0)
         instance = vars(self).get("instance")
@@ -216,7 +216,7 @@ class SurfacePoints(Known, Tabular, PlottedPoints):
         return rows.flat(self)
 
     def _first_rows(self, count: int) -> tuple[int, dict[str, NDArray[Any]]]:
-        # Nothing is worked out for the others.
+        # Only these points are computed.
         shape = self.primitive.shape
         first = np.arange(min(count, self.primitive.size))
         of: Any = self
@@ -233,10 +233,10 @@ class SurfacePoints(Known, Tabular, PlottedPoints):
     __hash__ = None  # type: ignore[assignment]
 
     def __reduce__(self) -> tuple[Any, ...]:
-        # Nothing of the scene is pickled, and no array but those that there are.
+        # Pickles omit the scene, and attributes not computed so far.
         own = vars(self)
         kept = {name: own[name] for name in (*self._parts, "instance", *_ASKED) if name in own}
-        # Where hits know their points by their rays, and the scene is gone, those are of no use.
+        # Pickles omit the rays, too: only the scene could compute points from them.
         return restored, (type(self), kept, self._more())
 
     def __copy__(self) -> "SurfacePoints":
@@ -245,7 +245,7 @@ class SurfacePoints(Known, Tabular, PlottedPoints):
         return copy
 
     def __deepcopy__(self, memo: dict[int, Any]) -> "SurfacePoints":
-        # The compiled scene never changes, and serves the copy too; `out` may write to the arrays.
+        # The compiled scene never changes, so copies share it; `out` may write to the arrays.
         copy = restored(type(self), rows.copied(vars(self), memo), {})
         vars(copy).update(_compiled=self._compiled, _rays=self._rays)
         return copy
@@ -305,7 +305,7 @@ class Hits(SurfacePoints):
     ) -> None:
         """Tell of these hits, and forget what was worked out of others."""
         self.__dict__.clear()
-        # A frozen dataclass's own way of setting its fields takes longer than tracing a ray.
+        # Setting the fields of a frozen dataclass takes longer than tracing a ray.
         self.__dict__.update(
             t=t, shape_id=shape_id, primitive=primitive, uv=uv, _compiled=compiled, _rays=rays
         )
@@ -374,7 +374,7 @@ class ClosestPoints(SurfacePoints):
         parts = {"distance": distance, "shape_id": shape_id, "primitive": primitive, "uv": uv}
         if instance is not None:
             parts["instance"] = instance
-        # The position is known already, and stands where cached_property keeps its values.
+        # The position is known already, and goes where cached_property keeps its values.
         self.__dict__.update(parts, position=position, _compiled=compiled, _rays=None)
 
     @cached_property
@@ -453,7 +453,7 @@ def rewritten(out: Hits, shape: tuple[int, ...]) -> Iterator[tuple[Any, ...]]:
         raise ValueError(f"out has shape {out.shape}, expected {shape}")
     instance = vars(out).get("instance")
     if instance is not None and not instance.flags.owndata:
-        # One number that is seen from every index.
+        # One element seen from every index.
         instance = None
     arrays = (out.t, out.shape_id, out.primitive, out.uv)
     known = [array for array in (*arrays, instance) if array is not None]
@@ -474,7 +474,7 @@ def one_or_some(kind: type[Points], of: Any, index: Any) -> Points:
     if one is None:
         which = rows.places(of.shape, index)
         return chosen(kind, of, rows.picked(vars(of), which), which)
-    # Nothing is worked out for all places, so that iterating takes linear time.
+    # Only this point is computed, so that iterating takes linear time.
     points = kind.__new__(kind)
     rays = None if of._rays is None else rows.rays_of(of._rays, rows.run(of.shape, one))
     vars(points).update(rows.cut(vars(of), one), _compiled=of._compiled, _rays=rays)
@@ -505,6 +505,6 @@ def restored(kind: type[Points], arrays: dict[str, Any], more: dict[str, Any]) -
     for array in arrays.values():
         if isinstance(array, np.ndarray):
             rows.kept(array)
-    # Where cached_property keeps its values, too.
+    # Stored where cached_property keeps its values, too.
     vars(points).update(arrays, **more, _compiled=None, _rays=None)
     return points

@@ -40,7 +40,7 @@ def leaving(
         told = f"points {shape}, directions {ways.shape[:-1]}"
         raise ValueError(f"leading shapes do not broadcast: {told}") from None
     count = error.size
-    # Where the last of the shape is that of the points, the core takes them in turn, over and over.
+    # If the rays' last dimensions are those of the points, the core cycles through the points.
     in_turn = count == 1 or lead[len(lead) - len(shape) :] == shape
     which = None if in_turn else np.broadcast_to(np.arange(count).reshape(shape), lead).reshape(-1)
     parts = position.reshape(-1, 3), error.reshape(-1), normal.reshape(-1, 3)

@@ -12,7 +12,7 @@ from .rays import AskedRays, RayArguments, view
 
 ShapeMask: TypeAlias = str | Sequence[str] | ArrayLike
 Cull: TypeAlias = Literal["back"]
-# Whether each shape counts, and whether only what faces the ray does; None if all counts.
+# A flag per shape, and whether back faces are culled; None if everything counts.
 Counted: TypeAlias = tuple[list[bool] | None, bool] | None
 
 

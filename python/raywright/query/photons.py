@@ -11,7 +11,7 @@ from ..arrays import SeedLike, Triple, integer, seed_number, thread_limit
 from .hits import same, sealed
 
 Floats = NDArray[np.float64]
-# Bounces that are told apart: a bit each.
+# Bounces recorded, one bit each.
 _TOLD = 64
 
 

@@ -9,7 +9,7 @@ from ..arrays import choice
 from ..io.plots import plotted
 from ..io.value_plots import AXES, COLORS, Axis, bar, draw_picture, draw_points, frame, scale
 
-# What points have numbers of, and which of them are counted, so that -1 stands for a miss.
+# Integer attributes, where -1 stands for a miss.
 _COUNTED = ("shape_id", "primitive", "cell")
 
 

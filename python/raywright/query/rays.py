@@ -18,7 +18,7 @@ RayArguments: TypeAlias = tuple[
     int | None,
     float | NDArray[np.float64] | None,
 ]
-# As the core takes them: with the mask of those that are asked, or None for all.
+# Rays as the core takes them: with a mask of active rays, or None for all.
 AskedRays: TypeAlias = tuple[
     Floats,
     Floats,
@@ -58,7 +58,7 @@ def ray_arguments(
     when = None if time is None else _times(time)
     shape, lead = starts.shape[:-1], ways.shape[:-1]
     if type(near) is float and type(far) is float and not isinstance(when, np.ndarray):
-        # The usual rays need no broadcasting, and a few of them no more time than it takes to trace them.
+        # Ordinary rays need no broadcasting; for a few rays it would take as long as tracing.
         if not lead or shape == lead:
             return view(starts, shape, 1), view(ways, lead, 1), near, far, shape, threads, when
         if not shape:
@@ -113,7 +113,7 @@ def nearest_arguments(
 
 
 def _times(value: ArrayLike) -> float | NDArray[np.float64]:
-    # A copy, which hits keep: theirs must not change with the caller's.
+    # A copy for the hits, which must not change with the caller's array.
     array = np.array(real_array("time", value), np.float64)
     inside = (array >= 0) & (array <= 1)
     if not inside.all():
@@ -151,7 +151,7 @@ def view(array: NDArray[Any], lead: tuple[int, ...], columns: int = 0) -> NDArra
     if base.size == math.prod(shape[len(lead) :]):
         return base
     if base.size == math.prod(shape):
-        # Dimensions of length one are no matter.
+        # Only dimensions of length one differ.
         return base.reshape(shape)
     return np.broadcast_to(base, shape)
 

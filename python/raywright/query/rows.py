@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from .surface import Surface
 
-# What of points there are several numbers of.
+# Attributes with several components.
 _WIDE = ("uv", "position", "normal")
-# Columns that arrays with a second dimension are told in, and what of hits they are told of.
+# Suffixes of columns for arrays with a second dimension, and the attributes of hits in a table.
 _AXES = {2: ("u", "v"), 3: ("x", "y", "z")}
 _TOLD = ("t", "distance", "shape_id", "names", "instance", "primitive", "uv", "position", "normal")
 
@@ -89,7 +89,7 @@ def rays_of(rays: tuple[Any, ...] | None, which: NDArray[np.int64]) -> tuple[Any
     starts, ways, time = rays
     if isinstance(time, np.ndarray) and time.size > 1:
         time = _at(time, time.shape, which)
-    # Each has all of the leading shape, which may repeat: no copy of all of it is made.
+    # Each has the whole leading shape, possibly broadcast, so it is never copied as a whole.
     return (*(ends if ends.size == 3 else _at(ends, ends.shape[:-1], which) for ends in (starts, ways)), time)
 
 
@@ -146,7 +146,7 @@ def flat(points: Any) -> dict[str, NDArray[Any]]:
     if hasattr(type(points), "ray"):
         columns["ray"] = points.ray
     for name in _TOLD:
-        # Of what comes out of a pickle, more is not known.
+        # Unpickled points cannot compute further attributes.
         if not hasattr(type(points), name) and name not in vars(points):
             continue
         if points._compiled is None and name not in vars(points) and name != "instance":

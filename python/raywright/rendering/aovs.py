@@ -29,7 +29,7 @@ _SEEN = (
 )
 _COVER = ("alpha", "cryptomatte")
 AOVS = _SEEN + _COVER
-# Shapes of a pixel that are told apart: the six of Cryptomatte's files.
+# Shapes recorded per pixel: six, as in Cryptomatte's files.
 RANKS = 6
 
 

@@ -15,12 +15,12 @@ from typing import Any, NoReturn
 
 from .. import _core
 
-# How often a file is written, and how many times as long as writing it took the time between is at least.
+# Least seconds between writes, also as a multiple of the time that a write takes.
 _SECONDS = 60.0
 _SHARE = 20.0
 
 _MAGIC = b"raywright checkpoint 1\n"
-# More than any header takes, so that a file of another kind is not read for one.
+# Above the size of any header, so that files of other kinds are rejected.
 _MOST_HEADER = 1 << 16
 
 
@@ -89,7 +89,7 @@ class Checkpoints:
             header = self._header(file.read(length))
             self._compare(header["of"])
             size, packed = header["bytes"], header["packed"]
-            # Compression makes next to nothing longer.
+            # zlib makes incompressible data only slightly longer.
             if not 0 <= size <= most or not 0 <= packed <= size + (size >> 8) + 1024:
                 self.refuse("is damaged")
             data = file.read(packed + 1)
@@ -131,8 +131,8 @@ class Checkpoints:
 
     def _write(self, film: bytes) -> None:
         began = time.monotonic()
-        # Of one name, so that what a killed process leaves behind is used again. In the same folder: only
-        # there can it take the file's place at once.
+        # A fixed name, so that the next write reuses the leftover of a killed process. In the same folder,
+        # since only there the rename is atomic.
         beside = self.path.with_name(self.path.name + ".part")
         try:
             packed = zlib.compress(film, 1)
@@ -159,7 +159,7 @@ class Checkpoints:
     def _tell(self) -> None:
         """Warn of trouble as it comes: it may be hours until the picture is there to tell."""
         if self.trouble is not None:
-            # Where warnings are errors, this one must not cost the picture.
+            # If warnings are errors, this one must not cost the picture.
             with suppress(RuntimeWarning):
                 warnings.warn(self.trouble, RuntimeWarning, stacklevel=2)
 
@@ -190,7 +190,7 @@ def _is_digest(value: Any) -> bool:
 
 
 def _told(value: Any) -> str:
-    # What a file holds may be long.
+    # Values of a file may be long.
     told = value if isinstance(value, str) else repr(value)
     return told if len(told) <= 40 else f"{told[:37]}..."
 

@@ -12,20 +12,20 @@ Limits: TypeAlias = tuple[int | None, float | None, float | None]
 """Samples, error and seconds; None where there is no limit."""
 
 _MOST = 64
-# Where time may end a render, after few samples perhaps: the error is known well from two batches on.
+# Samples in a batch if time may end a render after few samples: the error is reliable from two batches on.
 _TIMED = 16
-# The same where four parts of the samples are kept apart, each of whole batches.
+# The same if four parts of the samples are kept apart, each of whole batches.
 _TIMED_APART = 4
-# Where an error may end it: about how many samples it takes to a relMSE of 1, by the scenes of
-# `benches/samplers.py`, and the fewest that are taken.
+# If an error may end a render: samples to a relMSE of 1, by the scenes of `benches/samplers.py`, and the
+# least number of samples.
 _EXPECTED = 0.25
 _FEWEST = 16
-# About how many samples a core or two take in a second.
+# Rough number of samples that one or two cores take per second.
 _RATE = 1e6
-# Where each sample has photons of its own, most of the noise is theirs, which no better places take away. So
-# there are more batches, and a pixel's error has fifteen degrees of freedom in place of three.
+# If each sample has photons of its own, they cause most of the noise, and stratification cannot reduce it.
+# With more batches, a pixel's error has fifteen degrees of freedom in place of three.
 _PARTED = 4
-# Up to so many points the best lattices lie badly.
+# Lattices of up to this many points are badly distributed.
 _FEW = 4
 
 

@@ -25,10 +25,10 @@ from .. import _core
 from .job import Job
 from .worker import Done, Missing, Raised, keep, work
 
-# Seconds that a piece of work should take: long against what sending it costs, short against a render.
+# Target seconds of a piece of work: long against the cost of sending it, short against a render.
 _PIECE = 0.4
 _LEAST_PIECE = 0.05
-# How often the same piece may be lost before the executor counts as broken.
+# Number of losses of one piece after which the executor counts as broken.
 _LOSSES = 3
 # Seconds between looks at the clock, and the most requests in a piece.
 _LOOK = 0.1
@@ -54,9 +54,9 @@ class _Pass:
 
     before: int
     aim: int
-    # Whether its samples can be taken before those that come first are there.
+    # True if its samples do not depend on earlier ones.
     alone: bool
-    # The next tile to hand out, and how many are not back yet.
+    # The next tile to hand out, and the number of tiles not back yet.
     next: int = 0
     left: int = 0
     answers: list[bytes] = field(default_factory=list)
@@ -70,7 +70,7 @@ class _Piece:
     requests: list[bytes]
     losses: int = 0
     attempt: int = 0
-    # The worker that asked for the job, if this is to bring it.
+    # The worker that requested the job, if this piece brings it.
     feeds: str | None = None
 
 
@@ -107,7 +107,7 @@ class Distribution:
         self._flying: dict[Future[Any], _Piece] = {}
         self._slots = _slots(executor)
         self._started, self._earlier = time.perf_counter(), rendering.seconds
-        # Seconds that a tile takes for one sample, and how many samples of tiles came back since when.
+        # Seconds per tile and sample, and samples of tiles that came back since a time.
         self._cost = 0.0
         self._landed, self._since = 0, 0.0
 
@@ -216,13 +216,13 @@ class Distribution:
         block = self._rendering.block
         if self._passes and not (self._rendering.appends and after % block == 0):
             return None
-        # What was handed out comes first.
+        # Work already handed out comes first.
         landed = done + self._landed_ahead() / max(tiles, 1)
         rate = self._rate()
         aim = self._rendering.next_aim(*self._limits, after, self._elapsed() + (after - landed) * rate, rate)
         if aim <= after or not tiles:
             return None
-        # A render that was left within a pass has tiles that are ahead.
+        # A render interrupted within a pass has tiles ahead of others.
         left_within = not self._passes and self._rendering.aim > done
         alone = self._rendering.appends and after % block == 0 and not left_within
         one = _Pass(after, aim, alone, left=tiles)
@@ -296,7 +296,7 @@ class Distribution:
             if report is not None:
                 report(*row)
             if self._is_met():
-                # What was begun beyond is of no use.
+                # Passes begun beyond the limit are discarded.
                 self._passes.clear()
                 self._waiting.clear()
                 for future in self._flying:
@@ -326,10 +326,10 @@ class _Courier:
     def __init__(self, job: Job, executor: Executor) -> None:
         self._client = _dask_client(executor)
         self._dumps: Callable[[Any], bytes] = pickle.dumps
-        # What else `submit` takes: dask need not digest the work to know if it has been done before.
+        # Further arguments of `submit`: dask need not hash the work to detect repetitions.
         self.options: dict[str, Any] = {} if self._client is None else {"pure": False}
         if self._client is not None:
-            # It brings classes that are written in a notebook, too.
+            # cloudpickle also sends classes defined in a notebook.
             self._dumps = importlib.import_module("cloudpickle").dumps
         self._bytes = self._pickled(job)
         self.key = hashlib.sha256(self._bytes).hexdigest()
@@ -402,7 +402,7 @@ def _slots(executor: Executor) -> int:
     client = _dask_client(executor)
     if client is not None:
         return max(sum(int(count) for count in client.nthreads().values()), 1)
-    # Of concurrent.futures, and of mpi4py.futures.
+    # Attributes of concurrent.futures and mpi4py.futures.
     for name in ("_max_workers", "num_workers"):
         count = getattr(executor, name, None)
         if isinstance(count, int) and count > 0:

@@ -16,9 +16,10 @@ from .image import Image
 from .render import render
 
 Frame = tuple[Scene, AnyCamera]
-# What films may be called.
+# Suffixes of films.
 _FILMS = (".mp4", ".mov", ".mkv", ".webm")
-# .webm takes no other codec that there is everywhere; H.264, the default of the others, has no odd sizes.
+# libvpx-vp9 is the only codec of .webm available everywhere; H.264, the default of the others, has no odd
+# sizes.
 _FREE = {".webm": {"codec": "libvpx-vp9"}}
 _NO_IMAGEIO = "a film needs imageio: pip install 'raywright[video]'"
 
@@ -103,7 +104,7 @@ def render_frames(
             if path is not None:
                 written[path] = None
     for path in written if is_film else ():
-        # imageio says nothing of an encoder that fails.
+        # imageio does not report a failing encoder.
         if not path.is_file() or not path.stat().st_size:
             raise OSError(errno.EIO, "its encoder has written no film", str(path))
     return list(written)
@@ -123,7 +124,7 @@ def _each(frames: Callable[[int], Frame] | Iterable[Frame], count: int | None) -
 
 
 def _first(frames: Iterator[Frame], count: int) -> Iterator[Frame]:
-    # Not more are asked for than are wanted: they may be costly.
+    # Never more frames than wanted are computed: they may be costly.
     for _ in range(count):
         try:
             yield next(frames)
@@ -184,7 +185,7 @@ def _film(
     except ImportError as error:
         raise ImportError(_NO_IMAGEIO) from error
 
-    # Sizes are kept as they are: by default it would stretch pictures to multiples of 16.
+    # Keeps the size: imageio's default stretches pictures to multiples of 16.
     how = _FREE.get(path.suffix.lower(), {})
     film = stack.enter_context(closing(imageio.get_writer(path, fps=fps, macro_block_size=1, **how)))
 

@@ -12,7 +12,7 @@ from ..cameras import AnyCamera
 from ..scene.scene import Scene
 from .aovs import seen
 
-# Samples a pixel of each of the two pictures of what is seen first.
+# Samples per pixel of the two sets of first-hit features.
 _SAMPLES = 8
 
 
@@ -93,7 +93,7 @@ def halves_of(
     if kept is None:
         return None
     names = ("albedo", "shading_normal", "depth")
-    # Of other numbers than each other, and than those of the picture's own `aov`.
+    # Seeds differ between the two, and from that of the picture's own `aov`.
     views = [seen(scene, camera, names, _SAMPLES, (seed + more) % 2**64, threads) for more in (1, 2)]
     albedo, normal, depth = (np.stack([view[name] for view in views]) for name in names)
     return Halves(*kept, albedo, normal, depth, rendering.samples, rendering.patch)

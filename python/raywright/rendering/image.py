@@ -59,7 +59,7 @@ class ErrorEstimate:
         return f"{self.estimate:.3g} (95 % interval {self.low:.3g} to {self.high:.3g}{doubt})"
 
     def _key(self) -> tuple[float | bool | None, ...]:
-        # NaN does not equal itself, but one unknown error is like another.
+        # NaN does not equal itself, but unknown errors compare equal.
         numbers = (self.estimate, self.low, self.high)
         return (*(None if math.isnan(x) else x for x in numbers), self.trusted)
 
@@ -202,7 +202,7 @@ class Image:
         level = number("level", level)
         if not 0 < level < 1:
             raise ValueError(f"level must be between 0 and 1, got {level:g}")
-        # As many different ones as there are whole numbers, not pixels.
+        # Few distinct values: whole numbers rather than one per pixel.
         degrees = np.full((1, 1), 1e9) if self.degrees is None else np.floor(self.degrees.astype(float))
         unique, where = np.unique(np.nan_to_num(degrees.clip(1, 1e9), nan=1), return_inverse=True)
         times = _core.student(level, unique)[where].reshape(degrees.shape)[..., None]
@@ -338,7 +338,7 @@ class Image:
         if suffix == ".npy":
             np.save(path, self.rgb)
         elif suffix == ".exr":
-            # Whoever saves none does not wait for the import.
+            # Imported here, because only this format needs it (import time).
             from ..io.exr.layers import write_layers
 
             write_layers(path, self.rgb, self.standard_error, self.alpha, self.aov)
@@ -370,10 +370,10 @@ class Image:
         return shown.png(self.rgb, self.alpha)
 
     def _ipython_display_(self) -> None:
-        # Under the cell that rendered it, a notebook has the picture already: the numbers are enough there.
+        # The notebook already shows the picture under the cell that rendered it: numbers are enough there.
         is_shown = vars(self).get("_is_shown")
         if is_shown is None or not is_shown():
-            # By which IPython knows to go on as if there were no such method.
+            # Makes IPython continue as if there were no such method.
             raise NotImplementedError
         print(repr(self))
 

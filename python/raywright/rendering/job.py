@@ -48,7 +48,7 @@ class Job:
         """Return the scene, compiled the first time that it is asked for."""
         if self.scene._core is not None:
             return self.scene._core
-        # What there is to warn of is for whoever asked for the picture, who may be far away.
+        # Warnings go to the caller, possibly on another machine.
         with self._compiling, warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
             compiled = self.scene._compiled()

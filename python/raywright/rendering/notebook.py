@@ -15,7 +15,7 @@ def display() -> Callable[[Image], None] | None:
     """
     ipython = sys.modules.get("IPython")
     shell = ipython.get_ipython() if ipython is not None else None
-    # A terminal has a shell as well, but no kernel, and no place for pictures.
+    # A terminal has a shell as well, but neither a kernel nor room for pictures.
     if getattr(shell, "kernel", None) is None:
         return None
     from IPython.display import DisplayHandle
@@ -31,7 +31,7 @@ def display() -> Callable[[Image], None] | None:
         else:
             handle.display(image)
         shown = True
-        # No field of the picture: it is of this place, and goes with no copy.
+        # Not a field of the picture: it only holds here, and copies must not have it.
         vars(image)["_is_shown"] = lambda: _cell(shell) == cell
 
     return show

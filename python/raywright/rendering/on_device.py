@@ -23,11 +23,11 @@ from .ways import StoppedError
 if TYPE_CHECKING:
     from ..gpu.wavefront import Wavefront
 
-# The most faces that copies are laid out as.
+# Most faces to lay out copies as.
 _LAID_OUT = 4_000_000
-# Samples of a pass once there are as many, where neither an error nor time may end the render.
+# Samples per pass from this number on, if neither an error nor a time limits the render.
 _PASS = 64
-# What paths do there.
+# Options of paths on the device.
 _PLAIN: dict[str, Any] = {"reuse": 1, "caustics": False}
 
 

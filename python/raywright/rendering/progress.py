@@ -36,5 +36,5 @@ def bar(
             shown.update(max(0.0, min(1.0, max(shares)) - shown.n))
 
         yield report
-        # Whatever limit ended the render, it is done.
+        # The render is done, whichever limit ended it.
         shown.update(1.0 - shown.n)

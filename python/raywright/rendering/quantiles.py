@@ -26,7 +26,7 @@ def quantiles(filter: Filter) -> NDArray[np.float64] | None:
         return None
     radius = filter.radius
     if isinstance(filter, GaussianFilter):
-        # Beyond nine standard deviations nothing is left.
+        # The tail beyond nine standard deviations is negligible.
         radius = min(radius, 9 * filter.sigma)
     x = np.linspace(-1, 1, 2 * _STEPS + 1)
     if isinstance(filter, BoxFilter):

@@ -43,7 +43,7 @@ if TYPE_CHECKING:
 _PATH = Path()
 _FILTER: Filter = BoxFilter()
 _DEFAULT_SAMPLES = 64
-# Samples a pixel of what is seen first.
+# Samples per pixel for first hits.
 _AOV_SAMPLES = 16
 BACKGROUNDS = ("shown", "transparent")
 
@@ -210,7 +210,7 @@ def render(
     if stop is not None and not callable(getattr(stop, "is_set", None)):
         raise TypeError(f"stop must be a threading.Event or the like, got {type(stop).__name__}")
     if executor is not None:
-        # Whoever renders here does not wait for the import.
+        # Imported here, because only distributed renders need it (import time).
         from concurrent.futures import Executor
 
         if not isinstance(executor, Executor):
@@ -236,12 +236,12 @@ def render(
     if checkpoint is not None:
         if not isinstance(checkpoint, str | os.PathLike):
             raise TypeError(f"checkpoint must be a path, got {type(checkpoint).__name__}")
-        # Whoever keeps nothing does not wait for the import.
+        # Imported here, because only checkpoints need it (import time).
         from .checkpoints import Checkpoints, held
 
         begun = held(checkpoint)
     if executor is None:
-        # Here, so that what there is to warn of is told to the caller.
+        # Compiled here, so that warnings point to the caller.
         scene._compiled(progress is True)
     there, began = None, time.monotonic()
     if device is not None:
@@ -283,10 +283,10 @@ def render(
     if checkpoint is not None:
         kept = Checkpoints(checkpoint, job.identity())
     rendering = _begun(kept, job, threads)
-    # A pilot is part of what a picture takes.
+    # The time of the pilot counts as part of the render.
     rendering.spend(spent + prepared)
     sight = _core.Sight(rendering)
-    # One that is written in Python works on the thread that shows pictures.
+    # Integrators written in Python run on the thread that shows pictures.
     alone = isinstance(integrator, Integrator)
     snapshots = None if show is None else Snapshots(show, 1 if alone else threads or os.cpu_count() or 1)
 
@@ -306,7 +306,7 @@ def render(
         if sight.is_open:
             snapshots.take(lambda: so_far(sight), lambda: sight.is_done)
             return False
-        # Between passes it has to be left to be looked at.
+        # Between passes a picture needs the render to pause.
         return True
 
     def wait() -> float | None:
@@ -319,7 +319,7 @@ def render(
             snapshots.take(lambda: so_far(AtRest(rendering)), lambda: True)
 
     def keep() -> None:
-        # Nothing is kept of a render that could not begin.
+        # A render that could not begin leaves no checkpoint.
         if kept is not None and rendering.aim:
             kept.write(rendering)
 
@@ -475,7 +475,7 @@ def _elsewhere(
     look: Callable[[], None],
 ) -> list[str]:
     """Render by an executor; if it breaks, return what there is to say of that."""
-    # Whoever renders here does not wait for the import.
+    # Imported here, because only distributed renders need it (import time).
     from .executor import BrokenError, Distribution
 
     def look_and_rest() -> None:

@@ -7,10 +7,11 @@ from collections.abc import Callable
 from .image import Image
 from .so_far import ImageSoFar
 
-# The least time between two, and of how many times the time that showing one takes they take a share at most.
+# Least seconds between two pictures, and ten times their cost at least, so that they take a tenth of the
+# work.
 _SECONDS = 0.1
 _TIMES = 10.0
-# How many times as long as showing one took there is none, however many threads there are.
+# Least pause after a picture, in multiples of its time, however many threads there are.
 _REST = 1.0
 
 
@@ -45,13 +46,13 @@ class Snapshots:
         self._show(shown)
         whole = shown.is_whole
         del shown
-        # Whoever keeps it can see later what there was to be seen.
+        # A picture still referenced elsewhere computes all its pixels now.
         still = kept()
         if still is not None:
             still.settle()
             whole = True
         ended = time.monotonic()
-        # What tells errors works on all cores.
+        # Error estimates use all cores.
         alone = 1 if whole or waits() else self._threads
         rest = max(_TIMES / alone - 1, _REST) * (ended - began)
         self._due = max(began + _SECONDS, ended + rest)

@@ -53,7 +53,7 @@ class ImageSoFar(Image):
     _made: Callable[[_core.Rendering], Image]
     _size: tuple[int, int]
     _counted: bool
-    # Warnings, as far as no pixel is asked.
+    # Warnings that need no pixel.
     _doubts: tuple[str, ...]
 
     @classmethod

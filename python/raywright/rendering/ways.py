@@ -23,15 +23,15 @@ _COSTS: dict[str, dict[Any, float]] = {
     "reuse": {1: 0.0, 2: 0.3, _REUSE: 0.5, _LARGE: 1.3},
     "caustics": {False: 0.0, True: 1.2},
 }
-# Among media paths go on for longer, beside which sharing costs less.
+# Paths in media are longer, so that sharing costs relatively less.
 _MEDIA = "smoke and haze"
 _COSTS_AMONG: dict[str, dict[Any, float]] = {
     "reuse": {1: 0.0, 2: 0.1, _REUSE: 0.2, _LARGE: 0.5},
     "caustics": {False: 0.0, True: 0.0},
 }
-# What is more than plain has to be better by so much: a pilot may be wrong.
+# An option must improve by this factor, since a pilot may be wrong.
 _BETTER = 0.9
-# The share of a render's samples that a pilot of each way may take.
+# One in this many samples of a render may go to a pilot of each option.
 _SHARE = 64
 _PLAIN: dict[str, Any] = {"reuse": 1, "caustics": False}
 _MORE: dict[str, Any] = {"reuse": _REUSE, "caustics": True}
@@ -105,7 +105,7 @@ def followed(
                 errors = _core.pilot(compiled, camera, paths, threads, clamp, filter, look)
                 return [error * cost(way) for error, way in zip(errors, ways, strict=True)]
 
-            # Nobody is sent where only one way is left.
+            # A single option left needs no pilot.
             ways, worth = _tried(fixed, open_, sent, cost) if open_ else ([fixed], [0.0])
         except StoppedError:
             why |= dict.fromkeys(open_, "it was stopped before a pilot was back")
@@ -131,7 +131,7 @@ def _tried(
         larger = least | {"reuse": _LARGE}
         small, large = sent([least, larger])
         if min(worth) > _NOISY * cost(least):
-            # What few find is shared by few, however large patches are: they take no more time.
+            # If few paths find the light, few are shared, so that larger patches take no more time.
             large *= cost(least) / cost(larger)
         if large < _BETTER * small:
             ways.append(larger)

@@ -20,7 +20,7 @@ from typing import NamedTuple
 from ..locks import Lock
 from .job import Job
 
-# Scenes that a process keeps compiled.
+# Number of compiled scenes that a process keeps.
 _KEPT = 4
 _jobs: OrderedDict[str, Job] = OrderedDict()
 _lock = Lock()
@@ -66,7 +66,7 @@ def work(
         job = _job(key, payload, spool)
         if job is None:
             return Missing(me)
-        # Not in the time that the work takes, by which later pieces are cut.
+        # Compiled before the clock starts: later pieces are sized by this time.
         job.compiled()
         began = time.perf_counter()
         answers = [job.expose(request, threads) for request in requests]
@@ -81,7 +81,7 @@ def _job(key: str, payload: bytes | None, spool: str | None) -> Job | None:
             _jobs.move_to_end(key)
             return _jobs[key]
         if payload is None and spool is not None:
-            # Not there on another machine.
+            # The file does not exist on another machine.
             with suppress(OSError):
                 payload = Path(spool).read_bytes()
         if payload is None or hashlib.sha256(payload).hexdigest() != key:

@@ -14,14 +14,13 @@ from ..scene.scene import Scene
 from ..shapes.mesh import face_count
 from .ray_sets import Rays
 
-# Tests of a primitive that brute force may take for the check, if nobody says how many rays to check: a
-# second or two of one core.
+# Ray-primitive tests of brute force in the check, if no number of rays is given: a second or two of one core.
 _CHECK_TESTS = 100_000_000
 # Rays that are checked in any case, of all sets together.
 _LEAST_CHECKED = 300
-# What slower accelerators take for one set of rays is cut to about this time by leaving rays out.
+# Slower accelerators trace fewer rays, so that a set takes about this time.
 _LONGEST_SECONDS = 1.0
-# One accelerator is built as often as others take their turns, but for no longer than this.
+# One accelerator is built as often as others take turns, but for no longer than this.
 _BUILD_SECONDS = 1.0
 
 Answer = tuple[NDArray[Any], ...]
@@ -100,7 +99,7 @@ def measured(
 def _checked(scene: Scene, sets: dict[str, Rays], check: int | None) -> dict[str, Rays]:
     """Return those of the rays that are held against brute force, a like number of each set."""
     if check is None:
-        # What is no mesh counts as one.
+        # Any other shape counts as one.
         count = sum(face_count(shape) or 1 for shape in scene.shapes)
         check = max(_CHECK_TESTS // max(count, 1), _LEAST_CHECKED)
     return {name: rays.thinned(-(-check // len(sets))) for name, rays in sets.items()}
@@ -144,7 +143,7 @@ class _Contest:
     ) -> None:
         self._given, self._sets, self._threads, self._checked = scene, sets, threads, checked
         brute = self._over(BruteForce())
-        # The oracle may take all cores: it is not timed.
+        # The oracle is not timed and may take all cores.
         self._truth = {name: _answer(brute, rays, None) for name, rays in checked.items()}
 
     def _over(self, accelerator: Accelerator) -> Scene:

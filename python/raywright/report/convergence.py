@@ -23,7 +23,7 @@ LEVELS = 6
 _TAKEN = ("scene", "camera", "samples", "error", "seconds", "seed", "progress")
 _REFERENCE_SEED = 2**63
 
-# Seconds, samples, the error told, the true one, and whether the former is trusted.
+# Seconds, samples, the estimated error, the true one, and whether the estimate is trusted.
 _Run = tuple[float, float, float, float, bool]
 
 

@@ -119,7 +119,7 @@ def _scaled(values: NDArray[np.floating[Any]]) -> tuple[NDArray[np.object_], NDA
     """Each value as an integer times a power of two."""
     mantissas, exponents = np.frexp(values.astype(np.float64))
     whole = np.ldexp(mantissas, 53).astype(np.int64)
-    # As short as can be: what is short is fast.
+    # Without trailing zeros: short integers are fast.
     zeros = np.where(whole == 0, 0, np.frexp((whole & -whole).astype(np.float64))[1] - 1)
     return (whole >> zeros).astype(object), exponents.astype(np.int64) - 53 + zeros
 

@@ -19,7 +19,7 @@ from .time_share import TimeShare, time_share
 What: TypeAlias = Literal["nodes", "primitives"]
 
 _LEVELS = 256
-# Saved pictures are at least so high, so that the numbers beside the colour bar can be read.
+# Least height of saved pictures, so that the numbers of the colour bar are readable.
 _LEAST_HEIGHT = 240
 _GAP, _BAR, _TEXT = 12, 16, 84
 _NAMES = {"nodes": "nodes visited", "primitives": "primitives tested"}
@@ -160,7 +160,7 @@ class Heatmap:
             draw.line([(left, y), (left + _BAR - 1, y)], fill=tuple(colour.tolist()))
         for count in ticks(self.most):
             y = round(bottom - (bottom - top) * count / self.most)
-            # Pillow's own font has the letters of ASCII for sure, and no sign for "at least".
+            # Pillow's own font is only sure to have ASCII, without a sign for "at least".
             more = "+" if count == self.most and self.counts.max() > self.most else ""
             draw.line([(left + _BAR, y), (left + _BAR + 3, y)], fill="black")
             draw.text((left + _BAR + 6, y - 6), f"{count:,}{more}", fill="black")
@@ -232,14 +232,14 @@ def ticks(most: int) -> list[int]:
     step = max(most // 5, 1)
     size: int = 10 ** (len(str(step)) - 1)
     step = next(size * digit for digit in (1, 2, 5, 10) if size * digit >= step)
-    # One too near to the last would be written over it.
+    # A tick too near to the last would overlap it.
     return [*range(0, most - step // 2, step), most]
 
 
 def _cubehelix() -> NDArray[np.uint8]:
     """Colours from black to white of evenly rising lightness, sRGB: (256, 3)."""
     light = np.linspace(0, 1, _LEVELS)
-    # Green's defaults: it starts at purple and takes one and a half turns.
+    # Green's defaults: the start is purple, with one and a half turns.
     angle = 2 * np.pi * (0.5 / 3 + 1 - 1.5 * light)
     amplitude = light * (1 - light) / 2
     turns = np.array([[-0.14861, 1.78277], [-0.29227, -0.90649], [1.97294, 0.0]])

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-# Drawn at a time, and how many times as many as are wanted at most.
+# Pairs drawn at a time, and the most drawn, as a multiple of those wanted.
 _BATCH = 4096
 _PATIENCE = 8
 
@@ -53,7 +53,7 @@ def slivers(rng: Generator, count: int) -> Pairs:
     corners, normal, along = _triangles(rng, count)
     across = np.cross(normal, along)
     width = 10 ** -rng.uniform(3, 8, (count, 1))
-    # The short edge is at the origin of all coordinates, where float32 can tell its ends apart.
+    # The short edge is at the origin, where float32 can resolve its ends.
     near = width * (rng.uniform(-1, 1, (count, 1)) * along - across / 2)
     corners = np.stack([near, near + width * across, rng.uniform(0.5, 2, (count, 1)) * along], axis=1)
     target = _weighted(corners, _weights(rng, count, 0.0))
@@ -85,7 +85,7 @@ def borders(rng: Generator, count: int) -> Pairs:
     exact = rng.integers(-8, 9, (third, 3, 3)).astype(np.float64)
     rounded, normal, along = _triangles(rng, count - third)
     rounded = rounded.astype(np.float32).astype(np.float64)
-    # Sixteenths of small integers, which float32 holds with all their products.
+    # Sixteenths of small integers: float32 represents them and all their products.
     first, second = exact[:, 0], exact[:, 1]
     target = first + (second - first) * rng.integers(0, 17, (third, 1)) / 16
     on_lattice = _aimed(rng.integers(-32, 33, (third, 3)).astype(np.float64), target, exact, unit=False)
@@ -126,7 +126,7 @@ def family(name: str, count: int, seed: int) -> Pairs:
     drawn: list[Pairs] = []
     decided: list[NDArray[np.bool_]] = []
     hits = misses = 0
-    # A hit is the one more of an odd number.
+    # For an odd count, hits are one more.
     half = (count + 1) // 2
     while hits + misses < count or (min(hits, misses) < half and hits + misses < _PATIENCE * count):
         drawn.append(FAMILIES[name](rng, _BATCH))

@@ -14,12 +14,13 @@ from ..query.rays import ray_arguments
 from ..scene.scene import Scene
 from ..shapes.mesh import Mesh
 
-# From where a scene is looked at when nobody says: three quarters, from above, and so far away (in radii)
-# that all of the sphere around it is in view: more than 1 over the sine of half the angle.
+# Default view: from three quarters, above, and so far away (in radii) that the whole bounding sphere is in
+# view, i.e. more than 1 over the sine of half the angle.
 _AWAY = np.array([0.45, 0.5, 0.74])
 _DISTANCE = 2.4
 _FOV = 50.0
-# Rays leave a surface this part of the greatest coordinate away from it: a million times the rounding error.
+# Offset of ray origins from the surface, relative to the greatest coordinate: a million times the rounding
+# error.
 _LIFT = 1e-9
 # Shadow rays end just before the lamp, which may be a surface itself.
 _BEFORE_LAMP = 1 - 1e-4
@@ -115,7 +116,7 @@ def typical_rays(scene: Scene, camera: AnyCamera | None = None, seed: SeedLike =
     normal *= np.where(np.sum(normal * towards[hits.hit], axis=1, keepdims=True) > 0, -1.0, 1.0)
     points = hits.position[hits.hit]
     points = points + _LIFT * np.abs(points).max() * normal
-    # A point of the unit sphere that touches the surface, seen from where it touches (Lambert's law).
+    # A point of the unit sphere that touches the surface, seen from the point of contact (Lambert's law).
     bounced = normal + _units(rng.normal(size=normal.shape))
     lamps = _lamps(scene, camera, float(np.median(hits.t[hits.hit])), len(points), rng)
     return {

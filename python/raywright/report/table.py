@@ -209,7 +209,7 @@ class Table(Generic[Row]):
             )
         ax.set(xscale="log", yscale="log", xlabel=across.heading, ylabel=up.heading, title=self.title)
         ax.grid(True, which="major", alpha=0.3)
-        # Keys of their own: one for each colour, one for each marker, or one for both.
+        # Separate legend entries: one for each colour, one for each marker, or one for both.
         both = chart.marker == chart.colour
         for name, shade in shades.items():
             key = {"marker": shapes[name], "linestyle": style} if both else {"linewidth": 5}
@@ -243,7 +243,7 @@ class Table(Generic[Row]):
         rule = "  ".join("-" * width for width in widths)
         body: list[str] = []
         for i, line in enumerate(lines[1:]):
-            # A word that many rows in turn begin with begins a group, which an empty line sets apart.
+            # An empty line separates groups: consecutive rows with the same first word.
             if i and self._grouped() and self.rows[i][0] != self.rows[i - 1][0]:
                 body.append("")
             body.append(line)

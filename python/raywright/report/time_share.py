@@ -12,7 +12,7 @@ from ..arrays import integer
 from ..scene.scene import Scene
 from .ray_sets import Rays, ray_sets
 
-# Batches to fit, at least, and rays in one, at least: the time of fewer is mostly that of the call.
+# Least number of batches to fit, and of rays in one: fewer rays mostly measure the call.
 _BATCHES = 64
 _LEAST_SIDE = 8
 _DRAWS = 400
@@ -139,7 +139,7 @@ def fitted(counts: Array, seconds: Array, seed: int = 0) -> TimeShare:
 def _closest(rays: Any) -> Rays:
     if hasattr(rays, "rays"):
         return Rays(*rays.rays())
-    # No scene is asked for a pair of arrays.
+    # A pair of arrays needs no scene.
     (one,) = ray_sets(None, rays, 0).values()  # type: ignore[arg-type]
     return one
 
@@ -149,7 +149,7 @@ def _pieces(rays: Rays) -> Pieces:
     lead = rays.origins.shape[:-1]
     if len(lead) == 2:
         side = max(int((rays.count / _BATCHES) ** 0.5), 1)
-        # As the core's own tiles: a multiple of their side leaves none of them cut.
+        # A multiple of the side of the core's tiles, so that none is cut.
         side = max(side // _LEAST_SIDE * _LEAST_SIDE, min(_LEAST_SIDE, side))
         squares = [
             (slice(i, i + side), slice(j, j + side))
@@ -169,7 +169,7 @@ def _costs(counts: Array, seconds: Array) -> Array:
 
     Of all fits with some of the costs zero, the best that has no negative one.
     """
-    # Columns of like size, so that squares lose as few digits as can be.
+    # Columns are scaled to equal norms, so that squares lose few digits.
     size = np.maximum(np.linalg.norm(counts, axis=1, keepdims=True), 1e-300)
     columns = counts / size
     gram = np.einsum("bni,bnj->bij", columns, columns)

@@ -11,7 +11,7 @@ from .heatmap import COLOURS
 
 Plane: TypeAlias = Literal["xy", "xz", "yz"]
 
-# Corners that differ in one bit of their number share an edge.
+# Corners share an edge if their numbers differ in one bit.
 _EDGES = np.array([(i, i | 1 << bit) for i in range(8) for bit in range(3) if not i >> bit & 1])
 
 
@@ -59,7 +59,7 @@ def tree(
     drawn &= boxes.leaf | (not leaves)
     axes = ["xyz".index(axis) for axis in plane]
     lines = boxes.corners[drawn][:, _EDGES][..., axes].reshape(-1, 2, 2)
-    # The darkest stay dark enough to be seen on white at any level.
+    # The lightest shade still is visible on white at any level.
     shades = np.linspace(0, 180, last + 1).astype(int)[boxes.depth[drawn]]
 
     def draw(ax: Any) -> None:

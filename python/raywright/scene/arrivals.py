@@ -6,7 +6,7 @@ from .. import _core
 from ..locks import Lock
 from .digest import digest
 
-# More would hold the memory of scenes that nobody asks any more.
+# More would hold the memory of scenes no longer in use.
 _MOST = 2
 _kept: "OrderedDict[str, _core.CompiledScene]" = OrderedDict()
 _lock = Lock()

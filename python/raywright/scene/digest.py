@@ -8,7 +8,7 @@ class _Digest:
     """A file that keeps nothing of what is written to it but a digest."""
 
     def __init__(self) -> None:
-        # Whoever keeps nothing and sends nothing does not wait for the import.
+        # Imported here, because only checkpoints and executors need it (import time).
         import hashlib
 
         self._hash = hashlib.sha256()
@@ -30,7 +30,7 @@ def digest(thing: object) -> str:
         If it cannot be pickled.
     """
     sink = _Digest()
-    # Without a memo, what is equal gives the same bytes whether it is one object or two.
+    # Without a memo, equal data gives equal bytes whether it is one object or two.
     pickler = pickle.Pickler(sink, protocol=4)
     pickler.fast = True
     try:

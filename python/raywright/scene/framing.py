@@ -13,9 +13,9 @@ from ..shapes.mesh import Mesh
 from .instance import AnyShape, Instance, meshes
 
 _FOV = 35.0
-# Squares of coordinates beyond this are not finite.
+# Squares of larger coordinates overflow.
 _FARTHEST = 1e150
-# Where the camera stands, in degrees: around the upright axis, and above the ground.
+# Direction to the camera in degrees: around the upright axis, and above the ground.
 CAMERA_ANGLES = (35.0, 22.0)
 
 

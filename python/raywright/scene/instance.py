@@ -20,7 +20,7 @@ from ..shapes.sources import EXPECTED, leaves, meshes_of, named, refused
 from ..shapes.welding import Weld, welded
 
 AnyShape = Union[Mesh, Shape, "Instance"]
-# Objects of other libraries have no type here, since none of these need be installed.
+# Objects of other libraries have no type here, since none of these libraries need be installed.
 Shapes: TypeAlias = Union[AnyShape, str, PathLike[str], "Sequence[Shapes]", "Mapping[str, Shapes]", Any]
 Places: TypeAlias = NDArray[np.integer[Any]]
 _BVH = BVH()
@@ -288,7 +288,7 @@ def _closed(shapes: Sequence[AnyShape], weld: Weld, known: dict[Any, Any]) -> tu
     for i, shape in enumerate(shapes):
         if isinstance(shape, Instance):
             own = _weld_within(shape, weld)
-            # Instances of the same shapes share what is compiled.
+            # Instances of the same shapes share their compiled form.
             key = (tuple(map(id, shape.shapes)), own)
             if key not in known:
                 known[key] = _closed(shape.shapes, own, known)

@@ -9,7 +9,7 @@ from typing import TypeAlias
 Report: TypeAlias = Callable[[float], object]
 BuildProgress: TypeAlias = bool | Report
 
-# Builds that take no longer than so many seconds are over before a bar would be of use.
+# Seconds before a bar appears: shorter builds do not need one.
 _PATIENCE = 2.0
 
 
@@ -52,7 +52,7 @@ def bar(what: str) -> Iterator[Report]:
             form = "{desc}: {percentage:3.0f}%|{bar}| {elapsed}"
             shown = tqdm(total=1.0, desc=what, bar_format=form, file=sys.stderr)
         shown.update(share - shown.n)
-        # The time is told, however long nothing comes of it.
+        # Refreshes the elapsed time even if the share stands still.
         shown.refresh()
 
     try:

@@ -178,11 +178,11 @@ class Scene(Queries):
         # A compiled scene of the same shapes.
         self._alike: _core.CompiledScene | None = None
         self._is_loss_told = False
-        # The same shapes with corners welded, for what measures.
+        # The same shapes with corners welded, for measurements.
         self._closed: tuple[tuple[AnyShape, ...], Scene] | None = None
-        # What watches a build runs in the thread that builds, which must not wait for itself.
+        # Progress callbacks run in the building thread, which must not wait for itself.
         self._lock = Lock()
-        # Of which process: what another thread was building when a process was forked is not built there.
+        # Process id of the builder: a build by another thread of the parent does not continue after a fork.
         self._building = 0
 
     @property
@@ -379,7 +379,7 @@ class Scene(Queries):
         """
         check_progress(progress)
         with self._unless_building():
-            # What came out of a pickle is not taken from what is kept, but built.
+            # Builds again even if an unpickled scene could reuse a cached one.
             self._core, self._has_arrived = None, False
             self._alike = None
         self._compiled(progress)
@@ -399,7 +399,7 @@ class Scene(Queries):
         return self._closed[1]
 
     def _enclosing(self) -> _core.CompiledScene:
-        # What is compiled does not know how many digits vertices had before they were transformed.
+        # The compiled scene does not know the precision of vertices before a transform.
         scene = self.welded() if self._has_noise and self._tolerance is None else self
         return scene._core or scene._compiled()
 
@@ -565,7 +565,7 @@ class Scene(Queries):
         return Scene(*self._parts())
 
     def __deepcopy__(self, memo: dict[int, Any]) -> "Scene":
-        # Nothing that it holds can change.
+        # A scene is immutable, so copies share all parts.
         return Scene(*self._parts())
 
     def _repr_html_(self) -> str:

@@ -7,7 +7,7 @@ from ..html_tables import html_table
 from ..shapes.mesh import Mesh, face_count
 from .instance import Instance
 
-# A scene of so many faces is compiled in some 50 ms, so that it can be for a look.
+# A scene of this many faces compiles in some 50 ms, fast enough for a display.
 _QUICK = 100_000
 
 

@@ -18,7 +18,7 @@ from .mitsuba import from_mitsuba
 from .shown import shown
 
 USD = (".usd", ".usda", ".usdc", ".usdz")
-# Files that may have cameras and lights of their own.
+# Suffixes of files that may have their own cameras and lights.
 SCENES = (".xml", ".pbrt", ".pbrt.gz", ".glb", ".gltf", *USD)
 
 
@@ -27,7 +27,7 @@ def has_camera(path: str | PathLike[str]) -> bool:
     return Path(path).name.lower().endswith(SCENES)
 
 
-# What numbers of files may lead to is told in other ways.
+# Numeric problems of file contents are reported otherwise.
 @np.errstate(all="ignore")
 def load(
     path: str | PathLike[str],

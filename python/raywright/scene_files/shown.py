@@ -20,8 +20,8 @@ from ..shapes.mesh import Mesh
 from ..textures import ImageTexture, ProductTexture
 from ..textures.texture import Value, ends
 
-# Mean radiance over all surface from which on shapes light themselves: in a closed room of theirs it would be
-# about as bright as that, times what its walls reflect.
+# Least mean radiance of all surfaces for a scene to count as lit. A closed room of such surfaces would have
+# about this radiance times the reflectance of its walls.
 _ENOUGH = 0.02
 WIDTH, HEIGHT = 640, 480
 

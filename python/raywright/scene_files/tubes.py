@@ -8,12 +8,12 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 
-# Faces around a tube: its flats are within 0.22 % of its radius of the round, 1 - cos(π / 48).
+# Faces around a tube: they deviate from the circle by at most 0.22 % of its radius, 1 - cos(π / 48).
 _SIDES = 48
-# Where that many would be more triangles than this, there are half as many, and so on, down to the fewest.
+# For more triangles, the number of faces is halved repeatedly, down to the fewest.
 _MOST_TRIANGLES, _FEWEST = 4_000_000, 6
-# Pieces of one segment of a B-spline: between them the middle line strays from it by at most 1/8 of its
-# second difference over the square of these, which is told by `_pieces`.
+# Pieces per segment of a B-spline. Chords deviate from the axis by at most 1/8 of its second difference over
+# the square of their number, the bound in `_pieces`.
 _MOST_PIECES = 64
 _BENDS = 1e-3
 
@@ -27,7 +27,7 @@ class Tube(NamedTuple):
     uv: Floats
 
 
-# Balls are at the end of a segment, where patterns along the curve may change, and not before it by rounding.
+# Offset of a ball's coordinate into its segment, so that rounding does not put it before a change of pattern.
 _BEYOND = 2e-7
 
 
@@ -43,7 +43,7 @@ def linear(curves: list[Floats]) -> Tube:
             if (tube := _cone(a, b, sides, span)) is not None:
                 parts.append(tube)
         for k, point in enumerate(curve):
-            # Coordinates go on around the segment before it.
+            # Takes the coordinates around the preceding segment.
             a, b = curve[max(k, 1) - 1 : max(k, 1) + 1, :3]
             parts.append(_ball(point, b - a, sides, (first + k) / segments + _BEYOND))
         first += len(curve) - 1
@@ -128,7 +128,7 @@ def _cone(a: Floats, b: Floats, sides: int, span: tuple[float, float]) -> Tube |
     if length <= abs(grows):
         return None
     axis = axis / length
-    # The cosine and sine of the normal's angle to the plane across.
+    # Cosine and sine of the angle between the normal and the plane across.
     sin = -grows / length
     cos = np.sqrt(1 - sin * sin)
     rot, rad = (one[0] for one in _frames(axis[None]))
@@ -150,7 +150,7 @@ def _ball(point: Floats, axis: Floats, sides: int, along: float) -> Tube:
     out = np.cos(turn)[:, None] * rad + np.sin(turn)[:, None] * rot
     normals = np.sin(polar)[:, None, None] * out + np.cos(polar)[:, None, None] * axis
     uv = np.stack(np.broadcast_arrays(np.arange(sides + 1)[None] / sides, np.full((rings + 1, 1), along)), -1)
-    # From pole to pole, which turns the grid's faces round.
+    # Rows run from pole to pole, which reverses the winding of the grid.
     return _grid(point[:3] + point[3] * normals, normals, uv, flipped=True)
 
 

@@ -10,7 +10,7 @@ from ..shapes.mesh import Mesh
 from ..textures import Checker
 
 _SKY = 0.35
-# How far the board reaches, in radii of the ball, and squares along it.
+# Half the side of the board, in radii of the ball, and squares along it.
 _REACH, _SQUARES = 12.0, 24
 
 
@@ -47,7 +47,7 @@ def material_ball(
         uv=[(0, 0), (_SQUARES, 0), (_SQUARES, _SQUARES), (0, _SQUARES)],
         material=Diffuse(Checker(0.15, 0.6)),
     )
-    # A ring that the ball touches: from its middle, the ball's own radius and the ring's thickness away.
+    # The ball touches the ring: their centres are the ball's radius plus the ring's thickness apart.
     thick = 0.12
     height_of_ring = ground + thick
     around = math.sqrt((1.0 + thick) ** 2 - height_of_ring**2)

@@ -41,7 +41,7 @@ def city(blocks: int = 12, seed: SeedLike = 0) -> list[Mesh]:
     rng = np.random.default_rng(seed_number(seed, None))
     pitch, plots = _BLOCK + _STREET, 3 * blocks
     edge = pitch * blocks / 2
-    # Middles of plots along a side: three in a block, then a street.
+    # Centres of plots along a side: three in a block, then a street.
     plot = np.arange(plots)
     line = pitch * (plot // 3) + _BLOCK * (plot % 3 + 0.5) / 3 + _STREET / 2 - edge
     x, z = (a.reshape(-1) for a in np.meshgrid(line, line, indexing="ij"))
@@ -49,7 +49,7 @@ def city(blocks: int = 12, seed: SeedLike = 0) -> list[Mesh]:
     tall = 1 + 7 * np.exp(-(x**2 + z**2) / (0.35 * edge) ** 2)
     height = _FLOOR * np.ceil(tall * np.exp(rng.normal(1.0, 0.45, count)))
     wide = _BLOCK / 6 * rng.uniform(0.75, 0.97, (count, 2))
-    # Storeys above the setback, on towers; on flat houses a low one.
+    # Towers have storeys above the setback; flat houses have a low one.
     upper = _FLOOR * np.ceil(rng.uniform(0.1, 0.6, count) * height / _FLOOR)
     narrow = wide * rng.uniform(0.5, 0.85, (count, 1))
     parts = [(x, z, np.zeros(count), wide, height), (x, z, height, narrow, upper)]

@@ -41,12 +41,12 @@ TALL_BLOCK: Quads = [
     [(314, 0, 456), (314, 330, 456), (265, 330, 296), (265, 0, 296)],
     [(265, 0, 296), (265, 330, 296), (423, 330, 247), (423, 0, 247)],
 ]
-# The light fills a hole in the ceiling: the room is closed, and no two faces lie in one another.
+# The light fills a hole in the ceiling: the room is closed, and no two faces overlap.
 CEILING: Quads = [
     [_CEILING[i], _CEILING[j], LIGHT[0][j], LIGHT[0][i]] for i, j in ((0, 1), (1, 2), (2, 3), (3, 0))
 ]
 
-# Middle of the short block's floor, and the room there is for what stands in its place.
+# Middle of the short block's floor, and the room for objects in its place.
 _STAND = (186.0, 0.0, 169.0)
 _STAND_SIZE = (230.0, 260.0, 230.0)
 

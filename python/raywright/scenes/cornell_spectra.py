@@ -30,7 +30,7 @@ _GREEN = """
 .266 .250 .230 .207 .186 .171 .160 .148 .141 .136 .130 .126 .123 .121 .122 .119 .114 .115 .117 .117 .118 .120
 .122 .128 .132 .139 .144 .146 .150 .152 .157 .159
 """
-# The lamp's radiance at four wavelengths, linear between them, and what it reflects at all of them.
+# The lamp's radiance at four wavelengths, linear between them, and its reflectance at all of them.
 _LAMP = {400: 0.0, 500: 8.0, 600: 15.6, 700: 18.4}
 LAMP_REFLECTANCE = 0.78
 

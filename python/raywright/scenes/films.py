@@ -11,7 +11,7 @@ from ..shapes import Sphere
 from ..shapes.mesh import Mesh
 from ..textures import FBm, ImageTexture, MixTexture
 
-# From pictures of surroundings, whose up is y, to scenes whose up is z.
+# Turns environment maps, with y up, into scenes with z up.
 _UP: NDArray[np.float64] = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 _BLACK_FILM = 12.0
 
@@ -58,7 +58,7 @@ def _room() -> NDArray[np.float32]:
     rows, columns = 128, 256
     room = np.full((rows, columns, 3), (0.035, 0.035, 0.045), np.float32)
     room[: rows // 4] = (0.09, 0.09, 0.1)
-    # One beside the camera, which looks at the middle, and one in front of it, at the side.
+    # One window beside the camera, which looks at the middle, and one in front of it, at the side.
     for left, right in ((12, 62), (196, 240)):
         room[34:86, left:right] = (9.0, 9.3, 10.0)
         room[58:61, left:right] = 0.02
@@ -86,7 +86,7 @@ def oil_on_water(width: int = 480, height: int = 320) -> tuple[Scene, Camera]:
     side = 8.0
     corners = [(-side, -side), (side, -side), (side, side), (-side, side)]
     faces = [[0, 1, 2], [0, 2, 3]]
-    # The slick, as it is where it has spread the most and the least.
+    # The oil film at its thickest and its thinnest.
     thick, thin = (ImageTexture(_slick(depth), linear=True) for depth in (760.0, 400.0))
     thickness = MixTexture(thick, thin, FBm(0.0, 1.0, 0.8, octaves=5, seed=11))
     water = Mesh(

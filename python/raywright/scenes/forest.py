@@ -13,7 +13,7 @@ from ..shapes.mesh import Mesh
 Array = NDArray[np.float64]
 
 _SIDES = 5
-# Children of a branch, how long and thick they are against it, and how far they lean away from it.
+# Children per branch, their relative length and thickness, and their lean away from it.
 _CHILDREN, _LONG, _THICK, _LEAN = 3, 0.72, 0.6, 0.65
 _LEVELS = 4
 
@@ -119,7 +119,7 @@ def _tree(rng: "np.random.Generator", triangles: int) -> Mesh:
         if level + 1 < _LEVELS:
             feet, ways, radii = _parted(rng, feet, ways, radii)
     vertices = np.concatenate(wood)
-    # Each tube has a ring at its foot and one at its tip.
+    # Each tube has a ring at its base and one at its tip.
     ring, tubes = np.arange(_SIDES), len(vertices) // (2 * _SIDES)
     after = (ring + 1) % _SIDES
     one = np.concatenate(
@@ -137,7 +137,7 @@ def _parted(rng: "np.random.Generator", feet: Array, ways: Array, radii: Array) 
     count = len(feet) * _CHILDREN
     tips, ways, radii = (np.repeat(a, _CHILDREN, axis=0) for a in (feet + ways, ways, radii))
     a, b = _across(ways)
-    # Round the branch, a third of a turn apart, more or less.
+    # Around the branch, about a third of a turn apart.
     turn = 2 * np.pi * (np.arange(count) % _CHILDREN + rng.uniform(-0.3, 0.3, count)) / _CHILDREN
     aside = np.cos(turn)[:, np.newaxis] * a + np.sin(turn)[:, np.newaxis] * b
     length = np.linalg.norm(ways, axis=1, keepdims=True)
@@ -171,7 +171,7 @@ def _leaves(rng: "np.random.Generator", feet: Array, ways: Array, count: int) ->
 def _across(ways: Array) -> tuple[Array, Array]:
     """Return two unit vectors across each way, so that the three are right-handed: first, second, way."""
     unit = ways / np.linalg.norm(ways, axis=1, keepdims=True)
-    # The axis along which the way is shortest is never parallel to it.
+    # The axis of the direction's smallest component is never parallel to it.
     axis = np.eye(3)[np.abs(unit).argmin(axis=1)]
     a = np.cross(axis, unit)
     a /= np.linalg.norm(a, axis=1, keepdims=True)

@@ -9,7 +9,7 @@ from ..shapes import Sphere
 from . import cornell, cornell_spectra
 
 _RADIUS = 100.0
-# Around the middle of the ceiling; the hole that it fills stays as it is.
+# Relative side of the lamp in the middle of the ceiling; the hole keeps its size.
 _LAMP_SIZE = 0.3
 
 
@@ -32,7 +32,7 @@ def glass_spheres(width: int = 512, height: int = 512) -> tuple[Scene, Camera]:
     """
     corners = np.array(cornell.LIGHT[0], np.float64)
     middle = corners.mean(axis=0)
-    # Just under the ceiling's hole, which a small lamp leaves open to the dark.
+    # Just below the hole in the ceiling, whose rest stays open and dark.
     small = middle + _LAMP_SIZE * (corners - middle) - (0.0, 0.5, 0.0)
     radiance = np.array(cornell_spectra.EMISSION) / _LAMP_SIZE**2
     shapes = [cornell.quads([[tuple(corner) for corner in small]], cornell.LAMP, radiance)]

@@ -43,7 +43,7 @@ def torus_knot(
     phi = np.arange(along) * (2 * np.pi / along)
     ring, wave = 1 + 0.45 * np.cos(q * phi), 0.45 * np.sin(q * phi)
     turn = np.exp(1j * p * phi)
-    # Place, velocity and acceleration along the knot; x + iy is one complex number.
+    # Position, velocity and acceleration along the knot; x + iy is one complex number.
     plane = ring * turn
     plane1 = (-q * wave + 1j * p * ring) * turn
     plane2 = (-q * q * (ring - 1) - 2j * p * q * wave - p * p * ring) * turn
@@ -51,7 +51,7 @@ def torus_knot(
     velocity = np.stack([plane1.real, plane1.imag, q * (ring - 1)], axis=1)
     acceleration = np.stack([plane2.real, plane2.imag, -q * q * wave], axis=1)
 
-    # The Frenet frame belongs to the curve, so the last ring meets the first without a twist.
+    # The Frenet frame depends on the curve alone, so the last ring meets the first without a twist.
     tangent = velocity / np.linalg.norm(velocity, axis=1, keepdims=True)
     binormal = np.cross(velocity, acceleration)
     binormal /= np.linalg.norm(binormal, axis=1, keepdims=True)

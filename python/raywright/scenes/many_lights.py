@@ -9,7 +9,7 @@ from ..scene.scene import Scene
 from ..shapes.mesh import Mesh
 from .room import EYE, SIZE, TARGET, room
 
-# Half the side of a lamp, and the light of all lamps together over their number.
+# Half the side of a lamp, and the total power of all lamps.
 _HALF, _POWER = 0.01, 400.0
 
 

@@ -10,11 +10,11 @@ from ..shapes import Sphere
 from ..shapes.mesh import Mesh
 
 _EYE = np.array((0.0, 2.0, 15.0))
-# Half along x and half across, of each plate.
+# Half extents of each plate, along x and across.
 _HALF = (4.0, 0.5)
-# Where the middles of the plates are, in y and z, and how rough each is, as alpha.
+# Centres of the plates, in y and z, and their roughness alpha.
 _PLATES = (((-1.2, 1.4), 0.005), ((-2.1, 2.8), 0.02), ((-2.8, 4.4), 0.05), ((-3.3, 6.1), 0.1))
-# Place along x, radius, and radiance: all give the same light.
+# Position along x, radius, and radiance: all emit the same power.
 _LAMPS = tuple((x, r, 1.0 / r**2) for x, r in ((-3.75, 1 / 30), (-1.25, 0.1), (1.25, 0.3), (3.75, 0.9)))
 
 

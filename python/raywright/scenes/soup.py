@@ -32,8 +32,8 @@ def soup(triangles: int = 10_000, size: float | None = None, seed: SeedLike = 0)
         If a number is of the wrong type.
     """
     count = integer("triangles", triangles, 1)
-    # A ray meets as many in a unit of length as there is area across it in a unit of volume: of a triangle
-    # half its area, which is 0.26 of the squared size on average.
+    # Hits per unit length equal projected area per unit volume: half the area of a triangle, 0.26 of the
+    # squared size on average.
     reach = (23 / count) ** 0.5 if size is None else positive("size", size)
     rng = np.random.default_rng(seed_number(seed, None))
     spokes = rng.normal(size=(count, 3, 3))

@@ -7,7 +7,7 @@ from ..materials import Diffuse
 from ..shapes.mesh import Mesh
 from .teapot import teapot
 
-# Half the length and half the depth of the field, in metres, and of a tier.
+# Half extents of the field, in metres; depth and height of a tier.
 _FIELD = np.array([60.0, 40.0])
 _DEPTH, _RISE = 0.8, 0.45
 
@@ -45,7 +45,7 @@ def teapot_in_stadium(
     """
     tiers, around = integer("tiers", tiers, 1), integer("around", around, 3)
     width = positive("width", width)
-    # How far beyond the field's edge and how high: step and seat by turns, then the wall and the roof.
+    # Distance beyond the field and height: riser and seat by turns, then the wall and the roof.
     steps = np.repeat(np.arange(tiers + 1), 2)
     out = np.array([*_DEPTH * steps[1:-1], _DEPTH * tiers, _DEPTH * tiers / 3])
     up = np.array([*_RISE * steps[2:], _RISE * tiers + 8, _RISE * tiers + 12])

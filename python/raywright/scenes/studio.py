@@ -14,9 +14,9 @@ from ..scene.instance import meshes
 from ..scene.scene import Scene
 from ..shapes.mesh import Mesh
 
-# Where the lamp stands, in degrees: around the upright axis, and above the floor.
+# Direction to the lamp in degrees: around the upright axis, and above the floor.
 _LAMP_ANGLES = (-25.0, 55.0)
-# How far, in times that the mesh reaches.
+# Distance of the lamp, in radii of the mesh.
 _LAMP_DISTANCE = 5.0
 _SKY = (0.42, 0.45, 0.5)
 _BVH = BVH()
@@ -54,7 +54,7 @@ def studio(
     camera = framed(parts, up, width, height)
     centre, radius, axes = _room(parts, up)
 
-    # The floor lies a little under the mesh, so that a flat bottom is not in the same plane.
+    # The floor lies slightly below the mesh, so that a flat bottom is not in its plane.
     lowest = float(((outline(parts) - centre) @ axes[1]).min())
     ground = centre + (lowest - 1e-4 * radius) * axes[1]
     floor = _square(ground, axes[0], -axes[2], 25 * radius, Diffuse(0.4))
@@ -82,7 +82,7 @@ def lit(shapes: Any, camera: AnyCamera) -> Scene:
     """
     parts = meshes(shapes)
     centre, radius, axes = _room(parts, "y")
-    # Of a camera that looks straight down, what is below in its picture is nearer.
+    # For a camera that looks straight down, the bottom of its picture counts as near.
     for away in (-camera.forward, -np.array(camera.up)):
         level = away - (away @ axes[1]) * axes[1]
         if np.linalg.norm(level) > 1e-6 * np.linalg.norm(away):
@@ -105,7 +105,7 @@ def _room(parts: Any, up: str) -> tuple[NDArray[np.float64], float, NDArray[np.f
 def _lamp(centre: NDArray[np.float64], radius: float, axes: NDArray[np.float64]) -> Mesh:
     beam = direction(_LAMP_ANGLES) @ axes
     side = np.cross(axes[1], beam) / np.linalg.norm(np.cross(axes[1], beam))
-    # Across `side` and its perpendicular, so that the square's normal is -beam: it shines on the mesh.
+    # Spanned by `side` and its perpendicular, so that the normal is -beam: the square shines on the mesh.
     middle = centre + _LAMP_DISTANCE * radius * beam
     return _square(middle, np.cross(beam, side), side, 1.5 * radius, Diffuse(0.0), 9.0)
 

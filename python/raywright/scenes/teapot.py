@@ -9,8 +9,8 @@ from ..shapes.mesh import Mesh
 
 Array = NDArray[np.float64]
 
-# Newell's control points (1975), in his units, z up. What is round is told by its profile, four points from
-# the top or the middle outwards: radius, how far the two middle points of a quarter circle reach, height.
+# Newell's control points (1975), in his units, z up. Round parts are given by their profile, four points from
+# the top or the middle outwards: radius, offset of the two middle points of a quarter circle, height.
 _ROUND = (
     ("rim", ((1.4, 0.784, 2.4), (1.3375, 0.749, 2.53125), (1.4375, 0.805, 2.53125), (1.5, 0.84, 2.4))),
     ("body", ((1.5, 0.84, 2.4), (1.75, 0.98, 1.875), (2.0, 1.12, 1.35), (2.0, 1.12, 0.9))),
@@ -19,8 +19,8 @@ _ROUND = (
     ("lid", ((0.2, 0.112, 2.7), (0.4, 0.224, 2.55), (1.3, 0.728, 2.55), (1.3, 0.728, 2.4))),
     ("bottom", ((1.5, 0.84, 0.15), (1.5, 0.84, 0.075), (1.425, 0.798, 0.0), (0.0, 0.0, 0.0))),
 )
-# Handle and spout: half of each, the other is its mirror image. Each row is a half turn around the tube:
-# (x, z) where it begins and where it ends, both at y = 0, and the y of the two points between.
+# Handle and spout: one half of each; the other is its mirror image. Each row is a half turn around the tube:
+# (x, z) of its first and last point, both at y = 0, and the y of the two points between.
 _TUBES = (
     (
         ((-1.6, 2.025), (-1.5, 2.25), 0.3),
@@ -67,7 +67,7 @@ def teapot(divisions: int = 10, material: Material | None = None) -> Mesh:
     control = patches()
     points, normals = surface(control, np.arange(n + 1) / n)
     count = len(points)
-    # A side that is a point is that very point, in spite of rounding.
+    # A degenerate side is exactly its point, despite rounding.
     for side in (0, -1):
         pole = (control[:, side] == control[:, side, :1]).all(axis=(1, 2))
         points[pole, side] = control[pole, side, :1]
@@ -76,7 +76,7 @@ def teapot(divisions: int = 10, material: Material | None = None) -> Mesh:
     quads = np.stack([a, b, c, a, c, d], axis=1).reshape(-1, 3)
     faces = (quads + (n + 1) ** 2 * np.arange(count)[:, np.newaxis, np.newaxis]).reshape(-1, 3)
     vertices = points.reshape(-1, 3)
-    # Where a side of a patch is a point, every second triangle has no area.
+    # Beside a degenerate side, every second triangle has no area.
     corners = vertices[faces]
     whole = (corners != np.roll(corners, 1, axis=1)).any(axis=2).all(axis=1)
     upright = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])
@@ -123,7 +123,7 @@ def surface(control: Array, at: Array) -> tuple[Array, Array]:
         for u, v in ((weights, weights), (slopes, weights), (weights, slopes))
     )
     normals = np.cross(along, across)
-    # Where a side is a point, on the axis, the surface lies level.
+    # At a degenerate side, on the axis, the surface is level.
     level = np.zeros_like(normals)
     level[..., 2] = np.sign(normals[..., 2].sum(axis=(1, 2)))[:, np.newaxis, np.newaxis]
     length = np.linalg.norm(normals, axis=-1, keepdims=True)

@@ -56,7 +56,7 @@ def terrain(side: int = 160, blades: int = 50_000, seed: SeedLike = 0) -> list[M
 def _heights(rng: "np.random.Generator", points: int) -> Array:
     """Random waves on a grid of points, from 0 to the height of the hills."""
     frequency = np.hypot(np.fft.fftfreq(points)[:, np.newaxis], np.fft.rfftfreq(points))
-    # Amplitude falls with the square of the frequency, power with the fourth. The mean is of no interest.
+    # Amplitude falls with the square of the frequency, power with the fourth. The mean does not matter.
     amplitude = np.divide(1.0, frequency**2, out=np.zeros_like(frequency), where=frequency > 0)
     waves = np.fft.rfft2(rng.normal(size=(points, points))) * amplitude
     heights = np.fft.irfft2(waves, s=(points, points))
@@ -81,7 +81,7 @@ def _grass(rng: "np.random.Generator", heights: Array, blades: int) -> Mesh:
     )
     angle = rng.uniform(0, 2 * np.pi, blades)
     across = np.stack([np.cos(angle), np.zeros(blades), np.sin(angle)], axis=1)
-    # As wide as a sixth of the room that each has, and some times as high.
+    # A sixth of the available room wide, and several times as high.
     wide = _WIDTH / cells / 6
     lean = rng.uniform(-0.5, 0.5, (blades, 3)) * [1, 0, 1] + [0, 1, 0]
     tip = foot + wide * rng.uniform(6, 18, (blades, 1)) * lean
@@ -96,5 +96,5 @@ def _on(heights: Array, where: Array) -> Array:
     u, v = (where - cell).T
     i, j = cell.T
     a, b, c, d = heights[i, j], heights[i, j + 1], heights[i + 1, j + 1], heights[i + 1, j]
-    # Each square is cut from (0, 0) to (1, 1).
+    # The diagonal of each square runs from (0, 0) to (1, 1).
     return np.asarray(np.where(v >= u, a + v * (b - a) + u * (c - b), a + u * (d - a) + v * (c - d)))

@@ -43,7 +43,7 @@ def diagonal_wall(boards: int = 800, angle: float = 45.0, layers: int = 4) -> li
     layers = integer("layers", layers, 1)
     boards = integer("boards", boards, layers)
     angle = math.radians(number("angle", angle))
-    # As even as can be: the first layers have one more where there is a rest.
+    # Boards spread evenly: the first layers take one more if there is a remainder.
     counts = np.full(layers, boards // layers) + (np.arange(layers) < boards % layers)
     centres, halves = np.zeros((boards, 3)), np.empty((boards, 3))
     start = 0

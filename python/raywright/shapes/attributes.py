@@ -31,7 +31,7 @@ def attributes(name: str, given: Mapping[str, ArrayLike] | None, count: int) -> 
     for key, value in given.items():
         if not isinstance(key, str):
             raise TypeError(f"{name} must have names of type str, got {key!r}")
-        # Integers and bool stay what they are: they may be labels.
+        # Integers and bools keep their type, as they may be labels.
         is_plain = isinstance(value, np.ndarray) and value.dtype.kind in "iufb"
         array = np.asarray(value) if is_plain else real_array(f"{name}[{key!r}]", value)
         if array.ndim == 0 or len(array) != count:

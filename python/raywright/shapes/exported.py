@@ -65,7 +65,7 @@ def to_open3d(mesh: Any) -> Any:
         raise ImportError("to_open3d needs Open3D, which is not installed: pip install open3d") from None
 
     def tensor(array: NDArray[Any]) -> Any:
-        # Halves are the only ones of real numbers that it has not.
+        # Open3D lacks float16 only.
         return open3d.core.Tensor(np.array(array, np.float32 if array.dtype == np.float16 else array.dtype))
 
     found = open3d.t.geometry.TriangleMesh(tensor(mesh.vertices), tensor(mesh.faces.astype(np.int64)))

@@ -75,9 +75,9 @@ class Mesh:
     vertex_attributes: Attributes
     face_attributes: Attributes
     cells: NDArray[np.int64] | None
-    # How far rounding has parted corners that are one, where that is more than vertices tell by their digits.
+    # Distance between equal corners through rounding, if larger than the precision of vertices suggests.
     _noise = 0.0
-    # Whether it is of the same object as the mesh before it, so that both count the cells of that.
+    # True if the mesh belongs to the same object as the one before, and continues its cell numbers.
     _continues = False
 
     def __init__(
@@ -155,7 +155,7 @@ class Mesh:
         RuntimeWarning
             Once for what is left out, such as points and curves, and where materials differ.
         """
-        # What makes meshes of things stands above meshes, and is imported where there are any.
+        # Imported here: converters depend on meshes, and only objects of other libraries need them.
         sources = import_module(".sources", __package__)
         made: Mesh = sources.only_mesh(
             source, None if tolerance is None else positive("tolerance", tolerance)
@@ -240,7 +240,7 @@ class Mesh:
         used &= np.isfinite(self.vertices).all(axis=1)
         return self.vertices[used].astype(np.float64)
 
-    # NaN and infinity are told when the scene is compiled.
+    # NaN and infinity are reported when the scene is compiled.
     @np.errstate(over="ignore", invalid="ignore")
     def transformed(self, matrix: ArrayLike) -> "Mesh":
         """Return the mesh moved by an affine matrix, computed in float64.
@@ -265,8 +265,8 @@ class Mesh:
         mirrors = bool(np.linalg.det(linear) < 0)
         normals = self.normals
         if normals is not None:
-            # Normals go with the matrix of cofactors: the inverse transpose without its division, so that a
-            # flattening matrix works too.
+            # Normals transform by the matrix of cofactors: the inverse transpose without its division, so
+            # that a flattening matrix works too.
             x, y, z = linear
             cofactors = np.stack([np.cross(y, z), np.cross(z, x), np.cross(x, y)])
             normals = (normals.astype(np.float64) @ cofactors.T) * (-1.0 if mirrors else 1.0)
@@ -298,7 +298,7 @@ class Mesh:
         )
 
     def __hash__(self) -> int:
-        # The sizes and the plain parts: equal meshes agree on them, and reading every vertex would be slow.
+        # Equal meshes agree in these; hashing every vertex would be slow.
         return hash((self.vertices.shape, self.faces.shape, self.material, self.emission))
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -344,7 +344,7 @@ def moved(mesh: object, name: str, vertices: ArrayLike) -> Mesh:
 def replaced(mesh: Mesh, **fields: Any) -> Mesh:
     """Return the mesh with other values of some fields, which are checked already."""
     result = object.__new__(Mesh)
-    # The other arrays are checked and cannot change: they are shared.
+    # The other arrays are validated and immutable, so they are shared.
     vars(result).update(vars(mesh), **fields)
     return result
 

@@ -21,7 +21,7 @@ _TYPES = {
     "f4": "float",
     "f8": "double",
 }
-# Properties that mean something else, where all of a row are there.
+# Property names with a meaning of their own, if a whole row is present.
 _MEANINGS = (
     *(("x", "y", "z"), ("nx", "ny", "nz"), ("normal_x", "normal_y", "normal_z")),
     *(("u", "v"), ("s", "t"), ("texture_u", "texture_v"), ("texture_s", "texture_t")),

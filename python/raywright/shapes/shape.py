@@ -113,7 +113,7 @@ def affine(name: str, given: ArrayLike) -> NDArray[np.float64]:
     if not np.isfinite(matrix).all():
         row, column = np.argwhere(~np.isfinite(matrix))[0]
         raise ValueError(f"{name} must be finite, got {matrix[row, column]} in row {row}, column {column}")
-    # -0.0 and 0.0 transform alike, and are to compare alike.
+    # -0.0 and 0.0 transform alike, and must compare equal.
     matrix = frozen(matrix + 0.0)
     if not np.array_equal(matrix[3], (0, 0, 0, 1)):
         raise ValueError(

@@ -53,11 +53,11 @@ class Source(NamedTuple):
         return bool(self.attributes) and all(hasattr(given, name) for name in self.attributes)
 
 
-# Those of a kind with subclasses that are read otherwise come after them.
+# Subclasses with a reader of their own precede their base class.
 SOURCES = (
     Source("trimesh", "trimesh_objects.of_trimesh", ("Trimesh",), is_welded=True),
     Source("trimesh", "trimesh_objects.of_scene", ("Scene",), is_welded=True),
-    # The objects of pyvista are those of VTK.
+    # pyvista's objects are those of VTK.
     Source("vtkmodules.vtkCommonDataModel", "vtk_objects.of_vtk", ("vtkDataObject",)),
     Source("open3d", "open3d_objects.of_legacy", ("geometry.TriangleMesh",)),
     Source("open3d", "open3d_objects.of_tensors", ("t.geometry.TriangleMesh",)),
@@ -110,7 +110,7 @@ def leaves(given: Any, name: str | None = None) -> Iterator[tuple[str | None, An
     TypeError
         If a key of a dict is no str.
     """
-    # Those that are open, by a stack of their own: they may be nested as deep as they like.
+    # An explicit stack of open iterators, since they may nest to any depth.
     left, within = [iter(((name, given),))], [0]
     while left:
         for called, one in left[-1]:
@@ -199,7 +199,7 @@ def meshes_of(
 
 
 def _reader(name: str) -> Any:
-    # What reads files and objects is imported where there are any.
+    # Imported here, because only some files and objects need it (import time).
     file, function = name.split(".")
     return getattr(import_module(f"..mesh_files.{file}", __package__), function)
 
@@ -209,7 +209,7 @@ def named(shape: Any, name: str | None) -> Any:
     if name is None or shape.name == name:
         return shape
     result = object.__new__(type(shape))
-    # All else is checked and cannot change: it is shared.
+    # All other values are validated and immutable, so they are shared.
     vars(result).update(vars(shape), name=name)
     return result
 

@@ -77,7 +77,7 @@ def _welded(meshes: list[Mesh], distances: list[float]) -> list[Mesh]:
     for i, (mesh, start) in enumerate(zip(meshes, starts, strict=False)):
         own = slice(start, start + len(mesh.vertices))
         if is_moved[own].any():
-            # float64 where another mesh has more digits.
+            # float64 if another mesh has more digits.
             where = places[own]
             single = where.astype(np.float32)
             is_single = mesh.vertices.dtype == np.float32 and np.array_equal(single, where, equal_nan=True)

@@ -47,7 +47,7 @@ class Blackbody(Spectrum):
             raise ValueError(f"luminance must be at least 0, got {luminance}")
         wavelengths = np.arange(360.0, 831.0, 5.0)
         told = planck(wavelengths, temperature)
-        # By the greatest, so that it can be told of any temperature.
+        # Relative to the maximum, so that no temperature overflows.
         plain = Spectrum(wavelengths, told / told.max())
         values = np.asarray(plain.values) * (luminance / plain.luminance)
         self._set(kelvin=temperature, wavelengths=plain.wavelengths, values=tuple(values.tolist()))

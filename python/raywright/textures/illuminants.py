@@ -9,8 +9,8 @@ from .. import _core
 from .spectrum import Spectrum
 
 _WAVELENGTHS = np.arange(360.0, 831.0)
-# Fluorescent lamps by the CIE (CIE 015:2018, of every fifth nm from 380 to 780): cool white, broad-band
-# daylight, and one of three narrow bands.
+# Fluorescent lamps of the CIE (CIE 015:2018, every 5 nm from 380 to 780): cool white, broad-band daylight,
+# and one of three narrow bands.
 _LAMPS = {
     "F2": """
         1.18 1.48 1.84 2.15 3.44 15.69 3.85 3.74 4.19 4.62 5.06 34.98 11.81 6.27 6.63 6.93 7.19 7.40 7.54

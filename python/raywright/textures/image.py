@@ -151,7 +151,7 @@ class ImageTexture(Texture):
         return self._parts()[1:] == other._parts()[1:] and same
 
     def __hash__(self) -> int:
-        # The size and the plain parts: equal pictures agree on them, and reading every point would be slow.
+        # Equal pictures agree in these; hashing every pixel would be slow.
         return hash((self.image.shape, self._parts()[1:]))
 
     def __reduce__(self) -> tuple[Any, ...]:

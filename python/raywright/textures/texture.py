@@ -17,7 +17,7 @@ Number: TypeAlias = Union[float, "Texture"]
 class Texture:
     """What varies over a surface. Its subclasses say how."""
 
-    # Whether it may stand for a number, such as a roughness.
+    # True if it may stand for a number, such as a roughness.
     _is_number: ClassVar[bool] = True
 
     @property

@@ -144,5 +144,5 @@ def _finite(name: str, value: ArrayLike, *shapes: tuple[int, ...]) -> NDArray[np
         raise ValueError(f"{name} must have shape {' or '.join(map(str, shapes))}, got {array.shape}")
     if not np.isfinite(array).all():
         raise ValueError(f"{name} must be finite, got {array.tolist()}")
-    # -0.0 and 0.0 are the same map, and are to compare alike.
+    # -0.0 and 0.0 are the same map, and must compare equal.
     return array + 0.0

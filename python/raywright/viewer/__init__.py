@@ -50,7 +50,7 @@ class Viewer:
         self._server, self._session = server, session
         self._widget: ViewerWidget | None = None
         self._closed = threading.Event()
-        # It must not be left to the end of the interpreter, which does not wait for it.
+        # The interpreter does not wait for daemon threads at its end.
         atexit.register(self.close)
         self._thread = threading.Thread(
             target=server.serve_forever, args=(0.1,), name="raywright-server", daemon=True
@@ -108,7 +108,7 @@ class Viewer:
     def wait(self) -> None:
         """Wait until it is closed, or Ctrl-C is pressed, which closes it."""
         try:
-            # Not for ever in one go: where signals do not end the wait, they are heard in between.
+            # In short waits: signals that do not interrupt a wait are handled in between.
             while not self._closed.wait(0.5):
                 pass
         except KeyboardInterrupt:
@@ -234,7 +234,7 @@ def view(
         "sampler": sampler,
         "filter": filter,
     }
-    # Whoever does not look does not wait for the import.
+    # Imported here, because only the viewer needs it (import time).
     from .server import Server
     from .session import Session
 

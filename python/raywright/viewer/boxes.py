@@ -5,13 +5,13 @@ from numpy.typing import NDArray
 
 from ..cameras import AnyCamera, Camera, Orthographic, ThinLens
 
-# Corners that differ in one bit of their number share an edge.
+# Corners share an edge if their numbers differ in one bit.
 _EDGES = np.array([(i, i | 1 << bit) for i in range(8) for bit in range(3) if not i >> bit & 1])
-# The most boxes that are drawn: the largest of a level.
+# Most boxes drawn: the largest of a level.
 _MOST = 20_000
-# What is nearer than this, next to what is farthest, is not drawn: it has no place in the picture.
+# Least distance of drawn lines, relative to the farthest: nearer ones have no place in the picture.
 _NEAREST = 1e-6
-# How far beside the picture lines are drawn, in widths of it, and in what colour.
+# Extent of lines beyond the picture, in picture widths, and their colour.
 _BESIDE = 4.0
 _COLOUR = (255, 208, 0)
 
@@ -43,7 +43,8 @@ def edges(camera: AnyCamera, corners: NDArray[np.float64]) -> NDArray[np.float64
     corners = largest(corners)
     ends = corners[:, _EDGES].reshape(-1, 2, 3)
     origins, ways = spread(camera)
-    # A point is across and down from where rays start, and on along them; or it is where a way meets a plane.
+    # Coordinates across, down and along rays: from the origins of parallel rays, or where a direction meets a
+    # plane.
     axes = np.stack([*origins[1:], ways[0]] if isinstance(camera, Orthographic) else [*ways[1:], ways[0]])
     seen = (ends - origins[0]) @ np.linalg.inv(axes)
     cut = seen[..., 2]
@@ -72,7 +73,7 @@ def spread(camera: AnyCamera) -> tuple[NDArray[np.float64], NDArray[np.float64]]
     picture = np.array([(0, 0), (camera.width, 0), (0, camera.height), (camera.width, camera.height)], float)
     origins, ways = camera.rays_through(picture)
     if not isinstance(camera, Orthographic):
-        # Ways to the corners of a plane, which are those of a parallelogram.
+        # Scales the directions to the corners of a plane, so that they form a parallelogram.
         lengths = np.linalg.svd(np.stack([ways[0], -ways[1], -ways[2], ways[3]], axis=1))[2][-1]
         ways = ways * (lengths * np.sign(lengths[0]))[:, np.newaxis]
     starts, towards = (np.stack([one[0], one[1] - one[0], one[2] - one[0]]) for one in (origins, ways))

@@ -23,15 +23,15 @@ from .lamps import behind, lamp
 from .orbit import Orbit, View
 from .paint import paints
 
-# The scene is not laid out for a page if it would take more than this.
+# Largest scene that is sent to a page.
 _MOST_BYTES = 1 << 30
 _FILTER = BoxFilter()
-# Surfaces of a path, and paths of a pixel, where nobody says how many.
+# Default limits on surfaces per path and paths per pixel.
 _DEEPEST = 1 << 20
 _SAMPLES = 4096
-# What scenes may need, by their plans, that paths in a page do not know.
+# Features, as plans name them, that paths in a page do not support.
 _MISSING = ("masks", "smoke and haze", "patterned lights", "normals as given", "shapes in glass")
-# Bytes of a primitive: in the tree, with the two nodes that it takes at most, as a face, and its paint.
+# Bytes per primitive: in the tree, with the two nodes that it takes at most, as a face, and its paint.
 _EACH = 48 + 64 + 112 + 8
 
 
@@ -62,7 +62,7 @@ class Drawn:
         self._version = 0
         self._flat: FlatArrays | None = None
         self._arrays: dict[str, bytes] = {}
-        # What of the scene the page cannot shade as the core does.
+        # Features of the scene that the page cannot shade like the core.
         self._left: str | None = None
         self._known = ""
 
@@ -155,7 +155,7 @@ class Drawn:
         """Return the arrays of the scene as it is now; whoever asks holds the lock."""
         core = self._scene._compiled()
         if self._flat is None or self._core is not core:
-            # Copies become shapes of their own.
+            # Copies become separate shapes.
             scene = laid_out(self._scene).scene
             inner = scene._compiled()
             flat = flat_arrays(FlatScene(inner, scene.accelerator_choice, scene.quality, True))

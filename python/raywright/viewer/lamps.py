@@ -17,9 +17,9 @@ from ..lights import (
 from ..scene.scene import Scene
 from ..shapes.mesh import Mesh
 
-# Over the right shoulder of who looks.
+# Direction to the lamp, over the viewer's right shoulder.
 _RIGHT, _UP = 0.5, 0.8
-# A clear sky, where its colours are not at hand.
+# A clear sky, if its colours are unknown.
 _SKY = (0.25, 0.4, 0.65)
 
 

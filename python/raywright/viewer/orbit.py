@@ -13,7 +13,7 @@ from ..cameras import AnyCamera, Orthographic, Pose, ThinLens
 from ..cameras.any_camera import resized as resized
 from .boxes import check_flat, spread
 
-# Degrees from straight above or below: nearer than that, which way is up would not be told.
+# Least angle in degrees to straight up or down, where the roll would be undefined.
 _POLE = 1.0
 
 
@@ -37,7 +37,7 @@ class View:
     right: float = 0.0
     up: float = 0.0
 
-    # What each may be.
+    # Limits of each value.
     LIMITS: ClassVar[Mapping[str, tuple[float, float]]] = {
         "azimuth": (-1e6, 1e6),
         "elevation": (-180.0, 180.0),
@@ -156,7 +156,7 @@ class Orbit:
         if isinstance(self._camera, Orthographic):
             changes["scale"] = self._camera.scale / view.zoom
         if isinstance(self._camera, ThinLens):
-            # What it goes around stays in focus, if it was.
+            # The orbit's target stays in focus if it was.
             sharp = self._camera.focused_distance
             own = self._camera.focus_distance is not None
             changes |= {"focus_point": None, "focus_distance": sharp if own else sharp / view.zoom}
@@ -187,7 +187,7 @@ def _height(camera: AnyCamera, distance: float) -> float:
         t = (distance - (origins - np.array(camera.position)) @ forward) / (directions @ forward)
         points = origins + t[:, np.newaxis] * directions
     height = float(np.linalg.norm(points[0] - points[1]))
-    # Fisheyes and panoramas see more than a plane.
+    # Fisheyes and panoramas see beyond a plane.
     return height if math.isfinite(height) and (t > 0).all() else distance
 
 

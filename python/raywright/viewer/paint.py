@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 from ..query.flats import FlatArrays
 from ..shapes.mesh import Mesh
 
-# What tells of a material's colour, the first that it has.
+# Attributes with a material's colour, the first present one counts.
 _COLOURS = ("reflectance", "base_color", "diffuse", "transmittance")
 _PARTS = ("material", "front", "a")
 _GREY = (0.7, 0.7, 0.7)
-# In the fourth byte: what shines is not shaded.
+# Value of the fourth byte: emitting surfaces are not shaded.
 _SHINES = 255
 
 
@@ -75,7 +75,7 @@ def _three(value: Any) -> NDArray[np.float64] | None:
         return None
     try:
         pixels = np.asarray(getattr(value, "image", value))
-        # Bytes of an image are those of a screen.
+        # Bytes of an image are display-encoded.
         pixels = (pixels / 255.0) ** 2.2 if pixels.dtype == np.uint8 else pixels.astype(float)
     except (TypeError, ValueError):
         return None

@@ -9,7 +9,7 @@ from .session import Session, line_of
 
 # Pixels of a window, and stops of exposure.
 _WINDOW, _EXPOSURE = (16, 4096), (-20.0, 20.0)
-# Steps from the root of a tree to boxes.
+# Longest path from the root of a tree to a box.
 _DEEPEST = 1000
 
 

@@ -25,10 +25,10 @@ from .texts import FILES, text
 HOST = "127.0.0.1"
 _MOST_BODY = 4096
 _MOST_PAGES = 32
-# How soon it is seen that a page was closed, and how long a silent connection is kept.
+# Seconds until a closed page is noticed, and until a silent connection is closed.
 _LOOK = 0.1
 _SILENCE = 10.0
-# How long, and for how many bytes at most, a browser that still sends what is refused is listened to.
+# Seconds and bytes for which the server drains a refused request.
 _LINGER = 2.0
 _MOST_UNREAD = 1 << 20
 _HEADERS = {
@@ -70,7 +70,7 @@ class Server(ThreadingHTTPServer):
 
     daemon_threads = True
     block_on_close = False
-    # On Windows, that would let others take the port.
+    # On Windows, it would let other programs take the port.
     allow_reuse_address = sys.platform != "win32"
 
     def __init__(self, session: Session, port: int) -> None:
@@ -123,7 +123,7 @@ class Server(ThreadingHTTPServer):
 class _Handler(BaseHTTPRequestHandler):
     server: Server
     protocol_version = "HTTP/1.1"
-    # Which software answers is nobody's business.
+    # Does not reveal the server software.
     server_version, sys_version = "raywright", ""
     timeout = _SILENCE
 
@@ -145,7 +145,7 @@ class _Handler(BaseHTTPRequestHandler):
         try:
             how(self._path())
         except _RefusedError as refusal:
-            # What else there may be of the request is not read.
+            # The rest of the request is not read.
             self.close_connection = True
             self._send(refusal.status, "text/plain; charset=utf-8", f"{refusal.line}\n".encode())
 
@@ -157,7 +157,7 @@ class _Handler(BaseHTTPRequestHandler):
         origins = self.headers.get_all("Origin") or []
         if origins not in [[], *([f"http://{host}"] for host in server.hosts)]:
             raise _RefusedError(HTTPStatus.FORBIDDEN, "this server answers to its own page only")
-        # A link from elsewhere may lead here; nothing else may.
+        # A link from another site may lead to the page, but to nothing else.
         own = self.headers.get("Sec-Fetch-Site", "none") in ("none", "same-origin")
         if not own and self.headers.get("Sec-Fetch-Mode") != "navigate":
             raise _RefusedError(HTTPStatus.FORBIDDEN, "this server answers to its own page only")
@@ -179,7 +179,7 @@ class _Handler(BaseHTTPRequestHandler):
         elif path in ("events", "news"):
             self._events(session, with_pictures=path == "events")
         elif (data := bytes_of(session, path)) is not None:
-            # The address of an array holds its version, and what it holds never changes.
+            # The address of an array contains its version, so its content never changes.
             kept = (
                 {"Cache-Control": "private, max-age=86400, immutable"} if path.startswith("arrays/") else {}
             )
@@ -204,7 +204,7 @@ class _Handler(BaseHTTPRequestHandler):
 
     def _body(self) -> bytes:
         told = self.headers.get("Content-Length", "")
-        # http.server does not read what comes in chunks.
+        # http.server does not decode chunked bodies.
         if "Transfer-Encoding" in self.headers or not (told.isascii() and told.isdigit()):
             raise _RefusedError(HTTPStatus.LENGTH_REQUIRED, "the length of the body must be told")
         if len(told) > 9 or int(told) > _MOST_BODY:
@@ -223,7 +223,7 @@ class _Handler(BaseHTTPRequestHandler):
         self.close_connection = True
         try:
             self._head(HTTPStatus.OK, {"Content-Type": "text/event-stream", "Connection": "close"})
-            # Of before the scene is told: what changes in between is news.
+            # Taken before the scene is sent: changes in between count as news.
             news = session.news
             self._event("scene", scene_told(session))
             if with_pictures:
@@ -232,7 +232,7 @@ class _Handler(BaseHTTPRequestHandler):
             else:
                 self._news(session, news)
         except OSError:
-            # The page was closed while something was on its way.
+            # The page was closed during the transfer.
             pass
         finally:
             server.pages -= 1
@@ -299,7 +299,7 @@ class _Handler(BaseHTTPRequestHandler):
 
 def _has_left(connection: socket.socket) -> bool:
     """Whether the other side has closed a connection on which it has nothing to say."""
-    # poll, where there is one: select knows no more than 1024 connections.
+    # poll if available, since select is limited to 1024 connections.
     if hasattr(select, "poll"):
         poll = select.poll()
         poll.register(connection, select.POLLIN)

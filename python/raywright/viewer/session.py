@@ -24,15 +24,15 @@ from .boxes import check_flat, drawn, edges, largest
 from .drawn import Drawn
 from .orbit import Orbit, View, resized, scaled
 
-# What a preview may take: its samples, and its seconds.
+# Samples and seconds of a preview.
 _SAMPLES = 4
 _SECONDS = 0.03
-# How long a camera may rest, in seconds, before it counts as standing: moves of a mouse are nearer.
+# Seconds without a move after which a camera counts as standing: moves of a mouse follow faster.
 _REST = 0.02
-# Pixels of the first one, and how many times smaller than the picture any may be in each direction.
+# Pixels of the first preview, and bounds of its reduction in each direction.
 _PIXELS = 20_000
 _LEAST_DIVISOR, _MOST_DIVISOR = 2, 32
-# How long a render goes on without anyone who looks: a page that is loaded anew is soon back.
+# Seconds that a render continues without viewers: a reloaded page is back soon.
 _GRACE = 0.2
 
 
@@ -149,11 +149,11 @@ class Session:
         self._exposure, self._tone = exposure, tone
         self._scene, self._integrator, self._how = scene, integrator, dict(how)
         self._given = self._size = (camera.width, camera.height)
-        # Here, so that what there is to warn of is told to the caller, and Ctrl-C ends it.
+        # Compiled here, so that warnings point to the caller and Ctrl-C ends it.
         self._orbit = Orbit(camera, scene._compiled().bounds)
         self._view = View()
         self._boxes = self._level(boxes)
-        # What is wanted, by number, and the last of these that was rendered to its end.
+        # Number of the latest request, and of the last one rendered to its end.
         self._wanted, self._done = 1, 0
         self._frame: Frame | None = None
         self._count = self._shown = 0
@@ -391,7 +391,7 @@ class Session:
         limits = {"samples": _SAMPLES, "seconds": _SECONDS, "error": None, "adaptive": False}
         image = render(self._scene, small, self._integrator, progress=False, stop=job, **self._how | limits)
         self._show(image, job, "preview")
-        # So small that a sample of all pixels of the next takes about as long as it all may.
+        # Sized so that one sample of all pixels takes about the time of a preview.
         each = image.seconds / image.samples * self._divisor**2
         self._divisor = _divisor(each / _SECONDS)
 
@@ -400,7 +400,7 @@ class Session:
             # Until all pixels have a sample, the preview is the better picture.
             if image.samples:
                 if isinstance(image, ImageSoFar):
-                    # To tell errors of pixels, which nobody sees here, would take much longer.
+                    # Errors of pixels are not shown here and would take much longer.
                     image.settle_seen()
                 self._show(image, job, "refining")
 
@@ -419,7 +419,7 @@ class Session:
             ):
                 samples = 0 if state == "preview" else image.samples
                 if samples < last.image.samples:
-                    # A render that was left, and now begins anew, had come further.
+                    # An interrupted render that restarted was further before.
                     return
             self._count += 1
             seen_by = self._orbit.camera(job.view)
@@ -448,9 +448,9 @@ class _Job:
     session: Session
     number: int
     view: View
-    # Of the picture, in pixels.
+    # Size of the picture, in pixels.
     size: tuple[int, int]
-    # It is not left when the camera moves on: else nothing would be seen while that moves.
+    # A preview finishes even if the camera moves on: otherwise nothing would appear during a move.
     is_preview: bool = False
 
     def is_set(self) -> bool:

@@ -7,7 +7,7 @@ from importlib.resources import files
 from ..gpu.kernels import text as kernel
 
 _SCRIPT, _SHADER = "text/javascript; charset=utf-8", "text/plain; charset=utf-8"
-# Each module after those that it imports.
+# Each module follows its imports.
 MODULES = (
     "orbit.js",
     "device.js",
@@ -31,7 +31,7 @@ SHADERS = (
     "brought.wgsl",
     "error.wgsl",
 )
-# What is served besides arrays, by what follows the token, and of what type.
+# Static files and their types, by the path after the token.
 FILES = {
     "": "text/html; charset=utf-8",
     "page.css": "text/css; charset=utf-8",

@@ -15,10 +15,9 @@ from .requests import bytes_of, is_known, scene_told, told
 from .session import Session
 from .texts import SHADERS, bundled, text
 
-# Bytes of a message at most: some notebooks drop larger ones.
+# Most bytes per message: some notebooks drop larger ones.
 _PART = 4 << 20
-# How soon it is seen that a page looks on no more, and how long one may take to show a picture: then
-# it is gone.
+# Seconds until the session notices that a page has gone, and seconds that it may take to show a picture.
 _LOOK = 0.1
 _SILENCE = 10.0
 _BODY = re.compile(r"<body[^>]*>(.*)</body>", re.DOTALL)
@@ -78,7 +77,7 @@ class ViewerWidget(anywidget.AnyWidget):  # type: ignore[misc]
             self._watch(page, content.get("on") is True)
         elif what == "seen":
             watch = self._watches.get(page)
-            # One that was given up, as the kernel was busy for long, goes on.
+            # A page given up while the kernel was busy resumes.
             if watch is not None and watch.seen():
                 self._watch(page, True)
 

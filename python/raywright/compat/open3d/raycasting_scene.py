@@ -332,5 +332,5 @@ def _single(array: NDArray[Any]) -> NDArray[np.float32]:
 
 
 def _ids(numbers: NDArray[np.int32]) -> NDArray[np.uint32]:
-    # Of -1 it is INVALID_ID.
+    # -1 becomes INVALID_ID.
     return numbers.astype(np.uint32)

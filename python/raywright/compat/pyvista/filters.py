@@ -54,7 +54,7 @@ def ray_trace(
     start, end = np.array(triple("origin", origin)), np.array(triple("end_point", end_point))
     surface = surface_of("mesh", mesh)
     hits = surface.intersector._scene.intersect_all(start, end - start, t_max=1.0)
-    # A segment that runs along an edge meets several faces where it enters: one point, as in pyvista.
+    # A segment along an edge enters several faces at one point; pyvista returns that point once.
     is_new = np.diff(hits.t, prepend=-1.0) > 0
     points, cells = hits.position[is_new].astype(mesh.points.dtype), surface.cells[hits.primitive[is_new]]
     if first_point and len(points):

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from ..switch import Kept
 from ..trimesh_ray.intersector import RayMeshIntersector
 
-# Where a surface keeps its triangles.
+# Attribute of a mesh that caches its triangles.
 _OWN = "_raywright_surface"
 
 
@@ -41,7 +41,7 @@ def surface_of(name: str, mesh: Any) -> Surface:
     if not isinstance(mesh, pyvista.PolyData):
         raise TypeError(f"{name} must be a pyvista.PolyData, got {type(mesh).__name__}")
     parts = (mesh.GetPoints(), mesh.GetVerts(), mesh.GetLines(), mesh.GetPolys(), mesh.GetStrips())
-    # Times of modification count all changes of all objects, so that no two are the same.
+    # VTK's modification times count all changes of all objects, so no two are equal.
     key = tuple(part.GetMTime() for part in parts if part is not None)
     own = vars(mesh).get(_OWN)
     if own is None or own.key != key:
@@ -54,7 +54,7 @@ def surface_of(name: str, mesh: Any) -> Surface:
 
 def _triangles(mesh: Any, pyvista: Any) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Return the corners of triangles, (F, 3), and the cell of each."""
-    # Cells are numbered points first, then lines, polygons and strips.
+    # Cells are numbered vertices first, then lines, polygons and strips.
     before = mesh.GetNumberOfVerts() + mesh.GetNumberOfLines()
     if mesh.is_all_triangles and not before and not mesh.n_strips and mesh.n_cells:
         return np.asarray(mesh.regular_faces, np.int64), np.arange(mesh.n_cells)

@@ -13,11 +13,11 @@ Ints = NDArray[np.int64]
 
 _closest: Any = trimesh.triangles.closest_point
 
-# Squared distances that differ by less, relative to themselves, are equal.
+# Relative tolerance for equal squared distances.
 _EQUAL = 1e-8
-# Weights of a corner, and cosines, that differ by less are equal.
+# Tolerance for equal barycentric weights and equal cosines.
 _ROUNDING = 1e-9
-# Pairs of a point and a face that are looked at together: some 500 MB.
+# Pairs of a point and a face per batch: some 500 MB.
 _MOST = 2_000_000
 
 
@@ -32,7 +32,7 @@ class Neighbors:
 
     def __init__(self, triangles: Floats) -> None:
         self.triangles = triangles
-        # Minus zero is zero.
+        # Turns minus zero into zero.
         places = np.ascontiguousarray(triangles.reshape(-1, 3) + 0.0)
         rows = places.view([("", places.dtype)] * 3).reshape(-1)
         self.corners = np.unique(rows, return_inverse=True)[1].reshape(-1, 3).astype(np.int64)
@@ -92,7 +92,7 @@ def facing(
     if not len(asked):
         return
     cosine = _cosines(points[asked], position[asked], normals[face[asked]])
-    # No other can face the point more.
+    # A face with a cosine of 1 already faces its point; no other can do better.
     asked, cosine = asked[cosine < 1 - _ROUNDING], cosine[cosine < 1 - _ROUNDING]
     uv = found.uv[asked]
     weights = np.column_stack((1 - uv.sum(axis=1), uv))
@@ -122,7 +122,7 @@ def _replace(
     near = _closest(neighbors.triangles[faces], at[of])
     equal = ((at[of] - near) ** 2).sum(axis=1) <= best[of]
     of, faces, near = of[equal], faces[equal], near[equal]
-    # All faces at the corner have it as their closest point too.
+    # All faces at the corner share this closest point.
     others, which = neighbors.at_corner(face[asked], corner)
     of, faces, near = (
         np.concatenate(parts) for parts in ((of, others), (faces, which), (near, position[asked[others]]))
@@ -130,7 +130,7 @@ def _replace(
     cosine = _cosines(at[of], near, normals[faces])
     better = cosine > own[of] + _ROUNDING
     of, faces, near, cosine = of[better], faces[better], near[better], cosine[better]
-    # The last of each is the one that faces it most; of those the first face.
+    # The last entry of each point faces it most; among equals, the first face.
     order = np.lexsort((-faces, cosine, of))
     last = order[np.append(of[order][1:] != of[order][:-1], True)] if len(order) else order
     face[asked[of[last]]] = faces[last]

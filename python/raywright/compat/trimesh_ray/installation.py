@@ -8,7 +8,7 @@ import trimesh
 from ..switch import Installation, Kept, Replacement, Switch
 from .intersector import RayMeshIntersector
 
-# Where a mesh keeps what trimesh or its user gave it, and what it has instead.
+# Attributes of a mesh: the intersector from trimesh or its user, and its replacement.
 _GIVEN, _OWN = "ray", "_raywright_ray"
 
 _switch = Switch()
@@ -54,9 +54,9 @@ def install() -> Installation:
     """
     return _switch.on(
         [
-            # A property comes before what an instance holds, and so holds for meshes that there are already.
+            # A property on the class overrides instance attributes, so it affects existing meshes too.
             Replacement(_TRIMESH, "ray", property(intersector_of, _set_ray)),
-            # Packages that ask for embree are served: what they look for in its module is in this package.
+            # Packages that require embree work too: this package has the names of its module.
             Replacement(trimesh.ray, "has_embree", True),
             Replacement(trimesh.ray, "ray_pyembree", sys.modules[__package__]),
         ]

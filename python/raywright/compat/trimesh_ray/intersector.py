@@ -156,7 +156,7 @@ class RayMeshIntersector:
         """The mesh as it is now."""
 
         def make() -> Scene:
-            # Nothing of the vertices is lost; the core keeps float32 where that holds them all.
+            # No precision of the vertices is lost; the core stores float32 if that is exact.
             return Scene(Mesh(self.mesh.vertices, self.mesh.faces), precision="double").welded()
 
         scene: Scene = self._kept("scene", make)
@@ -164,7 +164,7 @@ class RayMeshIntersector:
 
     def _kept(self, name: str, make: Callable[[], Any]) -> Any:
         """Return what was made of the mesh as it is now, and make it if that has not been done."""
-        # The cache empties itself when the mesh has another hash.
+        # The cache clears itself when the hash of the mesh changes.
         value = self._cache[name]
         if value is None:
             value = self._cache[name] = make()
@@ -184,7 +184,7 @@ class RayMeshIntersector:
         if multiple_hits and most != 1:
             found = self._scene.intersect_all(*rays)
             depth = np.arange(found.t.size) - found.ray_splits[found.ray]
-            # Small numbers are sorted by their digits, in linear time.
+            # Small integers are radix-sorted, in linear time.
             depth = depth.astype(np.min_scalar_type(depth.max(initial=0)), copy=False)
             which = np.argsort(depth, kind="stable")
             if most is not None:
@@ -208,7 +208,7 @@ class RayMeshIntersector:
         return RayMeshIntersector(self.mesh, self._scale_to_box)
 
     def __deepcopy__(self, memo: dict[int, Any]) -> "RayMeshIntersector":
-        # Of the same mesh, as trimesh has it.
+        # The copy shares the mesh, as in trimesh.
         return self.__copy__()
 
     def __repr__(self) -> str:

@@ -15,7 +15,7 @@ Octets: TypeAlias = NDArray[np.uint8]
 Words: TypeAlias = NDArray[np.uint16]
 Plane: TypeAlias = NDArray[Any]
 
-# The least third byte of a block of B44 whose values are all equal; others have a shift of up to 12 there.
+# The least third byte of a flat block of B44; other blocks have a shift of up to 12 there.
 _FLAT = 13 << 2
 
 
@@ -62,13 +62,13 @@ def inflate(packed: bytes, size: int) -> bytes:
     ValueError
         If it is broken, or there are fewer or more.
     """
-    # No bound at all is what zlib takes 0 for.
+    # zlib takes 0 for no bound at all.
     if size < 1:
         raise ValueError("it is not as long as it should be")
     inflater = zlib.decompressobj()
     try:
         raw = inflater.decompress(packed, size)
-        # The end, with its check sum, may still be to come.
+        # The end of the stream, with its checksum, may still be to come.
         more = b"" if inflater.eof else inflater.decompress(inflater.unconsumed_tail, 1)
     except zlib.error as error:
         raise ValueError("its zlib stream is broken") from error
@@ -142,7 +142,7 @@ def unpack_pxr24(packed: bytes, block: Block, wanted: Sequence[Channel]) -> list
     for channel, cut in zip(wanted, _cut_rows(raw, block, sizes, wanted), strict=True):
         rows, width = block.shape(channel)
         octets = cut.reshape(rows, (4, 2, 3)[channel.kind], width)
-        # Bytes of the type from the highest to the lowest.
+        # Bytes of a sample from the highest to the lowest.
         differences = np.zeros((rows, width, channel.dtype.itemsize), np.uint8)
         for k in range(octets.shape[1]):
             differences[..., -1 - k] = octets[:, k]
@@ -155,7 +155,7 @@ def unpack_pxr24(packed: bytes, block: Block, wanted: Sequence[Channel]) -> list
 def unpack_b44(packed: bytes, block: Block, wanted: Sequence[Channel]) -> list[Plane]:
     """Unpack half channels from 4 x 4 samples in 14 bytes, or in 3 where all are equal; copy the others."""
     found = {}
-    # A block of 3 bytes may be the last, and is read as 14.
+    # A 3-byte block may be the last, but 14 bytes are read.
     octets = np.frombuffer(packed + bytes(11), np.uint8)
     at = 0
     for channel in block.part.channels:
@@ -202,18 +202,18 @@ def _values_of_4x4(octets: Octets, starts: NDArray[np.int64]) -> Words:
     triples = blocks[:, 2:].reshape(-1, 4, 3).astype(np.uint32) @ np.array([1 << 16, 1 << 8, 1], np.uint32)
     fields = triples[..., np.newaxis] >> np.array([18, 12, 6, 0], np.uint32) & np.uint32(63)
     shift = fields[:, :1, :1]
-    # By column and row. The first field is the shift; the others are steps down the first column, and from
-    # each of its samples to the right.
+    # By column and row. The first field is the shift. The others are differences down the first column, and
+    # to the right from each of its samples.
     steps = (fields.astype(np.int32) - 32 << np.minimum(shift, 12).astype(np.int32)).astype(np.uint16)
     steps[shift[:, 0, 0] >= 13] = 0
     steps[:, 0, 0] = blocks[:, 0].astype(np.uint16) << np.uint16(8) | blocks[:, 1]
-    # Whole arrays are added faster than `accumulate` goes along an axis of four.
+    # Whole-array additions are faster than `accumulate` along an axis of four.
     for k in range(1, 4):
         steps[:, 0, k] += steps[:, 0, k - 1]
     for k in range(1, 4):
         steps[:, k] += steps[:, k - 1]
     ordered: Words = steps.transpose(0, 2, 1).reshape(-1, 16)
-    # The bits of negative numbers were turned, so that all are in order.
+    # Bits of negative numbers are flipped, so that the order of words is that of the numbers.
     return np.where(ordered & 0x8000, ordered & 0x7FFF, ~ordered)
 
 

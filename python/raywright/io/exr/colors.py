@@ -9,9 +9,10 @@ Floats = NDArray[np.float32]
 
 # x and y of red, green, blue and white (ITU-R BT.709).
 REC_709 = (0.64, 0.33, 0.3, 0.6, 0.15, 0.06, 0.3127, 0.329)
-# Files round them.
+# Tolerance, since files round chromaticities.
 _ALIKE = 1e-3
-# What lies halfway between two of 14 samples, by OpenEXR's ImfRgbaYca.cpp; its sum is 1 but for rounding.
+# Half of the filter for the midpoint of 14 samples, of OpenEXR's ImfRgbaYca.cpp; its sum is 1 but for
+# rounding.
 _HALFWAY = np.array([0.002128, -0.007540, 0.019597, -0.043159, 0.087929, -0.186077, 0.627123])
 _HALFWAY = np.concatenate([_HALFWAY, _HALFWAY[::-1]]) / (2 * _HALFWAY.sum())
 

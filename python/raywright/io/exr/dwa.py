@@ -17,7 +17,7 @@ from .codecs import Block, Plane, Words, inflate
 from .header import Channel
 
 _STORED, _COSINES, _RUNS = range(3)
-# Where each sample of a block, row by row, stands among its coefficients, which come by falling importance.
+# Zigzag index of each sample of a block, row by row.
 _ZIGZAG = np.array(
     [
         (0, 1, 5, 6, 14, 15, 27, 28),
@@ -30,7 +30,7 @@ _ZIGZAG = np.array(
         (35, 36, 48, 49, 57, 58, 62, 63),
     ]
 ).ravel()
-# cos(k pi / 16) / 2, the first divided by the root of 2, as OpenEXR rounds them: exact ones change 1 of 600
+# cos(k pi / 16) / 2, the first divided by the root of 2, rounded as in OpenEXR: exact ones change 1 of 600
 # samples.
 _HALF_COSINES = (0.3535536, 0.4903927, 0.4619398, 0.4157349, 0.3535536, 0.2777855, 0.1913422, 0.09754573, 0)
 _HEAD = struct.Struct("<11Q")
@@ -113,7 +113,7 @@ def unpack_dwa(packed: bytes, block: Block, wanted: Sequence[Channel]) -> list[P
             end = begin + samples * channel.dtype.itemsize
             octets = np.frombuffer(raw[begin:end], np.uint8)
             if scheme == _RUNS:
-                # All first bytes, then all second ones, and so on.
+                # Bytes are stored in planes: all first bytes, then all second ones, and so on.
                 octets = np.ascontiguousarray(octets.reshape(-1, samples).T)
             found[channel.name] = octets.ravel().view(channel.dtype).reshape(block.rows, block.width)
             begin = end
@@ -164,7 +164,7 @@ def _coefficients(tokens: Words, blocks: int) -> Words:
     is_run = tokens >= 0xFF00
     steps = np.where(is_run, tokens & 0xFF, 1).astype(np.int64)
     ends = tokens == 0xFF00
-    # As if no block ended early; then what comes after an early end is moved to where the next block begins.
+    # Positions as if no block ended early; then data after an early end moves to the start of the next block.
     place = np.cumsum(steps) - steps
     early = np.flatnonzero(ends)
     lengths = np.diff(place[early], prepend=0)

@@ -173,8 +173,8 @@ def find_chunks(data: bytes, part: Part, table: int, numbered: bool) -> list[Chu
     _refuse(misplaced | ~is_first, lambda n: f"it is broken: chunk {n} is in no place of its own")
     x, y = column * width, row * rows
     widths, heights = np.minimum(width, part.width - x), np.minimum(rows, part.height - y)
-    # As floats: sizes of a hostile header may exceed 64 bits.
-    # Of four pixels, subsampled channels may have one.
+    # As floats: sizes of a hostile header may exceed 64 bits. A subsampled channel may have one sample for
+    # four pixels.
     fewest = 1.0 if part.is_whole else 1 / max(a * b for a, b in (c.sampling for c in part.channels))
     _refuse(
         widths * heights * float(part.pixel_bytes) * fewest > length * float(_MOST_RATIO[part.compression]),

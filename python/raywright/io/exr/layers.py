@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from .. import cryptomatte
 from .writer import write_exr
 
-# What the channels of each layer are called; one of no known name has "X".
+# Channel names of each layer; one of unknown name has "X".
 _CHANNELS = {
     "alpha": "A",
     "albedo": "RGB",

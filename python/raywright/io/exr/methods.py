@@ -40,6 +40,6 @@ def unpack(packed: bytes, block: Block, wanted: Sequence[Channel]) -> list[Plane
     ValueError
         If `packed` does not hold them.
     """
-    # Bytes that a method does not shorten are stored as they are.
+    # Chunks that would not shrink are stored raw.
     method = unpack_stored if len(packed) == block.size else _METHODS[block.part.compression]
     return method(packed, block, wanted)

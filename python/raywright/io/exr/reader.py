@@ -59,7 +59,7 @@ def read_exr(path: Path, choose: Callable[[list[str]], Sequence[str]]) -> NDArra
 def _pixels(data: bytes, part: Part, chunks: list[Chunk], wanted: list[Channel]) -> NDArray[np.float32]:
     """Return all pixels of channels, (H, W, C)."""
     pixels = np.empty((part.height, part.width, len(wanted)), np.float32)
-    # Those that a channel has, which are all or fewer.
+    # A subsampled channel has fewer samples than the picture has pixels.
     planes = [
         pixels[..., k]
         if channel.sampling == (1, 1)
@@ -74,7 +74,7 @@ def _pixels(data: bytes, part: Part, chunks: list[Chunk], wanted: list[Channel])
             found = unpack(packed, Block(part, chunk.width, chunk.rows, part.top + chunk.y), wanted)
         except ValueError as error:
             raise ValueError(f"chunk {number} is broken: {error}") from error
-        # A NaN of any bits is a NaN.
+        # Signalling NaNs raise no warning.
         with np.errstate(invalid="ignore"):
             for channel, plane, own in zip(wanted, planes, found, strict=True):
                 across, down = channel.sampling

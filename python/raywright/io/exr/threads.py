@@ -7,7 +7,7 @@ from typing import TypeVar
 T = TypeVar("T")
 Result = TypeVar("Result")
 
-# Below so many bytes it takes longer to start threads than to do without.
+# For fewer bytes, starting threads takes longer than it saves.
 _FEW = 2**20
 
 
@@ -17,7 +17,7 @@ def each(function: Callable[[T], Result], items: Sequence[T], size: int) -> Iter
     if workers < 2 or size < _FEW:
         yield from map(function, items)
         return
-    # Whoever packs nothing does not wait for the import.
+    # Imported here, because only packing needs it (import time).
     from concurrent.futures import ThreadPoolExecutor
 
     with ThreadPoolExecutor(workers) as pool:

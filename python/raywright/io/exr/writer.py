@@ -12,7 +12,7 @@ from .codecs import deflate
 from .header import LONG_NAMES, MAGIC
 from .threads import each
 
-# Of ZIP: its number, and the rows in a chunk.
+# ZIP compression: its number, and the rows in a chunk.
 _ZIP, _ROWS = 3, 16
 
 
@@ -77,7 +77,7 @@ def _header(width: int, height: int, kinds: Mapping[str, int], attributes: Mappi
         "type": ("string", b"scanlineimage"),
         **{name: ("string", told.encode()) for name, told in attributes.items()},
     }
-    # Names of more than 31 bytes, up to 255, are announced.
+    # A flag announces names of more than 31 bytes, up to 255.
     flags = LONG_NAMES if max(len(name.encode()) for name in (*found, *kinds)) > 31 else 0
     head = MAGIC + struct.pack("<I", 2 | flags)
     for name, (kind, value) in sorted(found.items()):

@@ -11,7 +11,7 @@ from .part import Part
 _KINDS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 _COLUMNS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}
 _INDICES = ("|u1", "<u2", "<u4")
-# Zeros that stand for what is not in the file: at most this many bytes.
+# Most bytes of zeros that an accessor without data may have.
 _MOST_ZEROS = 2**27
 
 
@@ -39,7 +39,7 @@ class Accessors:
         column by column.
         """
         accessor = self._named(part, name)
-        # Some programs have thousands of primitives share their vertices.
+        # Some programs share vertices among thousands of primitives.
         if accessor.index not in self._read:
             array = self._array(accessor)
             if array.dtype.kind != "f":

@@ -6,9 +6,9 @@ from collections.abc import Callable
 from ..pbr import Film, Picture, Within
 from .part import Part
 
-# The share of light that stands for none: no way that has an end takes all of it.
+# Replaces a transmittance of 0, which no finite distance reaches.
 _LEAST = 1e-6
-# Abbe's number over which dispersion is 1 (KHR_materials_dispersion).
+# Abbe's number for a dispersion of 1 (KHR_materials_dispersion).
 _ABBE = 20.0
 
 
@@ -17,7 +17,7 @@ def within(part: Part) -> Within | None:
     volume = part.extension("KHR_materials_volume")
     if volume is None or volume.number("thicknessFactor", 0.0, 0) == 0:
         return None
-    # How thick it is follows from the mesh. No distance is an infinite one, after which nothing is lost.
+    # The mesh itself has the thickness. Without a distance, nothing is absorbed.
     told = "attenuationDistance" in volume
     distance = volume.number("attenuationDistance", least=0) if told else math.inf
     color = volume.numbers("attenuationColor", 3, (1.0, 1.0, 1.0), 0, 1)

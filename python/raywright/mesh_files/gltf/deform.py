@@ -79,7 +79,7 @@ class Deform(NamedTuple):
             number += 1
         if not number:
             return None
-        # Weights that were rounded do not quite add up to 1. What hangs on nothing stays as bound.
+        # Rounded weights do not quite add up to 1. Vertices without joints keep their bind pose.
         free = total <= 0
         result[free], total[free] = np.eye(4), 1
         return result / total[:, None, None]

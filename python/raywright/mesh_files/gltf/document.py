@@ -14,7 +14,7 @@ from .part import Part
 
 _MAGIC, _JSON, _BIN = b"glTF", b"JSON", b"BIN\0"
 
-# What is read, or changes nothing that is seen.
+# Extensions that are read, or have no visible effect.
 _KNOWN = frozenset(
     {
         *NAMES,
@@ -183,7 +183,7 @@ def _chunks(data: bytes) -> tuple[memoryview, memoryview | None]:
         raise ValueError(f"it is cut short: it has {length} bytes by its header, and there are {len(data)}")
     found: dict[bytes, memoryview] = {}
     at = 12
-    # A few bytes after the last chunk are padding that some programs leave.
+    # A few bytes after the last chunk are padding by some programs.
     while at + 8 <= length:
         size, kind = struct.unpack_from("<I4s", data, at)
         if size > length - at - 8:

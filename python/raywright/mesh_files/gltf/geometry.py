@@ -77,7 +77,7 @@ class Geometry:
                 raise ValueError(f"{attributes.place} has {both}")
         used: Any = slice(None)
         if 2 * len(corners) < len(vertices):
-            # Few of the vertices that it shares with others.
+            # This primitive uses few of the shared vertices.
             used, corners = np.unique(corners, return_inverse=True)
         made = Mesh(
             vertices[used],
@@ -86,7 +86,7 @@ class Geometry:
             None if uv is None else uv[used],
             surface.material,
             surface.emission,
-            # Linear here, unlike what trimesh has of other files.
+            # Colors of vertices are linear in glTF, unlike those of other files from trimesh.
             None if colors is None else np.clip(colors[used, :3], 0, 1),
             name,
         )
@@ -103,7 +103,7 @@ class Geometry:
         if (alpha == alpha[0]).all():
             return self._materials.of(primitive, Vertices(True, alpha=float(alpha[0]))), colors, uv
         if surface.coordinates is None:
-            # Nothing else lies on texture coordinates.
+            # Texture coordinates are free, so that u can carry alpha.
             along = np.column_stack([u_of_alpha(surface, alpha), np.full(len(alpha), 0.5)])
             return self._materials.of(primitive, Vertices(True, alpha="u")), colors, along
         if plain and surface.alpha_mode == "BLEND":
@@ -125,7 +125,7 @@ class Geometry:
         if name not in attributes:
             return None
         uv = self._accessors.vectors(attributes, name, 2).astype(np.float64)
-        # glTF has v from the top of pictures downwards.
+        # v of glTF runs from the top of pictures downwards.
         uv[:, 1] = 1 - uv[:, 1]
         return uv
 

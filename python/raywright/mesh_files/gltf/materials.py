@@ -153,7 +153,7 @@ def _model(part: Part, seen: "_Seen") -> Pbr:
     rough = part.part("pbrMetallicRoughness")
     return Pbr(
         color=rough.numbers("baseColorFactor", 4, None, 0, 1) if "baseColorFactor" in rough else None,
-        # Of several sets of coordinates that of the base colour is kept: it is asked for first.
+        # Meshes keep one set of texture coordinates: that of the base colour, which is read first.
         color_picture=seen.picture(rough, "baseColorTexture"),
         metallic=rough.number("metallicFactor", None, 0, 1) if "metallicFactor" in rough else None,
         roughness=rough.number("roughnessFactor", None, 0, 1) if "roughnessFactor" in rough else None,

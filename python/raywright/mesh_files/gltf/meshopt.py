@@ -8,7 +8,7 @@ from .part import Part
 NAMES = ("EXT_meshopt_compression", "KHR_meshopt_compression")
 _MODES = ("ATTRIBUTES", "TRIANGLES", "INDICES")
 _FILTERS = ("NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL", "COLOR")
-# Bytes that a compressed one yields at most: 256 rows of four bytes take one, and an index takes a third.
+# Most output bytes per compressed byte: 256 rows of four bytes take one, and an index takes a third.
 _MOST = {"ATTRIBUTES": 1024, "TRIANGLES": 12, "INDICES": 4}
 
 

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-# Lengths, counts and offsets of any file there can be.
+# Beyond all lengths, counts and offsets of files.
 _MOST = 2**53
 
 
@@ -148,12 +148,12 @@ class Part:
 
 
 def _is_number(value: Any) -> bool:
-    # An integer may have more digits than a float can hold.
+    # An integer may exceed the range of floats.
     return type(value) in (int, float) and abs(value) <= 1.7e308
 
 
 def _integer(place: str, value: Any, came: str, least: int, most: int) -> int:
-    # JSON has one kind of number only, and some programs write 3.0.
+    # JSON has one type of number only, and some programs write 3.0.
     if not _is_number(value) or value != int(value):
         raise ValueError(f"{place} must be an integer, and is {came}")
     if not least <= value <= most:
@@ -167,7 +167,7 @@ def _told(value: Any) -> str:
     if isinstance(value, list | tuple | dict):
         kind = "an object" if isinstance(value, dict) else "a list"
         return f"{kind} of {len(value)}"
-    # Python refuses to write integers of more than some thousand digits.
+    # Python refuses to print integers of more than some thousand digits.
     told = repr(value) if not isinstance(value, int) or abs(value) < 10**30 else "a very great number"
     return told if len(told) <= 40 else f"{told[:37]}..."
 

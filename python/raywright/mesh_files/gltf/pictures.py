@@ -16,7 +16,7 @@ from .part import Part
 _FORMATS = ("PNG", "JPEG", "WEBP")
 _WRAPS: dict[int, Wrap] = {33071: "clamp", 33648: "mirror", 10497: "repeat"}
 _NEAREST = 9728
-# What takes v of glTF, which begins at the top, to ours, and back.
+# Maps v of glTF, which starts at the top, to ours, and back.
 _FLIP = np.array([(1.0, 0, 0), (0, -1, 1), (0, 0, 1)])
 
 
@@ -62,7 +62,7 @@ class Pictures:
         try:
             return decode(bytes(data), _FORMATS)
         except Exception as error:
-            # Pillow fails on bad bytes in every way there is.
+            # Pillow raises any exception on bad bytes.
             raise ValueError(f"{image.place} cannot be read: {reason(error)}") from error
 
 
@@ -89,7 +89,7 @@ def _transform(info: Part) -> UvTransform | None:
     turn = part.number("rotation", 0.0)
     across, down = part.numbers("scale", 2, (1.0, 1.0))
     cos, sin = np.cos(turn), np.sin(turn)
-    # Anticlockwise to the eye, which is the other way round in numbers where v goes down.
+    # Anticlockwise in the picture: the sign is reversed because v runs down.
     matrix = np.eye(3)
     matrix[:2, :2] = [(cos * across, sin * down), (-sin * across, cos * down)]
     matrix[:2, 2] = part.numbers("offset", 2, (0.0, 0.0))

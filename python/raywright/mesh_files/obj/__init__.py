@@ -61,8 +61,8 @@ def read_obj_whole(path: Path) -> Mesh | None:
 def _mesh(part: Part, library: Library) -> Mesh:
     span = None if part.uv is None else span_of(part.vertices, part.faces, part.uv)
     look = library.look(part.material, span)
-    # Colors of vertices are taken as sRGB: those of pictures and of scanners are.
+    # Colors of vertices are taken as sRGB, like those of pictures and scanners.
     look = look or colored(None if part.colors is None else shares_of(part.colors))
     shines = (look.material, look.emission, look.colors)
-    # What is parted by materials is called after them.
+    # Parts split by material are named after it.
     return Mesh(part.vertices, part.faces, part.normals, part.uv, *shines, part.material, cells=part.cells)

@@ -17,7 +17,7 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 _BACK = re.compile(rb"-[0-9]{1,18}")
-# Corners with more slashes than none, one or two.
+# By form: corners with more slashes than none, one or two.
 _MORE = [re.compile(rb"/" + rb"[^\s/]*/" * count) for count in range(3)]
 
 
@@ -75,7 +75,7 @@ class Geometry:
         tables: dict[bytes, list[bytes]] = {b"v": [], b"vt": [], b"vn": []}
         self.libraries: list[bytes] = []
         self._faces: dict[str | None, list[bytes]] = {}
-        # Where each run of faces of one material begins among those of the material.
+        # Start of each run of faces of one material, among all faces of that material.
         self._runs: list[tuple[str | None, int]] = [(None, 0)]
         name: str | None = None
         faces: list[bytes] | None = None
@@ -99,7 +99,7 @@ class Geometry:
         self._points = points[:, :3]
         self._colors = points[:, 3:6] if points.shape[1] >= 6 else None
         uv = _table(tables[b"vt"], "texture coordinates", 1)
-        # Those of one number are of curves, and of pictures one point high.
+        # Rows of one number belong to curves, or to pictures one pixel high.
         self._uv = uv[:, :2] if uv.shape[1] > 1 else np.column_stack([uv, np.zeros_like(uv)])
         self._normals = _table(tables[b"vn"], "normals", 3)[:, :3]
         self.lost: tuple[str, ...] = ()
@@ -151,7 +151,7 @@ class Geometry:
             self._points[point[used]],
             place[triangulate(self._points, point, counts)],
             self._normals[normal[used]] if has_normals else None,
-            # Corners without any share the first corner of pictures.
+            # Corners without coordinates get (0, 0).
             np.where(uv[used, None] < 0, 0.0, self._uv[uv[used]]) if has_uv else None,
             None if self._colors is None else self._colors[point[used]],
             None if is_plain else cells,
@@ -213,13 +213,14 @@ def _corners(lines: list[bytes]) -> tuple[NDArray[np.bool_], Integers, Integers]
         lines, counts = list(compress(lines, kept)), counts[kept]
     slashes = np.fromiter((line.count(b"/") for line in lines), np.int64, len(lines))
     result = np.zeros((int(counts.sum()), 3), np.int64)
-    # Corners of a face are all of one form, with none, one or two slashes; others are read one by one.
+    # Usually all corners of a face have one form, with none, one or two slashes; other faces are parsed one
+    # by one.
     forms = np.where(slashes % counts == 0, slashes // counts, 3)
     for form in np.unique(forms):
         chosen = forms == form
         rows = np.repeat(chosen, counts)
         text = b" ".join(compress(lines, chosen))
-        # Where none has more than it should, the right number in all is the right number in each.
+        # If no corner has too many numbers and the total is right, each corner has the right number.
         alike = form < 3 and _MORE[int(form)].search(text) is None
         found = _numbers(text.replace(b"//", b"/0/").replace(b"/", b" "), np.int64) if alike else ()
         columns = int(form) + 1
@@ -252,7 +253,7 @@ def _forwards(rest: bytes, tables: dict[bytes, list[bytes]]) -> bytes:
         parts = word.split(b"/")
         for i, (part, table) in enumerate(zip(parts, tables.values(), strict=False)):
             back = int(part[1:]) if _BACK.fullmatch(part) else 0
-            # What is before the first of them stays, and is found out of bounds.
+            # An index before the first entry stays relative, and is reported as out of bounds later.
             if 0 < back <= len(table):
                 parts[i] = b"%d" % (len(table) + 1 - back)
         return b"/".join(parts)

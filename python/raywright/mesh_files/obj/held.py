@@ -11,7 +11,7 @@ from .material import look_of_mtl
 from .mtl import Description, Statement, Statements
 from .notes import Notes
 
-# What trimesh reads of a library it keeps by its keywords, in small letters.
+# Keywords of material libraries that trimesh keeps, in lower case.
 _SURE = ("ka", "kd", "ke", "ks", "ns", "ni", "d", "tr", "illum", "pr", "pm")
 
 
@@ -36,7 +36,7 @@ def look_of_held(material: Any) -> Look:
         words = value if isinstance(value, list | tuple | np.ndarray) else [value]
         statements[name] = Statement(name, " ".join(map(str, words)))
     if not np.array_equal(to_rgba(material.kwargs.get("kd")), material.diffuse):
-        # Somebody has painted it since.
+        # The user has painted it since.
         color = linear(np.asarray(material.diffuse[:3], np.float64) / 255)
         statements["kd"] = Statement("Kd", " ".join(f"{x:.9g}" for x in color))
     held = {}

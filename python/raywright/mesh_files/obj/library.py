@@ -17,7 +17,7 @@ from .text import name_of, text_of, told
 
 LOST_FILES = "files of materials are left out"
 LOST_MATERIALS = "materials that are in no file beside it are left out"
-# No program names more files than this, and each is looked for.
+# More files than any program names, since the reader searches for each.
 _MOST = 256
 _ONE = re.compile(r"\S.*?\.mtl\b|\S+", re.IGNORECASE)
 
@@ -39,7 +39,7 @@ class Library:
         self._notes = notes
         self._files: list[tuple[Written, Pictures, Notes]] = []
         self._named = False
-        # In the order of the file, each once: many programs name theirs before each object.
+        # In the order of the file, each once: many programs repeat the name before each object.
         for line in islice(dict.fromkeys(map(name_of, lines)), _MOST):
             self._named = True
             for found in self._found(path, line):

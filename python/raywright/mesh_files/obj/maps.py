@@ -19,14 +19,14 @@ from .text import told
 
 LOST = "pictures are left out"
 LEFT_OUT = "what is not shown here is left out"
-# How many words follow an option, at least and at most; of those with several, numbers only.
+# By option: least and greatest number of words after it; optional words must be numbers.
 _OPTIONS = {
     **dict.fromkeys(("-blendu", "-blendv", "-cc", "-clamp", "-imfchan", "-type"), (1, 1)),
     **dict.fromkeys(("-bm", "-boost", "-texres"), (1, 1)),
     **dict.fromkeys(("-o", "-s", "-t"), (1, 3)),
     "-mm": (2, 2),
 }
-# What is said of a picture that is shown as it would be anyway.
+# Options and values without effect on a picture.
 _NOTHING = {
     "-blendu": ("on",),
     "-blendv": ("on",),
@@ -36,7 +36,7 @@ _NOTHING = {
     "-type": ("sphere",),
 }
 _CHANNELS: dict[str, Channel | None] = {"r": "r", "g": "g", "b": "b", "m": "a", "l": None}
-# The greatest number that makes sense in an option, and radiance, which is added up in 32 bits.
+# The greatest sensible number in an option, and the greatest radiance, which is summed in 32 bits.
 _MOST = 1e6
 BRIGHTEST = 1e30
 
@@ -112,7 +112,7 @@ class Pictures:
             return None
         options, name = _options(said, rest)
         held = self._held.get(keyword)
-        # Only what shines may be brighter than white.
+        # Only emission may be brighter than white.
         pixels = self._pixels(name, keyword == "map_Ke") if held is None else held
         if isinstance(pixels, str):
             said.note(LOST, f"{told(name)} ({pixels})")
@@ -132,7 +132,7 @@ class Pictures:
             except MemoryError:
                 raise
             except Exception as error:
-                # What reads them fails on bad bytes in every way there is, and has the path in its messages.
+                # Readers raise any exception on bad bytes, with the path in its message.
                 why = reason(error, 300).replace(f"{path} is not a picture that can be read ", "")
                 self._read[path, bright] = why.strip("()") or "it cannot be read"
         return self._read[path, bright]
@@ -176,7 +176,7 @@ def _options(said: Description, rest: str) -> tuple[dict[str, tuple[str, ...]], 
         option = words[at][0].lower()
         least, most = _OPTIONS[option]
         end = at + 1 + least
-        # A name may begin as a number does, and what is last is the name.
+        # A file name may begin like a number, and the last word belongs to the name.
         while end < min(at + 1 + most, len(words) - 1) and _is_number(words[end][0]):
             end += 1
         options[option] = tuple(word for word, _ in words[at + 1 : end])

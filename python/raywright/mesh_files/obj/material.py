@@ -35,10 +35,10 @@ from .text import told_keyword
 
 _GREY = np.full(3, 0.5)
 _HARDEST = 1e9
-# Some programs write an exponent of 0 or 1 where there are no highlights: MeshLab and trimesh.
+# MeshLab and trimesh write an exponent of 0 or 1 for no highlight.
 _NO_HIGHLIGHT = 1.0
 _MATT, _MIRRORS, _PANE = (0, 1), (3, 5), 4
-# A picture of heights, from black to white, is as high as this part of its width (a length of the mesh).
+# Height of a bump map from black to white, relative to its width (a length of the mesh).
 _BUMP = 0.01
 
 
@@ -55,7 +55,7 @@ def look_of_mtl(said: Description, pictures: Pictures, span: float | None) -> Lo
         How long on the surface 1 is in texture coordinates; None where there are none.
     """
     look = _Reading(said, pictures, span).look()
-    # Ambient light has no place here, and what only smooths pictures changes nothing.
+    # Ambient light is not simulated, and antialiasing of pictures has no effect.
     said.take("Ka", "map_Ka", "map_aat", "sharpness", "Ni", "Ns")
     said.unless_zero("Ps", "Pc", "aniso", "anisor")
     if "Pc" not in said.left:
@@ -83,7 +83,7 @@ class _Reading:
         opacity = self._opacity()
         body = self._glass()
         if body is not None:
-            # Glass shows what it bends, and nothing straight behind it.
+            # Glass transmits by refraction, so opacity does not apply.
             opacity = 1.0
         elif any(keyword in said for keyword in ("Pr", "map_Pr", "Pm", "map_Pm")):
             body = self._metallic_rough()
@@ -120,7 +120,7 @@ class _Reading:
         factor = None if color is None or not color.any() else _triple(color)
         if found is None:
             return None if factor is None else Emission(factor, both_sides=True)
-        # Black beside a picture is what programs write that keep one or the other.
+        # Programs that write either the factor or the picture leave the factor black beside a picture.
         texture = found.texture()
         return Emission(texture if factor is None else ProductTexture(texture, factor), both_sides=True)
 
@@ -134,7 +134,7 @@ class _Reading:
             there = said.number("d")
         through = said.number("Tr")
         if there is None:
-            # Nobody writes what cannot be seen: MeshLab wrote 1 for what is opaque.
+            # No program writes invisible materials: MeshLab wrote 1 for opaque ones.
             there = 1.0 if through in (None, 1.0) else 1 - (through or 0.0)
         found = self._picture("map_d")
         if found is None:
@@ -145,11 +145,11 @@ class _Reading:
         """Return a clear solid, where light is said to be bent."""
         said = self._said
         filters = said.color("Tf")
-        # A filter that is white, or of what is opaque black, says nothing that is not said elsewhere.
+        # A white filter has no effect, and a black one only repeats that the material is opaque.
         plain = filters is None or not filters.any() or bool((filters == 1).all())
         if not plain:
             said.note(LEFT_OUT, "Tf")
-        # Blender writes 6 for metal that is not all there.
+        # Blender writes illum 6 for partly transparent metal.
         bends = self._illum == 7 or (self._illum == 6 and said.blender is None)
         ior = self._ior() if bends and (filters is None or filters.any()) else None
         if ior is None:
@@ -169,7 +169,8 @@ class _Reading:
         rough, metal = self._share("Pr"), self._share("Pm")
         if rough is None:
             exponent = self._said.number("Ns", 0, _HARDEST)
-            # Lobes are as wide where alpha, roughness squared, is sqrt(2 / (Ns + 2)) (Walter et al., 2007).
+            # Lobes have the same width if alpha, roughness squared, is sqrt(2 / (Ns + 2)) (Walter et al.,
+            # 2007).
             rough = 1.0 if exponent is None else (2 / (exponent + 2)) ** 0.25
         return MetallicRough(self._base(), 0.0 if metal is None else metal, rough)
 
@@ -210,7 +211,7 @@ class _Reading:
         elif isinstance(base, Texture) or isinstance(share, Texture):
             matt = Diffuse(base)
         else:
-            # Both together reflect no more than comes.
+            # Together they reflect no more light than arrives.
             matt = Diffuse(np.minimum(base / (1 - share), 1.0))
         return Mix(matt, mirror, share)
 

@@ -59,7 +59,7 @@ def written(text: bytes) -> Written:
             value = rest.decode("utf-8", "replace").strip()
             current[keyword.lower()] = Statement(keyword, value)
     head = _BLENDER.match(text)
-    # Its first exporter, in Python, had 900; the one of version 3.1 and later tells its version.
+    # Blender's first exporter, in Python, had 900; from version 3.1 on, the exporter states its version.
     return Written(materials, None if head is None else 1000.0 if head[1] else 900.0)
 
 

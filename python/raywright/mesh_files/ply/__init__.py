@@ -74,7 +74,7 @@ def read_ply_whole(path: Path) -> Mesh | None:
 def _read(path: Path) -> tuple[Header, dict[str, Data]]:
     data = without_mark(path.read_bytes())
     header = read_header(data)
-    # What has no properties takes no place.
+    # Elements without properties take no bytes.
     elements = [element for element in header.elements if element.properties]
     if header.order:
         return header, read_bytes(data, header.order, header.end, elements)
@@ -96,7 +96,7 @@ def _mesh(path: Path, looks: bool) -> Mesh | None:
     normals = columns(vertices, ("nx", "ny", "nz"), ("normal_x", "normal_y", "normal_z"))
     uv = coordinates(vertices) if found.uv is None else found.uv
     used = found.used
-    # Programs write zeros where they know none.
+    # Some programs write zeros for unknown normals.
     if normals is not None and not normals.any():
         normals = None
     normals = None if normals is None else normals[used]
@@ -107,7 +107,7 @@ def _mesh(path: Path, looks: bool) -> Mesh | None:
     of_vertices = {name: array[used] for name, array in attributes(vertices).items()}
     polygon = found.polygon
     of_faces = {} if polygon is None else attributes(elements["face"])
-    # Where each polygon is a triangle, they are told apart by the face.
+    # If all polygons are triangles, the number of the face suffices.
     is_plain = polygon is None or np.array_equal(polygon, np.arange(len(polygon)))
     return Mesh(
         points[used],

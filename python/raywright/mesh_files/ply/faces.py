@@ -99,7 +99,7 @@ def _strips(strips: Lists) -> Integers:
     begins[0] = True
     begins[1:] |= indices == -1
     at = np.arange(len(indices))
-    # How many corners of the same strip come before.
+    # Number of preceding corners in the same strip.
     first = np.maximum.accumulate(np.where(begins[:-1], at, 0))
     within = at - first
     last = at[(indices != -1) & (within >= 2)]

@@ -56,7 +56,7 @@ def read_header(data: bytes) -> Header:
     if data[:3].lower() != b"ply" or found is None:
         raise ValueError("it has no header of a PLY")
     end = found.end()
-    # Where carriage returns alone end lines, a line feed behind the last is a byte of the body.
+    # If carriage returns alone end lines, a line feed after the last one belongs to the body.
     first = re.search(rb"\r\n|\r|\n", data)
     if found[1] == b"\r\n" and first is not None and first[0] == b"\r":
         end -= 1
@@ -97,7 +97,7 @@ def _property(words: list[str]) -> Property:
 
 
 def _count(text: str) -> int:
-    # Longer ones are no counts, and slow to read.
+    # Longer numbers are no counts, and slow to parse.
     if not re.fullmatch(r"\d{1,18}", text, re.ASCII):
         raise ValueError(f"{text[:20]!r} is no count")
     return int(text)

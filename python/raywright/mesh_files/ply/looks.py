@@ -15,7 +15,7 @@ from ..look import Look, colored
 
 Floats = NDArray[np.float64]
 
-# Names of red, green and blue, as programs write them.
+# Names of red, green and blue in use.
 _COLORS = (
     ("red", "green", "blue"),
     ("r", "g", "b"),

@@ -7,7 +7,7 @@ from ...mesh_files.gltf.document import Document
 from ...mesh_files.gltf.nodes import Node
 from ...mesh_files.gltf.part import Part
 
-# Where the file does not say how wide a picture is to its height.
+# Size of pictures if the file does not state an aspect ratio.
 _WIDTH, _HEIGHT = 640, 480
 
 
@@ -31,13 +31,13 @@ def camera(document: Document, nodes: list[Node]) -> AnyCamera | None:
 
 
 def _made(part: Part, kind: str, node: Node) -> AnyCamera:
-    # It looks along its -z with y up; what else its node does to lengths and angles does not count.
+    # The camera looks along its -z with y up; scale and shear of its node do not count.
     position, ahead, up = node.world[:3, 3], -node.world[:3, 2], node.world[:3, 1]
     if kind == "perspective":
         fov = math.degrees(part.number("yfov", None, 0, math.pi))
         aspect = part.number("aspectRatio", _WIDTH / _HEIGHT, 0)
         return Camera(position, None, up, fov, _width(aspect), _HEIGHT, direction=ahead)
-    # Some programs write negative ones to mirror, which a picture has no use for.
+    # Some programs mirror by negative values, which have no meaning for a picture.
     across, high = abs(part.number("xmag")), abs(part.number("ymag"))
     aspect = across / high if high else 0.0
     return Orthographic(position, None, up, 2 * high, _width(aspect), _HEIGHT, direction=ahead)

@@ -10,8 +10,8 @@ from ...mesh_files.gltf.document import Document
 from ...mesh_files.gltf.nodes import Node
 from ...mesh_files.gltf.part import Part
 
-# Lumens in a watt of light of 555 nm, by the definition of the candela. Candela and lux of the file are
-# divided by it, channel by channel; it is what Blender multiplies by as it writes lights.
+# Lumens per watt at 555 nm, by the definition of the candela. It converts candela and lux of the file,
+# channel by channel, and is the factor in Blender's exporter.
 LUMENS_PER_WATT = 683.0
 
 _EXTENSION = "KHR_lights_punctual"
@@ -51,7 +51,7 @@ def _light(part: Part, node: Node) -> Light | None:
     inner = cone.number("innerConeAngle", 0.0, 0)
     if not inner < outer:
         raise ValueError(f"{cone.place} must have an inner angle below the outer one, and has {inner:g}")
-    # Far from the origin a step of 1 would be rounded away.
+    # Far from the origin, rounding would remove a step of 1.
     reach = max(1.0, float(np.abs(position).max()))
     rim = min(math.degrees(outer), 90.0)
     return SpotLight(position, position + reach * ahead, amount, rim, min(math.degrees(outer - inner), rim))

@@ -10,7 +10,7 @@ from ...mesh_files.gltf.stands import moved, stands
 from ...scene.instance import AnyShape, Instance
 from ...shapes.mesh import Mesh
 
-# From so many faces on, copies are kept as copies: below, meshes of their own are faster to hit.
+# Copies of fewer faces become separate meshes, which are faster to hit; others become instances.
 _MANY_FACES = 50_000
 
 
@@ -27,7 +27,7 @@ def shapes(document: Document, nodes: list[Node]) -> Iterator[AnyShape]:
             if (len(copies) - 1) * faces < _MANY_FACES:
                 alone += copies
                 continue
-            # What is mirrored is wound the other way, in its copies too.
+            # Mirrored meshes have reversed winding, as have their copies.
             mirror = np.diag([side, 1.0, 1, 1])
             yield Instance([*moved(made, mirror)], np.array(copies) @ mirror)
         for world in alone:

@@ -15,7 +15,7 @@ from .plugin import Plugin
 
 Floats = NDArray[np.float64]
 
-# How the parts of one attribute are told apart.
+# Suffixes for the components of one attribute.
 _ENDINGS = ("rgb", "xyz", "012", "123")
 
 

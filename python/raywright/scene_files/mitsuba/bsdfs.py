@@ -67,7 +67,7 @@ def sides(plugin: Plugin, uv: Uv) -> Sides:
     except SceneError:
         raise
     except (ValueError, TypeError) as error:
-        # What a material refuses is told with the plugin that asks for it.
+        # Errors of a material name the plugin that needs it.
         raise SceneError(f"{plugin}: {error}") from error
     plugin.done()
     plugin.context.kept[key] = result
@@ -119,14 +119,15 @@ def _plastic(plugin: Plugin, uv: Uv) -> Sides:
     rough = facets(plugin, uv) if plugin.type == "roughplastic" else SMOOTH
     if not isinstance(rough.alpha, float):
         plugin.fail("alpha must be one number")
-    # What the coat reflects back to the base: as Mitsuba has it, and as it is here.
+    # Internal reflectance of the coat: as in Mitsuba, and as it is here.
     own = theirs = coats.smooth(ior)
     if rough is not SMOOTH:
         own, theirs = coats.rough(ior, rough.alpha, rough.distribution)
     nonlinear = plugin.switch("nonlinear", False)
 
     def change(colours: NDArray[np.float64]) -> NDArray[np.float64]:
-        # What makes r / (1 - own r) here of theirs: r / (1 - theirs r), or unless nonlinear r / (1 - theirs).
+        # The result c has c / (1 - own c) equal Mitsuba's r / (1 - theirs), or r / (1 - theirs r) if
+        # nonlinear.
         trapped = theirs * (colours if nonlinear else 1.0)
         return np.minimum(colours / (1 - trapped + own * colours), 1.0)
 

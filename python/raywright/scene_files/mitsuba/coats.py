@@ -96,7 +96,7 @@ class _Beckmann(_Facets):
         return normals, weights / weights.sum()
 
     def masking(self, tangent: Floats) -> Floats:
-        # To 0.35 %, as Mitsuba has it (Walter et al., 2007).
+        # A fit to 0.35 %, as in Mitsuba (Walter et al., 2007).
         a = 1 / np.sqrt(np.maximum(tangent, 1e-12))
         share = (3.535 * a + 2.181 * a * a) / (1 + 2.276 * a + 2.577 * a * a)
         return np.where(a < 1.6, share, 1.0)
@@ -113,7 +113,7 @@ def _visible(w: Floats, alpha: float, u: Floats, v: Floats) -> Floats:
     share = 0.5 * (1 + stretched[2])
     y = (1 - share) * np.sqrt(1 - x * x) + share * y
     z = np.sqrt(np.maximum(1 - x * x - y * y, 0.0))
-    # The frame of the stretched direction: y of the surface, and what is at right angles to both.
+    # Axes around the stretched direction: the surface's y, and the perpendicular of both.
     across = np.array([-stretched[2], 0.0, stretched[0]])
     facets = x[:, None] * (0.0, 1.0, 0.0) + y[:, None] * across + z[:, None] * stretched
     facets *= (alpha, alpha, 1.0)

@@ -30,15 +30,15 @@ from .values import UNIFORM, colour, shade
 
 TYPES = ("point", "spot", "projector", "directional", "constant", "envmap", "sunsky")
 
-# Points across what a spot throws through a texture, and the widest that does: beyond they lie too far apart.
+# Pixels across the picture of a textured spot, and its greatest angle: pixels are too far apart beyond.
 _FEWEST, _MOST, _WIDEST = 512, 2048, 80.0
-# What a luminance of the sky, in cd/m² over 683 lm/W, is divided by in Mitsuba: the integral of the
-# observer's green over wavelengths in nm (CIE 1931).
+# Mitsuba divides the luminance of the sky, in cd/m² over 683 lm/W, by this: the integral of the observer's
+# green over wavelengths in nm (CIE 1931).
 _SKY = 106.856895
 
-# Rows to which smaller environment maps are refined.
+# Smaller environment maps are refined to this number of rows.
 _ROWS = 1024
-# In Mitsuba's maps the middle is seen along +z, in raywright's along -z.
+# Mitsuba's maps have their middle along +z, raywright's along -z.
 _HALF_TURN: Matrix = np.diag([-1.0, 1.0, -1.0])
 
 
@@ -106,11 +106,11 @@ def _picture_spot(
     cutoff, beam = angles
     if not 0 < cutoff <= _WIDEST:
         plugin.fail(f"cutoff_angle must be above 0 and at most {_WIDEST:g} with a texture, got {cutoff:g}")
-    # As many to each of the picture's, where there can be, so that between them the same is thrown.
+    # A multiple of the texture's pixels where possible, so that interpolation does not change the pattern.
     side = max(thrown.size_of(texture))
     count = min(side * max(-(-_FEWEST // side), 1), _MOST)
     tangent = math.tan(math.radians(cutoff))
-    # From the left of the picture, which is +x, to its right, and from its top, +y.
+    # From the left of the picture, at +x, to its right, and from its top, at +y.
     plane = 1 - 2 * (np.arange(count) + 0.5) / count
     x, y = plane[None, :], plane[:, None]
     cosine = 1 / np.sqrt(1 + tangent**2 * (x * x + y * y))
@@ -133,8 +133,8 @@ def _projector(plugin: Plugin) -> ProjectorLight:
     if texture is None:
         image = np.broadcast_to(colour(plugin, "irradiance", 1.0, emits=True), (1, 1, 3))
     else:
-        # As many points to each of the picture's, or enough for the edges of a checkerboard: at its border
-        # Mitsuba goes on with what is beyond, and a projector here stays as it is for half a point.
+        # A multiple of the picture's pixels, or enough for the edges of a checkerboard. At its border Mitsuba
+        # continues the texture, and a projector here is constant over half a pixel.
         finer = max(-(-_FEWEST // max(width, height)), 1)
         width, height = width * finer, height * finer
         u, v = np.meshgrid((np.arange(width) + 0.5) / width, (np.arange(height) + 0.5) / height)
@@ -172,7 +172,7 @@ def _map(plugin: Plugin) -> EnvironmentMap:
     else:
         image = read_linear(plugin.path())
     plugin.ignore("mis_compensation")
-    # Lengths of the axes do not count, as directions are all that is asked.
+    # Only directions count, so the lengths of the axes do not matter.
     linear = straightened(plugin.to_world())[:3, :3]
     return EnvironmentMap(_rows(image), linear @ _HALF_TURN, plugin.number("scale", 1.0))
 
@@ -193,7 +193,7 @@ def _daylight(plugin: Plugin) -> SunSky:
         clock = timedelta(hours=hour, minutes=minute, seconds=second)
         time = datetime(year, month, day, tzinfo=timezone(zone)) + clock
         south, east, up = SunSky.at(time, *place, up=(0.0, 0.0, 1.0), north=(1.0, 0.0, 0.0)).sun
-        # Mitsuba (3.9) has its x to the south, and y to the west.
+        # Mitsuba (3.9) has x to the south and y to the west.
         sun = np.array([-south, east, up])
     turbidity = plugin.number("turbidity", 3.0)
     if turbidity < 2:
@@ -217,7 +217,7 @@ def _rows(image: NDArray[Any]) -> NDArray[Any]:
     height = len(image)
     if height < 2 or height >= _ROWS:
         return image
-    # A whole number of rows to each of the picture's, so that between them they are as even.
+    # A multiple of the picture's steps, so that interpolation stays linear between its rows.
     count = (height - 1) * math.ceil(_ROWS / (height - 1))
     at = (np.arange(count) + 0.5) / count * (height - 1)
     above = np.minimum(at.astype(np.int64), height - 2)

@@ -21,7 +21,7 @@ from .plugin import Plugin, Triple
 from .textures import scalar, value
 from .uv import Uv
 
-# Stands for an index of refraction of 0, at which everything is reflected.
+# Replaces an index of refraction of 0, where everything is reflected.
 _NEXT_TO_NOTHING = 1e-9
 
 
@@ -37,12 +37,12 @@ def conductor(plugin: Plugin, uv: Uv) -> Material:
             eta = _positive(eta)
         metal: Material = Conductor(eta=eta, k=k, **rough)
     elif name != "none":
-        # Of some it also has, or only has, the values of Palik's handbook.
+        # Some metals have Palik's values as an alternative, or only those.
         name = name.removesuffix("_palik")
         if plugin.context.by_wavelength:
             metal = Conductor(name, **rough)
         else:
-            # The variants of red, green and blue make colours of both numbers before they reflect by them.
+            # RGB variants of Mitsuba convert eta and k to colours before computing reflection.
             index = metal_index(name)
             eta, k = (Spectrum(index.wavelengths, part).rgb for part in (index.eta, index.k))
             metal = Conductor(eta=_positive(eta), k=_positive(k), **rough)

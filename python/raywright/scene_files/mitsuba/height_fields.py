@@ -64,7 +64,7 @@ def _middles(of: Floats) -> Floats:
 def _normals(heights: Floats) -> Floats:
     """Return unit normals at the points, (H, W, 3): of those of the patches around, the mean."""
     rows, columns = heights.shape
-    # Along x on the two edges of each patch that go so, and along y on the other two.
+    # Slopes of each patch's two edges along x, and of its two along y.
     along_x = np.diff(heights, axis=1) * (columns - 1) / 2
     along_y = np.diff(heights, axis=0) * (rows - 1) / 2
     total = np.zeros((*heights.shape, 3))

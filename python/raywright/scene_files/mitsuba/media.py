@@ -19,12 +19,12 @@ TYPES = ("homogeneous", "heterogeneous")
 PHASES = ("isotropic", "hg", "rayleigh")
 VOLUMES = ("constvolume", "gridvolume")
 WRAPS = ("clamp", "repeat")
-# Of a grid that goes on as far as its shape does.
+# Most cells of a grid that repeats as far as its shape extends.
 _MOST_CELLS = 2**26
 # The least and the greatest corner, (2, 3).
 Box = NDArray[np.float64]
 
-# Under which the plugins of a scene have told each other of media.
+# Keys under which the plugins of a scene share their media.
 _WITHIN, _AROUND = "media within", "media around"
 
 
@@ -51,14 +51,14 @@ def filled(plugin: Plugin, material: Material | None, box: Box | None = None) ->
     if (interior is not None or is_null) and plugin.values.get("flip_normals"):
         plugin.fail("flip_normals with a medium within, or a null BSDF, is not supported")
     if is_null:
-        # Without a medium that is a hole.
+        # A null BSDF without a medium is a hole.
         return Mask(Dielectric(), 0.0) if interior is None else Boundary(interior)
     if interior is not None and isinstance(material, Tinted):
         if isinstance(material.base, ThinDielectric):
             plugin.fail("a medium within a pane of specular_transmittance other than 1 is not supported")
         return replace(material, base=replace(material.base, interior=interior))
     if interior is None or not isinstance(material, Dielectric | ThinDielectric):
-        # Nothing is seen of what is within an opaque shape.
+        # The inside of an opaque shape is invisible.
         return material
     return replace(material, interior=interior)
 
@@ -73,10 +73,10 @@ def around(scene: Plugin, eye: Plugin) -> Medium | None:
     """
     kept = scene.context.kept
     found = list(kept.get(_AROUND, ()))
-    # A sensor may stand within a shape.
+    # The sensor may be inside a shape.
     seen = (medium(inner) for inner in eye.children(*TYPES))
     found += [one for one in seen if one not in kept.get(_WITHIN, ())]
-    # Shapes that stand in one another tell of what is around them alone.
+    # Media inside other shapes are none of the surroundings.
     outside = [one for one in found if one not in kept.get(_WITHIN, ())]
     if any(one != outside[0] for one in outside):
         scene.fail("several media are around shapes; one can fill the space")
@@ -129,7 +129,7 @@ def _read(plugin: Plugin, box: Box | None) -> Medium:
             return _shared(plugin, grid(shares, WRAPS), box, extinction, phase)
         albedo = _constant(plugin, "albedo", 0.75)
         return Homogeneous(*_parts(_constant(plugin, "sigma_t", 1.0), albedo, scale), phase)
-    # There is nothing of it where its extinction has no volume.
+    # No medium exists outside the volume of the extinction.
     dimmed = _volume(plugin, "sigma_t", 1.0)
     scattered = _volume(plugin, "albedo", 0.75)
     extinction = scale * dimmed.colour
@@ -151,7 +151,7 @@ def _shared(
     low, high = (np.zeros(3), np.ones(3)) if albedo.bounds is None else np.array(albedo.bounds, np.float64)
     corners = np.stack(np.meshgrid(*box.T, indexing="ij"), -1).reshape(-1, 3)
     inverse = np.linalg.inv(albedo.transform)
-    # In cells of the grid, and one of them farther, so that there are neighbours on both sides.
+    # In cells of the grid, plus one on either side for interpolation.
     cells = ((corners @ inverse[:3, :3].T + inverse[:3, 3]) - low) / (high - low) * size
     first, last = np.floor(cells.min(axis=0)).astype(int) - 1, np.ceil(cells.max(axis=0)).astype(int) + 1
     if np.prod((last - first).astype(float)) > _MOST_CELLS:

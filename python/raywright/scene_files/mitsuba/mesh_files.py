@@ -15,7 +15,7 @@ from .transforms import Matrix
 Floats = NDArray[np.float64]
 
 _FACES = (
-    # Which way a face of the cube looks, and its corners with the coordinates (0, 1), (1, 1), (1, 0), (0, 0).
+    # Normal of each face of the cube, and its corners with the coordinates (0, 1), (1, 1), (1, 0), (0, 0).
     ((0, -1, 0), ((1, -1, -1), (1, -1, 1), (-1, -1, 1), (-1, -1, -1))),
     ((0, 1, 0), ((1, 1, -1), (-1, 1, -1), (-1, 1, 1), (1, 1, 1))),
     ((1, 0, 0), ((1, -1, -1), (1, 1, -1), (1, 1, 1), (1, -1, 1))),
@@ -120,7 +120,7 @@ def smooth_normals(vertices: Floats, faces: NDArray[np.int64]) -> Floats:
     total = np.zeros_like(vertices)
     for k in range(3):
         a, b = (_unit(corners[:, (k + step) % 3] - corners[:, k]) for step in (1, 2))
-        # Kahan's angle, which keeps its digits where the cosine is near 1.
+        # Kahan's angle, which stays accurate where the cosine is near 1.
         angle = 2 * np.arctan2(np.linalg.norm(a - b, axis=1), np.linalg.norm(a + b, axis=1))
         np.add.at(total, faces[:, k], own * angle[:, None])
     return _unit(total)

@@ -12,11 +12,11 @@ from .errors import SceneError
 from .transforms import Matrix, matrix_of, uv_matrix
 
 Triple = tuple[float, float, float]
-# What a plugin may have whatever its type, and what changes no picture.
+# Parameters of all plugins that do not affect the picture.
 _COMMON = ("type", "id")
 _MOST_LEVELS = 64
-# Deeper than plugins lie within plugins in any scene, references followed. Where each refers to the next
-# twice, what is read doubles at every level.
+# Deeper than plugins nest in any scene, references included. If each referred to the next twice, the work
+# would double at every level.
 _MOST_WITHIN = 12
 
 
@@ -33,11 +33,11 @@ class Context:
 
     def __init__(self, tree: Mapping[str, Any], folders: list[Path]) -> None:
         self.folders = folders
-        # What has been read, by what it was read of: much is referred to from many places.
+        # Results by plugin, since many places refer to the same one.
         self.kept: dict[Any, Any] = {}
         self._named: dict[str, Any] = {}
         self._warned: set[str] = set()
-        # Whether there is a spectrum, so that all of it is rendered by wavelength.
+        # True if the scene has a spectrum, so that all of it is rendered by wavelength.
         self.by_wavelength = False
         self._name(tree, "", 0)
 
@@ -101,7 +101,7 @@ class Plugin:
             raise SceneError(f"{where}: a plugin must have a type, got {kind!r}")
         if where.count(".") > _MOST_WITHIN:
             raise SceneError(f"{where[:60]} ...: plugins nest more than {_MOST_WITHIN} deep")
-        # Mitsuba's own names are in lower case, and it takes some of them in capitals.
+        # Mitsuba's own names are in lower case; it accepts some in capitals.
         self.type, self.where, self.context = kind.lower(), where, context
         self.values = values
         self._left = {key for key in values if key not in _COMMON}

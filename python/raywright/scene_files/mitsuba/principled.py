@@ -12,7 +12,7 @@ from .plugin import Plugin
 from .textures import scalar, value
 from .uv import Uv
 
-# What they are called here, where that differs.
+# Names here, if they differ.
 _NAMES = {
     "roughness": "roughness",
     "anisotropic": "anisotropic",
@@ -57,7 +57,7 @@ def principled_thin(plugin: Plugin, uv: Uv) -> Material:
         "diffuse_transmittance_sampling_rate",
         "diffuse_reflectance_sampling_rate",
     )
-    # From 0 to 2 there.
+    # From 0 to 2 in Mitsuba.
     across = scalar(plugin, "diff_trans", 0.0, uv)
     half: Number = ProductTexture(across, 0.5) if isinstance(across, Texture) else 0.5 * across
     eta = plugin.number("eta", 1.5)

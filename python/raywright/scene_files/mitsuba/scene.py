@@ -17,7 +17,7 @@ from .errors import SceneError
 from .plugin import Context, Plugin
 from .xml import read_xml
 
-# What a scene may hold that others refer to: it is read where it is referred to.
+# Plugins that serve as targets of references, and are read there.
 _SHARED = (
     "area",
     *bsdfs.TYPES,
@@ -32,7 +32,7 @@ _SHARED = (
 )
 
 
-# What numbers of files may lead to is told in other ways.
+# Numeric problems of file contents are reported otherwise.
 @np.errstate(all="ignore")
 def from_mitsuba(
     scene: Mapping[str, Any] | str | PathLike[str],
@@ -133,7 +133,7 @@ def _read(scene: Plugin, number: int, weld: Weld) -> Shot:
     if asked.hidden and any(shapes.shines(one) for one in found):
         integrators[0].warn("hide_emitters hides what is around: surfaces that shine are seen")
     if asked.unaimed:
-        # What has no size is met by no ray.
+        # No ray hits a light without extent.
         lights = []
     film = _only(eye, *sensors.FILMS)
     has_border = film is not None and film.switch("sample_border", False)

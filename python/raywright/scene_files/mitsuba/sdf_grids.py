@@ -9,8 +9,7 @@ from .errors import SceneError
 
 Floats = NDArray[np.float64]
 
-# A cell of the grid is cut into as many along each axis before the surface is followed through it, as far as
-# there are no more cells than these.
+# Subdivisions of a grid cell along each axis before the surface is extracted, and the most cells after it.
 _FINER, _MOST_CELLS = 3, 8_000_000
 # The six tetrahedra of a cube about its diagonal from corner 0 to corner 7; bits are x, y and z.
 _TETRAHEDRA = ((0, 1, 3, 7), (0, 3, 2, 7), (0, 2, 6, 7), (0, 6, 4, 7), (0, 4, 5, 7), (0, 5, 1, 7))
@@ -89,7 +88,7 @@ def _tetrahedra(points: NDArray[np.int64], values: Floats) -> NDArray[np.int64]:
         corners = points[:, tetrahedron]
         below = values[corners] < 0
         count = below.sum(1)
-        # The corner that is alone comes first, and of two and two those below do.
+        # The single corner on its side comes first; of two and two, the two below.
         order = np.argsort(np.where((count == 3)[:, None], below, ~below), axis=1, kind="stable")
         a, b, c, d = np.take_along_axis(corners, order, 1).T
         one = (count == 1) | (count == 3)
@@ -111,7 +110,7 @@ def _on_edges(edges: NDArray[np.int64], grid: Floats, fine: Floats, finer: int) 
     below, above = np.where(swapped, ends[1], ends[0]), np.where(swapped, ends[0], ends[1])
     low, high = np.zeros(len(edges)), np.ones(len(edges))
     scale = np.array(grid.shape[::-1]) - 1.0
-    # Along a diagonal the grid is a cubic. Halving finds its zero to 1e-9 of the edge.
+    # Along a diagonal the grid is a cubic. Bisection finds its zero to 1e-9 of the edge.
     for _ in range(30):
         middle = 0.5 * (low + high)
         inside = _between(grid, below + (above - below) * middle[:, None])[0] < 0

@@ -13,7 +13,7 @@ from .plugin import Plugin
 from .transforms import Matrix, frame, straightened
 
 TYPES = ("perspective", "thinlens", "orthographic", "radiancemeter", "distant")
-# What Mitsuba has, or had, besides these.
+# Other sensors that Mitsuba has or had.
 OTHERS = (
     "batch",
     "fluencemeter",
@@ -105,7 +105,7 @@ def _perspective(plugin: Plugin, crop: Crop) -> Camera:
         return Camera.from_matrix(
             straightened(plugin.to_world()), "mitsuba", fov=fov, fov_axis=axis, width=width, height=height
         )
-    # The film's own middle and focal length, in pixels of the part.
+    # Principal point and focal length of the whole film, in pixels of the crop.
     length = {"x": crop.size[0], "y": crop.size[1], "diagonal": math.hypot(*crop.size)}
     length |= {"smaller": min(crop.size), "larger": max(crop.size)}
     focal = 0.5 * length[axis] / math.tan(math.radians(0.5 * fov))
@@ -126,7 +126,7 @@ def _thin_lens(plugin: Plugin, crop: Crop) -> ThinLens:
     fov, axis = field_of_view(plugin)
     if not crop.centred:
         plugin.fail("of a thin lens only the middle of the film can be rendered")
-    # The same part of all lengths, so that the axis does not matter.
+    # The crop is the same share of both axes, so the axis of the field of view does not matter.
     fov = 2 * math.degrees(math.atan(math.tan(math.radians(0.5 * fov)) * crop.part[0] / crop.size[0]))
     for name in "xy":
         if plugin.number(f"principal_point_offset_{name}", 0.0) != 0.0:
@@ -148,7 +148,7 @@ def _orthographic(plugin: Plugin, crop: Crop) -> Orthographic:
     across, down = (float(np.linalg.norm(matrix[:3, k])) for k in range(2))
     if abs(across - down) > 1e-6 * across:
         plugin.fail("to_world must scale x and y alike")
-    # Two units of the camera's own space across the film, from +x on the left to -x.
+    # In camera space the film spans two units, from +x on the left to -x.
     (w, h), (a, b), (x, y) = crop
     unit = 2.0 / w
     shift: Matrix = np.eye(4)
@@ -182,7 +182,7 @@ def _distant(plugin: Plugin, crop: Crop, scene: Scene) -> Orthographic:
     way = plugin.vector("direction", (0.0, 0.0, 1.0)) if plugin.has("direction") else plugin.to_world()[:3, 2]
     bounds = scene.bounds
     corners = target[None] if bounds is None else np.where(np.isfinite(bounds), bounds, target)
-    # Twice as far as anything, and at least so that rays do not start on it.
+    # Twice the farthest distance, plus 1 so that rays do not start on the scene.
     away = 2 * float(np.linalg.norm(corners - target, axis=1).max()) + 1.0
     return _one_ray(plugin, crop, target - way / np.linalg.norm(way) * away, way)
 
@@ -192,7 +192,7 @@ def _one_ray(plugin: Plugin, crop: Crop, place: Matrix, way: Matrix) -> Orthogra
         plugin.fail(f"its film must be of 1 by 1 pixels, got {crop.part[0]} by {crop.part[1]}")
     if not np.linalg.norm(way) > 0:
         plugin.fail("its direction must have a length")
-    # So little of the scene that all rays see the same.
+    # A film so small that all rays coincide.
     scale = 1e-9 * max(1.0, float(np.abs(place).max()))
     up = frame(way / np.linalg.norm(way))[1]
     return Orthographic(place, direction=way, up=up, scale=scale, width=1, height=1)

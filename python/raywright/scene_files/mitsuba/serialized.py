@@ -14,9 +14,9 @@ Floats = NDArray[np.float64]
 
 _MAGIC = 0x041C
 _NORMALS, _COORDINATES, _COLOURS, _DOUBLE = 0x0001, 0x0002, 0x0008, 0x2000
-# What is read of a name.
+# Longest name to read.
 _LONGEST_NAME = 4096
-# A file of zeros grows a thousandfold; what is said to be more is no mesh.
+# Zeros inflate a thousandfold, so a file may claim any size; a larger one is no mesh.
 _MOST = 2**33
 
 
@@ -60,7 +60,7 @@ def _start(path: Path, data: bytes, index: int) -> tuple[int, int]:
         raise SceneError(f"{path} is a serialized mesh of version {version}; 3 and 4 are read")
     if index == 0:
         return 4, version
-    # The starts of all meshes stand at the end, and last of all how many there are.
+    # Offsets of all meshes are at the end of the file, followed by their number.
     (count,) = struct.unpack_from("<I", data, len(data) - 4)
     if not 0 <= index < count:
         raise SceneError(f"{path} has no mesh {index}: it has {count}")

@@ -17,7 +17,7 @@ from ...rendering.filters import (
 from ...rendering.samplers import Halton, Sampler, Sobol, Stratified
 from .plugin import Plugin
 
-# Among media or not, and forwards, these are path tracing all the same.
+# With or without media, and with derivatives or not, these are path tracing.
 _PATHS = ("path", "volpath", "volpathmis", "prb", "prb_basic", "prbvolpath")
 INTEGRATORS = (*_PATHS, "ptracer", "direct", "ao", "aov", "depth", "moment")
 SAMPLERS = (
@@ -101,7 +101,7 @@ def _moment(plugin: Plugin) -> Asked:
 
 
 def _depths(plugin: Plugin) -> tuple[int | None, int]:
-    # Mitsuba counts what is seen as the first: at a depth of 1 there are emitters only.
+    # Mitsuba counts emission as the first bounce: a depth of 1 shows emitters only.
     depth, roulette = plugin.integer("max_depth", -1), plugin.integer("rr_depth", 5)
     if depth == 0 or depth < -1 or roulette < 1:
         plugin.fail(
@@ -117,7 +117,7 @@ def _direct(plugin: Plugin) -> Asked:
         plugin.fail(
             f"emitter_samples and bsdf_samples must be at least 0, and not both, got {light} and {surface}"
         )
-    # Both ways alone find the same light on average, but for what only the other can find.
+    # Either strategy alone finds the same light on average, except light that only the other can find.
     if surface == 0:
         plugin.warn(
             "without bsdf_samples mirrors and smooth glass would be black; here they show what shines"

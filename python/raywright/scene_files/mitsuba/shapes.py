@@ -58,7 +58,7 @@ def _mesh(plugin: Plugin) -> tuple[Mesh, ...]:
     if smooth:
         normals = mesh_files.smooth_normals(vertices, faces)
     elif plugin.type in own:
-        # All corners of each face have its own normal.
+        # Faces have flat normals.
         normals = None
     noise = triangles.noise(matrix)
     found = _colored(plugin, mesh_files.Triangles(vertices, faces, normals, uv), names)
@@ -80,7 +80,7 @@ def _colored(plugin: Plugin, placed: mesh_files.Triangles, names: set[str]) -> t
         plugin.fail(f"mesh_attribute is read of ply files only, and {plugin.type} has none")
     of_faces, colours = attributes.read_attribute(plugin.path(), names.pop())
     if of_faces:
-        # Corners of faces that differ are not shared.
+        # Faces do not share corners, so that each keeps its colour.
         corners = faces.reshape(-1)
         vertices, colours = vertices[corners], np.repeat(colours, 3, axis=0)
         normals, uv = (None if one is None else one[corners] for one in (normals, uv))
@@ -108,7 +108,7 @@ def _by_hand(plugin: Plugin, triangles: mesh_files.Triangles) -> tuple[Mesh, ...
 def _curves(plugin: Plugin) -> Mesh:
     least, swept = (2, tubes.linear) if plugin.type == "linearcurve" else (4, tubes.b_spline)
     matrix = plugin.to_world()
-    # The transform moves control points, and leaves radii as they are.
+    # The transform moves control points but not radii.
     placed = [
         np.column_stack([curve[:, :3] @ matrix[:3, :3].T + matrix[:3, 3], curve[:, 3]])
         for curve in curves.read_curves(plugin, least)
@@ -118,7 +118,7 @@ def _curves(plugin: Plugin) -> Mesh:
 
 
 def _distance_grid(plugin: Plugin) -> Mesh:
-    # Its shading goes evenly from cell to cell, or not at all.
+    # Normals of the grid are smooth across cells, or flat.
     plain = plugin.choice("normals", "smooth", ("smooth", "analytic")) == "analytic"
     if plugin.has("grid"):
         grid = np.asarray(plugin.take("grid"), np.float64)
@@ -131,7 +131,8 @@ def _distance_grid(plugin: Plugin) -> Mesh:
     found = sdf_grids.surface(grid)
     triangles = mesh_files.Triangles(found.vertices, found.faces, found.normals)
     vertices, faces, normals, _ = triangles.placed(plugin.to_world(), plugin.switch("flip_normals", False))
-    # All of it has the colour at the texture's first corner: within that cell of a checkerboard, if just so.
+    # The whole surface has the colour of the texture's first corner; of a checkerboard, barely within that
+    # cell.
     corner = np.full((len(vertices), 2), _CORNER)
     return Mesh(vertices, faces, None if plain else normals, corner, *_look(plugin, SAME))
 
@@ -140,7 +141,7 @@ def _height_field(plugin: Plugin) -> tuple[Mesh, ...]:
     inner = list(plugin.children("bitmap"))
     if len(inner) + plugin.has("filename") != 1:
         plugin.fail("either filename or one texture of type bitmap must be given")
-    # How finely to look at a texture that is a formula; pictures have their own points.
+    # Resolution for sampling procedural textures; pictures have their own.
     plugin.ignore("width", "height")
     if inner:
         found = heights(inner[0])
@@ -157,7 +158,7 @@ def _height_field(plugin: Plugin) -> tuple[Mesh, ...]:
 def _sphere(plugin: Plugin) -> Sphere:
     matrix = plugin.to_world()
     center, radius = plugin.vector("center", (0.0, 0.0, 0.0)), plugin.number("radius", 1.0)
-    # Mitsuba has a sphere that is mirrored inside out.
+    # In Mitsuba a mirroring transform turns a sphere inside out.
     inside_out = plugin.switch("flip_normals", False) != bool(np.linalg.det(matrix[:3, :3]) < 0)
     material, emission = _look(plugin, SPHERE, inside_out)
     return Sphere(center, radius, transform=_moved(matrix), material=material, emission=emission)
@@ -226,7 +227,7 @@ def _look(
     found = [bsdfs.material(inner, uv) for inner in plugin.children(*bsdfs.TYPES)]
     if len(found) > 1:
         plugin.fail("a shape must have one BSDF only")
-    # Lamps are black, and all else is grey on its front.
+    # Default materials: black for lamps, a grey front for all others.
     default = bsdfs.BLACK if emission is not None else TwoSided(Diffuse(0.5), bsdfs.BLACK)
     material = media.filled(plugin, found[0] if found else None, box) or default
     plugin.ignore("silhouette_sampling_weight")

@@ -13,7 +13,7 @@ from .plugin import Plugin
 Floats = NDArray[np.float64]
 
 VOLUME = "volume"
-# Edges are no longer than such a part of the least side of a cell, nor are there more faces.
+# Longest edge relative to the least side of a cell, and the most faces.
 _PART, _MOST_FACES = 0.5, 4_000_000
 
 

@@ -5,8 +5,8 @@ from numpy.typing import NDArray
 
 from ...textures.blackbody import planck
 
-# What light of equal energy at all wavelengths is, of a luminance of 1: reddish, as white is D65. By the
-# matrix from CIE 1931 XYZ that Mitsuba has (ITU-R BT.709).
+# Colour of an equal-energy spectrum of luminance 1: reddish, as white is D65. By Mitsuba's matrix from CIE
+# 1931 XYZ (ITU-R BT.709).
 EVEN = np.array((1.204794, 0.948291, 0.908916))
 
 

@@ -20,7 +20,7 @@ _LUMINANCE = np.array([0.212671, 0.715160, 0.072169])
 
 TYPES = ("bitmap", "checkerboard", "mesh_attribute", VOLUME)
 
-# What is done to colours, of numbers and of every point of a picture.
+# A change of colours, applied to constants and to each pixel of a picture.
 Change = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 
 
@@ -56,7 +56,7 @@ def value(
         if change is None:
             return found
         if plugin.context.by_wavelength and not isinstance(found, Spectrum) and len({*found}) > 1:
-            # What is changed there is the smooth spectrum that colours become beside spectra.
+            # Among spectra, a colour becomes a smooth spectrum; the change applies to that.
             nm = np.arange(360.0, 831.0, 5.0)
             found = Spectrum(nm, smooth_spectrum(found, True, False, nm.tolist()))
         return at_each_nm(found, change) if isinstance(found, Spectrum) else _changed(found, change)
@@ -92,7 +92,7 @@ def _whole(plugin: Plugin | None) -> Plugin | None:
 def numbers(plugin: Plugin, uv: Uv) -> Texture:
     """Return a texture of numbers."""
     if plugin.type == "checkerboard":
-        # Asked for a number rather than a colour, Mitsuba (3.9) has the two the other way round.
+        # For scalar parameters, Mitsuba (3.9) swaps the two colours.
         return _checkerboard(plugin, uv, None, ("color1", "color0"))
     return texture(plugin, uv, _grey, grey=True)
 
@@ -173,7 +173,7 @@ def normals(plugin: Plugin, uv: Uv) -> ImageTexture:
     """Return a picture of normals, along u and v as raywright has them."""
 
     def turn(colours: NDArray[np.float64]) -> NDArray[np.float64]:
-        # Along v Mitsuba has what makes a right-handed frame with u and the normal.
+        # Mitsuba's bitangent makes a right-handed frame with u and the normal.
         return np.stack([colours[..., 0], 1 - colours[..., 1], colours[..., 2]], -1)
 
     if plugin.type == "rawconstant":
@@ -222,9 +222,9 @@ def _checkerboard(plugin: Plugin, uv: Uv, change: Change | None, names: tuple[st
     matrix = plugin.to_uv() @ uv.matrix
     plugin.done()
     if isinstance(a, Texture) or isinstance(b, Texture):
-        # Two cells to a unit.
+        # Two cells per unit.
         return Checker(a, b, UvTransform(matrix=(np.diag([2.0, 2.0, 1.0]) @ matrix)[:2]))
-    # Its cells have sharp edges however small they are seen, which those of `Checker` do not.
+    # Its cells keep sharp edges at any distance, unlike those of `Checker`.
     cells = np.array([(b, a), (a, b)], np.float32)
     return ImageTexture(cells, filter="nearest", transform=UvTransform(matrix=matrix[:2]))
 

@@ -130,7 +130,7 @@ def _array(value: Any) -> Matrix:
         array = np.array(given, dtype=np.float64)
     except (TypeError, ValueError):
         raise ValueError(f"must be a matrix, got {type(value).__name__}") from None
-    # Where Mitsuba's variants work on many numbers at once, a matrix is an array of one.
+    # Vectorized variants of Mitsuba give an array of one matrix.
     return array[..., 0] if array.ndim == 3 and array.shape[2] == 1 else array
 
 

@@ -25,13 +25,13 @@ class Uv(NamedTuple):
     left_handed: bool = False
 
 
-# Meshes are given Mitsuba's coordinates, and cylinders have them.
+# Meshes get Mitsuba's coordinates, and cylinders have them already.
 SAME = Uv(np.eye(3))
-# The latitude counts from the pole on +z.
+# The latitude starts at the pole on +z.
 SPHERE = Uv(np.array([(1.0, 0.0, 0.0), (0.0, -1.0, 1.0), (0.0, 0.0, 1.0)]))
-# u is the distance from the centre and v the angle.
+# u is the distance from the centre, and v the angle.
 DISK = Uv(np.array([(0.0, -1.0, 1.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)]), turned=True)
-# Faces of meshes on which u, v and the normal are left-handed, as on all of the cube.
+# Meshes with a left-handed frame of u, v and the normal, such as the cube.
 MIRRORED = Uv(np.eye(3), left_handed=True)
 
 # Mitsuba's pictures have their top row at v = 0.

@@ -11,7 +11,7 @@ from ...textures import Spectrum
 from . import spectra
 from .plugin import Plugin, Triple
 
-# Types of plugins that are one colour, or one number, all over.
+# Plugin types with one constant colour or number.
 UNIFORM = (
     "rgb", "srgb", "spectrum", "uniform", "regular", "irregular", "d65", "rawconstant", "blackbody",
 )  # fmt: skip

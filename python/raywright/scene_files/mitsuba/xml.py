@@ -10,7 +10,7 @@ from xml.parsers import expat
 from .errors import SceneError
 from .transforms import of_elements
 
-# Elements that stand for plugins: what is within them are their parameters.
+# Elements that are plugins: elements within them are their parameters.
 _OBJECTS = (
     "scene",
     "shape",
@@ -26,7 +26,7 @@ _OBJECTS = (
     "phase",
     "volume",
 )
-# As deep as Mitsuba lets files include each other; more files, and deeper elements, than any scene has.
+# Mitsuba's own limit of include depth; then more files, and deeper elements, than any scene has.
 _MOST_INCLUDES, _MOST_FILES, _MOST_LEVELS = 15, 1000, 64
 
 _COMMENT = re.compile(rb"<!--(.*?)-->", re.DOTALL)
@@ -82,7 +82,7 @@ class _Reader:
 
     def __init__(self, given: dict[str, str], folder: Path | None) -> None:
         self.values = dict(given)
-        # The names of parameters that stand in the files.
+        # Names of parameters that the files use.
         self.asked: set[str] = set()
         self.folders: list[Path] = [] if folder is None else [folder]
         self._given = len(self.folders)
@@ -95,7 +95,7 @@ class _Reader:
         if root.tag not in _OBJECTS:
             raise SceneError(f"{path}, line {root.line}: <{root.tag}> is no plugin")
         if path.parent not in self.folders:
-            # The folder that somebody has named comes last.
+            # Folders given by the user come last.
             self.folders.insert(max(len(self.folders) - self._given, 0), path.parent)
         before, self._here, self._depth = (self._here, self._depth), str(path), depth
         attributes = self._filled(root)
@@ -121,7 +121,7 @@ class _Reader:
 
     def _child(self, element: Element, tree: Tree) -> None:
         tag = element.tag
-        # A default is the file's own word on what the text after it may stand for.
+        # Values of parameters may occur in a default, too.
         attributes = self._filled(element)
         if tag == "default":
             name = self._need(element, attributes, "name")
@@ -160,7 +160,7 @@ class _Reader:
             return self._put(element, tree, included.get("id"), included)
         for key, value in included.items():
             if key not in ("type", "id"):
-                # What has no name of its own has one with a space, and gets another.
+                # Keys with a space stand for elements without a name, which get a new key here.
                 self._put(element, tree, None if " " in key else key, value)
 
     def _value(self, element: Element, attributes: dict[str, str]) -> Any:
@@ -168,7 +168,7 @@ class _Reader:
         if tag in _OBJECTS or (tag == "spectrum" and "type" in attributes):
             return self._object(element, attributes)
         if tag == "transform":
-            # What Mitsuba 0.6 calls lookAt.
+            # Mitsuba 0.6 spells it lookAt.
             steps = [(step.tag.lower(), self._filled(step)) for step in element.children]
             return of_elements(steps, lambda why: self._fail(element, why))
         if tag == "ref":
@@ -212,7 +212,7 @@ class _Reader:
         def value(found: re.Match[str]) -> str:
             if found[1] is None:
                 return "$"
-            # The longest name that is known, as names may run on into what follows.
+            # The longest known name, as text may follow it directly.
             for end in range(len(found[1]), 0, -1):
                 if (text := self.values.get(found[1][:end])) is not None:
                     self.asked.add(found[1][:end])
@@ -329,7 +329,7 @@ def _modern(tree: Tree) -> Tree:
     result: Tree = {}
     for key, value in tree.items():
         inner = _modern(value) if isinstance(value, dict) else value
-        # An id is its author's own.
+        # An id belongs to the author of the scene and keeps its spelling.
         own = isinstance(value, dict) and value.get("type") != "ref" and value.get("id") == key
         result[key if own else _snake(key)] = inner
     if result.get("type") == "diffuse" and "diffuse_reflectance" in result:

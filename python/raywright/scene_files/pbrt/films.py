@@ -14,9 +14,9 @@ _RGB_FROM_XYZ = np.array(
     [(3.240479, -1.537150, -0.498535), (-0.969256, 1.875991, 0.041556), (0.055648, -0.204043, 1.057311)]
 )
 _XYZ_FROM_RGB = np.linalg.inv(_RGB_FROM_XYZ)
-# The cone responses of von Kries' adaptation (Lam, "Metamerism and Colour Constancy", 1985: Bradford).
+# Cone responses for von Kries' adaptation (Lam, "Metamerism and Colour Constancy", 1985: Bradford).
 _LMS_FROM_XYZ = np.array([(0.8951, 0.2664, -0.1614), (-0.7502, 1.7135, 0.0367), (0.0389, -0.0685, 1.0296)])
-# Below it daylight is not defined, and a black body is white.
+# Below, daylight is not defined and white is a black body.
 _COLDEST_DAYLIGHT = 4000.0
 
 
@@ -76,7 +76,7 @@ def film(kind: str, parameters: Parameters) -> Film:
         if parameters.has(name):
             parameters.fail(f"{name} is not supported")
     if parameters.text("sensor", "cie1931") != "cie1931":
-        # White is that of daylight of 6500 K in both.
+        # White is daylight of 6500 K with or without a sensor.
         parameters.notes.tell("a film's sensor is left out: colours are those that the eye sees")
     white = _above_0(parameters, "whitebalance", 0.0, zero=True)
     if white and not math.isclose(white, 6500, rel_tol=0.01):
@@ -95,7 +95,7 @@ def film(kind: str, parameters: Parameters) -> Film:
         white or None,
         _above_0(parameters, "maxcomponentvalue", 1.0) if parameters.has("maxcomponentvalue") else None,
     )
-    # Where pictures are written, and what only other cameras and further pictures take.
+    # Parameters of output files, and of other cameras and films.
     parameters.ignore(
         "filename", "savefp16", "diagonal", "coordinatesystem", "nbuckets", "lambdamin", "lambdamax"
     )
@@ -127,7 +127,7 @@ def balance(kelvin: float) -> Floats:
 
 def _white(kelvin: float) -> Floats:
     """Return daylight of a correlated temperature as XYZ with a Y of 1 (CIE 015:2018)."""
-    # The constant of Planck's law has changed since daylight was defined.
+    # The constant in Planck's law has changed since the definition of daylight.
     t = kelvin * 1.4388 / 1.4380
     if t < _COLDEST_DAYLIGHT:
         xyz = _XYZ_FROM_RGB @ np.array(_core.spectrum_rgb(planck(t).tolist(), False))

@@ -59,7 +59,7 @@ def light(
         place, target = at("from", (0, 0, 0)), at("to", (0, 0, 1))
         delta = min(delta, angle)
         inner, outer = (math.cos(math.radians(one)) for one in (angle - delta, angle))
-        # Of the solid angle between the cones half counts.
+        # Half of the solid angle between the cones counts.
         scale *= _total(parameters, "power", 2 * math.pi * (1 - 0.5 * (inner + outer)))
         shine = _shine(parameters, "I", scale, imaging)
         made = SpotLight(place, target, shine, angle, delta, "smooth")
@@ -117,13 +117,13 @@ def _projection(
     image = read_linear(textures.folder / parameters.text("filename"))
     fov = parameters.number("fov", 90.0)
     height, width = image.shape[:2]
-    # Along the shorter side.
+    # The field of view is that of the shorter side.
     tall = math.tan(math.radians(0.5 * fov)) * max(1.0, height / width)
     place, ahead, up = matrix[:3, 3], matrix[:3, 2], matrix[:3, 1]
-    # As a camera stands there: what is mirrored shows the picture mirrored.
+    # Oriented like the picture of a camera there: a mirroring transform mirrors the picture.
     if np.linalg.det(matrix[:3, :3]) > 0:
         image = image[:, ::-1]
-    # pbrt's intensity is that of the picture, without the inverse cube of the cosine.
+    # In pbrt the picture is the intensity, without the inverse cube of the cosine.
     rows, columns = image.shape[:2]
     y = (1 - 2 * (np.arange(rows) + 0.5) / rows) * tall
     x = (1 - 2 * (np.arange(columns) + 0.5) / columns) * tall * width / height
@@ -168,7 +168,7 @@ def unfolded(image: NDArray[Any]) -> NDArray[Any]:
     x = np.sin(polar)[:, None] * np.sin(turn)
     z = -np.sin(polar)[:, None] * np.cos(turn)
     u, v = folded(x, y, z)
-    # As many points lie as densely here and there: the nearest is as good as any between.
+    # Both maps have about the same density, so that the nearest pixel is as good as interpolation.
     column = np.minimum((u * side).astype(np.int64), side - 1)
     row = np.minimum((v * side).astype(np.int64), side - 1)
     return np.asarray(image[row, column])

@@ -121,7 +121,7 @@ class Materials:
             parameters.fail("a roughness by texture must have remaproughness false")
         if min(float(one) for one in pair) < 0:  # type: ignore[arg-type]
             parameters.fail("a roughness must be at least 0")
-        # pbrt's root of what somebody thinks of as roughness.
+        # pbrt's mapping from roughness to alpha, a square root.
         u, v = (math.sqrt(min(float(one), 1.0)) for one in pair)  # type: ignore[arg-type]
         return u, v
 
@@ -142,7 +142,7 @@ class Materials:
             assert table is not None
             if not len(table) or (np.diff(table[:, 0]) <= 0).any():
                 parameters.fail(f"{name} must have wavelengths that rise, each with an index")
-            # In the middle of what is seen: no formula is known.
+            # The index at the Fraunhofer d line, since the table has no formula.
             return float(np.interp(587.6, table[:, 0], table[:, 1]))
         return parameters.number(name, default)
 

@@ -29,11 +29,11 @@ from .tokens import Directive, directives, text_of
 from .versions import older
 
 _MOST_FILES, _MOST_DEPTH = 1000, 32
-# What attributes may be given to.
+# Kinds of objects that attributes apply to.
 _TARGETS = ("shape", "light", "material", "medium", "texture")
-# Options that change no picture here.
+# Options without effect on a picture here.
 _NEUTRAL = ("pixelstats", "wavefront", "rendercoordsys", "msereferenceimage", "msereferenceout", "seed")
-# Turns a left-handed world into a right-handed one, and leaves one that a file has turned itself.
+# Mirrors a left-handed world; a world that the file mirrored already stays.
 _MIRROR, _AS_IT_IS = np.diag([-1.0, 1.0, 1.0, 1.0]), np.eye(4)
 
 
@@ -84,7 +84,7 @@ class _State:
     material: Material | _Later = field(default_factory=Diffuse)
     emission: Any = None
     flipped: bool = False
-    # Whether transforms are those of the time when the shutter opens.
+    # True if transforms apply at the time when the shutter opens.
     starts: bool = True
     defaults: tuple[tuple[str, Given], ...] = ()
 
@@ -114,10 +114,11 @@ class _Reader:
         self._filter: Filter = GaussianFilter(1.5, 0.5)
         self._sampler: tuple[Sampler | None, int, int] = (Sobol(), 16, 0)
         self._integrator: AnyIntegrator = PathTraced(5)
-        # Materials named before they are made. Shapes that wait for one: their place, and how they are made.
+        # Materials referenced before their definition, and shapes that wait for one: their place and
+        # constructor.
         self._awaited: list[_Later] = []
         self._later: list[tuple[list[Any], int, Callable[[Material], Any], _Later]] = []
-        # Cameras, films and the like are read when all of their options are known.
+        # Cameras, films and the like are made once all of their options are known.
         self._instances: list[tuple[str, Floats, Parameters]] = []
 
     def file(self, path: Path, depth: int) -> None:
@@ -200,7 +201,7 @@ class _Reader:
         if one.name == "Camera":
             self._named["camera"] = np.asarray(np.linalg.inv(self._state.matrix), np.float64)
             self._camera = kind, parameters, self._named["camera"]
-            # The camera's +x is to the right: a world is left-handed unless that is turned round.
+            # The camera's +x is to the right, so that the world is left-handed unless mirrored.
             self._mirror = _MIRROR if np.linalg.det(self._state.matrix[:3, :3]) > 0 else _AS_IT_IS
         elif one.name == "Film":
             self._film = film(kind, parameters)
@@ -266,7 +267,7 @@ class _Reader:
         in_group = self._group is not None
         if in_group and state.emission is not None:
             self.notes.tell("area lights in objects are left out, as pbrt leaves them out")
-        # The group is put in the mirrored world as a whole.
+        # The mirrored world applies to the group as a whole.
         matrix = state.matrix if in_group else self._mirror @ state.matrix
 
         def made(material: Material) -> Any:

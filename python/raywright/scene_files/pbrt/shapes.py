@@ -22,7 +22,7 @@ from .parameters import Floats, Parameters
 from .spectra import colour
 from .textures import Textures
 
-# A cubic Bézier curve's points as those of a uniform B-spline that is the same curve.
+# Converts control points of a cubic Bézier curve to those of the equivalent uniform B-spline.
 _BEZIER = np.array([(6.0, -7, 2, 0), (0, 2, -1, 0), (0, -1, 2, 0), (0, 2, -7, 6)])
 # Cells along each side of a bilinear patch.
 _CELLS = 16
@@ -119,7 +119,7 @@ def _mesh(
 def _triangles(parameters: Parameters, matrix: Floats, look: Look, _: Textures) -> Mesh:
     vertices, faces = _corners(parameters, 3)
     parameters.leave_out("S")
-    # Which face of a Ptex texture each is, and there are none.
+    # Ptex face numbers are useless without Ptex textures.
     parameters.ignore("faceIndices")
     return _mesh(vertices, faces, matrix, look, parameters.numbers("N", 3), parameters.numbers("uv", 2))
 
@@ -130,7 +130,7 @@ def _corners(parameters: Parameters, count: int) -> tuple[Floats, Any]:
         parameters.fail("P must be given")
     given = parameters.numbers("indices")
     if given is not None and not len(given):
-        # As if they were not there, for pbrt too.
+        # pbrt ignores empty indices, too.
         given = None
     if given is None and len(vertices) != count:
         parameters.fail("indices must be given")
@@ -278,7 +278,7 @@ def _curve(parameters: Parameters, matrix: Floats, look: Look, _: Textures) -> M
     count = len(parts) if basis == "bezier" else len(points) - 3
     curves = []
     for k, part in enumerate(parts):
-        # Widths go evenly along the curve, and a B-spline of what goes evenly does too.
+        # Widths are linear along the curve, and a B-spline reproduces linear functions.
         at = np.arange(len(part)) - 1 + k
         radii = np.clip(ends[0] + (ends[1] - ends[0]) * at / count, 0.0, None) * 0.5 * size
         curves.append(np.column_stack([part, radii]))

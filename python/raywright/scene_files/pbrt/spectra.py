@@ -11,7 +11,7 @@ from .parameters import Parameters
 
 Triple = tuple[float, float, float]
 
-# Of glass, by the catalogue of its maker; those of F are Schott's SF.
+# Catalogue names of pbrt's glasses; those of F are Schott's SF.
 GLASS = {
     "glass-BK7": "N-BK7",
     "glass-BAF10": "N-BAF10",

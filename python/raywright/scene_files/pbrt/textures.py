@@ -16,7 +16,7 @@ from .spectra import colour
 
 _WRAPS = {"repeat": "repeat", "clamp": "clamp", "mirror": "mirror", "octahedralsphere": "clamp"}
 _FILTERS = ("point", "bilinear", "trilinear", "ewa")
-# Pictures of amounts of light, which no encoding is for.
+# Formats with linear values, where no encoding applies.
 _LINEAR = (".exr", ".hdr", ".pfm", ".npy")
 
 
@@ -106,7 +106,7 @@ class Textures:
         scale, inverted = parameters.number("scale", 1.0), parameters.switch("invert", False)
         texels, linear = image_map(read(path), self._gamma(path, parameters), coloured)
         if inverted:
-            # The scale counts before a picture is inverted, and less than nothing is none.
+            # The scale applies before inversion, and negative results become 0.
             decoded = texels if texels.dtype.kind == "f" else decode(texels, 1.0 if linear else None)
             texels = np.maximum(1 - scale * decoded, 0.0).astype(np.float32)
         made = ImageTexture(
@@ -158,7 +158,7 @@ def image_map(picture: NDArray[Any], gamma: float | None, coloured: bool) -> tup
     if coloured or channels == 1:
         texels = picture[..., : 3 if channels > 2 else 1]
     elif channels == 4 and (picture[..., 3] != _one(picture.dtype)).any():
-        # Decoded as the colours are, by pbrt as well.
+        # pbrt decodes alpha like the colours, too.
         texels = picture[..., 3:]
     else:
         texels = picture[..., : 3 if channels > 2 else 1]

@@ -11,9 +11,9 @@ from ..notes import Notes
 from .errors import PbrtError
 from .parameters import Parameters
 
-# A text in quotes, a bracket, or anything else without spaces; what follows # is a comment.
+# A quoted text, a bracket, or any word without spaces; a comment starts with #.
 _WORD = re.compile(r'"((?:[^"\\\n]|\\.)*)"|(#[^\n]*)|([\[\]])|([^\s"\[\]#]+)|(\n)')
-# Numbers and texts that stand before the parameters of each directive.
+# Numbers and texts before the parameters of each directive.
 _NUMBERS = {
     "LookAt": 9, "Translate": 3, "Scale": 3, "Rotate": 4, "Transform": 16, "ConcatTransform": 16,
     "TransformTimes": 2,
@@ -29,7 +29,7 @@ _BARE = (
     "AttributeBegin", "AttributeEnd", "Identity", "ObjectEnd", "ReverseOrientation", "TransformBegin",
     "TransformEnd", "WorldBegin",
 )  # fmt: skip
-# Times that transforms may be limited to, words without quotes.
+# Arguments of ActiveTransform, words without quotes.
 _TIMES = ("All", "StartTime", "EndTime")
 
 
@@ -80,14 +80,14 @@ def directives(path: Path, notes: Notes) -> Iterator[Directive]:
             text = words.next()
             if text is None or not text.quoted:
                 if name == "MediumInterface" and texts:
-                    # One name stands for both sides.
+                    # A single name applies to both sides.
                     words.back(text)
                     break
                 raise PbrtError(f"{where}: {name} must have a text in quotes")
             texts.append(text.text)
         takes = name in _TEXTS and name not in ("Include", "Import", "NamedMaterial", "MediumInterface")
         given = _parameters(words) if takes else {}
-        # A name that the file gives is no kind of directive: notes are told once of each kind.
+        # Notes appear once per kind of directive, and names chosen by the file are no kinds.
         kind = "" if name.startswith("MakeNamed") else "".join(texts[-1:])
         parameters = Parameters(
             given, f"{where}: {' '.join((name, *texts))}", f"{name} {kind}".strip(), notes

@@ -26,7 +26,7 @@ from ...rendering.samplers import Halton, Independent, Sampler, Sobol, Stratifie
 from .films import exposure
 from .parameters import Floats, Parameters
 
-# All that goes along paths; what they differ in is how, and the picture is the same.
+# Variants of path tracing with the same expected picture.
 _PATHS = ("path", "volpath", "simplepath", "simplevolpath", "randomwalk", "mlt")
 
 
@@ -143,7 +143,7 @@ def integrator(kind: str, parameters: Parameters) -> AnyIntegrator:
     depth = parameters.integer("maxdepth", 5)
     if depth < 0:
         parameters.fail(f"maxdepth must be at least 0, got {depth}")
-    # How samples are drawn, which changes their error and not what they tend to.
+    # Sampling parameters, which change the error but not the expectation.
     parameters.ignore(
         "lightsampler", "bootstrapsamples", "chains", "mutationsperpixel", "largestepprobability", "sigma",
         "seed", "samplelights", "samplebsdf", "photonsperiteration", "radius",
@@ -157,7 +157,7 @@ def integrator(kind: str, parameters: Parameters) -> AnyIntegrator:
     elif kind == "lightpath":
         made = LightTraced(depth)
     elif kind == "sppm":
-        # Fewer than one photon is as many as suit the picture, there and here.
+        # Both pbrt and raywright choose the number of photons if it is below one.
         photons = parameters.integer("photonsperiteration", -1)
         radius = parameters.number("radius", 1.0) if parameters.has("radius") else None
         made = ProgressivePhotonMap(photons if photons > 0 else None, radius, max_depth=depth)

@@ -70,14 +70,14 @@ def read_usd(path: Path, width: int | None = None, height: int | None = None) ->
         if size is not None:
             integer(name, size, 1, 65536)
     notes = Notes(path)
-    # What USD would print.
+    # Collects the diagnostics that USD would print.
     quiet = UsdUtils.CoalescingDiagnosticDelegate()
     try:
         shot, errors = _shot(path, notes, width, height)
         told = [" ".join(str(one.commentary).split()) for one in quiet.TakeUncoalescedDiagnostics()]
     finally:
         del quiet
-    # What could not be put together is told already.
+    # Composition errors are reported already.
     told = [line for line in dict.fromkeys(told) if not any(error in line for error in errors)]
     if told:
         notes.tell(f"USD warns of {told[0][:200]!r}{_more(told)}")
@@ -104,7 +104,7 @@ def _shot(path: Path, notes: Notes, width: int | None, height: int | None) -> tu
         shot = shown(shapes_of, found["light"], eye, up=up, width=width, height=height)
         around = found["around"]
         if found["light"] or around or any(getattr(one, "emission", None) is not None for one in shapes_of):
-            # It has light of its own, which surfaces that are no meshes give too.
+            # The scene has its own light; emitting shapes other than meshes count, too.
             sky = around[0] if len(around) == 1 else around or None
             shot = Shot(Scene(shapes_of, found["light"], sky), shot.camera)
     except (ImportError, MemoryError, FileNotFoundError):

@@ -24,7 +24,7 @@ def camera(prim: Any, reading: Reading) -> AnyCamera:
     if len(seen.clippingPlanes):
         reading.notes.tell("the clipping planes of cameras are left out")
     width = max(round(_HEIGHT * across / high), 1)
-    # It looks along its -z, with y up.
+    # The camera looks along its -z, with y up.
     place, ahead, up = matrix[:3, 3], -matrix[:3, 2], matrix[:3, 1]
     offset = np.array((seen.horizontalApertureOffset, seen.verticalApertureOffset), np.float64)
     common: dict[str, Any] = {"direction": ahead, "up": up, "width": width, "height": _HEIGHT}
@@ -36,7 +36,7 @@ def camera(prim: Any, reading: Reading) -> AnyCamera:
     if not length > 0:
         raise ValueError(f"{prim.GetPath()} must have a focalLength above 0, got {length:g}")
     fov = 2 * math.degrees(math.atan(high / (2 * length)))
-    # The middle of the view is not that of a film which is shifted.
+    # A shifted film moves the principal point off the middle.
     middle = None
     if offset.any():
         middle = width * (0.5 - offset[0] / across), _HEIGHT * (0.5 + offset[1] / high)
@@ -57,7 +57,7 @@ def exposure(prim: Any, reading: Reading) -> float:
     if hasattr(seen, "ComputeLinearExposureScale"):
         factor = float(seen.ComputeLinearExposureScale(reading.time))
     else:
-        # Before usd-core 25.5.
+        # For usd-core before 25.5.
         factor = 2.0 ** float(reading.value(seen.GetExposureAttr(), 0.0))
     if not 0 < factor < math.inf:
         raise ValueError(f"{prim.GetPath()} must have an exposure above 0, got a factor of {factor:g}")

@@ -45,7 +45,7 @@ def _copies(instancer: Any, reading: Reading, matrix: NDArray[np.float64]) -> li
         root = stage.GetPrimAtPath(path)
         if not root:
             raise ValueError(f"there is no prototype {path}")
-        # The root's own transform is in what is computed for each copy.
+        # The matrix of each copy already includes the root's own transform.
         home = np.asarray(np.linalg.inv(reading.matrix(root)), np.float64)
         parts: list[Any] = []
         for prim in seen(root, reading):

@@ -14,9 +14,9 @@ from .reading import Reading
 
 Matrix = NDArray[np.float64]
 
-# The middle of a dome's picture is seen along +z, ours along -z.
+# The middle of a dome's picture is along +z, ours along -z.
 _HALF_TURN = np.diag([-1.0, 1.0, -1.0])
-# From a dome with its pole along +y to one along +z: what was seen along +z is seen along -y.
+# From a dome with its pole along +y to one along +z: directions along +z turn to -y.
 _POLE_UP = np.array([(1.0, 0, 0), (0, 0, -1), (0, 1, 0)])
 _RECT, _SPHERE, _DISK, _CYLINDER = "RectLight", "SphereLight", "DiskLight", "CylinderLight"
 
@@ -170,7 +170,7 @@ def _shape(kind: str, source: Source, matrix: Matrix) -> Any:
         if source.text("texture:file"):
             source.reading.notes.tell("the pictures of RectLights are left out")
         x, y = 0.5 * source.number("width", 1.0), 0.5 * source.number("height", 1.0)
-        # Its front is along -z.
+        # The light emits along -z.
         corners = [(-x, -y, 0), (-x, y, 0), (x, y, 0), (x, -y, 0)]
         return Mesh(corners, [(0, 1, 2), (0, 2, 3)], **look).transformed(matrix)
     source.reading.notes.tell(f"lights of type {kind} are left out")

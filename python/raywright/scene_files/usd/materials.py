@@ -138,7 +138,7 @@ class _Reader:
             if ior != 1.5 and opacity > 0:
                 self._tell("the ior of opaque surfaces is left out")
             return made if opacity == 1 or opacity >= threshold > 0 else Mask(made, 0.0)
-        # Opacity says how much is not glass.
+        # The share of the surface that is not glass.
         glass = Dielectric(ior, self._number("roughness", 0.5))
         return glass if opacity == 0 else Mix(made, glass, 1 - opacity)
 

@@ -23,7 +23,7 @@ def meshes(mesh: Any, reading: Reading, matrix: Floats) -> list[Mesh]:
     points, counts, indices = _faces(mesh, reading)
     _tell_what_is_left_out(mesh, reading)
     corner, face = triangulate(points, indices, counts), polygon_of(counts)
-    # Holes are faces that are not there.
+    # Holes are missing faces.
     holes = numbers(reading.value(mesh.GetHoleIndicesAttr()), len(counts), f"{prim.GetPath()} has holes")
     if len(holes):
         kept = ~np.isin(face, holes)
@@ -58,7 +58,7 @@ def _colors(corners: Corners, surface: Surface, count: int) -> Floats | None:
 
 def _faces(mesh: Any, reading: Reading) -> tuple[Floats, Integers, Integers]:
     """Return points, how many corners each face has, and the points of the corners."""
-    # What has no value has none of them.
+    # Attributes without a value are empty.
     points = np.array(reading.value(mesh.GetPointsAttr(), ()), np.float64).reshape(-1, 3)
     counts = np.array(reading.value(mesh.GetFaceVertexCountsAttr(), ()), np.int64).reshape(-1)
     indices = np.array(reading.value(mesh.GetFaceVertexIndicesAttr(), ()), np.int64).reshape(-1)
@@ -115,6 +115,6 @@ def _mesh(
     common: dict[str, Any] = {"material": look.material, "emission": look.emission, "name": name}
     if all(one is None for one in values.values()):
         return Mesh(points, indices[flat].reshape(-1, 3), **common)
-    # Corners may differ from face to face: each has its own.
+    # Values may differ between faces at one vertex, so each corner becomes its own vertex.
     arrays: dict[str, Any] = {name: None if one is None else one[flat] for name, one in values.items()}
     return Mesh(points[indices[flat]], np.arange(len(flat)).reshape(-1, 3), **arrays, **common)

@@ -37,7 +37,7 @@ class Pictures:
                     found: NDArray[Any] = np.asarray(read_linear(path) if linear else read(path))
                 except ValueError as error:
                     raise ValueError(str(error).replace(str(path), name)) from error
-            # It is shared.
+            # Several textures share it.
             found.flags.writeable = False
             self._kept[key] = found
         return self._kept[key]
@@ -56,7 +56,7 @@ def _file(name: str) -> Iterator[Path]:
         raise FileNotFoundError(errno.ENOENT, "no such file", name)
     _, inner = Ar.SplitPackageRelativePathInner(name)
     with tempfile.TemporaryDirectory() as folder:
-        # Kinds of pictures are known by their suffix.
+        # USD detects formats by their suffix.
         path = Path(folder) / f"picture{Path(inner).suffix}"
         path.write_bytes(asset.GetBuffer())
         yield path

@@ -98,7 +98,7 @@ def rows(name: str, given: Any, columns: int) -> Floats:
         values = np.array(() if given is None else given, np.float64)
     except (TypeError, ValueError) as error:
         raise ValueError(f"{name} must be rows of {columns} numbers") from error
-    # One value is as good as an array of one.
+    # A single value counts as an array of one.
     if values.shape == (columns,) or (columns == 1 and values.ndim < 2):
         values = values.reshape(-1, columns)
     if values.size and (values.ndim != 2 or values.shape[1] != columns):

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ..notes import Notes
 from .pictures import Pictures
 
-# Purposes of prims that are no part of a picture.
+# Purposes of prims that are not rendered.
 _UNSEEN = ("guide", "proxy")
 
 

@@ -40,7 +40,7 @@ def _simple(prim: Any, reading: Reading, matrix: Matrix) -> list[Any]:
         if prim.IsA(UsdGeom.Gprim):
             reading.notes.tell(f"shapes of type {kind} are left out")
         return []
-    # Colors of vertices that a material asks for are that of the whole shape.
+    # Vertex colors are one color for the whole shape here.
     surface = bound(prim, reading, own_color(prim, reading)) or own_surface(prim, reading)
     if surface.uv is not None:
         reading.notes.tell(f"textures on a {kind} are placed by coordinates of its own")

@@ -11,10 +11,10 @@ from .nodes import Link, Node
 from .reading import Reading
 
 _WRAPS = {"clamp": "clamp", "mirror": "mirror", "repeat": "repeat", "useMetadata": "repeat"}
-# A picture that cannot be read, and has no fallback of its own.
+# Replaces an unreadable picture without a fallback.
 _BLACK = (0.0, 0.0, 0.0, 1.0)
 _Four = tuple[float, float, float, float]
-# From what is stored of a normal to the normal.
+# Scale and bias that decode a stored normal.
 _HALVED, _LOWERED = (2.0, 2.0, 2.0), (-1.0, -1.0, -1.0)
 
 
@@ -50,7 +50,7 @@ class Textures:
             or array.shape[2] < 3
             or not (given or array.dtype.kind == "f")
         ):
-            # Stored as it is to be. Integers are never from -1 to 1, so they are if nothing is said.
+            # Decoded as usual. Integers cannot store -1 to 1, so that is the default for them.
             return Picture(self._image(node, array, True, None, transform), uv)
         values = _decoded(array[..., :3], True, None) * scale + bias
         stored = (0.5 + 0.5 * values).clip(0, 1).astype(np.float32)
@@ -85,7 +85,7 @@ class Textures:
         if channel in ("r", "g", "b") and array.shape[2] < 3:
             array, channel = array[..., :1], None
         space = str(node.value("sourceColorSpace", "auto"))
-        # By its default, one of 8 bits and of three channels or four is sRGB.
+        # By default, pictures of 8 bits with three channels or four are sRGB.
         plain = number or array.shape[2] < 3 or array.dtype != np.uint8
         linear = space == "raw" or (space != "sRGB" and plain)
         transform, uv = self._placed(node)
@@ -168,7 +168,7 @@ class Textures:
         for _ in range(8):
             link = source.link(name)
             if link is None:
-                # One point of the picture, which is its lower left if there is nothing else.
+                # A constant coordinate, by default the picture's lower left corner.
                 across, up = (float(x) for x in source.value(name, (0.0, 0.0)))
                 return _after(transform, UvTransform(matrix=((0, 0, across), (0, 0, up)))), None
             source, name = link.node, "in"
