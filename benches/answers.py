@@ -34,7 +34,7 @@ def hashed(scene, rays, digits, threads):
     """Return the hash of a scene's answers to rays of so many digits."""
     origins, directions = rays.origins, rays.directions
     if digits == np.float64:
-        # Digits that no float32 has.
+        # Digits beyond float32.
         noise = np.random.default_rng(5).normal(size=directions.shape)
         origins, directions = origins.astype(digits), directions * (1 + 1e-9 * noise)
     if rays.any_hit:

@@ -109,7 +109,7 @@ def main():
     today = datetime.datetime.now(datetime.timezone.utc).date().isoformat()
     done = {name for name, found in read(options.out).items() if options.resume and found["date"] == today}
     wanted = [] if options.write else [name for name in options.section or SECTIONS if name not in done]
-    # Once, since sections load the machine themselves.
+    # Measured once, since sections load the machine themselves.
     state = machine()
     if wanted and state["load"] > _BUSY:
         print(f"The machine is busy, its load is {state['load']:.2f}: figures will be wrong", flush=True)

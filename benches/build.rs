@@ -1,5 +1,5 @@
-//! Building trees on all cores, by number of triangles: the binary tree alone (binned SAH), and all of what rays walk,
-//! by quality. Each is valid, and has given the hits of brute force, before it is timed.
+//! Tree builds on all cores, by number of triangles: the binary tree alone (binned SAH), and the complete structure by
+//! quality. Each is valid and agrees with brute force before it is timed.
 
 mod meshes;
 

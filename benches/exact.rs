@@ -1,5 +1,5 @@
-//! What a decision about a triangle costs: in f32, by the leaf, where that rejects it for certain; in f64, where its
-//! bound makes it certain; and in integers, where it does not. An item is one triangle.
+//! The cost of one triangle decision: in f32, by the leaf, if that rejects it for certain; in f64, if its error bound
+//! makes it certain; and in integers otherwise. An item is one triangle.
 
 mod leaves;
 
@@ -14,7 +14,7 @@ fn main() {
     divan::main();
 }
 
-/// A triangle and a ray through a point of it that has these weights.
+/// A triangle and a ray through its point with these weights.
 fn aimed(weights: [f64; 3]) -> (Ray, [DVec3; 3]) {
     let corners = [[0.75, -0.3125, 2.1], [-0.46, 0.8, 1.9], [-0.3, -0.7, 2.4]]
         .map(|c: [f32; 3]| DVec3::from_array(c.map(f64::from)));
@@ -23,7 +23,7 @@ fn aimed(weights: [f64; 3]) -> (Ray, [DVec3; 3]) {
     (Ray::new(origin, target - origin), corners)
 }
 
-/// Full leaves, at the level that kernels run at.
+/// Full leaves, at the level of the kernels.
 #[divan::bench]
 fn rejected(bencher: Bencher) {
     let level = Level::current().expect("a level of this processor");

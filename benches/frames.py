@@ -17,7 +17,7 @@ import os
 import statistics
 import time
 
-# numpy's arithmetic would have threads of its own otherwise.
+# numpy's arithmetic would start its own threads otherwise.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
@@ -55,7 +55,7 @@ class Shots:
         done()
         hits = self.hits = self.scene.intersect(origins, directions, threads=threads, out=self.hits)
         done()
-        # A little before the surface; where nothing was hit, t is infinite and the ray asks for nothing.
+        # Shadow rays end just before the surface; for a miss t is infinite, and the ray tests nothing.
         points, ways = self.points, self.ways
         np.multiply(hits.t, 1 - 1e-4, out=self.t, casting="same_kind")
         np.multiply(directions, self.t[..., None], out=points)

@@ -30,11 +30,11 @@ import numpy as np
 
 import raywright as rw
 
-# Rays for the walks in Python.
+# Rays for the traversals in Python.
 FEW = 300
 # Seconds at which the error of a picture is printed.
 TIMES = (0.5, 1, 2, 4, 8, 16, 32)
-# Pixels a side of the blocks by which pictures are compared.
+# Side in pixels of the blocks for comparisons.
 BLOCK = 16
 
 
@@ -319,7 +319,7 @@ def difference(one, other):
         return blocks.reshape(rows // BLOCK, BLOCK, columns // BLOCK, BLOCK, -1).mean(axis=(1, 3))
 
     variance = sum(in_blocks(each.standard_error.astype(float) ** 2) for each in (one, other)) / BLOCK**2
-    # Where all samples agree, pictures are of float32.
+    # If all samples agree, the error is that of float32 pictures.
     error = np.sqrt(variance) + 3e-6 * (1e-3 + in_blocks(other.rgb))
     z = (in_blocks(one.rgb) - in_blocks(other.rgb)) / error
     return float(np.mean(z**2)), float(np.abs(z).max())
@@ -345,14 +345,14 @@ def in_pictures(size, seconds, gpu):
             assert device is None or image.plan["device"].chosen == told
             images.append(image)
             history = image.history
-            # From the first pass on: before, kernels are compiled.
+            # From the first pass on, since kernels compile before it.
             taken = np.ptp(history["samples"]) * size * size
             spent = max(np.ptp(history["seconds"]), 1e-9)
             z = ""
             if device is not None:
                 square, largest = difference(image, images[1])
                 z = f"{square:.2f}, at most {largest:.1f}²"
-                # Channels may be one and the same; eight deviations of chi square leave room for tails.
+                # Channels may be equal; eight deviations of chi square leave room for tails.
                 wrong += not (square < 1 + 8 * math.sqrt(2 / (size // BLOCK) ** 2) and largest < 7)
             first = f"{history['seconds'][0]:.2g}"
             errors = (*at_times(history, times), f"{image.error.estimate:.3g}")

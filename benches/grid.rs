@@ -1,5 +1,5 @@
-//! Grids against the tree, and against each other by how repeats are seen to: closest hits on one thread. All have
-//! given the hits of brute force before they are timed.
+//! Grids against the tree, and against each other by their mailboxing: closest hits on one thread. Each agrees with
+//! brute force before it is timed.
 
 mod meshes;
 
@@ -50,7 +50,7 @@ impl Kind {
     }
 }
 
-/// What one line of a table is about.
+/// One line of a table.
 #[derive(Clone, Copy, Debug)]
 struct Case {
     mesh: Mesh,

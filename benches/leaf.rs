@@ -1,5 +1,5 @@
-//! What it costs to test a leaf of one to eight triangles against a ray, by width of the leaves and level of the
-//! processor: an item is one leaf and one ray. Leaves are in the cache, and one test need not wait for the one before.
+//! Cost of testing a leaf of one to eight triangles, by width of the leaves and SIMD level: an item is one leaf and one
+//! ray. Leaves are in the cache, and tests are independent of each other.
 
 mod leaves;
 
@@ -13,19 +13,19 @@ fn main() {
     divan::main();
 }
 
-/// In f32 alone, where that rejects all: what most leaves cost.
+/// In f32 alone, with all triangles rejected: the cost of most leaves.
 #[divan::bench(args = Case::all())]
 fn missed_in_f32(bencher: Bencher, case: Case) {
     case.time(bencher, false, Test::Left);
 }
 
-/// In f32 alone, where one triangle is left over.
+/// In f32 alone, with one triangle left.
 #[divan::bench(args = Case::all())]
 fn met_in_f32(bencher: Bencher, case: Case) {
     case.time(bencher, true, Test::Left);
 }
 
-/// In f32, and what that leaves over in f64.
+/// In f32, then in f64 for the triangles left.
 #[divan::bench(args = Case::all())]
 fn met(bencher: Bencher, case: Case) {
     case.time(bencher, true, Test::Met);

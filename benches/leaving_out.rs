@@ -1,6 +1,6 @@
-//! What leaving out has won: the same paths in the same scene, traced by the kernel that the scene needs and by those
-//! that can do more. They take turns, so that whatever else the machine does is shared by all. Each gives the same
-//! bits, which is checked before anything is timed.
+//! Gain of specialized kernels: the same paths in the same scene, traced by the kernel that the scene needs and by more
+//! general ones. They take turns, so that all share the machine's other load. Results agree bit for bit, which is
+//! checked before anything is timed.
 
 use raywright::accel::bvh::{self, Options};
 use raywright::integrators::{CameraSample, Job, Path};
@@ -13,14 +13,14 @@ use raywright::workers::Cancel;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// How often each takes its turn.
+/// Number of turns each.
 const TURNS: usize = 31;
 
-/// Paths that are timed together.
+/// Paths per timing.
 const PATHS: u32 = 4096;
 
 fn main() {
-    // Without this flag, as `cargo test --benches` has it, all is checked and nothing timed.
+    // Without this flag, as in `cargo test --benches`, all is checked and nothing timed.
     let is_timed = std::env::args().any(|arg| arg == "--bench");
     let scene = room();
     let camera =
@@ -67,7 +67,7 @@ fn median(mut values: Vec<f64>) -> f64 {
     values[values.len() / 2]
 }
 
-/// A path from the room's middle, in a direction of its own.
+/// A path from the room's middle, in a random direction.
 fn sample(number: u32) -> CameraSample {
     let mut sampler = Sampler::new(1, number, 0);
     let [x, y] = sampler.two(0);

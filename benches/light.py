@@ -32,8 +32,8 @@ WAYS = {
     "ProgressivePhotonMap": rw.ProgressivePhotonMap(),
 }
 
-# Whose long picture is the right one: without bias, and all of the light is found. What is seen through glass
-# that is lit through glass is found by merging alone, whose blur goes to nothing.
+# Integrators of the reference pictures: unbiased, and able to find all light. Only merging finds light
+# through glass that is itself lit through glass; its blur tends to zero.
 RIGHT = {"behind glass": "Bidirectional, merged", "lens": "Bidirectional, merged"}
 
 
@@ -50,7 +50,7 @@ class MitsubaFor:
         self.engine = Mitsuba(scene, camera, None, sampler)
         if integrator != "path":
             self.engine.integrator = self.engine.mi.load_dict({"type": integrator})
-        # What a sample takes is known after one that has compiled all there is to compile.
+        # Timed after one sample, which compiles everything.
         self.engine.render(16, 0)
         self.rate = self.engine.render(16, 1)[1] / 16
 

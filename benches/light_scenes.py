@@ -37,7 +37,7 @@ def keyhole(width, height):
         ((2.06, 1.34), (4, 1.46)),
     ]
     between = [_rectangle(0, 4, low, high, material=GREY) for low, high in hole]
-    # Up and down, a millimetre apart.
+    # Facing up and down, a millimetre apart.
     lamp = [
         _rectangle(2, at, low, high, material=BLACK, emission=6000.0)
         for at, low, high in ((2.9, (5.5, 1.6), (6.2, 2.4)), (2.899, (5.5, 2.4), (6.2, 1.6)))

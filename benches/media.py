@@ -32,7 +32,7 @@ import raywright as rw
 
 VARIANT = "llvm_ad_rgb"
 INTEGRATORS = ("volpath", "volpathmis")
-# Out of sight: what has it is rendered by wavelength.
+# Out of sight: its material makes the scene render by wavelength.
 ASIDE = rw.Sphere((0, 0, -1e4), 1e-3, material=rw.Diffuse(rw.Spectrum([360, 830], [0.5, 0.5])))
 
 
@@ -199,7 +199,7 @@ def contest(name, arguments, folder):
     with_mitsuba = importlib.util.find_spec("mitsuba") is not None
     others = [Mitsuba(told, folder, integrator) for integrator in INTEGRATORS] if with_mitsuba else []
     truths, means = {}, {}
-    # Mitsuba's two have the same picture, and the second finds all of it.
+    # Mitsuba's two have the same expectation, but only the second finds all light.
     for engine in (*ours, *others[1:]):
         truths[engine.name], *means[engine.name] = reference(engine, arguments.reference, 8)
     truths |= {other.name: truths[others[1].name] for other in others}
@@ -216,7 +216,7 @@ def contest(name, arguments, folder):
         engine.render(arguments.samples, 0)
     for turn, engine in product(range(arguments.repeat), (*ours, *others)):
         picture, seconds = engine.render(arguments.samples, turn + 1)
-        # The noise of the long picture adds to that of the other, of which it knows nothing.
+        # Subtracts the noise of the reference, which is independent of the other picture's.
         truth, noise = truths[engine.name]
         records[engine.name][0].append(seconds)
         records[engine.name][1].append(relmse(picture, truth) - noise)

@@ -22,7 +22,7 @@ import numpy as np
 
 import raywright as rw
 
-# What is included by others, or has no sensor by itself.
+# Files for inclusion, or without a sensor.
 _PARTS = ("fragments", "include", "common")
 
 
@@ -37,7 +37,7 @@ def scenes(folder: Path) -> list[Path]:
     return found
 
 
-# Pixels on a side of pictures that are compared, and of their blocks; of how many pictures each is the mean.
+# Side in pixels of compared pictures, and of their blocks; number of pictures in each mean.
 SIDE, BLOCK, SEEDS = 64, 8, 16
 _SIZES = re.compile(r'(name="(?:width|height|res|resx|resy)"\s+value=")\d+"')
 
@@ -79,15 +79,15 @@ def compared(path: Path, shot: rw.Shot, given: dict[str, int], samples: int) -> 
         theirs = np.stack([blocks(mi.render(scene, spp=each, seed=seed)) for seed in range(SEEDS)])
     except RuntimeError as error:
         return f"Mitsuba: {str(error).splitlines()[-1][-200:]}"
-    # The spread of independent pictures tells the error of each: by a filter, pixels depend on one another.
+    # The error is the spread of independent pictures: the filter makes pixels dependent.
     ours = np.stack(
         [blocks(shot.render(samples=each, progress=False, seed=seed).rgb) for seed in range(SEEDS)]
     )
     error = np.hypot(theirs.std(axis=0, ddof=1), ours.std(axis=0, ddof=1)) / SEEDS**0.5
     mean, own = theirs.mean(axis=0), ours.mean(axis=0)
-    # Mitsuba's single precision adds up to some 1e-5.
+    # Mitsuba's sums in single precision err by some 1e-5.
     off = np.abs(own - mean) / (error + 1e-5 / 4 * mean + 1e-12)
-    # By wavelength colours are taken apart and put together by other curves.
+    # Spectral variants convert colours by other curves.
     apart = off > 4
     if variant != "llvm_ad_rgb":
         apart &= np.abs(own - mean) > 0.02 * mean
@@ -104,7 +104,7 @@ def told(path: Path, root: Path, render: bool, compare: int | None) -> tuple[boo
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         try:
-            # Some say how many samples they take by a parameter alone, or rely on what all share.
+            # Some take their number of samples from a parameter, or rely on the default.
             given = {"spp": 4} if "$spp" in path.read_text(encoding="utf-8") else {}
             shot = rw.from_mitsuba(path, folder=root / "common", parameters=given)
             if render:

@@ -1,9 +1,8 @@
-//! What it costs to test a node against a ray, by kernel, width of the tree and level of the processor: an item is one
-//! node and one ray.
+//! Cost of testing a node, by kernel, width of the tree and SIMD level: an item is one node and one ray.
 //!
-//! A kernel is asked for hits, never for a node. So rays go between triangles on both sides: every box of a node holds
-//! them, none of a leaf does, which is counted before anything is timed. There are some hundred nodes to every ray,
-//! next to which the rest that a ray costs is a few hundredths; they are in the cache.
+//! Kernels answer hits, not nodes. So rays run between triangles on both sides: every box of a node holds them, and
+//! none of a leaf does. The bench counts this before it times anything. Each ray tests some hundred nodes, so that its
+//! fixed cost is a few hundredths; nodes are in the cache.
 
 mod meshes;
 
@@ -21,17 +20,17 @@ fn main() {
 /// One ray after the other.
 #[divan::bench(args = Kernel::all())]
 fn single(bencher: Bencher, kernel: Kernel) {
-    // So few that they are not worth more.
+    // Few enough for single-ray traversal.
     time(bencher, kernel, 4, false);
 }
 
-/// Rays by turns, some one way and some the other.
+/// Alternating rays in opposite directions.
 #[divan::bench(args = Kernel::all())]
 fn wave(bencher: Bencher, kernel: Kernel) {
     time(bencher, kernel, 64, true);
 }
 
-/// Rays together.
+/// Parallel rays.
 #[divan::bench(args = Kernel::all())]
 fn packet(bencher: Bencher, kernel: Kernel) {
     time(bencher, kernel, 64, false);
@@ -39,7 +38,7 @@ fn packet(bencher: Bencher, kernel: Kernel) {
 
 fn time(bencher: Bencher, kernel: Kernel, count: usize, both_ways: bool) {
     let zigzag = zigzag();
-    // Leaves as small as can be: two places in one would have the axis in its box.
+    // The smallest possible leaves: two places in one leaf would have the axis in its box.
     let options = Options { quality: Quality::FastBuild, traversal_cost: 1e-3, ..Options::DEFAULT };
     let tree = kernel.build(&zigzag, &options);
     let rays: Vec<Ray> = (0..count).map(|i| ray(i, both_ways && i % 2 == 1)).collect();
@@ -48,18 +47,17 @@ fn time(bencher: Bencher, kernel: Kernel, count: usize, both_ways: bool) {
     bencher.counter(ItemsCount::new(nodes)).bench_local(|| tree.intersect(&rays, &mut hits));
 }
 
-/// Places on the way.
+/// Places along the axis.
 const COUNT: usize = 2048;
 
-/// Triangles at a place, all alike: more than the leaves of a binary tree keep together, and as many as fit the
-/// narrowest leaf.
+/// Equal triangles at a place: more than the leaves of a binary tree hold, and as many as fit the narrowest leaf.
 const COPIES: usize = 4;
 
-/// From one to the next: so much more than they are wide that trees divide them along the way.
+/// Distance between places, so much larger than their width that trees split along the axis.
 const APART: f64 = 64.0;
 
-/// Triangles along the x axis, by turns on one side of it and on the other: so the box of two places holds a part of
-/// the axis, and the box of one does not. They are wider than the gap, or it would be of use to divide them by sides.
+/// Triangles along the x axis, alternating between its sides: the box of two places holds a part of the axis, the box
+/// of one does not. They are wider than the gap, so that splitting by sides does not pay.
 fn zigzag() -> Triangles {
     let triangle = |i: usize| {
         let (x, side) = (i as f32 * APART as f32, if i.is_multiple_of(2) { 1.0 } else { -1.0 });
@@ -68,14 +66,14 @@ fn zigzag() -> Triangles {
     Triangles((0..COPIES * COUNT).map(|i| triangle(i / COPIES)).collect())
 }
 
-/// A ray along the axis, or back, a little beside it.
+/// A ray along the axis, or back, slightly beside it.
 fn ray(i: usize, back: bool) -> Ray {
     let beside = DVec3::new(0.0, (i % 8) as f64 - 3.5, (i / 8) as f64 - 3.5) / 16.0;
     let start = DVec3::new(if back { COUNT as f64 * APART } else { -APART }, 0.0, 0.0);
     Ray::new(start + beside, if back { -DVec3::X } else { DVec3::X })
 }
 
-/// How many nodes all rays test; panics if a ray tests anything else, or not every node.
+/// Number of nodes that all rays test. Panics if a ray tests anything else, or not every node.
 fn nodes(tree: &dyn Accelerator, rays: &[Ray]) -> usize {
     let mut costs = vec![Cost::default(); rays.len()];
     tree.cost(rays, &mut costs);

@@ -20,7 +20,7 @@ from render_peers_mitsuba import Mitsuba
 import raywright as rw
 
 _ENGINES = ("raywright", "raywright avx2", "embreex", "embreex fast", "open3d", "mitsuba")
-# Of Mitsuba: its orthogonal sampler rounds the number of samples up to the square of a prime.
+# Mitsuba's orthogonal sampler is left out: it rounds the number of samples up to the square of a prime.
 _SAMPLERS = ("independent", "stratified", "multijitter")
 
 
@@ -74,14 +74,14 @@ def rays(sizes):
     records = []
     for mesh in ("sphere", "torus", "room"):
         subject = MADE[mesh](sizes.triangles, np.random.default_rng(0))
-        # Tables of its own are printed, which the page does not show.
+        # Hides the engines' own tables.
         with contextlib.redirect_stdout(io.StringIO()):
             for engine in engines:
                 engine.build(subject.vertices, subject.faces)
             found = trace(engines, subject, options)
         for r in found:
             own = r["count"] / statistics.median(r.pop("raywright_seconds")) / 1e6
-            # embreex has one thread, and raywright is timed on one besides: each is shown on what it has.
+            # embreex has one thread, and raywright is also timed on one: each row compares equal threads.
             if r["threads"] == r["on_threads"]:
                 records.append({k: v for k, v in r.items() if k != "seconds"} | {"raywright_mrays": own})
     return records
@@ -130,7 +130,7 @@ def pictures(sizes):
             theirs = [Mitsuba(scene, camera, depth, sampler) for sampler in _SAMPLERS]
         except ImportError as error:
             print(f"(mitsuba is left out: {error})")
-        # The long picture of `render_peers.py`.
+        # The reference of `render_peers.py`.
         caustics = Raywright(scene, camera, rw.Path(max_depth=depth, reuse=1, caustics=True), rw.Sobol())
         for engines, long in ((ours, caustics), (theirs, theirs[0] if theirs else None)):
             if not engines:
@@ -148,7 +148,7 @@ def _picture(scene, engine, samples, turns, truth, noise):
     for turn in range(turns):
         picture, taken = engine.render(samples, turn + 1)
         seconds.append(taken)
-        # The noise of the long picture adds to that of the other, of which it knows nothing.
+        # Subtracts the noise of the reference, which is independent of the other picture's.
         errors.append(relmse(picture, truth) - noise)
     return {
         "scene": scene,

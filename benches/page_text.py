@@ -58,7 +58,7 @@ def page(sections):
             parts.append(f"Not measured yet: `python benches/benchmarks_page.py --section {name}`.\n")
             continue
         parts.append(f"*{_told(found)}*\n")
-        # Beside other levels, raywright's own is named.
+        # Tables of several levels name raywright's own.
         level = [found["machine"]["simd"]] if name == "rays" else []
         parts.append(_TABLES[name](found["records"], *level) + "\n")
         if name in ("rays", "pictures"):

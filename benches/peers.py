@@ -31,7 +31,7 @@ import time
 from importlib.metadata import packages_distributions, version
 from pathlib import Path
 
-# trimesh's arithmetic would have threads of its own otherwise; to be set before numpy is loaded.
+# trimesh's arithmetic would start its own threads otherwise; this must precede the import of numpy.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
@@ -79,7 +79,7 @@ def build(engines, subject, times):
             seconds[engine.name].append(time.perf_counter() - start)
     records = []
     for engine in engines:
-        # Elsewhere it would be asked for in vain: a process of a process is not measured.
+        # Memory of a child's child is not measured.
         is_elsewhere = isinstance(engine, AtLevel)
         grown = None if is_elsewhere else resident_bytes(type(engine), subject.vertices, subject.faces)
         records.append(

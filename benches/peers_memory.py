@@ -21,7 +21,7 @@ def resident_bytes(engine, vertices, faces):
 
 
 def _growth(engine, vertices, faces):
-    # A small scene first: libraries, threads and kernels are there once, whatever the mesh.
+    # A small scene first: libraries, threads and kernels count once, whatever the mesh.
     small, large = engine(), engine()
     small.build(np.eye(3, dtype=np.float32), np.array([[0, 1, 2]]))
     before = _resident()
@@ -30,7 +30,7 @@ def _growth(engine, vertices, faces):
 
 
 def _resident():
-    # Memory that was freed but not given back would count otherwise.
+    # Freed memory that malloc still holds would count otherwise.
     trim = getattr(ctypes.CDLL(None), "malloc_trim", None)
     if trim is not None:
         trim(0)

@@ -40,9 +40,9 @@ def ray_sets(scene, subject, side, rng):
         raise ValueError(f"no primary ray meets {subject.name}")
     normal = hits.normal[hits.hit]
     normal = np.where(np.sum(normal * towards[hits.hit], axis=-1, keepdims=True) > 0, -normal, normal)
-    # Engines in single precision would hit the surface that the ray leaves: start off it.
+    # Off the surface, since engines in single precision would hit it again.
     point = hits.position[hits.hit] + 1e-4 * np.linalg.norm(high - low) / 2 * normal
-    # Lambert's law: a point of the unit sphere that touches the surface, seen from where it touches.
+    # Lambert's law: a point of the unit sphere that touches the surface, seen from the point of contact.
     bounced = unit(normal + unit(rng.normal(size=normal.shape)))
     anywhere = (low + high) / 2 + (high - low) * 1.5 * (rng.random((side * side, 3)) - 0.5)
     everywhere = unit(rng.normal(size=anywhere.shape))

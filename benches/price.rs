@@ -1,9 +1,7 @@
-//! What exact decisions cost a ray on one thread: the same trees walked by the same kernels, over leaves whose f32
-//! answer is believed, over our own, and over those that keep f64. They take turns, so that whatever else the machine
-//! does is shared by all.
+//! Cost of exact decisions on one thread: the same trees and kernels with plain f32 leaves, with our own, and with
+//! leaves that store f64. They take turns, so that all share the machine's other load.
 //!
-//! Ours have given the hits of brute force before they are timed, bit for bit; of the others the table says how often
-//! they err.
+//! Ours agree with brute force bit for bit before they are timed; for the others the table lists how often they err.
 
 mod meshes;
 #[path = "leaves/plain.rs"]
@@ -18,20 +16,20 @@ use raywright::simd::Level;
 use std::hint::black_box;
 use std::time::Instant;
 
-/// How often each takes its turn.
+/// Number of turns each.
 const TURNS: usize = 41;
 
-/// Rays that are timed together: a batch as a caller's threads have them, and much less than a time slice.
+/// Rays per timing: a batch of a caller's thread, and much less than a time slice.
 const CHUNK: usize = 2048;
 
-/// What is asked of rays.
+/// Types of queries.
 #[derive(Clone, Copy)]
 enum Asked {
     Closest,
     Any,
 }
 
-/// The price of one leaf over another, as a part of the other's speed.
+/// The price of one leaf over another, relative to the other's speed.
 #[derive(Default)]
 struct Prices {
     exact: Vec<f64>,
@@ -39,7 +37,7 @@ struct Prices {
 }
 
 fn main() {
-    // Without this flag, as `cargo test --benches` has it, all is checked and nothing timed.
+    // Without this flag, as in `cargo test --benches`, all is checked and nothing timed.
     let is_timed = std::env::args().any(|arg| arg == "--bench");
     let level = Level::current().expect("a level of this processor");
     println!(
@@ -91,7 +89,7 @@ fn main() {
     }
 }
 
-/// Plain, exact, double.
+/// Plain, exact and f64 trees.
 fn trees(triangles: &Triangles, level: Level) -> [Box<dyn Accelerator>; 3] {
     let plain = match level.lanes() {
         8 => bvh::with_leaves::<8, PlainLeaves<8>>(triangles, &Options::DEFAULT, level),
@@ -101,8 +99,8 @@ fn trees(triangles: &Triangles, level: Level) -> [Box<dyn Accelerator>; 3] {
     [plain, exact, bvh::widest(&Doubles(triangles), &Options::DEFAULT, level)]
 }
 
-/// How many rays hit another triangle, or none, when f32 is believed. Panics if ours are wrong, or the plain ones more
-/// often than an honest test in f32 is.
+/// Number of rays with another triangle, or none, in plain f32. Panics if ours are wrong, or if the plain ones err more
+/// often than a correct f32 test.
 fn disagreeing(triangles: &Triangles, trees: &[Box<dyn Accelerator>; 3], rays: &[Ray]) -> usize {
     validate(triangles, trees[1].as_ref(), rays);
     validate(triangles, trees[2].as_ref(), rays);
@@ -119,9 +117,8 @@ fn disagreeing(triangles: &Triangles, trees: &[Box<dyn Accelerator>; 3], rays: &
 
 /// Seconds that each tree takes for all rays.
 ///
-/// Each goes through all rays before the next has its turn, so that each finds its own nodes in the cache; who is first
-/// changes. Chunks are timed, and of a chunk the median of all turns counts: whoever else wants the processor is met by
-/// few of them.
+/// Each traces all rays before the next has its turn, so that it finds its own nodes in the cache; the order rotates.
+/// Chunks are timed, and the median over all turns counts for each: other load on the processor affects few of them.
 fn turns(trees: &[Box<dyn Accelerator>; 3], rays: &[Ray], asked: Asked) -> [f64; 3] {
     let mut hits = [Hit::MISS; CHUNK];
     let mut occluded = [false; CHUNK];

@@ -25,10 +25,10 @@ from render_peers_mitsuba import SAMPLERS, Mitsuba, by_constants
 
 import raywright as rw
 
-# Pixels on a side of the blocks whose means are compared.
+# Side in pixels of the blocks for comparing means.
 BLOCK = 16
 
-# Pixels on a side of the patches that share paths, where paths are shared.
+# Side in pixels of the patches that share paths.
 REUSE = 8
 
 
@@ -139,7 +139,7 @@ def contest(name, make, arguments):
     for turn, engine in product(range(arguments.repeat), (*ours, *others)):
         picture, seconds = engine.render(arguments.samples, turn + 1)
         records[engine.name][0].append(seconds)
-        # The noise of the long picture adds to that of the other, of which it knows nothing.
+        # Subtracts the noise of the reference, which is independent of the other picture's.
         truth, noise = truths[engine.name]
         records[engine.name][1].append(relmse(picture, truth) - noise)
     rows = {}

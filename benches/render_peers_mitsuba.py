@@ -8,7 +8,7 @@ import numpy as np
 
 import raywright as rw
 
-# What its integrators and samplers are called there. Its ldsampler is left out: it is biased by 0.4 %.
+# Mitsuba's names of samplers. Its ldsampler is left out: it is biased by 0.4 %.
 SAMPLERS = ("independent", "stratified", "multijitter", "orthogonal")
 VARIANT = "llvm_ad_rgb"
 
@@ -28,7 +28,7 @@ class Mitsuba:
         self.name = f"mitsuba {sampler}"
         with tempfile.TemporaryDirectory() as folder:
             self.scene = mitsuba.load_dict(_described(mitsuba, scene, camera, sampler, Path(folder)))
-        # Bounces are counted by the rays of a path there, ours by its reflections.
+        # Mitsuba's depth counts the rays of a path, ours its reflections.
         self.integrator = mitsuba.load_dict({"type": "path", "max_depth": -1 if depth is None else depth + 1})
 
     def render(self, samples, seed):

@@ -31,7 +31,7 @@ def errors(make, arguments):
 
     halves = [render(arguments.reference // 2, 10**6 + half, rw.Sobol(64)) for half in range(2)]
     reference = sum(halves) / 2
-    # They differ by twice the variance of either, of which their mean has one half.
+    # The halves differ by twice the variance of either; their mean has half of it.
     noise = relmse(halves[0], halves[1]) / 4
     for samples in arguments.samples:
         batched = (kind(min(batch, samples)) for batch, kind in product(arguments.batch, KINDS))

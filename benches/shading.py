@@ -20,7 +20,7 @@ from raywright import _core
 
 RAYS = ("camera", "closest", "shadow", "film")
 
-# What the blocks of the Cornell box are made of, in scenes by these names.
+# Materials of the blocks in the Cornell box, by scene.
 KINDS = {
     "glass": rw.Dielectric(1.5),
     "pane": rw.ThinDielectric(1.5),
@@ -48,7 +48,7 @@ def told(scene, camera, path, arguments):
         _core.timing()
         rw.render(scene, camera, path, samples=arguments.samples, seed=turn, threads=1, progress=False)
         spent, vertices = _core.timing()
-        # The first compiles the scene, and meets cold caches.
+        # The first turn compiles the scene, and meets cold caches.
         if turn:
             rows.append({name: ns / vertices for name, ns in spent})
     samples = camera.width * camera.height * arguments.samples

@@ -1,5 +1,5 @@
-//! Closest hits on one thread through structures that divide space, beside the default tree of boxes. All have given
-//! the hits of brute force before they are timed.
+//! Closest hits on one thread through spatial subdivisions, beside the default BVH. Each agrees with brute force before
+//! it is timed.
 
 mod meshes;
 
@@ -17,7 +17,7 @@ fn main() {
     divan::main();
 }
 
-/// What rays go through.
+/// An acceleration structure.
 #[derive(Clone, Copy, Debug)]
 enum Kind {
     Bvh,
@@ -26,7 +26,7 @@ enum Kind {
     Bsp,
 }
 
-/// What one line of a table is about.
+/// One line of a table.
 #[derive(Clone, Copy, Debug)]
 struct Case {
     mesh: Mesh,

@@ -23,7 +23,7 @@ from peers_tables import head, line
 sys.path.append(str(Path(__file__).parents[1] / "tests" / "python"))
 from exact_hits import candidates
 
-# A hit farther off than this part of the ray and of the mesh is of another surface.
+# A hit farther off than this share of the ray and of the mesh belongs to another surface.
 _APART = 1e-4
 
 
@@ -157,7 +157,7 @@ def wrong(case, t, exact):
     """Return per million rays: wrong answers "hit" or "miss", and hits of another surface."""
     t, hit, should = np.asarray(t, np.float64), np.isfinite(t), np.isfinite(exact)
     both = hit & should
-    # In lengths of the direction, as t is.
+    # In units of the direction's length, like t.
     size = np.ptp(case.vertices, axis=0).max() / np.linalg.norm(case.rays.directions[both], axis=1)
     elsewhere = np.abs(t[both] - exact[both]) > _APART * (exact[both] + size)
     return 1e6 * float(np.mean(hit != should)), 1e6 * float(np.sum(elsewhere)) / len(t)

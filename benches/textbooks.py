@@ -13,7 +13,7 @@ from statistics import geometric_mean
 
 import raywright as rw
 
-# The default is the wide tree that scenes have when nothing is asked for.
+# The default is the wide tree of scenes without options.
 CONTENDERS = {
     "default": rw.BVH(),
     "median": rw.BVH(builder="median", traversal="stack"),

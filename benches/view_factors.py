@@ -71,7 +71,7 @@ def peer(cuts):
         for pair in mesh.faces.reshape(-1, 6):
             corners = mesh.vertices[pair[[0, 1, 2, 5]]]
             squares.append(pyvista.PolyData(corners, [4, 0, 1, 2, 3]))
-    # What is compiled at the first call is not to count.
+    # A first call compiles the functions and does not count.
     get_visibility(squares[0], squares[-1]), compute_viewfactor(squares[0], squares[-1])
     start, count = time.perf_counter(), len(squares)
     matrix = np.zeros((count, count))

@@ -1,27 +1,27 @@
-//! Leaves of triangles, and the tests that are made of them.
+//! Leaves of triangles, and their tests.
 
 use raywright::math::{DVec3, Ray, Region};
 use raywright::shapes::triangle::{BlockRay, EdgeRay, Leaves, SingleLeaves};
 use raywright::simd::{Dispatch, Kernel, Level, Simd};
 
-/// Some leaves of equal size, and a ray for each.
+/// Leaves of equal size, and a ray for each.
 pub struct Full<const N: usize> {
     leaves: SingleLeaves<N>,
     count: u32,
     rays: Vec<(BlockRay, EdgeRay)>,
 }
 
-/// Leaves; so few that they stay in the cache.
+/// Number of leaves, few enough for the cache.
 const SOME: usize = 64;
 
 impl<const N: usize> Full<N>
 where
     Level: Dispatch<N>,
 {
-    /// Leaves of `count` triangles side by side. Each ray meets one triangle of its leaf, or passes all of them by.
+    /// Leaves of `count` triangles side by side. Each ray meets one triangle of its leaf, or misses all.
     pub fn new(count: u32, meets: bool) -> Self {
         let width = count as usize;
-        // A triangle of size 1 at each whole number, and a little turned, so that no edge is along an axis.
+        // One triangle of size 1 at each whole number, slightly turned so that no edge is parallel to an axis.
         let corners = |p: u32| {
             let at = DVec3::new(f64::from(p % count), f64::from(p / count), 0.0);
             [[0.0, 0.0, 0.25], [0.75, 0.125, 0.0], [0.25, 0.75, 0.5]].map(|c| at + DVec3::from_array(c))
@@ -46,17 +46,17 @@ where
         full
     }
 
-    /// How many leaves there are.
+    /// Number of leaves.
     pub fn len(&self) -> usize {
         SOME
     }
 
-    /// How many triangles the test in f32 leaves over, each leaf with its ray.
+    /// Number of triangles that the f32 test leaves, with one ray per leaf.
     pub fn left(&self, level: Level) -> u32 {
         level.dispatch(Left(self))
     }
 
-    /// How many triangles are met: the same, and what is left is decided in f64.
+    /// Number of triangles hit: f32 first, then f64 for the rest.
     pub fn met(&self, level: Level) -> u32 {
         level.dispatch(Met(self))
     }

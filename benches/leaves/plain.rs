@@ -1,10 +1,10 @@
-//! Leaves as most ray tracers have them: the test of Möller and Trumbore (1997) in f32, whose answer is believed.
+//! Leaves as in most ray tracers: the test of Möller and Trumbore (1997) in f32, without an exact fallback.
 
 use raywright::math::{DVec3, Region};
 use raywright::shapes::triangle::{BlockRay, BlockRays, Bracket, EdgeRay, Leaves, PlainRays, RAYS, Rows, SingleLeaves};
 use raywright::simd::Lanes;
 
-/// Triangles kept as [`SingleLeaves`] keeps them, in the same order.
+/// Triangles in the layout of [`SingleLeaves`], in the same order.
 pub struct PlainLeaves<const N: usize>(SingleLeaves<N>);
 
 impl<const N: usize> Leaves<N> for PlainLeaves<N> {
@@ -63,7 +63,7 @@ impl<const N: usize> Leaves<N> for PlainLeaves<N> {
     }
 }
 
-/// What is met of triangles by corner and edges, taken for certain.
+/// Hits of triangles given by corner and edges, taken as certain.
 #[inline(always)]
 fn moller_trumbore<const N: usize, S: Lanes<N>>(
     simd: S,

@@ -1,4 +1,4 @@
-//! The meshes and the rays that benches are timed on, the same at every run.
+//! Meshes and rays for benches, the same at every run.
 #![allow(dead_code, reason = "each bench takes what it needs")]
 
 use raywright::accel::bvh::{self, Options};
@@ -8,7 +8,7 @@ use raywright::sampling::{philox4x32, warp};
 use raywright::simd::Level;
 use std::fmt;
 
-/// Triangles by their corners.
+/// Triangles by corners.
 pub struct Triangles(pub Vec<[Vec3; 3]>);
 
 impl Primitives for Triangles {
@@ -25,7 +25,7 @@ impl Primitives for Triangles {
     }
 }
 
-/// The same, for trees that keep f64.
+/// The same, for trees that store f64.
 pub struct Doubles<'a>(pub &'a Triangles);
 
 impl Primitives for Doubles<'_> {
@@ -47,12 +47,12 @@ fn random(i: usize, purpose: u32) -> [f64; 4] {
     philox4x32([i as u32, (i >> 32) as u32, 0, 0], [purpose, 0]).map(|x| f64::from(x) / 2f64.powi(32))
 }
 
-/// A mesh and where it is looked at from.
+/// A mesh and its view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Mesh {
     /// The unit sphere in 81,920 triangles of about equal size, on a floor of two.
     Icosphere,
-    /// A torus of about as many, dented by a tenth of its radius.
+    /// A torus of about the same count, dented by a tenth of its radius.
     NoisyTorus,
     /// A room of 3,000 slats, four hundred times as long as they are wide, seen from inside.
     Slats,
@@ -81,7 +81,7 @@ impl Mesh {
         }
     }
 
-    /// The eye, what it looks at, and the tangent of half its field of view.
+    /// The eye, its target, and the tangent of half the field of view.
     fn view(self) -> (DVec3, DVec3, f64) {
         match self {
             Self::Icosphere => (DVec3::new(1.0, 1.5, 2.5), DVec3::ZERO, 0.35),
@@ -90,7 +90,7 @@ impl Mesh {
         }
     }
 
-    /// Where the light is.
+    /// Position of the light.
     fn light(self) -> DVec3 {
         match self {
             Self::Icosphere | Self::NoisyTorus => DVec3::new(-2.0, -1.0, 5.0),
@@ -107,7 +107,7 @@ fn icosphere(divisions: u32) -> Triangles {
     for (a, b) in [(1.0, phi), (1.0, -phi), (-1.0, phi), (-1.0, -phi)] {
         corners.extend([DVec3::new(0.0, a, b), DVec3::new(a, b, 0.0), DVec3::new(b, 0.0, a)]);
     }
-    // Three corners make a face where all are neighbours, which are 2 apart.
+    // Three mutual neighbours, 2 apart, are a face.
     let near = |a: DVec3, b: DVec3| (a.distance(b) - 2.0).abs() < 1e-9;
     let mut faces = Vec::new();
     for i in 0..12 {
@@ -133,7 +133,7 @@ fn icosphere(divisions: u32) -> Triangles {
     Triangles(faces.into_iter().map(|t| t.map(|c| c.as_vec3())).collect())
 }
 
-/// With a square under it: without, nothing that leaves a sphere would meet anything.
+/// Adds a square below: without it, rays that leave a sphere would meet nothing.
 fn on_floor(mut mesh: Triangles) -> Triangles {
     let [a, b, c, d] = [(-4.0, -4.0), (4.0, -4.0), (4.0, 4.0), (-4.0, 4.0)].map(|(x, y)| Vec3::new(x, y, -1.0));
     mesh.0.extend([[a, b, c], [a, c, d]]);
@@ -195,21 +195,21 @@ fn slats(count: usize) -> Triangles {
     Triangles(triangles)
 }
 
-/// What rays are for.
+/// Types of rays.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Purpose {
     /// From the eye through the pixels of a square picture, row by row.
     Primary,
-    /// From what is seen to the light.
+    /// From primary hits to the light.
     Shadow,
-    /// From what is seen, scattered as by a matt surface.
+    /// From primary hits, scattered by a matt surface.
     Diffuse,
 }
 
-/// Pixels on a side.
+/// Pixels along a side.
 const SIDE: usize = 128;
 
-/// Rays into a mesh. Those that leave a surface start a little off it.
+/// Rays into a mesh. Those from a surface start slightly off it.
 pub fn rays(mesh: Mesh, triangles: &Triangles, tree: &dyn Accelerator, purpose: Purpose) -> Vec<Ray> {
     let (eye, target, tangent) = mesh.view();
     let ahead = (target - eye).normalize();
@@ -239,7 +239,7 @@ pub fn rays(mesh: Mesh, triangles: &Triangles, tree: &dyn Accelerator, purpose: 
     primary.iter().zip(&seen).enumerate().filter(|(_, (_, hit))| hit.is_hit()).map(leave).collect()
 }
 
-/// A mesh as a type, by which benches are grouped.
+/// A mesh as a type, which groups benches.
 pub trait Subject {
     /// Which one.
     const MESH: Mesh;
@@ -264,7 +264,7 @@ impl Subject for Slats {
     const MESH: Mesh = Mesh::Slats;
 }
 
-/// A tree of some width, run at some level of the processor, that keeps f32 or f64.
+/// A tree of some width and SIMD level that stores f32 or f64.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Kernel {
     width: usize,
@@ -279,7 +279,7 @@ impl Kernel {
         available.map(|level| Self { width: level.lanes(), level, is_single: true }).collect()
     }
 
-    /// The same, and the best of them with f64.
+    /// The same, plus the best of them with f64.
     pub fn all_and_double() -> Vec<Self> {
         let mut all = Self::all();
         all.extend(all.last().map(|&best| Self { is_single: false, ..best }));
@@ -295,7 +295,7 @@ impl Kernel {
         }
     }
 
-    /// The tree for a mesh, built, and rays for it, seen to give what brute force does.
+    /// The tree of a mesh, and rays for it, checked against brute force.
     pub fn prepare(self, mesh: Mesh, purpose: Purpose) -> (Box<dyn Accelerator>, Vec<Ray>) {
         let triangles = mesh.triangles();
         let tree = self.build(&triangles, &Options::DEFAULT);
@@ -311,7 +311,7 @@ impl fmt::Display for Kernel {
     }
 }
 
-/// Panics unless a tree gives the hits of brute force, bit for bit, for some of the rays. What is timed is right.
+/// Panics unless a tree agrees with brute force, bit for bit, for a sample of the rays.
 pub fn validate(triangles: &Triangles, tree: &dyn Accelerator, rays: &[Ray]) {
     const SOME: usize = 200;
     let sample: Vec<Ray> = rays.iter().step_by(rays.len() / SOME + 1).copied().collect();
