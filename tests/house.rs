@@ -1,31 +1,31 @@
-//! The house as `ARCHITECTURE.md` draws it: what its files name of each other, read from their text. That floors use
-//! only those under them, cargo sees: each is a crate.
+//! Checks the modules against `ARCHITECTURE.md`, by the names in their text. Cargo ensures that crates only use lower
+//! ones.
 //!
-//! An arrow goes from the file that names something to the file where that stands, through every re-export; what only
-//! tests name is none. A `mod.rs` and the files and folders beside it are one room: they may name what stands in their
-//! `mod.rs`, and be named there. But of any two of these files and folders, each with all that is in it, only one may
-//! need the other, however long the way round.
+//! An arrow goes from a file to the file where a used item is defined, through every re-export; uses by tests alone do
+//! not count. A `mod.rs` and the files and folders beside it are one room: they may use items of their `mod.rs`, and
+//! the reverse. But of any two of these files and folders, with all contents, only one may depend on the other,
+//! directly or not.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The crate of the lowest floor, whose folders are rooms as the other crates are.
+/// The lowest crate, whose folders are rooms like the other crates.
 const BASE: &str = "base";
 
-/// The names on the way from the crate to a module, and perhaps on to what stands in it.
+/// Names from the crate to a module, and possibly on to an item.
 type Names = Vec<String>;
 
-/// What a file has without its tests.
+/// Contents of a file without its tests.
 #[derive(Default)]
 struct File {
-    /// The paths it names, from the crate on.
+    /// Paths in its code, from the crate on.
     paths: BTreeSet<Names>,
-    /// What it calls by a name of its own, and the path to that.
+    /// Imported names, with their paths.
     imports: BTreeMap<String, Names>,
 }
 
-/// Something named in one file that stands in another.
+/// A use in one file of an item in another.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
 struct Arrow {
     from: Names,
@@ -108,9 +108,9 @@ fn no_line_is_longer_than_120_columns() {
     }
 }
 
-/// Those that are part of a circle between files and folders side by side.
+/// Arrows in a cycle between sibling files and folders.
 fn circles(arrows: &BTreeSet<Arrow>) -> Vec<&Arrow> {
-    // Where both ends are side by side, and their names there.
+    // The common folder of both ends, and their names in it.
     let ends = |arrow: &Arrow| {
         let shared = arrow.from.iter().zip(&arrow.to).take_while(|(a, b)| a == b).count();
         (arrow.from[..shared].to_vec(), arrow.from[shared].clone(), arrow.to[shared].clone())
@@ -136,7 +136,7 @@ fn told(arrows: &[&Arrow]) -> String {
     arrows.iter().map(|a| format!("  {} -> {}: {}\n", a.from.join("::"), a.to.join("::"), a.item)).collect()
 }
 
-/// Every arrow from one file to another, but for those between a `mod.rs` and what stands beside it.
+/// Every arrow from one file to another, except those between a `mod.rs` and its siblings.
 fn arrows(files: &BTreeMap<Names, File>) -> BTreeSet<Arrow> {
     let mut arrows = BTreeSet::new();
     for (from, file) in files {
@@ -150,7 +150,7 @@ fn arrows(files: &BTreeMap<Names, File>) -> BTreeSet<Arrow> {
     arrows
 }
 
-/// The file that holds what a path leads to, and its name there; the file itself has none.
+/// The file that defines a path's item, and the item's name; the file itself has none.
 fn stands(files: &BTreeMap<Names, File>, path: &[String]) -> (Names, String) {
     let mut path = path.to_vec();
     // A name leads to another once for each re-export.
@@ -165,7 +165,7 @@ fn stands(files: &BTreeMap<Names, File>, path: &[String]) -> (Names, String) {
     panic!("{} leads nowhere", path.join("::"));
 }
 
-/// Every file of the crate that is more than tests, by the names that lead to it.
+/// Every file of the crate with more than tests, by module path.
 fn crate_files() -> BTreeMap<Names, File> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("rust");
     let read = |path: PathBuf| (path.strip_prefix(&root).unwrap().to_owned(), fs::read_to_string(&path).unwrap());
@@ -174,13 +174,13 @@ fn crate_files() -> BTreeMap<Names, File> {
     files
 }
 
-/// Files that are more than tests, of all by their paths and texts.
+/// Files with more than tests, among all by path and text.
 fn files(all: impl IntoIterator<Item = (PathBuf, String)>) -> BTreeMap<Names, File> {
     let (mut codes, mut tests) = (BTreeMap::new(), BTreeSet::new());
     for (path, text) in all {
         let mut module: Names = path.with_extension("").iter().map(|name| name.to_str().unwrap().into()).collect();
         module.pop_if(|name| name == "mod" || name == "lib");
-        // A file of a crate is a module of it; the crate of the lowest floor has no name of its own.
+        // Each file of a crate is a module of it; the lowest crate has no name of its own.
         let mut root = Names::new();
         if module.get(1).is_some_and(|folder| folder == "src") {
             module.remove(1);
@@ -213,7 +213,7 @@ fn rust_files(folder: &Path) -> Vec<PathBuf> {
     files
 }
 
-/// The text without its comments and what stands in its strings.
+/// The text without comments and contents of strings.
 fn code(text: &str) -> String {
     let mut code = String::new();
     let mut in_string = false;
@@ -241,7 +241,7 @@ fn code(text: &str) -> String {
     code
 }
 
-/// Formatted code without what is there for tests alone, and the names of the files that are.
+/// Formatted code without its test items, and the names of test files.
 fn without_tests(code: &str) -> (String, Vec<String>) {
     let (mut kept, mut files) = (String::new(), Vec::new());
     let mut lines = code.lines();
@@ -250,7 +250,7 @@ fn without_tests(code: &str) -> (String, Vec<String>) {
             kept.extend([line, "\n"]);
             continue;
         };
-        // It ends with the first line as far in that closes something.
+        // The item ends with the first closing line of the same indentation.
         for line in lines.by_ref() {
             let (before, item) = line.split_at(indent.min(line.len()));
             if before.trim().is_empty() && !item.starts_with(' ') && item.trim_end().ends_with([';', '}']) {
@@ -263,7 +263,7 @@ fn without_tests(code: &str) -> (String, Vec<String>) {
     (kept, files)
 }
 
-/// What code in a module of a crate with this root names.
+/// Paths used by code in a module of a crate with this root.
 fn file(module: &Names, root: &Names, code: &str, known: &BTreeSet<Names>) -> File {
     let words = words(code);
     let word = |at: usize| words.get(at).map_or("", String::as_str);
@@ -271,7 +271,7 @@ fn file(module: &Names, root: &Names, code: &str, known: &BTreeSet<Names>) -> Fi
     // Modules within the file, and how many braces are open inside each.
     let mut inner: Vec<(String, usize)> = Vec::new();
     let mut open = 0;
-    // Imports come first, for paths may begin in them.
+    // Imports come first, since paths may start with them.
     for imports in [true, false] {
         let mut at = 0;
         while at < words.len() {
@@ -330,7 +330,7 @@ fn words(code: &str) -> Vec<String> {
     words
 }
 
-/// The leaves of a tree of imports: the path of each, and the name that it gets. `at` goes behind the tree.
+/// The leaves of a tree of imports: the path of each, and its local name. `at` moves behind the tree.
 fn tree(words: &[String], at: &mut usize, before: &[String], leaves: &mut Vec<(Names, String)>) {
     let mut path = before.to_vec();
     loop {
@@ -367,7 +367,7 @@ fn tree(words: &[String], at: &mut usize, before: &[String], leaves: &mut Vec<(N
     }
 }
 
-/// A path as it is from the crate on; none where it leads to another crate, or begins in what stands in the file.
+/// A path from the crate on; none if it leads to another crate, or begins with a local item.
 fn from_crate(path: &[String], (root, here): (&Names, &Names), file: &File, known: &BTreeSet<Names>) -> Option<Names> {
     let child = [&**here, &path[..1]].concat();
     let ups = path.iter().take_while(|name| *name == "super").count();

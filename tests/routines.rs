@@ -1,4 +1,4 @@
-//! What is true of the textbook routines, whatever the numbers: symmetries, shared edges, closed forms.
+//! Laws of the textbook routines for any numbers: symmetries, shared edges, closed forms.
 
 use proptest::prelude::*;
 use raywright::math::Vec3;
@@ -26,7 +26,7 @@ const ALL: [(&str, Meet); 7] = [
     (EdgeF64::NAME, meet::<EdgeF64>),
 ];
 
-/// Those that decide by a number for each edge, which is negated when the edge is walked the other way.
+/// Routines that decide by a number per edge; the reversed edge negates it.
 const BY_EDGES: [(&str, Meet); 4] = [ALL[3], ALL[4], ALL[5], ALL[6]];
 
 /// Any point of a cube.
@@ -34,7 +34,7 @@ fn point() -> impl Strategy<Value = Vec3> {
     prop::array::uniform3(-1.0..1.0f32).prop_map(Vec3::from_array)
 }
 
-/// Multiples of 1/64, whose sums and differences an f32 holds exactly.
+/// Multiples of 1/64, whose sums and differences are exact in f32.
 fn lattice() -> impl Strategy<Value = Vec3> {
     prop::array::uniform3(-64i32..=64).prop_map(|p| Vec3::from_array(p.map(|x| x as f32 / 64.0)))
 }

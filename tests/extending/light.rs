@@ -25,7 +25,7 @@ impl Light for Rings {
         is_good.then_some(()).ok_or_else(|| "a light of rings must be finite, with an axis".to_owned())
     }
 
-    // Lights are chosen by power; about half of what an even point has is near enough.
+    // Lights are chosen by power; half of an even point's power is near enough.
     fn reach(&self) -> Reach {
         let intensity = self.intensity.mean();
         Reach::Finite { power: 2.0 * PI * intensity, bounds: LightBounds::everywhere(self.position, intensity) }

@@ -1,4 +1,4 @@
-//! What `docs/extending.md` shows is what stands here, compiled and tested.
+//! The examples of `docs/extending.md`, compiled and tested.
 
 mod integrator;
 mod light;

@@ -19,7 +19,7 @@ impl Material for Lacquer {
         BsdfMix::mixed((Rgb::splat(1.0 - self.gloss), base.into()), (Rgb::splat(self.gloss), gloss.into()))
     }
 
-    // What a texture asks of a point is found out for those scenes alone that have one.
+    // Scenes compute texture inputs at a hit only if some texture needs them.
     fn needs(&self) -> Needs {
         self.colour.needs()
     }

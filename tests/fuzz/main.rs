@@ -1,5 +1,5 @@
-//! Every fuzz target on some hundred random strings, so that it is known to work with any compiler. `fuzz/` has the
-//! same targets for libFuzzer.
+//! Every fuzz target on some hundred random strings, so that any compiler tests them. `fuzz/` has the same targets for
+//! libFuzzer.
 
 mod targets;
 
@@ -17,7 +17,7 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    /// Bytes, and now and then a run of the same, which makes points coincide.
+    /// Bytes, with occasional runs of equal ones, which make points coincide.
     fn bytes(&mut self, most: usize) -> Vec<u8> {
         let length = self.bits() as usize % most;
         let mut bytes = Vec::with_capacity(length);
@@ -30,7 +30,7 @@ impl Random {
     }
 }
 
-/// Feeds a target so many strings; `RAYWRIGHT_FUZZ` asks for so many times more.
+/// Feeds `count` strings to a target; `RAYWRIGHT_FUZZ` multiplies their number.
 fn feed(target: fn(&[u8]), count: u32) {
     let times: u32 = std::env::var("RAYWRIGHT_FUZZ").map_or(1, |n| n.parse().expect("RAYWRIGHT_FUZZ is a number"));
     let mut random = Random(1);

@@ -34,7 +34,7 @@ fn grids_of_small_integers_with_ties_and_coplanar_rays() {
 fn of_coincident_triangles_the_first_is_hit() {
     let mut random = Random(3);
     let first: Vec<_> = (0..40).map(|_| [0; 3].map(|_| random.grid(6).as_vec3())).collect();
-    // Each forty times, walked round from every corner and both ways, and far apart in number.
+    // Forty copies of each, rotated through corners and both windings, and far apart in number.
     let turn = |k: usize, [a, b, c]: [Vec3; 3]| [[a, b, c], [b, c, a], [c, b, a]][k % 3];
     let triangles = Triangles((0..1600).map(|i| turn(i / 40, first[i % 40])).collect());
     let rays: Vec<_> = (0..500)
@@ -46,7 +46,7 @@ fn of_coincident_triangles_the_first_is_hit() {
         .collect();
     let found = agreed(&triangles, &rays);
     assert!(hits(&found) > 100);
-    // Of small integers all but the last quotient is exact, so all copies are met at the same t.
+    // For small integers all but the last quotient is exact, so all copies are hit at the same t.
     assert!(found.iter().all(|h| !h.is_hit() || h.primitive < 40));
 }
 
@@ -66,13 +66,13 @@ fn a_million_copies_of_one_triangle() {
 fn origins_far_away() {
     let mut random = Random(4);
     let soup = random.soup(80, 0.5);
-    // Beyond 2¹⁰⁰ extents boxes are given up, beyond 1e38 an f32 holds no origin, beyond 1e154 an f64 no square.
+    // Beyond 2¹⁰⁰ extents boxes cannot cull, beyond 1e38 an f32 holds no origin, beyond 1e154 an f64 no square.
     for exponent in [2, 4, 6, 7, 8, 10, 12, 14, 15, 16, 17, 18, 20, 25, 29, 30, 31, 37, 38, 39, 60, 150, 155, 300] {
         let distance = 10f64.powi(exponent);
         let rays: Vec<_> = (0..cases(80))
             .map(|i| {
                 let target = random.target(&soup);
-                // Along an axis a ray from any distance meets what it is aimed at.
+                // Along an axis, a ray from any distance hits its target.
                 let way = if i % 2 == 0 { random.point(1.0) } else { random.of(&[DVec3::X, -DVec3::Y, DVec3::Z]) };
                 let across = if i % 2 == 0 { DVec3::ZERO } else { target * (DVec3::ONE - way.abs()) };
                 let origin = across - distance * way;
@@ -114,7 +114,7 @@ fn huge_and_tiny_together() {
 #[test]
 fn coordinates_of_any_size() {
     let mut random = Random(6);
-    // Products of coordinates leave what an f32 holds at either end of its range.
+    // Products of coordinates exceed the range of an f32 at either end.
     for exponent in (-148..=126).step_by(2) {
         let scale = 2f64.powi(exponent);
         let soup = random.soup(30, 0.5);
@@ -143,7 +143,7 @@ fn directions_of_any_length() {
         let found =
             agreed(&soup, &rays.iter().map(|r| Ray { direction: r.direction * scale, ..*r }).collect::<Vec<_>>());
         for (found, wanted) in found.iter().zip(&wanted) {
-            // A power of two changes nothing but the unit of t.
+            // A power of two only changes the unit of t.
             assert_eq!(bits(&Hit { t: found.t * scale, ..*found }), bits(wanted));
         }
     }
@@ -228,7 +228,7 @@ fn both_ends_of_the_interval_count() {
 fn neither_the_batch_nor_the_order_changes_an_answer() {
     let mut random = Random(11);
     let soup = random.soup(3000, 0.05);
-    // Some batches of one mind, some of many, which different kernels take on.
+    // Coherent and incoherent batches, for different kernels.
     let eye = DVec3::new(0.0, 0.0, 3.0);
     let mut rays: Vec<_> = (0..400).map(|i| Ray::new(eye, DVec3::new(f64::from(i) * 2e-3 - 0.4, 0.01, -1.0))).collect();
     rays.extend(random.aimed(&soup, 600, 2.0));

@@ -5,7 +5,7 @@ use super::triangles::{Random, Triangles, agreed, hits};
 use proptest::prelude::*;
 use raywright::math::{DVec3, Ray, Vec3};
 
-/// Right triangles in planes across the axes, each half of its box, so that every leaf's box has no volume.
+/// Right triangles in axis-aligned planes, each half of its box, so that every leaf's box has no volume.
 fn flat(random: &mut Random, count: usize, size: f64) -> Triangles {
     let triangle = |_| {
         let corner = random.point(1.0);
@@ -18,14 +18,14 @@ fn flat(random: &mut Random, count: usize, size: f64) -> Triangles {
     Triangles((0..count).map(triangle).collect())
 }
 
-/// A point on the border of a triangle, exactly: a corner, or with a power of two of parts, a point of an edge.
+/// A point exactly on the border of a triangle: a corner, or a dyadic point of an edge.
 fn on_border(random: &mut Random, triangles: &Triangles) -> DVec3 {
     let triangle = triangles.0[random.below(triangles.0.len())].map(|c| c.as_dvec3());
     let (i, k) = (random.below(3), random.below(9));
     triangle[i] + (triangle[(i + 1) % 3] - triangle[i]) * (k as f64 / 8.0)
 }
 
-/// Parts of a direction from none to hardly any to much.
+/// Components of a direction: zero, tiny and large.
 const PARTS: [f64; 16] =
     [0.0, -0.0, 5e-324, -5e-324, 1e-310, 1e-300, -1e-100, 1e-40, -1e-30, 1e-19, 1e-18, -1e-12, 1e-8, -1e-7, 1e-3, 1.0];
 
@@ -96,7 +96,7 @@ fn rays_that_graze_flat_boxes() {
 #[test]
 fn rays_from_far_that_only_just_arrive() {
     let mut random = Random(4);
-    // Large triangles, whose borders a rounded far origin does not miss by much, and a box that is the whole scene.
+    // Large triangles, which a rounded far origin does not miss by much, and a box of the whole scene.
     for exponent in (0..=110).step_by(2) {
         let triangles = flat(&mut random, 40, 2.0);
         let distance = 2f64.powi(exponent);
@@ -105,7 +105,7 @@ fn rays_from_far_that_only_just_arrive() {
                 let target = on_border(&mut random, &triangles);
                 let way = random.point(1.0);
                 let origin = target - way * distance;
-                // The way back to the target, as well as an f64 can say it.
+                // Back to the target, as exact as f64 allows.
                 Ray::new(origin, (target - origin) / distance)
             })
             .collect();
@@ -129,7 +129,7 @@ fn intervals_that_end_at_the_hit() {
             })
             .collect();
         let found = agreed(&triangles, &rays);
-        // The box of the triangle that was hit must not begin after its t, nor end before it.
+        // The box of the hit triangle must not begin after t, nor end before it.
         let exactly: Vec<_> = rays
             .iter()
             .zip(&found)
@@ -151,7 +151,7 @@ proptest! {
         count in 1usize..60,
         exponents in [-60i32..60, -60i32..60, -60i32..60],
     ) {
-        // Stretched by powers of two, so that the axes have sizes of their own and the flat stays flat.
+        // Stretched by powers of two, so that axes differ in size and flat triangles stay flat.
         let mut random = Random(seed);
         let stretch = DVec3::from_array(exponents.map(|e| 2f64.powi(e)));
         let triangles = flat(&mut random, count, 0.5);

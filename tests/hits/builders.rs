@@ -9,7 +9,7 @@ use raywright::accel::bvh::{self, Options, Quality};
 use raywright::accel::{Accelerator, BruteForce, Nearest};
 use raywright::math::{DVec3, Hit, Ray, Vec3};
 
-/// Spatial splits, as many as they like.
+/// Spatial splits with a large budget.
 pub const SPATIAL: Builder = Builder::Spatial { bins: None, budget: 4.0 };
 
 /// Every builder.
@@ -49,7 +49,7 @@ fn trees(triangles: &Triangles) -> Vec<Box<dyn Accelerator>> {
     trees
 }
 
-/// How many rays hit, after seeing that all trees agree with brute force.
+/// Number of rays that hit; panics unless all trees agree with brute force.
 fn agreed(triangles: &Triangles, rays: &[Ray]) -> usize {
     let ask = |accelerator: &dyn Accelerator| {
         let (mut hits, mut occluded) = (vec![Hit::MISS; rays.len()], vec![false; rays.len()]);

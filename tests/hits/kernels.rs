@@ -6,14 +6,14 @@ use raywright::accel::bvh::{self, Options};
 use raywright::accel::{Accelerator, BruteForce};
 use raywright::math::{Hit, HitColumns, Numbers, Ray, RayColumns, Vectors};
 
-/// The same rays in an order that has no neighbours.
+/// The same rays in incoherent order.
 fn scattered(rays: &[Ray]) -> Vec<Ray> {
     let mut rays = rays.to_vec();
     rays.sort_by_key(|r| (r.direction.x.to_bits() ^ r.origin.y.to_bits()).wrapping_mul(0x9e37_79b9));
     rays
 }
 
-/// Asks for rays so many at a time, and compares the closest hits, and whether there is any.
+/// Traces rays `at_once` at a time, and compares closest hits and occlusion.
 fn agrees(tree: &dyn Accelerator, rays: &[Ray], wanted: &[Hit], at_once: usize) {
     for (rays, wanted) in rays.chunks(at_once).zip(wanted.chunks(at_once)) {
         let mut hits = vec![Hit::MISS; rays.len()];
@@ -90,7 +90,7 @@ fn rays_by_columns_are_answered_as_the_same_rays_one_after_the_other() {
                     (ray.origin, ray.direction) = (ray.origin.as_vec3().as_dvec3(), ray.direction.as_vec3().as_dvec3());
                 }
             }
-            // Scattered too, and of every number that leaves another rest.
+            // Also incoherent, and in numbers with every remainder.
             if which % 3 == 2 {
                 rays.sort_by_key(|r| (r.direction.x.to_bits() ^ r.origin.y.to_bits()).wrapping_mul(0x9e37_79b9));
             }

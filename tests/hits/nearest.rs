@@ -33,7 +33,7 @@ impl From<&Triangles> for Doubles {
     }
 }
 
-/// The same, kept as f64 whatever they are.
+/// The same, stored as f64 in any case.
 struct Kept<'a>(&'a Doubles);
 
 impl Primitives for Kept<'_> {
@@ -50,7 +50,7 @@ impl Primitives for Kept<'_> {
     }
 }
 
-/// Trees of both widths and brute force at every level, at every precision that loses nothing.
+/// Trees of both widths and brute force at every level, at every lossless precision.
 fn accelerators(triangles: &Doubles) -> Vec<(String, Box<dyn Accelerator>)> {
     let mut all: Vec<(String, Box<dyn Accelerator>)> = Vec::new();
     for level in levels() {
@@ -69,7 +69,7 @@ fn bits(nearest: &Nearest) -> ([u64; 6], u32) {
     ([*distance, p.x, p.y, p.z, uv[0], uv[1]].map(f64::to_bits), *primitive)
 }
 
-/// The nearest points, after seeing that every accelerator gives the same bits, one by one as in a batch.
+/// The nearest points, after a check that every accelerator gives the same bits, one by one and in a batch.
 pub fn agreed(triangles: &Doubles, points: &[DVec3], max_distances: &[f64]) -> Vec<Nearest> {
     let mut wanted: Option<Vec<Nearest>> = None;
     for (name, accelerator) in accelerators(triangles) {
@@ -89,7 +89,7 @@ pub fn agreed(triangles: &Doubles, points: &[DVec3], max_distances: &[f64]) -> V
     wanted.expect("an accelerator")
 }
 
-/// Triangle by triangle: no tree, no search.
+/// Triangle by triangle: without a tree.
 fn one_by_one(triangles: &Doubles, point: DVec3) -> (f64, u32) {
     let mut best = (f64::INFINITY, u32::MAX);
     for p in 0..triangles.count() as u32 {
@@ -156,7 +156,7 @@ fn exact_square(corners: [DVec3; 3], point: DVec3) -> (BigInt, BigInt) {
     segments.into_iter().reduce(|a, b| if &b.0 * &a.1 < &a.0 * &b.1 { b } else { a }).expect("three of them")
 }
 
-/// Whether a distance is right to within `error`.
+/// Asserts that a distance is right to within `error`.
 fn assert_distance(corners: [DVec3; 3], point: DVec3, found: NearestPoint, error: f64) {
     let (square, divisor) = exact_square(corners, point);
     let (distance, error) = (integer(found.distance), integer(error));
@@ -166,8 +166,8 @@ fn assert_distance(corners: [DVec3; 3], point: DVec3, found: NearestPoint, error
     assert!(low.sign() != Sign::Plus || &low * &low * &divisor <= square, "too far: {told}");
 }
 
-/// What is promised: 2⁻⁴⁹ of the distance to the farthest corner. And the weights are those of a point of the triangle
-/// that is about so far.
+/// Asserts the guarantee: an error of 2⁻⁴⁹ of the distance to the farthest corner. The weights belong to a point of the
+/// triangle at about that distance.
 fn assert_promised(corners: [DVec3; 3], point: DVec3) {
     let found = nearest_point(corners, point);
     let farthest = corners.iter().map(|&c| distance(c, point)).fold(0.0, f64::max);
@@ -259,7 +259,7 @@ fn an_edge_is_as_far_for_both_triangles_that_share_it() {
             1 => middle + random.grid(2),
             _ => random.grid(4),
         };
-        // So thin that of either there is nothing but this edge.
+        // So thin that the triangle is nothing but this edge.
         let one = nearest_point([a, b, b], point).distance;
         for corners in [[b, a, a], [a, a, b], [b, b, a], [b, a, b], [a, b, a]] {
             assert_eq!(nearest_point(corners, point).distance.to_bits(), one.to_bits());
@@ -316,7 +316,7 @@ fn soups() {
         let mut points: Vec<_> = (0..300).map(|_| random.point(1.5)).collect();
         points.extend((0..300).map(|_| random.target(&soup)));
         points.extend((0..100).map(|i| random.point(1.0) * 10f64.powi(i / 15)));
-        // A walk, as of neighbours.
+        // A coherent sequence of points.
         points.extend((0..300).map(|i| DVec3::splat(f64::from(i) / 150.0 - 1.0)));
         assert_right(&(&soup).into(), &points);
     }
@@ -378,10 +378,10 @@ fn points_far_away() {
     for exponent in [1, 3, 6, 7, 8, 9, 12, 15, 16, 17, 20, 38, 39, 100, 154, 155, 300, 307] {
         let points: Vec<_> = (0..50).map(|_| random.point(1.0) * 10f64.powi(exponent)).collect();
         for (found, &point) in agreed(&soup, &points, &[f64::INFINITY]).iter().zip(&points) {
-            // No triangle is nearer by more than rounding, though beyond 2²⁶ radii it may be another one.
+            // No triangle is nearer, except for rounding, though beyond 2²⁶ radii it may be another one.
             let (wanted, _) = one_by_one(&soup, point);
             assert!((found.distance - wanted).abs() <= 4.0 * f64::EPSILON * wanted, "{found:?}, {wanted}");
-            // Where rounding leaves anything to tell, it is the one that is farthest that way.
+            // Where rounding leaves a difference, it is the triangle farthest in that direction.
             if exponent > 16 {
                 let way = (point * 10f64.powi(-exponent)).normalize();
                 let reach = soup.0.iter().flatten().map(|c| c.dot(way)).fold(f64::NEG_INFINITY, f64::max);
@@ -435,7 +435,7 @@ fn what_has_no_nearest_point() {
     assert_eq!(found.iter().map(Nearest::is_hit).collect::<Vec<_>>(), [false, false, false, false, true]);
     assert!(found[0].distance == f64::INFINITY && found[0].position.is_nan());
     assert!(!agreed(&Doubles(Vec::new()), &[DVec3::ZERO], &[f64::INFINITY])[0].is_hit());
-    // Farther than an f64 can say.
+    // A distance that overflows f64.
     let far = Doubles(vec![[DVec3::splat(-f64::MAX); 3]]);
     assert!(!agreed(&far, &[DVec3::splat(f64::MAX)], &[f64::INFINITY])[0].is_hit());
     let wide = Doubles(vec![[-DVec3::X * f64::MAX, DVec3::X * f64::MAX, DVec3::Y * f64::MAX]]);
@@ -452,7 +452,7 @@ fn a_tree_that_was_refitted_finds_the_same() {
     let wanted = agreed(&moved, &points, &[f64::INFINITY]);
     for (name, accelerator) in accelerators(&soup) {
         let Ok(refitted) = accelerator.refitted(&moved) else {
-            // Leaves of f32 cannot keep these.
+            // Leaves of f32 cannot store these.
             assert!(!name.contains("double"), "{name}");
             continue;
         };

@@ -1,4 +1,4 @@
-//! A triangle is met if and only if big integers say so, and the bound that spares them the work holds.
+//! Hits agree with big integers, and the error bound that avoids them holds.
 
 use super::triangles::Random;
 use num_bigint::{BigInt, Sign};
@@ -40,7 +40,7 @@ fn weights(origin: DVec3, direction: DVec3, corners: [DVec3; 3]) -> [BigInt; 3] 
     [volume(&d, &b, &c), volume(&d, &c, &a), volume(&d, &a, &b)]
 }
 
-/// Whether the line through the ray meets the triangle, which does not lie in a plane with it.
+/// True if the line through the ray meets the triangle, which is not coplanar with it.
 fn is_met(weights: &[BigInt; 3]) -> bool {
     let has = |sign| weights.iter().any(|w| w.sign() == sign);
     has(Sign::Plus) != has(Sign::Minus)
@@ -56,7 +56,7 @@ fn check(origin: DVec3, direction: DVec3, corners: [Vec3; 3]) -> Result<(), Test
     let wide = corners.map(|c| c.as_dvec3());
     let met = is_met(&weights(origin, direction, wide));
     match EdgeRay::new(&ray, &region(corners)) {
-        // Of a t beyond the range of an f64 there is no hit; a length of 2⁻⁶⁰⁰ and coordinates below 2³⁰⁰ give none.
+        // A t beyond the range of an f64 is no hit; a length of 2⁻⁶⁰⁰ and coordinates below 2³⁰⁰ give none.
         Some(edges) => prop_assert_eq!(edges.meet(wide).is_some(), met, "{:?} {:?}", ray, corners),
         None => prop_assert!(direction.abs().max_element() < f64::MIN_POSITIVE),
     }
@@ -113,7 +113,7 @@ proptest! {
 
 #[test]
 fn nearly_coplanar_and_nearly_on_an_edge() {
-    // Where signs are decided by the last bits, by construction: a target on an edge or a plane, off by an ulp or none.
+    // Signs that the last bits decide, by construction: a target on an edge or a plane, off by an ulp or none.
     let mut random = Random(1);
     let (mut met, mut passed) = (0, 0);
     for _ in 0..60_000 {
@@ -134,19 +134,19 @@ fn nearly_coplanar_and_nearly_on_an_edge() {
     assert!(met > 5000 && passed > 5000, "{met} {passed}");
 }
 
-/// The error of the weights as f64 has them, over the unit that the bound counts in: 2⁻⁵³ · 2 · largest².
+/// The error of the f64 weights in the unit of the bound: 2⁻⁵³ · 2 · largest².
 ///
 /// `rust/shapes/triangle/edge.rs` proves 208 of these units, to first order, and allows 256.
 fn error(origin: DVec3, direction: DVec3, corners: [Vec3; 3]) -> f64 {
     let edges = EdgeRay::new(&Ray::new(origin, direction), &region(corners)).unwrap();
     let wide = corners.map(|c| c.as_dvec3());
-    // Of the direction as scaled: exact, as all here are of moderate size. Twice, because of the edge form.
+    // With the scaled direction: exact, as all here are of moderate size. Twice, because of the edge form.
     let wanted = weights(origin, edges.direction, wide);
     let [a, b, c] = wide.map(|p| p - origin);
     let found = [(b, c), (c, a), (a, b)].map(|(v, w)| edges.direction.dot((v - w).cross(v + w)));
     let worst = found.iter().zip(&wanted).map(|(f, w)| {
         let off: BigInt = (integer(*f) << (2 * 1074usize)) - w * 2;
-        // To f64 by its top bits; what is cut off is far below what the comparison needs.
+        // Converts the top bits to f64; the rest is far below the needs of the comparison.
         let off = off.magnitude();
         let cut = off.bits().saturating_sub(64);
         let top: u64 = (off >> cut).try_into().unwrap();
@@ -192,11 +192,11 @@ fn the_bound_on_rounding_withstands_a_hunt() {
     }
     println!("the largest error found is {worst} units");
     assert!(worst <= 208.0, "an error of {worst} units");
-    // The hunt is one: chance alone finds errors of a few units.
+    // The search has worked: random numbers alone find errors of a few units.
     assert!(worst > 8.0, "no more than {worst} units found");
 }
 
-/// Small whole numbers times a power of two, the least and the greatest included, where products under- and overflow.
+/// Small whole numbers times a power of two, up to the least and the greatest, where products under- and overflow.
 fn scaled() -> impl Strategy<Value = ([DVec3; 3], DVec3, DVec3)> {
     let point = || prop::array::uniform3(-9i32..=9).prop_map(|p| DVec3::from_array(p.map(f64::from)));
     let bit = || prop::array::uniform3(-1e-15..1e-15f64).prop_map(DVec3::from_array);

@@ -1,5 +1,4 @@
-//! Structures that divide space: bounded on any input, the same for any number of threads, and no primitive tested
-//! twice.
+//! Spatial subdivisions: bounded on any input, the same for any number of threads, and no primitive tested twice.
 
 use super::triangles::{Random, Triangles, agreed, hits, levels};
 use raywright::accel::kdtree::{Builder, Traversal};
@@ -46,7 +45,7 @@ fn many_copies_of_one_triangle_are_not_parted_for_ever() {
 #[test]
 fn a_spray_of_needles_through_one_point_stays_bounded() {
     let mut random = Random(21);
-    // Every plane near the middle is straddled by all of them.
+    // All triangles straddle every plane near the middle.
     let needle = |_| {
         let (way, across) = (random.point(1.0), random.point(1e-3));
         [-way - across, -way + across, way].map(|p| p.as_vec3())
@@ -57,8 +56,8 @@ fn a_spray_of_needles_through_one_point_stays_bounded() {
         let tree = over(&triangles, &build);
         tree.validate(&triangles).unwrap();
         let info = tree.info();
-        // In blocks, a primitive takes 40 bytes a place and there are 9 places for each and 64 more; leaves and nodes
-        // come on top.
+        // A block takes 40 bytes per primitive reference. There are 9 references for each primitive, plus 64; leaves
+        // and nodes come on top.
         let most = (9 * 3000 + 64) * 40 + 60 * info.leaves + 48 * info.nodes + 4096;
         assert!(info.bytes < most, "{name}: {info:?}");
         // None is tested twice.
@@ -106,7 +105,7 @@ fn flat_scenes_and_few_triangles() {
     for axis in 0..3 {
         for count in [1, 2, 3, 400] {
             let mut triangles = random.soup(count, 0.3);
-            // In one plane across an axis, where rays along it lie in the plane too.
+            // In one axis-aligned plane, with rays in the plane too.
             triangles.0.iter_mut().flatten().for_each(|p| p[axis] = 0.25);
             let mut rays = random.aimed(&triangles, 60, 2.0);
             let mut along = random.aimed(&triangles, 20, 1.0);
@@ -153,7 +152,7 @@ fn other_triangles_are_not_valid_and_are_not_refitted() {
 
 #[test]
 fn free_planes_part_slanted_needles_at_less_cost() {
-    // In one slanted plane, in any direction: planes across axes cut many of them, planes along them few.
+    // In one slanted plane, in any direction: axis-aligned planes cut many of them, planes along them few.
     let mut random = Random(27);
     let mut needle = || {
         let [x, y] = [0; 2].map(|_| random.below(2048) as i32 - 1024);

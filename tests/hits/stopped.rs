@@ -1,4 +1,4 @@
-//! Builds that nobody wants any more: they end soon, whatever is built, and hold nothing then.
+//! Cancelled builds: they end soon, for every structure, and hold nothing then.
 
 use super::triangles::{Random, Triangles, levels};
 use raywright::accel::bvh::build::{Builder, halves, morton, ploc};
@@ -11,7 +11,7 @@ use raywright::work::{Watch, Work};
 use raywright::workers;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
-/// Triangles whose build is stopped when somebody asks for corners so often.
+/// Triangles whose build is cancelled after `most` reads of corners.
 struct Unwanted<'a> {
     triangles: &'a Triangles,
     asked: AtomicUsize,
@@ -86,17 +86,17 @@ fn what_is_stopped_ends_soon_and_holds_nothing() {
             })
             .collect(),
     );
-    // One thread, so that it is known what is done when it is stopped.
+    // One thread, so that the progress at cancellation is known.
     let pool = workers::pool(Some(1)).unwrap();
     for (name, over) in all() {
-        // While it is found out where they lie, while boxes are made, and later.
+        // While bounds are computed, while boxes are made, and later.
         for most in [0, COUNT + COUNT / 3, 2 * COUNT + 500] {
             let unwanted =
                 Unwanted { triangles: &triangles, asked: AtomicUsize::new(0), most, watch: Watch::default() };
             let built = pool.install(|| over(&unwanted));
             let asked = unwanted.asked.into_inner();
             if unwanted.watch.is_stopped() {
-                // What is left of finding out, a round of boxes, what of one node is parted, or leaves.
+                // At most, a round of boxes, the split of one node, or leaves remain after the stop.
                 assert!(asked <= most + COUNT, "{name}: {asked} after {most}");
                 assert!(most > 2 * COUNT || built.info().leaves == 0, "{name}");
             }

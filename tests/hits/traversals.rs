@@ -1,4 +1,4 @@
-//! Every way through a binary tree, over the tree of every builder, answers every question as brute force does.
+//! Every traversal of a binary tree, over the tree of every builder, agrees with brute force on all queries.
 
 use super::builders::{BUILDERS, SPATIAL, optimisers, sticks};
 use super::triangles::{Random, Triangles, levels};
@@ -18,7 +18,7 @@ fn best() -> Level {
     levels().last().unwrap()
 }
 
-/// A tree of each builder with some optimiser, walked in every way.
+/// A tree of each builder with some optimiser, with every traversal.
 fn trees(primitives: &dyn Primitives) -> Vec<Box<dyn Accelerator>> {
     let mut trees = Vec::new();
     for (i, builder) in BUILDERS.into_iter().enumerate() {
@@ -35,7 +35,7 @@ fn trees(primitives: &dyn Primitives) -> Vec<Box<dyn Accelerator>> {
     trees
 }
 
-/// Answers to all questions.
+/// Results of all queries.
 #[derive(Debug, PartialEq)]
 struct Answers {
     hits: Vec<Hit>,
@@ -44,7 +44,7 @@ struct Answers {
     sides: Vec<Side>,
 }
 
-/// Asks all rays, so many at a time.
+/// Traces all rays, in batches.
 fn ask(accelerator: &dyn Accelerator, rays: &[Ray], batch: usize) -> Answers {
     let none = Answers { hits: vec![], occluded: vec![], crossings: Crossings::default(), sides: vec![] };
     let mut all = none;
@@ -66,7 +66,7 @@ fn ask(accelerator: &dyn Accelerator, rays: &[Ray], batch: usize) -> Answers {
     all
 }
 
-/// The answers of brute force, after seeing that all trees give them, to batches of several sizes.
+/// The results of brute force, after a check that all trees agree, for batches of several sizes.
 fn agreed(primitives: &dyn Primitives, rays: &[Ray]) -> Answers {
     let wanted = ask(BruteForce::over(primitives, best()).as_ref(), rays, rays.len());
     for (i, tree) in trees(primitives).iter().enumerate() {
@@ -87,12 +87,12 @@ fn nodes(costs: &[Cost]) -> u64 {
 }
 
 fn over(triangles: &Triangles, traversal: Traversal) -> Box<dyn Accelerator> {
-    // Of whole triangles: what is said here of trees is not said of those over pieces.
+    // Whole triangles only: trees over pieces have no such guarantee.
     let options = Options { optimisers: Some(Optimisers::REINSERTION), ..Options::DEFAULT };
     trees::binary(triangles, &options, traversal, best())
 }
 
-/// Neighbouring rays through an eye, and rays that go any way, some of them none at all.
+/// Coherent rays through an eye, and incoherent rays, some of them invalid.
 fn some_of_one_mind(random: &mut Random, triangles: &Triangles) -> Vec<Ray> {
     let eye = DVec3::new(0.1, 0.2, 3.0);
     let fan = |i: u32| DVec3::new(f64::from(i % 16) * 0.04 - 0.3, f64::from(i / 16) * 0.04 - 0.3, -1.0);
@@ -133,7 +133,7 @@ fn ties_copies_planes_and_nothing() {
     }
 }
 
-/// Balls among triangles, the last of which are two half-spaces without end.
+/// Balls among triangles; the last ones are two infinite half-spaces.
 struct Balls {
     triangles: Triangles,
     balls: Arc<[(DVec3, f64)]>,

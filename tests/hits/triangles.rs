@@ -29,7 +29,7 @@ impl Primitives for Triangles {
 }
 
 impl Triangles {
-    /// The closest hit, triangle by triangle: no boxes, no lanes, no test in f32 before.
+    /// The closest hit, triangle by triangle: without boxes, lanes or a test in f32 before.
     fn closest(&self, ray: &Ray, region: &Region) -> Hit {
         let Some(edges) = EdgeRay::new(ray, region) else { return Hit::MISS };
         let mut best = Hit::MISS;
@@ -71,7 +71,7 @@ pub fn accelerators(primitives: &dyn Primitives) -> Vec<(String, Box<dyn Acceler
 
 type Build = fn(&Input) -> Built;
 
-/// The structures that one ray walks at a time, or some together.
+/// Structures with single-ray or packet traversal.
 const STRUCTURES: [(&str, Build); 17] = [
     ("stack", |input| Traversal::Stack(Rays::One).build(input, &Options::DEFAULT)),
     ("packets of 4", |input| Traversal::Stack(Rays::Four).build(input, &Options::DEFAULT)),
@@ -100,8 +100,8 @@ const fn kd(builder: Builder, traversal: kdtree::Traversal) -> kdtree::Options {
     kdtree::Options { builder, traversal, ..kdtree::Options::DEFAULT }
 }
 
-/// The closest hits, after seeing that every accelerator at every level gives the same bits, and `occluded` the same
-/// answer. The rays are asked as one batch, and a few at a time, which other kernels answer.
+/// The closest hits, after a check that every accelerator at every level gives the same bits, and that `occluded`
+/// agrees. Rays are traced as one batch, and a few at a time, which use other kernels.
 pub fn agreed(triangles: &Triangles, rays: &[Ray]) -> Vec<Hit> {
     let region = triangles.region();
     let wanted: Vec<Hit> = rays.iter().map(|r| triangles.closest(r, &region)).collect();
@@ -125,12 +125,12 @@ pub fn agreed(triangles: &Triangles, rays: &[Ray]) -> Vec<Hit> {
     wanted
 }
 
-/// A hit as bits, in which -0 and 0 differ.
+/// A hit as bits, to tell -0 from 0.
 pub fn bits(hit: &Hit) -> (u64, [u64; 2], u32) {
     (hit.t.to_bits(), hit.uv.map(f64::to_bits), hit.primitive)
 }
 
-/// How many hit.
+/// Number of hits.
 pub fn hits(hits: &[Hit]) -> usize {
     hits.iter().filter(|h| h.is_hit()).count()
 }

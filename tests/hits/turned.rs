@@ -1,4 +1,4 @@
-//! Boxes along axes of a tree's own: the same answers, bit for bit, and the right ones.
+//! Trees whose boxes have their own axes: the same answers, bit for bit, and the right ones.
 
 use super::super::cases;
 use super::triangles::{Random, Triangles, agreed, bits, hits, levels};
@@ -7,7 +7,7 @@ use raywright::accel::bvh::{self, Options};
 use raywright::accel::{Accelerator, BruteForce};
 use raywright::math::{DVec3, Hit, Ray, Vec3};
 
-/// At right angles to each other, of length 1.
+/// Random orthonormal axes.
 fn axes(random: &mut Random) -> [DVec3; 3] {
     let x = random.point(1.0).normalize();
     let y = x.cross(random.point(1.0)).normalize();
@@ -35,7 +35,7 @@ fn beams(random: &mut Random, axes: &[DVec3; 3], count: usize, place: impl Fn(DV
     Triangles(all)
 }
 
-/// That the default tree's boxes are turned.
+/// Asserts that the default tree's boxes are turned.
 fn assert_turned(tree: &dyn Accelerator) {
     assert!(tree.info().kind.contains(", turned, "), "{}", tree.info().kind);
 }
@@ -76,10 +76,10 @@ fn points_find_their_nearest() {
     assert_turned(widest(&beams).as_ref());
     let reach = |i: u32| [1.0, 3.0, 1e4, 1e7][i as usize % 4];
     let mut points: Vec<_> = (0..cases(200)).map(|i| random.point(reach(i))).collect();
-    // As far from one triangle as from another: beside what they share.
+    // Equidistant from two triangles: beside their common part.
     points.extend((0..cases(200)).map(|_| random.target(&beams) + random.of(&[0.0, 1e-3, 0.1]) * random.of(&axes)));
     nearest::assert_right(&(&beams).into(), &points);
-    // So far away that only all together say which is the nearest.
+    // So far away that distances round to nearly the same.
     let far: Vec<_> = (0..cases(60)).map(|i| random.point([1e9, 1e30, 1e300][i as usize % 3])).collect();
     nearest::agreed(&(&beams).into(), &far, &[f64::INFINITY]);
 }

@@ -8,7 +8,7 @@ from cornell_picture import cornell_picture
 
 import raywright as rw
 
-# What a shell runs in the background ignores Ctrl-C, and so would the tests of it, here and in children.
+# Background jobs of a shell ignore Ctrl-C, and so would its tests, here and in children.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
 CORNERS = [(x, y, z) for x in (0.0, 1.0) for y in (0.0, 1.0) for z in (0.0, 1.0)]

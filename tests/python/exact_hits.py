@@ -132,7 +132,7 @@ def doubtful(triangles, origins, directions):
     size, length = np.abs(corners).max(axis=(2, 3)), np.abs(edges).max(axis=(1, 2))
     # From an edge and one corner rather than from two corners: errors of far origins grow with the distance,
     # not with its square. An edge's volume takes some 20 roundings, each below 2⁻⁵³ of at most 12 size times
-    # length (the direction is at most 1); 2⁻⁴⁰ is far more. What underflows is below the constant.
+    # length (the direction is at most 1); 2⁻⁴⁰ is far more. The constant covers underflow.
     margin = 2.0**-40 * size * length + 1e-290
     planes = np.cross(np.roll(corners, -1, axis=2), edges[None])
     volumes = np.einsum("nj,ntij->nti", scaled, planes)

@@ -103,6 +103,6 @@ def assert_agree(scene, camera, integrator, truth, *, seeds=5, samples=8, blur=0
     allowed = 5 * np.hypot(error, other) + 2 * bias + blur * expected + 1e-6
     off = np.abs(mean - expected) / allowed
     assert off.max() < 1, off.round(2)
-    # The whole is told better than its parts.
+    # The mean of the picture has a smaller error than its blocks.
     whole = 5 * math.hypot(error.mean(), other.mean()) + 2 * bias.mean()
     assert abs(mean.mean() - expected.mean()) < whole + 0.02 * expected.mean()

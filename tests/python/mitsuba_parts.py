@@ -87,7 +87,7 @@ def picture(name, **more):
 
 
 GOLD = {"eta": rgb(0.19, 0.54, 1.33), "k": rgb(3.4, 2.23, 1.87)}
-# Facets throw little on other facets where they are seen from above: what Mitsuba loses of that, and what is
-# made up for here, does not show.
+# Seen from above, facets scatter little light onto others. So Mitsuba's energy loss, compensated here, does
+# not show.
 ROUGH = {"distribution": "ggx", "alpha": 0.03}
 TILED = {**FLOOR, "bsdf": {"type": "diffuse", "reflectance": checks(3.0, 3.0)}}

@@ -366,7 +366,8 @@ def scenes():
             ),
             "integrator": {"type": "volpath", "max_depth": -1},
         },
-        # Of materials with a smooth lobe, Mitsuba's (3.9.1) takes the other for part of what that reflects.
+        # For materials with a smooth lobe, Mitsuba (3.9.1) mistakes the other material for a part of its
+        # reflection.
         "blendbsdf": scene(
             a=FLOOR,
             b=ball(
@@ -467,7 +468,7 @@ def scenes():
                 },
             },
         ),
-        # What is beyond the film is left out by Mitsuba, and seen here: so it is as even as the border.
+        # Mitsuba omits samples beyond the film, and raywright has them: so the border is uniform.
         "gaussian": {
             **scene(
                 2,

@@ -150,7 +150,7 @@ def test_memory_is_bounded_whatever_is_given(accelerator):
     huge = rw.Mesh(rng.normal(size=(60_000, 3)).astype(np.float32), np.arange(60_000).reshape(-1, 3))
     for mesh in (coincident, huge):
         info = rw.Scene(mesh, accelerator=accelerator).accelerator
-        # A dozen references of forty bytes and a word, and what a resolution that is given may take.
+        # A dozen references of forty bytes and a word, plus the cells of a given resolution.
         assert info.bytes < 20_000 * 12 * 60 + (2**21 * 44 if accelerator.resolution else 2**14 * 44)
     scene = rw.Scene(coincident, accelerator=accelerator)
     hits = scene.intersect([(0.25, 0.25, 5)], (0, 0, -1))

@@ -51,7 +51,7 @@ def test_the_background_lights_what_it_is_not_seen_behind():
     assert np.abs(off).max() <= 5 * image.standard_error.max() + 1e-6
     assert image.rgb[9, 12, 0] > 1
     shown = rw.render(scene, CAMERA, rw.Path(), **HOW)
-    # What is left out is the background, times what is not covered, of the same samples.
+    # The difference is the background times the uncovered share, from the same samples.
     np.testing.assert_allclose(
         shown.rgb - image.rgb, 2.0 * (1 - image.alpha[..., None]) + 0 * shown.rgb, atol=1e-5
     )
@@ -156,7 +156,7 @@ def test_png_holds_colours_by_themselves_and_exr_those_times_alpha(tmp_path):
     rim = (image.alpha > 0.1) & (image.alpha < 0.9)
     assert rim.sum() > 10
     whole = rw.io.shown.srgb(np.array([[[0.4, 0.2, 0.1]]], np.float32))[0, 0].astype(int)
-    # However little of a pixel is covered, its colour is that of what covers it.
+    # However small the coverage of a pixel, its colour is that of the surface.
     assert np.abs(pixels[image.alpha > 0][:, :3] - whole).max() <= 1
     assert np.array_equal(pixels[..., 3], np.floor(image.alpha.clip(0, 1).astype(float) * 255 + 0.5))
     assert np.array_equal(pixels, image.srgb())

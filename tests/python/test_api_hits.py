@@ -135,7 +135,7 @@ def test_asdict_gives_the_arrays_and_nothing_of_the_scene(scene, hits):
             kept = getattr(points, name)
             assert type(value) is type(kept)
             assert np.array_equal(value, kept, equal_nan=np.asarray(kept).dtype.kind == "f")
-    # Copies of what is read-only: they may be written to, and the hits stay as they are.
+    # Copies of read-only arrays may be written to, and the hits stay unchanged.
     told = dataclasses.asdict(hits)
     told["t"][:] = 0
     assert hits.t.any()

@@ -119,7 +119,7 @@ def test_every_public_name_is_there_and_documented():
 def test_dir_is_what_is_public(used):
     told = run(f"import raywright; {used}print(*dir(raywright))").split()
     assert len(told) == len(set(told))
-    # What waits to be imported is among it, and nothing that the package is made of.
+    # Lazy imports are included, and no submodule is.
     assert {name for name in told if not (name.startswith("__") and name.endswith("__"))} == set(rw.__all__)
     assert {"__all__", "__doc__", "__file__", "__name__", "__version__"} <= set(told)
     assert told == sorted(told)

@@ -57,7 +57,7 @@ def test_floats_and_bools_can_be_written_to(kind):
         found = dict(numbers(result))
         assert found, of
         for name, array in found.items():
-            # What torch.from_numpy warns of, and what would be written elsewhere too.
+            # torch.from_numpy warns of read-only arrays, and broadcast ones would change in several places.
             assert array.flags.writeable, (of, name)
             assert 0 not in array.strides or array.size <= 1, (of, name)
             array[...] = 1

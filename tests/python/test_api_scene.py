@@ -234,7 +234,7 @@ def test_a_changed_copy_has_the_rest_of_its_scene(box, triangle):
 
 def test_other_light_falls_on_the_same_accelerator(box):
     scene = rw.Scene([box, rw.Sphere((2, 0, 0), 0.5)])
-    # What was not built yet has none to give.
+    # An unbuilt scene has no tree to refit.
     assert "refitted" not in scene.replace(environment=1.0).accelerator.kind
     scene.build(progress=False)
     lamp = rw.PointLight((0, 0, 4), 1.0)
@@ -252,7 +252,7 @@ def test_other_light_falls_on_the_same_accelerator(box):
 
 def test_copy_replace_makes_one_too(box):
     scene = rw.Scene(box)
-    # What Python asks for it from 3.13 on.
+    # copy.replace calls this method, from Python 3.13 on.
     assert type(scene).__replace__(scene, environment=1.0) == rw.Scene(box, environment=1.0)
     if sys.version_info >= (3, 13):
         assert copy.replace(scene, environment=1.0) == rw.Scene(box, environment=1.0)

@@ -60,7 +60,7 @@ def test_an_even_wall_has_no_edges():
     ball = trimesh.creation.icosphere(2, 2.0)
     scene = rw.Scene([rw.Mesh(ball.vertices, ball.faces, material=rw.Diffuse(0.8))])
     camera = rw.Camera((0.1, 0.2, 0.3), (1, 0.4, 0.2), fov=70, width=12, height=9)
-    # Half the light, of which 0.8 come back; at 1e-6 a gap of a millionth of a pixel would show.
+    # Half the light at a reflectance of 0.8; at 1e-6 a gap of a millionth of a pixel would show.
     assert look(scene, camera, rw.BeamTraced(ambient=0.5)).rgb == pytest.approx(0.4, abs=1e-6)
 
 
@@ -188,8 +188,8 @@ def test_behind_a_window_directions_are_exact():
         ).rgb
         for shapes in (paper, [*paper, window])
     )
-    # What is lost is what the window reflects, the same near and far; the shift by a third of its depth is
-    # 2e-3 pixels at this distance, and where a pixel is wholly one or the other it changes nothing.
+    # The loss is the window's reflectance, the same near and far. The shift by a third of its depth is 2e-3
+    # pixels at this distance, and does not change uniform pixels.
     share = seen[..., 0] / np.maximum(free[..., 0], 1e-9)
     covered, clear = free[..., 0] > 0.999, free[..., 0] == 0
     assert np.all(seen[clear] < 1e-6)
@@ -213,7 +213,7 @@ def test_a_prism_reflects_all_where_light_cannot_leave():
 
 
 def test_shading_errs_by_less_than_a_thousandth_where_light_is_steep():
-    # A lamp two pixels from the wall; means of 16 by 16 finer pixels tell what coarse ones should be.
+    # A lamp two pixels from the wall; means of 16 by 16 finer pixels are the expectation of coarse ones.
     scene = rw.Scene([square(4, 0.0, material=PAPER)], lights=[rw.PointLight((0.13, 0.21, 0.5), 1.0)])
     coarse, fine = (
         look(

@@ -172,8 +172,9 @@ def hollow(aperture, *, centre=0.0, up=True, rings=96, **kwargs):
 @pytest.mark.slow
 def test_light_behind_a_port():
     # A point light in a hollow sphere whose wall has a port: the receiver sees the wall alone. Its radiosity
-    # is rho I / (1 - rho (1 - s)), with s the share of the sphere that is cut away; and the port sends what
-    # a disk of it would. What comes to the receiver is what a camera there sees, by solid angle and cosine.
+    # is rho I / (1 - rho (1 - s)), with s the share of the sphere that is cut away. The port emits like a
+    # disk of this radiosity. The irradiance of the receiver follows from a camera there, by solid angle and
+    # cosine.
     port, rho, far, aside = 0.1, 0.9, 0.5, 0.3
     rim = math.sqrt(1 - port**2)
     share = (1 - rim) / 2
@@ -223,8 +224,8 @@ def test_chambers_that_light_each_other_through_a_hole(aperture, rho, expected, 
     first = hollow(aperture, material=rw.Diffuse(rho[0]), emission=1 / math.pi)
     second = hollow(aperture, centre=2 * rim, up=False, material=rw.Diffuse(rho[1]))
     scene = rw.Scene([first, second])
-    # By photons, to each depth: of what comes to a wall after so many bounces, a share is sent on.
-    # Of those through the small hole twice as many, or too few come there.
+    # By photons, to each depth: a share of the light that arrives at a wall after that many bounces is
+    # reflected. The small hole needs twice as many, or too few pass it.
     depths, runs, count = 6, 12, 200_000 if aperture > 0.1 else 400_000
     arrived = np.zeros((runs, 2, depths + 1))
     for seed in range(runs):
@@ -234,7 +235,7 @@ def test_chambers_that_light_each_other_through_a_hole(aperture, rho, expected, 
             here = found.shape_id == wall
             sums = np.bincount(order[here], found.powers[here, 1], depths + 1)
             arrived[seed, wall] = sums / found.emitted[1]
-    # Both walls have the same area, of which the first sends 1 each: what comes, in units of that.
+    # Both walls have the same area, and the first emits 1: irradiance is in units of that.
     of_depth = [np.linalg.matrix_power(bounce, k) @ [1, 0] for k in range(1, depths + 1)]
     rest = np.array(expected) - [1, 0] - np.sum(of_depth, 0)
     sent = arrived * np.array(rho)[:, None]

@@ -101,7 +101,7 @@ def test_the_rays_of_a_thin_lens_meet_where_it_is_in_focus():
             away = camera.focused_distance / (directions @ camera.forward)
             met = origins + directions * away[:, None]
             assert np.ptp(met, axis=0).max() < 1e-12
-            # It is what the pinhole sees there.
+            # The same point as seen by the pinhole.
             middle = rw.Camera(EYE, AT, **SIZE).rays_through(point)[1]
             towards = unit(met.mean(axis=0) - EYE)
             assert np.abs(towards - middle).max() < 1e-12
@@ -137,8 +137,9 @@ def test_f_stops_and_focal_lengths_are_those_of_photography():
 
 
 def test_an_edge_is_blurred_by_the_circle_of_confusion():
-    # Half a plane shines at distance 2, and the lens is in focus at 4: a point at x of the film at distance 1
-    # sees 2 x + l / 2 from the point l of the lens, and what of the lens sees light is a segment of its disk.
+    # Half a plane emits at distance 2, and the lens is in focus at 4. A point at x of the film at distance 1
+    # sees 2 x + l / 2 from the point l of the lens, and the part of the lens that sees light is a segment of
+    # its disk.
     radius, far = 0.2, 1e3
     half = rw.Mesh(
         [(0, -far, 0), (far, -far, 0), (far, far, 0), (0, far, 0)], [(0, 1, 2), (0, 2, 3)], emission=1.0
@@ -230,7 +231,7 @@ def test_a_panorama_shows_a_direction_where_its_convention_says():
     origins, directions = camera.rays_through(np.stack([400 * u, 200 * v], axis=-1))
     assert np.allclose(directions, np.transpose(expected), rtol=0, atol=2e-15)
     assert (origins == (1, 2, 3)).all()
-    # What is to the right of a camera with a target is a quarter to the right.
+    # Directions to the right of a camera with a target are a quarter turn to the right.
     found = rw.Panorama(EYE, AT, width=400, height=200).rays_through([(200, 100), (300, 100), (7, 0)])[1]
     matrix = rw.Camera(EYE, AT).matrix
     assert np.allclose(found, [-matrix[:3, 2], matrix[:3, 0], matrix[:3, 1]], rtol=0, atol=1e-15)

@@ -58,7 +58,7 @@ def test_a_ray_goes_through_the_points_that_its_pixel_shows(K, pixel_centre):
         towards = point - origin
         assert np.linalg.norm(np.cross(towards, direction)) < 1e-12 * np.linalg.norm(towards)
         assert towards @ direction > 0
-        # Where it starts is what the projection has at zero.
+        # The origin of a ray is where the projection is zero.
         assert np.abs(R @ origin + SHIFT).max() < 1e-14
 
 

@@ -99,7 +99,7 @@ def test_a_sampler_that_was_chosen_is_kept(box, path):
     assert gone_on.plan.sampler == begun.plan.sampler
     assert [row.why for row in gone_on.plan.rows] == ["as the checkpoint has it"] * 4
     assert_same(gone_on, rw.render(*box, **many, sampler=begun.plan.sampler))
-    # What is named is used as named, or refused.
+    # Named options apply as named, or are refused.
     with pytest.raises(ValueError, match=r"it has sampler .* instead of Independent\(\)"):
         rw.render(*box, **many, sampler=rw.Independent(), checkpoint=path)
     alone = path.with_name("alone")
@@ -117,7 +117,7 @@ def test_ctrl_c_writes_and_is_passed_on_within_a_pass(path):
     assert time.perf_counter() - began < 10
     timer.join()
     of = rw.render(*box, seconds=1e-9, progress=False, checkpoint=path)
-    # What was begun is done first, and no bit tells.
+    # The begun render is completed first, with identical bits.
     again = rw.render(*box, of.plan.path, samples=of.samples, sampler=of.plan.sampler, progress=False)
     assert np.array_equal(of.rgb, again.rgb)
     assert of.error == again.error
@@ -302,7 +302,7 @@ def test_a_full_disk_is_told_and_costs_nothing(box, path, often, monkeypatch):
         image = rw.render(*box, **LIMITS, checkpoint=path)
     assert np.array_equal(image.rgb, whole.rgb)
     assert any("no space left on device" in warning for warning in image.warnings)
-    # What was there before is there, and nothing else is.
+    # The old file is unchanged, and no other exists.
     assert path.read_bytes() == before
     assert os.listdir(path.parent) == [path.name]
 

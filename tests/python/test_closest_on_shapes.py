@@ -39,7 +39,7 @@ def residual_of_cylinder(p):
     return np.minimum(side, cap)
 
 
-# A shape, dense points of it, and what is 0 on it.
+# A shape, dense points on it, and its implicit function.
 SHAPES = {
     "sphere": (
         rw.Sphere((0, 0, 0), 1.5),
@@ -140,11 +140,11 @@ def test_nothing_is_nearer_and_the_point_is_on_the_surface(name, transform):
     dense = moved(dense, transform)
     points = moved(np.random.default_rng(1).uniform(-3, 3, (24, 3)), transform)
     closest = rw.Scene(shape).closest_point(points)
-    # Which dense point is nearest is found by products, and its distance by the difference.
+    # Products find the nearest dense point, and the difference gives its distance.
     nearest = (np.square(dense).sum(axis=1) - 2 * points @ dense.T).argmin(axis=1)
     brute = np.linalg.norm(dense[nearest] - points, axis=1)
     assert (closest.distance <= brute + 1e-12).all()
-    # Steps of the dense points are at most 0.1 long, and so is what they miss by.
+    # Dense points are at most 0.1 apart, which bounds the error.
     assert (closest.distance >= brute - 0.2).all()
     told = np.linalg.norm(points - closest.position, axis=1)
     assert np.allclose(closest.distance, told, rtol=1e-13, atol=0)
@@ -188,7 +188,7 @@ def test_boxes_and_planes_have_their_closed_forms():
     plane = rw.Scene(rw.Plane((0, 0, 0.5), (0, 3, 4)))
     expected = np.abs(points @ (0, 0.6, 0.8) - 0.4)
     assert np.allclose(plane.closest_point(points).distance, expected, rtol=0, atol=2e-15)
-    # What has no inside is outside everywhere.
+    # All points are outside of an open surface.
     assert (rw.Scene(rw.Disk()).signed_distance(points) > 0).all()
     squeezed = rw.Scene(rw.Plane((0, 0, 0), (1, 0, 1), transform=np.diag([2.0, 1, 1, 1])))
     expected = np.abs(points @ (0.5, 0, 1)) / np.sqrt(1.25)
@@ -266,7 +266,7 @@ def test_implicit_surfaces_have_their_closed_forms_where_they_have_one():
     u, v = points @ along / (along @ along), points @ across
     expected = np.clip(u, -1, 1)[:, None] * along + np.clip(v, -1, 1)[:, None] * across
     assert np.abs(square.position - expected).max() < 1e-12
-    # Two balls, of which either may be the nearer; and nothing at all.
+    # Two balls at different distances; and an empty surface.
     balls = "min(x**2 + (y - 1)**2 + z**2, x**2 + (y + 1)**2 + z**2) - 0.25"
     found = rw.Scene(rw.Implicit(balls, (-2, -2, -2), (2, 2, 2))).signed_distance(points)
     away = np.linalg.norm(points[:, None] - np.array([(0, 1, 0), (0, -1, 0)]), axis=-1).min(axis=1) - 0.5

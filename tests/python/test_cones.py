@@ -125,7 +125,7 @@ def test_an_even_wall_has_no_edges():
     ball = trimesh.creation.icosphere(2, 2.0)
     scene = rw.Scene([rw.Mesh(ball.vertices, ball.faces, material=rw.Diffuse(0.8))])
     camera = rw.Camera((0.1, 0.2, 0.3), (1, 0.4, 0.2), fov=70, width=12, height=9)
-    # Half the light, of which 0.8 come back; at 1e-6 a gap of a millionth of a cone would show.
+    # Half the light at a reflectance of 0.8; at 1e-6 a gap of a millionth of a cone would show.
     assert look(scene, camera, rw.ConeTraced(ambient=0.5)).rgb == pytest.approx(0.4, abs=1e-6)
 
 
@@ -146,7 +146,7 @@ def test_a_ball_hides_a_round_lamp_as_caps_share():
     floor = square(4, 0.0, material=rw.Diffuse(0.6))
     free = look(rw.Scene([floor, lamp]), camera, rw.ConeTraced()).rgb[0, 0, 0]
     half = look(rw.Scene([floor, lamp, ball]), camera, rw.ConeTraced()).rgb[0, 0, 0]
-    # Irradiance of a sphere overhead: π L sin², of which the floor sends 0.6 / π.
+    # Irradiance of a sphere overhead, π L sin², reflected by the floor with 0.6 / π.
     assert free == pytest.approx(0.6 * 100 / 10**2, rel=1e-3)
     only = rw.Scene([ball]).cone_coverage((0, 0, 1e-6), (0, 0, 1), np.degrees(np.arcsin(0.1))).share
     assert 0.1 < only < 0.9
@@ -169,7 +169,7 @@ def test_rough_metal_shows_an_edge_as_blurred_as_rays_do():
     ]
     cones, rays = cones.mean(axis=0), rays.mean(axis=0)
     assert rays.min() < 0.1 * rays.max()
-    # An even cone has no tails, which have less than a tenth of what is reflected.
+    # A uniform cone has no tails, which have less than a tenth of the reflected light.
     assert np.abs(cones - rays).max() < 0.1
     assert cones.sum() == pytest.approx(rays.sum(), rel=0.03)
     # At roughness 0 it is the mirror's own picture.

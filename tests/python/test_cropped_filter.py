@@ -58,7 +58,7 @@ def test_edges_take_the_part_that_is_on_the_film():
 )
 def test_an_even_picture_stays_so(filter):
     image = picture(rw.CroppedFilter(filter), [plate(-9, 19, 1.0)])
-    # Negative lobes make noise of what is even.
+    # Negative lobes turn uniform light into noise.
     assert abs(image.rgb - 1).max() < 5 * image.standard_error.max() + 3e-3
 
 

@@ -22,7 +22,7 @@ def render(scene, camera, **how):
     return rw.render(scene, camera, progress=False, **how)
 
 
-# Of 64 times the samples of what is judged by it, a sixteenth of the error of a picture with a quarter left.
+# 64 times the samples of the tested picture: a sixteenth of the error of a picture with a quarter left.
 def reference(scene, camera, samples=1024):
     return render(scene, camera, samples=samples, seed=10**9, sampler=rw.Lattice(64)).rgb.astype(float)
 
@@ -229,5 +229,5 @@ def test_denoised_pictures_tell_their_error_or_that_they_cannot(make, side, bett
     # Of intervals that hold in 95 of 100 cases, 33 of 40 or fewer do so once in 290; these seeds are fixed.
     assert honest >= 34
     assert np.mean(before) >= better * np.mean(after)
-    # None is worse by more than what few samples can tell.
+    # None is worse by more than the noise of few samples.
     assert np.max(after / before) < 1.1

@@ -203,7 +203,7 @@ def test_principled_solids_disperse():
     assert np.all(np.abs(means[0] - means[1]) < 4 * np.hypot(*errors[:2])), (means, errors)
     assert np.ptp(means[1]) > 0.2 * means[1].max()
     assert np.ptp(means[2]) < 0.01
-    # What lets nothing through has the index of yellow light.
+    # An opaque material has the index for yellow light.
     opaque = rw.Scene(rw.Sphere((0, 0, 0), 1, material=rw.Principled(ior=glass)), environment=1.0)
     assert np.isfinite(rw.render(opaque, camera, samples=2, progress=False).rgb).all()
 

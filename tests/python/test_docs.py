@@ -18,7 +18,7 @@ import raywright as rw
 ROOT = Path(__file__).parents[2]
 PAGES = ["README.md", *sorted(f"docs/{path.name}" for path in (ROOT / "docs").glob("*.md"))]
 
-# What pages do at the size that people have, at one that tests have time for; checks are made for it too.
+# Sizes on the pages, and smaller ones for tests; checks apply to those.
 SMALLER = {
     "docs/pictures.md": {
         "width=160, height=120": "width=40, height=30",

@@ -76,7 +76,7 @@ def trouble_with(text):
     if headings != [heading for heading in SECTIONS if heading in headings]:
         return f"sections are not in order, or not numpydoc's: {headings}"
     for heading, lines in found.items():
-        # What is left of a heading that has lost its line: within a text, or without the dashes under it.
+        # Remains of a heading without its own line: within a text, or without the dashes under it.
         for line in lines:
             if re.search(r"-{4,}", line) or line.strip() in SECTIONS:
                 return f"a heading within {heading}: {line}"

@@ -221,7 +221,8 @@ def test_sides_of_a_sheet_keep_their_temperatures() -> None:
     rows = found.patches
     for shape in range(8):
         at = (rows["shape"] == shape) & (rows["side"] == 1)
-        # Of 16 faces none is beyond 5.5 errors, but in 6e-7 of cases; and what a gap of 1e-4 lets out.
+        # None of 16 faces is beyond 5.5 errors, except in 6e-7 of cases; 0.5 covers the loss through a gap of
+        # 1e-4.
         errors = 5.5 * np.hypot(found.standard_error[at], apart.standard_error[at])
         assert (np.abs(found.flux[at] - apart.flux[at]) < errors + 0.5).all()
     above, below = ((rows["shape"] == shape) & (rows["side"] == -1) for shape in (7, 6))
@@ -286,7 +287,7 @@ def test_rounded_solids_that_overlap_are_done_soon() -> None:
 
 
 def test_faces_that_rounding_alone_could_part_still_see_each_other() -> None:
-    # Two sheets face each other, closer than float32 numbers of their size are told apart from touching ones.
+    # Two sheets face each other, closer than float32 can resolve at their size.
     square = np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], np.float32)
     above = square + np.array([0, 0, 1e-7], np.float32)
     sheets = [rw.Mesh(square, [(0, 1, 2), (0, 2, 3)]), rw.Mesh(above, [(0, 2, 1), (0, 3, 2)])]

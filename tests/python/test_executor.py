@@ -193,7 +193,7 @@ def test_workers_elsewhere_ask_for_the_scene(box, pool):
     image = rw.render(scene, camera, **LIMITS, executor=executor)
     assert_same(image, rw.render(scene, camera, **LIMITS))
     weight = len(pickle.dumps(scene))
-    # Two processes, of which one may be given twice what the other asked for.
+    # Two processes; one may get the job twice, once for the other's request.
     assert 1 <= executor.jobs <= 4
     heavy = [size for size in executor.bytes if size > weight]
     assert len(heavy) == executor.jobs

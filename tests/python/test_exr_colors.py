@@ -118,7 +118,7 @@ IMAGE = np.random.default_rng(1).uniform(0, 1, (6, 8, 3)).astype(np.float32)
 )
 def test_colors_are_those_of_rec_709(tmp_path, primaries, matrix):
     found = opened(tmp_path, colors(IMAGE), primaries=primaries)
-    # The matrices are told with four digits, and one of them with those of its white.
+    # The matrices have four digits, and one of them those of its white.
     assert np.allclose(found, IMAGE @ matrix.T, rtol=0, atol=3e-3 if primaries == XYZ else 3e-4)
     if matrix[0, 1] == 0:
         assert np.array_equal(found, IMAGE)

@@ -15,7 +15,7 @@ from raywright.io.pictures import read
 
 @pytest.mark.parametrize(
     ("text", "expected"),
-    # What Appleby's own gives.
+    # Values of Appleby's own code.
     [
         ("", 0),
         ("test", 0xBA6BD213),

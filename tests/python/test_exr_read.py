@@ -197,7 +197,7 @@ def test_broken_bytes_are_told_in_one_line(tmp_path, method, size):
     refused = 0
     for number in range(100):
         broken = bytearray(data)
-        # Half of them in what is packed.
+        # Half of them in the packed data.
         for place in rng.integers(8 if number % 2 else len(data) // 2, len(data), 3):
             broken[place] = rng.integers(256)
         path.write_bytes(bytes(broken))

@@ -208,7 +208,7 @@ def test_pictures_that_are_cut_anywhere_are_missed(tmp_path, capfd, picture, suf
             found = read(path)
         except ValueError:
             continue
-        # What ends a PNG says nothing of its points: they are all there.
+        # The end of a PNG holds no pixels: all are there.
         assert suffix == ".png"
         assert length > len(data) - 32
         assert np.array_equal(found, whole)

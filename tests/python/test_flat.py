@@ -88,7 +88,7 @@ def test_triangles_are_those_of_the_scene(name):
         number = flat.triangles["primitive"].astype(int) - first
         mine = (number >= 0) & (number < len(corners))
         corners, some = corners[number[mine]], flat.triangles[mine]
-        # From the corner from which the shortest edge goes.
+        # Starting at the corner of the shortest edge.
         edges = np.roll(corners, -1, axis=1) - corners
         shortest = np.argmin((edges**2).sum(axis=-1), axis=1)
         a, b, c = (corners[np.arange(len(corners)), (shortest + i) % 3] for i in range(3))

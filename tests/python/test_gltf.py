@@ -242,7 +242,7 @@ def test_what_has_no_camera_is_framed_and_what_has_no_light_is_lit(read):
 def test_lamps_light_what_has_a_camera(read):
     def lit(**more):
         writer = Writer()
-        # A hundredth of what would do without a camera.
+        # A hundredth of the least light without a camera.
         writer.node(mesh=writer.mesh({"emissiveFactor": [2e-4] * 3}), **more)
         if more:
             writer.json["cameras"] = [{"type": "perspective", "perspective": {"yfov": 1, "znear": 1}}]
@@ -312,7 +312,7 @@ def test_shapes_are_bent_as_they_are_at_rest(read):
     target = {"POSITION": writer.accessor(SQUARE + np.float32([0, 0, 1]))}
     writer.json["meshes"][0]["primitives"][0]["targets"] = [target]
     writer.json["meshes"][0]["weights"] = [1.0]
-    # What hangs on a skin does not go with its node.
+    # A skinned mesh ignores the transform of its node.
     writer.node(mesh=mesh, skin=0, translation=[99, 99, 99])
     first = writer.node(translation=[0, 0, 5])
     second = writer.node(first, translation=[10, 0, 0])

@@ -229,7 +229,7 @@ def test_broken_files_are_refused_in_one_line(tmp_path, reader, name):
     os.mkfifo(folder / "pipe")
     (folder / name).write_bytes(data)
     assert message in reader.refuse("gltf", folder / name)
-    # The same is told where only meshes are wanted.
+    # Readers of meshes alone report the same.
     if name not in ("camera.glb", "light.glb"):
         assert message in reader.refuse("mesh", folder / name)
 

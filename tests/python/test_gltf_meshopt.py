@@ -106,7 +106,7 @@ def test_without_the_package_it_is_named(tmp_path, monkeypatch):
             ImportError, match=r"square.glb is compressed by meshoptimizer, .*raywright\[meshopt\]"
         ):
             read(path)
-    # What stands there in plain form is read.
+    # The uncompressed fallback is read.
     path.write_bytes(compressed(views, is_required=False))
     [mesh] = rw.Scene(path).shapes
     assert np.array_equal(mesh.vertices, SQUARE)

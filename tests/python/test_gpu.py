@@ -335,7 +335,7 @@ def test_arithmetic_that_breaks_the_promises_is_found():
     ]
     right = np.stack(right, axis=1).astype(np.float32)
     assert trouble(given, right) is None
-    # What is too small may be 0.
+    # Subnormal results may be 0.
     flushed = np.where(np.abs(right) < 2.0**-126, 0, right).astype(np.float32)
     assert trouble(given, flushed) is None
     for column, off in [(0, 2), (1, 2), (2, 2), (3, 4), (7, 1), (8, 64), (9, 64), (10, 1), (11, 1)]:

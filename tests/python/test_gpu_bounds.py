@@ -160,7 +160,7 @@ def test_the_third_weight_is_off_by_no_more(size):
         "u": dot(cases.away, cases.direction, cases.other),
         "v": dot(cases.direction, cases.away, cases.edge),
     }
-    # Each as far off as its own test allows it to be by what it is made of, two of them the other way.
+    # Each is off by its own test's bound from its parts, two of them in the other direction.
     u = expanded_triple(s, d, f, to)
     _, d, e, f, _ = cases.given("determinant")
     determinant = expanded_triple(e, d, f, -to)
@@ -180,7 +180,7 @@ def test_t_lies_where_it_is_said_to(size):
     numerator_true = np.einsum("ij,ij->i", cases.other, np.cross(cases.away, cases.edge))
     determinant_true = np.einsum("ij,ij->i", cases.edge, np.cross(cases.direction, cases.other))
     numerator = expanded_triple(f, s, e, to)
-    # Whatever takes the quotient the same way.
+    # Signs that move the quotient the same way.
     cases.towards = -to * np.sign(numerator_true) * np.sign(determinant_true)
     _, d, e, f, _ = cases.given("determinant")
     determinant = expanded_triple(e, d, f, cases.towards)

@@ -100,7 +100,7 @@ def test_the_cornell_box(gpu):
     assert there.samples == 64
     assert there.error.low < there.error.estimate < there.error.high
     assert there.history["samples"].tolist() == [1, 2, 4, 8, 16, 32, 48, 64]
-    # What it says of its error is what it is, to the reference's own.
+    # The estimated error is the true one, up to the reference's own.
     off = np.mean((there.rgb - here.rgb.astype(float)) ** 2 / (here.rgb.astype(float) ** 2 + 0.01))
     assert there.error.low < off < 2 * there.error.high
     assert (there.plan.sampler, there.plan.path) == (rw.Independent(), PLAIN)
@@ -184,7 +184,7 @@ def test_filters_draw_samples(gpu, filter):
     error = np.sqrt(there.standard_error.astype(float) ** 2 + here.standard_error.astype(float) ** 2) + 1e-3
     z = ((there.rgb - here.rgb) / error)[..., 0]
     assert np.abs(z).max() < 5.2
-    # Next to the edge samples differ, and what they tell is as far apart as it may be.
+    # Samples differ near the edge, but by no more than their standard errors.
     edge = np.minimum(there.rgb, 1 - there.rgb)[..., 0] > 0.1
     assert edge.sum() > 20
     assert np.mean(z[edge] ** 2) < 2
@@ -229,7 +229,7 @@ def test_a_furnace_is_white(gpu, name):
     there = rw.render(scene, CAMERA, PLAIN, 64, progress=False, device=gpu)
     error = np.sqrt((there.standard_error.astype(float) ** 2).mean() / SIDE**2)
     assert error < 0.005
-    # What is given back of what facets lose is tabulated, to some 1e-3.
+    # The compensation of facet loss is tabulated, to some 1e-3.
     assert abs(there.rgb.mean(dtype=float) - 1) < 4 * error + 1e-3
 
 

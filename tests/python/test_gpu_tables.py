@@ -35,7 +35,7 @@ def test_dielectrics_reflect_their_mean():
     # Closed forms (Walsh, 1926; Duntley, 1942).
     assert abs(mean_fresnel(1.5) - 0.0917785) < 1e-5
     for eta in (1.1, 1.33, 2.4):
-        # What gets in is what gets out, but for the solid angle.
+        # Transmission in equals transmission out, except for the solid angle.
         assert abs((1 - mean_fresnel(eta)) - (1 - mean_fresnel(1 / eta)) * eta**2) < 1e-4
 
 

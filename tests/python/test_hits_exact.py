@@ -255,7 +255,7 @@ def test_slivers(dtype, aspect):
     weights[::3] += rng.normal(size=(500, 3)) * 1e-3
     directions = (np.einsum("ni,nij->nj", weights, chosen) - origins).astype(dtype)
     outcome = check(mesh, origins, directions)
-    # What a rounded direction still meets of so thin a thing is chance; f64 is fine enough for all of them.
+    # Rounded directions hit such thin triangles by chance; f64 is fine enough for all of them.
     assert outcome.hits > (500 if dtype == np.float64 else 30 if aspect < 1e5 else -1)
 
 

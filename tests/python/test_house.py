@@ -81,7 +81,7 @@ def test_no_file_needs_itself() -> None:
     left = set(ARROWS)
     while bare := {b for _, b in left} - {a for a, _ in left}:
         left = {(a, b) for a, b in left if b not in bare}
-    # What is left leads into a circle; that without an arrow to it leads there only.
+    # The remaining modules lead into a circle; those without an arrow to them only lead there.
     while out := {a for a, _ in left} - {b for _, b in left}:
         left = {(a, b) for a, b in left if a not in out}
     assert not left

@@ -251,7 +251,7 @@ def test_rays_that_must_hit_do_up_to_the_condition_that_is_refused() -> None:
                 origins = rng.normal(size=(500, 3)) * far
                 targets = inside @ matrix[:3, :3].T + matrix[:3, 3]
                 assert scene.intersect(origins, targets - origins).hit.all()
-    # What is scaled along its own axes and turned is well conditioned, whatever the scale.
+    # A scale along its own axes followed by a rotation is well conditioned, whatever the scale.
     assert taken.count(4) == 2
     assert taken.count(16) == 1
 

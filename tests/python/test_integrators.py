@@ -59,7 +59,7 @@ CHECKED = rw.Checker(0.2, 0.6, 2)  # two cells to a unit; the camera sees one of
         (rw.Phong(0.5, 0.25), 0.5),
         (rw.BlinnPhong((0.1, 0.2, 0.3), 0.25), (0.1, 0.2, 0.3)),
         (rw.Phong(0.5, 0.25, ambient=CHECKED), 0.2),
-        # Of mixtures the mean, to which a mirror adds none; of masks and maps that of their material.
+        # Mixtures have the mean, with nothing from a mirror; masks and maps have that of their material.
         (rw.Mix(rw.Phong(0.5, 0.25, ambient=0.1), rw.Diffuse(0.7), 0.25), 0.75 * 0.1 + 0.25 * 0.7),
         (rw.Mix(rw.Phong(0.5, 0.25, ambient=0.8), rw.Mirror(), 0.5), 0.4),
         (rw.Mask(rw.Phong(ambient=0.3), 1.0), 0.3),
@@ -71,7 +71,7 @@ CHECKED = rw.Checker(0.2, 0.6, 2)  # two cells to a unit; the camera sees one of
     ],
 )
 def test_ambient_light_times_the_ambient_share_is_added(make, material, share):
-    # Phong 1975: k_a I_a, and in the dark, or of what is mirrored, nothing else.
+    # Phong 1975: k_a I_a; dark and mirrored surfaces show nothing else.
     corners = [(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)]
     uv = [(0, 0), (1, 0), (1, 1), (0, 1)]
     floor = rw.Mesh(corners, [(0, 1, 2), (0, 2, 3)], uv=uv, material=material)
@@ -106,7 +106,7 @@ def test_ray_casting_without_shadows_is_brighter_where_there_were_some():
     scene, camera = rw.scenes.cornell_box(width=32, height=32)
     shadowed = rw.render(scene, camera, rw.RayCast(), samples=64, progress=False).rgb
     open_ = rw.render(scene, camera, rw.RayCast(shadows=False), samples=64, progress=False).rgb
-    # The same draws, of which some are not blocked: nothing gets darker.
+    # The same draws, some now unblocked: nothing gets darker.
     assert (open_ >= shadowed).all()
     assert (open_ > 2 * shadowed).mean() > 0.05
 
@@ -129,7 +129,7 @@ def test_occlusion_of_a_floor_without_surroundings_is_none():
     scene, camera = floor_under_a_lamp()
     near = rw.render(scene, camera, rw.AmbientOcclusion(radius=0.99), samples=4, progress=False)
     np.testing.assert_array_equal(near.rgb, 1)
-    # The lamp right above hides what it would light, were it as bright as what it hides.
+    # The lamp right above occludes its form factor: its irradiance at unit radiance, over pi.
     far = rw.render(scene, camera, rw.AmbientOcclusion(samples=16), samples=64, progress=False)
     expected = 1 - 1.740839502734206 / math.pi
     error = math.sqrt(float(np.square(far.standard_error[..., 1].astype(float)).sum())) / 64

@@ -36,7 +36,7 @@ CALLED = {
     # Once a batch, or once where a stack is full.
     "Stacks::new", "Stacks::spare", "Stacks::put_away", "Gate::new", "few::leaves", "coherence::is_coherent",
     "Boxes::new",
-    # What is no triangle, rare queries, their answers.
+    # Shapes other than triangles, rare queries, their answers.
     "Contents::meet_objects", "RareQuery::initial_state", "RareQuery::offer_hit", "RareQuery::write_answer",
     "Few::ask", "Touches::push", "Telling::finish",
     # Lanes that are looked up one by one.

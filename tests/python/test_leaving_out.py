@@ -17,7 +17,7 @@ PLAIN = rw.Diffuse()
 CHECKED = rw.Diffuse(rw.Checker())
 COLORED = rw.Diffuse(rw.VertexColors())
 
-# Which vertices have values is one entry of three words for all meshes with values that follow each other.
+# All consecutive meshes with vertex values share one table entry of three words.
 ENTRY = 12
 
 

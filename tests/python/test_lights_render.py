@@ -184,7 +184,7 @@ HOLLOW = {
 
 @pytest.mark.parametrize("kind", HOLLOW)
 def test_within_what_shines_inwards_there_is_light_from_everywhere(kind):
-    # π L, of which the floor hides nothing.
+    # π L, none of it hidden by the floor.
     assert_irradiance(floor_irradiance(samples=256, **HOLLOW[kind]), 3 * math.pi, slack=1e-5)
 
 
@@ -205,7 +205,7 @@ def test_what_shines_inwards_is_dark_from_outside():
         rw.Box((-1, -1, -1), (1, 1, 1), material=rw.Diffuse(0.5), emission=emission),
     ):
         assert not rw.render(rw.Scene(shape), camera, samples=4, progress=False).rgb.any()
-        # What falls on it from elsewhere is reflected as ever: it is convex, and half of the sky's 2 is 1.
+        # Light from elsewhere is reflected as usual: it is convex, and half of the sky's 2 is 1.
         lit = rw.render(rw.Scene(shape, environment=2.0), camera, samples=64, progress=False)
         assert lit.rgb[8, 8] == pytest.approx(1.0, abs=5 * float(lit.standard_error[8, 8].max()))
 

@@ -74,7 +74,7 @@ def test_a_lamp_lights_by_its_opacity(lamp, integrator):
 @pytest.mark.parametrize("integrator", ASKING, ids=lambda one: type(one).__name__)
 @pytest.mark.parametrize("side", ["back", "both"])
 def test_the_inner_side_of_a_cut_open_sphere_is_seen_through_its_hole(integrator, side):
-    # What is seen of its inner side fills the hole, a disk: pi L R^2 / (R^2 + h^2).
+    # The visible inner side fills the hole, a disk: pi L R^2 / (R^2 + h^2).
     expected = math.pi * 2 * 0.6**2 / (0.6**2 + 2**2)
     assert_irradiance(sphere(lower_half_open(), rw.Emission(2.0, side=side)), integrator, expected)
 

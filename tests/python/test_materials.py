@@ -194,7 +194,8 @@ def test_a_ball_in_white_light_is_as_bright_as_it_reflects(material, share):
     image = in_white_light(material)
     mean = image.rgb.mean(axis=(0, 1))
     error = np.sqrt((image.standard_error.astype(float) ** 2).sum(axis=(0, 1))) / 64
-    # 0.5 % for what is made up for of rough materials; five standard errors are passed once in two million.
+    # 0.5 % for the energy compensation of rough materials; five standard errors are exceeded once in two
+    # million.
     assert (np.abs(mean - share) <= 0.005 + 5 * error).all()
     assert (error < 0.01).all()
 

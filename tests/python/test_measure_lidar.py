@@ -192,7 +192,7 @@ def test_a_wide_beam_returns_from_all_that_it_meets():
         assert np.allclose(kept.range, expected, rtol=1e-4)
     strong = measure.lidar(scene, measure.SpinningLidar(**options), returns="strongest")
     assert strong.strength == scan.strength.max()
-    # What is nearer together than the scanner can tell apart is one.
+    # Returns closer than the scanner's resolution merge.
     coarse = measure.lidar(scene, measure.SpinningLidar(**options, resolution=4.0))
     assert coarse.range == pytest.approx(5 * scan.strength[0] + 8 * scan.strength[1], rel=1e-3)
     # All rays of a beam are within half its divergence: nothing of the edge is met from beside it.

@@ -7,7 +7,7 @@ import trimesh
 import raywright as rw
 
 measure = rw.measure
-# Students t of 15 degrees of freedom, between which 95 % lie: errors are told by 16 batches.
+# 95 % interval of Student's t with 15 degrees of freedom: errors come from 16 batches.
 T95 = 2.1314
 
 
@@ -94,7 +94,7 @@ def test_told_errors_hold_for_rare_skies_too(share, rays):
     found = measure.sky_view(disk, np.zeros((400, 3)), (0, 0, 1), rays=rays, seed=4)
     spread = np.sqrt(((found.value - share) ** 2).mean())
     assert spread < 1.15 * found.standard_error.mean()
-    # Nothing is told as certain.
+    # No result claims to be certain.
     assert (found.standard_error >= 1 / rays).all()
     none = found.value == 0
     assert (found.standard_error[none] == 3 / rays).all()
@@ -179,7 +179,7 @@ def test_visibility_is_of_what_is_near():
     for radius, expected in ((1.99, 1.0), (2.01, 0.0), (None, 0.0)):
         found = measure.ambient_visibility(ball, (0, 0, 0), (0, 1, 0), radius=radius, rays=64, offset=0.0)
         assert found.value == expected
-        # All rays agree, of which a share of 3 / 64 that do not would be missed in 5 % of cases.
+        # All rays agree; a share of 3 / 64 that do not would be missed in 5 % of cases.
         assert found.standard_error == 3 / 64
     # A plane at a distance d is within r in a cone whose cosine is d / r: the share is its sine squared.
     wall = rw.Plane((0, 0, 1.0), (0, 0, 1))

@@ -48,7 +48,7 @@ def test_a_wall_takes_the_sun_that_its_shadow_says():
         free = (suns[:, 0] <= 0) | (suns[:, 1] / np.maximum(suns[:, 0], 1e-300) > 2 / distance)
         assert found.sunlit[i] == free.sum()
         assert found.exposure[i] == pytest.approx(suns[free, 1].sum(), rel=1e-12)
-    # What looks away from the sun, or stands below the horizon, has none.
+    # Surfaces that face away from the sun, or suns below the horizon, give none.
     for normal, up in (((0, -1, 0), (0, 1, 0)), ((0, 1, 0), (0, -1, 0))):
         none = measure.solar_exposure(wall, (-3, 0, 0), normal, sun=suns, up=up)
         assert (none.exposure, none.sunlit) == (0, 0)

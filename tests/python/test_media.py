@@ -127,7 +127,7 @@ GRIDS = {
 )
 def test_light_comes_through_grids_as_their_optical_depth_says(name):
     f, length, expected = GRIDS[name]
-    # What is linear is so between few numbers, of five blocks.
+    # Linear profiles stay linear between few values, in five blocks.
     density = f(np.linspace(0, 1, 33 if name == "linear" else 401)).reshape(-1, 1, 1)
     box = [(0, -1, -1), (length, 1, 1)]
     camera = rw.Orthographic((-1, 0, 0), direction=(1, 0, 0), scale=1e-3, width=16, height=16)
@@ -142,7 +142,7 @@ def test_light_comes_through_grids_as_their_optical_depth_says(name):
     lit = rw.Scene([rw.Box(*box, material=rw.Boundary(absorbing)), sheet], lights=[sun])
     close = rw.Orthographic((8, 0, 0), direction=(1, 0, 0), scale=1e-3, width=16, height=16)
     media.assert_seen(lit, close, 2048, 0.5 * expected, rw.Path(1))
-    # What is scattered away is lost as well, but for what is scattered into the ray: of a thin ray, nothing.
+    # Scattering removes light as well, except for light scattered into the ray: none for a thin ray.
     scattering = rw.GridMedium(density, box, scattering=1.0)
     scene = rw.Scene([rw.Box(*box, material=rw.Boundary(scattering))], environment=SKY)
     media.assert_seen(scene, camera, 2048 if name == "linear" else 1024, expected, rw.Path(0))

@@ -55,7 +55,7 @@ def test_haze_leaves_textures_filtered(integrator, how):
         found.append(image.rgb[..., 1].astype(float))
     clear, hazy = found
     spread = [np.abs(np.diff(one[2:9], axis=1)).mean() / one[2:9].mean() for one in found]
-    # What is seen of the floor far away, and of it in the mirror, is as smooth in haze as it is without.
+    # The floor far away and in the mirror is as smooth in haze as without.
     assert spread[1] < 1.3 * spread[0] + 0.02, spread
     np.testing.assert_allclose(hazy.mean(), clear.mean(), rtol=0.05)
 

@@ -97,7 +97,7 @@ def test_what_glows_by_the_colours_of_its_density(by):
     colours = np.array([0.9, 0.4, 0.1])
     smoke = rw.GridMedium(RAMP[..., None] * colours, BOX, emission=0.5)
     if by == "wavelengths":
-        # Of what a table of smooth spectra has, in which blue is off by 0.002.
+        # Up to the table of smooth spectra, where blue is off by 0.002.
         nm = np.arange(360.0, 831.0)
         smooth = _core.smooth_spectrum(colours.tolist(), False, True, nm.tolist())
         colours = np.array(_core.spectrum_rgb(np.stack([nm, smooth], axis=1).tolist(), True))
@@ -186,7 +186,7 @@ def test_sparse_grids_keep_their_numbers(coloured):
     assert grid == rw.SparseGrid.of(np.asfortranarray(numbers.astype(float)))
     assert grid == pickle.loads(pickle.dumps(grid)) != rw.SparseGrid.of(2 * numbers)
     assert hash(grid) == hash(pickle.loads(pickle.dumps(grid)))
-    # Whatever is written over is gone.
+    # Later blocks overwrite earlier ones.
     again = rw.SparseGrid(
         numbers.shape, [((8, 8, 8), np.ones((16, 5, 3, *numbers.shape[3:]))), ((0, 0, 0), numbers)]
     )

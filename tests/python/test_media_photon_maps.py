@@ -83,7 +83,7 @@ EACH = [
 
 @pytest.mark.parametrize(("name", "way"), EACH)
 def test_pictures_are_those_of_paths(name, way):
-    # Of a progressive map most of what is allowed is its bias.
+    # For a progressive map most of the tolerance is its bias.
     samples = 4 if way == "progressive" else 8
     assert_agree(SCENES[name], camera(), MAPS[way], kept(f"maps: {name}"), samples=samples, blur=0.06)
 
@@ -164,7 +164,7 @@ def test_bias_is_told():
     assert error < 0.02 * truth
     off = np.mean(found) - truth
     assert off > 0.1 * truth
-    # Photons of which the balls of three sizes have fewer and fewer tell it to about a sixth.
+    # The bias estimate compares three radii, with ever fewer photons: it is good to about a sixth.
     assert abs(bias - off) < 0.5 * off + 3 * error
 
 

@@ -38,8 +38,8 @@ def test_what_only_absorbs_takes_its_share():
 
 
 def test_no_power_is_lost():
-    # Smoke over a black floor, a ball of milk, and a grid: what leaves, what media take and what comes to the
-    # floor is all that set out.
+    # Smoke over a black floor, a ball of milk, and a grid: escaped, absorbed and deposited power add up to
+    # the emission.
     smoke = ball(rw.Boundary(rw.Homogeneous(0.7, 1.6, rw.HenyeyGreenstein(0.6))))
     milk = rw.Dielectric(1.33, interior=rw.Homogeneous(1.0, 4.0))
     cloud = rw.GridMedium(
@@ -58,7 +58,7 @@ def test_no_power_is_lost():
     np.testing.assert_array_equal(first.primitive[within], -1)
     assert not first.normals[within].any()
     assert (first.bounces == 0).all()
-    # All of what scatters in these is 1.6 of 2.3, but for the cloud, 0.9 of 1.2.
+    # The scattering albedo in these is 1.6 of 2.3, except in the cloud, 0.9 of 1.2.
     in_cloud = within & (first.positions[:, 1] > 1)
     albedo = np.where(in_cloud, 0.75, 1.6 / 2.3)[:, None]
     rest = (first.powers * np.where(within[:, None], albedo, 1)).sum(0)
@@ -66,7 +66,8 @@ def test_no_power_is_lost():
 
 
 def test_colours_are_absorbed_on_average_as_they_should_be():
-    # In endless fog each is absorbed at last: of what is met the share 1 - w, so that 1 / (1 - w) is met.
+    # In infinite fog every photon is absorbed: with probability 1 - w per collision, so that it has 1 / (1 -
+    # w) of them.
     absorption, scattering = np.array([0.5, 1.0, 2.0]), np.array([0.5, 2.0, 1.0])
     fog = rw.Homogeneous(tuple(absorption), tuple(scattering))
     scene = rw.Scene([], lights=[rw.PointLight((0, 0, 0), 1 / (4 * math.pi))], medium=fog)
@@ -114,7 +115,7 @@ def test_chains_tell_what_scattered():
     np.testing.assert_array_equal(np.char.str_len(found.chains), found.bounces + 1)
     assert not (found.sharp & found.adrift).any()
     caustic = found[(found.chains == "LSS") & (found.shape_id == -1)]
-    # What the ball throws together lies under it.
+    # The caustic of the ball lies below it.
     below = np.hypot(caustic.positions[:, 0], caustic.positions[:, 1]) < 0.5
     assert below.mean() > 0.6
     assert pickle.loads(pickle.dumps(found)) == found

@@ -47,7 +47,7 @@ def test_a_flask_of_what_absorbs():
     media.assert_seen(rw.Scene([flask], environment=SKY), media.looking(), 512, through + back, most=0.003)
     black = rw.Scene([flask, ground(-2.0)], environment=SKY)
     media.assert_seen(black, media.looking(), 2048, back, most=0.01)
-    # Whoever goes straight on is not scattered, and light that is asked for comes through.
+    # Straight transmission is no bounce, and shadow rays pass.
     media.assert_seen(
         rw.Scene([flask], environment=SKY),
         media.looking(),
@@ -182,7 +182,7 @@ def test_slabs_reflect_and_let_through_what_discrete_ordinates_say(name):
     depth, albedo, g, reflected, let_through = SLABS[name]
     scene = rw.Scene([media.slab(media.of_depth(depth, albedo, g)), ground(-2.0)], environment=SKY)
     for cosine, above, below in zip((1.0, 0.5), reflected, let_through, strict=True):
-        # What a thin slab scatters is found by one path in a thousand.
+        # One path in a thousand finds light scattered by a thin slab.
         most = 0.004 if depth > 0.01 else 0.1
         count = 1024 if name == "3" else 8192
         media.assert_seen(scene, media.looking(cosine), count, above, most=most)
@@ -275,7 +275,7 @@ def fluence(albedo, r, samples, seed=0):
     scene = rw.Scene([], lights=[lamp], medium=fog)
     camera = rw.Panorama((0, 0, 0), direction=(1, 0, 0), up=(0, 0, 1), width=32, height=16)
     image = rw.render(scene, camera, rw.Path(), samples, seed=seed, progress=False)
-    # What each row of pixels covers.
+    # Solid angle of each row of pixels.
     edges = np.cos(np.linspace(0, math.pi, 17))
     solid = (edges[:-1] - edges[1:])[:, None] * 2 * math.pi / 32
     rgb, error = image.rgb[..., 1].astype(float), image.standard_error[..., 1].astype(float)
@@ -335,7 +335,7 @@ def test_the_mean_way_through_a_ball_is_that_of_its_chords(g, depth):
     [((1, 1, 1), 0.666666666666667), ((1, 2, 3), 1.09090909090909)],
 )
 def test_the_mean_way_through_boxes(size, mean_chord):
-    # Over pictures from many directions, all together as large as what is seen of the box.
+    # Pictures from many directions, each covering the visible box.
     gas = rw.Homogeneous(0.0, 2.0, rw.HenyeyGreenstein(0.5), emission=1.0)
     size = np.array(size, float)
     scene = rw.Scene([rw.Box(-size / 2, size / 2, material=rw.Boundary(gas))])
@@ -353,5 +353,5 @@ def test_the_mean_way_through_boxes(size, mean_chord):
         area += float(np.abs(way) @ (size.prod() / size))
     error = math.sqrt(variance) / area
     assert error < 0.01
-    # The directions are a rule, good to 0.3 % for what is seen of a box.
+    # The directions are a quadrature rule, good to 0.3 % for the visible area of a box.
     assert abs(light / area - mean_chord) < 4 * error + 0.003 * mean_chord

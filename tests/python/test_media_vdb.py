@@ -23,7 +23,7 @@ def test_numbers_are_where_openvdb_has_them():
     fire = rw.GridMedium.load(given.SMOKE, absorption=2, temperature="temperature")
     assert fire.at == "centres"
     assert fire.transform is None
-    # Numbers stand in the middle of cells, of which the one of the index 0 is around the origin of the file.
+    # Values lie in the middle of cells; the cell of index 0 is around the origin of the file.
     low = np.round((np.array(fire.bounds[0]) - given.MOVED) / given.SCALE + 0.5).astype(int)
     assert np.allclose(fire.bounds[0], (low - 0.5) * given.SCALE + given.MOVED, rtol=0, atol=1e-12)
     size = np.subtract(fire.bounds[1], fire.bounds[0]) / given.SCALE
@@ -140,7 +140,7 @@ def test_damaged_files_are_refused(tmp_path):
         for place in rng.integers(0, 700, 3):
             changed[place] = rng.integers(256)
         path.write_bytes(bytes(changed))
-        # What is said is of the file, whatever it is; anything else fails.
+        # A ValueError about the file is right, whatever it says; anything else fails.
         with contextlib.suppress(ValueError):
             rw.GridMedium.load(path)
 

@@ -52,7 +52,7 @@ def test_radii_of_nothing_are_connections_alone():
     plain = picture(scene, camera, rw.Bidirectional(4), 8)
     merged = picture(scene, camera, rw.Bidirectional(4, merge=True, radius=1e-6), 8)
     np.testing.assert_allclose(merged.rgb, plain.rgb, rtol=1e-6)
-    # What is lit straight is never merged.
+    # Direct light is never merged.
     np.testing.assert_array_equal(
         picture(scene, camera, rw.Bidirectional(1, merge=True, radius=50.0), 8).rgb,
         picture(scene, camera, rw.Bidirectional(1), 8).rgb,
@@ -126,7 +126,7 @@ def test_its_bias_is_told():
     image = picture(scene, look, rw.Bidirectional(merge=True, radius=60.0), 4)
     assert image.biased
     assert np.abs(image.bias).max() > 0
-    # Where the error that is asked for is less than the blur, that is told.
+    # A requested error below the blur raises a warning.
     coarse = rw.Bidirectional(merge=True, radius=200.0, photons=1000)
     image = rw.render(scene, look, coarse, 64, error=1e-9, progress=False)
     assert any("error=1e-09 is of noise alone" in line for line in image.warnings)

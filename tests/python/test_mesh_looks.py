@@ -78,7 +78,7 @@ class Node(types.SimpleNamespace):
         for name, value in (inputs or {}).items():
             source = value if isinstance(value, Node) else None
             links = [] if source is None else [types.SimpleNamespace(from_node=source)]
-            # What is linked has a value of its own, which does not count.
+            # A linked input has a value of its own, which does not count.
             own = (0.8, 0.8, 0.8, 1.0) if "Color" in name else 0.5
             made[name] = types.SimpleNamespace(default_value=own if links else value, links=links)
         super().__init__(type=type, inputs=made, **more)

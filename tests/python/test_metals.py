@@ -39,7 +39,8 @@ def fresnel(cosine, eta, k):
 
 @pytest.mark.parametrize(
     ("symbol", "colour"),
-    # What Mitsuba's spectral variants show of a plate in an even sky of white: Mitsuba 3.9, `mitsuba_metals`.
+    # Colours of a plate in a uniform white sky, by Mitsuba's spectral variants: Mitsuba 3.9,
+    # `mitsuba_metals`.
     [
         ("Au", (1.0216, 0.7823, 0.3436)),
         ("Ag", (0.9714, 0.9598, 0.9155)),

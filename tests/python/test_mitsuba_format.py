@@ -74,8 +74,8 @@ def test_what_is_not_given_is_as_mitsuba_has_it():
 
 
 def test_names_stand_for_metals_and_indices():
-    # What was measured, over the observer's table of every nm, linear between, summed at every hundredth nm
-    # elsewhere. Mitsuba (3.9.1) has the table of every fifth nm: the same sum over that gives its values,
+    # Measured spectra, over the observer's table of every nm, linear between, summed at every hundredth nm by
+    # separate code. Mitsuba (3.9.1) has the table of every fifth nm: the same sum over that gives its values,
     # (0.143036, 0.375307, 1.442045) and (3.982997, 2.385557, 1.603359), to 5e-5.
     gold = front({"type": "conductor", "material": "Au"})
     assert np.allclose(gold.eta, (0.143124, 0.374962, 1.442346), rtol=1e-4)
@@ -160,7 +160,7 @@ def test_spectra_are_told_in_any_way(tmp_path):
     (tmp_path / "wall.spd").write_text("400 0.2 0.3\n")
     with pytest.raises(ValueError, match=r"wall\.spd must have a wavelength and a number in each line"):
         rw.load(tmp_path / "scene.xml")
-    # Where red, green and blue are all there is, they are told of.
+    # RGB approximations raise a warning.
     slide = {"type": "projector", "irradiance": {"type": "blackbody", "temperature": 3000.0}}
     with pytest.warns(RuntimeWarning, match="approximated by red, green and blue here"):
         shot(one=slide)
@@ -202,7 +202,7 @@ def test_inside_out_shapes_shine_inwards():
     # In Mitsuba (3.9) a cylinder that is mirrored keeps its outside.
     assert emission("cylinder", flip_normals=True) == inwards
     assert emission("cylinder", to_world=mirrored) == (2.0, 2.0, 2.0)
-    # What else is turned round has its front there: the normal is where light goes to.
+    # Other flipped shapes have their front there: the normal points to the lit side.
     for kind in ("rectangle", "cube", "disk"):
         (up,) = shot(one={"type": kind, "e": lamp}).scene.shapes
         (down,) = shot(one={"type": kind, "e": lamp, "flip_normals": True}).scene.shapes
@@ -408,7 +408,7 @@ def test_the_sun_is_where_mitsuba_has_it():
 def test_principled_numbers_are_those_of_the_scene():
     made = material({"type": "principled", "specular": 0.5, "spec_trans": 0.5, "sheen": 0.25})
     assert (made.ior, made.transmission, made.sheen) == (pytest.approx(1.5, abs=1e-12), 0.5, 0.25)
-    # What lets nothing through is black behind.
+    # An opaque material is black behind.
     assert front({"type": "principled", "eta": 1.7}).ior == 1.7
     sheet = material({"type": "principledthin", "diff_trans": 1.5, "eta": 1.2})
     assert (sheet.diffuse_transmission, sheet.ior) == (0.75, 1.2)

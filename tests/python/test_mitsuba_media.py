@@ -34,7 +34,7 @@ def test_what_is_within_a_shape():
         assert within({"type": "null"}, told).interior == rw.Homogeneous(0.5, 1.5, expected)
     pane = {"type": "thindielectric", "int_ior": 1.5, "ext_ior": 1.0}
     assert within(pane, SMOKE) == rw.ThinDielectric(1.5, interior=smoke)
-    # What is heterogeneous is where its volume is, also if that is the same everywhere.
+    # A heterogeneous medium exists within its volume, even if it is the same everywhere.
     moved = np.diag([2.0, 3.0, 4.0, 1.0])
     constant = {"type": "constvolume", "value": 2.0, "to_world": moved}
     told = {"type": "heterogeneous", "albedo": 0.75, "sigma_t": constant}

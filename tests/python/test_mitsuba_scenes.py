@@ -33,7 +33,7 @@ def folder(tmp_path_factory):
 
 def read(name, folder):
     with warnings.catch_warnings():
-        # What is approximated is told of, and the comparison is what tells whether it shows.
+        # Approximations warn; this comparison shows whether they are visible.
         warnings.simplefilter("ignore", RuntimeWarning)
         shot = rw.from_mitsuba(SCENES[name], folder=folder)
         path = folder / f"{list(SCENES).index(name)}.xml"

@@ -37,7 +37,7 @@ def test_a_ramp_is_one_on_a_rectangle(tmp_path):
     found = read(grid(path), type="rectangle", to_world=HALF)
     assert isinstance(found, rw.Mesh)
     assert found.material.front.reflectance == rw.VertexColors()
-    # Beyond the middles of the first and the last cell it is what it is there.
+    # Values are constant beyond the middles of the first and the last cell.
     expected = found.vertices[:, 0].clip(0.5 / 8, 7.5 / 8)
     assert np.allclose(found.colors, expected[:, None], rtol=0, atol=1e-6)
     corners = found.vertices[found.faces]

@@ -134,7 +134,7 @@ def test_a_picture_is_blurred_as_its_mean_over_time() -> None:
     share = np.clip(np.minimum(x + 1, 2) / 2, 0, 1) - np.clip((x - 1) / 2, 0, 1)
     rows = np.abs(half * ((np.arange(8 * 64) + 0.5) / (8 * 64) * 2 - 1)) <= 1
     wanted = (rows[:, None] * share[None]).reshape(8, 64, 8, 64).mean(axis=(1, 3))
-    # Five standard errors of a share of 4000 samples, and what the sum over 64 steps is off.
+    # Five standard errors of a share of 4000 samples, plus the error of the sum over 64 steps.
     np.testing.assert_allclose(image.rgb[..., 0], wanted, rtol=0, atol=5 * 0.5 / np.sqrt(4000) + 1 / 64)
 
 

@@ -134,7 +134,8 @@ def test_all_forms_of_faces_say_the_same(tmp_path, seed):
         ("f 1/1 2/2 3/3", [[[0, 0], [1, 0], [1, 1]]], None),
         ("f 1/1/ 2/2/ 3/3/", [[[0, 0], [1, 0], [1, 1]]], None),
         ("f 1/1/1 2/2/1 3/3/1", [[[0, 0], [1, 0], [1, 1]]], 1),
-        # What has no coordinates lies on the corner of pictures, and normals count if all have them.
+        # Faces without coordinates have those of the pictures' corner, and normals count if all faces have
+        # them.
         ("f 1/2/1 2/3/1 3/4/1\nf 1 2 4", [[[1, 0], [1, 1], [0, 1]], [[0, 0]] * 3], None),
         ("fo 1 2 3", None, None),
     ],

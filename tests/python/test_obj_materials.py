@@ -44,7 +44,7 @@ def test_a_picture_of_what_shines_is_multiplied(tmp_path):
     glow = rw.ImageTexture(pixels)
     both = loaded(write(tmp_path, "Ke 2 3 4\nmap_Ke glow.png"))
     assert both.emission == rw.Emission(rw.ProductTexture(glow, (2, 3, 4)), both_sides=True)
-    # Black is what programs write beside a picture.
+    # Programs write black beside a picture.
     for statements in ("map_Ke glow.png", "Ke 0 0 0\nmap_Ke glow.png"):
         assert loaded(write(tmp_path, statements)).emission == rw.Emission(glow, both_sides=True)
     assert loaded(write(tmp_path, "Ke 0 0 0")).emission is None
@@ -145,7 +145,7 @@ def test_how_much_is_there(tmp_path, illum):
     matt = rw.Diffuse(0.25)
     for statement in ("d 0.25", "Tr 0.75", "d 0.25\nTr 0", "Tr 1\nd 0.25"):
         assert material(tmp_path, f"Kd 0.25 0.25 0.25\n{statement}\n{illum}") == rw.Mask(matt, 0.25)
-    # MeshLab wrote Tr 1 of what is opaque.
+    # MeshLab wrote Tr 1 for opaque materials.
     for statement in ("d 1", "Tr 0", "Tr 1.000000"):
         assert material(tmp_path, f"Kd 0.25 0.25 0.25\n{statement}\n{illum}") == matt
     told = f"{LEFT_OUT}d -halo of 'it'"
@@ -194,7 +194,7 @@ def test_glass_bends_light_by_the_law_of_snell(tmp_path, statements, ior):
     through = (1 - (parallel**2 + across**2) / 2) ** 2
     scene = slab(tmp_path, statements, exit_at)
     image = rw.render(scene, camera, samples=1024, progress=False)
-    # What is not reflected anywhere comes through, in so many of 16384 draws; 4 standard errors.
+    # Light that no surface reflects passes, in this share of 16384 draws; 4 standard errors.
     error = 4 * math.sqrt(through * (1 - through) / (16 * 1024))
     assert image.rgb.mean() == pytest.approx(through, abs=error)
     # Where it would be without glass, there is nothing to be seen.

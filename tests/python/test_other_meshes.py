@@ -530,7 +530,7 @@ def test_cadquery_shapes_are_as_close_as_they_are_to_be():
         assert np.quantile(away, 0.99) <= tolerance
         counts.append(len(found.faces))
     assert counts[0] <= counts[1] < counts[2]
-    # What came before makes no difference.
+    # Earlier tessellations make no difference.
     assert counts[3] == counts[1]
     parts = cq.Assembly().add(box, name="box", color=cq.Color("red"), loc=cq.Location((5, 0, 0)))
     parts.add(ball, name="ball")

@@ -88,7 +88,7 @@ def test_sdist_holds_what_it_is_built_and_tested_from():
             for kind in ("*.rs", "*.py", "*.pyi", "*.md", "*.html", "*.css", "*.js", "*.wgsl")
             for path in (ROOT / folder).rglob(kind)
         }
-        # How the pages are built is of no use without the repository.
+        # The scripts that build the pages are useless without the repository.
         assert {name for name in mine if not name.startswith("docs/") or name.endswith(".md")} <= names
     assert not [name for name in names if name.endswith((".so", ".pyd", ".pyc"))]
 

@@ -81,7 +81,7 @@ def test_most_paths_find_it():
         render(scene, camera, caustics, samples=4096, max_depth=2).standard_error
         for caustics in (False, True)
     )
-    # The image fills a part in some five thousand of what the floor sees, and most of what paths aim at.
+    # The image fills one part in some five thousand of the floor's hemisphere, and most aimed paths hit it.
     assert np.mean(np.square(aimed)) < 0.01 * np.mean(np.square(free))
 
 
@@ -211,7 +211,7 @@ def test_threads_pieces_and_checkpoints_change_no_bit(how, same_scenes, tmp_path
 def test_where_nothing_can_be_found_it_changes_no_bit():
     plain = rw.scenes.cornell_box(width=16, height=16)
     assert_same(render(*plain, True), render(*plain, False))
-    # What shines into single directions is never met, and one bounce finds no lamp in a mirror.
+    # No ray hits lights with a delta distribution, and with one bounce no path reaches the lamp by a mirror.
     ball = rw.Sphere((0, -0.5, 0), 0.4, material=rw.Mirror())
     walls = rw.Box((-1, -1, -1), (1, 1, 1), material=rw.Diffuse(0.5))
     point = rw.Scene([walls, ball], lights=rw.PointLight((0, 0.9, 0), 3.0))

@@ -75,8 +75,8 @@ SCENES = {
 }
 
 
-# What paths that share nothing tend to: rgb and standard error of
-# render(scene, camera, 1, samples=32768, sampler=rw.Sobol(), seed=10**9), by the name of the scene.
+# Expectation without sharing: rgb and standard error of render(scene, camera, 1, samples=32768,
+# sampler=rw.Sobol(), seed=10**9), by the name of the scene.
 ALONE = Path(__file__).parent / "data" / "path_reuse.npz"
 
 

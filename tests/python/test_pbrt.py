@@ -27,7 +27,7 @@ def test_the_world_is_left_handed(tmp_path):
         shot = load(tmp_path, world, HEAD.replace("0 0 5", eye))
         (ball,) = shot.scene.shapes
         assert seen(shot, ball.bounds.mean(axis=0)).tolist() == [side, 1]
-    # What a file has mirrored, as many do, is seen as it is.
+    # A mirrored file, as many are, is not mirrored again.
     shot = load(tmp_path, world, "Scale -1 1 1" + HEAD)
     assert seen(shot, shot.scene.shapes[0].bounds.mean(axis=0)).tolist() == [1, 1]
 
@@ -95,7 +95,7 @@ def test_materials(tmp_path):
     )
     gold = material(tmp_path, 'Material "conductor" "spectrum eta" "metal-Au-eta" "spectrum k" "metal-Au-k"')
     assert gold == rw.Conductor("gold", alpha=(0.0, 0.0), multiple_scattering=False)
-    # pbrt takes the root of a roughness for alpha, unless it is told not to.
+    # pbrt takes the root of a roughness for alpha, unless remaproughness is false.
     rough = 'Material "conductor" "float roughness" 0.25'
     assert material(tmp_path, rough).alpha == (0.5, 0.5)
     assert material(tmp_path, rough + ' "bool remaproughness" false').alpha == (0.25, 0.25)
@@ -300,7 +300,7 @@ def test_files_include_others(tmp_path):
             'Shape "curve" "point3 P" [0 0 0 1 0 0 2 0 0 3 0 0] "integer degree" 2 "string type" "cylinder"',
             "a curve must be cubic",
         ),
-        # What the library itself refuses is told with its line as well.
+        # Errors of the library itself have the line as well.
         ('LightSource "point" "rgb I" [-1 0 0]', "line 9: LightSource point: intensity must be at least 0"),
         ('LightSource "spot" "float coneangle" 200', "line 9: LightSource spot: angle must be above 0"),
         ('AreaLightSource "diffuse" "rgb L" [-1 0 0]', "line 9: AreaLightSource diffuse: radiance must be"),

@@ -61,7 +61,7 @@ def test_the_exposure_of_a_film_counts(tmp_path, head, ratio):
         ('"point" "float power" 0', 1.0),
         ('"distant" "float illuminance" 5', 5.0),
         ('"infinite" "float illuminance" 5', 5 / np.pi),
-        # The cone within shines fully, and what is around it half.
+        # The inner cone has full intensity, and the part around it half.
         (
             '"spot" "float power" 7 "float coneangle" 60 "float conedeltaangle" 60',
             7 / (np.pi * (1 - np.cos(np.pi / 3))),
@@ -218,7 +218,7 @@ def test_points_of_a_picture_are_what_their_encoding_says(tmp_path, text, wanted
     for values in (GREY, np.stack([GREY] * 3, -1), deep):
         for of in ("spectrum", "float"):
             assert picture(tmp_path, values, text, of) == pytest.approx(wanted, abs=1e-6)
-    # What is of floats is as it is.
+    # Float pictures are linear.
     plain = 'bool invert" true' in text
     share = float(re.search('scale" ([0-9.]+)', text)[1]) if "scale" in text else 1.0
     kept = max(1 - share * 0.25, 0) if plain else share * 0.25
@@ -265,7 +265,7 @@ def test_files_of_older_versions_say_that_they_are(tmp_path, text, version):
         ValueError, match=re.escape(f"old.pbrt is a file of {version}: pbrt-v4 makes one")
     ) as caught:
         rw.load(path)
-    # What was not understood is told as before, with its line.
+    # Later errors still have their line.
     assert re.search(r"old\.pbrt, line [2-5]: ", str(caught.value))
     with pytest.raises(ValueError, match="a material 'hair' is not supported") as caught:
         load(tmp_path, '# Material "matte"\nMaterial "hair"')

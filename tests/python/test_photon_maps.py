@@ -102,8 +102,9 @@ def test_a_disk_has_its_bias_and_tells_it(caustic, radius, expected):
     for image in images:
         assert image.biased
         assert image.bias.shape == (1, 1, 3)
-    # Of a lamp so near, r⁴ counts as well as r²: by the disks' expected values, the bias told is 0.907 of
-    # what it is, and 1.068 for the wide one, whose law is another. Four pictures tell it to about 0.01.
+    # At such a near lamp, r⁴ counts as well as r²: by the disks' expected values, the estimated bias is 0.907
+    # of the true one, and 1.068 for the wide lamp, which has another law. Four pictures estimate it to about
+    # 0.01.
     told = 2 * math.pi * np.mean([image.bias.mean() for image in images])
     assert abs(told / (expected - 1) - (0.907 if radius == 0.5 else 1.068)) < 0.3
     # Without it, what is left is less than a third.
@@ -115,7 +116,7 @@ def test_a_disk_has_its_bias_and_tells_it(caustic, radius, expected):
 @pytest.mark.parametrize(("photons", "nearest"), [(20_000, None), (30_000, 32)])
 def test_edges_are_as_bright_as_what_is_in_the_middle(x, y, photons, nearest):
     # Even light on a floor that ends within the disk: half of that, or three quarters, has no photons, and
-    # what is gathered is over the area that exists. Sixteen probes tell that to a few in a hundred.
+    # the estimate divides by the area that exists. Sixteen probes estimate that to a few in a hundred.
     floor = square(2.0, 0.0, material=rw.Diffuse(0.5))
     pane = square(3.0, 0.5, material=rw.Dielectric(1.0))
     scene = rw.Scene([floor, pane], lights=[rw.DirectionalLight((0, 0, -1), 1.0)])
@@ -162,7 +163,7 @@ def test_the_error_of_a_single_pixel_is_as_it_says(caustic, samples):
 
 
 def test_bias_has_an_error_of_its_own(caustic):
-    # One pixel by few photons: what is told of its bias is mostly noise, and the error of that says so.
+    # One pixel with few photons: its estimated bias is mostly noise, and its error says so.
     look = rw.Orthographic((0, 0, 0.4), (0, 0, 0), up=(0, 1, 0), width=1, height=1, scale=1e-3)
     way = rw.ProgressivePhotonMap(3000)
     images = [picture(caustic, look, way, 32, seed=seed) for seed in range(40)]
@@ -171,16 +172,16 @@ def test_bias_has_an_error_of_its_own(caustic):
     errors = np.array([float(image.bias_error.mean()) for image in images])
     # The true bias is -0.04 of a light of 1 / (2 pi), by the law of the radius.
     off = told + 0.04 / (2 * math.pi)
-    # Of groups of eight, five standard errors are exceeded once in 600 times; of forty pictures the spread
-    # that is told and that there is agree to a third, four standard deviations of their ratio.
+    # In groups of eight, five standard errors are exceeded once in 600 times. The estimated and the true
+    # spread of forty pictures agree to a third, four standard deviations of their ratio.
     assert (np.abs(off) < 5 * errors).mean() > 0.9
     assert 0.6 < np.sqrt(np.mean(errors**2)) / told.std(ddof=1) < 1.6
     assert abs(off.mean()) < 5 * told.std(ddof=1) / math.sqrt(len(told))
 
 
 def test_standard_errors_hold_for_what_maps_tend_to(caustic):
-    # What the estimator tends to is told by many seeds. Intervals of 95 % hold it in 93 to 97 % of pixels of
-    # all pictures: those of one picture share their maps, so that many pictures are asked.
+    # Many seeds estimate the expectation. Intervals of 95 % hold it in 93 to 97 % of pixels over all
+    # pictures: pixels of one picture share their maps, so that many pictures are needed.
     look = rw.Orthographic((0, 0, 0.4), (0, 0, 0), up=(0, 1, 0), width=6, height=6, scale=1.6)
     way = rw.PhotonMap(300, nearest=None, radius=0.5, gather=0)
     options = {"sampler": rw.Independent(), "progress": False}
@@ -319,9 +320,9 @@ def test_as_many_photons_as_suit_the_picture(side, photons):
 
 @pytest.mark.parametrize("kind", [rw.ProgressivePhotonMap, rw.PhotonMap])
 def test_glass_is_followed_both_ways(kind):
-    # A pane before a lamp, seen straight: (1 - R) / (1 + R) of it, R = 0.04. What is reflected and what is
-    # refracted are both followed at three surfaces, so that chance has 0.16 % left to decide; by chance alone
-    # a sample is all or nothing.
+    # A pane before a lamp, seen straight: (1 - R) / (1 + R) of it, R = 0.04. Paths split into reflection and
+    # refraction at three surfaces, so that 0.16 % is left to chance; by chance alone a sample is all or
+    # nothing.
     pane = rw.Box((-3, -3, 0), (3, 3, 0.2), material=rw.Dielectric(1.5))
     shining = square(50, -2, material=rw.Diffuse(0), emission=1.0)
     look = rw.Camera((0, 0, 5), (0, 0, 0), up=(0, 1, 0), fov=2, width=SIDE, height=SIDE)
@@ -441,5 +442,5 @@ def test_what_a_coat_reflects_is_not_lost(way, coated, among):
     )
     wanted = rw.render(scene, camera, rw.Path(), samples=256, progress=False)
     found = rw.render(scene, camera, way, samples=256, progress=False)
-    # What photons tell of even light is no exact number: their rings end at the ball's rim.
+    # Photon estimates of even light are not exact: their rings end at the ball's rim.
     assert found.rgb.mean() == pytest.approx(wanted.rgb.mean(), rel=0.01)

@@ -44,8 +44,8 @@ def about_axis(found):
 
 @pytest.mark.slow
 def test_a_lamp_over_a_plane():
-    # Of the photons of a point light 1.5 above, a fifth falls on the disk of radius 2. Its irradiance 2 aside
-    # is told by rings: over one so narrow it is on average what it is in the middle, to 0.1 %.
+    # A fifth of the photons of a point light 1.5 above falls on the disk of radius 2. Rings estimate the
+    # irradiance 2 aside: over one so narrow, the mean is the value in the middle, to 0.1 %.
     scene = rw.Scene([square(2.2, 0.0)], lights=[rw.PointLight((0, 0, 1.5), 1)])
 
     def select(found):
@@ -62,8 +62,8 @@ def test_a_lamp_over_a_plane():
 
 
 def test_light_in_a_closed_room_is_its_series():
-    # Of what comes to a wall the share rho is sent on, whatever the shape: 1 / (1 - rho) comes in all,
-    # rho / (1 - rho) after the first wall, and rho^2 (1 - rho) stays where it comes to the third.
+    # A wall reflects the share rho, whatever the shape: 1 / (1 - rho) arrives in all, rho / (1 - rho) after
+    # the first wall, and rho^2 (1 - rho) is absorbed at the third.
     rho = 0.7
     inwards = rw.Emission(1, side="back")
     scene = rw.Scene(rw.Box((-1, -1, -1), (1, 1, 1), material=rw.Diffuse(rho), emission=inwards))
@@ -162,7 +162,7 @@ def test_a_cup_of_light():
         return [thrown & (abs(x - a) < h) & (abs(y) < h) for a, h in at]
 
     power, error = arrived(rw.Scene([floor, cup], lights=[sun]), 30, 1_500_000, 2, select)
-    # Facets throw light less than a thousandth aside, of which half goes out where half comes in.
+    # Facets scatter light by less than a thousandth, half of it out where half comes in.
     assert_flux(power, error, light * math.sin(slope))
 
 
@@ -190,7 +190,7 @@ def test_a_ball_has_its_focus():
     np.testing.assert_allclose(z[0] - 1, 0.5, rtol=1e-7)
     np.testing.assert_allclose(z[1], 1.39157294888931, rtol=1e-12)
     turned = math.degrees(math.acos(out[2, 2]))
-    # Near the rim it goes by the root of what is left to it.
+    # Near the rim it follows the root of the distance to it.
     assert abs(turned - 96.3793702084428) < 3e-4
 
 

@@ -83,7 +83,7 @@ def test_integers_of_32_bits_are_shares_of_the_most_they_hold(tmp_path):
     assert read(path)[0, :, 0].tolist() == [0, 0, 2, 32768, 65535]
     Image.fromarray(signed[None]).save(path)
     assert read(path)[0, :, 0].tolist() == [0, 0, 2, 32768, 65535]
-    # Whoever makes such a picture need not save it.
+    # The same pixels without a file.
     from raywright.io.pictures import pixels_of
 
     assert pixels_of(Image.fromarray(signed[None]))[0, :, 0].tolist() == [0, 0, 2, 32768, 65535]

@@ -81,7 +81,7 @@ def check(mesh, origins, directions, t_min=0.0, t_max=np.inf):
             told = {c.primitive: np.count_nonzero(primitive == c.primitive) for c in there}
             on_edges = [c for c in there if min(*c.uv, 1 - sum(c.uv)) == 0]
             assert all(told.pop(c.primitive) == 1 for c in there if c not in on_edges)
-            # What is crossed, or else twice what is touched.
+            # Surfaces crossed, or else twice the surfaces touched.
             expected = crossed(triangles, on_edges, origins[i], directions[i]) or 2
             assert sum(told.values()) == (expected if on_edges else 0)
             shared += len(on_edges) > 1

@@ -142,7 +142,7 @@ def test_nothing_that_dense_sampling_finds_is_missed(corners, apex, axis, angle)
         least = np.linalg.norm(q[inside], axis=1).min()
         assert found.count == 1
         assert found.distance[0] <= least + 1e-13
-    # What is told is near the cone: no sample is nearer to the apex than the triangle is.
+    # The result is near the cone: no sample is nearer to the apex than the triangle.
     if found.count:
         assert (
             found.distance[0] >= rw.Scene(rw.Mesh(corners, [(0, 1, 2)])).closest_point(apex).distance - 1e-13

@@ -156,7 +156,7 @@ def test_what_is_open_has_no_inside(box):
     touching = rw.Mesh(sheet, np.concatenate([box.faces, [(0, 1, 8), (1, 9, 8)]]))
     assert np.array_equal(rw.Scene(touching).contains(points), expected)
     assert rw.Scene([flats[1], rw.Sphere((0, 0, 2), 1)]).signed_distance((0, 0, 2)) == -1
-    # On what is open is not inside.
+    # An open surface has no inside.
     assert not rw.Scene(ground).contains((0.3, 0.2, 0.5))
 
 

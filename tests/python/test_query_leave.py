@@ -139,7 +139,7 @@ def test_flat_shapes_and_copies_of_meshes_are_not_met_again():
         assert hits.hit.sum() > 500
         assert not scene.occluded(*hits.leave(sphere(5000, 13))).any()
         assert not scene.occluded(*hits.leave(np.random.default_rng(14).normal(size=(5000, 3)) * 1e-30)).any()
-    # What is not convex is met where it stands in the way, never where it is left.
+    # A concave shape is hit where it blocks the ray, never at the origin.
     scene = rw.Scene(rw.Instance(knot, to))
     hits = hits_of(scene, 20_000)
     again = scene.intersect(*hits.leave(sphere(20_000, 15)))

@@ -100,9 +100,9 @@ def test_no_ray_slips_through_edges_that_face_it(box):
     eye = np.array([7.0, 5.0, 9.0])
     plain, culled = scene.intersect(eye, aims - eye), scene.intersect(eye, aims - eye, cull="back")
     assert culled.hit.sum() > 500
-    # What is seen first of a closed surface from outside is its front, but at outlines, where it is both.
+    # From outside, a closed surface shows its front first, except at outlines, where both sides coincide.
     assert np.array_equal(culled.hit, plain.hit)
-    # Through an edge, another of its faces may be told, of which t is rounded anew.
+    # At an edge, another of its faces may be the hit, with another rounding of t.
     assert np.allclose(culled.t, plain.t, rtol=1e-12)
     inside = rw.Scene(box).intersect(
         (0.5, 0.5, 0.5), np.array([(1, 1, 1), (1, 0, 0), (1, 1, 0)]) * 0.5, cull="back"

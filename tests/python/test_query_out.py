@@ -26,7 +26,7 @@ def test_hits_take_over_the_arrays_of_earlier_ones(kind):
     scene = scenes()[kind]
     out = scene.intersect(*fan(1))
     arrays = out.t, out.shape_id, out.primitive, out.uv
-    # What is worked out of hits is kept, and must go with them.
+    # Results computed from hits are cached, and must be dropped with them.
     _ = out.hit, out.position, out.normal, out.surface, out.instance
     wanted = scene.intersect(*fan(2))
     assert out != wanted

@@ -36,8 +36,8 @@ def test_light_that_sets_out_arrives_or_escapes():
 
 
 def test_a_closed_room_gets_the_sum_of_its_series():
-    # 24 pi set out, and a half of what arrives sets out again: 48 pi arrive. With roulette from the fourth
-    # surface on, a sixteenth of it is by chance: four standard errors are below 0.5 %.
+    # Emission is 24 pi, and half of the arriving light is reflected: 48 pi arrive. With roulette from the
+    # fourth surface on, a sixteenth of it is random: four standard errors are below 0.5 %.
     found = room().photons(100_000)
     np.testing.assert_allclose(found.powers.sum(0), 48 * math.pi, rtol=0.005)
     assert found.escaped == (0, 0, 0)

@@ -109,7 +109,7 @@ def test_hits_are_iterated_by_rays(scene):
         hits[7]
     with pytest.raises(TypeError):
         iter(single[0]).__next__()
-    # What is picked keeps nothing of the others, and may be written over by another answer.
+    # Picked hits keep no reference to the others, and another query may write over them.
     some = hits[:2]
     assert some.t.base is None
     assert (
@@ -217,7 +217,7 @@ def test_a_pickle_is_as_small_as_its_arrays(scene):
             getattr(back, name)
     with pytest.raises(ValueError, match="position is not kept"):
         back.leave((0, 0, 1.0))
-    # What was asked for is kept.
+    # Computed attributes are kept.
     known = {name: getattr(hits, name) for name in ("position", "normal", "names")}
     back = pickle.loads(pickle.dumps(hits))
     for name, array in known.items():

@@ -40,7 +40,7 @@ def test_two_plates() -> None:
         rw.Scene(plates), {0: 500.0, 1: 300.0}, {0: 0.8, 1: 0.3}, method="stochastic", rays=2**14
     )
     truth = STEFAN_BOLTZMANN * (500.0**4 - 300.0**4) / (1 / 0.8 + 1 / 0.3 - 1)
-    # What leaves between them is some 4e-7 of all.
+    # The loss through the gap between them is some 4e-7 of all.
     np.testing.assert_allclose(found.flux, [truth, -truth], rtol=1e-4)
     assert found.of(0) == found.power[0]
 
@@ -87,7 +87,7 @@ def test_numbers_may_be_told_in_several_ways() -> None:
     found = [exchanged(scene, way, 0.8, method="stochastic", rays=2**16) for way in ways]
     assert found[0] == found[1] == found[2]
     assert found[0].of(0) < 0 < sum(found[0].of(shape) for shape in range(1, 6))
-    # What is not shot is below 1e-7 of the 3 kW that are emitted in all.
+    # Unshot power is below 1e-7 of the 3 kW emitted in all.
     assert abs(found[0].power.sum()) < 3e-4
 
 

@@ -23,7 +23,7 @@ def assert_mean(solution: rw.RadiositySolution, shape: int, truth: float, patche
     """Within three standard errors, of at most 0.2 %, and what is unshot or patches are off by."""
     rows = (solution.patches["shape"] == shape) & (solution.patches["side"] == 1)
     areas = solution.areas[rows]
-    # What comes to one patch does not come to another: their errors add up to less than independent ones.
+    # Light that arrives at one patch does not at another: their errors add up to less than independent ones.
     error = float(np.linalg.norm(areas * solution.standard_error[rows, 0]) / areas.sum())
     assert error <= 2e-3 * truth
     found = mean(solution, solution.radiosity, shape)
@@ -40,7 +40,7 @@ def assert_books(solution: rw.RadiositySolution) -> None:
 def test_in_a_closed_sphere_radiosity_is_the_geometric_series() -> None:
     shell = rw.Sphere((0, 0, 0), 1, material=rw.Diffuse(0.5), emission=rw.Emission(1 / np.pi, side="back"))
     found = rw.radiosity(rw.Scene([shell]), error=1e-9, rays=4096, progress=False)
-    # One patch gets all that it sends: nothing is drawn that matters, and what is off is unshot.
+    # One patch receives everything that it emits: no random choice matters, and the error is unshot light.
     np.testing.assert_allclose(found.radiosity, [[0] * 3, [2] * 3], rtol=1e-9)
     assert 0 < found.error <= 1e-9
     assert found.escaped == (0, 0, 0)
@@ -76,7 +76,7 @@ def test_what_is_missing_after_each_sweep_is_a_power_of_the_reflectance() -> Non
         whole = (problem.emission * problem.areas[:, None] + problem.reflectance * arrived).sum(axis=0)
         missing.append(1 - whole[0] / (6 * 2.5))
         bound = problem.bound(arrived, problem.core.books.mean(axis=0)[UNSHOT])
-        # Where all reflect alike and nothing leaves, the bound is off by what of the unshot is absorbed.
+        # In a closed room of equal reflectance, the bound is off by the unshot light's absorbed share.
         assert abs(0.6 * bound * whole[0] / 15 - missing[-1]) < 1e-12
         problem.core.shoot_all(1000, None)
     np.testing.assert_allclose(
@@ -187,7 +187,7 @@ def test_concentric_spheres(radius: float, inner: float, outer: float, truth: tu
     within = found.patches["side"] == -1
     values = np.array([found.radiosity[0, 0], found.radiosity[within][1, 0]])
     errors = np.array([found.standard_error[0, 0], found.standard_error[within][1, 0]])
-    # What the ball loses is B - H = B - (B - E) / rho.
+    # The ball loses B - H = B - (B - E) / rho.
     values = np.append(values, found.radiosity[0, 0] - found.irradiance[0, 0])
     errors = np.append(errors, errors[0] * inner / (1 - inner))
     assert (errors < 0.002 * np.array(truth)).all()
@@ -266,7 +266,7 @@ def test_nearly_infinite_plates() -> None:
     low = rw.Polygon(corners, material=rw.Diffuse(0.2), emission=0.8 / np.pi)
     high = rw.Polygon(corners[::-1] + np.array((0, 0, 1e-4)), material=rw.Diffuse(0.7))
     found = solved(rw.Scene([low, high]), rays=2**14, error=1e-9)
-    # What leaves between them is some 4e-7 of all.
+    # The loss through the gap between them is some 4e-7 of all.
     np.testing.assert_allclose(found.radiosity[:, 0], [0.930232558139535, 0.651162790697674], rtol=1e-5)
     assert abs((found.radiosity - found.irradiance)[0, 0] - 0.27906976744186) < 1e-5
 

@@ -65,7 +65,7 @@ def test_rays_and_matrix_agree_on_the_cornell_box() -> None:
 def test_lights_that_are_no_surfaces_come_by_rays() -> None:
     scene = rw.Scene(room(0.5, (0,) * 6).shapes, rw.PointLight((0.5, 0.5, 0.5), 1.0))
     found = by_matrix(scene, rays=2**16)
-    # 4 π W in all, of which half is reflected again and again.
+    # 4 π W in all; half is reflected again and again.
     absorbed = np.array(found.absorbed)
     np.testing.assert_allclose(absorbed, 4 * np.pi, rtol=0.01)
     assert found.standard_error.all()

@@ -79,7 +79,7 @@ def test_recipe_is_a_short_notebook_that_asserts_something(page):
     lines = [line for code in cells(page) for line in code.splitlines() if line.strip()]
     assert len(lines) <= 40
     assert max(map(len, lines)) <= 110
-    # What must come out does not depend on whether figures are drawn.
+    # Assertions must not depend on whether figures are drawn.
     assert any(
         isinstance(node, ast.Assert)
         for code in cells(page)

@@ -73,8 +73,8 @@ def test_adaptive_errors_are_as_estimated(cornell, count, most):
 
 
 def test_adaptive_intervals_of_pixels_hold(cornell):
-    # From 256 samples on they are to hold the truth in 93 to 97 of 100. That of one picture varies by half a
-    # percent, and the mean of three by 0.3 percent, of which two are allowed.
+    # From 256 samples on, 93 to 97 of 100 intervals must hold the truth. The share of one picture varies by
+    # half a percent, and the mean of three by 0.3 percent; two are allowed.
     scene, camera, reference = cornell
     how = {"samples": 256, "sampler": rw.Independent(), "adaptive": True}
     images = [render(scene, camera, **how, seed=seed) for seed in range(3)]
@@ -120,7 +120,7 @@ def test_clamping_is_named_as_bias():
     assert (clamped.rgb <= free.rgb).all()
     assert clamped.rgb.max() <= 2
     (told,) = clamped.warnings
-    # The share that is told is the one that is missing.
+    # The share in the warning is the missing one.
     share = 100 * (1 - clamped.rgb.mean(dtype=float) / free.rgb.mean(dtype=float))
     assert told.startswith("biased: ")
     assert told.endswith(f" samples were clamped to 2, which took {share:.2g} % of the radiance")

@@ -76,14 +76,14 @@ def test_intervals_of_pixels_cover_the_reference_in_other_scenes(make, side):
 
 def test_intervals_are_those_of_students_t():
     scene, camera = rw.scenes.cornell_box(width=4, height=4)
-    # Three samples leave two degrees of freedom, of which the quantile has a closed form.
+    # Three samples leave two degrees of freedom, where the quantile has a closed form.
     image = render(scene, camera, samples=3, sampler=rw.Independent())
     for level in (0.5, 0.95, 0.99):
         low, high = image.interval(level)
         half = image.standard_error * np.sqrt(2) * level / np.sqrt(1 - level**2)
         assert np.allclose(high - image.rgb, half, rtol=1e-4, atol=1e-6)
         assert np.allclose(image.rgb - low, half, rtol=1e-4, atol=1e-6)
-    # What is taken as exact is normal.
+    # An exact standard error implies a normal distribution.
     plain = rw.Image(image.rgb, image.standard_error, image.error, image.history, 1.0, 3)
     assert np.allclose(plain.interval()[1] - plain.rgb, 1.959964 * image.standard_error, rtol=1e-4, atol=1e-6)
 
@@ -108,7 +108,7 @@ def test_standard_error_is_the_spread_over_seeds():
 
 
 def test_mean_over_seeds_is_unbiased():
-    # What the picture that is kept is off is a fiftieth of what these are together.
+    # The error of the stored picture is a fiftieth of that of these together.
     scene, camera, reference = cornell_picture(8)
     few = np.array([render(scene, camera, samples=1, seed=seed).rgb for seed in range(4000)])
     error = np.sqrt(few.var(axis=0, ddof=1) / len(few))

@@ -166,7 +166,7 @@ def test_larger_patches_are_tried_where_light_is_rare():
     plan = chosen(scene, camera)
     assert plan.path == rw.Path(reuse=8, caustics=False)
     assert "error times time is 0." in plan["reuse"].why
-    # What is named is used as named.
+    # Named options apply as named.
     named = chosen(scene, camera, rw.Path(reuse=4))
     assert named.path.reuse == 4
 
@@ -236,7 +236,7 @@ def test_checkpoints_keep_what_was_chosen(box, tmp_path, eager):
     assert np.array_equal(on.rgb, begun.rgb)
     with pytest.raises(ValueError, match="another integrator, reuse 4 instead of 8"):
         render((scene, camera), integrator=rw.Path(reuse=8), checkpoint=tmp_path / "large")
-    # What began without sharing goes on without.
+    # A render that began without sharing continues without it.
     render(box, samples=16, checkpoint=tmp_path / "small")
     assert render(box, samples=20, checkpoint=tmp_path / "small").plan.path.reuse == 1
 
@@ -276,7 +276,7 @@ def test_so_are_photons():
     # On one thread they take many times as long as it takes to be asked.
     with pytest.raises(StoppedError):
         _core.chances(compiled, rw.Path(), 1, look)
-    # What did not come back is not taken for an answer.
+    # A pilot that was stopped counts as no result.
     assert _core.chances(compiled, rw.Path(), None, None) == (True, True)
 
 

@@ -116,7 +116,7 @@ def test_an_error_that_cannot_be_trusted_is_told_in_words_and_ends_no_render():
     assert str(image.error).endswith(", not to be trusted yet)")
     assert any(line.endswith("cannot be trusted yet") for line in image.warnings)
     assert "not to be trusted yet" in repr(image)
-    # What the interval promises is not enough: other limits end the render.
+    # The lower end of the interval is not enough: other limits end the render.
     higher = 2 * image.error.high
     again = rw.render(scene, camera, error=higher, samples=64, progress=False)
     assert again.samples == 64 or again.error.trusted

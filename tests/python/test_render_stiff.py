@@ -113,7 +113,7 @@ def test_a_tiny_lamp_lights_like_a_point(area):
 def test_strength_does_not_matter(box, strength):
     image = rw.render(rw.Scene(room(box, 0.5, strength)), inside(), samples=64, progress=False)
     value = float((image.rgb.astype(float) / strength).mean())
-    # The error of a single precision picture this dim or bright is told in its own unit.
+    # The error of such a dim or bright picture is in single precision, relative to its own scale.
     assert np.isfinite(image.rgb).all()
     assert abs(value - 2) < 0.02
 

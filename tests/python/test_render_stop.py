@@ -73,8 +73,8 @@ def test_stopping_at_an_error_does_not_darken_the_picture():
     means = np.array([image.rgb.mean(dtype=float) for image in stopped])
     error = means.std(ddof=1) / np.sqrt(len(means))
     off = means.mean() - truth
-    # Within four standard errors, which chance exceeds once in 16,000 cases. Over 150 pictures that is
-    # less than a third of what one picture differs from another by.
+    # Within four standard errors, which chance exceeds once in 16,000 cases. Over 150 pictures that is less
+    # than a third of the difference between two pictures.
     assert abs(off) < 4 * np.hypot(error, 2 * doubt)
 
 
@@ -83,5 +83,5 @@ def test_seconds_are_kept_to_a_sample(adaptive):
     scene, camera = rw.scenes.cornell_box(width=96, height=96)
     image = render(scene, camera, seconds=1.0, adaptive=adaptive)
     each = image.history["seconds"][-1] / image.samples
-    # Half a sample of all pixels either way, and what the machine does besides.
+    # Half a sample of all pixels either way, plus other load on the machine.
     assert abs(image.seconds - 1.0) < 0.5 * each + 0.3

@@ -119,7 +119,7 @@ def test_who_asks_for_no_pixels_is_called_ten_times_a_second_however_large_the_p
 
     def watch(image):
         told.append(clock.now)
-        # What is known of all pixels together is there, and no pixel is.
+        # Values for the whole picture exist, and no pixel does.
         assert image.samples == 0
         assert np.isnan(image.error.estimate)
         assert repr(image).startswith("Image(2560x1440, 0 samples")
@@ -210,7 +210,7 @@ def test_after_a_fork_pictures_are_made_as_before():
     scene, camera = cornell(16)
     here = rw.render(scene, camera, samples=4, progress=False)
     read, write = os.pipe()
-    # What a child that hangs would hold up is this test alone.
+    # A child that hangs would block this test alone.
     child = os.fork()
     if child == 0:
         again = rw.render(scene, camera, samples=4, progress=False)

@@ -65,7 +65,7 @@ def relmse(image):
 
 
 def test_a_row_tells_of_its_pictures(made):
-    # How good they are is chance, and how many samples they have is for the machine to say.
+    # Errors are random, and the number of samples depends on the machine.
     report, pictures = made
     assert len(pictures) == len(report.rows)
     for name, budget, seconds, samples, error, ratio, _, trusted in report.rows:

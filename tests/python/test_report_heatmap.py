@@ -96,7 +96,7 @@ def test_the_font_has_what_is_written(most, monkeypatch):
     monkeypatch.setattr(ImageDraw.ImageDraw, "text", text)
     heat = rw.report.heatmap(SCENE, CAMERA, most=most, repeats=0)
     heat._repr_png_()
-    # What is above the last number has its colour, too, and that is told.
+    # Values above the last number share its colour, and a plus sign says so.
     *numbers, last = map(str, ticks(heat.most))
     assert written == ["nodes", *numbers, last if most is None else f"{last}+"]
     font = ImageFont.load_default()

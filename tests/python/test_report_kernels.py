@@ -60,7 +60,7 @@ def test_on_ordinary_pairs_every_routine_decides_rightly(report, routine):
 def test_the_exact_routine_never_decides_wrongly(report, name):
     found = row(report, EDGE_F64, name)
     assert (found.missed, found.false_hits) == (0, 0)
-    # In f64 there are 29 more bits; an error of an ulp of f32 is what its bound allows at most.
+    # f64 has 29 more bits; its bound allows an error of an ulp of f32 at most.
     assert found.median_ulps < 1e-6
     assert found.max_ulps < 1
 
@@ -260,7 +260,7 @@ def test_times_are_those_of_a_few_hundred_operations(report):
 def test_a_single_pair_is_enough():
     rows = rw.report.kernels(pairs=1, repeat=1).rows
     assert {r.hits for r in rows} == {1}
-    # What is missed has no error.
+    # Missed rays have no error.
     assert all((r.max_ulps is None) == (r.missed == 1) for r in rows)
 
 

@@ -19,7 +19,7 @@ def test_what_comes_out_of_pickles_is_compiled_once(box):
     one, two = pickle.loads(data), pickle.loads(data)
     assert one is not two
     assert same_core([one, two])
-    # Another scene is another, and what is like it is not.
+    # A different scene is not shared, and an equal one is.
     other = pickle.loads(pickle.dumps(rw.Scene([box, rw.Sphere(radius=2)])))
     assert not same_core([one, other])
     assert same_core([one, pickle.loads(pickle.dumps(rw.Scene([box, rw.Sphere()])))])

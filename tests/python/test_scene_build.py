@@ -217,7 +217,7 @@ def test_a_scene_is_as_before_when_its_build_was_ended(large):
 
     scene = None
     ended(build, 0.2)
-    # What was left of the build ends soon: it takes no more time of the processors.
+    # The rest of the build ends soon: it uses no more processor time.
     time.sleep(0.5)
     before = time.process_time()
     time.sleep(0.3)

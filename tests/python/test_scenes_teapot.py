@@ -36,8 +36,8 @@ def test_patches_meet_without_gaps(divisions):
     edges = np.sort(np.stack([faces, np.roll(faces, -1, axis=1)], axis=-1), axis=-1).reshape(-1, 2)
     uses = np.unique(edges, axis=0, return_counts=True)[1]
     assert set(uses) <= {1, 2}
-    # What is open: the rim and the lid, each a circle of four patches, and both ends of handle and spout,
-    # each of two.
+    # Open edges: the rim and the lid, each a circle of four patches, and both ends of handle and spout, each
+    # of two.
     assert (uses == 1).sum() == (2 * 4 + 4 * 2) * divisions
 
 

@@ -10,7 +10,7 @@ from obj_files import SQUARE, picture, write
 import raywright as rw
 from raywright.scene_files.shown import own_radiance, shown
 
-# What is seen of the square from straight above.
+# The square from straight above.
 EYE = {"type": "perspective", "perspective": {"yfov": 0.6, "aspectRatio": 1.5, "znear": 0.1}}
 
 
@@ -95,7 +95,7 @@ def test_the_lamp_goes_with_the_camera_and_out_of_its_picture(way, up, near):
     scene = shown(box, camera=camera).scene
     assert np.allclose(scene.shapes[1].vertices.mean(axis=0), 40 * leftward(near), rtol=0, atol=1e-9)
     hits = scene.intersect(*camera.rays())
-    # Whoever looks up sees it.
+    # Rays that look up see it.
     assert set(np.unique(hits.shape_id)) == ({-1, 0} if way[1] >= 0 else {-1, 0, 1})
 
 
@@ -143,7 +143,7 @@ def test_size_and_the_way_up_may_be_told(tmp_path):
     camera = gltf(tmp_path, camera={"translation": [0, 0, 4]}).camera
     small = rw.load(tmp_path / "file.glb", width=72).camera
     assert (camera.width, camera.height, small.width, small.height) == (720, 480, 72, 48)
-    # What has no camera has pictures of 4 by 3.
+    # Pictures without a camera in the file have 4 by 3.
     write(tmp_path, "Kd 0 0 0")
     for size in ({"width": 72}, {"height": 54}, {"width": 72, "height": 54}):
         small = rw.load(tmp_path / "file.obj", **size).camera

@@ -33,7 +33,7 @@ def assert_lit(found, expected, slack=1e-5):
     assert error <= 0.01 * expected
 
 
-# What shines, by its strength, and the radiance of the origin when that is 1.
+# Lights by strength, and the radiance of the origin at strength 1.
 ARRANGEMENTS = {
     "point": (lambda s: {"lights": [rw.PointLight((0, 0, 2), s)]}, 0.8 / math.pi / 4),
     "spot": (lambda s: {"lights": [rw.SpotLight((0, 0, 2), (0, 0, 0), s)]}, 0.8 / math.pi / 4),
@@ -58,13 +58,13 @@ def test_strength_is_a_factor_of_the_picture_and_of_its_error(kind, strength):
     make, share = ARRANGEMENTS[kind]
     found, unit = lit(**make(strength)), lit(**make(1.0))
     assert found[0] == pytest.approx(unit[0] * strength, rel=1e-5)
-    # What cancels in a standard error of nearly nothing is not known to any digit.
+    # Cancellation leaves no digit of a standard error of nearly nothing.
     assert found[1] == pytest.approx(unit[1] * strength, rel=1e-2, abs=1e-6 * share * strength)
     assert_lit(found, share * strength)
 
 
 def test_a_weak_light_beside_a_strong_one_is_not_lost():
-    # 1e30 in one channel, 1e-30 in another: each is what it would be by itself.
+    # 1e30 in one channel, 1e-30 in another: each has the same result as alone.
     lights = [rw.PointLight((0, 0, 2), (1e30, 0, 0)), rw.PointLight((0, 0, 1), (0, 1e-30, 0))]
     floor = rw.Disk((0, 0, 0), (0, 0, 1), 9, material=rw.Diffuse(0.8))
     camera = rw.Camera((3, 0, 0.5), (0, 0, 0), up=(0, 0, 1), fov=1e-3, width=4, height=4)
@@ -164,7 +164,7 @@ HOLLOW = {f"{name}, {side}": one for side in ("both", "back") for name, one in h
     "kind", [pytest.param(k, marks=pytest.mark.slow) if k == "torus, back" else k for k in HOLLOW]
 )
 def test_within_any_hollow_shape_that_shines_it_is_alike(kind):
-    # What is closed, shines 1 and reflects a half: 1 / (1 - 0.5), and 1.5 where light is followed once.
+    # Closed, with radiance 1 and a reflectance of a half: 1 / (1 - 0.5), and 1.5 with one bounce.
     shape, centre = HOLLOW[kind]
     scene = rw.Scene(shape, precision="double")
     camera = rw.Camera(centre, np.add(centre, (0.3, 0.4, 0.5)), fov=90, width=8, height=8)

@@ -30,7 +30,7 @@ def scattered_share(material, degrees, index=1.0, below=False, draws=4000):
     here = seen(material, degrees, draws, below)
     rng = np.random.default_rng(1)
     drawn = here.sample(rng.random(len(here)), rng.random((len(here), 2)))
-    # Radiance over the square of the index is what is kept.
+    # Refraction conserves radiance over the square of the index.
     through = np.nan_to_num(drawn.direction[:, 2]) * (-1 if below else 1) < 0
     share = drawn.weight[:, 1] * np.where(through, (1 / index if below else index) ** 2, 1)
     share = share.reshape(len(degrees), draws)

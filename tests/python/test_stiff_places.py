@@ -59,7 +59,7 @@ def test_a_curved_lamp_and_its_shadow(size, place):
 
 @pytest.mark.parametrize(("size", "place"), MOVES)
 def test_lights_without_extent(size, place):
-    # What falls off with the square of the distance has to be so much stronger; direction and sky do not.
+    # Lights with an inverse square law must be this much stronger; directions and sky need not.
     at = Moved(size, place)
     lights = [
         rw.PointLight(at(0, 0, 2), 4 * size**2),

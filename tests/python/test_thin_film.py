@@ -59,7 +59,7 @@ def test_soap_films_have_the_colour_of_the_integral(thickness):
     reflected, through = ways(rw.SoapFilm(thickness), COSINES)
     truth = [colour(thickness, (1, SOAP, 1), cosine).clip(0, 1) for cosine in COSINES]
     assert np.abs(reflected.weight - truth).max() < 1e-5
-    # What is not reflected goes through, straight.
+    # Light that is not reflected passes straight through.
     assert reflected.weight + through.weight == pytest.approx(1, abs=1e-14)
     assert np.all((reflected.weight >= 0) & (reflected.weight <= 1))
     assert through.direction[:, 2] == pytest.approx(-COSINES, abs=1e-12)
@@ -110,7 +110,7 @@ def test_films_on_glass_have_the_colour_of_the_integral_from_both_sides(film, ba
     truth = np.array([colour(thickness, (1, film, base), cosine).clip(0, 1) for cosine in COSINES])
     assert np.abs(reflected.weight - truth).max() < 1e-5
     assert reflected.weight + through.weight * base**2 == pytest.approx(1, abs=1e-12)
-    # From within, at the angles to which it was refracted: the same (Stokes, 1849).
+    # From within, at the refracted angles: the same (Stokes, 1849).
     back, out = ways(material, np.abs(through.direction[:, 2]), below=True)
     assert np.abs(back.weight - truth).max() < 1e-5
     assert back.weight + out.weight / base**2 == pytest.approx(1, abs=1e-12)
@@ -246,7 +246,7 @@ def test_smooth_films_keep_all_light():
     ],
 )
 def test_rough_films_keep_all_light(roughness, distribution):
-    # Oil on water, a lens's coat, and what reflects as strongly as the oxide of titanium does.
+    # Oil on water, a lens's coat, and a reflectance like that of titanium oxide.
     for thickness, ior, glass in ((120.0, 1.38, 1.52), (300.0, 1.47, 1.33), (60.0, 2.5, 1.5)):
         film = rw.ThinFilm(thickness, ior, base=rw.Dielectric(glass, roughness, distribution=distribution))
         ball = rw.Sphere((0, 0, 0), 1, material=film)
@@ -254,7 +254,7 @@ def test_rough_films_keep_all_light(roughness, distribution):
         scene = rw.Scene(ball, environment=rw.ConstantEnvironment(1.0))
         image = rw.render(scene, camera, rw.Path(max_depth=400), 600, progress=False)
         error = np.sqrt((image.standard_error.astype(float) ** 2).sum(axis=(0, 1))) / 64
-        # The tables of what bare facets lose are within 0.003; four standard errors in a case of 5000.
+        # Tables of facet loss are within 0.003; four standard errors fail in one case of 5000.
         assert np.all(np.abs(image.rgb.astype(float).mean(axis=(0, 1)) - 1) < 0.003 + 4 * error), (
             thickness,
             error,
@@ -269,7 +269,7 @@ def test_rough_mirrors_with_films_keep_all_light(roughness):
 
 
 def test_light_from_lamps_finds_the_same_picture():
-    # What paths from lights and from both ends bring through and off films is what paths from the eye do.
+    # Light paths and bidirectional paths agree with camera paths, through films and off them.
     oil = rw.ThinFilm(350.0, 1.47, base=rw.Dielectric(1.33, 0.5))
     floor = rw.Plane((0, 0, -1.3), material=rw.Diffuse(0.6))
     lamp = rw.Sphere((1.5, -1.5, 3), 1.2, material=rw.Diffuse(0), emission=4.0)

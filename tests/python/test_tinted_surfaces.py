@@ -39,7 +39,7 @@ def test_of_an_index_that_is_around_it_a_solid_shows_its_colour_twice_and_a_pane
 
 @pytest.mark.parametrize("ior", [1.5, 2.4])
 def test_all_ways_to_and_fro_are_tinted_at_every_surface(ior):
-    # r is left of what is reflected and t of what goes through, on either side. Whitted's tree is exact.
+    # The tints scale reflection by r and transmission by t, on either side. Whitted's tree is exact.
     mirror, r, t = ((ior - 1) / (ior + 1)) ** 2, 0.8, COLOR
     inside = r * mirror
     through = (t * (1 - mirror)) ** 2 / (1 - inside**2)
@@ -59,7 +59,7 @@ def test_all_ways_to_and_fro_are_tinted_at_every_surface(ior):
 @pytest.mark.parametrize("distribution", ["ggx", "beckmann"])
 @pytest.mark.parametrize("again", [True, False])
 def test_rough_glass_shows_its_colours_as_much_as_clear_one(distribution, again):
-    # Of grey at both, each sample is what it is without, times a power: one crossing is one factor.
+    # With the same grey in both, each sample is the untinted one times a power: one factor per crossing.
     rough = rw.Dielectric(1.5, 0.5, distribution=distribution, multiple_scattering=again)
     floor = rw.Plane((0, 0, -1), material=rw.Diffuse(0.0), emission=1.0)
     below = sheet(9, rough)

@@ -192,7 +192,7 @@ def test_sections_and_insides_bear_all_of_it_at_once(seed):
     wanted = rw.Scene(clean, precision="double").contains(points)
     assert 50 < wanted.sum() < 450
     with warnings.catch_warnings():
-        # Which way a body of turned faces points is chance.
+        # A body with reversed faces has a random orientation.
         warnings.simplefilter("ignore", RuntimeWarning)
         assert np.array_equal(rw.Scene(noisy, precision="double").contains(points), wanted)
     planes = rng.uniform(low, high, (5, 3)), rng.normal(size=(5, 3))

@@ -44,7 +44,7 @@ def test_boxes_are_the_trees(knot, accelerator):
 def test_cells_of_space_part_the_whole(knot, accelerator):
     tree = rw.Scene(knot, accelerator=accelerator).tree()
     volume = np.prod(tree.upper - tree.lower, axis=1)
-    # Of thousands of cells, each side of which is rounded by 1e-7 of the whole.
+    # For thousands of cells, each side rounded by 1e-7 of the whole.
     assert volume[tree.leaf].sum() == pytest.approx(volume[0], rel=1e-4)
 
 

@@ -119,7 +119,7 @@ def test_quads_become_the_fans_that_their_corners_allow():
     assert 200 < is_fan.sum() < 800
     found = triangulate(points, corners, counts).reshape(1000, 2, 3) - 4 * np.arange(1000)[:, None, None]
     assert (found[is_fan] == [(0, 1, 2), (0, 2, 3)]).all()
-    # What is no fan is cut along the other diagonal, unless it crosses itself or repeats a corner.
+    # A quad without a fan is cut along the other diagonal, unless it crosses itself or repeats a corner.
     is_simple = ~is_fan & np.array([_is_simple(quad[:, :2]) for quad in quads])
     assert is_simple.sum() > 50
     assert all(

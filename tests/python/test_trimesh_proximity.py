@@ -72,7 +72,7 @@ def test_answers_are_those_of_trimesh(name):
     assert (ours[same] >= theirs[same] - 1e-6).all()
     signed, wanted = signed_distance(mesh, points), trimesh.proximity.signed_distance(mesh, points)
     np.testing.assert_array_equal(np.abs(signed), distance)
-    # Beside the rim of what is open, trimesh goes by one ray, and this by seven.
+    # Beside the rim of an open mesh, trimesh relies on one ray, and raywright on seven.
     agree = np.abs(signed - wanted) < 1e-6
     assert agree.mean() > 0.99 if name == "half" else agree.all()
 

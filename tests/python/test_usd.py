@@ -139,7 +139,7 @@ def test_the_sun_and_the_sky(tmp_path):
     assert scene.lights == (rw.DirectionalLight((0, 0, -1), 2.0),)
     assert scene.environment == rw.ConstantEnvironment(0.5)
     wide = LAMP.replace("bool inputs:normalize = 1", "float inputs:angle = 90")
-    # What is not normalised is the radiance of a disk of so many degrees.
+    # An unnormalized light has the radiance of a disk of this angle, in degrees.
     with pytest.warns(RuntimeWarning, match="the angle of DistantLights is left out of their shadows"):
         sun = load(tmp_path, CAMERA + wide + SQUARE + paint("")).scene.lights[0]
     # The radiance times π, and the square of the sine of half the angle.

@@ -296,7 +296,7 @@ def test_meshes_are_lights(tmp_path):
         0.375,
         0,
     )
-    # What the material gives off tints the light, unless the two are independent.
+    # The emission of the material tints the light, unless the two are independent.
     glow = paint("color3f inputs:emissiveColor = (1, 0.5, 1)")
     assert lit(text, glow).emission == (3, 0.75, 0)
     for mode, wanted in (

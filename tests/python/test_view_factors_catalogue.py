@@ -47,7 +47,7 @@ def polygon(height: float, up: bool, corners: int) -> rw.Mesh:
 
 
 def test_disks_far_apart() -> None:
-    # Rays would hit once in a million. What the outline of a polygon of the same area is off by counts 1e-6.
+    # Rays would hit once in a million. The polygon has the disk's area; its outline matters only to 1e-6.
     found = factors(polygon(0.0, True, 48), polygon(1000.0, False, 48))
     assert found.matrix[0, 1] == pytest.approx(9.99998000005e-07, rel=1e-8)
     far = factors(rectangle((0, 0, 0), (1, 0, 0), (0, 1, 0)), rectangle((0, 0, 1000), (0, 1, 0), (1, 0, 0)))
@@ -141,7 +141,8 @@ def test_long_tubes_side_by_side() -> None:
 
 
 def test_caps_of_a_sphere() -> None:
-    # What is sent is even over a sphere's inside. Polygons in rings are off by the squares of their sizes.
+    # Emission is uniform over the inside of a sphere. Polygons in rings are off by the squares of their
+    # sizes.
     found = []
     for cuts in (1, 2):
         caps = [
@@ -165,6 +166,6 @@ def test_errors_are_told_rightly_and_below_the_binomial_law() -> None:
         told.append(found.standard_error[0, 1])
     # Both disks send 4096 rays, and the mean of the two is taken.
     assert np.mean(told) < math.sqrt(truth * (1 - truth) / 8192)
-    # The spread of 100 is known to 1 in 14: three of these, and what 64 batches know of it.
+    # The spread of 100 is known to 1 in 14: three times this, plus the uncertainty of 64 batches.
     assert 0.75 < np.sqrt(np.mean(np.square(off)) / np.mean(np.square(told))) < 1.25
     assert abs(np.mean(off)) < 3 * np.sqrt(np.mean(np.square(told)) / 100)

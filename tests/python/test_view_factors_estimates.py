@@ -102,7 +102,7 @@ def test_the_default_tells_a_hundredth_of_the_greatest_factor() -> None:
 
 
 def test_no_count_of_zero_is_certain() -> None:
-    # What two triangles hide together none of them hides alone, so that rays tell it.
+    # Two triangles hide together, and neither does alone, so that only rays detect it.
     x, y, z = np.eye(3)
     found = factors(
         rectangle(0 * x, x, y), rectangle(z, y, x), rectangle(0.5 * z - x - y, 3 * x, 3 * y), rays=64
@@ -117,7 +117,7 @@ def test_rows_of_open_rooms_leave_no_less_than_nothing() -> None:
     sides, box = inward_box(), block((0.3,) * 3, (0.4,) * 3)
     found = factors(*sides[:5], box, rays=64)
     assert found.rest.min() > -1e-9
-    # What leaves comes to the side that is open where there is one.
+    # Escaping rays arrive at the removed side when it is there.
     closed = factors(*sides, box, rays=2**10)
     leaves, arrives = float(found.areas @ found.rest), float(closed.areas @ closed.matrix[:, 5])
     error = math.hypot(*(found.areas @ found.standard_error), *(closed.areas * closed.standard_error[:, 5]))
@@ -128,7 +128,7 @@ def test_a_box_that_stands_on_the_floor_touches_it() -> None:
     scene = rw.Scene([block((0, 0, 0), (6, 5, 3), inwards=True), block((1, 1, 0), (1, 1, 1))])
     found = rw.view_factors(scene, per="shape", progress=False)
     np.testing.assert_allclose(found.rest, 0, atol=1e-9)
-    # The bottom sees the floor alone, of which it hides as much.
+    # The bottom sees only the floor, which it hides by the same amount.
     faces = rw.view_factors(scene, progress=False)
     bottom = faces.matrix[12:14]
     np.testing.assert_allclose(bottom.sum(axis=1), 1, atol=1e-9)
@@ -151,7 +151,7 @@ def test_nothing_is_exchanged_at_one_temperature(method: Literal["matrix", "stoc
     scene = furnished()
     found = rw.radiative_exchange(scene, 300.0, 0.9, method=method, progress=False)
     assert np.abs(found.flux).max() < 1e-6
-    # By rays a room is closed but for what some 65,536 of them may have missed.
+    # By rays a room is closed, except for a loss that some 65,536 of them may have missed.
     assert found.standard_error.max() < 0.02
     assert abs(found.power.sum()) < 1e-5
     assert found.escaped == pytest.approx(0, abs=1e-6)

@@ -18,7 +18,7 @@ def exchanged(one: Any, other: Any) -> Any:
     """The area of one triangle times its view factor, 1/(2 pi) of the sum over both edges of ln r dp.dq."""
     with mp.workdps(DIGITS):
         one, other = ([[mp.mpf(float(x)) for x in corner] for corner in of] for of in (one, other))
-        # What `quad` takes for enough is no part of the integral, but a number: sizes are to be about 1.
+        # The tolerance of `quad` is absolute, so sizes must be about 1.
         size = max(abs(x) for corner in (*one, *other) for x in corner)
         one, other = ([[x / size for x in corner] for corner in of] for of in (one, other))
         pairs = product(range(3), range(3))

@@ -111,5 +111,5 @@ def test_many_faces_take_memory_by_their_rays() -> None:
     assert faces == 12 * 41**2 > 20_000
     # Of 64 rays a face, at most 128 entries a row; a dense matrix would take 3.3 GB.
     assert entries <= 128 * faces
-    # Twice what is kept, of 12 bytes an entry and as many of its variance, and what the rays themselves take.
+    # Twice the result, at 12 bytes an entry and as many of its variance, plus the rays themselves.
     assert peak < 2.5 * 24 * entries + 1.5e8

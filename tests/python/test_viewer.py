@@ -156,7 +156,7 @@ class Held(rw.Integrator):
             if self.asked > 1.5 * self.pixels:
                 self.is_amid.set()
                 assert self.moved.wait(20)
-                # Slow, so that whoever looks for a reason to end it does so before its end.
+                # Slow, so that a check for interruption comes before its end.
                 time.sleep(0.05)
         return np.full((len(rays), 3), 0.5)
 
@@ -215,7 +215,7 @@ def test_without_a_page_nothing_is_rendered(viewer):
     time.sleep(0.5)
     assert time.process_time() - spent < 0.1
     with page(viewer) as events:
-        # What there was is shown at once, and gets better.
+        # The earlier picture appears at once, and improves.
         told = until(events, lambda frame: True)
         assert told["samples"] >= last["samples"]
         assert until(events, lambda frame: frame["number"] > told["number"])["samples"] >= told["samples"]
@@ -290,7 +290,7 @@ def test_the_shell_tells_what_it_cannot_show(tmp_path):
 
 
 def test_no_style_cuts_or_hides_what_stands_under_the_picture():
-    # As far as it can be told without a browser: lines wrap, and nothing is taken out of them.
+    # Checked as far as possible without a browser: lines wrap, and no element leaves them.
     style = (Path(rw.__file__).parent / "viewer" / "page.css").read_text(encoding="utf-8")
     rules = dict(re.findall(r"([^{}]+?)\s*\{([^{}]*)\}", re.sub(r"/\*.*?\*/", "", style, flags=re.DOTALL)))
     rules = {name.strip(): body for name, body in rules.items()}

@@ -12,7 +12,7 @@ pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 from viewer_browser import WEBGPU, is_state, launched, needs_chromium, opened, told
 
 pytestmark = needs_chromium
-# What paths have brought: their sum, how many, the squares of how far they are off their mean, the largest.
+# Sums over paths: radiance, their number, squared deviations from the mean, and the largest.
 BROUGHT = """async () => {
     const { paths, device } = viewer.drawing.passes;
     const size = paths.sums.size;
@@ -100,7 +100,7 @@ def agrees(error, core):
 
 def test_the_page_tells_how_wrong_its_picture_is(page):
     scene, camera = rw.scenes.cornell_box(width=32, height=32)
-    # Off by a hundredth of what the picture below is.
+    # Off by a hundredth of the picture below.
     reference = {"samples": 1024, "sampler": rw.Sobol(), "seed": 10**9, "progress": False}
     truth = rw.render(scene, camera, rw.Path(reuse=4), **reference).rgb.astype(float)
     with rw.view(scene, camera, fit=False, samples=2) as viewer:
@@ -126,7 +126,7 @@ def test_the_page_tells_how_wrong_its_picture_is(page):
         seconds, errors = np.array(page.evaluate("viewer.figures.history")).T
         assert len(errors) > 5
         assert (np.diff(seconds) >= 0).all()
-        # What moves is not told of, and what stands then begins anew.
+        # A moving camera reports no error, and a standing one begins anew.
         page.evaluate("() => { viewer.drawing.told.traced = null; viewer.drawing.on.stands = () => {}; }")
         page.evaluate("viewer.move({ azimuth: 30 })")
         page.wait_for_function("() => document.getElementById('samples').textContent === 'sketch'", polling=5)
@@ -138,7 +138,7 @@ def test_a_page_that_is_given_up_while_it_estimates_has_nothing_to_complain_of(p
     with rw.view(*rw.scenes.cornell_box(width=16, height=16), fit=False, samples=2) as viewer:
         begin(page, viewer)
         go_on(page)
-        # Whoever waits for the estimate never hears of it.
+        # The promise of the estimate never settles.
         page.evaluate("""async () => {
             const { drawing } = viewer;
             const { errors } = drawing.passes.paths;

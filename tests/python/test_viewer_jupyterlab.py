@@ -27,7 +27,7 @@ VIEW = """import raywright as rw
 viewer = rw.view(*rw.scenes.cornell_box(width=64, height=64), error=1e-12, fit=False)
 viewer"""
 ASK = "(viewer.rendering, viewer.widget().watches, viewer.camera.position[0] == 278)"
-# What the first cell shows: a widget keeps its parts to itself.
+# Output of the first cell: a widget hides its parts.
 VIEWER = """[...document.querySelectorAll(".jp-OutputArea-output *")]
     .find(part => part.shadowRoot)?.shadowRoot.querySelector(".viewer")"""
 

@@ -101,7 +101,7 @@ def test_moving_by_half_a_height_moves_the_picture_by_half_a_height(kind):
     orbit = Orbit(camera, np.array([(-1, -1, 0), (1, 1, 2)]))
     (origin, _), (forward, _) = camera.rays_through([(60, 45)] * 2)
     moved = orbit.camera(View(right=0.25, up=-0.5))
-    # What the ray through some pixel met in the plane of the target is seen elsewhere by so much.
+    # A pixel's ray met a point in the plane of the target; it moves by this much.
     point = origin + (pivot(camera) - origin) @ camera.forward / (forward @ camera.forward) * forward
     origins, directions = moved.rays_through([(60 + 0.25 * 90, 45 + 0.5 * 90)])
     off = np.cross(point - origins[0], directions[0])

@@ -173,7 +173,7 @@ def test_who_still_sends_what_is_refused_learns_why(viewer):
     for length, status in (("Transfer-Encoding: chunked", b"411"), ("Content-Length: 5000", b"413")):
         with closing(socket.create_connection((at.hostname, at.port), timeout=20)) as connection:
             connection.sendall(f"{head}{length}\r\n\r\n".encode())
-            # The answer is there, and whatever else is done with the connection has been done.
+            # The answer has arrived, and the server has finished with the connection.
             assert connection.recv(1, socket.MSG_PEEK)
             time.sleep(0.2)
             for _ in range(5):

@@ -83,7 +83,7 @@ def test_a_dragged_camera_is_drawn_at_once_and_the_core_knows_where_it_is(page, 
     with rw.view(*box, fit=False) as viewer:
         begin(page, viewer)
         start = picture(page, "viewer.drawing.sample >= 1")
-        # No more than that: of what stands still nothing is made.
+        # No more than that: a standing camera draws nothing.
         page.evaluate("() => { viewer.drawing.told.traced = null; viewer.drawing.on.stands = () => {}; }")
         drawings = page.evaluate("viewer.drawing.pictures")
         page.mouse.move(300, 150)
@@ -102,7 +102,7 @@ def test_a_dragged_camera_is_drawn_at_once_and_the_core_knows_where_it_is(page, 
             time.sleep(0.01)
         assert viewer.camera == seen_by
         assert not viewer.rendering
-        # What is seen is what the core sees from there: where it sees nothing it is dark.
+        # The picture agrees with the core's from there: it is dark where the core sees nothing.
         hits = box[0].pick(seen_by, np.arange(SIZE), np.arange(SIZE)[:, None])
         whole = picture(page, "viewer.drawing.isWhole && !viewer.drawing.isWorking")
         agree = (whole.max(axis=2) > 40) == hits.hit
@@ -217,7 +217,7 @@ def test_what_has_no_triangles_is_streamed(page):
         wait(page, is_state("done"))
         assert (state(page, "way"), told(page, "way")) == ("core", "the core")
         assert "the page draws triangles alone" in page.get_attribute("#way", "title")
-        # So is what a device has no room for.
+        # Scenes too large for the device are refused, too.
         told_of = """async ([url, most]) => (await import(url)).noRoom(
             { limits: { maxStorageBufferBindingSize: most, maxBufferSize: 2 ** 40 } },
             { nodes: 5e6, faces: 9e6 })"""
@@ -239,7 +239,7 @@ def test_what_is_drawn_is_saved_and_has_an_end(page, box):
         assert page.evaluate("viewer.drawing.sample") == samples
         viewer.close()
         wait(page, "document.getElementById('message').textContent.includes('has ended')")
-        # What was drawn here stays, and can be looked at from elsewhere.
+        # A picture drawn here stays, and the camera can move.
         page.focus("#drawn")
         page.keyboard.press("ArrowRight")
         wait(page, "viewer.drawing.sample >= 1")

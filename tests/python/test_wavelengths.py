@@ -11,7 +11,7 @@ import raywright as rw
 from raywright import _core
 
 NM = np.arange(360.0, 831.0)
-# What is seen of daylight of each nm alone; the core's own table, which has tests of its own.
+# Colours of daylight of each nm alone; the core's own table, which has tests of its own.
 SEEN = np.array(
     [_core.spectrum_rgb([[nm - 1, 0.0], [nm, 1.0], [nm + 1, 0.0]], True) for nm in NM],
 )
@@ -27,7 +27,7 @@ TO_RGB = np.array(
 BK7 = rw.glasses["N-BK7"]
 # A formula that goes with wavelength, and gives the same index everywhere.
 SAME = rw.Cauchy(1.5, 0.0)
-# How well slow tests know a picture.
+# Relative precision of pictures in slow tests.
 FINELY = 0.002
 
 
@@ -96,7 +96,7 @@ def test_all_that_glass_does_to_white_light_is_white(assert_looks):
         ball = rw.Sphere((0, 0, 0), 1, material=material)
         camera = rw.Orthographic((0, 0, 5), (0, 0, 0), scale=1.4, width=16, height=16)
         assert_looks(rw.Scene(ball, environment=1.0), camera, 128, np.ones(3), most=0.01)
-    # And in two that lie in one another, of which either disperses.
+    # Also with two overlapping ones, if either disperses.
     inner = rw.Sphere((0, 0, 0), 0.6, material=rw.Dielectric(rw.glasses["water"], priority=1))
     outer = rw.Sphere((0, 0, 0), 1, material=rw.Dielectric(BK7))
     assert_looks(rw.Scene([inner, outer], environment=1.0), camera, 128, np.ones(3), most=0.01)
@@ -331,7 +331,7 @@ def test_media_absorb_by_wavelength(assert_looks):
     )
     slab = rw.Box((-9, -9, -1), (9, 9, 0), material=rw.Boundary(grid))
     assert_looks(rw.Scene(slab, environment=1.0), downwards(16), 256, daylit(np.exp(-sigma)), most=0.02)
-    # What scatters everything and absorbs nothing is white in white light, however much of which wavelength.
+    # A medium that scatters everything is white in white light, whatever its spectrum.
     fog = rw.Homogeneous(0.0, rw.Spectrum(NM, 2 * sigma))
     ball = rw.Sphere((0, 0, 0), 1, material=rw.Boundary(fog))
     assert_looks(rw.Scene(ball, environment=1.0), downwards(16, 1.2), 64, np.ones(3), most=0.02)
@@ -350,7 +350,7 @@ def test_glass_is_tinted_by_wavelength(assert_looks):
     mirrored = 0.2**2
     through = (1 - mirrored) ** 2 * left / (1 - mirrored * left)
     assert_looks(rw.Scene(slab, environment=1.0), downwards(16), 64, daylit(mirrored + through), most=0.01)
-    # Where all is left, nothing is within; and what makers do not tell is not made up.
+    # Full transmittance means no interior; and values beyond the makers' range are not extrapolated.
     assert rw.Dielectric(transmittance=rw.Spectrum([300, 900], [1, 1])).interior is None
     assert rw.Dielectric(transmittance=filtered).interior.absorption.at(500) == pytest.approx(
         -math.log(left[140])
@@ -472,7 +472,7 @@ def test_spectra_are_checked_and_copied():
         "F7": (0.3129, 0.3292),
         "F11": (0.3805, 0.3769),
     }.items():
-        # As sums over every fifth nm, by which they are told; light is in times of daylight here.
+        # Sums over every fifth nm, as in their definition; light is relative to daylight here.
         light = rw.illuminants[name].at(NM[::5]) / rw.illuminants["D65"].at(NM[::5])
         xyz = np.linalg.solve(TO_RGB, SEEN[::5].T @ light)
         assert xyz[:2] / xyz.sum() == pytest.approx(place, abs=2e-4), name

@@ -114,7 +114,8 @@ def assert_agree(name, way, most, times):
     assert (joint <= most * expected.max()).all(), joint / expected.max()
 
 
-# What tells a mean to half a hundredth within a second or two; the others to a hundredth and a half.
+# Scenes whose mean converges to half a hundredth within a second or two; the others reach a hundredth and a
+# half.
 SURE = ("films and metals", "lamps of all kinds")
 # Each scene in one way, and in both where there is time.
 QUICK = {"light": ("a ball", "films and metals"), "both": ("a rough ball", "lamps of all kinds")}

@@ -237,7 +237,7 @@ def test_wavelengths_have_their_own_index_around_a_metal():
     camera = rw.Camera((0.01, 0.02, 1), (0.01, 0.02, 0), up=(0, 1, 0), fov=0.01, width=1, height=1)
     scene = rw.Scene([sheet(0, rw.Conductor(eta=0.2, k=3.9)), lamp, around])
     image = rw.render(scene, camera, samples=4096, seed=2, progress=False)
-    # In green by what the index is between 500 and 600 nm.
+    # In green, by the range of the index between 500 and 600 nm.
     low, high = (bare(0.2, 3.9, 1.5 + 0.05 / um**2) for um in (0.5, 0.6))
     error = 5 * float(image.standard_error[0, 0, 1])
     assert low - error - 1e-3 <= image.rgb[0, 0, 1] <= high + error + 1e-3

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 FOLDER = Path(__file__).parent / "data"
-# By Blosc; two grids, some of which is a tile of 8³, with a scale and a translation.
+# Compressed by Blosc; two grids, some with a tile of 8³, with a scale and a translation.
 SMOKE = FOLDER / "smoke.vdb"
 SCALE, MOVED = 0.25, (1.0, -2.0, 3.0)
 # In half precision, turned and sheared, of a single leaf; and beside it what is no float.

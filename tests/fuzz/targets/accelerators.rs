@@ -6,7 +6,7 @@ use raywright::accel::{Accelerator, BruteForce, Primitives};
 use raywright::math::DVec3;
 use raywright::simd::Level;
 
-/// Triangles for whose corners f64 are kept whether they need it or not.
+/// Triangles that are stored as f64 even if f32 is exact.
 struct Doubles<'a>(&'a Triangles);
 
 impl Primitives for Doubles<'_> {
@@ -36,7 +36,7 @@ pub fn all(triangles: &Triangles, options: &Options) -> Vec<(String, Box<dyn Acc
             // As wide as the level's vectors: narrower trees have the code of a lower level.
             all.push((level, bvh::widest(*primitives, options, level)));
         }
-        // At the precision that it would take itself: what it does takes longest, and is the same at either.
+        // At its default precision only: it is slow, and the same at either.
         all.push((level, BruteForce::over(triangles, level)));
     }
     let name = |(level, a): (Level, Box<dyn Accelerator>)| (format!("{}, {}", a.info().kind, level.name()), a);

@@ -8,7 +8,7 @@ use raywright::accel::bvh::build::morton::Bits;
 use raywright::accel::bvh::build::{Builder, ploc};
 use raywright::accel::bvh::optimise::{Optimiser, Optimisers};
 
-/// Any builder with options that it takes.
+/// Any builder with valid options.
 pub fn builder(u: &mut Unstructured) -> Result<Builder> {
     let bins = Some(u.int_in_range(2..=MAX_BINS)?);
     let all = [

@@ -1,5 +1,5 @@
-//! Any rays at any triangles: every accelerator gives the hits that are found triangle by triangle, bit for bit,
-//! whatever is asked and however many at once.
+//! Any rays at any triangles: every accelerator agrees with the hits triangle by triangle, bit for bit, for all queries
+//! and sizes of batches.
 
 use super::accelerators;
 use super::builders::{builder, optimisers};
@@ -11,9 +11,9 @@ use raywright::accel::{Accelerator, Cost, Crossings, Primitives};
 use raywright::math::{Hit, Ray, Region};
 use raywright::shapes::triangle::EdgeRay;
 
-/// Panics where accelerators disagree.
+/// Panics if accelerators disagree.
 pub fn check(data: &[u8]) {
-    // What bytes do not tell is zero, so there is always a scene.
+    // Missing bytes read as zero, so there is always a scene.
     let _ = scene(&mut Unstructured::new(data)).map(|(triangles, rays, options)| agree(&triangles, &rays, &options));
 }
 
@@ -22,7 +22,7 @@ fn scene(u: &mut Unstructured) -> Result<(Triangles, Vec<Ray>, Options)> {
         quality: one_of(u, &Quality::ALL)?,
         builder: builder(u)?,
         optimisers: Some(optimisers(u)?),
-        // From leaves as small as can be to leaves as large.
+        // From the smallest possible leaves to the largest.
         traversal_cost: one_of(u, &[1.0, 1e-3, 1e3])?,
         intersection_cost: 1.0,
     };
@@ -31,7 +31,7 @@ fn scene(u: &mut Unstructured) -> Result<(Triangles, Vec<Ray>, Options)> {
     Ok((triangles, rays, options))
 }
 
-/// The closest hit, triangle by triangle: no boxes, no lanes, no test in f32 before.
+/// The closest hit, triangle by triangle: without boxes, lanes or a test in f32 before.
 fn closest(triangles: &Triangles, ray: &Ray, region: &Region) -> Hit {
     let Some(edges) = EdgeRay::new(ray, region) else { return Hit::MISS };
     let mut best = Hit::MISS;
@@ -45,7 +45,7 @@ fn closest(triangles: &Triangles, ray: &Ray, region: &Region) -> Hit {
     Hit { t: best.t * edges.scale, ..best }
 }
 
-/// A hit as bits, in which −0 and 0 differ.
+/// A hit as bits, to tell −0 from 0.
 fn bits(hit: &Hit) -> (u64, [u64; 2], u32) {
     (hit.t.to_bits(), hit.uv.map(f64::to_bits), hit.primitive)
 }
@@ -55,7 +55,8 @@ fn agree(triangles: &Triangles, rays: &[Ray], options: &Options) {
     let wanted: Vec<Hit> = rays.iter().map(|ray| closest(triangles, ray, &region)).collect();
     let mut every: Option<Crossings> = None;
     for (name, accelerator) in accelerators::all(triangles, options) {
-        // All at once, a fan at a time, and so few that each goes alone; brute force does not care.
+        // All at once, a fan at a time, and few enough that each ray goes alone; brute force makes no difference
+        // between them.
         let batches: &[usize] = if name.starts_with("brute force") { &[usize::MAX] } else { &[usize::MAX, 16, 3] };
         for &batch in batches {
             for (rays, wanted) in rays.chunks(batch).zip(wanted.chunks(batch)) {
@@ -84,7 +85,7 @@ fn agree(triangles: &Triangles, rays: &[Ray], options: &Options) {
     }
 }
 
-/// No ray tests more than there is, and one that cannot hit anything tests nothing.
+/// No ray tests more primitives than exist, and one that cannot hit anything tests none.
 fn work_is_bounded(accelerator: &dyn Accelerator, rays: &[Ray]) {
     let mut costs = vec![Cost::default(); rays.len()];
     accelerator.cost(rays, &mut costs);

@@ -1,9 +1,9 @@
-//! Geometry in integers: what exact arithmetic on the given numbers says.
+//! Geometry in integers, exact for the given numbers.
 
 use num_bigint::{BigInt, Sign};
 use raywright::math::DVec3;
 
-/// What every coordinate is multiplied by to make it an integer, as a power of two.
+/// Scale that makes every coordinate an integer, as a power of two.
 pub const SHIFT: usize = 1074;
 
 /// A point times 2¹⁰⁷⁴.
@@ -54,7 +54,7 @@ pub fn weights(direction: &Exact, [a, b, c]: &[Exact; 3]) -> [BigInt; 3] {
     [(b, c), (c, a), (a, b)].map(|(v, w)| dot(direction, &cross(v, w)))
 }
 
-/// Whether the line meets the triangle with these weights: not from the side, and not where it has no area.
+/// True if the line meets the triangle with these weights: not from the side, and not if it has no area.
 pub fn is_met(weights: &[BigInt; 3]) -> bool {
     let has = |s| weights.iter().any(|w| sign(w) == s);
     has(1) != has(-1)

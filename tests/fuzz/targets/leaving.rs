@@ -1,5 +1,5 @@
-//! Any triangle that is no sliver, and a copy of it close by: a ray that leaves a surface does not meet it again, one
-//! that is sent to a surface stops short of it, and neither leaks through a plate as thin as 10⁻⁵ of its size.
+//! Any triangle that is no sliver, and a copy close by. A ray that leaves a surface does not hit it again, one towards
+//! a surface stops short of it, and neither leaks through a plate as thin as 10⁻⁵ of its size.
 
 use super::accelerators;
 use super::numbers::{Range, double_point, one_of, single_point};
@@ -9,7 +9,7 @@ use raywright::accel::bvh::Options;
 use raywright::math::{DVec3, Ray};
 use raywright::scene::{Geometry, Mesh, RayOrigin, SurfacePoint, Vertices};
 
-/// Panics where a ray meets what it leaves, or misses what is in its way.
+/// Panics if a ray hits the surface that it leaves, or misses one in its way.
 pub fn check(data: &[u8]) {
     let _ = plate(&mut Unstructured::new(data));
 }
@@ -37,8 +37,8 @@ fn plate(u: &mut Unstructured) -> Result<()> {
     let [a, b, c] = [corner(u)? + place, corner(u)? + place, corner(u)? + place];
     let size = largest(&[b - a, c - b, a - c]);
     let twice_area = (b - a).cross(c - a);
-    // Far from the origin numbers are too coarse for the copy to be one, and the normal of a sliver is not known well
-    // enough to say which of the flattest directions lead away.
+    // Far from the origin numbers are too coarse for a copy, and the normal of a sliver is too uncertain to tell the
+    // flattest directions that lead away.
     let is_near = largest(&[a, b, c]) < 2f64.powi(16) * size;
     if !is_near || twice_area.length() < 0.1 * size * size {
         return Ok(());
@@ -75,7 +75,7 @@ fn plate(u: &mut Unstructured) -> Result<()> {
     Ok(())
 }
 
-/// Rays from one side of a gap to the other, and through it: on and on, as far as the other side, and beyond it.
+/// Rays from one side of a gap to the other, and through it: infinite, up to the other side, and beyond it.
 fn between(near: &SurfacePoint, far: &SurfacePoint) -> [Ray; 5] {
     let (here, there) = (RayOrigin::new(near), RayOrigin::new(far));
     let across = far.position - near.position;

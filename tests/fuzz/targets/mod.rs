@@ -1,4 +1,4 @@
-//! What raywright promises, as functions of any bytes that panic where a promise is broken: one file a promise.
+//! Raywright's guarantees, as functions of any bytes that panic if a guarantee is broken: one file each.
 //!
 //! `cargo +nightly fuzz run hits` (or `leaving`, `nearest`, `signs`, `trees`, `watertight`) looks for such bytes with
 //! libFuzzer; `cargo test --test fuzz` feeds the same functions some hundred random strings, with any compiler.

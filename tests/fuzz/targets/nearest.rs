@@ -1,4 +1,4 @@
-//! Any points and any triangles: every accelerator finds the nearest points that are found triangle by triangle.
+//! Any points and any triangles: every accelerator agrees with the nearest points triangle by triangle.
 
 use super::accelerators;
 use super::numbers::{Range, double_point};
@@ -9,7 +9,7 @@ use raywright::accel::{Nearest, Primitives};
 use raywright::math::DVec3;
 use raywright::shapes::triangle::nearest_point;
 
-/// Panics where accelerators disagree.
+/// Panics if accelerators disagree.
 pub fn check(data: &[u8]) {
     let _ = scene(&mut Unstructured::new(data)).map(|(triangles, points)| agree(&triangles, &points));
 }
@@ -48,14 +48,14 @@ fn bits(nearest: &Nearest) -> ([u64; 6], u32) {
 
 fn agree(triangles: &Triangles, points: &[DVec3]) {
     let region = triangles.region();
-    // From farther away all distances round to the same, and which is least is found from nearer by.
+    // Beyond this distance all distances round to the same, and a nearer point decides which is least.
     let is_near = |p: &DVec3| (*p - region.centre).abs().max_element() * region.scale <= 2f64.powi(26);
     let wanted: Vec<_> = points.iter().map(|&point| one_by_one(triangles, point)).collect();
     let mut first: Option<Vec<Nearest>> = None;
     for (name, accelerator) in accelerators::all(triangles, &Options::DEFAULT) {
         let mut found = vec![Nearest::MISS; points.len()];
         accelerator.nearest(points, &[f64::INFINITY], &mut found);
-        // The same again, from no farther than it is.
+        // Again, with the found distance as the limit.
         let distances: Vec<_> = found.iter().map(|n| n.distance).collect();
         let mut again = vec![Nearest::MISS; points.len()];
         accelerator.nearest(points, &distances, &mut again);

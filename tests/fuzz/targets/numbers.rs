@@ -1,14 +1,14 @@
-//! Numbers made of bytes: now and then any bits at all, and mostly those that decisions are close for.
+//! Numbers made of bytes: occasionally any bits, and mostly numbers for close decisions.
 
 use arbitrary::{Result, Unstructured};
 use raywright::math::{DVec3, Vec3};
 
-/// How far from 1 numbers may be.
+/// Range of magnitudes around 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Range {
     /// Any bits, NaN and infinities too.
     Any,
-    /// Finite, zero or from 2⁻⁶⁰ to 2⁶⁰, so that no quotient of a few products leaves what an f64 holds.
+    /// Finite, zero or from 2⁻⁶⁰ to 2⁶⁰, so that no quotient of a few products leaves the range of an f64.
     Moderate,
 }
 
@@ -18,7 +18,7 @@ pub fn single(u: &mut Unstructured, range: Range) -> Result<f32> {
     let x = match kind % 8 {
         0 if range == Range::Any => f32::from_bits(u.arbitrary()?),
         0 | 1 => f32::from(u.arbitrary::<i16>()?) / 32768.0,
-        // A grid, on which much coincides.
+        // A grid, where many numbers coincide.
         2..=4 => f32::from(u.arbitrary::<i8>()? % 5),
         5 => f32::from(u.arbitrary::<i8>()?) / 16.0,
         // Beside the grid.
@@ -38,7 +38,7 @@ pub fn double(u: &mut Unstructured, range: Range) -> Result<f64> {
         3 => f64::from(u.arbitrary::<i16>()?) / 32768.0 * 2f64.powi(i32::from(u.arbitrary::<i8>()? % 46)),
         _ => f64::from(single(u, range)?),
     };
-    // What is not quite zero must not be less than the range allows.
+    // A non-zero number must not be below the range.
     Ok(if range == Range::Moderate && x.abs() < 2f64.powi(-60) { 0.0 } else { x })
 }
 
@@ -52,7 +52,7 @@ pub fn double_point(u: &mut Unstructured, range: Range) -> Result<DVec3> {
     Ok(DVec3::new(double(u, range)?, double(u, range)?, double(u, range)?))
 }
 
-/// One of some, of which there is at least one.
+/// One of at least one choices.
 pub fn one_of<T: Copy>(u: &mut Unstructured, some: &[T]) -> Result<T> {
     u.choose(some).copied()
 }

@@ -1,4 +1,4 @@
-//! Any ray and any triangle: it is met if and only if big integers say so, where they say so, and as they say.
+//! Any ray and any triangle: hits, their places and weights agree with big integers.
 
 use super::integers::{Exact, SHIFT, cross, exact, integer, is_met, minus, sign, weights};
 use super::numbers::{Range, double, double_point, one_of};
@@ -9,7 +9,7 @@ use raywright::math::{DVec3, Ray, Region, exact_edges, exact_turn};
 use raywright::shapes::Contact;
 use raywright::shapes::triangle::EdgeRay;
 
-/// Panics where a sign is wrong, or a number less accurate than is said.
+/// Panics if a sign is wrong, or a number is less accurate than documented.
 pub fn check(data: &[u8]) {
     let _ = Case::new(&mut Unstructured::new(data)).map(|case| case.check());
 }
@@ -19,7 +19,7 @@ struct Case {
     origin: DVec3,
     direction: DVec3,
     corners: [DVec3; 3],
-    /// What else there is, which makes the region larger.
+    /// Another point, which enlarges the region.
     other: DVec3,
 }
 
@@ -32,7 +32,7 @@ impl Case {
         let direction = if u.ratio(1, 3)? {
             double_point(u, range)?
         } else {
-            // To an edge, or as near to it as numbers allow.
+            // To an edge, or as near to it as f64 allows.
             let along = a + (b - a) * (f64::from(u.int_in_range(-2..=18)?) / 16.0);
             let off = one_of(u, &[0.0, 0.0, f64::EPSILON, -f64::EPSILON, 1e-14, -1e-14, 0.25])?;
             (along + (c - along) * off - origin) * if u.arbitrary()? { double(u, range)? } else { 1.0 }
@@ -87,7 +87,7 @@ impl Case {
         };
         let is_met = is_met(weights);
         let Some(found) = edges.meet(self.corners) else {
-            // Met so far along a short direction that an f64 cannot say it.
+            // A hit so far along a short direction that t overflows an f64.
             let sizes = self.corners.iter().chain([&self.origin]).map(|p| p.abs().max_element());
             let far = sizes.fold(0.0, f64::max) / self.direction.abs().max_element() * 8.0;
             assert!(!is_met || !far.is_finite(), "{self:?} is missed");
@@ -102,7 +102,7 @@ impl Case {
         let axis = (0..3).max_by(|&i, &j| direction[i].magnitude().cmp(direction[j].magnitude())).expect("three axes");
         let depth: BigInt = weights.iter().zip(relative).map(|(w, p)| w * &p[axis]).sum();
         let divisor = weights.iter().sum::<BigInt>() * integer(edges.direction[axis]);
-        // What box tests leave room for, and the roundings of depths; and what is lost where those are subnormal.
+        // Slack of box tests, rounding of depths, and underflow.
         let error = EdgeRay::T_ERROR * edges.reach + 16.0 * UNIT * edges.largest + f64::MIN_POSITIVE;
         if error.is_finite() {
             let off = integer(found.t) * &divisor - (depth << SHIFT);

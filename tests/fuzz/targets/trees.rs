@@ -1,4 +1,4 @@
-//! Any boxes and any triangles: trees hold what they should, and go on doing so when the triangles move.
+//! Any boxes and any triangles: trees are valid, and stay so after refits.
 
 use super::accelerators;
 use super::builders::{builder, optimisers};
@@ -13,16 +13,16 @@ use raywright::math::{Aabb, DVec3, Hit};
 use raywright::simd::Level;
 use raywright::work::Work;
 
-/// Panics where a tree is not valid.
+/// Panics if a tree is not valid.
 pub fn check(data: &[u8]) {
     let u = &mut Unstructured::new(data);
     let _ = if u.arbitrary().unwrap_or(false) { boxes(u) } else { moved(u) };
 }
 
-/// Boxes, some of them empty, many alike; up to some thousand, which more than one thread sorts.
+/// Boxes, some of them empty, many alike; up to some thousand, enough for several threads to sort.
 fn boxes(u: &mut Unstructured) -> Result<()> {
     let block = u.int_in_range(1..=Leaves::MAX_BLOCK)?;
-    // Nothing is gained by cutting boxes, so nothing is cut.
+    // Splits gain nothing for boxes, so no box is split.
     let steps = Steps {
         may_turn: false,
         cuts: Some(Cuts::and_splits(None, 8.0)),
@@ -40,7 +40,7 @@ fn boxes(u: &mut Unstructured) -> Result<()> {
     let mut boxes = Vec::new();
     for _ in 0..u.int_in_range(0..=40)? {
         let [a, b] = [single_point(u, Range::Any)?, single_point(u, Range::Any)?];
-        // Of NaN and infinity there are no boxes: whoever makes boxes leaves those out.
+        // NaN and infinity have no boxes: callers leave them out.
         let is_box = a.is_finite() && b.is_finite();
         let sorted = Aabb { min: a.min(b), max: a.max(b) };
         boxes.push(if !is_box || u.ratio(1, 16)? { Aabb::EMPTY } else { sorted });
@@ -59,7 +59,7 @@ fn boxes(u: &mut Unstructured) -> Result<()> {
         valid.unwrap_or_else(|e| panic!("{e}, of {boxes:?} by {steps:?}"));
     }
     if let Builder::Binned { .. } = steps.builder {
-        // At most one split by area a level until the median halves what is left.
+        // At most one split by area per level, until the median halves the rest.
         let count = boxes.iter().filter(|b| !b.is_empty()).count().max(1);
         let most = 3 * count.ilog2() as usize + 42;
         assert!(built.depth() <= most, "a depth of {} for {boxes:?} by {steps:?}", built.depth());
@@ -67,7 +67,7 @@ fn boxes(u: &mut Unstructured) -> Result<()> {
     Ok(())
 }
 
-/// Trees over triangles, refitted to others of the same numbers.
+/// Trees over triangles, refitted to other triangles of the same count.
 fn moved(u: &mut Unstructured) -> Result<()> {
     let before = triangles(u, Range::Any)?;
     let stretch = single_point(u, Range::Moderate)?.as_dvec3();
@@ -95,7 +95,7 @@ fn moved(u: &mut Unstructured) -> Result<()> {
                 assert_eq!(found, wanted, "{name}, refitted from {before:?} to {after:?} with {rays:?}");
             }
             Err(e) => {
-                // Where triangles are cut, boxes do not follow them.
+                // Boxes of split triangles cannot be refitted.
                 let kind = &accelerator.info().kind;
                 let is_cut = kind.contains("pieces") || kind.contains("spatial splits");
                 assert!(

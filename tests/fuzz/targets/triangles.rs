@@ -33,8 +33,7 @@ pub fn points(u: &mut Unstructured, range: Range, most: usize) -> Result<Vec<DVe
         .collect()
 }
 
-/// Triangles that share many of their corners, and the same again, shifted: as many as it takes for a tree of a few
-/// levels.
+/// Triangles that share many of their corners, and shifted copies: enough for a tree of a few levels.
 pub fn triangles(u: &mut Unstructured, range: Range) -> Result<Triangles> {
     let points = points(u, range, 12)?;
     let mut triangles = Vec::new();
@@ -45,7 +44,7 @@ pub fn triangles(u: &mut Unstructured, range: Range) -> Result<Triangles> {
         let step = single_point(u, Range::Moderate)?.as_dvec3();
         let once = triangles.clone();
         for i in 1..=u.int_in_range(0..=3)? {
-            // Rounded, so that what is f32 stays so.
+            // Rounded, so that f32 coordinates stay f32.
             let shifted = |c: DVec3| (c + step * f64::from(i)).as_vec3().as_dvec3();
             triangles.extend(once.iter().map(|t| t.map(shifted)));
         }
@@ -53,7 +52,7 @@ pub fn triangles(u: &mut Unstructured, range: Range) -> Result<Triangles> {
     Ok(Triangles(triangles))
 }
 
-/// A point of a triangle: a corner, or one of an edge or of the inside, as near as an f64 can say it.
+/// A point of a triangle: a corner, or one of an edge or of the inside, as exact as f64 allows.
 pub fn target(u: &mut Unstructured, triangles: &Triangles) -> Result<DVec3> {
     let [a, b, c] = *u.choose(&triangles.0)?;
     let (v, w) = (f64::from(u.int_in_range(0..=8)?) / 8.0, f64::from(u.int_in_range(0..=8)?) / 8.0);

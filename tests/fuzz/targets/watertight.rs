@@ -1,5 +1,5 @@
-//! Closed surfaces of any shape: a line crosses one an even number of times, a ray from inside never gets out, and on
-//! which side a point lies is what integers say.
+//! Closed surfaces of any shape: a line crosses one an even number of times, a ray from inside never escapes, and exact
+//! integers confirm the side of each point.
 
 use super::accelerators;
 use super::integers::{Exact, cross, dot, exact, is_met, minus, sign, weights};
@@ -13,15 +13,15 @@ use raywright::math::robust::normalising_scale;
 use raywright::math::{DVec3, Ray};
 use std::collections::BTreeMap;
 
-/// Panics where a surface leaks.
+/// Panics if a surface leaks.
 pub fn check(data: &[u8]) {
     let _ = surface(&mut Unstructured::new(data)).map(|(triangles, rays)| holds(&triangles, &rays));
 }
 
 /// A closed surface, and rays from within its bounds whose directions have a largest coordinate between 1 and 2.
 ///
-/// The surfaces of tetrahedra are closed, so is what several of them make, and so it is where faces that occur twice
-/// are left out; and every closed surface is a sum of tetrahedra that share a corner, in this sense.
+/// Surfaces of tetrahedra are closed. Their union is, too, and stays closed without faces that occur twice. In this
+/// sense every closed surface is a sum of tetrahedra that share a corner.
 fn surface(u: &mut Unstructured) -> Result<(Triangles, Vec<Ray>)> {
     let points = points(u, Range::Moderate, 12)?;
     let mut faces: BTreeMap<[usize; 3], usize> = BTreeMap::new();
@@ -70,9 +70,9 @@ fn surface(u: &mut Unstructured) -> Result<(Triangles, Vec<Ray>)> {
     Ok((triangles, rays))
 }
 
-/// What integers say of a point.
+/// Side of a point by exact integers.
 enum Place {
-    /// It is a point of these triangles, given by their normals.
+    /// The point lies on triangles with these normals.
     On(Vec<Exact>),
     Inside,
     Outside,
@@ -94,7 +94,7 @@ fn place(triangles: &Triangles, point: DVec3) -> Place {
     if !normals.is_empty() {
         return Place::On(normals);
     }
-    // Some way out that meets no edge: what is crossed there is crossed for certain.
+    // A direction that meets no edge, so that crossings are certain.
     for i in 1u32.. {
         let way = [i * i + 7, 3 * i + 1, i * i * i + 2].map(|x| BigInt::from(x * 7919 % 104_729));
         let mut crossed = 0;
@@ -133,7 +133,7 @@ fn holds(triangles: &Triangles, rays: &[Ray]) {
                     assert!(occluded[i], "leaks: {}", told());
                 }
                 Place::Outside => assert_eq!(sides[i], Side::Outside, "{}", told()),
-                // Where all are seen edge-on, the ray does not know that it starts on them.
+                // If all are seen edge-on, the ray cannot detect that it starts on them.
                 Place::On(normals) if normals.iter().any(|n| sign(&dot(n, &direction)) != 0) => {
                     assert_eq!(sides[i], Side::Surface, "{}", told());
                 }
