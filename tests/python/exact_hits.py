@@ -100,7 +100,7 @@ def check_ray(found, answer, t_min, t_max):
     if not mine.is_subnormal and not first.is_subnormal:
         assert (t, primitive) == (first.nearest, first.primitive)
     else:
-        # Less digits of it are left.
+        # Fewer digits of it are left.
         assert max(abs(Fraction(t) - c.t) for c in (mine, first)) <= 2 * SMALLEST * (1 + mine.length)
     assert t_min <= t <= t_max
     for computed, wanted in zip(uv, mine.uv, strict=True):
@@ -111,7 +111,7 @@ def candidates(triangles, origins, directions):
     """For each ray, the triangles that its line meets, (T,3,3) and (N,3) float64."""
     usable = np.isfinite(triangles).all(axis=(1, 2))
     with np.errstate(all="ignore"):
-        # A direction without a normal number in it counts as zero.
+        # A direction without a normal number counts as zero.
         way = np.abs(directions).max(axis=1) >= np.finfo(np.float64).tiny
         valid = np.isfinite(origins).all(axis=1) & np.isfinite(directions).all(axis=1) & way
         step = max(1, 400_000 // max(1, len(triangles)))
@@ -170,7 +170,7 @@ def slack_of_weights(corners, d, total):
     its sign, and all are computed with less error, in the end with none.
     """
     size = max(abs(x) for c in corners for x in c)
-    # d relative to its power of two is below 2; the total is to be seen so too.
+    # d relative to its power of two is below 2; the total is scaled likewise.
     power = 1 << (max(map(abs, d)).bit_length() - 1)
     e = 208 * UNIT * 2 * size * size
     scaled_total = Fraction(abs(total), power)

@@ -16,7 +16,7 @@ def write(path, channels, method="ZIP", tile=None, **header):
         header["tiles"] = OpenEXR.TileDescription()
         header["tiles"].xSize, header["tiles"].ySize = tile
         header["tiles"].mode = OpenEXR.ONE_LEVEL
-    # It puts channels of its own into what it is given.
+    # OpenEXR adds its own channels to the dictionary.
     with OpenEXR.File(header, dict(channels)) as file:
         file.write(str(path))
 

@@ -34,7 +34,7 @@ def kept(name):
     with np.load(REFERENCES) as found:
         mean, error = (found[f"{name}: {what}"] for what in ("mean", "standard error"))
     block = 4 if name.startswith("maps") else 8
-    # Errors of a mean are those of independent pixels over the side of the block.
+    # The error of a mean is that of independent pixels, divided by the side of the block.
     pixels = (np.kron(values, np.ones((block, block, 1))) for values in (mean, block * error))
     return SimpleNamespace(**dict(zip(("rgb", "standard_error"), pixels, strict=True)))
 

@@ -14,9 +14,9 @@ from typing import NamedTuple
 import numpy as np
 
 REFERENCES = Path(__file__).parent / "data" / "mitsuba_metals.txt"
-# Its name in Mitsuba, where it is not the symbol.
+# Mitsuba's names that are not the symbol.
 NAMES = {"Na": "Na_palik", "Ni": "Ni_palik", "V": "V_palik"}
-# All that both know.
+# Metals known to both.
 METALS = (
     *("Ag", "Al", "Au", "Be", "Cr", "Cu", "Hg", "Ir", "K", "Li", "Mo", "Na", "Nb", "Ni", "Rh", "Ta"),
     *("TiC", "TiN", "V", "VC", "VN", "W"),
@@ -27,7 +27,7 @@ SIZE, SAMPLES = 64, 256
 class View(NamedTuple):
     """How a plate is lit and looked at."""
 
-    # Of a sky that is white everywhere, or of a light from the direction of the mirror image.
+    # Under a white sky, or a light in the mirror direction.
     light: str
     # 0 is smooth; GGX.
     alpha: float
@@ -46,7 +46,7 @@ def by_mitsuba(symbol, view, seed=0, samples=SAMPLES):
 
     if mi.variant() is None:
         mi.set_variant("scalar_spectral")
-    # From straight above, what Mitsuba shows of lithium, carbides and nitrides is NaN.
+    # From straight above, Mitsuba's lithium, carbides and nitrides are NaN.
     angle = np.radians(max(view.angle, 0.5))
     eye, light = (np.array([sign * np.sin(angle), 0, np.cos(angle)]) for sign in (1, -1))
     white = {"type": "rgb", "value": 1.0}

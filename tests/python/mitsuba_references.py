@@ -17,7 +17,7 @@ from mitsuba_scenes import scenes
 REFERENCES = Path(__file__).parent / "data" / "mitsuba_blocks.npz"
 BLOCK = 8
 SPECTRA = ("spectrum", "regular", "irregular", "blackbody")
-# The spread of as many independent pictures tells the error of their mean.
+# The spread of these independent pictures gives the error of their mean.
 SEEDS, SAMPLES = 64, 128
 
 
@@ -34,7 +34,7 @@ def by_mitsuba(given, folder):
     spectral = _is_spectral(given)
     if mi.variant() is None or ("spectral" in mi.variant()) != spectral:
         mi.set_variant("llvm_ad_spectral" if spectral else "llvm_ad_rgb")
-    # Mitsuba takes its own objects for transforms.
+    # Mitsuba requires its own objects for transforms.
     loaded = mi.load_dict(_placed(given, mi, folder))
     means = np.stack(
         [blocks(np.array(mi.render(loaded, spp=SAMPLES, seed=seed))[..., :3]) for seed in range(SEEDS)]

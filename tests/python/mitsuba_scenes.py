@@ -193,7 +193,7 @@ def scenes():
                 },
             },
         ),
-        # Facets throw much of the light on facets here, which is lost in Mitsuba.
+        # Facets scatter much light onto others here, and Mitsuba loses it.
         "roughconductor, very rough": scene(
             a=TILED,
             sky=upright,
@@ -352,7 +352,7 @@ def scenes():
                 "emitter": {"type": "area", "radiance": rgb(1.0, 4.0, 2.0)},
             },
         ),
-        # Of Mitsuba's integrators `path` (3.9.1) has the opacity squared where lights are sampled.
+        # Mitsuba's `path` (3.9.1) squares the opacity in light sampling.
         "mask": {
             **scene(
                 a=TILED,
@@ -405,7 +405,7 @@ def scenes():
                 },
             },
         ),
-        # Of metal both models agree; what is not metal Mitsuba has by Disney's diffuse lobe.
+        # Both models agree for metal; Mitsuba's non-metals have Disney's diffuse lobe.
         "principled": scene(
             a=TILED,
             sky=upright,

@@ -14,7 +14,7 @@ def text(values):
     return ", ".join(repr(float(x)) for x in values)
 
 
-# A brick, a leaf, and a coat that reflects two narrow bands.
+# A brick, a leaf, and a coat with two narrow reflection bands.
 BRICK = pairs([0.06, 0.07, 0.08, 0.15, 0.4, 0.6, 0.65])
 LEAF = {
     "type": "irregular",

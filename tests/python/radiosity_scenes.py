@@ -57,7 +57,7 @@ def square(
 def turned(profile: Sequence[tuple[float, float]], around: int) -> trimesh.Trimesh:
     """What a line of (radius, z) sweeps around z: what goes up looks inwards, what goes outwards up."""
     angles = 2 * np.pi * np.arange(around) / around
-    # Of the same area as the circle's polygon would have: radii a little larger.
+    # The same area as the circle's polygon: slightly larger radii.
     grown = np.sqrt(2 * np.pi / around / np.sin(2 * np.pi / around))
     rings = [
         np.column_stack([r * grown * np.cos(angles), r * grown * np.sin(angles), np.full(around, z)])

@@ -40,7 +40,7 @@ for line in sys.stdin:
 """
 
 
-# Seconds, on a machine that may have other things to do. CPU seconds are counted, too, and must be few.
+# Seconds, on a machine that may have other load. CPU seconds are counted, too, and must be few.
 PATIENCE = 60
 
 

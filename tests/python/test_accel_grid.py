@@ -57,7 +57,7 @@ def rays_for(scene, seed):
     targets = vertices[rng.integers(0, len(vertices), 600)]
     targets[::3] = (targets[::3] + vertices[rng.integers(0, len(vertices), 200)]) / 2
     origins = targets + rng.normal(size=(600, 3)) * size * 10.0 ** rng.integers(-3, 3, (600, 1))
-    # So far away that arithmetic is exact, which takes half a millisecond a ray.
+    # So far away that exact arithmetic decides, at half a millisecond a ray.
     origins[560:] = targets[560:] + rng.normal(size=(40, 3)) * size * 10.0 ** rng.integers(5, 30, (40, 1))
     directions = targets - origins
     axis = np.eye(3)[rng.integers(0, 3, 100)]
@@ -125,7 +125,7 @@ def test_a_ray_takes_few_tests_where_primitives_are_even():
     cost = scene.cost(*np.random.default_rng(6).normal(size=(2, 3000, 3)))
     assert cost.primitives.mean() < 50
     x, y, z = (int(n) for n in scene.accelerator.kind.split("of ")[1].split(",")[0].split(" x "))
-    # A line goes through no more cells than there are planes, and one.
+    # A line crosses at most as many cells as there are planes, plus one.
     assert cost.nodes.max() <= x + y + z - 2
     assert scene.accelerator.nodes == x * y * z
 

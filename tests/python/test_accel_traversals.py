@@ -56,7 +56,7 @@ SHAPES = [
     rw.Cylinder((0, 0, 0), (1, 1, 1), 0.1),
     sticks(50),
 ]
-# Closed and far from each other, huge and tiny.
+# Closed meshes far from each other, huge and tiny.
 SIZES = [KNOT, rw.Mesh(KNOT.vertices * 1e-3 + 5, KNOT.faces), rw.Mesh(KNOT.vertices * 1e4, KNOT.faces)]
 SCENES = {
     "knot": KNOT,
@@ -178,7 +178,7 @@ def test_arrays_without_pointers_are_the_same_tree():
     rays = rays_for(stack)
     assert flat.accelerator.bytes == stackless.accelerator.bytes == stack.accelerator.bytes
     assert flat.accelerator.sah_cost == stack.accelerator.sah_cost
-    # With a stack the same boxes are tested in the same order, and without one others too.
+    # With a stack, the same boxes are tested in the same order; without one, others too.
     np.testing.assert_array_equal(flat.cost(*rays).nodes, stack.cost(*rays).nodes)
     np.testing.assert_array_equal(flat.cost(*rays).primitives, stack.cost(*rays).primitives)
     assert stackless.cost(*rays).primitives.sum() > stack.cost(*rays).primitives.sum()
@@ -198,7 +198,7 @@ def test_volumes_beside_boxes_spare_tests_where_geometry_is_diagonal(bounds):
     mesh = sticks(2000)
     rays = np.random.default_rng(3).normal(size=(2, 3000, 3))
     box, fit = (rw.BVH(traversal="stack", bounds=b) for b in ("box", bounds))
-    # Cut into pieces, sticks would leave less to spare.
+    # Fast builds do not split sticks into pieces, which would leave less to save.
     box, fit = (rw.Scene(mesh, accelerator=tree, quality="fast build") for tree in (box, fit))
     before, after = box.cost(*rays), fit.cost(*rays)
     assert fit.accelerator.bytes > box.accelerator.bytes

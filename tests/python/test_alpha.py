@@ -25,7 +25,7 @@ def lamp(radius=1.0, material=BLACK, emission=1.0):
 def test_what_shines_evenly_is_as_bright_as_it_covers(filter, more):
     scene = rw.Scene(lamp(), environment=1e5)
     image = rw.render(scene, CAMERA, filter=filter, background="transparent", aov="alpha", **HOW, **more)
-    # The same samples with the same weights, in sums that are rounded to float32.
+    # The same samples and weights, in sums rounded to float32.
     np.testing.assert_allclose(image.rgb, np.repeat(image.alpha[..., None], 3, -1), rtol=2e-6, atol=1e-7)
     np.testing.assert_array_equal(image.alpha, image.aov["alpha"])
     assert image.alpha[9, 12] == pytest.approx(1, abs=1e-6) if filter == rw.BoxFilter() else True
@@ -38,7 +38,7 @@ def test_alpha_is_the_area_that_is_covered():
     camera = rw.Orthographic((0, 0, 5), (0, 0, 0), scale=4.0, width=20, height=20)
     scene = rw.Scene(rw.Disk((0.03, -0.02, 0), (0, 0, 1), 1.3, material=BLACK))
     alpha = rw.render(scene, camera, background="transparent", samples=256, progress=False).alpha
-    # 256 samples of some 40 pixels of the rim, each off by 1/32 of a pixel at most: 3 standard errors.
+    # 256 samples of some 40 rim pixels, each off by 1/32 of a pixel at most: 3 standard errors.
     assert alpha.sum() * 0.04 == pytest.approx(np.pi * 1.3**2, abs=3 * 0.04 * np.sqrt(42) / 32)
 
 
@@ -46,7 +46,7 @@ def test_the_background_lights_what_it_is_not_seen_behind():
     white = rw.Sphere((0.1, 0, 0), 1.0, material=rw.Diffuse(1.0))
     scene = rw.Scene(white, environment=2.0)
     image = rw.render(scene, CAMERA, rw.Path(), background="transparent", **HOW)
-    # A white ball in an even light is as bright as that, so the picture is that light times alpha.
+    # In even light a white ball has that light's radiance, so the picture is the light times alpha.
     off = image.rgb - 2.0 * image.alpha[..., None]
     assert np.abs(off).max() <= 5 * image.standard_error.max() + 1e-6
     assert image.rgb[9, 12, 0] > 1
@@ -76,7 +76,8 @@ def test_masks_let_through_what_of_them_is_open(integrator):
     )
     scene = rw.Scene(sheet, environment=4.0)
     image = rw.render(scene, CAMERA, integrator, background="transparent", **HOW)
-    # 475 pixels of 32 samples of a chance of 0.3: the mean is off by 0.0037, three times, at most.
+    # 475 pixels of 32 samples with probability 0.3: the standard error of the mean is 0.0037; three are
+    # allowed.
     assert image.alpha.mean() == pytest.approx(0.3, abs=3 * np.sqrt(0.21 / (475 * 32)))
     assert np.abs(image.rgb).max() == 0
 
@@ -129,7 +130,7 @@ def test_shapes_are_told_by_their_shares():
     assert ((shapes == -1) == (shares == 0)).all()
     np.testing.assert_allclose(shares.sum(axis=-1), image.aov["alpha"], atol=1e-6)
     alone = rw.render(rw.Scene(scene.shapes[1]), CAMERA, aov="alpha", **how).aov["alpha"]
-    # The small ball stands before the other nowhere: where it is alone, its share is its own alpha.
+    # The small ball is nowhere in front of the other: where it is alone, its share is its own alpha.
     apart = (alone > 0) & ~((shapes == 0).any(axis=-1))
     mine = np.where(shapes == 1, shares, 0).sum(axis=-1)
     assert apart.sum() > 5

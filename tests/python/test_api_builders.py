@@ -149,7 +149,7 @@ def test_boxes_turn_where_all_stands_askew_and_quality_decides(quality):
             assert scene.accelerator.sah_cost < 1.1 * unturned.sah_cost
             assert scene.accelerator.bytes < 1.1 * unturned.bytes
         if quality == "balanced":
-            # Nothing had to be cut.
+            # No primitive was split.
             assert scene.accelerator.bytes < 60 * scene.accelerator.primitives
         assert scene.refit(mesh.vertices * 2) == pytest.approx(1)
         assert quality != "balanced" or scene.accelerator.kind.endswith("turned, single, refitted")

@@ -31,7 +31,7 @@ def test_a_file_gives_the_mesh_that_was_saved(tmp_path, ball, suffix, kind):
     mesh = only(kind(path))
     assert len(mesh.vertices) == len(ball.vertices)
     assert len(mesh.faces) == len(ball.faces)
-    # Faces are in their order, whatever the numbers of their vertices.
+    # Faces keep their order, whatever the numbers of their vertices.
     assert np.allclose(mesh.vertices[mesh.faces], ball.triangles, rtol=0, atol=1e-6)
     assert mesh.normals is None
     assert rw.Scene(path).intersect((0, 0, 3), (0, 0, -1)).t == pytest.approx(2, abs=1e-6)

@@ -199,7 +199,7 @@ def test_bad_rays_are_refused_in_one_line(scene, ask, arguments, error, message)
 @pytest.mark.parametrize("part", ["t_min", "t_max"])
 @pytest.mark.parametrize("size", [1e300, np.inf])
 def test_rays_asked_for_nothing_leave_their_neighbours_alone(part, size):
-    # Sixty-four squares, one below the other, and rays that go down together, from the first or the eighth.
+    # Sixty-four squares, one below the other, and rays straight down, from the first or the eighth.
     square = np.array([(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)])
     depth = np.arange(64)[:, None]
     vertices = (square - depth[..., None] * (0, 0, 1)).reshape(-1, 3)
@@ -244,7 +244,7 @@ def test_each_ray_of_a_large_batch_gets_its_own_answer(shape, dtypes):
 @pytest.mark.parametrize("one", ["origins", "directions", None])
 def test_rays_that_go_much_the_same_way_keep_their_places(count, dtype, one):
     scene = rw.Scene(rw.scenes.torus_knot(along=60, around=8))
-    # From the points of a wavy floor, row after row, to a lamp; or from one point; or all one way.
+    # From points of a wavy floor, row by row, to a lamp; or from one point; or all in one direction.
     x, y = np.arange(count) % 173 / 86 - 1, np.arange(count) // 173 * 173 / count - 0.5
     floor = np.stack([2 * x, 2 * y, 0.2 * np.sin(9 * x) - 2], axis=-1)
     lamp = np.array([0.3, 0.2, 4.0])
@@ -258,7 +258,7 @@ def test_rays_that_go_much_the_same_way_keep_their_places(count, dtype, one):
     assert whole.hit.any()
     assert not whole.hit.all()
     assert np.array_equal(occluded, whole.hit)
-    # Too few to be put in another order.
+    # Too few to be reordered.
     origins, directions = np.broadcast_arrays(origins, directions)
     for start in range(0, count, 200):
         some = slice(start, start + 200)
@@ -269,7 +269,7 @@ def test_rays_that_go_much_the_same_way_keep_their_places(count, dtype, one):
         assert np.array_equal(whole.shape_id[some], few.shape_id)
 
 
-# The last would take all memory if so many were started.
+# The last one would exhaust memory if that many threads started.
 @pytest.mark.parametrize("threads", [1, 2, 5, 10**30])
 def test_threads_do_not_change_the_answer(threads):
     scene = rw.Scene(rw.scenes.torus_knot(along=60, around=8))

@@ -79,7 +79,7 @@ def test_the_mean_does_not_depend_on_the_sampler(box, camera, sampler):
         for s, k in ((1, rw.Independent()), (2, sampler))
     ]
     difference = sum(i.rgb.astype(float).mean() * sign for i, sign in zip(images, (1, -1), strict=True))
-    # Pixels are independent, channels taken as one. Five standard errors: once in two million.
+    # Pixels are independent, and channels count as one. Five standard errors: once in two million.
     error = np.sqrt(sum((i.standard_error.astype(float) ** 2).sum() * 3 for i in images)) / images[0].rgb.size
     assert abs(difference) < 5 * error
 

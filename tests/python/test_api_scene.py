@@ -226,7 +226,7 @@ def test_a_changed_copy_has_the_rest_of_its_scene(box, triangle):
     assert scene.replace() == scene
     assert scene.replace(**changes) == rw.Scene(**changes)
     assert scene.replace(environment=None).environment is None
-    # It is another scene, of its own rays, and the first one stays as it was.
+    # It is another scene with its own rays, and the first one is unchanged.
     other = scene.replace(shapes=[triangle])
     assert other.intersect((0.5, 0.4, 5), DOWN) == rw.Scene(triangle).intersect((0.5, 0.4, 5), DOWN)
     assert pickle.dumps(scene) == before

@@ -58,7 +58,7 @@ def test_cornell_colours_are_those_of_the_spectra():
         assert max(colour) < greatest
     light = shapes[0]
     assert light.material.reflectance == (0.78,) * 3
-    # A lamp that shines the more the longer the waves are.
+    # The lamp emits more at longer wavelengths.
     assert 18.4 > light.emission[0] > light.emission[1] > light.emission[2] > 0
 
 

@@ -87,7 +87,7 @@ def test_what_is_of_another_type_is_refused():
 
 
 def test_a_matrix_is_singular_only_if_it_is_exactly():
-    # Rows that are multiples of each other but for one unit in the last place.
+    # Rows that are multiples of each other, except for one unit in the last place.
     rows = np.array([[1, 2, 3, 0], [0.1, 0.2, 0.3, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
     exact = np.array([[1, 2, 3, 0], [2, 4, 6, 0], [0, 0, 1, 0], [0, 0, 0, 1.0]])
     with pytest.raises(ValueError, match="determinant is 0"):
@@ -95,7 +95,7 @@ def test_a_matrix_is_singular_only_if_it_is_exactly():
     nearly = exact.copy()
     nearly[1, 1] = np.nextafter(4.0, 5.0)
     assert shapes.Sphere(transform=nearly).transform is not None
-    # Of doubles, 0.1 times 2 is 0.2: this one is singular too.
+    # In doubles, 0.1 times 2 is 0.2: this one is singular too.
     with pytest.raises(ValueError, match="determinant is 0"):
         shapes.Sphere(transform=rows)
 

@@ -88,7 +88,7 @@ def test_beams_make_the_picture_that_rays_make(shapes):
     camera = rw.Camera((0.5, 0.5, 2.6), (0.5, 0.5, 0), up=(0, 1, 0), fov=38, width=16, height=16)
     beams = look(scene, camera, rw.BeamTraced(ambient=0.1)).rgb.astype(float)
     rays = look(scene, camera, rw.Whitted(ambient=0.1, contribution=0), samples=1024)
-    # Of 768 numbers, one in a hundred pictures has one beyond 4.5 standard errors; radiance that is no
+    # With 768 numbers, one in a hundred pictures has one beyond 4.5 standard errors. Radiance that is no
     # polynomial over a pixel is off by less than a thousandth.
     off = np.abs(beams - rays.rgb) - 1e-3 * rays.rgb
     assert np.all(off <= 4.5 * rays.standard_error + 1e-6)
@@ -107,7 +107,7 @@ def test_two_mirrors_and_symmetry():
     for depth in (1, 2, 5):
         rgb = look(scene, camera, rw.BeamTraced(depth, ambient=1.0)).rgb[..., 0]
         rays = look(scene, camera, rw.Whitted(depth, contribution=0, ambient=1.0), samples=512)
-        # Where all samples are alike, a sliver of a pixel may have been missed by all.
+        # If all samples agree, all may have missed a sliver of a pixel.
         assert np.all(np.abs(rgb - rays.rgb[..., 0]) <= 5 * rays.standard_error[..., 0] + 0.02)
         assert rgb.mean() == pytest.approx(rays.rgb[..., 0].mean(), rel=0.01)
         for turned in (rgb[::-1], rgb[:, ::-1], rgb.T):
@@ -157,7 +157,7 @@ def seen_at(ior, height, depth, at, across):
 def test_what_lies_in_water_is_seen_where_snell_says(fov, tolerance, most):
     ior, height, depth, size = 1.5, 2.0, 3.0, 16
     scale = size / 2 / np.tan(np.radians(fov) / 2)
-    # Its edge is in the middle of a pixel, two and a half from the middle of the picture, if water were not.
+    # Without refraction the edge would be at the middle of a pixel, two and a half from the picture's middle.
     at = (height + depth) * 4.5 / scale
     wide = 40.0
     water = block((-wide, -wide, -wide), (wide, wide, 0), material=rw.Dielectric(ior))
@@ -205,7 +205,7 @@ def test_a_prism_reflects_all_where_light_cannot_leave():
     camera = rw.Camera((0.5, 0.5, 2.6), (0.5, 0.5, 0), up=(0, 1, 0), fov=30, width=16, height=16)
     beams = look(scene, camera, rw.BeamTraced(5, ambient=0.1, tolerance=0.05)).rgb.astype(float)
     rays = look(scene, camera, rw.Whitted(5, ambient=0.1, contribution=0), samples=1024)
-    # Where an edge is seen through two faces it may be off by a tenth of a pixel; else all is as rays see it.
+    # Edges seen through two faces may be off by a tenth of a pixel; the rest agrees with rays.
     off = np.abs(beams - rays.rgb)
     within = off <= 4.5 * rays.standard_error + 2e-3 * rays.rgb + 1e-6
     assert np.mean(within) > 0.97

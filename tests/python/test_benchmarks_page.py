@@ -77,7 +77,7 @@ def test_a_section_is_kept_and_resumed(tmp_path, monkeypatch, capsys):
         return [], 1.0
 
     monkeypatch.setattr(benchmarks_page, "timed", timed)
-    # Figures of no records have no tables.
+    # Sections without records have no tables.
     monkeypatch.setattr(benchmarks_page, "write", lambda out: None)
     command = ["benchmarks_page.py", "--out", str(tmp_path)]
     monkeypatch.setattr(sys, "argv", [*command, "--tiny", "--section", "wrong"])

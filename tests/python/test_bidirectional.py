@@ -210,13 +210,13 @@ def test_light_behind_a_port():
     ("aperture", "rho", "expected", "most"),
     [
         (0.5, (0.5, 0.8), (1.89963972281447, 0.401441108742115), 0.002),
-        # One path in 8000 goes through the small hole: for 0.2 % there it would take 2 billion.
+        # One path in 8000 passes the small hole: 0.2 % would take 2 billion of them.
         (0.01, (0.8, 0.8), (4.99950008748438, 0.000499912515622227), 0.06),
     ],
 )
 def test_chambers_that_light_each_other_through_a_hole(aperture, rho, expected, most):
-    # A point of a sphere sees the opening under the factor s wherever it lies: each wall is even.
-    # BA = 1 + rA ((1 - s) BA + s BB), BB = rB ((1 - s) BB + s BA).
+    # From any point of a sphere, the opening has the form factor s: each wall is uniform. BA = 1 + rA ((1 -
+    # s) BA + s BB), BB = rB ((1 - s) BB + s BA).
     rim = math.sqrt(1 - aperture**2)
     s = (1 - rim) / 2
     bounce = np.array([[rho[0] * (1 - s), rho[0] * s], [rho[1] * s, rho[1] * (1 - s)]])
@@ -249,7 +249,7 @@ def test_chambers_that_light_each_other_through_a_hole(aperture, rho, expected, 
     for k, truth in enumerate([*of_depth, rest]):
         off = np.abs(mean[:, k] - truth)
         assert (off < 3 * error[:, k] + 1e-3 * truth + 1e-12).all(), (k, mean[:, k], truth)
-    # By connections, the picture of either; through the small hole they tell the other to no digit.
+    # By connections, the picture of either; through the small hole they do not resolve the other.
     for chamber in range(2 if aperture > 0.1 else 1):
         centre = 2 * rim * chamber
         look = rw.Camera((0.1, 0.2, centre), (1, 0.3, centre), up=(0, 0, 1), fov=60, width=16, height=16)
@@ -260,9 +260,9 @@ def test_chambers_that_light_each_other_through_a_hole(aperture, rho, expected, 
 
 
 def test_a_lamp_under_a_ceiling():
-    # A point light of intensity 1 half a unit under a wide ceiling of reflectance 0.8: what comes to a floor
-    # at height 0, under the lamp, by way of the ceiling at 2.5 is
-    # 2 rho a H^2 times the integral of r dr / ((a^2 + r^2)^(3/2) (H^2 + r^2)^2), and directly 1 / 2^2.
+    # A point light of intensity 1 half a unit under a wide ceiling of reflectance 0.8. A floor at height 0,
+    # under the lamp, gets from the ceiling at 2.5 2 rho a H^2 times the integral of r dr / ((a^2 + r^2)^(3/2)
+    # (H^2 + r^2)^2), and directly 1 / 2^2.
     ceiling = square(200, 2.5, up=False, material=rw.Diffuse(0.8))
     scene = rw.Scene(
         [ceiling, square(0.01, 0, material=rw.Diffuse(1.0))], lights=[rw.PointLight((0, 0, 2), 1)]
@@ -270,24 +270,24 @@ def test_a_lamp_under_a_ceiling():
     look = rw.Camera((0.3, 0, 0.4), (0, 0, 0), up=(0, 0, 1), fov=0.5, width=8, height=8)
     direct = rw.render(scene, look, rw.Bidirectional(1), 64, progress=False)
     both = rw.render(scene, look, rw.Bidirectional(2), 3000, progress=False)
-    # The 4 mm that are seen get less by a few millionths than the point under the lamp.
+    # The visible 4 mm get less by a few millionths than the point under the lamp.
     assert_mean(direct, 0.25 / math.pi, 0.002, off=1e-5)
     assert_mean(both, (0.25 + 0.166860231636058) / math.pi, 0.002, off=1e-5)
 
 
 @pytest.mark.slow
 def test_a_pane_before_a_point_light():
-    # A pane without thickness lets (1 - r) / (1 + r) through; straight on r = 0.04, and 12/13 arrive. No path
-    # from the floor comes upon a point, nor does a connection go through the pane: light itself does.
+    # A pane without thickness transmits (1 - r) / (1 + r); straight on r = 0.04, and 12/13 arrive. Neither
+    # paths from the floor nor connections reach the point light through the pane: only light paths do.
     pane, floor = square(50, 1.0, material=rw.ThinDielectric(1.5)), square(2, 0, material=rw.Diffuse(1.0))
     for x, expected in [(0, 0.230769230769231), (1, 0.16483003912558)]:
-        # The cone lights little more than the 6 mm that are seen.
+        # The cone lights little more than the visible 6 mm.
         lamp = rw.SpotLight((0, 0, 2), (x, 0, 0), 1, angle=0.16, falloff=0)
         scene = rw.Scene([pane, floor], lights=[lamp])
         look = rw.Camera((x, -0.8, 0.8), (x, 0, 0), up=(0, 0, 1), fov=0.3, width=16, height=16)
         assert not rw.render(scene, look, rw.Path(1, reuse=1), 16, progress=False).rgb.any()
         image = rw.render(scene, look, rw.Bidirectional(2), 4000, progress=False)
-        # Over what is seen it differs by less than a hundred-thousandth or so from its middle.
+        # Over the visible part it differs by less than a hundred-thousandth or so from its middle.
         assert_mean(image, expected / math.pi, 0.002, off=5e-5)
 
 
@@ -308,15 +308,15 @@ def test_a_tiny_lamp():
 
 
 def test_a_lamp_close_to_a_surface():
-    # A thousandth above the floor: the power of pi comes to a few square millimetres, where paths from the
-    # camera hardly look. A reflectance of 0.6 sends 0.6 of it along the normal per solid angle.
+    # A thousandth above the floor: a power of pi falls on a few square millimetres, where camera paths hardly
+    # ever go. A reflectance of 0.6 reflects 0.6 of it along the normal per solid angle.
     scene = rw.Scene([square(3, 0, material=rw.Diffuse(0.6)), bulb(1e-3, up=False)])
     at = np.array([3.0, -2.0, 2.5])
     far = np.linalg.norm(at)
     image = rw.render(scene, camera(at, (0, 0, 0)), rw.Bidirectional(1), 400, progress=False)
     # The picture takes (2 tan 20 degrees)^2 at distance 1.
     expected = 0.6 * (at[2] / far) / (2 * far * math.tan(math.radians(20))) ** 2
-    # A few square millimetres are not one point, and a part in a thousand falls 3 cm away or farther.
+    # A few square millimetres are no point, and one part in a thousand falls 3 cm away or farther.
     assert_mean(image, expected, 0.002, off=1e-3)
 
 

@@ -153,8 +153,8 @@ def test_an_edge_is_blurred_by_the_circle_of_confusion():
     chord = np.clip(-4 * x / radius, -1, 1)
     part = (np.arccos(chord) - chord * np.sqrt(1 - chord**2)) / np.pi
     expected = [part[1000 * i : 1000 * i + 1001].mean() for i in range(10)]
-    # The mean of a column is that of 20 000 samples of 0 or 1, and off by more than 5 deviations in one of
-    # 1.7 million; 1e-5 is for the sum that stands for an integral, and the picture's float32.
+    # The mean of a column has 20 000 samples of 0 or 1; it is beyond 5 deviations once in 1.7 million. 1e-5
+    # covers the sum in place of an integral, and float32.
     deviation = np.sqrt(np.multiply(expected, np.subtract(1, expected)) / 20000)
     assert (np.abs(image.rgb[..., 0].mean(axis=0) - expected) <= 5 * deviation + 1e-5).all()
     assert expected[0] == 0

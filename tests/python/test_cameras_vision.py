@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 import raywright as rw
 from raywright import _core
 
-# A quaternion to turn by, and camera matrices with all that there can be in them.
+# A quaternion for rotations, and camera matrices with all possible entries.
 QUATERNION = np.array((3.0, 1.0, -2.0, 5.0))
 SHIFT = (0.3, -1.7, 4.1)
 MATRICES = {
@@ -49,7 +49,7 @@ def test_a_ray_goes_through_the_points_that_its_pixel_shows(K, pixel_centre):
     R = rotation()
     camera = rw.Camera.from_intrinsics(K, R, SHIFT, 320, 240, pixel_centre=pixel_centre)
     rng = np.random.default_rng(3)
-    # Before the camera, a little beside the picture too.
+    # In front of the camera, and slightly beside the picture too.
     for before in rng.uniform((-1, -1, 2), (1, 1, 9), (40, 3)):
         point = R.T @ (before * (before[2], before[2], 1) * (0.4, 0.3, 1) - SHIFT)
         u, v = projected(K, R, SHIFT, point)
@@ -80,7 +80,7 @@ def test_points_are_projected_where_rays_go_through(K):
 
 def test_what_a_pixel_shows_is_projected_into_it():
     knot = rw.scenes.torus_knot(along=60, around=10)
-    # Where it is, and on a map.
+    # At the origin, and at map coordinates.
     for place in (np.zeros(3), np.array((2.6e6, 1.2e6, 400.0))):
         moved = np.eye(4)
         moved[:3, 3] = place

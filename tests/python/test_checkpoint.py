@@ -78,7 +78,7 @@ def test_interrupted_and_resumed_is_never_interrupted(box, path, how, often):
     began = rw.render(*box, **{**LIMITS, "samples": 4}, **how, checkpoint=path)
     assert began.samples == 4
     assert_same(rw.render(*box, **LIMITS, **how, checkpoint=path), whole)
-    # A finished one is there at once, whatever the number of threads.
+    # A finished render returns at once, for any number of threads.
     assert_same(rw.render(*box, **LIMITS, **how, checkpoint=path, threads=1), whole)
 
 
@@ -86,7 +86,7 @@ def test_a_sampler_goes_on_with_the_batches_it_began_with(box, path):
     few, many = ({"samples": samples, "seed": 5, "progress": False} for samples in (16, 64))
     begun = {"sampler": rw.Sobol(), "checkpoint": path}
     rw.render(*box, **few, **begun)
-    # Of 16 samples four make a batch, and of 64 sixteen.
+    # 16 samples have batches of four, and 64 batches of sixteen.
     assert_same(rw.render(*box, **many, **begun), rw.render(*box, **many, sampler=rw.Sobol(4)))
     with pytest.raises(ValueError, match=r"it has sampler Sobol\(batch=4\) instead of Sobol\(batch=8\)"):
         rw.render(*box, **many, sampler=rw.Sobol(8), checkpoint=path)
@@ -108,7 +108,7 @@ def test_a_sampler_that_was_chosen_is_kept(box, path):
 
 
 def test_ctrl_c_writes_and_is_passed_on_within_a_pass(path):
-    # A pass of this takes longer than the test waits.
+    # One pass takes longer than the test waits.
     box = rw.scenes.cornell_box(width=200, height=150)
     timer = interrupt_after(1.0)
     began = time.perf_counter()
@@ -183,7 +183,7 @@ def test_kill_9_at_twenty_moments(tmp_path, adaptive, moments_in_all):
             process.wait()
             killed += 1
         else:
-            # It came to its end: the next begins anew.
+            # It has ended: the next one starts again.
             assert process.returncode == 0
             compare(tmp_path)
             (tmp_path / "killed.checkpoint").unlink()
@@ -267,7 +267,7 @@ def test_hostile_bytes_are_refused_whatever_they_are(box, path):
         write(film, **lie)
         with pytest.raises(ValueError, match=r"^checkpoint .* is "):
             attempt()
-    # A bomb: what is unpacked is as long as was said at most.
+    # A decompression bomb: no more than the stated size is unpacked.
     write(b"\0" * 10**8, bytes=len(film))
     with pytest.raises(ValueError, match="is damaged"):
         attempt()

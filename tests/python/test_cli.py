@@ -227,13 +227,13 @@ def test_processes_do_the_same(tmp_path):
 def test_ctrl_c_ends_at_once_with_status_130(tmp_path):
     command = [sys.executable, "-m", "raywright", "demo", "--seconds", "60"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, cwd=tmp_path) as process:
-        # The bar's first words tell that the render has begun.
+        # The first words of the bar show that the render has begun.
         assert process.stderr.read(8) == b"\rrender:"
         time.sleep(0.2)
         began = time.perf_counter()
         process.send_signal(signal.SIGINT)
         out, err = process.communicate(timeout=30)
-    # Left to itself it renders for a minute.
+    # Uninterrupted, it renders for a minute.
     assert time.perf_counter() - began < 15
     assert process.returncode == 130
     assert out == b""

@@ -154,11 +154,11 @@ def test_a_place_sees_what_nothing_hides(folder):
     corner = ["--from", 5, 0, 0]
     found = table(run("visibility", "box.ply", *corner, cwd=folder))
     assert list(found) == ["x", "y", "z", "value", "distance"]
-    # Of a box, the side that faces it.
+    # The side of the box that faces it.
     assert np.array_equal(found["value"], (found["x"] == 1.0).astype(float))
     place = np.stack([found[k] for k in "xyz"], axis=-1)
     assert np.allclose(found["distance"], np.linalg.norm(place - (5, 0, 0), axis=1), rtol=1e-14)
-    # Before it, and behind it.
+    # In front, and behind.
     np.save(folder / "p.npy", [(2.0, 0, 0), (-2.0, 0, 0)])
     found = table(run("visibility", "box.ply", *corner, "--points", "p.npy", cwd=folder))
     assert found["value"].tolist() == [1, 0]
@@ -173,7 +173,7 @@ def test_help_has_an_example_that_is_parsed(verb, tmp_path):
     assert done.returncode == 0
     example = " ".join(done.stdout.partition("example: raywright ")[2].split())
     assert example.startswith(f"{verb} ")
-    # All is in order with it but that there is no such file.
+    # Everything is right except for the missing file.
     again = shell(*example.split(), cwd=tmp_path)
     assert again.returncode == 1
     assert re.fullmatch(r"raywright: error: \S+: no such file\n", again.stderr)

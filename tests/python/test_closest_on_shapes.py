@@ -107,7 +107,7 @@ IMPLICIT = {
         lambda p: np.abs(p[:, 2] - p[:, 0] ** 2 - p[:, 1] ** 2) + np.maximum(p[:, 2] - 0.75, 0),
     ),
 }
-# One that turns, mirrors and scales evenly, and one that does not.
+# A rotation with mirroring and even scale, and an uneven scale.
 EVEN = np.eye(4)
 EVEN[:3, :3] = 2.5 * np.array([[0.6, -0.8, 0], [0.8, 0.6, 0], [0, 0, -1]])
 EVEN[:3, 3] = 3, -1, 0.5
@@ -210,7 +210,7 @@ def test_at_the_centre_any_of_the_nearest_will_do():
         assert closest.distance == pytest.approx(expected, rel=1e-15, abs=1e-15)
         assert np.isfinite(closest.position).all()
         assert np.isfinite(closest.normal).all()
-    # On the plane of the longer axes, on both sides of where it stops to matter.
+    # In the plane of the longer axes, on both sides of the focal curve.
     flat = rw.Scene(rw.Ellipsoid((0, 0, 0), (2, 2, 1)))
     assert flat.closest_point((0.75, 0, 0)).distance == pytest.approx(np.sqrt(13 / 16), rel=1e-14)
     assert flat.closest_point((1.75, 0, 0)).distance == pytest.approx(0.25, rel=1e-14)
@@ -308,7 +308,7 @@ def test_a_squashed_sphere_is_an_ellipsoid_whatever_it_is_made_of():
     ball = "x**2 + y**2 + z**2 - 1"
     implicit = rw.Implicit(ball, (-1.25, -1.25, -1.25), (1.25, 1.25, 1.25), transform=squash)
     assert np.allclose(rw.Scene(implicit).signed_distance(points), ellipsoid, rtol=0, atol=1e-14)
-    # An elliptic cylinder is as near as its ellipse where its ends are far.
+    # An elliptic cylinder acts like its ellipse if its ends are far.
     tube = rw.Cylinder((0, 0, -50), (0, 0, 50), 1, capped=False, transform=squash)
     flat = points * (1, 1, 0)
     disk = rw.Disk((0, 0, 0), (0, 0, 1), 1 + 1e-12, 1, transform=squash)
@@ -361,11 +361,11 @@ def test_instances_are_as_near_as_what_is_in_them(uneven):
     first = len(MESH.faces)
     told = closest.primitive[on_copies]
     assert np.array_equal(np.where(told < first, 0, told - first + 1), which % 3)
-    # Normals are those of rays that meet the point.
+    # Normals agree with those of rays to the point.
     ways = (closest.position - points) / closest.distance[:, None]
     hits = scene.intersect(points, ways, t_max=closest.distance * 1.5)
     same = hits.hit & (np.abs(hits.t - closest.distance) < 1e-9) & (hits.primitive == closest.primitive)
-    # On the rims of cylinders there are two.
+    # Rims of cylinders have two.
     same &= (hits.shape_id != 0) | (hits.primitive != first + 1)
     assert same.sum() > 10
     assert np.abs(np.cross(hits.normal[same], closest.normal[same])).max() < 1e-9
@@ -401,7 +401,7 @@ def test_signed_distance_of_copies_has_the_sign_of_the_side():
 
 
 def test_many_copies_are_looked_through_by_a_tree(monkeypatch):
-    # A thousand points among a hundred thousand copies, in no more time than a few of all would take.
+    # A thousand points among a hundred thousand copies take no longer than among a few.
     rng = np.random.default_rng(14)
     matrices = np.zeros((100_000, 4, 4)) + np.eye(4)
     matrices[:, :3, 3] = rng.uniform(0, 100, (100_000, 3))

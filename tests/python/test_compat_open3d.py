@@ -222,7 +222,7 @@ def test_answers_are_those_of_open3d(open3d):
     found, wanted = ours.cast_rays(rays), theirs.cast_rays(rays)
     assert found.keys() == wanted.keys()
     same = found["primitive_ids"].numpy() == wanted["primitive_ids"].numpy()
-    # Embree rounds: a ray near an edge may meet the face on the other side of it.
+    # Embree rounds: a ray near an edge may hit the face on its other side.
     assert same.mean() > 0.99
     for name in found:
         assert (found[name].dtype, found[name].shape) == (wanted[name].dtype, wanted[name].shape), name

@@ -20,7 +20,7 @@ def test_a_segment_meets_a_surface_in_order():
     points, cells = cube.ray_trace([-2, 0.125, 0.25], [2, 0.125, 0.25])
     np.testing.assert_array_equal(points, [[-0.5, 0.125, 0.25], [0.5, 0.125, 0.25]])
     assert (points.dtype, cells.dtype) == (cube.points.dtype, np.int64)
-    # A cell is a quad, though it is hit as two triangles.
+    # A cell is a quad, although rays hit one of its two triangles.
     normals = cube.face_normals[cells]
     np.testing.assert_array_equal(normals, [[-1, 0, 0], [1, 0, 0]])
     back = cube.ray_trace([2, 0.125, 0.25], [-2, 0.125, 0.25])

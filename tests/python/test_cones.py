@@ -28,7 +28,7 @@ def look(scene, camera, way, samples=1):
     return rw.render(scene, camera, way, samples=samples, sampler=rw.Independent(), progress=False)
 
 
-# Half angles of the cone and of a sphere, and the angle between, in degrees; what both have in common, in
+# Half angles of the cone and of a sphere, and the angle between, in degrees; their common solid angle, in
 # steradians, and its share of the cone.
 CAPS = [
     ((10, 5, 12), 0.00518813004400439, 0.0543511794252946),
@@ -113,7 +113,7 @@ def test_an_edge_covers_pixels_to_within_the_roundness_of_cones():
     slope, at = 0.3, 0.137
     left = quad((-9, -9, 0), (at - 9 * slope, -9, 0), (at + 9 * slope, 9, 0), (-9, 9, 0), material=PAPER)
     image = look(rw.Scene([left]), camera, rw.ConeTraced(ambient=1.0), samples=2)
-    # A cone is round: of a pixel that the edge crosses it has more or less, of others all or nothing.
+    # A cone is round: it has more or less of a pixel at an edge, and all or nothing of others.
     exact = edge(camera, slope, at)
     assert np.abs(image.rgb[..., 0] - exact).max() < 0.15
     assert image.rgb[..., 0].mean() == pytest.approx(exact.mean(), rel=1e-2)
@@ -162,7 +162,7 @@ def test_rough_metal_shows_an_edge_as_blurred_as_rays_do():
     wall = quad(*corners, material=rw.Diffuse(0), emission=rw.Emission(1.0, side="both"))
     lit = quad(*corners, material=PAPER)
     camera = rw.Camera((0, 0, 5), (0, 0, 0), up=(0, 1, 0), fov=15, width=20, height=4)
-    # Cones see what is lit by an even light; rays are given what shines as much.
+    # Cones see surfaces under an even light; rays get an emitter of the same radiance.
     cones = look(rw.Scene([plate, lit]), camera, rw.ConeTraced(ambient=1.0)).rgb[..., 1].astype(float)
     rays = look(rw.Scene([plate, wall]), camera, rw.Path(max_depth=1, caustics=False), samples=2048).rgb[
         ..., 1
@@ -191,7 +191,7 @@ def test_cones_see_no_moire_in_a_chequered_floor():
     cones = look(scene, camera, rw.ConeTraced(ambient=1.0)).rgb[..., 0].astype(float)
     rays = look(scene, camera, rw.Whitted(ambient=1.0), samples=256).rgb[..., 0]
     lit = rays > 0.05
-    # In the far rows all squares blur into grey, and rows have their mean.
+    # In the far rows all squares blur into grey, and rows have the mean.
     assert np.abs(cones.mean(1) - rays.mean(1)).max() < 0.08
     assert abs(cones[lit].mean() - rays[lit].mean()) < 0.02
 
@@ -270,7 +270,7 @@ def test_any_number_of_threads_makes_the_same_bits():
     assert many.share.shape == (50,)
     assert np.array_equal(many.share, scene.cone_coverage(cones[0], cones[1], 20.0, threads=1).share)
     assert np.isnan(scene.cone_coverage((np.nan, 0, 0), (0, 0, 1), 20.0).share)
-    # Without a direction nothing is touched, as by a ray that has none.
+    # An invalid direction touches nothing, for cones as for rays.
     nowhere = scene.cone_coverage((0, 0, 5), [(0, 0, 0), (0, 0, np.inf), (0, 0, -1)], 20.0)
     assert nowhere.share[:2].tolist() == nowhere.solid_angle[:2].tolist() == [0, 0]
     assert nowhere.share[2] == scene.cone_coverage((0, 0, 5), (0, 0, -1), 20.0).share

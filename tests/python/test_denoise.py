@@ -173,13 +173,13 @@ def judged(make, side, samples, seeds, truth=None, **how):
 
 
 def test_a_small_box_is_better_and_knows_by_how_much():
-    # At this size the pixels on the rim of the lamp, which stay as they are, hold most of the error.
+    # At this size, pixels on the rim of the lamp hold most of the error, and denoising leaves them unchanged.
     _, _, truth = cornell_picture(48)
     before, after, told, honest, _ = judged(rare_scenes.cornell, 48, 16, 6, truth)
     assert np.median(before / after) > 1.5
     assert np.all(before > after)
     assert 0.5 < told < 2
-    # Of intervals that hold in 95 of 100 cases, 3 of 6 or fewer do so once in 450.
+    # Intervals of 95 % hold in 3 of 6 cases or fewer once in 450.
     assert honest >= 4
 
 
@@ -226,7 +226,7 @@ def test_open_image_denoise_tells_its_error_too():
 )
 def test_denoised_pictures_tell_their_error_or_that_they_cannot(make, side, better):
     before, after, _, honest, _ = judged(make, side, 16, 40)
-    # Of intervals that hold in 95 of 100 cases, 33 of 40 or fewer do so once in 290; these seeds are fixed.
+    # Intervals of 95 % hold in 33 of 40 cases or fewer once in 290; these seeds are fixed.
     assert honest >= 34
     assert np.mean(before) >= better * np.mean(after)
     # None is worse by more than the noise of few samples.

@@ -174,8 +174,8 @@ def test_shapes_of_arrays_are_kept():
 
 
 def test_principled_solids_disperse():
-    # A wedge bends what is seen through it to the side, each colour by its own: past an edge, some see light
-    # and others what is dark. Of white transmission, both materials are glass that scatters once.
+    # A wedge deflects each colour by its own angle: past an edge, some colours see light and others the dark.
+    # With white transmission, both materials are glass with single scattering.
     glass = rw.Cauchy(1.5, 0.03)
     ends = [(x, y, z) for z in (0, -1) for x, y in [(-1, -1), (1, -1), (1, 1), (-1, 1)]]
     ends[4:] = [(x, y, -0.1 if x < 0 else -1.1) for x, y, _ in ends[4:]]

@@ -11,7 +11,7 @@ import raywright as rw
 SIZE = (6, 5, 3)
 CLOSED = block((0, 0, 0), SIZE, inwards=True)
 FLOOR = np.array([(0, 0, 0), (6, 0, 0), (6, 5, 0), (0, 5, 0)], float)
-# The floor once more: as it is, cut along the other diagonal, in four parts, and turned.
+# The floor once more: the same, cut along the other diagonal, in four parts, and reversed.
 TWICE = {
     "the same": rw.Mesh(FLOOR, [(0, 1, 2), (0, 2, 3)]),
     "other diagonal": rw.Mesh(FLOOR, [(0, 1, 3), (1, 2, 3)]),
@@ -80,7 +80,7 @@ def test_rays_meet_the_front_of_a_sheet_whichever_side_is_listed_first(is_first:
     even = rw.radiative_exchange(
         rw.Scene(walls), [300.0, 300.0], 0.9, method="stochastic", rays=2**14, progress=False
     )
-    # Nothing that is inside is lost, and all that is outside.
+    # The inside loses nothing, and the outside everything.
     sent = 5.670374419184429e-8 * 300.0**4
     outer = even.areas[even.patches["shape"] != inside].sum()
     assert even.escaped == pytest.approx(0.9 * sent * outer, rel=1e-9)
@@ -94,7 +94,7 @@ def test_shots_from_faces_that_touch_come_to_each_other() -> None:
     even = rw.radiative_exchange(scene, 300.0, 0.9, method="stochastic", rays=2**14, progress=False)
     assert abs(even.escaped) < 1e-9
     assert np.abs(even.flux).max() < 1e-6
-    # With a warm block, what it loses the room gains: nothing leaves where it stands.
+    # A warm block heats the room: nothing passes where it stands.
     warm = rw.radiative_exchange(scene, [300.0, 350.0], 0.9, method="stochastic", rays=2**14, progress=False)
     matrix = rw.radiative_exchange(scene, [300.0, 350.0], 0.9, method="matrix", progress=False)
     assert abs(warm.power.sum()) < 1e-4 * warm.of(1)
@@ -228,7 +228,7 @@ def test_sides_of_a_sheet_keep_their_temperatures() -> None:
     above, below = ((rows["shape"] == shape) & (rows["side"] == -1) for shape in (7, 6))
     assert set(found.temperature[above]) == {400.0}
     assert set(found.temperature[below]) == {350.0}
-    # Nothing counts twice: all power that is lost is gained, or leaves by the backs of the walls.
+    # Nothing counts twice: all lost power is gained, or leaves by the backs of the walls.
     assert found.power.sum() == pytest.approx(found.escaped, rel=1e-6)
 
 
@@ -269,7 +269,7 @@ def test_faces_that_touch_tell_their_errors_also_where_corners_are_rounded(name:
     turned = rw.view_factors(placed(TURN), rays=64, seed=2, progress=False)
     np.testing.assert_allclose(straight.rest, 0, atol=1e-9)
     np.testing.assert_allclose(turned.rest, 0, atol=1e-9 if dtype is np.float64 else 3e-4)
-    # Of 400 pairs, one is beyond six standard errors once in a million cases, were these known exactly.
+    # One of 400 pairs is beyond six standard errors once in a million cases, if these were exact.
     off = np.abs(straight.matrix - turned.matrix)
     told = np.hypot(straight.standard_error, turned.standard_error)
     assert (off <= 6 * told + (1e-9 if dtype is np.float64 else 1e-5)).all()

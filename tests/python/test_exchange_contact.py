@@ -25,7 +25,7 @@ SHEAR[0, 2], SHEAR[:3, 3] = 0.4, (2, 2, 0)
 LIFT = 1e-5
 ABOVE = next(i for i, side in enumerate(SIDES) if (side.vertices[:, 2] == SIZE[2]).all())
 
-# Each is lifted by so many gaps as stand below it.
+# Each shape is lifted by the number of gaps below it.
 CONTACTS: dict[str, list[rw.Mesh | Shape]] = {
     "box": [rw.Box((1, 1, 0), (2, 2, 1))],
     "mirrored box": [rw.Box((0, 0, 0), (2, 2, 2), transform=HALF)],
@@ -92,7 +92,7 @@ def test_what_touches_is_as_what_is_next_to_touching(
     found = rw.view_factors(placed([*SIDES, *shapes]), per="shape", rays=8, seed=1, progress=False)
     apart = [*SIDES, *lifted(shapes)]
     wanted = rw.view_factors(rw.Scene(apart), per="shape", rays=8, seed=2, progress=False)
-    # Of 81 entries one is beyond six standard errors in 1.6e-7 of cases; the gap itself lets as much through.
+    # One of 81 entries is beyond six standard errors in 1.6e-7 of cases; the gap itself transmits as much.
     told = np.hypot(found.standard_error, wanted.standard_error)
     assert (np.abs(found.matrix - wanted.matrix) <= 6 * told + 4 * LIFT).all()
     if name in CONTACTS:
@@ -121,7 +121,7 @@ def test_a_box_that_touches_is_as_its_mesh(low: tuple[float, ...]) -> None:
         scene = rw.Scene([*SIDES, box])
         found = rw.view_factors(scene, per="shape", rays=4, progress=False)
         np.testing.assert_allclose(found.rest, 0, atol=1e-9)
-        # Of 49 entries one is beyond six standard errors in 1e-7 of cases.
+        # One of 49 entries is beyond six standard errors in 1e-7 of cases.
         both = np.hypot(found.standard_error, mesh.standard_error)
         assert (np.abs(found.matrix - mesh.matrix) <= 6 * both + 1e-9).all()
         faces = rw.view_factors(scene, rays=4, progress=False)

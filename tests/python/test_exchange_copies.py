@@ -88,7 +88,7 @@ def test_pictures_of_copies_are_those_of_moved_meshes() -> None:
     for scene in scenes():
         found = rw.radiosity(scene, per="vertex", rays=2**14, patch_size=0.3, progress=False)
         shown.append(rw.render(scene, camera, rw.Radiosity(found), 4, progress=False).rgb)
-    # Rays meet the same to rounding, and so the same patches but for a few at their edges.
+    # Hits agree to rounding, and so do patches, except for a few at edges.
     off = np.abs(shown[0] - shown[1]).max(axis=2)
     assert np.mean(off > 1e-3 * shown[1].mean()) < 0.01
     assert shown[0].max() > 0

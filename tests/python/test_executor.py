@@ -181,7 +181,7 @@ def test_the_scene_is_sent_once_a_worker(box, pool, tmp_path):
     workers = told.read_text().split()
     assert 1 <= len(workers) == len(set(workers)) <= 2
     assert str(os.getpid()) not in workers
-    # Neither is it sent again for another picture of it.
+    # Another picture of it does not send it again either.
     rw.render(weighed, camera, samples=100, progress=False, executor=pool)
     assert told.read_text().split() == workers or len(set(told.read_text().split())) == 2
 
@@ -232,7 +232,7 @@ def test_exceptions_of_the_integrator_are_passed_on(box, pool):
     with pytest.raises(LookupError, match="no such light") as caught:
         rw.render(*box, Fails(), **LIMITS, executor=pool)
     assert "in radiance" in str(caught.value.__cause__)
-    # Nor does the pool suffer.
+    # The pool still works.
     assert pool.submit(int, "3").result() == 3
 
 
@@ -270,7 +270,7 @@ def test_ctrl_c_cancels_what_waits(box, tmp_path):
             rw.render(*box, Slow(), **{**LIMITS, "samples": 10_000}, executor=executor, checkpoint=path)
         assert time.perf_counter() - began < 3
         timer.join()
-        # Nothing else is waiting: the next work is done at once.
+        # No other work is queued: the next is done at once.
         executor.submit(int).result(timeout=3)
     assert path.exists()
 

@@ -187,7 +187,7 @@ def test_meshes_that_are_cut_anywhere_are_missed(tmp_path, kind):
     data = (data.encode() if isinstance(data, str) else data).rstrip(b"\n")
     path.write_bytes(data)
     assert len(rw.Scene(path).shapes[0].faces) == 12
-    # A number of text that loses a digit is a number still, and a name that is cut is a name.
+    # A text number without a digit is still a number, and a shortened name is a name.
     last = data.rfind(b" ") if kind != "stl_ascii" else data.rfind(b"endsolid") + 8
     ends = len(data) if kind in ("ply", "stl") else last
     for length in {*range(0, ends, 37), ends - 1}:
@@ -212,5 +212,5 @@ def test_pictures_that_are_cut_anywhere_are_missed(tmp_path, capfd, picture, suf
         assert suffix == ".png"
         assert length > len(data) - 32
         assert np.array_equal(found, whole)
-    # Libraries keep their own troubles to themselves.
+    # Libraries print nothing.
     assert capfd.readouterr() == ("", "")

@@ -66,7 +66,7 @@ def test_comments_of_mitsuba_may_have_dashes(tmp_path, comment):
     path = tmp_path / "a.xml"
     path.write_text(comment.join(["", XML.format(comment + parts + comment)]))
     assert len(rw.load(path).scene.shapes) == 1
-    # Lines are counted on.
+    # Line numbers continue.
     path.write_text(XML.format(f"{comment}\n<shape type='sphere' wrong='1'><nothing/></shape>"))
     with pytest.raises(ValueError, match=rf"line {2 + comment.count(chr(10))}"):
         rw.load(path)

@@ -7,7 +7,7 @@ import pytest
 
 import raywright as rw
 
-# Goes with wavelength, and is the same everywhere: what it is in has paths that carry wavelengths.
+# Depends on wavelength formally, with a constant index: paths in such a scene carry wavelengths.
 SAME = rw.Cauchy(1.5, 0.0)
 
 
@@ -42,6 +42,6 @@ def looked(material, by_wave, samples):
 def test_wavelengths_together_have_the_colour_of_the_film(material):
     colour, error = looked(material, False, 64)
     seen, spread = looked(material, True, 4096)
-    # Of red, green and blue, what is mirrored at one angle has no noise of wavelengths; the other has.
+    # RGB reflection at one angle has no noise of wavelengths; the other has.
     assert (spread < 0.02 * colour.max()).all()
     assert (np.abs(seen - colour) <= 3 * np.hypot(error, spread) + 2e-3 * colour.max()).all(), (seen, colour)

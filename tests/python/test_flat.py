@@ -38,7 +38,7 @@ def test_arrays_are_what_they_are_said_to_be(name, builder):
     if not scene.shapes:
         assert (len(nodes), len(triangles), flat.depth) == (0, 0, 0)
         return
-    # Every node before what is below it, children one after the other, and leaves one after the other.
+    # Every node precedes its children, siblings are adjacent, and so are leaves.
     behind = np.where(nodes["count"], np.arange(len(nodes)) + 1, nodes["index"])
     inner, leaves = np.flatnonzero(nodes["count"] == 0), np.flatnonzero(nodes["count"])
     first = inner + 1
@@ -64,7 +64,7 @@ def test_arrays_are_what_they_are_said_to_be(name, builder):
             assert (point <= upper[is_face] + 1e-6).all()
         assert (triangles["corner"] >= lower)[~is_face].all()
         assert (triangles["edge"] <= upper)[~is_face].all()
-    # Every primitive stands somewhere, once unless it is parted.
+    # Every primitive is in some leaf, and in one only unless split.
     assert set(triangles["primitive"]) == set(range(flat.first[-1]))
     if builder == "median":
         assert len(triangles) == flat.first[-1]
@@ -92,7 +92,7 @@ def test_triangles_are_those_of_the_scene(name):
         edges = np.roll(corners, -1, axis=1) - corners
         shortest = np.argmin((edges**2).sum(axis=-1), axis=1)
         a, b, c = (corners[np.arange(len(corners)), (shortest + i) % 3] for i in range(3))
-        # Differences are taken before anything is rounded.
+        # Differences come before any rounding.
         assert (some["corner"] == ((a - flat.centre) * flat.scale).astype(np.float32)).all()
         assert (some["edge"] == ((b - a) * flat.scale).astype(np.float32)).all()
         assert (some["other"] == ((c - a) * flat.scale).astype(np.float32)).all()
@@ -145,14 +145,14 @@ def test_copies_are_entered_by_their_matrices():
     moves = np.tile(np.eye(4), (5, 1, 1))
     moves[:, :3, :3] += random.uniform(-0.4, 0.4, (5, 3, 3))
     moves[:, :3, 3] = random.uniform(-4, 4, (5, 3))
-    # Within another, too, and twice the same.
+    # Also nested, and the same one twice.
     inner = rw.Instance([KNOT], moves[:2])
     pair = rw.Instance([inner, rw.Mesh(KNOT.vertices + 3, KNOT.faces)], moves[2:4])
     scene = rw.Scene([rw.Instance([KNOT], moves), KNOT, pair])
     flat = scene.flat()
     assert flat.instances.dtype.itemsize == 64
     assert [flat.instances.dtype.fields[f][1] for f in flat.instances.dtype.names] == [0, 48, 52, 56, 60]
-    # Five and two in the scene, two in the pair; the knot's tree is there once.
+    # Five and two in the scene, two in the pair; the knot's tree exists once.
     assert len(flat.instances) == 9
     assert len({int(one["node"]) for one in flat.instances}) == 2
     assert flat.own == after(flat.nodes, 0) < len(flat.nodes)

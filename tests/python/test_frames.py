@@ -32,7 +32,7 @@ def test_ten_frames_are_the_pictures_that_they_are_alone(moving):
     for number, image in seen.items():
         alone = rw.render(*moving(number), seed=(2**64 - 3 + number) % 2**64, **HOW)
         assert np.array_equal(image.rgb, alone.rgb)
-    # It has moved, and so has the noise.
+    # The object has moved, and the noise differs.
     assert not np.array_equal(seen[0].rgb, seen[9].rgb)
 
 
@@ -127,7 +127,7 @@ def test_an_encoder_that_fails_is_told(moving, tmp_path, films, monkeypatch):
         rw.render_frames(moving, tmp_path / "a.mp4", 2, **HOW)
 
 
-# Of imageio's own pipes.
+# imageio leaves its own pipes open.
 @pytest.mark.filterwarnings("ignore:unclosed file:ResourceWarning")
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
 @pytest.mark.parametrize("name", ["a.mp4", "a.mov", "a.mkv", "a.webm"])

@@ -17,9 +17,9 @@ def test_noise_falls_by_the_integrator():
 
 @pytest.mark.parametrize(("rates", "share"), [((), "12%"), ((2 / 3,), "4%")])
 def test_a_bar_goes_by_that(rates, share, capsys):
-    # Of 8 times the error that is wanted, an eighth of the samples is there; by the power of 2/3, a 23rd.
+    # At 8 times the wanted error, an eighth of the samples is there; by the power of 2/3, a 23rd.
     with bar(None, 0.01, None, *rates) as report:
-        # A bar is not drawn anew before a tenth of a second.
+        # A bar is redrawn after a tenth of a second.
         time.sleep(0.15)
         report(1.0, 4, 0.08, True)
         told = capsys.readouterr().err
@@ -33,6 +33,6 @@ def test_blur_beyond_the_error_is_told():
     lines = [line for line in image.warnings if line.startswith("error=1e-09 is of noise alone")]
     assert len(lines) == 1
     assert "a smaller radius has less" in lines[0]
-    # Where none was asked for, nothing is said of it.
+    # Without a requested error there is no warning.
     image = rw.render(scene, look, coarse, 4, progress=False)
     assert not any("noise alone" in line for line in image.warnings)

@@ -273,10 +273,10 @@ def test_large_meshes_at_many_nodes_are_instances(read):
     origins = [(at + x, y, 9) for at in (0, 3, 6, 9)] + [(1.5, 0, 9)]
     hits = shot.scene.intersect(origins, (0, 0, -1))
     assert hits.hit.tolist() == [True] * 4 + [False]
-    # A mesh of a ball is off it by the square of an edge, and its normals by half of an edge.
+    # A mesh of a ball deviates by the square of an edge, and its normals by half of an edge.
     assert hits.t[:4] == pytest.approx(9 - z, abs=1e-3)
     assert np.allclose(hits.normal[:4], (x, y, z), rtol=0, atol=0.02)
-    # All of them are in the picture of the camera that is made for them, on the floor, which is the fourth.
+    # The generated camera sees all of them, and the floor, which is the fourth.
     assert set(shot.scene.intersect(*shot.camera.rays()).shape_id.ravel()) == {0, 1, 2, 3}
 
 

@@ -305,7 +305,7 @@ def test_metal_of_a_picture_has_its_film(tmp_path):
     found = np.square((eta.image - 1) / (eta.image + 1.0))
     assert np.allclose(found, np.minimum(shares, 0.9999), rtol=1e-4, atol=0)
     assert not eta.decoded
-    # Where only some of it is metal, that has the film.
+    # If only part of it is metal, the film is on that.
     writer = Writer()
     where = writer.picture(png(PIXELS[..., :3]))
     metal = {"baseColorTexture": writer.picture(png(shades)), "metallicRoughnessTexture": where}
@@ -317,7 +317,7 @@ def test_metal_of_a_picture_has_its_film(tmp_path):
         400.0, 1.4, base=rw.Conductor(eta=partly.b.base.eta, roughness=green, k=0.0)
     )
     assert partly.amount == blue
-    # One whose thickness is 0 is none: straight on, the metal has its colour.
+    # A film of thickness 0 is none: straight on, the metal has its colour.
     writer = Writer()
     bare = {"KHR_materials_iridescence": {"iridescenceFactor": 1, "iridescenceThicknessMaximum": 0}}
     grey = np.full((2, 2, 3), 150, np.uint8)
@@ -372,7 +372,7 @@ def test_specular_and_glossy_materials_become_metallic_and_rough(tmp_path, pictu
         made = loaded(tmp_path, material, writer).material
         ends = [made.base_color, made.metallic, made.roughness]
         if pictured:
-            # Of 8 bits: sRGB in the picture of colour, shares as they are in that of the rest.
+            # 8-bit pictures: sRGB for colour, linear shares in the other.
             low, high = zip(*(one.range for one in ends), strict=True)
             assert low == high
             ends = [low[0], low[1][0], low[2][0]]
@@ -455,7 +455,7 @@ def test_transparent_colors_of_pictures_are_holes(tmp_path, mode, alpha):
 def test_alpha_of_colors_of_vertices(tmp_path, alpha, factor, mode, wanted, colors):
     rgb = np.zeros((4, 3))
     if colors == "many":
-        # No channel that is looked at.
+        # A channel without meaning.
         rgb[:, 2] = 0, 0.25, 0.5, 1
     vertex = np.column_stack([rgb, alpha]).astype(np.float32)
     material = {"pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, factor]}, "alphaMode": mode, **UNLIT}

@@ -32,7 +32,7 @@ def compressed(views, is_required=True, name=NAME, **more):
         accessors.append(writer.add("accessors", accessor))
     primitive = {"attributes": {"POSITION": accessors[0]}, "indices": accessors[1]}
     writer.node(mesh=writer.add("meshes", {"primitives": [primitive]}))
-    # A buffer that is nowhere: what is compressed may have no other form.
+    # A missing buffer: compressed data need have no other form.
     nowhere = {"byteLength": 1000, "extensions": {name: {"fallback": True}}}
     writer.json["buffers"] = [{"byteLength": len(writer.data)}, nowhere]
     writer.json["extensionsUsed"] = [name]

@@ -13,7 +13,7 @@ import pytest
 
 import raywright as rw
 
-# In software, one thread for each process of the tests.
+# The software renderer gets one thread per test process.
 os.environ.setdefault("LP_NUM_THREADS", "1")
 KNOT = rw.scenes.torus_knot(along=60, around=10)
 MOST_ANY, MOST_CLOSEST = 0.005, 0.06
@@ -96,7 +96,7 @@ def test_random_rays_and_how_many_are_left(gpu):
 def test_corners_and_edges(gpu):
     stats, wanted = agrees(rw.Scene(KNOT), gpu, *aimed_rays(KNOT, 4000))
     assert wanted.hit.mean() > 0.9
-    # Nobody but the CPU can tell whether a ray meets a corner.
+    # Only the CPU decides hits at corners.
     assert stats.closest_decided + stats.closest_walked > 1000
 
 
@@ -129,7 +129,7 @@ def test_far_origins(gpu, distance):
     stats, wanted = agrees(rw.Scene(KNOT), gpu, origins, at - origins)
     assert wanted.hit.sum() > 300
     if distance < 1e9:
-        # They are moved up to the scene before they are rounded.
+        # They are moved towards the scene before rounding.
         assert stats.any_share <= MOST_ANY
         assert stats.closest_share <= MOST_CLOSEST
 
@@ -156,7 +156,8 @@ def test_rays_that_leave_a_surface_leave_it_behind(gpu):
     stats, _ = agrees(scene, gpu, hits.position, ways, t_min=1e-3)
     assert stats.any_share <= MOST_ANY
     assert stats.closest_share <= MOST_CLOSEST
-    # Without one, only the CPU can tell that the face which a ray leaves is missed, and it asks that alone.
+    # Without one, only the CPU can decide that a leaving ray misses its own face, and it tests just that
+    # face.
     stats, _ = agrees(scene, gpu, *hits.leave(ways))
     assert stats.any_decided > 0.2 * stats.any
     assert stats.any_walked <= MOST_ANY * stats.any
@@ -168,7 +169,7 @@ def test_rays_that_hit_nothing_slow_nothing_down(gpu):
     stats, wanted = agrees(rw.Scene(KNOT), gpu, bad, ways)
     assert not wanted.hit.any()
     assert stats.closest_walked == 0
-    # So short that t may be more than a float64 holds.
+    # So short that t may overflow a float64.
     origins, directions = random_rays(KNOT, 200)
     agrees(rw.Scene(KNOT), gpu, origins, directions * 1e-300)
     agrees(rw.Scene(KNOT), gpu, origins, directions * 1e-307)
@@ -196,7 +197,7 @@ def test_shapes_and_copies_are_candidates_by_their_boxes(gpu):
     with_plane = rw.Scene([*shapes, rw.Plane((0, 0, -1), (0, 0, 1))])
     stats, wanted = agrees(with_plane, gpu, origins[:500], directions[:500])
     assert (wanted.shape_id == 4).any()
-    # Every ray may meet it.
+    # Every ray may hit it.
     assert stats.closest_share == 1
     assert stats.any_share <= 1
 
@@ -204,7 +205,7 @@ def test_shapes_and_copies_are_candidates_by_their_boxes(gpu):
 def test_coincident_faces_go_to_the_first(gpu):
     many = rw.Mesh(KNOT.vertices, np.tile(KNOT.faces, (3, 1)))
     agrees(rw.Scene(many), gpu, *random_rays(KNOT, 500))
-    # More than four of them are too many candidates.
+    # More than four equal triangles are too many candidates.
     one = rw.Mesh([(0.0, 0, 0), (1, 0, 0), (0, 1, 0)], np.tile([(0, 1, 2)], (9, 1)))
     stats, wanted = agrees(rw.Scene(one), gpu, [[0.2, 0.2, 1.0]], [[0.0, 0, -1]])
     assert wanted.primitive.tolist() == [0]

@@ -72,13 +72,13 @@ class Cases:
     def __init__(self, seed, size):
         random = np.random.default_rng(seed)
         vectors = random.uniform(-1, 1, (4, COUNT, 3))
-        # Half of them have numbers as large as they can be, whose errors add up.
+        # Half of them have maximal numbers, whose errors add up.
         vectors[:, : COUNT // 2] = np.sign(vectors[:, : COUNT // 2])
         self.corner, self.edge, self.other = 2 * vectors[0], size[0] * vectors[1], size[1] * vectors[2]
         self.direction = 2 * vectors[3] / np.abs(vectors[3]).max(axis=1, keepdims=True)
         self.direction[np.abs(self.direction).max(axis=1) >= 2] *= 1 - 2.0**-30
         self.origin = random.uniform(-4, 4, (COUNT, 3))
-        # Near a point of the triangle too.
+        # Also near a point of the triangle.
         near = slice(0, None, 3)
         away = 10.0 ** random.uniform(-6, 0, (len(self.origin[near]), 1))
         self.origin[near] = (self.corner + 0.4 * self.edge)[near] + away * vectors[3][near]
@@ -125,7 +125,7 @@ class Cases:
 
 PARTS = {"u": "sdf", "v": "dse", "determinant": "edf", "numerator": "fse"}
 BOUNDS = {"u": "of_u", "v": "of_v", "determinant": "M", "numerator": "N"}
-# Of both edges: large, small, tiny, and of a sliver.
+# Sizes of both edges: large, small, tiny, and of a sliver.
 SIZES = [(2.0, 2.0), (0.01, 0.01), (1e-6, 1e-6), (1e-4, 2.0)]
 
 
@@ -145,7 +145,7 @@ def test_no_product_is_off_by_more(kind, how, size):
     computed = triple(named, PARTS[kind], lambda a, b, c: how(a, b, c, cases.towards))
     share = np.abs(computed - true) / bound(BOUNDS[kind], **sizes)
     assert share.max() < 1
-    # Nor is there much less to be promised.
+    # The bound is not much too large either.
     assert share.max() > 0.3
 
 
@@ -193,7 +193,7 @@ def test_t_lies_where_it_is_said_to(size):
         n = bound("N", **sizes)
         error = bound("error", N=n, M=m, t=t, room=room, reach=sizes["reach"])
         share = (np.abs(t - t_true) + 2.0**-26 * (sizes["reach"] + 1)) / error
-    # The CPU's own t may be off, too, and is among it.
+    # This includes the error of the CPU's own t.
     assert certain.mean() > 0.2
     assert share[certain].max() < 1
     assert share[certain].max() > 0.3
@@ -212,7 +212,7 @@ def test_no_box_is_passed_by_that_is_met():
         inverse = pushed(1 / way, to * difference, 2.5)
         plane = pushed(difference * inverse, to)
         (expression,) = re.findall(r"let room = (.*);", TEXT)[:1]
-        # From the first to use it: slabs.
+        # Evaluates the bound from the first use: slabs.
         room = eval(expression, {"U": U, "abs": np.abs}, {"reach": reach, "inverse": inverse})
         moved = pushed(plane - to * room, to)
         # The CPU's t may be off by this.

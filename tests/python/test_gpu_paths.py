@@ -16,7 +16,7 @@ import pytest
 import raywright as rw
 from raywright.scenes.boxes import boxes
 
-# In software, one thread for each process of the tests.
+# The software renderer gets one thread per test process.
 os.environ.setdefault("LP_NUM_THREADS", "1")
 SIDE = 32
 PLAIN = rw.Path(reuse=1, caustics=False)
@@ -77,7 +77,7 @@ def agree(one, other):
     variance = in_blocks(one.standard_error.astype(float) ** 2) + in_blocks(
         other.standard_error.astype(float) ** 2
     )
-    # Where all samples agree, pictures are of float32.
+    # If all samples agree, the error is that of float32.
     error = np.sqrt(variance / 16) + 3e-6 * (1e-3 + in_blocks(other.rgb))
     z = (in_blocks(one.rgb) - in_blocks(other.rgb)) / error
     assert np.abs(z).max() < 5.2, np.abs(z).max()
@@ -95,7 +95,7 @@ def both(scene, gpu, camera=CAMERA, samples=64, path=PLAIN):
 def test_the_cornell_box(gpu):
     scene, camera = rw.scenes.cornell_box(width=SIDE, height=SIDE)
     there, here, square = both(scene, gpu, camera)
-    # Bars are not too long, either.
+    # Error bars are not too long, either.
     assert square > 0.4
     assert there.samples == 64
     assert there.error.low < there.error.estimate < there.error.high
@@ -414,7 +414,7 @@ def resident():
 
 @pytest.mark.skipif(not os.path.exists("/proc/self/statm"), reason="the system does not tell memory so")
 def test_memory_does_not_grow_with_samples(gpu):
-    # All kernels, and each way to be lit: a driver may keep something for each time that one is bound.
+    # All kernels, and each kind of lighting: a driver may keep memory for each binding.
     looks = (
         rw.Diffuse(0.5),
         rw.Mirror(),
@@ -429,5 +429,5 @@ def test_memory_does_not_grow_with_samples(gpu):
         assert rw.render(scene, camera, PLAIN, samples=64, **how).plan["device"].chosen == gpu.name
         before = resident()
         rw.render(scene, camera, PLAIN, samples=384, **how)
-        # It was half a megabyte for each of some two hundred bindings.
+        # It used to be half a megabyte for each of some two hundred bindings.
         assert resident() - before < 20e6

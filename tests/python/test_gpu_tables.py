@@ -42,9 +42,9 @@ def test_dielectrics_reflect_their_mean():
 def test_metals_are_those_of_the_core():
     table, again = reflectances("gold")
     np.testing.assert_allclose(table[-1], (1.022, 0.782, 0.344), atol=1e-3)
-    # Of the red no more is left than of the wavelength that is reflected best.
+    # Red keeps no more than the best reflected wavelength.
     np.testing.assert_allclose(again * (table[:, 0].max(), 1, 1), (0.962, 1, 1), atol=1e-3)
-    # A white one gives back all that is lost.
+    # A white one compensates all loss.
     white = rw.Conductor(eta=1e-5, k=1e5, alpha=0.5)
     loss = mean_of(loss_table(0.5))
     np.testing.assert_allclose(made_up(white, loss) * np.pi * loss, 1, atol=3e-3)
@@ -81,7 +81,7 @@ def test_shares_of_light_are_what_they_are_told_to_be():
     assert found.lights["kind"].tolist() == [0, 0, 0, 1]
     assert found.lights["sides"].tolist() == [1, 3, 2, 0]
     assert abs(found.lights["share"].sum(dtype=float) - 1) < 1e-6
-    # As radiance times area, twice that of both sides.
+    # As radiance times area, twice for both sides.
     np.testing.assert_allclose(found.lights["share"][1:3] / found.lights["share"][0], [16, 27], rtol=1e-5)
     np.testing.assert_allclose(found.lights["radiance"][3], 5 * flat.scale**2)
     assert found.faces["light"].tolist() == [0, 1, 2]

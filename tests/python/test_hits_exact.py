@@ -145,7 +145,7 @@ def repr_of(accelerator):
 @pytest.mark.parametrize("accelerator", STRUCTURES, ids=repr_of)
 @pytest.mark.parametrize("scale", [1.0, 0.3, 1e-7])
 def test_a_hit_at_an_end_of_a_ray_counts(accelerator, scale):
-    # Over a flat face at 1, whose t is the height less 1, exactly.
+    # Over a flat face at 1: t is exactly the height less 1.
     square = rw.Mesh([(0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)], [(0, 1, 2), (0, 2, 3)])
     scene = rw.Scene(square, accelerator=accelerator)
     heights = np.random.default_rng(0).integers(2**20, 2**27, 3000) / 2**20
@@ -162,7 +162,7 @@ def test_a_hit_at_an_end_of_a_ray_counts(accelerator, scale):
         hits = scene.intersect(origins, way, t_min, t_max)
         assert np.array_equal(hits.t, t if is_met else np.full(3000, np.inf))
         assert (scene.occluded(origins, way, t_min, t_max) == is_met).all()
-        # On the diagonal both faces are met, and count once.
+        # On the diagonal both faces are hit, and count once.
         assert (scene.count(origins, way, t_min, t_max) == is_met).all()
         every = scene.intersect_all(origins, way, t_min, t_max)
         assert np.array_equal(every.t, t if is_met else [])
@@ -190,7 +190,7 @@ def test_what_a_ray_is_told_it_meets_it_meets_at_either_end(accelerator, precisi
         assert np.array_equal(again.primitive, hits.primitive[hits.hit])
         assert scene.occluded(origins, ways, t_min, t_max).all()
     assert not scene.occluded(origins, ways, 0, np.nextafter(t, 0)).any()
-    # From the next number on it is met no more: what is left is the other side of the ball.
+    # From the next number on this hit is excluded, and the other side of the ball remains.
     beyond = scene.intersect(origins, ways, np.nextafter(t, np.inf), np.inf)
     assert (beyond.primitive != hits.primitive[hits.hit]).all()
 
@@ -208,7 +208,7 @@ def test_hits_at_exactly_t_max_count_and_beyond_do_not(dtype):
     assert np.array_equal(scene.intersect(*rays, t, t).t, t)
     assert np.array_equal(scene.intersect(*rays, 0.0, t).t, t)
     assert scene.occluded(*rays, 0.0, t).all()
-    # `t` is the least of all, so just below it there is nothing.
+    # `t` is the least: just below it there is no hit.
     assert not scene.occluded(*rays, 0.0, np.nextafter(t, -np.inf)).any()
     assert not (scene.intersect(*rays, np.nextafter(t, np.inf)).t <= t).any()
 
@@ -287,7 +287,7 @@ def test_far_origins(dtype, distance, aimed_from):
     if aimed_from == "afar":
         ways = targets - origins
     outcome = check(mesh, origins, ways.astype(dtype))
-    # In f32 origins that far away are rounded to steps of several scenes, unless the ray is aimed after it.
+    # In f32 such far origins are rounded to steps of several scenes, unless the ray is aimed afterwards.
     if dtype == np.float64 or (aimed_from == "afar" and distance < 1e6):
         assert outcome.hits > 150
 
@@ -298,13 +298,14 @@ def test_far_origins(dtype, distance, aimed_from):
 def test_origins_as_far_as_numbers_go(distance):
     rng = np.random.default_rng(10)
     mesh = soup(rng, 61)
-    # With a slope that counts over so long a way: from a point on an axis to anywhere in the scene.
+    # With a slope that matters over this distance: from a point on an axis to anywhere in the scene.
     targets = points_on(rng, corners_of(mesh), 150)
     origins = np.eye(3)[rng.integers(3, size=150)] * rng.choice([-distance, distance], (150, 1))
     ways = (targets - origins) / distance
     assert check(mesh, origins, ways).hits > (30 if distance < 1e300 else 0)
     ways = np.array([w for w in itertools.product((-1.0, 0.0, 1.0), repeat=3) if any(w)])
-    # Along axes and diagonals through the origin a ray comes back to the scene without rounding, however far.
+    # Along axes and diagonals through the origin a ray returns to the scene without rounding, at any
+    # distance.
     outcome = check(mesh, -distance * ways, ways)
     near = check(mesh, -4.0 * ways, ways)
     assert outcome.hits == near.hits > 5
@@ -327,13 +328,13 @@ def test_directions_of_any_length(dtype, length):
 
 
 def test_directions_at_the_end_of_the_range():
-    # One step of 2⁻¹⁰²² and more along each axis or diagonal, in a scene so small that `t` fits an f64; what
-    # is shorter is no direction. Starting in the faces and outside, on the grid of the box.
+    # One step of 2⁻¹⁰²² and more along each axis or diagonal, in a scene so small that `t` fits an f64;
+    # shorter ones are no directions. Starting in the faces and outside, on the grid of the box.
     small = rw.Mesh(box(2).vertices * np.float32(2.0**-60), box(2).faces)
     ways = np.array([w for w in itertools.product((-1.0, 0.0, 1.0), repeat=3) if any(w)]) * 2.0**-1022
     starts = np.array([(0.5, 0.5, -1), (0, 0, 0), (3, 2, 2), (1, 0, 1), (1.25, 2.5, 0.75)]) * 2.0**-60
     for steps in (1.0, 3.0, 2.0**40):
-        # A part that is 2⁵² times shorter is subnormal, and still a slope.
+        # A component 2⁵² times smaller is subnormal, and still a slope.
         for slope in (0.0, 1.0, 2.0**-52):
             directions = ways * steps + slope * np.roll(ways, 1, axis=1)
             outcome = check(small, np.repeat(starts, 26, axis=0), np.tile(directions, (5, 1)))
@@ -341,7 +342,7 @@ def test_directions_at_the_end_of_the_range():
     assert not rw.Scene(small).occluded(starts[:, None], ways / 2).any()
 
 
-# Around 1e-22 and 1e20 the products of coordinates leave what an f32 holds.
+# Around 1e-22 and 1e20 the products of coordinates exceed the range of f32.
 SCALES = [1e-44, 1e-40, 1e-38, 1e-30, 1e-23, 1e-22, 1e-21, 1e-20, 1e-19, 1e-13, 1e-6]
 SCALES += [1e6, 1e12, 1e13, 1e18, 2e19, 1e20, 1e21, 4e21, 2e22, 1e30, 1e38]
 

@@ -61,7 +61,7 @@ def failures(scene, origins, directions, inside):
 def test_vertices_edges_and_along_edges_at_any_scale_and_place(scale, offset, dtype):
     rng = np.random.default_rng(1)
     mesh = placed(scale, offset, dtype)
-    # At 1e5 an f32 knows the vertices to a hundredth: the surface is another, but no less closed.
+    # At 1e5 an f32 resolves the vertices to a hundredth: the surface differs, but is still closed.
     scene = rw.Scene(mesh, precision="double" if dtype is np.float64 else "single")
     centre = (mesh.bounds[0] + mesh.bounds[1]) / 2
     failed = 0
@@ -104,7 +104,7 @@ def test_grazing_angles(angle):
     scene = rw.Scene(rw.Mesh(box.vertices.astype(np.float32), box.faces))
     failed = 0
     for _ in range(COUNT // BATCH):
-        # So low that the floor is met within half of the box.
+        # So low that the ray hits the floor within half of the box.
         height = angle * rng.uniform(0.1, 0.5, BATCH)
         turn = rng.uniform(0, 2 * np.pi, BATCH)
         origins = np.stack([*rng.uniform(-0.4, 0.4, (2, BATCH)), -1 + height], axis=1)
@@ -147,7 +147,7 @@ def test_directions_of_any_length(length):
 @pytest.mark.parametrize("size", [1e-40, 1e-30, 1e-20, 1e-10, 1e10, 1e20, 1e30, 1e38])
 def test_coordinates_of_any_size(size):
     rng = np.random.default_rng(6)
-    # Subnormal f32 coordinates are steps of 1e-45: the surface is another, but no less closed.
+    # Subnormal f32 coordinates have steps of 1e-45: the surface differs, but is still closed.
     mesh = placed(size, 0.0, np.float32)
     scene = rw.Scene(mesh)
     failed = 0

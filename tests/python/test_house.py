@@ -7,7 +7,7 @@ from pathlib import Path
 import raywright
 
 PACKAGE = Path(raywright.__file__).parent
-# Rooms, folders or files of the root, from the ground up; those of a floor do not know of each other.
+# Rooms, folders or files of the root, from the ground up; those of one floor do not depend on each other.
 FLOORS = [
     {"_core", "debug_log", "foreign_arrays", "html_tables"},
     {"arrays", "locks"},

@@ -57,7 +57,7 @@ def test_no_extra_is_for_exr_and_none_wants_a_package_that_nobody_maintains():
     )
     wanted = {name for listed in extras.values() for name in requirements(listed)}
     assert "blosc" not in wanted
-    # A pin would leave out every environment with another version.
+    # A pin would exclude all environments with another version.
     assert not any("==" in requirement for listed in extras.values() for requirement in listed)
 
 
@@ -75,7 +75,7 @@ def test_the_conda_recipe_wants_what_the_package_wants():
     assert run == {name.lower(): bound for name, bound in plain.items()}
     maturin = re.search('^requires = \\["maturin(.*)"\\]$', PROJECT, re.M)[1]
     assert f"maturin {maturin}" in recipe["requirements"]["host"]
-    # Extras, by the names that conda-forge has for their packages.
+    # Extras, by conda-forge's names of their packages.
     extras = requirements(one for listed in table_of_extras().values() for one in listed)
     for name, bound in requirements(recipe["requirements"]["run_constraints"]).items():
         assert extras[{"matplotlib-base": "matplotlib", "wgpu-py": "wgpu"}.get(name, name)] == bound
@@ -154,7 +154,7 @@ def test_pages_of_versions_stand_beside_each_other(tmp_path):
     assert not (site / "dev" / ".doctrees").exists()
     assert 'url=0.10.0/"' in (site / "index.html").read_text()
     assert 'url=../0.10.0/"' in (site / "stable" / "index.html").read_text()
-    # The same version again takes the place of the old one, files that it no longer has included.
+    # The same version again replaces the old one, with files no longer in it.
     (site / "dev" / "old.html").touch()
     publish(pages, site, "main")
     assert not (site / "dev" / "old.html").exists()

@@ -73,7 +73,7 @@ def test_any_transform_puts_a_point_where_it_says(size: float, far: float) -> No
     transforms[:, :3, :3] = (rng.normal(size=(30, 3, 3)) + 2 * np.eye(3)) * size
     transforms[:, :3, 3] = rng.uniform(-1, 1, (30, 3)) * far
     corners = mesh.vertices[mesh.faces].astype(np.float64)
-    # Towards points of the triangles, from as far away as these are large.
+    # Towards points of the triangles, from a distance of their own size.
     copy, face = rng.integers(0, 30, 4000), rng.integers(0, 50, 4000)
     weights = rng.dirichlet((1, 1, 1), 4000)
     inside = np.einsum("nk,nkd->nd", weights, corners[face])
@@ -84,7 +84,7 @@ def test_any_transform_puts_a_point_where_it_says(size: float, far: float) -> No
     scene = rw.Scene(rw.Instance(mesh, transforms))
     every = scene.intersect_all(target - directions, directions)
     ours = (every.instance == copy[every.ray]) & (every.primitive == face[every.ray])
-    # In the group's space rounding moves a ray by this, and t by as much over the angle under which it meets.
+    # In the group's space rounding moves a ray by this, and t by as much over the angle of incidence.
     error = 64 * np.finfo(np.float64).eps * (far / size + 10) * np.linalg.cond(linear)
     normal = np.cross(corners[face, 1] - corners[face, 0], corners[face, 2] - corners[face, 0])
     area = np.linalg.norm(normal, axis=1)
@@ -196,7 +196,7 @@ def test_copies_render_as_shapes_that_are_moved() -> None:
     camera = rw.Camera((3, -9, 6), (1, 0, 0), up=(0, 0, 1), width=32, height=24)
     inside = rw.Scene([floor, rw.Instance(block, matrix)], environment=1.0)
     moved = rw.Scene([floor, block.transformed(matrix)], environment=1.0)
-    # Paths among matte triangles and paths among instances take different numbers for roulette.
+    # Paths among matte triangles and among instances use different numbers for roulette.
     a, b = (rw.render(scene, camera, rw.Direct(2), samples=8, seed=3) for scene in (inside, moved))
     np.testing.assert_allclose(a.rgb, b.rgb, rtol=1e-5)
     assert a.rgb.std() > 0.01

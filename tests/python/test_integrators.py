@@ -55,7 +55,7 @@ CHECKED = rw.Checker(0.2, 0.6, 2)  # two cells to a unit; the camera sees one of
     [
         (rw.Phong(0.5, 0.25, 8, ambient=(0.1, 0.2, 0.7)), (0.1, 0.2, 0.7)),
         (rw.BlinnPhong(0.5, 0.25, 8, ambient=0), 0),
-        # As much as is reflected diffusely where nothing else is said, without the highlights.
+        # By default the diffuse reflectance, without the highlights.
         (rw.Phong(0.5, 0.25), 0.5),
         (rw.BlinnPhong((0.1, 0.2, 0.3), 0.25), (0.1, 0.2, 0.3)),
         (rw.Phong(0.5, 0.25, ambient=CHECKED), 0.2),
@@ -98,7 +98,7 @@ def test_path_of_depth_one_and_direct_are_the_same_estimator():
     scene, camera = rw.scenes.cornell_box(width=24, height=24)
     path = rw.render(scene, camera, rw.Path(max_depth=1), samples=64, progress=False)
     direct = rw.render(scene, camera, rw.Direct(), samples=64, progress=False)
-    # The special kernel and the general one: the same numbers, the same bits.
+    # The special kernel and the general one agree bit for bit.
     np.testing.assert_array_equal(path.rgb, direct.rgb)
 
 

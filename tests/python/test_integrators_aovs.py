@@ -25,7 +25,8 @@ def test_means_tend_to_what_fine_rays_see(room):
     seen = rw.aovs(scene, camera, samples=64)
     assert set(seen) == set(rw.AOVS)
     hits = scene.intersect(*camera.rays())
-    # Over a pixel of the wall that faces the camera, the depth hardly changes; a few have others in them too.
+    # Over a pixel of the wall that faces the camera, depth hardly changes; a few pixels have others in them
+    # too.
     hit = hits.hit
     back = hit & (hits.normal[..., 2] == -1) & (hits.position[..., 2] > 559)
     assert back.sum() > 30
@@ -73,12 +74,12 @@ def test_the_way_in_the_picture_is_that_of_what_moves_and_of_what_looks():
     way = rw.aovs(moving, camera, seen, samples=4)
     middle = way["screen_motion"][3:7, 3:7]
     np.testing.assert_allclose(middle, np.broadcast_to([0.5, 1.0], middle.shape), atol=1e-6)
-    # While the shutter is open for half of the time, things go half of their way.
+    # With the shutter open for half of the time, things move half of their way.
     short = rw.Orthographic((0, 0, 5), (0, 0, 0), shutter=(0.5, 1.0), **parallel)
     half = rw.aovs(moving, short, seen, samples=4)
     for name in seen:
         np.testing.assert_allclose(half[name][3:7, 3:7], way[name][3:7, 3:7] / 2, atol=1e-6)
-    # A camera that goes to the right sees what stands still go to the left.
+    # A camera that moves to the right sees static things move to the left.
     going = rw.Orthographic((0, 0, 5), (0, 0, 0), moved_to=rw.Pose((0.2, 0, 5), (0.2, 0, 0)), **parallel)
     still = rw.aovs(rw.Scene(ball), going, seen, samples=4)
     middle = still["screen_motion"][3:7, 3:7]

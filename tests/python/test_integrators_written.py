@@ -31,7 +31,7 @@ def assert_same_picture(one, other, blocks=8):
 
     off = np.abs(mean(one.rgb) - mean(other.rgb)) / np.maximum(np.hypot(error(one), error(other)), 1e-7)
     assert off.max() < 5
-    # And the errors are small enough for that to say something.
+    # The errors are small enough for a meaningful comparison.
     assert np.median(np.hypot(error(one), error(other)) / mean(other.rgb)) < 0.05
 
 

@@ -72,7 +72,7 @@ def test_glass_sends_light_both_ways_by_snell_and_fresnel(start):
     assert np.array_equal(through.any, goes)
     beyond = -np.sum(through.direction * here.normal, axis=1)[goes]
     assert beyond == pytest.approx(np.sqrt(1 - sine[goes] ** 2), abs=1e-9)
-    # Fresnel's law, and all light goes one way or the other: radiance is less by the square of the index.
+    # Fresnel's law, without absorption: radiance decreases by the square of the index.
     c, b = cosine[goes], beyond
     law = 0.5 * (((c - eta * b) / (c + eta * b)) ** 2 + ((eta * c - b) / (eta * c + b)) ** 2)
     assert back.weight[goes, 0] == pytest.approx(law, abs=1e-9)

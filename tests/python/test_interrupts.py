@@ -10,7 +10,7 @@ import pytest
 
 import raywright as rw
 
-# Leaves nothing to be chosen, so that the render begins at once.
+# Explicit options, so that the render begins at once.
 PLAIN = rw.Path(reuse=1, caustics=False)
 
 

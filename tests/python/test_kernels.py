@@ -29,17 +29,17 @@ ANYWHERE = re.compile(
 
 #: What kernels call by themselves, by the reason that makes it no loss.
 CALLED = {
-    # Where f32 and f64 cannot decide.
+    # Exact fallbacks where f32 and f64 cannot decide.
     "EdgeRay::meet_closely", "winners::alone", "looking::decide", "looking::decide_any", "Bests::decide",
     "parity::sign_of_t", "nearest::nearest_far_point", "SolidCone::nearest", "View::see",
     "Primitives::corners",
-    # Once a batch, or once where a stack is full.
+    # Once per batch, or once per full stack.
     "Stacks::new", "Stacks::spare", "Stacks::put_away", "Gate::new", "few::leaves", "coherence::is_coherent",
     "Boxes::new",
     # Shapes other than triangles, rare queries, their answers.
     "Contents::meet_objects", "RareQuery::initial_state", "RareQuery::offer_hit", "RareQuery::write_answer",
     "Few::ask", "Touches::push", "Telling::finish",
-    # Lanes that are looked up one by one.
+    # Scalar table lookups by lane.
     "halton::coordinate", "beckmann::leaning", "Filmed::reflectance",
     "LayeredPrincipled::evaluate", "LayeredPrincipled::sample",
     "LayeredPrincipledThin::evaluate", "LayeredPrincipledThin::sample",

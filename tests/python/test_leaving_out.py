@@ -46,7 +46,7 @@ def held(*shapes):
 def test_of_vertices_only_what_is_asked_for_is_kept(material, more, each):
     wanted = COUNT * each + (ENTRY if each else 0)
     assert held(mesh(material, **more)) - held(mesh(material)) == wanted
-    # A group keeps what a scene keeps.
+    # A group stores the same as a scene.
     inside, without = (rw.Instance(mesh(material, **kept), np.eye(4)) for kept in (more, {}))
     assert held(inside) - held(without) == wanted
 
@@ -95,7 +95,7 @@ def test_what_stands_still_keeps_no_second_place():
     there[:, 0, 3] = np.arange(50)
     none, still = held(mesh()), held(rw.Instance(mesh(), there))
     moving = held(rw.Instance(mesh(), there, transform_end=there))
-    # A matrix and its inverse against two matrices of twelve float64, and a second box in the nodes above.
+    # A matrix and its inverse against two matrices of twelve float64, plus a second box in the nodes above.
     assert still - none < 160 * 50
     assert moving - still > 96 * 50
 

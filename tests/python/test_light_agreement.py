@@ -89,7 +89,7 @@ SCENES = {
     "keyhole": lambda: keyhole(SIDE),
 }
 
-# Each with as many samples as tell its error: of light that comes to the lens few are bright.
+# Each with enough samples for a reliable error: few samples of light that arrives at the lens are bright.
 WAYS = {
     "path": (rw.Path(reuse=1, caustics=False), 256),
     "light traced": (rw.LightTraced(), 1024),
@@ -97,8 +97,8 @@ WAYS = {
     "progressive": (rw.ProgressivePhotonMap(), 256),
 }
 
-# Bars of two that err alike part once in 180 blocks, and those of blocks with few bright samples oftener:
-# 5 % of blocks may, and of the 64 of one pair of pictures three deviations of the binomial more.
+# Equal error bars are exceeded once in 180 blocks, and those of blocks with few bright samples more often: 5
+# % of blocks may, plus three deviations of the binomial for the 64 of one pair of pictures.
 MOST = 0.05
 MOST_OF_ONE = MOST + 3 * np.sqrt(MOST * (1 - MOST) / 64)
 

@@ -67,7 +67,7 @@ def test_what_shines_in_instances_and_what_moves():
 
 
 def test_a_caustic_is_found_with_less_noise():
-    # The floor under a ball of glass, from aside; paths are guided, or would not find it either.
+    # The floor under a ball of glass, from aside; paths are guided, since they would not find it either.
     scene = rw.Scene(
         [
             square(3, 0, material=rw.Diffuse(0.7)),
@@ -78,7 +78,7 @@ def test_a_caustic_is_found_with_less_noise():
     below = rw.Camera((1.5, -1.5, 0.5), (0, 0, 0), up=(0, 0, 1), fov=20, width=SIDE, height=SIDE)
     ours, _ = assert_same_picture(scene, below, paths=1024, path=rw.Path(reuse=1, caustics=True))
     plain = rw.render(scene, below, rw.Path(reuse=1, caustics=False), 256, progress=False)
-    # Of other paths than ours, and an eighth of their variance.
+    # With other paths than ours, and an eighth of their variance.
     truth = rw.render(scene, below, rw.LightTraced(), 2048, seed=1, progress=False).rgb.astype(float)
     off = [float(np.mean((image.rgb - truth) ** 2 / (truth**2 + 0.01))) for image in (ours, plain)]
     assert off[0] < off[1] / 10
@@ -111,8 +111,8 @@ def test_filters_with_negative_lobes():
         for way in (rw.LightTraced(), rw.Path(reuse=1))
     )
     error = np.sqrt(blocks(ours.standard_error.astype(float) ** 2 + theirs.standard_error.astype(float) ** 2))
-    # The mean of 64 pixels has an eighth of their error where they are independent. Light that came by itself
-    # is shared by the pixels about it, whose errors go together: twice as much is allowed for that.
+    # The mean of 64 independent pixels has an eighth of their error. Light that arrives at the camera by
+    # itself spreads over several pixels, whose errors correlate: twice as much is allowed for that.
     assert (np.abs(blocks(ours.rgb) - blocks(theirs.rgb)) < 5 * error / 4).all()
 
 

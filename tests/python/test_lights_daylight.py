@@ -54,7 +54,7 @@ def test_a_camera_sees_the_sky_of_the_formula(turbidity, degrees):
         expected = luminance_of_sky(
             turbidity, zenith, towards[2], towards @ (math.sin(zenith), 0, math.cos(zenith))
         )
-        # As long as no channel had to be cut off at 0.
+        # As long as no channel was clipped at 0.
         assert rgb.min() > 0
         assert float(rgb @ LUMINANCE) == pytest.approx(expected, rel=1e-4)
 
@@ -85,7 +85,7 @@ def test_a_floor_receives_the_integral_of_the_sky(turbidity, degrees):
     zenith = math.radians(degrees)
     sun = (math.sin(zenith), 0, math.cos(zenith))
     sky = rw.SunSky(sun, turbidity, up=(0, 0, 1), sun_scale=0)
-    # Some 16,000 draws for each channel, each of a weight that varies by less than its mean.
+    # Some 16,000 samples for each channel, with weights that vary by less than their mean.
     assert irradiance_of_channels(sky) == pytest.approx(level(turbidity, zenith), rel=0.02)
 
 

@@ -42,7 +42,7 @@ def test_spots_light_their_cone():
 
     assert_irradiance(lit(10), 3)
     assert_irradiance(lit(90, 90), 3)
-    # Aimed 30 degrees off: outside a cone of 29, on the way of the falloff of another, half-way in cosines.
+    # Aimed 30 degrees off: outside a cone of 29, and halfway in cosines through the falloff of another.
     aside = (2 * math.tan(math.radians(30)), 0, 0)
     assert lit(29, target=aside)[0] == 0
     half = math.degrees(math.acos(2 * math.cos(math.radians(30)) - math.cos(math.radians(10))))
@@ -189,7 +189,7 @@ def test_within_what_shines_inwards_there_is_light_from_everywhere(kind):
 
 
 def test_a_tube_that_shines_inwards():
-    # From the middle of its base the far end is seen under π r² / (r² + h²), and all else is wall.
+    # Seen from the middle of its base, the far end fills π r² / (r² + h²), and all else is wall.
     radius, height = 1.5, 2.0
     wall = rw.Cylinder((0, 0, -1), (0, 0, height), radius, capped=False, emission=rw.Emission(2, side="back"))
     expected = 2 * math.pi * height**2 / (radius**2 + height**2)
@@ -212,7 +212,7 @@ def test_what_shines_inwards_is_dark_from_outside():
 
 @pytest.mark.parametrize("integrator", [rw.Path(), rw.Path(reuse=2), rw.Path(caustics=True)], ids=repr)
 def test_a_ball_in_what_shines_inwards_and_reflects(integrator):
-    # All is L / (1 - albedo), the ball too, which shines and reflects as the shell does.
+    # All is L / (1 - albedo), also the ball, which emits and reflects like the shell.
     shell = rw.Sphere((0, 0, 0), 3, material=rw.Diffuse(0.5), emission=rw.Emission(1, side="back"))
     ball = rw.Sphere((0, 0, 0), 0.5, material=rw.Diffuse(0.5), emission=1)
     camera = rw.Camera((0, 0, 2), (0, 0, 0), fov=60, width=16, height=16)
@@ -223,7 +223,7 @@ def test_a_ball_in_what_shines_inwards_and_reflects(integrator):
 
 
 def test_lamps_in_instances_light_as_they_do_outside():
-    # Small lamps in copies, which chance would hardly find: π r² L cos² / d² each.
+    # Small lamps in copies, which random directions hardly hit: π r² L cos² / d² each.
     lamp = rw.Disk((0, 0, 0), (0, 0, -1), 1e-4, emission=1e8)
     matrices = np.tile(np.eye(4), (50, 1, 1))
     matrices[:, :3, 3] = [(0.1 * i - 2.5, 0.3, 1) for i in range(50)]

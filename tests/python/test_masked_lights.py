@@ -65,7 +65,7 @@ def test_a_lamp_lights_by_its_opacity(lamp, integrator):
     side = 0.5 / math.hypot(0.5, 2)
     whole = 4 * side * math.atan(side) if lamp is square else math.pi * 0.3**2
     assert_irradiance(lamp(rw.Mask(BLACK, 0.25), 3.0), integrator, 0.25 * 3 * whole)
-    # Of the other side, what the nearer one lets through.
+    # The other side adds the light that passes the nearer one.
     both = rw.Emission(3.0, side="both")
     again = 1 if lamp is square else 1 + 0.75
     assert_irradiance(lamp(rw.Mask(BLACK, 0.25), both), integrator, 0.25 * 3 * whole * again)
@@ -81,7 +81,7 @@ def test_the_inner_side_of_a_cut_open_sphere_is_seen_through_its_hole(integrator
 
 @pytest.mark.parametrize("integrator", ASKING, ids=lambda one: type(one).__name__)
 def test_what_shines_outwards_is_hidden_behind_nothing_that_is_there(integrator):
-    # Its upper half shines up, and nothing of that comes down.
+    # Its upper half shines up, and none of that comes down.
     assert irradiance(sphere(lower_half_open(), 2.0), integrator, 64) == (0, 0)
 
 

@@ -286,7 +286,7 @@ def test_highlights_are_those_of_the_distribution():
     alpha, tilt = 0.2, np.radians(20)
 
     def lit(distribution, slope):
-        # Looked at from straight above; a light whose half vector has this slope.
+        # From straight above; the half vector of the light has this slope.
         half = np.arctan(slope)
         way = np.array((np.sin(2 * half), 0, np.cos(2 * half)))
         metal = rw.Conductor(

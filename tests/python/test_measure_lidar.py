@@ -77,7 +77,7 @@ def test_near_and_far_are_not_measured():
     assert len(measure.lidar([BALL, rw.Plane((9.0, 0, 0), (1, 0, 0))], near)) == 0
     wall = rw.Plane((9.0, 0, 0), (1, 0, 0))
     assert np.allclose(measure.lidar(wall, near).range, 9.0, atol=0.01)
-    # Of a beam that half passes a post that is too near, half returns from the wall.
+    # A beam half blocked by a post that is too near returns half from the wall.
     post = rw.Mesh([(1, -9, 0), (1, -9, 9), (1, 9, 9), (1, 9, 0)], [(0, 1, 2), (0, 2, 3)])
     wide = measure.SpinningLidar(elevations=[0], columns=1, divergence=1.0, rays=100, min_range=2.0)
     scan = measure.lidar([post, wall], wide)
@@ -104,7 +104,7 @@ def test_noise_has_the_spread_that_was_asked_for():
     again = measure.lidar(wall, RASTER, range_sigma=0.03, range_sigma_share=0.004, seed=7, threads=1)
     assert np.array_equal(noisy.range, again.range)
     assert not np.array_equal(noisy.range, measure.lidar(wall, RASTER, range_sigma=0.03, seed=8).range)
-    # Losses take returns away, and change none.
+    # Losses remove returns, and change none.
     lossy = measure.lidar(wall, RASTER, range_sigma=0.03, range_sigma_share=0.004, seed=7, dropout=0.5)
     assert np.array_equal(lossy.range, noisy.range[np.isin(noisy.beam, lossy.beam)])
 
@@ -195,7 +195,7 @@ def test_a_wide_beam_returns_from_all_that_it_meets():
     # Returns closer than the scanner's resolution merge.
     coarse = measure.lidar(scene, measure.SpinningLidar(**options, resolution=4.0))
     assert coarse.range == pytest.approx(5 * scan.strength[0] + 8 * scan.strength[1], rel=1e-3)
-    # All rays of a beam are within half its divergence: nothing of the edge is met from beside it.
+    # All rays of a beam are within half its divergence: from beside the edge, none hits it.
     aside = measure.SpinningLidar(**options, start=0.51)
     assert np.allclose(measure.lidar(scene, aside).range, 8, rtol=1e-3)
 

@@ -35,7 +35,7 @@ def test_the_floor_of_a_street_sees_what_walls_leave():
     left, right = (np.cos(np.arctan2(height, width / 2 + side * z)) for side in (1, -1))
     assert found.rays == 8192
     assert (found.standard_error < 0.002).all()
-    # Three standard errors, of a seed that stands.
+    # Three standard errors, with a fixed seed.
     assert (np.abs(found.value - (left + right) / 2) < 3 * found.standard_error).all()
 
 
@@ -77,7 +77,7 @@ def test_errors_are_told_as_they_are():
     found = measure.sky_view(disk, points, (0, 0, 1), rays=256, seed=3)
     inside = np.abs(found.value - 0.8) < T95 * found.standard_error
     assert 0.90 < inside.mean() < 0.99
-    # And all of them together, as independent ones.
+    # All of them together behave like independent ones.
     assert abs(found.value.mean() - 0.8) < 4 * found.value.std() / 20
     # Low-discrepancy points err less than independent ones would.
     assert found.value.std() < 0.5 * np.sqrt(0.8 * 0.2 / 256)
@@ -239,7 +239,7 @@ def test_without_points_it_is_measured_at_the_middle_of_every_face():
     for measure in (rw.measure.sky_view, rw.measure.ambient_visibility):
         found, expected = measure(shapes), measure(scene, under)
         assert found.value.shape == (4,)
-        # Directions are the same, and places but for rounding, so that a ray along an edge may differ.
+        # Directions are equal, and places but for rounding, so that a ray along an edge may differ.
         assert np.allclose(found.value, expected.value, rtol=0, atol=1 / 256)
     sun = [(0, 1, 0), (0, 1, 1)]
     lit = rw.measure.solar_exposure(shapes, sun=sun)

@@ -110,7 +110,7 @@ def test_balls_of_a_rod_are_as_thick_as_it_is():
     side = np.abs(rod.face_normals[:, 2]) < 0.5
     found = measure.thickness(scene, method="sphere")[side]
     assert len(found) == 2 * sections
-    # A third of the way along its edge, where the middles of the triangles lie, the next side allows less.
+    # A third of the way along its edge, at the middles of the triangles, the next side limits the ball.
     flat = np.cos(np.pi / sections)
     assert (found <= 2 * flat * (1 + 1e-6)).all()
     off = np.tan(np.pi / sections) * flat / 3
@@ -228,7 +228,7 @@ def test_a_box_is_cut_in_a_rectangle_also_at_its_corners(z, area):
         assert np.allclose(line[:, 2], z, rtol=0, atol=1e-15)
     slanted = measure.cross_section(box, (0, 0, 0), (1, 1, 1))
     assert all(slanted.closed)
-    # Seen from the other side it is the same, and turns the other way round as seen from the first.
+    # Seen from the other side it is the same, with the reversed orientation.
     assert measure.cross_section(box, (0, 0, 0), (-1, -1, -1)).area == pytest.approx(slanted.area, rel=1e-12)
 
 
@@ -257,7 +257,7 @@ def test_a_torus_is_cut_in_two_loops_or_a_ring():
     assert along.closed == (True, True)
     polygon = 64 / 2 * np.sin(2 * np.pi / 64)
     assert along.area == pytest.approx(polygon * (2.5**2 - 1.5**2), rel=1e-9)
-    # Inside out, all is less than nothing.
+    # Inside out, all values are negative.
     torus.invert()
     assert measure.cross_section(torus, (0, 0, 0), (0, 0, 1)).area == pytest.approx(-along.area, rel=1e-9)
 

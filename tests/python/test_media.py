@@ -62,7 +62,7 @@ def test_so_is_one_of_noise_of_colours_and_of_glass():
     coloured = rw.Homogeneous(0.0, (0.1, 2.0, 9.0))
     assert_invisible(rw.Scene([ball(rw.Boundary(coloured))], environment=SKY))
     for roughness in (0.0, 0.4):
-        # Rough glass gives back on average what it loses, to half a percent.
+        # On average, rough glass compensates its loss to half a percent.
         glass = rw.Dielectric(1.4, roughness, interior=rw.Homogeneous(0.0, 3.0))
         image = rw.render(
             rw.Scene([ball(glass)], environment=SKY),
@@ -90,7 +90,7 @@ def test_cameras_and_lamps_stand_in_media():
     medium = rw.Homogeneous(0.0, 2.0)
     inside = rw.Camera((0.1, 0.2, 0.3), (1, 0, 0), fov=80, width=16, height=16)
     assert_invisible(rw.Scene([ball(rw.Boundary(medium))], environment=SKY), camera=inside)
-    # A lamp in a ball that absorbs, from outside of it and from within.
+    # A lamp in an absorbing ball, from outside of it and from within.
     lamp = rw.Sphere((0, 0, 0), 0.1, material=rw.Diffuse(0), emission=1.0)
     scene = rw.Scene([ball(rw.Boundary(rw.Homogeneous(2.0))), lamp])
     for distance, way in [(3.0, 0.9), (0.5, 0.4)]:
@@ -101,7 +101,7 @@ def test_cameras_and_lamps_stand_in_media():
 
 
 def test_shadows_are_as_deep_as_what_light_comes_through():
-    # A floor under a point light, through a slab that absorbs, in haze that does.
+    # A floor under a point light, through an absorbing slab, in absorbing haze.
     floor = rw.Plane((0, 0, -3), material=rw.Diffuse(0.5))
     slab = media.slab(rw.Homogeneous((1.0, 0.5, 0.0)))
     lamp = rw.PointLight((0, 0, 1), 4.0)
@@ -164,7 +164,7 @@ def test_numbers_stand_at_corners_or_in_the_middle_of_cells():
 
 
 def test_a_grid_of_the_same_numbers_is_as_a_medium_of_one():
-    # By a number of cells that makes several blocks, put elsewhere by a transform, and in an instance.
+    # Enough cells for several blocks, with a transform, and in an instance.
     sun = rw.DirectionalLight((0.3, 0.2, -1), (3, 2, 1))
     phase = rw.HenyeyGreenstein(0.4)
     even = rw.Homogeneous((0.2, 0.4, 0.1), (1.0, 2.0, 0.5), phase)
@@ -224,11 +224,11 @@ def test_of_what_overlaps_the_greatest_priority_is_there():
 
     thin, thick = rw.Homogeneous(1.0), rw.Homogeneous(3.0)
     for thin_first in (True, False):
-        # From 0 to 2 and from 1 to 3, with one or the other in the middle; of the same priority, the later.
+        # From 0 to 2 and from 1 to 3, with one or the other in the middle; at equal priority, the later one.
         for priorities, depth in [((1, 0), 1 + 1 + 3), ((0, 1), 1 + 3 + 3), ((0, 0), 7 if thin_first else 5)]:
             both = [box(0, 2, rw.Boundary(thin, priorities[0])), box(1, 3, rw.Boundary(thick, priorities[1]))]
             assert image(*(both if thin_first else both[::-1])) == pytest.approx(math.exp(-depth), rel=1e-5)
-    # Two that are alike are two, and haze is where nothing else is.
+    # Two equal ones count twice, and haze fills the rest.
     apart = [box(0, 1, rw.Boundary(thin)), box(2, 3, rw.Boundary(thin))]
     assert image(*apart) == pytest.approx(math.exp(-2), rel=1e-5)
     touching = [box(0, 1, rw.Boundary(thin)), box(1, 2, rw.Boundary(thin)), box(2, 3, rw.Boundary(thick))]
@@ -239,7 +239,7 @@ def test_of_what_overlaps_the_greatest_priority_is_there():
     assert image(behind, box(0, 3, rw.Boundary(thick)), medium=rw.Homogeneous(0.1)) == pytest.approx(
         math.exp(-9 - 0.1 * 6), rel=1e-4
     )
-    # Copies of one thing, whose media are numbered each.
+    # Copies of one object, with separate numbers for their media.
     copies = np.tile(np.eye(4), (3, 1, 1))
     copies[:, 0, 3] = [0, 1, 1.5]
     many = rw.Instance([box(0, 1, rw.Boundary(thin))], copies)

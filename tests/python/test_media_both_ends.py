@@ -123,7 +123,7 @@ def test_cameras_within_and_without(look):
 
 @pytest.mark.parametrize("way", WAYS)
 def test_a_ball_that_scatters_and_absorbs(way):
-    # Optical radius 1, albedo 0.5, solved as an integral equation: what is missing of the sky's light.
+    # Optical radius 1, albedo 0.5, solved as an integral equation: the lost share of the sky's light.
     kind, samples = WAYS[way]
     ball = rw.Sphere((0, 0, 0), 1.0, material=rw.Boundary(media.of_depth(1.0, 0.5)))
     scene = rw.Scene([ball], environment=SKY)

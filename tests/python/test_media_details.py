@@ -37,7 +37,7 @@ def floor(**how):
 )
 @pytest.mark.parametrize("how", ["reflects", "shines"])
 def test_haze_leaves_textures_filtered(integrator, how):
-    # Far away a checker is finer than pixels: unfiltered, a sample sees black or white; filtered, grey.
+    # Far away a checker is finer than pixels: unfiltered samples are black or white, filtered ones grey.
     texture = picture_on_a_floor()
     looks = {"material": rw.Diffuse(texture)} if how == "reflects" else {"emission": texture}
     ground = floor(**{"material": BLACK, **looks})
@@ -86,7 +86,7 @@ def lit(integrator, medium, samples=1024):
 def test_haze_leaves_as_many_light_samples(kind):
     once, often = lit(kind(1), HAZE), lit(kind(16), HAZE)
     clear = lit(kind(16), None)
-    # The error of 16 draws is a quarter, and less where each has its own share of the lights.
+    # The error of 16 light samples is a quarter, and less if they are stratified over the lights.
     assert often[1] < 0.35 * once[1]
     assert math.isclose(often[1], clear[1], rel_tol=0.3)
     # Five standard errors, which chance exceeds once in a million.
@@ -104,6 +104,6 @@ def test_haze_leaves_as_many_surface_samples():
         image = rw.render(scene, camera, how, samples=256, seed=2, sampler=rw.Independent(), progress=False)
         return float(image.rgb[0, 0, 1]), float(image.standard_error[0, 0].max())
 
-    # The same numbers make the same picture, and another than one direction a sample does.
+    # Equal random numbers make the same picture, unlike that of one direction per sample.
     np.testing.assert_allclose(metal(8, HAZE), metal(8, None), rtol=1e-5)
     assert not math.isclose(metal(8, HAZE)[1], metal(1, HAZE)[1], rel_tol=0.1)

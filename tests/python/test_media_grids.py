@@ -17,7 +17,7 @@ SKY = rw.ConstantEnvironment(1.0)
 BOX = [(-1, -1, -3), (1, 1, 0)]
 ONE = np.ones((1, 1, 1))
 RAMP = np.linspace(0, 1, 33).reshape(1, 1, 33)
-# Something by wavelength, out of sight, so that all of the scene is.
+# A spectral material out of sight makes the whole scene spectral.
 ASIDE = rw.Sphere((500, 0, 0), 1.0, material=rw.Diffuse(rw.Spectrum([360, 830], [0.2, 0.6])))
 WAYS = pytest.mark.parametrize("by", ["colours", "wavelengths"])
 
@@ -87,7 +87,7 @@ def test_an_albedo_that_is_the_same_everywhere_is_what_absorption_and_scattering
 def test_colours_of_the_density_dim_each_by_its_own():
     colours = np.array([0.2, 1.0, 0.5])
     smoke = rw.GridMedium(RAMP[..., None] * colours, BOX, absorption=(1.0, 0.5, 2.0))
-    # The mean of the ramp over a way of 3.
+    # The mean of the ramp over a distance of 3.
     expected = np.exp(-1.5 * colours * (1.0, 0.5, 2.0))
     assert_looks(scene(smoke, environment=SKY), 512, expected)
 
@@ -120,7 +120,7 @@ def test_a_slab_of_one_temperature_is_as_bright_as_its_depth_says(by, depth):
 def test_a_ramp_of_temperatures_is_what_quadrature_says():
     """From 400 K below to 3,000 K above, where the density ends: ∫ s(z) B(T(z)) exp(-∫ s) dz."""
     fire = rw.GridMedium(1 - RAMP, BOX, absorption=1.5, temperature=400 + 2600 * RAMP, brightness=10.0)
-    # By Gauss from 500 K on: from z up to 1 the density is (1 - z)² / 2 of a way of 3.
+    # Gauss quadrature from 500 K on: from z up to 1 the optical depth is 3 times (1 - z)² / 2.
     nodes, weights = np.polynomial.legendre.leggauss(60)
     first = 100 / 2600
     z, weights = first + (1 - first) * (nodes + 1) / 2, (1 - first) * weights / 2
@@ -266,7 +266,7 @@ def test_arrays_that_cannot_be_read_are_refused_with_their_name(tmp_path):
     path = tmp_path / "fog.npy"
     np.save(path, np.ones((2, 2, 2), np.float32))
     whole = path.read_bytes()
-    # A header that does not end, one that says more than there is, and one cut short.
+    # A header without an end, one with too large a size, and a truncated one.
     for broken in (
         whole.replace(b"}", b" "),
         whole.replace(b"(2, 2, 2)", b"(9999, 99999, 99999)"),

@@ -97,7 +97,7 @@ def test_depths_count_what_scatters(depth):
 
 @slow
 def test_a_caustic_in_haze_is_that_of_light_tracing():
-    # Of a point of light behind a ball of glass no path finds it.
+    # No path finds a point light behind a ball of glass.
     glass = rw.Sphere((0, 0, 1.4), 0.3, material=rw.Dielectric(1.5))
     spot = rw.SpotLight((0, 0, 2.6), (0, 0, 0), 30.0, angle=12, falloff=2)
     scene = rw.Scene([FLOOR, glass, haze(0.05, 0.4)], lights=[spot])
@@ -133,7 +133,7 @@ def test_a_slab_reflects_what_discrete_ordinates_say():
     look = rw.Orthographic((0, 0, 0.5), (0, 0, -1), up=(0, 1, 0), width=8, height=8, scale=0.9)
     mean, error = told(scene, look, rw.ProgressivePhotonMap(4000), 32)
     assert error < 0.01 * mean
-    # Light is less even by the surface, where a little bias is left. Of six, five standard errors are
+    # Light is less even near the surface, where a little bias remains. Over six, five standard errors are
     # exceeded once in 250 times.
     assert abs(mean - 0.0991191855366) < 5 * error + 0.01 * mean
 
@@ -149,7 +149,7 @@ def test_nobody_sees_a_white_ball_in_even_light(way):
 
 
 def test_bias_is_told():
-    # By a lamp in dense fog light falls off within the radius of balls. In them it is brighter on average.
+    # Near a lamp in dense fog, light falls off within the radius of balls: their mean is brighter.
     fog = rw.Homogeneous(2.0, 2.0)
     scene = rw.Scene([], lights=[rw.PointLight((0, 0, 0), 1.0)], medium=fog)
     look = rw.Orthographic((0.5, 0, 0), (0.5, 0, -1), up=(0, 1, 0), scale=0.05, width=8, height=8)

@@ -51,7 +51,7 @@ def test_no_power_is_lost():
     on_floor = found.powers[found.shape_id == 0].sum(0)
     np.testing.assert_allclose(total(found, on_floor), found.emitted, rtol=1e-6)
     assert found.absorbed[0] > 0.1 * found.emitted[0]
-    # By its first event alone: what was scattered there has not gone on.
+    # By its first event alone: scattered photons have not continued.
     first = scene.photons(5000, max_depth=1, roulette_depth=NEVER)
     within = first.shape_id == -1
     assert within.any()
@@ -76,7 +76,7 @@ def test_colours_are_absorbed_on_average_as_they_should_be():
     error = met.std(0, ddof=1) / math.sqrt(8)
     expected = 1 + scattering / absorption
     assert (error < 0.01 * expected).all(), error / expected
-    # Of eight, five standard errors are exceeded once in 600 times.
+    # Over eight, five standard errors are exceeded once in 600 times.
     assert (abs(met.mean(0) - expected) < 5 * error).all(), (met.mean(0), error)
     taken = np.array([found.absorbed for found in runs])
     assert (abs(taken.mean(0) - 1) < 5 * taken.std(0, ddof=1) / math.sqrt(8) + 1e-9).all()
@@ -100,7 +100,7 @@ def test_a_ball_takes_its_share_of_even_light():
     shares = np.array([scene.photons(40_000, seed=seed).absorbed[1] for seed in range(10)]) / (4 * math.pi**2)
     mean, error = shares.mean(), shares.std(ddof=1) / math.sqrt(10)
     assert error < 0.005 * mean
-    # Of ten, four and a half standard errors are exceeded once in 600 times.
+    # Over ten, four and a half standard errors are exceeded once in 600 times.
     assert abs(mean - 0.457742891) < 4.5 * error
 
 

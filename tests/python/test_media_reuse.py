@@ -75,7 +75,7 @@ def test_the_mean_is_what_it_is_without(name, depth):
         np.array([render(scene, reuse, 32, i, depth, 0).rgb for i in range(count)], dtype=float)
         for reuse in (1, 4)
     )
-    # By Student's t with some 58 degrees of freedom: of 192 numbers of a picture one lies beyond 6.5 standard
+    # By Student's t with some 58 degrees of freedom: one of 192 numbers of a picture lies beyond 6.5 standard
     # errors once in a hundred thousand cases; a mean of all, whose errors are those of pictures, beyond 4.2
     # once in 10,000.
     for a, b, most in ((one, shared, 6.5), (one.mean(axis=(1, 2)), shared.mean(axis=(1, 2)), 4.2)):

@@ -70,7 +70,7 @@ def test_transmittance_keeps_its_digits_at_any_depth():
     np.testing.assert_allclose(
         scene.transmittance((0.1, 0.2, 5), (0, 0, -1)), (math.exp(-14), math.exp(-300), 1), rtol=1e-12
     )
-    # From within, in lengths of the direction, and of many rays at once.
+    # From within, in units of the direction's length, and for many rays at once.
     np.testing.assert_allclose(scene.optical_depth((0, 0, -1), (0, 0, -2), t_max=0.5)[0], 14 / 3, rtol=1e-12)
     found = scene.transmittance(np.zeros((2, 1, 3)), [(0, 0, 1.0), (0, 0, -1), (1, 0, 0)])
     assert found.shape == (2, 3, 3)
@@ -92,7 +92,7 @@ def test_media_in_one_another_and_around_all():
     clear = rw.Scene(shapes[2])
     assert (clear.optical_depth((0, 0, 3), (0, 0, -1)) == 0).all()
     assert (clear.transmittance((0, 0, 3), (0, 0, -1)) == 1).all()
-    # In a copy, lengths are those of the world.
+    # In a copy, lengths are in world units.
     copy = rw.Scene(rw.Instance(smoke(np.full((2, 2, 2), 0.5)), np.diag([2.0, 2.0, 2.0, 1.0])))
     np.testing.assert_allclose(copy.optical_depth((0, 0, 9), (0, 0, -1)), 3.0, rtol=1e-12)
 
@@ -113,7 +113,7 @@ def test_scenes_by_wavelength_tell_what_those_in_colours_do():
 
 @pytest.mark.parametrize("noise", [0.0, 1e-3, 0.3])
 def test_shadows_of_thin_blocks_are_near_enough(noise):
-    # 14 in all, of blocks that vary too little to be gone through cell by cell.
+    # 14 in all, with blocks that vary too little for a walk through cells.
     density = 14 / 3 + noise * np.random.default_rng(1).uniform(-1, 1, (64, 64, 64))
     box = smoke(density)
     sun = rw.DirectionalLight((0, 0, -1), math.pi)
@@ -165,7 +165,7 @@ def test_what_is_seen_through_smoke_that_only_absorbs_is_exact():
     "density", [np.full((4, 4, 4), 0.6), BLOBS * 0.4, BLOBS * 4], ids=["even", "uneven", "deep"]
 )
 def test_white_smoke_in_an_even_light_is_not_seen(integrator, density):
-    # Its single scattering and all further ones give back what it takes.
+    # Single and multiple scattering compensate the loss.
     scene = rw.Scene(smoke(density, absorption=0.0, scattering=1.0), environment=1.0)
     camera = rw.Camera((0.4, 0.2, 4), (0, 0, -1.5), up=(0, 1, 0), fov=15, width=8, height=8)
     image = rw.render(scene, camera, integrator, samples=256, seed=4, progress=False)
@@ -194,7 +194,7 @@ def test_an_even_grid_looks_as_what_is_even_everywhere():
         off = (a[0].mean((0, 1)) - b[0].mean((0, 1))) / np.hypot(
             *(np.sqrt((e**2).mean((0, 1)) / 64) for _, e in (a, b))
         )
-        # Of three colours, five standard errors: once in half a million.
+        # Over three colours, five standard errors: once in half a million.
         assert (np.abs(off) < 5).all(), off
 
 

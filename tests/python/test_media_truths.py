@@ -103,7 +103,7 @@ def test_a_ball_that_absorbs_lets_through_what_its_chords_do(depth, share):
 
 
 def test_an_absorbing_slab_lets_through_diffuse_light():
-    # 2 E3(0.7): what a matt sheet under it reflects, of half of the light.
+    # The slab transmits 2 E3(0.7) of diffuse light, and the matt sheet below reflects half.
     scene = rw.Scene([media.slab(media.of_depth(0.7, 0.0)), ground(-1.5, 0.5)], environment=SKY)
     below = media.looking(distance=-1.2)
     for way in (rw.Path(1), rw.Direct()):
@@ -117,7 +117,7 @@ def test_gas_that_glows_before_a_wall_that_does():
     mean, error = media.seen(scene, media.looking(), 1)
     assert mean == pytest.approx(2.27215385986824, rel=1e-6)
     assert error < 1e-7
-    # The same of a grid, which must be asked at random.
+    # The same by a grid, which needs random sampling.
     box = [(-1, -1, -3), (1, 1, 0)]
     flame = rw.GridMedium(np.full((2, 2, 9), 2.0), box, absorption=0.4, emission=0.8)
     shape = rw.Box(*box, material=rw.Boundary(flame))
@@ -161,7 +161,7 @@ def test_half_spaces_scatter_sunlight_where_they_should(albedo, expected):
     [pytest.param(60, marks=slow), pytest.param(600, marks=slow), pytest.param(6000, marks=slow), 1e6],
 )
 def test_no_optical_depth_is_lost_at_a_boundary(extinction):
-    # However dense it is: half a space's albedo, of 0.9, from straight above.
+    # Independent of density: half a space's albedo, of 0.9, from straight above.
     medium = rw.Homogeneous(0.1 * extinction, 0.9 * extinction)
     box = rw.Box((-5, -5, -1), (5, 5, 0), material=rw.Boundary(medium))
     scene = rw.Scene([box, ground(-2.0)], environment=SKY)
@@ -234,7 +234,7 @@ def test_light_that_is_scattered_once(w, depth, mu0, mu, g, azimuth, expected):
     sun = rw.DirectionalLight((math.sqrt(1 - mu0 * mu0), 0, -mu0), math.pi)
     scene = rw.Scene([media.slab(media.of_depth(depth, w, g))], lights=[sun])
     up, down = expected
-    # Light goes on towards the viewer, so that the viewer looks from the other side.
+    # Light continues towards the viewer, so that the viewer looks from the other side.
     camera = media.looking(mu, azimuth=azimuth + 180)
     media.assert_seen(scene, camera, 1024, up, rw.Path(1))
     if down is not None:
@@ -260,7 +260,7 @@ def test_the_glow_around_a_lamp_in_fog(s, k, g, ahead, aside, expected):
 
 
 def test_the_glow_in_fog_so_thin_that_nothing_is_dimmed():
-    # I s π / (4π h), as s goes to 0, whatever a distance sampler may do.
+    # I s π / (4π h), as s goes to 0, for any distance sampler.
     scene = rw.Scene([], lights=[rw.PointLight((0, 1, 0), 1.0)], medium=rw.Homogeneous(0, 1e-9))
     camera = rw.Orthographic((-1e5, 0, 0), direction=(1, 0, 0), scale=1e-6, width=4, height=4)
     mean, error = media.seen(scene, camera, 64, rw.Path(1))
@@ -316,8 +316,8 @@ def test_a_ball_that_scatters_and_absorbs():
 @pytest.mark.parametrize("g", [0.0, 0.9, -0.9])
 @pytest.mark.parametrize("depth", [0.1, 1.0, 10.0])
 def test_the_mean_way_through_a_ball_is_that_of_its_chords(g, depth):
-    # 4 V / S, however light is scattered (Blanco and Fournier 2003): gas that scatters all and gives off 1
-    # per length shows how long ways are.
+    # 4 V / S, for any scattering (Blanco and Fournier 2003): gas that scatters all and emits 1 per length
+    # shows the mean path length.
     phase = rw.HenyeyGreenstein(g)
     gas = rw.Homogeneous(0.0, depth, phase, emission=1.0)
     scene = rw.Scene([rw.Sphere((0, 0, 0), 1.0, material=rw.Boundary(gas))])

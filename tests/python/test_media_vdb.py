@@ -75,7 +75,7 @@ def test_numbers_that_are_left_out_and_how_the_others_are_packed(said, rest, exp
     file = _Reader(bytes([said]) + rest + length + packed)
     found = _Numbers(file, compression, False).read(8, bytes([0b1001]))
     assert found[:4].tolist() == expected
-    # And as they are, where that is shorter.
+    # And stored raw, where that is shorter.
     plain = _Reader(bytes([6]) + (b"" if compression == 2 else struct.pack("<q", -32)) + bytes(range(32)))
     assert _Numbers(plain, compression, False).read(8, b"\0").tobytes() == bytes(range(32))
 

@@ -47,7 +47,8 @@ def assert_agree(ours, theirs):
 
 
 def test_radii_of_nothing_are_connections_alone():
-    # The disk of photons tends to nothing, and with it the weight of merging: single precision sees none.
+    # The disk of photons tends to nothing, and with it the weight of merging, down to zero in single
+    # precision.
     scene, camera = rw.scenes.cornell_box(width=SIDE, height=SIDE)
     plain = picture(scene, camera, rw.Bidirectional(4), 8)
     merged = picture(scene, camera, rw.Bidirectional(4, merge=True, radius=1e-6), 8)
@@ -66,22 +67,22 @@ def test_a_room_is_that_of_paths(depth):
     error = np.sqrt(blocks(truth.standard_error.astype(float) ** 2) / 16)
     ours = seeds(scene, camera, rw.Bidirectional(depth, merge=True, radius=25.0, photons=2000), 16, 6)
     assert_agree(ours, (blocks(truth.rgb), error, 0.0))
-    # It does gather: disks have some bias.
+    # Merging is active: disks have some bias.
     assert ours[2].max() > 0
 
 
 def test_a_lamp_and_an_eye_both_behind_glass():
-    # No way but merging finds a point in glass that is seen through glass, so that photon maps see as much.
+    # Only merging finds a point in glass seen through glass, so that photon maps have the same picture.
     shapes, _ = behind_glass()
     scene = rw.Scene(shapes, lights=[rw.PointLight((0, 0, 1.2), 1.0)])
     look = rw.Camera((0, -3.5, 1.2), (0, 0, 0.1), up=(0, 0, 1), fov=25, width=SIDE, height=SIDE)
     assert picture(scene, look, rw.Bidirectional(), 4).rgb.max() == 0
-    # Light that the block holds back by total reflection would go round for thousands of bounces.
+    # Light held by total reflection would need thousands of bounces.
     merging = rw.Bidirectional(40, merge=True, radius=0.06, photons=3000)
     progressive = rw.ProgressivePhotonMap(3000, 0.06, max_depth=40)
     ours, theirs = (seeds(scene, look, way, 8, 6, sampler=rw.Sobol(2)) for way in (merging, progressive))
     assert_agree(ours, theirs)
-    # Nor is there anything else to be weighed with it: it is the same estimate by the same photons.
+    # No other strategy competes: it is the same estimate by the same photons.
     np.testing.assert_allclose(ours[0], theirs[0], rtol=0.05)
 
 
@@ -106,7 +107,7 @@ def test_bits_go_by_the_seed_alone(tmp_path):
     way = rw.Bidirectional(merge=True)
     options = {"samples": 20, "seed": 5, "progress": False}
     one = rw.render(scene, look, way, threads=1, **options)
-    # Maps that a scene has kept are no matter.
+    # Photon maps kept with a scene make no difference.
     fresh, _ = rw.scenes.cornell_box(width=12, height=10)
     two = rw.render(fresh, look, way, threads=2, **options)
     for name in ("rgb", "standard_error", "bias"):

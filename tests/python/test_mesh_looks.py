@@ -25,7 +25,7 @@ PIXELS = np.array([[(255, 0, 0)] * 2, [(0, 255, 0)] * 2, [(0, 0, 255)] * 2, [(25
 
 
 def library(name):
-    # One that is there may lack a library of the system.
+    # An installed library may lack a system library.
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         return pytest.importorskip(name, exc_type=ImportError)
@@ -41,7 +41,7 @@ def test_split_corners_keep_vertices_and_coordinates(faces, count, seed):
     assert np.array_equal(sources[:count], np.arange(count))
     assert np.array_equal(sources[new], corners)
     assert np.array_equal(placed[new], uv)
-    # No vertex more than there are pairs of a vertex and a coordinate.
+    # At most one vertex for each pair of a vertex and a coordinate.
     pairs = {(int(c), *map(float, t)) for c, t in zip(corners, uv, strict=True)}
     assert len(sources) == len(pairs) + count - len(set(corners.tolist()))
 
@@ -196,7 +196,7 @@ def test_textures_of_open3d_are_those_of_the_file(tmp_path):
     o3d = library("open3d")
     path = squares(tmp_path)
     expected = seen(path)
-    # Tensors have one material, the first of a file.
+    # Tensor meshes have one material, the first of a file.
     legacy = o3d.io.read_triangle_mesh(str(path))
     assert np.array_equal(seen(legacy), expected)
     assert [shape.cells.tolist() for shape in rw.Scene(legacy).shapes] == [[0, 1], [2]]
@@ -227,7 +227,7 @@ print(json.dumps([*told, mesh.uv[mesh.faces].tolist(), mesh.material.base_color.
 
 @pytest.mark.slow
 def test_textures_of_blender_are_those_of_the_file(tmp_path):
-    # In a process of its own: what is in Blender is there for all tests.
+    # In a separate process: Blender's data would be shared by all tests.
     squares(tmp_path)
     done = subprocess.run([sys.executable, "-c", BLENDER], capture_output=True, text=True, cwd=tmp_path)
     if "No module named 'bpy'" in done.stderr:

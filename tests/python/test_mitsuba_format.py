@@ -80,7 +80,7 @@ def test_names_stand_for_metals_and_indices():
     gold = front({"type": "conductor", "material": "Au"})
     assert np.allclose(gold.eta, (0.143124, 0.374962, 1.442346), rtol=1e-4)
     assert np.allclose(gold.k, (3.983135, 2.385747, 1.603086), rtol=1e-4)
-    # Beside spectra metals have theirs.
+    # Among spectra metals have spectra.
     even = {"type": "spectrum", "value": [(300, 1.0), (900, 1.0)]}
     ball = {"type": "sphere", "bsdf": {"type": "conductor", "material": "Ni_palik"}}
     read = shot(lamp={"type": "constant", "radiance": even}, ball=ball).scene.shapes[0].material.front
@@ -104,7 +104,7 @@ def test_colours_are_told_in_any_way():
     even = seen({"type": "spectrum", "value": [(300, 0.5), (900, 0.5)]})
     assert even == rw.Spectrum([300, 900], [0.5, 0.5])
     assert np.allclose(even.reflected_rgb, 0.5, rtol=0, atol=1e-12)
-    # The walls of the Cornell box, as Mitsuba (3.9) has them.
+    # The walls of the Cornell box, with values of Mitsuba (3.9).
     walls = {
         "_WHITE": (0.7350, 0.7356, 0.7363),
         "_RED": (0.4913, 0.0492, 0.0509),
@@ -116,7 +116,7 @@ def test_colours_are_told_in_any_way():
         )
         wall = seen({"type": "spectrum", "value": measured})
         assert np.allclose(wall.reflected_rgb, expected, rtol=0, atol=4e-3)
-    # Light that is even over wavelengths is reddish: white is D65.
+    # An equal-energy spectrum is reddish: white is D65.
     lamp = shot(one={"type": "constant", "radiance": {"type": "spectrum", "value": 2.0}}).scene.environment
     assert np.allclose(lamp.radiance, 2 * np.array([1.2047939, 0.948291, 0.908916]), rtol=0, atol=2e-6)
     d65 = shot(one={"type": "constant", "radiance": {"type": "d65", "scale": 2.0}}).scene.environment
@@ -145,7 +145,7 @@ def test_spectra_are_told_in_any_way(tmp_path):
     )
     ball = rw.load(tmp_path / "scene.xml").scene.shapes[0]
     assert ball.material.front.reflectance == told
-    # As the spectral variants of Mitsuba (3.9) have it, within their noise.
+    # Values of Mitsuba's spectral variants (3.9), within their noise.
     assert ball.emission.rgb == pytest.approx((733.35, 350.0, 112.98), rel=4e-3)
     for bad, why in [
         ({"type": "irregular", "wavelengths": "400 500", "values": "1 2 3"}, "as many as the 2 wavelengths"),
@@ -199,7 +199,7 @@ def test_inside_out_shapes_shine_inwards():
     inwards = rw.Emission(2.0, side="back")
     assert emission("sphere", flip_normals=True) == emission("sphere", to_world=mirrored) == inwards
     assert emission("sphere") == emission("sphere", flip_normals=True, to_world=mirrored) == (2.0, 2.0, 2.0)
-    # In Mitsuba (3.9) a cylinder that is mirrored keeps its outside.
+    # In Mitsuba (3.9) a mirrored cylinder keeps its outside.
     assert emission("cylinder", flip_normals=True) == inwards
     assert emission("cylinder", to_world=mirrored) == (2.0, 2.0, 2.0)
     # Other flipped shapes have their front there: the normal points to the lit side.
@@ -254,7 +254,7 @@ def test_integrators_samplers_and_filters():
     assert read(rfilter={"type": "lanczos"}).filter == rw.LanczosFilter(3)
     cropped = read(rfilter={"type": "tent"}, border=False).filter
     assert cropped == rw.CroppedFilter(rw.TriangleFilter(1.0))
-    # A pixel's own square never lies beyond.
+    # The box filter of one pixel does not reach beyond.
     assert read(rfilter={"type": "box"}, border=False).filter == rw.BoxFilter()
 
 
@@ -424,7 +424,7 @@ def test_black_bodies_shine_as_hot_as_they_are():
     white = shine(6500.0)
     assert np.ptp(white) / white.mean() < 0.08
     assert np.allclose(shine(6500.0, scale=0.5), white / 2, rtol=1e-12)
-    # At 560 nm, where the eye sees best, Planck's law has this; the luminance is a mean about it.
+    # Planck's law at 560 nm, near the peak of the eye's sensitivity; the luminance is a mean around it.
     planck = 1.191042972e-16 / 560e-9**5 / np.expm1(0.01438776877 / (560e-9 * 6500)) * 1e-9
     assert white @ (0.212671, 0.715160, 0.072169) == pytest.approx(planck, rel=0.02)
 

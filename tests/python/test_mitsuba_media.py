@@ -41,7 +41,7 @@ def test_what_is_within_a_shape():
     assert within({"type": "null"}, told).interior == rw.GridMedium(
         np.ones((1, 1, 1)), transform=moved, absorption=0.5, scattering=1.5, at="centres"
     )
-    # Nobody sees what is in a wall.
+    # The inside of a wall is invisible.
     assert (
         within({"type": "diffuse"}, SMOKE)
         == shot(one={"type": "sphere", "b": {"type": "diffuse"}}).scene.shapes[0].material
@@ -118,7 +118,7 @@ def test_what_is_around_all_shapes():
     assert shot(one={**ball, "exterior": SMOKE}).scene.medium == smoke
     seen = {"type": "scene", "fog": {**SMOKE, "id": "fog"}, "one": ball}
     assert rw.from_mitsuba({**seen, "eye": {**EYE, "m": {"type": "ref", "id": "fog"}}}).scene.medium == smoke
-    # A sensor in a ball of smoke has it around it, and the scene has not.
+    # A sensor in a ball of smoke is within it, and the scene is not.
     inside = {"type": "sphere", "interior": {"type": "ref", "id": "fog"}, "bsdf": {"type": "null"}}
     assert (
         rw.from_mitsuba(

@@ -97,7 +97,7 @@ def test_a_straight_curve_is_the_hull_of_two_balls(ends):
 
     x, w = np.polynomial.legendre.leggauss(160)
     heights = 0.5 * (length + b - a) + 0.5 * (length + a + b) * x
-    # The first hit from outside is that of the outermost part.
+    # The first hit from outside is on the outermost part.
     hits = rw.Scene(rw.Mesh(tube.vertices, tube.faces)).intersect(
         np.stack([np.full(160, -5.0), np.zeros(160), heights], -1), np.broadcast_to((1.0, 0.0, 0.0), (160, 3))
     )
@@ -172,9 +172,9 @@ def test_height_fields_stray_from_their_patches_by_a_sixteenth_of_the_twist(tmp_
     down = np.broadcast_to((0.0, 0.0, -1.0), (5000, 3))
     hits = rw.Scene(field).intersect(np.stack([x, y, np.full(5000, 9.0)], -1), down)
     off = np.abs(9 - hits.t - bilinear(0.5 * heights, x, y))
-    # So far it is in the middle of a half edge, and not beyond.
+    # The deviation is greatest in the middle of a half edge, and bounded.
     assert 0.5 * twist / 16 < off.max() < 1.0001 * twist / 16
-    # Along edges and in the middle of patches it is the patch; rows are along y, from below.
+    # Along edges and in the middle the mesh equals the patch; rows are along y, from below.
     u, v = (np.arange(6) / 2.5 - 1), (np.arange(4) / 1.5 - 1)
     assert np.allclose(field.vertices[:24, 2], 0.5 * heights.reshape(-1), rtol=0, atol=1e-7)
     assert np.allclose(
@@ -237,11 +237,11 @@ def test_grids_of_distances_have_their_surface(tmp_path):
     distance = np.linalg.norm(mesh.vertices - (0.5, 0.45, 0.55), axis=1)
     # A chord of a cell's length h within a ball of radius r strays by h² / 8r at most, in 3 directions.
     assert np.abs(distance - 0.3).max() < 3 * (1 / 23) ** 2 / (8 * 0.3)
-    # Three times as much of its volume.
+    # The volume error is three times that.
     assert volume(mesh) == pytest.approx(4 / 3 * np.pi * 0.3**3, rel=9 * (1 / 23) ** 2 / (8 * 0.3**2))
     outward = (mesh.vertices - (0.5, 0.45, 0.55)) / distance[:, None]
     assert np.einsum("ij,ij->i", mesh.normals, outward).min() > 0.99
-    # It is closed: every edge is that of two faces.
+    # Closed: every edge belongs to two faces.
     edges = np.sort(
         np.concatenate([mesh.faces[:, [0, 1]], mesh.faces[:, [1, 2]], mesh.faces[:, [2, 0]]]), axis=1
     )
@@ -307,7 +307,7 @@ def test_grids_that_are_broken_are_refused(tmp_path, data, told):
 def test_curves_of_files_are_parted_by_empty_lines(tmp_path):
     (tmp_path / "curve.txt").write_text(curve())
     both = shape(tmp_path, type="linearcurve", filename="curve.txt")
-    # Of 5 and 4 points: 7 straight pieces and 9 balls.
+    # 5 and 4 points: 7 straight pieces and 9 balls.
     assert len(both.vertices) == 7 * 2 * 49 + 9 * 25 * 49
 
 
@@ -357,7 +357,7 @@ def test_a_map_of_normals_goes_with_the_normal_where_coordinates_are_mirrored(tm
     straight = picture(False, False)
     lean = np.array((0.2, 0.6, 0.8)) / np.linalg.norm((0.2, 0.6, 0.8))
     cosine = lean @ np.array((0, 0.3, 1)) / np.hypot(0.3, 1)
-    # By the function of Estevez, Lecocq and Stein (2019), of the slopes of the normal and of the light.
+    # The function of Estevez, Lecocq and Stein (2019), with the slopes of the normal and of the light.
     share = 2 / (1 + np.sqrt(1 + (0.2**2 + 0.6**2) / 0.8**2 / 8 * 0.3**2))
     assert np.allclose(straight[:, 2:6], 0.5 / np.pi * cosine * share, rtol=1e-6)
     assert np.array_equal(picture(True, True), straight)
@@ -380,7 +380,7 @@ def test_balls_at_the_joints_of_curves_have_coordinates_as_mitsuba_has_them(tmp_
         rot = np.array((0, 0, 1)) - axis * axis[2]
         rot /= np.linalg.norm(rot)
         rad = np.cross(rot, axis)
-        # Outwards, where only the ball is hit.
+        # Outwards, so that the ray only hits the ball.
         beside = [points[j] for j in (k - 1, k + 1) if 0 <= j < len(points)]
         outwards = point - np.mean(beside, axis=0)
         outwards = outwards / np.linalg.norm(outwards) + (0.1, 0.3, 0)

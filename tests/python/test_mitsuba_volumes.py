@@ -57,7 +57,8 @@ def test_colours_lie_where_a_transform_puts_them_and_repeat(tmp_path):
         for i in range(-1, 4):
             for j in range(-1, 5):
                 for k in range(-1, 6):
-                    # Each middle of a cell weighs a tent around it, the next ones beyond the ends too.
+                    # Each cell has a tent-shaped weight around its middle, with neighbours beyond the ends
+                    # too.
                     weight = np.clip(1 - np.abs(at - (i, j, k)), 0, None).prod(axis=1)
                     where = np.array((i, j, k))
                     where = where % (3, 4, 5) if wrap == "repeat" else where.clip(0, (2, 3, 4))

@@ -243,7 +243,7 @@ def test_pictures_of_a_thousand_million_pixels_are_refused_by_their_header(tmp_p
         f'<shape type="sphere"><bsdf type="diffuse"><texture type="bitmap" name="reflectance">'
         f'<string name="filename" value="{name}"/></texture></bsdf></shape>'
     )
-    # Both read all kinds alike, and each is a process of its own.
+    # Both read all kinds alike, and each needs its own process.
     for body in (around, texture) if name == next(iter(PICTURES)) else (around,):
         path.write_text(f'<scene version="3.0.0">{EYE}{body}</scene>')
         assert f"{name} is not a picture that can be read" in run_limited(path, tmp_path)

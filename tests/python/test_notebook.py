@@ -77,7 +77,7 @@ def test_the_cell_that_rendered_it_shows_no_second_picture(handles, capsys):
     capsys.readouterr()
     image._ipython_display_()
     assert capsys.readouterr().out == f"{image!r}\n"
-    # Copies, later cells, and pictures that were not shown go by their PNG as ever.
+    # Copies, later cells, and pictures not yet shown use their PNG.
     copy = pickle.loads(pickle.dumps(image))
     assert copy == image
     quiet = rw.render(*rw.scenes.cornell_box(**BOX), samples=2, progress=False)

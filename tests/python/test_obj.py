@@ -120,7 +120,7 @@ def test_all_forms_of_faces_say_the_same(tmp_path, seed):
     assert np.array_equal(mesh.vertices[mesh.faces], points[index[..., 0]])
     assert np.array_equal(mesh.uv[mesh.faces], uv[index[..., 1]])
     assert np.array_equal(mesh.normals[mesh.faces], normals[index[..., 2]])
-    # A vertex for each of its uses, and no more.
+    # One vertex for each of its uses, and no more.
     assert len(mesh.vertices) == len(np.unique(index.reshape(-1, 3), axis=0))
 
 

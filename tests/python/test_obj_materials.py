@@ -67,7 +67,7 @@ def test_colours_are_linear(tmp_path):
     assert material(tmp_path, "kd 0.25") == rw.Diffuse(0.25)
     assert material(tmp_path, "") == rw.Diffuse()
     pixels = picture(tmp_path, "base colour.png", PIXELS[..., :3])
-    # As Blender and trimesh show it: most programs write black or grey beside a picture.
+    # As in Blender and trimesh: most programs write black or grey beside a picture.
     for color in ("", "Kd 0 0 0\n", "Kd 0.8 0.8 0.8\n"):
         assert material(tmp_path, f"{color}map_Kd base colour.png") == rw.Diffuse(rw.ImageTexture(pixels))
 
@@ -105,7 +105,7 @@ def test_no_more_is_reflected_than_comes(tmp_path, exponent, picture_of):
 def test_what_has_no_highlights(tmp_path):
     matt = rw.Diffuse((0.6, 0.7, 0.8))
     kd = "Kd 0.6 0.7 0.8\n"
-    # By its model, by its exponent as trimesh and MeshLab write it, or because it is black.
+    # By its illum, by an exponent as trimesh and MeshLab write it, or because it is black.
     for rest in (
         "Ks 1 1 1\nNs 50\nillum 1",
         "Ks 1 1 1\nNs 50\nillum 0",
@@ -157,7 +157,7 @@ def test_pictures_of_holes(tmp_path):
     both = material(tmp_path, "Kd 1 1 1\nmap_Kd leaf.png\nmap_d leaf.png\nd 0.5")
     assert both.material == rw.Diffuse(rw.ImageTexture(leaf))
     assert both.opacity == rw.ProductTexture(rw.ImageTexture(leaf, linear=True, channel="a"), 0.5)
-    # Without alpha, or where all of it is there, brightness tells.
+    # Without alpha, or with full alpha, brightness decides.
     full = picture(tmp_path, "full.png", np.dstack([PIXELS[..., :3], np.full((4, 4), 255)]))
     grey = picture(tmp_path, "grey.png", PIXELS[..., 0])
     for name, pixels in (("full.png", full), ("grey.png", grey)):
@@ -188,7 +188,7 @@ def test_glass_bends_light_by_the_law_of_snell(tmp_path, statements, ior):
     cosine = math.sqrt(1 - sine**2)
     exit_at = sine / cosine + 0.001
     camera = rw.Camera((-1, 0, 1), (0, 0, 0), (0, 1, 0), fov=0.1, width=4, height=4)
-    # Each of the two surfaces lets through what Fresnel's equations say.
+    # Each of the two surfaces transmits by Fresnel's equations.
     c = math.sqrt(0.5)
     parallel, across = (ior * c - cosine) / (ior * c + cosine), (c - ior * cosine) / (c + ior * cosine)
     through = (1 - (parallel**2 + across**2) / 2) ** 2
@@ -197,7 +197,7 @@ def test_glass_bends_light_by_the_law_of_snell(tmp_path, statements, ior):
     # Light that no surface reflects passes, in this share of 16384 draws; 4 standard errors.
     error = 4 * math.sqrt(through * (1 - through) / (16 * 1024))
     assert image.rgb.mean() == pytest.approx(through, abs=error)
-    # Where it would be without glass, there is nothing to be seen.
+    # With an index near 1, the slab is invisible.
     assert not rw.render(slab(tmp_path, statements, 1.001), camera, samples=16, progress=False).rgb.any()
 
 
@@ -205,7 +205,8 @@ def test_what_bends_light_and_what_does_not(tmp_path):
     kd, matt = "Kd 0.5 0.5 0.5\n", rw.Diffuse(0.5)
     assert material(tmp_path, f"{kd}illum 7\nNi 1.5\nKs 1 1 1\nNs 200") == rw.Dielectric(1.5, 0.0)
     assert material(tmp_path, f"{kd}illum 7\nNi 1.5\nPr 0.3") == rw.Dielectric(1.5, 0.3)
-    # Of Cinema 4D, which has 7 for all; of 3ds Max, which tells Ni of all; and opaque by its filter.
+    # Files of Cinema 4D, which writes 7 for all; of 3ds Max, which writes Ni for all; and opaque by its
+    # filter.
     assert material(tmp_path, f"{kd}illum 7") == matt
     assert material(tmp_path, f"{kd}Ni 1.5\nillum 2\nTf 1 1 1\nd 1\nTr 0") == matt
     assert material(tmp_path, f"{kd}Ni 1.5\nillum 7\nTf 0 0 0") == matt
@@ -219,7 +220,7 @@ def test_a_pane_is_glass_where_it_is_not_there(tmp_path):
     holes = rw.ImageTexture(picture(tmp_path, "holes.png", PIXELS[..., 0]), linear=True)
     pane = material(tmp_path, "Kd 0.5 0.5 0.5\nmap_d holes.png\nNi 1.5\nillum 4")
     assert pane == rw.Mix(rw.Diffuse(0.5), rw.ThinDielectric(1.5), rw.MixTexture(1.0, 0.0, holes))
-    # As Maya writes whatever is opaque.
+    # As Maya writes all opaque materials.
     maya = "illum 4\nKd 0.50 0.50 0.50\nKa 0.00 0.00 0.00\nTf 1.00 1.00 1.00\nNi 1.00"
     assert material(tmp_path, maya) == rw.Diffuse(0.5)
 
@@ -231,7 +232,7 @@ def test_mirrors(tmp_path):
     assert material(tmp_path, "illum 3\nKs 1 1 1\nNs 10\nKd 0.5 0.5 0.5") == rw.Mirror(1.0)
     assert material(tmp_path, "illum 5\nKs 1 0.5 0.25") == rw.MetallicRough((1, 0.5, 0.25), 1.0, 0.0)
     assert material(tmp_path, "illum 3\nKs 0 0 0\nKd 0.5 0.5 0.5") == rw.Diffuse(0.5)
-    # In an even light of 1: Kd and Ks together, and no more than there is.
+    # Under an even light of 1: Kd plus Ks, but no more than arrives.
     for kd, expected in ((0.25, 0.75), (0.5, 1.0), (0.9, 1.0)):
         mesh = loaded(write(tmp_path, f"illum 3\nKs 0.5 0.5 0.5\nKd {kd} {kd} {kd}"))
         image = rw.render(rw.Scene(mesh, environment=1.0), ABOVE, samples=128, progress=False)
@@ -288,7 +289,7 @@ def test_normals_and_bumps(tmp_path):
     heights = rw.ImageTexture(picture(tmp_path, "heights.png", PIXELS[..., 0]), linear=True)
     matt = rw.Diffuse(0.5)
     assert material(tmp_path, "norm normals.png") == rw.NormalMap(matt, normals, 1.0)
-    # Blender and others write pictures of normals where there should be heights.
+    # Blender and others write normal maps in place of height maps.
     for keyword in ("map_Bump", "bump", "map_bump"):
         assert material(tmp_path, f"{keyword} -bm 0.5 normals.png") == rw.NormalMap(matt, normals, 0.5)
         assert material(tmp_path, f"{keyword} -bm 0.5 heights.png") == rw.BumpMap(matt, heights, 0.005)
@@ -333,7 +334,7 @@ def test_options_of_pictures(tmp_path):
     assert texture("-boost 2 -mm 0.5 1", told) == placed()
     broken = "file.mtl: what cannot be read is left out: '-s nan 1e300' of 'it'"
     assert texture("-s nan 1e300", broken) == placed()
-    # A name that begins as a number does.
+    # A name that begins like a number.
     (tmp_path / "2").write_bytes((tmp_path / "a b.png").read_bytes())
     assert material(tmp_path, "map_Kd -o 1 1 2").reflectance == placed(
         transform=rw.UvTransform(offset=(1, 1))
@@ -425,7 +426,7 @@ def test_trimesh_and_files_give_the_same_looks(tmp_path):
         mesh, held = loaded(path), trimesh.load(path, process=False)
         (here,) = rw.Scene(held).shapes
         assert (here.material, here.emission) == (mesh.material, mesh.emission)
-    # Painted over since, by an object that takes colours to be sRGB.
+    # Painted since, by an object with sRGB colours.
     held = trimesh.load(write(tmp_path, "Kd 0.1 0.2 0.3"), process=False)
     held.visual.material.diffuse = [188, 0, 255, 255]
     (mesh,) = rw.Scene(held).shapes

@@ -17,14 +17,14 @@ import raywright as rw
 POINTS, FACES = np.array(CORNERS), np.array(QUADS)
 HEIGHT = POINTS[:, 2]
 DOWN = (0, 0, -1)
-# Other libraries warn while they are imported.
+# Other libraries warn at import.
 QUIETLY = pytest.mark.filterwarnings(
     "ignore::DeprecationWarning", "ignore::UserWarning", "ignore::FutureWarning"
 )
 
 
 def library(name):
-    # One that is there may lack a library of the system.
+    # An installed library may lack a system library.
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         return pytest.importorskip(name, exc_type=ImportError)
@@ -198,7 +198,7 @@ def test_points_and_curves_of_a_trimesh_scene_are_left_out_with_one_warning():
 
 
 EDGES = ((0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7))
-# As hexahedra have them: the bottom and the top, each around.
+# Nodes of hexahedra: the bottom, then the top, each around.
 AROUND = np.array([(0.0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)])
 HALVES = np.concatenate([AROUND, [(AROUND[a] + AROUND[b]) / 2 for a, b in EDGES]])
 FOUR = np.array([(0.0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)])
@@ -269,11 +269,11 @@ def test_meshio_surface_of_a_volume_tells_its_cells():
     assert len(scene.shapes[0].faces) == 1 + 6 * 16 * 2
     x, y = np.random.default_rng(2).uniform(0, 4, (2, 50))
     hits = scene.intersect(np.column_stack([x, y, 0 * x + 9]), DOWN)
-    # Of the cells of the top, z = 3, where the first coordinate counts most.
+    # Cells at the top, z = 3, where the first coordinate counts most.
     expected = (x.astype(int) * 4 + y.astype(int)) * 4 + 3
     assert np.array_equal(hits.interpolate("heat"), expected)
     assert np.array_equal(hits.cell, expected + 1)
-    # A face that is given as a polygon is not there twice.
+    # A face that is also given as a polygon is not duplicated.
     with_skin = rw.Mesh.of(meshio.Mesh(points, [("hexahedron", cells), ("quad", cells[:1, [0, 3, 2, 1]])]))
     assert len(with_skin.faces) == 6 * 16 * 2
     assert with_skin.cells.max() == 64
@@ -524,7 +524,7 @@ def test_cadquery_shapes_are_as_close_as_they_are_to_be():
     for tolerance in (3e-3, 1e-3, 3e-4, 1e-3):
         found = rw.Mesh.of(ball.val(), tolerance=tolerance)
         center = found.vertices[found.faces].mean(axis=1)
-        # Open CASCADE goes beyond it at the poles.
+        # Open CASCADE exceeds the tolerance at the poles.
         away = 1 - np.linalg.norm(center, axis=1)
         assert away.max() <= 2 * tolerance
         assert np.quantile(away, 0.99) <= tolerance

@@ -23,8 +23,8 @@ ROOT = Path(__file__).parents[2]
 MOST_BYTES = 6_500_000
 QEMU = shutil.which("qemu-x86_64")
 
-# Rays at corners and between them, told by a digest of the bits of their answers. No sine is in the rays:
-# numpy's own last bits depend on the processor.
+# Rays at corners and between them, with a digest of their results' bits. The rays use no sine: the last bits
+# of numpy's own depend on the processor.
 ANSWERS = """
 import hashlib, numpy as np, raywright as rw
 rng = np.random.default_rng(0)

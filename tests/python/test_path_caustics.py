@@ -44,7 +44,7 @@ def mirrored(scale, shift=0.0):
     black = rw.Diffuse(0.0)
     floor = part((-1, 0, -1), (0, 0, 2), (2, 0, 0), material=rw.Diffuse(0.5))
     mirror = part((1, 0, -1), (0, 0, 2), (0, 2, 0), material=rw.Mirror(0.8))
-    # Seen from above it is dark: it shines down, and a shade hides it from where the camera looks.
+    # Dark from above: it emits downwards, and a shade hides it from the camera.
     lamp = part(*LAMP[[0, 2, 1]], material=black, emission=20.0)
     shade = part((0.4, 0.3, -0.5), (0, 0.8, 0), (0, 0, 1), material=black)
     camera = rw.Camera(at((-0.5, 2, 0.3)), at((0, 0, 0)), fov=0.1, width=4, height=4)
@@ -132,7 +132,7 @@ SCENES = {
         rw.Sphere((0, -0.4, 0), 0.5, material=rw.Dielectric(1.5)),
         rw.Sphere((0, -0.4, 0), 0.3, material=rw.Dielectric(1.2, priority=1)),
     ),
-    # No light comes straight to anything.
+    # All direct light is blocked.
     "bulb": lambda: room(rw.Sphere((0, 0.9, 0), 0.8, material=rw.Dielectric(1.1)), lamp=0.2),
     "sky": sky,
     "moving": moving,
@@ -165,7 +165,7 @@ def test_the_mean_is_what_it_is_without(name):
     error = np.hypot(few.std(axis=0, ddof=1) / np.sqrt(40), error_of_free)
     # By Student's t of 39 degrees, one of the 27 such numbers of all scenes is off by more once in 640 tries.
     assert (np.abs(few.mean(axis=0) - free) <= 4.5 * error).all()
-    # A hundredth, so that much that is lost or counted twice is seen.
+    # A hundredth, so that loss or double counting would show.
     assert (error < 0.01 * free).all()
 
 
@@ -202,7 +202,7 @@ def test_threads_pieces_and_checkpoints_change_no_bit(how, same_scenes, tmp_path
     assert_same(render(*together, True, samples=48, threads=3, **how), one)
     with ThreadPoolExecutor(2) as executor:
         assert_same(render(*elsewhere, True, samples=48, executor=executor, **how), one)
-    # Batches are made for the samples that are asked for, which are others here.
+    # Batches depend on the number of samples, which differs here.
     how = how | {"sampler": one.plan.sampler, "checkpoint": tmp_path / "a"}
     render(*alone, True, samples=16, **how)
     assert_same(render(*together, True, samples=48, **how), one)
@@ -230,7 +230,7 @@ def test_fireflies_are_found_by_most_paths():
         for caustics in (False, True)
     )
     mean = np.square(aimed.mean(axis=0)) + 0.01
-    # By seventeen to thirty-six times less in four such sets of seeds.
+    # Seventeen to thirty-six times less in four such sets of seeds.
     assert np.mean(aimed.var(axis=0, ddof=1) / mean) < 0.2 * np.mean(free.var(axis=0, ddof=1) / mean)
 
 

@@ -86,11 +86,11 @@ def test_the_mean_is_what_it_is_without(name):
     with np.load(ALONE) as stored:
         alone, error_of_alone = stored[name].astype(float)
     for reuse in (2, 4):
-        # Stored pixels have so little error that half the samples tell as much as two such sets would.
+        # Stored pixels have so little error that half the samples are as good as two such sets would be.
         few = np.array(
             [render(scene, camera, reuse, samples=32, seed=s, threads=1).rgb for s in range(40)], float
         )
-        # Of the whole picture: four standard errors are exceeded once in 16,000 cases. Pixels of a patch err
+        # For the whole picture, four standard errors are exceeded once in 16,000 cases. Pixels of a patch err
         # together, so the spread is that of pictures.
         pictures = few.mean(axis=(1, 2))
         error_of_all = np.hypot(
@@ -98,7 +98,7 @@ def test_the_mean_is_what_it_is_without(name):
         )
         off_by = np.abs(pictures.mean(axis=0) - alone.mean(axis=(0, 1)))
         assert (off_by <= 4 * error_of_all + 1e-6).all()
-        # Of pixels: by Student's t with 40 samples, six are exceeded once in a million.
+        # For pixels, by Student's t with 40 samples, six are exceeded once in a million.
         error = few.var(axis=0, ddof=1) / 40
         off = np.abs(few.mean(axis=0) - alone) / np.sqrt(error + error_of_alone**2 + 1e-12)
         assert off.max() < 6.5
@@ -109,7 +109,7 @@ def test_a_furnace_shines_by_its_geometric_series():
     shell = rw.Sphere((0, 0, 0), 1, material=rw.Diffuse(0.6), emission=rw.Emission(1.0, both_sides=True))
     camera = rw.Camera((0, 0, 0.2), (0, 0.3, -1), fov=70, width=16, height=16)
     image = render(rw.Scene([shell]), camera, 4, samples=256, seed=2)
-    # Two and a half, within five standard errors of the mean of patches, which err apart.
+    # Two and a half, within five standard errors of the mean over patches, which err independently.
     patches = image.rgb.reshape(4, 4, 4, 4, 3).mean(axis=(1, 3)).reshape(16, 3)
     error = patches.std(axis=0, ddof=1) / 4
     assert (np.abs(patches.mean(axis=0) - 2.5) <= 5 * error + 1e-5).all()
@@ -117,7 +117,7 @@ def test_a_furnace_shines_by_its_geometric_series():
 
 
 def test_the_error_is_a_small_part_of_what_it_is_without():
-    # In smaller pictures much of it lies in the pixels at the edge of the lamp, whose light is direct.
+    # In smaller pictures much of the error is in pixels at the edge of the lamp, whose light is direct.
     scene, camera = box(128, 128)
     errors = {}
     for reuse in (1, 2, 4):
@@ -185,7 +185,7 @@ def test_intervals_hold_the_error():
     for seed in range(40):
         image = render(scene, camera, 4, seed=seed)
         inside += image.error.low <= relmse(image, reference) <= image.error.high
-    # Of 95 in 100, 33 of 40 or fewer are inside once in 300 cases.
+    # At 95 %, 33 of 40 or fewer are inside once in 300 cases.
     assert inside >= 34
 
 

@@ -80,7 +80,7 @@ def test_transforms_follow_each_other(tmp_path):
     Shape "sphere"
     """
     places = [ball.transform @ (0, 0, 0, 1) for ball in load(tmp_path, world).scene.shapes]
-    # In a right-handed world x is turned round.
+    # A right-handed world has x mirrored.
     assert np.allclose(
         places, [(-1, 2, 3, 1), (-1, 2, 3, 1), (-6, 2, 3, 1), (0, 0, 7, 1)], rtol=0, atol=1e-12
     )
@@ -118,7 +118,7 @@ def test_materials(tmp_path):
     """
     assert material(tmp_path, mixed) == rw.Mix(rw.Diffuse(0), rw.Diffuse(1), 0.25)
     assert material(tmp_path, mixed + 'NamedMaterial "b"') == rw.Diffuse(1)
-    # A name may stand before what it names.
+    # A name may precede its definition.
     early = 'NamedMaterial "b"\nShape "sphere"\n' + mixed + 'Shape "sphere"'
     first, second = load(tmp_path, early).scene.shapes
     assert (first.material, second.material) == (rw.Diffuse(1), rw.Mix(rw.Diffuse(0), rw.Diffuse(1), 0.25))
@@ -165,7 +165,7 @@ def test_shapes(tmp_path):
     triangle, flat, bent, disk, tube, smooth, hair = load(tmp_path, world).scene.shapes
     assert len(triangle.faces) == 1
     assert len(flat.faces) == 2
-    # A patch that is bent is 16 by 16 cells; its corner is where it is.
+    # A curved patch has 16 by 16 cells, with the exact corner.
     assert len(bent.faces) == 2 * 16**2
     assert np.allclose(bent.vertices.max(axis=0), (0, 1, 1), rtol=0, atol=1e-12)
     assert disk.bounds[:, 2].tolist() == pytest.approx([2, 2])
@@ -202,7 +202,7 @@ def test_lights(tmp_path):
     assert point == rw.PointLight((-1, 0, 0), (1, 2, 3))
     assert (spot.angle, spot.falloff, spot.intensity, spot.target) == (40, 7, (2, 2, 2), (0, 0, 2))
     assert sun.direction == (0, -1, 0)
-    # A black body has a luminance of 1, and is as white at 6,500 K as D65 nearly is.
+    # A black body has a luminance of 1, and at 6,500 K is nearly as white as D65.
     assert np.dot(sun.irradiance, (0.212671, 0.715160, 0.072169)) == pytest.approx(1, rel=1e-12)
     assert np.allclose(sun.irradiance, 1, rtol=0, atol=0.06)
     assert scene.environment == rw.ConstantEnvironment((0.1, 0.2, 0.3))
@@ -221,7 +221,7 @@ def test_squares_of_all_directions_have_equal_areas():
     assert np.allclose(u[:3], (1, 0.5, 0.5), rtol=0, atol=1e-12)
     assert np.allclose(v[:3], (0.5, 1, 0.5), rtol=0, atol=1e-12)
     assert {float(u[3]), float(v[3])} <= {0.0, 1.0}
-    # A picture of the directions themselves stays one.
+    # A picture of the directions themselves is reproduced.
     side = 256
     names = np.stack(np.meshgrid(*2 * [(np.arange(side) + 0.5) / side]), -1)
     flat = unfolded(names)

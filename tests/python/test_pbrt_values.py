@@ -109,7 +109,7 @@ def test_light_of_the_white_balance_is_white(tmp_path):
     with pytest.warns(RuntimeWarning, match="whitebalance is applied to the light"):
         shot = load(tmp_path, world, film('"float whitebalance" 5000'))
     assert shot.scene.environment.radiance == pytest.approx((1, 1, 1), abs=2e-3)
-    # A grey ball, lit by it from all sides, is as grey.
+    # A grey ball, lit from all sides, has the same grey.
     grey = world.replace("0.1", "1.5")
     image = quietly(tmp_path, grey, film('"float whitebalance" 5000')).render(samples=64, progress=False)
     assert image.rgb[15, 20] == pytest.approx((0.5, 0.5, 0.5), abs=4e-3)
@@ -117,7 +117,7 @@ def test_light_of_the_white_balance_is_white(tmp_path):
         warnings.simplefilter("error")
         shot = load(tmp_path, world, film('"float whitebalance" 6504'))
     assert shot.scene.environment.radiance == pytest.approx((red, green, blue), abs=2e-3)
-    # Below 4,000 K, daylight is that of a black body: balanced for its own temperature it is white.
+    # Below 4,000 K, daylight equals a black body: balanced for its own temperature it is white.
     warm = 'LightSource "infinite" "blackbody L" 3000\nShape "sphere" "float radius" 0.1'
     shot = quietly(tmp_path, warm, film('"float whitebalance" 3000'))
     assert shot.scene.environment.radiance == pytest.approx((1, 1, 1), abs=4e-3)
@@ -162,7 +162,7 @@ def test_cells_of_a_checkerboard_are_one_unit(tmp_path):
     """
     scene = load(tmp_path, world).scene
     for u, v in ((0.1, 0.2), (0.3, 0.2), (0.3, 0.7), (0.9, 0.9)):
-        # x is turned round.
+        # x is mirrored.
         eye = rw.Camera((-u, v, 2), direction=(0, 0, -1), width=1, height=1, fov=0.1)
         seen = rw.render(scene, eye, samples=64, progress=False).rgb[0, 0, 0]
         first = (int(4 * u + 1) + int(2 * v)) % 2 == 0
@@ -206,7 +206,7 @@ DECODED = ((64 / 255 + 0.055) / 1.055) ** 2.4
         ('"string encoding" "gamma 1"', 64 / 255),
         ('"string encoding" "gamma 2.2"', (64 / 255) ** 2.2),
         ('"float scale" 0.5', 0.5 * DECODED),
-        # The scale counts before what is inverted, and a share below 0 is 0.
+        # The scale applies before inversion, and a share below 0 becomes 0.
         ('"bool invert" true', 1 - DECODED),
         ('"bool invert" true "float scale" 0.5', 1 - 0.5 * DECODED),
         ('"bool invert" true "float scale" 4 "string encoding" "gamma 1"', 0.0),

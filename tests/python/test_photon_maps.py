@@ -66,14 +66,14 @@ def water(n=1.33, depth=0.3):
     ],
 )
 def test_the_sky_over_water(way):
-    # Light scattered by the floor goes up through the water and is partly thrown back, again and again: the
-    # radiance straight up is R0 + (1 - R0) rho E / (pi n^2). Photons and the camera both come through it.
-    # No disk reaches the walls, beyond which no photons lie: rays that gather light there lose a share of it
-    # that goes by the radius, 2 % at 0.05.
+    # The floor scatters light up through the water, and the surface reflects a part of it back, again and
+    # again: the radiance straight up is R0 + (1 - R0) rho E / (pi n^2). Photons and the camera both pass it.
+    # No disk reaches the walls, beyond which no photons lie: gather rays there lose a share of the light that
+    # depends on the radius, 2 % at 0.05.
     camera = rw.Orthographic((0, 0, 2), (0, 0, 0), up=(0, 1, 0), width=8, height=8, scale=0.8)
     seen = [picture(water(), camera, way, 96, seed=seed).rgb.astype(float).mean() for seed in range(6)]
     mean, error = np.mean(seen), np.std(seen, ddof=1) / math.sqrt(len(seen))
-    # Told to some 0.2 %; of six pictures, five standard errors are exceeded once in 250 times.
+    # Known to some 0.2 %; over six pictures, five standard errors are exceeded once in 250 times.
     assert error < 0.0025 * mean
     assert abs(mean - 0.453181373761441) < 5 * error
 
@@ -107,7 +107,7 @@ def test_a_disk_has_its_bias_and_tells_it(caustic, radius, expected):
     # 0.01.
     told = 2 * math.pi * np.mean([image.bias.mean() for image in images])
     assert abs(told / (expected - 1) - (0.907 if radius == 0.5 else 1.068)) < 0.3
-    # Without it, what is left is less than a third.
+    # Less than a third of the bias remains after its subtraction.
     left = np.mean(light) - 2 * math.pi * np.mean([image.bias.mean() for image in images]) - 1
     assert abs(left) < (1 - expected) / 3 + 7 * error
 
@@ -141,7 +141,7 @@ def test_progress_takes_the_bias_away(caustic):
         ]
         bias.append(np.mean([image.bias.mean() for image in images]))
         off.append(2 * math.pi * np.mean([image.rgb.mean() for image in images]) - 1)
-    # It is too dark under the lamp, and said to be; N^(-1/3) of it is left, 1/2 of 1/2.
+    # It is too dark under the lamp, and reports so; N^(-1/3) of it is left, 1/2 of 1/2.
     assert bias[0] < bias[2] < 0
     assert off[0] < 1.2 * off[1] < 1.2 * 1.2 * off[2] < 0
     assert 0.1 < off[2] / off[0] < 0.45
@@ -149,8 +149,8 @@ def test_progress_takes_the_bias_away(caustic):
 
 @pytest.mark.parametrize("samples", [16, 64, 256])
 def test_the_error_of_a_single_pixel_is_as_it_says(caustic, samples):
-    # Pixels of many pictures are off by their told errors: were these told by the spread of four batches, the
-    # mean square of that would be three.
+    # Over many pictures, pixels are off by their estimated errors: the spread of four batches would make the
+    # mean square three.
     look = rw.Orthographic((0, 0, 0.4), (0, 0, 0), up=(0, 1, 0), width=4, height=4, scale=1.6)
     way = rw.ProgressivePhotonMap(200)
     images = [picture(caustic, look, way, samples, seed=seed) for seed in range(24)]
@@ -200,9 +200,9 @@ def test_a_lamp_and_an_eye_both_behind_glass():
     # Paths find a lamp of this size by chance, if there are many.
     scene = rw.Scene([*shapes, lamp])
     truth = picture(scene, look, rw.Path(reuse=1, caustics=True), 1024)
-    # Light that the block holds back by total reflection would go round for thousands of bounces.
+    # Light held by total reflection would need thousands of bounces.
     assert_agree(scene, look, rw.PhotonMap(8000, gather=0, max_depth=40), truth, blur=0.06)
-    # Of a point in glass there is no way for them; photons see as much.
+    # They cannot reach a point light in glass; photons see the same as before.
     point = rw.Scene(shapes, lights=[rw.PointLight((0, 0, 1.2), 1.0)])
     assert picture(point, look, rw.Path(), 16).rgb.max() == 0
     seen = picture(point, look, rw.ProgressivePhotonMap(8000, max_depth=40), 8)
@@ -210,8 +210,8 @@ def test_a_lamp_and_an_eye_both_behind_glass():
 
 
 def test_what_moves_is_lit_at_its_time():
-    # A white board goes past a lamp behind a pane, seen by a shutter that is open all the while: where it is,
-    # and where its light is, is one time for photons and the camera, or it would not lie in its own light.
+    # A white board passes a lamp behind a pane, while the shutter is open. Photons and the camera must use
+    # the same time for the board and its light, or it would not lie in its own light.
     start, end = np.eye(4), np.eye(4)
     start[:3, 3], end[:3, 3] = (-0.6, 0, 0.2), (0.6, 0, 0.2)
     board = rw.Instance(square(0.3, 0.0, material=rw.Diffuse(0.8)), start, transform_end=end)
@@ -237,16 +237,16 @@ def test_what_moves_is_lit_at_its_time():
     ids=lambda way: type(way).__name__,
 )
 def test_gold_at_both_ends_gives_no_more_than_there_is(way):
-    # Gold reflects a little more red than a screen's red can show. That is left out at all gold on a path but
-    # at the one nearest to the eye, where photons meet paths, too. The colour of light by way of gold, on a
-    # floor that is seen in it, is that of paths: it hardly depends on angles, and so has hardly any noise.
+    # Gold reflects more red than Rec. 709 can represent. All gold on a path is clipped to that, except at the
+    # vertex nearest to the eye, where photons meet paths, too. A floor seen in gold, and lit by way of gold,
+    # has the colour of paths: it hardly depends on angles, and so hardly has noise.
     floor = square(1.5, 0.0, material=rw.Diffuse(0.5))
     gold = rw.Mesh(
         [(1.2, -2, 0), (1.2, 2, 0), (1.2, 2, 3), (1.2, -2, 3)],
         [(0, 2, 1), (0, 3, 2)],
         material=rw.Conductor("Au"),
     )
-    # It shines towards the mirror alone, and the floor behind it is seen.
+    # It emits towards the mirror alone, and the floor behind it is visible.
     lamp = rw.Mesh(
         [(0, -0.3, 1.2), (0, 0.3, 1.2), (0, 0.3, 1.8), (0, -0.3, 1.8)],
         [(0, 1, 2), (0, 2, 3)],
@@ -282,7 +282,7 @@ LIGHTS = {
 
 @pytest.mark.parametrize("name", LIGHTS)
 def test_any_light_comes_through_glass(name):
-    # Light tracing finds it too, where the camera sees the floor straight: by no map at all.
+    # Light tracing finds it, too, where the camera sees the floor directly: without a map.
     shapes, lights = LIGHTS[name]
     floor = square(1.5, 0.0, material=rw.Diffuse((0.7, 0.5, 0.3)))
     glass = rw.Sphere((0, 0, 0.7), 0.4, material=rw.Dielectric(1.5))
@@ -297,7 +297,7 @@ def test_bits_go_by_the_seed_alone(tmp_path):
     for way in (rw.PhotonMap(3000, maps=2), rw.ProgressivePhotonMap(3000)):
         options = {"samples": 20, "seed": 5, "progress": False}
         one = rw.render(scene, look, way, threads=1, **options)
-        # Maps that a scene has kept are no matter.
+        # Photon maps kept with a scene make no difference.
         fresh, _ = rw.scenes.cornell_box(width=12, height=10)
         two = rw.render(fresh, look, way, threads=2, **options)
         assert np.array_equal(one.rgb, two.rgb)
@@ -341,7 +341,7 @@ def test_workers_make_the_same_maps():
 
 
 def test_error_and_seconds_end_it():
-    # Even light, whose error is trusted after few samples.
+    # Uniform light has a trusted error after few samples.
     shines = rw.Emission(1, side="back")
     room = rw.Scene(rw.Box((-1, -1, -1), (1, 1, 1), material=rw.Diffuse(0.7), emission=shines))
     within = rw.Camera((0, 0, 0.5), (0, 0, -1), fov=60, width=8, height=8)
@@ -359,10 +359,10 @@ def test_scenes_without_photons_have_pictures():
     dark = rw.Scene(square(3.0, 0.0, material=rw.Diffuse(0.5)))
     lit = rw.Scene(square(3.0, 0.0, material=rw.Diffuse(0.5)), environment=sky)
     for way in (rw.PhotonMap(1000), rw.PhotonMap(1000, gather=0), rw.ProgressivePhotonMap(1000)):
-        # Where nothing is matt, nothing is gathered, and the picture is exact.
+        # Without matt surfaces nothing is gathered, and the picture is exact.
         np.testing.assert_allclose(picture(mirrors, look, way, 2).rgb[..., 1], 0.3, rtol=1e-6)
         assert picture(dark, look, way, 2).rgb.max() == 0
-        # One floor sends itself no light: what lights bring is all.
+        # A single floor has no interreflection: direct light is all.
         seen, paths = picture(lit, look, way, 64), picture(lit, look, rw.Path(), 64)
         np.testing.assert_allclose(seen.rgb.mean((0, 1)), paths.rgb.mean((0, 1)), rtol=0.02)
         assert seen.bias.max() == 0

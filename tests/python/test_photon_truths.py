@@ -94,7 +94,7 @@ def test_a_paraboloid_makes_a_beam():
     within = [4 * math.pi * r * r / (1 + r * r) for r in (0.75, 0.8, 0.85)]
     assert abs(within[1] - 4.9039495080426) < 1e-12
     assert_flux(power, error, [within[1], within[2] - within[0]])
-    # Over that ring irradiance is on average what it is in its middle, to 0.5 %.
+    # The mean irradiance over that ring is that in its middle, to 0.5 %.
     assert abs(power[1] / (math.pi * (0.85**2 - 0.75**2)) / 1.48720999405116 - 1) < 0.005 + 0.006
 
 
@@ -107,7 +107,7 @@ def test_a_paraboloid_makes_a_beam():
     ],
 )
 def test_sunlight_through_a_clear_ball(n, z, radius, once, often):
-    # A plane at 1 touches the ball of 2.42: it is put next to nothing behind it.
+    # A plane at 1 touches the ball of 2.42: a tiny offset puts it behind.
     plane = square(radius, max(z, 1 + 1e-9))
     ball = rw.Sphere((0, 0, 0), 1, material=rw.Dielectric(n))
     scene = rw.Scene([plane, ball], lights=[rw.DirectionalLight((0, 0, 1), 1)])
@@ -121,9 +121,10 @@ def test_sunlight_through_a_clear_ball(n, z, radius, once, often):
 
 @pytest.mark.slow
 def test_a_cup_of_light():
-    # Half a cylinder of mirror stands on a floor. Light that comes level along x to the wall at an angle g is
-    # thrown to (cos g - s cos 2g, sin g - s sin 2g) on the floor, s from where it is s / tan(slope) high: in
-    # units of the floor's direct light that is cos g dg ds. On the axis, what it is spread by is closed.
+    # A half cylinder of mirror stands on a floor. Level light along x to the wall at an angle g is reflected
+    # to (cos g - s cos 2g, sin g - s sin 2g) on the floor, at distance s from the wall for height s /
+    # tan(slope). In units of the floor's direct light that is cos g dg ds. On the axis, the density has a
+    # closed form.
     steps, slope = 4000, math.radians(30)
     reach = 1.02
     g = np.linspace(-math.pi / 2, math.pi / 2, steps + 1)
@@ -151,7 +152,7 @@ def test_a_cup_of_light():
         weight = np.cos(a) * (math.pi / fine) * (reach / fine)
         light += of_squares(x, y, weight)
         tiny += of_squares(x, y, weight, 0.2)
-    # Squares a fifth as wide have about the closed forms of their middle.
+    # Squares a fifth as wide have about the closed form of their middle.
     area = np.array([4 * h * h for _, h in at])
     np.testing.assert_allclose(tiny / area * 25, [1.0, 5.0, 3.6, 2.48677248677249], rtol=0.01)
     sun = rw.DirectionalLight((math.cos(slope), 0, -math.sin(slope)), 1)
@@ -167,8 +168,8 @@ def test_a_cup_of_light():
 
 
 def test_a_ball_has_its_focus():
-    # By exact hits and Snell's law: where rays of some impact cross the axis, and how far the last are
-    # turned.
+    # By exact hits and Snell's law: the point where rays of some impact cross the axis, and the deflection of
+    # the last.
     ball, n = rw.Scene(rw.Sphere((0, 0, 0), 1)), 1.5
 
     def refracted(direction, normal, ratio):
@@ -195,7 +196,7 @@ def test_a_ball_has_its_focus():
 
 
 def test_a_mirror_circle_has_its_cardioid():
-    # Rays close to one from (-1, 0), after the wall: they cross where the pencil is focused.
+    # Rays close to one from (-1, 0), after the wall: they cross at the focus of the pencil.
     wall = rw.Scene(rw.Cylinder((0, 0, -1), (0, 0, 1), 1, capped=False))
     for degrees, focus in [
         (0, (1 / 3, 0)),

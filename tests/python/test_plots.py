@@ -48,7 +48,7 @@ def test_faces_have_the_colors_of_their_values(plt, plates):
     ax = found.plot()
     _, colors = surface(ax)
     assert len(colors) == len(found.value) == 12
-    # One plane is lit as one, so that colors are those of the bar up to a factor.
+    # One plane has one shade, so that its colors are those of the bar up to a factor.
     expected = plt.colormaps["viridis"](plt.Normalize(found.value.min(), found.value.max())(found.value))
     ratio = colors[:, :3] / expected[:, :3]
     assert np.allclose(ratio, ratio[0, 0], rtol=1e-9)
@@ -111,7 +111,7 @@ def test_results_draw_themselves_to_files(plt, plates, kind, tmp_path):
     result.plot(path)
     with Pillow.open(path) as picture:
         assert min(picture.size) > 300
-        # There is more than axes and a bar: colors that differ.
+        # More than axes and a bar: several colors.
         assert len(np.unique(np.asarray(picture.convert("RGB")).reshape(-1, 3), axis=0)) > 50
     assert plt.get_fignums() == []
 

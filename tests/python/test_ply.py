@@ -11,7 +11,7 @@ from PIL import Image
 import raywright as rw
 
 CUBE = np.array([(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 1)], float)
-# Five quads and two triangles, turned outwards, as Blender writes a cube with one face split.
+# Five quads and two triangles with outward normals, as Blender writes a cube with one face split.
 POLYGONS = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7], [1, 7, 5]]
 CODES = {"char": "b", "uchar": "B", "short": "h", "ushort": "H", "int": "i", "uint": "I"}
 CODES |= {"float": "f", "double": "d"}

@@ -94,7 +94,7 @@ def test_smooth_glass_and_metal_lose_nothing():
 def test_white_is_white(material):
     """In a furnace all that is white gives back what comes, neither more nor less, to 0.2 %."""
     mean, error = lit(material, 256, roulette_depth=64)
-    # Of eleven, four standard errors are exceeded once in 1,400 times. Rough glass has more noise.
+    # Over eleven, four standard errors are exceeded once in 1,400 times. Rough glass has more noise.
     assert error < (1e-3 if material.transmission == 0 else 6e-3)
     assert abs(mean - 1) < 0.002 + 4 * error
 
@@ -118,7 +118,7 @@ def test_highlights_are_those_of_gltf():
         ]
         camera = rw.Orthographic((0, 0, 3), (0, 0, 0), scale=0.9, width=16, height=16)
         ours, gltf = (rw.render(one, camera, rw.Path(1), samples=16, progress=False).rgb for one in scenes)
-        # Burley's matt part sends more light back to where it came from.
+        # Burley's diffuse lobe is stronger towards the light.
         assert np.abs(ours - gltf).mean() < (1e-6 if metallic else 0.06 * gltf.mean())
 
 

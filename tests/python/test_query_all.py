@@ -91,8 +91,8 @@ def check(mesh, origins, directions, t_min=0.0, t_max=np.inf):
 def crossed(triangles, on_edges, origin, direction):
     """How many triangles of those that a ray meets on an edge it crosses when it is moved a little."""
     count = 0
-    # Along x, by next to nothing of that along y, and again along z: any way does for closed surfaces, but
-    # where faces are edge-on, which of their edges a ray crosses depends on it.
+    # A perturbation of the line, infinitesimal along y and again along z: any direction is right for closed
+    # surfaces, but if faces are edge-on, the crossed edges depend on it.
     shift = [Fraction(1, 2**100), Fraction(1, 2**200), Fraction(1, 2**300)]
     start = [Fraction(x) + s for x, s in zip(origin.tolist(), shift, strict=True)]
     way = [Fraction(x) for x in direction.tolist()]
@@ -143,7 +143,7 @@ def test_an_edge_is_crossed_once_and_what_is_touched_told_twice(triangle):
     assert quad.count((1, 1, 1), (0, 0, -1)) == 1
     roof = rw.Scene(rw.Mesh([(0, 0, 1), (2, 0, 1), (1, 3, 0), (1, -3, 0)], [(0, 1, 2), (1, 0, 3)]))
     assert roof.count((1, -5, 1), (0, 1, 0)) == 2
-    # A little along x, or along y where x does not matter, is the surface, or there it ends.
+    # Slightly along x, or along y where x does not matter, is the surface or its end.
     counts = rw.Scene(triangle).count([(0.5, 0, 1), (0, 0.5, 1), (0.5, 0.5, 1), (0, 0, 1)], (0, 0, -1))
     assert np.array_equal(counts, [1, 1, 2, 1])
     hits = rw.Scene(triangle).intersect_all((0.5, 0.5, 1), (0, 0, -1))

@@ -91,7 +91,7 @@ def test_views_that_numpy_has_broadcast_are_rays_too():
     full = whole(parts)
     views = [np.broadcast_to(part, (40, 50, 3)) for part in parts[:2]]
     assert scene.intersect(*views) == scene.intersect(*full[:2])
-    # Of any strides, reversed ones and those of columns too.
+    # Any strides, also reversed ones and those of columns.
     turned = [view.transpose(1, 0, 2)[::-1] for view in views]
     assert scene.intersect(*turned) == scene.intersect(*(part.transpose(1, 0, 2)[::-1] for part in full[:2]))
     strided = np.broadcast_to(np.asfortranarray(parts[0][::2]), (20, 50, 3))

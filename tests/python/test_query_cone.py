@@ -65,9 +65,9 @@ def test_a_square_has_its_distances_in_closed_form():
         steepest = max(tilt - angle, 0)
         distance = scene.cone((0, 0.001, 1), way, angle).distance[0]
         assert distance == pytest.approx(1 / np.cos(np.radians(steepest)), rel=1e-5)
-    # Straight down, in numbers that are exact.
+    # Straight down, with exact numbers.
     assert np.array_equal(scene.cone((0, 0, 2), (0, 0, -5), 1).distance, (2, 2))
-    # A cone that ends at its height touches both faces at one point, and one that ends before none.
+    # A cone up to its height touches both faces at one point, and a shorter one touches none.
     assert scene.cone((0, 0, 2), (0, 0, -1), 30, t_max=2).count == 2
     assert scene.cone((0, 0, 2), (0, 0, -1), 30, t_max=np.nextafter(2, 0)).count == 0
     assert scene.cone((0, 0, 2), (0, 0, 1), 89).count == 0
@@ -164,7 +164,7 @@ def test_hostile_cones_and_scenes_touch_nothing():
     degenerate = rw.Mesh([(0, 0, 1), (np.nan, 0, 0), (0, 0, 2)], [(0, 1, 2), (0, 0, 0), (0, 2, 2)])
     with pytest.warns(RuntimeWarning, match="NaN"):
         touches = rw.Scene(degenerate).cone((0, 0, 0), (0, 0, 1), 0)
-    # A point and a line are touched, which no ray hits; the face with NaN is dropped.
+    # The cone touches a point and a line, which no ray hits; the face with NaN is dropped.
     assert touches.primitive.tolist() == [1, 2]
     assert touches.distance.tolist() == [1, 1]
     empty = rw.Scene([]).cone(np.zeros((2, 3)), (0, 0, 1), 40)

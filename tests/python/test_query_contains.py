@@ -91,7 +91,7 @@ def test_points_next_to_faces_are_on_their_side(scale, offset):
     weights = rng.dirichlet((1.0, 1, 1), 300)
     points = (weights[..., None] * corners).sum(axis=1)
     points = np.nextafter(points, points + rng.choice([-1.0, 0, 1], points.shape))
-    # The ball is convex: inside is on the inner side of every face. Python's integers have any length.
+    # The ball is convex: inside is the inner side of every face. Python's integers have any length.
     whole = np.vectorize(lambda x: int(Fraction(float(x)) * 2**1074), otypes=[object])
     a, b, c = (whole(mesh.vertices)[mesh.faces[:, i]] for i in range(3))
     u, v, place = b - a, c - a, whole(points)
@@ -105,13 +105,13 @@ def test_points_next_to_faces_are_on_their_side(scale, offset):
 def test_a_cavity_is_outside_and_a_body_in_another_inside(box):
     small = box.vertices / 4 + 0.25
     points = [(0.1, 0.1, 0.1), (0.3, 0.3, 0.3), (0.9, 0.2, 0.4), (2, 0.3, 0.3)]
-    # Normals that point out: a body within another. Normals that point in: the wall of a cavity.
+    # Outward normals: a body within another. Inward normals: the wall of a cavity.
     for faces, is_inside in ((box.faces, True), (box.faces[:, ::-1], False)):
         apart = [box, rw.Mesh(small, faces)]
         as_one = rw.Mesh(np.concatenate([box.vertices, small]), np.concatenate([box.faces, faces + 8]))
         for shapes in (apart, apart[::-1], as_one):
             assert np.array_equal(rw.Scene(shapes).contains(points), [True, is_inside, True, False])
-    # Within the cavity of a ball there is a ball again, and a box that reaches into both.
+    # The cavity of a ball contains another ball, and a box that reaches into both.
     core = rw.Sphere((0.375, 0.375, 0.375), 0.05)
     nested = rw.Scene([box, rw.Mesh(small, box.faces[:, ::-1]), core])
     assert np.array_equal(nested.contains([(0.375, 0.375, 0.375), (0.27, 0.27, 0.27)]), [True, False])
@@ -151,7 +151,7 @@ def test_what_is_open_has_no_inside(box):
         assert not rw.Scene(flat).contains(points).any()
         assert np.array_equal(rw.Scene([flat, box]).contains(points), expected)
     assert np.array_equal(rw.Scene([*flats, box]).contains(points), expected)
-    # A corner of the ground is one of the box, and its edge too.
+    # The ground shares a corner and an edge with the box.
     sheet = np.concatenate([box.vertices, [(0, -5, 0), (1, -5, 0)]])
     touching = rw.Mesh(sheet, np.concatenate([box.faces, [(0, 1, 8), (1, 9, 8)]]))
     assert np.array_equal(rw.Scene(touching).contains(points), expected)
@@ -220,7 +220,7 @@ def test_inverted_meshes_in_instances_are_told_by_the_normals_that_hits_have(box
             scene.contains((0.0, 0.0, 0.0))
         assert len(told) == is_inverted
         assert all("normals point into shape 1 'copies'" in str(one.message) for one in told)
-    # The wall of a cavity is none that is inverted.
+    # The wall of a cavity does not count as inverted.
     shell = [rw.Mesh(4 * (box.vertices - 0.5), box.faces), mesh]
     with warnings.catch_warnings():
         warnings.simplefilter("error")

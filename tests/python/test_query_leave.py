@@ -52,7 +52,7 @@ def test_out_of_a_box_nothing_is_met_and_into_it_one_other_wall(size, at):
     assert np.array_equal(scene.count(*into), hits.hit.astype(int))
     behind = scene.intersect(*into)
     walls = np.abs(np.einsum("ij,ij->i", behind.normal, hits.normal))
-    # Not the same wall: of opposite ones normals are opposite, of others at right angles.
+    # Not the same wall: opposite walls have opposite normals, others perpendicular ones.
     met = hits.hit
     same = (walls[met] > 0.5) & (np.einsum("ij,ij->i", behind.normal, hits.normal)[met] > 0)
     assert np.count_nonzero(same) == 0
@@ -75,7 +75,7 @@ def test_a_thin_plate_does_not_leak(size, at):
     hits = hits_of(scene, seed=5)
     ways = sphere(hits.shape[0], 6)
     assert not scene.occluded(*hits.leave(to_side(ways, hits.normal, outward=True))).any()
-    # Rays that go in meet the other side, and one that goes straight meets it where it is.
+    # Rays inwards hit the other side, and straight ones at its distance.
     into = to_side(ways, hits.normal, outward=False)
     assert np.array_equal(scene.count(*hits.leave(into)), hits.hit.astype(int))
     flat = np.abs(hits.normal[:, 2]) > 0.5
@@ -216,7 +216,7 @@ def test_every_hit_and_the_closest_points_are_left_alike(scene):
     nearest = scene.closest_point(points, max_distance=0.4)
     ways = sphere(20_000, 18)
     assert not scene.occluded(*nearest.leave(to_side(ways, nearest.normal, outward=True))).any()
-    # From within a face; at an edge, what goes in by one face may come out by the other at once.
+    # From within a face; near an edge, a ray inwards by one face may leave by the other at once.
     within = nearest.found & (np.minimum(nearest.uv.min(axis=1), 1 - nearest.uv.sum(axis=1)) > 1e-6)
     assert within.sum() > 5000
     into = nearest.leave(to_side(ways, nearest.normal, outward=False))
@@ -243,7 +243,7 @@ def test_pickled_points_are_left_as_they_were(box, shapes):
     found = [scene.intersect(*rays)]
     found += [scene.closest_point(rays[0])] if shapes == "mesh" else []
     for points in found:
-        # Pickles keep what was asked before, and no scene that could be asked after.
+        # Pickles keep computed attributes, and no scene to compute others.
         with pytest.raises(ValueError, match="is not kept in a pickle"):
             pickle.loads(pickle.dumps(points)).leave(ways)
         left = points.leave(ways).origins

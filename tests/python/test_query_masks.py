@@ -62,7 +62,7 @@ def test_what_does_not_count_is_as_if_it_were_not_there(accelerator):
     for name in ("ray_splits", "t", "primitive", "uv", "instance"):
         assert np.array_equal(getattr(all_found, name), getattr(all_wanted, name)), name
     assert np.array_equal(all_found.shape_id, as_alone(all_wanted, KEPT))
-    # With all of them, all is as ever.
+    # With all of them, results are unchanged.
     assert every.intersect(*rays(), shapes=np.ones(6, np.bool_)) == every.intersect(*rays())
     assert not every.occluded(*rays(), shapes=np.zeros(6, np.bool_)).any()
 
@@ -120,7 +120,7 @@ def test_the_other_way_round_it_is_the_back():
     every = rw.Scene(mesh).intersect_all(*rays())
     assert one.t.size + other.t.size == every.t.size
     assert one.t.size > 500
-    # Of a triangle that is turned round, t is rounded anew.
+    # A reversed triangle has another rounding of t.
     assert np.allclose(np.sort(np.concatenate([one.t, other.t])), np.sort(every.t), rtol=1e-12)
 
 

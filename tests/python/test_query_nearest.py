@@ -196,7 +196,7 @@ def test_only_shapes_that_are_named_count(accelerator):
     near = scene.closest_point(points, max_distance=0.3, shapes=["ball", "pillar"])
     assert set(np.unique(near.shape_id)) == {-1, 1, 3}
     assert np.isinf(scene.signed_distance(points, shapes=np.zeros(5, bool))).all()
-    # The ball beside the box is outside of it, though the scene has it inside.
+    # The ball beside the box is outside of the box, but inside the scene.
     assert scene.signed_distance((1.2, 0, 0)) < 0
     assert scene.signed_distance((1.2, 0, 0), shapes="box") == pytest.approx(0.7)
     for ask in (scene.closest_point, scene.signed_distance):

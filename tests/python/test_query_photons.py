@@ -41,7 +41,7 @@ def test_a_closed_room_gets_the_sum_of_its_series():
     found = room().photons(100_000)
     np.testing.assert_allclose(found.powers.sum(0), 48 * math.pi, rtol=0.005)
     assert found.escaped == (0, 0, 0)
-    # Half of the light that arrived n times arrives once more.
+    # Half of the light with n arrivals arrives once more.
     arrived = [found.powers[found.bounces == n].sum() for n in range(4)]
     np.testing.assert_allclose(np.divide(arrived[1:], arrived[:-1]), 0.5, rtol=1e-6)
 
@@ -66,7 +66,7 @@ def test_chains_tell_how_light_came():
     ways = set(found.chains)
     assert {"L", "LS", "LSS", "LD"} <= ways
     through = found[(found.chains == "LSS") & (found.shape_id == 0)]
-    # A ball of glass gathers light below itself.
+    # A ball of glass focuses light below itself.
     assert len(through) > 100
     assert np.median(np.hypot(*through.positions[:, [0, 2]].T)) < 0.5
     assert (found.chains[found.bounces == 2] != "L").all()
@@ -102,9 +102,9 @@ def test_long_ways_are_told_to_their_64th_bounce():
 
 
 def test_light_that_glass_holds_for_ever_ends_soon():
-    # Of a lamp in a cube of glass, whatever comes to a side within the critical angle gets out sooner or
-    # later, as its angles to all sides stay the same: six cones, 3 (1 - sqrt(1 - 1 / n^2)) of all. The rest
-    # never does, and is ended after some 96 bounces, not some 4,096.
+    # For a lamp in a cube of glass, all light within the critical angle of a side leaves sooner or later, as
+    # its angles to all sides stay the same: six cones, 3 (1 - sqrt(1 - 1 / n^2)) of all. The rest never does,
+    # and ends after some 96 bounces, not some 4,096.
     cube = rw.Box((-1, -1, -1), (1, 1, 1), material=rw.Dielectric(1.5))
     found = rw.Scene([cube], lights=[rw.PointLight((0.1, 0.2, 0.3), 1)]).photons(20_000)
     out = 3 * (1 - math.sqrt(1 - 1 / 1.5**2))

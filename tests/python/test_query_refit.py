@@ -51,7 +51,7 @@ def test_growth_tells_when_to_build_anew():
     built = scene.accelerator.sah_cost
     assert scene.refit(KNOT.vertices) == pytest.approx(1, rel=1e-6)
     assert scene.accelerator.kind.endswith("refitted")
-    # Vertices that change places leave no order in the tree.
+    # Exchanged vertices leave no order in the tree.
     shuffled = np.random.default_rng(2).permutation(KNOT.vertices)
     growth = scene.refit(shuffled)
     assert growth > 2
@@ -112,7 +112,7 @@ def test_a_scene_that_was_not_asked_yet_is_built_where_it_is(box):
 def test_what_cannot_be_refitted_is_built_anew(box):
     scene = rw.Scene(box, precision="double")
     scene.intersect((0, 0, 0), (0, 0, 1))
-    # Corners that are no f32 any more need other leaves.
+    # Corners beyond f32 need other leaves.
     assert scene.refit(box.vertices / 3) == 1
     assert not scene.accelerator.kind.endswith("refitted")
     assert scene.intersect((0.1, 0.1, 5), (0, 0, -1)).position[2] == 1 / 3

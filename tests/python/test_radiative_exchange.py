@@ -24,7 +24,7 @@ def test_concentric_spheres(inner: float, emissivity: tuple[float, float]) -> No
     found = exchanged(spheres(inner), [400.0, 300.0], list(emissivity), sides="both", rays=2**18)
     share = inner**2
     truth = STEFAN_BOLTZMANN * (400.0**4 - 300.0**4) / (1 / emissivity[0] + share * (1 / emissivity[1] - 1))
-    # Rows: fronts of both, backs of both; the ball is hollow, and within it nothing is exchanged.
+    # Rows: fronts of both, backs of both; the hollow inside of the ball exchanges nothing.
     off = 3 * found.standard_error[0]
     assert off < 0.006 * truth
     assert abs(found.flux[0] - truth) < off + 1e-3 * truth

@@ -47,7 +47,8 @@ def test_in_a_closed_sphere_radiosity_is_the_geometric_series() -> None:
 
 
 def test_told_errors_of_radiosity_hold_what_is_unshot() -> None:
-    # The walls of an even enclosure have E / (1 - R), and no statistical error: all that is off is unshot.
+    # The walls of a uniform enclosure have E / (1 - R), without a statistical error: the error is unshot
+    # light.
     for method in ("stochastic", "progressive"):
         for reflectance in (0.5, 0.9):
             found = rw.radiosity(room(reflectance), method=method, rays=2**16, sides="front", progress=False)  # type: ignore[arg-type]
@@ -92,7 +93,7 @@ def test_every_face_of_an_even_enclosure_has_the_same() -> None:
     for method in ("stochastic", "progressive"):
         found = solved(rw.Scene([mesh]), method=method, rays=2**16, error=2e-3)
         assert abs(np.average(found.radiosity[:, 0], weights=found.areas) / 2.5 - 1) <= found.bound
-        # Of 80 faces, whose errors have 7 degrees of freedom each, one beyond 5 is rarer than 1 in 8.
+        # Over 80 faces, whose errors have 7 degrees of freedom each, one beyond 5 is rarer than 1 in 8.
         off = np.abs(found.radiosity[:, 0] - 2.5) / (found.standard_error[:, 0] + 2.5 * found.bound)
         assert np.sort(off)[-2] < 5
 
@@ -129,8 +130,8 @@ def at_corners(found: rw.RadiositySolution, places: list[tuple[float, float, flo
 
 
 def test_corners_of_small_patches_approach_the_continuous_solution() -> None:
-    # The middle, corners and middles of edges of both, by the middles of the patches that meet there: what
-    # these are off goes with the patches' size and its square, so that three sizes tell where it goes to.
+    # The middle, corners and middles of edges of both, from the middles of adjacent patches. Their error
+    # depends on the patches' size and its square, so that three sizes give the limit.
     scene = rw.Scene([square(0, True, 0.5, 1), square(1, False, 0.5)])
     kinds = ([(0, 0)], [(x, y) for x in (-0.5, 0.5) for y in (-0.5, 0.5)], EDGES)
     seen = []
@@ -196,7 +197,7 @@ def test_concentric_spheres(radius: float, inner: float, outer: float, truth: tu
 
 
 def test_zones_of_a_sphere_get_the_same() -> None:
-    # Shares 0.1, 0.25 and 0.65 of the area are those of the height.
+    # Shares 0.1, 0.25 and 0.65 of the area equal those of the height.
     heights = [-1, -0.8, -0.3, 1]
 
     def scene(cuts: int) -> rw.Scene:
@@ -395,7 +396,7 @@ def test_vertices_are_smooth_within_a_plane_and_sharp_at_edges() -> None:
     group = group.reshape(-1)
     sums = np.bincount(group, values) / np.bincount(group)
     np.testing.assert_allclose(values, sums[group], rtol=1e-12)
-    # Where three walls meet, each has its own.
+    # At a corner of three walls, each has its own value.
     corner = np.unique(np.round(values[(places == 0).all(axis=1)], 9))
     assert len(corner) == 3
 

@@ -9,7 +9,7 @@ from radiosity_scenes import mean, room, square
 
 import raywright as rw
 
-# A room that is warm, and does not shine.
+# A warm room without lamps.
 DARK = room(0.6, (0,) * 6)
 
 
@@ -47,7 +47,7 @@ def test_two_squares_approach_the_continuous_solution() -> None:
         off.append(abs(mean(found, found.radiosity, 1) / 0.100947189238679 - 1))
         assert abs(mean(found, found.radiosity, 0) / 1.01021805505982 - 1) < 1e-4
         assert_books(found, 1e-6)
-    # Patches of one value each are wrong by the square of their size: a quarter, or less, for half of it.
+    # Constant patches err by the square of their size: a quarter, or less, for half of it.
     assert off[1] < 0.35 * off[0] < 1e-3
 
 

@@ -22,7 +22,7 @@ def test_the_cornell_box_looks_as_paths_have_it(box: tuple[rw.Scene, rw.Camera, 
     scene, camera, shown = box
     ours = rw.render(scene, camera, shown, 16, progress=False).rgb
     paths = rw.render(scene, camera, rw.Path(reuse=1, caustics=False), 128, progress=False).rgb
-    # Pixels that the lamp is in, however little, tell of it alone.
+    # Pixels that contain any part of the lamp are left out.
     lamp = paths.max(axis=2) > 0.4
     # Patches of a fifth of the room's width keep the mean of a picture to 2 %, and blocks of 8 by 8 pixels to
     # 10 % of it: shadows are blurred by a patch.

@@ -38,15 +38,15 @@ def test_no_pixel_is_biased_where_light_is_rare(lamps):
     ]
     picture = np.mean(means, axis=(1, 2))
     off = (picture.mean() - 1.99) / (picture.std(ddof=1) / np.sqrt(len(picture)))
-    # Four standard errors are exceeded once in 16,000 cases. That counts decided by the samples that they
-    # count fail this by far is tested in the core.
+    # Four standard errors are exceeded once in 16,000 cases. Sample counts that depend on the samples
+    # themselves fail this by far, as the core's tests show.
     assert abs(off) < 4
     assert picture.std() / np.sqrt(len(picture)) < 0.01 * 1.99
 
 
 def test_the_same_error_takes_fewer_samples(cornell):
     scene, camera, reference = cornell
-    # Samples that are placed are better everywhere, and leave less to be won by there being more of them.
+    # Stratified samples are better everywhere, and leave less to gain by their number.
     how = {"samples": 64, "sampler": rw.Independent()}
     errors = [
         [relmse(render(scene, camera, **how, seed=s, adaptive=a), reference) for s in range(6)]
@@ -67,8 +67,8 @@ def test_adaptive_errors_are_as_estimated(cornell, count, most):
         below += truth < image.error.low
         above += truth > image.error.high
     assert close >= 0.9 * count
-    # Were it one in 40 on each side, chance would bring four or more of 30 on a given one once in 150 cases,
-    # and seven or more of 100 once in 75.
+    # At one in 40 on each side, four or more of 30 on a given one happen once in 150 cases, and seven or more
+    # of 100 once in 75.
     assert max(below, above) <= most
 
 
@@ -80,7 +80,7 @@ def test_adaptive_intervals_of_pixels_hold(cornell):
     images = [render(scene, camera, **how, seed=seed) for seed in range(3)]
     within = [np.mean(np.abs(image.rgb - reference) <= 1.96 * image.standard_error) for image in images]
     assert 0.924 < np.mean(within) < 0.976
-    # Those of a few batches hold too.
+    # Intervals from few batches hold too.
     ends = [render(scene, camera, samples=256, adaptive=True, seed=seed).interval() for seed in range(3)]
     assert 0.924 < np.mean([(low <= reference) & (reference <= high) for low, high in ends]) < 0.976
 
@@ -126,14 +126,14 @@ def test_clamping_is_named_as_bias():
     assert told.endswith(f" samples were clamped to 2, which took {share:.2g} % of the radiance")
     (told,) = render(scene, camera, samples=1, clamp=1e-9).warnings
     assert told.endswith(" samples were clamped to 1e-09, which took 100 % of the radiance")
-    # A bound that nothing reaches is no bias.
+    # A clamp that nothing reaches is no bias.
     unclamped = render(scene, camera, samples=32, clamp=1e6)
     assert unclamped == free or (np.array_equal(unclamped.rgb, free.rgb) and not unclamped.biased)
 
 
 def test_few_samples_that_carry_the_error_are_told(lamps):
     scene, camera = lamps
-    # Eighteen samples in a pixel: mostly none meets a speck, and in the picture some six do.
+    # Eighteen samples per pixel: mostly none hits a speck, and in the picture some six do.
     image = render(scene, camera, samples=18, integrator=rw.Path(max_depth=0))
     assert not image.error.trusted
     (told,) = image.warnings

@@ -43,7 +43,7 @@ def test_accelerators_change_no_bit(knot):
 
 
 def test_passes_change_no_bit(knot):
-    # A render that is ended by time makes passes of other sizes.
+    # A render with a time limit has passes of other sizes.
     timed = picture(knot, seconds=0.3)
     plan = timed.plan
     assert_same(picture(knot, integrator=plan.path, samples=timed.samples, sampler=plan.sampler), timed)

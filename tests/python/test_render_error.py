@@ -18,8 +18,8 @@ def relmse(image, reference):
 
 @pytest.mark.slow
 def test_estimate_of_a_cornell_box_is_close_to_its_true_error():
-    # Below this size a few pixels at the edge of the lamp hold most of the error, and chance alone keeps any
-    # estimate from being so close so often.
+    # Below this size a few pixels at the edge of the lamp hold most of the error, so that no estimate can be
+    # so close so often.
     scene, camera = rw.scenes.cornell_box(width=64, height=64)
     reference = render(scene, camera, samples=768, seed=10**9, sampler=rw.Lattice(64)).rgb.astype(float)
     ratios, inside = [], []
@@ -30,7 +30,7 @@ def test_estimate_of_a_cornell_box_is_close_to_its_true_error():
         inside.append(image.error.low <= truth <= image.error.high)
     ratios = np.array(ratios)
     assert np.sum((ratios > 0.8) & (ratios < 1.25)) >= 95
-    # Were the intervals' 95 % exact, chance would bring fewer than 88 of 100 once in 680 cases.
+    # At exactly 95 %, fewer than 88 of 100 happen once in 680 cases.
     assert np.sum(inside) >= 88
 
 
@@ -54,7 +54,7 @@ def covered(make, side, samples, seeds, **how):
     for seed in range(seeds):
         image = render(scene, camera, samples=samples, seed=seed, **how)
         low, high = image.interval()
-        # Where nothing errs, such as in the sky, intervals hold always.
+        # Without any error, such as in the sky, intervals always hold.
         held.append(np.mean(((low <= reference) & (reference <= high))[image.standard_error > 0]))
     return np.mean(held)
 
@@ -63,7 +63,7 @@ def covered(make, side, samples, seeds, **how):
 @pytest.mark.parametrize("adaptive", [False, True])
 @pytest.mark.parametrize("samples", [256, 500])
 def test_intervals_of_pixels_from_few_batches_cover_the_reference(samples, adaptive):
-    # Of some 30,000 values in 3,000 places chance makes less than half a per cent.
+    # Over some 30,000 values in 3,000 places the random deviation is less than half a per cent.
     held = covered(rare_scenes.cornell, 32, samples, 10, adaptive=adaptive)
     assert 0.93 <= held <= 0.97
 
@@ -113,7 +113,7 @@ def test_mean_over_seeds_is_unbiased():
     few = np.array([render(scene, camera, samples=1, seed=seed).rgb for seed in range(4000)])
     error = np.sqrt(few.var(axis=0, ddof=1) / len(few))
     deviation = (few.mean(axis=0) - reference) / error
-    # Channels of a pixel go together: of 64 normal deviates, chance brings one beyond 4.5 once in 2000 cases.
+    # Channels of a pixel correlate: one of 64 normal deviates is beyond 4.5 once in 2000 cases.
     assert np.abs(deviation).max() < 4.5
 
 
@@ -125,7 +125,7 @@ def test_rendering_to_an_error_reaches_it(cornell):
         assert image.error.high <= 0.01
         assert image.samples >= 16
         reached += relmse(image, reference) <= 0.01
-    # Were it 95 of 100 exactly, chance would bring 17 or fewer of 20 once in 13 cases; these seeds are fixed.
+    # At exactly 95 of 100, 17 or fewer of 20 happen once in 13 cases; these seeds are fixed.
     assert reached >= 18
 
 

@@ -8,9 +8,9 @@ import pytest
 
 import raywright as rw
 
-# Scenes that go by every part of shading which is compiled for each level: diffuse rooms with lamps of
-# triangles, smooth normals and masks, sheets of two sides, metal, glass and plastic, round lamps, skies,
-# and each kind of sampler.
+# Scenes with every part of shading that is compiled per SIMD level: diffuse rooms with lamps of triangles,
+# smooth normals and masks, two-sided sheets, metal, glass and plastic, round lamps, skies, and each kind of
+# sampler.
 PICTURES = """
 import hashlib
 import raywright as rw

@@ -47,7 +47,7 @@ def test_lattices_unless_of_few_points(box, limits, adaptive):
     kind = rw.Independent if batch == 1 else rw.Sobol if batch <= 4 else rw.Lattice
     assert type(sampler) is kind
     if "samples" in limits:
-        # There are two batches of each half to tell the error by, but for pictures that have no two samples.
+        # Each half has two batches for its error, except for pictures without two samples.
         assert batch * 2 * (1 + adaptive) <= max(limits["samples"], 2 * (1 + adaptive))
 
 
@@ -106,7 +106,7 @@ def test_shots_and_views_leave_it_to_render(box):
     assert named.plan.sampler == rw.Halton(4)
 
 
-# So many samples, and a pilot goes ahead.
+# Enough samples for a pilot.
 SIDE, SAMPLES = 128, 64
 WAYS = [rw.Path(reuse=reuse, caustics=caustics) for reuse in (1, 4) for caustics in (False, True)]
 
@@ -144,7 +144,7 @@ def test_paths_go_as_a_pilot_finds(name, reuse, caustics, why):
     assert (plan["reuse"].chosen, plan["caustics"].chosen) == (str(reuse), str(caustics))
     assert why[0] in plan["reuse"].why
     assert why[1] in plan["caustics"].why
-    # Neither the seed nor threads have a say.
+    # Neither the seed nor the number of threads matters.
     assert chosen(scene, camera, seed=5, threads=3) == plan
 
 
@@ -181,7 +181,7 @@ def test_a_pilot_says_the_same_on_any_number_of_threads():
 
 
 def test_a_pilot_tells_the_error_of_the_picture():
-    # Two parts are all of it.
+    # Two parts make the whole.
     box = rw.scenes.cornell_box(width=32, height=16)
     for path in (rw.Path(reuse=1, caustics=False), rw.Path(reuse=4, caustics=False)):
         # Its own error is less than an eightieth of that of 8 samples.
@@ -229,7 +229,7 @@ def test_checkpoints_keep_what_was_chosen(box, tmp_path, eager):
     scene, camera = made("cornell_box", 32)
     begun = rw.render(scene, camera, samples=16, checkpoint=tmp_path / "large", progress=False)
     assert begun.plan.path.reuse == 4
-    # Too few to send a pilot, had there been none.
+    # Too few for a pilot, had there been none.
     on = rw.render(scene, camera, samples=1, checkpoint=tmp_path / "large", progress=False)
     assert on.plan.path == begun.plan.path
     assert {on.plan[what].why for what in ("reuse", "caustics")} == {"as the checkpoint has it"}
@@ -253,7 +253,7 @@ class Stop:
 
 
 def test_a_pilot_is_called_back_when_the_render_is_stopped():
-    # A pilot over paths of thousands of bounces takes seconds, and is asked often.
+    # A pilot over paths of thousands of bounces takes seconds, and checks often for cancellation.
     walls = rw.Box((-1, -1, -1), (1, 1, 1), material=rw.Diffuse(0.9999))
     lamp = rw.PointLight((0, 0, 0), 1.0)
     camera = rw.Camera((0.5, 0.2, 0.1), (0, 0, -1), width=512, height=512)
@@ -273,7 +273,7 @@ def test_so_are_photons():
     def look():
         raise StoppedError
 
-    # On one thread they take many times as long as it takes to be asked.
+    # On one thread they take many times as long as the interval between checks.
     with pytest.raises(StoppedError):
         _core.chances(compiled, rw.Path(), 1, look)
     # A pilot that was stopped counts as no result.

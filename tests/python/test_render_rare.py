@@ -8,8 +8,8 @@ import rare_scenes
 
 import raywright as rw
 
-# Of a picture of n samples, and of the mean of N pictures of T samples that begin with it and its like, the
-# difference has the variance of the former but for the share n / (N T).
+# The difference between a picture of n samples and the mean of N pictures of T samples, which include such
+# samples, has the variance of the former minus the share n / (N T).
 LONG = 256
 
 
@@ -51,12 +51,12 @@ def judged(scene, camera, samples, seeds, reference=None):
 )
 def test_pictures_with_light_everywhere_know_their_error(make, side, samples):
     honest, cannot, _ = judged(*make(side), samples, 100)
-    # Of intervals that hold in 95 of 100, 89 or fewer do so once in 90 tries; these seeds are fixed.
+    # At 95 of 100, 89 or fewer happen once in 90 tries; these seeds are fixed.
     assert min(honest.values()) >= 90, honest
     assert max(cannot.values()) <= 5, cannot
 
 
-# The smallest lamp is a fifteenth across: so many samples of pixels of this size meet all of it often enough.
+# The smallest lamp is a fifteenth across: this many samples of such pixels hit all of it often enough.
 @pytest.mark.slow
 @pytest.mark.parametrize(("side", "samples"), [(128, 16), (64, 64)])
 def test_plates_know_their_error_where_no_lamp_is_lost_in_a_pixel(side, samples):
@@ -84,9 +84,9 @@ def test_pictures_of_rare_light_tell_their_error_or_that_they_cannot(make):
 
 
 def test_caustics_are_not_told_to_be_better_than_they_are():
-    # When a bright sample stood in its own denominator, estimates were a twentieth of the truth, and trusted.
+    # With bright samples in their own denominator, estimates were a twentieth of the truth, and trusted.
     honest, cannot, ratios = judged(*rare_scenes.glass_spheres(16), (64, 256), 20)
-    # Were it 9 of 10 exactly, chance would bring 15 or fewer of 20 once in 23 cases.
+    # At exactly 9 of 10, 15 or fewer of 20 happen once in 23 cases.
     assert min(honest.values()) >= 16, (honest, cannot)
     assert 0.4 < ratios[256] < 2.5
 
@@ -102,7 +102,8 @@ def test_light_through_a_keyhole_is_known_to_be_rare():
 
 
 def test_the_rim_of_a_lamp_is_no_rare_find():
-    # In these, four to eight pixels that met the lamp once carry most of the error that placing leaves.
+    # In these, four to eight pixels with one hit of the lamp carry most of the error that stratification
+    # leaves.
     scene, camera = rare_scenes.cornell(32)
     for seed in (19, 30, 74, 120):
         image = rw.render(scene, camera, samples=16, seed=seed, progress=False)
@@ -126,7 +127,8 @@ def test_an_error_that_cannot_be_trusted_is_told_in_words_and_ends_no_render():
 def test_patience_ends_a_render_whose_error_is_never_trusted():
     scene, camera = rare_scenes.keyhole(6)
     image = rw.render(scene, camera, error=1e9, progress=False)
-    # It has been below since the first pass, so it ends with 64 times the least number of samples.
+    # The error has been below since the first pass, so the render ends with 64 times the least number of
+    # samples.
     assert image.error.estimate < 1e9
     assert 16 < image.samples <= 1024
     assert image.error.trusted or image.samples == 1024

@@ -59,14 +59,14 @@ def test_size_does_not_matter(box, scale, precision):
 
 @pytest.mark.parametrize("shift", [1e3, 1e4, 1e5, 1e6, 1e7])
 def test_place_does_not_matter(box, shift):
-    # In f32, the corners of a box of 64 are numbers at all of these places.
+    # In f32, the corners of a box of 64 are exact at all of these places.
     scene = rw.Scene(room(box, 0.5, 1.0, 64.0, shift))
     assert_mean(rw.render(scene, inside(64.0, shift), samples=64, progress=False), 2.0)
 
 
 @pytest.mark.parametrize("shift", [0.0, 1e3, 1e5, 1e7])
 def test_a_lamp_lights_a_floor_alike_at_any_place(shift):
-    # Lambert's irradiance of a square right above, all of it moved; in f64, where 0.1 is not lost at 1e7.
+    # Lambert's irradiance of a square right above, with everything moved; in f64, which keeps 0.1 at 1e7.
     def moved(mesh):
         return rw.Mesh(mesh.vertices + shift, mesh.faces, material=mesh.material, emission=mesh.emission)
 
@@ -85,7 +85,7 @@ def test_a_lamp_lights_a_floor_alike_at_any_place(shift):
     ("reflectance", "samples"), [(0.99, 128), pytest.param(0.999, 48, marks=pytest.mark.slow)]
 )
 def test_bright_boxes_leave_no_heavy_tail(box, reflectance, samples):
-    # Emission 1 over what is lost at a bounce: 100 and 1000.
+    # Emission 1 over the loss per bounce: 100 and 1000.
     scene = rw.Scene(room(box, reflectance, 1.0))
     image = rw.render(scene, inside(size=8), samples=samples, progress=False)
     assert_mean(image, 1 / (1 - reflectance), most=0.02)
@@ -130,7 +130,7 @@ def test_a_camera_ten_million_away_sees_what_is_there():
 
 @pytest.mark.parametrize("gap", [1e-6, 1e-3])
 def test_sheets_a_millionth_apart_are_two(gap):
-    # From below a black sheet hides a lamp; from above the lamp is seen, and nothing leaks either way.
+    # From below a black sheet hides a lamp; from above the lamp is visible, and nothing leaks either way.
     sheet, lamp = (
         square(5, 0, up=False, material=rw.Diffuse(0)),
         square(5, gap, material=rw.Diffuse(0), emission=2),
@@ -154,7 +154,7 @@ def test_of_coincident_sheets_one_is_there_and_always_the_same():
 
 
 def test_a_coarse_ball_has_no_facets_at_its_terminator():
-    # Lit from the side, with smooth normals: light does not stop with a step where a facet turns away.
+    # Lit from the side, with smooth normals: shading has no step where a facet turns away.
     ball = trimesh.creation.icosphere(2)
     mesh = rw.Mesh(ball.vertices, ball.faces, normals=ball.vertices, material=rw.Diffuse(1.0))
     scene = rw.Scene(mesh, lights=[rw.PointLight((1e4, 0, 0), intensity=math.pi * 1e8)])
@@ -163,8 +163,8 @@ def test_a_coarse_ball_has_no_facets_at_its_terminator():
     hits = scene.intersect(*camera.rays())
     cosine = np.asarray(hits.position)[..., 0]
     seen = np.asarray(hits.hit) & (np.hypot(hits.position[..., 0], hits.position[..., 1]) < 0.8)
-    # Lambert's cosine by the smooth normal at most, and at least what is left where the facet is turned away
-    # as far as facets are: of two normals an angle d apart, G = 1 - tan(t) tan(d) (Chiang et al. 2019).
+    # At most Lambert's cosine by the smooth normal. At least the rest where the facet turns away as far as
+    # facets do: for two normals an angle d apart, G = 1 - tan(t) tan(d) (Chiang et al. 2019).
     corners = ball.vertices[ball.faces]
     tilt = math.tan(np.arccos(np.einsum("fij,fj->fi", corners, ball.face_normals).min()))
     lambert = np.clip(cosine, 0, 1)
@@ -174,7 +174,7 @@ def test_a_coarse_ball_has_no_facets_at_its_terminator():
     assert (image[seen] <= lambert[seen] + 0.05).all()
     assert (image[seen] >= (lambert * (g + g**2 - g**3))[seen] - 0.05).all()
     assert not image[seen & (cosine < -0.3)].any()
-    # Neighbours differ by less than where light is cut off as a facet turns away: the sine of the tilt.
+    # Neighbours differ by less than a cut-off at a facet would give: the sine of the tilt.
     step = np.abs(np.diff(image, axis=1))[(seen & np.roll(seen, -1, 1))[:, :-1]]
     assert step.max() < math.sin(math.atan(tilt))
 

@@ -28,7 +28,7 @@ def balls(size):
 
 
 def with_reference(scene, camera):
-    # Off by a fortieth of the target at most, which makes errors seem that much larger.
+    # Off by a fortieth of the target at most, which makes errors seem larger by that share.
     return scene, camera, render(scene, camera, samples=4000, seed=10**9, adaptive=True).rgb.astype(float)
 
 
@@ -51,7 +51,7 @@ def reached(scene, camera, reference, seeds, adaptive):
 @pytest.mark.parametrize("adaptive", [False, True])
 @pytest.mark.parametrize("which", ["cornell", "highlights"])
 def test_an_error_that_was_asked_for_is_reached(request, which, adaptive):
-    # Were it 95 of 100 exactly, chance would bring 90 or fewer once in 35 cases; these seeds are fixed.
+    # At exactly 95 of 100, 90 or fewer happen once in 35 cases; these seeds are fixed.
     assert reached(*request.getfixturevalue(which), 100, adaptive) >= 95
 
 
@@ -60,7 +60,7 @@ def test_an_error_that_was_asked_for_is_reached_in_a_small_picture():
     # Off by 3e-6 in relMSE. The .rgb of rw.render(*balls(24), samples=16384, seed=10**9, adaptive=True)
     with np.load(Path(__file__).parent / "data" / "balls_24.npz") as kept:
         reference = kept["rgb"].astype(float)
-    # As above: 18 or fewer of 20 come by chance once in 4 cases, 17 once in 13.
+    # As above: 18 or fewer of 20 happen once in 4 cases, 17 once in 13.
     assert reached(*balls(24), reference, 20, False) >= 18
 
 

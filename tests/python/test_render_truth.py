@@ -8,7 +8,7 @@ import trimesh
 
 import raywright as rw
 
-# Faces of a cube of the conftest look outwards; the other way round it is a room.
+# Faces of the conftest's cube look outwards; reversed it is a room.
 INWARDS = [0, 2, 1]
 
 
@@ -95,7 +95,7 @@ def test_no_light_leaks_through_a_thin_plate(gap):
     camera = rw.Camera((0, 0, -1), (0.1, 0.1, 0), fov=90, width=32, height=32)
     lit_from_above = rw.Scene([plate, lamp, floor])
     assert not rw.render(lit_from_above, camera, samples=16, progress=False).rgb.any()
-    # Between both, where the camera looks down at a floor that only the plate's underside could light.
+    # Between both, the camera looks down at a floor that only the plate's underside could light.
     camera = rw.Camera((0, 0, gap / 2), (1, 1, 0.49 * gap), up=(0, 0, 1), width=32, height=32)
     picture = rw.render(lit_from_above, camera, rw.Path(max_depth=4), samples=16, progress=False)
     assert not picture.rgb.any()
@@ -141,7 +141,7 @@ def test_sky_gives_pi_and_lights_add_up():
     assert_mean(radiance_of_floor([], environment=2.0), 0.8 * 2)
     lamp = rectangle((-1, -1, 1), (0, 2, 0), (2, 0, 0), material=rw.Diffuse(0), emission=3)
     light = rw.PointLight((0, 4, 2), intensity=5)
-    # The lamp hides a part of the sky, as much of it as it would light were it as bright.
+    # The lamp hides the part of the sky that it would light if both were equally bright.
     share = 1.740839502734206 / math.pi
     expected = 0.8 * (3 * share + 2 * (1 - share) + 5 / math.pi * 2 / 20**1.5)
     assert_mean(
@@ -158,8 +158,8 @@ def sphere(subdivisions):
 
 @pytest.mark.parametrize(("phase_angle", "phase"), [(0.0, 1.0), (90.0, 1 / math.pi)])
 def test_lambert_sphere_under_a_distant_light_has_its_phase_function(phase_angle, phase):
-    # Seen at phase angle a, a sphere of reflectance r under irradiance E sends r E R² 2/3 f(a) per solid
-    # angle, with f(a) = (sin a + (pi - a) cos a) / pi (Lambert 1760; Sobolev 1975).
+    # At phase angle a, a sphere of reflectance r under irradiance E reflects r E R² 2/3 f(a) per solid angle,
+    # with f(a) = (sin a + (pi - a) cos a) / pi (Lambert 1760; Sobolev 1975).
     ball = sphere(5)
     far, fov, size = 1000.0, 0.15, 64
     angle = math.radians(phase_angle)
@@ -173,7 +173,7 @@ def test_lambert_sphere_under_a_distant_light_has_its_phase_function(phase_angle
 
 
 def test_smooth_normals_leak_no_light():
-    # A coarse ball, lit from behind: what faces the camera must be black however its normals are bent.
+    # A coarse ball, lit from behind: the side towards the camera must be black for any shading normals.
     ball = trimesh.creation.icosphere(1)
     mesh = rw.Mesh(ball.vertices, ball.faces, normals=ball.vertices, material=rw.Diffuse(0.8))
     scene = rw.Scene(mesh, lights=[rw.PointLight((0, 0, -1000), intensity=1e6)])

@@ -48,7 +48,7 @@ def test_watching_changes_no_bit_and_ends_with_what_is_returned(adaptive, execut
     scene, camera = cornell()
     how = {"seed": 3, "adaptive": adaptive}
     watch = Watch()
-    # Short passes too must leave room for being watched.
+    # Short passes must leave room for progress reports, too.
     image = rw.render(scene, camera, seconds=1.0, threads=1, progress=watch, executor=executor, **how)
     assert len(watch) >= 3
     assert watch[-1] is image
@@ -70,7 +70,7 @@ def test_pictures_so_far_get_better():
     whole = [image for image in watch if image.samples >= 4]
     assert [image.samples for image in whole] == sorted(image.samples for image in whole)
     assert whole[-1].samples > 4 * whole[0].samples
-    # Four times the samples are a quarter of the error, but for chance.
+    # Four times the samples are a quarter of the error, up to noise.
     assert relmse(whole[-1]) < 0.5 * relmse(whole[0])
     for image in whole:
         # The estimate is of the last whole pass.
@@ -123,11 +123,11 @@ def test_who_asks_for_no_pixels_is_called_ten_times_a_second_however_large_the_p
         assert image.samples == 0
         assert np.isnan(image.error.estimate)
         assert repr(image).startswith("Image(2560x1440, 0 samples")
-        # In the end it is shown what is returned.
+        # The last picture shown is the result.
         assert type(image) is rw.Image or not {"rgb", "standard_error", "degrees"} & set(vars(image))
 
-    # A sample of each of its pixels takes one thread seconds, and all looks eight tenths of one. The render
-    # is not left for any of them.
+    # One sample of each pixel takes one thread seconds, and all looks together eight tenths of one. The
+    # render is not interrupted for any of them.
     scene = rw.scenes.cornell_box(width=2560, height=1440)
     image = rw.render(*scene, rw.Path(reuse=1), progress=watch, stop=clock, threads=1)
     assert image.samples == 0
@@ -149,11 +149,11 @@ def test_what_it_takes_to_show_it_is_a_tenth_of_the_work_at_most(clock, threads,
     rw.render(*scene, rw.Path(reuse=1), progress=watch, stop=clock, threads=threads)
     gaps = np.diff(began[:-1])
     assert len(gaps) >= 3
-    # One thread shows it, and the others go on. Looks are a fiftieth of a second apart.
+    # One thread shows it, and the others continue. Looks are a fiftieth of a second apart.
     least = max(0.1, 0.05 * (1 + share))
     assert (gaps >= least - 1e-9).all()
-    # And no more than a tenth is kept free: it is shown again as soon as that allows. With several
-    # threads it may be later, for the others' looks count on while the one that shows waits for a core.
+    # No more than a tenth is kept free: the next picture comes as soon as that allows. With several threads
+    # it may be later, since the others' looks continue while the showing thread waits for a core.
     soonest = gaps.max() if threads == 1 else gaps.min()
     assert soonest < least + 0.021
 
@@ -234,7 +234,7 @@ def test_another_thread_may_stop_a_render_at_once(executor):
 
     threading.Timer(0.7, end).start()
     image = rw.render(scene, camera, error=1e-9, progress=False, stop=stop, executor=executor)
-    # Fifty looks a second; tests run beside other work.
+    # Fifty looks per second; tests run beside other work.
     assert time.monotonic() - stopped[0] < 1.0
     assert image.rgb.shape == (400, 400, 3)
     assert image.error.estimate > 1e-9 or np.isnan(image.error.estimate)

@@ -33,7 +33,7 @@ def test_every_accelerator_has_a_row_and_none_is_wrong(report):
     assert report.column("accelerator") == tuple(kinds.every())
     assert len(report.rows) >= 2
     assert set(report.column("wrong")) == {0}
-    # There are few enough for brute force to check all of them.
+    # Few enough for brute force to check all of them.
     hit = SCENE.intersect(*CAMERA.rays()).hit.sum()
     assert set(report.column("checked")) == {24 * 16 + 2 * hit}
 

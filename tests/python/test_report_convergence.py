@@ -16,7 +16,7 @@ from raywright.report.convergence import LEVELS
 
 SCENE, CAMERA, TRUTH = cornell_picture(24)
 HISTORY = np.array([(1.0, 16384, 1e-6)], rw.rendering.image.HISTORY)
-# An error that shows where it is not taken off: the picture's own is a tenth of it.
+# An error that shows unless it is subtracted: the picture's own is a tenth of it.
 ESTIMATE = rw.ErrorEstimate(1e-5, 5e-6, 2e-5)
 REFERENCE = rw.Image(
     TRUTH.astype(np.float32), np.zeros_like(TRUTH, np.float32), ESTIMATE, HISTORY, 1.0, 16384
@@ -51,7 +51,7 @@ def test_there_is_a_row_for_each_contender_and_budget(report):
         mine = report.where(contender=name)
         assert mine.column("budget") == tuple(0.2 / 2**k for k in reversed(range(LEVELS)))
         samples = mine.column("samples")
-        # More time gives more samples; of neighbours, not whatever else the machine does meanwhile.
+        # More time gives more samples; between neighbours, other load on the machine decides.
         assert samples[0] < samples[-1]
         for seconds, error, product in zip(
             mine.column("seconds"), mine.column("relmse"), mine.column("error_seconds"), strict=True
@@ -81,7 +81,7 @@ def test_a_row_tells_of_its_pictures(made):
 
 
 def test_another_seed_is_another_picture(made):
-    # The same one has the same bits, whatever time it had.
+    # The same integrator has the same bits, for any time.
     for images in made[1].values():
         assert not np.array_equal(images[0].rgb, images[1].rgb)
     longest = made[1]["path", 0.2][1]
@@ -137,7 +137,7 @@ def test_a_plot_in_a_file_has_its_lines_too(report, tmp_path):
     plain = report.plot(tmp_path / "plain.svg", x="samples")
     assert not any("slope" in text.get_text() for text in plain.get_legend().get_texts())
     text = (tmp_path / "plot.svg").read_text(encoding="utf-8")
-    # Of each contender its line of marks and the one that fits it; dashes are drawn by the latter alone.
+    # Each contender has its line of marks and its fit; only the fit has dashes.
     assert text.count("stroke-dasharray") >= 2
 
 

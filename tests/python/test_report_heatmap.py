@@ -45,7 +45,7 @@ def test_colours_tell_counts(heat):
     picture = heat.srgb()
     assert picture.shape == (30, 40, 3)
     assert (picture[heat.counts == heat.most] == COLOURS[-1]).all()
-    # The level is the nearest of 256 to the count's share of the most.
+    # The level is the nearest of 256 to the count's share of the maximum.
     level = np.floor(255 * heat.counts / heat.most + 0.5).astype(int)
     assert np.array_equal(picture, COLOURS[level])
 
@@ -53,7 +53,7 @@ def test_colours_tell_counts(heat):
 def test_colours_rise_evenly_in_lightness():
     assert COLOURS[0].tolist() == [0, 0, 0]
     assert COLOURS[-1].tolist() == [255, 255, 255]
-    # The scheme keeps the perceived brightness of television (NTSC) on a straight line, but for clipping.
+    # The scheme keeps perceived brightness (NTSC) linear, except for clipping.
     brightness = COLOURS @ np.array([0.30, 0.59, 0.11])
     assert np.abs(brightness - np.arange(256)).max() < 3
     assert (np.diff(brightness) > -0.5).all()
@@ -74,7 +74,7 @@ def test_png_shows_the_picture_enlarged_beside_its_bar(heat, tmp_path):
     assert pixels.shape[0] == 240
     assert np.array_equal(pixels[4:240:8, 4:320:8], heat.srgb())
     bar = pixels[:, 335]
-    # From the bottom up every colour that there is room for, in order.
+    # From the bottom up, every colour with enough room, in order.
     found = [np.flatnonzero((colour == COLOURS).all(axis=1))[0] for colour in bar[22:231][::-1]]
     assert found[0] == 0
     assert found[-1] == 255
@@ -146,7 +146,7 @@ def test_ticks_are_few_round_and_end_with_the_most(most):
     steps = np.diff(marks)
     assert (steps > 0).all()
     assert len(set(steps[:-1].tolist())) <= 1
-    # No two are written upon each other.
+    # No two overlap.
     assert steps.min() * 2 >= steps.max() or len(marks) <= 3
 
 
@@ -173,7 +173,7 @@ def test_an_interval_holds_the_truth_in_spite_of_noise():
         total = counts.sum(axis=0) * [7, 3, 11]
         low, high = fitted(counts, times, seed).boxes_interval
         held += bool(low <= total[0] / total.sum() <= high)
-    # Of intervals that hold in 95 of 100 cases, 31 or fewer of 40 do once in 7,000 tries.
+    # At 95 of 100, 31 or fewer of 40 happen once in 7,000 tries.
     assert held > 31
 
 

@@ -190,8 +190,8 @@ def test_the_oracle_takes_borders_for_hits_and_what_has_no_area_for_none():
 
 
 def test_ulps_are_those_of_float32():
-    # At z = 3, seen from 0: t is 3 in lengths of 1, where an ulp of float32 is 2^-22, and 3/2 in lengths of
-    # 2, where it is 2^-23.
+    # At z = 3, from 0: t is 3 in lengths of 1, where an ulp of float32 is 2^-22, and 3/2 in lengths of 2,
+    # where it is 2^-23.
     corners = np.array([[(-1, -1, 3), (5, -1, 3), (-1, 5, 3)]] * 4, np.float32)
     directions = np.array([(0, 0, 1), (0, 0, 1), (0, 0, 2), (0, 0, -1)], np.float32)
     exact = exact_hits(np.zeros((4, 3), np.float32), directions, corners)
@@ -406,7 +406,7 @@ def test_a_plot_shows_each_row_on_logarithmic_axes(report, table):
     assert [text.get_text() for text in ax.get_legend().get_texts()] == [*ROUTINES, *FAMILIES]
     plt.close(ax.figure)
 
-    # Zero has no logarithm and is drawn under all else; a row without a number is left out.
+    # Zero has no logarithm and is drawn below the rest; a row without a number is left out.
     _, mine = plt.subplots()
     ax = table.plot(mine)
     assert ax is mine
@@ -432,7 +432,7 @@ def test_a_plot_may_go_to_a_file(table, tmp_path, name, begins):
         assert isinstance(ax, matplotlib.axes.Axes)
         assert (tmp_path / name).read_bytes().startswith(begins)
         (tmp_path / name).unlink()
-    # Nobody has to close it: pyplot does not know of it.
+    # It needs no closing: pyplot does not know of it.
     assert plt.get_fignums() == before
 
 

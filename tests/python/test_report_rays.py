@@ -43,7 +43,7 @@ def test_diffuse_rays_leave_what_is_seen_as_the_cosine():
     assert np.allclose(rays.origins, hits.position[hits.hit], atol=1e-8)
     unit = rays.directions / np.linalg.norm(rays.directions, axis=1, keepdims=True)
     cosine = np.sum(unit * normal, axis=1)
-    # Of density 2c from 0 to 1: mean 2/3, variance 1/18. Five standard errors: once in a million seeds.
+    # The density is 2c from 0 to 1: mean 2/3, variance 1/18. Five standard errors: once in a million seeds.
     assert cosine.min() > 0
     assert abs(cosine.mean() - 2 / 3) < 5 * (1 / 18 / len(cosine)) ** 0.5
     assert np.array_equal(rays.directions, typical_rays(scene, CAMERA)["diffuse"].directions)
@@ -74,7 +74,7 @@ def test_shadow_rays_go_to_all_of_a_shining_mesh_and_are_not_stopped_by_it():
     rays = typical_rays(scene, CAMERA)["shadow"]
     ends = rays.origins + rays.directions
     assert np.allclose(ends[:, 1], 3)
-    # Even on [-1, 1]: variance 1/3.
+    # Uniform on [-1, 1]: variance 1/3.
     assert (np.abs(ends[:, [0, 2]].mean(axis=0)) < 5 * (1 / 3 / rays.count) ** 0.5).all()
     assert np.array_equal(
         scene.occluded(rays.origins, rays.directions, t_max=rays.t_max),

@@ -49,7 +49,7 @@ def test_who_watches_is_told_that_it_is_done(box):
 def ask(task):
     scene, origins = task
     hits = scene.intersect(origins, (0, 0, -1.0))
-    # A number for the compiled scene that no other has while this process keeps it.
+    # An id of the compiled scene, unique while this process keeps it.
     return id(scene._core), hits
 
 

@@ -74,7 +74,7 @@ def test_a_function_is_told_shares_that_never_fall_and_end_at_one(kind):
     scene = rw.Scene(mesh, accelerator=kind)
     scene.build(progress=shares)
     told_rightly(shares)
-    # To watch changes nothing.
+    # Progress reports change nothing.
     plain = rw.Scene(mesh, accelerator=kind)
     assert scene.accelerator.sah_cost == plain.accelerator.sah_cost
     assert (scene.accelerator.kind, scene.accelerator.nodes) == (
@@ -200,7 +200,7 @@ def test_ctrl_c_ends_a_build_at_once(large, kind):
     def ask():
         rw.Scene(large, accelerator=kind, quality="fast rays").intersect([0, 0, 0], [1, 0, 0])
 
-    # A tenth of a second is promised, for an idle machine; tests run beside other work.
+    # The documented limit is a tenth of a second on an idle machine; tests run beside other work.
     assert ended(ask, 0.15) < 1.0
 
 

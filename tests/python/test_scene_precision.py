@@ -91,7 +91,7 @@ def test_a_terrain_at_map_coordinates_sees_as_much_of_the_sky_as_at_the_origin()
     place = np.round(8 * PLACE) / 8
     same, seen = sky_view(rw.Scene(bumpy(place)), place)
     assert np.array_equal(same, faces)
-    # Where rays start differs by 1e-7, which some of the 25,600 may graze.
+    # Ray origins differ by 1e-7, so some of the 25,600 may graze.
     assert (seen != home).mean() < 1e-3
     with pytest.warns(RuntimeWarning, match="moves vertices"):
         rounded = sky_view(rw.Scene(bumpy(place), precision="single"), place)[1]
@@ -101,7 +101,7 @@ def test_a_terrain_at_map_coordinates_sees_as_much_of_the_sky_as_at_the_origin()
 @pytest.mark.parametrize("off", [0.0, 5e-324, 1e-17, 1e-9])
 def test_digits_are_kept_unless_there_are_none_beyond_float32(off):
     mesh = rw.Mesh([(0, 0, 0), (1, off, 0), (0, 1, 0)], [(0, 1, 2)])
-    # Not even in a mesh of such a size that it is no share of it.
+    # Not even in a mesh so large that the offset is negligible.
     for other in ([], [rw.Mesh(np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0)]) * 2.0**100, [(0, 1, 2)])]):
         scene = rw.Scene([mesh, *other])
         precision = "double" if off else "single"
@@ -150,7 +150,7 @@ def test_rays_that_start_next_to_a_face_start_on_their_side_of_it():
     is_off = (moved != low[axis]) & (moved != high[axis])
     assert is_off.sum() > 3500
     assert np.array_equal(scene.contains(points)[is_off], is_inside[is_off])
-    # Outwards from inside, the face is met once; from beyond the other face, that is met as well.
+    # Outwards from inside, the face is hit once; from beyond the other face, that one as well.
     count = scene.count(points, outward)[is_off]
     assert np.array_equal(count % 2 == 1, is_inside[is_off])
 
@@ -229,7 +229,7 @@ def test_groups_decide_for_themselves():
     to[:3, 3] = PLACE
     placed = rw.Scene([rw.Instance(ball, to), cuboid(at=0.0)])
     assert not row(placed).needed
-    # A copy is where its matrix puts it, in float64.
+    # A copy is at the place of its matrix, in float64.
     assert abs(placed.intersect(there(0, 0, 9), (0, 0, -1)).t - 8) < 1e-8
     scene = rw.Scene([rw.Instance(block, np.eye(4)), rw.Instance(ball, np.eye(4)), ball])
     assert row(scene).needed
@@ -249,7 +249,7 @@ def icosphere():
 
 def test_single_where_it_hurts_warns_once_and_tells_how_much():
     scene = rw.Scene(cuboid(), precision="single")
-    # float32 counts in halves there: 5,248,998.2 becomes 5,248,998.
+    # float32 has steps of a half there: 5,248,998.2 becomes 5,248,998.
     moved, share = 0.2, 0.2 / 6
     message = (
         rf'^precision="single" moves vertices by up to {moved:.3g}, {share:.2g} of the extent of their mesh; '
@@ -349,7 +349,7 @@ def lit_room(at):
 def test_a_room_at_map_coordinates_looks_as_it_does_at_the_origin(integrator):
     (home, before), (scene, camera) = lit_room((0, 0, 0)), lit_room(PLACE)
     assert row(scene).needed
-    # The same random numbers: pictures differ where the rounding of coordinates decides, at few pixels.
+    # The same random numbers: pictures differ only at few pixels, where rounding of coordinates decides.
     wanted, found = (
         rw.render(s, c, integrator, samples=16, seed=5, progress=False).rgb.astype(float)
         for s, c in ((home, before), (scene, camera))

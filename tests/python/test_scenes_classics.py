@@ -134,7 +134,7 @@ def test_a_city_has_closed_houses_on_a_ground_with_streets_between():
     assert ground.bounds[:, 1].tolist() == [0, 0]
     assert houses.bounds[0, 1] == 0
     assert np.ptp(ground.bounds, axis=0).tolist() == [234, 0, 234]
-    # Along the middle of a street there is nothing but ground.
+    # The middle of a street shows nothing but ground.
     line = np.linspace(-110, 110, 200)
     above = np.stack([np.full(200, 39.0), np.full(200, 500.0), line], axis=1)
     assert (rw.Scene([ground, houses]).intersect(above, (0, -1, 0)).shape_id == 0).all()
@@ -189,7 +189,7 @@ def test_trees_stand_upright_one_in_a_square_turned_and_scaled():
     assert np.allclose(foot, place[7], atol=1e-12)
 
 
-# Turning, and all of them.
+# Rotations, and all scenes.
 
 
 @pytest.mark.parametrize("axis", [(0, 1, 0), (1, -2, 3), (0, 0, 1e-300)])
@@ -224,7 +224,7 @@ def test_classics_have_about_as_many_triangles_as_asked_for_and_a_view():
 def test_the_turned_room_is_the_same_room():
     made = SCENES.classics(3000, width=40, height=30)
     straight, turned = (s.intersect(*c.rays()) for s, c in (made["room"], made["turned room"]))
-    # But for pixels at an edge, where rounding decides.
+    # Except for pixels at an edge, where rounding decides.
     assert (straight.primitive == turned.primitive).mean() > 0.98
     same = straight.primitive == turned.primitive
     assert np.allclose(straight.t[same], turned.t[same], rtol=1e-4)

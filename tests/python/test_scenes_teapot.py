@@ -19,7 +19,7 @@ def test_there_are_thirty_two_patches():
 @pytest.mark.parametrize("divisions", [1, 2, 7])
 def test_it_is_as_large_as_it_is_known_to_be(divisions):
     teapot = rw.scenes.teapot(divisions)
-    # Eight patches have a side that is a point, where every second triangle would have no area.
+    # Eight patches have a degenerate side, where every second triangle would have no area.
     assert len(teapot.faces) == 64 * divisions**2 - 8 * divisions
     assert teapot.bounds[:, 1].tolist() == [0, 3.15]
     assert teapot.bounds[:, 2].tolist() == [-2, 2]
@@ -42,7 +42,7 @@ def test_patches_meet_without_gaps(divisions):
 
 
 def test_patches_that_follow_each_other_meet_smoothly():
-    # Along the profile: the last step of the one and the first of the next are parallel.
+    # Along the profile: the last step of one patch and the first of the next are parallel.
     smooth = 0
     for one in CONTROL:
         for other in CONTROL:
@@ -58,7 +58,7 @@ def test_patches_that_follow_each_other_meet_smoothly():
 def test_normals_are_unit_and_those_of_the_surface():
     points, normals = surface(CONTROL, np.linspace(0, 1, 9))
     assert np.allclose(np.linalg.norm(normals, axis=-1), 1)
-    # Against differences of the surface itself, away from the sides.
+    # Compared with finite differences of the surface, away from the sides.
     near = surface(CONTROL, np.array([0.4, 0.4 + 1e-6]))[0]
     along, across = near[:, 1, 0] - near[:, 0, 0], near[:, 0, 1] - near[:, 0, 0]
     expected = np.cross(along, across)
@@ -71,7 +71,7 @@ def test_normals_are_unit_and_those_of_the_surface():
 def test_it_is_seen_from_outside():
     scene = rw.Scene(rw.scenes.teapot(12))
     rng = np.random.default_rng(1)
-    # From below and from both sides no ray gets in through the spout or past the lid.
+    # From below and from both sides no ray enters through the spout or past the lid.
     for axis, start in ((1, -9.0), (2, 9.0), (2, -9.0)):
         origins = rng.uniform((-3, 0, -2), (3.4, 3.1, 2), (3000, 3))
         origins[:, axis] = start

@@ -47,7 +47,7 @@ def test_light_counts_by_its_cosine_to_the_shading_normal(towards):
     faded = seen(floor(LEANING), lit_from(towards), mode="faded")[0]
     assert faded <= expected * (1 + 1e-6)
     if towards == (0.9, 0, 0.3):
-        # Low over the face, and high over its shading normal.
+        # Grazing for the face, and high above its shading normal.
         assert faded < 0.7 * expected
 
 

@@ -43,7 +43,7 @@ def test_each_is_hit_where_it_is_told_and_by_its_number():
     assert set(hits.shape_id) == set(range(-1, len(shapes)))
     on = hits.hit
     along = origins + hits.t[:, None] * directions
-    # Points are on the surface, rays' own points next to it.
+    # Points are on the surface, and points along rays next to it.
     assert np.abs(along - hits.position)[on].max() < 1e-12 * 50
     assert np.allclose(np.linalg.norm(hits.normal[on], axis=1), 1, atol=1e-14)
     for i, shape in enumerate(shapes):

@@ -34,7 +34,7 @@ def leftward(near):
 
 def test_the_same_mesh_looks_the_same_from_any_file(tmp_path):
     knot = trimesh.creation.torus(1.0, 0.4)
-    # All its numbers are of 32 bits, and of few digits, so that every kind of file holds them all.
+    # All its numbers have 32 bits and few digits, so that every kind of file stores them exactly.
     knot.vertices = np.round(knot.vertices * 256) / 256
     pictures = []
     for kind in ("obj", "ply", "stl", "glb", "off"):
@@ -72,10 +72,10 @@ def test_a_camera_of_the_file_stays_and_gets_the_studios_light(tmp_path):
     studio, _ = rw.scenes.studio(square)
     assert shot.scene.environment == studio.environment
     assert lamp.emission == studio.shapes[-1].emission
-    # It is 60 degrees to the left of one who looks along -z, 55 above, 5 times as far as the mesh reaches.
+    # 60 degrees to the left of the view along -z, 55 above, 5 times the radius of the mesh away.
     middle = lamp.vertices.mean(axis=0) - (0.5, 0.5, 0)
     assert np.allclose(middle, 5 * np.sqrt(0.5) * leftward((0, 0, 1)), rtol=0, atol=1e-12)
-    # Seen from where the studio has its own camera, it is the studio's.
+    # From the studio's own camera, it is the studio's lamp.
     _, own = rw.scenes.studio(square)
     assert np.allclose(shown([square], camera=own).scene.shapes[-1].vertices, studio.shapes[-1].vertices)
 
@@ -107,7 +107,7 @@ def test_what_has_light_of_its_own_is_shown_in_it(tmp_path):
 
     assert held(gltf(tmp_path, lights=[{"type": "point", "intensity": 683.0}])) == alone
     assert held(gltf(tmp_path, emission=1.0)) == alone
-    # Small lights on a device do not light it, unless somebody has put a camera there.
+    # Small lights on a device do not light it, unless the file has a camera.
     assert held(gltf(tmp_path, emission=0.01, camera={"translation": [0, 0, 4]})) == alone
     assert held(gltf(tmp_path, emission=0.01))["shapes"] == 3
     assert held(rw.load(write(tmp_path, "Ke 0.02 0.02 0.02"))) == alone
@@ -115,7 +115,7 @@ def test_what_has_light_of_its_own_is_shown_in_it(tmp_path):
     shot = rw.load(write(tmp_path, "Kd 0 0 0\nKe 3 2 1"), width=32, height=24)
     mask = shot.scene.intersect(*shot.camera.rays()).hit
     image = shot.render(samples=1, integrator=rw.Path(max_depth=2), progress=False).rgb
-    # Pixels that are wholly on it.
+    # Pixels entirely within it.
     inner = mask[1:-1, 1:-1] & mask[2:, 1:-1] & mask[:-2, 1:-1] & mask[1:-1, 2:] & mask[1:-1, :-2]
     assert inner.sum() > 20
     assert np.array_equal(image[1:-1, 1:-1][inner], np.broadcast_to(np.float32((3, 2, 1)), (inner.sum(), 3)))

@@ -31,7 +31,7 @@ def test_what_is_no_radiance_counts_as_black_and_is_counted(value):
         image = rw.render(scene, camera, spoilt, samples=16, progress=False)
     assert 50 < spoilt.spoilt < 150
     assert image.warnings[0].startswith(f"{spoilt.spoilt} samples were not finite or negative")
-    # All of such a sample is black, the others are as they are.
+    # Such a sample is entirely black, and the others are unchanged.
     assert (image.rgb * 16).sum(axis=(0, 1)).tolist() == [1024 - spoilt.spoilt] * 3
     assert np.isfinite(image.standard_error).all()
     assert math.isfinite(image.error.estimate)
@@ -136,5 +136,5 @@ def test_no_picture_of_anything_has_what_is_no_number(seed, most):
     assert math.isfinite(image.error.estimate)
     assert np.isfinite(image.aov["normal"]).all()
     assert np.isfinite(image.aov["albedo"]).all()
-    # Lamps of 1e30 may send more than a float32 can say, close by or in highlights; those of 1e7 do not.
+    # Lamps of 1e30 may overflow float32, close by or in highlights; those of 1e7 do not.
     assert most > 1e7 or not any("finite" in warning for warning in image.warnings), image.warnings

@@ -28,7 +28,7 @@ def look(start, end, place=0.0, **more):
 @pytest.mark.parametrize("place", [0.0, 10.0, 1e3])
 @pytest.mark.parametrize("gap", [1e-6, 1e-9])
 def test_a_sheet_hides_what_is_close_behind_it_anywhere(gap, place):
-    # A black sheet, a lamp above it that shines upwards, both turned and moved.
+    # A black sheet and a lamp above it that emits upwards, both turned and moved.
     scene = rw.Scene(
         [
             sheet(0, up=False, place=place, material=rw.Diffuse(0)),
@@ -44,7 +44,7 @@ def test_a_sheet_hides_what_is_close_behind_it_anywhere(gap, place):
 
 @pytest.mark.parametrize("gap", [1e-6, 1e-3])
 def test_between_sheets_it_is_as_bright_as_in_any_closed_room(box, gap):
-    # A room of 1 by 1 and this height, whose walls shine 1 and reflect a half: 1 / (1 - 0.5) everywhere.
+    # A room of 1 by 1 and this height, with radiance 1 and a reflectance of a half: 1 / (1 - 0.5) everywhere.
     corners = np.asarray(box.vertices) * (1, 1, gap)
     walls = rw.Mesh(turned(corners), np.asarray(box.faces)[:, ::-1], material=rw.Diffuse(0.5), emission=1)
     scene = rw.Scene(walls, precision="double")
@@ -59,7 +59,7 @@ def test_between_sheets_it_is_as_bright_as_in_any_closed_room(box, gap):
 
 
 def test_nothing_leaks_sideways_out_of_a_gap():
-    # A lamp that shines upwards, and a larger black sheet a millionth above it: seen from above, black.
+    # A lamp that emits upwards, and a larger black sheet a millionth above it: black from above.
     lamp = sheet(0, size=1, material=rw.Diffuse(0.5), emission=1e6)
     cover = sheet(1e-6, size=2, material=rw.Diffuse(0))
     camera = look((0, 0, 3), (0, 0, 0), fov=40)
@@ -80,7 +80,7 @@ PAIRS = {
 @pytest.mark.parametrize("accelerator", [rw.BVH(), rw.KdTree(), rw.Grid(), rw.BruteForce()], ids=repr)
 @pytest.mark.parametrize("kind", PAIRS)
 def test_of_two_in_one_place_the_first_is_there(kind, accelerator):
-    # Bit for bit as if there were no other, from all sides, whatever finds the hits.
+    # Bit for bit as if there were no other, from all sides, for any accelerator.
     make = PAIRS[kind]
     for first, second in ((RED, BLUE), (BLUE, RED)):
         for position in ((3, 2, 4), (-3, 1, -2)):
@@ -94,7 +94,7 @@ def test_of_two_in_one_place_the_first_is_there(kind, accelerator):
 
 @pytest.mark.parametrize("accelerator", [rw.KdTree(), rw.Grid(), rw.BruteForce()], ids=repr)
 def test_of_sheets_cut_differently_one_is_there_and_always_the_same(accelerator):
-    # Rounding may tell which, pixel by pixel; but nothing else does, and every sample sees one of them.
+    # Rounding may decide, pixel by pixel, but nothing else does, and every sample sees one of them.
     sheets = [sheet(0, material=RED), sheet(0, diagonal=1, material=BLUE)]
     camera = look((0.3, 0.2, 2), (0.1, 0, 0), fov=60)
     default = rw.render(rw.Scene(sheets, environment=1.0), camera, samples=4, progress=False)

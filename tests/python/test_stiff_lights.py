@@ -54,7 +54,7 @@ ARRANGEMENTS = {
 @pytest.mark.parametrize("strength", [1e-30, 1e-10, 1e10, 1e30])
 @pytest.mark.parametrize("kind", ARRANGEMENTS)
 def test_strength_is_a_factor_of_the_picture_and_of_its_error(kind, strength):
-    # The same draws at any strength: the numbers of strength 1, times it, to the digits that pictures keep.
+    # The same random numbers at any strength: results scale with it, to the precision of pictures.
     make, share = ARRANGEMENTS[kind]
     found, unit = lit(**make(strength)), lit(**make(1.0))
     assert found[0] == pytest.approx(unit[0] * strength, rel=1e-5)
@@ -81,7 +81,7 @@ def sum_over_map(picture, fine=16):
     rows, columns = picture.shape
     theta = (np.arange(rows * fine) + 0.5) / (rows * fine) * math.pi
     down = np.clip(theta / math.pi * rows - 0.5, 0, rows - 1)
-    # Texels join around the seam, so of a row its sum is all that counts.
+    # Texels join around the seam, so only the sum of a row counts.
     sums = np.interp(down, np.arange(rows), picture.sum(axis=1))
     weight = np.maximum(np.cos(theta), 0) * np.sin(theta) * math.pi / (rows * fine)
     return float((sums * weight).sum()) * 2 * math.pi / columns
@@ -107,7 +107,7 @@ def test_a_map_of_any_strength_lights_as_the_sum_over_it(strength):
 @pytest.mark.parametrize("place", [0.0, 1e3, 1e6])
 @pytest.mark.parametrize("radius", [1e-5, 1e-9])
 def test_a_tiny_sphere_of_constant_power_is_a_point_also_from_far_and_far_away(radius, place):
-    # E = π L (R/d)²: at a distance of 1 and of 1000, and wherever it all stands.
+    # E = π L (R/d)²: at a distance of 1 and of 1000, at any place.
     for distance in (1.0, 1e3):
         at = (place, 0, 0)
         ball = rw.Sphere((place, 0, distance), radius, material=rw.Diffuse(0), emission=1 / radius**2)
@@ -175,7 +175,7 @@ def test_within_any_hollow_shape_that_shines_it_is_alike(kind):
 
 
 def test_a_ball_that_shines_and_reflects_is_seen_by_itself_from_outside_only():
-    # Convex: nothing of its own light falls on its outside, whatever rounding says of where that is.
+    # Convex: none of its own light falls on its outside, despite rounding.
     for centre in ((0, 0, 0), (1e5, 0, 0)):
         ball = rw.Sphere(centre, 1, material=rw.Diffuse(0.5), emission=rw.Emission(1, both_sides=True))
         camera = rw.Camera(np.add(centre, (0, 0, 9)), centre, fov=8, width=16, height=16)

@@ -60,7 +60,7 @@ def test_rough_interfaces_lose_nothing_from_either_side(ior):
     + [(ior, alpha) for ior in (1.0001, 1.5) for alpha in (0.01, 0.1, 1.0)],
 )
 def test_a_glass_ball_in_an_even_light_cannot_be_seen(ior, alpha):
-    # Rougher ones of higher indices hold light for hundreds of bounces, and a few paths bring most of it out.
+    # Rougher ones of higher indices hold light for hundreds of bounces, and few paths carry most of it out.
     camera = rw.Camera((0, 0, 10), (0, 0, 0), fov=8, width=8, height=8)
     ball = rw.Sphere((0, 0, 0), 1, material=rw.Dielectric(ior, alpha=alpha))
     image = rw.render(rw.Scene(ball, environment=1), camera, samples=256, progress=False)
@@ -105,7 +105,7 @@ def fresnel(cosine, ratio):
 
 @pytest.mark.parametrize("ior", [1.0, 1 + 1e-7, 1.0001, 1.5, 10.0])
 def test_smooth_glass_reflects_by_fresnel_also_at_the_critical_angle(ior):
-    # Exactly there, the next numbers beside it, and well off it. At index 1 there is none.
+    # Exactly there, at adjacent numbers, and well off it. At index 1 there is none.
     critical = math.asin(1 / ior)
     angles = [0.0, 0.9 * critical]
     if ior > 1:
@@ -120,7 +120,7 @@ def test_smooth_glass_reflects_by_fresnel_also_at_the_critical_angle(ior):
         np.testing.assert_allclose(np.linalg.norm(drawn.direction, axis=1), 1, atol=1e-12)
         through = drawn.direction[:, 2] > 0
         np.testing.assert_allclose(drawn.weight[:, 1], np.where(through, ior**2, 1), rtol=1e-12)
-        # 1 - F goes as the root of the distance from the critical angle: sixteen digits tell eight of it.
+        # 1 - F follows the root of the distance from the critical angle: sixteen digits give eight of it.
         expected = choice >= fresnel(np.cos(angles), 1 / ior)
         known = abs(choice - fresnel(np.cos(angles), 1 / ior)) > 1e-6
         assert (through == expected)[known].all()
@@ -153,7 +153,7 @@ def test_draws_are_weighed_by_what_is_evaluated_where_lobes_are_sharp_or_graze(k
         some = np.isfinite(drawn.pdf) & drawn.any
         assert some.mean() > 0.2
         value, pdf = here.evaluate(np.nan_to_num(drawn.direction))
-        # Directions of the world are known to 1e-16, which is more of a lobe the narrower it is.
+        # World directions are accurate to 1e-16, which is a larger share of a narrower lobe.
         bound = 1e-7 + 1e-11 * np.sqrt(drawn.pdf[some])
         assert (abs(pdf[some] / drawn.pdf[some] - 1) < bound).all()
         off = abs(value - drawn.weight * drawn.pdf[:, None])[some].max(axis=1)
@@ -202,7 +202,7 @@ def ball(radius, ior, priority=0):
         ([slab(0, 1, 1.5), slab(1, 2, 1.5, 1)], [1, 1.5, 1]),
         ([slab(0, 1, 3.0), slab(1 + 1e-6, 2, 2.0, 1)], [1, 2, 1, 3, 1]),
         ([slab(0, 1, 3.0), slab(1, 2, 2.0, 1)], [1, 2, 3, 1]),
-        # Straight through their common centre all surfaces of balls are met at right angles.
+        # Rays through the common centre hit all balls at right angles.
         ([ball(2, 1.5), ball(2 - 1e-6, 3.0, 1)], [1, 1.5, 3, 1.5, 1]),
         ([ball(2, 1.5), ball(2, 3.0, 1)], [1, 3, 1]),
         ([ball(2, 1.5), ball(2, 1.0, 1)], [1, 1, 1]),
@@ -213,12 +213,12 @@ def ball(radius, ior, priority=0):
 def test_glass_in_glass_lets_through_what_stokes_says_whatever_the_gap(glasses, indices):
     expected = transmitted(indices)
     mean, error = over_a_lamp(glasses)
-    # At 1.0001 five rays in a thousand million are reflected: none is here.
+    # At 1.0001 five rays in a thousand million are reflected: none here.
     assert abs(mean - expected) <= 5 * error + 1e-6, f"{mean} ± {error}, not {expected}"
     assert error < 0.01
 
 
 def test_a_ball_of_glass_that_fills_a_hole_in_glass_is_not_there():
-    # The same glass in a glass, with a gap of nothing: no surface is met but the outer one.
+    # The same glass within glass, without a gap: only the outer surface counts.
     same = over_a_lamp([ball(2, 1.5), ball(1, 1.5, 1)])
     assert abs(same[0] - transmitted([1, 1.5, 1])) <= 5 * same[1]

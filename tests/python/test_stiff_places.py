@@ -49,7 +49,8 @@ class Moved:
 
 @pytest.mark.parametrize(("size", "place"), MOVES)
 def test_a_curved_lamp_and_its_shadow(size, place):
-    # A sphere of radius 0.5 and radiance 3 at height 2, E = π L (R/d)², which hides as much of a sky of 0.5.
+    # A sphere of radius 0.5 and radiance 3 at height 2, E = π L (R/d)², which hides the same share of a sky
+    # of 0.5.
     at = Moved(size, place)
     lamp = rw.Sphere(at(0, 0, 2), 0.5 * size, material=rw.Diffuse(0), emission=3)
     scene = rw.Scene([at.floor(), lamp], environment=0.5, precision="double")
@@ -76,7 +77,7 @@ def test_lights_without_extent(size, place):
 
 @pytest.mark.parametrize(("size", "place"), MOVES)
 def test_copies_of_a_room(box, size, place):
-    # A room of a millionth, copied to the size and the place: 1 / (1 - 0.5).
+    # A room of a millionth, scaled and placed as a copy: 1 / (1 - 0.5).
     vertices = (np.asarray(box.vertices) - 0.5) * 1e-6
     walls = rw.Mesh(vertices, np.asarray(box.faces)[:, ::-1], material=rw.Diffuse(0.5), emission=1)
     matrix = np.diag([1e6 * size, 1e6 * size, 1e6 * size, 1])
@@ -90,7 +91,7 @@ def test_copies_of_a_room(box, size, place):
 
 @pytest.mark.parametrize(("size", "place"), MOVES)
 def test_glass_and_mirrors_under_an_even_sky(size, place):
-    # A ball of glass and one of a mirror in an even light: neither can be seen.
+    # A ball of glass and a mirror ball in even light: both are invisible.
     at = Moved(size, place)
     glass = rw.Sphere(at(0, 0, 1), 0.5 * size, material=rw.Dielectric(1.5))
     mirror = rw.Sphere(at(0, 0.7, 0), 0.3 * size, material=rw.Mirror())
@@ -102,7 +103,7 @@ def test_glass_and_mirrors_under_an_even_sky(size, place):
 
 @pytest.mark.parametrize("light", ["point", "spot", "area", "sky"])
 def test_light_from_behind_the_camera(light):
-    # The camera looks down from height 1; what shines stands above it, and it is no obstacle.
+    # The camera looks down from height 1; lights are above it, and it is no obstacle.
     above = (0, 0, 2)
     lights, shapes, sky = [], [], None
     if light == "point":
@@ -113,7 +114,8 @@ def test_light_from_behind_the_camera(light):
         shapes = [rw.Disk(above, (0, 0, -1), 1, material=rw.Diffuse(0), emission=3)]
         expected = math.pi * 3 / 5
     else:
-        # A map whose upper half, behind whoever looks straight down, shines; the other is below the floor.
+        # A map whose upper half, behind a camera that looks straight down, emits; the other is below the
+        # floor.
         sky = rw.EnvironmentMap(np.repeat([[1.0], [0.0]], 64, axis=0), [[1, 0, 0], [0, 0, -1], [0, 1, 0]])
         expected = math.pi
     floor = rw.Disk((0, 0, 0), (0, 0, 1), 9, material=rw.Diffuse(0.8))
@@ -125,7 +127,7 @@ def test_light_from_behind_the_camera(light):
 
 @pytest.mark.parametrize("far", [1e3, 1e5, 1e7])
 def test_what_a_camera_sees_from_far_away_is_lit_as_it_is(far):
-    # A patch of floor under a lamp, seen at an angle from far away: Lambert's irradiance of a square (1760).
+    # A patch of floor under a lamp, from far away and at an angle: Lambert's irradiance of a square (1760).
     corners = [(-1, -1, 1), (-1, 1, 1), (1, 1, 1), (1, -1, 1)]
     lamp = rw.Mesh(corners, [(0, 1, 2), (0, 2, 3)], material=rw.Diffuse(0), emission=3)
     floor = rw.Disk((0, 0, 0), (0, 0, 1), 9, material=rw.Diffuse(0.8))

@@ -10,7 +10,7 @@ import raywright as rw
 NOWHERE = (0, 0, 0)
 NAN, INF = math.nan, math.inf
 
-# Everything that shines, by a function of how strongly.
+# All emitters, as functions of their strength.
 SHINING = {
     "point": lambda s: rw.PointLight(NOWHERE, s),
     "spot": lambda s: rw.SpotLight((0, 0, 1), NOWHERE, s),
@@ -49,7 +49,7 @@ def test_radiance_is_a_number_and_not_negative(kind):
     make(1e30)
 
 
-# Everything that has a radius, by a function of it.
+# All shapes with a radius, as functions of it.
 ROUND = {
     "sphere": lambda r: rw.Sphere(NOWHERE, r),
     "disk": lambda r: rw.Disk(NOWHERE, (0, 0, 1), r),

@@ -202,7 +202,7 @@ def test_procedurals_lie_in_coordinates_or_in_space():
     on = rw.Checker(0.25, 0.75, 8)
     inside = rw.Checker(0.25, 0.75, rw.ObjectTransform(4, (4, 4, 0.5)))
     for texture in (on, inside):
-        # Of five by five pixels the middle one: beside edges, a pixel's width holds both colours.
+        # The middle one of five by five pixels: beside edges, a pixel's footprint has both colours.
         shown = seen(rw.Diffuse(texture), size=40).rgb[2::5, 2::5]
         assert shown == pytest.approx(np.repeat(expected, 3, axis=2), abs=2e-6)
 
@@ -212,9 +212,9 @@ def test_colours_of_vertices_are_seen():
     image = seen(rw.Diffuse(rw.VertexColors()), samples=64, sampler=rw.Independent(), colors=colors)
     rows, columns = np.indices((8, 8))
     expected = np.stack([(columns + 0.5) / 8, (7.5 - rows) / 8, np.full((8, 8), 0.5)], axis=-1)
-    # Of 192 numbers each within 8 standard errors of its own, from 64 independent samples.
+    # 192 numbers, each within 8 standard errors of its own, from 64 independent samples.
     assert (np.abs(image.rgb - expected) <= 8 * image.standard_error + 1e-5).all()
-    # White where a mesh has none.
+    # White if a mesh has none.
     assert seen(rw.Diffuse(rw.VertexColors())).rgb == pytest.approx(np.ones((8, 8, 3)), abs=2e-6)
 
 

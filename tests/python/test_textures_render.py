@@ -43,14 +43,14 @@ def corner(x, y):
 @pytest.mark.parametrize("both", [False, True], ids=["white", "coloured"])
 @pytest.mark.parametrize("place", [(0.0, 0.0), (1.7, -0.6), (-3.0, 2.0)])
 def test_a_textured_lamp_lights_by_the_form_factors_of_its_texels(place, both):
-    # A lamp of 4 by 2 at height 1, which looks down: u runs along x, v along -y.
+    # A lamp of 4 by 2 at height 1, which faces down: u runs along x, v along -y.
     corners = [(-2, 1, 1), (2, 1, 1), (2, -1, 1), (-2, -1, 1)]
     scale = (2, 1, 0.5) if both else 1
     lamp = quad(corners, material=rw.Diffuse(0), emission=rw.ProductTexture(texels(), scale))
     expected = 0.0
     for row in range(2):
         for column in range(4):
-            # The first row is that of the greatest v.
+            # The first row has the greatest v.
             west, east = (x - 2 - place[0] for x in (column, column + 1))
             south, north = (y - 1 - place[1] for y in (row, row + 1))
             share = corner(east, north) - corner(west, north) - corner(east, south) + corner(west, south)
@@ -68,8 +68,8 @@ def test_a_textured_lamp_lights_by_the_form_factors_of_its_texels(place, both):
 
 
 def test_a_textured_cavity_shines_by_the_mean_exitance_of_its_texture():
-    # In a sphere every patch sees every other by its share of the whole. So where its wall gives off M and
-    # reflects a share r, it gets the mean of M over 1 - r everywhere, and shows its texel and r / pi of that.
+    # In a sphere all patches have form factors equal to their share of the area. A wall of emission M and
+    # reflectance r gets the mean of M over 1 - r everywhere, and shows its texel plus r / pi of that.
     around = rw.ImageTexture(TEXELS[:1, :, None].repeat(3, axis=2), filter="nearest")
     wall = rw.Sphere((0, 0, 0), 1, material=rw.Diffuse(0.5), emission=rw.Emission(around, both_sides=True))
     seen = set()
@@ -137,7 +137,7 @@ def test_without_a_filter_it_is_noise():
 
 
 def test_what_is_coarser_than_a_pixel_is_not_blurred():
-    # Cells of 2 by 2, seen from near by: nearly all pixels are one or the other, and as many of either.
+    # Cells of 2 by 2, from close by: nearly all pixels are one or the other, half of each.
     camera = rw.Orthographic((0, 0, 5), (0, 0, 0), scale=16, width=64, height=64)
     floor = quad(
         [(-8, -8, 0), (8, -8, 0), (8, 8, 0), (-8, 8, 0)],
@@ -146,6 +146,6 @@ def test_what_is_coarser_than_a_pixel_is_not_blurred():
     )
     image = rw.render(rw.Scene(floor), camera, samples=1, progress=False).rgb[..., 1]
     sharp = (abs(image - 0.9) < 1e-6) | (abs(image - 0.1) < 1e-6)
-    # An edge is met by two pixels at most, of the eight that a cell has either way.
+    # At most two of a cell's eight pixels either way contain an edge.
     assert sharp.mean() >= (6 / 8) ** 2
     assert abs(image.mean() - 0.5) < 0.02

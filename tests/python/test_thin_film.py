@@ -71,7 +71,7 @@ def test_soap_is_black_where_it_is_thin_and_a_pane_where_it_is_thick():
     assert through.weight == pytest.approx(1, abs=1e-6)
     assert ways(rw.SoapFilm(5.0), 1.0)[0].weight.max() < 1e-3
     thick = ways(rw.SoapFilm(1e6), COSINES)[0].weight
-    # Fresnel's reflectance of either polarisation, and all reflections within: 2r / (1 + r).
+    # Fresnel's reflectance of either polarisation, with all internal reflections: 2r / (1 + r).
     within = np.sqrt(SOAP**2 - 1 + COSINES**2)
     r = np.array(
         [
@@ -80,7 +80,7 @@ def test_soap_is_black_where_it_is_thin_and_a_pane_where_it_is_thick():
         ]
     )
     assert np.abs(thick - np.mean(2 * r / (1 + r), axis=0)[:, None]).max() < 1e-9
-    # A pane takes the polarisations together: that is the same straight on.
+    # A pane averages the polarisations: equal at normal incidence.
     assert thick[0] == pytest.approx(ways(rw.ThinDielectric(SOAP), 1.0)[0].weight[0], abs=1e-9)
 
 
@@ -114,7 +114,7 @@ def test_films_on_glass_have_the_colour_of_the_integral_from_both_sides(film, ba
     back, out = ways(material, np.abs(through.direction[:, 2]), below=True)
     assert np.abs(back.weight - truth).max() < 1e-5
     assert back.weight + out.weight / base**2 == pytest.approx(1, abs=1e-12)
-    # Beyond the critical angle all comes back.
+    # Total reflection beyond the critical angle.
     total, none = ways(material, 0.5 * np.sqrt(1 - 1 / base**2), below=True)
     assert np.array_equal(total.weight, [[1, 1, 1]])
     assert not none.any.any()
@@ -198,7 +198,7 @@ def test_a_film_of_0_nm_is_no_film(base):
 
     bare = picture(base)
     assert np.array_equal(picture(rw.ThinFilm(0.0, 1.7, base=base)), bare)
-    # Also where a texture says so.
+    # Also if a texture says so.
     nothing = rw.MixTexture(0.0, 300.0, rw.Checker(0.0, 0.0))
     assert np.array_equal(picture(rw.ThinFilm(nothing, 1.7, base=base)), bare)
     assert not np.array_equal(picture(rw.ThinFilm(200.0, 1.7, base=base)), bare)
@@ -226,7 +226,7 @@ def test_smooth_films_keep_all_light():
         rw.ThinFilm(rw.MixTexture(0.0, 900.0, rw.Noise(0.0, 1.0, 0.5)), 1.47, base=rw.Dielectric(1.33)),
     ):
         seen = lit_everywhere(material, rw.Path(max_depth=400), 256)
-        # Roulette and the choice of ways are all that is left to chance.
+        # Only roulette and the choice of lobes are random.
         assert seen.mean(axis=(0, 1)) == pytest.approx(1, abs=0.01)
         assert lit_everywhere(material, rw.Whitted(max_depth=40, contribution=0.0), 1, 4) == pytest.approx(
             1, abs=1e-3
@@ -292,7 +292,7 @@ def test_light_from_lamps_finds_the_same_picture():
 
 
 def test_what_lies_in_one_another_keeps_its_films():
-    # A drink that reaches into its glass: the film lies between the two, and only what borders on it counts.
+    # A drink that overlaps its glass: the film lies between the two, and only adjacent media count.
     oil = rw.ThinFilm(300.0, 1.6, base=rw.Dielectric(1.33, priority=1))
     inner = rw.Box((-5, -5, -1), (5, 5, 0), material=oil)
     outer = rw.Box((-6, -6, -2), (6, 6, 1), material=rw.Dielectric(1.5))
@@ -317,7 +317,7 @@ def test_scenes_of_films_show_their_colours():
         scene.interactions(rays([(0, -0.1, z)], [(0, 0.1, 0.995 * np.sign(z) - z)])).reflected().weight[0]
         for z in (0.1, -0.1)
     )
-    # Black above, and of high orders below.
+    # Black above, and high orders below.
     assert top.max() < 0.01 < 0.02 < bottom.min()
     image = rw.render(scene, camera, samples=16, progress=False)
     assert np.ptp(image.rgb, axis=2).max() > 0.05

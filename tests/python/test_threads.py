@@ -38,7 +38,7 @@ for threads in (10**9, 2**70):
 
 
 def test_a_limit_beyond_all_machines_starts_no_more_threads_than_are_of_use():
-    # Thousands of threads took minutes to be started, and nothing could end that.
+    # Thousands of threads took minutes to start, without a way to interrupt.
     subprocess.run([sys.executable, "-c", MANY], check=True, timeout=20)
 
 
@@ -135,7 +135,7 @@ def test_a_lock_of_the_thread_that_forks_stays_its_own():
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals differ there")
 def test_ctrl_c_ends_a_query_at_once():
-    # Brute force over ten thousand triangles: some minutes of work, if nobody stopped it.
+    # Brute force over ten thousand triangles: some minutes of work without interruption.
     rng = np.random.default_rng(2)
     vertices = rng.normal(size=(30_000, 3))
     soup = rw.Mesh(vertices, np.arange(30_000).reshape(-1, 3))
@@ -147,5 +147,5 @@ def test_ctrl_c_ends_a_query_at_once():
     timer.start()
     with pytest.raises(KeyboardInterrupt):
         scene.intersect(origins, directions)
-    # A tenth of a second is promised, for an idle machine; tests run beside other work.
+    # The documented limit is a tenth of a second on an idle machine; tests run beside other work.
     assert time.monotonic() - start < 2.0

@@ -35,7 +35,8 @@ def slab(ior, share, thickness):
 
 @pytest.mark.parametrize(("ior", "share", "thickness"), [(1.5, 0.5, 1.0), (2.4, 0.9, 0.25)])
 def test_a_slab_lets_through_what_its_passes_sum_to(ior, share, thickness):
-    # All ways to and fro: (1 - R)² τ / (1 - R² τ²) comes through, R + R (1 - R)² τ² / (1 - R² τ²) back.
+    # With all internal reflections: (1 - R)² τ / (1 - R² τ²) is transmitted, R + R (1 - R)² τ² / (1 - R² τ²)
+    # reflected.
     mirror = ((ior - 1) / (ior + 1)) ** 2
     series = (1 - mirror) ** 2 / (1 - (mirror * share) ** 2)
     through, back = series * share, mirror + mirror * series * share**2
@@ -60,7 +61,7 @@ def test_of_an_index_that_is_around_it_the_tint_alone_is_seen(way):
 
 
 def test_whitted_sums_the_passes_that_its_depth_allows():
-    # Through without a bounce inside: (1 - R)² τ, and with two of them R² τ² as much more.
+    # Without an internal reflection: (1 - R)² τ, and two of them add R² τ² of it.
     lit = rw.Plane((0, 0, -2), material=rw.Diffuse(0.0), emission=1.0)
     scene = rw.Scene([slab(1.5, 0.5, 1.0), lit])
     mean, _ = media.seen(scene, media.looking(), 1, rw.Whitted(max_depth=12, contribution=0.0))

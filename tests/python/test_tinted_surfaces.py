@@ -9,7 +9,7 @@ import pytest
 import raywright as rw
 
 SKY = rw.ConstantEnvironment(1.0)
-# Straight down, so that all rays meet flat glass at right angles.
+# Straight down, so that all rays hit flat glass at right angles.
 DOWN = rw.Orthographic((0, 0, 5), (0, 0, 0), scale=2.0, width=8, height=8)
 COLOR = np.array((0.9, 0.5, 0.2))
 

@@ -36,7 +36,7 @@ def test_shown_colours_are_in_range_and_keep_their_hue(rgb):
     there = film(*rgb)
     assert (there >= 0).all()
     assert (there <= 1).all()
-    # The order of channels stays, and so does their middle's place between the others: hue is that.
+    # The order of channels stays, and so does the middle one's relative place: that is the hue.
     low, mid, high = np.argsort(rgb, kind="stable")
     if rgb[high] > 1e-30 and rgb[high] - rgb[low] > 1e-6 * rgb[high]:
         place = (rgb[mid] - rgb[low]) / (rgb[high] - rgb[low])
@@ -52,7 +52,7 @@ def test_brighter_light_is_shown_brighter(rgb, times):
 
 def test_the_shoulder_begins_without_a_bend():
     below, above = (film(x, x, x)[0] for x in (0.5 - 1e-5, 0.5 + 1e-5))
-    # The second derivative of the shoulder is -4 where it begins: off by half of that times the square.
+    # The second derivative of the shoulder is -4 where it begins: half of that times the square is the error.
     assert (above - below) / 2e-5 == pytest.approx(1, abs=4e-5)
 
 
@@ -87,7 +87,7 @@ def test_a_share_of_a_pixel_has_the_colour_of_what_covers_it():
 
 @pytest.mark.parametrize(
     ("name", "format", "off"),
-    # Lossy ones by how far they may be off at most; the mean is a tenth of that.
+    # Lossy formats by their maximal error; the mean is a tenth of that.
     [
         ("a.png", "PNG", 0),
         ("a.jpg", "JPEG", 12),

@@ -74,7 +74,7 @@ def test_how_close_corners_are_one_can_be_said(box):
     assert scene.weld == 1e-3
     assert scene.replace(weld=None).weld is None
     assert "weld=0.001" in repr(scene)
-    # Single precision has fewer digits to be off by.
+    # Single precision has fewer digits for the offset.
     for dtype, by, is_closed in (
         (np.float32, 5e-8, True),
         (np.float64, 1e-15, True),
@@ -160,7 +160,7 @@ def test_overlaps_count_once_or_not_at_all(box):
         ([box, rw.Mesh(box.vertices / 2 + 0.25, box.faces[:, ::-1])], 0.75, 0.75),
         ([box, rw.Mesh(box.vertices + np.array((1, 0, 0)), box.faces)], 2.0, 2.0),
     ):
-        # Along the axes, and turned so that nothing is.
+        # Along the axes, and rotated so that nothing is axis-aligned.
         turn = trimesh.transformations.rotation_matrix(0.7, (1, 2, 3))
         for place in (np.eye(4), turn):
             placed = [shape.transformed(place) for shape in shapes]

@@ -29,7 +29,7 @@ def test_boxes_are_the_trees(knot, accelerator):
     assert tree.depth[-1] == info.depth
     assert np.all(np.diff(tree.depth) >= 0)
     assert np.count_nonzero(tree.depth == 0) == 1
-    # Boxes are rounded to float32 in units of half the scene's size or so.
+    # Boxes are rounded to float32 in units of about half the scene's size.
     assert tree.lower[0] == pytest.approx(scene.bounds[0], abs=1e-6)
     assert tree.upper[0] == pytest.approx(scene.bounds[1], abs=1e-6)
     assert np.all(tree.lower >= tree.lower[0])
@@ -56,7 +56,7 @@ def test_each_face_is_in_a_leaf(knot):
 
 
 def test_turned_boxes_are_told_by_their_corners():
-    # Thin needles along a diagonal: the default tree turns its boxes to them.
+    # Thin needles along a diagonal: the default tree rotates its boxes to them.
     rng = np.random.default_rng(1)
     way, aside = np.array([1.0, 1, 1]) / np.sqrt(3), np.array([1.0, -1, 0]) / np.sqrt(2)
     starts = rng.uniform(-1, 1, (2000, 3))
@@ -68,7 +68,7 @@ def test_turned_boxes_are_told_by_their_corners():
     sides = root[[1, 2, 4]] - root[0]
     along = sides @ sides.T
     assert np.abs(along - np.diag(np.diag(along))).max() < 1e-6
-    # No axis of the boxes is one of the scene's, and all that there is lies in the first.
+    # No axis of the boxes is one of the scene's, and the root box contains everything.
     assert np.abs(sides / np.linalg.norm(sides, axis=1)[:, None]).max() < 0.99
     inside = (corners.reshape(-1, 3) - root[0]) @ (sides / np.diag(along)[:, None]).T
     assert inside.min() > -1e-6

@@ -61,13 +61,13 @@ def test_answers_are_those_of_trimesh(name):
     closest, distance, face = closest_point(mesh, points)
     at, far, which = trimesh.proximity.closest_point(mesh, points)
     assert (closest.dtype, distance.dtype, face.dtype) == (np.float64, np.float64, np.int64)
-    # trimesh takes another face where its squared distance is at most 1e-8 more.
+    # trimesh takes another face if its squared distance is at most 1e-8 larger.
     np.testing.assert_allclose(distance, far, rtol=0, atol=1e-6)
     assert (distance <= far + 1e-12).all()
     np.testing.assert_allclose(np.linalg.norm(points - closest, axis=1), distance, rtol=1e-7, atol=1e-12)
     same = np.linalg.norm(closest - at, axis=1) < 1e-7
     assert same.mean() > 0.95
-    # No face that is as close faces the point more.
+    # No equally close face faces the point more.
     ours, theirs = cosines(mesh, points, closest, face), cosines(mesh, points, at, which)
     assert (ours[same] >= theirs[same] - 1e-6).all()
     signed, wanted = signed_distance(mesh, points), trimesh.proximity.signed_distance(mesh, points)
@@ -85,7 +85,7 @@ def test_inside_is_positive_and_what_is_on_the_surface_too():
 
 
 def test_above_an_edge_the_face_is_the_one_that_faces_the_point():
-    # A wedge with an edge along y = 0.5, seen from in front of it, once from below and once from above.
+    # A wedge with an edge along y = 0.5, from in front of it, once from below and once from above.
     corners = [[-1, 0.5, 0], [1, 0.5, 0], [0, -1, -0.5], [0, -1, 0.5]]
     wedge = trimesh.Trimesh(corners, [[0, 1, 2], [0, 2, 3], [0, 3, 1], [3, 2, 1]])
     points = np.array([(0, 1, z) for z in np.linspace(-1, 1, 20)])
@@ -107,7 +107,7 @@ def test_of_two_faces_about_as_close_the_one_that_faces_the_point_counts():
 
 
 def test_many_faces_at_one_corner():
-    # All points of the axis beyond the tip are closest to the tip, which 5000 faces share.
+    # The tip, which 5000 faces share, is the closest point to all points of the axis beyond it.
     turn = np.linspace(0, 2 * np.pi, 5000, endpoint=False)
     rim = np.column_stack((np.cos(turn), np.sin(turn), np.zeros(5000)))
     faces = np.column_stack((np.zeros(5000, int), 1 + np.arange(5000), 1 + (np.arange(5000) + 1) % 5000))

@@ -82,7 +82,7 @@ def test_answers_types_and_order_are_those_of_embree(engine, name, multiple_hits
     mesh = meshes()[name]
     ours, theirs = RayMeshIntersector(mesh), engine(mesh)
     origins, directions = rays(mesh)
-    # It may lose a hit at an edge, or tell one twice.
+    # trimesh may lose a hit at an edge, or return one twice.
     count = np.bincount(theirs.intersects_id(origins, directions)[1], minlength=len(origins))
     clear = count == np.bincount(ours.intersects_id(origins, directions)[1], minlength=len(origins))
     assert clear.mean() > 0.99
@@ -91,7 +91,7 @@ def test_answers_types_and_order_are_those_of_embree(engine, name, multiple_hits
         found = getattr(ours, method)(origins, directions, multiple_hits)
         wanted = getattr(theirs, method)(origins, directions, multiple_hits)
         assert len(found) == len(wanted)
-        # Rays that need a second try come late in its second hits; along each ray the order is the same.
+        # Retried rays come late in trimesh's order of hits; along each ray the order is the same.
         place, other = (np.argsort(hits[1], kind="stable") for hits in (found, wanted))
         for a, b in zip(found, wanted, strict=True):
             assert a.shape == b.shape
@@ -155,7 +155,7 @@ def test_a_tiny_mesh_far_from_the_ray_is_hit_twice():
 
 def test_in_map_coordinates_hits_are_the_same_ones():
     mesh = trimesh.creation.icosphere(subdivisions=4)
-    # Numbers of 24 bits, so that none is rounded when they are moved.
+    # Numbers of 24 bits, so that translation rounds none.
     mesh.vertices = np.round(mesh.vertices * 2**16) / 2**16
     offset = np.array([448_000.0, 5_412_000.0, 512.0])
     moved = mesh.copy().apply_translation(offset)

@@ -83,7 +83,7 @@ def test_pictures_are_on_surfaces(tmp_path):
     colour, rough = square.material.base_color, square.material.roughness
     assert np.array_equal(colour.image, pixels)
     assert (colour.wrap, colour.linear) == (("clamp", "repeat"), False)
-    # Numbers are not sRGB.
+    # Scalar textures are not sRGB.
     assert (rough.channel, rough.linear) == ("g", True)
 
 
@@ -128,7 +128,7 @@ def test_lamps_have_their_radiance(tmp_path, text, kind):
     spread = load(tmp_path, CAMERA + SQUARE + paint("") + text % (shine + "\n bool inputs:normalize = 1"))
     assert spread.scene.shapes[-1].emission == pytest.approx(np.array((6, 3, 0)) / areas[kind])
     if kind is not rw.Sphere:
-        # Their front is along -z.
+        # Lights emit along -z.
         normal = rw.Scene(lamp).intersect([(0.1, 0.1, -5.0)], [(0.0, 0.0, 1.0)]).normal[0]
         assert normal.tolist() == pytest.approx([0, 0, -1])
 
@@ -150,7 +150,7 @@ def test_the_sun_and_the_sky(tmp_path):
     pictured = sky.replace("0.5", "2\n asset inputs:texture:file = @sky.npy@")
     around = load(tmp_path, CAMERA + pictured + SQUARE + paint("")).scene.environment
     assert np.array_equal(around.image, 2 * image)
-    # The middle of the picture is seen along +z.
+    # The middle of the picture is along +z.
     assert (around.to_world @ (0, 0, -1)).tolist() == [0, 0, 1]
 
 

@@ -126,7 +126,7 @@ def test_shapes_have_the_colors_that_are_theirs(tmp_path, kind):
     own = f'def {kind} "S" {{\n    color3f[] primvars:displayColor = [(0.5, 0.25, 1)]\n}}\n'
     (shape,) = shapes(tmp_path, own)
     assert shape.material == rw.Diffuse((0.5, 0.25, 1))
-    # A colour of a group is one of all that is in it.
+    # A colour of a group applies to all its members.
     group = f"""def Xform "Group" {{
     color3f[] primvars:displayColor = [(0.5, 0.25, 1)] (interpolation = "constant")
     float[] primvars:displayOpacity = [0.75] (interpolation = "constant")
@@ -201,7 +201,7 @@ def test_a_threshold_cuts_a_picture(tmp_path):
     share = covered(scene, 64)
     assert (share[1:, 0] == 0).all()
     assert (share[1:, 3] == 1).all()
-    # Scale and bias count before.
+    # Scale and bias come first.
     for text, left, right in (
         ("float4 inputs:scale = (1, 1, 1, 2)", 1, 1),
         ("float4 inputs:bias = (0, 0, 0, -0.6)", 0, 0),
@@ -210,7 +210,7 @@ def test_a_threshold_cuts_a_picture(tmp_path):
         share = covered(load(tmp_path, CAMERA + SQUARE + paint(inputs, more)).scene, 16)
         assert (share[2:, 0] == left).all()
         assert (share[:1, 3] == right).all()
-    # A number is cut as well.
+    # The threshold applies to numbers as well.
     for given, kept in ((0.5, 1.0), (0.25, 0.0)):
         (square,) = shapes(
             tmp_path, SQUARE + paint(f"float inputs:opacity = {given}\n float inputs:opacityThreshold = 0.5")
@@ -257,7 +257,7 @@ def test_spheres_that_are_points(tmp_path):
     shine = "    float inputs:intensity = 8\n    float inputs:radius = {}\n"
     far = lamp(tmp_path, shine.format(0.5) + "    bool treatAsPoint = 1")
     assert far == rw.PointLight((1, 2, 3), 8 * np.pi * 0.25)
-    # Normalised it has the same power, whatever its radius is: L / (4 π r²) · π r².
+    # A normalized light has the same power at any radius: L / (4 π r²) · π r².
     for size in ("0.5", "0"):
         text = shine.format(size) + "    bool treatAsPoint = 1\n    bool inputs:normalize = 1"
         assert lamp(tmp_path, text).intensity == pytest.approx((2, 2, 2))
@@ -416,7 +416,7 @@ def test_textures_beyond_their_range_are_cut(tmp_path):
     (square,) = shapes(
         tmp_path, SQUARE + paint("color3f inputs:diffuseColor.connect = </Paint/P.outputs:rgb>", bright)
     )
-    # A picture of one channel is not sRGB by its default.
+    # A one-channel picture is not sRGB by default.
     assert square.material.base_color.image[0, 0] == pytest.approx((1, 1, 0))
     deep = (np.full((2, 2, 3), 0.6) * 65535).astype(np.uint16)
     raw = "color3f inputs:diffuseColor.connect = </Paint/P.outputs:rgb>"
@@ -478,6 +478,6 @@ def test_a_texture_without_coordinates_of_its_own_is_one_point_of_its_picture(tm
         scene = load(tmp_path, CAMERA + SQUARE + ink).scene
         eye = rw.Camera((1, 1, 5), direction=(0, 0, -1), width=2, height=2, fov=5)
         seen = rw.render(scene, eye, rw.Path(0), samples=1, progress=False).rgb
-        # Near the middle of a texel or at the corner, beyond which the picture goes on.
+        # Near the middle of a texel or at the corner, beyond which the picture repeats.
         assert seen[0, 0] == pytest.approx(pixels[texel] / 255, abs=0.03)
         assert np.ptp(seen, axis=(0, 1)).max() < 1e-6

@@ -60,7 +60,7 @@ def corner(x: Any, y: Any, h: float) -> Any:
 def half_hidden(blocker: float) -> float:
     """Unit squares, 1 apart, with a square of this side half-way: by shadows on the second, cut at kinks."""
     nodes, weights = np.polynomial.legendre.leggauss(20)
-    # The shadow along each axis reaches from 2 l - x to 2 h - x, with l and h where the blocker ends.
+    # The shadow along each axis extends from 2 l - x to 2 h - x, with l and h the ends of the blocker.
     low, high = 0.5 - blocker / 2, 0.5 + blocker / 2
     kinks = np.unique(np.clip([0, 1, 2 * low - 1, 2 * low, 2 * high - 1, 2 * high], 0, 1))
     x = np.concatenate([(a + b) / 2 + (b - a) / 2 * nodes for a, b in pairwise(kinks)])
@@ -147,7 +147,7 @@ def test_a_room_with_a_box_in_it() -> None:
     found = rw.view_factors(scene, rays=64, progress=False)
     assert found.hidden > 0
     assert found.sampled > 0
-    # Of 120 rows, each within 5 errors: these are known by few batches a pair.
+    # 120 rows, each within 5 errors: these come from few batches a pair.
     error = np.sqrt((found.standard_error**2).sum(axis=1))
     assert (np.abs(found.rest) <= 5 * error + 1e-9).all()
     assert np.abs(found.rest).max() < 0.02
@@ -213,7 +213,7 @@ def test_a_disk_between_disks() -> None:
 
 
 def test_long_strips_with_one_between() -> None:
-    # Ends of strips 10 000 long count 1e-4 of the whole.
+    # Ends of strips 10 000 long contribute 1e-4 of the whole.
     long, x, y, z = 1e4, *np.eye(3)
     found = factors(
         rectangle(-x, 2 * x, long * y),
@@ -247,7 +247,7 @@ def tube(sides: int, radius: float, length: float, top: float) -> rw.Mesh:
 def test_the_inside_of_cylinders_and_cones_sees_itself(
     radius: float, length: float, top: float, sides: int, truth: float
 ) -> None:
-    # Of n sides the factor is off by a multiple of 1 / n^2, which two n tell.
+    # With n sides the factor is off by a multiple of 1 / n^2, which two values of n eliminate.
     found = [float(factors(tube(n, radius, length, top)).matrix[0, 0]) for n in (sides, 2 * sides)]
     # The flat ring sees a twentieth of itself.
     assert (4 * found[1] - found[0]) / 3 == pytest.approx(truth, rel=2e-3 if truth < 0.1 else 1e-4)

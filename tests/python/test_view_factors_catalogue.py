@@ -98,7 +98,7 @@ def test_the_horizon_of_an_element_is_as_the_catalogue_has_it() -> None:
 
 
 def test_an_element_next_to_a_sphere() -> None:
-    # A ten-thousandth of the radius above it: the element is of a millionth.
+    # A ten-thousandth of the radius above it: the element has a size of a millionth.
     tilt = math.radians(60)
     small = rw.Disk((0, 0, 0), (math.sin(tilt), 0, math.cos(tilt)), 1e-6)
     within(factors(small, rw.Sphere((0, 0, 1.0001), 1.0), rays=16), 0, 1, 0.742153797432516)
@@ -130,7 +130,7 @@ def test_an_element_beside_an_upright_rectangle() -> None:
 
 
 def test_long_tubes_side_by_side() -> None:
-    # Hottel's strings are for tubes without end: of ten thousand radii, what passes by is 1e-4 of it.
+    # Hottel's strings hold for infinite tubes: at ten thousand radii, the ends lose 1e-4.
     long = 1e4
     tubes = [rw.Cylinder((x, 0, 0), (x, 0, long), 1.0) for x in (0.0, 2.5)]
     found = factors(*tubes, rays=128)
@@ -155,7 +155,7 @@ def test_caps_of_a_sphere() -> None:
 
 
 def test_errors_are_told_rightly_and_below_the_binomial_law() -> None:
-    # Of N rays that go each for itself, the error is sqrt(F (1 - F) / N); nets of them are better.
+    # For N independent rays, the error is sqrt(F (1 - F) / N); nets of rays are better.
     assert math.sqrt(0.199824895698387 * (1 - 0.199824895698387) / 1e6) == pytest.approx(
         0.000399868611868343, rel=1e-9
     )
@@ -164,7 +164,7 @@ def test_errors_are_told_rightly_and_below_the_binomial_law() -> None:
         found = factors(*disks(1, 1, 1), rays=1, seed=seed)
         off.append(found.matrix[0, 1] - truth)
         told.append(found.standard_error[0, 1])
-    # Both disks send 4096 rays, and the mean of the two is taken.
+    # Both disks emit 4096 rays, and the result is their mean.
     assert np.mean(told) < math.sqrt(truth * (1 - truth) / 8192)
     # The spread of 100 is known to 1 in 14: three times this, plus the uncertainty of 64 batches.
     assert 0.75 < np.sqrt(np.mean(np.square(off)) / np.mean(np.square(told))) < 1.25

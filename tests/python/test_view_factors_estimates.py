@@ -59,7 +59,7 @@ def test_told_errors_hold_over_seeds() -> None:
                 found = rw.view_factors(scene, per="shape", **how)
                 row = 1 if number == 2 else 0
                 off.append((found.matrix[row, 1 - row] - truth) / found.standard_error[row, 1 - row])
-    # Of 144 standard normals one is beyond 5 in 8e-5 of cases.
+    # One of 144 standard normals is beyond 5 in 8e-5 of cases.
     assert np.abs(off).max() < 5
     # With 144 degrees of freedom a root mean square above 1.25 has a probability of 2e-5.
     assert math.sqrt(np.mean(np.square(off))) < 1.25
@@ -86,7 +86,7 @@ def test_told_errors_of_all_pairs_of_a_furnished_room_hold() -> None:
             assert 0 <= found.matrix.min() <= found.matrix.max() <= 1
             exchanged = found.areas[:, None] * found.matrix
             np.testing.assert_allclose(exchanged, exchanged.T, rtol=1e-14, atol=0)
-    # 3,000 entries, some of few rays, whose tails are those of counts.
+    # 3,000 entries, some of few rays, with the tails of counts.
     off_all = np.concatenate(off)
     assert np.abs(off_all).max() < 6
     assert np.mean(np.abs(off_all) > 3) < 0.01
@@ -109,7 +109,7 @@ def test_no_count_of_zero_is_certain() -> None:
     )
     error = found.standard_error[0, 1]
     assert found.matrix[0, 1] <= error
-    # 1.96 errors of each of the four pairs are at least three of 64 times what it would exchange.
+    # 1.96 errors of each of the four pairs are at least three of 64 times its unblocked exchange.
     assert error > 0.9 * 1.5 / 64 * 0.19982489569838746 / 2
 
 
@@ -155,7 +155,7 @@ def test_nothing_is_exchanged_at_one_temperature(method: Literal["matrix", "stoc
     assert found.standard_error.max() < 0.02
     assert abs(found.power.sum()) < 1e-5
     assert found.escaped == pytest.approx(0, abs=1e-6)
-    # A wall that is a little warmer: what it loses the others gain, and the error is a share of that.
+    # A slightly warmer wall: the others gain its loss, and the error is relative to that.
     kelvin = [300.0, 301.0, 300.0, 300.0]
     warm = rw.radiative_exchange(scene, kelvin, 0.9, method=method, rays=2**16, progress=False)
     assert warm.of(1) > 0
@@ -173,6 +173,6 @@ def test_told_errors_of_fluxes_hold() -> None:
     for seed in range(6):
         found = rw.radiative_exchange(scene, kelvin, 0.8, error=5e-3, seed=seed, progress=False)
         off.append((found.flux - truth.flux) / np.hypot(found.standard_error, truth.standard_error))
-    # Errors of estimates that are moved to add up are upper bounds. Of 288 normals none is beyond 5: 1.6e-4.
+    # Errors of estimates scaled to add up are upper bounds. Of 288 normals none is beyond 5: 1.6e-4.
     assert np.abs(off).max() < 5
     assert math.sqrt(np.mean(np.square(off))) < 1.15

@@ -56,7 +56,7 @@ def along(p: Any, p_end: Any, q: Any, q_end: Any) -> Any:
         found += height * mp.atan2(height * (end - start), height * height + start * end) if height else 0
         return found
 
-    # Cut where it passes the other edge's ends and its line, and more often next to the cuts.
+    # Split at the other edge's ends and its line, and more often next to these.
     places = [dot(minus(end, p), u) for end in (q, q_end)]
     if 1 - cosine**2 > mp.mpf(10) ** -30:
         way = minus(q, p)
@@ -83,7 +83,7 @@ def hinged(kind: str, bend: float, size: float) -> tuple[Any, Any]:
         one[1] = (0.5, 1.0, 0.0)
         other = [(0.0, 0.0, 0.0), (-0.4 * cosine, 1.0, 0.4 * sine), apex]
     else:
-        # So far apart: the edge that is nearly shared is turned a little, too.
+        # A distance for the edge that is nearly shared; it is turned a little, too.
         gap = float(kind)
         start, end = (gap * cosine, gap * sine), (3 * gap * cosine, 3 * gap * sine)
         other = [(-start[0], 0.1, start[1]), (-end[0], 1.25, end[1]), apex]

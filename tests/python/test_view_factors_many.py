@@ -40,7 +40,7 @@ def test_rows_by_rays_are_reciprocal_and_add_up(monkeypatch: pytest.MonkeyPatch)
     np.testing.assert_allclose(found.rest, 0, atol=1e-12)
     spread = found.areas[:, None] * found.standard_error.toarray()
     np.testing.assert_allclose(spread, spread.T, rtol=1e-12, atol=0)
-    # Where all faces have the same radiosity, each has that irradiance: no ray is lost.
+    # If all faces have equal radiosity, each has that irradiance: no ray is lost.
     np.testing.assert_allclose(found.matvec(np.ones(len(found))), 1, atol=1e-12)
 
 
@@ -53,8 +53,8 @@ def test_errors_of_rows_by_rays_are_those_of_their_spread(monkeypatch: pytest.Mo
         monkeypatch.undo()
         off.append(found.matrix.toarray() - truth.matrix)
         told.append(found.standard_error.toarray())
-    # Nets of 64 rays are better than the binomial law, and scaling mends rows. Of 10,000 entries the mean of
-    # squares is known to some per cent.
+    # Nets of 64 rays are better than the binomial law, and scaling improves rows. Over 10,000 entries the
+    # mean of squares is known to some per cent.
     seen = truth.matrix > 1e-3
     ratio = np.sqrt(np.mean(np.square(off)[:, seen]) / np.mean(np.square(told)[:, seen]))
     assert 0.7 < ratio < 1.15
@@ -73,7 +73,7 @@ def test_the_error_of_a_product_is_told(monkeypatch: pytest.MonkeyPatch) -> None
     found = by_rays(scene, monkeypatch, rays=64)
     off = np.abs(found.matvec(x) - truth.matvec(x))
     both = np.hypot(found.matvec_error(x), truth.matvec_error(x))
-    # Batches of few rays tell errors to a fifth or so; of 186 rows, 5 % may be beyond 3.
+    # Batches of few rays estimate errors to a fifth or so; of 186 rows, 5 % may be beyond 3.
     assert np.mean(off > 3 * both + 1e-12) < 0.05
     with pytest.raises(ValueError, match=r"x must be \(186,\) or \(186, K\), got \(3,\)"):
         found.matvec_error([1.0, 2.0, 3.0])
@@ -109,7 +109,7 @@ def test_many_faces_take_memory_by_their_rays() -> None:
     )
     faces, entries, peak = map(int, run.stdout.split())
     assert faces == 12 * 41**2 > 20_000
-    # Of 64 rays a face, at most 128 entries a row; a dense matrix would take 3.3 GB.
+    # 64 rays a face give at most 128 entries a row; a dense matrix would take 3.3 GB.
     assert entries <= 128 * faces
     # Twice the result, at 12 bytes an entry and as many of its variance, plus the rays themselves.
     assert peak < 2.5 * 24 * entries + 1.5e8

@@ -118,7 +118,7 @@ def test_it_has_as_many_pixels_as_the_window_has_room_for():
     kind = {"Content_Type": "application/json"}
     with rw.view(scene, camera, samples=4) as viewer, page(viewer) as events:
         until(events, is_done)
-        # 96 by 72 comes to 200 / 72 of that.
+        # 96 by 72 scaled by 200 / 72.
         assert ask(viewer, "window", "POST", b'{"width": 900, "height": 200}', **kind)[0] == 204
         large = until(events, lambda frame: is_done(frame) and frame["height"] == 200)
         assert large["size"] == [267, 200] == [large["width"], large["height"]]
@@ -171,7 +171,7 @@ def test_moving_the_camera_ends_what_is_rendered_at_once():
         held.moved.set()
         frames = []
         until(events, lambda frame: frames.append(frame) or frame["view"]["azimuth"] == 5)
-        # The second sample of the view before was never ended.
+        # The second sample of the earlier view was never completed.
         assert all(frame["samples"] == 1 for frame in frames[:-1] if frame["state"] == "refining")
         assert frames[-1]["state"] == "preview"
         assert held.asked - asked < 0.4 * held.pixels
@@ -190,7 +190,7 @@ def test_pictures_come_while_the_camera_is_moved():
 
         listener = threading.Thread(target=listen)
         listener.start()
-        # Faster than any picture is made.
+        # Faster than any picture renders.
         while not over.wait(0.005) and moves < 2000:
             moves += 1
             turn(viewer, azimuth=moves)
@@ -209,7 +209,7 @@ def test_without_a_page_nothing_is_rendered(viewer):
             until(others, lambda frame: True)
         time.sleep(0.6)
         assert viewer.rendering
-    # Half a second is promised, for an idle machine; tests run beside other work.
+    # The documented limit is half a second on an idle machine; tests run beside other work.
     assert is_soon(lambda: not viewer.rendering)
     spent = time.process_time()
     time.sleep(0.5)
@@ -317,7 +317,7 @@ def test_boxes_of_the_accelerator_are_drawn_level_by_level():
         plain = until(events, lambda frame: is_done(frame) and frame["boxes"] is None)
         assert boxes_of(viewer, deepest) == 204
         deep = until(events, lambda frame: frame["boxes"] == deepest)
-        # Beyond the last level there is nothing to be drawn, and nothing is rendered anew.
+        # Beyond the last level there is nothing to draw, and nothing is rendered again.
         assert boxes_of(viewer, deepest + 1) == 204
         assert until(events, lambda frame: frame["boxes"] is None)["picture"] == plain["picture"]
         assert boxes_of(viewer, -1) == 400
@@ -325,7 +325,7 @@ def test_boxes_of_the_accelerator_are_drawn_level_by_level():
     assert np.array_equal(pixels(plain), image.srgb())
     drawn = (pixels(root) != pixels(plain)).any(axis=2)
     assert (pixels(root)[drawn] == (255, 208, 0)).all()
-    # Corners of the root are seen where rays to them go, and its edges there and nowhere near the middle.
+    # Corners of the root appear at the pixels of their rays, and its edges there but not near the middle.
     corners = scene.tree().at(0).corners.reshape(-1, 3)
     lines = boxes.edges(camera, scene.tree().at(0).corners)
     ways = camera.rays_through(lines.reshape(-1, 2) * (96, 72))[1]

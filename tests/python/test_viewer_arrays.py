@@ -48,7 +48,7 @@ def test_arrays_are_those_of_the_scene_and_have_a_version():
             "boxes/-1",
         ):
             assert ask(viewer, missing)[0] == 404
-        # A scene that has moved is another one.
+        # A moved scene is another one.
         scene.refit(1.5 * mesh.vertices)
         status, after = asked(viewer, "drawing", {})
         assert after["version"] != told["version"]
@@ -111,7 +111,7 @@ def test_copies_are_drawn_as_shapes_of_their_own():
         told = asked(viewer, "drawing", {})[1]
         assert (told["why"], told["left"]) == (None, None)
         assert told["arrays"]["faces"] == 112 * 3 * len(knot.faces)
-        # The core knows which copy is seen.
+        # The core knows the visible copy.
         found = asked(viewer, "pick", {"view": {}, "x": 0.52, "y": 0.4})[1]
         hit = scene.pick(camera, 49, 28, (0.92, 0.8))
         assert found["shape"] in (0, None)
@@ -206,7 +206,7 @@ def test_colours_and_normals_of_a_sketch():
     rows = paints(scene.shapes, flat)
     assert rows[0, 0] == 204 + 102 * 2**8 + 51 * 2**16
     assert rows[-1, 0] == 64 * 0x010101 + 0xFF000000
-    # Unfolded, as sight.wgsl does it.
+    # Unfolded as in sight.wgsl.
     e = rows[:, 1:].copy().view("<i2") / 32767
     z = 1 - np.abs(e).sum(axis=1)
     folded = (1 - np.abs(e[:, ::-1])) * np.where(e >= 0, 1, -1)
@@ -235,7 +235,7 @@ def test_the_lamp_of_a_sketch():
 
 
 def test_shaders_are_what_other_browsers_take_too():
-    # Firefox reads WGSL as wgpu does, and not as chromium.
+    # Firefox parses WGSL like wgpu, and unlike chromium.
     try:
         device = rw.Gpu()._device
     except (ImportError, RuntimeError) as missing:
@@ -262,7 +262,7 @@ def test_a_scene_alone_is_framed_and_lit():
     with rw.view(rw.Scene(rw.scenes.torus_knot()), samples=1) as viewer:
         assert isinstance(viewer.camera, rw.Camera)
         told = asked(viewer, "drawing", {})[1]
-        # The knot, and a lamp that was put there.
+        # The knot, and an added lamp.
         assert told["lamp"]["far"] is False
         assert asked(viewer, "pick", {"view": {}, "x": 0.999, "y": 0.999})[1] == {"shape": None}
     with rw.view(rw.scenes.cornell_box()[0], samples=1) as viewer:

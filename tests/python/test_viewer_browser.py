@@ -117,7 +117,7 @@ def test_nothing_under_the_picture_is_cut_in_a_narrow_window(page, knot):
             assert {"hint", "reset", "save", "interval", "history"} <= {name for name, *_ in rooms}
             for name, *room in rooms:
                 assert min(room) >= 0, (width, name, room)
-            # There is no scrolling, and a picture above.
+            # No scrolling, and a picture above.
             assert page.evaluate("document.getElementById('picture').clientHeight") > height / 3
 
 
@@ -130,7 +130,7 @@ def test_what_is_said_under_the_picture_does_not_begin_it_anew_for_ever(page, kn
         sizes = []
         for i in range(6):
             page.evaluate(say, "0.000123 to 0.000124 " * (9 * (i % 2)))
-            # Longer than a window has to keep its size.
+            # Longer than the delay after a resize.
             time.sleep(0.2)
             sizes.append(page.evaluate("document.getElementById('stage').clientHeight"))
         assert len(set(sizes)) > 1
@@ -169,7 +169,7 @@ def test_closing_the_page_stops_the_work(page, knot):
         began = time.monotonic()
         while viewer.rendering and time.monotonic() - began < 10:
             time.sleep(0.01)
-        # Half a second is promised, for an idle machine; tests run beside other work.
+        # The documented limit is half a second on an idle machine; tests run beside other work.
         assert time.monotonic() - began < 2
         spent = time.process_time()
         time.sleep(0.5)

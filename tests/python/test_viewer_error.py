@@ -107,7 +107,7 @@ def test_the_page_tells_how_wrong_its_picture_is(page):
         begin(page, viewer)
         few, brought = go_on(page)
         agrees(few, Brought(brought).error(scene, camera))
-        # An error that is wanted ends it, once all of the interval is below.
+        # The render ends once the whole interval is below the wanted error.
         enough, _ = go_on(page, samples=4096, error=0.05)
         ended = page.evaluate("viewer.drawing.sample")
         assert 16 <= ended < 64
@@ -118,7 +118,7 @@ def test_the_page_tells_how_wrong_its_picture_is(page):
         wrong = np.mean((rgb - truth) ** 2 / (truth**2 + 0.01))
         assert error["low"] < wrong < error["high"]
         assert error["value"] == pytest.approx(wrong, rel=0.25)
-        # It falls as one over the paths, as far as either picture is known.
+        # It falls as one over the number of paths, within the errors of either picture.
         assert error["value"] == pytest.approx(enough["value"] * ended / 64, rel=0.3)
         assert float(told(page, "error")) == pytest.approx(error["value"], rel=0.01)
         low, high = (float(end) for end in told(page, "interval").split(" to "))

@@ -83,7 +83,7 @@ def served(folder):
         try:
             server.wait(10)
         except subprocess.TimeoutExpired:
-            # Its kernels end when they see that it is gone.
+            # Its kernels end when they notice its absence.
             server.kill()
             server.wait()
 
@@ -138,7 +138,7 @@ def test_it_is_drawn_and_moved_and_ends_with_its_cell_and_its_kernel(tmp_path):
         page.mouse.up()
         until(page, asked, "(True, 1, False)")
         assert page.evaluate(f"{VIEWER}.viewer.view.azimuth") < -10
-        # Keys are the viewer's while it has been clicked on, and the notebook's again afterwards.
+        # Keys go to the viewer after a click on it, and to the notebook again afterwards.
         page.mouse.click(x, y)
         page.keyboard.press("d")
         page.keyboard.press("d")
@@ -148,7 +148,7 @@ def test_it_is_drawn_and_moved_and_ends_with_its_cell_and_its_kernel(tmp_path):
         page.wait_for_function("() => document.querySelectorAll('.jp-CodeCell').length === 1", timeout=10_000)
         (asked,) = page.locator(".jp-CodeCell").all()
         until(page, asked, "(False, 0, False)")
-        # Shown again, by another cell, it goes on; a kernel that was restarted knows nothing of it.
+        # Shown again, by another cell, it continues; a restarted kernel knows nothing of it.
         run(page, asked, "viewer")
         page.wait_for_function(f"{samples} >= 1", timeout=20_000, polling=50)
         command(page, asked, "00")

@@ -61,7 +61,7 @@ def test_all_cameras_keep_looking_at_the_same_point(camera):
     away = pivot(camera) - moved.position
     distance = np.linalg.norm(pivot(camera) - camera.position)
     assert np.allclose(away, moved.forward * distance / VIEW.zoom, rtol=0, atol=1e-12)
-    # It is not tilted: what was level in the picture is level.
+    # The camera does not roll: level lines stay level.
     right = moved.extrinsics[0][0]
     assert abs(right @ camera.up) < 1e-12
 

@@ -26,7 +26,7 @@ def viewer():
 def test_it_listens_on_this_machine_alone(viewer):
     at = urlsplit(viewer.url)
     assert at.hostname == "127.0.0.1"
-    # All of 127/8 is this machine, and would answer if it listened everywhere.
+    # All of 127/8 is this machine, and would answer if the server listened on all addresses.
     others = ["127.0.0.2"] if sys.platform == "linux" else []
     with closing(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) as outside:
         try:
@@ -194,7 +194,7 @@ def test_what_is_no_request_is_refused_in_one_line(viewer):
         with closing(socket.create_connection((at.hostname, at.port), timeout=20)) as connection:
             connection.sendall(said)
             told = b"".join(iter(lambda: connection.recv(65536), b""))
-        # Before the version is known, the answer is one for the first browsers, which know no headers.
+        # Before the version is known, the answer is HTTP/0.9, without headers.
         line = told.rpartition(b"\r\n\r\n")[2]
         assert line.count(b"\n") == 1, told
         assert b"<" not in line

@@ -70,12 +70,12 @@ def test_paths_are_traced_while_the_camera_stands_and_the_picture_gets_better(pa
         at = page.evaluate("viewer.drawing.sample")
         late = picture(page, is_state("done"))
         assert told(page, "samples") == "16"
-        # The errors of both are some of the mean of so many paths.
+        # Errors fall with the number of paths in the mean.
         errors = [np.square(one - truth).mean() for one in (early, late)]
         assert errors[1] < 2 * errors[0] * at / 16 + 20
-        # The mean of a picture is that of paths by the ten thousand, and errs by less than a hundredth.
+        # The mean of a picture covers paths by the ten thousand, and errs by less than a hundredth.
         assert np.allclose(late.mean(axis=(0, 1)), truth.mean(axis=(0, 1)), rtol=0.04, atol=0)
-        # All is the page's own work.
+        # The page does all the work.
         assert not viewer.rendering
 
 
@@ -149,7 +149,7 @@ def test_heat_and_boxes_are_drawn_by_keys(page):
         page.keyboard.press("b")
         wait(page, "document.getElementById('message').textContent === 'boxes 1 step from the root'")
         lines = picture(page) - heat
-        # Where the core draws the same boxes, to a pixel.
+        # At the same place as the core's boxes, to a pixel.
         level = edges(camera, scene.tree().at(1).corners)
         wanted = drawn(np.zeros((128, 128, 3), np.uint8), level).any(axis=2)
         found = np.abs(lines).max(axis=2) > 20
@@ -198,7 +198,7 @@ def test_the_core_draws_by_a_key_and_what_the_page_does_not_know(page, box):
         assert float(told(page, "error").removesuffix(" ?")) > 0
         page.keyboard.press("g")
         wait(page, "document.body.dataset.shown === 'drawn' && viewer.drawing.sample >= 1")
-        # Once it stands, the picture of another integrator is the core's.
+        # Standing still, another integrator shows the core's picture.
         viewer.show(rw.Whitted())
         wait(page, f"document.body.dataset.shown === 'picture' && {is_state('done')}")
         assert told(page, "way") == "WebGPU"

@@ -120,7 +120,7 @@ def test_it_answers_as_the_server_does(viewer, monkeypatch):
     assert b"struct Look" in cell.bytes("sight.wgsl")[1]
     assert cell.ask("pick", {"view": {}, "x": 0.5, "y": 0.6})["shape"] >= 0
     assert cell.ask("view", {"azimuth": 30}) is None
-    # All pages of the widget hear of it.
+    # All pages of the widget get the message.
     assert cell.next("view")[0]["view"]["azimuth"] == 30
     assert viewer.camera.position[0] != 278
     viewer.show(rw.Whitted())
@@ -188,7 +188,7 @@ def test_the_module_draws_in_a_cell():
     scene = rw.scenes.cornell_box(**SIZE)
     with launched(*WEBGPU) as browser, opened(browser) as page, rw.view(*scene, fit=False) as viewer:
         cell = Cell(viewer)
-        # A page of this machine: others have no WebGPU.
+        # A page of this machine: WebGPU is unavailable to others.
         page.route("**/*", lambda route: route.fulfill(body="<!doctype html>", content_type="text/html"))
         page.goto("http://localhost/")
         traits = {name: getattr(cell.widget, name) for name in ("_parts", "_style", "height")}

@@ -25,7 +25,7 @@ TO_RGB = np.array(
     ]
 )
 BK7 = rw.glasses["N-BK7"]
-# A formula that goes with wavelength, and gives the same index everywhere.
+# A dispersion formula with the same index everywhere.
 SAME = rw.Cauchy(1.5, 0.0)
 # Relative precision of pictures in slow tests.
 FINELY = 0.002
@@ -48,7 +48,7 @@ def check(scene, camera, samples, expected, integrator, most, finely):
     mean, error = looked(scene, camera, samples, integrator)
     scale = max(np.max(expected), 0.1)
     if finely:
-        # As many samples as it takes, and some more.
+        # The required number of samples, plus a margin.
         more = math.ceil(1.2 * (error.max() / (FINELY * scale)) ** 2)
         most = min(most, FINELY)
         if more > 1:
@@ -164,7 +164,7 @@ def test_a_prism_deviates_each_wavelength_as_computed(assert_looks, line, truth)
     across = np.array((0.0, 0.2 * far, 0.0))
     corners = [near_edge - across, near_edge + across, far_edge + across, far_edge - across]
     wall = rw.Mesh(corners, [(0, 1, 2), (0, 2, 3)], emission=rw.Emission(1.0, both_sides=True))
-    # Of the nm that the line lies in, the part below it.
+    # The part of the nm bin below the line.
     share = np.clip(line - (NM - 0.5), 0, 1)
     expected = daylit(share * transmittance(BK7.index(NM / 1000)))
     scene = rw.Scene([mesh, wall])
@@ -295,7 +295,7 @@ def test_spectra_reflect_and_shine_as_integrals_say(assert_looks):
     sky = rw.Scene(plate(rw.Diffuse(spectrum)), environment=1.0)
     assert_looks(sky, downwards(16), 64, daylit(share), most=0.005)
     assert np.allclose(spectrum.reflected_rgb, daylit(share), atol=1e-6)
-    # A wall that shines, seen directly; and one that reflects itself for ever, in a closed box.
+    # An emitting wall, seen directly; and one that reflects itself infinitely, in a closed box.
     shining = rw.Spectrum([400, 500, 600, 700], [0.0, 2.0, 1.0, 3.0])
     for light, colour in [
         (rw.Blackbody(4500), rw.Blackbody(4500).rgb),
@@ -313,7 +313,7 @@ def test_spectra_reflect_and_shine_as_integrals_say(assert_looks):
 
 def test_metals_go_by_their_curves(assert_looks):
     mirror = rw.Scene(plate(rw.Conductor("Au")), environment=rw.illuminants["D65"])
-    # By numpy from the measurements that Mitsuba comes with.
+    # Computed by numpy from Mitsuba's measured data.
     assert_looks(mirror, downwards(16), 64, np.array((1.0219, 0.7824, 0.3434)), most=0.005)
     nm, eta, k = np.array(_core.metal_index("Au")).T
     own = rw.Conductor(eta=rw.Spectrum(nm, eta), k=rw.Spectrum(nm, k))
@@ -325,7 +325,7 @@ def test_media_absorb_by_wavelength(assert_looks):
     medium = rw.Homogeneous(rw.Spectrum(NM, sigma))
     slab = rw.Box((-9, -9, -1), (9, 9, 0), material=rw.Boundary(medium))
     assert_looks(rw.Scene(slab, environment=1.0), downwards(16), 64, daylit(np.exp(-sigma)), most=0.005)
-    # The same of a grid, through which light gets by chance.
+    # The same by a grid, which light passes at random.
     grid = rw.GridMedium(
         np.full((2, 2, 2), 0.5), ((-9, -9, -1), (9, 9, 0)), absorption=rw.Spectrum(NM, 2 * sigma)
     )
@@ -372,7 +372,7 @@ def test_colours_of_red_green_and_blue_are_upsampled_to_themselves():
             assert np.abs(daylit(table) - colour).max() < 0.01 * np.max(colour), (colour, daylit(table))
             assert np.min(exact) >= 0
             assert not bounded or np.max(exact) <= 1.021
-            # Jakob and Hanika's are smooth: from nm to nm it changes little.
+            # Jakob and Hanika's spectra are smooth: they change little from nm to nm.
             assert np.abs(np.diff(exact)).max() < 0.06 * np.max(exact)
     assert set(_core.smooth_spectrum((0.3,) * 3, True, True, NM.tolist())) == {0.3}
 
@@ -463,7 +463,7 @@ def test_spectra_are_checked_and_copied():
     assert rw.Blackbody(5000) == rw.Blackbody(5000) != rw.Blackbody(5001)
     assert rw.Blackbody(5000, 3.0).luminance == pytest.approx(3.0)
     assert (3 * rw.illuminants["A"]).luminance == pytest.approx(3.0)
-    # Where the CIE has them (CIE 015:2018), to its four digits.
+    # Values of the CIE (CIE 015:2018), to its four digits.
     for name, place in {
         "A": (0.4476, 0.4074),
         "D65": (0.3127, 0.3290),

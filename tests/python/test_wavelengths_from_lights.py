@@ -51,7 +51,7 @@ WET = [
     ball(rw.Dielectric(FLINT)),
     ball(rw.Dielectric(rw.glasses["water"], priority=1), radius=0.35),
 ]
-# A scene, a camera, and how many samples of light tracing and both tell its mean well.
+# A scene, a camera, and numbers of samples for a good mean by light tracing and by both.
 SCENES = {
     "a ball": (rw.Scene([GREY, ball(rw.Dielectric(FLINT)), lamp(WHITE)]), down(0.2, 2.4), (1024, 512)),
     "a rough ball": (
@@ -90,7 +90,7 @@ SCENES = {
 
 
 # Means of these by paths, and standard errors: mean(scene, camera, rw.Path(max_depth=9), samples, seed=10**9)
-# of 65,536 samples of "a ball" and "a rough ball", and 8,192 of the others.
+# for 65,536 samples of "a ball" and "a rough ball", and 8,192 of the others.
 BY_PATHS = {
     "films and metals": ((0.1432254, 0.1674664, 0.04653314), (1.70e-04, 1.91e-04, 9.66e-05)),
     "lamps of all kinds": ((0.2619429, 0.1362571, 0.02022548), (1.84e-04, 4.89e-05, 1.87e-05)),
@@ -188,7 +188,7 @@ def test_photons_have_the_wavelengths_of_who_asks_them(integrator, pictures, sam
     found = np.array([seen(lantern(), seed) for seed in range(10, 10 + pictures)])
     expected, off = 1.0, 0.0
     if isinstance(integrator, rw.PhotonMap):
-        # Its blur makes the balls brighter, by wavelength as otherwise.
+        # Its blur makes the balls brighter, with wavelengths as without.
         glass = rw.Sphere((0, 0, 0), 2.0, material=rw.Dielectric(FLINT.index()))
         plain = rw.Scene([glass, *lantern().shapes[1:]], environment=1.0)
         told = np.array([seen(plain, seed)[0] for seed in range(pictures)])
@@ -281,10 +281,10 @@ def test_the_fan_of_a_prism_falls_where_snell_has_it(way, line):
     spot = rw.SpotLight(world(source), world(MEETS), 1e4 * light, angle=0.02, falloff=0)
     scene = rw.Scene([prism(), wall], lights=[spot])
     image = rw.render(scene, camera, WAYS[way], 256, seed=2, progress=False)
-    # Of a single line some channels are less than nothing.
+    # A single line has negative values in some channels.
     seen = np.abs(image.rgb.astype(float).sum(axis=0)).sum(axis=1)
     assert seen.max() > 0
-    # The camera's right is against `up` of the wall, or along it.
+    # The camera's right is opposite to `up` of the wall, or along it.
     sign = 1 if np.dot(np.cross(world(towards), (0, 1, 0)), world(up)) > 0 else -1
     expected = (0.5 + sign * (at - middle) / (2 * reach)) * width - 0.5
     found = (seen * np.arange(width)).sum() / seen.sum()

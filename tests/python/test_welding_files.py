@@ -10,7 +10,7 @@ from pbrt_files import HEAD
 
 import raywright as rw
 
-# Neither turned nor scaled as single precision could hold it.
+# A rotation and scale that single precision cannot represent.
 PLACE = trimesh.transformations.rotation_matrix(0.7, (1, 2, 3))
 PLACE[:3, :3] *= 30.0
 PLACE[:3, 3] = 1.0, 2.0, 3.0
@@ -116,7 +116,7 @@ def test_corners_of_scene_files_are_welded_where_they_stand(write, tmp_path):
     assert len(np.unique(mesh.vertices, axis=0)) == 8
     assert len(np.unique(apart.vertices, axis=0)) > 20
     assert np.abs(mesh.vertices - apart.vertices).max() < 2e-5
-    # All else is as it was.
+    # All else is unchanged.
     for name in ("normals", "uv", "colors"):
         one, other = getattr(mesh, name), getattr(apart, name)
         assert (one is None) == (other is None)
@@ -172,7 +172,7 @@ def test_meshes_in_instances_are_welded(tmp_path):
         (copies,) = scene.shapes
         (mesh,) = copies.shapes
         assert (len(np.unique(mesh.vertices, axis=0)) == 8) == is_welded
-    # A distance is one in the scene, however the copies are scaled.
+    # A distance applies in the scene, whatever the scale of copies.
     corners, faces = cracked()
     apart = rw.Mesh(corners + np.random.default_rng(2).uniform(0, 1e-3, corners.shape), faces)
     for scale, is_welded in ((1.0, True), (100.0, False)):
@@ -246,7 +246,7 @@ def test_meshes_are_welded_to_each_other_by_the_lesser_of_their_roundings(tmp_pa
     assert len(np.unique(corners_of(rw.load(path)), axis=0)) == 8
     assert len(np.unique(corners_of(rw.load(path, weld=None)), axis=0)) > 20
     shapes = rw.load(path, weld=None).scene.shapes
-    # One of all digits stays apart from the others.
+    # A copy with all digits stays apart from the others.
     corners, faces = cracked()
     double = rw.Mesh(corners[:15].astype(np.float64) + 1e-9, faces[:5])
     single = rw.Mesh(corners[15:], faces[:7])

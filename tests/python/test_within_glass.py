@@ -47,7 +47,7 @@ def test_metals_mirror_by_the_index_around_them(integrator, haze):
     for index in (1.0, 1.33, 1.5, 2.0):
         found = mirrored(metal, index, integrator, haze=haze)
         np.testing.assert_allclose(found, bare(0.2, 3.9, index), rtol=1e-5)
-    # On a sheet that is masked, mixed, bumped, or of one on one side, too.
+    # Also on sheets with a mask, a mixture, a bump map, or the glass on one side.
     for other in (
         rw.Mask(metal, 1.0),
         rw.TwoSided(metal, BLACK),
@@ -70,23 +70,23 @@ def test_coats_and_panes_vanish_in_what_has_their_index(integrator, haze):
     np.testing.assert_allclose(
         mirrored(rw.Plastic(0.0, ior=1.5), 1.33, integrator, **how), bare(1.5, 0, 1.33), rtol=1e-5
     )
-    # A gap of air between two faces of glass: 2 R / (1 + R), here by chance.
+    # A gap of air between two faces of glass: 2 R / (1 + R), here at random.
     gap = 2 * bare(1, 0, 1.5) / (1 + bare(1, 0, 1.5))
     for share, of in ((gap, mirrored), (1 - gap, passing)):
         for pane in (rw.ThinDielectric(1.0), rw.Tinted(rw.ThinDielectric(1.0))):
-            # A standard deviation of 0.27 over 64 times: five of these, once in a million.
+            # A standard deviation of 0.27 over 64 times: five standard errors, once in a million.
             np.testing.assert_allclose(of(pane, 1.5, integrator, **how), share, atol=5 * 0.27 / 64)
 
 
 def test_what_is_not_metal_in_gltf_has_an_index_of_its_own():
-    # Of 1.5, by the specification: Fresnel at normal incidence, and nothing where that is around it.
+    # An index of 1.5, by the specification: Fresnel at normal incidence, and nothing within the same index.
     for integrator in INTEGRATORS:
         for index in (1.0, 1.2, 1.33):
             found = mirrored(rw.MetallicRough(0.0, 0.0, 0.0), index, integrator, samples=16)
             np.testing.assert_allclose(found, bare(1.5, 0, index), rtol=1e-5)
         for index in (1.5, 2.0):
             assert mirrored(rw.MetallicRough(0.0, 0.0, 0.0), index, integrator, samples=16).max() < 1e-12
-        # A metal's colour is given as it is.
+        # A metal's colour stays as given.
         metal = mirrored(rw.MetallicRough((0.9, 0.6, 0.3), 1.0, 0.0), 1.33, integrator, samples=16)
         np.testing.assert_allclose(metal, (0.9, 0.6, 0.3), rtol=1e-6)
 
@@ -178,8 +178,8 @@ SCALED = {
 )
 @pytest.mark.parametrize("kind", SCALED)
 def test_only_the_ratio_of_indices_counts(kind, integrator):
-    # In a black room full of a medium, all is as in air with every index over that of the medium, and films
-    # thicker by it: the same numbers make the same picture.
+    # In a black room full of a medium, all is as in air with every index divided by that of the medium, and
+    # with thicknesses of films multiplied by it: equal random numbers make the same picture.
     def picture(of, index):
         room = rw.Box((-3, -3, -3), (3, 3, 3), material=BLACK)
         lamp = sheet(2.0, BLACK, (3.0, 2.0, 4.0), half=0.5, up=False)
@@ -193,7 +193,7 @@ def test_only_the_ratio_of_indices_counts(kind, integrator):
 
     air, glass = picture(1.25, 1.0), picture(1.0, 1.25)
     np.testing.assert_allclose(glass, air, rtol=1e-4, atol=1e-6)
-    # And without that it is another.
+    # Otherwise the picture differs.
     assert np.abs(picture(1.0, 1.0) - air).max() > 1e-4
 
 
@@ -221,7 +221,7 @@ def test_copies_stand_in_glass_too():
     lamp = sheet(2, BLACK, 1.0, up=False)
     for copied in (rw.Instance(metal, np.eye(4)), metal):
         np.testing.assert_allclose(seen([copied, lamp], 1.5, rw.Path()), bare(0.2, 3.9, 1.5), rtol=1e-5)
-    # A metal with glass around it, copied as one.
+    # A metal surrounded by glass, copied as one.
     things = [metal, lamp, rw.Sphere((0, 0, 0), 20.0, material=rw.Dielectric(1.5))]
     camera = rw.Camera((0.01, 0.02, 1), (0.01, 0.02, 0), up=(0, 1, 0), fov=0.01, width=1, height=1)
     both = rw.Scene([rw.Instance(things, np.eye(4))])
@@ -230,7 +230,7 @@ def test_copies_stand_in_glass_too():
 
 
 def test_wavelengths_have_their_own_index_around_a_metal():
-    # In a glass that parts colours, Fresnel at each wavelength.
+    # In dispersive glass, Fresnel at each wavelength.
     glass = rw.Dielectric(rw.Cauchy(1.5, 0.05))
     lamp = sheet(2, BLACK, 1.0, up=False)
     around = rw.Sphere((0, 0, 0), 20.0, material=glass)

@@ -13,10 +13,10 @@ FOLDER = Path(__file__).parent / "data"
 # Compressed by Blosc; two grids, some with a tile of 8³, with a scale and a translation.
 SMOKE = FOLDER / "smoke.vdb"
 SCALE, MOVED = 0.25, (1.0, -2.0, 3.0)
-# In half precision, turned and sheared, of a single leaf; and beside it what is no float.
+# In half precision, rotated and sheared, of a single leaf; and beside it a grid that is no float.
 HALF = FOLDER / "half.vdb"
 TURNED = np.array([[0.0, -0.5, 0.0, 1.0], [0.25, 0.0, 0.0, 2.0], [0.0, 0.125, 1.0, 3.0], [0, 0, 0, 1]])
-# Where the grids of smoke begin, and how large they are.
+# Corners and sizes of the grids of smoke.
 LOW, SIZE = (-5, 0, 6), (16, 11, 10)
 HOT_LOW, HOT_SIZE = (-3, 2, 4), (4, 5, 20)
 TILE, TILED = (8, 16, 8), 0.75

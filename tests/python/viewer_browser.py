@@ -29,7 +29,7 @@ WEBGPU = (
 def launched(*flags):
     """A browser."""
     with playwright.sync_playwright() as driver:
-        # Its sandbox does not work for root or within containers, and it sees nothing but our own page.
+        # Its sandbox fails for root or within containers, and it only sees our own page.
         one = driver.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox", *flags])
         yield one
         one.close()

@@ -37,7 +37,7 @@ def page(viewer_or_url, path="events"):
         def events():
             name, spoke = None, time.monotonic()
             for line in answer:
-                # The server says now and then that it is still there, so that no read takes long.
+                # The server sends signs of life, so that no read takes long.
                 assert time.monotonic() - spoke < 20, "nothing new is heard"
                 if line.startswith(b"event: "):
                     name = line[7:].strip().decode()
