@@ -1,26 +1,26 @@
-// The candidates for each ray's closest hit: the nearer child first, the other on a stack with the place where its box
+// Candidates for each ray's closest hit: the nearer child first, the other on a stack with the distance where its box
 // begins (Kay and Kajiya 1986).
 
 var<private> ids: array<u32, 4>;
-// The least t of each; BEYOND where there is none.
+// The least t of each candidate; BEYOND if there is none.
 var<private> lows: array<f32, 4>;
-// No hit is farther than this.
+// Upper bound of the closest t.
 var<private> best: f32;
-// What certainly is as near.
+// The candidate that certainly is a hit within that bound.
 var<private> sure: u32;
-// The least t of what found no room.
+// The least t among candidates that did not fit.
 var<private> lost: f32;
 
 fn add(id: u32, low: f32) {
     for (var i = 0u; i < 4u; i++) {
         if ids[i] == id {
-            // Met in another leaf: what is known of its t may be a little less.
+            // Also hit in another leaf, where the lower bound of t may be slightly less.
             lows[i] = min(lows[i], low);
             return;
         }
     }
     for (var i = 0u; i < 4u; i++) {
-        // Of what is farther than the best nobody will ask.
+        // Candidates beyond the bound are replaced first.
         if lows[i] > best {
             ids[i] = id;
             lows[i] = low;

@@ -1,6 +1,6 @@
-// Whether rays hit anything: NONE is no, CERTAIN is yes, and a number is that of the only primitive of which f32 does
-// not tell; OVERFLOW, if there are several. Along the nodes as they lie, without a stack: one number is all that a ray
-// has to know of its way (Smits 1998).
+// Occlusion of rays: NONE is no, CERTAIN is yes, a number is that of the only primitive f32 cannot decide, and OVERFLOW
+// means several. The traversal follows the order of nodes, without a stack: one number is a ray's whole state (Smits
+// 1998).
 
 fn occlusion(ray: Slabs) -> u32 {
     var at = 0u;

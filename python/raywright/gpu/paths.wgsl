@@ -1,14 +1,15 @@
-// Path tracing in kernels, one a stage (Laine, Karras and Aila, "Megakernels Considered Harmful", 2013): rays of the
-// camera, what they meet, how each kind of surface scatters, whether light arrives, and what pixels have of it. Between
-// them, paths stand in lists by what they need next.
+// Path tracing in one kernel per stage (Laine, Karras and Aila, "Megakernels Considered Harmful", 2013): camera rays,
+// intersection, scattering by kind of surface, shadow rays, and film. Between stages, paths wait in lists by their next
+// kernel.
 //
-// As the CPU's paths do, these ask one light at each surface, weigh that with what they run into by the power heuristic
-// (Veach and Guibas, 1995), and are ended by Russian roulette.
+// Like the CPU's paths, these sample one light at each surface, weigh it against hits of emitters by the power
+// heuristic (Veach and Guibas, 1995), and end by Russian roulette.
 
 struct Job {
-    // Where the camera is, the way to the upper left of its film, and along its rows and columns to the other ends.
+    // Position of the camera, direction to the upper left of its film, and along its rows and columns to the other
+    // ends.
     eye: vec3<f32>,
-    // 0, which the compiler does not know.
+    // 0, unknown to the compiler.
     zero: u32,
     corner: vec3<f32>,
     width: u32,
@@ -16,7 +17,7 @@ struct Job {
     height: u32,
     down: vec3<f32>,
     nodes: u32,
-    // What is at work on: the samples of numbers from one on of some pixels. Path i is of pixel i % pixels.
+    // The current batch: samples from a number on of some pixels. Path i belongs to pixel i % pixels.
     first_pixel: u32,
     pixels: u32,
     first_sample: u32,
@@ -24,36 +25,36 @@ struct Job {
     max_depth: u32,
     roulette_depth: u32,
     seed: vec2<u32>,
-    // Which of the two lists of rays is at work on, and how long lists are at most.
+    // The current one of two ray lists, and the capacity of lists.
     now: u32,
     capacity: u32,
-    // Where in the numbers the quantiles of the filter begin: 1025, in pixels from a pixel's centre.
+    // Index in the numbers of the filter's quantiles: 1025, in pixels from a pixel's centre.
     quantiles: u32,
     reserved: u32,
 }
 
 struct Path {
     origin: vec3<f32>,
-    // The face that its ray leaves, or NO.
+    // The face that the ray leaves, or NO.
     leaves: u32,
     direction: vec3<f32>,
-    // The density with which that was drawn, or SINGLE.
+    // The density of the sampled direction, or SINGLE.
     pdf: f32,
     throughput: vec3<f32>,
-    // How much less radiance is here because of indices of refraction alone.
+    // The factor of radiance due to indices of refraction alone.
     scale: f32,
     radiance: vec3<f32>,
     bounce: u32,
-    // The face that its ray meets.
+    // The face that the ray hits.
     face: u32,
-    // How often in a row glass has held it.
+    // Number of consecutive internal reflections in glass.
     held: u32,
-    // 1 where it has come by way of a metal that may reflect more than there is.
+    // 1 after a metal whose reflectance may exceed 1.
     gilded: u32,
     reserved: u32,
 }
 
-// A ray to a light, and what that brings if nothing is in the way.
+// A shadow ray, and its contribution if unoccluded.
 struct Shadow {
     origin: vec3<f32>,
     t_max: f32,
@@ -67,7 +68,7 @@ struct Shadow {
     reserved_c: u32,
 }
 
-// Sums of a pixel's samples and of their squares, each in two numbers, the largest, and how many were no radiance.
+// Sums of a pixel's samples and of their squares, each in two numbers, the largest, and the count of invalid ones.
 struct Pixel {
     sum: vec3<f32>,
     dropped: u32,
@@ -81,7 +82,7 @@ struct Pixel {
     reserved_d: u32,
 }
 
-// Lists, by number: rays at work on and rays that follow, those that leave the scene, and kinds of surfaces.
+// Lists, by number: current rays and following rays, those that leave the scene, and kinds of surfaces.
 const SKY: u32 = 2u;
 const MATT: u32 = 3u;
 const OTHERS: u32 = 4u;
@@ -99,7 +100,7 @@ const TO_LIGHT: u32 = 7u;
 @group(0) @binding(7) var<storage, read_write> film: array<Pixel>;
 BINDINGS
 
-// Random numbers of a path, for what it does at a bounce.
+// Random numbers of a path, for one purpose at a bounce.
 fn numbers_of(i: u32, purpose: u32) -> vec4<f32> {
     let pixel = job.first_pixel + i % job.pixels;
     let sample = job.first_sample + i / job.pixels;
@@ -110,7 +111,7 @@ fn put(list: u32, i: u32) {
     lists[list * job.capacity + atomicAdd(&counts[list], 1u)] = i;
 }
 
-// The path at a place of a list; NO beyond its end.
+// The path at an index of a list; NO beyond its end.
 fn taken(list: u32, place: u32) -> u32 {
     if place >= atomicLoad(&counts[list]) {
         return NO;
@@ -118,7 +119,7 @@ fn taken(list: u32, place: u32) -> u32 {
     return lists[list * job.capacity + place];
 }
 
-// How far from a pixel's centre a filter draws a sample, along an axis.
+// Offset of a filter sample from the pixel's centre, along an axis.
 fn offset(u: f32) -> f32 {
     let place = u * 1024.0;
     let i = min(u32(place), 1023u);
@@ -158,7 +159,7 @@ fn trace(@builtin(global_invocation_id) id: vec3<u32>) {
         put(SKY, i);
         return;
     }
-    // The front's and the back's may be of two kinds.
+    // The front's and the back's may differ in kind.
     let one = face(met.face);
     let is_back = dot(cross(one.edge, one.other), paths[i].direction) > 0.0;
     let kind = material(one.material + select(0u, 1u, is_back)).kind;
@@ -170,7 +171,7 @@ fn trace(@builtin(global_invocation_id) id: vec3<u32>) {
     }
 }
 
-// How many groups of threads lists take. Those that are done with are empty again.
+// Number of workgroups for a list. Used lists are emptied.
 fn plan(list: u32) {
     groups[list] = vec4<u32>((atomicLoad(&counts[list]) + 63u) / 64u, 1u, 1u, 0u);
 }
@@ -193,7 +194,7 @@ fn plan_rays() {
     }
 }
 
-// Of rays that were just generated.
+// For generated camera rays.
 @compute @workgroup_size(1)
 fn plan_first() {
     plan(job.now);
@@ -214,13 +215,13 @@ fn leave_scene(@builtin(global_invocation_id) id: vec3<u32>) {
     paths[i].radiance += paths[i].throughput * sky_radiance(direction) * weight;
 }
 
-// The greatest chance to go on for light that glass has held so many times in a row, as the core has it: it brings
-// nothing to anybody. Here that goes for rough glass as well: all wait for the last path.
+// Greatest survival probability of light after this many consecutive internal reflections, as in the core: it
+// contributes nothing. Here that applies to rough glass as well, since all wait for the last path.
 fn kept(held: u32) -> f32 {
     return select(1.0, 1.0 - 1.0 / 32.0, held >= 64u);
 }
 
-// Of a kind that the compiler knows, or of any for NO.
+// For a kind known to the compiler, or for any with NO.
 fn shade(i: u32, kind: u32) {
     var path = paths[i];
     let at = surface_at(path.face, path.origin, path.direction);
@@ -335,12 +336,12 @@ fn bring(@builtin(global_invocation_id) id: vec3<u32>) {
     }
 }
 
-// Through integers, which no compiler sees through: one rounded number to all that follows.
+// Passes through integers, which hide it from the compiler: a single rounded number.
 fn held(v: vec3<f32>) -> vec3<f32> {
     return bitcast<vec3<f32>>(bitcast<vec3<u32>>(v) ^ vec3<u32>(job.zero));
 }
 
-// What a rounded sum leaves out (Knuth, "The Art of Computer Programming", volume 2).
+// Rounding error of a sum (Knuth, "The Art of Computer Programming", volume 2).
 fn left_out(a: vec3<f32>, b: vec3<f32>, sum: vec3<f32>) -> vec3<f32> {
     let of_b = held(sum - a);
     let of_a = held(sum - of_b);
@@ -349,11 +350,11 @@ fn left_out(a: vec3<f32>, b: vec3<f32>, sum: vec3<f32>) -> vec3<f32> {
 
 fn is_radiance(colour: vec3<f32>) -> bool {
     let bits = bitcast<vec3<u32>>(colour) & vec3<u32>(0x7f800000u);
-    // Not beyond 2^60: squares have to be numbers, too.
+    // At most 2^60, so that squares are finite.
     return all(bits <= vec3<u32>(0x5d800000u)) && all(colour >= vec3<f32>(0.0));
 }
 
-// Adds up what the paths of each pixel have found.
+// Adds up the paths of each pixel.
 @compute @workgroup_size(64)
 fn gather(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x >= job.pixels {

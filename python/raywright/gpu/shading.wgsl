@@ -1,25 +1,25 @@
-// What surfaces and lights do in f32: where a ray has met a face, how that scatters light, and what light reaches it.
+// Surfaces and lights in f32: hit points, scattering, and light samples.
 //
-// Whoever includes this has bindings and these functions: face(i) -> Face, material(i) -> Material, light(i) -> Light
+// The including shader has bindings and these functions: face(i) -> Face, material(i) -> Material, light(i) -> Light
 // and number(i) -> f32, which read the arrays of packing.py, `lit`, a Lit, and the constants of `known_lit`. All
 // lengths are in box units (see `FlatArrays`). Nothing here is an extension: it runs in browsers too.
 //
-// The scattering functions are those of the core (rust/optics), and draws have the same densities where nothing else is
-// said. In a shading frame z is on the side of the winding's normal; directions point away from the surface.
+// The scattering functions are those of the core (rust/optics), with the same sampling densities unless stated. In a
+// shading frame z is on the side of the winding's normal; directions point away from the surface.
 
 const PI: f32 = 3.14159265358979;
 const INVERSE_PI: f32 = 0.318309886183791;
 const NO: u32 = 0xffffffffu;
 
-// What is drawn with all of the density: mirrors, panes, points of light.
+// Delta distributions: mirrors, panes, points of light.
 const SINGLE: f32 = -1.0;
 
 struct Face {
     corner: vec3<f32>,
-    // Its front's; the back's is the next.
+    // Index of the front's material; the back's is the next.
     material: u32,
     edge: vec3<f32>,
-    // Which light it is, or NO.
+    // Index of its light, or NO.
     light: u32,
     other: vec3<f32>,
     // 1: it has normals, 2: it has texture coordinates.
@@ -43,22 +43,22 @@ const ROUGH_GLASS: u32 = 5u;
 const PLASTIC: u32 = 6u;
 
 struct Material {
-    // Of metals, what is left of each reflection but the first.
+    // For metals, the factor of each reflection after the first.
     colour: vec3<f32>,
     kind: u32,
-    // Of metals, with k, or 0 where a table stands for both; of glass the first is the index below over that above.
+    // For metals, with k, or 0 if a table replaces both; for glass the first is the index below over that above.
     eta: vec3<f32>,
     alpha: f32,
     k: vec3<f32>,
-    // Where in the numbers its reflectances begin.
+    // Index in the numbers of its reflectances.
     table: u32,
-    // Of metals what facets throw on facets, over pi and the mean loss. Of rough glass one over pi and the mean loss
-    // above and below, and in k the shares of that which cross from there.
+    // For metals, the multiple scattering between facets, over pi and the mean loss. For rough glass, one over pi and
+    // the mean loss above and below; k has the shares of that which cross from there.
     multiple: vec3<f32>,
-    // Where in the numbers begins what facets lose; of rough glass that above, and then that below; of rough plastic
-    // what its coat reflects, of which k has the mean, and that from within.
+    // Index in the numbers of the loss by facets; for rough glass above, then below; for rough plastic the reflectance
+    // of its coat (mean in k), then the one from within.
     losses: u32,
-    // Where in the numbers its picture begins, or NO.
+    // Index in the numbers of its picture, or NO.
     picture: u32,
     reserved_a: u32,
     reserved_b: u32,
@@ -73,40 +73,40 @@ const DIRECTION: u32 = 2u;
 struct Light {
     radiance: vec3<f32>,
     kind: u32,
-    // Of a point where it is; of a direction where it comes from.
+    // Position of a point; direction to a distant light.
     place: vec3<f32>,
     face: u32,
-    // The share of draws that goes to this and all before it, and to this alone.
+    // Cumulative probability up to this light, and its own.
     until: f32,
     share: f32,
     area: f32,
-    // 1: its front shines, 2: its back.
+    // 1: its front emits, 2: its back.
     sides: u32,
 }
 
-// How a scene is lit.
+// Lighting of a scene.
 struct Lit {
-    // Of the sky; of a picture what it is multiplied by.
+    // Radiance of the sky; for a picture its factor.
     sky: vec3<f32>,
     lights: u32,
-    // To the picture's space, by rows, each with a number of its own behind.
+    // Rotation to the picture's space, by rows, each followed by another number.
     to_picture_x: vec3<f32>,
-    // 0: no sky, 1: the same everywhere, 2: a picture.
+    // 0: no sky, 1: constant, 2: a picture.
     sky_kind: u32,
     to_picture_y: vec3<f32>,
     sky_width: u32,
     to_picture_z: vec3<f32>,
     sky_height: u32,
-    // Where its colours begin among the numbers, row by row, and where the shares of light: of the rows up to each and,
-    // row after row, of its columns up to each.
+    // Index of its colours among the numbers, row by row, and of the cumulative light: by row, then within each row by
+    // column.
     sky_colours: u32,
     sky_shares: u32,
-    // The share of draws that goes to the sky.
+    // Probability to sample the sky.
     sky_share: f32,
     reserved: u32,
 }
 
-// Random numbers: a hash of what they are for (Jarzynski and Olano, "Hash Functions for GPU Rendering", 2020).
+// Random numbers: a hash of their purpose (Jarzynski and Olano, "Hash Functions for GPU Rendering", 2020).
 fn hashed(key: vec4<u32>) -> vec4<u32> {
     var v = key * 1664525u + 1013904223u;
     v.x += v.y * v.w;
@@ -126,7 +126,7 @@ fn uniform_numbers(key: vec4<u32>) -> vec4<f32> {
     return (vec4<f32>(hashed(key) >> vec4<u32>(9u)) + 0.5) * 1.1920928955078125e-07;
 }
 
-// Cosine and sine of so many turns, 0 to 1, by polynomials: built-in ones may be off by 2^-11.
+// Cosine and sine of 0 to 1 turns, by polynomials: built-in ones may be off by 2^-11.
 fn turned(turns: f32) -> vec2<f32> {
     let quarter = floor(4.0 * turns + 0.5);
     let x = (turns - 0.25 * quarter) * (2.0 * PI);
@@ -145,20 +145,20 @@ fn most(colour: vec3<f32>) -> f32 {
     return max(colour.x, max(colour.y, colour.z));
 }
 
-// The weight of a draw beside another way to draw (Veach and Guibas, 1995).
+// The power heuristic's weight beside another sampling density (Veach and Guibas, 1995).
 fn beside(mine: f32, other: f32) -> f32 {
     let ratio = other / mine;
     return 1.0 / (1.0 + ratio * ratio);
 }
 
-// Where a ray has met a face.
+// A hit point of a ray on a face.
 struct Surface {
     position: vec3<f32>,
-    // How far off rays leave it, by what its position errs.
+    // Offset of leaving rays, from the error of the position.
     room: f32,
-    // Of the winding.
+    // Normal of the winding.
     normal: vec3<f32>,
-    // 1 where the ray comes from the side of the normal, -1 on the other.
+    // 1 if the ray comes from the side of the normal, -1 on the other.
     side: f32,
     x: vec3<f32>,
     y: vec3<f32>,
@@ -183,8 +183,8 @@ fn size_of(v: vec3<f32>) -> f32 {
     return max(size.x, max(size.y, size.z));
 }
 
-// What a ray of unit direction meets at a face. The normal of its shading is bent towards the viewer where it would
-// look away, as the core has it.
+// The hit point of a ray of unit direction on a face. A shading normal that would face away bends towards the viewer,
+// as in the core.
 fn surface_at(number_of_face: u32, origin: vec3<f32>, direction: vec3<f32>) -> Surface {
     let one = face(number_of_face);
     let s = origin - one.corner;
@@ -232,17 +232,17 @@ fn surface_at(number_of_face: u32, origin: vec3<f32>, direction: vec3<f32>) -> S
     return at;
 }
 
-// The material on the side that the ray came from.
+// The material on the ray's side.
 fn material_at(at: Surface) -> Material {
     return material(face(at.face).material + select(0u, 1u, at.side < 0.0));
 }
 
-// Where a ray starts that leaves in a direction.
+// Origin of a ray that leaves in a direction.
 fn leaving(at: Surface, direction: vec3<f32>) -> vec3<f32> {
     return at.position + at.normal * select(-at.room, at.room, dot(at.normal, direction) > 0.0);
 }
 
-// How much light from a direction counts near the horizon of either normal (Chiang, Li and Burley, "Taming the Shadow
+// Factor of light from a direction near the horizon of either normal (Chiang, Li and Burley, "Taming the Shadow
 // Terminator", 2019): see SurfaceInteraction::fading of the core.
 fn fading(at: Surface, wi: vec3<f32>, direction: vec3<f32>) -> f32 {
     let geometric = dot(at.normal, direction);
@@ -260,9 +260,8 @@ fn fading(at: Surface, wi: vec3<f32>, direction: vec3<f32>) -> f32 {
     return ((1.0 - g) * g + 1.0) * g;
 }
 
-// A colour of a picture among the numbers: its width and height, how it goes on beyond its edges (1: it repeats, 2: it
-// does not, 3: it is mirrored, of u and four times that of v), the two rows of the map to its coordinates, and its own
-// rows from the top.
+// A colour of a picture among the numbers. These are its width and height, its wrap mode (1: repeat, 2: clamp, 3:
+// mirror, for u plus four times that for v), the two rows of the map to its coordinates, and its own rows from the top.
 fn texel(at: u32, size: vec2<i32>, wrap: vec2<u32>, x: i32, y: i32) -> vec3<f32> {
     let column = wrapped(x, size.x, wrap.x);
     let row = wrapped(y, size.y, wrap.y);
@@ -304,7 +303,7 @@ fn colour_at(looks: Material, uv: vec2<f32>) -> vec3<f32> {
     return looks.colour * pictured(looks.picture, uv);
 }
 
-// The share of light that a dielectric reflects: see fresnel::dielectric of the core.
+// Reflectance of a dielectric: see fresnel::dielectric of the core.
 fn fresnel(cosine: f32, eta: f32) -> f32 {
     let e = (eta - 1.0) * (eta + 1.0);
     let square = e + cosine * cosine;
@@ -318,7 +317,7 @@ fn fresnel(cosine: f32, eta: f32) -> f32 {
     return 0.5 * (s * s + p * p);
 }
 
-// The share that a conductor of index eta + ik reflects (Born and Wolf, "Principles of Optics", 14.2).
+// Reflectance of a conductor of index eta + ik (Born and Wolf, "Principles of Optics", 14.2).
 fn metallic(cosine: f32, eta: vec3<f32>, k: vec3<f32>) -> vec3<f32> {
     let c2 = cosine * cosine;
     let s2 = (1.0 - cosine) * (1.0 + cosine);
@@ -332,7 +331,7 @@ fn metallic(cosine: f32, eta: vec3<f32>, k: vec3<f32>) -> vec3<f32> {
     return clamp((sum - twice) * even / ((sum + twice) * (even + odd)), vec3<f32>(0.0), vec3<f32>(1.0));
 }
 
-// What a metal reflects: by its index, or by a table of 257 cosines from 0 to 1.
+// Reflectance of a metal: by its index, or by a table of 257 cosines from 0 to 1.
 fn reflectance(looks: Material, cosine: f32) -> vec3<f32> {
     if looks.eta.x > 0.0 {
         return metallic(cosine, looks.eta, looks.k);
@@ -345,8 +344,7 @@ fn reflectance(looks: Material, cosine: f32) -> vec3<f32> {
     return mix(low, high, place - f32(i));
 }
 
-// Where a ray comes from that leaves along `wo` after refraction at a facet of normal `h` on its side; zero if there is
-// none.
+// Direction of a ray that refracts at a facet of normal `h` on its side and leaves along `wo`; zero if there is none.
 fn refracted(wo: vec3<f32>, h: vec3<f32>, eta: f32) -> vec3<f32> {
     let c = dot(wo, h);
     let e = (eta - 1.0) * (eta + 1.0);
@@ -368,7 +366,7 @@ fn facets(h: vec3<f32>, alpha: f32) -> f32 {
     return INVERSE_PI / (alpha * alpha * square * square);
 }
 
-// The density of the facets that mirror one direction to another, and the cosine to both: Ggx::mirroring of the core.
+// Density of the facets that mirror one direction to another, and the cosine to both: Ggx::mirroring of the core.
 fn mirroring(wo: vec3<f32>, wi: vec3<f32>, alpha: f32) -> vec2<f32> {
     let q = wo + wi;
     let square = dot(q, q);
@@ -380,7 +378,7 @@ fn mirroring(wo: vec3<f32>, wi: vec3<f32>, alpha: f32) -> vec2<f32> {
     return vec2<f32>(INVERSE_PI * root * root, min(0.5 * sqrt(square), 1.0));
 }
 
-// A facet as seen from `wo`, above (Dupuy and Benyoub, "Sampling Visible GGX Normals with Spherical Caps", 2023).
+// A facet visible from `wo`, above (Dupuy and Benyoub, "Sampling Visible GGX Normals with Spherical Caps", 2023).
 fn visible_facet(wo: vec3<f32>, alpha: f32, u: vec2<f32>) -> vec3<f32> {
     let w = vec3<f32>(alpha * wo.xy, wo.z) / stretch(wo, alpha);
     let depth = u.y * (1.0 + w.z);
@@ -389,7 +387,7 @@ fn visible_facet(wo: vec3<f32>, alpha: f32, u: vec2<f32>) -> vec3<f32> {
     return normalize(vec3<f32>(alpha * (radius * way + w.xy), (1.0 - u.y) * (1.0 + w.z)));
 }
 
-// What facets lose of light from a direction above, by a table of 64 numbers along the root of the cosine.
+// Loss by facets for a direction above, by a table of 64 numbers along the root of the cosine.
 fn lost(table: u32, cosine: f32) -> f32 {
     let place = sqrt(clamp(cosine, 0.0, 1.0)) * 63.0;
     let i = min(u32(place), 62u);
@@ -404,7 +402,7 @@ fn by_cosine(u: vec2<f32>) -> vec3<f32> {
     return vec3<f32>(sqrt(u.x) * turned(u.y), sqrt(max(1.0 - u.x, 0.0)));
 }
 
-// The scattering function with its cosine, and the density of a draw: 0 for what is single.
+// The scattering function times its cosine, and the sampling density: 0 for delta lobes.
 struct Scattered {
     value: vec3<f32>,
     pdf: f32,
@@ -420,7 +418,7 @@ fn rough_metal(looks: Material, wo: vec3<f32>, wi: vec3<f32>) -> Scattered {
     return Scattered(reflectance(looks, met.y) * single + back, pdf);
 }
 
-// One scattering at a rough dielectric: Dielectric::single of the core.
+// Single scattering at a rough dielectric: Dielectric::single of the core.
 fn rough_glass_once(looks: Material, wo: vec3<f32>, wi: vec3<f32>) -> Scattered {
     let eta = select(1.0 / looks.eta.x, looks.eta.x, wo.z > 0.0);
     if wo.z * wi.z > 0.0 {
@@ -450,17 +448,17 @@ fn rough_glass_once(looks: Material, wo: vec3<f32>, wi: vec3<f32>) -> Scattered 
     return Scattered(vec3<f32>(through * both), through * seen * eta * eta);
 }
 
-// What facets lose of light from a direction, on its side of rough glass.
+// Loss by facets for a direction, on its side of rough glass.
 fn lost_between(looks: Material, w: vec3<f32>) -> f32 {
     return lost(looks.losses + select(0u, 64u, w.z < 0.0), abs(w.z));
 }
 
-// The share of what is lost on the side of a direction that is given back on the other.
+// Share of the loss on one side that is compensated on the other.
 fn crossing(looks: Material, w: vec3<f32>) -> f32 {
     return select(looks.k.x, looks.k.y, w.z < 0.0);
 }
 
-// With what is given back of what facets lose: Dielectric::both of the core.
+// Includes the compensation of the loss by facets: Dielectric::both of the core.
 fn rough_glass(looks: Material, wo: vec3<f32>, wi: vec3<f32>) -> Scattered {
     let by = rough_glass_once(looks, wo, wi);
     let loss = lost_between(looks, wo);
@@ -472,7 +470,7 @@ fn rough_glass(looks: Material, wo: vec3<f32>, wi: vec3<f32>) -> Scattered {
     return Scattered(by.value + back, (1.0 - loss) * by.pdf + loss * share * abs(wi.z) * INVERSE_PI);
 }
 
-// What the coat of plastic reflects.
+// Reflectance of the coat of plastic.
 fn coat(looks: Material, cosine: f32) -> f32 {
     if looks.alpha > 0.0 {
         return lost(looks.losses, cosine);
@@ -480,7 +478,7 @@ fn coat(looks: Material, cosine: f32) -> f32 {
     return fresnel(cosine, looks.eta.x);
 }
 
-// The share of draws from the coat, by what it reflects, and what the matt base gives back.
+// Probability to sample the coat, by its reflectance and that of the matt base.
 fn coat_share(reflected: f32, base: vec3<f32>) -> f32 {
     return select(0.0, reflected / (reflected + most(base) * (1.0 - reflected)), reflected > 0.0);
 }
@@ -516,7 +514,7 @@ fn is_single(looks: Material) -> bool {
     return looks.kind == MIRROR || looks.kind == GLASS || looks.kind == METAL;
 }
 
-// By how a material scatters light from `wi`, in the frame, to `wo`.
+// Scattering function of a material for light from `wi` to `wo`, in the frame.
 fn scattered(looks: Material, colour: vec3<f32>, wo: vec3<f32>, wi: vec3<f32>) -> Scattered {
     if looks.kind == ROUGH_GLASS {
         return rough_glass(looks, wo, wi);
@@ -534,12 +532,12 @@ fn scattered(looks: Material, colour: vec3<f32>, wo: vec3<f32>, wi: vec3<f32>) -
     return Scattered(colour * pdf, pdf);
 }
 
-// A direction drawn in the frame: what is left of light from there, over the density, and that. 0 where there is none.
+// A sampled direction in the frame: the scattering function times cosine over the density, and the density; 0 if none.
 struct Drawn {
     wi: vec3<f32>,
     pdf: f32,
     weight: vec3<f32>,
-    // The index beyond over that on the side of `wo` where it goes through, else 1.
+    // The index beyond over that on the side of `wo` for transmission, else 1.
     eta: f32,
 }
 
@@ -635,7 +633,7 @@ fn drawn_plastic(looks: Material, colour: vec3<f32>, wo: vec3<f32>, choice: f32,
     return Drawn(wi, by.pdf, by.value / by.pdf, 1.0);
 }
 
-// Draws where light comes from that a material scatters to `wo`.
+// Samples the direction of light that a material scatters to `wo`.
 fn drawn(looks: Material, colour: vec3<f32>, wo: vec3<f32>, choice: f32, u: vec2<f32>) -> Drawn {
     if wo.z == 0.0 {
         return NOTHING;
@@ -657,7 +655,7 @@ fn drawn(looks: Material, colour: vec3<f32>, wo: vec3<f32>, choice: f32, u: vec2
     }
 }
 
-// What is drawn at a surface, in the world; with it goes what shading normals take.
+// Samples a direction at a surface, in the world, with the factor of shading normals.
 fn drawn_at(at: Surface, looks: Material, colour: vec3<f32>, choice: f32, u: vec2<f32>) -> Drawn {
     var next = drawn(looks, colour, at.wo, choice, u);
     if next.pdf == 0.0 {
@@ -673,7 +671,7 @@ fn drawn_at(at: Surface, looks: Material, colour: vec3<f32>, choice: f32, u: vec
     return next;
 }
 
-// How a surface scatters light from a direction of the world back along the ray.
+// Scattering by a surface of light from a world direction back along the ray.
 fn scattered_at(at: Surface, looks: Material, colour: vec3<f32>, direction: vec3<f32>) -> Scattered {
     let wi = to_local(at, direction);
     let counts = fading(at, wi, direction);
@@ -691,7 +689,7 @@ fn sky_texel(column: u32, row: u32) -> vec3<f32> {
     return vec3<f32>(number(first), number(first + 1u), number(first + 2u));
 }
 
-// Column and row, each with its fraction, of a direction; the middle of the picture is seen along -z, its top at +y.
+// Column and row of a direction, each with its fraction; the middle of the picture is along -z, its top at +y.
 fn sky_place(direction: vec3<f32>) -> vec2<f32> {
     let x = dot(lit.to_picture_x, direction);
     let y = dot(lit.to_picture_y, direction);
@@ -702,7 +700,7 @@ fn sky_place(direction: vec3<f32>) -> vec2<f32> {
     return clamp(turns, vec2<f32>(0.0), vec2<f32>(1.0)) * vec2<f32>(f32(lit.sky_width), f32(lit.sky_height));
 }
 
-// The radiance from outside along a direction.
+// Radiance of the sky along a direction.
 fn sky_radiance(direction: vec3<f32>) -> vec3<f32> {
     if SKY_KIND != 2u {
         return lit.sky * f32(SKY_KIND);
@@ -721,7 +719,7 @@ fn sky_radiance(direction: vec3<f32>) -> vec3<f32> {
     return lit.sky * mix(upper, lower, within.y);
 }
 
-// The first of so many shares, beginning at a number, that is greater than one drawn.
+// Index of the first cumulative share above a random number.
 fn drawn_share(first: u32, count: u32, u: f32) -> u32 {
     var low = 0u;
     var high = count - 1u;
@@ -744,7 +742,7 @@ fn sky_columns(row: u32) -> u32 {
     return lit.sky_shares + lit.sky_height + row * lit.sky_width;
 }
 
-// The density, in solid angle, with which `from_sky` draws a direction.
+// The density, in solid angle, of `from_sky` for a direction.
 fn sky_pdf(direction: vec3<f32>) -> f32 {
     if SKY_KIND != 2u {
         return 0.25 * INVERSE_PI;
@@ -759,7 +757,7 @@ fn sky_pdf(direction: vec3<f32>) -> f32 {
     return share * (0.5 * INVERSE_PI * INVERSE_PI) / max(sine, 1e-6);
 }
 
-// A direction to the sky: of a picture by what there is of light in each texel.
+// Samples a direction to the sky: of a picture by the light in each texel.
 fn from_sky(u: vec2<f32>) -> vec3<f32> {
     if SKY_KIND != 2u {
         let z = 1.0 - 2.0 * u.x;
@@ -780,25 +778,25 @@ fn from_sky(u: vec2<f32>) -> vec3<f32> {
     return normalize(lit.to_picture_x * local.x + lit.to_picture_y * local.y + lit.to_picture_z * local.z);
 }
 
-// Light that was drawn: where it comes from, how far, its radiance, and the density in solid angle.
+// A light sample: direction, distance, radiance, and density in solid angle.
 struct Arriving {
     direction: vec3<f32>,
     distance: f32,
     radiance: vec3<f32>,
-    // 0 where there is none. Of lights without extent SINGLE, and `radiance` is over the chance to be drawn.
+    // 0 if there is none. SINGLE for lights without extent, whose `radiance` is divided by their probability.
     pdf: f32,
-    // The face that it comes from, or NO.
+    // The emitting face, or NO.
     face: u32,
 }
 
-// Farther than anything.
+// Beyond all distances.
 const FAR: f32 = 1e30;
 
 fn shines(one: Light, cosine: f32) -> bool {
     return (one.sides & select(2u, 1u, cosine > 0.0)) != 0u && cosine != 0.0;
 }
 
-// Draws light that may reach a point.
+// Samples light that may reach a point.
 fn from_lights(position: vec3<f32>, choice: f32, u: vec2<f32>) -> Arriving {
     var arriving = Arriving(vec3<f32>(0.0), FAR, vec3<f32>(0.0), 0.0, NO);
     if choice < lit.sky_share {
@@ -860,7 +858,7 @@ fn from_lights(position: vec3<f32>, choice: f32, u: vec2<f32>) -> Arriving {
     return arriving;
 }
 
-// What a face sends back along a ray.
+// Emission of a face back along a ray.
 fn emitted(at: Surface, direction: vec3<f32>) -> vec3<f32> {
     let which = face(at.face).light;
     if which == NO {
@@ -870,7 +868,7 @@ fn emitted(at: Surface, direction: vec3<f32>) -> vec3<f32> {
     return select(vec3<f32>(0.0), one.radiance, shines(one, -dot(at.normal, direction)));
 }
 
-// The density with which light would have been drawn that a ray from a point has met by chance.
+// The density of light sampling for an emitter that a ray from a point has hit.
 fn emitted_pdf(at: Surface, origin: vec3<f32>, direction: vec3<f32>) -> f32 {
     let which = face(at.face).light;
     if which == NO {

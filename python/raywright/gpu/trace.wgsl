@@ -1,20 +1,21 @@
-// Rays through flat arrays in f32: what a ray may hit first, and what it certainly hits.
+// Rays through flat arrays in f32: candidates for a ray's closest hit, and certain hits.
 //
-// Nothing here decides alone. A triangle is left out only where it is certainly missed, and called hit only where it
-// certainly is; what is between is a candidate, and the core decides about it in exact arithmetic. So all there has to
-// be is a bound on every error, and that it holds on any device that keeps what WGSL promises:
+// Nothing here decides alone. A triangle is rejected only if it certainly is missed, and a hit only if it certainly is
+// one. Any other triangle is a candidate, and the core decides about it in exact arithmetic. So every error needs a
+// bound that holds on any device with WGSL's guarantees:
 //
 // - of + - *, either of the two neighbours of the true result: one ulp, at most U = 2^-23 of it; of a division 2.5;
-// - what is smaller than 2^-126 may be 0, before an operation and after it;
+// - numbers smaller than 2^-126 may be 0, before an operation and after it;
 // - sums and products of one expression may be taken in any other order, and fused;
 // - no infinity and no NaN: there is none, as no number exceeds 2^103.
 //
-// What is `held` passes through integers, which no compiler sees through: it is one rounded number to all that follows.
+// A `held` value passes through integers, which hide it from the compiler: it is a single rounded number.
 //
 // The numbers. Box units: every corner is at most 2 in every coordinate, and rounded to f32, by U/2 of itself. L is the
 // largest coordinate of the ray's origin o, plus 2. The origin errs by U/2 of itself for rounding and by U/4 for being
 // moved up to the scene. The direction d is at most 2, and errs by U/2 of itself. Edges e and f are at most E and F,
-// and err by U/2 of themselves: of a sliver one is short. The CPU's own t, of which all of this must be true, errs by at most 2^-26 (L + 2).
+// and err by U/2 of themselves: of a sliver one is short. The bounds hold for the CPU's own t, which errs by at most
+// 2^-26 (L + 2).
 //
 // Boxes. A plane lies at (plane - o) / d. The difference errs by U of itself, at most UL, the division by 2.5 U, the
 // product by U, the sum with the pad by U, d by U/2: 6UL of distance; o by UL/2 + U/4; and the CPU's t, as a distance
@@ -23,26 +24,26 @@
 //
 // Weights, as Moeller and Trumbore (1997) have them: s = o - a from the corner a, u = s . (d x f), v = d . (s x e),
 // their sum with that of the third edge, w, is the determinant e . (d x f). Let S be the largest coordinate of s. It
-// errs by U(L/2 + 1/2) for what o and a err by, and by US for the difference: it is held. Each of u, v and the
+// errs by U(L/2 + 1/2) through o and a, and by US through the difference: it is held. Each of u, v and the
 // determinant is the sum of six products of three numbers. In any order, each of these is rounded at most 7 times:
 //
-// - u: 6 2SF at most, of which 7U are 84 USF; s errs by 6 2F U(L/2 + 1/2 + S) = UF(6L + 6 + 12S); d and the edge by
+// - u: 6 2SF at most, times 7U: 84 USF; s errs by 6 2F U(L/2 + 1/2 + S) = UF(6L + 6 + 12S); d and the edge by
 //   U/2 each, 12 USF. Together UF(108 S + 6(L + 1)); 128 S + 8(L + 1) is allowed. And so v, with E.
-// - the determinant: 12 EF at most, of which 7U are 84 UEF; d and both edges 18 UEF: 102 UEF; 128 is allowed.
-// - w = determinant - u - v, all three held: what they err by, and twice U of the sum of what they are at most,
+// - the determinant: 12 EF at most, times 7U: 84 UEF; d and both edges 18 UEF: 102 UEF; 128 is allowed.
+// - w = determinant - u - v, all three held: their errors, and twice U of the sum of their bounds,
 //   12 EF + 12 S(E + F): together U(E + F)(132 S + 6(L + 1)) + 126 UEF. 160 S + 8(L + 1), and 160, are allowed.
 // - the numerator of t, f . (s x e): 6 SEF at most: 42 USEF; s 6 EF U(L/2 + 1/2 + S), edges 6 USEF: together
 //   UEF(54 S + 3(L + 1)). 64 S + 4(L + 1) is allowed.
 //
-// What is lost below 2^-126 is, in each of at most 18 products, twice that times at most 2 + L, and once in each sum:
+// Underflow below 2^-126 is, in each of at most 18 products, twice that times at most 2 + L, and once in each sum:
 // less than 2^-118 (1 + L), which is added to all.
 //
 // t. With numerator n and determinant D, off by N and M, and |D| > 2M, n/D is off by (N + |n/D| M) / (|D| - M), and
 // the division by 2.5U |n/D|. A sixteenth more than that is allowed, 4U |n/D|, and 2^-25 (L + 4) for the CPU's t.
 // Neither can be large: |n/D| <= 6 SEF / 256 UEF < 2^23.
 //
-// All bounds are themselves computed in f32, and err by some U of themselves, for which each has room. What is allowed
-// here is held against the worst arithmetic that there may be in tests/python/test_gpu_bounds.py.
+// All bounds are themselves computed in f32, and err by some U of themselves, for which each has room.
+// tests/python/test_gpu_bounds.py checks them against the worst possible arithmetic.
 
 struct Node {
     lower: vec3<u32>,
@@ -68,7 +69,7 @@ struct Ray {
 }
 
 struct Job {
-    // 0, which the compiler does not know.
+    // 0, unknown to the compiler.
     zero: u32,
     rays: u32,
     nodes: u32,
@@ -81,7 +82,7 @@ struct Job {
 BINDINGS
 
 const U: f32 = SCALE * 1.1920928955078125e-07;
-// 2^-118: what is lost by flushing.
+// 2^-118: the loss by flushing.
 const LEAST: f32 = SCALE * 3.009265538105056e-36;
 const TINY: f32 = 8.673617379884035e-19;
 const FOREVER: f32 = 1.2676506002282294e30;
@@ -113,7 +114,7 @@ fn largest(v: vec3<f32>) -> f32 {
     return max(size.x, max(size.y, size.z));
 }
 
-// A ray with what box tests need.
+// A ray with precomputed values for box tests.
 struct Slabs {
     origin: vec3<f32>,
     direction: vec3<f32>,
@@ -134,8 +135,7 @@ fn slabs(ray: Ray) -> Slabs {
     return Slabs(ray.origin, d, ray.t_min, ray.t_max, inverse, room, reach);
 }
 
-// Where a ray enters a box, and where it leaves it at the earliest of that and a limit: the first is greater than the
-// second where it passes by.
+// Distances where a ray enters a box, and where it leaves it or reaches a limit: if the first is greater, it misses.
 fn passes(ray: Slabs, lower: vec3<f32>, upper: vec3<f32>, limit: f32) -> vec2<f32> {
     let a = held(lower - ray.origin) * ray.inverse;
     let b = held(upper - ray.origin) * ray.inverse;
@@ -146,8 +146,7 @@ fn passes(ray: Slabs, lower: vec3<f32>, upper: vec3<f32>, limit: f32) -> vec2<f3
     return vec2<f32>(enter, leave);
 }
 
-// What is known of a ray and of what stands in a leaf: whether it may be met at all, whether it certainly is, and
-// between which two numbers its t lies then.
+// Results of a ray and a primitive of a leaf: whether a hit is possible, whether it is certain, and bounds of its t.
 struct Meeting {
     possible: bool,
     certain: bool,
@@ -157,7 +156,7 @@ struct Meeting {
 
 fn meet(ray: Slabs, triangle: Triangle, enter: f32, limit: f32) -> Meeting {
     if number(triangle.largest) < 0.0 {
-        // No triangle: its box is all that is known.
+        // No triangle: only its box is known.
         let within = passes(ray, vector(triangle.corner), vector(triangle.edge), limit);
         return Meeting(within.x <= within.y, false, within.x, BEYOND);
     }

@@ -1,9 +1,8 @@
-// Rays through flat arrays in f32, for pictures: what is nearest, and whether anything is in the way.
+// Rays through flat arrays in f32, for pictures: closest hits and occlusion.
 //
-// Whoever includes this has node(i) -> Node and triangle(i) -> Triangle, the arrays of `FlatArrays`. A ray leaves out
-// up to two faces by number, those that it comes from and goes to. Unlike trace.wgsl, what is left open by rounding is
-// decided here: along an edge a ray meets both faces, so that none gets through, and of what is at one place the lowest
-// number is met.
+// The including shader has node(i) -> Node and triangle(i) -> Triangle, the arrays of `FlatArrays`. A ray skips up to
+// two faces by number, its own origin and target. Unlike trace.wgsl, this decides despite rounding: a ray hits both
+// faces at an edge, so that none passes between them, and at equal t the lowest number wins.
 
 struct Node {
     lower: vec3<f32>,
@@ -42,7 +41,7 @@ fn slabs(origin: vec3<f32>, direction: vec3<f32>) -> Slabs {
     return Slabs(origin, reach, direction, inverse, 8.0 * ULP * (reach + 1.0) * abs(inverse));
 }
 
-// Where a ray enters a box and where it leaves it at the earliest of that and a limit.
+// Distances where a ray enters a box, and where it leaves it or reaches a limit.
 fn passes(ray: Slabs, lower: vec3<f32>, upper: vec3<f32>, limit: f32) -> vec2<f32> {
     let a = (lower - ray.origin) * ray.inverse;
     let b = (upper - ray.origin) * ray.inverse;
@@ -51,8 +50,8 @@ fn passes(ray: Slabs, lower: vec3<f32>, upper: vec3<f32>, limit: f32) -> vec2<f3
     return vec2<f32>(max(max(near.x, near.y), max(near.z, 0.0)), min(min(far.x, far.y), min(far.z, limit)));
 }
 
-// The t of a triangle that a ray meets (Moeller and Trumbore, 1997), or a negative number. The room beside edges is what
-// rounding takes.
+// The t of a ray's hit with a triangle (Moeller and Trumbore, 1997), or a negative number. Edges have a margin for
+// rounding.
 fn met_at(ray: Slabs, one: Triangle) -> f32 {
     let s = ray.origin - one.corner;
     let p = cross(ray.direction, one.other);
@@ -79,7 +78,7 @@ struct Met {
     face: u32,
 }
 
-// What is nearest: the nearer child first, the other on a stack.
+// The closest hit: the nearer child first, the other on a stack.
 fn nearest(origin: vec3<f32>, direction: vec3<f32>, from_face: u32, nodes: u32) -> Met {
     var best = Met(BEYOND, NOBODY);
     if nodes == 0u {
@@ -140,7 +139,7 @@ fn nearest(origin: vec3<f32>, direction: vec3<f32>, from_face: u32, nodes: u32) 
     return best;
 }
 
-// Whether anything is met before a t: along the nodes as they lie.
+// True if anything is hit before a t: in the order of nodes.
 fn is_hidden(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, from_face: u32, to_face: u32, nodes: u32) -> bool {
     let ray = slabs(origin, direction);
     var at = 0u;

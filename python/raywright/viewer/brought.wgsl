@@ -1,13 +1,13 @@
-// What paths have brought to a pixel, and what of that tells how sure it is.
+// Sums of a pixel's paths, and statistics for its error.
 
 struct Brought {
     sum: vec3<f32>,
-    // How many paths.
+    // Number of paths.
     count: f32,
-    // The squares of how far each is from their mean, added up.
+    // Sum of squared deviations from the mean.
     squares: vec3<f32>,
     reserved_a: f32,
-    // Of all paths the one with the largest channel.
+    // The path with the largest channel.
     largest: vec3<f32>,
     reserved_b: f32,
 }
@@ -16,7 +16,7 @@ fn peak(rgb: vec3<f32>) -> f32 {
     return max(rgb.x, max(rgb.y, rgb.z));
 }
 
-// With one more. Squares of light itself would drown in f32 what its paths differ by (Youngs and Cramer, 1971).
+// Adds one path. Squares of light itself would lose the differences between paths in f32 (Youngs and Cramer, 1971).
 fn with_path(before: Brought, light: vec3<f32>) -> Brought {
     var after = before;
     after.count += 1.0;

@@ -1,14 +1,14 @@
-// Mouse and keys: what they ask for.
+// Mouse and keys, and their actions.
 
 import { START, clamp } from "./orbit.js";
 
 // Degrees for the height of the window, and the factor for a notch of the wheel.
 const TURN = 180;
 const NOTCH = 1.1;
-// Pixels that a click may slip.
+// Pixels that the mouse may move within a click.
 const SLIP = 3;
 
-// Where in a picture of a canvas, which keeps its shape, an event is, from (0, 0) to (1, 1); null beside it.
+// Position of an event in the picture of a canvas, which keeps its aspect, from (0, 0) to (1, 1); null beside it.
 function placeOf(canvas, event) {
   const { left, top, width, height } = canvas.getBoundingClientRect();
   const scale = Math.min(width / canvas.width, height / canvas.height);
@@ -19,7 +19,7 @@ function placeOf(canvas, event) {
 
 const isPlain = (event) => !event.ctrlKey && !event.metaKey && !event.altKey;
 
-// Listen to a canvas: `view` gives where the camera is, `move` is called with changes, `pick` with a place.
+// Listen to a canvas: `view` returns the camera's view, `move` is called with changes, `pick` with a position.
 export function listen(canvas, { view, move, pick }) {
   const scale = () => Math.min(canvas.clientHeight, (canvas.clientWidth * canvas.height) / canvas.width) || 1;
   let slipped = 0;
@@ -58,7 +58,7 @@ export function listen(canvas, { view, move, pick }) {
     "wheel",
     (event) => {
       event.preventDefault();
-      // In lines or pages, or in pixels, of which there are about a hundred to a notch.
+      // In lines or pages, or in pixels, about a hundred per notch.
       const notches = event.deltaMode === WheelEvent.DOM_DELTA_PIXEL ? event.deltaY / 100 : event.deltaY / 3;
       move({ zoom: view().zoom * NOTCH ** -clamp(notches, [-5, 5]) });
     },
@@ -83,7 +83,7 @@ export function listen(canvas, { view, move, pick }) {
   });
 }
 
-// Listen to keys anywhere within something: what each does, by its name.
+// Listen to keys anywhere within an element: an action by name of the key.
 export function listenToKeys(target, actions) {
   target.addEventListener("keydown", (event) => {
     if (event.key in actions && isPlain(event)) {

@@ -1,9 +1,9 @@
 // The browser's graphics processor, and a scene on it.
 
-// What a device is asked for beyond what all have, as far as its adapter has it.
+// Limits requested beyond the defaults, as far as the adapter supports them.
 const WANTED = ["maxStorageBufferBindingSize", "maxBufferSize"];
 
-// A device and what it is called; null where the browser has none.
+// A device and its name; null if the browser has none.
 export async function openDevice() {
   const adapter = await navigator.gpu?.requestAdapter({ powerPreference: "high-performance" });
   if (!adapter) {
@@ -16,10 +16,10 @@ export async function openDevice() {
   return { device, name };
 }
 
-// The bytes of the largest array that a device holds.
+// Bytes of the largest array that a device holds.
 export const mostOf = ({ limits }) => Math.min(limits.maxStorageBufferBindingSize, limits.maxBufferSize);
 
-// Why a device has no room for arrays of so many bytes, by name; null if it has.
+// Reason why a device cannot hold arrays of these sizes, by name; null if it can.
 export function noRoom(device, arrays) {
   const most = mostOf(device);
   const [name, bytes] = Object.entries(arrays).reduce((a, b) => (a[1] >= b[1] ? a : b));
@@ -34,7 +34,7 @@ export function bufferOf(device, data, usage) {
   return buffer;
 }
 
-// A scene's arrays as buffers, each asked for by its name.
+// A scene's arrays as buffers, each fetched by name.
 export async function upload(device, told, bytesOf) {
   const names = Object.keys(told.arrays);
   const all = await Promise.all(names.map((name) => bytesOf(`arrays/${told.version}/${name}`)));
@@ -42,7 +42,7 @@ export async function upload(device, told, bytesOf) {
     if (all[i].byteLength !== told.arrays[name]) {
       throw new Error(`${name} did not arrive as they are`);
     }
-    // What is asked for once is small, and read as such.
+    // The uniform is small.
     return [name, bufferOf(device, all[i], name === "lit" ? GPUBufferUsage.UNIFORM : GPUBufferUsage.STORAGE)];
   });
   return Object.fromEntries(buffers);

@@ -1,4 +1,4 @@
-// The scene drawn here: a ray and its shadow a pixel while the camera moves, and paths while it stands.
+// The scene drawn here: one ray per pixel and its shadow while the camera moves, and paths while it stands.
 
 import { inverse, minus, spread, times } from "./orbit.js";
 import { noRoom, openDevice, upload } from "./device.js";
@@ -6,17 +6,17 @@ import { Passes } from "./passes.js";
 
 // Milliseconds without a move after which the camera stands.
 const STANDS = 150;
-// Milliseconds that a picture in movement may take, and how many times smaller it may be in each direction.
+// Milliseconds for a picture in movement, and the greatest factor by which it is smaller in each direction.
 const SMOOTH = 40;
 const MOST_DIVISOR = 8;
-// Nodes read by a ray that the heat map shows as white.
+// Nodes per ray that the heat map shows as white.
 const VISITS = 256;
-// Milliseconds that a band of paths may take, and between two pictures of what they have brought.
+// Milliseconds for a band of paths, and between two pictures of their sums.
 const BAND = 30;
 const MOST_ROWS = 1 << 16;
 const BETWEEN = 60;
-// How many times as many paths there are when the next error is told, below how many of them one ends nothing, and how
-// many times the paths may become while one stays below what is wanted that is not trusted (render/schedule.rs).
+// Factor of paths between two error estimates; least paths for an estimate to end the render; and factor of paths for
+// which an untrusted estimate must stay below the wanted error (render/schedule.rs).
 const LATER = 1.25;
 const LEAST = 16;
 const PATIENCE = 64;
@@ -25,7 +25,7 @@ const SHADERS = ["walk", "shading", "sight", "screen", "lines", "path", "brought
 const nextFrame = () => new Promise(requestAnimationFrame);
 const sameTexts = new Map();
 
-// The kernels' texts, asked for once.
+// Texts of the kernels, fetched once.
 function textsOf(textOf) {
   const texts = SHADERS.map(async (name) => {
     if (!sameTexts.has(name)) {
@@ -37,8 +37,8 @@ function textsOf(textOf) {
 }
 
 export class Drawing {
-  // On a canvas, of a scene as the core told it; `on` has what to call: `stands` once the camera does, `tell` with
-  // what there is to say of a picture, and `lost` if the device is.
+  // Draws on a canvas a scene from the core; `on` has callbacks: `stands` when the camera stands, `tell` with the
+  // figures of a picture, and `lost` if the device is.
   constructor(canvas, told, name, passes, on) {
     [this.canvas, this.told, this.name, this.passes, this.on] = [canvas, told, name, passes, on];
     this.context = canvas.getContext("webgpu");
@@ -48,14 +48,14 @@ export class Drawing {
     this.isHeat = false;
     this.divisor = 2;
     this.isActive = this.isWorking = this.isDirty = this.isStale = this.isDestroyed = false;
-    // Paths of each pixel that there are, the row from which on the next are traced, and how many rows at once.
+    // Paths of each pixel so far, the first row without the next path, and rows per band.
     this.sample = this.row = 0;
     this.rows = 32;
     this.pictures = 0;
     this.movedAt = -Infinity;
   }
 
-  // Open one, or tell why there is none.
+  // Open a drawing, or report why there is none.
   static async open(canvas, wire, on) {
     const opened = await openDevice();
     if (!opened) {
@@ -72,7 +72,7 @@ export class Drawing {
     const passes = new Passes(device, navigator.gpu.getPreferredCanvasFormat(), told, buffers, texts);
     await passes.prepare();
     const drawing = new Drawing(canvas, told, name, passes, on);
-    // The kernel of paths is large, and takes its time to compile.
+    // The kernel of paths is large and slow to compile.
     passes.paths?.prepare().then(
       () => drawing.work(),
       (error) => drawing.isDestroyed || on.lost(error.message),
@@ -82,7 +82,7 @@ export class Drawing {
     return { drawing };
   }
 
-  // Draw from now on, or not.
+  // Start or stop drawing.
   activate(isActive) {
     this.isActive = isActive;
     if (isActive) {
@@ -90,7 +90,7 @@ export class Drawing {
     }
   }
 
-  // Show something else: a view, a size in pixels, or the heat map; or the same in another way.
+  // Show another view, a size in pixels, or the heat map; or the same with another exposure.
   show({ width, height, exposure, ...others }, isMove = false) {
     const resized = width && (this.canvas.width !== width || this.canvas.height !== height);
     if (resized) {
@@ -98,7 +98,7 @@ export class Drawing {
     }
     Object.assign(this, others);
     this.exposure = exposure ?? this.exposure;
-    // A sketch has its exposure; what paths have brought gets it when it is shown.
+    // A sketch has its exposure; sums of paths get it when shown.
     if (resized || Object.keys(others).length || (exposure !== undefined && !this.sample)) {
       this.again(isMove);
     } else {
@@ -113,7 +113,7 @@ export class Drawing {
     this.work();
   }
 
-  // Begin anew.
+  // Start again.
   again(isMove = false) {
     this.isDirty = true;
     this.sample = this.row = 0;
@@ -131,7 +131,7 @@ export class Drawing {
     try {
       while (this.isActive && (await this.step())) {}
     } catch (error) {
-      // What a device was still to tell when it was given up is not heard.
+      // Errors of a device given up in the meantime are ignored.
       if (!this.isDestroyed) {
         throw error;
       }
@@ -140,7 +140,7 @@ export class Drawing {
     }
   }
 
-  // Do one thing that is to be done; whether there may be more.
+  // Do one pending step; true if there may be more.
   async step() {
     const left = this.movedAt + STANDS - performance.now();
     const { canvas, passes } = this;
@@ -169,7 +169,7 @@ export class Drawing {
     return true;
   }
 
-  // A band of paths more, and at times the picture of all; whether there are more.
+  // Trace one more band of paths, and sometimes show the picture; true if there are more.
   async trace(limits) {
     const { canvas, passes } = this;
     const { samples } = limits;
@@ -181,7 +181,7 @@ export class Drawing {
     }
     if (this.isEnough(limits)) {
       await this.showPaths(limits, true);
-      // It may have been moved by now.
+      // The view may have changed by now.
       return this.isDirty;
     }
     const began = performance.now();
@@ -226,7 +226,7 @@ export class Drawing {
     return isTrusted ? high <= error : value <= error && this.errorAt >= PATIENCE * Math.max(this.above, LEAST);
   }
 
-  // How wrong the picture still is, told as often as paths have become some more.
+  // Report the error estimate, each time that paths have become some more.
   async tellError({ error }) {
     const [began, sample] = [performance.now(), this.sample];
     const told = await this.passes.paths.errors.estimate();
@@ -255,7 +255,7 @@ export class Drawing {
     this.on.tell({ samples: sample, seconds: spent, error, isDone, of: [view, canvas.width, canvas.height] });
   }
 
-  // One ray a pixel, of as many times fewer pixels; the next picture in movement has as many as the device can do.
+  // One ray per pixel at reduced resolution; the next picture in movement has as many pixels as the device can draw.
   async sketch(divisor) {
     const { canvas, passes } = this;
     const [width, height] = [canvas.width, canvas.height].map((size) => Math.max(Math.ceil(size / divisor), 1));
@@ -298,7 +298,7 @@ export class Drawing {
     });
   }
 
-  // A file of what is seen: a canvas keeps it no longer than until it was shown, so it is drawn again.
+  // A file of the picture: a canvas keeps it only until shown, so it is drawn again.
   saved() {
     this.present();
     return new Promise((done) => this.canvas.toBlob(done));

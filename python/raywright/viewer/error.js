@@ -1,9 +1,9 @@
-// How wrong a picture still is, told from what its paths have brought: after error.wgsl, the rest of what
-// rust/render/src/error.rs does, whose comments say why.
+// The error of a picture, from sums of its paths: after error.wgsl, the rest of rust/render/src/error.rs, whose
+// comments have the reasons.
 
 const GROUPS = 256;
 const SUMS = 10;
-// What is counted: sightings, jumps and finds, as error.wgsl has them.
+// Bins of the counts: sightings, jumps and finds, as in error.wgsl.
 const JUMPS = 2 * 98;
 const FINDS = JUMPS + 128;
 const COUNTS = FINDS + 2048;
@@ -11,13 +11,13 @@ const LEAST_JUMP = -24;
 const LEAST_FIND = (127 - 40) << 5;
 const SMALL = 1e-6;
 const ONE = 65536;
-// Few samples that carry more than half of an estimate, and the widest interval that tells something.
+// Number of samples that may carry more than half of an estimate, and the widest useful interval.
 const FEW = 8;
 const WIDEST = 30;
 const ROUNDING = 1e-12;
 
-// The quantile of a sum of squares of mean 1, with these second and third cumulants, that a normal deviate stands for
-// (Pearson, 1959; Wilson and Hilferty, 1931).
+// The quantile of a sum of squares of mean 1, with these second and third cumulants, for a normal deviate (Pearson,
+// 1959; Wilson and Hilferty, 1931).
 function quantile(normal, variance, skewed) {
   const degrees = Math.max((8 * variance ** 3) / skewed ** 2, 1);
   const part = 2 / (9 * degrees);
@@ -25,7 +25,7 @@ function quantile(normal, variance, skewed) {
   return Math.max(1 + Math.sqrt((variance * degrees) / 2) * (cube - 1), 0.001);
 }
 
-// What one of many pixels errs more than it tells, with a probability.
+// Largest excess of one pixel's error over its estimate, among many, with a probability.
 function jump(counts, probability) {
   let expected = 0;
   for (let bin = FINDS - JUMPS - 1; bin >= 0; bin--) {
@@ -37,7 +37,7 @@ function jump(counts, probability) {
   return 0;
 }
 
-// Whether a few finds make more than half of a sum.
+// True if a few finds make more than half of a sum.
 function isCarried(counts, sum) {
   const value = new Float32Array(1);
   const bits = new Uint32Array(value.buffer);
@@ -51,7 +51,7 @@ function isCarried(counts, sum) {
   return share > 0.5;
 }
 
-// The estimate of relMSE from sums and counts, of so many pixels; null where a pixel has fewer than two paths.
+// The estimate of relMSE from sums and counts, for a number of pixels; null if a pixel has fewer than two paths.
 export function estimated(sums, counts, pixels) {
   const all = Array.from({ length: SUMS }, (_, k) => sums.filter((_, i) => i % SUMS === k));
   if (all.pop().reduce((a, b) => Math.min(a, b)) < 2) {
@@ -107,7 +107,7 @@ export class Errors {
     this.pipelines = await Promise.all(pipelines);
   }
 
-  // From now on of what paths bring to a buffer, for a picture of so many pixels.
+  // From now on use these sums of paths, for a picture of this size.
   of(brought, width, height) {
     this.device.queue.writeBuffer(this.size, 0, new Uint32Array([width, height]));
     this.pixels = width * height;
@@ -120,7 +120,7 @@ export class Errors {
     });
   }
 
-  // The estimate: its value, the ends of its 95 % interval, and whether it is trusted; null where there is none.
+  // The estimate: its value, the ends of its 95 % interval, and whether it is trusted; null if there is none.
   async estimate() {
     const { counts, sums, told } = this;
     const encoder = this.device.createCommandEncoder();

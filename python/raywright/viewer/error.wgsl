@@ -1,20 +1,20 @@
-// How wrong a picture still is, told from what its paths have brought: what rust/render/src/error.rs tells of a film, whose
-// comments say why, in f32. After brought.wgsl.
+// The error of a picture from sums of its paths: rust/render/src/error.rs in f32, whose comments have the reasons.
+// After brought.wgsl.
 
 @group(0) @binding(0) var<storage, read> brought: array<Brought>;
 // Columns and rows.
 @group(0) @binding(1) var<uniform> size: vec2<u32>;
 // Sightings, jumps and finds, one after the other.
 @group(0) @binding(2) var<storage, read_write> counted: array<atomic<u32>>;
-// What each group of threads has added up.
+// Sums of each workgroup.
 @group(0) @binding(3) var<storage, read_write> sums: array<f32>;
 
 const THREADS: u32 = 64u;
-// Of each group: the error, the least and the most, with denominators alike and its own; squares and cubes of the most,
-// and of what rare samples add to both; the fewest paths of a pixel.
+// By workgroup: the error, the least and the most, with equal denominators and with its own; squares and cubes of the
+// most, and contributions of rare samples to both; the fewest paths of a pixel.
 const SUMS: u32 = 10u;
 const FEWEST: u32 = 9u;
-// Squares and cubes are of a millionth, so that those of a stray do not leave f32.
+// Squares and cubes are scaled by a millionth, so that outliers do not overflow f32.
 const SMALL: f32 = 1e-6;
 
 const OCTAVES: u32 = 96u;
@@ -22,7 +22,7 @@ const JUMPS: u32 = 2u * (OCTAVES + 2u);
 const JUMP_BINS: u32 = 128u;
 const LEAST_JUMP: i32 = -24;
 const PARTS: u32 = 14u;
-// Jumps are counted in parts of one; more than so many need no more.
+// Jumps are counted in fractions; beyond this many, more make no difference.
 const ONE: f32 = 65536.0;
 const PLENTY: u32 = 0x40000000u;
 const FINDS: u32 = JUMPS + JUMP_BINS;
@@ -35,12 +35,12 @@ const FLOOR: f32 = 0.01;
 struct Spread {
     samples: f32,
     mean: vec3<f32>,
-    // Of the mean, and what of that is the largest sample's; and the mean without that.
+    // Variance of the mean, the largest sample's part in it, and the mean without that sample.
     variance: vec3<f32>,
     of_peak: vec3<f32>,
     without: vec3<f32>,
     brightness: f32,
-    // How many more of the largest one's size would make up for the squares of the others.
+    // Number of further samples of the largest size whose squares equal all others.
     again: f32,
 }
 
@@ -75,7 +75,7 @@ fn count_sightings(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wo
     }
 }
 
-// How many samples as bright as that a pixel may have that has one: as is likely, and at most.
+// Number of equally bright samples per pixel that has one: the likely one, and the most.
 fn chance(brightness: f32) -> vec2<f32> {
     let middle = octave(brightness);
     var once = 0.0;
@@ -95,12 +95,12 @@ fn mean_of(x: u32, y: u32) -> vec3<f32> {
     return one.sum / max(one.count, 1.0);
 }
 
-// One over what the squares of errors are to be divided by, for a brightness.
+// One over the divisor of squared errors, for a brightness.
 fn inverse(brightness: vec3<f32>) -> vec3<f32> {
     return 1.0 / (brightness * brightness + FLOOR);
 }
 
-// The same for a pixel as the four beside it have it too.
+// The same for a pixel, with its four neighbours.
 fn likely_inverse(its: Spread, x: u32, y: u32, own: vec3<f32>) -> vec3<f32> {
     let a = mean_of(select(x, x - 1u, x > 0u), y);
     let b = mean_of(min(x + 1u, size.x - 1u), y);
@@ -119,7 +119,7 @@ fn likely_inverse(its: Spread, x: u32, y: u32, own: vec3<f32>) -> vec3<f32> {
     return min(inverse(likely), 4.0 * own);
 }
 
-// The pixels around: the mean of their means, and the brightest of what they are without their largest samples.
+// Surrounding pixels: the mean of their means, and their greatest brightness without their largest samples.
 fn seen_around(x: u32, y: u32) -> vec4<f32> {
     var sum = vec3<f32>(0.0);
     var count = 0.0;
@@ -141,7 +141,7 @@ fn between(likely: vec3<f32>, its: Spread) -> vec3<f32> {
     return inverse(min(max(likely, min(its.mean, its.without)), max(its.mean, its.without)));
 }
 
-// What pixels may err more than the largest error has it, of which one like this may hide any.
+// Excess errors of pixels over the largest estimate, which one like this may hide.
 fn count_jumps(its: Spread, told: f32) {
     var part = 1.0;
     for (var step = 0u; step <= PARTS; step++) {
@@ -201,7 +201,7 @@ fn add_up(
     }
 }
 
-// What a pixel adds to the sums.
+// Contribution of a pixel to the sums.
 fn weighed(i: u32) -> array<f32, SUMS> {
     let x = i % size.x;
     let y = i / size.x;
@@ -210,7 +210,7 @@ fn weighed(i: u32) -> array<f32, SUMS> {
     let likely = likely_inverse(its, x, y, own);
     let around = seen_around(x, y);
     let most_likely = max(likely, own);
-    // Of the largest sample, where the mean hangs on it: leave one out.
+    // For the largest sample, if the mean depends on it: leave one out.
     let hangs = max((1.0 + 8.0 / its.samples) * (1.0 + 8.0 / its.samples), 2.0);
     let is_alone = own < inverse(max(its.without, around.xyz)) / hangs;
     let chances = chance(its.brightness);

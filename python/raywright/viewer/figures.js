@@ -1,16 +1,15 @@
-// What there is to say of a picture: samples, seconds, how wrong it still is, and how that fell.
+// The figures of a picture: samples, seconds, error, and the curve of the error.
 
 const short = (value) => (value === null ? "–" : value.toPrecision(3));
 
 export class Figures {
-  // On a page's parts, by their names.
+  // Uses a page's elements, by name.
   constructor(byId) {
     this.byId = byId;
     this.forget();
   }
 
-  // `error` has a value, `low`, `high`, and whether it `isTrusted`, or is null where none is known; `of` tells pictures
-  // apart.
+  // `error` has a value, `low`, `high`, and whether it `isTrusted`, or is null if unknown; `of` identifies the picture.
   tell({ samples, seconds, error, of }) {
     this.byId("samples").textContent = samples;
     this.byId("seconds").textContent = seconds.toFixed(seconds < 0.1 ? 3 : 1);
@@ -19,7 +18,7 @@ export class Figures {
     this.remember(seconds, error, JSON.stringify(of));
   }
 
-  // The curve is that of a picture that is shown no more.
+  // The curve belongs to a picture no longer shown.
   forget() {
     [this.history, this.historyOf] = [[], ""];
     this.byId("error").textContent = "–";
@@ -27,13 +26,13 @@ export class Figures {
     this.plot();
   }
 
-  // Error against time, both by their logarithms: it falls along a straight line.
+  // Error against time, both as logarithms: it falls along a straight line.
   remember(seconds, error, of) {
     const last = this.history[this.history.length - 1];
     if (of !== this.historyOf || (last && seconds < last[0])) {
       [this.history, this.historyOf] = [[], of];
     }
-    // It is estimated less often than pictures come.
+    // Estimates come less often than pictures.
     const isNew = this.history[this.history.length - 1]?.[1] !== error?.value;
     if (error?.value > 0 && isNew) {
       this.history.push([seconds, error.value]);

@@ -1,13 +1,13 @@
 // The edges of boxes over a picture: after gpu/walk.wgsl and sight.wgsl.
 
-// Eight corners of each.
+// Eight corners of each box.
 @group(1) @binding(0) var<storage, read> corners: array<f32>;
 
 const COLOUR = vec4<f32>(1.0, 0.8157, 0.0, 1.0);
 
 @vertex
 fn edge(@builtin(vertex_index) i: u32, @builtin(instance_index) box: u32) -> @builtin(position) vec4<f32> {
-    // Corners that differ in one bit of their number share an edge: of each bit, the four that have it not.
+    // Corners share an edge if their numbers differ in one bit: for each bit, the four corners without it.
     let bit = i >> 3u;
     let four = (i >> 1u) & 3u;
     let low = (four & ((1u << bit) - 1u)) | ((four >> bit) << (bit + 1u));
@@ -16,7 +16,7 @@ fn edge(@builtin(vertex_index) i: u32, @builtin(instance_index) box: u32) -> @bu
     let across = dot(place, look.across.xyz);
     let down = dot(place, look.down.xyz);
     let along = dot(place, look.along.xyz);
-    // What is behind is cut by the device: depth is even along an edge.
+    // The device clips parts behind the camera: depth is linear along an edge.
     if look.origin.w > 0.5 {
         return vec4<f32>(2.0 * across - 1.0, 1.0 - 2.0 * down, along * 0.001, 1.0);
     }

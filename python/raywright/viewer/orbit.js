@@ -1,4 +1,4 @@
-// Where a camera comes to when it is moved around what it looks at: what orbit.py does, for who draws here.
+// The camera's orbit around its target: orbit.py for local drawing.
 
 export const START = { azimuth: 0, elevation: 0, zoom: 1, right: 0, up: 0 };
 export const ZOOM = [1 / 256, 256];
@@ -22,7 +22,7 @@ function rotation([x, y, z], degrees) {
   ];
 }
 
-// How rays spread over the picture of a view: the ray at its upper left, and what is added across it and down.
+// Rays over the picture of a view: the ray at its upper left, and the steps across and down.
 export function spread(orbit, view) {
   const raised = clamp(view.elevation, orbit.elevations);
   const around = rotation(orbit.up, view.azimuth);
@@ -34,7 +34,7 @@ export function spread(orbit, view) {
   );
   const pivot = plus(orbit.pivot, turned(moved));
   const position = plus(pivot, times(turned(minus(orbit.position, orbit.pivot)), 1 / view.zoom));
-  // Of parallel rays the picture is as much smaller as it is nearer.
+  // Parallel rays: the picture shrinks by the zoom.
   const [corner, ...sides] = orbit.origins;
   const nearer = (vector) => times(turned(vector), 1 / view.zoom);
   return {
@@ -43,7 +43,7 @@ export function spread(orbit, view) {
   };
 }
 
-// The inverse of the matrix with these rows, by columns: what a vector is dotted with for its parts along them.
+// The inverse of the matrix with these rows, by columns: dot products with them give a vector's components.
 export function inverse([a, b, c]) {
   const [p, q, r] = [cross(b, c), cross(c, a), cross(a, b)];
   const determinant = dot(a, p);

@@ -1,4 +1,4 @@
-// The page of the viewer's server: asks it by HTTP, and hears of it by server-sent events.
+// The page of the viewer's server: requests by HTTP, and server-sent events.
 
 import { Viewer } from "./viewer.js";
 import { Wire } from "./wire.js";
@@ -33,7 +33,7 @@ class Server extends Wire {
 
   text = async (name) => (await this.answered(name)).text();
 
-  // Hear of pictures, for which the core has to render, or only of where they are from.
+  // Receive pictures, for which the core has to render, or only views.
   watch(isOn) {
     if (this.isWatching === isOn) {
       return;
@@ -61,7 +61,7 @@ class Server extends Wire {
     });
     events.addEventListener("error", () => {
       if (this.events === events) {
-        // Should it come back, it begins anew.
+        // If the server returns, the page begins anew.
         this.isKnown = false;
         this.on.ended();
       }

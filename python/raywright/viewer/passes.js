@@ -1,16 +1,16 @@
-// What a scene's pictures are drawn by: the kernels' texts put together, and one pass after the other.
+// Render passes for a scene's pictures, and the assembly of their kernels.
 
 import { bufferOf } from "./device.js";
 import { Paths } from "./paths.js";
 
 const FLOATS = 52;
 
-// The text that all passes begin with, for a tree of some depth: a path puts one child away a level.
+// The common start of all kernels, for a tree of some depth: the stack holds one child per level.
 const beginning = ({ walk, sight }, depth) =>
   walk.replaceAll("STACK", `${Math.floor(depth / 32) * 32 + 32}u`) + sight;
 
 export class Passes {
-  // Of a device, for a canvas of some format, a scene as it was told, its buffers, and the kernels' texts.
+  // For a device, a canvas of some format, a scene from the core, its buffers, and the kernels' texts.
   constructor(device, format, told, buffers, texts) {
     this.device = device;
     this.format = format;
@@ -35,7 +35,7 @@ export class Passes {
     this.boxes = null;
   }
 
-  // Compile what is needed at once.
+  // Compile the kernels needed at once.
   async prepare() {
     const { device } = this;
     const screen = device.createShaderModule({ code: this.beginning + this.texts.brought + this.texts.screen });
@@ -69,7 +69,7 @@ export class Passes {
     ]);
   }
 
-  // Where from, and how it is shown: numbers for the kernels, in box units.
+  // View and display settings: numbers for the kernels, in box units.
   aim({ origins, ways, inverse, parallel, lamp, width, height, gain, brightest, mode, tone, row, behind }) {
     const numbers = new Float32Array(FLOATS);
     [...origins, ...ways, ...inverse].forEach((vector, i) => numbers.set(vector, 4 * i));
@@ -81,7 +81,7 @@ export class Passes {
     this.device.queue.writeBuffer(this.look, 0, numbers);
   }
 
-  // A texture for a picture of so many pixels, kept as long as it has these.
+  // A texture for a picture of this size, kept as long as the size is.
   target(width, height) {
     if (this.texture?.width !== width || this.texture.height !== height) {
       this.texture?.destroy();
@@ -106,7 +106,7 @@ export class Passes {
     pass.end();
   }
 
-  // One ray a pixel into a texture of so many.
+  // One ray per pixel into a texture of this size.
   drawSight(width, height) {
     const encoder = this.device.createCommandEncoder();
     this.pass(encoder, this.target(width, height), "clear", (pass) => {
@@ -116,7 +116,7 @@ export class Passes {
     this.device.queue.submit([encoder.finish()]);
   }
 
-  // That texture, or what paths have brought, on a canvas, and boxes over it.
+  // That texture, or the sums of paths, on a canvas, and boxes over it.
   present(view, isTraced) {
     const encoder = this.device.createCommandEncoder();
     this.pass(encoder, view, "clear", (pass) => {
@@ -132,7 +132,7 @@ export class Passes {
     this.device.queue.submit([encoder.finish()]);
   }
 
-  // Which boxes are drawn over pictures from now on: their corners, or null.
+  // Set the boxes drawn over pictures: their corners, or null.
   box(corners) {
     this.boxes?.buffer.destroy();
     this.boxes = null;

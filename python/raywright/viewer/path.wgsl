@@ -1,6 +1,5 @@
-// One path a pixel and pass, added to those before it: after gpu/walk.wgsl, gpu/shading.wgsl, sight.wgsl and
-// brought.wgsl. Light is asked for at every surface, and met by chance, weighed by both densities (Veach and Guibas
-// 1995).
+// One path per pixel and pass, added to earlier ones: after gpu/walk.wgsl, gpu/shading.wgsl, sight.wgsl and
+// brought.wgsl. Each surface samples a light and a direction, weighed by both densities (Veach and Guibas 1995).
 
 @group(1) @binding(0) var<storage, read_write> sums: array<Brought>;
 @group(1) @binding(1) var<storage, read> faces: array<Face>;
@@ -11,11 +10,11 @@
 @group(1) @binding(6) var<uniform> limits: Limits;
 
 struct Limits {
-    // Surfaces of a path, from which on it may be left, and a number that makes other draws.
+    // Most surfaces of a path, the first one with roulette, and a seed.
     depth: u32,
     roulette: u32,
     seed: u32,
-    // Columns of the picture, and which of all paths of a pixel this is.
+    // Columns of the picture, and the number of this path in its pixel.
     width: u32,
     sample: u32,
 }
@@ -36,11 +35,11 @@ fn number(i: u32) -> f32 {
     return numbers[i];
 }
 
-// What is left of a path at most, and at least: Russian roulette.
+// Greatest and least survival probability of Russian roulette.
 const STAYS: f32 = 0.95;
 const LEAVES: f32 = 0.05;
 
-// Draws of a path, in fours.
+// Random numbers of a path, in fours.
 var<private> drawn_so_far: u32;
 var<private> drawn_for: vec3<u32>;
 
@@ -49,7 +48,7 @@ fn numbers_drawn() -> vec4<f32> {
     return uniform_numbers(vec4<u32>(drawn_for, drawn_so_far + limits.seed * 0x10000u));
 }
 
-// The light that is asked for at a surface, scattered back along the ray.
+// Light from a light sample, scattered at a surface back along the ray.
 fn asked_for(at: Surface, its: Material, colour: vec3<f32>) -> vec3<f32> {
     let u = numbers_drawn();
     let arriving = from_lights(at.position, u.x, u.yz);
@@ -74,9 +73,9 @@ fn traced(first: Ray) -> vec3<f32> {
     var ray = first;
     var throughput = vec3<f32>(1.0);
     var light = vec3<f32>(0.0);
-    // Of the direction that was drawn last: SINGLE where nothing else could have found what it meets.
+    // Density of the last sampled direction: SINGLE if light sampling could not have found its hit.
     var pdf = SINGLE;
-    // What refraction has taken of the throughput, by which no path is left.
+    // The factor of refraction in the throughput, which roulette ignores.
     var eta_squared = 1.0;
     var from_face = NOBODY;
     for (var depth = 0u;; depth++) {
@@ -138,7 +137,7 @@ fn accumulate(@builtin(global_invocation_id) id: vec3<u32>) {
     if limits.sample > 0u {
         before = sums[which];
     }
-    // A number that is none would stay for ever.
+    // A NaN would persist.
     let counts = most(light) < 1e30 && most(-light) <= 0.0;
     sums[which] = with_path(before, select(vec3<f32>(0.0), light, counts));
 }

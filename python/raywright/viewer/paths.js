@@ -1,14 +1,14 @@
-// Paths through a scene, a pass over the picture at a time, in bands of rows: no device is kept busy for long.
+// Paths through a scene, one pass over the picture at a time, in bands of rows: no device is kept busy for long.
 
 import { bufferOf, mostOf } from "./device.js";
 import { Errors } from "./error.js";
 
 const NAMES = ["faces", "materials", "lights", "numbers"];
-// Bytes of a pixel: what paths have brought there.
+// Bytes of a pixel's sums.
 const PIXEL = 48;
 
 export class Paths {
-  // Beside other passes, whose scene they see.
+  // Uses the scene of other passes.
   constructor(passes) {
     this.passes = passes;
     const { device, buffers, told } = passes;
@@ -37,12 +37,12 @@ export class Paths {
     this.isReady = true;
   }
 
-  // Whether the device holds what paths bring to so many pixels.
+  // True if the device can hold the sums of this many pixels.
   fits(width, height) {
     return PIXEL * width * height <= mostOf(this.passes.device);
   }
 
-  // Room for the sums of a picture of so many pixels, kept as long as it has these.
+  // Allocates the sums of a picture of this size, kept as long as the size is.
   room(width, height) {
     if (this.size[0] === width && this.size[1] === height) {
       return;
@@ -63,7 +63,7 @@ export class Paths {
     this.errors.of(this.sums, width, height);
   }
 
-  // One path more of each pixel in so many rows, the how manieth; from which row on was told by `aim`.
+  // Trace one more path of each pixel in some rows, with its number; `aim` has set the first row.
   trace(rows, sample) {
     const { device, scene } = this.passes;
     device.queue.writeBuffer(this.limits, 0, new Uint32Array([...this.given, this.size[0], sample]));

@@ -1,4 +1,4 @@
-// What is drawn on the screen: after gpu/walk.wgsl, sight.wgsl and brought.wgsl.
+// Shaders for the screen: after gpu/walk.wgsl, sight.wgsl and brought.wgsl.
 
 @vertex
 fn whole(@builtin(vertex_index) i: u32) -> @builtin(position) vec4<f32> {
@@ -6,7 +6,7 @@ fn whole(@builtin(vertex_index) i: u32) -> @builtin(position) vec4<f32> {
     return vec4<f32>(f32(i & 1u) * 4.0 - 1.0, f32(i >> 1u) * 4.0 - 1.0, 0.0, 1.0);
 }
 
-// From light, which has no upper end, to linear colours of a screen: what io/tone.py does.
+// From unbounded light to linear colours of a screen, as in io/tone.py.
 fn toned(rgb: vec3<f32>) -> vec3<f32> {
     let light = min(max(rgb, vec3<f32>(0.0)) * look.size.z, vec3<f32>(1e15));
     if look.mode.y == 1u {
@@ -41,13 +41,13 @@ fn sight(@builtin(position) at: vec4<f32>) -> @location(0) vec4<f32> {
 @group(1) @binding(0) var drawn: texture_2d<f32>;
 @group(1) @binding(1) var between: sampler;
 
-// A picture that was drawn with fewer pixels, perhaps.
+// A picture possibly of lower resolution.
 @fragment
 fn shown(@builtin(position) at: vec4<f32>) -> @location(0) vec4<f32> {
     return textureSampleLevel(drawn, between, at.xy / look.size.xy, 0.0);
 }
 
-// What paths have brought so far, by pixel.
+// Sums of paths so far, by pixel.
 @group(1) @binding(2) var<storage, read> brought: array<Brought>;
 
 @fragment

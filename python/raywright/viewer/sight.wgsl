@@ -1,14 +1,14 @@
-// What is seen along a ray of a picture, by gpu/walk.wgsl.
+// The scene along a ray of a picture, by gpu/walk.wgsl.
 
 struct Look {
-    // The ray at the upper left of the picture, what is added across it and down: where rays start, and their ways.
+    // The ray at the upper left of the picture, and steps across it and down: origins of rays, and their directions.
     origin: vec4<f32>,
     origin_across: vec4<f32>,
     origin_down: vec4<f32>,
     way: vec4<f32>,
     way_across: vec4<f32>,
     way_down: vec4<f32>,
-    // What a place less the origin is dotted with for how far across and down it is seen, and how far along.
+    // Vectors whose dot products with a place less the origin give its position across, down and along.
     across: vec4<f32>,
     down: vec4<f32>,
     along: vec4<f32>,
@@ -16,19 +16,19 @@ struct Look {
     lamp: vec4<f32>,
     // Width and height of the picture; the factor of the exposure; visits that the heat map shows as white.
     size: vec4<f32>,
-    // What is drawn, 0 the scene, 1 the heat map; the tone, 0 filmic, 1 linear; the first row of a band; nodes.
+    // The content, 0 the scene, 1 the heat map; the tone, 0 filmic, 1 linear; the first row of a band; nodes.
     mode: vec4<u32>,
-    // What surrounds the scene.
+    // The background.
     behind: vec4<f32>,
 }
 
 @group(0) @binding(0) var<storage, read> nodes: array<Node>;
 @group(0) @binding(1) var<storage, read> triangles: array<Triangle>;
-// Of each primitive a colour, its last byte 255 if it shines, and its normal in an octahedron.
+// For each primitive a colour, whose last byte is 255 if it emits, and its normal on an octahedron.
 @group(0) @binding(2) var<storage, read> paints: array<vec2<u32>>;
 @group(0) @binding(3) var<uniform> look: Look;
 
-// Nodes that were read on the way.
+// Nodes read so far.
 var<private> visits: u32;
 
 fn node(i: u32) -> Node {
@@ -45,14 +45,14 @@ struct Ray {
     direction: vec3<f32>,
 }
 
-// The ray through a place of the picture, from (0, 0) at its upper left to (1, 1).
+// The ray through a position in the picture, from (0, 0) at its upper left to (1, 1).
 fn ray_through(place: vec2<f32>) -> Ray {
     let origin = look.origin + place.x * look.origin_across + place.y * look.origin_down;
     let way = look.way + place.x * look.way_across + place.y * look.way_down;
     return Ray(origin.xyz, normalize(way.xyz));
 }
 
-// A unit vector from where it is seen on an octahedron (Cigolle et al., 2014).
+// A unit vector from its place on an octahedron (Cigolle et al., 2014).
 fn unfolded(packed: u32) -> vec3<f32> {
     let e = unpack2x16snorm(packed);
     let z = 1.0 - abs(e.x) - abs(e.y);
@@ -63,8 +63,8 @@ fn unfolded(packed: u32) -> vec3<f32> {
 const BY_LAMP: f32 = 0.8;
 const BY_ALL: f32 = 0.2;
 
-// The light along a ray of a picture in movement: a colour of each shape, one lamp and its shadow. It knows nothing of
-// how bright lamps are, and so has no exposure.
+// The light along a ray of a picture in movement: one colour per shape, one lamp and its shadow. It ignores the
+// radiance of lamps, and so has no exposure.
 fn sketched(ray: Ray, met: Met) -> vec3<f32> {
     if met.face == NOBODY {
         return look.behind.xyz;
@@ -83,11 +83,11 @@ fn sketched(ray: Ray, met: Met) -> vec3<f32> {
     let distance = max(length(way), 1e-18);
     let towards = way / distance;
     let facing = dot(normal, towards);
-    // What is turned away still differs by where it faces.
+    // Surfaces turned away still differ by their orientation.
     var light = BY_ALL * (1.0 + 0.5 * dot(normal, -ray.direction));
     if facing > 0.0 {
         let start = place + normal * (64.0 * ULP * (length(place) + met.t + 2.0));
-        // Not up to the lamp: that has a surface.
+        // Short of the lamp, which has a surface.
         let reach = select(BEYOND, 0.98 * distance, look.lamp.w > 0.5);
         if !is_hidden(start, towards, reach, met.face, NOBODY, look.mode.w) {
             light += BY_LAMP * facing;
@@ -96,7 +96,7 @@ fn sketched(ray: Ray, met: Met) -> vec3<f32> {
     return colour.xyz * light;
 }
 
-// From black by blue, green and yellow to white, each brighter than the one before.
+// From black by blue, green and yellow to white, with rising brightness.
 fn heat(share: f32) -> vec3<f32> {
     let x = 5.0 * clamp(share, 0.0, 1.0);
     var stops = array<vec3<f32>, 6>(

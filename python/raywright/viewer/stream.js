@@ -1,13 +1,13 @@
-// The pictures that the core renders, as they come.
+// Pictures rendered by the core, as they arrive.
 
 export class Stream {
-  // On a page's parts, by their names; `shown` is called with each picture that was.
+  // Uses a page's elements, by name; `shown` is called with each picture shown.
   constructor(byId, shown) {
     this.byId = byId;
     this.canvas = byId("picture");
     this.drawing = this.canvas.getContext("2d");
     this.shown = shown;
-    // The last picture that came; earlier ones that are not shown yet are not worth it any more.
+    // The latest picture; earlier ones not shown yet are obsolete.
     this.pending = null;
     this.isShowing = false;
   }
@@ -18,7 +18,7 @@ export class Stream {
     }
   }
 
-  // Show a picture: what the core tells of it, and the bytes of its file.
+  // Show a picture: the core's figures of it, and the bytes of its file.
   async show(frame, bytes) {
     this.pending = [frame, bytes];
     if (this.isShowing) {

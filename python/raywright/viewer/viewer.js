@@ -1,4 +1,4 @@
-// A viewer on its parts: what is shown, by the core's pictures or drawn here, and what whoever looks does with it.
+// A viewer on its elements: pictures by the core or drawn here, and the user's actions.
 
 import { START, ZOOM, clamp } from "./orbit.js";
 import { Drawing } from "./drawing.js";
@@ -13,10 +13,10 @@ const CORE = "the core";
 const rounded = (values) => values.map((value) => +value.toPrecision(6)).join(", ");
 const same = (a, b) => Object.keys(START).every((name) => a[name] === b[name]);
 
-// `root` has the page's parts, `host` is told the state, keys are heard on `keys`, and `wire` leads to the core: it has
-// `send(what, given)`, `ask(what, given)`, `bytes(name)`, `text(name)`, `watch(isOn)` for the core's pictures,
-// `close()`, and whether it `hasFile` of a picture; and it calls what is put to its `on`: `scene`, `view`, `again`,
-// `frame`, `trouble`, `ended`.
+// `root` has the page's elements, `host` carries the state, `keys` gets key events, and `wire` connects to the core. It
+// has `send(what, given)`, `ask(what, given)`, `bytes(name)`, `text(name)`, `watch(isOn)` for the core's pictures,
+// `close()`, and `hasFile`, true if pictures have a file. It calls the functions set in its `on`: `scene`, `view`,
+// `again`, `frame`, `trouble`, `ended`.
 export class Viewer {
   constructor(root, host, keys, wire) {
     [this.host, this.wire] = [host, wire];
@@ -86,7 +86,7 @@ export class Viewer {
       g: () => this.toggle(),
       h: () => this.heat(),
     });
-    // The window: as many pixels as it has room for, once it keeps its size for a moment.
+    // The window: as many pixels as it has room for, once its size is constant for a moment.
     let resizing = 0;
     this.observer = new ResizeObserver(() => {
       clearTimeout(resizing);
@@ -118,7 +118,7 @@ export class Viewer {
     this.drawing?.show({ view: this.view }, true);
   }
 
-  // Another page may have moved the camera, or this one before it was loaded anew.
+  // Another page may have moved the camera, or this one before a reload.
   follow(view) {
     if (performance.now() - this.movedAt > SETTLED && !same(view, this.view)) {
       this.view = view;
@@ -127,8 +127,8 @@ export class Viewer {
     }
   }
 
-  // What is said under the picture may take another line, and so another picture: of a window that keeps its size that
-  // happens once, or each picture would bring the next.
+  // Text under the picture may take another line, and change the size of the picture. In a window of constant size that
+  // happens once only, or each picture would cause the next.
   refit() {
     const room = `${this.host.clientWidth} ${this.host.clientHeight}`;
     this.fitted = room === this.room ? this.fitted + 1 : 0;
@@ -165,10 +165,10 @@ export class Viewer {
     if (this.drawing) {
       const corners = wanted === null ? null : await this.wire.bytes(`boxes/${wanted}`);
       if (this.boxes !== wanted) {
-        // Another level is on its way.
+        // A request for another level is pending.
         return;
       }
-      // Beyond the last level there are none.
+      // No boxes beyond the last level.
       this.boxes = corners?.byteLength ? wanted : null;
       this.drawing.box(corners);
       if (this.isDrawn) {
@@ -203,7 +203,7 @@ export class Viewer {
     }
   }
 
-  // The server has a file of what the core renders; all else is saved as it is seen.
+  // The server has a file of the core's rendering; any other picture is saved as shown.
   async save(event) {
     if (this.shownHere || !this.wire.hasFile) {
       event.preventDefault();
@@ -212,12 +212,12 @@ export class Viewer {
       const link = Object.assign(document.createElement("a"), { download: "raywright.png" });
       link.href = URL.createObjectURL(await file);
       link.click();
-      // It is fetched after the click.
+      // The browser fetches it after the click.
       setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
     }
   }
 
-  // Which way it is drawn.
+  // Choose between drawing here and the core.
 
   async tryDrawing() {
     const on = {
@@ -242,7 +242,7 @@ export class Viewer {
     this.tellWay();
   }
 
-  // What the core renders is another picture now: whether what stands can be drawn here has to be asked again.
+  // The core renders another picture now: check again whether it can be drawn here.
   async askAgain() {
     if (this.drawing) {
       this.drawing.told.traced = null;
@@ -292,7 +292,7 @@ export class Viewer {
     this.say(why);
   }
 
-  // Show which of both canvases.
+  // Show one of the two canvases.
   showHere(isHere) {
     this.shownHere = isHere;
     this.host.dataset.shown = isHere ? "drawn" : "picture";
@@ -310,7 +310,7 @@ export class Viewer {
     }
   }
 
-  // The camera stands, and the core makes the better picture of it: its pictures take over as they come.
+  // The camera stands, and the core makes the better picture: its pictures take over as they arrive.
   handOver() {
     if (this.isDrawn) {
       this.isHandedOver = true;
@@ -331,7 +331,7 @@ export class Viewer {
     }
   }
 
-  // What there is to say.
+  // Show the figures.
 
   tellDrawn({ isDone, ...told }) {
     if (this.shownHere) {
@@ -349,7 +349,7 @@ export class Viewer {
     }
   }
 
-  // Of what is on its way some is no longer, and a preview is no better than what is drawn here.
+  // Some pending pictures are obsolete, and a preview is no better than the drawing here.
   isWanted(frame) {
     return !this.isDrawn || (this.isHandedOver && frame.state !== "preview" && same(frame.view, this.view));
   }
@@ -370,7 +370,7 @@ export class Viewer {
     this.figures.tell({
       samples: isPreview ? "preview" : frame.samples,
       seconds: frame.seconds,
-      // That of a smaller picture says nothing of this one.
+      // The error of a smaller picture does not apply.
       error: isPreview || value === null ? null : { value, low, high, isTrusted: frame.trusted },
       of: [frame.view, frame.size],
     });

@@ -1,16 +1,16 @@
-// The viewer in a notebook: asks the kernel by the widget's messages, which reach kernels elsewhere too.
+// The viewer in a notebook: requests by the widget's messages, which reach remote kernels too.
 
 import { Viewer } from "./viewer.js";
 import { Wire } from "./wire.js";
 
-// Milliseconds in which a kernel answers that is there.
+// Milliseconds in which a live kernel answers.
 const SILENCE = 5000;
 
 class Comm extends Wire {
   constructor(model) {
     super();
     this.model = model;
-    // A widget may be shown several times, and all of these hear all messages.
+    // A widget may be shown several times, and each view receives all messages.
     this.page = crypto.getRandomValues(new Uint32Array(1))[0];
     this.asked = new Map();
     this.count = 0;
@@ -24,7 +24,7 @@ class Comm extends Wire {
     this.model.send({ page: this.page, ...content });
   }
 
-  // Say something, and wait for what the kernel says of it, and for its bytes.
+  // Send a message, and wait for the kernel's answer and its bytes.
   async exchange(content) {
     const id = (this.count += 1);
     const answer = new Promise((done) => this.asked.set(id, done));
@@ -33,7 +33,7 @@ class Comm extends Wire {
     if (error !== undefined) {
       throw new Error(error);
     }
-    // A view of some bytes, or all of them, as the notebook likes it.
+    // A view of some bytes, or all of them, depending on the notebook.
     const [data] = buffers;
     const bytes = data && new Uint8Array(data.buffer ?? data, data.byteOffset ?? 0, data.byteLength);
     return { told, total, bytes };
@@ -41,7 +41,7 @@ class Comm extends Wire {
 
   ask = async (what, given) => (await this.exchange({ do: "ask", what, given })).told;
 
-  // In parts, as messages should not be large.
+  // In parts, since messages should not be large.
   bytes = async (name) => {
     let all = null;
     let start = 0;
@@ -56,8 +56,8 @@ class Comm extends Wire {
 
   text = async (name) => new TextDecoder().decode(await this.bytes(name));
 
-  // A notebook tells that it has lost the kernel, or found it again, and not which. One that was restarted knows
-  // nothing of widgets before.
+  // A notebook reports that it has lost the kernel, or found it again, but not which. A restarted kernel does not know
+  // earlier widgets.
   seek = async () => {
     const answered = this.ask("scene", {}).then(
       () => true,
@@ -84,7 +84,7 @@ class Comm extends Wire {
       this.asked.get(content.answer)?.([content, buffers]);
       this.asked.delete(content.answer);
     } else if (content.frame) {
-      // The next comes once this has arrived.
+      // The next picture comes after this confirmation.
       this.say({ do: "seen" });
       this.on.frame(content.frame, buffers[0]);
     } else if (content.again) {
@@ -118,9 +118,9 @@ function render({ model, el }) {
   host.style.height = `${model.get("height")}px`;
   host.innerHTML = model.get("_parts");
   root.append(style, host);
-  // Keys are the viewer's own, and not the notebook's.
+  // Keys belong to the viewer, not to the notebook.
   el.dataset.lmSuppressShortcuts = "true";
-  // A notebook may keep the keys where they are when something else of it is clicked on.
+  // A notebook may keep keyboard focus in place after a click elsewhere.
   const leave = (event) => event.composedPath().includes(el) || root.activeElement?.blur();
   document.addEventListener("pointerdown", leave, true);
   const wire = new Comm(model);

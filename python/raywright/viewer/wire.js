@@ -1,14 +1,14 @@
-// The way to the core, of which there are two kinds: what both have.
+// The common part of both connections to the core.
 
 export class Wire {
   constructor() {
     this.on = {};
-    // The newest of what is to be told, by what it is of; what was not sent yet is not worth it any more.
+    // The latest message of each kind; older unsent ones are obsolete.
     this.unsent = new Map();
     this.isSending = false;
   }
 
-  // Tell something, once all that was told before has arrived.
+  // Send a message, once all earlier ones have arrived.
   async send(what, given) {
     this.unsent.set(what, given);
     if (this.isSending) {
@@ -21,7 +21,7 @@ export class Wire {
       try {
         await this.ask(name, newest);
       } catch {
-        // Whether the core is still there is told by its pictures.
+        // Pictures show whether the core still exists.
       }
     }
     this.isSending = false;
