@@ -18,7 +18,7 @@ impl CameraRayLanes {
     pub const NONE: Self =
         Self { origin: VectorLanes::ZERO, direction: VectorLanes::ZERO, time: [0.0; LANES], weight: [0.0; LANES] };
 
-    /// The ray in a lane.
+    /// Origins, by axis.
     #[inline(always)]
     pub fn origin(&self) -> [&[f64; LANES]; 3] {
         self.origin.by_axis()
