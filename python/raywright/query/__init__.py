@@ -1,1 +1,1 @@
-"""What rays and points ask of a scene, and what comes back."""
+"""Queries of rays and points, and their results."""

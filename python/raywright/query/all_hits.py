@@ -33,12 +33,25 @@ class AllHits(SurfacePoints):
     shape_id : (K,) int32
         Which of ``scene.shapes``.
     primitive : (K,) int32
-        Which face of that shape, 0 where it is no mesh, or of an instance what `Instance.locate` tells.
+        Face of that shape, 0 if it is no mesh; on an instance, a number for `Instance.locate`.
     uv : (K, 2) float64
         Barycentric weights of the face's second and third corner, so that the hit is at
         ``(1 - u - v) * a + u * b + v * c`` for corners a, b, c; on a shape that is no mesh, its own u and v.
     shape : tuple of int
         Leading shape of the rays.
+
+    See Also
+    --------
+    Scene.intersect_all : Makes it.
+    Hits : The closest hit of each ray.
+
+    Examples
+    --------
+    >>> hits = rw.Scene(rw.Sphere()).intersect_all([[0, 0, 5], [9, 0, 5]], [0, 0, -1])
+    >>> hits.ray_splits.tolist(), hits.ray.tolist()
+    ([0, 2, 2], [0, 0])
+    >>> hits.first.t.tolist()
+    [4.0, inf]
     """
 
     ray_splits: NDArray[np.int64]
@@ -69,12 +82,12 @@ class AllHits(SurfacePoints):
 
     @cached_property
     def ray(self) -> NDArray[np.int64]:
-        """Which ray each hit is of, counted along the rays in C order: (K,) int64."""
+        """Index of the ray of each hit, along the rays in C order: (K,) int64."""
         return sealed(np.repeat(np.arange(len(self.ray_splits) - 1), np.diff(self.ray_splits)))
 
     @cached_property
     def count(self) -> NDArray[np.int64]:
-        """How many hits each ray has: (...) int64."""
+        """Number of hits of each ray: (...) int64."""
         return sealed(np.diff(self.ray_splits).reshape(self.shape))
 
     @cached_property

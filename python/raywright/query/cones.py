@@ -1,4 +1,4 @@
-"""What solid cones touch."""
+"""Faces in solid cones."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -24,7 +24,7 @@ ConeArguments: TypeAlias = tuple[
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ConeTouches(Tabular):
-    """What each cone touches, one after the other: by cone, then distance, then (shape_id, primitive).
+    """Faces touched by each cone, in one list: by cone, then distance, then (shape_id, primitive).
 
     There are K touches of N cones in all, and those of cone i, counted along the cones in C order, are from
     ``cone_splits[i]`` to ``cone_splits[i + 1]``. All arrays are read-only.
@@ -36,11 +36,22 @@ class ConeTouches(Tabular):
     shape_id : (K,) int32
         Which of ``scene.shapes``.
     primitive : (K,) int32
-        Which face of that shape.
+        Face of that shape.
     distance : (K,) float64
         From the apex to the nearest point of the face that is in the cone, in the scene's unit of length.
     shape : tuple of int
         Leading shape of the cones.
+
+    See Also
+    --------
+    Scene.cone : Makes it.
+
+    Examples
+    --------
+    >>> scene = rw.Scene(rw.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]))
+    >>> touches = scene.cone([[0, 0, 4], [9, 9, 4]], [0, 0, -1], half_angle=5)
+    >>> touches.cone_splits.tolist(), touches.count.tolist()
+    ([0, 1, 1], [1, 0])
     """
 
     cone_splits: NDArray[np.int64]
@@ -51,12 +62,12 @@ class ConeTouches(Tabular):
 
     @cached_property
     def cone(self) -> NDArray[np.int64]:
-        """Which cone each touch is of, counted along the cones in C order: (K,) int64."""
+        """Index of the cone of each touch, along the cones in C order: (K,) int64."""
         return sealed(np.repeat(np.arange(len(self.cone_splits) - 1), np.diff(self.cone_splits)))
 
     @cached_property
     def count(self) -> NDArray[np.int64]:
-        """How many faces each cone touches: (...) int64."""
+        """Number of faces that each cone touches: (...) int64."""
         return sealed(np.diff(self.cone_splits).reshape(self.shape))
 
     def to_dict(self) -> dict[str, NDArray[Any]]:
@@ -80,7 +91,19 @@ class ConeTouches(Tabular):
 
 
 class ConeCoverage(NamedTuple):
-    """How much solid cones see."""
+    """Covered share of solid cones.
+
+    See Also
+    --------
+    Scene.cone_coverage : Makes it.
+
+    Examples
+    --------
+    >>> scene = rw.Scene(rw.Sphere((0, 0, 2), radius=1))
+    >>> seen = scene.cone_coverage([0, 0, 0], [0, 0, 1], half_angle=60)
+    >>> round(seen.solid_angle.item() / (2 * np.pi), 6)
+    0.133975
+    """
 
     solid_angle: NDArray[np.float64]
     """Of what is covered, in steradians: (...) float64."""
@@ -109,7 +132,7 @@ def cone_arguments(
     t_max: ArrayLike,
     threads: int | None,
 ) -> ConeArguments:
-    """Check and broadcast cones, and give what the core takes.
+    """Return checked, broadcast arguments of cone queries for the core.
 
     Returns
     -------

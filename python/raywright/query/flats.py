@@ -54,8 +54,7 @@ class FlatArrays:
         box is met it goes on to i + 1, from another to i + 1 if it is a leaf and to its ``index`` if not, and
         it ends at `own`.
     triangles : (M,) structured, 48 bytes each
-        What stands in the leaves, leaf after leaf; where faces are parted a face may stand in several. Its
-        fields:
+        Entries of the leaves, leaf after leaf; a split face may have several entries. Its fields:
 
         - ``corner``, 0 to 11: three float32, the corner from which the shortest edge goes, as it is wound;
         - ``primitive``, 12 to 15: uint32, the number among all primitives of the scene; see `first`;
@@ -65,11 +64,11 @@ class FlatArrays:
         - ``instance``, 44 to 47: uint32, of a copy of an `Instance` one more than its place in `instances`,
           of anything else 0.
 
-        Differences are taken in float64 and rounded once. What is no triangle, a sphere or a copy, has a
-        ``largest`` of -1, and its box from ``corner`` to ``edge``.
+        Differences are taken in float64 and rounded once. A primitive that is no triangle, a sphere or a
+        copy, has a ``largest`` of -1, and its box from ``corner`` to ``edge``.
     instances : (I,) structured, 64 bytes each
-        Copies that stand still. What they are copies of has a tree of its own behind the scene's, in the same
-        arrays, in box units and with numbers of primitives of its own. Their fields:
+        Copies that stand still. The shapes that are copied have a tree of their own behind the scene's, in
+        the same arrays, in box units and with primitive numbers of their own. Their fields:
 
         - ``matrix``, 0 to 47: (3, 4) float32, by rows, from the box units around the copy to those inside: a
           ray is at ``matrix[:, :3] @ o + matrix[:, 3]`` there and goes along ``matrix[:, :3] @ d``, with the
@@ -79,7 +78,7 @@ class FlatArrays:
         - ``primitive``, 56 to 59: uint32, the copy's own number;
         - ``reserved``, 60 to 63: uint32, 0.
     own : int
-        How many of `nodes` are the scene's own: where a walk of it ends.
+        Number of `nodes` of the scene's own tree: a walk of it ends there.
     unbounded : (U,) uint32
         Primitives without an end, as a `Plane`: they stand in no leaf.
     first : (S + 1,) int64
@@ -90,6 +89,18 @@ class FlatArrays:
         From the scene's units to box units: a power of two.
     depth : int
         The longest way from the root to a leaf, in steps: a stack needs so many entries.
+
+    See Also
+    --------
+    Scene.flat : Makes it.
+
+    Examples
+    --------
+    >>> flat = rw.Scene(rw.Sphere((4, 0, 0), radius=1)).flat()
+    >>> flat.own, flat.centre.tolist(), flat.scale
+    (1, [4.0, 0.0, 0.0], 1.0)
+    >>> flat.bytes
+    80
     """
 
     nodes: NDArray[np.void]

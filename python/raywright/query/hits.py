@@ -26,7 +26,7 @@ Points = TypeVar("Points", bound="SurfacePoints")
 
 
 class Known:
-    """What points know besides their fields, so that `dataclasses.asdict` gives what is public."""
+    """Private data of points, kept apart so that `dataclasses.asdict` gives the public fields."""
 
     primitive: NDArray[np.int32]
     _compiled: _core.CompiledScene
@@ -47,10 +47,9 @@ class SurfacePoints(Known, Tabular, PlottedPoints):
     Attributes
     ----------
     shape_id : (...) int32
-        Which of ``scene.shapes``; -1 for none.
+        Index in ``scene.shapes``; -1 for none.
     primitive : (...) int32
-        Which face of that shape, 0 where it is no mesh, or of an instance what `Instance.locate` tells; -1
-        for none.
+        Face of that shape, 0 if it is no mesh; on an instance, a number for `Instance.locate`.
     uv : (..., 2) float64
         Barycentric weights of the face's second and third corner, so that the point is at
         ``(1 - u - v) * a + u * b + v * c`` for corners a, b, c; on a shape that is no mesh, its own u and v.
@@ -99,6 +98,18 @@ class SurfacePoints(Known, Tabular, PlottedPoints):
             If no shape of the scene has the attribute, or its values have different shapes.
         TypeError
             If `name` is no str.
+
+        See Also
+        --------
+        Mesh : Holds the attributes.
+
+        Examples
+        --------
+        >>> corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
+        >>> mesh = rw.Mesh(corners, [[0, 1, 2]], vertex_attributes={"heat": [0.0, 100.0, 0.0]})
+        >>> hits = rw.Scene(mesh).intersect([[0.25, 0.25, 1], [5, 5, 1]], [0, 0, -1])
+        >>> hits.interpolate("heat").tolist()
+        [25.0, nan]
         """
         if self._compiled is None:
             raise ValueError("attributes are not kept in a pickle: interpolate them before")
@@ -106,7 +117,7 @@ class SurfacePoints(Known, Tabular, PlottedPoints):
         return interpolated(shapes, name, self.shape_id, self.primitive, self.uv)
 
     def _known(self, name: str) -> _core.CompiledScene:
-        """Return the scene that knows what is asked."""
+        """Return the scene of the points."""
         if self._compiled is None:
             raise ValueError(f"{name.strip('_')} is not kept in a pickle unless it was asked for before")
         return self._compiled
@@ -138,9 +149,10 @@ class SurfacePoints(Known, Tabular, PlottedPoints):
         return sealed(errors.reshape(self.primitive.shape))
 
     def leave(self, directions: ArrayLike) -> LeavingRays:
-        """Return rays that leave the points along some directions, and do not meet what they leave.
+        """Return rays that leave the points along some directions without meeting the same surface.
 
-        They start off the surface, on the side to which each goes: ``scene.intersect(*hits.leave(ways))``.
+        Their origins are offset from the surface, to the side of each direction:
+        ``scene.intersect(*hits.leave(ways))``.
 
         Parameters
         ----------
@@ -161,6 +173,10 @@ class SurfacePoints(Known, Tabular, PlottedPoints):
         TypeError
             If the array does not hold real numbers.
 
+        See Also
+        --------
+        Scene.occluded : Takes the rays.
+
         Notes
         -----
         `position` itself is no place to start from: it is rounded, so that it lies a little before the
@@ -175,6 +191,13 @@ class SurfacePoints(Known, Tabular, PlottedPoints):
         so (on a sliver, that times its length over its height), so is the side.
 
         Where copies move, rays are to be asked at the `time` of the hits.
+
+        Examples
+        --------
+        >>> scene = rw.Scene([rw.Plane(), rw.Sphere((0, 0, 2), radius=1)])
+        >>> hits = scene.intersect([[0, 4, 4], [4, 0, 4]], [[0, -1, -1], [0, 0, -1]])
+        >>> scene.occluded(*hits.leave([0, 0, 1])).tolist()
+        [True, False]
         """
         return leaving(self.primitive.shape, self.position, self._error, self.normal, directions)
 
@@ -210,8 +233,8 @@ class SurfacePoints(Known, Tabular, PlottedPoints):
         Returns
         -------
         dict
-            Of `Hits` and `ClosestPoints` an entry a ray or a point, of `AllHits` one a hit, and `ray` tells
-            of which. Arrays of three columns are apart, as x, y and z, and those of two as u and v.
+            One entry a ray or point for `Hits` and `ClosestPoints`, one entry a hit for `AllHits`, with its
+            `ray`. Arrays of three columns are apart, as x, y and z, and those of two as u and v.
         """
         return rows.flat(self)
 
@@ -251,7 +274,7 @@ class SurfacePoints(Known, Tabular, PlottedPoints):
         return copy
 
     def _more(self) -> dict[str, Any]:
-        """Give what is kept besides the arrays."""
+        """Return the data kept besides the arrays."""
         return {}
 
 
@@ -268,13 +291,26 @@ class Hits(SurfacePoints):
         Distance in lengths of the ray's direction, so that the hit is at ``origin + t * direction``; inf for
         a miss.
     shape_id : (...) int32
-        Which of ``scene.shapes``; -1 for a miss.
+        Index in ``scene.shapes``; -1 for a miss.
     primitive : (...) int32
-        Which face of that shape, 0 where it is no mesh, or of an instance what `Instance.locate` tells; -1
-        for a miss.
+        Face of that shape, 0 if it is no mesh; on an instance, a number for `Instance.locate`.
     uv : (..., 2) float64
         Barycentric weights of the face's second and third corner, so that the hit is at
         ``(1 - u - v) * a + u * b + v * c`` for corners a, b, c; on a shape that is no mesh, its own u and v.
+
+    See Also
+    --------
+    Scene.intersect : Makes it.
+    AllHits : Every hit of each ray.
+
+    Examples
+    --------
+    >>> scene = rw.Scene({"ball": rw.Sphere()})
+    >>> hits = scene.intersect([[0, 0, 5], [9, 0, 5]], [0, 0, -1])
+    >>> hits
+    Hits(shape=(2,), 1 of 2 rays hit)
+    >>> hits.shape_id.tolist(), hits.names.tolist()
+    ([0, -1], ['ball', ''])
     """
 
     t: NDArray[np.float64]
@@ -314,7 +350,7 @@ class Hits(SurfacePoints):
 
     @cached_property
     def hit(self) -> NDArray[np.bool_]:
-        """Whether each ray hits anything: (...) bool."""
+        """Mask of rays that hit something: (...) bool."""
         return np.asarray(self.primitive >= 0)
 
     @property
@@ -346,15 +382,24 @@ class ClosestPoints(SurfacePoints):
     Attributes
     ----------
     distance : (...) float64
-        How far the closest point is; inf where none is near enough.
+        Distance to the closest point; inf if none is near enough.
     shape_id : (...) int32
-        Which of ``scene.shapes`` it is on; -1 for none.
+        Index in ``scene.shapes``; -1 for none.
     primitive : (...) int32
-        Which face of that shape, 0 where it is no mesh, or of an instance what `Instance.locate` tells; -1
-        for none.
+        Face of that shape, 0 if it is no mesh; on an instance, a number for `Instance.locate`.
     uv : (..., 2) float64
         Barycentric weights of the face's second and third corner, so that the closest point is at
         ``(1 - u - v) * a + u * b + v * c`` for corners a, b, c; on a shape that is no mesh, its own u and v.
+
+    See Also
+    --------
+    Scene.closest_point : Makes it.
+
+    Examples
+    --------
+    >>> found = rw.Scene(rw.Sphere()).closest_point([[0, 0, 3], [0, 2, 0]])
+    >>> found.distance.tolist(), found.position.round(9).tolist()
+    ([2.0, 1.0], [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0]])
     """
 
     distance: NDArray[np.float64]
@@ -389,7 +434,7 @@ class ClosestPoints(SurfacePoints):
 
     @cached_property
     def normal(self) -> NDArray[np.float64]:
-        """Unit geometric normal, out of what is closed: (..., 3) float64; NaN for none."""
+        """Unit geometric normal, outward on closed shapes: (..., 3) float64; NaN for none."""
         return self._site[..., :3].copy() if self._known("normal").curved else super().normal
 
     @cached_property
@@ -398,7 +443,7 @@ class ClosestPoints(SurfacePoints):
 
     @cached_property
     def found(self) -> NDArray[np.bool_]:
-        """Whether anything is near enough: (...) bool."""
+        """Mask of points with a surface near enough: (...) bool."""
         return np.asarray(self.primitive >= 0)
 
     @property
@@ -423,7 +468,7 @@ class ClosestPoints(SurfacePoints):
 
 @dataclass(frozen=True, eq=False)
 class QueryCost:
-    """What finding the closest hit of each ray takes; arrays with the leading shape of the rays, read-only.
+    """Traversal cost of closest hits; arrays with the leading shape of the rays, read-only.
 
     Attributes
     ----------
@@ -431,6 +476,16 @@ class QueryCost:
         Nodes of the accelerator that are visited: the boxes of a node's children are tested together.
     primitives : (...) int32
         Primitives in the leaves that are visited: each is tested.
+
+    See Also
+    --------
+    Scene.cost : Makes it.
+
+    Examples
+    --------
+    >>> cost = rw.Scene(rw.Sphere()).cost([[0, 0, 5], [9, 0, 5]], [0, 0, -1])
+    >>> cost.primitives.tolist()
+    [1, 0]
     """
 
     nodes: NDArray[np.int32]
@@ -495,12 +550,12 @@ def sealed(array: NDArray[Any]) -> NDArray[Any]:
 
 
 def same(a: NDArray[Any], b: NDArray[Any]) -> bool:
-    """Whether two arrays hold the same; NaN is equal to NaN."""
+    """Return whether two arrays are equal; NaN is equal to NaN."""
     return np.array_equal(a, b, equal_nan=a.dtype.kind == "f")
 
 
 def restored(kind: type[Points], arrays: dict[str, Any], more: dict[str, Any]) -> Points:
-    """Return points of which nobody knows more than their arrays."""
+    """Return points that know only their arrays."""
     points = kind.__new__(kind)
     for array in arrays.values():
         if isinstance(array, np.ndarray):

@@ -1,4 +1,4 @@
-"""What batches of rays meet, and how it scatters light: what integrators written in Python ask."""
+"""Surface interactions of ray batches, for integrators written in Python."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -14,7 +14,7 @@ Floats = NDArray[np.float64]
 
 
 class Occluding(Protocol):
-    """What says whether rays meet anything: a scene."""
+    """An object that tests rays for occlusion: a scene."""
 
     def occluded(
         self,
@@ -39,6 +39,16 @@ class Rays:
         Directions are unit.
     time : (N,) float64
         When each is asked, from 0 as the shutter opens to 1 as it closes.
+
+    See Also
+    --------
+    Scene.interactions : Takes them.
+
+    Examples
+    --------
+    >>> rays = rw.Rays(np.zeros((2, 3)), np.array([[0, 0, 1.0], [1.0, 0, 0]]), np.zeros(2))
+    >>> rays.directions.shape
+    (2, 3)
     """
 
     origins: Floats
@@ -75,6 +85,18 @@ class Scattered:
         Scattering function times cosine over density: what throughput is multiplied by; 0 where nothing is.
     pdf : (N,) float64
         Density in solid angle; infinite where a single direction has all of it, as with a mirror.
+
+    See Also
+    --------
+    Interactions.sample : Makes it.
+
+    Examples
+    --------
+    >>> rays = rw.Rays(np.array([[0, 0, 3.0]]), np.array([[0, 0, -1.0]]), np.zeros(1))
+    >>> met = rw.Scene(rw.Sphere(material=rw.Mirror(0.9))).interactions(rays)
+    >>> mirrored = met.reflected()
+    >>> mirrored.direction.tolist(), mirrored.weight.tolist(), mirrored.any.tolist()
+    ([[0.0, 0.0, 1.0]], [[0.9, 0.9, 0.9]], [True])
     """
 
     direction: Floats
@@ -83,7 +105,7 @@ class Scattered:
 
     @property
     def any(self) -> NDArray[np.bool_]:
-        """Whether anything is scattered: (N,) bool."""
+        """Mask of points that scatter something: (N,) bool."""
         return np.asarray(self.weight.any(axis=1))
 
     def __len__(self) -> int:
@@ -105,6 +127,18 @@ class LightSamples:
         Radiance over density, were nothing in between; 0 where there is none.
     pdf : (N,) float64
         Density in solid angle; infinite for lights without extent.
+
+    See Also
+    --------
+    Interactions.light : Makes it.
+
+    Examples
+    --------
+    >>> scene = rw.Scene(rw.Sphere(), lights=[rw.PointLight((0, 0, 3), intensity=4.0)])
+    >>> rays = rw.Rays(np.array([[0, 0, 5.0]]), np.array([[0, 0, -1.0]]), np.zeros(1))
+    >>> light = scene.interactions(rays).light(np.zeros(1), np.full((1, 2), 0.5))
+    >>> light.direction.tolist(), light.weight.round(9).tolist()
+    ([[0.0, 0.0, 1.0]], [[1.0, 1.0, 1.0]])
     """
 
     direction: Floats
@@ -121,7 +155,25 @@ class LightSamples:
         scene : Scene
             The scene that it was drawn from.
         which : (N,) bool array, optional
-            Those to ask for; the others are told to be hidden. By default, all that bring light.
+            Mask of samples to test; the others count as hidden. By default, all that bring light.
+
+        Returns
+        -------
+        (N,) bool
+            False for samples that are hidden, bring no light, or are not in `which`.
+
+        See Also
+        --------
+        Scene.occluded : Test any rays.
+
+        Examples
+        --------
+        >>> lid = rw.Disk((0, 0, 2), radius=0.1)
+        >>> scene = rw.Scene([rw.Plane(), lid], lights=[rw.PointLight((0, 0, 3), intensity=4.0)])
+        >>> rays = rw.Rays(np.array([[0, 0, 1.0], [5, 0, 1]]), np.array([[0, 0, -1.0]] * 2), np.zeros(2))
+        >>> light = scene.interactions(rays).light(np.zeros(2), np.full((2, 2), 0.5))
+        >>> light.visible(scene).tolist()
+        [False, True]
         """
         asked = self.weight.any(axis=1) if which is None else np.asarray(which, np.bool_)
         origins, directions, most = (part[asked] for part in self._segments)
@@ -137,10 +189,25 @@ class LightSamples:
 
 
 class Interactions:
-    """What a batch of rays has met, seen from where they came: an entry a ray. Made by `Scene.interactions`.
+    """Surface interactions of a batch of rays: an entry a ray. Made by `Scene.interactions`.
 
     Arrays are float64 and read-only, NaN for misses unless said otherwise. Indexing with a mask or with
     indices gives a part of the batch.
+
+    See Also
+    --------
+    Scene.interactions : Makes it.
+    Hits : The geometry of hits alone.
+
+    Examples
+    --------
+    >>> scene = rw.Scene(rw.Plane(material=rw.Diffuse(0.5)), environment=2.0)
+    >>> rays = rw.Rays(np.array([[0, 0, 1.0]] * 2), np.array([[0, 0, -1.0], [0, 0, 1]]), np.zeros(2))
+    >>> met = scene.interactions(rays)
+    >>> met.hit.tolist(), met.emission[:, 0].tolist()
+    ([True, False], [0.0, 2.0])
+    >>> met[met.hit].position.tolist()
+    [[0.0, 0.0, 0.0]]
     """
 
     def __init__(self, core: _core.Interactions, rays: Rays) -> None:
@@ -166,7 +233,7 @@ class Interactions:
 
     @cached_property
     def hit(self) -> NDArray[np.bool_]:
-        """Whether anything was hit: (N,) bool."""
+        """Mask of rays that hit something: (N,) bool."""
         return self.shape_id >= 0
 
     @cached_property
@@ -176,7 +243,7 @@ class Interactions:
 
     @cached_property
     def primitive(self) -> NDArray[np.int32]:
-        """Which face of that shape: (N,) int32; -1 for a miss."""
+        """Face of that shape: (N,) int32; -1 for a miss."""
         return self._core.primitive
 
     @cached_property
@@ -211,11 +278,11 @@ class Interactions:
 
     @cached_property
     def ior(self) -> Floats:
-        """Index of refraction of what the shape is filled with: (N,); 1 for what encloses nothing."""
+        """Index of refraction inside the shape: (N,); 1 for shapes that enclose nothing."""
         return self._core.ior
 
     def reflected(self) -> Scattered:
-        """Return where mirrors and smooth glass reflect the rays to.
+        """Return the specular reflection of mirrors and smooth glass.
 
         Returns
         -------
@@ -223,22 +290,44 @@ class Interactions:
             One direction for each ray, with all of its weight: the share of the light from there that comes
             back along the ray, by Fresnel's law where that says. No weight and NaN where nothing is reflected
             so.
+
+        See Also
+        --------
+        Interactions.refracted : Specular transmission.
+
+        Examples
+        --------
+        >>> rays = rw.Rays(np.array([[0, 0, 3.0]]), np.array([[0, 0, -1.0]]), np.zeros(1))
+        >>> met = rw.Scene(rw.Sphere(material=rw.Dielectric(1.5))).interactions(rays)
+        >>> met.reflected().weight.round(4).tolist()
+        [[0.04, 0.04, 0.04]]
         """
         return Scattered(*self._core.single(False))
 
     def refracted(self) -> Scattered:
-        """Return where smooth glass and panes let the rays through to.
+        """Return the specular transmission of smooth glass and panes.
 
         Returns
         -------
         Scattered
             As `reflected` has it, on the other side. Weights are those of radiance, which has the square of
             the index of refraction in it.
+
+        See Also
+        --------
+        Interactions.reflected : Specular reflection.
+
+        Examples
+        --------
+        >>> rays = rw.Rays(np.array([[0, 0, 3.0]]), np.array([[0, 0, -1.0]]), np.zeros(1))
+        >>> met = rw.Scene(rw.Sphere(material=rw.Dielectric(1.5))).interactions(rays)
+        >>> met.refracted().direction.tolist(), (met.refracted().weight * 1.5**2).round(4).tolist()
+        ([[0.0, 0.0, -1.0]], [[0.96, 0.96, 0.96]])
         """
         return Scattered(*self._core.single(True))
 
     def evaluate(self, directions: ArrayLike) -> tuple[Floats, Floats]:
-        """Return how light from some directions is scattered back along the rays.
+        """Evaluate the scattering of light from some directions back along the rays.
 
         Parameters
         ----------
@@ -251,11 +340,23 @@ class Interactions:
             Scattering function times cosine; 0 for misses, and where all scattering has a single direction.
         pdf : (N,)
             The density, in solid angle, with which `sample` draws the direction.
+
+        See Also
+        --------
+        Interactions.sample : Draw directions with this density.
+
+        Examples
+        --------
+        >>> rays = rw.Rays(np.array([[0, 0, 3.0]]), np.array([[0, 0, -1.0]]), np.zeros(1))
+        >>> met = rw.Scene(rw.Plane(material=rw.Diffuse(0.5))).interactions(rays)
+        >>> value, pdf = met.evaluate(np.array([[0, 0, 1.0]]))
+        >>> (value * np.pi).round(6).tolist(), (pdf * np.pi).round(6).tolist()
+        ([[0.5, 0.5, 0.5]], [1.0])
         """
         return self._core.evaluate(_vectors("directions", directions))
 
     def sample(self, choice: Floats, u: Floats) -> Scattered:
-        """Draw where paths go on to.
+        """Sample directions from the scattering at the points.
 
         Parameters
         ----------
@@ -263,11 +364,28 @@ class Interactions:
             Numbers in [0, 1) that choose among kinds of scattering.
         u : (N, 2) array
             Pairs of numbers in (0, 1) for the direction.
+
+        Returns
+        -------
+        Scattered
+            One direction for each ray.
+
+        See Also
+        --------
+        Interactions.evaluate : The value and the density of given directions.
+
+        Examples
+        --------
+        >>> rays = rw.Rays(np.array([[0, 0, 3.0]]), np.array([[0, 0, -1.0]]), np.zeros(1))
+        >>> met = rw.Scene(rw.Plane(material=rw.Diffuse(0.5))).interactions(rays)
+        >>> drawn = met.sample(np.array([0.5]), np.array([[0.25, 0.75]]))
+        >>> drawn.weight.round(6).tolist(), bool(drawn.direction[0, 2] > 0)
+        ([[0.5, 0.5, 0.5]], True)
         """
         return Scattered(*self._core.sample(_numbers("choice", choice), _numbers("u", u)))
 
     def light(self, choice: Floats, u: Floats) -> LightSamples:
-        """Draw light that reaches the points from the scene's lights.
+        """Sample light that reaches the points from the scene's lights.
 
         Parameters
         ----------
@@ -275,6 +393,26 @@ class Interactions:
             Numbers in [0, 1) that choose among the lights.
         u : (N, 2) array
             Pairs of numbers in (0, 1) for the point on the light.
+
+        Returns
+        -------
+        LightSamples
+            One sample for each ray.
+
+        See Also
+        --------
+        LightSamples.visible : Test whether the light arrives.
+        Interactions.light_pdf : The density of hits on emitters.
+
+        Examples
+        --------
+        >>> scene = rw.Scene(rw.Plane(), lights=[rw.PointLight((0, 0, 2), intensity=8.0)])
+        >>> rays = rw.Rays(np.array([[0, 0, 1.0]]), np.array([[0, 0, -1.0]]), np.zeros(1))
+        >>> met = scene.interactions(rays)
+        >>> light = met.light(np.zeros(1), np.full((1, 2), 0.5))
+        >>> value, _ = met.evaluate(light.direction)
+        >>> (value * light.weight * np.pi).round(6).tolist()
+        [[1.0, 1.0, 1.0]]
         """
         (direction, weight, origins, ways), most, pdf = self._core.light(
             _numbers("choice", choice), _numbers("u", u)
@@ -282,17 +420,58 @@ class Interactions:
         return LightSamples(direction, weight, pdf, (origins, ways, most), self.rays.time)
 
     def light_pdf(self, before: "Interactions") -> Floats:
-        """Return the density with which `light` would have drawn what the rays ran into: (N,).
+        """Return the density with which `light` would have sampled the emitters that the rays hit: (N,).
 
         Parameters
         ----------
         before : Interactions
             Where the rays come from, an entry a ray.
+
+        Returns
+        -------
+        (N,) float64
+            In solid angle; 0 where the rays hit no emitter.
+
+        See Also
+        --------
+        power_heuristic : Weights of the two strategies.
+
+        Examples
+        --------
+        >>> lamp = rw.Disk((0, 0, 2), normal=(0, 0, -1), radius=0.5, emission=3.0)
+        >>> scene = rw.Scene([rw.Plane(), lamp])
+        >>> down = rw.Rays(np.array([[0, 0, 1.0]]), np.array([[0, 0, -1.0]]), np.zeros(1))
+        >>> floor = scene.interactions(down)
+        >>> found = scene.interactions(floor.leave(np.array([[0, 0, 1.0]])))
+        >>> bool(found.light_pdf(floor)[0] > 0)
+        True
         """
         return self._core.light_pdf(before._core)
 
     def leave(self, directions: ArrayLike) -> Rays:
-        """Return the rays that leave along some unit directions, (N, 3), and do not meet what they leave."""
+        """Return the rays that leave along some unit directions, (N, 3), and do not meet what they leave.
+
+        Parameters
+        ----------
+        directions : (N, 3) array
+            Unit directions.
+
+        Returns
+        -------
+        Rays
+            An entry a ray; NaN origins for misses.
+
+        See Also
+        --------
+        Hits.leave : The same for hits, with broadcast directions.
+
+        Examples
+        --------
+        >>> rays = rw.Rays(np.array([[0, 0, 3.0]]), np.array([[0, 0, -1.0]]), np.zeros(1))
+        >>> met = rw.Scene(rw.Plane()).interactions(rays)
+        >>> met.leave(np.array([[0, 0, 1.0]])).origins.round(9).tolist()
+        [[0.0, 0.0, 0.0]]
+        """
         ways = _vectors("directions", directions)
         return Rays(self._core.leave(ways), ways, self.rays.time)
 
@@ -301,10 +480,28 @@ class Interactions:
 
 
 def power_heuristic(pdf: ArrayLike, other: ArrayLike) -> Floats:
-    """Return the weight of draws of density `pdf` beside another way to draw, of density `other`.
+    """Return the power heuristic's weight of samples of density `pdf`, beside a strategy of density `other`.
 
-    That of Veach and Guibas (1995) with the exponent 2; infinite densities get the weight 1, and 0 the weight
-    0.
+    The exponent is 2 (Veach and Guibas 1995); infinite densities get the weight 1, and 0 the weight 0.
+
+    Parameters
+    ----------
+    pdf, other : float or arrays
+        Densities in the same measure, at least 0.
+
+    Returns
+    -------
+    float64 array
+        Weights from 0 to 1; those of the two strategies add up to 1.
+
+    See Also
+    --------
+    Interactions.light_pdf : The density of light sampling.
+
+    Examples
+    --------
+    >>> rw.power_heuristic([3.0, np.inf, 0.0], 1.0).round(9).tolist()
+    [0.9, 1.0, 0.0]
     """
     mine, others = np.broadcast_arrays(_numbers("pdf", pdf), _numbers("other", other))
     with np.errstate(over="ignore"):

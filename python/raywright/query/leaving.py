@@ -16,9 +16,20 @@ class LeavingRays(NamedTuple):
     Attributes
     ----------
     origins : (..., 3) float64
-        Where they start, off the surface on the side to which they go; NaN where there is no surface.
+        Start points, offset from the surface to the side of the direction; NaN where there is no surface.
     directions : (..., 3) float64 or float32
         Where they go, as given; broadcast to the shape of the origins.
+
+    See Also
+    --------
+    Hits.leave : Makes them.
+
+    Examples
+    --------
+    >>> scene = rw.Scene(rw.Plane())
+    >>> rays = scene.intersect([0, 0, 2], [0, 0, -1]).leave([0, 0, 1])
+    >>> rays.origins.round(9).tolist(), rays.directions.tolist()
+    ([0.0, 0.0, 0.0], [0.0, 0.0, 1.0])
     """
 
     origins: NDArray[np.float64]
@@ -32,7 +43,7 @@ def leaving(
     normal: NDArray[np.float64],
     directions: ArrayLike,
 ) -> LeavingRays:
-    """Return the rays that leave points of leading shape `shape`, of which the core tells all else."""
+    """Return the rays that leave points of leading shape `shape`."""
     ways = last_axis("directions", directions, 3)
     try:
         lead = np.broadcast_shapes(shape, ways.shape[:-1])

@@ -1,4 +1,4 @@
-"""Which rays are asked, and what of a scene counts for them."""
+"""Masks of rays and of shapes."""
 
 from collections.abc import Sequence
 from typing import Any, Literal, TypeAlias
@@ -22,7 +22,7 @@ def names_of(shapes: Sequence[Any]) -> tuple[str, ...]:
 
 
 def counted(shapes: ShapeMask | None, cull: Cull | None, all_shapes: Sequence[Any]) -> Counted:
-    """Check which of all shapes count, and give what the core takes of it.
+    """Return a checked mask of shapes for the core.
 
     Raises
     ------

@@ -14,7 +14,7 @@ _COUNTED = ("shape_id", "primitive", "cell")
 
 
 class PlottedPoints:
-    """What of points on surfaces can be drawn."""
+    """Plots of points on surfaces."""
 
     def plot(self, ax: Any = None, name: str | None = None, up: Axis = "y", cmap: Any = COLORS) -> Any:
         """Draw the points with matplotlib: as a picture if there are rows and columns of them, or in space.
@@ -25,8 +25,8 @@ class PlottedPoints:
             Where to draw: a new figure if not given, axes, which have three dimensions but for pictures, or a
             file, .png, .svg or .pdf.
         name : str, optional
-            What they are colored by: "t" of hits or "distance" of closest points, as if not given;
-            "shape_id", "primitive", "cell", or the name of an attribute. Misses are grey in pictures.
+            Values that are colored: "t" of hits or "distance" of closest points, as if not given; "shape_id",
+            "primitive", "cell", or the name of an attribute. Misses are grey in pictures.
         up : {"x", "y", "z"}
             The axis that points up in space.
         cmap : str or matplotlib.colors.Colormap
@@ -47,6 +47,19 @@ class PlottedPoints:
             If `ax` or `name` is something else.
         OSError
             If the file cannot be written.
+
+        See Also
+        --------
+        measure.plot : Plot values on the faces of a scene.
+
+        Examples
+        --------
+        >>> from matplotlib import pyplot as plt
+        >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), width=16, height=12)
+        >>> _, axes = plt.subplots()
+        >>> axes = rw.Scene(rw.Sphere()).first_hits(camera).plot(axes)
+        >>> axes.get_images()[0].get_array().shape
+        (12, 16)
         """
         choice("up", up, AXES)
         points: Any = self

@@ -12,7 +12,7 @@ from .rays import nearest_arguments, point_arguments
 
 
 class PointQueries:
-    """What a compiled scene answers to points; asking compiles it."""
+    """Point queries; the first query compiles the scene."""
 
     _core: CompiledScene | None
     _tolerance: float | None
@@ -22,7 +22,7 @@ class PointQueries:
         raise NotImplementedError
 
     def _enclosing(self) -> CompiledScene:
-        """Return the scene by which it is decided what is closed."""
+        """Return the scene whose meshes are welded, which decides what is closed."""
         raise NotImplementedError
 
     def contains(
@@ -31,16 +31,17 @@ class PointQueries:
         """Find whether each point is inside a closed shape.
 
         Decided exactly; what is on a closed surface counts as inside. Shapes that are not closed have no
-        inside: a plane, a disk, a terrain, a box without its lid. What is in two shapes at once is inside.
+        inside: a plane, a disk, a terrain, a box without its lid. The union counts: a point in two shapes at
+        once is inside.
 
         Parameters
         ----------
         points : (..., 3) array
             C-contiguous float32 and float64 are read without a copy.
         threads : int, optional
-            How many to use; all cores if not given. The answer does not depend on it.
+            Number of threads; all cores if not given. The answer does not depend on it.
         shapes : (S,) bool array, str or sequence of str, optional
-            Which of ``scene.shapes`` count, one bool for each of them or their names: as in a scene of these
+            Shapes that count, one bool for each of ``scene.shapes`` or their names: as in a scene of these
             alone. An `Instance` counts as a whole.
 
         Returns
@@ -61,19 +62,31 @@ class PointQueries:
             Once of meshes whose normals point into them, and of instances of such: they enclose the same as
             if they pointed out. A transform that mirrors turns no normals, as for hits.
 
+        See Also
+        --------
+        Scene.signed_distance : The distance too.
+        measure.topology : Report why a mesh is not closed.
+
         Notes
         -----
         A mesh is taken apart into faces that hang together by edges, where corners that differ by rounding
-        are one (see `Scene`). Those without an open edge enclose what they wind about; where two faces run
-        along an edge the same way, so that no winding can be told, what a ray leaves through an odd number of
-        crossings. Winding numbers in one mesh add up: a cavity whose normals point into it is outside, and
-        where parts overlap is inside. A mesh whose normals point in is the wall of a cavity where it lies
-        within another shape. Faces with the same corners count once, whichever way they turn, and a wall
-        between two parts not at all. Meshes that only close together, as the walls of a room, are one.
+        are one (see `Scene`). Parts without an open edge enclose the points that they wind around. If two
+        faces run along an edge the same way, winding is undefined: points that a ray leaves through an odd
+        number of crossings are enclosed. Winding numbers in one mesh add up: a cavity whose normals point
+        into it is outside, and where parts overlap is inside. A mesh whose normals point in is the wall of a
+        cavity where it lies within another shape. Faces with the same corners count once, whichever way they
+        turn, and a wall between two parts not at all. Meshes that only close together, as the walls of a
+        room, are one.
 
         From a point one way out is tried where all that is closed are meshes with equal corners at shared
         edges, and two opposite ones otherwise. Where these do not agree there is a crack that rounding has
         left, and the majority of seven ways decides.
+
+        Examples
+        --------
+        >>> scene = rw.Scene(rw.Box((0, 0, 0), (1, 1, 1)))
+        >>> scene.contains([[0.5, 0.5, 0.5], [1, 1, 1], [2, 0, 0]]).tolist()
+        [True, True, False]
         """
         return self._inside(points, threads, shapes)
 
@@ -108,11 +121,11 @@ class PointQueries:
         points : (..., 3) array
             C-contiguous float32 and float64 are read without a copy.
         max_distance : float or (...) array
-            How far to look, this distance included; the less, the faster.
+            Maximum distance, inclusive; the less, the faster.
         threads : int, optional
-            How many to use; all cores if not given. The answer does not depend on it.
+            Number of threads; all cores if not given. The answer does not depend on it.
         shapes : (S,) bool array, str or sequence of str, optional
-            Which of ``scene.shapes`` count, as for `contains`.
+            Shapes that count, as for `contains`.
 
         Returns
         -------
@@ -128,20 +141,32 @@ class PointQueries:
         TypeError
             If an array does not hold real numbers, or a mask is not bool.
 
+        See Also
+        --------
+        Scene.signed_distance : The distance alone, with its sign.
+
         Notes
         -----
-        Points that are NaN or infinite have no closest point. What moves is where it is as the shutter opens.
+        Points that are NaN or infinite have no closest point. Moving instances are where they are as the
+        shutter opens.
 
         Shapes that are no meshes, and instances, are found through a tree of their boxes, which is built when
-        the first point is asked. What is in an instance is measured where it stands, so that transforms that
-        scale some lengths more than others, within each other too, are as good as any.
+        the first point is asked. Distances to shapes in an instance are measured in the scene's space, so
+        that transforms that scale some lengths more than others, nested ones too, are as good as any.
 
         Most shapes have a closed form; of ellipsoids the closest point is where a sum that falls is 1, which
         halving finds to the last digit (Eberly, "Distance from a Point to an Ellipse, an Ellipsoid, or a
         Hyperellipsoid", 2013). Disks, cylinders, cones, paraboloids and tori under such a transform are a
-        curve at each turn about their axis, of which the closest is found by bounds on how fast its distance
-        changes (Piyavskii 1972). Of an `Implicit` no part of the box is left out that intervals cannot rule
+        curve at each turn about their axis; its closest point is found by bounds on the derivative of the
+        distance (Piyavskii 1972). Of an `Implicit` no part of the box is left out that intervals cannot rule
         out; where all of it is about as far, as from the middle of a sphere, it is a close one.
+
+        Examples
+        --------
+        >>> scene = rw.Scene(rw.Sphere())
+        >>> found = scene.closest_point([[0, 0, 3], [0, 0, 9]], max_distance=5)
+        >>> found.distance.tolist(), found.position[0].tolist()
+        ([2.0, inf], [0.0, 0.0, 1.0])
         """
         core = self._core or self._compiled()
         arguments = nearest_arguments(points, max_distance, threads)
@@ -152,17 +177,17 @@ class PointQueries:
     ) -> NDArray[np.float64]:
         """Find how far each point is from the surface: negative inside, positive outside, zero on it.
 
-        Inside is what `contains` finds so, whose warnings it has. The nearest surface may be of a shape that
-        is open. (Open3D and most of CAD have this sign, trimesh has the other.)
+        Points are inside where `contains` finds them inside, with its warnings. The nearest surface may be of
+        a shape that is open. (Open3D and most of CAD have this sign, trimesh has the other.)
 
         Parameters
         ----------
         points : (..., 3) array
             C-contiguous float32 and float64 are read without a copy.
         threads : int, optional
-            How many to use; all cores if not given. The answer does not depend on it.
+            Number of threads; all cores if not given. The answer does not depend on it.
         shapes : (S,) bool array, str or sequence of str, optional
-            Which of ``scene.shapes`` count, as for `contains`.
+            Shapes that count, as for `contains`.
 
         Returns
         -------
@@ -176,6 +201,17 @@ class PointQueries:
             If the last dimension is not 3, a mask has the wrong shape, or no shape has a name of `shapes`.
         TypeError
             If the array does not hold real numbers, or a mask is not bool.
+
+        See Also
+        --------
+        Scene.contains : Inside or outside alone.
+        Scene.closest_point : The closest point itself.
+
+        Examples
+        --------
+        >>> scene = rw.Scene(rw.Box((0, 0, 0), (2, 2, 2)))
+        >>> scene.signed_distance([[1, 1, 1], [1, 1, 5], [2, 1, 1]]).tolist()
+        [-1.0, 3.0, 0.0]
         """
         core = self._core or self._compiled()
         distance = core.nearest(*nearest_arguments(points, np.inf, threads), _mask(shapes, core))[0]

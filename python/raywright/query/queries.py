@@ -20,7 +20,7 @@ from .rays import AskedRays, flags, ray_arguments
 
 
 class Queries(PointQueries):
-    """What a compiled scene answers; asking compiles it."""
+    """Ray queries; the first query compiles the scene."""
 
     def intersect(
         self,
@@ -45,7 +45,7 @@ class Queries(PointQueries):
         t_min, t_max : float or (...) arrays
             The part of the ray that counts, in lengths of its direction, both ends included.
         threads : int, optional
-            How many to use; all cores if not given. The answer does not depend on it.
+            Number of threads; all cores if not given. The answer does not depend on it.
         time : float or (...) array, optional
             When the rays are asked, from 0 as the shutter opens, which it is if not given, to 1 as it closes:
             instances that move are where they then are.
@@ -54,9 +54,9 @@ class Queries(PointQueries):
             are written to and it is returned, so that a loop over batches allocates nothing; what it told
             before is gone.
         mask : (...) bool array, optional
-            Which rays are asked, broadcast to their leading shape; the others hit nothing.
+            Rays to trace, broadcast to their leading shape; the others hit nothing.
         shapes : (S,) bool array, str or sequence of str, optional
-            Which of ``scene.shapes`` count, one bool for each of them or their names: as in a scene of these
+            Shapes that count, one bool for each of ``scene.shapes`` or their names: as in a scene of these
             alone. An `Instance` counts as a whole.
         cull : {"back"}, optional
             Leaves out what is met from behind, where the geometric normal goes along with the ray. Of
@@ -77,10 +77,25 @@ class Queries(PointQueries):
         TypeError
             If an array does not hold real numbers, `out` is no `Hits`, or a mask is not bool.
 
+        See Also
+        --------
+        Scene.occluded : Test whether each ray hits anything.
+        Scene.intersect_all : Find every hit of each ray.
+        Scene.first_hits : Find the hits of a camera's pixels.
+
         Notes
         -----
         Rays with NaN, infinity or a zero direction (or one shorter than the least normal number) hit nothing.
         Hits are watertight: no ray passes between two faces that share an edge or a corner and count.
+
+        Examples
+        --------
+        >>> scene = rw.Scene(rw.Box((-1, -1, -1), (1, 1, 1)))
+        >>> hits = scene.intersect([[0, 0, 5], [3, 0, 5]], [0, 0, -1])
+        >>> hits.hit.tolist(), hits.t.tolist()
+        ([True, False], [4.0, inf])
+        >>> hits.position[0].tolist(), hits.normal[0].tolist()
+        ([0.0, 0.0, 1.0], [0.0, 0.0, 1.0])
         """
         rays = asked(ray_arguments(origins, directions, t_min, t_max, threads, time), mask)
         core = self._core or self._compiled()
@@ -121,6 +136,18 @@ class Queries(PointQueries):
         -------
         (...) bool
             With the leading shape of the rays.
+
+        See Also
+        --------
+        Scene.intersect : Find the closest hit.
+
+        Examples
+        --------
+        >>> scene = rw.Scene(rw.Sphere())
+        >>> scene.occluded([0, 0, 5], [[0, 0, -1], [0, 0, 1], [1, 0, 0]]).tolist()
+        [True, False, False]
+        >>> scene.occluded([0, 0, 5], [0, 0, -1], t_max=3.0).item()
+        False
         """
         rays = asked(ray_arguments(origins, directions, t_min, t_max, threads, time), mask)
         core = self._core or self._compiled()
@@ -137,8 +164,8 @@ class Queries(PointQueries):
     ) -> NDArray[np.float64]:
         """Compute the optical depth of the media along each ray: the integral of their extinction.
 
-        Rays go straight through all surfaces; only what these enclose counts, and what fills the scene.
-        Whether a surface is in the way, `occluded` tells.
+        Surfaces do not stop the rays; only the media that they enclose count, and the scene's own medium.
+        `occluded` tests for surfaces in the way.
 
         Parameters
         ----------
@@ -158,10 +185,21 @@ class Queries(PointQueries):
         TypeError
             As `intersect` does.
 
+        See Also
+        --------
+        Scene.transmittance : The share of light that is left.
+
         Notes
         -----
         It is exact but for rounding, on a `GridMedium` too: its density is a polynomial along a ray in each
         of its cells. Where a medium is given by spectra, it is that of its colors.
+
+        Examples
+        --------
+        >>> fog = rw.Homogeneous(absorption=0.5, scattering=0.25)
+        >>> ball = rw.Sphere(radius=1, material=rw.Boundary(fog))
+        >>> rw.Scene(ball).optical_depth([0, 0, 5], [0, 0, -1]).round(6).tolist()
+        [1.5, 1.5, 1.5]
         """
         rays = asked(ray_arguments(origins, directions, 0.0, t_max, threads, time), None)
         core = self._core or self._compiled()
@@ -196,11 +234,22 @@ class Queries(PointQueries):
             As `intersect` does.
         TypeError
             As `intersect` does.
+
+        See Also
+        --------
+        Scene.optical_depth : Its negative logarithm.
+
+        Examples
+        --------
+        >>> ink = rw.Homogeneous(absorption=(0.0, 0.5, 1.0))
+        >>> slab = rw.Box((-1, -1, 0), (1, 1, 2), material=rw.Boundary(ink))
+        >>> rw.Scene(slab).transmittance([0, 0, 5], [0, 0, -1]).round(4).tolist()
+        [1.0, 0.3679, 0.1353]
         """
         return np.exp(-self.optical_depth(origins, directions, t_max, threads, time))
 
     def interactions(self, rays: Rays) -> Interactions:
-        """Find what each ray of a batch meets, and all that shading needs of it.
+        """Find the surface interaction of each ray: the hit, with its scattering and its light.
 
         For integrators that are written in Python (see `Integrator`): what comes back tells emission, and
         answers whole batches of questions about scattering and light.
@@ -221,6 +270,19 @@ class Queries(PointQueries):
             If `rays` are no `Rays`.
         ValueError
             If their arrays are not (N, 3), (N, 3) and (N,).
+
+        See Also
+        --------
+        Integrator : The base class of integrators written in Python.
+        Scene.intersect : Hits alone, of rays of any length.
+
+        Examples
+        --------
+        >>> scene = rw.Scene(rw.Sphere(material=rw.Diffuse(0.8)), environment=1.0)
+        >>> rays = rw.Rays(np.array([[0, 0, 3.0]]), np.array([[0, 0, -1.0]]), np.zeros(1))
+        >>> met = scene.interactions(rays)
+        >>> met.t.tolist(), met.albedo.round(2).tolist()
+        ([2.0], [[0.8, 0.8, 0.8]])
         """
         if not isinstance(rays, Rays):
             raise TypeError(f"rays must be raywright.Rays, got {type(rays).__name__}")
@@ -244,18 +306,35 @@ class Queries(PointQueries):
         Takes and raises what `intersect` does, and the first hit that it finds of each ray is that of
         `intersect`.
 
+        Parameters
+        ----------
+        origins, directions, t_min, t_max, threads, time, mask, shapes, cull
+            As for `intersect`.
+
         Returns
         -------
         AllHits
             All hits one after the other, by ray, then `t`, then (shape_id, instance, primitive).
 
+        See Also
+        --------
+        Scene.count : Count the hits alone.
+        Scene.intersect : Find the closest hit.
+
         Notes
         -----
         A surface is crossed once where a ray goes through an edge or a vertex of it, not once for each face
-        there. Where a ray only touches an edge or a vertex, that is told twice, as if in and out: by two
-        faces, or twice by the same one where the ray meets no other. So a closed surface has an even number
-        of hits seen from outside, and an odd number from inside, however the ray is aimed. Faces that lie
-        upon each other are all told.
+        there. A ray that only touches an edge or a vertex gets two hits there, as if in and out: of two
+        faces, or twice of the same one if the ray meets no other. So a closed surface has an even number of
+        hits seen from outside, and an odd number from inside, however the ray is aimed. Faces that lie upon
+        each other are all told.
+
+        Examples
+        --------
+        >>> scene = rw.Scene(rw.Sphere())
+        >>> hits = scene.intersect_all([[0, 0, 5], [9, 0, 5]], [0, 0, -1])
+        >>> hits.count.tolist(), hits.t.tolist()
+        ([2, 0], [4.0, 6.0])
         """
         rays = asked(ray_arguments(origins, directions, t_min, t_max, threads, time), mask)
         core = self._core or self._compiled()
@@ -271,14 +350,29 @@ class Queries(PointQueries):
         threads: int | None = None,
         time: ArrayLike | None = None,
     ) -> NDArray[np.int32]:
-        """Count the hits of each ray: what `intersect_all` finds, without the memory for it.
+        """Count the hits of each ray, as `intersect_all` finds them, without the memory for them.
 
         Takes and raises what `intersect` does.
+
+        Parameters
+        ----------
+        origins, directions, t_min, t_max, threads, time
+            As for `intersect`.
 
         Returns
         -------
         (...) int32
             With the leading shape of the rays.
+
+        See Also
+        --------
+        Scene.intersect_all : The hits themselves.
+
+        Examples
+        --------
+        >>> scene = rw.Scene([rw.Sphere(), rw.Disk(radius=9)])
+        >>> scene.count([[0, 0, 5], [4, 0, 5]], [0, 0, -1]).tolist()
+        [3, 1]
         """
         rays = asked(ray_arguments(origins, directions, t_min, t_max, threads, time), None)
         return (self._core or self._compiled()).count(rays)
@@ -292,15 +386,31 @@ class Queries(PointQueries):
         threads: int | None = None,
         time: ArrayLike | None = None,
     ) -> QueryCost:
-        """Find what the closest hit of each ray takes: nodes visited and primitives tested.
+        """Count the nodes visited and primitives tested for the closest hit of each ray.
 
         Takes and raises what `intersect` does. Neighbouring rays share visits, so a ray's cost may depend on
         which others are asked with it. A copy of an instance counts as one primitive, whatever it takes.
+
+        Parameters
+        ----------
+        origins, directions, t_min, t_max, threads, time
+            As for `intersect`.
 
         Returns
         -------
         QueryCost
             With the leading shape of the rays.
+
+        See Also
+        --------
+        report.heatmap : The cost of a camera's rays, as a picture.
+
+        Examples
+        --------
+        >>> scene = rw.Scene(rw.scenes.torus_knot(along=40, around=8))
+        >>> cost = scene.cost([0, 0, 9], [[0, 0, -1], [0, 0, 1]])
+        >>> cost.nodes.shape, int(cost.primitives[1])
+        ((2,), 0)
         """
         rays = asked(ray_arguments(origins, directions, t_min, t_max, threads, time), None)
         return QueryCost(*(self._core or self._compiled()).cost(rays))
@@ -314,7 +424,7 @@ class Queries(PointQueries):
         threads: int | None = None,
         time: ArrayLike | None = None,
     ) -> Hits:
-        """Find what is seen at a pixel, or at many: shape, face, place and distance.
+        """Find the shape, face, place and distance at a pixel, or at many.
 
         Parameters
         ----------
@@ -328,7 +438,7 @@ class Queries(PointQueries):
             Where in the pixel, for all or for each, as `Camera.rays` has it: (0, 0) is its upper left, (1, 1)
             its lower right. The default is the centre.
         threads : int, optional
-            How many to use; all cores if not given. The answer does not depend on it.
+            Number of threads; all cores if not given. The answer does not depend on it.
         time : float or (...) array, optional
             When, from 0 as the camera's shutter opens, which it is if not given, to 1 as it closes.
 
@@ -344,6 +454,18 @@ class Queries(PointQueries):
             If a pixel is outside of the picture, `time` is not between 0 and 1, or shapes do not broadcast.
         TypeError
             If `camera` is not a Camera, `x` or `y` are not integers, or `offsets` are not real numbers.
+
+        See Also
+        --------
+        Scene.first_hits : The hits of all pixels.
+
+        Examples
+        --------
+        >>> scene = rw.Scene({"ball": rw.Sphere()})
+        >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), width=9, height=9)
+        >>> hits = scene.pick(camera, x=[4, 0], y=[4, 0])
+        >>> hits.names.tolist(), hits.t.round(6).tolist()
+        (['ball', ''], [4.0, inf])
         """
         if not isinstance(camera, AnyCamera):
             raise TypeError(f"camera must be a Camera, got {type(camera).__name__}")
@@ -366,13 +488,13 @@ class Queries(PointQueries):
         threads: int | None = None,
         time: float | None = None,
     ) -> Hits:
-        """Find what is seen at every pixel, by rasterising: what ``intersect(*camera.rays(offsets))`` finds.
+        """Find the hit at every pixel by rasterization: the same as ``intersect(*camera.rays(offsets))``.
 
         Faces are projected into the picture (Catmull 1974), and at the pixels that one may cover it is
         decided for the pixel's ray, exactly, as `intersect` does. Parts of the picture with too many faces
-        are asked of the accelerator, and all of it is if there are more faces than a quarter of its pixels,
-        something in the scene is no mesh, or the camera is not a pinhole that stands still.
-        ``report.first_hits`` tells where it pays.
+        are traced instead, and all of it is if there are more faces than a quarter of its pixels, something
+        in the scene is no mesh, or the camera is not a pinhole that stands still. ``report.first_hits`` tells
+        where it pays.
 
         Parameters
         ----------
@@ -381,7 +503,7 @@ class Queries(PointQueries):
         offsets : (2,) or (height, width, 2) array
             Where in the pixel, for all or for each, as `Camera.rays` has it.
         threads : int, optional
-            How many to use; all cores if not given. The answer does not depend on it.
+            Number of threads; all cores if not given. The answer does not depend on it.
         time : float, optional
             When, from 0 as the camera's shutter opens, which it is if not given, to 1 as it closes.
 
@@ -397,6 +519,19 @@ class Queries(PointQueries):
             If `offsets` has another shape, or `time` is not between 0 and 1.
         TypeError
             If `camera` is not a Camera, or `offsets` are not real numbers.
+
+        See Also
+        --------
+        aovs : Auxiliary buffers of the first hits, averaged over pixels.
+        Scene.pick : The hits of some pixels.
+
+        Examples
+        --------
+        >>> scene = rw.Scene(rw.Sphere())
+        >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), width=5, height=3)
+        >>> hits = scene.first_hits(camera)
+        >>> hits.hit.astype(int).tolist()
+        [[0, 0, 0, 0, 0], [0, 0, 1, 0, 0], [0, 0, 0, 0, 0]]
         """
         if not isinstance(camera, AnyCamera):
             raise TypeError(f"camera must be a Camera, got {type(camera).__name__}")
@@ -429,10 +564,10 @@ class Queries(PointQueries):
         half_angle : float or (...) array
             Between the axis and the surface, in degrees, at least 0 and less than 90. A cone of 0 is a ray.
         t_max : float or (...) array
-            How far from the apex to look, this distance included, in the scene's unit whatever the length of
-            the direction. A cone then ends in a part of a sphere.
+            Maximum distance from the apex, inclusive, in the scene's unit whatever the length of the
+            direction. A cone then ends in a part of a sphere.
         threads : int, optional
-            How many to use; all cores if not given. The answer does not depend on it.
+            Number of threads; all cores if not given. The answer does not depend on it.
 
         Returns
         -------
@@ -447,12 +582,23 @@ class Queries(PointQueries):
         TypeError
             If an array does not hold real numbers.
 
+        See Also
+        --------
+        Scene.cone_coverage : The share of the cone that is covered.
+
         Notes
         -----
         Cones with NaN, infinity or a zero direction touch nothing. No face that has a point in the cone is
-        missed. With M the distance from the apex to the farthest corner of a face, one that misses the cone
-        by less than 2**-43 M may be told as well, and distances are those of a cone whose surface is moved by
-        no more than that. Accelerators agree to the last bit.
+        missed. With M the distance from the apex to the farthest corner of a face, a face that misses the
+        cone by less than 2**-43 M may be included, and distances are those of a cone whose surface is moved
+        by no more than that. Accelerators agree to the last bit.
+
+        Examples
+        --------
+        >>> triangle = rw.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+        >>> touches = rw.Scene(triangle).cone([0, 0, 4], [0, 0, -1], half_angle=5)
+        >>> touches.primitive.tolist(), touches.distance.tolist()
+        ([0], [4.0])
         """
         core = self._core or self._compiled()
         arguments = cone_arguments(origins, directions, half_angle, t_max, threads)
@@ -467,7 +613,7 @@ class Queries(PointQueries):
         t_max: ArrayLike = np.inf,
         threads: int | None = None,
     ) -> ConeCoverage:
-        """Tell how much of solid cones is covered: the share of their directions that meet something.
+        """Compute the covered share of solid cones: the share of their directions that meet something.
 
         It is exact for meshes, whose faces hide parts of each other, and for one sphere (Tovchigrechko and
         Vakser 2001). Beyond that, what is behind a sphere counts by the share of the cone that the sphere
@@ -478,7 +624,7 @@ class Queries(PointQueries):
         origins, directions, half_angle, threads
             As in `cone`; `half_angle` is above 0.
         t_max : float or (...) array
-            What is farther from the apex at its nearest point does not count.
+            Maximum distance: a shape whose nearest point is farther from the apex does not count.
 
         Returns
         -------
@@ -492,6 +638,20 @@ class Queries(PointQueries):
             As `cone`, and if `half_angle` is 0, or something in the scene is neither a mesh nor a `Sphere`.
         TypeError
             If an array does not hold real numbers.
+
+        See Also
+        --------
+        Scene.cone : The faces in a cone.
+        measure.ambient_visibility : The uncovered share of a hemisphere.
+
+        Examples
+        --------
+        >>> scene = rw.Scene(rw.Sphere((0, 0, 10), radius=1))
+        >>> seen = scene.cone_coverage([0, 0, 0], [0, 0, 1], half_angle=10)
+        >>> round(seen.share.item(), 4)
+        0.3299
+        >>> round(float((1 - np.cos(np.arcsin(1 / 10))) / (1 - np.cos(np.radians(10)))), 4)
+        0.3299
         """
         core = self._core or self._compiled()
         arguments = cone_arguments(origins, directions, half_angle, t_max, threads)
@@ -507,7 +667,7 @@ class Queries(PointQueries):
         seed: SeedLike = 0,
         threads: int | None = None,
     ) -> Photons:
-        """Follow light from the lights, and note it at each surface that it comes to.
+        """Trace photons from the lights, and record them at each surface that they meet.
 
         So many paths start at lights, chosen by their power, at points by area and in directions by the
         cosine, and are scattered from surface to surface as light is, until they leave the scene, are
@@ -525,7 +685,7 @@ class Queries(PointQueries):
         seed : int, Generator or SeedSequence
             Picks the random numbers, 0 to 2**64 - 1.
         threads : int, optional
-            How many to use; all cores if not given. The answer does not depend on it.
+            Number of threads; all cores if not given. The answer does not depend on it.
 
         Returns
         -------
@@ -535,15 +695,27 @@ class Queries(PointQueries):
         Raises
         ------
         ValueError
-            If a number is out of its range, or light is in the scene that no path can start at: of what has
-            no end, or moves in instances, or from outside on what has no end, or of a medium that glows.
+            If a number is out of its range, or no path can start at a light of the scene: infinite emitters,
+            emitters that move in instances, light from outside on infinite shapes, or media that glow.
         TypeError
             If a number is not an integer.
         KeyboardInterrupt
             At once, when Ctrl-C is pressed.
+
+        See Also
+        --------
+        PhotonMap : Renders from photons.
+
+        Examples
+        --------
+        >>> lamp = rw.PointLight((0, 0, 3), intensity=1.0)
+        >>> scene = rw.Scene(rw.Sphere(material=rw.Diffuse(0.5)), lights=[lamp])
+        >>> photons = scene.photons(1000, max_depth=1)
+        >>> photons.positions.shape[1], np.round(photons.emitted, 4).tolist()
+        (3, [12.5664, 12.5664, 12.5664])
         """
         arguments = photon_arguments(count, max_depth, roulette_depth, seed, threads)
-        return Photons.of(*_core.photons(self._core or self._compiled(), *arguments))
+        return Photons._of(*_core.photons(self._core or self._compiled(), *arguments))
 
 
 def known_by(core: CompiledScene, rays: AskedRays) -> tuple[Any, ...] | None:

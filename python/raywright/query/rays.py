@@ -39,16 +39,16 @@ def ray_arguments(
     threads: int | None,
     time: ArrayLike | None = None,
 ) -> RayArguments:
-    """Check and broadcast rays, and give what the core's queries take.
+    """Return checked, broadcast rays as the core takes them.
 
-    C-contiguous float32 and float64 arrays pass as they are; each array has one row, or one for each ray. Of
-    what is broadcast the core is given a view of the shape of all rays, and copies a chunk of it at a time.
+    C-contiguous float32 and float64 arrays pass as they are; each array has one row, or one for each ray. The
+    core gets a strided view of broadcast arrays, and copies a chunk of it at a time.
 
     Returns
     -------
     origins, directions, t_min, t_max, shape, threads, time
-        `shape` is the leading shape of the rays; `time` may be None, which is 0 for all. With a mask, as
-        `masks.asked` has it, they are what the core takes.
+        `shape` is the leading shape of the rays; `time` may be None, which is 0 for all. With a mask, from
+        `masks.asked`, they are compressed to the masked rays.
     """
     starts = last_axis("origins", origins, 3)
     ways = last_axis("directions", directions, 3)
@@ -89,7 +89,7 @@ def flags(name: str, array: NDArray[np.bool_], shape: tuple[int, ...]) -> NDArra
 
 
 def point_arguments(points: ArrayLike, threads: int | None) -> tuple[Floats, tuple[int, ...], int | None]:
-    """Check points, and give what the core's queries take: the points, their leading shape, and threads."""
+    """Return checked points as the core takes them: the points, their leading shape, and threads."""
     array = _in_order(last_axis("points", points, 3))
     return array, array.shape[:-1], thread_limit(threads)
 
@@ -97,7 +97,7 @@ def point_arguments(points: ArrayLike, threads: int | None) -> tuple[Floats, tup
 def nearest_arguments(
     points: ArrayLike, max_distance: ArrayLike, threads: int | None
 ) -> tuple[Floats, float | NDArray[np.float64], tuple[int, ...], int | None]:
-    """Check points and distances, and give what the core takes: both, their leading shape, and threads."""
+    """Return checked points and distances as the core takes them: both, their leading shape, and threads."""
     array, shape, threads = point_arguments(points, threads)
     most = _distances("max_distance", max_distance)
     if np.min(most, initial=0.0) < 0:

@@ -1,4 +1,4 @@
-"""What rays and points find, picked by ray, and as columns of a table."""
+"""Indexing of results by ray, and results as columns of a table."""
 
 import copy
 import math
@@ -109,7 +109,7 @@ def of_rays(
 
 
 def filled(some: NDArray[Any], has: NDArray[np.bool_], shape: tuple[int, ...], miss: float) -> NDArray[Any]:
-    """Return an entry for each ray: the next of some for those that have one, and what stands for a miss."""
+    """Return an entry for each ray: the next of the found ones for hits, and the miss value otherwise."""
     every = np.full((len(has), *some.shape[1:]), miss, some.dtype)
     every[has] = some
     return kept(every.reshape((*shape, *some.shape[1:])))
@@ -136,7 +136,7 @@ def length(shape: tuple[int, ...]) -> int:
 
 
 def copied(own: dict[str, Any], memo: dict[int, Any]) -> dict[str, Any]:
-    """Return copies of what is known, but of the scene."""
+    """Return copies of the private data, except for the scene."""
     return {name: copy.deepcopy(v, memo) for name, v in own.items() if name not in ("_compiled", "_rays")}
 
 

@@ -1,4 +1,4 @@
-"""How surfaces lie where rays meet them."""
+"""Differential geometry at hits."""
 
 from dataclasses import dataclass, fields
 
@@ -21,9 +21,21 @@ class Surface:
     shading_normal : (..., 3)
         Unit normal as the vertices give it, on the side of `normal`; the same where there are none.
     dp_du, dp_dv : (..., 3)
-        How the position changes with u and with v.
+        Derivatives of the position with respect to u and v.
     dn_du, dn_dv : (..., 3)
-        How the unit shading normal changes with u and with v.
+        Derivatives of the unit shading normal with respect to u and v.
+
+    See Also
+    --------
+    Hits.surface : Makes it.
+
+    Examples
+    --------
+    >>> surface = rw.Scene(rw.Sphere()).intersect([0, 0, 5], [0, 0, -1]).surface
+    >>> surface.position.tolist(), surface.dp_dv.round(9).tolist()
+    ([0.0, 0.0, 1.0], [-3.141592654, -0.0, 0.0])
+    >>> bool(surface.error < 1e-14)
+    True
     """
 
     position: NDArray[np.float64]

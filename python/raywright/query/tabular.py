@@ -9,19 +9,51 @@ from .rows import frame
 
 
 class Tabular:
-    """What can be told as columns of a table."""
+    """Results that convert to columns of a table."""
 
     def to_dict(self) -> dict[str, NDArray[Any]]:
-        """Return what is known as flat arrays by name, an entry for each row."""
+        """Return the results as flat arrays by name, an entry for each row.
+
+        Returns
+        -------
+        dict
+            An array for each column, all of the same length.
+
+        See Also
+        --------
+        Hits.to_dataframe : The same as a table of pandas.
+
+        Examples
+        --------
+        >>> hits = rw.Scene(rw.Sphere()).intersect([[0, 0, 5], [9, 0, 5]], [0, 0, -1])
+        >>> columns = hits.to_dict()
+        >>> columns["t"].tolist(), columns["shape_id"].tolist()
+        ([4.0, inf], [0, -1])
+        """
         raise NotImplementedError
 
     def to_dataframe(self) -> Any:
-        """Return what `to_dict` does as a ``pandas.DataFrame``.
+        """Return the arrays of `to_dict` as a ``pandas.DataFrame``.
+
+        Returns
+        -------
+        pandas.DataFrame
 
         Raises
         ------
         ImportError
             If pandas is not installed.
+
+        See Also
+        --------
+        Hits.to_dict : The same as a dict of arrays.
+
+        Examples
+        --------
+        >>> hits = rw.Scene(rw.Sphere()).intersect([[0, 0, 5], [9, 0, 5]], [0, 0, -1])
+        >>> import pandas
+        >>> hits.to_dataframe()[["t", "shape_id"]].shape
+        (2, 2)
         """
         return frame(self.to_dict())
 

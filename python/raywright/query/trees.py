@@ -21,10 +21,20 @@ class TreeBoxes:
     depth : (K,) int32
         Steps from the root, ascending.
     primitives : (K,) int32
-        How many primitives stand in a leaf; -1 for an inner node.
+        Number of primitives in a leaf; -1 for an inner node.
     corners : (K, 8, 3) float64
         The corners of each box. Bits 0 to 2 of a corner's number are set where it is at the greater end of
         the first to the third axis of its tree, which may be turned from the scene's.
+
+    See Also
+    --------
+    Scene.tree : Makes it.
+
+    Examples
+    --------
+    >>> boxes = rw.Scene([rw.Sphere(), rw.Sphere((9, 0, 0))]).tree()
+    >>> boxes.lower[0].round(3).tolist(), boxes.upper[0].round(3).tolist()
+    ([-1.0, -1.0, -1.0], [10.0, 1.0, 1.0])
     """
 
     depth: NDArray[np.int32]
@@ -33,7 +43,7 @@ class TreeBoxes:
 
     @property
     def leaf(self) -> NDArray[np.bool_]:
-        """Whether each is a leaf: (K,) bool."""
+        """Mask of leaves: (K,) bool."""
         return self.primitives >= 0
 
     @cached_property
@@ -47,7 +57,23 @@ class TreeBoxes:
         return sealed(self.corners.max(axis=1))
 
     def at(self, depth: int) -> "TreeBoxes":
-        """Return those so many steps from the root."""
+        """Return the boxes that are `depth` steps from the root.
+
+        Parameters
+        ----------
+        depth : int
+            Steps from the root, 0 for the root itself.
+
+        Returns
+        -------
+        TreeBoxes
+
+        Examples
+        --------
+        >>> boxes = rw.Scene(rw.scenes.torus_knot(along=40, around=8)).tree()
+        >>> len(boxes.at(0).depth), bool((boxes.at(2).depth == 2).all())
+        (1, True)
+        """
         some = slice(*np.searchsorted(self.depth, (depth, depth + 1)))
         return TreeBoxes(self.depth[some], self.primitives[some], self.corners[some])
 

@@ -1,1 +1,1 @@
-"""What can be hit and what shines, put together and ready for rays."""
+"""Scenes: shapes and lights, compiled for rays."""

@@ -1,4 +1,4 @@
-"""Scenes that come out of pickles, of which a process compiles each once."""
+"""Scenes from pickles: a process compiles each of them once."""
 
 from collections import OrderedDict
 
@@ -13,7 +13,7 @@ _lock = Lock()
 
 
 class Arrival:
-    """A scene that came out of a pickle, known by what it holds."""
+    """A scene from a pickle, identified by its contents."""
 
     def __init__(self, name: str) -> None:
         self._name = name

@@ -1,11 +1,11 @@
-"""What something is, in short: so that two can be told apart without keeping them."""
+"""Digests that tell two objects apart without keeping them."""
 
 import pickle
 from typing import Any
 
 
 class _Digest:
-    """A file that keeps nothing of what is written to it but a digest."""
+    """A file that keeps only a digest of the bytes written to it."""
 
     def __init__(self) -> None:
         # Imported here, because only checkpoints and executors need it (import time).

@@ -30,7 +30,7 @@ def framed(
     Parameters
     ----------
     shapes : Mesh, another shape, Instance, trimesh object, path, or list of these
-        What to look at.
+        Return the point to look at.
     up : {"y", "z"}
         The axis that points up.
     width, height : int

@@ -38,9 +38,9 @@ class Location(NamedTuple):
     shape : Mesh or another shape
         The shape that the primitive is of.
     shape_id : int
-        Which it is of the ``shapes`` of the innermost instance.
+        Index among the ``shapes`` of the innermost instance.
     face : int
-        Which face of the shape; 0 of one that is no mesh.
+        Face of the shape; 0 if the shape is no mesh.
     """
 
     path: tuple[tuple[int, int], ...]
@@ -51,30 +51,29 @@ class Location(NamedTuple):
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
 class Instance:
-    """Shapes put in one place or in many, compiled once: a copy takes some 150 bytes, whatever is copied.
+    """Shapes copied to one place or to many, compiled once: a copy takes some 150 bytes.
 
-    Materials and emission are those of the shapes. What shines in copies is sampled as a light, each copy of
-    each face by itself, where the copies stand still and are at most 4096 in all; what shines in copies that
-    move, in copies within copies, or in more of them is not: it lights the scene by rays that meet it, so
-    small bright lights are better left out of these.
+    Materials and emission are those of the shapes. Emission of copies that stand still, at most 4096 in all,
+    is sampled as a light, each face of each copy by itself. Emission of other copies (moving, nested, or more
+    of them) is not sampled: it is found only by rays that meet it, so keep small bright lights out of these.
 
     Parameters
     ----------
     shapes : Mesh or another shape, Instance, path, object of another library, or list or dict of these
-        What is copied: all that a `Scene` takes. Instances of the same shapes, the very same objects, share
-        what is compiled.
+        Shapes to copy: everything that a `Scene` takes. Instances of the same shapes, the very same objects,
+        share what is compiled.
     transform : (4, 4) or (N, 4, 4) array
         Where the copies are: affine matrices that act on column vectors (x, y, z, 1), each with (0, 0, 0, 1)
         as its last row, and invertible.
     transform_end : array of the same shape, optional
         Where they are as the shutter closes, for copies that move. At a time between 0 and 1 the matrix is
         ``transform + (transform_end - transform) * time``, number by number: every point moves on a straight
-        line, and what turns by much should be cut into shorter times. Should a matrix between have no
-        inverse, the copy is not seen then.
+        line, and large rotations should be cut into shorter times. Should a matrix between have no inverse,
+        the copy is not seen then.
     accelerator : BVH or another accelerator, optional
         The structure that finds hits in the shapes, by itself; ``BVH()`` if not given.
     name : str, optional
-        What `Hits.names` tells of it, whatever shape in it is hit.
+        Name that `Hits.names` returns for every hit in the instance.
 
     Raises
     ------
@@ -85,6 +84,11 @@ class Instance:
     TypeError
         If something is not of the kinds above.
 
+    See Also
+    --------
+    Scene : Takes instances beside other shapes.
+    scenes.forest : A scene of 100,000 copies.
+
     Notes
     -----
     ``hits.instance`` tells which copy is hit, and ``hits.primitive`` what in it, numbered flat: shape after
@@ -92,13 +96,22 @@ class Instance:
     takes such a number apart.
 
     A ray is taken to the space of the shapes by the inverse of the matrix, rounded to float64, and hits are
-    exact for it as it is taken there. Compared with shapes that are moved themselves, hits differ by what
-    rounding moved vertices makes, and not at all where neither rounds, as with integers and powers of two.
-    By how much depends on the condition of the matrix, the greatest row sum of ``|L| |L⁻¹|`` of its linear
-    part ``L``. It is at most 3 for a scaling along the axes of the shapes and a turn after it; matrices of
-    more than 2^20 are refused.
+    exact for it as it is taken there. Compared with transformed vertices, hits differ by the rounding of
+    these vertices, and not at all where neither rounds, as with integers and powers of two. By how much
+    depends on the condition of the matrix, the greatest row sum of ``|L| |L⁻¹|`` of its linear part ``L``. It
+    is at most 3 for a scaling along the axes of the shapes and a turn after it; matrices of more than 2^20
+    are refused.
 
     Closed surfaces in copies count for ``contains``, and all that is in them for ``closest_point``.
+
+    Examples
+    --------
+    >>> places = np.tile(np.eye(4), (3, 1, 1))
+    >>> places[:, 0, 3] = [0, 5, 10]
+    >>> scene = rw.Scene(rw.Instance(rw.Sphere(), places, name="row"))
+    >>> hits = scene.intersect([[0, 0, 3], [10, 0, 3], [20, 0, 3]], [0, 0, -1])
+    >>> hits.instance.tolist(), hits.t.tolist()
+    ([0, 2, -1], [2.0, 2.0, inf])
     """
 
     shapes: tuple[AnyShape, ...]
@@ -150,11 +163,21 @@ class Instance:
 
     @property
     def primitives(self) -> int:
-        """How many primitives one copy has, all copies in it counted."""
+        """Number of primitives in one copy, nested copies included."""
         return self._first[-1]
 
     def locate(self, primitive: int) -> Location:
-        """Find what a number of ``hits.primitive`` stands for.
+        """Decode a number of ``hits.primitive`` into the place that it stands for.
+
+        Parameters
+        ----------
+        primitive : int
+            Number of a primitive of one copy, as in ``hits.primitive``.
+
+        Returns
+        -------
+        Location
+            The instances on the way to the shape, the shape, its index, and its face.
 
         Raises
         ------
@@ -162,6 +185,18 @@ class Instance:
             If it is negative or not below `primitives`.
         TypeError
             If it is not an integer.
+
+        See Also
+        --------
+        Instance.parts : Decode an array of numbers.
+
+        Examples
+        --------
+        >>> copies = rw.Instance([rw.Sphere(), rw.Box()], np.eye(4))
+        >>> copies.locate(1).shape_id
+        1
+        >>> copies.locate(1).shape == rw.Box()
+        True
         """
         rest = integer("primitive", primitive, 0, self.primitives - 1)
         within = self
@@ -180,6 +215,32 @@ class Instance:
         """Yield each of the shapes that primitives are of, which of them are, and their numbers in it.
 
         Those of an instance within are numbered as its own `parts` takes them.
+
+        Parameters
+        ----------
+        primitive : array of ints
+            Numbers of primitives of one copy, as in ``hits.primitive``.
+
+        Yields
+        ------
+        shape : Mesh, another shape or Instance
+            One of the shapes that occur.
+        which : array of ints
+            Indices into `primitive` of the entries on this shape.
+        number : array of ints
+            Their faces on this shape.
+
+        See Also
+        --------
+        Instance.locate : Decode one number, through nested instances.
+
+        Examples
+        --------
+        >>> copies = rw.Instance([rw.Sphere(), rw.Box()], np.eye(4))
+        >>> for shape, which, number in copies.parts(np.array([1, 0, 1])):
+        ...     print(type(shape).__name__, which.tolist(), number.tolist())
+        Sphere [1] [0]
+        Box [0, 2] [0, 0]
         """
         shape_id = np.searchsorted(self._first, primitive, "right") - 1
         for i in np.unique(shape_id):
@@ -188,7 +249,32 @@ class Instance:
             yield shape, which, own % shape.primitives if isinstance(shape, Instance) else own
 
     def moved(self, transform: ArrayLike, transform_end: ArrayLike | None = None) -> "Instance":
-        """Return as many copies of the same shapes elsewhere; they share what is compiled."""
+        """Return as many copies of the same shapes elsewhere; they share what is compiled.
+
+        Parameters
+        ----------
+        transform : (4, 4) or (N, 4, 4) array
+            Where the copies are, as for `Instance`.
+        transform_end : array of the same shape, optional
+            Where they are as the shutter closes.
+
+        Returns
+        -------
+        Instance
+            With the same shapes, accelerator and name.
+
+        Raises
+        ------
+        ValueError, TypeError
+            As `Instance` does.
+
+        Examples
+        --------
+        >>> here = rw.Instance(rw.Sphere(), np.eye(4))
+        >>> there = here.moved([[1, 0, 0, 7], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
+        >>> rw.Scene(there).bounds.round(3).tolist()
+        [[6.0, -1.0, -1.0], [8.0, 1.0, 1.0]]
+        """
         result = Instance(self.shapes, transform, transform_end, self.accelerator, self.name)
         if len(result) != len(self):
             raise ValueError(f"transform must have {len(self)} matrices, got {len(result)}")
@@ -260,7 +346,7 @@ def _matrices(name: str, value: ArrayLike) -> NDArray[np.float64]:
 def meshes(shapes: Any, weld: Weld = "auto") -> tuple[AnyShape, ...]:
     """Lay out all that `Scene` takes, nested lists and dicts of it too, as one flat tuple.
 
-    Corners of what is converted are welded as `weld` says, and where that is a distance those of all meshes.
+    Corners of converted meshes are welded by `weld`; a distance welds across all meshes.
 
     Raises
     ------
@@ -310,7 +396,7 @@ def only_meshes(shapes: Any) -> tuple[Mesh, ...]:
     Raises
     ------
     TypeError
-        If one of them is no mesh; and what `meshes` raises.
+        If one of them is no mesh; otherwise as `meshes`.
     """
     found = []
     for shape in _each(shapes, "auto"):

@@ -1,4 +1,4 @@
-"""What a scene needs, and what is left out."""
+"""The plan of a scene: the features it needs, and those left out."""
 
 from dataclasses import dataclass
 
@@ -7,7 +7,18 @@ from ..html_tables import html_table
 
 @dataclass(frozen=True)
 class PlanRow:
-    """A line of a `Plan`: what it is about, whether the scene has it, and what follows."""
+    """A row of a `Plan`: a feature, whether the scene has it, and the consequence.
+
+    See Also
+    --------
+    Plan : The table of these rows.
+
+    Examples
+    --------
+    >>> row = rw.Scene(rw.Sphere()).plan().rows[0]
+    >>> row.what, row.needed
+    ('light', False)
+    """
 
     what: str
     needed: bool
@@ -16,7 +27,7 @@ class PlanRow:
 
 @dataclass(frozen=True, repr=False)
 class Plan:
-    """What a scene needs of those who render it, and which kernel does. It prints as a table.
+    """The features that rendering a scene needs, and the kernel that is chosen for it. It prints as a table.
 
     Attributes
     ----------
@@ -25,7 +36,17 @@ class Plan:
         or ``"general"`` (masks, media in one another, filtered textures too). All give the same picture, bit
         for bit, where they can.
     rows : tuple of PlanRow
-        What there may be in a scene, whether this one has it, and what that means.
+        Every feature, whether this scene has it, and the consequence.
+
+    See Also
+    --------
+    Scene.plan : Makes it.
+
+    Examples
+    --------
+    >>> plan = rw.Scene(rw.Sphere()).plan()
+    >>> plan.kernel, plan.needed
+    ('plain', ('shapes',))
     """
 
     kernel: str
@@ -33,12 +54,12 @@ class Plan:
 
     @property
     def needed(self) -> tuple[str, ...]:
-        """What the scene needs."""
+        """Features that the scene needs."""
         return tuple(row.what for row in self.rows if row.needed)
 
     @property
     def left_out(self) -> tuple[str, ...]:
-        """What it does without."""
+        """Features that are left out."""
         return tuple(row.what for row in self.rows if not row.needed)
 
     def _repr_html_(self) -> str:

@@ -1,4 +1,4 @@
-"""What watches a scene while it is built: a bar on stderr where that takes long, or a function."""
+"""Progress of builds: a bar on stderr for long ones, or a callback."""
 
 import sys
 import time
@@ -20,9 +20,9 @@ def check_progress(progress: object) -> None:
 
 
 def watcher(progress: BuildProgress | None, what: str = "build") -> AbstractContextManager[Report | None]:
-    """Give what is called with the share of a work that is done; None if nobody wants to know.
+    """Return a callback that takes the finished share of the work; None if nobody wants to know.
 
-    With no word on `progress`, a bar is shown to who sits at a terminal.
+    By default, a bar is shown if stderr is a terminal.
     """
     if progress is None:
         progress = sys.stderr is not None and sys.stderr.isatty()

@@ -1,4 +1,4 @@
-"""A scene: what can be hit, and what shines."""
+"""The scene: shapes, lights, environment and medium."""
 
 import os
 import warnings
@@ -50,55 +50,55 @@ _ARGUMENTS = (
 
 
 class Device(Protocol[Held]):
-    """What can hold a scene: a `Gpu`."""
+    """A device that holds a scene: a `Gpu`."""
 
     def hold(self, scene: "Scene") -> AbstractContextManager[Held]:
         """Hold a scene as long as a ``with`` block lasts."""
 
 
 class Scene(Queries):
-    """Shapes and lights; compiled for rays the first time that it is asked.
+    """Shapes, lights and media; the first query compiles them for rays.
 
-    Nothing about it changes but where the vertices are, by `refit`. It may be asked from many threads at
-    once. To compile a large one takes a while: `build` does so when it suits, and shows how far it is.
+    A scene is immutable, except that `refit` moves its vertices. Many threads may query it at once. Large
+    scenes take a while to compile: `build` does so ahead of the first query, and shows its progress.
 
     Parameters
     ----------
     shapes : Mesh, another shape, Instance, path, object of another library, or list or dict of these
-        What can be hit. A path may be of a PLY, OBJ, STL, OFF or glTF file, or any other that trimesh reads.
-        Objects are meshes and scenes of trimesh, data sets of pyvista and VTK, meshes of Open3D, meshio,
-        manifold3d and Blender, shapes of CadQuery and build123d, and ``(vertices, faces)`` pairs of arrays
-        or tensors; see `Mesh.of`. Lists and dicts may be nested; all of it is laid out flat in
-        ``scene.shapes``, and keys of dicts are the names. A trimesh.Scene gives one mesh for each node that
-        holds one, in the order of its geometry and with the node's transform applied. Points and curves are
-        left out, with a warning.
+        Shapes that rays can hit. A path may be of a PLY, OBJ, STL, OFF or glTF file, or any other that
+        trimesh reads. Objects are meshes and scenes of trimesh, data sets of pyvista and VTK, meshes of
+        Open3D, meshio, manifold3d and Blender, shapes of CadQuery and build123d, and ``(vertices, faces)``
+        pairs of arrays or tensors; see `Mesh.of`. Lists and dicts may be nested; all of it is laid out flat
+        in ``scene.shapes``, and keys of dicts are the names. A trimesh.Scene gives one mesh for each node
+        that holds one, in the order of its geometry and with the node's transform applied. Points and curves
+        are left out, with a warning.
     lights : PointLight, SpotLight, DirectionalLight or ProjectorLight, or sequence of them
         Lights that are no surfaces.
     environment : ConstantEnvironment, EnvironmentMap, SunSky, list of these, float or 3 floats, optional
-        What surrounds the scene; numbers are a constant radiance, and several add up. None is black.
+        Light from infinity; numbers are a constant radiance, and several environments add up. None is black.
     accelerator : BVH, KdTree, Octree, BSP, Grid, NestedGrid or BruteForce
         The structure that finds hits.
     precision : {"auto", "single", "double"}
-        What vertices are rounded to: "single" to float32, which takes the least memory and is the fastest,
-        "double" not at all. "auto" loses no digit: vertices are kept as float32 where all of them are float32
-        numbers, as those of most binary files are, and as float64 otherwise. Either way hits are exact for
-        the vertices as they then are. "double" costs nothing where all vertices are float32 numbers anyway.
+        Precision of vertices: "single" to float32, which takes the least memory and is the fastest, "double"
+        not at all. "auto" loses no digit: vertices are kept as float32 where all of them are float32 numbers,
+        as those of most binary files are, and as float64 otherwise. Either way hits are exact for the
+        vertices as they then are. "double" costs nothing where all vertices are float32 numbers anyway.
     quality : {"balanced", "fast build", "fast rays"}
-        How long the accelerator may take to build for the sake of rays. Unless it is "fast build", what
-        stands askew as a whole has boxes turned as it is, and what else is long and diagonal may be parted,
-        by spatial splits where it is little and before the build where it is much, and for "fast rays" more
-        of it; a tree of parts is built anew by `refit`.
+        Effort spent on the accelerator's build to make rays faster. Except with "fast build": if the geometry
+        is rotated as a whole, oriented bounding boxes are used, and long diagonal primitives may be split, by
+        spatial splits if they are few and before the build if they are many. "fast rays" splits more of them.
+        `refit` rebuilds a tree that holds pieces.
 
     medium : Homogeneous or GridMedium, optional
-        What fills the space in which nothing else is: haze, fog, sea. None is clear.
+        Medium outside of all shapes: haze, fog, sea. None is clear.
     shading_normals : {"faded", "as given"}
-        What becomes of light where shading normals are not those of faces: those of a mesh's vertices, of
-        bumps and of normal maps. "faded" lets it fade towards the horizon of the face, so that facets do not
-        show where it grazes them, and bends towards the viewer what faces away from him. "as given" does
-        neither, as other renderers: see Notes.
+        Treatment of shading normals that differ from those of faces: of vertices, bumps and normal maps.
+        "faded" lets it fade towards the horizon of the face, so that facets do not show where it grazes them,
+        and bends towards the viewer what faces away from him. "as given" does neither, as other renderers:
+        see Notes.
     weld : "auto", float or None
-        How close corners of meshes are one, in the scene's unit: see Notes. None for those alone that are
-        equal.
+        Distance at which corners of meshes are merged, in the scene's unit: see Notes. None for those alone
+        that are equal.
 
     Raises
     ------
@@ -110,6 +110,12 @@ class Scene(Queries):
     TypeError
         If something is not of the kinds above.
 
+    See Also
+    --------
+    load : Load a scene file of another renderer.
+    render : Render a picture of a scene.
+    Instance : Copies of shapes within a scene.
+
     Notes
     -----
     With "auto", only vertices that faces use count. One mesh that has digits beyond float32 keeps the digits
@@ -118,30 +124,38 @@ class Scene(Queries):
     ``accelerator.precision`` what became of it. Where "single" moves a vertex by more than 1e-7 of the extent
     of its mesh, it gives one RuntimeWarning, with the figure, when the scene is compiled.
 
-    By shading normals "as given", light counts by its cosine to them alone, and what is seen is the side that
-    they show the viewer: where he sees one from behind, a `TwoSided` has its back. What is on one side of
-    a face is still not lit from the other. Under bumps and normal maps, light has to come from the same side
-    of the normal that the surface has without them, and a share of it counts (Estevez, Lecocq and Stein,
-    "A Microfacet-Based Shadowing Function to Solve the Bump Terminator Problem", 2019); a normal that the
-    viewer would see from behind is turned half round the surface's own; and of a `BumpMap` only slopes
-    count. Mitsuba does all this. Scenes without shading normals are the same either way; of others, paths
-    are slower, ``Path(reuse=)`` shares nothing at their surfaces, and graphics processors leave them to the
-    CPU.
+    With "as given", light counts by its cosine to shading normals alone, and these decide which side is seen:
+    a `TwoSided` whose shading normal points away from the viewer shows its back. Light on one side of a face
+    still does not reach the other. Under bumps and normal maps, light has to come from the same side of the
+    normal that the surface has without them, and a share of it counts (Estevez, Lecocq and Stein, "A
+    Microfacet-Based Shadowing Function to Solve the Bump Terminator Problem", 2019); a normal that the viewer
+    would see from behind is turned half round the surface's own; and of a `BumpMap` only slopes count.
+    Mitsuba does all this. Scenes without shading normals are the same either way; of others, paths are
+    slower, ``Path(reuse=)`` shares nothing at their surfaces, and graphics processors leave them to the CPU.
 
     Corners that differ by rounding leave cracks, through which rays slip, and surfaces that do not close. So
     corners on open edges are put in one place where they are as close as `weld` says: "auto" is 2^-21 of the
     largest coordinate of a mesh where all are float32 numbers, 2^-47 where not, and a 64th of its mean edge
-    at most, before it was transformed; between two meshes the lesser. Two corners of one face never are one,
-    and what is closed stays as it is, however thin. With "auto" that goes for files, for trimesh's objects
-    and for CAD shapes, each by itself; a `Mesh` of arrays, or an object of another library, is hit where its
-    vertices are, and welded for `contains`, `signed_distance` and in ``rw.measure``. A distance goes for all
-    meshes, together; those of an `Instance` are a group of their own. ``rw.measure.topology`` tells which
-    cracks remain.
+    at most, before it was transformed; between two meshes the lesser. Two corners of one face are never
+    merged, and closed meshes stay unchanged, however thin. With "auto" that goes for files, for trimesh's
+    objects and for CAD shapes, each by itself; a `Mesh` of arrays, or an object of another library, is hit
+    where its vertices are, and welded for `contains`, `signed_distance` and in ``rw.measure``. A distance
+    goes for all meshes, together; those of an `Instance` are a group of their own. ``rw.measure.topology``
+    tells which cracks remain.
 
     Faces with a corner that is NaN or infinite are left out when the scene is compiled, with one
-    RuntimeWarning that tells how many. Scenes compare by what they hold, and pickle without what was
-    compiled. Of what comes out of pickles a process keeps the last two that it has compiled: where a pool's
-    tasks bring the same scene along again and again, each process compiles it once.
+    RuntimeWarning that tells how many. Scenes compare by contents, and pickle without compiled data. A
+    process keeps the last two unpickled scenes that it has compiled: if the tasks of a pool bring the same
+    scene again and again, each process compiles it once.
+
+    Examples
+    --------
+    >>> scene = rw.Scene({"ball": rw.Sphere(radius=0.5), "floor": rw.Plane((0, 0, -1), (0, 0, 1))})
+    >>> scene.names
+    ('ball', 'floor')
+    >>> hits = scene.intersect([[0, 0, 3], [2, 0, 3]], [0, 0, -1])
+    >>> hits.t.tolist(), hits.names.tolist()
+    ([2.5, 4.0], ['ball', 'floor'])
     """
 
     def __init__(
@@ -187,12 +201,12 @@ class Scene(Queries):
 
     @property
     def shapes(self) -> tuple[AnyShape, ...]:
-        """What can be hit; `Hits.shape_id` counts them."""
+        """Shapes that rays can hit; `Hits.shape_id` counts them."""
         return self._shapes
 
     @property
     def names(self) -> tuple[str, ...]:
-        """What each of the shapes is called, "" where it has no name."""
+        """Name of each shape, "" if it has none."""
         return names_of(self._shapes)
 
     @property
@@ -202,47 +216,47 @@ class Scene(Queries):
 
     @property
     def environment(self) -> Environment | tuple[Environment, ...] | None:
-        """What surrounds the scene, a tuple if that is several; None is black."""
+        """The environment, a tuple if there are several; None is black."""
         return self._environment
 
     @property
     def accelerator_choice(self) -> Accelerator:
-        """The accelerator that was asked for."""
+        """The argument `accelerator`."""
         return self._accelerator
 
     @property
     def precision(self) -> Precision:
-        """What vertices are rounded to, as asked for: "auto", "single" or "double"."""
+        """The argument `precision`: "auto", "single" or "double"."""
         return self._precision
 
     @property
     def quality(self) -> Quality:
-        """How long the accelerator may take to build: "fast build", "balanced" or "fast rays"."""
+        """The argument `quality`: "fast build", "balanced" or "fast rays"."""
         return self._quality
 
     @property
     def medium(self) -> Medium | None:
-        """What fills the space in which nothing else is; None is clear."""
+        """Medium outside of all shapes; None is clear."""
         return self._medium
 
     @property
     def shading_normals(self) -> ShadingNormals:
-        """What becomes of light under shading normals: "faded" or "as given"."""
+        """The argument `shading_normals`: "faded" or "as given"."""
         return self._shading_normals
 
     @property
     def weld(self) -> Weld:
-        """How close corners of meshes are one: "auto", a distance, or None for equal ones alone."""
+        """The argument `weld`: "auto", a distance, or None for equal ones alone."""
         return self._weld
 
     @property
     def wavelengths(self) -> str | None:
-        """What of it needs light to be followed by wavelength; None where red, green and blue do."""
+        """The reason for spectral rendering; None where red, green and blue do."""
         return self._wavelengths
 
     @property
     def accelerator(self) -> _core.AcceleratorInfo:
-        """What the accelerator came to be: kind, nodes, leaves, depth, bytes, build_seconds, sah_cost.
+        """Statistics of the built accelerator: kind, nodes, leaves, depth, bytes, build_seconds, sah_cost.
 
         Its `precision` is that of the vertices that it holds, "single" or "double"; instances have their own.
         """
@@ -260,12 +274,12 @@ class Scene(Queries):
     def bounds(self) -> NDArray[np.float64] | None:
         """Least and greatest corner of all that can be hit, (2, 3) float64; None for an empty scene.
 
-        What has no end, as a `Plane`, does not count.
+        Infinite shapes, such as a `Plane`, do not count.
         """
         return self._compiled().bounds
 
     def replace(self, **changes: Any) -> "Scene":
-        """Return a scene that differs in what is named, and is as this one otherwise.
+        """Return a copy of the scene with some arguments changed.
 
         It is compiled when it is asked: where it differs in lights, environment and medium alone, with
         the accelerator that this one has, and anew otherwise. ``copy.replace`` (Python 3.13) does the same.
@@ -285,6 +299,17 @@ class Scene(Queries):
             If `Scene` has no such argument; and as `Scene` does.
         ValueError, FileNotFoundError
             As `Scene` does.
+
+        See Also
+        --------
+        Scene.refit : Move the vertices of a scene in place.
+
+        Examples
+        --------
+        >>> scene = rw.Scene(rw.Sphere(), environment=1.0)
+        >>> brighter = scene.replace(environment=2.0)
+        >>> brighter.shapes == scene.shapes, brighter == scene
+        (True, False)
         """
         for name in changes:
             if name not in _ARGUMENTS:
@@ -322,12 +347,27 @@ class Scene(Queries):
         TypeError
             If an array does not hold real numbers.
 
+        See Also
+        --------
+        Scene.rebuild : Build the accelerator anew after large motions.
+        Scene.replace : Return a new scene with some arguments changed.
+
         Notes
         -----
-        What cannot be refitted is built anew, for example where other faces than before have a corner that
-        is NaN or infinite, or where the accelerator holds pieces of faces; ``scene.accelerator.kind`` then
-        does not end in "refitted". With ``quality="fast build"`` the default accelerator holds no pieces. A
-        scene that was not asked anything yet is built when it is.
+        The accelerator is rebuilt if it cannot be refitted, for example if other faces than before have a
+        corner that is NaN or infinite, or if it holds pieces of faces; ``scene.accelerator.kind`` then does
+        not end in "refitted". With ``quality="fast build"`` the default accelerator holds no pieces. A scene
+        that was not asked anything yet is built when it is.
+
+        Examples
+        --------
+        >>> triangle = rw.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+        >>> scene = rw.Scene(triangle)
+        >>> scene.intersect([0.2, 0.2, 5], [0, 0, -1]).t.item()
+        5.0
+        >>> growth = scene.refit(triangle.vertices + [0, 0, 2])
+        >>> scene.intersect([0.2, 0.2, 5], [0, 0, -1]).t.item()
+        3.0
         """
         after = Scene(self._moved(vertices), *self._parts()[1:])
         with self._unless_building():
@@ -341,15 +381,15 @@ class Scene(Queries):
         return core.growth if core else 1.0
 
     def build(self, progress: BuildProgress = True) -> None:
-        """Compile the scene for rays now, unless it is; otherwise the first question does.
+        """Compile the scene for rays now; otherwise the first query does.
 
         Parameters
         ----------
         progress : bool or callable
             Whether to show a bar on stderr where it takes longer than two seconds. Or a function that is
             called with the share that is done, from 0 to 1 and never less than before: ten times a second at
-            most, and in the end with 1. What the function raises ends the build; it cannot ask the scene.
-            Where a question compiles the scene, there is a bar if stderr is a terminal.
+            most, and in the end with 1. An exception of the function ends the build; the function cannot
+            query the scene. If a query compiles the scene, there is a bar if stderr is a terminal.
 
         Raises
         ------
@@ -358,8 +398,20 @@ class Scene(Queries):
         ValueError
             If something in the scene cannot be.
         KeyboardInterrupt
-            At once, when Ctrl-C is pressed, as in any question that compiles the scene. It is as it was
-            before, and can be compiled again.
+            At once, when Ctrl-C is pressed, as in any query that compiles the scene. The scene is unchanged,
+            and can be compiled again.
+
+        See Also
+        --------
+        Scene.rebuild : Build the accelerator anew.
+
+        Examples
+        --------
+        >>> scene = rw.Scene(rw.scenes.torus_knot(along=40, around=8))
+        >>> shares = []
+        >>> scene.build(progress=shares.append)
+        >>> shares[-1]
+        1.0
         """
         check_progress(progress)
         self._compiled(progress)
@@ -376,6 +428,22 @@ class Scene(Queries):
         ------
         TypeError, KeyboardInterrupt
             As `build` does.
+
+        See Also
+        --------
+        Scene.refit : Move the vertices without a new accelerator.
+
+        Examples
+        --------
+        >>> knot = rw.scenes.torus_knot(along=40, around=8)
+        >>> scene = rw.Scene(knot)
+        >>> scene.build(progress=False)
+        >>> growth = scene.refit(knot.vertices * [1, 3, 1])
+        >>> scene.accelerator.kind.endswith("refitted")
+        True
+        >>> scene.rebuild(progress=False)
+        >>> scene.accelerator.kind.endswith("refitted")
+        False
         """
         check_progress(progress)
         with self._unless_building():
@@ -385,12 +453,24 @@ class Scene(Queries):
         self._compiled(progress)
 
     def welded(self) -> "Scene":
-        """Return the scene with corners of meshes put in one place that differ by rounding, as `weld` says.
+        """Return the scene with its meshes welded: corners that differ by rounding are merged, by `weld`.
 
         Returns
         -------
         Scene
-            The very same where no corner moves, as in scenes of files and of what is closed.
+            The very same object if no corner moves, as in scenes of files and of closed meshes.
+
+        See Also
+        --------
+        measure.topology : Report the cracks that remain.
+
+        Examples
+        --------
+        >>> left = rw.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+        >>> right = rw.Mesh([[1, 1, 0], [0, 1, 1e-9], [1, 0, 0]], [[0, 1, 2]])
+        >>> welded = rw.Scene([left, right], weld=1e-6).welded()
+        >>> bool(np.isin(welded.shapes[1].vertices[1], welded.shapes[0].vertices).all())
+        True
         """
         if self._closed is None or self._closed[0] is not self._shapes:
             shapes = closed(self._shapes, self._weld)
@@ -420,9 +500,27 @@ class Scene(Queries):
         )
 
     def plan(self) -> Plan:
-        """Return what the scene needs, what is left out, and which kernel renders it, as a table.
+        """Return a table of the features that the scene needs or leaves out, and the kernel that renders it.
 
-        Among it is whether vertices keep more digits than float32 has, and how far rounding moves them.
+        One row tells whether vertices keep more digits than float32 has, and how far rounding moves them.
+
+        Returns
+        -------
+        Plan
+            A row for each feature.
+
+        See Also
+        --------
+        RenderPlan : Options that a render has chosen.
+
+        Examples
+        --------
+        >>> scene = rw.Scene(rw.Sphere(material=rw.Mirror()), environment=1.0)
+        >>> plan = scene.plan()
+        >>> plan.kernel
+        'open'
+        >>> plan.needed[:2]
+        ('light', 'materials')
         """
         kernel, rows = _core.plan(self._compiled())
         return Plan(kernel, tuple(PlanRow(*row) for row in rows))
@@ -430,10 +528,29 @@ class Scene(Queries):
     def tree(self) -> TreeBoxes:
         """Return the boxes of the accelerator's nodes, from the root down.
 
+        Returns
+        -------
+        TreeBoxes
+            All nodes, each level after the one above.
+
         Raises
         ------
         ValueError
             If the accelerator has no boxes: grids, BSP trees and `BruteForce` have none.
+
+        See Also
+        --------
+        report.tree : Plot the boxes of a tree.
+        Scene.flat : The tree as arrays for graphics processors.
+
+        Examples
+        --------
+        >>> scene = rw.Scene(rw.scenes.torus_knot(along=40, around=8))
+        >>> boxes = scene.tree()
+        >>> boxes.depth[:3].tolist(), boxes.corners.shape[1:]
+        ([0, 1, 1], (8, 3))
+        >>> int(boxes.primitives[boxes.leaf].sum()) >= 40 * 8 * 2
+        True
         """
         boxes = _core.tree(self._compiled())
         if boxes is None:
@@ -452,11 +569,22 @@ class Scene(Queries):
         -------
         FlatArrays
             Nodes of 32 bytes, triangles of 48, and where they are.
+
+        See Also
+        --------
+        Scene.tree : The boxes of the accelerator.
+        Scene.on : Hold the scene on a graphics processor.
+
+        Examples
+        --------
+        >>> flat = rw.Scene(rw.scenes.torus_knot(along=40, around=8)).flat()
+        >>> len(flat.triangles), flat.nodes.dtype.itemsize
+        (640, 32)
         """
         return flat_arrays(_core.FlatScene(self._compiled(), self._accelerator, self._quality, True))
 
     def on(self, device: Device[Held]) -> AbstractContextManager[Held]:
-        """Hold the scene on a device, which then answers for rays as the scene does.
+        """Copy the scene to a device, which then answers ray queries.
 
         Parameters
         ----------
@@ -472,6 +600,20 @@ class Scene(Queries):
         ------
         TypeError
             If `device` is no `Gpu`.
+
+        See Also
+        --------
+        Gpu : A graphics processor.
+        Scene.flat : The arrays that are copied.
+
+        Examples
+        --------
+        >>> scene = rw.Scene(rw.Sphere())
+        >>> try:
+        ...     scene.on("a device")
+        ... except TypeError as error:
+        ...     print(error)
+        device must be a Gpu, got 'a device'
         """
         hold = getattr(device, "hold", None)
         if isinstance(device, type) or hold is None:
@@ -481,7 +623,7 @@ class Scene(Queries):
 
     @contextmanager
     def _unless_building(self) -> Iterator[None]:
-        """Wait for whoever builds the scene, but for oneself."""
+        """Wait for another thread that builds the scene."""
         with self._lock:
             if self._building and self._building == os.getpid():
                 raise RuntimeError("the scene is being built: what watches that cannot ask it")
@@ -524,7 +666,7 @@ class Scene(Queries):
         return compiled
 
     def _tell_loss(self, compiled: _core.CompiledScene, stacklevel: int) -> None:
-        """Warn of what rounding to float32 has lost, once."""
+        """Warn once of digits lost by rounding to float32."""
         if compiled.loss is None or self._is_loss_told:
             return
         self._is_loss_told = True
@@ -537,7 +679,7 @@ class Scene(Queries):
         )
 
     def _parts(self) -> tuple[Any, ...]:
-        """Give what a scene is made of: its arguments, in their order."""
+        """Return the arguments of the scene, in their order."""
         return (
             self._shapes,
             self._lights,

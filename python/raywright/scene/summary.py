@@ -11,7 +11,7 @@ _MOST_SHAPES = 20
 
 
 def described(name: str, scene: Scene) -> str:
-    """Return what a scene holds, and what its accelerator looks like, as aligned lines under `name`."""
+    """Return a scene's contents and its accelerator's statistics as aligned lines under `name`."""
     meshes = [shape for shape in scene.shapes if isinstance(shape, Mesh)]
     copies = sum(len(shape) for shape in scene.shapes if isinstance(shape, Instance))
     others = len(scene.shapes) - len(meshes)

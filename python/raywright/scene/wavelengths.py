@@ -1,4 +1,4 @@
-"""Whether a scene has to be rendered by wavelength, and why."""
+"""The reason for spectral rendering, if there is one."""
 
 from collections.abc import Iterable
 from dataclasses import fields, is_dataclass
@@ -30,7 +30,7 @@ def _of_shape(shape: Any, seen: set[int]) -> str | None:
 
 
 def _of(thing: Any, name: str, seen: set[int]) -> str | None:
-    """Return why a description needs wavelengths, by what is in it."""
+    """Return the reason for which a description needs spectral rendering."""
     if isinstance(thing, Dispersion):
         return f"the {name} of glass goes with wavelength, by {type(thing).__name__}'s formula"
     if isinstance(thing, Spectrum):
