@@ -1,4 +1,4 @@
-"""What all cameras have: a picture, a shutter, and rays."""
+"""The base class of all cameras: a picture, a shutter, and rays."""
 
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
@@ -18,11 +18,11 @@ _CENTRE = (0.5, 0.5)
 
 @dataclass(frozen=True, init=False, repr=False, kw_only=True)
 class AnyCamera(Pose):
-    """What cameras of all kinds can do.
+    """The base class of all cameras.
 
     To be made as one of them: `Camera`, `ThinLens`, `Orthographic`, `Fisheye`, `Panorama`.
 
-    All take where they stand as `Pose` does, and these.
+    All take the arguments of `Pose`, and these.
 
     Parameters
     ----------
@@ -32,7 +32,7 @@ class AnyCamera(Pose):
         Where the camera is as the shutter closes; another camera will do. In between it goes straight at an
         even pace, and turns about one axis at an even pace (slerp; Shoemake 1985).
     shutter : 2 floats
-        When it opens and closes, in the scene's time, in which instances move from 0 to 1.
+        Opening and closing time, in the scene's time, in which instances move from 0 to 1.
 
     Raises
     ------
@@ -40,6 +40,15 @@ class AnyCamera(Pose):
         If a number is out of range or not finite, or the shutter closes before it opens.
     TypeError
         If something is not a number, or `moved_to` is no Pose.
+
+    See Also
+    --------
+    Pose : A position with an orientation.
+
+    Examples
+    --------
+    >>> isinstance(rw.Camera((0, 0, 5), (0, 0, 0)), rw.AnyCamera)
+    True
     """
 
     kind: ClassVar[str]
@@ -93,7 +102,7 @@ class AnyCamera(Pose):
             its area. Its centre if not given; of no account for cameras without a lens.
         time : float or (height, width) array, optional
             When, from 0 as the shutter opens, which it is if not given, to 1 as it closes, for all or for
-            each. What is in the scene then is asked with ``time=camera.scene_time(time)``.
+            each. For queries of a scene in motion, pass ``time=camera.scene_time(time)``.
 
         Returns
         -------
@@ -107,6 +116,21 @@ class AnyCamera(Pose):
             If an array has another shape, `lens` or `time` is out of range, or `dtype` is another type.
         TypeError
             If `offsets`, `lens` or `time` are not real numbers.
+
+        See Also
+        --------
+        Camera.rays_through : Rays through any points.
+        Scene.first_hits : Hits of all pixels at once.
+
+        Examples
+        --------
+        >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), width=3, height=3)
+        >>> origins, directions = camera.rays()
+        >>> origins.shape, directions[1, 1].tolist()
+        ((3, 3, 3), [0.0, 0.0, -1.0])
+        >>> scene = rw.Scene(rw.Sphere())
+        >>> scene.intersect(origins, directions).hit.astype(int).tolist()
+        [[0, 0, 0], [0, 1, 0], [0, 0, 0]]
         """
         kind = np.dtype(dtype)
         if kind not in (np.float32, np.float64):
@@ -149,6 +173,18 @@ class AnyCamera(Pose):
             If an array has another shape, `points` are not finite, or `lens` or `time` is out of range.
         TypeError
             If `points`, `lens` or `time` are not real numbers.
+
+        See Also
+        --------
+        Camera.project : The inverse: points of the scene to the picture.
+        Camera.rays : Rays through all pixels.
+
+        Examples
+        --------
+        >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), fov=90, width=4, height=4)
+        >>> origins, directions = camera.rays_through([[2, 2], [4, 2]])
+        >>> directions.round(4).tolist()
+        [[0.0, 0.0, -1.0], [0.7071, 0.0, -0.7071]]
         """
         where = last_axis("points", points, 2)
         if not np.isfinite(where).all():
@@ -169,7 +205,35 @@ class AnyCamera(Pose):
         return origins, directions
 
     def scene_time(self, time: ArrayLike | None = None) -> NDArray[np.float64]:
-        """Return the scene's time at times (...) from 0 as the shutter opens to 1 as it closes."""
+        """Return the scene's time at times (...) from 0 as the shutter opens to 1 as it closes.
+
+        Parameters
+        ----------
+        time : float or (...) array, optional
+            From 0 as the shutter opens, which it is if not given, to 1 as it closes.
+
+        Returns
+        -------
+        (...) float64 array
+            Times for queries of a scene.
+
+        Raises
+        ------
+        ValueError
+            If a time is not between 0 and 1.
+        TypeError
+            If the times are not real numbers.
+
+        See Also
+        --------
+        Camera.rays : Rays at times of the shutter.
+
+        Examples
+        --------
+        >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), shutter=(0.25, 0.75))
+        >>> camera.scene_time([0.0, 0.5, 1.0]).tolist()
+        [0.25, 0.5, 0.75]
+        """
         opens, closes = self.shutter
         return np.asarray(opens + (closes - opens) * _times(time))
 

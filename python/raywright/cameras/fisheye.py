@@ -32,12 +32,12 @@ class Fisheye(AnyCamera):
     width, height : int
         Size of the picture in pixels, 1 to 65536.
     mapping : str
-        How far from the middle a direction at an angle θ from the view is seen: ``"equidistant"``, as θ;
-        ``"equisolid"``, as sin(θ/2), so that equal solid angles have equal areas; ``"stereographic"``, as
-        tan(θ/2), so that small circles stay circles; ``"orthographic"``, as sin θ.
+        Distance from the center of the picture of a direction at an angle θ from the view: ``"equidistant"``,
+        as θ; ``"equisolid"``, as sin(θ/2), so that equal solid angles have equal areas; ``"stereographic"``,
+        as tan(θ/2), so that small circles stay circles; ``"orthographic"``, as sin θ.
     fov_axis : str
-        Which length of the picture is the diameter of the circle: the ``"smaller"``, so that all of it is
-        seen, ``"x"``, ``"y"``, the ``"larger"``, or the ``"diagonal"``, so that it fills the picture.
+        Side of the picture that is the diameter of the circle: the ``"smaller"``, so that all of it is seen,
+        ``"x"``, ``"y"``, the ``"larger"``, or the ``"diagonal"``, so that it fills the picture.
     moved_to, shutter
         As `Camera` has it.
 
@@ -47,6 +47,17 @@ class Fisheye(AnyCamera):
         If a number is out of range or not finite, or the mapping is none of these.
     TypeError
         If something is not a number.
+
+    See Also
+    --------
+    Panorama : The whole sphere in a rectangle.
+
+    Examples
+    --------
+    >>> camera = rw.Fisheye((0, 0, 0), direction=(0, 0, -1), fov=180, width=5, height=5)
+    >>> directions = camera.rays()[1]
+    >>> directions[2, 2].tolist(), bool(np.isnan(directions[0, 0]).all())
+    ([0.0, 0.0, -1.0], True)
     """
 
     kind: ClassVar[str] = "fisheye"

@@ -28,7 +28,7 @@ class Stand(NamedTuple):
     position, forward, up : (3,) arrays
         The latter two unit.
     mirrored : bool
-        Whether what is to the right is seen on the left.
+        True if the picture is mirrored.
     """
 
     position: Matrix
@@ -38,7 +38,7 @@ class Stand(NamedTuple):
 
 
 def of_world(to_world: ArrayLike, convention: str) -> Stand:
-    """Read a matrix from camera to world, of which lengths do not count."""
+    """Decompose a matrix from camera to world, whose scale is ignored."""
     choice("convention", convention, tuple(_AXES))
     matrix = finite("to_world", to_world, (4, 4))
     if not (matrix[3] == (0, 0, 0, 1)).all():

@@ -14,19 +14,19 @@ from .pose import Pose
 class Orthographic(AnyCamera):
     """A camera whose rays are parallel: lengths are the same at every distance.
 
-    Rays start in the plane through `position` across the view, so that what is behind it is not seen.
+    Rays start in the plane through `position` across the view, so shapes behind it are not seen.
 
     Parameters
     ----------
     position, target, up, direction
         Where the middle of the picture is, and where the camera looks, as `Camera` has it.
     scale : float
-        How much of the scene is seen from one side of the picture to the other, in the scene's unit.
+        Length of the scene across the picture, in the scene's unit.
     width, height : int
         Size of the picture in pixels, 1 to 65536.
     scale_axis : str
-        What `scale` is measured along: ``"x"``, ``"y"``, the ``"smaller"`` or ``"larger"`` of these, or the
-        ``"diagonal"``. (glTF has ymag, half of the scale along y.)
+        Axis along which `scale` is measured: ``"x"``, ``"y"``, the ``"smaller"`` or ``"larger"`` of these, or
+        the ``"diagonal"``. (glTF has ymag, half of the scale along y.)
     moved_to, shutter
         As `Camera` has it.
 
@@ -36,6 +36,17 @@ class Orthographic(AnyCamera):
         If a number is out of range or not finite.
     TypeError
         If something is not a number.
+
+    See Also
+    --------
+    Camera : A perspective camera.
+
+    Examples
+    --------
+    >>> camera = rw.Orthographic((0, 0, 5), (0, 0, 0), scale=4, width=4, height=4)
+    >>> origins, directions = camera.rays()
+    >>> origins[0, :, 0].tolist(), directions[0, 0].tolist()
+    ([-1.5, -0.5, 0.5, 1.5], [0.0, 0.0, -1.0])
     """
 
     kind: ClassVar[str] = "orthographic"

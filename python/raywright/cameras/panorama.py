@@ -13,15 +13,15 @@ from .pose import Pose
 class Panorama(AnyCamera):
     """A camera that sees the whole sphere, in an equirectangular picture.
 
-    Columns are longitudes, rows latitudes. The middle of the picture is where the camera looks, its top row
-    is up, and left and right edge are what is behind. A quarter of the width to the right of the middle is to
-    the right.
+    Columns are longitudes, rows latitudes. The camera looks at the middle of the picture; the top row is up,
+    and the left and right edges are behind. A quarter of the width to the right of the middle is to the
+    right.
 
     Parameters
     ----------
     position, target, up, direction
-        Where the camera is, and what is in the middle, as `Camera` has it. With neither target nor direction
-        it looks along -z.
+        Where the camera is, and where it looks, as `Camera` has it. With neither target nor direction it
+        looks along -z.
     width, height : int
         Size of the picture in pixels, 1 to 65536.
     moved_to, shutter
@@ -34,11 +34,22 @@ class Panorama(AnyCamera):
     TypeError
         If something is not a number.
 
+    See Also
+    --------
+    Fisheye : A circle of up to 360°.
+
     Notes
     -----
     The camera that looks along -z with +y up sees, at the fractions (u, v) of the picture's width from its
     left and of its height from its top, the direction (sin φ sin θ, cos θ, -cos φ sin θ) with φ = 2π (u - ½)
     and θ = π v.
+
+    Examples
+    --------
+    >>> camera = rw.Panorama((0, 0, 0), width=8, height=4)
+    >>> _, directions = camera.rays_through([[4, 2], [6, 2], [4, 0]])
+    >>> directions.round(6).tolist()
+    [[0.0, 0.0, -1.0], [1.0, 0.0, -0.0], [0.0, 1.0, -0.0]]
     """
 
     kind: ClassVar[str] = "panorama"

@@ -34,8 +34,8 @@ class Camera(AnyCamera):
     direction : 3 floats, optional
         The direction that the camera looks in, instead of a target.
     fov_axis : str
-        What `fov` is measured along: ``"x"``, ``"y"``, the ``"smaller"`` or ``"larger"`` of these, or the
-        ``"diagonal"``.
+        Axis along which `fov` is measured: ``"x"``, ``"y"``, the ``"smaller"`` or ``"larger"`` of these, or
+        the ``"diagonal"``.
     focal : 2 floats, optional
         Instead of `fov`, focal lengths in pixels, across and down; negative ones mirror the picture.
     principal : 2 floats, optional
@@ -43,12 +43,12 @@ class Camera(AnyCamera):
         `rays_through` has them; the middle if not given. Elsewhere it is a shifted lens, or a part of a
         picture.
     skew : float
-        How many pixels farther to the right a point is seen that lies lower by as much as it is away: K[0, 1]
-        of a camera matrix. With `focal` only.
+        Skew coefficient K[0, 1] of a camera matrix, in pixels: the shift to the right for each focal length
+        down. K[0, 1] of a camera matrix. With `focal` only.
     moved_to : Pose, optional
         Where the camera is as the shutter closes; another camera will do.
     shutter : 2 floats
-        When it opens and closes, in the scene's time, in which instances move from 0 to 1.
+        Opening and closing time, in the scene's time, in which instances move from 0 to 1.
 
     Raises
     ------
@@ -57,6 +57,19 @@ class Camera(AnyCamera):
         parallel to the view.
     TypeError
         If something is not a number.
+
+    See Also
+    --------
+    ThinLens : A camera with depth of field.
+    Orthographic, Fisheye, Panorama
+
+    Examples
+    --------
+    >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), fov=90, width=4, height=4)
+    >>> camera.forward.tolist()
+    [0.0, 0.0, -1.0]
+    >>> camera.project([[0, 0, 0], [2.5, 0, 0]]).round(6).tolist()
+    [[2.0, 2.0], [3.0, 2.0]]
     """
 
     kind: ClassVar[str] = "perspective"
@@ -126,17 +139,34 @@ class Camera(AnyCamera):
         width, height : int
             Size of the picture in pixels.
         pixel_centre : float
-            Where the centre of the first pixel is, across and down: 0 as OpenCV has it, so that the centre of
-            the pixel in row i and column j is at (j, i); 0.5 for what counts from the picture's corner, as
-            COLMAP does.
+            Coordinates of the first pixel's centre, across and down: 0 as in OpenCV, so that the centre of
+            the pixel in row i and column j is at (j, i); 0.5 to count from the picture's corner, as in
+            COLMAP.
         moved_to, shutter
             As for any camera; ``Pose.from_extrinsics(R, t)`` is where it goes.
+
+        Returns
+        -------
+        Camera
 
         Raises
         ------
         ValueError
             If a shape is another, a number is not finite, K is not upper triangular or has no inverse, or R
             is not a rotation to within 1e-6.
+
+        See Also
+        --------
+        Pose.from_extrinsics : Any camera, without a camera matrix.
+
+        Examples
+        --------
+        >>> K = [[100, 0, 31.5], [0, 100, 23.5], [0, 0, 1]]
+        >>> camera = rw.Camera.from_intrinsics(K, np.eye(3), [0, 0, 5], width=64, height=48)
+        >>> camera.intrinsics.tolist() == K
+        True
+        >>> camera.project([0, 0, 0]).tolist()
+        [32.0, 24.0]
         """
         focal, (x, y), skew = of_camera_matrix(K)
         shift = 0.5 - number("pixel_centre", pixel_centre)
@@ -173,7 +203,7 @@ class Camera(AnyCamera):
         return np.array([(across, self.skew, x - 0.5), (0, down, y - 0.5), (0, 0, 1)])
 
     def project(self, points: ArrayLike) -> NDArray[np.float64]:
-        """Return where points are seen in the picture, whatever is in between.
+        """Project points into the picture, without a test for occlusion.
 
         Parameters
         ----------
@@ -194,6 +224,16 @@ class Camera(AnyCamera):
             If the last dimension is not 3.
         TypeError
             If the array does not hold real numbers.
+
+        See Also
+        --------
+        Camera.rays_through : The inverse: rays through points of the picture.
+
+        Examples
+        --------
+        >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), fov=90, width=10, height=10)
+        >>> camera.project([[0, 0, 0], [0, 2.5, 0], [0, 0, 9]]).round(6).tolist()
+        [[5.0, 5.0], [5.0, 2.5], [nan, nan]]
         """
         (across, skew, x), (_, down, y), _ = self.intrinsics
         # Relative to the camera, so that large map coordinates lose no digits.

@@ -17,7 +17,7 @@ P = TypeVar("P", bound="Pose")
 
 @dataclass(frozen=True, init=False, repr=False)
 class Pose:
-    """A place, and how what stands there is turned. Every camera is one; others say where a camera goes.
+    """A position with an orientation. Every camera is one; others give the end of a camera's motion.
 
     Parameters
     ----------
@@ -37,6 +37,16 @@ class Pose:
         `target`, or `up` is zero or parallel to the view.
     TypeError
         If something is not a number.
+
+    See Also
+    --------
+    Camera : Takes one as the end of a motion.
+
+    Examples
+    --------
+    >>> pose = rw.Pose((0, 0, 5), target=(0, 0, 0))
+    >>> pose.forward.tolist()
+    [0.0, 0.0, -1.0]
     """
 
     position: Triple
@@ -76,7 +86,7 @@ class Pose:
 
     @classmethod
     def from_matrix(cls: type[P], to_world: ArrayLike, convention: str = "gltf", **others: Any) -> P:
-        """Return what stands where a matrix says.
+        """Return the pose, or the camera, at a matrix.
 
         Parameters
         ----------
@@ -84,17 +94,34 @@ class Pose:
             From the camera's own space to the scene's, acting on column vectors (x, y, z, 1). Lengths of its
             axes do not count.
         convention : str
-            What the camera's own axes are: ``"gltf"``, it looks along -z with x to the right and y up (as
+            Axes of the camera's own space: ``"gltf"``, it looks along -z with x to the right and y up (as
             Blender and OpenGL have it too); ``"mitsuba"``, along +z with x to the left and y up;
             ``"opencv"``, along +z with x to the right and y down.
         **others
-            What else the class takes, without `position`, `target`, `up` and `direction`.
+            Other arguments of the class, without `position`, `target`, `up` and `direction`.
+
+        Returns
+        -------
+        Pose or camera
+            An instance of the class that it is called on.
 
         Raises
         ------
         ValueError
             If the matrix has another shape, is not finite, mirrors, or has axes that are not at right angles
             to within 1e-6.
+
+        See Also
+        --------
+        Pose.from_extrinsics : From rotation and translation.
+
+        Examples
+        --------
+        >>> matrix = np.eye(4)
+        >>> matrix[:3, 3] = [0, 0, 5]
+        >>> camera = rw.Camera.from_matrix(matrix, fov=60, width=8, height=6)
+        >>> camera.forward.tolist(), bool((camera.matrix == matrix).all())
+        ([-0.0, -0.0, -1.0], True)
         """
         stand = of_world(to_world, convention)
         if stand.mirrored:
@@ -103,7 +130,7 @@ class Pose:
 
     @classmethod
     def from_extrinsics(cls: type[P], R: ArrayLike, t: ArrayLike, **others: Any) -> P:
-        """Return what stands where computer vision says: it has a point X of the scene at ``R @ X + t``.
+        """Return the pose, or the camera, of computer vision: a point X is at ``R @ X + t`` in its space.
 
         Parameters
         ----------
@@ -112,13 +139,28 @@ class Pose:
         t : (3,) or (3, 1) array
             Translation from world to camera, in the scene's unit.
         **others
-            What else the class takes, without `position`, `target`, `up` and `direction`.
+            Other arguments of the class, without `position`, `target`, `up` and `direction`.
+
+        Returns
+        -------
+        Pose or camera
+            An instance of the class that it is called on.
 
         Raises
         ------
         ValueError
             If a shape is another, a number is not finite, or `R` is not a rotation to within 1e-6. Of one
             that is off by less, the third row counts, and then the second.
+
+        See Also
+        --------
+        Camera.from_intrinsics : With a camera matrix.
+
+        Examples
+        --------
+        >>> pose = rw.Pose.from_extrinsics(np.diag([1, -1, -1]), [0, 0, 5])
+        >>> pose.forward.tolist(), pose.extrinsics[1].tolist()
+        ([0.0, 0.0, -1.0], [-0.0, -0.0, 5.0])
         """
         return cls._at(of_extrinsics(R, t), others)
 

@@ -1,4 +1,4 @@
-"""What turns rays into radiance."""
+"""Integrators: estimators of the radiance along rays."""
 
 from typing import TypeAlias, get_args
 

@@ -9,16 +9,16 @@ from . import counts
 
 @dataclass(frozen=True)
 class AmbientOcclusion:
-    """How open the surroundings of what is seen are: the share of directions in which nothing is near.
+    """Ambient occlusion: the share of directions in which nothing is near.
 
     After Zhukov, Iones and Kronin (1998). Where nothing is seen, the picture is white.
 
     Parameters
     ----------
     radius : float
-        How near what occludes has to be, in the scene's unit, above 0; infinite for anything.
+        Maximum distance of occluders, in the scene's unit, above 0; infinite by default.
     cosine : bool
-        Whether directions count by their cosine, as even light does, or all alike.
+        True if directions are weighed by their cosine, as for uniform light, or all alike.
     samples : int
         Directions that each camera ray asks, 1 to 1024.
 
@@ -28,6 +28,18 @@ class AmbientOcclusion:
         If a number is out of its range.
     TypeError
         If an argument is of the wrong kind.
+
+    See Also
+    --------
+    measure.ambient_visibility : The same at points of surfaces.
+
+    Examples
+    --------
+    >>> scene = rw.Scene(rw.Plane())
+    >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), width=4, height=4)
+    >>> image = rw.render(scene, camera, rw.AmbientOcclusion(samples=4), samples=1, progress=False)
+    >>> image.rgb[0, 0].tolist()
+    [1.0, 1.0, 1.0]
     """
 
     radius: float = math.inf

@@ -14,11 +14,25 @@ if TYPE_CHECKING:
 
 
 class Integrator(ABC):
-    """What turns rays into radiance, written in Python on whole batches.
+    """The base class of integrators written in Python, which work on whole batches.
 
     A subclass is given to `render` as the core's integrators are, and its pictures have error estimates,
     limits and history as theirs do. Batches are of some thousand rays; several threads may call `radiance` at
     once, so it must not change the integrator.
+
+    See Also
+    --------
+    Path : The path tracer of the core.
+
+    Examples
+    --------
+    >>> class Normals(rw.Integrator):
+    ...     def radiance(self, scene, rays, rng):
+    ...         return np.nan_to_num(np.abs(scene.interactions(rays).normal))
+    >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), width=4, height=4)
+    >>> image = rw.render(rw.Scene(rw.Plane()), camera, Normals(), samples=1, progress=False)
+    >>> image.rgb[0, 0].tolist()
+    [0.0, 0.0, 1.0]
     """
 
     @abstractmethod
@@ -28,7 +42,8 @@ class Integrator(ABC):
         Parameters
         ----------
         scene : Scene
-            The scene: `Scene.interactions` finds what rays meet, `Scene.occluded` whether they are free.
+            The scene: `Scene.interactions` finds the surfaces that rays hit, `Scene.occluded` tests shadow
+            rays.
         rays : Rays
             A batch of N rays that the camera sends.
         rng : Rng
@@ -40,4 +55,22 @@ class Integrator(ABC):
         (N, 3) array
             Red, green and blue, in W·sr⁻¹·m⁻²; what is negative or not finite counts as black, with a
             warning.
+
+        See Also
+        --------
+        Interactions : Scattering and light at hits.
+
+        Examples
+        --------
+        >>> class Lambert(rw.Integrator):
+        ...     def radiance(self, scene, rays, rng):
+        ...         met = scene.interactions(rays)
+        ...         light = met.light(rng.one(), rng.two())
+        ...         value, _ = met.evaluate(light.direction)
+        ...         return met.emission + value * light.weight * light.visible(scene)[:, None]
+        >>> scene = rw.Scene(rw.Plane(), lights=[rw.PointLight((0, 0, 1), intensity=np.pi)])
+        >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), fov=0.1, width=1, height=1)
+        >>> image = rw.render(scene, camera, Lambert(), samples=1, progress=False)
+        >>> print(image.rgb[0, 0].round(3))
+        [0.5 0.5 0.5]
         """

@@ -20,10 +20,10 @@ class BeamTraced:
     the error is 0 where with one it is not known). It is `Whitted`'s picture: what is scattered otherwise
     than as by a mirror or smooth glass is left to `ambient`.
 
-    Refraction is an approximation, as in the paper: behind a face of glass, rays have no point in common, and
-    the beam gets one from which its middle ray is exact and the others go by tangents in the place of Snell's
+    Refraction is an approximation, as in the paper: behind a face of glass, rays have no point in common. The
+    beam gets one from which its middle ray is exact and the others go by tangents in the place of Snell's
     sines. Beams are cut until that is off by no more than `tolerance`. Behind a window of parallel faces,
-    directions are exact again, and places off by what is left of the tolerance within the glass.
+    directions are exact again, and places deviate by the rest of the tolerance within the glass.
 
     Beams meet meshes alone, of any opaque material, `ThinDielectric` or `Dielectric`, in the light of lights
     without extent (`PointLight`, `SpotLight`, `Projector`, `DirectionalLight`; 64 at most), seen through a
@@ -35,20 +35,34 @@ class BeamTraced:
     max_depth : int
         Greatest number of surfaces that light comes by.
     ambient : float or 3 floats
-        Radiance that arrives from everywhere in place of what is not followed; of which surfaces reflect
-        their ambient share, as in `RayCast`.
+        Uniform radiance in place of light that is not followed; surfaces reflect their ambient share of it,
+        as in `RayCast`.
     tolerance : float
-        How many pixels a refracted ray may be off in its direction, above 0; infinity cuts no beam for it, as
-        the paper does not.
+        Maximum deviation of a refracted ray's direction, in pixels, above 0; infinity cuts no beam for it, as
+        in the paper.
 
     Raises
     ------
     ValueError
-        If a number is out of its range. When rendering, of what beams cannot do: shapes that are no meshes,
-        shine, have masks, mirror or refract with bent normals, or are two glasses whose boxes overlap;
-        environments; other cameras and filters.
+        If a number is out of its range. When rendering, if beams do not support the scene: shapes that are no
+        meshes, shine, have masks, mirror or refract with bent normals, or are two glasses whose boxes
+        overlap; environments; other cameras and filters.
     TypeError
         If an argument is of the wrong kind.
+
+    See Also
+    --------
+    Whitted : The same picture by rays.
+    ConeTraced : Cones in place of beams.
+
+    Examples
+    --------
+    >>> floor = rw.Mesh([[-9, -9, 0], [9, -9, 0], [0, 9, 0]], [[0, 1, 2]])
+    >>> scene = rw.Scene(floor, lights=[rw.PointLight((0, 0, 2), intensity=4.0)])
+    >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), width=4, height=4)
+    >>> image = rw.render(scene, camera, rw.BeamTraced(), samples=1, progress=False)
+    >>> bool(image.rgb[1, 1, 0] > image.rgb[0, 0, 0])
+    True
     """
 
     max_depth: int

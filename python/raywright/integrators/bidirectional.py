@@ -13,21 +13,21 @@ class Bidirectional:
     For each sample of each pixel a path is walked from the camera and another from a light, chosen by its
     power, and every surface of the one is connected to every surface of the other, to a light and to the
     camera. Light that can be found in several of these ways counts in each by the balance heuristic, whose
-    weights are gathered along the walks (Georgiev 2012). So it finds what `Path` finds and what `LightTraced`
-    does, and by connections also what is hard to reach from either end, such as a room lit by way of a door
-    ajar. A sample takes several times as long as one of `Path`, which is better in a scene that has nothing
-    hard in it.
+    weights are gathered along the walks (Georgiev 2012). It finds the light that `Path` and `LightTraced`
+    find, and by connections also light that is hard to reach from either end, such as in a room lit by way of
+    a door ajar. A sample takes several times as long as one of `Path`, which is better in a scene that has
+    nothing hard in it.
 
-    Without bias, and with an error that is told as ever. No connection reaches what the camera sees by way of
-    a mirror or glass if it is lit by way of another from a small light: that is found only where a path comes
+    It has no bias, and error estimates hold as usual. No connection reaches what the camera sees by way of a
+    mirror or glass if it is lit by way of another from a small light: that is found only where a path comes
     upon the light, or with ``merge=True``.
 
     Merged (vertex connection and merging: Georgiev et al. 2012; Hachisuka et al. 2012), each sample of all
     pixels has photons of its own besides, and every path of the camera gathers those that lie about it on
-    matt surfaces, as `ProgressivePhotonMap` does, from ever less far away. That is one more way to find
-    light, weighed with all others: most of a picture is as sharp and as free of blur as without, and light
-    that no other way finds is found. What is gathered is blurred as long as radii are: ``image.bias`` tells
-    about how much. With more samples both noise and blur vanish.
+    matt surfaces, as `ProgressivePhotonMap` does, from ever less far away. Merging is one more strategy,
+    weighed with all others: most of a picture is as sharp as without it, and light that no other strategy
+    finds is found. Gathered light is blurred while radii are long: ``image.bias`` tells about how much. With
+    more samples both noise and blur vanish.
 
     Where media scatter light on its way counts as a surface, and is connected as such. There nothing can be
     merged yet.
@@ -40,7 +40,7 @@ class Bidirectional:
     roulette_depth : int
         Bounces before Russian roulette begins, from either end, at least 0.
     merge : bool
-        Whether paths are merged too.
+        True if paths are merged too (vertex merging).
     radius : float, optional
         Merged, how far photons may lie in the first sample; of the squared radii, that of sample s + 1 is
         (s + 2/3) / (s + 1) of that of s. If not given, as far as the 24th neighbour of a photon lies in half
@@ -57,6 +57,18 @@ class Bidirectional:
         has no end, or that moves in instances; and merged, of a scene that has media.
     TypeError
         If a number is none, or `merge` is neither True nor False.
+
+    See Also
+    --------
+    Path : Faster if light is easy to find.
+    LightTraced : Paths from lights alone.
+
+    Examples
+    --------
+    >>> scene, camera = rw.scenes.cornell_box(width=4, height=4)
+    >>> image = rw.render(scene, camera, rw.Bidirectional(), samples=4, progress=False)
+    >>> image.biased, bool(image.rgb.mean() > 0)
+    (False, True)
     """
 
     max_depth: int | None = None

@@ -12,14 +12,14 @@ from . import counts
 class ConeTraced:
     """Cone tracing (Amanatides 1984): one cone a pixel in place of samples.
 
-    A cone has the solid angle of its pixel. What it meets counts by the share that it covers of it, the
-    nearest first. A lamp throws a soft shadow by the share that is free of the cone to it: exact for the
-    sphere that one sphere hides; a face is taken for a cone of its solid angle. Mirrors throw cones back,
-    wider where they bulge, and a rough `Conductor` (of GGX facets) throws them back as wide as half of its
-    light is spread. So a picture has no noise, and one sample is as good as many (with two, the error is 0
-    where with one it is not known). It is biased by design, as `Whitted` is, and where what a cone meets
-    differs much within it: surfaces are shaded at one point of each face, spheres dim what is behind them
-    evenly, and rough metal seen at a grazing angle is too dark, by what of its cone is below the surface.
+    A cone has the solid angle of its pixel. A hit counts by the share of the cone that it covers, the nearest
+    first. A lamp throws a soft shadow by the share that is free of the cone to it: exact for the sphere that
+    one sphere hides; a face is taken for a cone of its solid angle. Mirrors throw cones back, wider where
+    they bulge, and a rough `Conductor` (of GGX facets) throws them back as wide as half of its light is
+    spread. So a picture has no noise, and one sample is as good as many (with two, the error is 0 where with
+    one it is not known). It is biased by design, as `Whitted` is, and where a cone covers different surfaces:
+    surfaces are shaded at one point of each face, spheres dim everything behind them evenly, and rough metal
+    at a grazing angle is too dark, by the part of its cone below the surface.
 
     Cones meet meshes and spheres, of any opaque material or `ThinDielectric`, in the light of surfaces that
     shine and of lights without extent, seen through a pinhole and a `BoxFilter`.
@@ -31,16 +31,29 @@ class ConeTraced:
     contribution : float
         Cones that contribute less than this share to their pixel are not followed: 0 (all are) to below 1.
     ambient : float or 3 floats
-        Radiance that arrives from everywhere in place of what is not followed; of which surfaces reflect
-        their ambient share, as in `RayCast`.
+        Uniform radiance in place of light that is not followed; surfaces reflect their ambient share of it,
+        as in `RayCast`.
 
     Raises
     ------
     ValueError
-        If a number is out of its range. When rendering, of what cones cannot do: shapes that are neither
-        meshes nor spheres, have masks, or are of glass; environments; other cameras and filters.
+        If a number is out of its range. When rendering, if cones do not support the scene: shapes that are
+        neither meshes nor spheres, have masks, or are of glass; environments; other cameras and filters.
     TypeError
         If an argument is of the wrong kind.
+
+    See Also
+    --------
+    BeamTraced : Beams with exact edges.
+    Distributed : Soft shadows by many rays.
+
+    Examples
+    --------
+    >>> scene = rw.Scene(rw.Sphere(emission=1.0))
+    >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), width=9, height=9)
+    >>> image = rw.render(scene, camera, rw.ConeTraced(), samples=1, progress=False)
+    >>> image.rgb[4, 4].tolist()
+    [1.0, 1.0, 1.0]
     """
 
     max_depth: int

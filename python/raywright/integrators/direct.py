@@ -7,7 +7,7 @@ from . import counts
 
 @dataclass(frozen=True)
 class Direct:
-    """What shines, and what is lit by it: one bounce.
+    """Direct lighting: emitters, and surfaces that they light in one bounce.
 
     Lights and surfaces are both sampled and combined by multiple importance sampling (Veach and Guibas 1995).
     It is ``Path(max_depth=1)`` with a choice of how often each is sampled.
@@ -25,6 +25,18 @@ class Direct:
         If a number is out of its range.
     TypeError
         If it is not an integer.
+
+    See Also
+    --------
+    Path : All bounces.
+
+    Examples
+    --------
+    >>> scene = rw.Scene(rw.Plane(), lights=[rw.PointLight((0, 0, 1), intensity=np.pi)])
+    >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), fov=0.1, width=1, height=1)
+    >>> image = rw.render(scene, camera, rw.Direct(), samples=4, progress=False)
+    >>> print(image.rgb[0, 0].round(3))
+    [0.5 0.5 0.5]
     """
 
     light_samples: int = 1

@@ -22,8 +22,8 @@ class Distributed:
     splits : int
         Rays that the first surface splits one into, and light samples there: 1 to 1024.
     ambient : float or 3 floats
-        Radiance that arrives from everywhere in place of what is not followed; of which surfaces reflect
-        their ambient share, as in `RayCast`.
+        Uniform radiance in place of light that is not followed; surfaces reflect their ambient share of it,
+        as in `RayCast`.
 
     Raises
     ------
@@ -31,6 +31,19 @@ class Distributed:
         If a number is out of its range.
     TypeError
         If an argument is of the wrong kind.
+
+    See Also
+    --------
+    Whitted : Without soft shadows and gloss.
+    Path : With diffuse light between surfaces.
+
+    Examples
+    --------
+    >>> scene = rw.Scene(rw.Plane(), lights=[rw.PointLight((0, 0, 1), intensity=np.pi)])
+    >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), fov=0.1, width=1, height=1)
+    >>> image = rw.render(scene, camera, rw.Distributed(splits=2), samples=4, progress=False)
+    >>> print(image.rgb[0, 0].round(3))
+    [0.5 0.5 0.5]
     """
 
     max_depth: int

@@ -10,13 +10,12 @@ class LightTraced:
     """Light tracing (Arvo 1986; Dutré, Lafortune and Willems 1993): paths that start at lights.
 
     For each sample of each pixel a path starts at a light, chosen by its power, and is scattered from surface
-    to surface; at each of them it is connected to the camera, wherever on the film that is seen. What shines
-    is seen by the camera's own rays. So it finds what path tracing hardly does: light that mirrors and glass
-    throw on matt surfaces. It never finds light that the camera sees in a mirror or through glass: there only
-    what shines itself is seen. Where media scatter light on its way counts as a surface.
+    to surface; at each of them it is connected to the camera, wherever on the film that is seen. Emitters are
+    seen by the camera's own rays. So it finds caustics, light that mirrors and glass throw on matt surfaces,
+    which path tracing hardly finds. It never finds light that the camera sees in a mirror or through glass:
+    there only what shines itself is seen. Where media scatter light on its way counts as a surface.
 
-    The error is told as ever, for what comes to a pixel with one sample is independent of what comes with
-    another.
+    Error estimates hold as usual, since contributions of different samples are independent.
 
     Parameters
     ----------
@@ -33,6 +32,18 @@ class LightTraced:
         path can start at: one that has no end, or that moves in instances, or a medium that glows.
     TypeError
         If it is not an integer.
+
+    See Also
+    --------
+    Path : Paths from the camera.
+    Bidirectional : Paths from both ends.
+
+    Examples
+    --------
+    >>> scene, camera = rw.scenes.cornell_box(width=4, height=4)
+    >>> image = rw.render(scene, camera, rw.LightTraced(), samples=4, progress=False)
+    >>> image.biased, bool(image.rgb.mean() > 0)
+    (False, True)
     """
 
     max_depth: int | None

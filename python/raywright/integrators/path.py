@@ -18,34 +18,34 @@ class Path:
     Parameters
     ----------
     max_depth : int or None
-        Greatest number of surface bounces: 0 shows emitters only, 1 adds direct light. None ends paths by
-        Russian roulette alone, which leaves no bias.
+        Maximum number of surface bounces: 0 shows emitters only, 1 adds direct light. (Mitsuba's max_depth
+        minus 1.) None ends paths by Russian roulette alone, which leaves no bias.
     roulette_depth : int
         Bounces before Russian roulette begins, at least 0.
     reuse : int, optional
         Side of the square patches of pixels that share paths: 1, 2, 4 or 8, where 1 shares nothing. If not
-        given, `render` chooses 1, 4 or 8 by what a pilot finds, and 1 for small pictures of few samples. What
-        a path finds from its second surface on counts for every pixel of the patch whose own first surface
-        sees that second one (Bekaert, Sbert and Halton 2002), in proportion to how likely each was to come
-        there, which leaves no bias. It pays where surfaces are matt and most light is indirect, as in a room:
-        rays between all these points cost time, and direct light gains nothing.
+        given, `render` chooses 1, 4 or 8 by a pilot, and 1 for small pictures of few samples. Radiance that a
+        path finds from its second surface on counts for every pixel of the patch whose own first surface sees
+        that second one (Bekaert, Sbert and Halton 2002), weighed by the density of each pixel's sampling,
+        which leaves no bias. It pays where surfaces are matt and most light is indirect, as in a room: rays
+        between all these points cost time, and direct light gains nothing.
 
-        What goes from one `Diffuse` surface to another is shared; all else is as without. Nothing is shared
-        where something moves, and in scenes with masks, with media in one another or with textures that are
-        filtered by width. In scenes with `Homogeneous` media it is what goes from where such a medium
-        scatters a path first to where the same medium does next, or to a `Diffuse` surface in it or beyond
-        its end, and nothing else; light of points is left out there, and so are wavelengths. It pays where
-        most light is scattered often, and pixels are small beside the way between. Patches are cut
-        elsewhere for each sample, so pixels err together with those around them, and noise is as coarse as a
-        patch. The error estimate knows it: its interval is wider than without, most so in small pictures.
+        Only light from one `Diffuse` surface to another is shared; other paths are unaffected. Nothing is
+        shared where something moves, and in scenes with masks, with media in one another or with textures
+        that are filtered by width. With `Homogeneous` media, only light is shared from the first scattering
+        of a path in a medium to the next one in the same medium, or to a `Diffuse` surface in it or beyond
+        its end; light of points and wavelengths are not shared there. It pays where most light is scattered
+        often, and pixels are small beside the way between. Patches are cut elsewhere for each sample, so
+        pixels err together with those around them, and noise is as coarse as a patch. The error estimate
+        knows it: its interval is wider than without, most so in small pictures.
     caustics : bool, optional
-        Whether matt surfaces look for light where it comes to them by way of mirrors and glass; if not given,
-        `render` chooses by what a pilot finds, and False for small pictures of few samples. Photons are sent
-        from the lights before the first render of a scene, and paths draw some of their directions from where
-        those came from (Jensen 1995), the others as ever, weighed by the density of both, which leaves no
-        bias. It pays where small lamps shine through glass or into mirrors: what would be fireflies is found
-        by most paths. Elsewhere it takes samples from other light, and time, and it has no effect where
-        nothing is sharp. With `reuse`, first surfaces do not aim where paths are shared.
+        True if matt surfaces guide paths towards caustics; if not given, `render` chooses by a pilot, and
+        False for small pictures of few samples. Photons are sent from the lights before the first render of a
+        scene, and paths draw some of their directions from where those came from (Jensen 1995), the others as
+        ever, weighed by the density of both, which leaves no bias. It pays where small lamps shine through
+        glass or into mirrors: what would be fireflies is found by most paths. Elsewhere it takes samples from
+        other light, and time, and it has no effect where nothing is sharp. With `reuse`, first surfaces do
+        not aim where paths are shared.
 
     Raises
     ------
@@ -53,6 +53,20 @@ class Path:
         If a number is negative, or `reuse` none of the four.
     TypeError
         If it is not an integer, or `caustics` is not True, False or None.
+
+    See Also
+    --------
+    Direct : One bounce alone.
+    Bidirectional : Paths from both ends.
+    PhotonMap : For caustics seen through glass.
+
+    Examples
+    --------
+    >>> scene = rw.Scene(rw.Sphere(material=rw.Mirror(0.5)), environment=1.0)
+    >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), width=4, height=4)
+    >>> image = rw.render(scene, camera, rw.Path(max_depth=4), samples=4, progress=False)
+    >>> image.rgb[1, 1].tolist(), image.rgb[0, 0].tolist()
+    ([0.5, 0.5, 0.5], [1.0, 1.0, 1.0])
     """
 
     max_depth: int | None = None

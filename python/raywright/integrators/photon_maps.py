@@ -32,41 +32,40 @@ def _settle(of: "PhotonMap | ProgressivePhotonMap") -> None:
 
 @dataclass(frozen=True)
 class PhotonMap:
-    """Photon mapping (Jensen 1996, 2001): light is as bright as photons lie densely.
+    """Photon mapping (Jensen 1996, 2001): radiance from the density of photons.
 
     Paths from the lights leave photons on matt surfaces, those whose scattering is wider than that of a
     roughness of 0.2. Paths of the camera go through mirrors, glass and gloss until they come to such a
-    surface. There lights are asked directly, a caustic map tells what mirrors and glass throw together, and
-    rays look about for the surfaces beyond, where the same is asked, and a global map for all other light. So
+    surface. There lights are sampled directly and a caustic map gives the light of mirrors and glass. Final
+    gather rays find the surfaces beyond, where the same holds, with a global map for all other light. So
     light is found that was sent through glass and is seen through glass, which no path finds from a small
     lamp. Where nothing is matt, the picture is that of paths. Where a medium scatters the camera's path,
     photons that came to be scattered about there tell all of its light (Jensen and Christensen 1998).
 
     Light that is gathered from about a point is blurred: the picture is biased, however many samples it has,
-    and ``image.bias`` tells about how much, give or take ``image.bias_error``;
-    ``image.standard_error`` tells how much noise there is besides. Each batch of samples
-    (``image.plan.sampler``) has maps of its own, so the noise of maps is told as well.
+    and ``image.bias`` tells about how much, give or take ``image.bias_error``; ``image.standard_error`` tells
+    how much noise there is besides. Each batch of samples (``image.plan.sampler``) has maps of its own, so
+    the error includes the noise of maps.
 
     Parameters
     ----------
     photons : int
         Paths from lights for each map, 1 to 2**31 - 1. Maps take about 100 bytes for each photon kept.
     nearest : int or None
-        How many photons tell a density: of N, the farthest gives the radius, and N - 1 count (García et al.
+        Number N of photons for a density: the farthest gives the radius, and N - 1 count (García et al.
         2012). With None, all within the radius.
     radius : float, optional
-        How far they may lie, at surfaces and in media. If not given, 8 times as far as N neighbours of a
-        photon lie there, in half of all cases, or, with ``nearest=None``, as far as the 24th does.
+        Maximum distance of photons, at surfaces and in media. If not given, 8 times as far as N neighbours of
+        a photon lie there, in half of all cases, or, with ``nearest=None``, as far as the 24th does.
     caustic : bool
-        Whether light that mirrors and glass throw on matt surfaces has a map of its own, which is looked up
-        where the camera's paths end. If not, rays have to find it, or with ``gather=0`` it is part of the
-        global map.
+        True if caustics have a map of their own, which is looked up where the camera's paths end. If not,
+        rays have to find it, or with ``gather=0`` it is part of the global map.
     gather : int
         Rays from the first matt surface, 0 to 1024; with 0, the global map is looked up there at once.
     maps : int
         Maps that each batch of samples is spread over, where it has as many samples, 1 to 65536.
     filter : {"box", "cone", "epanechnikov"}
-        How photons count by their distance: alike, or less the farther away (Jensen's cone with k = 1;
+        Kernel of the density estimate: constant, or falling with the distance (Jensen's cone with k = 1;
         Epanechnikov 1969), which blurs less and is noisier.
     max_depth : int or None
         Greatest number of bounces, off surfaces or in media: 0 shows emitters only, 1 adds direct light. None
@@ -82,6 +81,19 @@ class PhotonMap:
         instances, or a medium that glows.
     TypeError
         If a number is none.
+
+    See Also
+    --------
+    ProgressivePhotonMap : Its bias vanishes with more samples.
+    Path : Without bias.
+
+    Examples
+    --------
+    >>> scene, camera = rw.scenes.cornell_box(width=4, height=4)
+    >>> integrator = rw.PhotonMap(photons=1000, nearest=16, gather=0)
+    >>> image = rw.render(scene, camera, integrator, samples=4, progress=False)
+    >>> image.biased, image.bias.shape
+    (True, (4, 4, 3))
     """
 
     photons: int = 100_000
@@ -109,13 +121,11 @@ class PhotonMap:
 class ProgressivePhotonMap:
     """Progressive photon mapping (Hachisuka et al. 2008; Knaus and Zwicker 2011): blur that goes to zero.
 
-    As `PhotonMap`, with a map of its own for each sample of all pixels, in which light is gathered from ever
-    less far away: of the squared radii, or of the cubed ones in media, that in map s + 1 is
-    (s + alpha) / (s + 1) of that in map s. So both
-    noise and bias vanish with more samples, and ``error=`` and ``seconds=`` may take the picture as far as
-    they want. With ``alpha=2/3`` the error falls as the cube root of the samples' number, relMSE as its
-    2/3rd power, which is the most that can be had. ``image.error`` tells noise alone; ``image.bias`` tells
-    the bias that is left.
+    Like `PhotonMap`, with a map for each sample of all pixels and a shrinking radius: the squared radius, or
+    in media the cubed radius, of map s + 1 is (s + alpha) / (s + 1) of that of map s. So both noise and bias
+    vanish with more samples, and ``error=`` and ``seconds=`` may take the picture as far as they want. With
+    ``alpha=2/3`` the error falls as the cube root of the samples' number, relMSE as its 2/3rd power, which is
+    the most that can be had. ``image.error`` tells noise alone; ``image.bias`` tells the bias that is left.
 
     Parameters
     ----------
@@ -123,15 +133,16 @@ class ProgressivePhotonMap:
         Paths from lights for each map, 1 to 2**31 - 1. If not given, four for each pixel, from 20,000 to
         500,000, which take about as long as the rest.
     radius : float, optional
-        How far photons may lie in the first map, at surfaces and in media. If not given, as far as the 24th
-        neighbour of a photon lies there in half of all cases, which the scene and the number of photons tell.
+        Maximum distance of photons in the first map, at surfaces and in media. If not given, as far as the
+        24th neighbour of a photon lies there in half of all cases, which the scene and the number of photons
+        tell.
     alpha : float
         The share of new photons that is kept, above 0 and at most 1: with more, radii shrink more slowly,
         for less noise and more bias.
     gather : int
         Rays from the first matt surface, 0 to 1024; with 0, all is looked up there.
     filter : {"box", "cone", "epanechnikov"}
-        How photons count by their distance.
+        Kernel of the density estimate.
     max_depth : int or None
         Greatest number of bounces, off surfaces or in media: 0 shows emitters only, 1 adds direct light. None
         ends paths by Russian roulette alone, which leaves no bias.
@@ -144,6 +155,19 @@ class ProgressivePhotonMap:
         If a number is out of its range, or `filter` none of the three. When rendering, as of `PhotonMap`.
     TypeError
         If a number is none.
+
+    See Also
+    --------
+    PhotonMap : Faster, with a bias that stays.
+    Bidirectional : Without bias, or with vertex merging.
+
+    Examples
+    --------
+    >>> scene, camera = rw.scenes.cornell_box(width=4, height=4)
+    >>> integrator = rw.ProgressivePhotonMap(photons=1000)
+    >>> image = rw.render(scene, camera, integrator, samples=4, progress=False)
+    >>> image.biased, bool(image.rgb.mean() > 0)
+    (True, True)
     """
 
     photons: int | None = None

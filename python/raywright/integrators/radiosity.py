@@ -11,15 +11,15 @@ from ..exchange.solution import RadiositySolution
 
 @dataclass(frozen=True)
 class Radiosity:
-    """Looks a radiosity solution up from any camera: one ray a sample, and nothing is scattered anew.
+    """Lookup of a radiosity solution from any camera: one ray a sample, without further scattering.
 
-    What a ray meets shows what it emits and what it reflects of the irradiance of its patch. Textures are
-    those of the scene, not the means of patches; what meets nothing is the environment.
+    A hit shows its emission and the reflected irradiance of its patch. Textures are those of the scene, not
+    the means of patches; what meets nothing is the environment.
 
     Parameters
     ----------
     solution : RadiositySolution
-        What `radiosity` has found of the scene that is rendered; smooth with ``per="vertex"``.
+        Result of `radiosity` for the scene that is rendered; smooth with ``per="vertex"``.
 
     Raises
     ------
@@ -27,6 +27,18 @@ class Radiosity:
         If it is no solution.
     ValueError
         When rendering, if it is of another scene, by its number of faces or their area.
+
+    See Also
+    --------
+    radiosity : Finds the solution.
+
+    Examples
+    --------
+    >>> scene, camera = rw.scenes.cornell_box(width=4, height=4)
+    >>> solution = rw.radiosity(scene, rays=1000, progress=False)
+    >>> image = rw.render(scene, camera, rw.Radiosity(solution), samples=1, progress=False)
+    >>> bool(image.rgb.mean() > 0)
+    True
     """
 
     solution: RadiositySolution
@@ -37,7 +49,7 @@ class Radiosity:
 
     @cached_property
     def _table(self) -> tuple[Any, ...]:
-        """What the core looks up."""
+        """The core's lookup table."""
         solution = self.solution
         patches = solution.patches
         is_front = patches["side"] == 1

@@ -10,7 +10,7 @@ from . import counts
 
 @dataclass(frozen=True, init=False)
 class RayCast:
-    """Ray casting with shadows (Appel 1968): lights, by the scattering of what is seen, and ambient light.
+    """Ray casting with shadows (Appel 1968): direct light at the first hit, and ambient light.
 
     Nothing is followed further: mirrors and glass are black.
 
@@ -18,9 +18,9 @@ class RayCast:
     ----------
     ambient : float or 3 floats
         Radiance that arrives from everywhere, unshadowed. Surfaces reflect their ambient share of it: `Phong`
-        and `BlinnPhong` one of their own, smooth ones none, others about what they reflect of white light.
+        and `BlinnPhong` have one of their own, smooth materials none, others about their albedo.
     shadows : bool
-        Whether what lies on the way to a light shadows it.
+        True if occluders shadow lights.
     light_samples : int
         Light samples at each point seen, from equal shares of the lights: 1 to 1024.
 
@@ -30,6 +30,19 @@ class RayCast:
         If a number is out of its range.
     TypeError
         If an argument is of the wrong kind.
+
+    See Also
+    --------
+    Whitted : With reflection and refraction.
+    Direct : With light of surfaces, by importance sampling.
+
+    Examples
+    --------
+    >>> scene = rw.Scene(rw.Plane(), lights=[rw.PointLight((0, 0, 1), intensity=np.pi)])
+    >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), fov=0.1, width=1, height=1)
+    >>> image = rw.render(scene, camera, rw.RayCast(ambient=1.0), samples=1, progress=False)
+    >>> print(image.rgb[0, 0].round(3))
+    [1. 1. 1.]
     """
 
     ambient: Triple

@@ -18,7 +18,24 @@ class Rng:
     seed : int, Generator or SeedSequence
         That of the picture.
     pixel, sample : (N,) uint32
-        Of which pixel each entry is a sample, and which of its samples.
+        Pixel and sample index of each entry.
+
+    See Also
+    --------
+    Integrator : Gets one for each batch.
+
+    Examples
+    --------
+    >>> rng = rw.Rng(0, np.arange(4, dtype=np.uint32), np.zeros(4, np.uint32))
+    >>> rng.one().shape, rng.two().shape
+    ((4,), (4, 2))
+
+    Batches may be split:
+
+    >>> whole = rw.Rng(0, np.arange(4, dtype=np.uint32), np.zeros(4, np.uint32)).one()
+    >>> part = rw.Rng(0, np.arange(2, 4, dtype=np.uint32), np.zeros(2, np.uint32)).one()
+    >>> bool((part == whole[2:]).all())
+    True
     """
 
     def __init__(self, seed: SeedLike, pixel: NDArray[np.uint32], sample: NDArray[np.uint32]) -> None:
@@ -37,11 +54,48 @@ class Rng:
         ----------
         which : (K,) integer or (N,) bool array, optional
             Entries of the batch; all if not given. Calls with fewer entries take as many dimensions.
+
+        Returns
+        -------
+        (N,) or (K,) float64 array
+
+        See Also
+        --------
+        Rng.two : Pairs of numbers.
+
+        Examples
+        --------
+        >>> rng = rw.Rng(7, np.zeros(3, np.uint32), np.arange(3, dtype=np.uint32))
+        >>> numbers = rng.one()
+        >>> bool((0 <= numbers).all() and (numbers < 1).all())
+        True
+        >>> rng.one([True, False, True]).shape
+        (2,)
         """
         return self._next(which, False)
 
     def two(self, which: ArrayLike | None = None) -> NDArray[np.float64]:
-        """Return two numbers in (0, 1), of 32 bits each, for each entry: (N, 2), or (K, 2). As `one`."""
+        """Return two numbers in (0, 1), of 32 bits each, for each entry: (N, 2), or (K, 2). As `one`.
+
+        Parameters
+        ----------
+        which : (K,) integer or (N,) bool array, optional
+            As for `one`.
+
+        Returns
+        -------
+        (N, 2) or (K, 2) float64 array
+
+        See Also
+        --------
+        Rng.one : Single numbers.
+
+        Examples
+        --------
+        >>> rng = rw.Rng(7, np.zeros(3, np.uint32), np.arange(3, dtype=np.uint32))
+        >>> rng.two().shape, rng.two([0, 2]).shape
+        ((3, 2), (2, 2))
+        """
         return self._next(which, True)
 
     def _next(self, which: ArrayLike | None, pair: bool) -> NDArray[np.float64]:

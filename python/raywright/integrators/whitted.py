@@ -23,8 +23,8 @@ class Whitted:
     contribution : float
         Rays that contribute less than this share to their pixel are not followed: 0 (all are) to below 1.
     ambient : float or 3 floats
-        Radiance that arrives from everywhere in place of what is not followed; of which surfaces reflect
-        their ambient share, as in `RayCast`.
+        Uniform radiance in place of light that is not followed; surfaces reflect their ambient share of it,
+        as in `RayCast`.
     light_samples : int
         Light samples at the first surface, from equal shares of the lights: 1 to 1024.
 
@@ -34,6 +34,19 @@ class Whitted:
         If a number is out of its range.
     TypeError
         If an argument is of the wrong kind.
+
+    See Also
+    --------
+    RayCast : The first hit alone.
+    Distributed : With gloss and soft shadows.
+
+    Examples
+    --------
+    >>> scene = rw.Scene(rw.Sphere(material=rw.Mirror(0.5)), environment=1.0)
+    >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), width=4, height=4)
+    >>> image = rw.render(scene, camera, rw.Whitted(), samples=1, progress=False)
+    >>> image.rgb[1, 1].tolist()
+    [0.5, 0.5, 0.5]
     """
 
     max_depth: int

@@ -1,4 +1,4 @@
-"""What is seen first, and what covers a pixel, rather than how bright it is."""
+"""Auxiliary buffers (AOVs): geometry, albedo and coverage of the first hit."""
 
 from collections.abc import Iterable
 from typing import Any
@@ -63,30 +63,30 @@ def aovs(
     seed: SeedLike = 0,
     threads: int | None = None,
 ) -> dict[str, NDArray[Any]]:
-    """Return pictures of what is seen first, by their names.
+    """Return auxiliary buffers (AOVs) of the first hits, by name.
 
     Parameters
     ----------
     scene : Scene
-        What to look at.
+        The scene.
     camera : camera
         From where.
     aov : str or some of them
-        ``"depth"`` (distance along the ray; infinite where nothing is seen), ``"position"``, ``"normal"``
-        (unit geometric normal, as the winding gives it), ``"shading_normal"``, ``"uv"``, ``"shape_id"`` and
-        ``"primitive"`` (-1 where nothing is seen), ``"albedo"``, ``"motion"`` (how far the point goes while
-        the shutter is open, in the scene's space), ``"screen_motion"`` (how far it goes in the picture, in
-        pixels to the right and down), ``"alpha"`` (the share of the pixel that anything covers, masks by what
-        of them is not open; glass covers what is behind it), ``"cryptomatte"`` (the six shapes that cover
-        most of the pixel, the largest first, each as its number, -1 for none, and its share of the pixel).
-        All of them if not given.
+        Names of buffers: ``"depth"`` (distance along the ray; infinite for the background), ``"position"``,
+        ``"normal"`` (unit geometric normal, as the winding gives it), ``"shading_normal"``, ``"uv"``,
+        ``"shape_id"`` and ``"primitive"`` (-1 for the background), ``"albedo"``, ``"motion"`` (displacement
+        of the point while the shutter is open, in the scene's space), ``"screen_motion"`` (displacement in
+        the picture, in pixels to the right and down), ``"alpha"`` (covered share of the pixel; masks cover by
+        their opacity, glass covers everything behind it), ``"cryptomatte"`` (the six shapes that cover most
+        of the pixel, the largest first, each as its number, -1 for none, and its share of the pixel). All of
+        them if not given.
     samples : int
         Samples per pixel, over its square, the lens and the shutter: a pixel is the mean of those that see
         something. Numbers of shapes and primitives are those of its middle.
     seed : int, Generator or SeedSequence
         Picks the random numbers.
     threads : int, optional
-        How many to use; all cores if not given.
+        Number of threads; all cores if not given.
 
     Returns
     -------
@@ -100,6 +100,19 @@ def aovs(
         If a name is not known, or a number out of its range.
     TypeError
         If an argument is of the wrong kind.
+
+    See Also
+    --------
+    Scene.first_hits : The hits of one ray per pixel.
+    render : Takes `aov` too.
+
+    Examples
+    --------
+    >>> scene = rw.Scene(rw.Sphere())
+    >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), width=5, height=3)
+    >>> found = rw.aovs(scene, camera, ["alpha", "shape_id"], samples=4)
+    >>> found["alpha"][1].round(2).tolist(), found["shape_id"][1].tolist()
+    ([0.0, 0.25, 1.0, 0.25, 0.0], [-1, -1, 0, -1, -1])
     """
     if not isinstance(scene, Scene):
         raise TypeError(f"scene must be a raywright.Scene, got {type(scene).__name__}")
@@ -119,7 +132,7 @@ def aovs(
 def seen(
     scene: Scene, camera: AnyCamera, names: tuple[str, ...], samples: int, seed: int, threads: int | None
 ) -> dict[str, NDArray[Any]]:
-    """Return those of the pictures that tell of what is seen first."""
+    """Return the names of buffers that show the first hit."""
     mine = [name for name in names if name in _SEEN]
     if not mine:
         return {}
@@ -134,9 +147,9 @@ def seen(
 def covers(
     rendering: _core.Rendering, job: Job, names: tuple[str, ...], samples: int | None, threads: int | None
 ) -> dict[str, NDArray[Any]]:
-    """Return those of the pictures that tell of what covers pixels: by a render's own samples and its filter.
+    """Return the buffers of coverage: by a render's own samples and its filter.
 
-    With `samples`, it is by so many of each pixel instead.
+    With `samples`, each pixel takes that number of samples instead.
     """
     if not any(name in _COVER for name in names):
         return {}

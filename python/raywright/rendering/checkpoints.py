@@ -49,15 +49,15 @@ def held(path: str | PathLike[str]) -> dict[str, Any]:
 class Checkpoints:
     """The checkpoint of one render: a file, written again and again, each time whole or not at all.
 
-    The file begins with a line that says what it is, then in JSON what it is a render of and how long what
-    follows is: the film, compressed. It holds nothing that is executed.
+    The file is a line with its format, then a JSON header with the render's settings and the length of the
+    data, then the film, compressed. It holds nothing that is executed.
 
     Parameters
     ----------
     path : str or path
         The file.
     identity : dict of str to str, number or None
-        What the render is of, by names that users know: a checkpoint of anything else is refused.
+        Settings of the render, by the names that users know: a checkpoint of other settings is refused.
     """
 
     def __init__(self, path: str | PathLike[str], identity: Mapping[str, Any]) -> None:
@@ -74,7 +74,8 @@ class Checkpoints:
         Raises
         ------
         ValueError
-            If the file is truncated, damaged or none of ours, or of another render: it says what differs.
+            If the file is truncated, damaged, no checkpoint, or of another render: the message tells the
+            difference.
         OSError
             If it cannot be read.
         """
@@ -123,7 +124,7 @@ class Checkpoints:
         self._writer.start()
 
     def write(self, rendering: _core.Rendering) -> None:
-        """Write the file, now; that it cannot be is told and nothing else."""
+        """Write the file now; a failure gives a warning only."""
         if self._writer is not None:
             self._writer.join()
         self._write(rendering.to_bytes())

@@ -1,4 +1,4 @@
-"""Where a render takes its numbers from where nothing is named: it goes by what is told of its end."""
+"""Choice of the sampler if none is named, by the render's limits."""
 
 from dataclasses import replace
 from typing import TypeAlias
@@ -55,17 +55,17 @@ def chosen(
     Parameters
     ----------
     sampler : Sampler, optional
-        What was named, if anything was.
+        The sampler named by the user, if any.
     limits : tuple
         Samples, error and seconds; None where there is no limit.
     adaptive : bool
-        Whether pixels have halves.
+        True if pixels are split into halves.
     begun : str, optional
         The ``repr`` of the sampler of a render that goes on.
     apart : bool
-        Whether four parts of the samples are kept apart.
+        True if four parts of the samples are kept apart.
     photons : bool
-        Whether each sample has photons of its own.
+        True if each sample traces photons of its own.
     """
     if isinstance(sampler, Independent) or (sampler is not None and sampler.batch is not None):
         return _planned(sampler, "as named", "as named")

@@ -1,4 +1,4 @@
-"""Noise taken out of a picture, and what is known of what is left."""
+"""Denoising of a picture, and the error that remains."""
 
 from typing import NamedTuple
 
@@ -29,7 +29,7 @@ def check_method(name: str, value: object) -> str:
 
 
 def denoised(halves: Halves, method: str, threads: int | None) -> Denoised:
-    """Return the picture that comes of two halves, each of which is filtered by itself."""
+    """Return the picture made of two halves, each filtered by itself."""
     known = {
         "quarters": halves.quarters,
         "variances": halves.variance,

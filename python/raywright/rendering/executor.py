@@ -82,7 +82,7 @@ class Distribution:
     rendering : _core.Rendering
         The render, which is taken further in place.
     job : Job
-        What it is of.
+        The job that is distributed.
     executor : concurrent.futures.Executor
         Who works.
     limits : (samples, error, seconds)
@@ -239,7 +239,7 @@ class Distribution:
         return self._cost * tiles / self._slots or self._rendering.rate
 
     def _land(self, future: "Future[Any]") -> None:
-        """Take what a piece of work came to."""
+        """Add the results of a piece of work."""
         piece = self._flying.pop(future)
         try:
             error = future.exception()
@@ -311,7 +311,7 @@ class Distribution:
                 now.answers.clear()
 
     def _is_met(self) -> bool:
-        """Whether the error is small enough."""
+        """Return whether the error is within the limit."""
         after = self._rendering.samples
         return self._rendering.next_aim(None, self._limits[1], None, after, 0.0, 0.0) <= after
 
@@ -373,7 +373,7 @@ class _Courier:
             self._scattered = self._client.scatter(self._bytes, broadcast=True, hash=False)
 
     def parcel(self, feeds: str | None) -> tuple[Any, str | None]:
-        """Return what goes with a piece of work: the job, or what becomes it, and where it lies."""
+        """Return the parcel of a piece of work: the job, or its compiled state, and its place."""
         if self._client is not None:
             return self._scattered, None
         return (self._bytes if feeds else None), self._spool

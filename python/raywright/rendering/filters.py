@@ -1,4 +1,4 @@
-"""What part of the film a pixel is the mean of. Lengths are in pixels.
+"""Reconstruction filters. Lengths are in pixels.
 
 Samples are drawn by the size of the filter around their own pixel (Ernst, Stamminger and Greiner, "Filter
 Importance Sampling", 2006), so that the errors of pixels stay independent.
@@ -27,6 +27,18 @@ class BoxFilter:
         If `radius` is out of range.
     TypeError
         If it is not a number.
+
+    See Also
+    --------
+    TriangleFilter, GaussianFilter, MitchellFilter, BlackmanHarrisFilter, LanczosFilter
+
+    Examples
+    --------
+    >>> scene = rw.Scene(rw.Sphere(emission=2.0))
+    >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), width=4, height=4)
+    >>> image = rw.render(scene, camera, samples=4, filter=rw.BoxFilter(), progress=False)
+    >>> image.rgb[1, 1].tolist()
+    [2.0, 2.0, 2.0]
     """
 
     radius: float = 0.5
@@ -50,6 +62,15 @@ class TriangleFilter:
         If `radius` is out of range.
     TypeError
         If it is not a number.
+
+    See Also
+    --------
+    BoxFilter : The default.
+
+    Examples
+    --------
+    >>> rw.TriangleFilter(radius=1.5)
+    TriangleFilter(radius=1.5)
     """
 
     radius: float = 1.0
@@ -75,6 +96,20 @@ class GaussianFilter:
         If a number is out of range.
     TypeError
         If it is not a number.
+
+    See Also
+    --------
+    BoxFilter : The default.
+    MitchellFilter : A sharper one.
+
+    Examples
+    --------
+    >>> rw.GaussianFilter(sigma=0.6)
+    GaussianFilter(radius=1.5, sigma=0.6)
+    >>> rw.GaussianFilter(sigma=-1.0)
+    Traceback (most recent call last):
+        ...
+    ValueError: sigma must be between 1e-06 and 64, got -1
     """
 
     radius: float = 1.5
@@ -93,7 +128,7 @@ class MitchellFilter:
     radius : float
         Where it ends, 1e-6 to 64.
     b, c : float
-        How much it blurs and how much it rings, 0 to 1; the authors advise ``b + 2 * c == 1``.
+        Blur and ringing, 0 to 1; the authors advise ``b + 2 * c == 1``.
 
     Raises
     ------
@@ -101,6 +136,15 @@ class MitchellFilter:
         If a number is out of range.
     TypeError
         If it is not a number.
+
+    See Also
+    --------
+    GaussianFilter : A filter without negative lobes.
+
+    Examples
+    --------
+    >>> rw.MitchellFilter(b=0, c=0.5)
+    MitchellFilter(radius=2.0, b=0.0, c=0.5)
     """
 
     radius: float = 2.0
@@ -127,6 +171,15 @@ class BlackmanHarrisFilter:
         If `radius` is out of range.
     TypeError
         If it is not a number.
+
+    See Also
+    --------
+    GaussianFilter : A bell with a width of its own.
+
+    Examples
+    --------
+    >>> rw.BlackmanHarrisFilter(radius=2)
+    BlackmanHarrisFilter(radius=2.0)
     """
 
     radius: float = 1.5
@@ -150,6 +203,15 @@ class LanczosFilter:
         If `lobes` is out of range.
     TypeError
         If it is not an integer.
+
+    See Also
+    --------
+    MitchellFilter : It rings less.
+
+    Examples
+    --------
+    >>> rw.LanczosFilter(lobes=2)
+    LanczosFilter(lobes=2)
     """
 
     lobes: int = 3
@@ -165,7 +227,7 @@ WholeFilter = (
 
 @dataclass(frozen=True)
 class CroppedFilter:
-    """Another filter, of which nothing lies beyond the film.
+    """Another filter, cropped at the border of the film.
 
     Pixels that are nearer to the film's edge than its radius take the part of it that lies on the film, as if
     it were the whole; other pixels are as by the filter itself. Mitsuba's films are so, unless they have a
@@ -180,6 +242,15 @@ class CroppedFilter:
     ------
     TypeError
         If `filter` is none of these.
+
+    See Also
+    --------
+    GaussianFilter : One of the filters that it takes.
+
+    Examples
+    --------
+    >>> rw.CroppedFilter(rw.GaussianFilter()).filter
+    GaussianFilter(radius=1.5, sigma=0.5)
     """
 
     filter: WholeFilter

@@ -42,8 +42,8 @@ def render_frames(
     ----------
     frames : callable or iterable
         Gives each frame its scene and its camera: a function of the frame's number, from 0 on, or something
-        to iterate over. What moves may be moved by `Scene.refit` in the same scene, which is much faster than
-        a new one: it is asked for the next frame when the last is done.
+        to iterate over. Scenes may be moved by `Scene.refit`, which is much faster than a new scene: the next
+        frame is requested after the last one is done.
     out : str, path or callable
         ``"frames/{:04}.png"``, a name with a place for the number, of any picture that `Image.save` writes;
         or a film, ``"film.mp4"`` (also .mov, .mkv, .webm), which needs imageio, and pixels of an
@@ -81,6 +81,21 @@ def render_frames(
         If a file cannot be written, or the encoder of a film fails.
     KeyboardInterrupt
         When Ctrl-C is pressed. Frames that were done are kept, and a film ends with the last of them.
+
+    See Also
+    --------
+    render : Render one picture.
+
+    Examples
+    --------
+    >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), width=4, height=4)
+    >>> def frame(number):
+    ...     return rw.Scene(rw.Sphere(emission=float(number))), camera
+    >>> pictures = {}
+    >>> rw.render_frames(frame, pictures.__setitem__, count=3, samples=1, progress=False)
+    []
+    >>> [pictures[number].rgb[1, 1, 0].item() for number in range(3)]
+    [0.0, 1.0, 2.0]
     """
     count = None if count is None else integer("count", count, 0)
     seed = seed_number(seed)

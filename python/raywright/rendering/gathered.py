@@ -1,4 +1,4 @@
-"""Pictures whose light is gathered from about a point: how their error falls, and what blur is in them."""
+"""Pictures of photon maps: the decay of their error, and their bias by blur."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -37,10 +37,9 @@ def with_bias(
     threads: int | None,
     look: Callable[[], None] | None,
 ) -> Image:
-    """Return an image with its bias; NaN where a render was stopped before it was told.
+    """Return an image with its bias; NaN if the render stopped before there was an estimate.
 
-    Where the bias is more than the error that was asked for, that is told: more samples of the same radius do
-    not help.
+    A bias above the requested error gives a warning: more samples with the same radius do not help.
     """
     try:
         told = done.bias(job.core, job.scene._compiled(), threads, look)

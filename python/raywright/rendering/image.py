@@ -34,11 +34,24 @@ class ErrorEstimate:
     estimate, low, high : float
         The estimate, and the ends of its interval; NaN where there are too few samples to know.
     trusted : bool
-        Whether the estimate rests on many samples that agree on it. If not, light is found so rarely that
-        a few samples carry more than half of the estimate, when one more of their kind, or one fewer, would
+        True if the estimate rests on many samples that agree on it. If not, light is found so rarely that a
+        few samples carry more than half of the estimate, when one more of their kind, or one fewer, would
         make it another; or that the interval is more than thirtyfold, when what they found may be a stray or
-        the first of many. Samples of what the next pixels show by all of theirs, as on the rim of a lamp, are
-        not such finds.
+        the first of many. A sample whose neighbors' samples all show the same, as on the rim of a lamp, is no
+        such rare find.
+
+    See Also
+    --------
+    Image.interval : The errors of single pixels.
+    render : Takes a limit on the error.
+
+    Examples
+    --------
+    >>> scene = rw.Scene(rw.Sphere(), environment=1.0)
+    >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), width=8, height=8)
+    >>> error = rw.render(scene, camera, samples=64, progress=False).error
+    >>> error.low <= float(error) <= error.high, error.trusted
+    (True, True)
     """
 
     estimate: float
@@ -79,8 +92,8 @@ class Image:
     Attributes
     ----------
     rgb : (H, W, 3) float32
-        Linear red, green and blue: radiance in W·sr⁻¹·m⁻². Of a transparent picture, that of what covers the
-        pixel, times its alpha.
+        Linear red, green and blue: radiance in W·sr⁻¹·m⁻². In a transparent picture, colors are premultiplied
+        by alpha.
     standard_error : (H, W, 3) float32
         Standard error of `rgb`, by each pixel's own samples. Its square has no bias; where samples come in
         few batches, it is quite uncertain itself, and `interval` is the better answer.
@@ -90,19 +103,19 @@ class Image:
         Fields ``seconds`` (float64), ``samples`` (int64, per pixel) and ``error`` (float64, relMSE), as the
         render went.
     seconds : float
-        How long the render took.
+        Run time of the render.
     samples : int
         Samples per pixel; their mean if the render was adaptive.
     warnings : tuple of str
-        What to know before trusting the picture; empty if there is nothing.
+        Reasons to distrust the picture; empty if there are none.
     biased : bool
-        Whether the picture tends to something else than the scene: darker, where samples were clamped, or
-        blurred, where light is gathered from about a point (`bias`) or the picture was denoised.
+        True if the expectation differs from the scene: darker if samples were clamped, or blurred by photon
+        maps (`bias`) or by the denoiser.
     aov : dict of str to (H, W, ...) arrays
-        What else is known of the pixels, by name: what `aov` of `render` asked for, and ``samples`` (uint32)
-        of each if the render was adaptive.
+        Auxiliary buffers by name: those that `aov` of `render` requested, and ``samples`` (uint32) of each
+        pixel if the render was adaptive.
     plan : RenderPlan
-        What was chosen for the render, such as its sampler, and why.
+        Options that were chosen automatically, such as the sampler, with reasons.
     pooled_error : (H, W, 3) float32, optional
         The standard error as far as pixels around tell of it too, which `interval` goes by: where samples
         come in batches, one pixel has few of them. `standard_error` is taken if it is not given.
@@ -112,17 +125,29 @@ class Image:
         The share of each pixel that is covered, of a picture with a transparent background; filters of
         negative lobes may take it a little out of 0..1.
     bias : (H, W, 3) float32, optional
-        How much brighter each pixel tends to be than the scene because light is gathered from about a point;
-        None where it is not. It is no part of `standard_error` and `error`. It is told by at most 16 samples,
-        each taken of disks of the radius r, of r/√2 and of r/2 about the same points in the same photons (see
-        `PhotonMap`): twice the difference of the first two, as a bias that goes by r² has it, or four times
-        that of the last two, if it is more and they differ by more than four standard errors. What is alike
-        in all three disks, such as a shadow's edge through the point, is not in it.
+        Expected excess of each pixel over the scene, because photon maps blur; None where it is not. It is no
+        part of `standard_error` and `error`. It is estimated from at most 16 samples, each with disks of the
+        radius r, of r/√2 and of r/2 about the same points in the same photons (see `PhotonMap`): twice the
+        difference of the first two, as for a bias proportional to r², or four times that of the last two, if
+        it is more and they differ by more than four standard errors. A bias that is alike in all three disks,
+        such as that of a shadow's edge through the point, is not included.
     bias_error : (H, W, 3) float32, optional
         Standard error of `bias`, told by groups of its samples: it is often more than the bias itself.
     halves : Halves, optional
-        The picture in two halves of its samples, by which `denoise` filters it; ``halves`` of `render` keeps
-        them.
+        Two independent halves of the picture, for `denoise`; ``halves`` of `render` keeps them.
+
+    See Also
+    --------
+    render : Makes it.
+
+    Examples
+    --------
+    >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), fov=10, width=4, height=4)
+    >>> image = rw.render(rw.Scene(rw.Sphere(emission=2.0)), camera, samples=4, progress=False)
+    >>> image.rgb[2, 2].tolist(), image.standard_error[2, 2].tolist()
+    ([2.0, 2.0, 2.0], [0.0, 0.0, 0.0])
+    >>> image.biased, image.warnings
+    (False, ())
     """
 
     rgb: NDArray[np.float32]
@@ -177,10 +202,10 @@ class Image:
         return self.rgb
 
     def interval(self, level: float = 0.95) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-        """Return between what and what each pixel lies, in that share of cases.
+        """Return a confidence interval for every pixel.
 
-        The ends are `rgb` ± `pooled_error` times a quantile of Student's t. What no sample has met is in no
-        interval.
+        The ends are `rgb` ± `pooled_error` times a quantile of Student's t. Light that no sample has found is
+        in no estimate.
 
         Parameters
         ----------
@@ -198,6 +223,19 @@ class Image:
             If `level` is out of its range.
         TypeError
             If it is not a number.
+
+        See Also
+        --------
+        ErrorEstimate : The error of the whole picture.
+
+        Examples
+        --------
+        >>> scene = rw.Scene(rw.Sphere(), environment=1.0)
+        >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), width=4, height=4)
+        >>> image = rw.render(scene, camera, samples=16, progress=False)
+        >>> low, high = image.interval(0.99)
+        >>> bool((low <= image.rgb).all() and (image.rgb <= high).all())
+        True
         """
         level = number("level", level)
         if not 0 < level < 1:
@@ -210,7 +248,7 @@ class Image:
         return (self.rgb - away).astype(np.float32), (self.rgb + away).astype(np.float32)
 
     def denoise(self, method: str = "regression", *, threads: int | None = None) -> "Image":
-        """Return the picture with less noise, and the error of that.
+        """Return a denoised picture, with its error.
 
         Each half of the samples is filtered by itself, in several ways. A quarter of the samples that are in
         the other half tells which way is best where, to leave pixels as they are being one of the ways; and
@@ -220,18 +258,18 @@ class Image:
         Parameters
         ----------
         method : str
-            How halves are filtered. ``"regression"``: each pixel by a fit to the albedo, normal and depth of
-            the pixels around that look like it (NFOR, Bitterli et al. 2016). ``"oidn"``: by Open Image
-            Denoise, a neural network (``pip install 'raywright[oidn]'``).
+            Method of filtering. ``"regression"``: each pixel by a fit to the albedo, normal and depth of the
+            pixels around that look like it (NFOR, Bitterli et al. 2016). ``"oidn"``: by Open Image Denoise, a
+            neural network (``pip install 'raywright[oidn]'``).
         threads : int, optional
-            How many to use; all cores if not given. Open Image Denoise takes what it wants.
+            Number of threads; all cores if not given. Open Image Denoise sets its own number of threads.
 
         Returns
         -------
         Image
             With the error of its own. `standard_error` is how far pixels are off, blur included, as the
             squares of 13 by 13 pixels around tell. `plan` tells that it was denoised; `biased` is True, and
-            `halves` and what else is only known of a picture with its noise are None.
+            `halves` and other fields that describe the noisy picture are None.
 
         Raises
         ------
@@ -242,11 +280,24 @@ class Image:
         TypeError
             If `threads` is no integer.
 
+        See Also
+        --------
+        render : Takes `denoise` and `halves`.
+
         Notes
         -----
-        What no sample has met is in no error. Where that of the picture with its noise cannot be trusted,
-        that of the other cannot either. Below some 10,000 pixels intervals are wide, since one quarter of the
-        samples has to tell.
+        Light that no sample has found is in no estimate. Where that of the picture with its noise cannot be
+        trusted, that of the other cannot either. Below some 10,000 pixels intervals are wide, since one
+        quarter of the samples has to tell.
+
+        Examples
+        --------
+        >>> scene = rw.Scene([rw.Plane(), rw.Sphere((0, 0, 1))], environment=1.0)
+        >>> camera = rw.Camera((0, -6, 2), (0, 0, 1), up=(0, 0, 1), width=24, height=24)
+        >>> noisy = rw.render(scene, camera, samples=16, halves=True, progress=False)
+        >>> clean = noisy.denoise()
+        >>> clean.biased, clean.error.estimate < noisy.error.estimate
+        (True, True)
         """
         method = check_method("method", method)
         threads = thread_limit(threads)
@@ -281,21 +332,21 @@ class Image:
         )
 
     def srgb(self, exposure: float = 0.0, tone: str = DEFAULT) -> NDArray[np.uint8]:
-        """Return the picture for the eye, with the sRGB transfer.
+        """Return the tone-mapped picture as 8-bit sRGB.
 
         Parameters
         ----------
         exposure : float
-            Stops by which it is made brighter: 1 is twice as bright.
+            Exposure in stops: 1 is twice as bright.
         tone : str
-            How what is brighter than white is brought into range: ``"filmic"`` keeps colours up to half of
-            white as they are, and rolls off what is brighter by the shoulder of the Khronos PBR Neutral tone
-            mapper (Khronos Group, 2024); ``"linear"`` clips.
+            Tone mapping of values brighter than white: ``"filmic"`` keeps colours up to half of white as they
+            are, and rolls off what is brighter by the shoulder of the Khronos PBR Neutral tone mapper
+            (Khronos Group, 2024); ``"linear"`` clips.
 
         Returns
         -------
         (H, W, 3) or (H, W, 4) uint8
-            Red, green and blue; of a transparent picture also alpha, by which colours are not multiplied.
+            Red, green and blue; transparent pictures also have alpha, not premultiplied.
 
         Raises
         ------
@@ -303,6 +354,17 @@ class Image:
             If the exposure is out of -100..100, or the tone is not known.
         TypeError
             If the exposure is not a number.
+
+        See Also
+        --------
+        Image.save : Write the picture to a file.
+
+        Examples
+        --------
+        >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), width=4, height=4)
+        >>> image = rw.render(rw.Scene(rw.Sphere(emission=0.2)), camera, samples=1, progress=False)
+        >>> image.srgb()[2, 2].tolist(), image.srgb(exposure=-1)[2, 2].tolist()
+        ([124, 124, 124], [89, 89, 89])
         """
         return shown.srgb(self.rgb, self.alpha, check_tone(exposure, tone), tone)
 
@@ -315,12 +377,12 @@ class Image:
             ``.png``, ``.jpg``, ``.jpeg``, ``.webp`` and ``.avif`` are for the eye: 8 bits, as `srgb` gives
             them, with alpha if the picture has one. JPEG knows none: there it stands before black. ``.npy``
             holds `rgb`. ``.exr`` holds `rgb` as channels R, G, B, `alpha` as A, `standard_error` as
-            standard_error.R, .G, .B, and what is in `aov` as layers of their own, 32-bit floats, as
-            compositing programs call them: depth.Z, normal.X, .Y, .Z, albedo.R, .G, .B, and so on. Numbers
-            are of 32 bits without a sign (4294967295 for none), shapes also as Cryptomatte 1.2 has them, by
-            the names "shape 0", "shape 1", ...
+            standard_error.R, .G, .B, and the buffers of `aov` as layers of 32-bit floats, as compositing
+            programs call them: depth.Z, normal.X, .Y, .Z, albedo.R, .G, .B, and so on. Numbers are of 32 bits
+            without a sign (4294967295 for none), shapes also as Cryptomatte 1.2 has them, by the names "shape
+            0", "shape 1", ...
         exposure : float
-            Stops by which a picture for the eye is made brighter.
+            Exposure of 8-bit pictures, in stops.
         tone : str
             ``"filmic"`` or ``"linear"``, see `srgb`. Files that hold numbers have them as they are.
 
@@ -332,6 +394,20 @@ class Image:
             If the suffix is one that the installed Pillow cannot write.
         OSError
             If the file cannot be written: FileNotFoundError if the folder is missing, and so on.
+
+        See Also
+        --------
+        check_writable : Check a name before the render.
+        Image.srgb : The 8-bit numbers.
+
+        Examples
+        --------
+        >>> import os
+        >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), width=4, height=4)
+        >>> image = rw.render(rw.Scene(rw.Sphere(emission=0.5)), camera, samples=1, progress=False)
+        >>> image.save("ball.png")
+        >>> os.path.exists("ball.png")
+        True
         """
         exposure, path = check_tone(exposure, tone), pictures.check_writable(path)
         suffix = path.suffix.lower()
@@ -353,6 +429,22 @@ class Image:
         ----------
         rows : int
             The most rows to print; a longer history is thinned so that samples grow by even factors.
+
+        Returns
+        -------
+        str
+            A line for each row, under a heading.
+
+        See Also
+        --------
+        report.convergence : The error of several methods against time.
+
+        Examples
+        --------
+        >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), width=4, height=4)
+        >>> image = rw.render(rw.Scene(rw.Sphere(), environment=1.0), camera, samples=4, progress=False)
+        >>> print(image.table().splitlines()[0])
+          seconds   samples     relMSE
         """
         lines = [f"{'seconds':>9} {'samples':>9} {'relMSE':>10}"]
         for i in _thinned(self.history["samples"], rows):

@@ -1,4 +1,4 @@
-"""What is to be rendered."""
+"""The job of a render."""
 
 import warnings
 from dataclasses import dataclass, field

@@ -28,11 +28,11 @@ def made(
     done : _core.Rendering
         The render.
     clamp : float, optional
-        As `render` was told.
+        As in `render`.
     aov : dict
-        What else is known of the pixels.
+        Auxiliary buffers.
     told : iterable of str
-        What there is to warn of besides.
+        Further warnings.
     plan : RenderPlan
         What was chosen.
     alpha : (H, W) array, optional
@@ -64,7 +64,7 @@ def made(
 
 
 def shines(scene: Scene) -> bool:
-    """Whether there is any light in a scene, but for what emits in a medium."""
+    """Return whether a scene has any light, except for emission of media."""
     if scene.lights or scene.environment is not None:
         return True
     left: list[Any] = list(scene.shapes)

@@ -45,11 +45,11 @@ class OnDevice:
     device : Gpu
         Which.
     scene, camera, integrator, seed
-        As `render` has them.
+        As in `render`.
     asked : dict of str to bool
-        What else is asked for that devices do not do, by how it is called, and whether it is.
+        Other requested features that devices lack, by name; True if requested.
     sampler, filter
-        As `render` has them.
+        As in `render`.
     """
 
     def __init__(
@@ -84,7 +84,7 @@ class OnDevice:
 
     @property
     def works(self) -> bool:
-        """Whether it is the device that works."""
+        """True if the device renders."""
         return self._paths is not None
 
     def row(self) -> Choice:

@@ -1,4 +1,4 @@
-"""What was chosen for a render, and why."""
+"""Options that a render has chosen, with reasons."""
 
 from dataclasses import dataclass, replace
 
@@ -9,7 +9,17 @@ from .samplers import Sampler
 
 @dataclass(frozen=True)
 class Choice:
-    """A line of a `RenderPlan`: what it is about, what was chosen, and why."""
+    """A row of a `RenderPlan`: an option, its value, and the reason.
+
+    See Also
+    --------
+    RenderPlan : The table of these rows.
+
+    Examples
+    --------
+    >>> rw.Choice("sampler", "Sobol", "batches are small")
+    Choice(what='sampler', chosen='Sobol', why='batches are small')
+    """
 
     what: str
     chosen: str
@@ -18,19 +28,32 @@ class Choice:
 
 @dataclass(frozen=True, repr=False)
 class RenderPlan:
-    """How a picture was rendered where that could be one way or another. It prints as a table.
+    """Options that were chosen automatically, with reasons. It prints as a table.
 
-    What the user names is used as named, and has a row too.
+    Options that the user named are rows too.
 
     Attributes
     ----------
     rows : tuple of Choice
-        What there was to choose, what it is, and why. None for a picture that was not rendered.
+        Each option with its value and the reason. None for a picture that was not rendered.
     sampler : Independent, Stratified, Halton, Sobol or Lattice, or None
         Where the random numbers came from. With this, and as many samples, the same seed gives the same
         picture, whatever ended it.
     path : Path or None
         The path tracer, with all that was chosen for it; None for other kinds of integrators.
+
+    See Also
+    --------
+    Scene.plan : The features that a scene needs.
+
+    Examples
+    --------
+    >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), width=4, height=4)
+    >>> image = rw.render(rw.Scene(rw.Sphere(emission=1.0)), camera, samples=4, seed=1, progress=False)
+    >>> [row.what for row in image.plan.rows]
+    ['sampler', 'batch', 'reuse', 'caustics']
+    >>> image.plan.sampler
+    Independent()
     """
 
     rows: tuple[Choice, ...] = ()
@@ -51,7 +74,25 @@ class RenderPlan:
         raise KeyError(what)
 
     def explained(self, what: str, why: str) -> "RenderPlan":
-        """Return the plan with one more reason in the row about something."""
+        """Return the plan with one more reason in the row of an option.
+
+        Parameters
+        ----------
+        what : str
+            Option of the row.
+        why : str
+            Reason to append.
+
+        Returns
+        -------
+        RenderPlan
+
+        Examples
+        --------
+        >>> plan = rw.RenderPlan((rw.Choice("sampler", "Sobol", "it is named"),))
+        >>> plan.explained("sampler", "batches are small").rows[0].why
+        'it is named; batches are small'
+        """
         rows = (replace(row, why=f"{row.why}; {why}") if row.what == what else row for row in self.rows)
         return replace(self, rows=tuple(rows))
 

@@ -49,10 +49,10 @@ BACKGROUNDS = ("shown", "transparent")
 
 
 class Stop(Protocol):
-    """What ends a render from elsewhere, such as a `threading.Event`."""
+    """A request to stop a render, such as a `threading.Event`."""
 
     def is_set(self) -> bool:
-        """Whether the render is to end."""
+        """Return True if the render should stop."""
 
 
 def render(
@@ -80,26 +80,26 @@ def render(
     denoise: bool | str = False,
     device: "Gpu | None" = None,
 ) -> Image:
-    """Render a picture, until the first of the limits that are given is met.
+    """Render a picture until the first of the given limits is met.
 
     Parameters
     ----------
     scene : Scene
-        What to look at.
+        The scene.
     camera : Camera or another kind
         From where.
     integrator : Path or another kind
-        What turns rays into radiance; an `Integrator` may be written in Python. What a `Path` leaves open is
-        chosen: where the picture has a million samples or more, by a pilot, which renders a few parts of it
-        in each way. ``image.plan`` tells what and why.
+        Estimator of radiance; an `Integrator` may be written in Python. Options that a `Path` leaves open are
+        chosen: if the picture has a million samples or more, by a pilot, which renders a few parts of it with
+        each option. ``image.plan`` lists the choices with reasons.
     samples : int, optional
         Limit on samples per pixel; 64 if no limit at all is given.
     error : float, optional
         Limit on the relMSE of the picture (see `ErrorEstimate`): the whole 95 % interval of its estimate is
-        at or below, and the estimate can be trusted. At least 16 samples a pixel are taken, as what was never
-        seen is in no estimate. Where light is so rare that the estimate stays below the limit and is not
-        trusted, the render goes on to 64 times the samples since which it has been below, or to another
-        limit; ``image.error.trusted`` is False then.
+        at or below, and the estimate can be trusted. At least 16 samples a pixel are taken, since light that
+        was never found is in no estimate. Where light is so rare that the estimate stays below the limit and
+        is not trusted, the render goes on to 64 times the samples since which it has been below, or to
+        another limit; ``image.error.trusted`` is False then.
     seconds : float, optional
         Limit on run time in seconds, to the nearest sample of all pixels.
     seed : int, Generator or SeedSequence
@@ -108,22 +108,24 @@ def render(
         are given. A `numpy.random.Generator` is advanced by one draw, so that the next picture has other
         numbers; a `numpy.random.SeedSequence` is not changed and always stands for the same number.
     threads : int, optional
-        How many to use; all cores if not given. With an executor, for each piece of its work; 1 if not given.
+        Number of threads; all cores if not given. With an executor, for each piece of its work; 1 if not
+        given.
     progress : bool or callable
         Whether to show a bar on stderr and, in a notebook, the picture as it comes; before, where the scene
-        takes longer than two seconds to compile, a bar for that. Or a function that is
-        called with the picture so far, an Image, ten times a second, less often where it takes more than a
-        tenth of the work, and in the end with what is returned. Pixels so far are computed when the function
-        asks for them, or keeps the image: large pictures take no time from those who only want to know how
-        far they are. Within a pass some pixels have more samples than others; before the end of the first,
-        ``image.samples`` is 0. What the function raises ends the render.
+        takes longer than two seconds to compile, a bar for that. A function is called with the picture so
+        far, an Image, ten times a second, less often where it takes more than a tenth of the work, and in the
+        end with the final image. Pixels so far are computed when the function asks for them, or keeps the
+        image: large pictures take no time from those who only want to know how far they are. Within a pass
+        some pixels have more samples than others; before the end of the first, ``image.samples`` is 0. An
+        exception of the function ends the render.
     adaptive : bool
-        Whether more samples go to the pixels where more of the estimated relMSE is; `samples` is then their
-        mean, and ``image.aov["samples"]`` tells how many each pixel has. It begins after 16 samples. No pixel
-        is biased by it: each has two halves, and what is seen in one decides how many samples the other gets.
+        Adaptive sampling: pixels with more of the estimated relMSE get more samples; `samples` is then their
+        mean, and ``image.aov["samples"]`` tells how many each pixel has. It begins after 16 samples. It adds
+        no bias: each pixel has two halves, and each half decides the number of samples of the other.
     clamp : float, optional
-        Radiance, in the largest channel, to which brighter samples are dimmed. It takes fireflies away, and
-        light with them: the picture is biased, and says so. If not given, samples count as they are.
+        Maximum radiance of a sample, in its largest channel; brighter samples are scaled down. It takes
+        fireflies away, and light with them: the picture is biased, and says so. If not given, samples count
+        as they are.
     sampler : Independent, Stratified, Halton, Sobol or Lattice, optional
         Where the random numbers come from. If not given, it is chosen for the least error, and ``image.plan``
         tells which and why: a `Lattice`, or `Sobol` where batches are of 4 samples or fewer.
@@ -131,7 +133,7 @@ def render(
         fewer independent parts. A number of samples that is no multiple of its batches is best avoided: part
         of a batch is right as well, but worth less.
     filter : BoxFilter, GaussianFilter or another kind
-        What part of the film a pixel is the mean of.
+        Reconstruction filter of pixels.
     checkpoint : str or path, optional
         A file that is kept up to date with the render: every minute, at its end, and when it is interrupted.
         If there is such a file, the render goes on from it, with all limits counted from its first start, and
@@ -140,41 +142,42 @@ def render(
         can be taken further by other limits. If it cannot be written, ``image.warnings`` and a RuntimeWarning
         tell so, and it costs nothing else.
     executor : concurrent.futures.Executor, optional
-        Who does the work: a ``ProcessPoolExecutor``, ``client.get_executor()`` of `dask.distributed`, the
-        pool of `mpi4py.futures`, or any other. The picture has the same bits as without. What is lost with a
-        worker is done again; if the executor breaks, the rest is rendered here, and ``image.warnings`` says
-        so. Scene, camera and integrator are pickled, and compiled once in each process.
+        Executor that does the work: a ``ProcessPoolExecutor``, ``client.get_executor()`` of
+        `dask.distributed`, the pool of `mpi4py.futures`, or any other. The picture has the same bits as a
+        local one. Work lost with a worker is done again; if the executor breaks, the rest is rendered here,
+        with a note in ``image.warnings``. Scene, camera and integrator are pickled, and compiled once in each
+        process.
     aov : str or several, optional
-        What is seen first, besides the picture, by the names in `AOVS`: ``image.aov["depth"]`` and so on, as
-        `aovs` gives it; what covers a pixel is told by the picture's own samples and filter.
+        Auxiliary buffers of the first hit, by the names in `AOVS`: ``image.aov["depth"]`` and so on, as in
+        `aovs`; coverage comes from the picture's own samples and filter.
     stop : threading.Event, or anything with a method is_set, optional
         Ends the render at once when it is set, from another thread or from `progress`. The picture so far is
         returned, even if some of its pixels have no sample yet, which ``image.warnings`` then tells.
     background : str
         ``"transparent"`` leaves the background out where the camera sees it directly, past the scene and
-        through the holes of masks: ``image.alpha`` tells how much of each pixel is covered, and `rgb` and its
-        error are of what covers it, times that. The background lights the scene as ever; glass and mirrors
-        show it, and cover what is behind them. ``"shown"`` is the picture with its background. The pictures
-        that `progress` is shown have no alpha yet, and stand before black.
+        through the holes of masks: ``image.alpha`` is the covered share of each pixel, and `rgb` and its
+        error are premultiplied by it. The background lights the scene as ever; glass and mirrors show it, and
+        cover what is behind them. ``"shown"`` is the picture with its background. The pictures that
+        `progress` is shown have no alpha yet, and stand before black.
     on_interrupt : str
-        What Ctrl-C does once the render has begun: ``"raise"`` raises a KeyboardInterrupt at once, whose
-        ``image`` is the picture so far, without alpha and `aov`; ``"return"`` returns it whole. Either way
+        Effect of Ctrl-C during the render: ``"raise"`` raises a KeyboardInterrupt at once, whose ``image`` is
+        the picture so far, without alpha and `aov`; ``"return"`` returns it whole. Either way
         ``image.warnings`` tells of pixels without samples.
     halves : bool
-        Whether ``image.halves`` keeps the picture in two halves of its samples, with albedo, normal and depth
-        of what is seen first, by which `Image.denoise` filters it. The picture is the same; it takes 290
-        bytes a pixel more while it is rendered, and 130 when it is done.
+        True if ``image.halves`` keeps two independent halves of the picture, with albedo, normal and depth of
+        the first hit, for `Image.denoise`. The picture is the same; it takes 290 bytes a pixel more while it
+        is rendered, and 130 when it is done.
     denoise : bool or str
-        Whether the picture is denoised in the end, by `Image.denoise`; a text is its `method`. What `error`
-        limits is the error of the picture before that. If it has too few samples, it stays as it is, and
-        ``image.warnings`` says so.
+        True if `Image.denoise` is applied in the end; a text is its `method`. `error` limits the error before
+        denoising. If it has too few samples, it stays as it is, and ``image.warnings`` says so.
     device : Gpu, optional
         Who follows paths, in place of the CPU: a picture that agrees with the CPU's within the errors of
         both, by the same estimator with other random numbers. It does pictures by a `Path` and a `Camera` of
         meshes that are `Diffuse`, `Mirror`, `Dielectric`, `Conductor` or `Plastic`, in the light of emission,
-        points, directions and an environment. Whatever it does not, the CPU renders as without, whole, and
-        ``image.plan["device"]`` says what that was. If the device is lost, that is warned of, and the CPU
-        goes on. Limits, `progress`, `stop` and Ctrl-C are heard between its pieces of work.
+        points, directions and an environment. Pictures with unsupported features are rendered by the CPU,
+        whole and with the same bits as ever; ``image.plan["device"]`` names the feature. If the device is
+        lost, that is warned of, and the CPU goes on. Limits, `progress`, `stop` and Ctrl-C are heard between
+        its pieces of work.
 
     Returns
     -------
@@ -192,10 +195,31 @@ def render(
     KeyboardInterrupt
         At once, when Ctrl-C is pressed, unless `on_interrupt` says otherwise; a checkpoint is written before.
 
+    See Also
+    --------
+    Shot.render : Render with the settings of a scene file.
+    render_frames : Render an animation.
+    aovs : Auxiliary buffers without a picture.
+    view : A window with the picture as it comes.
+
     Notes
     -----
     With a checkpoint, SIGTERM writes it before it does what it would have done: by default, end the process.
     It is heard in the main thread alone.
+
+    Examples
+    --------
+    >>> scene = rw.Scene([rw.Plane(), rw.Sphere((0, 0, 1))], environment=1.0)
+    >>> camera = rw.Camera((0, -6, 2), (0, 0, 1), up=(0, 0, 1), width=16, height=12)
+    >>> image = rw.render(scene, camera, samples=16, progress=False)
+    >>> image.rgb.shape, image.samples, bool(0 < image.error.estimate < 1)
+    ((12, 16, 3), 16, True)
+
+    The same seed gives the same bits:
+
+    >>> again = rw.render(scene, camera, samples=16, progress=False)
+    >>> bool((image.rgb == again.rgb).all())
+    True
     """
     checked = check(
         scene, camera, integrator, samples, error, seconds, seed, threads, adaptive, clamp, sampler, filter
@@ -385,7 +409,7 @@ def render(
 
 
 def _warn_of_written(integrator: Integrator, dropped: int) -> None:
-    """Warn of what an integrator in Python returned that is no light: there is a mistake in it."""
+    """Warn of negative or infinite radiance that a Python integrator returned: a mistake in it."""
     python_warnings.warn(
         f"{type(integrator).__name__}.radiance must return finite numbers that are at least 0, and did not "
         f"for {dropped} sample{'' if dropped == 1 else 's'}, which count as black",
@@ -395,7 +419,7 @@ def _warn_of_written(integrator: Integrator, dropped: int) -> None:
 
 
 class Checked(NamedTuple):
-    """What `render` was told, as the core takes it."""
+    """The checked arguments of `render`, as the core takes them."""
 
     limits: Limits
     seed: int
@@ -417,7 +441,7 @@ def check(
     sampler: Sampler | Unnamed | None,
     filter: Filter,
 ) -> Checked:
-    """Raise a TypeError or a ValueError unless `render` can do what it is told."""
+    """Raise a TypeError or a ValueError if the arguments of `render` contradict each other."""
     for name, value, kind in (
         ("scene", scene, Scene),
         ("camera", camera, AnyCamera),
@@ -506,7 +530,7 @@ def _begun(kept: "Checkpoints | None", job: Job, threads: int | None) -> _core.R
 
 
 def _denoised(image: Image, method: str, threads: int | None) -> Image:
-    """Return an image denoised, or as it is with what there is to say of that."""
+    """Return the denoised image, or the image as it is with a warning."""
     if image.halves is None:
         few = "not denoised: a quarter of the samples is less than a batch of them"
         return replace(image, warnings=(*image.warnings, few))

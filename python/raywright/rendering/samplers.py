@@ -15,7 +15,20 @@ _MOST = 64
 
 @dataclass(frozen=True)
 class Independent:
-    """Independent random numbers: Philox4x32-10 (Salmon et al. 2011)."""
+    """Independent random numbers: Philox4x32-10 (Salmon et al. 2011).
+
+    See Also
+    --------
+    Sobol, Lattice, Halton, Stratified
+
+    Examples
+    --------
+    >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), width=4, height=4)
+    >>> scene = rw.Scene(rw.Sphere(), environment=1.0)
+    >>> image = rw.render(scene, camera, samples=4, sampler=rw.Independent(), progress=False)
+    >>> image.plan.sampler
+    Independent()
+    """
 
 
 @dataclass(frozen=True)
@@ -37,6 +50,15 @@ class Stratified:
         If `batch` is no power of two, or out of range.
     TypeError
         If it is not an integer.
+
+    See Also
+    --------
+    Sobol, Lattice, Halton, Independent
+
+    Examples
+    --------
+    >>> rw.Stratified(batch=16)
+    Stratified(batch=16)
     """
 
     batch: int | None = None
@@ -64,6 +86,15 @@ class Halton:
         If `batch` is no power of two, or out of range.
     TypeError
         If it is not an integer.
+
+    See Also
+    --------
+    Sobol, Lattice, Stratified, Independent
+
+    Examples
+    --------
+    >>> rw.Halton(batch=16)
+    Halton(batch=16)
     """
 
     batch: int | None = None
@@ -91,6 +122,19 @@ class Sobol:
         If `batch` is no power of two, or out of range.
     TypeError
         If it is not an integer.
+
+    See Also
+    --------
+    Lattice : The default where batches are larger.
+    Halton, Stratified, Independent
+
+    Examples
+    --------
+    >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), width=4, height=4)
+    >>> scene = rw.Scene(rw.Sphere(), environment=1.0)
+    >>> image = rw.render(scene, camera, samples=16, sampler=rw.Sobol(batch=4), progress=False)
+    >>> image.plan.sampler
+    Sobol(batch=4)
     """
 
     batch: int | None = None
@@ -119,6 +163,16 @@ class Lattice:
         If `batch` is no power of two, or out of range.
     TypeError
         If it is not an integer.
+
+    See Also
+    --------
+    Sobol : The default where batches are small.
+    Halton, Stratified, Independent
+
+    Examples
+    --------
+    >>> rw.Lattice(batch=8)
+    Lattice(batch=8)
     """
 
     batch: int | None = None

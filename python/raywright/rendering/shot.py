@@ -20,16 +20,16 @@ _LIMITS = ("samples", "error", "seconds")
 class Shot:
     """A scene, a camera, and how they are rendered: what `load` and `from_mitsuba` return.
 
-    Shots compare by what they hold, and pickle.
+    Shots compare by contents, and pickle.
 
     Parameters
     ----------
     scene : Scene
-        What to look at.
+        The scene.
     camera : Camera or another kind
         From where.
     integrator : Path or another kind
-        What turns rays into radiance.
+        Estimator of radiance; an `Integrator` may be written in Python.
     samples : int, optional
         Samples per pixel; None leaves it to `render`.
     sampler : Independent, Stratified, Halton, Sobol or Lattice, optional
@@ -39,13 +39,25 @@ class Shot:
     seed : int, Generator or SeedSequence
         Picks the random numbers.
     aov : tuple of str
-        What is seen first, besides the picture, as `raywright.render` takes it.
+        Auxiliary buffers of the first hit, as in `raywright.render`.
     background : {"shown", "transparent"}
-        Whether what surrounds the scene is seen, as `raywright.render` takes it.
+        Visibility of the environment, as in `raywright.render`.
     clamp : float, optional
         Limit on the largest channel of a sample, as `raywright.render` takes it.
     unnamed : str, optional
         Why no sampler is named although the file has one; the plan of the picture tells it.
+
+    See Also
+    --------
+    load : Load a shot from a file.
+    render : Render without a shot.
+
+    Examples
+    --------
+    >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), width=4, height=4)
+    >>> shot = rw.Shot(rw.Scene(rw.Sphere(emission=1.0)), camera, samples=4)
+    >>> shot.render(progress=False).samples
+    4
     """
 
     scene: Scene
@@ -71,8 +83,8 @@ class Shot:
         Parameters
         ----------
         **overrides
-            Arguments of `raywright.render`, in place of what the shot has. The samples of the shot count
-            only where none of `samples`, `error` and `seconds` is given.
+            Arguments of `raywright.render`, in place of the shot's own. The samples of the shot count only
+            where none of `samples`, `error` and `seconds` is given.
 
         Returns
         -------
@@ -83,6 +95,17 @@ class Shot:
         ------
         TypeError, ValueError, OSError, KeyboardInterrupt
             As `raywright.render` does.
+
+        See Also
+        --------
+        render : The arguments.
+
+        Examples
+        --------
+        >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), width=4, height=4)
+        >>> shot = rw.Shot(rw.Scene(rw.Sphere(emission=1.0)), camera, samples=4)
+        >>> shot.render(samples=2, progress=False).samples
+        2
         """
         own: dict[str, Any] = {
             "scene": self.scene,
@@ -108,12 +131,23 @@ class Shot:
         width, height : int, optional
             In pixels. If only one is given, the other keeps the proportions.
 
+        Returns
+        -------
+        Shot
+
         Raises
         ------
         ValueError
             If a number is out of its range.
         TypeError
             If it is not an integer.
+
+        Examples
+        --------
+        >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), width=400, height=300)
+        >>> small = rw.Shot(rw.Scene(rw.Sphere()), camera).resized(width=40)
+        >>> small.camera.width, small.camera.height
+        (40, 30)
         """
         before = self.camera
         if width is None and height is None:

@@ -18,15 +18,15 @@ _REST = 1.0
 class Snapshots:
     """Shows a render to someone: ten times a second at most, and for a tenth of the work at most.
 
-    Pixels are computed when they are asked for, so that whoever wants to know no more than how far a render
-    is, or to stop it, is called ten times a second however large the picture is.
+    Pixels are computed on access: a callback that only reads the progress, or stops the render, is called ten
+    times a second however large the picture is.
 
     Parameters
     ----------
     show : callable
         Takes an Image.
     threads : int
-        How many work on the picture while it is shown: the one that shows it takes the time of one of them.
+        Number of threads that render meanwhile: showing a picture takes the time of one of them.
     """
 
     def __init__(self, show: Callable[[Image], object], threads: int) -> None:
@@ -35,7 +35,7 @@ class Snapshots:
 
     @property
     def due(self) -> bool:
-        """Whether the next picture is due."""
+        """Return whether the next picture is due."""
         return time.monotonic() >= self._due
 
     def take(self, image: Callable[[], ImageSoFar], waits: Callable[[], bool]) -> None:

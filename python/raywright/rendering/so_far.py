@@ -1,4 +1,4 @@
-"""Pictures that are still being worked on, of which is computed what is asked for."""
+"""Pictures of renders in progress, computed on access."""
 
 from collections.abc import Callable, Mapping
 from functools import cached_property
@@ -35,7 +35,7 @@ class AtRest:
 
     @property
     def amiss(self) -> tuple[int, int]:
-        """How many samples were not finite or negative, and how many were clamped."""
+        """Number of samples that were not finite or negative, and number of clamped samples."""
         return self._rendering.dropped, self._rendering.clamped[0]
 
 
@@ -65,7 +65,7 @@ class ImageSoFar(Image):
         size: tuple[int, int],
         counted: bool,
     ) -> "ImageSoFar":
-        """Return one of what is seen.
+        """Return one field of the picture.
 
         Parameters
         ----------
@@ -74,12 +74,12 @@ class ImageSoFar(Image):
         made : callable
             Makes a whole picture of a render that nobody works on.
         outline : callable
-            Tells of a render, of which no pixel need be there, what is known of all of them together, and
-            as ``_doubts`` what there is to warn of in that.
+            Pictures of a render in progress: statistics of all pixels without any pixels, and warnings as
+            ``_doubts``.
         size : (int, int)
             Width and height in pixels.
         counted : bool
-            Whether the samples of each pixel are told.
+            True if samples are counted for each pixel.
         """
         image = object.__new__(cls)
         known = sight.outline()
@@ -90,7 +90,7 @@ class ImageSoFar(Image):
 
     @property
     def is_whole(self) -> bool:
-        """Whether all of it was computed, errors of pixels included."""
+        """True if all fields were computed, errors of pixels included."""
         return "_whole" in vars(self)
 
     def settle(self) -> None:
@@ -130,12 +130,12 @@ class ImageSoFar(Image):
 
     @cached_property
     def warnings(self) -> tuple[str, ...]:
-        """What to know before trusting the picture."""
+        """Reasons to distrust the picture."""
         return self._whole.warnings if any(self._sight.amiss or ()) else self._doubts
 
     @cached_property
     def biased(self) -> bool:
-        """Whether samples were clamped."""
+        """True if samples were clamped."""
         return bool((self._sight.amiss or (0, 0))[1])
 
     @cached_property

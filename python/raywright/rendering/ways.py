@@ -1,4 +1,4 @@
-"""How paths go where nothing is named: by what a pilot finds to be worth its while."""
+"""Choice of the path tracer's options by a pilot."""
 
 import time
 from collections.abc import Callable, Mapping
@@ -61,16 +61,15 @@ def followed(
     Parameters
     ----------
     path : Path
-        What was named.
+        The integrator named by the user.
     scene, camera, threads, clamp, filter
-        What `render` was told.
+        Arguments of `render`.
     limits : tuple
         Samples, error and seconds; None where there is no limit.
     begun : dict
-        What the render is that goes on; empty if it begins.
+        Settings of the checkpoint to continue; empty if the render begins.
     look : callable, optional
-        What is called while a pilot is out, and may raise `StoppedError` to call it back: then nothing but
-        what is plain is chosen.
+        Called during a pilot; it may raise `StoppedError` to end it: then the plain options are chosen.
     """
     named = {name: getattr(path, name) for name in _PLAIN}
     why = {name: "as named" for name, value in named.items() if value is not None}
@@ -123,7 +122,7 @@ def _tried(
     sent: Callable[[list[dict[str, Any]]], list[float]],
     cost: Callable[[Mapping[str, Any]], float],
 ) -> tuple[list[dict[str, Any]], list[float]]:
-    """Return ways, the plain one first, and what each takes in error times time, as pilots tell."""
+    """Return variants, the plain one first, with the error times time of each, as pilots measured it."""
     ways = [fixed | dict(zip(names, way, strict=True)) for way in product(*_options(names))]
     worth = sent(ways)
     least = ways[worth.index(min(worth))]

@@ -1,4 +1,4 @@
-"""What happens in the processes of an executor: parts of pictures are made there.
+"""The worker's side of an executor: it renders parts of pictures.
 
 A render is described by a job, which each process needs once: the first piece of work that finds it missing
 reads it from a file, or asks for it. The scene is compiled once a process, however many pieces are worked on
@@ -27,7 +27,7 @@ _lock = Lock()
 
 
 class Done(NamedTuple):
-    """Answers to the requests, how long they took, and what there was to warn of in the scene."""
+    """Answers to the requests, their run times, and warnings about the scene."""
 
     answers: list[bytes]
     seconds: float
