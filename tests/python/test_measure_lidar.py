@@ -38,6 +38,8 @@ def test_a_ball_is_as_far_as_it_is():
     assert np.allclose(np.linalg.norm(scan.position - BALL.center, axis=1), 1.5, rtol=1e-13)
     assert np.array_equal(scan.image()[met], scan.range)
     assert np.isnan(scan.image()[~met]).all()
+    # A whole number fills the misses, and leaves the fractions of the ranges.
+    assert np.array_equal(scan.image(fill=0), np.where(met, scan.image(), 0.0))
     assert set(scan.strength) == {1.0}
 
 

@@ -83,7 +83,7 @@ class LidarScan(Tabular):
             If there is no such name.
         """
         choice("name", name, ("range", "incidence", "strength"))
-        whole = np.full(math.prod(self.shape), fill)
+        whole = np.full(math.prod(self.shape), fill, np.float64)
         first = np.flatnonzero(np.diff(self.beam, prepend=-1))
         whole[self.beam[first]] = getattr(self, name)[first]
         return whole.reshape(self.shape)
