@@ -1,1 +1,1 @@
-"""What surfaces send each other, as numbers: view factors, radiosity, heat."""
+"""Diffuse exchange between surfaces: view factors, radiosity, radiative heat transfer."""

@@ -1,4 +1,4 @@
-"""Faces that lie where others do: they are one surface, of which the first listed counts."""
+"""Coincident faces: they are one surface, and the first listed counts."""
 
 import warnings
 from dataclasses import dataclass, fields, replace
@@ -24,7 +24,7 @@ _LOOKS = {"material", "emission", "name"}
 
 @dataclass(frozen=True)
 class Covered:
-    """Faces that lie where others do, and by which shares each of these stands for them.
+    """Coincident faces, and the shares by which others stand for them.
 
     Attributes
     ----------
@@ -35,9 +35,9 @@ class Covered:
     by, shares : (K,)
         Faces in whose places they lie, and the shares of their areas; each face's add up to 1.
     areas : (D,) float64
-        How large they are.
+        Areas of the faces.
     turned : (D,) bool
-        Whether they look the other way: the front of each is the back of those in whose places it lies.
+        True if it faces the other way: its front is the back of the faces in whose places it lies.
     before : LaidOut, optional
         The scene with them, where some are turned.
     """

@@ -19,7 +19,7 @@ NO_COPY = -1
 
 @dataclass(frozen=True)
 class LaidOut:
-    """A scene without instances, and of what in the scene with them each face is.
+    """A scene without instances, and the origin of each of its faces in the scene with them.
 
     Attributes
     ----------
@@ -29,9 +29,9 @@ class LaidOut:
         Of each face: which shape it is of, which copy of that if it is an instance, or else -1, and which
         face of the shape, or of the copy.
     mirrored : (F,) bool
-        Whether it stands in a copy that is mirrored, so that its second and third corner changed places.
+        True if it stands in a mirrored copy, so that its second and third corner changed places.
     counts : (S,) int64
-        How many faces each shape has, with all of its copies.
+        Number of faces of each shape, with all of its copies.
     """
 
     scene: Scene

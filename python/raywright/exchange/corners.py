@@ -1,4 +1,4 @@
-"""From values of patches to values of their corners, so that what is shown is smooth."""
+"""Interpolation from patches to their corners, for smooth display."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,9 +23,9 @@ def at_corners(
     values : (N, 3)
         Of the patches.
     corners : (N, 3, 3)
-        Where they lie; NaN for what is no triangle, which has one value everywhere.
+        Where they lie; NaN for shapes that are no triangles, which have one value everywhere.
     areas, shapes : (N,)
-        How large they are, and of which shape.
+        Areas and shapes of the patches.
     """
     result = np.repeat(values[:, None, :], 3, axis=1)
     flat = np.flatnonzero(np.isfinite(corners).all(axis=(1, 2)))

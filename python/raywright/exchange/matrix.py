@@ -55,8 +55,8 @@ def _error(
 ) -> Floats:
     """Return the standard error of the irradiance.
 
-    What is off in a row of the matrix, and in its first light, comes to all by what they reflect. What two
-    faces exchange is one estimate, by which both of their rows are off.
+    An error in a row of the matrix, and in its first light, reaches all faces through their reflectances. The
+    exchange of two faces is one estimate: its error is in both of their rows.
     """
     own, both = factors._centered(radiosity)
     squares = (own**2).sum(axis=1) + light_error**2

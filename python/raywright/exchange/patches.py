@@ -1,4 +1,4 @@
-"""What exchanges light: the faces of a scene, cut into patches."""
+"""Patches: the faces of a scene, cut into pieces that exchange light."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""What there is to solve, and how replicates become a solution."""
+"""The radiosity problem, and the solution from replicates."""
 
 import time
 from dataclasses import dataclass, field
@@ -61,8 +61,8 @@ class Problem:
     ) -> "Problem":
         """Return that of a scene, or of one that is laid out, lit by the lights of another without shapes.
 
-        `looks` are emission and reflectance in place of the scene's own, and `covered` the faces of what is
-        laid out that coincide with others.
+        `looks` are emission and reflectance in place of the scene's own, and `covered` the coincident faces
+        of the flattened scene.
         """
         light = None if lamps is None else lamps._compiled()
         if isinstance(scene, Scene):
@@ -106,7 +106,7 @@ class Problem:
         self.core.begin(seed, REPLICATES, max(light_rays, 1), self.threads)
 
     def note(self, rays: int) -> float:
-        """Return the bound on what is unshot, as a share of all, and keep it with the history."""
+        """Return the bound on unshot power, as a share of all, and append it to the history."""
         arrived, books = self.core.arrived.mean(axis=0), self.core.books.mean(axis=0)
         bound = self.bound(arrived, books[UNSHOT])
         self.history.append(RadiosityStep(time.monotonic() - self.began, rays, bound))
@@ -123,10 +123,10 @@ class Problem:
         return float(np.max(short[whole > 0] / whole[whole > 0], initial=0.0))
 
     def solution(self, method: Method, arrived: Floats, books: Floats, unshot: Floats) -> RadiositySolution:
-        """Return the mean of replicates of what has arrived, (R, N, 3) W, with its standard error.
+        """Return the mean of replicates of the arrived power, (R, N, 3) W, with its standard error.
 
-        `books` are what set out, is unshot, has left and has come to black backs, (R, 4, 3) W, and `unshot`
-        is what each patch has not shot, (R, N, 3) W.
+        `books` are the emitted, unshot, escaped power and that absorbed by black backs, (R, 4, 3) W, and
+        `unshot` is the unshot power of each patch, (R, N, 3) W.
         """
         irradiance = self.per_area(arrived.mean(axis=0))
         spread = self.per_area(arrived.std(axis=0, ddof=1) / np.sqrt(len(arrived)))
@@ -141,9 +141,9 @@ class Problem:
     def shortfall(self, unshot: Floats) -> Floats:
         """Return a bound on the irradiance that unshot power may add to each patch, (N, 3) W/m².
 
-        What arrives in the end by unshot radiosities u is (F + F R F + ...) u, with the reflectances R. Rows
-        of F add up to 1 at most, so that no irradiance is more than max u / (1 - max R); nor is any power
-        more than all that is unshot over (1 - max R).
+        Unshot radiosities u finally add the irradiance (F + F R F + ...) u, with the reflectances R. Rows of
+        F add up to 1 at most, so that no irradiance is more than max u / (1 - max R); nor is any power more
+        than all that is unshot over (1 - max R).
         """
         room = 1.0 - self.reflectance.max(axis=0)
         greatest = self.per_area(unshot).max(axis=0) / room
@@ -197,7 +197,7 @@ class Problem:
         return float(self._face_areas()[is_own].sum() + covered.sum())
 
     def _with_covered(self, values: Floats) -> Floats:
-        """Return values of patches, (N, K), in which faces that coincide with others have means of these."""
+        """Return values of patches, (N, K), with the means of their stand-ins for coincident faces."""
         if not len(self.covered):
             return values
         values, starts = values.copy(), self._starts()

@@ -63,9 +63,10 @@ def radiosity(
     progress: BuildProgress = True,
     states: bool = False,
 ) -> RadiositySolution | Iterator[RadiositySolution]:
-    """Return the light that the diffuse surfaces of a scene send each other.
+    """Solve for the diffuse interreflection of light between the surfaces of a scene (radiosity).
 
-    Faces, or what they are cut into, have one value each. `Radiosity` makes pictures of the solution.
+    Faces, or the patches that they are cut into, have one value each. `Radiosity` makes pictures of the
+    solution.
 
     Parameters
     ----------
@@ -75,22 +76,22 @@ def radiosity(
         an `Instance` has patches of its own, and so takes the memory that its shapes would take; copies that
         move have no solution.
     per : {"face", "vertex"}
-        Whether pictures have one value a patch, or are linear between corners, where patches of the same
-        shape meet without an edge.
+        "face": pictures have one value a patch. "vertex": they are linear between corners, where patches of
+        the same shape meet without an edge.
     method : {"stochastic", "progressive", "matrix"}
         "stochastic" shoots all unshot light at once, along rays in proportion to its power, without a matrix
         (Neumann 1995; Bekaert 1999). "progressive" shoots from one patch after the other, always that which
         has most (Cohen, Chen, Wallace and Greenberg 1988). "matrix" solves with `view_factors`, for some
         thousand patches at most.
     error : float, optional
-        What is wanted, as a share: of "stochastic", `RadiositySolution.error`, with the bound on what is
-        unshot below a tenth of it; of "progressive", that bound; of "matrix", the error of view factors that
-        take rays. By default 0.01, or for "stochastic" with `rays` what these give, and for "matrix" that
-        of `view_factors`.
+        Target, as a share: of "stochastic", `RadiositySolution.error`, with the bound on unshot power below a
+        tenth of it; of "progressive", that bound; of "matrix", the error of view factors found by rays. By
+        default 0.01, or for "stochastic" with `rays` what these give, and for "matrix" that of
+        `view_factors`.
     rays : int, optional
-        How many rays the first light takes, all replicates together, and what is reflected in proportion. By
-        default as many as `error` needs, for "progressive" 64 a patch and at least 65536 for each replicate.
-        Of "matrix", those for lights that are no surfaces.
+        Number of rays of the first light, all replicates together; reflected light takes rays in proportion.
+        By default as many as `error` needs, for "progressive" 64 a patch and at least 65536 for each
+        replicate. Of "matrix", those for lights that are no surfaces.
     patch_size : float, optional
         The longest side of a patch; each triangle is cut into n² that are similar to it. By default faces are
         not cut.
@@ -101,12 +102,17 @@ def radiosity(
     seed : int, Generator or SeedSequence
         Which random numbers; the same seed gives the same bits.
     threads : int, optional
-        How many threads; one a core by default.
+        Number of threads; one a core by default.
     progress : bool or callable
         As for `Scene.build`: the share of the way to where it stops.
     states : bool
         Whether to give a generator of solutions on their way instead, of "progressive": one a shot, the last
         of them the end.
+
+    Returns
+    -------
+    RadiositySolution
+        Or a generator of them, with ``states=True``.
 
     Raises
     ------
@@ -121,6 +127,11 @@ def radiosity(
     RuntimeWarning
         If faces coincide: they are one, which exchanges light once.
 
+    See Also
+    --------
+    Radiosity : Renders the solution.
+    view_factors : The geometry of the exchange.
+
     Notes
     -----
     Where flat faces touch front to front, as a box and the floor beneath do, the covered part of each
@@ -133,6 +144,13 @@ def radiosity(
     a patch is known by the rays that land there, so that N patches take about N / `error`² rays for the light
     that is shot first, and as much more as is reflected. Half as long sides take four times the rays: a large
     `patch_size` with ``per="vertex"`` costs less than small ones. Means over many patches are known better.
+
+    Examples
+    --------
+    >>> scene, _ = rw.scenes.cornell_box()
+    >>> solution = rw.radiosity(scene, error=0.2, progress=False)
+    >>> bool(solution.error < 0.25), solution.method
+    (True, 'stochastic')
     """
     choice("per", per, get_args(Per))
     choice("method", method, get_args(Method))

@@ -1,4 +1,4 @@
-"""Rows of view factors by rays, made into a matrix by which what two faces exchange is one number."""
+"""Reciprocity of sampled view factors: the exchange of two faces is made one number."""
 
 from typing import Any
 
@@ -16,11 +16,11 @@ _TOGETHER = 4096
 
 
 def reciprocal(matrix: Any, variance: Any, areas: Floats) -> tuple[Any, Any]:
-    """Return view factors F of which A_i F_ij = A_j F_ji, and their variances.
+    """Return view factors F with A_i F_ij = A_j F_ji, and their variances.
 
-    Both rows tell what two faces exchange, A F, with a variance of about A² F / n, so that the one of the
-    smaller area counts more. Then rows and columns are scaled alike until each row adds up to what its own
-    rays have met: to 1 in a closed room.
+    Both rows estimate the exchange A F of two faces, with a variance of about A² F / n, so that the one of
+    the smaller area counts more. Then rows and columns are scaled alike until each row adds up to the hit
+    share of its own rays: to 1 in a closed room.
 
     Parameters
     ----------
@@ -45,7 +45,7 @@ def reciprocal(matrix: Any, variance: Any, areas: Floats) -> tuple[Any, Any]:
 
 
 def _scaled(matrix: Any, wanted: Floats) -> Floats:
-    """Return d such that d_i Σ_j M_ij d_j is what is wanted of each row, by Newton's method.
+    """Return d such that d_i Σ_j M_ij d_j is the wanted sum of each row, by Newton's method.
 
     Its linear systems are symmetric, and take conjugate gradients (Knight and Ruiz, "A Fast Algorithm for
     Matrix Balancing", 2013). Where no d can do it, as between two plates whose rays disagree, it ends near.

@@ -29,7 +29,7 @@ def to_the_end(
 ) -> RadiositySolution:
     """Return the solution by a method, at the first of an error and a number of rays that is met.
 
-    What is unshot may add the share `bias` of the wanted error.
+    Unshot power may add the share `bias` of the wanted error.
     """
     tell = _Teller(report)
     if method == "progressive":

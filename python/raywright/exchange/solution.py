@@ -25,7 +25,7 @@ _LUMINANCE = (0.2126, 0.7152, 0.0722)
 
 
 class RadiosityStep(NamedTuple):
-    """How far a solution was at some time.
+    """The progress of a solution at some time.
 
     Attributes
     ----------
@@ -36,6 +36,17 @@ class RadiosityStep(NamedTuple):
     bound : float
         The most that all radiosities together can be short by, for power that is not shot yet, as a share of
         their sum: ‖unshot‖ / (1 - reflectance) over ‖radiosity‖.
+
+    See Also
+    --------
+    RadiositySolution : Lists them in `history`.
+
+    Examples
+    --------
+    >>> scene, _ = rw.scenes.cornell_box()
+    >>> step = rw.radiosity(scene, rays=1000, progress=False).history[-1]
+    >>> step.rays > 0, 0 <= step.bound < 1
+    (True, True)
     """
 
     seconds: float
@@ -47,7 +58,7 @@ class RadiosityStep(NamedTuple):
 class RadiositySolution(Tabular):
     """The light that diffuse patches send each other; all arrays are read-only. Made by `radiosity`.
 
-    There is a row a side of a patch: all fronts, to which the normals point, and after them all backs, where
+    There is a row a side of a patch: all fronts, to which the normals point, and after them all backs, if
     these take part.
 
     Attributes
@@ -58,37 +69,52 @@ class RadiositySolution(Tabular):
         The flux that arrives, W/m².
     standard_error : (N, 3) float64
         That of `radiosity`: the spread of independent replicates, and the most that unshot power may add to
-        it; 0 where nothing is drawn. What patches of one value each cannot show, as an edge of a shadow
-        within one, is no part of it.
+        it; 0 where nothing is drawn. Variation within a patch, such as the edge of a shadow, is not part of
+        it.
     irradiance_error : (N, 3) float64
         The standard error of `irradiance`.
     emission, reflectance : (N, 3) float64
-        What each emits, W/m², and which share of what arrives it reflects: the means of four points.
+        Emission, W/m², and reflectance of each: the means of four points.
     areas : (N,) float64
         In m²; 0 for a face that coincides with one before it, which counts for both and whose light it has.
     patches : (N,) structured
-        Of which "shape" and "face" each is, which "cell" of that, and which "side": 1 for the front, -1 for
-        the back. Of an `Instance`, "copy" is which of its copies, and "face" is numbered as
-        `Instance.locate` has it; "copy" is -1 elsewhere.
+        Index of the "shape", its "face", the "cell" of the face, and the "side": 1 for the front, -1 for the
+        back. Of an `Instance`, "copy" is which of its copies, and "face" is numbered as `Instance.locate` has
+        it; "copy" is -1 elsewhere.
     corners : (N, 3, 3) float64
-        Where the corners are, in the order of the face's; NaN for what is no triangle.
+        Where the corners are, in the order of the face's; NaN for shapes that are no triangles.
     cuts : (F,) uint32
         Into how many strips each face is cut, all copies counted.
     mirrored : (F,) bool
-        Which faces stand in copies that are mirrored: their second and third corners change places.
+        True for faces of mirrored copies: their second and third corners change places.
     per : {"face", "vertex"}
-        Whether look-ups have one value a patch, or are linear between the corners.
+        "face": look-ups have one value a patch. "vertex": they are linear between the corners.
     method : {"stochastic", "progressive", "matrix"}
-        How it was found.
+        The method of the solution.
     emitted, absorbed, escaped, unshot : tuple of 3 floats
-        The books, W: what lights and surfaces send to patches, what these absorb, what leaves the scene or
-        comes to black backs, and what was not shot in the end. The first is the sum of the others.
+        Balance of power, W: emitted by lights and surfaces, absorbed by patches, escaped from the scene or
+        absorbed by black backs, and unshot. The first is the sum of the others.
     history : tuple of RadiosityStep
-        How far it was, from time to time.
+        Progress of the solution over time.
     dropped : int
-        How many faces exchange nothing of their own: without area, not finite, or coincident with another.
+        Number of faces that exchange nothing of their own: without area, not finite, or coincident with
+        another.
     surface_area : float
         The area of all faces but those of copies, coincident ones counted each, m².
+
+    See Also
+    --------
+    radiosity : Makes it.
+    Radiosity : Renders it.
+
+    Examples
+    --------
+    >>> scene, _ = rw.scenes.cornell_box()
+    >>> solution = rw.radiosity(scene, rays=1000, progress=False)
+    >>> solution.radiosity.shape == solution.irradiance.shape
+    True
+    >>> np.allclose(solution.emitted, np.add(solution.absorbed, solution.escaped) + solution.unshot)
+    True
     """
 
     radiosity: Floats
@@ -159,23 +185,38 @@ class RadiositySolution(Tabular):
     def to_mesh(
         self, exposure: float | None = None, side: Literal["front", "back"] = "front"
     ) -> "trimesh.Trimesh":
-        """Return the patches with their light as vertex colours.
+        """Return a mesh of the patches with their light as vertex colors.
 
-        Each patch has corners of its own, so that what meets at an edge keeps its colours. What is no mesh is
-        left out.
+        Each patch has corners of its own, so that patches that meet at an edge keep their colors. Shapes that
+        are no meshes are left out.
 
         Parameters
         ----------
         exposure : float, optional
-            What radiance is multiplied by before it is clipped to 0..1 and coded as sRGB; by default the one
-            that brings 99 % of the patches that reflect below 1.
+            Factor of radiance before it is clipped to 0..1 and coded as sRGB; by default the one that brings
+            99 % of the reflecting patches below 1.
         side : {"front", "back"}
             Which side.
+
+        Returns
+        -------
+        trimesh.Trimesh
 
         Raises
         ------
         ValueError
             If `exposure` is not above 0, the solution has no such side, or the scene is of no meshes.
+
+        See Also
+        --------
+        RadiositySolution.save : Write it to a file.
+
+        Examples
+        --------
+        >>> scene, _ = rw.scenes.cornell_box()
+        >>> mesh = rw.radiosity(scene, rays=1000, progress=False).to_mesh()
+        >>> mesh.visual.kind
+        'vertex'
         """
         import trimesh
 
@@ -203,7 +244,7 @@ class RadiositySolution(Tabular):
         up: Axis = "y",
         cmap: Any = COLORS,
     ) -> Any:
-        """Draw patches in the color of their luminance with matplotlib. What is no mesh is left out.
+        """Draw patches in the color of their luminance with matplotlib. Only meshes are drawn.
 
         Parameters
         ----------
@@ -211,7 +252,7 @@ class RadiositySolution(Tabular):
             Where to draw: a new figure if not given, axes with three dimensions, or a file, .png, .svg or
             .pdf.
         name : {"radiosity", "irradiance", "standard_error", "irradiance_error"}
-            Which array; red, green and blue are weighted as ITU-R BT.709 weights them.
+            Name of the array; red, green and blue are weighted as in ITU-R BT.709.
         side : {"front", "back"}
             Which side.
         up : {"x", "y", "z"}
@@ -234,6 +275,19 @@ class RadiositySolution(Tabular):
             If `ax` is something else.
         OSError
             If the file cannot be written.
+
+        See Also
+        --------
+        measure.plot : Draw any values.
+
+        Examples
+        --------
+        >>> from matplotlib import pyplot as plt
+        >>> scene, _ = rw.scenes.cornell_box()
+        >>> solution = rw.radiosity(scene, rays=1000, progress=False)
+        >>> axes = solution.plot(plt.figure().add_subplot(projection="3d"))
+        >>> len(axes.collections)
+        1
         """
         choice("name", name, ("radiosity", "irradiance", "standard_error", "irradiance_error"))
         choice("up", up, AXES)
@@ -265,10 +319,29 @@ class RadiositySolution(Tabular):
     ) -> None:
         """Write `to_mesh` to a file of a format that holds vertex colours: ``.ply``, ``.glb`` or ``.obj``.
 
+        Parameters
+        ----------
+        path : str or path
+            File to write.
+        exposure, side
+            As for `to_mesh`.
+
         Raises
         ------
         ValueError
             If the name ends otherwise, and as `to_mesh` does.
+
+        See Also
+        --------
+        RadiositySolution.to_mesh : The mesh itself.
+
+        Examples
+        --------
+        >>> import os
+        >>> scene, _ = rw.scenes.cornell_box()
+        >>> rw.radiosity(scene, rays=1000, progress=False).save("light.ply")
+        >>> os.path.exists("light.ply")
+        True
         """
         kind = os.path.splitext(os.fspath(path))[1].lower()
         if kind not in (".ply", ".glb", ".obj"):
@@ -293,7 +366,7 @@ class RadiositySolution(Tabular):
         vars(self).update(state)
 
     def to_dict(self) -> dict[str, NDArray[Any]]:
-        """Return flat arrays by name, an entry for each side of a patch, with what `patches` says of it.
+        """Return flat arrays by name, an entry for each side of a patch, with the fields of `patches`.
 
         Colors are apart, as ``radiosity_red``, ``radiosity_green``, ``radiosity_blue``, and so on.
         """
@@ -318,7 +391,7 @@ class RadiositySolution(Tabular):
 
 
 def relative_error(standard_error: Floats, values: Floats, areas: Floats) -> float:
-    """Return the root mean square, by area, of errors over that of what they are of."""
+    """Return the root mean square, by area, of errors over that of the values."""
     whole = float((areas[:, None] * values**2).sum())
     return float(np.sqrt((areas[:, None] * standard_error**2).sum() / whole)) if whole > 0 else 0.0
 

@@ -38,7 +38,7 @@ _MOST_RAYS = 2**26
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ViewFactors(Tabular):
-    """Which share of the light that leaves each surface, even and from its front, comes to each.
+    """View factors: the share of the uniform diffuse light from each surface that arrives at each other.
 
     Attributes
     ----------
@@ -49,16 +49,29 @@ class ViewFactors(Tabular):
         The area of each, in the square of the scene's unit; 0 for a face that coincides with one before it,
         which counts for both. Its row is that of the other face, and its column is 0.
     per : {"face", "shape"}
-        Whether a row is a face or a shape. Faces are numbered shape after shape, and a shape that is no mesh
-        is one face. An `Instance` is one shape, whose faces are those of all copies, one copy after the
+        "face" or "shape": the kind of a row. Faces are numbered shape after shape, and a shape that is no
+        mesh is one face. An `Instance` is one shape, whose faces are those of all copies, one copy after the
         other, as `Instance.locate` numbers those of each.
     closed, hidden, sampled : int
-        How many pairs of faces that look at each other are in closed form, hidden from each other for
-        certain, and sampled by rays.
+        Number of face pairs that look at each other and are in closed form, certainly hidden, and sampled by
+        rays.
     rays : int
-        How many rays were sent.
+        Number of rays.
     dropped : int
-        How many faces exchange nothing of their own: without area, not finite, or coincident with another.
+        Number of faces that exchange nothing of their own: without area, not finite, or coincident with
+        another.
+
+    See Also
+    --------
+    view_factors : Makes it.
+
+    Examples
+    --------
+    >>> floor = rw.Mesh([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 3]])
+    >>> ceiling = rw.Mesh([[0, 0, 1], [0, 1, 1], [1, 1, 1], [1, 0, 1]], [[0, 1, 2], [0, 2, 3]])
+    >>> found = rw.view_factors([floor, ceiling], per="shape", progress=False)
+    >>> found.matrix.round(6).tolist(), found.rest.round(6).tolist()
+    ([[0.0, 0.199825], [0.199825, 0.0]], [0.800175, 0.800175])
     """
 
     matrix: "NDArray[np.float64] | csr_array"
@@ -119,6 +132,18 @@ class ViewFactors(Tabular):
             If `ax` is something else.
         OSError
             If the file cannot be written.
+
+        See Also
+        --------
+        RadiositySolution.plot : Draw the light.
+
+        Examples
+        --------
+        >>> from matplotlib import pyplot as plt
+        >>> _, axes = plt.subplots()
+        >>> axes = rw.view_factors(rw.scenes.cornell_box()[0], rays=16, progress=False).plot(axes)
+        >>> len(axes.get_images())
+        1
         """
         choice("name", name, ("matrix", "standard_error"))
         label = "view factor" if name == "matrix" else "standard error"
@@ -127,25 +152,66 @@ class ViewFactors(Tabular):
     def matvec(self, x: ArrayLike) -> NDArray[np.float64]:
         """Return ``matrix @ x``: of radiosities x, (N,) or (N, K), the irradiances.
 
+        Parameters
+        ----------
+        x : (N,) or (N, K) array
+            Radiosities, a row each.
+
+        Returns
+        -------
+        (N,) or (N, K) float64 array
+
         Raises
         ------
         ValueError
             If there is not one x for each row.
         TypeError
             If x does not hold real numbers.
+
+        See Also
+        --------
+        ViewFactors.rmatvec : The transpose.
+
+        Examples
+        --------
+        >>> floor = rw.Mesh([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 3]])
+        >>> ceiling = rw.Mesh([[0, 0, 1], [0, 1, 1], [1, 1, 1], [1, 0, 1]], [[0, 1, 2], [0, 2, 3]])
+        >>> found = rw.view_factors([floor, ceiling], per="shape", progress=False)
+        >>> found.matvec([0.0, 100.0]).round(3).tolist()
+        [19.982, 0.0]
         """
         return np.asarray(self.matrix @ self._checked(x))
 
     def matvec_error(self, x: ArrayLike) -> NDArray[np.float64]:
         """Return the standard error of ``matvec(x)``, as if all view factors erred each for itself.
 
-        What rows of rays are too much off in one column they are too little in others, so that where x is
-        much the same everywhere, and nothing is left over, the error is less.
+        Errors within a row are negatively correlated, so the error is less if x is nearly constant and
+        nothing escapes.
+
+        Parameters
+        ----------
+        x : (N,) or (N, K) array
+            Radiosities, a row each.
+
+        Returns
+        -------
+        (N,) or (N, K) float64 array
 
         Raises
         ------
         ValueError, TypeError
             As `matvec` does.
+
+        See Also
+        --------
+        ViewFactors.matvec : The product.
+
+        Examples
+        --------
+        >>> floor = rw.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+        >>> found = rw.view_factors(floor, progress=False)
+        >>> found.matvec_error([1.0]).tolist()
+        [0.0]
         """
         squares = np.square(self._checked(x), dtype=np.float64)
         if not isinstance(self._variance, tuple):
@@ -159,8 +225,8 @@ class ViewFactors(Tabular):
         """Return (N, N) errors of x as each row weights it, and the covariance of rows and columns.
 
         Errors of a row that adds up to one cancel where x is the same everywhere, so that x is taken relative
-        to its mean over what the row samples. The first is s_ij (x_j - c_i), with the standard error s. What
-        two faces exchange is one estimate: the second is the product of the first and its transpose.
+        to its mean over what the row samples. The first is s_ij (x_j - c_i), with the standard error s. The
+        exchange of two faces is one estimate: the second is the product of the first and its transpose.
         """
         spread = np.asarray(self.standard_error)
         weights = spread**2
@@ -174,10 +240,31 @@ class ViewFactors(Tabular):
     def rmatvec(self, x: ArrayLike) -> NDArray[np.float64]:
         """Return ``matrix.T @ x``: of powers x that leave each, (N,) or (N, K), the powers that arrive.
 
+        Parameters
+        ----------
+        x : (N,) or (N, K) array
+            Powers, a row each.
+
+        Returns
+        -------
+        (N,) or (N, K) float64 array
+
         Raises
         ------
         ValueError, TypeError
             As `matvec` does.
+
+        See Also
+        --------
+        ViewFactors.matvec : The product with the matrix itself.
+
+        Examples
+        --------
+        >>> floor = rw.Mesh([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 3]])
+        >>> ceiling = rw.Mesh([[0, 0, 1], [0, 1, 1], [1, 1, 1], [1, 0, 1]], [[0, 1, 2], [0, 2, 3]])
+        >>> found = rw.view_factors([floor, ceiling], per="shape", progress=False)
+        >>> found.rmatvec([0.0, 100.0]).round(3).tolist()
+        [19.982, 0.0]
         """
         return np.asarray(self.matrix.T @ self._checked(x))
 
@@ -219,12 +306,13 @@ def view_factors(
     threads: int | None = None,
     progress: BuildProgress = True,
 ) -> ViewFactors:
-    """Find which share of the light that leaves each surface comes to each other.
+    """Compute view factors: the share of the light from each surface that arrives at each other.
 
     Every surface sends from its front alone, the side that the normal points to, and receives there alone,
-    whatever its material: a `TwoSided` one too. What lies between hides from either side. Two triangles that
-    nothing lies between have a closed form, to 1e-9 of itself; that nothing does is proven by their shaft.
-    Where something may, stratified rays tell the difference from the closed form. What is no mesh sends rays.
+    whatever its material: a `TwoSided` one too. Occluders hide from either side. Two triangles that nothing
+    lies between have a closed form, to 1e-9 of itself; that nothing does is proven by their shaft. Where
+    something may, stratified rays tell the difference from the closed form. Shapes that are no meshes send
+    rays.
 
     Parameters
     ----------
@@ -232,21 +320,20 @@ def view_factors(
         Meshes, and shapes other than `Plane`. Each face of each copy of an `Instance` is a face of its own;
         copies must stand still.
     per : {"face", "shape"}
-        What a row is: a face, or a shape with all of its faces.
+        Rows of the matrix: faces, or shapes with all of their faces.
     rays : int, optional
-        How many go between two faces that something may lie between, up to 2**20. A shape that is no mesh
-        sends 4096 times as many, up to 2**26. In a scene of more than 10,000 faces each face sends 16 times
-        as many. If neither this nor `error` is given, 16, and then as many as bring the standard error below
-        1 % of the greatest factor of either row, unless all together would be more than 33 million; a shape
-        that is no mesh sends up to 2**20, and a face of more than 10,000 sends 256, whatever error these
-        leave.
+        Number of rays between two faces with a possible occluder, up to 2**20. A shape that is no mesh sends
+        4096 times as many, up to 2**26. In a scene of more than 10,000 faces each face sends 16 times as
+        many. If neither this nor `error` is given, 16, and then as many as bring the standard error below 1 %
+        of the greatest factor of either row, unless all together would be more than 33 million; a shape that
+        is no mesh sends up to 2**20, and a face of more than 10,000 sends 256, whatever error these leave.
     error : float, optional
         The standard error that no view factor between faces should exceed. More rays are sent until it is
         met, up to 2**20 for a pair.
     seed : int, Generator or SeedSequence
         Picks the random numbers, 0 to 2**64 - 1.
     threads : int, optional
-        How many to use; all cores if not given. The answer does not depend on it.
+        Number of threads; all cores if not given. The answer does not depend on it.
     progress : bool or callable
         As for `Scene.build`.
 
@@ -270,27 +357,42 @@ def view_factors(
         If faces coincide: they are one, which exchanges light once. If they overlap in a part, or one is no
         mesh, what they exchange there counts twice.
 
+    See Also
+    --------
+    radiosity : Solves for light.
+    radiative_exchange : Solves for heat.
+
     Notes
     -----
-    Of each pair A_i F_ij is found once, so that A_i F_ij = A_j F_ji to the last digit but one. What has no
-    area sees nothing. In a closed room each row adds up to 1 within 1e-9: estimates are moved, as little as
-    their errors allow, until they do (weighted least squares within 0 and the factor of an unblocked pair).
-    A room is closed if none of at least 65,536 rays from its sampled faces meets a back or nothing. If some
-    do, the share that each row loses is estimated too. Standard errors are those before estimates are moved,
-    and so are upper bounds.
+    Of each pair A_i F_ij is found once, so that A_i F_ij = A_j F_ji to the last digit but one. Faces without
+    area see nothing. In a closed room each row adds up to 1 within 1e-9: estimates are moved, as little as
+    their errors allow, until they do (weighted least squares within 0 and the factor of an unblocked pair). A
+    room is closed if none of at least 65,536 rays from its sampled faces meets a back or nothing. If some do,
+    the share that each row loses is estimated too. Standard errors are those before estimates are moved, and
+    so are upper bounds.
 
     Where flat faces touch front to front, as a box or the cap of a cylinder and the floor beneath do, all
     that leaves the covered part of one comes to the other. Two triangles exchange the area in common; the
     share of a shape that is no mesh is sampled, as its row is. An `Implicit` is taken to have no flat parts.
 
-    More than 10,000 faces have a sparse matrix (``pip install 'raywright[sparse]'``), all of it by rays,
-    however little is hidden: of both rows that tell what two faces exchange, one number is made, and rows
-    are scaled so that they add up to 1 in a closed room. It has at most about twice as many entries in a row
-    as a face has rays, of 12 bytes each, and as many of its errors: 100,000 faces of 256 rays take some 1.2
-    GB, and twice that while they are made.
+    More than 10,000 faces have a sparse matrix (``pip install 'raywright[sparse]'``), sampled by rays even if
+    little is hidden: the rows of two faces are combined into one estimate of their exchange, and rows are
+    scaled so that they add up to 1 in a closed room. It has at most about twice as many entries in a row as a
+    face has rays, of 12 bytes each, and as many of its errors: 100,000 faces of 256 rays take some 1.2 GB,
+    and twice that while they are made.
 
     Closed forms: contour integrals, Schröder and Hanrahan (1993), Mitalas and Stephenson (1966). Shafts:
     Haines and Wallace (1991).
+
+    Examples
+    --------
+    Opposite faces of a cube exchange 0.1998 (Siegel and Howell):
+
+    >>> floor = rw.Mesh([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 3]])
+    >>> ceiling = rw.Mesh([[0, 0, 1], [0, 1, 1], [1, 1, 1], [1, 0, 1]], [[0, 1, 2], [0, 2, 3]])
+    >>> found = rw.view_factors([floor, ceiling], per="shape", progress=False)
+    >>> round(found.matrix[0, 1].item(), 4), found.rays
+    (0.1998, 0)
     """
     scene = as_scene(scene)
     choice("per", per, get_args(Per))
@@ -330,7 +432,7 @@ def _first_faces(laid: LaidOut) -> NDArray[np.int64]:
 
 
 def _check_finite(laid: LaidOut) -> None:
-    """Refuse a scene of which no face has finite corners; where some have, the others are dropped."""
+    """Refuse a scene without a face of finite corners; single faces that are not finite are dropped."""
     for shape in laid.scene.shapes:
         if (
             not isinstance(shape, Mesh)

@@ -1,4 +1,4 @@
-"""What people measure with rays: sky and sun, what scanners and eyes see, walls and cuts."""
+"""Measurements with rays: sky and sun, laser scans, lines of sight, wall thickness and cross sections."""
 
 from .cracks import Topology, topology
 from .cuts import CrossSection, cross_section

@@ -18,7 +18,7 @@ AreaRule: TypeAlias = Literal["winding", "even-odd"]
 
 @dataclass(frozen=True, eq=False, repr=False)
 class CrossSection(Tabular):
-    """Where a plane cuts meshes.
+    """The cross section of meshes with a plane.
 
     Attributes
     ----------
@@ -27,11 +27,22 @@ class CrossSection(Tabular):
         the plane's normal, closed ones of a body whose normals point out turn anticlockwise, and those of its
         holes clockwise.
     closed : tuple of bool
-        Whether each is closed: all are, where meshes are.
+        True for closed lines: all are, if the meshes are closed.
     area : float
-        What closed lines cover by the rule that was asked for; open ones cover nothing.
+        Area covered by closed lines, by `rule`; open ones cover nothing.
     length : float
         Of all lines.
+
+    See Also
+    --------
+    measure.cross_section : Makes it.
+
+    Examples
+    --------
+    >>> import trimesh
+    >>> section = rw.measure.cross_section(trimesh.creation.box((2, 2, 2)), (0, 0, 0.5), (0, 0, 1))
+    >>> section.is_closed, round(section.area, 9), round(section.length, 9)
+    (True, 4.0, 8.0)
     """
 
     lines: tuple[Floats, ...]
@@ -44,12 +55,12 @@ class CrossSection(Tabular):
 
     @property
     def is_closed(self) -> bool:
-        """Whether all lines are closed, so that `area` leaves nothing out."""
+        """True if all lines are closed, so that `area` leaves nothing out."""
         return all(self.closed)
 
     @property
     def gaps(self) -> tuple[float, ...]:
-        """How far apart the ends of each line are: 0 of closed ones."""
+        """Distance between the ends of each line: 0 for closed ones."""
         return tuple(float(np.linalg.norm(line[-1] - line[0])) for line in self.lines)
 
     def to_dict(self) -> dict[str, NDArray[Any]]:
@@ -81,8 +92,11 @@ def cross_section(
     normal : (3,) or (N, 3) array
         Of each plane, of any length; broadcast against `point`.
     rule : {"winding", "even-odd"}
-        What the closed lines cover: "winding" what they wind about, once however often, so that overlapping
-        bodies are their union and holes count by the way they turn; it is negative where normals point in.
+        Area that the closed lines cover: "winding" all that they wind about, counted once, so that
+        overlapping bodies are their union and holes count by the way they turn; it is negative where normals
+        point in. "even-odd" all points that an odd number of lines surround, whichever way they turn, so that
+        overlaps are left out. "winding" what they wind about, once however often, so that overlapping bodies
+        are their union and holes count by the way they turn; it is negative where normals point in.
         "even-odd" what an odd number of lines surround, whichever way they turn, so that overlaps are left
         out.
 
@@ -99,6 +113,10 @@ def cross_section(
     TypeError
         If something is no number.
 
+    See Also
+    --------
+    Scene.intersect : Cut with rays.
+
     Notes
     -----
     On which side of the plane a corner lies is decided once for all faces that share it, and a corner exactly
@@ -113,6 +131,17 @@ def cross_section(
     Lines are joined whichever way the faces turn, and turn as most of their length does; where each face is
     there from both sides, as if normals pointed out. Faces with the same corners count once. Eight planes or
     more are cut with a tree of the faces.
+
+    Examples
+    --------
+    >>> import trimesh
+    >>> box = trimesh.creation.box((2, 2, 2))
+    >>> section = rw.measure.cross_section(box, (0, 0, 0), (0, 0, 1))
+    >>> round(section.area, 9), len(section.lines)
+    (4.0, 1)
+    >>> slices = rw.measure.cross_section(box, [[0, 0, 0], [0, 0, 9]], (0, 0, 1))
+    >>> [round(section.area, 9) for section in slices]
+    [4.0, 0.0]
     """
     choice("rule", rule, get_args(AreaRule))
     origins, ways = vectors("point", point), units("normal", normal)

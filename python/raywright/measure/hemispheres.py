@@ -1,4 +1,4 @@
-"""How open it is above points: shares of the directions in which nothing stands."""
+"""Sky view factors and ambient visibility: unobstructed shares of the hemisphere."""
 
 import math
 from dataclasses import dataclass
@@ -36,7 +36,18 @@ class Estimate(Plotted):
         3 / `rays`: with so large a share of others, all agree in 5 % of cases (Hanley and Lippman-Hand, "If
         Nothing Goes Wrong, Is Everything All Right?", 1983).
     rays : int
-        How many rays each point has sent.
+        Number of rays from each point.
+
+    See Also
+    --------
+    measure.sky_view, measure.ambient_visibility
+
+    Examples
+    --------
+    >>> plain = rw.Mesh([[-9, 0, 9], [9, 0, 9], [0, 0, -9]], [[0, 1, 2]])
+    >>> found = rw.measure.sky_view(plain)
+    >>> found.value.tolist(), found.rays
+    ([1.0], 256)
     """
 
     value: Floats
@@ -63,15 +74,15 @@ def sky_view(
     progress: BuildProgress | None = None,
     threads: int | None = None,
 ) -> Estimate:
-    """Find the sky view factor of points on surfaces: what share of an even sky's light reaches them.
+    """Find the sky view factor of points on surfaces: the share of a uniform sky's light that reaches them.
 
-    That is the share of directions about the normal, weighted by their cosine to it, in which nothing stands;
-    1 for a plain under an open sky.
+    It is the unobstructed share of directions about the normal, weighted by their cosine; 1 for a plain under
+    an open sky.
 
     Parameters
     ----------
     scene : Scene, Mesh or anything else that a Scene is made of
-        What hides the sky.
+        Obstructions.
     points : Hits, ClosestPoints or (..., 3) array, optional
         Where. Rays leave what was hit exactly as `Hits.leave` has it, and plain points as `offset` tells. The
         middle of every face if not given, which only meshes have.
@@ -83,8 +94,8 @@ def sky_view(
         The zenith, for points on slopes and walls: below its horizon there is no sky. If not given, all that
         is not hidden is sky.
     offset : float, optional
-        How far from plain points along the normal rays start. If not given, points that lie on a surface to
-        within rounding leave it by the bound on its error, as what was hit does, and others start where they
+        Distance along the normal from plain points to the rays' origins. If not given, points that lie on a
+        surface to within rounding leave it by the bound on its error, as hits do, and others start where they
         are. Rounding is 2**-40 of the largest coordinate of the face, or 2**-22 where points or vertices were
         rounded to float32.
     seed : int, Generator or SeedSequence
@@ -93,7 +104,7 @@ def sky_view(
         Whether to show a bar on stderr where it takes longer than two seconds, as at a terminal if not given;
         or a function that is called with the share that is done.
     threads : int, optional
-        How many to use; all cores if not given. The answer does not depend on it.
+        Number of threads; all cores if not given. The answer does not depend on it.
 
     Returns
     -------
@@ -108,12 +119,29 @@ def sky_view(
     TypeError
         If something is of the wrong type.
 
+    See Also
+    --------
+    measure.ambient_visibility : The same within a radius.
+    measure.solar_exposure : The sun instead of the sky.
+
     Notes
     -----
     Each batch of directions is a lattice of the golden ratio on the square, moved at random (Cranley and
     Patterson 1976), and mapped to the disk evenly (Shirley and Chiu 1997) and up to the hemisphere (Malley's
     method). Batches are independent, each an unbiased estimate, and their mean errs less than that of as many
     independent rays.
+
+    Examples
+    --------
+    >>> plain = rw.Scene(rw.Plane(normal=(0, 1, 0)))
+    >>> rw.measure.sky_view(plain, [0, 0, 0], (0, 1, 0)).value.item()
+    1.0
+
+    At the foot of an endless wall, half of the sky is hidden:
+
+    >>> wall = rw.Scene([rw.Plane(normal=(0, 1, 0)), rw.Plane(normal=(1, 0, 0))])
+    >>> round(rw.measure.sky_view(wall, [1e-6, 0, 0], (0, 1, 0)).value.item(), 1)
+    0.5
     """
     zenith = None if up is None else unit("up", up)
     scene = scene_of(scene)
@@ -134,17 +162,17 @@ def ambient_visibility(
     progress: BuildProgress | None = None,
     threads: int | None = None,
 ) -> Estimate:
-    """Find how open it is around points on surfaces: 1 less what is called ambient occlusion.
+    """Find the ambient visibility of points on surfaces: 1 less their ambient occlusion.
 
-    That is the share of directions about the normal, weighted by their cosine to it, in which nothing stands
-    within a radius.
+    It is the share of directions about the normal, weighted by their cosine, without an obstruction within a
+    radius.
 
     Parameters
     ----------
     scene, points, normals, rays, offset, seed, progress, threads
         As for `sky_view`.
     radius : float, optional
-        How far away what stands in the way counts, this distance included; however far if not given.
+        Maximum distance of obstructions, inclusive; unlimited if not given.
 
     Returns
     -------
@@ -155,6 +183,18 @@ def ambient_visibility(
     ------
     ValueError, TypeError
         As `sky_view` does, and if the radius is not greater than 0.
+
+    See Also
+    --------
+    measure.sky_view : The same for a sky with a horizon.
+    AmbientOcclusion : A picture of it.
+
+    Examples
+    --------
+    >>> wall = rw.Scene([rw.Plane(normal=(0, 1, 0)), rw.Plane(normal=(1, 0, 0))])
+    >>> found = rw.measure.ambient_visibility(wall, [[1e-6, 0, 0], [1, 0, 0]], (0, 1, 0), radius=0.5)
+    >>> found.value.round(1).tolist()
+    [0.5, 1.0]
     """
     most = math.inf if radius is None else positive("radius", radius)
     scene = scene_of(scene)
@@ -219,7 +259,7 @@ def _share(
     seed: int,
     threads: int | None,
 ) -> Floats:
-    """Return the share of directions in which nothing stands, for each of some batches and points."""
+    """Return the unobstructed share of directions, for each of some batches and points."""
     origins, normals = where.origins[some], where.normals[some]
     index, batch = np.meshgrid(np.arange(some.start, some.stop, dtype=np.uint32), batches.astype(np.uint32))
     moved = _core.random_numbers(seed, index.reshape(-1), batch.reshape(-1), 0, True).reshape(

@@ -68,7 +68,7 @@ class Places:
     normals : (N, 3) float64
         Unit vectors.
     shape : tuple of int
-        Leading shape of what was given.
+        Leading shape of the points.
     """
 
     origins: Floats
@@ -136,7 +136,7 @@ def middles(scene: Scene) -> ClosestPoints:
 
 @dataclass(frozen=True)
 class Touching:
-    """How points lie to the surfaces on which they lie to within rounding; all is 0 for points on none.
+    """Surfaces at the points, for those that lie on one to within rounding; all is 0 for the others.
 
     Attributes
     ----------

@@ -31,7 +31,7 @@ def plot(
     Parameters
     ----------
     scene : Scene, Mesh or anything else that a Scene is made of
-        What is drawn: all meshes, copies that stand still included.
+        Meshes to draw, copies that stand still included.
     values : (...) array of real numbers or bool
         One for each point; without points one for each face, or one for each vertex, of all meshes in order.
         NaN is drawn in grey, and infinity in the color of the nearest end.
@@ -40,7 +40,7 @@ def plot(
     ax : matplotlib.axes.Axes, str or path, optional
         Where to draw: a new figure if not given, axes with three dimensions, or a file, .png, .svg or .pdf.
     label : str
-        What stands beside the color bar.
+        Label of the color bar.
     up : {"x", "y", "z"}
         The axis that points up.
     cmap : str or matplotlib.colors.Colormap
@@ -61,6 +61,19 @@ def plot(
         If the values are not numbers, or `ax` is something else.
     OSError
         If the file cannot be written.
+
+    See Also
+    --------
+    Hits.plot : Draw hits.
+
+    Examples
+    --------
+    >>> from matplotlib import pyplot as plt
+    >>> knot = rw.scenes.torus_knot(along=20, around=6)
+    >>> axes = plt.figure().add_subplot(projection="3d")
+    >>> axes = rw.measure.plot(knot, np.arange(len(knot.faces)), ax=axes, label="face")
+    >>> len(axes.collections)
+    1
     """
     choice("up", up, AXES)
     shown = _numbers(values)
@@ -96,7 +109,7 @@ def plot(
 
 
 class Where(NamedTuple):
-    """Of which scene, and at which points, values are; at the middle of every face if None."""
+    """The scene and the points of the values; the middle of every face if None."""
 
     scene: Scene
     points: SurfacePoints | Floats | None
@@ -118,7 +131,7 @@ class Plotted(Tabular):
             Where to draw: a new figure if not given, axes with three dimensions, or a file, .png, .svg or
             .pdf.
         name : str, optional
-            Which of the arrays; the first if not given.
+            Name of the array; the first if not given.
         up : {"x", "y", "z"}
             The axis that points up.
         cmap : str or matplotlib.colors.Colormap
@@ -139,6 +152,18 @@ class Plotted(Tabular):
             If `ax` is something else.
         OSError
             If the file cannot be written.
+
+        See Also
+        --------
+        measure.plot : Draw any values.
+
+        Examples
+        --------
+        >>> from matplotlib import pyplot as plt
+        >>> knot = rw.scenes.torus_knot(along=20, around=6)
+        >>> axes = rw.measure.sky_view(knot, rays=16).plot(plt.figure().add_subplot(projection="3d"))
+        >>> len(axes.collections)
+        1
         """
         shown = self._drawn[0] if name is None else name
         choice("name", shown, self._drawn)

@@ -12,7 +12,7 @@ from .places import Floats, unit
 
 @dataclass(frozen=True, kw_only=True)
 class _Scanner:
-    """What all scanners have."""
+    """The base class of scanners."""
 
     position: Triple = (0.0, 0.0, 0.0)
     forward: Triple = (1.0, 0.0, 0.0)
@@ -49,24 +49,25 @@ class SpinningLidar(_Scanner):
     elevations : (R,) array
         Of the beams above the horizon, in degrees: a row each, in their order.
     columns : int
-        How many times a turn they are sent.
+        Number of columns of a turn.
     start, stop : float
-        From which azimuth to which they turn, in degrees from `forward` on, anticlockwise as seen from above;
-        `stop` is not reached.
+        First and last azimuth, in degrees from `forward` on, anticlockwise as seen from above; `stop` is not
+        reached.
     position : 3 floats
         Where the scanner is.
     forward, up : 3 floats
         Its azimuth 0 and its vertical, y if not given as everywhere in `raywright.measure`; only what of
         `forward` is at right angles to `up` counts.
     min_range, max_range : float
-        Between which it measures, both included. What is nearer is not measured, and hides what is behind it.
+        Limits of the measured range, both included. Nearer surfaces are not measured, and hide surfaces
+        behind them.
     divergence : float
         The full angle of a beam's cone, in degrees; 0 for one that is a line.
     rays : int
-        How many a beam with a divergence is sampled with.
+        Number of rays for a beam with a divergence.
     resolution : float
-        How far apart surfaces must be, in the scene's unit, for a beam to return from each: the full width at
-        half maximum of its pulse, in range.
+        Minimum distance between surfaces, in the scene's unit, for a beam to return from each: the full width
+        at half maximum of its pulse, in range.
 
     Raises
     ------
@@ -74,6 +75,17 @@ class SpinningLidar(_Scanner):
         If a number is out of its range or not finite, `forward` is along `up`, or there are no beams.
     TypeError
         If something is no number.
+
+    See Also
+    --------
+    measure.RasterLidar : A scanner of a rectangular field.
+    measure.lidar : Scans with it.
+
+    Examples
+    --------
+    >>> scanner = rw.measure.SpinningLidar(elevations=[-15, 0, 15], columns=360)
+    >>> scanner.shape
+    (3, 360)
     """
 
     elevations: ArrayLike
@@ -98,7 +110,18 @@ class SpinningLidar(_Scanner):
         return np.size(self.elevations), self.columns
 
     def directions(self) -> Floats:
-        """Return the unit direction of each beam's middle: (R, C, 3)."""
+        """Return the unit direction of each beam's middle: (R, C, 3).
+
+        Returns
+        -------
+        (R, C, 3) float64 array
+
+        Examples
+        --------
+        >>> scanner = rw.measure.SpinningLidar(elevations=[0], columns=4)
+        >>> scanner.directions().round(4).tolist()
+        [[[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [-1.0, 0.0, -0.0], [-0.0, 0.0, 1.0]]]
+        """
         ahead, left, above = axes(self.forward, self.up)
         high = np.radians(np.asarray(self.elevations, np.float64))[:, None, None]
         turn = self.start + (self.stop - self.start) * np.arange(self.columns) / self.columns
@@ -115,8 +138,7 @@ class RasterLidar(_Scanner):
     Parameters
     ----------
     horizontal, vertical : float
-        How wide and how high the field is, in degrees, up to 360 and 180; its outermost beams lie on its
-        edge.
+        Width and height of the field, in degrees, up to 360 and 180; its outermost beams lie on its edge.
     columns, rows : int
         Beams of a line, from the left to the right, and lines, from above to below.
     position : 3 floats
@@ -133,6 +155,17 @@ class RasterLidar(_Scanner):
         If a number is out of its range or not finite, or `forward` is along `up`.
     TypeError
         If something is no number.
+
+    See Also
+    --------
+    measure.SpinningLidar : A scanner that turns.
+    measure.lidar : Scans with it.
+
+    Examples
+    --------
+    >>> scanner = rw.measure.RasterLidar(horizontal=20, vertical=10, columns=3, rows=2)
+    >>> scanner.shape
+    (2, 3)
     """
 
     horizontal: float = 60.0
@@ -155,7 +188,18 @@ class RasterLidar(_Scanner):
         return self.rows, self.columns
 
     def directions(self) -> Floats:
-        """Return the unit direction of each beam's middle: (rows, columns, 3)."""
+        """Return the unit direction of each beam's middle: (rows, columns, 3).
+
+        Returns
+        -------
+        (rows, columns, 3) float64 array
+
+        Examples
+        --------
+        >>> scanner = rw.measure.RasterLidar(horizontal=90, vertical=0, columns=3, rows=1)
+        >>> scanner.directions().round(4).tolist()
+        [[[0.7071, 0.0, -0.7071], [1.0, 0.0, 0.0], [0.7071, 0.0, 0.7071]]]
+        """
         ahead, left, above = axes(self.forward, self.up)
         high = np.radians(_steps(self.vertical, self.rows))[:, None, None]
         around = np.radians(_steps(self.horizontal, self.columns))[:, None]

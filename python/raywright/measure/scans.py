@@ -1,4 +1,4 @@
-"""What a laser scanner measures of a scene."""
+"""Simulated laser scans."""
 
 import math
 from dataclasses import dataclass, field
@@ -29,14 +29,14 @@ _GRAZING = 89.995
 
 @dataclass(frozen=True, eq=False, repr=False)
 class LidarScan(Tabular):
-    """What a scanner has measured: K returns in all, by beam and then by range.
+    """A laser scan: K returns in all, by beam and then by range.
 
     Attributes
     ----------
     beam : (K,) int64
-        Which beam each return is of, counted along `shape` in C order.
+        Index of the beam of each return, along `shape` in C order.
     number : (K,) int32
-        Which return of its beam, from 0 on, before any were left out.
+        Number of the return within its beam, from 0 on, before any were left out.
     range : (K,) float64
         As measured: with its noise, from the scanner's `min_range` to its `max_range`.
     position : (K, 3) float64
@@ -47,9 +47,20 @@ class LidarScan(Tabular):
     strength : (K,) float64
         Share of the beam that came to the surface there, 0 to 1.
     shape_id, primitive : (K,) int32
-        What was met, as `Hits` tells it: the first of it.
+        First shape and primitive of the return, as in `Hits`.
     shape : tuple of int
         Of the beams: rows and columns.
+
+    See Also
+    --------
+    measure.lidar : Makes it.
+
+    Examples
+    --------
+    >>> scanner = rw.measure.SpinningLidar(elevations=[-45, 0], columns=4, position=(0, 1, 0))
+    >>> scan = rw.measure.lidar(rw.Plane(normal=(0, 1, 0)), scanner)
+    >>> scan.count.tolist(), scan.range.round(4).tolist()
+    ([[1, 1, 1, 1], [0, 0, 0, 0]], [1.4142, 1.4142, 1.4142, 1.4142])
     """
 
     beam: NDArray[np.int64]
@@ -64,7 +75,7 @@ class LidarScan(Tabular):
 
     @property
     def count(self) -> NDArray[np.int64]:
-        """How many returns each beam has: int64 of the scanner's shape."""
+        """Number of returns of each beam: int64 of the scanner's shape."""
         return np.bincount(self.beam, minlength=math.prod(self.shape)).reshape(self.shape)
 
     def image(self, name: str = "range", fill: float = np.nan) -> Floats:
@@ -75,12 +86,27 @@ class LidarScan(Tabular):
         name : {"range", "incidence", "strength"}
             What of it.
         fill : float
-            What stands where a beam has no return.
+            Value of beams without a return.
+
+        Returns
+        -------
+        (rows, columns) float64 array
 
         Raises
         ------
         ValueError
             If there is no such name.
+
+        See Also
+        --------
+        LidarScan.count : The number of returns of each beam.
+
+        Examples
+        --------
+        >>> scanner = rw.measure.SpinningLidar(elevations=[-30, 0], columns=2, position=(0, 1, 0))
+        >>> scan = rw.measure.lidar(rw.Plane(normal=(0, 1, 0)), scanner)
+        >>> scan.image(fill=0).round(6).tolist(), scan.image("incidence", fill=0).round(6).tolist()
+        ([[2.0, 2.0], [0.0, 0.0]], [[60.0, 60.0], [0.0, 0.0]])
         """
         choice("name", name, ("range", "incidence", "strength"))
         whole = np.full(math.prod(self.shape), fill, np.float64)
@@ -97,7 +123,7 @@ class LidarScan(Tabular):
             Where to draw: a new figure if not given, axes with three dimensions, or a file, .png, .svg or
             .pdf.
         name : {"range", "incidence", "strength"}
-            What they are colored by.
+            Values that are colored.
         up : {"x", "y", "z"}
             The axis that points up.
         cmap : str or matplotlib.colors.Colormap
@@ -111,6 +137,19 @@ class LidarScan(Tabular):
         ------
         ImportError, ValueError, TypeError, OSError
             As `raywright.measure.plot` does, and if there is no such name.
+
+        See Also
+        --------
+        measure.plot : Draw values on meshes.
+
+        Examples
+        --------
+        >>> from matplotlib import pyplot as plt
+        >>> scanner = rw.measure.SpinningLidar(elevations=[-30], columns=8, position=(0, 1, 0))
+        >>> scan = rw.measure.lidar(rw.Plane(normal=(0, 1, 0)), scanner)
+        >>> axes = scan.plot(plt.figure().add_subplot(projection="3d"))
+        >>> len(axes.collections)
+        1
         """
         choice("name", name, ("range", "incidence", "strength"))
         return plot((), getattr(self, name), self.position, ax, name, up, cmap)
@@ -150,9 +189,9 @@ def lidar(
     scanner : SpinningLidar or RasterLidar
         Where it stands and which beams it sends.
     returns : {"all", "first", "last", "strongest"}
-        Which of the returns of a beam are kept. A beam that does not widen has one at most.
+        Returns of a beam to keep. A beam that does not widen has one at most.
     range_sigma, range_sigma_share : float
-        Standard deviation of a measured range: so much, and so much of the range, independent of each other.
+        Absolute and relative standard deviation of the range; they add in quadrature.
     dropout : float
         The share of returns that are lost wherever they come from, 0 to 1.
     fading_range : float, optional
@@ -164,7 +203,7 @@ def lidar(
     progress : bool or callable, optional
         As for `sky_view`.
     threads : int, optional
-        How many to use; all cores if not given. The answer does not depend on it.
+        Number of threads; all cores if not given. The answer does not depend on it.
 
     Returns
     -------
@@ -178,10 +217,15 @@ def lidar(
     TypeError
         If `scanner` is no scanner, or something else is of the wrong type.
 
+    See Also
+    --------
+    measure.line_of_sight : Pairs of points.
+    Scene.intersect : Rays without a scanner.
+
     Notes
     -----
-    A beam with a divergence is many rays, spread evenly over its disk, each for the part of it around. What
-    comes back is a waveform: the sum of a normal distribution for each ray, as wide as the scanner's pulse,
+    A beam with a divergence is many rays, spread evenly over its disk, each for the part of it around. The
+    beam returns a waveform: the sum of a normal distribution for each ray, as wide as the scanner's pulse,
     whose full width at half maximum is its `resolution`, and as the range varies over the ray's part of the
     surface. Each peak of it is a return, if the waveform falls by 5 % at least before the next (Wagner,
     Ullrich, Ducic, Melzer and Studnicka, "Gaussian Decomposition and Calibration of a Novel Small-Footprint
@@ -191,6 +235,16 @@ def lidar(
     Ranges are true before noise; losses are decided of true ranges. Noise that leads out of the scanner's
     limits ends at these. Random numbers belong to beam and return, so that a scan is the same however it is
     cut into batches, and adding one kind of noise changes no other.
+
+    Examples
+    --------
+    >>> scanner = rw.measure.RasterLidar(horizontal=0, vertical=0, columns=1, rows=1)
+    >>> scan = rw.measure.lidar(rw.Sphere((5, 0, 0)), scanner)
+    >>> scan.range.tolist(), scan.position.tolist()
+    ([4.0], [[4.0, 0.0, 0.0]])
+    >>> noisy = rw.measure.lidar(rw.Sphere((5, 0, 0)), scanner, range_sigma=0.01, seed=3)
+    >>> bool(abs(noisy.range[0] - 4) < 0.06)
+    True
     """
     if not isinstance(scanner, SpinningLidar | RasterLidar):
         raise TypeError(f"scanner must be a SpinningLidar or a RasterLidar, got {type(scanner).__name__}")

@@ -1,4 +1,4 @@
-"""Whether points see each other."""
+"""Lines of sight between points."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -15,16 +15,26 @@ from .plots import Plotted
 
 @dataclass(frozen=True, eq=False, repr=False)
 class LineOfSight(Plotted):
-    """Whether points see each other; arrays of the leading shape of the pairs.
+    """Lines of sight between points; arrays of the leading shape of the pairs.
 
     Attributes
     ----------
     visible : (...) bool
-        Whether nothing stands between.
+        True if nothing stands between.
     obstruction : Hits
-        What stands in the way first, from `a` on; `t` is its share of the way.
+        First obstruction, from `a` on; `t` is its share of the way.
     distance : (...) float64
         From the one point to the other.
+
+    See Also
+    --------
+    measure.line_of_sight : Makes it.
+
+    Examples
+    --------
+    >>> sight = rw.measure.line_of_sight(rw.Sphere(), (0, 0, -4), [[0, 0, 4], [4, 0, -4]])
+    >>> sight.visible.tolist(), sight.obstruction.t.tolist(), sight.distance.tolist()
+    ([False, True], [0.375, inf], [8.0, 4.0])
     """
 
     visible: NDArray[np.bool_]
@@ -50,12 +60,12 @@ class LineOfSight(Plotted):
 def line_of_sight(
     scene: SceneLike, a: ArrayLike, b: ArrayLike, margin: float | None = None, threads: int | None = None
 ) -> LineOfSight:
-    """Find whether points see each other, and what stands in the way first.
+    """Test whether points see each other, and find the first obstruction.
 
     Parameters
     ----------
     scene : Scene, Mesh or anything else that a Scene is made of
-        What may stand in the way.
+        Obstructions.
     a, b : (..., 3) arrays
         The points, broadcast against each other.
     margin : float, optional
@@ -64,7 +74,7 @@ def line_of_sight(
         there: the way leaves it by the bound on its error, as `Hits.leave` has it. All else counts, however
         near.
     threads : int, optional
-        How many to use; all cores if not given. The answer does not depend on it.
+        Number of threads; all cores if not given. The answer does not depend on it.
 
     Returns
     -------
@@ -77,6 +87,17 @@ def line_of_sight(
         If a last dimension is not 3, shapes do not broadcast, or a number is not finite or out of its range.
     TypeError
         If an array does not hold real numbers.
+
+    See Also
+    --------
+    Scene.occluded : Rays instead of pairs of points.
+
+    Examples
+    --------
+    >>> wall = rw.Disk(normal=(0, 0, 1), radius=1)
+    >>> sight = rw.measure.line_of_sight(wall, (0, 0, -1), [[0, 0, 1], [5, 0, 1]])
+    >>> sight.visible.tolist()
+    [False, True]
     """
     starts, ends = vectors("a", a), vectors("b", b)
     lead = common({"a": starts.shape[:-1], "b": ends.shape[:-1]})

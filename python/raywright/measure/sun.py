@@ -1,4 +1,4 @@
-"""How much sun there is on surfaces."""
+"""Solar exposure of surfaces."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -21,7 +21,7 @@ _TOGETHER = 1 << 20
 
 @dataclass(frozen=True, eq=False, repr=False)
 class SolarExposure(Plotted):
-    """What the sun sends to points; arrays of their leading shape. NaN where there is no point.
+    """Solar exposure of points; arrays of their leading shape. NaN where there is no point.
 
     Attributes
     ----------
@@ -33,6 +33,17 @@ class SolarExposure(Plotted):
         hours of sun.
     day : float
         The weights of all moments at which the sun is above the horizon, summed.
+
+    See Also
+    --------
+    measure.solar_exposure : Makes it.
+
+    Examples
+    --------
+    >>> plain = rw.Mesh([[-9, 0, 9], [9, 0, 9], [0, 0, -9]], [[0, 1, 2]])
+    >>> sun = rw.measure.solar_exposure(plain, sun=[[0, 1, 0], [1, 1, 0], [0, -1, 0]])
+    >>> sun.exposure.round(4).tolist(), sun.sunlit.tolist(), sun.day
+    ([1.7071], [2.0], 2.0)
     """
 
     exposure: Floats
@@ -55,7 +66,7 @@ def sun_directions(
     up: ArrayLike = (0.0, 1.0, 0.0),
     north: ArrayLike = (0.0, 0.0, -1.0),
 ) -> Floats:
-    """Return where the sun is at each of some times, seen from a place.
+    """Return the direction to the sun at each of some times, seen from a place.
 
     Parameters
     ----------
@@ -75,6 +86,15 @@ def sun_directions(
     ------
     ValueError, TypeError
         As `SunSky.at` does.
+
+    See Also
+    --------
+    SunSky.at : The sky at a time.
+
+    Examples
+    --------
+    >>> rw.measure.sun_directions("2024-03-20T12:07:00Z", latitude=0, longitude=0).round(2).tolist()
+    [0.0, 1.0, -0.0]
     """
     known = one_or_many("times", times)
     suns = directions_at(
@@ -98,7 +118,7 @@ def solar_exposure(
     progress: BuildProgress | None = None,
     threads: int | None = None,
 ) -> SolarExposure:
-    """Find when the sun reaches points on surfaces, and how much of it falls on these.
+    """Find the hours of sun of points on surfaces, and the irradiation that falls on them.
 
     Parameters
     ----------
@@ -113,16 +133,15 @@ def solar_exposure(
         Directions to the sun, of any length; or `times` with `latitude` and `longitude`, as `sun_directions`
         takes them.
     weights : float or (T,) array, optional
-        What each moment counts, such as its share of the year or the direct normal irradiance; 1 if not
-        given.
+        Weight of each moment, such as its share of the year or the direct normal irradiance; 1 if not given.
     up, north : 3 floats
         The zenith, below whose horizon the sun does not count, and the north.
     offset : float, optional
-        How far from plain points along the normal rays start, as for `sky_view`.
+        Distance along the normal from plain points to the rays' origins, as for `sky_view`.
     progress : bool or callable, optional
         As for `sky_view`.
     threads : int, optional
-        How many to use; all cores if not given. The answer does not depend on it.
+        Number of threads; all cores if not given. The answer does not depend on it.
 
     Returns
     -------
@@ -137,10 +156,23 @@ def solar_exposure(
     TypeError
         If something is of the wrong type.
 
+    See Also
+    --------
+    measure.sun_directions : The directions alone.
+    measure.sky_view : The light of the sky.
+
     Notes
     -----
     The sun counts as a point. Where its centre is hidden it is down, so that edges of shadows, half a degree
     wide, are sharp. Nothing is sampled.
+
+    Examples
+    --------
+    >>> plain = rw.Scene(rw.Plane(normal=(0, 1, 0)))
+    >>> times = np.arange("2024-06-21T00", "2024-06-22T00", dtype="datetime64[h]")
+    >>> sun = rw.measure.solar_exposure(plain, [0, 0, 0], (0, 1, 0), times=times, latitude=0, longitude=0)
+    >>> sun.sunlit.item(), sun.day
+    (12.0, 12.0)
     """
     suns = _suns(sun, times, latitude, longitude, up, north)
     counted = np.ones(len(suns)) if weights is None else _weights(weights, len(suns))

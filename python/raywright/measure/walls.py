@@ -1,4 +1,4 @@
-"""How thick walls are."""
+"""Wall thickness."""
 
 from typing import Literal, get_args
 
@@ -29,7 +29,7 @@ def thickness(
     progress: BuildProgress | None = None,
     threads: int | None = None,
 ) -> Floats:
-    """Find how thick a body is at points of its surface.
+    """Find the thickness of a body at points of its surface.
 
     Parameters
     ----------
@@ -44,11 +44,11 @@ def thickness(
         of the largest ball inside that touches the surface at the point, which is never more, does not depend
         on how the far side is tilted, and needs closest points.
     offset : float, optional
-        How far from plain points rays start, as for `sky_view`.
+        Distance along the normal from plain points to the rays' origins, as for `sky_view`.
     progress : bool or callable, optional
         As for `sky_view`.
     threads : int, optional
-        How many to use; all cores if not given. The answer does not depend on it.
+        Number of threads; all cores if not given. The answer does not depend on it.
 
     Returns
     -------
@@ -65,13 +65,26 @@ def thickness(
     TypeError
         If something is of the wrong type.
 
+    See Also
+    --------
+    Scene.signed_distance : The distance to the surface from inside.
+
     Notes
     -----
     The ball shrinks from the one that the ray allows until nothing is nearer to its centre than the point
     (Ma, Bae and Choi, "3D Medial Axis Point Approximation Using Nearest Neighbors and the Normal Field",
-    2012), at a convex edge to nothing. Among meshes a tree of boxes and slabs finds what shrinks it, to 1e-6
-    of itself; of what is no mesh, closest points do. Rays and balls are those of the surface as it is: where
-    a mesh stands for something round, its facets are what is measured.
+    2012), at a convex edge to nothing. Among meshes a tree of boxes and slabs finds the nearest obstacle, to
+    1e-6 of the ball; for other shapes, closest points do. Rays and balls are those of the actual surface: if
+    a mesh stands for something round, its facets are measured.
+
+    Examples
+    --------
+    >>> import trimesh
+    >>> plate = trimesh.creation.box((4, 4, 0.5))
+    >>> rw.measure.thickness(plate, [[0.1, 0.2, 0.25]], [[0, 0, 1]]).tolist()
+    [0.5]
+    >>> rw.measure.thickness(plate, [[0.1, 0.2, 0.25]], [[0, 0, 1]], method="sphere").round(4).tolist()
+    [0.5]
     """
     choice("method", method, get_args(Method))
     if progress is not None:
