@@ -27,14 +27,10 @@ UNFINISHED = {
     "compat",
     "gpu",
     "io",
-    "lights",
-    "materials",
-    "media",
     "report",
     "scene_files",
     "scenes",
     "shapes",
-    "textures",
     "viewer",
 }
 

@@ -23,6 +23,18 @@ class ConstantEnvironment:
         If a number is negative or not finite, or there are not 1 or 3 of them.
     TypeError
         If it is not a number.
+
+    See Also
+    --------
+    EnvironmentMap : A picture around the scene.
+    SunSky : Daylight.
+
+    Examples
+    --------
+    >>> scene = rw.Scene([], environment=rw.ConstantEnvironment((0.1, 0.2, 0.3)))
+    >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), width=1, height=1)
+    >>> print(rw.render(scene, camera, samples=1, progress=False).rgb[0, 0].round(4))
+    [0.1 0.2 0.3]
     """
 
     radiance: Triple | Spectrum

@@ -17,7 +17,7 @@ class DirectionalLight:
     direction : 3 floats
         Where it travels to, of any length but 0.
     irradiance : float, 3 floats or Spectrum
-        What a surface that faces it receives in W·m⁻², at least 0: one number, or red, green and blue.
+        Irradiance of a surface that faces it in W·m⁻², at least 0: one number, or red, green and blue.
 
     Raises
     ------
@@ -25,6 +25,19 @@ class DirectionalLight:
         If a number is negative or not finite, or the direction has no length.
     TypeError
         If they are not numbers.
+
+    See Also
+    --------
+    SunSky : The sun as a disk.
+    PointLight : Light of a point nearby.
+
+    Examples
+    --------
+    >>> sun = rw.DirectionalLight((0, 0, -1), irradiance=np.pi)
+    >>> scene = rw.Scene(rw.Plane(material=rw.Diffuse(0.5)), lights=[sun])
+    >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), width=1, height=1)
+    >>> print(rw.render(scene, camera, samples=1, progress=False).rgb[0, 0].round(4))
+    [0.5 0.5 0.5]
     """
 
     direction: Triple

@@ -18,16 +18,15 @@ SIDES = ("front", "back", "both")
 
 @dataclass(frozen=True, init=False)
 class Emission:
-    """What a surface gives off: the `emission` of a shape that shines on its back, or on both sides.
+    """Emission of a surface: the `emission` of a shape that shines on its back, or on both sides.
 
-    The front is where the normals point to: the outside of a closed shape, and the side from which the
-    corners of a face are seen anticlockwise. A sphere whose back shines lights what stands within.
+    Normals point to the front: the outside of a closed shape, and the side from which the corners of a face
+    are seen anticlockwise. A sphere whose back shines lights what stands within.
 
     Parameters
     ----------
     radiance : float, 3 floats, Spectrum or Texture
-        Radiance in W·sr⁻¹·m⁻², at least 0: one number, or red, green and blue, by wavelength, or what
-        varies.
+        Radiance in W·sr⁻¹·m⁻², at least 0: one number, or red, green and blue, by wavelength, or a texture.
     both_sides : bool
         Short for ``side="both"``.
     side : {"front", "back", "both"}, optional
@@ -39,6 +38,17 @@ class Emission:
         If a number is negative or not finite, there are not 1 or 3 of them, or there is no such side.
     TypeError
         If it is not a number, or `both_sides` is no bool.
+
+    See Also
+    --------
+    Blackbody : Light by its temperature.
+
+    Examples
+    --------
+    >>> lamp = rw.Disk(emission=rw.Emission(5.0, side="back"))
+    >>> camera = rw.Camera((0, 0, -5), (0, 0, 0), fov=10, width=1, height=1)
+    >>> rw.render(rw.Scene(lamp), camera, samples=1, progress=False).rgb[0, 0].tolist()
+    [5.0, 5.0, 5.0]
     """
 
     radiance: Value
@@ -58,7 +68,7 @@ class Emission:
 
     @property
     def both_sides(self) -> bool:
-        """Whether both sides shine."""
+        """True if both sides shine."""
         return self.side == "both"
 
 

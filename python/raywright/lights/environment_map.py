@@ -14,9 +14,9 @@ from .pictured import Pictured, Texels, texels
 class EnvironmentMap(Pictured):
     """An equirectangular picture all around a scene, drawn from by its light.
 
-    The middle of the picture is seen along -z, its top at +y, and what is right of the middle towards +x: as
-    a `Camera` sees it that looks along -z. Between the middles of texels radiance is interpolated, and it is
-    drawn by exactly that: a sun of one texel does no harm.
+    The middle of the picture is seen along -z, its top at +y, and its right half towards +x: as a `Camera`
+    sees it that looks along -z. Between the middles of texels radiance is interpolated, and it is drawn by
+    exactly that: a sun of one texel does no harm.
 
     Parameters
     ----------
@@ -27,7 +27,7 @@ class EnvironmentMap(Pictured):
     to_world : (3, 3) or (4, 4) array, optional
         A rotation, or a reflection, from the picture's space to the world.
     scale : float
-        What the image is multiplied by to be radiance in W·sr⁻¹·m⁻², at least 0.
+        Factor from the image to radiance in W·sr⁻¹·m⁻², at least 0.
 
     Raises
     ------
@@ -38,6 +38,19 @@ class EnvironmentMap(Pictured):
         If something is not numbers.
     FileNotFoundError
         If a file is missing.
+
+    See Also
+    --------
+    ConstantEnvironment : The same radiance everywhere.
+
+    Examples
+    --------
+    >>> sky = np.zeros((8, 16, 3), np.float32)
+    >>> sky[:4] = [0.2, 0.4, 0.8]
+    >>> scene = rw.Scene([], environment=rw.EnvironmentMap(sky, scale=2.0))
+    >>> camera = rw.Camera((0, 0, 0), (0, 1, 0), up=(0, 0, 1), width=1, height=1)
+    >>> print(rw.render(scene, camera, samples=1, progress=False).rgb[0, 0].round(3))
+    [0.4 0.8 1.6]
     """
 
     image: Texels

@@ -1,4 +1,4 @@
-"""How lights keep pictures, and how those that do compare."""
+"""Storage and comparison of lights with pictures."""
 
 from dataclasses import fields
 from os import PathLike
@@ -69,7 +69,7 @@ def _is_little(single: Texels) -> bool:
 
 
 class Pictured:
-    """A frozen dataclass that holds arrays: it compares, hashes, prints and pickles by what is in them."""
+    """A frozen dataclass that holds arrays: it compares, hashes, prints and pickles by their contents."""
 
     def _values(self) -> tuple[Any, ...]:
         values = (getattr(self, field.name) for field in fields(self))  # type: ignore[arg-type]

@@ -25,6 +25,18 @@ class PointLight:
         If a number is negative or not finite, or there are too few or too many of them.
     TypeError
         If they are not numbers.
+
+    See Also
+    --------
+    SpotLight : A cone of light.
+    Emission : Light of surfaces.
+
+    Examples
+    --------
+    >>> scene = rw.Scene(rw.Plane(), lights=[rw.PointLight((0, 0, 2), intensity=4 * np.pi)])
+    >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), fov=0.1, width=1, height=1)
+    >>> print(rw.render(scene, camera, samples=1, progress=False).rgb[0, 0].round(3))
+    [0.5 0.5 0.5]
     """
 
     position: Triple

@@ -13,7 +13,7 @@ from .pictured import Pictured, Texels, texels
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
 class ProjectorLight(Pictured):
-    """A slide projector: a point from which light goes through a picture, and nowhere else.
+    """A slide projector: a point whose light goes through a picture only.
 
     A screen at right angles to its axis shows the picture as bright at the corners as in the middle: the
     intensity goes with the inverse cube of the cosine to the axis, times the picture.
@@ -43,6 +43,20 @@ class ProjectorLight(Pictured):
         If something is not numbers.
     FileNotFoundError
         If a file is missing.
+
+    See Also
+    --------
+    SpotLight : A cone of light.
+
+    Examples
+    --------
+    >>> slide = np.zeros((2, 2, 3), np.float32)
+    >>> slide[0] = 1.0
+    >>> lamp = rw.ProjectorLight(slide, (0, 0, 2), (0, 0, 0), up=(0, 1, 0), fov=60, intensity=4 * np.pi)
+    >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), width=2, height=2, fov=10)
+    >>> image = rw.render(rw.Scene(rw.Plane(), lights=[lamp]), camera, samples=4, progress=False)
+    >>> bool(image.rgb[0].mean() > 2 * image.rgb[1].mean())
+    False
     """
 
     image: Texels

@@ -37,6 +37,19 @@ class SpotLight:
         If a number is out of its range or not finite, `target` is `position`, or `profile` is none of those.
     TypeError
         If something is not a number.
+
+    See Also
+    --------
+    PointLight : Light into all directions.
+    ProjectorLight : A picture.
+
+    Examples
+    --------
+    >>> lamp = rw.SpotLight((0, 0, 2), (0, 0, 0), intensity=4 * np.pi, angle=20, falloff=5)
+    >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), fov=0.1, width=1, height=1)
+    >>> image = rw.render(rw.Scene(rw.Plane(), lights=[lamp]), camera, samples=1, progress=False)
+    >>> print(image.rgb[0, 0].round(3))
+    [0.5 0.5 0.5]
     """
 
     position: Triple

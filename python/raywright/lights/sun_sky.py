@@ -30,13 +30,13 @@ class SunSky:
         The direction of the sun, of any length but 0; at night it is below the horizon. See `at` for that of
         a time and place.
     turbidity : float
-        How hazy the air is: 2, very clear, to 10, hazy.
+        Turbidity of the air: 2, very clear, to 10, hazy.
     ground_albedo : float or 3 floats
         Share of the light that the plain reflects, in [0, 1].
     up : 3 floats
         The direction of the zenith, of any length but 0.
     sun_scale, sky_scale : float
-        What the light of the sun and that of the sky are multiplied by, at least 0.
+        Factors of the light of the sun and of the sky, at least 0.
 
     Raises
     ------
@@ -44,6 +44,16 @@ class SunSky:
         If a number is out of its range or not finite.
     TypeError
         If something is not a number.
+
+    See Also
+    --------
+    measure.solar_exposure : Hours of sun.
+
+    Examples
+    --------
+    >>> sky = rw.SunSky((0, 1, 0), turbidity=3)
+    >>> round(sky.elevation, 6)
+    90.0
     """
 
     sun: Triple
@@ -127,7 +137,7 @@ class SunSky:
         sun_scale: float = 1.0,
         sky_scale: float = 1.0,
     ) -> "SunSky | tuple[SunSky, ...]":
-        """Return the daylight of a time and place, or of each of several times.
+        """Return the daylight at a time and place, or at each of several times.
 
         The sun is where the low-precision formulas of the Astronomical Almanac have it, to 0.01° from 1950 to
         2050 (Michalsky, "The Astronomical Almanac's Algorithm for Approximate Solar Position", 1988).
@@ -156,6 +166,19 @@ class SunSky:
             `up`; and as the class does.
         TypeError
             If `when` is something else; and as the class does.
+
+        See Also
+        --------
+        measure.sun_directions : The directions alone.
+
+        Examples
+        --------
+        >>> noon = rw.SunSky.at("2025-06-21T12:00+00:00", latitude=51.48, longitude=0.0)
+        >>> round(noon.elevation, 1)
+        62.0
+        >>> night, day = rw.SunSky.at(["2025-06-21T00:00Z", "2025-06-21T12:00Z"], latitude=51.48, longitude=0)
+        >>> night.elevation < 0 < day.elevation
+        True
         """
         times = one_or_many("when", when)
         many = times if isinstance(times, list) else [times]

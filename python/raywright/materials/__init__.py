@@ -1,4 +1,4 @@
-"""What surfaces are made of: how they scatter light."""
+"""Materials: how surfaces scatter light."""
 
 from .blinn_phong import BlinnPhong
 from .boundary import Boundary

@@ -20,10 +20,10 @@ class BlinnPhong(Material):
     diffuse : float, 3 floats or Texture
         Share of the light that is reflected diffusely, in [0, 1].
     specular : float, 3 floats or Texture
-        Share that makes highlights, in [0, 1]. Numbers must add up to at most 1 with `diffuse`; where
-        textures do not, highlights leave the rest to what is diffuse.
+        Share that makes highlights, in [0, 1]. Numbers must add up to at most 1 with `diffuse`; if textures
+        exceed it, the diffuse share is reduced.
     exponent : float or Texture
-        How sharp highlights are, at least 0: the power of a cosine.
+        Exponent of the cosine, at least 0: highlights get sharper with it.
     ambient : float, 3 floats or Texture, optional
         Share of ambient light that is reflected, for integrators that know of it; `diffuse` if not given.
 
@@ -33,6 +33,17 @@ class BlinnPhong(Material):
         If a number is out of range, or the two shares add up to more than 1.
     TypeError
         If something is not of the kinds above.
+
+    See Also
+    --------
+    Phong : Highlights about the mirror direction.
+    Plastic : A coat with facets.
+
+    Examples
+    --------
+    >>> shiny = rw.BlinnPhong(diffuse=(0.4, 0.1, 0.1), specular=0.3, exponent=50)
+    >>> shiny.diffuse, shiny.exponent
+    ((0.4, 0.1, 0.1), 50.0)
     """
 
     diffuse: Value

@@ -10,14 +10,14 @@ from .material import Material
 
 @dataclass(frozen=True, init=False)
 class Boundary(Material):
-    """Where a medium ends that has no surface, as smoke or a cloud: light passes as if nothing were there.
+    """An index-matched boundary of a medium, as of smoke or a cloud: light passes straight.
 
     Its normals point out of the medium. `Scene.intersect` and the like hit the shape.
 
     Parameters
     ----------
     interior : Homogeneous or GridMedium
-        What is within.
+        The medium inside.
     priority : int
         Where several things overlap that are filled, the one of the greatest priority alone is there; of
         equal ones, what has the greater index of refraction, so that glass stands in smoke; and of those,
@@ -29,6 +29,17 @@ class Boundary(Material):
         If `priority` is out of range.
     TypeError
         If something is not of the kinds above.
+
+    See Also
+    --------
+    Dielectric : A boundary that refracts, with an `interior`.
+
+    Examples
+    --------
+    >>> smoke = rw.Homogeneous(scattering=1.0)
+    >>> scene = rw.Scene(rw.Sphere(material=rw.Boundary(smoke)))
+    >>> round(scene.transmittance([0, 0, 5], [0, 0, -1])[0].item(), 4)
+    0.1353
     """
 
     interior: Medium

@@ -12,17 +12,16 @@ from .material import material as checked
 class BumpMap(Material):
     """A material on a surface that looks as if it were raised.
 
-    What is hit is the surface as it was; only its normals change (Blinn, "Simulation of Wrinkled Surfaces",
-    1978).
+    The shape is unchanged; only its normals change (Blinn, "Simulation of Wrinkled Surfaces", 1978).
 
     Parameters
     ----------
     material : Material
-        What it is made of.
+        Material of the surface.
     height : float or Texture
-        How high each point is, along the normal.
+        Height along the normal.
     scale : float
-        What heights are multiplied by, to be lengths of the scene's unit; negative where they are depths.
+        Factor of heights, in the scene's unit; negative for depths.
 
     Raises
     ------
@@ -30,6 +29,16 @@ class BumpMap(Material):
         If a number is not finite.
     TypeError
         If something is not of the kinds above.
+
+    See Also
+    --------
+    NormalMap : Normals from a picture.
+
+    Examples
+    --------
+    >>> waves = rw.BumpMap(rw.Diffuse(0.5), rw.Noise(), scale=0.01)
+    >>> waves.material, waves.scale
+    (Diffuse(reflectance=(0.5, 0.5, 0.5)), 0.01)
     """
 
     material: Material

@@ -20,11 +20,11 @@ class Conductor(Material):
     A metal that is named has the colour of its spectrum: at each angle, Fresnel's reflectance by the index of
     refraction that was measured, integrated over the wavelengths of daylight (CIE D65) as the standard
     observer sees them (CIE 1931), in linear Rec. 709. So a light of (1, 1, 1) looks in it as in a spectral
-    renderer, in which white is daylight. In a channel it may reflect more than there is: gold is
-    (1.022, 0.782, 0.344), an orange that no mixture of red, green and blue quite has. Of what is reflected
-    by gold again and again, each time but the first gives at most 96.2 % of the red, which is what the
-    wavelength has that is reflected best: two and five reflections are right to 3 % so, and no light is
-    without end. An integrator in Python sees each reflection as if it were the first.
+    renderer with daylight as white. In a channel it may reflect more than there is: gold is (1.022, 0.782,
+    0.344), an orange that no mixture of red, green and blue quite has. In repeated reflections by gold, each
+    but the first gives at most 96.2 % of the red, the reflectance of the wavelength that is reflected best:
+    two and five reflections are right to 3 % so, and energy stays bounded. An integrator in Python sees each
+    reflection as if it were the first.
 
     Parameters
     ----------
@@ -35,23 +35,23 @@ class Conductor(Material):
         Real and imaginary part of its index of refraction, in place of a name: above 0, and at least 0. Three
         are those of red, green and blue, each with a reflectance of its own.
     roughness : float, Texture, or a pair of them, optional
-        How rough it is, from 0, smooth, to 1; along u and along v if they are two. Its square is the alpha of
-        its facets' distribution, as in glTF. 0 if not given.
+        Roughness from 0, smooth, to 1; along u and along v if they are two. Its square is the alpha of its
+        facets' distribution, as in glTF. 0 if not given.
     alpha : float, Texture, or a pair of them, optional
         That alpha itself, in place of `roughness`.
     distribution : {"ggx", "beckmann"}
-        How the slopes of its facets are spread: with long tails (Walter et al., "Microfacet Models for
-        Refraction through Rough Surfaces", 2007), or normally (Beckmann and Spizzichino, 1963), which makes
+        Distribution of facet slopes: "ggx" with long tails (Walter et al., "Microfacet Models for Refraction
+        through Rough Surfaces", 2007), or "beckmann", normal (Beckmann and Spizzichino, 1963), which makes
         highlights without a glow around them.
     multiple_scattering : bool
-        Whether light that facets throw on each other goes on. If not, it is lost, so that a surface is the
-        darker the rougher it is, and what is hidden from either side is independent of the other: the model
-        of Walter et al., which many renderers have as it stands.
+        True to include multiple scattering between facets. If not, that light is lost, so that a surface is
+        the darker the rougher it is, and masking and shadowing are independent: the model of Walter et al.,
+        which many renderers use.
 
     Attributes
     ----------
     metal : str or None
-        The name, whichever way it was told.
+        Its name, or None.
     eta, k : tuple of 3 floats, or Texture, or None
         The index of refraction, unless it is that of a name.
 
@@ -62,6 +62,20 @@ class Conductor(Material):
         there is no such distribution.
     TypeError
         If something is not of the kinds above.
+
+    See Also
+    --------
+    Mirror : The same reflectance at every angle.
+    metals : The names.
+
+    Examples
+    --------
+    >>> gold = rw.Conductor("gold", roughness=0.3)
+    >>> gold.metal
+    'gold'
+    >>> aluminium_by_number = rw.Conductor(eta=1.1, k=6.8)
+    >>> aluminium_by_number.eta
+    (1.1, 1.1, 1.1)
     """
 
     metal: str | None
@@ -105,6 +119,16 @@ class MetalIndex(NamedTuple):
         In nm, rising, from below 360 to beyond 830.
     eta, k : (N,) array
         The real and the imaginary part there.
+
+    See Also
+    --------
+    metal_index : Makes it.
+
+    Examples
+    --------
+    >>> gold = rw.metal_index("gold")
+    >>> bool(gold.wavelengths[0] < 360), bool((gold.k > 0).all())
+    (True, True)
     """
 
     wavelengths: NDArray[np.float64]
@@ -113,7 +137,21 @@ class MetalIndex(NamedTuple):
 
 
 def metals() -> tuple[str, ...]:
-    """Return the names of the metals that `Conductor` knows."""
+    """Return the names of the metals that `Conductor` knows.
+
+    Returns
+    -------
+    tuple of str
+
+    See Also
+    --------
+    metal_index : The measured index of each.
+
+    Examples
+    --------
+    >>> "gold" in rw.metals(), "Au" in rw.metals()
+    (True, False)
+    """
     return tuple(name for _, name in _core.metals())
 
 
@@ -129,12 +167,27 @@ def metal_index(metal: str) -> MetalIndex:
     metal : str
         Its name or symbol, as ``"gold"`` or ``"Au"``.
 
+    Returns
+    -------
+    MetalIndex
+
     Raises
     ------
     ValueError
         If the name is not known.
     TypeError
         If it is no name.
+
+    See Also
+    --------
+    metals : The names.
+
+    Examples
+    --------
+    >>> silver = rw.metal_index("Ag")
+    >>> n = np.interp(550, silver.wavelengths, silver.eta + 1j * silver.k)
+    >>> bool(abs((n - 1) / (n + 1)) ** 2 > 0.95)
+    True
     """
     if not isinstance(metal, str):
         raise TypeError(f"metal must be a name, got {type(metal).__name__}")

@@ -20,7 +20,7 @@ from .material import Material, Rough, facets, rough
 class Dielectric(Material):
     """The surface of something clear, smooth or rough, which reflects and refracts.
 
-    Its normals point out of what is clear; whatever it encloses is filled.
+    Normals point outwards; the inside is filled.
 
     Parameters
     ----------
@@ -28,30 +28,30 @@ class Dielectric(Material):
         The index of refraction within, above 0: 1.5 for glass, 1.33 for water, 2.42 for diamond. One that
         goes with wavelength, as those of `glasses`, spreads light into its colours.
     roughness : float or Texture, optional
-        How rough it is, from 0, smooth, to 1. Its square is the alpha of its facets' distribution, as in
-        glTF. 0 if not given.
+        Roughness from 0, smooth, to 1. Its square is the alpha of its facets' distribution, as in glTF. 0 if
+        not given.
     alpha : float or Texture, optional
         That alpha itself, in place of `roughness`.
     priority : int
         Where several such solids overlap, the one of the greatest priority is there (Schmidt and Budge,
         "Simple Nested Dielectrics in Ray Traced Images", 2002): a drink may reach into its glass.
     distribution : {"ggx", "beckmann"}
-        How the slopes of its facets are spread: with long tails (Walter et al., "Microfacet Models for
-        Refraction through Rough Surfaces", 2007), or normally (Beckmann and Spizzichino, 1963), which makes
+        Distribution of facet slopes: "ggx" with long tails (Walter et al., "Microfacet Models for Refraction
+        through Rough Surfaces", 2007), or "beckmann", normal (Beckmann and Spizzichino, 1963), which makes
         highlights without a glow around them.
     multiple_scattering : bool
-        Whether light that facets throw on each other goes on. If not, it is lost, so that a surface is the
-        darker the rougher it is, and what is hidden from either side is independent of the other: the model
-        of Walter et al., which many renderers have as it stands.
+        True to include multiple scattering between facets. If not, that light is lost, so that a surface is
+        the darker the rougher it is, and masking and shadowing are independent: the model of Walter et al.,
+        which many renderers use.
 
     interior : Homogeneous or GridMedium, optional
-        What is within, if it is not clear: what dims and scatters light there.
+        Medium inside, which absorbs and scatters light there.
     transmittance : float, 3 floats or Spectrum, optional
-        The tint of what is within, in place of `interior`: the share of light, one number or red, green and
-        blue, above 0 and at most 1, that is left after a way of length `distance` inside (Bouguer, 1729;
-        Beer, 1852). It is kept as an `interior` of the absorption -ln(transmittance) / distance; where all
-        is left, there is none. One by wavelength, such as makers tell of their filters, must be above 0 from
-        360 to 830 nm.
+        Tint of the inside, in place of `interior`: the share of light, one number or red, green and blue,
+        above 0 and at most 1, that is left after a way of length `distance` inside (Bouguer, 1729; Beer,
+        1852). It is kept as an `interior` of the absorption -ln(transmittance) / distance; where all is left,
+        there is none. One by wavelength, such as makers tell of their filters, must be above 0 from 360 to
+        830 nm.
     distance : float, optional
         The length of that way, above 0, in units of the world. 1 if not given.
 
@@ -63,6 +63,22 @@ class Dielectric(Material):
         comes without it.
     TypeError
         If something is not of the kinds above.
+
+    See Also
+    --------
+    ThinDielectric : A pane.
+    Tinted : A color at the surface.
+    glasses : Indices of refraction by name.
+
+    Examples
+    --------
+    >>> glass = rw.Dielectric(1.5, transmittance=(0.9, 0.95, 0.9), distance=10)
+    >>> glass.ior
+    1.5
+    >>> rays = rw.Rays(np.array([[0, 0, 3.0]]), np.array([[0, 0, -1.0]]), np.zeros(1))
+    >>> met = rw.Scene(rw.Sphere(material=glass)).interactions(rays)
+    >>> met.reflected().weight[0, 0].round(4).item()
+    0.04
     """
 
     ior: float | Dispersion
@@ -102,7 +118,7 @@ class Dielectric(Material):
 
 
 def _tint(transmittance: ArrayLike | Spectrum, distance: float | None) -> Homogeneous | None:
-    """Return what leaves that share of light after that way, or None for what leaves all."""
+    """Return the medium of a transmittance over a distance, or None if that is 1."""
     length = positive("distance", 1.0 if distance is None else distance)
     if isinstance(transmittance, Spectrum):
         return _tint_by_wavelength(transmittance, length)

@@ -24,6 +24,20 @@ class Diffuse(Material):
         If a reflectance is outside [0, 1] or not finite, or is not 1 or 3 numbers.
     TypeError
         If something is not of the kinds above.
+
+    See Also
+    --------
+    OrenNayar : A rough matt surface.
+    Plastic : A matt surface under a coat.
+
+    Examples
+    --------
+    >>> rw.Diffuse((0.2, 0.4, 0.6)).reflectance
+    (0.2, 0.4, 0.6)
+    >>> rw.Diffuse(1.5)
+    Traceback (most recent call last):
+        ...
+    ValueError: reflectance must be between 0 and 1, got 1.5
     """
 
     reflectance: Value

@@ -1,4 +1,4 @@
-"""How the index of refraction of what is clear goes with wavelength."""
+"""Dispersion: the index of refraction by wavelength."""
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
@@ -14,7 +14,17 @@ BLUE, YELLOW, RED = 0.4861327, 0.5875618, 0.6562725
 
 
 class Dispersion(ABC):
-    """An index of refraction that goes with wavelength: a `Cauchy` or a `Sellmeier`."""
+    """An index of refraction that goes with wavelength: a `Cauchy` or a `Sellmeier`.
+
+    See Also
+    --------
+    Cauchy, Sellmeier
+
+    Examples
+    --------
+    >>> isinstance(rw.Cauchy(1.5046, 0.0042), rw.Dispersion)
+    True
+    """
 
     __slots__ = ()
 
@@ -37,6 +47,16 @@ class Dispersion(ABC):
             above 0.
         TypeError
             If wavelengths are no real numbers.
+
+        See Also
+        --------
+        Dielectric : Takes the formula.
+
+        Examples
+        --------
+        >>> bk7 = rw.glasses["N-BK7"]
+        >>> round(bk7.index(), 4), bk7.index([0.4861, 0.6563]).round(4).tolist()
+        (1.5168, [1.5224, 1.5143])
         """
         wavelengths = real_array("micrometres", micrometres).astype(np.float64)
         bad = ~(np.isfinite(wavelengths) & (wavelengths > 0))
@@ -70,14 +90,14 @@ class Dispersion(ABC):
 class Cauchy(Dispersion):
     """Cauchy's index of refraction (1836), n = B + C / λ².
 
-    It holds for what is seen, and is less exact than a `Sellmeier`: for glass to some 1e-4.
+    It holds for visible light, and is less exact than a `Sellmeier`: for glass to some 1e-4.
 
     Parameters
     ----------
     B : float
         The index of the longest waves, above 0.
     C : float
-        How much greater it gets, square micrometres: 0.0042 for the glass BK7. Beware of tables in nm².
+        Dispersion, in square micrometres: 0.0042 for the glass BK7. Beware of tables in nm².
 
     Raises
     ------
@@ -85,6 +105,16 @@ class Cauchy(Dispersion):
         If a number is not finite, or `B` not above 0.
     TypeError
         If one is no number.
+
+    See Also
+    --------
+    Sellmeier : More exact.
+
+    Examples
+    --------
+    >>> glass = rw.Cauchy(1.5046, 0.0042)
+    >>> round(glass.index(0.5876), 4), round(glass.abbe, 1)
+    (1.5168, 64.4)
     """
 
     B: float
@@ -104,6 +134,27 @@ class Cauchy(Dispersion):
             The index at 0.5875618 micrometres, above 0.
         Vd : float
             Abbe's number, (n_d - 1) / (n_F - n_C), above 0: as in catalogues of glass.
+
+        Returns
+        -------
+        Cauchy
+
+        Raises
+        ------
+        ValueError
+            If a number is not above 0 or not finite.
+        TypeError
+            If one is no number.
+
+        See Also
+        --------
+        Cauchy.abbe : The number of Abbe of any formula.
+
+        Examples
+        --------
+        >>> flint = rw.Cauchy.from_abbe(1.62, 36.4)
+        >>> round(flint.index(), 6), round(flint.abbe, 6)
+        (1.62, 36.4)
         """
         nd, Vd = positive("nd", nd), positive("Vd", Vd)
         slope = (nd - 1) / (Vd * (BLUE**-2 - RED**-2))
@@ -120,7 +171,7 @@ class Sellmeier(Dispersion):
     Parameters
     ----------
     B : sequence of float
-        How strong resonances are: as many as there are, three for most glass.
+        Strengths of the resonances, three for most glass.
     C : sequence of float
         The squares of their wavelengths, square micrometres, at least 0.
 
@@ -130,6 +181,17 @@ class Sellmeier(Dispersion):
         If they are not as many, none, not finite, or one of `C` is below 0.
     TypeError
         If they are no numbers.
+
+    See Also
+    --------
+    Cauchy : Simpler.
+    glasses : Formulas of known glasses.
+
+    Examples
+    --------
+    >>> silica = rw.Sellmeier((0.6961663, 0.4079426, 0.8974794), (0.00467914826, 0.0135120631, 97.9340025))
+    >>> round(silica.index(), 4)
+    1.4585
     """
 
     B: tuple[float, ...]
@@ -152,7 +214,7 @@ class Sellmeier(Dispersion):
 
 
 def one_index(given: Any, why: str) -> float:
-    """Return an index of refraction of what has the same for all wavelengths.
+    """Return an index of refraction without dispersion.
 
     Raises
     ------

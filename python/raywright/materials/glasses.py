@@ -1,4 +1,4 @@
-"""Glass, crystals and water by what was measured of them."""
+"""Glass, crystals and water by measured indices of refraction."""
 
 from collections.abc import Iterator, Mapping
 
@@ -37,7 +37,7 @@ _MEASURED: dict[str, tuple[tuple[float, ...], tuple[float, ...]]] = {
 
 
 class Glasses(Mapping[str, Sellmeier]):
-    """What is clear, by name: ``rw.glasses["N-BK7"].index(0.5876)``.
+    """Clear materials by name: ``rw.glasses["N-BK7"].index(0.5876)``.
 
     Raises
     ------

@@ -17,9 +17,9 @@ class Mask(Material):
     Parameters
     ----------
     material : Material
-        What is between the holes.
+        Material between the holes.
     opacity : float or Texture
-        How much of it is there, from 0, a hole, to 1.
+        Opacity, from 0, a hole, to 1.
 
     Raises
     ------
@@ -27,6 +27,18 @@ class Mask(Material):
         If `opacity` is outside [0, 1].
     TypeError
         If something is not of the kinds above.
+
+    See Also
+    --------
+    Mix : Two materials in one place.
+
+    Examples
+    --------
+    >>> leaf = rw.Mask(rw.Diffuse((0.1, 0.4, 0.1)), rw.Checker(0, 1))
+    >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), width=4, height=4)
+    >>> ghost = rw.Scene(rw.Sphere(material=rw.Mask(rw.Diffuse(0.5), opacity=0)), environment=1.0)
+    >>> rw.render(ghost, camera, samples=1, progress=False).rgb[2, 2].tolist()
+    [1.0, 1.0, 1.0]
     """
 
     material: Material

@@ -1,4 +1,4 @@
-"""What all materials have in common."""
+"""The base class of materials."""
 
 from dataclasses import dataclass
 from typing import Any, TypeAlias
@@ -13,7 +13,7 @@ DISTRIBUTIONS = ("ggx", "beckmann")
 
 @dataclass(frozen=True, init=False)
 class Material:
-    """What a surface is made of. Its subclasses say how it scatters light."""
+    """The base class of materials: how a surface scatters light. Its subclasses say how it scatters light."""
 
     def _set(self, **values: Any) -> None:
         for name, kept in values.items():

@@ -12,13 +12,13 @@ from .material import Material
 class MetallicRough(Material):
     """The metallic-roughness model of glTF 2.0: from plastic to metal.
 
-    Both sides reflect. What is not metal has an index of refraction of 1.5, and reflects by that relative to
-    what is around it. Emission is the shape's.
+    Both sides reflect. Dielectric parts have an index of refraction of 1.5 relative to the surrounding
+    medium. Emission is the shape's.
 
     Parameters
     ----------
     base_color : float, 3 floats or Texture
-        Colour of what is matt, or of what the metal reflects, linear, in [0, 1].
+        Diffuse color, or reflectance of the metal, linear, in [0, 1].
     metallic : float or Texture
         From 0, none, to 1, metal.
     roughness : float or Texture
@@ -31,10 +31,20 @@ class MetallicRough(Material):
     TypeError
         If something is not of the kinds above.
 
+    See Also
+    --------
+    Principled : More parameters.
+
     Notes
     -----
     glTF keeps metalness in the blue and roughness in the green of one picture, which is not sRGB:
     ``ImageTexture(picture, linear=True, channel="b")`` and the same of ``"g"``.
+
+    Examples
+    --------
+    >>> paint = rw.MetallicRough((0.8, 0.1, 0.1), metallic=0, roughness=0.4)
+    >>> paint.base_color
+    (0.8, 0.1, 0.1)
     """
 
     base_color: Value

@@ -23,6 +23,17 @@ class Mirror(Material):
         If a reflectance is outside [0, 1] or not finite.
     TypeError
         If something is not of the kinds above.
+
+    See Also
+    --------
+    Conductor : A metal, by Fresnel's law.
+
+    Examples
+    --------
+    >>> scene = rw.Scene(rw.Sphere(material=rw.Mirror(0.9)), environment=1.0)
+    >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), fov=10, width=2, height=2)
+    >>> print(rw.render(scene, camera, samples=1, progress=False).rgb[0, 0].round(4))
+    [0.9 0.9 0.9]
     """
 
     reflectance: Value

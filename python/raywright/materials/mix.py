@@ -10,12 +10,12 @@ from .material import Material, material
 class Mix(Material):
     """A share of one material and the rest of another, finely mixed.
 
-    What fills it is what fills the first of them that is filled.
+    The interior is that of the first material that has one.
 
     Parameters
     ----------
     a, b : Material
-        What is mixed.
+        The two materials.
     amount : float or Texture
         Share of `b`, in [0, 1].
 
@@ -25,6 +25,17 @@ class Mix(Material):
         If `amount` is outside [0, 1].
     TypeError
         If something is not of the kinds above.
+
+    See Also
+    --------
+    TwoSided : One material on each side.
+    Mask : Holes.
+
+    Examples
+    --------
+    >>> rust = rw.Mix(rw.Conductor("iron"), rw.Diffuse((0.4, 0.2, 0.1)), amount=rw.FBm())
+    >>> type(rust.a).__name__
+    'Conductor'
     """
 
     a: Material

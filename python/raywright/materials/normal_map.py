@@ -19,11 +19,11 @@ class NormalMap(Material):
     Parameters
     ----------
     material : Material
-        What it is made of.
+        Material of the surface.
     normals : 3 floats or Texture
         The normals, in [0, 1]; a picture of them is not sRGB: ``ImageTexture(picture, linear=True)``.
     scale : float
-        How much they turn: what lies along u and v is multiplied by it.
+        Strength: a factor of the components along u and v.
 
     Raises
     ------
@@ -31,6 +31,16 @@ class NormalMap(Material):
         If a number is not finite, or normals are outside [0, 1].
     TypeError
         If something is not of the kinds above.
+
+    See Also
+    --------
+    BumpMap : Heights instead of normals.
+
+    Examples
+    --------
+    >>> flat = rw.NormalMap(rw.Diffuse(0.5), (0.5, 0.5, 1.0))
+    >>> flat.normals, flat.scale
+    ((0.5, 0.5, 1.0), 1.0)
     """
 
     material: Material

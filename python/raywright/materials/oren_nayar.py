@@ -28,6 +28,16 @@ class OrenNayar(Material):
         If a number is outside [0, 1] or not finite.
     TypeError
         If something is not of the kinds above.
+
+    See Also
+    --------
+    Diffuse : Lambert's law.
+
+    Examples
+    --------
+    >>> clay = rw.OrenNayar((0.6, 0.4, 0.3), roughness=0.8)
+    >>> clay.roughness
+    0.8
     """
 
     reflectance: Value

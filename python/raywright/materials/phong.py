@@ -19,10 +19,10 @@ class Phong(Material):
     diffuse : float, 3 floats or Texture
         Share of the light that is reflected diffusely, in [0, 1].
     specular : float, 3 floats or Texture
-        Share that makes highlights, in [0, 1]. Numbers must add up to at most 1 with `diffuse`; where
-        textures do not, highlights leave the rest to what is diffuse.
+        Share that makes highlights, in [0, 1]. Numbers must add up to at most 1 with `diffuse`; if textures
+        exceed it, the diffuse share is reduced.
     exponent : float or Texture
-        How sharp highlights are, at least 0: the power of a cosine.
+        Exponent of the cosine, at least 0: highlights get sharper with it.
     ambient : float, 3 floats or Texture, optional
         Share of ambient light that is reflected, for integrators that know of it; `diffuse` if not given.
 
@@ -32,6 +32,18 @@ class Phong(Material):
         If a number is out of range, or the two shares add up to more than 1.
     TypeError
         If something is not of the kinds above.
+
+    See Also
+    --------
+    BlinnPhong : Highlights by the half vector.
+
+    Examples
+    --------
+    >>> shiny = rw.Phong(diffuse=0.4, specular=0.4, exponent=100)
+    >>> rw.Phong(diffuse=0.8, specular=0.4)
+    Traceback (most recent call last):
+        ...
+    ValueError: diffuse and specular must add up to at most 1, got 1.2
     """
 
     diffuse: Value

@@ -21,18 +21,18 @@ class Plastic(Material):
     ior : float
         The coat's index of refraction, at least 1.
     roughness : float or Texture, optional
-        How rough it is, from 0, smooth, to 1. Its square is the alpha of its facets' distribution, as in
-        glTF. 0 if not given.
+        Roughness from 0, smooth, to 1. Its square is the alpha of its facets' distribution, as in glTF. 0 if
+        not given.
     alpha : float or Texture, optional
         That alpha itself, in place of `roughness`.
     distribution : {"ggx", "beckmann"}
-        How the slopes of its facets are spread: with long tails (Walter et al., "Microfacet Models for
-        Refraction through Rough Surfaces", 2007), or normally (Beckmann and Spizzichino, 1963), which makes
+        Distribution of facet slopes: "ggx" with long tails (Walter et al., "Microfacet Models for Refraction
+        through Rough Surfaces", 2007), or "beckmann", normal (Beckmann and Spizzichino, 1963), which makes
         highlights without a glow around them.
     multiple_scattering : bool
-        Whether light that facets throw on each other goes on. If not, it is lost, so that a surface is the
-        darker the rougher it is, and what is hidden from either side is independent of the other: the model
-        of Walter et al., which many renderers have as it stands.
+        True to include multiple scattering between facets. If not, that light is lost, so that a surface is
+        the darker the rougher it is, and masking and shadowing are independent: the model of Walter et al.,
+        which many renderers use.
 
     Raises
     ------
@@ -40,6 +40,17 @@ class Plastic(Material):
         If a share or a roughness is outside [0, 1], `ior` is below 1, or there is no such distribution.
     TypeError
         If something is not of the kinds above.
+
+    See Also
+    --------
+    Diffuse : Without a coat.
+    Principled : More parameters.
+
+    Examples
+    --------
+    >>> ball = rw.Plastic((0.7, 0.1, 0.1), ior=1.5, roughness=0.2)
+    >>> ball.reflectance
+    (0.7, 0.1, 0.1)
     """
 
     reflectance: Value

@@ -21,43 +21,42 @@ class Principled(Material):
     Burley's ("Physically Based Shading at Disney", 2012, and "Extending the Disney BRDF to a BSDF with
     Integrated Subsurface Scattering", 2015), with lobes that together give back what comes, to 0.2 %: white
     is white from every direction, whatever the other numbers are. It is a mixture of metal, of a matt base
-    under a dielectric, and of clear dielectric, of GGX's facets. What facets throw on facets goes on, the
-    base gets what the facets above it leave, and both get what the coat leaves. The base spreads its light
-    over azimuths as Burley's does. All parts are reciprocal.
+    under a dielectric, and of clear dielectric, of GGX's facets. Light scattered between facets is kept, the
+    base gets the light that the facets above it leave, and both get the light that the coat leaves. The base
+    spreads its light over azimuths as Burley's does. All parts are reciprocal.
 
-    What lets no light through is the same on both sides. What does is a solid, whose normals point out.
+    Opaque materials are the same on both sides. Transmissive ones are solids, whose normals point out.
 
     Parameters
     ----------
     base_color : float, 3 floats or Texture
-        Colour of what is matt, of what metal reflects, and of what has gone through two surfaces, in [0, 1].
+        Color of diffuse reflection, of metal, and of light that passed two surfaces, in [0, 1].
     roughness : float or Texture
         From 0, smooth, to 1. Its square is the alpha of the facets, 0.001 at least.
     metallic : float or Texture
         From 0, none, to 1, metal.
     ior : float, Cauchy or Sellmeier
-        The index of refraction of what is no metal, above 0. One that goes with wavelength, as those of
-        `glasses`, spreads what goes through into its colours; where nothing does, it is that of yellow
-        light.
+        The index of refraction of the dielectric parts, above 0. One that goes with wavelength, as those of
+        `glasses`, spreads what goes through into its colours; where nothing does, it is that of yellow light.
     transmission : float or Texture
-        The share of what is no metal that is clear, in [0, 1].
+        Share of the dielectric part that is clear, in [0, 1].
     anisotropic : float or Texture
-        How much longer highlights of metal are along u than along v, in [0, 1].
+        Elongation of metal highlights along u, in [0, 1].
     specular_tint : float or Texture
-        How much of the colour highlights of what is neither metal nor clear have, in [0, 1].
+        Share of the base color in highlights of the opaque dielectric, in [0, 1].
     sheen, sheen_tint : float or Texture
-        Light along the edges, as of cloth, and how much of the colour it has, in [0, 1].
+        Light along the edges, as of cloth, and the share of the base color in it, in [0, 1].
     flatness : float or Texture
-        How much of what is matt is as flat as if light got deep into it, in [0, 1].
+        Share of subsurface-like, flat diffuse reflection, in [0, 1].
     clearcoat, clearcoat_gloss : float or Texture
-        How much of a coat of index 1.5 there is on what is not clear, and how glossy it is, in [0, 1].
+        Weight of a coat of index 1.5 on opaque parts, and its gloss, in [0, 1].
     priority : int
         Where solids overlap, as `Dielectric` has it.
     energy_conserving : bool
-        Whether no light is gained or lost. If not, it is the model as it was published, and as Mitsuba 3 has
-        it: rough facets lose light, as nothing takes from the base what the facets above reflect white and
+        True for a model without gain or loss of energy. If not, it is the model as published, and as in
+        Mitsuba 3: rough facets lose light, as the base keeps the light that the facets above reflect. White
         matt surfaces give up to 15 % more than they get, and at 85 degrees 45 %, all highlights are stretched
-        and tinted, and what lets light through reflects and refracts only, seen from within.
+        and tinted, and transmissive materials only reflect and refract, seen from within.
 
     Raises
     ------
@@ -65,6 +64,20 @@ class Principled(Material):
         If a number is out of range or not finite.
     TypeError
         If something is not of the kinds above.
+
+    See Also
+    --------
+    PrincipledThin : A sheet.
+    MetallicRough : glTF's model.
+
+    Examples
+    --------
+    >>> car = rw.Principled((0.6, 0, 0), roughness=0.4, clearcoat=1, clearcoat_gloss=0.9)
+    >>> scene = rw.Scene(rw.Sphere(material=rw.Principled(1.0, roughness=0.5)), environment=1.0)
+    >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), fov=10, width=4, height=4)
+    >>> image = rw.render(scene, camera, samples=64, progress=False)
+    >>> round(image.rgb.mean().item(), 1)
+    1.0
     """
 
     base_color: Value
@@ -121,7 +134,7 @@ class PrincipledThin(Material):
     Parameters
     ----------
     base_color : float, 3 floats or Texture
-        Colour of what is matt and of what goes through, in [0, 1].
+        Color of diffuse reflection and of transmission, in [0, 1].
     roughness : float or Texture
         From 0, smooth, to 1. Its square is the alpha of the facets, 0.001 at least.
     ior : float
@@ -129,7 +142,7 @@ class PrincipledThin(Material):
     transmission : float or Texture
         The share that is clear, in [0, 1]; the rest is matt.
     diffuse_transmission : float or Texture
-        The share of what is matt that is scattered on the other side, in [0, 1].
+        Share of the diffuse light that is scattered to the other side, in [0, 1].
     anisotropic, specular_tint, sheen, sheen_tint, flatness : float or Texture
         As `Principled` has them; highlights are not stretched, but of the published model.
     energy_conserving : bool
@@ -142,6 +155,17 @@ class PrincipledThin(Material):
         If a number is out of range or not finite.
     TypeError
         If something is not of the kinds above.
+
+    See Also
+    --------
+    Principled : A solid.
+    ThinDielectric : A clear pane.
+
+    Examples
+    --------
+    >>> leaf = rw.PrincipledThin((0.1, 0.5, 0.1), diffuse_transmission=0.5)
+    >>> leaf.diffuse_transmission
+    0.5
     """
 
     base_color: Value

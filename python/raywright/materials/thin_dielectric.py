@@ -11,14 +11,14 @@ from .material import Material
 
 @dataclass(frozen=True, init=False)
 class ThinDielectric(Material):
-    """A clear sheet too thin to bend what is seen through it: a window, or a flask of smoke.
+    """A clear sheet too thin to bend the view: a window, or a flask of smoke.
 
     Parameters
     ----------
     ior : float
         The index of refraction within the sheet, above 0.
     interior : Homogeneous or GridMedium, optional
-        What it encloses; its normals point out of that.
+        Medium that it encloses; normals point out of it.
     priority : int
         Where several things overlap that are filled, the one of the greatest priority is there.
 
@@ -28,6 +28,18 @@ class ThinDielectric(Material):
         If `ior` is not greater than 0, or `priority` is out of range.
     TypeError
         If something is not of the kinds above.
+
+    See Also
+    --------
+    Dielectric : A solid, which refracts.
+    SoapFilm : A pane with interference colors.
+
+    Examples
+    --------
+    >>> rays = rw.Rays(np.array([[0, 0, 3.0]]), np.array([[0, 0, -1.0]]), np.zeros(1))
+    >>> met = rw.Scene(rw.Plane(material=rw.ThinDielectric(1.5))).interactions(rays)
+    >>> met.refracted().direction.tolist(), met.refracted().weight[0, 0].round(4).item()
+    ([[0.0, 0.0, -1.0]], 0.9231)
     """
 
     ior: float

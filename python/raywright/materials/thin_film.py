@@ -16,7 +16,7 @@ from .material import Material
 
 
 class _Film(Material):
-    """What reflects by a film, whatever that lies on."""
+    """The base class of thin films."""
 
     thickness: Number
     ior: float
@@ -48,6 +48,18 @@ class _Film(Material):
             out of range.
         TypeError
             If something is no number.
+
+        See Also
+        --------
+        ThinFilm, SoapFilm
+
+        Examples
+        --------
+        A quarter-wave coat of magnesium fluoride on glass:
+
+        >>> coat = rw.ThinFilm(550 / 4 / 1.38, ior=1.38, base=rw.Dielectric(1.52))
+        >>> round(coat.reflectance(550), 4), round(((1.52 - 1.38**2) / (1.52 + 1.38**2)) ** 2, 4)
+        (0.0126, 0.0126)
         """
         nm = real_array("wavelength", wavelength).astype(np.float64)
         bad = ~(np.isfinite(nm) & (nm > 0))
@@ -67,7 +79,7 @@ class _Film(Material):
         return found if found.ndim else float(found)
 
     def _base_index(self, nm: NDArray[np.float64], outside: float) -> NDArray[np.complex128]:
-        """Return the index of refraction of what is below the film, which has `outside` above it."""
+        """Return the index of refraction below the film, which has `outside` above it."""
         raise NotImplementedError
 
 
@@ -75,36 +87,36 @@ class _Film(Material):
 class ThinFilm(_Film):
     """A film on glass, water or metal, of the colours of its thickness: oil on water, a lens's coat, oxide.
 
-    What both faces of the film reflect interferes: Airy's sum over all reflections within it, of both
+    Light from both faces of the film interferes: Airy's sum over all reflections within it, of both
     polarisations, integrated over the wavelengths of daylight (CIE D65) as the standard observer sees them
-    (CIE 1931), in linear Rec. 709, at each angle. Light comes to it unpolarised. What does not go back goes
-    through, or into the metal: a film absorbs nothing. Where it has no thickness, what it lies on is bare.
+    (CIE 1931), in linear Rec. 709, at each angle. Light comes to it unpolarised. The rest goes through, or
+    into the metal: a film absorbs nothing. Where it has no thickness, what it lies on is bare.
 
-    A colour may be too pure for red, green and blue to mix: each channel of what is reflected is then cut off
-    at 0, and of what is clear at 1, by some thousandths of the light (0.005 of a soap film), so that no light
-    is negative, and what is reflected and what goes through are together all that came. Of named metals a
-    channel may exceed 1, as `Conductor` says.
+    A color may be outside the gamut of red, green and blue. Each channel of the reflectance is then cut off
+    at 0, and of clear bases at 1, by some thousandths of the light (0.005 for a soap film): no light is
+    negative, and reflectance and transmittance add up to 1. Of named metals a channel may exceed 1, as
+    `Conductor` says.
 
-    The indices of the film and of what is clear are the same at all wavelengths, those of a named metal as
-    they were measured, and `eta` and `k` of others the same for all wavelengths of their channel. Of what is
-    clear, and of metals by `eta` and `k`, the share reflected is that of the integral to within 1e-5; of
-    named metals, by tables over angle, to 5e-5, and where their film's thickness varies, by tables over that
-    too, to 3e-4 up to 66 degrees and to 5e-3 near grazing incidence. Of films thicker than some 6 µm hardly
-    any fringes are seen: of light that is more than 48 µm behind, they are left out.
+    The indices of the film and of clear bases are the same at all wavelengths, those of a named metal as
+    measured, and `eta` and `k` of others the same for all wavelengths of their channel. For clear bases, and
+    metals by `eta` and `k`, the reflectance is the integral to within 1e-5; for named metals, tables over
+    angle hold it to 5e-5, and if the film's thickness varies, tables over that too, to 3e-4 up to 66 degrees
+    and to 5e-3 near grazing incidence. Of films thicker than some 6 µm hardly any fringes are seen: of light
+    that is more than 48 µm behind, they are left out.
 
-    On a rough base each facet has the film. What facets throw on each other goes by the bare base, and of a
-    clear one so does that part of a facet from which other facets stop light, be it reflected or refracted:
-    so a rough one keeps all light that a bare one does.
+    On a rough base each facet has the film. Light scattered between facets sees the bare base, and on a clear
+    base so does the light that a facet reflects or refracts into other facets: a rough film keeps all light
+    that a bare base does.
 
     Parameters
     ----------
     thickness : float or Texture
-        How thick it is, in nanometres, not negative. Of a texture with colours, the mean of the channels.
+        Thickness in nanometres, not negative. Of a texture with colours, the mean of the channels.
     ior : float
         The index of refraction within the film, above 0: 1.33 for water, 1.38 for magnesium fluoride, 1.47
         for oil, 2.5 for the oxide of titanium.
     base : Dielectric or Conductor
-        What it lies on. What that encloses, how rough it is and its priority stay as they are.
+        Material under the film. Its interior, roughness and priority are unchanged.
 
     Raises
     ------
@@ -112,6 +124,16 @@ class ThinFilm(_Film):
         If `thickness` is negative or not finite, or `ior` is not greater than 0.
     TypeError
         If something is not of the kinds above.
+
+    See Also
+    --------
+    SoapFilm : A film with air on both sides.
+
+    Examples
+    --------
+    >>> oil = rw.ThinFilm(350, ior=1.47, base=rw.Dielectric(1.33))
+    >>> oil.reflectance([450, 550, 650]).round(4).tolist()
+    [0.0429, 0.0259, 0.0543]
     """
 
     thickness: Number
@@ -152,16 +174,16 @@ class ThinFilm(_Film):
 
 @dataclass(frozen=True, init=False)
 class SoapFilm(_Film):
-    """The skin of a soap bubble: a film with the same around it on both sides, of its thickness's colours.
+    """The skin of a soap bubble: a thin film with air on both sides, which shows interference colors.
 
     Light goes through it straight, as through a `ThinDielectric`, and it encloses nothing. Its colours are
     those of a `ThinFilm`: black where it is much thinner than a wave, then white, yellow, magenta, blue and
-    green in turn, paler the thicker it is. What is so thick that no colours are left is a `ThinDielectric`.
+    green in turn, paler the thicker it is. A film too thick for colors is a `ThinDielectric`.
 
     Parameters
     ----------
     thickness : float or Texture
-        How thick it is, in nanometres, not negative. Of a texture with colours, the mean of the channels.
+        Thickness in nanometres, not negative. Of a texture with colours, the mean of the channels.
     ior : float
         The index of refraction within the film, above 0.
 
@@ -171,6 +193,20 @@ class SoapFilm(_Film):
         If `thickness` is negative or not finite, or `ior` is not greater than 0.
     TypeError
         If something is not of the kinds above.
+
+    See Also
+    --------
+    ThinFilm : A film on glass, water or metal.
+
+    Examples
+    --------
+    >>> rw.SoapFilm(0.0).reflectance(550)
+    0.0
+
+    Two faces in phase reflect four times as much as one, but for multiple reflections:
+
+    >>> round(rw.SoapFilm(550 / 4 / 1.33).reflectance(550), 4)
+    0.0771
     """
 
     thickness: Number

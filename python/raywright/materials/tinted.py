@@ -14,20 +14,20 @@ from .thin_dielectric import ThinDielectric
 class Tinted(Material):
     """Glass or a pane with a colour at its surface: stained glass, a painted window, a slide.
 
-    Of what goes through the surface a share is left, each time it does, and another of what it reflects.
-    Unlike the `transmittance` of a `Dielectric`, which is of what is within and grows with the way there, it
-    does not depend on how thick what is clear is, and may be a texture. Light that passes in and out of a
-    solid crosses its surface twice; that through a pane once.
+    Each passage through the surface is dimmed by one factor, and each reflection by another. The
+    `transmittance` of a `Dielectric` belongs to the inside and grows with the length of the way there; this
+    one does not depend on thickness, and may be a texture. Light that passes in and out of a solid crosses
+    its surface twice; that through a pane once.
 
     Parameters
     ----------
     base : Dielectric or ThinDielectric
-        What it is without its colour. What that encloses, how rough it is and its priority stay as they are;
-        a pane must enclose nothing.
+        Clear material without the color. Its interior, roughness and priority are unchanged; a pane must
+        enclose nothing.
     transmittance : float, 3 floats, Spectrum or Texture
-        The share that is left of what goes through, in [0, 1].
+        Factor of transmitted light, in [0, 1].
     reflectance : float, 3 floats, Spectrum or Texture
-        The share that is left of what is reflected, in [0, 1].
+        Factor of reflected light, in [0, 1].
 
     Raises
     ------
@@ -35,6 +35,18 @@ class Tinted(Material):
         If a share is outside [0, 1] or not finite, or a pane encloses something.
     TypeError
         If something is not of the kinds above.
+
+    See Also
+    --------
+    Dielectric : Takes a `transmittance` of its inside.
+
+    Examples
+    --------
+    >>> rays = rw.Rays(np.array([[0, 0, 3.0]]), np.array([[0, 0, -1.0]]), np.zeros(1))
+    >>> window = rw.Tinted(rw.ThinDielectric(1.5), transmittance=(1, 0.5, 0))
+    >>> met = rw.Scene(rw.Plane(material=window)).interactions(rays)
+    >>> met.refracted().weight.round(4).tolist()
+    [[0.9231, 0.4615, 0.0]]
     """
 
     base: Dielectric | ThinDielectric

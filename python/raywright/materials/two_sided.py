@@ -22,6 +22,17 @@ class TwoSided(Material):
         If one of them lets light through or has holes, once the scene is compiled.
     TypeError
         If something is not of the kinds above.
+
+    See Also
+    --------
+    Mix : Two materials on both sides.
+
+    Examples
+    --------
+    >>> sheet = rw.TwoSided(front=rw.Diffuse(0.8), back=rw.Diffuse(0.1))
+    >>> rays = rw.Rays(np.array([[0, 0, 1.0], [0, 0, -1]]), np.array([[0, 0, -1.0], [0, 0, 1]]), np.zeros(2))
+    >>> rw.Scene(rw.Plane(material=sheet)).interactions(rays).albedo[:, 0].round(6).tolist()
+    [0.8, 0.1]
     """
 
     front: Material

@@ -1,4 +1,4 @@
-"""What fills space: smoke, haze, milk, clouds."""
+"""Participating media: smoke, haze, milk, clouds."""
 
 from .grid import GridMedium
 from .homogeneous import Homogeneous

@@ -17,7 +17,7 @@ _VOL = struct.Struct("<3sBiiiii6f")
 
 
 class Found(NamedTuple):
-    """What a file says: numbers by what they are for, where they lie, and where in cells they stand."""
+    """Contents of a file: grids by purpose, bounds, and where in cells the numbers are."""
 
     grids: dict[str, Any]
     place: dict[str, Any]
@@ -25,7 +25,7 @@ class Found(NamedTuple):
 
 
 def read_grids(path: str | PathLike[str], names: Mapping[str, str]) -> Found:
-    """Return the grids of a file, by what they are for: one of these names each, where the file has names.
+    """Return the grids of a file by purpose, each by one of these names, if the file has names.
 
     Raises
     ------

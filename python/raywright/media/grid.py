@@ -26,9 +26,9 @@ _UNIT = ((0.0, 0.0, 0.0), (1.0, 1.0, 1.0))
 class GridMedium(Medium):
     """A medium whose density is given on a regular grid: smoke, fire, a cloud.
 
-    It does to light what its coefficients say, times the density, which is interpolated linearly along each
-    axis. Outside of the grid there is nothing. The grid lies in the space that its shape is described in; in
-    an `Instance` it goes where the copy goes, and lengths are those of the world there too.
+    Its coefficients are multiplied by the density, which is interpolated linearly along each axis. Outside of
+    the grid there is nothing. The grid lies in the space that its shape is described in; in an `Instance` it
+    goes where the copy goes, and lengths are those of the world there too.
 
     Parameters
     ----------
@@ -38,11 +38,11 @@ class GridMedium(Medium):
     bounds : (2, 3) array, optional
         Least and greatest corner of the grid; the unit cube if not given.
     transform : (4, 4) array, optional
-        What takes the grid elsewhere from there.
+        Transform of the grid from there.
     absorption, scattering : float, 3 floats or Spectrum
         The share of light that is absorbed, and scattered, per unit of length where the density is 1.
     phase : HenyeyGreenstein, Rayleigh or Isotropic
-        Into which directions it scatters.
+        Phase function.
     emission : float, 3 floats, Spectrum, array of (X', Y', Z') or (X', Y', Z', 3), or SparseGrid
         The radiance that it gives off by itself, per unit of length: numbers where the density is 1, or an
         array, over the same bounds, whatever the density.
@@ -55,12 +55,12 @@ class GridMedium(Medium):
     albedo : (X', Y', Z') or (X', Y', Z', 3) array, or SparseGrid, optional
         The share of that which is scattered, at most 1, over the same bounds.
     temperature : (X', Y', Z') array or SparseGrid, optional
-        Kelvin, over the same bounds. What is so hot gives off light as a black body does, as far as it
-        absorbs (Kirchhoff 1860); what is below 500 K gives off none.
+        Kelvin, over the same bounds. Hot points give off light as a black body does, in proportion to their
+        absorption (Kirchhoff 1860); points below 500 K give off none.
     brightness : float
-        The radiance of black bodies at the wavelength at which they have most of it, as pbrt's ``Lescale``:
-        1 is as bright as light of `Spectrum` with a value of 1. What is seen of that rises with the
-        temperature up to about that of the sun, since cooler bodies have most of it in the infrared.
+        The radiance of black bodies at the wavelength at which they have most of it, as pbrt's ``Lescale``: 1
+        is as bright as light of `Spectrum` with a value of 1. Its visible part rises with the temperature up
+        to about that of the sun, since cooler bodies have most of it in the infrared.
 
     Raises
     ------
@@ -69,6 +69,19 @@ class GridMedium(Medium):
         exceeds 1 or does not come with an extinction alone.
     TypeError
         If something is not of the kinds above.
+
+    See Also
+    --------
+    SparseGrid : A grid of few numbers above 0.
+    Homogeneous : The same everywhere.
+
+    Examples
+    --------
+    >>> density = np.ones((4, 4, 4), np.float32)
+    >>> fog = rw.GridMedium(density, bounds=[[0, 0, 0], [2, 1, 1]], absorption=0.5)
+    >>> box = rw.Box((0, 0, 0), (2, 1, 1), material=rw.Boundary(fog))
+    >>> rw.Scene(box).optical_depth([-1, 0.5, 0.5], [1, 0, 0]).round(6).tolist()
+    [1.0, 1.0, 1.0]
     """
 
     density: Numbers
@@ -132,7 +145,7 @@ class GridMedium(Medium):
         density: str = "density",
         **arguments: Any,
     ) -> "GridMedium":
-        """Read the density from a file, with all else as the arguments of `GridMedium` say.
+        """Read the density from a file, with the other arguments of `GridMedium`.
 
         Parameters
         ----------
@@ -141,9 +154,9 @@ class GridMedium(Medium):
             float32), or OpenVDB's (``.vdb``, of float grids). Most of the last are compressed by Blosc, and
             want ``pip install 'raywright[vdb]'``.
         bounds : (2, 3) array, optional
-            Those of the grid, in place of what the file says of them.
+            Bounds of the grid, in place of the file's.
         density : str
-            Which of the grids of an OpenVDB file it is. `emission`, `albedo` and `temperature` may be names
+            Name of the density grid of an OpenVDB file. `emission`, `albedo` and `temperature` may be names
             of grids of that file, too.
         **arguments
             Of `GridMedium`, by name. `at` is "centres" for files other than numpy's, if it is not given.
@@ -162,6 +175,18 @@ class GridMedium(Medium):
             If it cannot be read, and why; and as `GridMedium` does.
         TypeError
             As `GridMedium` does.
+
+        See Also
+        --------
+        SparseGrid.of : Arrays larger than memory.
+
+        Examples
+        --------
+        >>> np.save("smoke.npy", np.full((2, 2, 2), 0.5, np.float32))
+        >>> smoke = rw.GridMedium.load("smoke.npy", scattering=1.0)
+        >>> box = rw.Box((0, 0, 0), (1, 1, 1), material=rw.Boundary(smoke))
+        >>> rw.Scene(box).optical_depth([0.5, 0.5, 5], [0, 0, -1]).round(6).tolist()
+        [0.5, 0.5, 0.5]
         """
         named = {
             name: given for name, given in arguments.items() if isinstance(given, str) and name in _GRIDS
@@ -171,7 +196,7 @@ class GridMedium(Medium):
         return cls(**{"bounds": bounds, **places, **found.told, **arguments, **found.grids})
 
     def _place(self) -> list[list[float]]:
-        """Give the first three rows of what takes the unit cube to the grid."""
+        """Return the first three rows of the transform from the unit cube to the grid."""
         low, high = np.asarray(self.bounds)
         matrix = np.diag([*(high - low), 1.0])
         matrix[:3, 3] = low
@@ -238,7 +263,7 @@ def _emission(given: ArrayLike | Spectrum | SparseGrid) -> Triple | Spectrum | N
 
 
 def _one_of_both(values: dict[str, Any]) -> None:
-    """Check that there is either what is absorbed and scattered, or what is dimmed and a share of it."""
+    """Check that there is either absorption and scattering, or extinction and albedo."""
     albedo = values["albedo"]
     if albedo is None and values["extinction"] != _NONE:
         raise ValueError("extinction must come with an albedo; else give absorption and scattering")

@@ -1,4 +1,4 @@
-"""A medium that is the same everywhere."""
+"""A homogeneous medium: the same everywhere."""
 
 from dataclasses import dataclass
 
@@ -12,7 +12,7 @@ from .phases import Isotropic, Phase, phase
 
 @dataclass(frozen=True, init=False)
 class Homogeneous(Medium):
-    """A medium that is the same everywhere.
+    """A homogeneous medium: the same everywhere.
 
     Of light that goes through it, the share exp(-(absorption + scattering) · length) is left (Beer and
     Lambert). Lengths are those of the world, in instances too.
@@ -23,9 +23,9 @@ class Homogeneous(Medium):
         The share of light that is absorbed, and scattered, per unit of length: one number, or red, green and
         blue, at least 0.
     phase : HenyeyGreenstein, Rayleigh or Isotropic
-        Into which directions it scatters.
+        Phase function.
     emission : float, 3 floats or Spectrum
-        The radiance that it gives off by itself, per unit of length, at least 0. What is deep then has the
+        The radiance that it gives off by itself, per unit of length, at least 0. A deep medium has the
         radiance emission / absorption.
 
     Raises
@@ -34,6 +34,18 @@ class Homogeneous(Medium):
         If a number is negative or not finite, or there are not 1 or 3 of them.
     TypeError
         If something is not of the kinds above.
+
+    See Also
+    --------
+    GridMedium : A density on a grid.
+    Boundary : A shape around a medium.
+
+    Examples
+    --------
+    >>> haze = rw.Homogeneous(absorption=0.1, scattering=0.1)
+    >>> scene = rw.Scene(rw.Sphere((0, 0, -9)), medium=haze)
+    >>> scene.transmittance([0, 0, 0], [0, 0, -1], t_max=5).round(4).tolist()
+    [0.3679, 0.3679, 0.3679]
     """
 
     absorption: Triple | Spectrum

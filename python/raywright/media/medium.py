@@ -1,10 +1,20 @@
-"""What all media have in common."""
+"""The base class of media."""
 
 from typing import Any
 
 
 class Medium:
-    """What fills space, and absorbs, scatters and gives off light. Its subclasses say how much where."""
+    """The base class of media, which absorb, scatter and emit light. Its subclasses say how much where.
+
+    See Also
+    --------
+    Homogeneous, GridMedium
+
+    Examples
+    --------
+    >>> isinstance(rw.Homogeneous(scattering=1.0), rw.Medium)
+    True
+    """
 
 
 def medium(name: str, given: Any) -> Medium | None:

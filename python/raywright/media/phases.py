@@ -8,21 +8,41 @@ from ..arrays import number
 
 @dataclass(frozen=True)
 class Isotropic:
-    """The same into every direction."""
+    """The isotropic phase function: the same into every direction.
+
+    See Also
+    --------
+    HenyeyGreenstein, Rayleigh
+
+    Examples
+    --------
+    >>> rw.Homogeneous(scattering=1.0).phase
+    Isotropic()
+    """
 
 
 @dataclass(frozen=True)
 class Rayleigh:
-    """As what is much smaller than a wavelength scatters, such as air: 3 (1 + cos²) / 16π (Rayleigh 1871).
+    """Rayleigh's phase function (1871) of particles far below a wavelength, as of air: 3 (1 + cos²) / 16π.
 
     That short waves are scattered more than long ones is said by the coefficients of a medium, which go with
     the inverse fourth power of the wavelength.
+
+    See Also
+    --------
+    Isotropic, HenyeyGreenstein
+
+    Examples
+    --------
+    >>> air = rw.Homogeneous(scattering=(0.01, 0.02, 0.05), phase=rw.Rayleigh())
+    >>> air.phase
+    Rayleigh()
     """
 
 
 @dataclass(frozen=True, init=False)
 class HenyeyGreenstein:
-    """By the mean cosine of the angle that light turns by (Henyey and Greenstein 1941).
+    """The phase function of Henyey and Greenstein (1941), by the mean cosine of the scattering angle.
 
     Parameters
     ----------
@@ -36,6 +56,16 @@ class HenyeyGreenstein:
         If it is not between -1 and 1.
     TypeError
         If it is no number.
+
+    See Also
+    --------
+    Isotropic, Rayleigh
+
+    Examples
+    --------
+    >>> cloud = rw.Homogeneous(scattering=2.0, phase=rw.HenyeyGreenstein(0.85))
+    >>> cloud.phase
+    HenyeyGreenstein(g=0.85)
     """
 
     g: float

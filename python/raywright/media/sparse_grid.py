@@ -15,11 +15,11 @@ BLOCK = 8
 
 
 class Sliced(Protocol):
-    """What has a shape and gives its slabs by slices, as arrays and datasets of h5py and zarr do."""
+    """An object with a shape that gives its slabs by slices, as arrays and datasets of h5py and zarr do."""
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Of three axes, or of four, the last of which has three entries."""
+        """Three axes, or four, the last with three entries."""
 
     def __getitem__(self, slab: slice, /) -> Any:
         """Give some planes across the first axis."""
@@ -27,9 +27,9 @@ class Sliced(Protocol):
 
 @final
 class SparseGrid:
-    """Numbers on a regular grid, of which those that are 0 take next to no memory.
+    """A sparse grid: numbers on a regular grid, in which zeros take next to no memory.
 
-    Blocks of 8 by 8 by 8 points in which all is 0 are not kept. It stands wherever a `GridMedium` takes an
+    Blocks of 8 by 8 by 8 points that are all 0 are not kept. It stands wherever a `GridMedium` takes an
     array, and the compiled scene has no copy of it: 512³ numbers that are all above 0 take 541 MB in all,
     where an array of them would take as much again.
 
@@ -38,8 +38,8 @@ class SparseGrid:
     shape : 3 or 4 int
         (X, Y, Z), the first axis being x, or (X, Y, Z, 3) for a number each of red, green and blue.
     parts : iterable of (3 int, array)
-        Where parts of it begin, and their numbers, finite and at least 0, which are kept as float32. What
-        comes later stands in place of what was there; all else is 0.
+        Where parts of it begin, and their numbers, finite and at least 0, which are kept as float32. Later
+        parts overwrite earlier ones; the rest is 0.
 
     Raises
     ------
@@ -47,6 +47,17 @@ class SparseGrid:
         If a part reaches beyond the grid, a number is negative or not finite, or something has another shape.
     TypeError
         If numbers are not real.
+
+    See Also
+    --------
+    GridMedium : Takes it.
+    SparseGrid.of : The grid of an array.
+
+    Examples
+    --------
+    >>> grid = rw.SparseGrid((64, 64, 64), [((8, 8, 8), np.ones((4, 4, 4)))])
+    >>> grid.shape, grid.max(), grid.nbytes < 64**3 * 4
+    ((64, 64, 64), 1.0, True)
     """
 
     __slots__ = ("_blocks", "shape")
@@ -77,7 +88,7 @@ class SparseGrid:
 
     @classmethod
     def of(cls, numbers: "ArrayLike | Sliced") -> "SparseGrid":
-        """Return the grid of an array, of which no more than a few planes are in memory at a time.
+        """Return the sparse grid of an array, read a few planes at a time.
 
         Parameters
         ----------
@@ -95,6 +106,18 @@ class SparseGrid:
             If it is empty or of another shape, or a number is negative or not finite.
         TypeError
             If numbers are not real.
+
+        See Also
+        --------
+        SparseGrid.dense : The inverse.
+
+        Examples
+        --------
+        >>> numbers = np.zeros((32, 32, 32))
+        >>> numbers[3, 4, 5] = 2.0
+        >>> grid = rw.SparseGrid.of(numbers)
+        >>> grid.max(), len(list(grid.parts))
+        (2.0, 1)
         """
         sliced: Any = numbers if hasattr(numbers, "shape") else real_array("numbers", numbers)
         _shape("numbers", sliced.shape)
@@ -114,11 +137,36 @@ class SparseGrid:
             yield tuple(low), self._blocks.part(low, high).reshape(*size, *self.shape[3:])
 
     def dense(self) -> NDArray[np.float32]:
-        """Return all numbers as an array."""
+        """Return all numbers as an array.
+
+        Returns
+        -------
+        (X, Y, Z) or (X, Y, Z, 3) float32 array
+
+        See Also
+        --------
+        SparseGrid.of : The inverse.
+
+        Examples
+        --------
+        >>> grid = rw.SparseGrid((9, 9, 9), [((1, 1, 1), np.ones((1, 1, 2)))])
+        >>> np.argwhere(grid.dense()).tolist()
+        [[1, 1, 1], [1, 1, 2]]
+        """
         return self._blocks.part((0, 0, 0), self.shape[:3]).reshape(self.shape)
 
     def max(self) -> float:
-        """Return the greatest number."""
+        """Return the greatest number.
+
+        Returns
+        -------
+        float
+
+        Examples
+        --------
+        >>> rw.SparseGrid((9, 9, 9)).max()
+        0.0
+        """
         return self._blocks.greatest()
 
     def __array__(self, dtype: DTypeLike | None = None, copy: bool | None = None) -> NDArray[Any]:

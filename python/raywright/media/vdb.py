@@ -1,7 +1,7 @@
 """Grids of floats from OpenVDB's files, of the versions that OpenVDB has written since 2013 (222 to 225).
 
 A tree has a root, two levels of nodes of 32³ and 16³ children, and leaves of 8³ numbers (Museth, "VDB:
-High-Resolution Sparse Volumes with Dynamic Topology", 2013). What is the same all over a node is a tile.
+High-Resolution Sparse Volumes with Dynamic Topology", 2013). A node with one value throughout is a tile.
 """
 
 import importlib
@@ -218,7 +218,7 @@ class _Reader:
 
 
 class _Numbers:
-    """The numbers of nodes, of which those that are not active may be left out, and the rest compressed."""
+    """The numbers of nodes, in which inactive ones may be left out, and the rest compressed."""
 
     def __init__(self, file: _Reader, compression: int, is_half: bool) -> None:
         self._file = file
@@ -231,7 +231,7 @@ class _Numbers:
             self._unpack = _unzipped
 
     def read(self, count: int, active: bytes) -> NDArray[np.float32]:
-        """Return so many numbers, of which some are active; the others as the file says."""
+        """Return the numbers of a node, active ones from the file, the others by its rule."""
         file = self._file
         said = file.one("b")
         rest = [np.float32(0), np.float32(0)]

@@ -1,4 +1,4 @@
-"""What varies over surfaces: wherever a material takes a colour or a number, a texture may stand."""
+"""Textures: every color or number of a material may vary over the surface."""
 
 from .blackbody import Blackbody
 from .checker import Checker

@@ -1,4 +1,4 @@
-"""What glows because it is hot."""
+"""Blackbody radiation."""
 
 from dataclasses import dataclass
 
@@ -19,15 +19,15 @@ def planck(wavelengths: NDArray[np.float64], kelvin: float) -> NDArray[np.float6
 
 @dataclass(frozen=True, init=False, repr=False)
 class Blackbody(Spectrum):
-    """The light of a black body of a temperature (Planck, 1900), of a luminance that is given.
+    """The light of a black body by its temperature (Planck, 1900), with a given luminance.
 
     Parameters
     ----------
     kelvin : float
         Its temperature, from 500: some 1900 for a candle, 2800 for a light bulb, 5800 for the sun.
     luminance : float
-        How bright it is, at least 0; 1 is as bright as white light of (1, 1, 1). A body of that temperature
-        has a radiance of its own, which `radiance` tells; few scenes are told in it.
+        Luminance, at least 0; 1 is that of white light of (1, 1, 1). The physical radiance of such a body is
+        `radiance`; few scenes use it.
 
     Raises
     ------
@@ -35,6 +35,16 @@ class Blackbody(Spectrum):
         If `kelvin` is below 500, where nothing is seen, or a number is not finite.
     TypeError
         If one is no number.
+
+    See Also
+    --------
+    illuminants : Standard illuminants by name.
+
+    Examples
+    --------
+    >>> red, green, blue = rw.Blackbody(1900).rgb
+    >>> red > green > blue, round(rw.Blackbody(1900, luminance=2).luminance, 6)
+    (True, 2.0)
     """
 
     kelvin: float
@@ -53,7 +63,22 @@ class Blackbody(Spectrum):
         self._set(kelvin=temperature, wavelengths=plain.wavelengths, values=tuple(values.tolist()))
 
     def radiance(self) -> Spectrum:
-        """Return what such a body radiates by itself, W·sr⁻¹·m⁻²·nm⁻¹."""
+        """Return the physical spectral radiance of the body, W·sr⁻¹·m⁻²·nm⁻¹.
+
+        Returns
+        -------
+        Spectrum
+
+        Examples
+        --------
+        Planck's law at 500 nm:
+
+        >>> told = rw.Blackbody(5800).radiance().at(500)
+        >>> h, c, k = 6.62607015e-34, 299792458, 1.380649e-23
+        >>> planck = 2 * h * c**2 / 500e-9**5 / np.expm1(h * c / (500e-9 * k * 5800)) * 1e-9
+        >>> round(float(told / planck), 5)
+        1.0
+        """
         wavelengths = np.asarray(self.wavelengths)
         return Spectrum(wavelengths, planck(wavelengths, self.kelvin))
 

@@ -11,12 +11,12 @@ from .transform import Transform, UvTransform, placed
 
 @dataclass(frozen=True, init=False)
 class Checker(Texture):
-    """Unit squares, or cubes, of two kinds in turn. Those too small to be told apart become their mean.
+    """Unit squares, or cubes, of two kinds in turn. Detail finer than a pixel is averaged.
 
     Parameters
     ----------
     a, b : float, 3 floats or Texture
-        What the cells are; the one at the lower left is `a`.
+        Values of the cells; the one at the lower left is `a`.
     transform : UvTransform, ObjectTransform or float, optional
         Where they lie: squares in texture coordinates, or cubes in the space of the shape. A number is how
         many squares there are to a unit of texture coordinates.
@@ -28,10 +28,21 @@ class Checker(Texture):
     TypeError
         If something is not of the kinds above.
 
+    See Also
+    --------
+    Stripes : Stripes.
+
     Notes
     -----
     A flat surface that lies exactly between two layers of cubes shows one or the other as rounding has it:
     an offset of the transform puts it within one.
+
+    Examples
+    --------
+    >>> floor = rw.Plane(material=rw.Diffuse(rw.Checker(0.2, 0.8, transform=2)))
+    >>> rays = rw.Rays(np.array([[0.1, 0.1, 1.0], [0.6, 0.1, 1]]), np.array([[0, 0, -1.0]] * 2), np.zeros(2))
+    >>> rw.Scene(floor).interactions(rays).albedo[:, 0].round(6).tolist()
+    [0.2, 0.8]
     """
 
     a: Value

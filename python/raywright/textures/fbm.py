@@ -30,19 +30,19 @@ def octaves_of(octaves: int, lacunarity: float, gain: float, seed: SeedLike) -> 
 class FBm(Texture):
     """Fractional Brownian motion: a sum of noises, each finer and weaker than the one before.
 
-    Clouds, stains, terrain (Mandelbrot and Van Ness, 1968; Perlin, "An Image Synthesizer", 1985). Noises too
-    fine to be told apart are left out.
+    Clouds, stains, terrain (Mandelbrot and Van Ness, 1968; Perlin, "An Image Synthesizer", 1985). Noises
+    finer than a pixel are left out.
 
     Parameters
     ----------
     a, b : float, 3 floats or Texture
-        What is where the sum is -1 or less, and where it is 1 or more.
+        Values where the sum is -1 or less, and where it is 1 or more.
     transform : ObjectTransform, UvTransform or float, optional
         Where it lies, as of `Noise`: the coarsest has spots about a unit in size.
     octaves : int
-        How many noises, 1 to 32.
+        Number of noises, 1 to 32.
     lacunarity : float
-        How many times finer each is than the one before, above 1 and at most 16.
+        Ratio of frequencies of successive noises, above 1 and at most 16.
     gain : float
         How many times as strong, 0 to 1.
     seed : int, Generator or SeedSequence
@@ -54,6 +54,16 @@ class FBm(Texture):
         If a number is not finite or out of range.
     TypeError
         If something is not of the kinds above.
+
+    See Also
+    --------
+    Noise : One octave.
+
+    Examples
+    --------
+    >>> clouds = rw.FBm(0.0, 1.0, octaves=4)
+    >>> clouds.octaves, clouds.range
+    (4, ((0.0, 0.0, 0.0), (1.0, 1.0, 1.0)))
     """
 
     a: Value

@@ -29,16 +29,14 @@ class ImageTexture(Texture):
         alpha. uint8 is kept as it is, float32 too; uint16 and other floats become float32. A path may be of a
         PNG, an EXR, an NPY or any other picture that Pillow reads.
     linear : bool
-        Whether integers are amounts of light as they are; if not, they are sRGB and decoded. Floats, and
-        alpha, always are.
+        True if integers are linear; if not, they are sRGB and decoded. Floats, and alpha, always are.
     channel : {"r", "g", "b", "a"}, optional
         The one that counts, where it is a number that is asked for; all if not given.
     filter : {"trilinear", "bilinear", "nearest"}
-        "trilinear" averages what is too small to be told apart, from ever smaller copies of the picture
-        (Williams, "Pyramidal Parametrics", 1983); "bilinear" goes evenly from point to point, and "nearest"
-        not at all.
+        "trilinear" averages detail finer than a pixel, from a pyramid of smaller copies (Williams, "Pyramidal
+        Parametrics", 1983); "bilinear" goes evenly from point to point, and "nearest" not at all.
     wrap : {"repeat", "clamp", "mirror"}, or two of them
-        What is beyond the edges, along both axes or along u and along v.
+        Extension beyond the edges, along both axes or along u and along v.
     transform : UvTransform or float, optional
         From the surface's coordinates to the picture's; a number is how often it is repeated.
 
@@ -57,10 +55,21 @@ class ImageTexture(Texture):
     FileNotFoundError
         If the file is missing.
 
+    See Also
+    --------
+    VertexColors : Colors of a mesh.
+
     Notes
     -----
-    What is not asked for is not kept once the scene is compiled: a channel of uint8 takes 1 byte a point and,
-    for "trilinear", a third as many points more, of float32.
+    Unused channels are dropped when the scene is compiled: a channel of uint8 takes 1 byte a point and, for
+    "trilinear", a third as many points more, of float32.
+
+    Examples
+    --------
+    >>> picture = np.array([[[255, 0, 0], [0, 255, 0]]], np.uint8)
+    >>> texture = rw.ImageTexture(picture, filter="nearest")
+    >>> texture.image.shape, texture.channels
+    ((1, 2, 3), (0, 1, 2))
     """
 
     image: NDArray[Any]
@@ -107,7 +116,7 @@ class ImageTexture(Texture):
 
     @property
     def channels(self) -> tuple[int, ...]:
-        """Which channels of the image count: one of them, or three for red, green and blue."""
+        """Channels of the image in use: one of them, or three for red, green and blue."""
         count = self.image.shape[2]
         if self.channel is None:
             return (0, 1, 2) if count > 2 else (0,)
@@ -128,7 +137,7 @@ class ImageTexture(Texture):
 
     @property
     def decoded(self) -> bool:
-        """Whether the channels that count are sRGB, to be decoded."""
+        """True if the channels in use are sRGB, to be decoded."""
         return self.image.dtype == np.uint8 and not self.linear and self.channel != "a"
 
     def _ends(self) -> list[NDArray[np.float64]]:

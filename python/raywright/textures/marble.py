@@ -14,17 +14,17 @@ from .transform import ObjectTransform, Transform, placed
 class Marble(Texture):
     """Veins: soft bands across the first axis, one each unit, bent by noise.
 
-    After Perlin ("An Image Synthesizer", 1985). Bands too narrow to be told apart become their mean.
+    After Perlin ("An Image Synthesizer", 1985). Detail finer than a pixel is averaged.
 
     Parameters
     ----------
     a, b : float, 3 floats or Texture
-        What is between the bands, and what they are.
+        Values between the bands, and within them.
     transform : ObjectTransform, UvTransform or float, optional
         Where it lies: in the space of the shape, or in texture coordinates. A number is how many bands there
         are to a unit of the shape's space.
     distortion : float
-        How far noise moves them, in units; 0 leaves them as they are.
+        Displacement by noise, in units; 0 for none.
     octaves, lacunarity, gain, seed
         The noise, as of `FBm`.
 
@@ -34,6 +34,16 @@ class Marble(Texture):
         If a number is not finite or out of range.
     TypeError
         If something is not of the kinds above.
+
+    See Also
+    --------
+    Wood : Rings.
+
+    Examples
+    --------
+    >>> stone = rw.Marble(transform=3.0, seed=1)
+    >>> stone.distortion
+    1.5
     """
 
     a: Value

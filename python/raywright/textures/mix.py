@@ -15,9 +15,9 @@ class MixTexture(Texture):
     Parameters
     ----------
     a, b : float, 3 floats or Texture
-        What is mixed.
+        The two values.
     amount : float, 3 floats or Texture
-        How much of `b`, between 0 and 1.
+        Share of `b`, between 0 and 1.
 
     Raises
     ------
@@ -25,6 +25,16 @@ class MixTexture(Texture):
         If a number is not finite, or `amount` is not between 0 and 1.
     TypeError
         If something is not of the kinds above.
+
+    See Also
+    --------
+    ProductTexture : The product.
+
+    Examples
+    --------
+    >>> rust = rw.MixTexture((0.5, 0.5, 0.5), (0.4, 0.2, 0.1), rw.Noise())
+    >>> rust.range
+    ((0.4, 0.2, 0.1), (0.5, 0.5, 0.5))
     """
 
     a: Value

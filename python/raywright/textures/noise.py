@@ -15,12 +15,12 @@ SEEDS = 2**32 - 1
 class Noise(Texture):
     """Smooth random spots about a unit in size (Perlin, "Improving Noise", 2002).
 
-    Spots too small to be told apart become their mean.
+    Detail finer than a pixel is averaged.
 
     Parameters
     ----------
     a, b : float, 3 floats or Texture
-        What is where the noise is least, and where it is greatest; half of each is where it is 0.
+        Values where the noise is least, and where it is greatest; half of each where it is 0.
     transform : ObjectTransform, UvTransform or float, optional
         Where they lie: in the space of the shape, or in texture coordinates. A number is how many there are
         to a unit of the shape's space.
@@ -33,6 +33,15 @@ class Noise(Texture):
         If a number is not finite, or the seed is out of range.
     TypeError
         If something is not of the kinds above.
+
+    See Also
+    --------
+    FBm : A sum of noises.
+
+    Examples
+    --------
+    >>> rw.Noise(0.2, 0.4, seed=3).range
+    ((0.2, 0.2, 0.2), (0.4, 0.4, 0.4))
     """
 
     a: Value

@@ -15,7 +15,7 @@ class ProductTexture(Texture):
     Parameters
     ----------
     a, b : float, 3 floats or Texture
-        What is multiplied.
+        The factors.
 
     Raises
     ------
@@ -23,6 +23,16 @@ class ProductTexture(Texture):
         If a number is not finite.
     TypeError
         If something is not of the kinds above.
+
+    See Also
+    --------
+    MixTexture : A weighted mean.
+
+    Examples
+    --------
+    >>> dark = rw.ProductTexture(rw.Checker(0.2, 0.8), 0.5)
+    >>> dark.range
+    ((0.1, 0.1, 0.1), (0.4, 0.4, 0.4))
     """
 
     a: Value

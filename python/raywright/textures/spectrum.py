@@ -23,9 +23,9 @@ class Spectrum(Texture):
     Parameters
     ----------
     wavelengths : (N,) array_like
-        In nm, two or more, rising. What is seen lies between 360 and 830.
+        In nm, two or more, rising. Visible light is between 360 and 830.
     values : (N,) array_like
-        How much of each there is, at least 0.
+        Value at each wavelength, at least 0.
 
     Raises
     ------
@@ -33,6 +33,20 @@ class Spectrum(Texture):
         If they are not as many, wavelengths do not rise, or something is not finite or negative.
     TypeError
         If something is no number.
+
+    See Also
+    --------
+    illuminants : Standard illuminants by name.
+    Blackbody : Light by its temperature.
+
+    Examples
+    --------
+    >>> even = rw.Spectrum([360, 830], [1, 1])
+    >>> round(even.luminance, 6)
+    1.0
+    >>> filter = rw.Spectrum([360, 550, 551, 830], [0, 0, 0.9, 0.9])
+    >>> filter.at([500, 600]).tolist()
+    [0.0, 0.9]
     """
 
     _is_number: ClassVar[bool] = False
@@ -62,6 +76,11 @@ class Spectrum(Texture):
     def at(self, wavelengths: ArrayLike) -> Any:
         """Return the values at wavelengths, nm, of any shape.
 
+        Parameters
+        ----------
+        wavelengths : array_like
+            In nm.
+
         Returns
         -------
         float or (...) float64
@@ -70,6 +89,12 @@ class Spectrum(Texture):
         ------
         TypeError
             If wavelengths are no real numbers.
+
+        Examples
+        --------
+        >>> ramp = rw.Spectrum([400, 800], [0, 1])
+        >>> ramp.at(500), ramp.at([300, 400, 600]).tolist()
+        (0.25, [0.0, 0.0, 0.5])
         """
         asked = real_array("wavelengths", wavelengths)
         found = np.interp(asked, self.wavelengths, self.values, left=0.0, right=0.0)
@@ -79,18 +104,18 @@ class Spectrum(Texture):
     def rgb(self) -> Triple:
         """The linear red, green and blue (Rec. 709) of it as light, seen by the standard observer (CIE 1931).
 
-        What no mixture of these looks like is told with the one at 0 that it would have less than none of.
+        For colors outside the gamut, the negative component is 0.
         """
         return self._rgb(emits=True)
 
     @property
     def reflected_rgb(self) -> Triple:
-        """The linear red, green and blue (Rec. 709) of what reflects so, in daylight (CIE D65)."""
+        """The linear red, green and blue (Rec. 709) of it as reflectance, in daylight (CIE D65)."""
         return self._rgb(emits=False)
 
     @property
     def luminance(self) -> float:
-        """How bright it is as light: 1 for a value of 1 at all wavelengths."""
+        """The luminance of it as light: 1 for a value of 1 at all wavelengths."""
         return _core.spectrum_luminance(self._rows())
 
     def __mul__(self, factor: float) -> "Spectrum":

@@ -11,14 +11,14 @@ from .transform import Transform, UvTransform, placed
 
 @dataclass(frozen=True, init=False)
 class Stripes(Texture):
-    """Stripes across the first axis, one each unit. Those too narrow to be told apart become their mean.
+    """Stripes across the first axis, one each unit. Detail finer than a pixel is averaged.
 
     Parameters
     ----------
     a, b : float, 3 floats or Texture
-        What is between the stripes, and what they are.
+        Values between the stripes, and within them.
     fraction : float
-        How much of each unit a stripe takes, at its end: between 0 and 1.
+        Share of each unit that a stripe takes, at its end: between 0 and 1.
     transform : UvTransform, ObjectTransform or float, optional
         Where they lie: in texture coordinates, or in the space of the shape. A number is how many stripes
         there are to a unit of texture coordinates.
@@ -29,6 +29,15 @@ class Stripes(Texture):
         If a number is not finite, or `fraction` is not between 0 and 1.
     TypeError
         If something is not of the kinds above.
+
+    See Also
+    --------
+    Checker : Squares.
+
+    Examples
+    --------
+    >>> rw.Stripes(0.1, 0.9, fraction=0.25, transform=4).fraction
+    0.25
     """
 
     a: Value

@@ -1,4 +1,4 @@
-"""What all textures have in common, and what may be a texture or the same everywhere."""
+"""The base class of textures, and values that may be textures or constants."""
 
 import math
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ Number: TypeAlias = Union[float, "Texture"]
 
 @dataclass(frozen=True, init=False)
 class Texture:
-    """What varies over a surface. Its subclasses say how."""
+    """The base class of textures: values that vary over a surface. Its subclasses say how."""
 
     # True if it may stand for a number, such as a roughness.
     _is_number: ClassVar[bool] = True
@@ -44,12 +44,12 @@ def value(
     least, most : float
         What is allowed.
     above : bool
-        Whether `least` itself is not allowed.
+        True if `least` itself is not allowed.
 
     Raises
     ------
     ValueError
-        If a number, or what a texture may be, is not finite or not allowed, or there are not 1 or 3 of them.
+        If a number, or the range of a texture, is not finite or not allowed, or there are not 1 or 3 of them.
     TypeError
         If they are not numbers.
     """
@@ -91,7 +91,7 @@ def ends(given: Value) -> tuple[Triple, Triple]:
 
 
 def either(a: Value, b: Value) -> tuple[Triple, Triple]:
-    """Return the range of what is one of two values, or between them."""
+    """Return the range of a value that is one of two values, or between them."""
     (low, high), (least, most) = ends(a), ends(b)
     x, y, z = map(min, low, least)
     r, s, t = map(max, high, most)

@@ -20,7 +20,7 @@ class UvTransform:
     Parameters
     ----------
     scale : float or 2 floats
-        How many times the texture is repeated along u and v.
+        Number of repetitions along u and v.
     rotation : float
         By how many degrees coordinates turn, anticlockwise.
     offset : 2 floats
@@ -39,6 +39,16 @@ class UvTransform:
         If a number is not finite, or there are too few or too many of them.
     TypeError
         If they are not numbers.
+
+    See Also
+    --------
+    ObjectTransform : In the space of a shape.
+
+    Examples
+    --------
+    >>> turned = rw.UvTransform(scale=2, rotation=90)
+    >>> np.round(turned.matrix, 6).tolist()
+    [[0.0, -2.0, 0.0], [2.0, 0.0, 0.0]]
     """
 
     matrix: tuple[Row3, Row3]
@@ -73,7 +83,7 @@ class ObjectTransform:
     Parameters
     ----------
     scale : float or 3 floats
-        How many units of the texture there are to one of the shape's, along x, y and z.
+        Units of the texture in one unit of the shape, along x, y and z.
     offset : 3 floats
         By how much points move, in units of the texture.
     matrix : (3, 4) or (4, 4) array, optional
@@ -91,6 +101,15 @@ class ObjectTransform:
         (0, 0, 0, 1).
     TypeError
         If they are not numbers.
+
+    See Also
+    --------
+    UvTransform : In texture coordinates.
+
+    Examples
+    --------
+    >>> rw.ObjectTransform(scale=2, offset=(1, 0, 0)).matrix
+    ((2.0, 0.0, 0.0, 1.0), (0.0, 2.0, 0.0, 0.0), (0.0, 0.0, 2.0, 0.0))
     """
 
     matrix: tuple[Row4, Row4, Row4]

@@ -8,7 +8,20 @@ from .texture import Texture
 
 @dataclass(frozen=True)
 class VertexColors(Texture):
-    """The colours of the mesh's vertices, between them in proportion; white on what has none."""
+    """The colors of the mesh's vertices, interpolated; white for meshes without any.
+
+    See Also
+    --------
+    ImageTexture : A picture.
+
+    Examples
+    --------
+    >>> corners, colors = [[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[1, 0, 0], [0, 1, 0], [0, 0, 1]]
+    >>> mesh = rw.Mesh(corners, [[0, 1, 2]], colors=colors, material=rw.Diffuse(rw.VertexColors()))
+    >>> rays = rw.Rays(np.array([[0.25, 0.25, 1.0]]), np.array([[0, 0, -1.0]]), np.zeros(1))
+    >>> rw.Scene(mesh).interactions(rays).albedo.round(4).tolist()
+    [[0.5, 0.25, 0.25]]
+    """
 
     @property
     def range(self) -> tuple[Triple, Triple]:

@@ -14,7 +14,7 @@ from .transform import ObjectTransform, Transform, placed
 class Wood(Texture):
     """Rings about the third axis, one each unit of the radius, bent by noise.
 
-    After Perlin ("An Image Synthesizer", 1985). Rings too narrow to be told apart become their mean.
+    After Perlin ("An Image Synthesizer", 1985). Detail finer than a pixel is averaged.
 
     Parameters
     ----------
@@ -24,7 +24,7 @@ class Wood(Texture):
         Where it lies: in the space of the shape, or in texture coordinates. A number is how many rings there
         are to a unit of the shape's space.
     distortion : float
-        How far noise moves them, in units; 0 leaves them as they are.
+        Displacement by noise, in units; 0 for none.
     octaves, lacunarity, gain, seed
         The noise, as of `FBm`.
 
@@ -34,6 +34,15 @@ class Wood(Texture):
         If a number is not finite or out of range.
     TypeError
         If something is not of the kinds above.
+
+    See Also
+    --------
+    Marble : Veins.
+
+    Examples
+    --------
+    >>> rw.Wood(transform=8.0).distortion
+    0.3
     """
 
     a: Value
