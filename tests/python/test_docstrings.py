@@ -23,14 +23,11 @@ SECTIONS = (
 # Packages whose callables do not all have their sections yet. This may only shrink.
 UNFINISHED = {
     "_core",
-    "accelerators",
     "compat",
     "gpu",
     "io",
-    "report",
     "scene_files",
     "scenes",
-    "shapes",
     "viewer",
 }
 
@@ -115,7 +112,8 @@ def trouble_with(text):
     for heading, lines in found.items():
         # Remains of a heading without its own line: within a text, or without the dashes under it.
         for line in lines:
-            if re.search(r"-{4,}", line) or line.strip() in SECTIONS:
+            # Examples may print tables.
+            if (heading != "Examples" and re.search(r"-{4,}", line)) or line.strip() in SECTIONS:
                 return f"a heading within {heading}: {line}"
         if not any(lines):
             return f"{heading} is empty"
@@ -212,7 +210,7 @@ def test_examples_run(name, tmp_path, monkeypatch):
     test = doctest.DocTestParser().get_doctest(inspect.getdoc(WITH_EXAMPLES[name]), globs, name, None, None)
     for example in test.examples:
         for module in imports(example.source):
-            pytest.importorskip(module)
+            pytest.importorskip(module, exc_type=ImportError)
     told = []
     failed = doctest.DocTestRunner().run(test, out=told.append).failed
     if "matplotlib.pyplot" in sys.modules:

@@ -32,7 +32,7 @@ def every() -> dict[str, Accelerator]:
 
 
 def name_of(accelerator: Accelerator) -> str:
-    """Return a short name: the kind, its builder or whatever is chosen first, and what is not the default.
+    """Return a short name: the kind, its builder or first option, and options other than the default.
 
     ``BVH()`` is "BVH binned", ``BVH(bins=8)`` is "BVH binned bins=8".
     """

@@ -24,12 +24,43 @@ class AcceleratorReport(Table[tuple[Any, ...]]):
     ----------
     measured : tuple of Measured
         All that was measured, also set by set.
+
+    See Also
+    --------
+    report.accelerators : Makes it.
+
+    Examples
+    --------
+    >>> scene = rw.Scene(rw.scenes.torus_knot(along=40, around=8))
+    >>> camera = rw.Camera((0, 0, 9), (0, 0, 0), width=8, height=8)
+    >>> choices = {"bvh": rw.BVH(), "grid": rw.Grid()}
+    >>> report = rw.report.accelerators(scene, camera, choices, repeats=1, check=20)
+    >>> report.column("accelerator"), report.column("wrong")
+    (('bvh', 'grid'), (0, 0))
     """
 
     measured: tuple[Measured, ...] = ()
 
     def by_rays(self) -> Table[Any]:
-        """Return a row for each set of rays and each accelerator."""
+        """Return a row for each set of rays and each accelerator.
+
+        Returns
+        -------
+        Table
+
+        See Also
+        --------
+        report.typical_rays : The sets of rays.
+
+        Examples
+        --------
+        >>> scene = rw.Scene(rw.scenes.torus_knot(along=40, around=8))
+        >>> camera = rw.Camera((0, 0, 9), (0, 0, 0), width=8, height=8)
+        >>> choices = {"bvh": rw.BVH(), "grid": rw.Grid()}
+        >>> report = rw.report.accelerators(scene, camera, choices, repeats=1, check=20)
+        >>> len(report.by_rays().rows)
+        6
+        """
         columns = (
             Column("rays", "rays"),
             Column("accelerator", "accelerator"),
@@ -58,9 +89,36 @@ class AcceleratorReport(Table[tuple[Any, ...]]):
         return Table(self.title, columns, tuple(rows), self.notes, chart)
 
     def rays_per_build(self, counts: Sequence[float] = COUNTS) -> RaysPerBuild:
-        """Return which accelerator gives the most rays a second, its build counted in, for so many rays.
+        """Rank the accelerators by rays a second, builds included, for some numbers of rays.
 
         Takes and raises what `rays_per_build` does, and measures nothing anew.
+
+        Parameters
+        ----------
+        counts : sequence of numbers
+            Number of rays traced after a build; whole, and 1 at least.
+
+        Returns
+        -------
+        RaysPerBuild
+
+        Raises
+        ------
+        ValueError, TypeError
+            As `raywright.report.rays_per_build` does.
+
+        See Also
+        --------
+        report.rays_per_build : Measures first.
+
+        Examples
+        --------
+        >>> scene = rw.Scene(rw.scenes.torus_knot(along=40, around=8))
+        >>> camera = rw.Camera((0, 0, 9), (0, 0, 0), width=8, height=8)
+        >>> choices = {"bvh": rw.BVH(), "grid": rw.Grid()}
+        >>> report = rw.report.accelerators(scene, camera, choices, repeats=1, check=20)
+        >>> len(report.rays_per_build([1000, 1e6]).rows)
+        4
         """
         return rays_per_build_of(
             [
@@ -80,27 +138,27 @@ def accelerators(
     check: int | None = None,
     seed: SeedLike = 0,
 ) -> AcceleratorReport:
-    """Compare accelerators on the same rays: what they cost to build and to hold, and what rays cost.
+    """Compare accelerators on the same rays: build time, memory, and time of rays.
 
     Every accelerator is built over the scene's shapes. They take turns, set of rays by set of rays, and each
-    turn begins with another, so that each has its share of whatever else the machine does; medians over the
-    turns are told. All are in memory at once.
+    turn begins with another, so that other load of the machine is shared evenly; results are medians over the
+    turns. All are in memory at once.
 
     Parameters
     ----------
     scene : Scene
-        What is hit; its own accelerator does not matter.
+        The scene; its own accelerator does not matter.
     rays : Camera, Rays, (origins, directions), or dict of these by names, optional
         What is asked. A camera stands for its primary, diffuse and shadow rays, as `typical_rays` makes them;
         if not given, it is one that sees all of the scene from outside.
     accelerators : accelerator, list of them, or dict of them by names, optional
         All that there are, each with its default options and with each builder and traversal, if not given.
     threads : int or None
-        How many trace rays; None is all cores. Builds take all cores in any case.
+        Number of threads that trace rays; None is all cores. Builds take all cores in any case.
     repeats : int
-        How many turns each accelerator takes. It is built as often, but for no longer than a second in all.
+        Number of turns of each accelerator. It is built as often, but for no longer than a second in all.
     check : int, optional
-        How many rays are held against brute force, of all sets together. If not given, as many as brute force
+        Number of rays compared with brute force, of all sets together. If not given, as many as brute force
         answers in a second or two, and 300 at least.
     seed : int, Generator or SeedSequence
         Which diffuse rays, and which points of lamps.
@@ -123,10 +181,24 @@ def accelerators(
     TypeError
         If something is of the wrong kind.
 
+    See Also
+    --------
+    report.rays_per_build : Builds included.
+    report.heatmap : The cost of each pixel.
+
     Notes
     -----
     An accelerator that would take more than about a second for a set is timed on fewer rays of it, evenly
     spread, and a note tells on how many. Fewer rays of an image lie further apart, and may take more each.
+
+    Examples
+    --------
+    >>> scene = rw.Scene(rw.scenes.torus_knot(along=40, around=8))
+    >>> camera = rw.Camera((0, 0, 9), (0, 0, 0), width=8, height=8)
+    >>> choices = {"bvh": rw.BVH(), "grid": rw.Grid()}
+    >>> report = rw.report.accelerators(scene, camera, choices, repeats=1, check=20)
+    >>> report.column("checked"), report.column("wrong")
+    ((18, 18), (0, 0))
     """
     if not isinstance(scene, Scene):
         raise TypeError(f"scene must be a Scene, got {type(scene).__name__}")
@@ -147,7 +219,7 @@ def rays_per_build(
     repeats: int = 5,
     seed: SeedLike = 0,
 ) -> RaysPerBuild:
-    """Find which accelerator gives the most rays a second in all, its build counted in.
+    """Rank accelerators by rays a second, builds included.
 
     A scene that changes pays for a build again and again: the fewer rays it traces in between, the less a
     good tree is worth. Times to build and rays a second are measured as `accelerators` does it; times for
@@ -158,7 +230,7 @@ def rays_per_build(
     scene, accelerators, rays, threads, repeats, seed
         As in `accelerators`; rays take all cores if nobody says, as builds do.
     counts : sequence of numbers
-        How many rays are traced after a build; whole, and 1 at least.
+        Number of rays traced after a build; whole, and 1 at least.
 
     Returns
     -------
@@ -170,6 +242,19 @@ def rays_per_build(
     ------
     ValueError, TypeError
         As `accelerators`; also if a count is below 1 or not whole, or there is none.
+
+    See Also
+    --------
+    report.accelerators : All measurements.
+
+    Examples
+    --------
+    >>> scene = rw.Scene(rw.scenes.torus_knot(along=40, around=8))
+    >>> camera = rw.Camera((0, 0, 9), (0, 0, 0), width=8, height=8)
+    >>> choices = {"bvh": rw.BVH(), "grid": rw.Grid()}
+    >>> report = rw.report.rays_per_build(scene, choices, [1e3, 1e6], camera, repeats=1)
+    >>> [column.name for column in report.columns]
+    ['rays', 'accelerator', 'seconds', 'mrays', 'build_share']
     """
     rays_per_build_of([], counts)
     report = _accelerators(scene, rays, accelerators, threads, repeats, None, seed)
@@ -181,7 +266,7 @@ _accelerators = accelerators
 
 
 def named_accelerators(accelerators: Any) -> dict[str, Accelerator]:
-    """Return accelerators by their names, from whatever a report is given; all that there are for None.
+    """Return accelerators by name, from the argument of a report; all that there are for None.
 
     Raises
     ------

@@ -29,7 +29,7 @@ _Run = tuple[float, float, float, float, bool]
 
 @dataclass(frozen=True)
 class Fit:
-    """How the error of a contender falls.
+    """Convergence of one contender: a power law of its error.
 
     Attributes
     ----------
@@ -40,7 +40,16 @@ class Fit:
     level : float or None
         The fitted relMSE of one second.
     gain : float or None
-        How many times less relMSE x seconds than the first contender has, by geometric means over budgets.
+        Efficiency over the first contender: ratio of relMSE x seconds, by geometric means over budgets.
+
+    See Also
+    --------
+    ConvergenceReport : Lists them in `fits`.
+
+    Examples
+    --------
+    >>> rw.report.Fit("path", slope=-1.0, level=0.01, gain=1.0).slope
+    -1.0
     """
 
     contender: str
@@ -59,7 +68,19 @@ class ConvergenceReport(Table[tuple[Any, ...]]):
     Attributes
     ----------
     fits : tuple of Fit
-        How the error of each contender falls.
+        Fitted convergence of each contender.
+
+    See Also
+    --------
+    report.convergence : Makes it.
+
+    Examples
+    --------
+    >>> scene = rw.Scene(rw.Sphere(), environment=1.0)
+    >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), width=4, height=4)
+    >>> found = rw.report.convergence(scene, camera, {"path": rw.Path()}, seconds=0.1, seeds=1)
+    >>> len(found.rows), found.fits[0].contender
+    (6, 'path')
     """
 
     fits: tuple[Fit, ...] = ()
@@ -88,15 +109,15 @@ def convergence(
     seeds: int | Sequence[SeedLike] = 3,
     threads: int | None = None,
 ) -> ConvergenceReport:
-    """Compare ways to render a scene: relMSE over run time, and how fast it falls.
+    """Compare integrators or options on a scene: relMSE over run time, and its rate of convergence.
 
     Each contender renders for `seconds`, a half of that, a quarter, and so on, six budgets in all, with each
-    seed. They take turns, so that each has its share of whatever else the machine does.
+    seed. They take turns, so that other load of the machine is shared evenly.
 
     Parameters
     ----------
     scene : Scene
-        What to look at.
+        The scene.
     camera : Camera
         From where.
     contenders : dict of str to integrator or dict, optional
@@ -110,7 +131,7 @@ def convergence(
     seeds : int or sequence of int, Generator or SeedSequence
         How many, or which.
     threads : int, optional
-        How many each render uses, unless a contender says so; all cores if not given.
+        Number of threads of each render, unless a contender gives its own; all cores if not given.
 
     Returns
     -------
@@ -128,6 +149,19 @@ def convergence(
     ValueError
         If there is no contender, one has an argument that `render` has not or that is given by the report, a
         number is out of its range, or the reference has another size than the picture.
+
+    See Also
+    --------
+    Image.table : The error of one render against time.
+
+    Examples
+    --------
+    >>> scene = rw.Scene(rw.Sphere(), environment=1.0)
+    >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), width=4, height=4)
+    >>> ways = {"path": rw.Path(), "direct": rw.Direct()}
+    >>> found = rw.report.convergence(scene, camera, ways, seconds=0.1, seeds=1)
+    >>> len(found.where(contender="direct").rows)
+    6
     """
     ways = _contenders(contenders, threads)
     seconds = positive("seconds", seconds)

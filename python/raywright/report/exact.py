@@ -16,7 +16,7 @@ Vector = list[NDArray[np.object_]]
 
 @dataclass(frozen=True)
 class ExactHits:
-    """Whether each of N rays meets its triangle, and where.
+    """Exact hits of N rays with their triangles.
 
     Attributes
     ----------
@@ -44,7 +44,7 @@ class ExactHits:
         Parameters
         ----------
         t : (N,) float64
-            What a routine found; inf for a miss.
+            Results of a routine; inf for a miss.
 
         Returns
         -------

@@ -26,7 +26,7 @@ _COLUMNS = (
 def first_hits(scene: Scene, camera: AnyCamera, threads: int | None = 1, repeats: int = 5) -> Table[Any]:
     """Time `Scene.intersect` and `Scene.first_hits` on the same picture.
 
-    Both are timed in turns, and the medians are told. `intersect` is timed twice: with the rays at hand, and
+    Both are timed in turns, and medians are returned. `intersect` is timed twice: with the rays at hand, and
     with the time that it takes to make them, which rasterising does on its way. Rasterising pays where faces
     are few next to pixels and little lies behind what is seen; where it does not, the tree is asked: for
     parts of the picture, or for all of it if there are more faces than a quarter of its pixels.
@@ -38,9 +38,9 @@ def first_hits(scene: Scene, camera: AnyCamera, threads: int | None = 1, repeats
     camera : Camera or another kind
         Whose picture it is.
     threads : int, optional
-        How many to use; all cores if None.
+        Number of threads; all cores if None.
     repeats : int
-        How often each is timed.
+        Number of timings of each.
 
     Returns
     -------
@@ -55,6 +55,17 @@ def first_hits(scene: Scene, camera: AnyCamera, threads: int | None = 1, repeats
         If `repeats` or `threads` is below 1, or something in the scene is no mesh.
     TypeError
         If an argument is of the wrong kind.
+
+    See Also
+    --------
+    Scene.first_hits : Rasterization.
+
+    Examples
+    --------
+    >>> scene = rw.Scene(rw.scenes.torus_knot(along=20, around=6))
+    >>> camera = rw.Camera((0, 0, 9), (0, 0, 0), width=32, height=32)
+    >>> len(rw.report.first_hits(scene, camera, repeats=1).rows)
+    3
     """
     if not isinstance(scene, Scene):
         raise TypeError(f"scene must be a Scene, got {type(scene).__name__}")

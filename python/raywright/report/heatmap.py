@@ -27,7 +27,7 @@ _NAMES = {"nodes": "nodes visited", "primitives": "primitives tested"}
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Heatmap:
-    """Where the work of a picture's rays is: `heatmap` makes it. Arrays are read-only; row 0 is the top.
+    """The traversal cost of a picture's rays: `heatmap` makes it. Arrays are read-only; row 0 is the top.
 
     ``print`` tells its numbers, a notebook shows the picture.
 
@@ -36,11 +36,23 @@ class Heatmap:
     nodes, primitives : (H, W) int32
         Nodes visited and primitives tested for each pixel's closest hit.
     what : {"nodes", "primitives"}
-        Which of them the picture shows.
+        The count in the picture.
     most : int
         The count that has the last colour; what is above has it, too.
     share : TimeShare or None
         The estimated share of time in boxes and in primitives, if it was asked for.
+
+    See Also
+    --------
+    report.heatmap : Makes it.
+
+    Examples
+    --------
+    >>> scene = rw.Scene(rw.scenes.torus_knot(along=40, around=8))
+    >>> camera = rw.Camera((0, 0, 9), (0, 0, 0), width=8, height=6)
+    >>> heat = rw.report.heatmap(scene, camera, repeats=0)
+    >>> heat.nodes.shape, heat.what, heat.share
+    ((6, 8), 'nodes', None)
     """
 
     nodes: NDArray[np.int32]
@@ -51,16 +63,44 @@ class Heatmap:
 
     @property
     def counts(self) -> NDArray[np.int32]:
-        """What the picture shows: (H, W) int32."""
+        """The count in the picture: (H, W) int32."""
         return self.nodes if self.what == "nodes" else self.primitives
 
     def srgb(self) -> NDArray[np.uint8]:
-        """Return the picture without its colour bar: (H, W, 3) uint8, sRGB."""
+        """Return the picture without its colour bar: (H, W, 3) uint8, sRGB.
+
+        Returns
+        -------
+        (H, W, 3) uint8 array
+
+        See Also
+        --------
+        Heatmap.save : With the colour bar.
+
+        Examples
+        --------
+        >>> scene = rw.Scene(rw.scenes.torus_knot(along=40, around=8))
+        >>> camera = rw.Camera((0, 0, 9), (0, 0, 0), width=8, height=6)
+        >>> rw.report.heatmap(scene, camera, repeats=0).srgb().shape
+        (6, 8, 3)
+        """
         level = np.minimum(self.counts.astype(np.int64), self.most) * (_LEVELS - 1)
         return np.asarray(COLOURS[(level + self.most // 2) // self.most])
 
     def summary(self) -> Table[Any]:
-        """Return the numbers: mean, median, 99th percentile and maximum of both counts."""
+        """Return the numbers: mean, median, 99th percentile and maximum of both counts.
+
+        Returns
+        -------
+        Table
+
+        Examples
+        --------
+        >>> scene = rw.Scene(rw.scenes.torus_knot(along=40, around=8))
+        >>> camera = rw.Camera((0, 0, 9), (0, 0, 0), width=8, height=6)
+        >>> len(rw.report.heatmap(scene, camera, repeats=0).summary().rows)
+        2
+        """
         columns = (
             Column("what", "a ray"),
             Column("mean", "mean", ".2f"),
@@ -97,6 +137,19 @@ class Heatmap:
             If the suffix is another one.
         OSError
             If the file cannot be written.
+
+        See Also
+        --------
+        Heatmap.plot : With matplotlib.
+
+        Examples
+        --------
+        >>> scene = rw.Scene(rw.scenes.torus_knot(along=40, around=8))
+        >>> camera = rw.Camera((0, 0, 9), (0, 0, 0), width=8, height=6)
+        >>> heat = rw.report.heatmap(scene, camera, repeats=0)
+        >>> heat.save("nodes.npy")
+        >>> bool((np.load("nodes.npy") == heat.counts).all())
+        True
         """
         file = check_writable(path, (".png", ".npy"), "a heatmap")
         if file.suffix.lower() == ".npy":
@@ -126,6 +179,20 @@ class Heatmap:
             If the file cannot be written.
         TypeError
             If `ax` is something else.
+
+        See Also
+        --------
+        Heatmap.save : Without matplotlib.
+
+        Examples
+        --------
+        >>> from matplotlib import pyplot as plt
+        >>> scene = rw.Scene(rw.scenes.torus_knot(along=40, around=8))
+        >>> camera = rw.Camera((0, 0, 9), (0, 0, 0), width=8, height=6)
+        >>> _, axes = plt.subplots()
+        >>> axes = rw.report.heatmap(scene, camera, repeats=0).plot(axes)
+        >>> len(axes.get_images())
+        1
         """
         return plotted(ax, self._draw)
 
@@ -182,23 +249,27 @@ def heatmap(
     repeats: int = 7,
     threads: int | None = None,
 ) -> Heatmap:
-    """Find where the work of a picture's primary rays is.
+    """Count the traversal work of a picture's primary rays.
 
     Parameters
     ----------
     scene : Scene
-        What is hit, and whose accelerator is looked into.
+        The scene, whose accelerator is measured.
     camera : Camera or another kind
         Whose rays go through the centres of the pixels.
     what : {"nodes", "primitives"}
-        What the picture shows: nodes visited, or primitives tested.
+        The count in the picture: nodes visited, or primitives tested.
     most : int, optional
         The count that has the last colour, at least 1; the greatest there is if not given. Pictures to be
         compared need the same one.
     repeats : int
-        How often rays are timed for the shares of time (`time_share`); 0 leaves them out.
+        Number of timings for the shares of time (`time_share`); 0 leaves them out.
     threads : int, optional
-        How many count; all cores if not given. The counts do not depend on it.
+        Number of threads; all cores if not given. The counts do not depend on it.
+
+    Returns
+    -------
+    Heatmap
 
     Raises
     ------
@@ -207,11 +278,24 @@ def heatmap(
     TypeError
         If `scene` or `camera` is of another kind.
 
+    See Also
+    --------
+    Scene.cost : The counts of any rays.
+    report.time_share : The shares of time.
+
     Notes
     -----
     The colours are Green's (2011, "A colour scheme for the display of astronomical intensity images"), which
     rise evenly from black to white, also for those who do not see colours. Neighbouring rays are traced
     together by some accelerators, and then share what each of them is said to visit.
+
+    Examples
+    --------
+    >>> scene = rw.Scene(rw.scenes.torus_knot(along=40, around=8))
+    >>> camera = rw.Camera((0, 0, 9), (0, 0, 0), width=8, height=6)
+    >>> heat = rw.report.heatmap(scene, camera, "primitives", repeats=0)
+    >>> bool((heat.counts == scene.cost(*camera.rays()).primitives).all())
+    True
     """
     if not isinstance(scene, Scene):
         raise TypeError(f"scene must be a Scene, got {type(scene).__name__}")

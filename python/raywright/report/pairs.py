@@ -199,7 +199,7 @@ def _turned(rng: Generator, pairs: Pairs) -> Pairs:
 
 
 def _roughly(pairs: Pairs) -> NDArray[np.bool_]:
-    """Whether each ray hits, in float64."""
+    """Return whether each ray hits, in float64."""
     corners = pairs.corners.astype(np.float64) - pairs.origins[:, None]
     after, before = np.roll(corners, -1, axis=1), np.roll(corners, -2, axis=1)
     direction = pairs.directions.astype(np.float64)[:, None]

@@ -19,7 +19,7 @@ class BuildRow(NamedTuple):
     Attributes
     ----------
     rays : int
-        How many rays are traced after the build.
+        Number of rays traced after the build.
     accelerator : str
         Its name.
     seconds : float
@@ -28,6 +28,15 @@ class BuildRow(NamedTuple):
         Million rays a second in all.
     build_share : float
         Part of the time that the build takes, 0 to 1.
+
+    See Also
+    --------
+    report.RaysPerBuild : The table of these rows.
+
+    Examples
+    --------
+    >>> rw.report.BuildRow(1000, "BVH", seconds=0.5, mrays=0.002, build_share=0.9).accelerator
+    'BVH'
     """
 
     rays: int
@@ -39,12 +48,40 @@ class BuildRow(NamedTuple):
 
 @dataclass(frozen=True, repr=False)
 class RaysPerBuild(Table[BuildRow]):
-    """For each number of rays a row for each accelerator, the fastest first: `rays_per_build` makes it."""
+    """For each number of rays a row for each accelerator, the fastest first: `rays_per_build` makes it.
+
+    See Also
+    --------
+    report.rays_per_build : Makes it.
+
+    Examples
+    --------
+    >>> scene = rw.Scene(rw.scenes.torus_knot(along=40, around=8))
+    >>> camera = rw.Camera((0, 0, 9), (0, 0, 0), width=8, height=8)
+    >>> choices = {"bvh": rw.BVH(), "grid": rw.Grid()}
+    >>> report = rw.report.accelerators(scene, camera, choices, repeats=1, check=20)
+    >>> table = report.rays_per_build([1000])
+    >>> sorted(table.column("accelerator"))
+    ['bvh', 'grid']
+    """
 
     def best(self) -> Table[Any]:
-        """Return a row for each number of rays: the fastest accelerator, the second, and what lies between.
+        """Return a row for each number of rays: the fastest accelerator, the second, and their ratio.
 
         `ratio` is how many times as long the second takes.
+
+        Returns
+        -------
+        Table
+
+        Examples
+        --------
+        >>> scene = rw.Scene(rw.scenes.torus_knot(along=40, around=8))
+        >>> camera = rw.Camera((0, 0, 9), (0, 0, 0), width=8, height=8)
+        >>> choices = {"bvh": rw.BVH(), "grid": rw.Grid()}
+        >>> report = rw.report.accelerators(scene, camera, choices, repeats=1, check=20)
+        >>> len(report.rays_per_build([1000, 10000]).best().rows)
+        2
         """
         columns = (
             Column("rays", "rays", ",d"),
@@ -73,7 +110,7 @@ def rays_per_build_of(
     costs : iterable of (str, float, float)
         Name, seconds to build, and seconds a ray.
     counts : sequence of numbers
-        How many rays are traced after a build; whole, and 1 at least.
+        Number of rays traced after a build; whole, and 1 at least.
 
     Raises
     ------

@@ -28,21 +28,31 @@ _BEFORE_LAMP = 1 - 1e-4
 
 @dataclass(frozen=True, eq=False)
 class Rays:
-    """Rays of one kind, and what is asked of them.
+    """Rays of one kind, and their query.
 
     Parameters
     ----------
     origins, directions : (..., 3) arrays
         Broadcast against each other; rays of two leading dimensions are an image.
     t_max : float
-        How far they go, in lengths of their directions.
+        Length of the rays, in lengths of their directions.
     any_hit : bool
-        Whether they ask only if there is a hit (`Scene.occluded`), not which is the closest.
+        True for occlusion queries (`Scene.occluded`), False for closest hits.
 
     Raises
     ------
     ValueError, TypeError
         As `Scene.intersect`; ValueError too if there is no ray.
+
+    See Also
+    --------
+    report.typical_rays : Sets of rays.
+
+    Examples
+    --------
+    >>> rays = rw.report.Rays(np.zeros((4, 3)), [0, 0, 1], any_hit=True)
+    >>> rays.count, rays.any_hit
+    (4, True)
     """
 
     origins: NDArray[np.floating[Any]]
@@ -60,11 +70,26 @@ class Rays:
 
     @property
     def count(self) -> int:
-        """How many there are."""
+        """Number of rays."""
         return self.origins.size // 3
 
     def thinned(self, most: int) -> "Rays":
-        """Return at most so many of them, evenly spread; an image stays an image."""
+        """Return at most `most` of the rays, evenly spread; an image stays an image.
+
+        Parameters
+        ----------
+        most : int
+            Maximum number of rays.
+
+        Returns
+        -------
+        Rays
+
+        Examples
+        --------
+        >>> rw.report.Rays(np.zeros((100, 3)), [0, 0, 1]).thinned(10).count
+        10
+        """
         if self.count <= most:
             return self
         lead = self.origins.shape[:-1]
@@ -85,7 +110,7 @@ def typical_rays(scene: Scene, camera: AnyCamera | None = None, seed: SeedLike =
     Parameters
     ----------
     scene : Scene
-        What they are shot at.
+        The scene that they are traced in.
     camera : Camera or another kind, optional
         Whose the primary rays are, one through the centre of each pixel. If not given, one of 256 by 256
         pixels that sees all of the scene from outside.
@@ -104,6 +129,18 @@ def typical_rays(scene: Scene, camera: AnyCamera | None = None, seed: SeedLike =
     ------
     ValueError
         If the scene is empty, or no primary ray hits anything.
+
+    See Also
+    --------
+    report.accelerators : Times them.
+
+    Examples
+    --------
+    >>> scene = rw.Scene(rw.scenes.torus_knot(along=40, around=8))
+    >>> camera = rw.Camera((0, 0, 9), (0, 0, 0), width=8, height=8)
+    >>> rays = rw.report.typical_rays(scene, camera)
+    >>> list(rays), rays["primary"].count
+    (['primary', 'diffuse', 'shadow'], 64)
     """
     seed = seed_number(seed)
     camera = camera or outside(scene)
@@ -127,7 +164,7 @@ def typical_rays(scene: Scene, camera: AnyCamera | None = None, seed: SeedLike =
 
 
 def ray_sets(scene: Scene, rays: Any, seed: int) -> dict[str, Rays]:
-    """Return sets of rays by their names, from whatever a report is given as its rays.
+    """Return sets of rays by name, from the argument of a report.
 
     None and a Camera are `typical_rays`; a Rays and a pair (origins, directions) are the only set; a dict has
     a name for each.
@@ -194,7 +231,7 @@ def _lamps(
 
 
 def _over_shoulder(scene: Scene, camera: AnyCamera, away: float) -> NDArray[np.float64]:
-    """Return a point half as far from the camera as what it sees; nearer, where a wall is in between."""
+    """Return a point half as far from the camera as its view reaches; nearer, if a wall is in between."""
     eye = np.array(camera.position)
     view = camera.forward
     right = _units(np.cross(view, camera.up))

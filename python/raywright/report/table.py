@@ -22,11 +22,20 @@ class Column:
     Parameters
     ----------
     name : str
-        What code calls it.
+        Name in code.
     heading : str
-        What people read over it, with the unit.
+        Heading with the unit.
     form : str
-        How its numbers are written, as `format` has it; text is written as it is, None as ``-``.
+        Format of its numbers, as for `format`; text is written as it is, None as ``-``.
+
+    See Also
+    --------
+    report.Table : Has columns.
+
+    Examples
+    --------
+    >>> rw.report.Column("length", "length (m)", ".2f").heading
+    'length (m)'
     """
 
     name: str
@@ -34,7 +43,22 @@ class Column:
     form: str = ""
 
     def text(self, value: Any) -> str:
-        """Return a value of this column as text."""
+        """Return a value of this column as text.
+
+        Parameters
+        ----------
+        value : object
+            Entry of the column.
+
+        Returns
+        -------
+        str
+
+        Examples
+        --------
+        >>> rw.report.Column("length", "length (m)", ".2f").text(1.5)
+        '1.50'
+        """
         if value is None:
             return "-"
         return value if isinstance(value, str) else format(value, self.form)
@@ -42,7 +66,7 @@ class Column:
 
 @dataclass(frozen=True)
 class Chart:
-    """How a table is plotted: the names of columns.
+    """Axes and groups of a plot: the names of columns.
 
     Parameters
     ----------
@@ -53,7 +77,16 @@ class Chart:
     marker : str, optional
         Rows that agree in this column have one marker.
     lines : bool
-        Whether the rows of one colour and one marker are joined, as they come.
+        True to join the rows of one colour and one marker, in their order.
+
+    See Also
+    --------
+    report.Table : Takes it.
+
+    Examples
+    --------
+    >>> rw.report.Chart("seconds", "relmse", colour="contender", lines=True).x
+    'seconds'
     """
 
     x: str
@@ -72,20 +105,34 @@ class Table(Generic[Row]):
     Parameters
     ----------
     title : str
-        What it tells, in a line.
+        Title, one line.
     columns : sequence of Column
-        What the entries of a row are.
+        Columns of each row.
     rows : sequence of tuples
         Text, numbers, or None where there is nothing to tell.
     notes : sequence of str
-        What to know when reading it.
+        Notes for the reader.
     chart : Chart, optional
-        How it is plotted.
+        Default plot.
 
     Raises
     ------
     ValueError
         If a row has more entries, or fewer, than there are columns.
+
+    See Also
+    --------
+    report.accelerators, report.convergence, report.kernels
+
+    Examples
+    --------
+    >>> columns = [rw.report.Column("name", "name"), rw.report.Column("value", "value (m)", ".2f")]
+    >>> table = rw.report.Table("Lengths", columns, [("a", 1.0), ("b", 2.5)])
+    >>> print(table.markdown())
+    | name | value (m) |
+    | ---- | --------: |
+    | a    |      1.00 |
+    | b    |      2.50 |
     """
 
     title: str
@@ -104,27 +151,79 @@ class Table(Generic[Row]):
     def column(self, name: str) -> tuple[Any, ...]:
         """Return the entries of a column, from the first row to the last.
 
+        Parameters
+        ----------
+        name : str
+            Name of the column.
+
+        Returns
+        -------
+        tuple
+
         Raises
         ------
         ValueError
             If there is no such column.
+
+        Examples
+        --------
+        >>> columns = [rw.report.Column("name", "name"), rw.report.Column("value", "value (m)", ".2f")]
+        >>> table = rw.report.Table("Lengths", columns, [("a", 1.0), ("b", 2.5)])
+        >>> table.column("value")
+        (1.0, 2.5)
         """
         at = self._at(name)
         return tuple(row[at] for row in self.rows)
 
     def where(self, **wanted: Any) -> "Self":
-        """Return the table of those rows whose entries, by the names of columns, are these.
+        """Return the table of the rows with these entries, by the names of columns.
+
+        Parameters
+        ----------
+        **wanted
+            Entries, by the names of columns.
+
+        Returns
+        -------
+        Table
+            Of the same class, without other rows.
 
         Raises
         ------
         ValueError
             If there is no such column.
+
+        Examples
+        --------
+        >>> columns = [rw.report.Column("name", "name"), rw.report.Column("value", "value (m)", ".2f")]
+        >>> table = rw.report.Table("Lengths", columns, [("a", 1.0), ("b", 2.5)])
+        >>> table.where(name="b").rows
+        (('b', 2.5),)
         """
         picked = [(self._at(name), value) for name, value in wanted.items()]
         return replace(self, rows=tuple(row for row in self.rows if all(row[i] == v for i, v in picked)))
 
     def markdown(self) -> str:
-        """Return the table as Markdown, without title and notes."""
+        """Return the table as Markdown, without title and notes.
+
+        Returns
+        -------
+        str
+
+        See Also
+        --------
+        Table.csv : With all digits.
+
+        Examples
+        --------
+        >>> columns = [rw.report.Column("name", "name"), rw.report.Column("value", "value (m)", ".2f")]
+        >>> table = rw.report.Table("Lengths", columns, [("a", 1.0), ("b", 2.5)])
+        >>> print(table.markdown())
+        | name | value (m) |
+        | ---- | --------: |
+        | a    |      1.00 |
+        | b    |      2.50 |
+        """
         texts = [[cell.replace("|", "\\|") for cell in line] for line in self._texts()]
         widths = [max(3, *map(len, cells)) for cells in zip(*texts, strict=True)]
         left = self._left()
@@ -135,15 +234,43 @@ class Table(Generic[Row]):
     def to_dataframe(self) -> Any:
         """Return the table as a pandas DataFrame, whose columns have the names of these.
 
+        Returns
+        -------
+        pandas.DataFrame
+
         Raises
         ------
         ImportError
             If pandas is not installed.
+
+        Examples
+        --------
+        >>> import pandas
+        >>> columns = [rw.report.Column("name", "name"), rw.report.Column("value", "value (m)", ".2f")]
+        >>> table = rw.report.Table("Lengths", columns, [("a", 1.0), ("b", 2.5)])
+        >>> table.to_dataframe()["value"].sum().item()
+        3.5
         """
         return frame({column.name: list(self.column(column.name)) for column in self.columns})
 
     def csv(self) -> str:
-        """Return the table as CSV: names of columns, then rows with all digits; None is empty."""
+        """Return the table as CSV: names of columns, then rows with all digits; None is empty.
+
+        Returns
+        -------
+        str
+
+        See Also
+        --------
+        Table.markdown : For reading.
+
+        Examples
+        --------
+        >>> columns = [rw.report.Column("name", "name"), rw.report.Column("value", "value (m)", ".2f")]
+        >>> table = rw.report.Table("Lengths", columns, [("a", 1.0), ("b", 2.5)])
+        >>> table.csv().splitlines()
+        ['name,value', 'a,1.0', 'b,2.5']
+        """
         import csv
         import io
 
@@ -181,6 +308,21 @@ class Table(Generic[Row]):
             If the file cannot be written.
         TypeError
             If `ax` is something else.
+
+        See Also
+        --------
+        report.Chart : The default columns.
+
+        Examples
+        --------
+        >>> from matplotlib import pyplot as plt
+        >>> columns = [rw.report.Column(name, name, ".2f") for name in ("x", "y", "kind")]
+        >>> chart = rw.report.Chart("x", "y", colour="kind")
+        >>> table = rw.report.Table("Squares", columns, [(1.0, 1.0, "a"), (2.0, 4.0, "a")], chart=chart)
+        >>> _, axes = plt.subplots()
+        >>> axes = table.plot(axes)
+        >>> axes.get_xscale()
+        'log'
         """
         if self.chart is None:
             raise ValueError("this table has no chart")
@@ -233,7 +375,7 @@ class Table(Generic[Row]):
         ]
 
     def _left(self) -> list[bool]:
-        """Whether each column is of text, which starts at the left; numbers end at the right."""
+        """Return whether each column is of text, which starts at the left; numbers end at the right."""
         return [any(isinstance(row[i], str) for row in self.rows) for i in range(len(self.columns))]
 
     def __str__(self) -> str:

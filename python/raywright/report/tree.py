@@ -27,9 +27,9 @@ def tree(
     depth : int, optional
         The last level to be drawn; all, if not given.
     plane : {"xy", "xz", "yz"}
-        What they are projected to.
+        Plane of the projection.
     leaves : bool
-        Whether leaves alone are drawn.
+        True to draw leaves alone.
     ax : matplotlib.axes.Axes, str or path, optional
         Where to draw: a new figure if not given, or a file, .png, .svg or .pdf.
 
@@ -48,6 +48,19 @@ def tree(
         If the file cannot be written.
     TypeError
         If `scene` or `ax` is of another kind.
+
+    See Also
+    --------
+    Scene.tree : The boxes.
+
+    Examples
+    --------
+    >>> from matplotlib import pyplot as plt
+    >>> scene = rw.Scene(rw.scenes.torus_knot(along=40, around=8))
+    >>> _, axes = plt.subplots()
+    >>> axes = rw.report.tree(scene, depth=2, ax=axes)
+    >>> len(axes.collections)
+    1
     """
     if not isinstance(scene, Scene):
         raise TypeError(f"scene must be a Scene, got {type(scene).__name__}")

@@ -27,7 +27,7 @@ _COLUMNS = (
 
 
 class KernelRow(NamedTuple):
-    """What one routine does on one family of pairs.
+    """Result of one routine on one family of pairs.
 
     Attributes
     ----------
@@ -38,14 +38,24 @@ class KernelRow(NamedTuple):
     ns : float
         Nanoseconds per test, the median of several runs.
     bytes : int
-        What the routine keeps of a triangle.
+        Bytes that the routine stores for a triangle.
     hits : int
-        How many of the pairs hit, by exact arithmetic.
+        Number of pairs that hit, by exact arithmetic.
     missed, false_hits : int
         Wrong decisions: hits that the routine misses, and misses that it takes for hits.
     median_ulps, max_ulps : float or None
         Median and largest error of t where there is a hit and the routine finds it, in units in the last
         place of a float32; None where there is no such hit.
+
+    See Also
+    --------
+    report.KernelReport : The table of these rows.
+
+    Examples
+    --------
+    >>> row = rw.report.kernels(pairs=10, repeat=1).rows[0]
+    >>> row.family, row.wrong
+    ('ordinary', 0)
     """
 
     family: str
@@ -66,12 +76,34 @@ class KernelRow(NamedTuple):
 
 @dataclass(frozen=True, repr=False)
 class KernelReport(Table[KernelRow]):
-    """Each routine on each family of pairs: `kernels` makes it."""
+    """Each routine on each family of pairs: `kernels` makes it.
+
+    See Also
+    --------
+    report.kernels : Makes it.
+
+    Examples
+    --------
+    >>> found = rw.report.kernels(pairs=10, repeat=1)
+    >>> found.pairs, len(found.rows) % len(found.summary().rows)
+    (10, 0)
+    """
 
     pairs: int = 0
 
     def summary(self) -> Table[Any]:
-        """Return one row for each routine: time and error on ordinary pairs, wrong decisions on all."""
+        """Return one row for each routine: time and error on ordinary pairs, wrong decisions on all.
+
+        Returns
+        -------
+        Table
+
+        Examples
+        --------
+        >>> found = rw.report.kernels(pairs=10, repeat=1)
+        >>> len(found.summary().rows) == len(set(found.column("routine")))
+        True
+        """
         families = list(dict.fromkeys(self.column("family")))
         columns = [
             Column("routine", "routine"),
@@ -113,8 +145,8 @@ def kernels(pairs: int = 10_000, seed: SeedLike = 0, repeat: int = 15) -> Kernel
     seed : int, Generator or SeedSequence
         Which pairs: the same seed, the same pairs and errors.
     repeat : int
-        How often each routine is timed, 1 to 10,000; the median is told. Routines take turns, so that each
-        has its share of whatever else the machine does.
+        Number of timings of each routine, 1 to 10,000; the result is the median. Routines take turns, so that
+        other load of the machine is shared evenly.
 
     Returns
     -------
@@ -128,6 +160,16 @@ def kernels(pairs: int = 10_000, seed: SeedLike = 0, repeat: int = 15) -> Kernel
         If a number is outside its range.
     TypeError
         If it is not an integer.
+
+    See Also
+    --------
+    report.accelerators : Whole scenes.
+
+    Examples
+    --------
+    >>> found = rw.report.kernels(pairs=10, repeat=1)
+    >>> bool(min(found.column("ns")) > 0)
+    True
     """
     pairs = integer("pairs", pairs, 1, 100_000)
     seed = seed_number(seed)

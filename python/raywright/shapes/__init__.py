@@ -1,4 +1,4 @@
-"""Shapes that are no meshes, each solved as what it is: nothing is cut into triangles."""
+"""Curved shapes and polygons, each solved in its own form: nothing is cut into triangles."""
 
 from .box import Box
 from .cone import Cone

@@ -61,7 +61,7 @@ def cell_numbers(name: str, given: ArrayLike, count: int) -> NDArray[np.int64]:
 
 
 def same_attributes(a: Attributes, b: Attributes) -> bool:
-    """Whether two have the same names and values; NaN is equal to NaN."""
+    """Return whether two have the same names and values; NaN is equal to NaN."""
     return a.keys() == b.keys() and all(
         a[key].dtype == b[key].dtype and np.array_equal(a[key], b[key], equal_nan=a[key].dtype.kind == "f")
         for key in a

@@ -25,11 +25,11 @@ class Box(Shape):
         An affine matrix that acts on column vectors (x, y, z, 1), as from the shape's own space to the world.
         Rays are decided for the matrix as it is given, not for a rounded inverse.
     material : Material, optional
-        How the surface scatters; ``Diffuse()`` if not given.
+        Material of the surface; ``Diffuse()`` if not given.
     emission : float, 3 floats, Texture or Emission, optional
         Radiance in W·sr⁻¹·m⁻² that leaves the outer side; None, the default, for a shape that does not shine.
     name : str, optional
-        What `Hits.names` tells of it.
+        Name that `Hits.names` returns.
 
     Raises
     ------
@@ -39,10 +39,22 @@ class Box(Shape):
     TypeError
         If a number or a material is something else.
 
+    See Also
+    --------
+    Mesh : Triangles.
+
     Notes
     -----
     The faces lie side by side in ``u`` and ``v``: three columns for those at right angles to x, y and z, and
     two rows, for the lesser face and the greater.
+
+    Examples
+    --------
+    >>> box = rw.Box((0, 0, 0), (1, 2, 3))
+    >>> box.area, box.bounds.tolist()
+    (22.0, [[0.0, 0.0, 0.0], [1.0, 2.0, 3.0]])
+    >>> rw.Scene(box).intersect([0.5, 0.5, 9], [0, 0, -1]).t.item()
+    6.0
     """
 
     min: Triple

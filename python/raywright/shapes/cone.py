@@ -12,9 +12,9 @@ from .shape import Shape, segment, switch
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
 class Cone(Shape):
-    """What a line draws as it turns about a segment, between the planes of the segment's ends.
+    """The surface of revolution of a line about a segment, between the planes of the segment's ends.
 
-    Whether a ray meets it is decided without error, at its point too.
+    Hits are decided without error, at its point too.
 
     Parameters
     ----------
@@ -23,16 +23,16 @@ class Cone(Shape):
     base_radius, tip_radius : float
         The distances from the axis at the ends: at least 0, and not both 0.
     capped : bool
-        Whether disks close it at both ends (the default): then it is a solid, which a ray enters and leaves.
+        True (the default) to close both ends by disks: then it is a solid, which a ray enters and leaves.
     transform : (4, 4) array, optional
         An affine matrix that acts on column vectors (x, y, z, 1), as from the shape's own space to the world.
         Rays are decided for the matrix as it is given, not for a rounded inverse.
     material : Material, optional
-        How the surface scatters; ``Diffuse()`` if not given.
+        Material of the surface; ``Diffuse()`` if not given.
     emission : float, 3 floats, Texture or Emission, optional
         Radiance in W·sr⁻¹·m⁻² that leaves the outer side; None, the default, for a shape that does not shine.
     name : str, optional
-        What `Hits.names` tells of it.
+        Name that `Hits.names` returns.
 
     Raises
     ------
@@ -42,11 +42,21 @@ class Cone(Shape):
     TypeError
         If a number or a material is something else.
 
+    See Also
+    --------
+    Cylinder : Equal radii.
+
     Notes
     -----
     ``u`` is the angle about the axis, in turns, anticlockwise as seen from the tip; ``v`` the way from the
     base to the tip or, of a closed one, that from the middle of the base cap over its rim, up the side and in
     to the middle of the tip cap, by length.
+
+    Examples
+    --------
+    >>> cone = rw.Cone((0, 0, 0), (0, 0, 2), base_radius=1)
+    >>> rw.Scene(cone).intersect([[0, 0, 9], [0.5, 0, 9]], [0, 0, -1]).t.tolist()
+    [7.0, 8.0]
     """
 
     base: Triple

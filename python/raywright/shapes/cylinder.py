@@ -14,7 +14,7 @@ from .shape import Shape, segment, switch
 class Cylinder(Shape):
     """All points at one distance from a segment, between its ends' planes.
 
-    Whether a ray meets it is decided without error, along the axis and from afar too.
+    Hits are decided without error, along the axis and from afar too.
 
     Parameters
     ----------
@@ -23,16 +23,16 @@ class Cylinder(Shape):
     radius : float
         The distance from the axis, greater than 0.
     capped : bool
-        Whether disks close it at both ends (the default): then it is a solid, which a ray enters and leaves.
+        True (the default) to close both ends by disks: then it is a solid, which a ray enters and leaves.
     transform : (4, 4) array, optional
         An affine matrix that acts on column vectors (x, y, z, 1), as from the shape's own space to the world.
         Rays are decided for the matrix as it is given, not for a rounded inverse.
     material : Material, optional
-        How the surface scatters; ``Diffuse()`` if not given.
+        Material of the surface; ``Diffuse()`` if not given.
     emission : float, 3 floats, Texture or Emission, optional
         Radiance in W·sr⁻¹·m⁻² that leaves the outer side; None, the default, for a shape that does not shine.
     name : str, optional
-        What `Hits.names` tells of it.
+        Name that `Hits.names` returns.
 
     Raises
     ------
@@ -42,11 +42,23 @@ class Cylinder(Shape):
     TypeError
         If a number or a material is something else.
 
+    See Also
+    --------
+    Cone : Different radii.
+
     Notes
     -----
     ``u`` is the angle about the axis, in turns, anticlockwise as seen from the tip; ``v`` the way from the
     base to the tip or, of a closed one, that from the middle of the base cap over its rim, up the side and in
     to the middle of the tip cap, by length.
+
+    Examples
+    --------
+    >>> pipe = rw.Cylinder((0, 0, 0), (0, 0, 2), radius=1, capped=False)
+    >>> round(pipe.area / np.pi, 9)
+    4.0
+    >>> rw.Scene(pipe).intersect_all([5, 0, 1], [-1, 0, 0]).t.tolist()
+    [4.0, 6.0]
     """
 
     base: Triple

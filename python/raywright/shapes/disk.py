@@ -28,11 +28,11 @@ class Disk(Shape):
         An affine matrix that acts on column vectors (x, y, z, 1), as from the shape's own space to the world.
         Rays are decided for the matrix as it is given, not for a rounded inverse.
     material : Material, optional
-        How the surface scatters; ``Diffuse()`` if not given.
+        Material of the surface; ``Diffuse()`` if not given.
     emission : float, 3 floats, Texture or Emission, optional
         Radiance in W·sr⁻¹·m⁻² that leaves the outer side; None, the default, for a shape that does not shine.
     name : str, optional
-        What `Hits.names` tells of it.
+        Name that `Hits.names` returns.
 
     Raises
     ------
@@ -42,10 +42,20 @@ class Disk(Shape):
     TypeError
         If a number or a material is something else.
 
+    See Also
+    --------
+    Plane : Without a rim.
+
     Notes
     -----
     ``u`` is the angle about the normal, in turns; ``v`` the way from the rim, 0, inwards to the hole or the
     centre, 1.
+
+    Examples
+    --------
+    >>> ring = rw.Disk(radius=2, inner_radius=1)
+    >>> rw.Scene(ring).intersect([[0, 0, 1], [1.5, 0, 1]], [0, 0, -1]).hit.tolist()
+    [False, True]
     """
 
     center: Triple

@@ -26,11 +26,11 @@ class Ellipsoid(Shape):
         An affine matrix that acts on column vectors (x, y, z, 1), as from the shape's own space to the world.
         Rays are decided for the matrix as it is given, not for a rounded inverse.
     material : Material, optional
-        How the surface scatters; ``Diffuse()`` if not given.
+        Material of the surface; ``Diffuse()`` if not given.
     emission : float, 3 floats, Texture or Emission, optional
         Radiance in W·sr⁻¹·m⁻² that leaves the outer side; None, the default, for a shape that does not shine.
     name : str, optional
-        What `Hits.names` tells of it.
+        Name that `Hits.names` returns.
 
     Raises
     ------
@@ -40,10 +40,20 @@ class Ellipsoid(Shape):
     TypeError
         If a number or a material is something else.
 
+    See Also
+    --------
+    Sphere : Equal axes.
+
     Notes
     -----
     ``u`` and ``v`` are those of the `Sphere` that it comes of. Its area is Carlson's elliptic integral R_G
     (Carlson 1961), and it is sampled as that sphere is.
+
+    Examples
+    --------
+    >>> egg = rw.Ellipsoid(semi_axes=(1, 1, 2))
+    >>> rw.Scene(egg).intersect([[0, 0, 9], [9, 0, 0]], [[0, 0, -1], [-1, 0, 0]]).t.tolist()
+    [7.0, 8.0]
     """
 
     center: Triple

@@ -31,30 +31,40 @@ class Implicit(Shape):
         An affine matrix that acts on column vectors (x, y, z, 1), as from the shape's own space to the world.
         Rays are taken into the shape's own space and rounded there once.
     material : Material, optional
-        How the surface scatters; ``Diffuse()`` if not given.
+        Material of the surface; ``Diffuse()`` if not given.
     emission : float, 3 floats, Texture or Emission, optional
         Radiance in W·sr⁻¹·m⁻² that leaves the outer side; None, the default, for a shape that does not shine.
     name : str, optional
-        What `Hits.names` tells of it.
+        Name that `Hits.names` returns.
 
     Raises
     ------
     ValueError
-        If the expression does not parse or names something unknown (tells the column and what is known), or
-        the box is not finite or has no volume.
-        If the transform is not a finite affine (4, 4) matrix, or has no inverse.
+        If the expression does not parse or names something unknown (tells the column and the known names), or
+        the box is not finite or has no volume. If the transform is not a finite affine (4, 4) matrix, or has
+        no inverse.
     TypeError
         If the expression is no string, or a number or a material is something else.
 
+    See Also
+    --------
+    Torus, Ellipsoid
+
     Notes
     -----
-    What float64 cannot tell from zero counts as zero: roots so close together that rounding cannot tell them
-    apart are one that is touched. A stretch along which the expression is zero is hit once, where it begins.
-    A pole or a jump is no root. After some thousand intervals a line is taken as it is known by then, so no
-    expression hangs.
+    Values that float64 cannot tell from zero count as zero: roots closer together than rounding are one,
+    which is touched. A stretch along which the expression is zero is hit once, where it begins. A pole or a
+    jump is no root. After some thousand intervals a line is taken as it is known by then, so no expression
+    hangs.
 
-    ``u`` and ``v`` are the position in the box along the two axes that follow, in the order x, y, z, x, the
-    one to which the normal is nearest. `area` is measured by many thousand lines, to about a thousandth.
+    ``u`` and ``v`` are the position in the box along two axes: those that follow the axis nearest to the
+    normal, in the order x, y, z, x. `area` is measured by many thousand lines, to about a thousandth.
+
+    Examples
+    --------
+    >>> ball = rw.Implicit("x**2 + y**2 + z**2 - 1", min=(-2, -2, -2), max=(2, 2, 2))
+    >>> rw.Scene(ball).intersect_all([0, 0, 5], [0, 0, -1]).t.round(9).tolist()
+    [4.0, 6.0]
     """
 
     expression: str

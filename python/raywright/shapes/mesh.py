@@ -38,7 +38,7 @@ class Mesh:
     uv : (V, 2) array, optional
         Texture coordinates, one pair a vertex; (0, 0) is the lower left.
     material : Material, optional
-        How the surface scatters; ``Diffuse()`` if not given.
+        Material of the surface; ``Diffuse()`` if not given.
     emission : float, 3 floats, Texture or Emission, optional
         Radiance in W·sr⁻¹·m⁻² that leaves the side of the geometric normal: one number, or red, green and
         blue. None, the default, for a mesh that does not shine.
@@ -46,7 +46,7 @@ class Mesh:
         Linear red, green and blue, one colour a vertex, each between 0 and 1; a material shows them where it
         has `VertexColors`.
     name : str, optional
-        What `Hits.names` tells of it.
+        Name that `Hits.names` returns.
     vertex_attributes : dict of (V, ...) arrays, optional
         Values of vertices by name; `Hits.interpolate` reads them.
     face_attributes : dict of (F, ...) arrays, optional
@@ -62,6 +62,19 @@ class Mesh:
         colour is not between 0 and 1 (tells which vertex), or a cell is negative.
     TypeError
         If an array has the wrong type, such as float faces.
+
+    See Also
+    --------
+    Mesh.of : From files and other libraries.
+    load : Scenes of other renderers.
+
+    Examples
+    --------
+    >>> mesh = rw.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], name="triangle")
+    >>> mesh.bounds.tolist()
+    [[0.0, 0.0, 0.0], [1.0, 1.0, 0.0]]
+    >>> rw.Scene(mesh).intersect([0.25, 0.25, 1], [0, 0, -1]).names.item()
+    'triangle'
     """
 
     vertices: NDArray[np.floating[Any]]
@@ -138,8 +151,8 @@ class Mesh:
         Returns
         -------
         Mesh
-            Its `cells` are those of `source`, where they are other than its faces: polygons, volume cells of
-            which it is the surface, faces of a CAD shape.
+            Its `cells` are those of `source`, if they are other than its faces: polygons, volume cells under
+            the surface, faces of a CAD shape.
 
         Raises
         ------
@@ -153,7 +166,20 @@ class Mesh:
         Warns
         -----
         RuntimeWarning
-            Once for what is left out, such as points and curves, and where materials differ.
+            Once for parts that are left out, such as points and curves, and for differing materials.
+
+        See Also
+        --------
+        Scene : Takes the same sources.
+
+        Examples
+        --------
+        >>> import trimesh
+        >>> box = rw.Mesh.of(trimesh.creation.box((1, 1, 1)))
+        >>> box.faces.shape
+        (12, 3)
+        >>> rw.Mesh.of(([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 3]])).faces.tolist()
+        [[0, 1, 2], [0, 2, 3]]
         """
         # Imported here: converters depend on meshes, and only objects of other libraries need them.
         sources = import_module(".sources", __package__)
@@ -166,6 +192,19 @@ class Mesh:
         """Return the mesh as trimesh has it, with vertices, faces, normals, attributes, and colors or uv.
 
         `cells` are the face attribute "cell". Of the material, a plain diffuse color is kept.
+
+        Returns
+        -------
+        trimesh.Trimesh
+
+        See Also
+        --------
+        Mesh.of : The inverse.
+
+        Examples
+        --------
+        >>> round(float(rw.scenes.torus_knot(along=40, around=8).to_trimesh().area), 1)
+        28.0
         """
         from .exported import to_trimesh
 
@@ -177,10 +216,24 @@ class Mesh:
 
         `cells` are the cell data "cell"; normals, uv and colors are point data of these names.
 
+        Returns
+        -------
+        pyvista.PolyData
+
         Raises
         ------
         ImportError
             If pyvista is not installed.
+
+        See Also
+        --------
+        Mesh.of : The inverse.
+
+        Examples
+        --------
+        >>> import pyvista
+        >>> rw.scenes.torus_knot(along=40, around=8).to_pyvista().n_cells
+        640
         """
         from .exported import to_pyvista
 
@@ -191,10 +244,24 @@ class Mesh:
 
         `cells` are the triangle attribute "cell". Its ``to_legacy()`` has no attributes.
 
+        Returns
+        -------
+        open3d.t.geometry.TriangleMesh
+
         Raises
         ------
         ImportError
             If Open3D is not installed.
+
+        See Also
+        --------
+        Mesh.of : The inverse.
+
+        Examples
+        --------
+        >>> import open3d
+        >>> len(rw.scenes.torus_knot(along=40, around=8).to_open3d().triangle.indices)
+        640
         """
         from .exported import to_open3d
 
@@ -222,6 +289,17 @@ class Mesh:
         -----
         RuntimeWarning
             If the format holds no attributes, and the mesh has some.
+
+        See Also
+        --------
+        Mesh.of : Reads files.
+
+        Examples
+        --------
+        >>> knot = rw.scenes.torus_knot(along=40, around=8)
+        >>> knot.save("knot.ply")
+        >>> bool((rw.Mesh.of("knot.ply").faces == knot.faces).all())
+        True
         """
         from .saved import save
 
@@ -234,7 +312,22 @@ class Mesh:
         return np.stack([points.min(axis=0), points.max(axis=0)]) if len(points) else None
 
     def used_vertices(self) -> NDArray[np.float64]:
-        """Return the finite vertices that faces use: (N, 3) float64."""
+        """Return the finite vertices that faces use: (N, 3) float64.
+
+        Returns
+        -------
+        (N, 3) float64 array
+
+        See Also
+        --------
+        Mesh.bounds : Their bounding box.
+
+        Examples
+        --------
+        >>> mesh = rw.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [9, 9, 9]], [[0, 1, 2]])
+        >>> len(mesh.used_vertices())
+        3
+        """
         used = np.zeros(len(self.vertices), np.bool_)
         used[self.faces.reshape(-1)] = True
         used &= np.isfinite(self.vertices).all(axis=1)
@@ -246,17 +339,33 @@ class Mesh:
         """Return the mesh moved by an affine matrix, computed in float64.
 
         A matrix that mirrors also turns every face round (its second and third corner change places), so that
-        what was outside stays outside.
+        outside stays outside.
 
         Parameters
         ----------
         matrix : (4, 4) array
             Acts on column vectors (x, y, z, 1); the last row must be (0, 0, 0, 1).
 
+        Returns
+        -------
+        Mesh
+
         Raises
         ------
         ValueError
             If the matrix has another shape, is not finite, or is not affine.
+
+        See Also
+        --------
+        Instance : Copies without new vertices.
+
+        Examples
+        --------
+        >>> mesh = rw.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+        >>> mesh.transformed(np.diag([2, 2, 2, 1])).vertices.tolist()
+        [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0]]
+        >>> mesh.transformed(np.diag([-1, 1, 1, 1])).faces.tolist()
+        [[0, 2, 1]]
         """
         full = last_axis("matrix", matrix, 4).astype(np.float64)
         if full.shape != (4, 4) or not np.isfinite(full).all() or not np.array_equal(full[3], (0, 0, 0, 1)):
@@ -371,13 +480,13 @@ def stretched(distance: float, linear: NDArray[np.float64]) -> float:
 
 
 def noisy(mesh: Mesh, noise: float) -> Mesh:
-    """Return the mesh, which is told how far rounding has parted its corners before it was transformed."""
+    """Return the mesh with the distance by which rounding parted its corners before it was transformed."""
     object.__setattr__(mesh, "_noise", noise)
     return mesh
 
 
 def continued(mesh: Mesh) -> Mesh:
-    """Return the mesh, which is told that it is a part of the object that the mesh before it is of."""
+    """Return the mesh, marked as a part of the same object as the mesh before it."""
     object.__setattr__(mesh, "_continues", True)
     return mesh
 

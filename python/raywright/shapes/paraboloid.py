@@ -12,7 +12,7 @@ from .shape import Shape, segment, switch
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
 class Paraboloid(Shape):
-    """What a parabola draws as it turns about its axis, from its apex to a rim.
+    """The surface of revolution of a parabola about its axis, from its apex to a rim.
 
     With the radius ``r`` and the distance ``h`` from apex to tip it is ``z = h ρ² / r²``, and its focus
     lies ``r² / 4h`` above the apex: a mirror of focal length ``f`` and radius ``r`` is as high as ``r² /
@@ -25,16 +25,16 @@ class Paraboloid(Shape):
     radius : float
         The distance of the rim from the axis, greater than 0.
     capped : bool
-        Whether a disk closes it at the rim; not if not given.
+        True to close the rim by a disk; False by default.
     transform : (4, 4) array, optional
         An affine matrix that acts on column vectors (x, y, z, 1), as from the shape's own space to the world.
         Rays are decided for the matrix as it is given, not for a rounded inverse.
     material : Material, optional
-        How the surface scatters; ``Diffuse()`` if not given.
+        Material of the surface; ``Diffuse()`` if not given.
     emission : float, 3 floats, Texture or Emission, optional
         Radiance in W·sr⁻¹·m⁻² that leaves the outer side; None, the default, for a shape that does not shine.
     name : str, optional
-        What `Hits.names` tells of it.
+        Name that `Hits.names` returns.
 
     Raises
     ------
@@ -44,11 +44,21 @@ class Paraboloid(Shape):
     TypeError
         If a number or a material is something else.
 
+    See Also
+    --------
+    Cone : A straight profile.
+
     Notes
     -----
     ``u`` is the angle about the axis, in turns, anticlockwise as seen from the tip; ``v`` the distance from
     the axis as a share of the rim's. Of a closed one that is the first half of ``v``, and the second goes on
     from the rim to the cap's middle.
+
+    Examples
+    --------
+    >>> dish = rw.Paraboloid((0, 0, 0), (0, 0, 1), radius=2)
+    >>> rw.Scene(dish).intersect([[1, 0, 9], [0, 0, 9]], [0, 0, -1]).t.tolist()
+    [8.75, 9.0]
     """
 
     apex: Triple

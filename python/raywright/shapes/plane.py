@@ -26,11 +26,11 @@ class Plane(Shape):
         An affine matrix that acts on column vectors (x, y, z, 1), as from the shape's own space to the world.
         Rays are decided for the matrix as it is given, not for a rounded inverse.
     material : Material, optional
-        How the surface scatters; ``Diffuse()`` if not given.
+        Material of the surface; ``Diffuse()`` if not given.
     emission : float, 3 floats, Texture or Emission, optional
         Radiance in W·sr⁻¹·m⁻² that leaves the outer side; None, the default, for a shape that does not shine.
     name : str, optional
-        What `Hits.names` tells of it.
+        Name that `Hits.names` returns.
 
     Raises
     ------
@@ -40,10 +40,22 @@ class Plane(Shape):
     TypeError
         If a number or a material is something else.
 
+    See Also
+    --------
+    Disk : With a rim.
+
     Notes
     -----
     ``u`` and ``v`` run along two unit axes at right angles to the normal (Duff et al. 2017), from the point
     on, and begin again after each unit of length.
+
+    Examples
+    --------
+    >>> floor = rw.Plane((0, 0, 0), (0, 0, 1))
+    >>> rw.Scene(floor).intersect([1e6, 0, 2], [0, 0, -1]).t.item()
+    2.0
+    >>> floor.area
+    inf
     """
 
     point: Triple

@@ -19,9 +19,8 @@ Ring = tuple[Triple, ...]
 class Polygon(Shape):
     """A flat face, convex or not, with or without holes.
 
-    Whether a ray passes through it is decided by its edges without error, so nothing leaks where two of them
-    share an edge, or one and a mesh in float64. How far away it is hit follows from the plane that is fitted
-    to its points.
+    Hits are decided by its edges without error, so nothing leaks where two polygons share an edge, or one and
+    a mesh in float64. The distance follows from the plane that is fitted to its points.
 
     Parameters
     ----------
@@ -35,11 +34,11 @@ class Polygon(Shape):
         Rays are taken into the shape's own space and rounded there once, all in the same way: nothing leaks
         between polygons that share an edge and have equal transforms.
     material : Material, optional
-        How the surface scatters; ``Diffuse()`` if not given.
+        Material of the surface; ``Diffuse()`` if not given.
     emission : float, 3 floats, Texture or Emission, optional
         Radiance in W·sr⁻¹·m⁻² that leaves the outer side; None, the default, for a shape that does not shine.
     name : str, optional
-        What `Hits.names` tells of it.
+        Name that `Hits.names` returns.
 
     Raises
     ------
@@ -51,10 +50,25 @@ class Polygon(Shape):
     TypeError
         If a number or a material is something else.
 
+    See Also
+    --------
+    Mesh : Many faces.
+
     Notes
     -----
     ``u`` runs along the first edge of the outline and ``v`` to the left of it, each from 0 to 1 over the
     outline's extent. Seen exactly edge-on it is not hit.
+
+    Examples
+    --------
+    >>> frame = rw.Polygon(
+    ...     [[0, 0, 0], [3, 0, 0], [3, 3, 0], [0, 3, 0]],
+    ...     holes=[[[1, 1, 0], [2, 1, 0], [2, 2, 0], [1, 2, 0]]],
+    ... )
+    >>> frame.area
+    8.0
+    >>> rw.Scene(frame).intersect([[0.5, 0.5, 1], [1.5, 1.5, 1]], [0, 0, -1]).hit.tolist()
+    [True, False]
     """
 
     outline: Ring

@@ -1,4 +1,4 @@
-"""What all shapes that are no meshes have in common."""
+"""The base class of shapes that are no meshes."""
 
 from dataclasses import dataclass, fields
 from typing import Any
@@ -15,7 +15,7 @@ from ..materials import Diffuse, Material
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
 class Shape:
-    """A shape with a transform, a material and an emission. Its subclasses say what it is.
+    """A shape with a transform, a material and an emission. Its subclasses give the geometry.
 
     Shapes compare, hash, print and pickle by their parameters. The transform is kept as a read-only copy.
     """
@@ -33,7 +33,7 @@ class Shape:
         name: str | None,
         **parameters: Any,
     ) -> None:
-        """Keep the parameters, and what every shape has once it is checked."""
+        """Store the parameters and the checked attributes of every shape."""
         if material is None:
             material = Diffuse()
         elif not isinstance(material, Material):

@@ -29,11 +29,11 @@ class Source(NamedTuple):
     kinds : tuple of str
         Classes of the module; an object is of one of them.
     attributes : tuple of str
-        Or what an object has that is of none of them.
+        Or an attribute of objects that are of none of them.
     is_cad : bool
-        Whether it has curved faces: readers are told how close triangles are to come.
+        True if it has curved faces: readers get the tolerance of the triangles.
     is_welded : bool
-        Whether corners of its faces that differ by rounding are put in one place.
+        True if corners of its faces that differ by rounding are merged.
     """
 
     module: str
@@ -44,7 +44,7 @@ class Source(NamedTuple):
     is_welded: bool = False
 
     def is_of(self, given: object) -> bool:
-        """Whether an object is of this kind."""
+        """Return whether an object is of this kind."""
         module = sys.modules.get(self.module)
         if module is None:
             return False
@@ -141,14 +141,14 @@ def _named(given: Mapping[Any, Any], outer: str | None) -> Iterator[tuple[str, A
 
 
 def is_pair(given: object) -> bool:
-    """Whether something is a list or tuple of two arrays, or lists of rows of numbers: vertices and faces."""
+    """Return whether something is a pair of arrays, or of lists of rows of numbers: vertices and faces."""
     return (
         isinstance(given, list | tuple) and len(given) == 2 and all(is_array(x) or is_rows(x) for x in given)
     )
 
 
 def is_rows(given: object) -> bool:
-    """Whether something is a list or tuple of rows of numbers, by its first number."""
+    """Return whether something is a list or tuple of rows of numbers, by its first number."""
     if not isinstance(given, list | tuple) or not given:
         return False
     first = given[0]
@@ -156,7 +156,7 @@ def is_rows(given: object) -> bool:
 
 
 def is_array(given: object) -> bool:
-    """Whether something is an array or a tensor, of any library, of at least one dimension."""
+    """Return whether something is an array or a tensor, of any library, of at least one dimension."""
     if isinstance(given, np.ndarray):
         return given.ndim > 0
     if isinstance(given, type) or not hasattr(given, "shape"):
@@ -174,11 +174,11 @@ def meshes_of(
     given : object
         Of one of `SOURCES`, a path or a pair.
     weld : "auto", float or None
-        How close corners are put in one place, of files and of sources that are welded.
+        Welding distance, of files and of sources that are welded.
     tolerance : float, optional
-        How far triangles may be from curved faces; see `Mesh.of`.
+        Distance of triangles from curved faces; see `Mesh.of`.
     name : str, optional
-        What the meshes are called, whatever they are called there.
+        Name of the meshes, in place of their own.
 
     Raises
     ------
@@ -222,7 +222,7 @@ def only_mesh(given: Any, tolerance: float | None) -> Mesh:
     TypeError
         If there is something that becomes none.
     ValueError
-        If there is nothing; and what `meshes_of` raises.
+        If there is nothing; otherwise as `meshes_of`.
     """
     found: list[Mesh] = []
     for name, one in leaves(given):
@@ -260,6 +260,6 @@ def described(given: object) -> str:
 
 
 def hint(given: object) -> str:
-    """Return how arrays become a shape, if that is what came."""
+    """Return a hint for arrays in place of a shape."""
     is_numbers = isinstance(given, np.ndarray | np.generic | int | float) or is_array(given)
     return "; of vertices and faces make a mesh: raywright.Mesh(vertices, faces)" if is_numbers else ""

@@ -14,9 +14,9 @@ from .shape import Shape
 class Sphere(Shape):
     """All points at one distance from a centre.
 
-    Whether a ray meets it is decided without error, and `t` is right to the last place, however small and
-    far it is: the discriminant is that of the ray's closest approach (Haines et al., "Precision
-    Improvements for Ray/Sphere Intersection", 2019).
+    Hits are decided without error, and `t` is right to the last place, for small and distant spheres too: the
+    discriminant is that of the ray's closest approach (Haines et al., "Precision Improvements for Ray/Sphere
+    Intersection", 2019).
 
     Parameters
     ----------
@@ -28,11 +28,11 @@ class Sphere(Shape):
         An affine matrix that acts on column vectors (x, y, z, 1), as from the shape's own space to the world.
         Rays are decided for the matrix as it is given, not for a rounded inverse.
     material : Material, optional
-        How the surface scatters; ``Diffuse()`` if not given.
+        Material of the surface; ``Diffuse()`` if not given.
     emission : float, 3 floats, Texture or Emission, optional
         Radiance in W·sr⁻¹·m⁻² that leaves the outer side; None, the default, for a shape that does not shine.
     name : str, optional
-        What `Hits.names` tells of it.
+        Name that `Hits.names` returns.
 
     Raises
     ------
@@ -42,11 +42,23 @@ class Sphere(Shape):
     TypeError
         If a number or a material is something else.
 
+    See Also
+    --------
+    Ellipsoid : Three axes.
+
     Notes
     -----
     ``u`` is the longitude about +z from +x on, in turns; ``v`` the latitude, from 0 at the pole on -z to 1 at
     the pole on +z. Tangent rays are hits, and cross nothing where all crossings are asked for. As seen from
     outside it is sampled evenly in the cone that it fills, from inside in all directions.
+
+    Examples
+    --------
+    >>> ball = rw.Sphere((0, 0, 0), radius=2)
+    >>> round(ball.area / np.pi, 9)
+    16.0
+    >>> rw.Scene(ball).intersect([0, 0, 5], [0, 0, -1]).t.item()
+    3.0
     """
 
     center: Triple

@@ -1,4 +1,4 @@
-"""What can be told of a mesh from its faces alone."""
+"""Topology of a mesh from its faces alone."""
 
 import numpy as np
 from numpy.typing import NDArray

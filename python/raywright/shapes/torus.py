@@ -30,11 +30,11 @@ class Torus(Shape):
         An affine matrix that acts on column vectors (x, y, z, 1), as from the shape's own space to the world.
         Rays are taken into the shape's own space and rounded there once.
     material : Material, optional
-        How the surface scatters; ``Diffuse()`` if not given.
+        Material of the surface; ``Diffuse()`` if not given.
     emission : float, 3 floats, Texture or Emission, optional
         Radiance in W·sr⁻¹·m⁻² that leaves the outer side; None, the default, for a shape that does not shine.
     name : str, optional
-        What `Hits.names` tells of it.
+        Name that `Hits.names` returns.
 
     Raises
     ------
@@ -45,11 +45,23 @@ class Torus(Shape):
     TypeError
         If a number or a material is something else.
 
+    See Also
+    --------
+    Implicit : Other surfaces.
+
     Notes
     -----
     ``u`` is the angle about the axis, in turns; ``v`` that about the tube, from the outermost circle towards
     where the axis points. A line that touches it is a hit, and crosses nothing where all crossings are asked
     for.
+
+    Examples
+    --------
+    >>> ring = rw.Torus(major_radius=2, minor_radius=0.5)
+    >>> round(ring.area / np.pi**2, 9)
+    4.0
+    >>> rw.Scene(ring).intersect_all([5, 0, 0], [-1, 0, 0]).t.round(9).tolist()
+    [2.5, 3.5, 6.5, 7.5]
     """
 
     center: Triple

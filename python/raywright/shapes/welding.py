@@ -44,7 +44,8 @@ def welded(shapes: Sequence[_Shape], weld: Weld = "auto") -> tuple[_Shape, ...]:
     Parameters
     ----------
     shapes : sequence of shapes
-        What is no mesh stays as it is, and so are meshes of which no corner moves: the same objects.
+        Shapes that are no meshes stay as they are, and so are meshes without a moved corner: the same
+        objects.
     weld : "auto", float or None
         How close; "auto" is 2^-21 of the largest coordinate of a mesh where all are float32 numbers and 2^-47
         where not, and a 64th of its mean edge at most, all before it was transformed; between two meshes
