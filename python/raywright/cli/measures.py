@@ -279,7 +279,7 @@ def _sites(options: argparse.Namespace, mesh: Mesh, scene: Scene) -> Sites:
 
 
 def _valued(mesh: Mesh, sites: Sites, found: dict[str, NDArray[Any]], options: argparse.Namespace) -> Mesh:
-    """Return the mesh with what was found as attributes, or the points alone."""
+    """Return the mesh with the results as attributes, or the points alone."""
     if options.points is not None:
         return Mesh(sites.position, [], vertex_attributes=found)
     of_faces, of_vertices = dict(mesh.face_attributes), dict(mesh.vertex_attributes)

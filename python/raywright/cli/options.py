@@ -1,4 +1,4 @@
-"""What the arguments of all verbs are made of."""
+"""Arguments shared by all subcommands."""
 
 import argparse
 from collections.abc import Callable

@@ -38,7 +38,7 @@ class Sites:
 
     @property
     def known(self) -> NDArray[np.bool_]:
-        """Which of them have a position and a normal: (N,)."""
+        """Mask of sites with a position and a normal: (N,)."""
         has_normal = np.isfinite(self.normal).all(axis=1) & (self.normal != 0).any(axis=1)
         return np.asarray(has_normal & np.isfinite(self.position).all(axis=1))
 

@@ -1,4 +1,4 @@
-"""What a measure found as a file: a table, arrays, or a mesh with values."""
+"""Results of a measurement as a file: a table, arrays, or a mesh with values."""
 
 import csv
 import sys
@@ -25,7 +25,7 @@ def write(path: Path | None, columns: Columns, value: NDArray[Any], mesh: Mesh) 
     columns : dict of (N,) arrays
     value : array
     mesh : Mesh
-        With what was found as its attributes; without faces it is a cloud of points.
+        With the results as its attributes; without faces it is a cloud of points.
     """
     if path is None:
         _table(sys.stdout, columns)

@@ -7,7 +7,7 @@ _ABSENT = object()
 
 
 class Replacement(NamedTuple):
-    """An attribute of a class or module, and what stands there while a switch is on."""
+    """An attribute of a class or module, and its replacement while a switch is on."""
 
     owner: Any
     name: str
@@ -22,7 +22,7 @@ class Switch:
 
     @property
     def is_on(self) -> bool:
-        """Whether the replacements are in force."""
+        """True if the replacements are in force."""
         return self._before is not None
 
     def before(self, owner: Any, name: str) -> Any:
@@ -54,7 +54,17 @@ class Switch:
 
 
 class Installation:
-    """What `install` has done; as a context manager it is undone at the end."""
+    """The handle of an `install`; as a context manager it undoes the installation at the end.
+
+    Examples
+    --------
+    >>> import trimesh
+    >>> from raywright.compat.trimesh_ray import install
+    >>> with install() as installation:
+    ...     name = type(trimesh.creation.box().ray).__module__
+    >>> name.startswith("raywright"), type(installation).__name__
+    (True, 'Installation')
+    """
 
     def __init__(self, switch: Switch, is_first: bool) -> None:
         self._switch = switch
@@ -77,7 +87,7 @@ class Installation:
 
 
 class Kept:
-    """What raywright keeps on an object of another library; pickles leave it out."""
+    """Data that raywright keeps on an object of another library; pickles leave it out."""
 
     def __init__(self, value: Any, key: Any = None) -> None:
         self.value = value

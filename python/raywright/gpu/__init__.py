@@ -1,7 +1,7 @@
 """Rays on graphics processors, with the CPU's answers to the bit.
 
-Needs the extra ``raywright[gpu]``, PyPI's ``wgpu``. A kernel in float32 finds what each ray may hit, with a
-certain bound on every error, and the core decides among that, exactly.
+Needs the extra ``raywright[gpu]``, PyPI's ``wgpu``. A kernel in float32 finds candidate hits of each ray,
+with a certain bound on every error, and the core decides among them, exactly.
 """
 
 from .device import Gpu

@@ -1,4 +1,4 @@
-"""Which device: what wgpu offers, and what of that is fit."""
+"""Choice of the device among those that wgpu offers."""
 
 from typing import Any
 

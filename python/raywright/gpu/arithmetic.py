@@ -1,4 +1,4 @@
-"""Whether a device computes as WGSL promises, found out by asking it."""
+"""A test whether a device computes as WGSL promises."""
 
 import numpy as np
 from numpy.typing import NDArray

@@ -39,7 +39,7 @@ class Gpu:
     Parameters
     ----------
     adapter : str or wgpu.GPUAdapter, optional
-        Which device: a part of its name, or wgpu's own object. The one that wgpu prefers if not given.
+        Device: a part of its name, or wgpu's own object. The one that wgpu prefers if not given.
 
     Raises
     ------
@@ -51,6 +51,16 @@ class Gpu:
         If no device has such a name.
     TypeError
         If `adapter` is neither.
+
+    See Also
+    --------
+    Scene.on : Puts a scene on it.
+
+    Examples
+    --------
+    >>> gpu = rw.Gpu()
+    >>> gpu.backend in ("Vulkan", "Metal", "D3D12")
+    True
     """
 
     def __init__(self, adapter: Any = None) -> None:
@@ -71,21 +81,40 @@ class Gpu:
 
     @property
     def name(self) -> str:
-        """What the device is called."""
+        """Name of the device."""
         return self._name
 
     @property
     def backend(self) -> str:
-        """What its driver speaks: "Vulkan", "Metal" or "D3D12"."""
+        """Interface of its driver: "Vulkan", "Metal" or "D3D12"."""
         return self._backend
 
     def hold(self, scene: Scene) -> GpuScene:
         """Put a scene on the device; `Scene.on` does it.
 
+        Parameters
+        ----------
+        scene : Scene
+            The scene.
+
+        Returns
+        -------
+        GpuScene
+
         Raises
         ------
         MemoryError
             If the device has no room for the scene.
+
+        See Also
+        --------
+        Scene.on : Calls it.
+
+        Examples
+        --------
+        >>> with rw.Gpu().hold(rw.Scene(rw.Sphere())) as there:
+        ...     print(there.intersect([0, 0, 5], [0, 0, -1]).t.tolist())
+        4.0
         """
         if not isinstance(scene, Scene):
             raise TypeError(f"scene must be a Scene, got {type(scene).__name__}")

@@ -1,4 +1,4 @@
-"""What facets of GGX lose of light in one scattering, as tables."""
+"""Tables of the energy that GGX facets lose in one scattering."""
 
 from functools import lru_cache
 

@@ -25,8 +25,20 @@ _OPEN = 0xFFFFFFFE
 class GpuScene:
     """A scene on a graphics processor: `Scene.on` makes it. It answers as the scene does, to the bit.
 
-    What the device does not decide, the CPU does; `stats` tells how much that is. Should the device be lost,
-    that is warned of, once, and the CPU answers from then on.
+    The CPU decides the rays that the device cannot; `stats` tells how much that is. Should the device be
+    lost, that is warned of, once, and the CPU answers from then on.
+
+    See Also
+    --------
+    Scene.on : Makes it.
+
+    Examples
+    --------
+    >>> scene = rw.Scene(rw.scenes.torus_knot(along=40, around=8))
+    >>> rays = [0, 0, 9], np.random.default_rng(0).normal(size=(100, 3)) - [0, 0, 3]
+    >>> with scene.on(rw.Gpu()) as there:
+    ...     print(bool((there.intersect(*rays).t == scene.intersect(*rays).t).all()))
+    True
     """
 
     def __init__(
@@ -47,7 +59,7 @@ class GpuScene:
 
     @property
     def stats(self) -> GpuStats:
-        """What became of the rays so far."""
+        """Statistics of the rays so far."""
         return self._stats
 
     @property
@@ -68,10 +80,29 @@ class GpuScene:
 
         Takes, returns and raises what that does.
 
+        Parameters
+        ----------
+        origins, directions, t_min, t_max, threads, time
+            As for `Scene.intersect`.
+
+        Returns
+        -------
+        Hits
+
         Raises
         ------
         RuntimeError
             If the ``with`` block has ended.
+
+        See Also
+        --------
+        GpuScene.occluded : Any hit.
+
+        Examples
+        --------
+        >>> with rw.Scene(rw.Sphere()).on(rw.Gpu()) as there:
+        ...     print(there.intersect([0, 0, 5], [0, 0, -1]).t.tolist())
+        4.0
         """
         rays = asked(ray_arguments(origins, directions, t_min, t_max, threads, time), None)
         with self._lock:
@@ -95,10 +126,29 @@ class GpuScene:
 
         Takes, returns and raises what that does.
 
+        Parameters
+        ----------
+        origins, directions, t_min, t_max, threads, time
+            As for `Scene.occluded`.
+
+        Returns
+        -------
+        (...) bool array
+
         Raises
         ------
         RuntimeError
             If the ``with`` block has ended.
+
+        See Also
+        --------
+        GpuScene.intersect : The closest hit.
+
+        Examples
+        --------
+        >>> with rw.Scene(rw.Sphere()).on(rw.Gpu()) as there:
+        ...     print(there.occluded([0, 0, 5], [[0, 0, -1], [0, 0, 1]]).tolist())
+        [True, False]
         """
         rays = asked(ray_arguments(origins, directions, t_min, t_max, threads, time), None)
         with self._lock:

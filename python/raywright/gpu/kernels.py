@@ -83,7 +83,7 @@ class Kernels:
     most : int
         Bytes that a binding holds.
     bounds : float
-        What all bounds are multiplied by: 1 but where tests ask whether they matter.
+        Factor of all bounds: 1 except in tests of the bounds.
     known : dict
         Pipelines that were made before, by their text.
 

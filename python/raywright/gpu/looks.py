@@ -146,7 +146,7 @@ class Looks:
             self._give_back(row, alpha, float(glass.ior), glass.multiple_scattering)
 
     def _give_back(self, row: NDArray[np.void], alpha: float, eta: float, gives: bool) -> None:
-        """Say what rough glass gives back of what its facets lose, on which side: `Interface` of the core."""
+        """Return the compensation for the energy that rough glass loses, by side: `Interface` of the core."""
         tables = [loss_table(alpha, own) if gives else np.zeros(ENTRIES) for own in (eta, 1 / eta)]
         row["losses"] = self.add(np.concatenate(tables))
         means = [mean_of(table) for table in tables]
@@ -183,7 +183,7 @@ class Looks:
                 row["multiple"] = made_up(metal, average)
 
     def _losses(self, alpha: float) -> tuple[int, float]:
-        """Return where the table of what facets lose begins, and the mean loss; of 0 they lose nothing."""
+        """Return the start of the table of lost energy, and the mean loss; 0 if facets lose nothing."""
         if alpha not in self._tables:
             table = loss_table(alpha) if alpha else np.zeros(ENTRIES)
             self._tables[alpha] = self.add(table), mean_of(table)

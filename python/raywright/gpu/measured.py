@@ -1,4 +1,4 @@
-"""What the core knows of metals, as numbers for tables: it is asked, at a plate of each."""
+"""Reflectances of metals as tables: measured from the core, at a plate of each."""
 
 from functools import lru_cache
 
@@ -33,7 +33,7 @@ def reflectances(name: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     reflectances : (STEPS + 1, 3)
         At cosines from 0 to 1.
     again : (3,)
-        What they are multiplied by for light that such a metal has reflected before.
+        Factors of light that such a metal has reflected before.
     """
     # Never exactly grazing.
     cosines = np.maximum(np.linspace(0.0, 1.0, STEPS + 1), 1e-6)
@@ -48,7 +48,7 @@ def reflectances(name: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
 def made_up(metal: Conductor, loss: float) -> NDArray[np.float64]:
     """Return what scattering more than once gives back of each unit lost, over π and the mean loss: (3,).
 
-    From what a plate scatters in all, rough and smooth.
+    From the total scattering of a plate, rough and smooth.
     """
     straight = np.ones(1)
     smooth = Conductor(metal.metal) if metal.metal else Conductor(eta=metal.eta, k=metal.k)

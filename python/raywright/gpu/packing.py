@@ -1,7 +1,7 @@
-"""Materials, lights and what faces look like as arrays for `shading.wgsl`.
+"""Materials, lights and appearance of faces as arrays for `shading.wgsl`.
 
-All numbers are little-endian, without gaps, and lengths in box units (see `FlatArrays`). What cannot be
-packed is told by name: `LeftError`.
+All numbers are little-endian, without gaps, and lengths in box units (see `FlatArrays`). Unsupported features
+are reported by name: `LeftError`.
 """
 
 from dataclasses import dataclass
@@ -86,11 +86,11 @@ class Packed:
     Attributes
     ----------
     faces : (P,) structured, 112 bytes each
-        What faces look like, by their numbers among all primitives.
+        Appearance of faces, by their numbers among all primitives.
     materials : (2 M,) structured, 80 bytes each
         Fronts and backs by turns (`looks.MATERIAL`).
     lights : (L,) structured, 48 bytes each
-        What is drawn by light, but for the sky.
+        Lights that are sampled, except for the sky.
     numbers : (N,) float32
         Pictures and tables, where others say that they begin.
     lit : () structured, 80 bytes
@@ -177,7 +177,7 @@ def _is_closed(mesh: Mesh) -> bool:
 
 
 def _lay(faces: NDArray[np.void], mesh: Mesh, flat: FlatArrays) -> None:
-    """Say where faces lie, and what stands at their corners."""
+    """Write the corners of faces and their attributes."""
     corners = (mesh.vertices.astype(np.float64)[mesh.faces] - flat.centre) * flat.scale
     faces["corner"] = corners[:, 0]
     faces["edge"], faces["other"] = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
@@ -247,7 +247,7 @@ def _share(lights: NDArray[np.void], lit: NDArray[np.void], faces: NDArray[np.vo
 
 
 def _sky(scene: Scene, lit: NDArray[np.void], looks: Looks) -> None:
-    """Say what surrounds a scene."""
+    """Write the environment of a scene."""
     given: Any = scene.environment
     if isinstance(given, tuple):
         if len(given) > 1:

@@ -1,11 +1,11 @@
-"""How many rays the device answered for, and how many were left to the CPU."""
+"""Statistics: rays answered by the device, and rays left to the CPU."""
 
 from dataclasses import dataclass
 
 
 @dataclass
 class GpuStats:
-    """What became of the rays that a `GpuScene` was asked about, since it was put on the device.
+    """Statistics of the rays of a `GpuScene`, since it was put on the device.
 
     Attributes
     ----------
@@ -20,9 +20,19 @@ class GpuStats:
     any : int
         Rays asked whether they hit anything.
     any_decided : int
-        Those of them of which the CPU decided whether they hit one face.
+        Those of them for which the CPU decided the hit of one face.
     any_walked : int
         Those of them that the CPU traced by itself.
+
+    See Also
+    --------
+    GpuScene.stats : Makes it.
+
+    Examples
+    --------
+    >>> stats = rw.GpuStats(closest=100, closest_decided=3, closest_walked=1)
+    >>> stats.closest_share
+    0.04
     """
 
     closest: int = 0

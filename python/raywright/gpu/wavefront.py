@@ -72,7 +72,7 @@ class Wavefront:
     flat : FlatArrays
         The scene's tree.
     scene : Packed
-        What it looks like.
+        Appearance of the scene.
     eye : Eye
         From where.
     max_depth, roulette_depth, seed : int
@@ -254,7 +254,7 @@ class Wavefront:
         sums : (H * W, 9) float64
             Of each pixel's samples their sum, that of their squares, and the largest.
         dropped : int
-            How many were no radiance.
+            Number of samples without a valid radiance.
         """
         sums = np.empty((self._pixels, 9))
         dropped = 0

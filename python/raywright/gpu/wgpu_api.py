@@ -1,7 +1,7 @@
 """wgpu, imported with a check that it has everything that the kernels call.
 
 wgpu is below version 1, and each release may rename things. The extra ``raywright[gpu]`` allows a range of
-versions; a release that lacks something is named with what it lacks, before a device is opened.
+versions; if a release lacks something, an error names it before a device is opened.
 """
 
 import importlib

@@ -1,4 +1,4 @@
-"""Which shapes cover a pixel, as compositing programs read it: Cryptomatte 1.2 (Friedman and Jones, 2015)."""
+"""Layers of the shapes that cover a pixel, for compositing: Cryptomatte 1.2 (Friedman and Jones, 2015)."""
 
 from collections.abc import Iterable
 

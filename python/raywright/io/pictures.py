@@ -1,4 +1,4 @@
-"""Picture files: where they can be written, and what is in them."""
+"""Picture files: formats, checks before writing, and reading."""
 
 import errno
 import io
@@ -32,7 +32,7 @@ def check_writable(
     suffixes : tuple of str
         Those of the files that there are, in lower case.
     what : str
-        What is to be saved, for the error.
+        Kind of file, for the error message.
 
     Returns
     -------
@@ -49,6 +49,19 @@ def check_writable(
         If the folder is missing, the path is a folder, or the file cannot be written.
     TypeError
         If `path` is no path.
+
+    See Also
+    --------
+    Image.save : Writes the picture.
+
+    Examples
+    --------
+    >>> rw.check_writable("picture.png").name
+    'picture.png'
+    >>> rw.check_writable("picture.gif", suffixes=(".png", ".npy"))
+    Traceback (most recent call last):
+        ...
+    ValueError: a picture is saved as .png, .npy; picture.gif is none of these
     """
     if not isinstance(path, str | PathLike):
         raise TypeError(f"path must be a str or a path, got {type(path).__name__}")
@@ -127,14 +140,14 @@ def decode(source: Path | bytes, formats: tuple[str, ...] | None = None) -> NDAr
     source : Path or bytes
         The file.
     formats : tuple of str, optional
-        Which it may be, by Pillow's names; any if not given.
+        Allowed formats, by Pillow's names; any if not given.
 
     Raises
     ------
     ValueError
         If it has more points than ``PIL.Image.MAX_IMAGE_PIXELS``; found out before anything is decoded.
     Exception
-        Whatever Pillow raises for what it cannot read.
+        As Pillow raises for files that it cannot read.
     """
     from PIL import Image, UnidentifiedImageError
 
@@ -241,7 +254,7 @@ def _colours(names: list[str]) -> list[str]:
 def read_linear(path: str | PathLike[str]) -> NDArray[np.floating[Any]]:
     """Return the linear colours of a picture file, (H, W, 3) or of an NPY what it holds, from the top row on.
 
-    EXR, HDR and NPY files hold them as they are. What is of 8 or 16 bits is taken as sRGB. Transparency is
+    EXR, HDR and NPY files hold them as they are. Files of 8 or 16 bits are taken as sRGB. Transparency is
     left out. Raises what `read` does.
     """
     array = read(path)

@@ -20,7 +20,7 @@ def plotted(where: Any, draw: Callable[[Any], object], solid: bool = False, **fi
     draw : callable
         Takes axes and draws on them.
     solid : bool
-        Whether the axes have three dimensions.
+        True if the axes have three dimensions.
     **figure
         What a new figure is like, as `matplotlib.figure.Figure` takes it.
 

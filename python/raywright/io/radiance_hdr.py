@@ -44,7 +44,7 @@ def read_hdr(path: Path) -> NDArray[np.float32]:
 
 
 def _exposure(header: bytes) -> NDArray[np.float64]:
-    """Return by what red, green and blue were multiplied before they were written."""
+    """Return the factor of red, green and blue in the file."""
     total = np.ones(3)
     for name, rest in re.findall(rb"^(EXPOSURE|COLORCORR)[ \t]*=([^\n]*)", header, re.MULTILINE):
         try:
@@ -106,7 +106,7 @@ def _new_row(body: bytes, at: int, row: NDArray[np.uint8]) -> int:
 
 
 def _old_row(body: bytes, at: int, row: NDArray[np.uint8], before: NDArray[np.uint8] | None) -> int:
-    """Read a row of pixels, of which 1, 1, 1 and n repeat the last n times, and return where the next begins.
+    """Read a row of pixels, in which 1, 1, 1 and n repeat the last n times, and return the start of the next.
 
     Each further such pixel in a row counts 256 times as much as the one before it.
     """

@@ -39,8 +39,8 @@ def srgb(
 ) -> NDArray[np.uint8]:
     """Linear colours to 8 bits, with a tone (see `toned`) and the sRGB transfer (IEC 61966-2-1).
 
-    With `alpha`, (H, W), colours are taken as multiplied by it, and what comes back is (H, W, 4), of colours
-    that are not: it is the whole colour of what covers a pixel that has a tone, not its share of the pixel.
+    With `alpha`, (H, W), colors are premultiplied, and the result is (H, W, 4), not premultiplied: tones
+    apply to the whole color of the covering surface, not to its share of the pixel.
     """
     if alpha is None:
         return _bytes(_transfer(toned(rgb, exposure, tone)))
@@ -51,7 +51,7 @@ def srgb(
 
 
 def encoded(pixels: NDArray[np.uint8], suffix: str) -> bytes:
-    """Return the bytes of a picture file of such an ending, of what `srgb` gives."""
+    """Return the bytes of a picture file with such an ending, made by `srgb`."""
     from PIL import Image
 
     name = FORMATS[suffix]

@@ -1,4 +1,4 @@
-"""From light, which has no upper end, to what a screen can show."""
+"""Tone mapping: from unbounded radiance to displayable values."""
 
 from typing import Any
 

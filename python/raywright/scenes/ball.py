@@ -34,6 +34,16 @@ def material_ball(
     scene : Scene
         Shapes: the ball, of radius 1 around the origin, the ring that it stands on, the board, the lamp.
     camera : Camera
+
+    See Also
+    --------
+    scenes.studio : Any shapes.
+
+    Examples
+    --------
+    >>> scene, camera = rw.scenes.material_ball(rw.Conductor("gold"), width=8, height=8)
+    >>> scene.shapes[0].material.metal
+    'gold'
     """
     ground = -1.12
     board = Mesh(

@@ -36,6 +36,16 @@ def city(blocks: int = 12, seed: SeedLike = 0) -> list[Mesh]:
         If a number is out of its range.
     TypeError
         If a number is of the wrong type.
+
+    See Also
+    --------
+    scenes.classics : All scenes for accelerators.
+
+    Examples
+    --------
+    >>> ground, *houses = rw.scenes.city(blocks=1)
+    >>> len(ground.faces), sum(len(house.faces) for house in houses) // 60
+    (2, 9)
     """
     blocks = integer("blocks", blocks, 1)
     rng = np.random.default_rng(seed_number(seed, None))

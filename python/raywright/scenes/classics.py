@@ -58,12 +58,26 @@ def classics(
     width, height : int
         Size of the pictures in pixels.
 
+    Returns
+    -------
+    dict of (Scene, Camera)
+
     Raises
     ------
     ValueError
         If a number is out of its range.
     TypeError
         If a number is of the wrong type.
+
+    See Also
+    --------
+    report.accelerators : Compares accelerators.
+
+    Examples
+    --------
+    >>> scenes = rw.scenes.classics(triangles=1000, width=8, height=8)
+    >>> sorted(scenes)
+    ['city', 'diagonal wall', 'forest', 'room', 'soup', 'stadium', 'straight wall', 'terrain', 'turned room']
     """
     count, seed = integer("triangles", triangles, 1000), seed_number(seed, None)
     # Shares as they are by default: two thirds of a stadium are its teapot, half of a terrain its grass.

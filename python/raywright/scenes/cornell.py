@@ -56,8 +56,8 @@ def cornell_box(
 ) -> tuple[Scene, Camera]:
     """Return the Cornell box (Goral et al. 1984), in millimetres, and the camera that belongs to it.
 
-    The measures are those of the real box at Cornell, and so are the colours: measured spectra, as linear
-    Rec. 709 in which a spectrum that is the same everywhere is grey.
+    The measures are those of the real box at Cornell. So are the colors: measured spectra, as linear Rec. 709
+    in which a uniform spectrum is grey.
 
     Parameters
     ----------
@@ -80,6 +80,18 @@ def cornell_box(
     ------
     ValueError
         If `mesh` holds no faces, or a number is out of its range.
+
+    See Also
+    --------
+    scenes.glass_spheres : The box with a mirror ball and a glass ball.
+
+    Examples
+    --------
+    >>> scene, camera = rw.scenes.cornell_box(width=8, height=8)
+    >>> len(scene.shapes), camera.width
+    (8, 8)
+    >>> rw.render(scene, camera, samples=1, progress=False).rgb.shape
+    (8, 8, 3)
     """
     shapes = [quads(LIGHT, LAMP, emission)]
     shapes += [quads(corners, WHITE) for corners in (FLOOR, CEILING, BACK)]

@@ -1,4 +1,4 @@
-"""What thin films are known for: a soap bubble, and oil on a wet road."""
+"""Classic scenes of thin films: a soap bubble, and oil on a wet road."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,6 +33,16 @@ def soap_bubble(width: int = 480, height: int = 480) -> tuple[Scene, Camera]:
     scene : Scene
         Shapes: the bubble, of radius 1 around the origin. Up is z.
     camera : Camera
+
+    See Also
+    --------
+    SoapFilm : The material.
+
+    Examples
+    --------
+    >>> scene, camera = rw.scenes.soap_bubble(width=8, height=8)
+    >>> type(scene.shapes[0].material).__name__
+    'SoapFilm'
     """
     # From the bottom to the top, by latitude.
     latitude = np.linspace(0.0, 1.0, 256)
@@ -82,6 +92,16 @@ def oil_on_water(width: int = 480, height: int = 320) -> tuple[Scene, Camera]:
     scene : Scene
         Shapes: the water, the asphalt below. Up is z.
     camera : Camera
+
+    See Also
+    --------
+    ThinFilm : The material.
+
+    Examples
+    --------
+    >>> scene, camera = rw.scenes.oil_on_water(width=8, height=8)
+    >>> len(scene.shapes)
+    2
     """
     side = 8.0
     corners = [(-side, -side), (side, -side), (side, side), (-side, side)]

@@ -26,9 +26,19 @@ class Forest(NamedTuple):
     trees : list of Mesh
         The unique ones, each with its foot in the origin and y up.
     tree : (N,) int64
-        Which of them stands there.
+        Index of the tree at each place.
     transforms : (N, 4, 4) float64
         Where and how: each acts on column vectors (x, y, z, 1).
+
+    See Also
+    --------
+    scenes.forest : Makes it.
+
+    Examples
+    --------
+    >>> forest = rw.scenes.forest(count=9, unique=2, triangles=500)
+    >>> len(forest.trees), forest.tree.shape, forest.triangles
+    (2, (9,), 4500)
     """
 
     trees: list[Mesh]
@@ -37,17 +47,49 @@ class Forest(NamedTuple):
 
     @property
     def triangles(self) -> int:
-        """How many triangles are to be seen, each instance counted."""
+        """Number of triangles, each instance counted."""
         sizes = np.array([len(tree.faces) for tree in self.trees])
         return int(sizes[self.tree].sum())
 
     def instances(self) -> list[Instance]:
-        """Return the forest as an instance of each tree: as many triangles as one likes."""
+        """Return the forest as an instance of each tree: as many triangles as one likes.
+
+        Returns
+        -------
+        list of Instance
+            One for each unique tree.
+
+        See Also
+        --------
+        Forest.meshes : Meshes of their own.
+
+        Examples
+        --------
+        >>> forest = rw.scenes.forest(count=9, unique=2, triangles=500)
+        >>> len(rw.Scene(forest.instances()).shapes)
+        2
+        """
         places = [self.transforms[self.tree == i] for i in range(len(self.trees))]
         return [Instance(tree, where) for tree, where in zip(self.trees, places, strict=True) if len(where)]
 
     def meshes(self) -> list[Mesh]:
-        """Return every tree where it stands as a mesh of its own: for small forests."""
+        """Return every tree where it stands as a mesh of its own: for small forests.
+
+        Returns
+        -------
+        list of Mesh
+            One for each tree.
+
+        See Also
+        --------
+        Forest.instances : Copies.
+
+        Examples
+        --------
+        >>> forest = rw.scenes.forest(count=9, unique=2, triangles=500)
+        >>> len(forest.meshes())
+        9
+        """
         return [
             self.trees[i].transformed(matrix)
             for i, matrix in zip(self.tree.tolist(), self.transforms, strict=True)
@@ -70,9 +112,9 @@ def forest(
     Parameters
     ----------
     count : int
-        How many trees stand there.
+        Number of trees.
     unique : int
-        How many different ones.
+        Number of unique trees.
     triangles : int
         Of each unique tree, exactly; more than 400.
     spacing : float
@@ -86,6 +128,16 @@ def forest(
         If a number is out of its range.
     TypeError
         If a number is of the wrong type.
+
+    See Also
+    --------
+    Instance : Copies of shapes.
+
+    Examples
+    --------
+    >>> forest = rw.scenes.forest(count=100, unique=2, triangles=500)
+    >>> forest.triangles, len(rw.Scene(forest.instances()).shapes)
+    (50000, 2)
     """
     count, unique = integer("count", count, 1), integer("unique", unique, 1)
     triangles = integer("triangles", triangles, 2 * _SIDES * _branches() + 1)

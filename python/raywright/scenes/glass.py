@@ -29,6 +29,16 @@ def glass_spheres(width: int = 512, height: int = 512) -> tuple[Scene, Camera]:
     scene : Scene
         Shapes: lamp, floor, ceiling, back, right (green), left (red), mirror ball, glass ball.
     camera : Camera
+
+    See Also
+    --------
+    PhotonMap : Finds its caustics.
+
+    Examples
+    --------
+    >>> scene, camera = rw.scenes.glass_spheres(width=8, height=8)
+    >>> len(scene.shapes)
+    8
     """
     corners = np.array(cornell.LIGHT[0], np.float64)
     middle = corners.mean(axis=0)

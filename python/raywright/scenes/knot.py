@@ -30,12 +30,26 @@ def torus_knot(
     material : Material, optional
         ``Diffuse()`` if not given.
 
+    Returns
+    -------
+    Mesh
+
     Raises
     ------
     ValueError
         If a number is out of its range.
     TypeError
         If a number is of the wrong type.
+
+    See Also
+    --------
+    scenes.teapot : Another test object.
+
+    Examples
+    --------
+    >>> knot = rw.scenes.torus_knot(along=40, around=8)
+    >>> knot.faces.shape, rw.measure.topology(knot).is_closed
+    ((640, 3), True)
     """
     p, q = integer("p", p, 1), integer("q", q, 1)
     along, around = integer("along", along, 3), integer("around", around, 3)

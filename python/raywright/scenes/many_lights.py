@@ -18,8 +18,8 @@ def many_lights(
 ) -> tuple[Scene, Camera]:
     """Return the room of `room` lit by many small lamps of all colours, and a camera.
 
-    Of so many, few matter anywhere: what chooses among them by their power alone spends its samples on lamps
-    that are far away or turned away.
+    Of so many, few matter anywhere: a choice among them by power alone spends its samples on lamps that are
+    far away or turned away.
 
     Parameters
     ----------
@@ -35,6 +35,16 @@ def many_lights(
     scene : Scene
         Shapes: those of the room, then the lamps, each a square.
     camera : Camera
+
+    See Also
+    --------
+    scenes.room : The room.
+
+    Examples
+    --------
+    >>> scene, camera = rw.scenes.many_lights(lights=10, width=8, height=8)
+    >>> sum(shape.emission is not None for shape in scene.shapes)
+    10
     """
     count, seed = integer("lights", lights, 1), seed_number(seed, None)
     shell = room(20_000, seed)

@@ -36,6 +36,16 @@ def veach_plates(width: int = 512, height: int = 512) -> tuple[Scene, Camera]:
     scene : Scene
         Shapes: the lamps from small to large, a lamp far above, the plates from smooth to rough, the wall.
     camera : Camera
+
+    See Also
+    --------
+    Direct : Combines both strategies.
+
+    Examples
+    --------
+    >>> scene, camera = rw.scenes.veach_plates(width=8, height=8)
+    >>> sum(shape.emission is not None for shape in scene.shapes)
+    5
     """
     lamps: list[Sphere | Mesh] = [
         Sphere((x, 0.0, 0.0), radius, material=Diffuse(0.0), emission=radiance)

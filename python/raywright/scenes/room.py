@@ -16,11 +16,11 @@ EYE, TARGET, LAMP = np.array([[0.05, 0.55, 0.93], [0.7, 0.4, 0.3], [0.55, 0.9, 0
 def room(triangles: int = 70_000, seed: SeedLike = 0) -> list[Mesh]:
     """Return a closed room, to be seen from inside, all of long thin boxes: boards, slats and loose beams.
 
-    It is 8 m long, 3 m high (y) and 5 m deep, with a corner in the origin. Each of its six sides is of boards
-    side by side, with an eighth of all boxes, and the rest are beams anywhere within, some of which stick
-    out. They are shorter and thinner where there are more, so that in every room a ray sees as far. Seven of
-    eight lie along the axes, as what is built does; the others are braces at any angle, which fill little of
-    their bounding box.
+    It is 8 m long, 3 m high (y) and 5 m deep, with a corner in the origin. Each of its six sides is made of
+    boards side by side, with an eighth of all boxes, and the rest are beams anywhere within, some of which
+    stick out. They are shorter and thinner where there are more, so that in every room a ray sees as far.
+    Seven of eight lie along the axes, as in buildings; the others are braces at any angle, which fill little
+    of their bounding box.
 
     Parameters
     ----------
@@ -40,6 +40,16 @@ def room(triangles: int = 70_000, seed: SeedLike = 0) -> list[Mesh]:
         If a number is out of its range.
     TypeError
         If a number is of the wrong type.
+
+    See Also
+    --------
+    scenes.many_lights : The room with lamps.
+
+    Examples
+    --------
+    >>> room = rw.scenes.room(triangles=960)
+    >>> len(room[0].faces)
+    960
     """
     count = max(integer("triangles", triangles, 1) // 12, 8)
     rng = np.random.default_rng(seed_number(seed, None))

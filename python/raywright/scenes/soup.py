@@ -14,7 +14,7 @@ def soup(triangles: int = 10_000, size: float | None = None, seed: SeedLike = 0)
     triangles : int
         How many.
     size : float, optional
-        How far corners are from the middle of their triangle, at most. If not given, the less the more there
+        Maximum distance of corners from the middle of their triangle. If not given, the less the more there
         are, so that a ray sees about a third of the cube's edge far.
     seed : int, Generator or SeedSequence
         Which triangles.
@@ -30,6 +30,16 @@ def soup(triangles: int = 10_000, size: float | None = None, seed: SeedLike = 0)
         If a number is out of its range.
     TypeError
         If a number is of the wrong type.
+
+    See Also
+    --------
+    scenes.classics : All scenes for accelerators.
+
+    Examples
+    --------
+    >>> soup = rw.scenes.soup(triangles=100)
+    >>> len(soup[0].faces)
+    100
     """
     count = integer("triangles", triangles, 1)
     # Hits per unit length equal projected area per unit volume: half the area of a triangle, 0.26 of the

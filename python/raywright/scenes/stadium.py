@@ -25,9 +25,9 @@ def teapot_in_stadium(
     divisions : int
         Of the teapot's patches; it has about 64 triangles times their square.
     tiers : int
-        How many rows of seats.
+        Number of rows of seats.
     around : int
-        How many pieces each row has, 3 at least; four triangles each.
+        Number of pieces of each row, 3 at least; four triangles each.
     width : float
         Of the teapot from handle to spout, in metres.
 
@@ -42,6 +42,16 @@ def teapot_in_stadium(
         If a number is out of its range.
     TypeError
         If a number is of the wrong type.
+
+    See Also
+    --------
+    scenes.teapot : The teapot alone.
+
+    Examples
+    --------
+    >>> stadium, teapot = rw.scenes.teapot_in_stadium(divisions=2, tiers=2, around=8)
+    >>> len(stadium.faces) > len(teapot.faces) / 10
+    True
     """
     tiers, around = integer("tiers", tiers, 1), integer("around", around, 3)
     width = positive("width", width)

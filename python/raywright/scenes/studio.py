@@ -45,10 +45,25 @@ def studio(
     accelerator : BVH or another accelerator
         The structure that finds hits.
 
+    Returns
+    -------
+    scene : Scene
+    camera : Camera
+
     Raises
     ------
     FileNotFoundError, ValueError, TypeError
         As `Scene`; ValueError too if there is nothing to show, or `up` is another axis.
+
+    See Also
+    --------
+    load : Lights files without lights so.
+
+    Examples
+    --------
+    >>> scene, camera = rw.scenes.studio(rw.scenes.torus_knot(along=40, around=8), width=8, height=8)
+    >>> len(scene.shapes)
+    3
     """
     parts = meshes(shapes)
     camera = framed(parts, up, width, height)
@@ -71,7 +86,7 @@ def lit(shapes: Any, camera: AnyCamera) -> Scene:
     Parameters
     ----------
     shapes : Mesh, another shape, Instance, trimesh object, path, or list of these
-        What to show; its y points up.
+        Shapes to show; their y points up.
     camera : Camera or another kind
         From where it is looked at.
 

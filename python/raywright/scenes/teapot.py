@@ -52,9 +52,13 @@ def teapot(divisions: int = 10, material: Material | None = None) -> Mesh:
     Parameters
     ----------
     divisions : int
-        How many pieces the sides of each patch are cut into; about 64 times its square are the triangles.
+        Number of pieces along the sides of each patch; there are about 64 triangles times its square.
     material : Material, optional
         ``Diffuse()`` if not given.
+
+    Returns
+    -------
+    Mesh
 
     Raises
     ------
@@ -62,6 +66,16 @@ def teapot(divisions: int = 10, material: Material | None = None) -> Mesh:
         If `divisions` is below 1.
     TypeError
         If something is of the wrong type.
+
+    See Also
+    --------
+    scenes.torus_knot : A closed mesh.
+
+    Examples
+    --------
+    >>> teapot = rw.scenes.teapot(divisions=2)
+    >>> teapot.bounds.round(2).tolist()
+    [[-3.0, 0.0, -2.0], [3.43, 3.15, 2.0]]
     """
     n = integer("divisions", divisions, 1)
     control = patches()

@@ -39,6 +39,16 @@ def terrain(side: int = 160, blades: int = 50_000, seed: SeedLike = 0) -> list[M
         If a number is out of its range.
     TypeError
         If a number is of the wrong type.
+
+    See Also
+    --------
+    scenes.forest : Trees.
+
+    Examples
+    --------
+    >>> ground, grass = rw.scenes.terrain(side=4, blades=10)
+    >>> len(ground.faces), len(grass.faces)
+    (32, 10)
     """
     side, blades = integer("side", side, 1), integer("blades", blades, 0)
     rng = np.random.default_rng(seed_number(seed, None))

@@ -22,12 +22,26 @@ def turned(shapes: Iterable[Mesh], angle: float, axis: ArrayLike = (0.0, 1.0, 0.
     axis : 3 floats
         Need not be unit.
 
+    Returns
+    -------
+    list of Mesh
+
     Raises
     ------
     ValueError
         If `angle` or `axis` are not finite, or `axis` is zero.
     TypeError
         If they are not numbers.
+
+    See Also
+    --------
+    Mesh.transformed : Any affine matrix.
+
+    Examples
+    --------
+    >>> mesh = rw.Mesh([[1, 0, 0], [2, 0, 0], [1, 1, 0]], [[0, 1, 2]])
+    >>> rw.scenes.turned([mesh], 90, axis=(0, 0, 1))[0].vertices.round(6).tolist()
+    [[0.0, 1.0, 0.0], [0.0, 2.0, 0.0], [-1.0, 1.0, 0.0]]
     """
     matrix = np.eye(4)
     matrix[:3, :3] = rotation(angle, axis)
@@ -35,7 +49,7 @@ def turned(shapes: Iterable[Mesh], angle: float, axis: ArrayLike = (0.0, 1.0, 0.
 
 
 def rotation(angle: float, axis: ArrayLike = (0.0, 1.0, 0.0)) -> NDArray[np.float64]:
-    """Return the (3, 3) matrix that turns column vectors (Rodrigues' formula). Takes what `turned` does."""
+    """Return the (3, 3) matrix that turns column vectors (Rodrigues' formula). Arguments as `turned`."""
     x = np.array(triple("axis", axis))
     largest = np.abs(x).max()
     if largest == 0:

@@ -22,11 +22,11 @@ def diagonal_wall(boards: int = 800, angle: float = 45.0, layers: int = 4) -> li
     Parameters
     ----------
     boards : int
-        How many in all; at least one a layer, and 12 triangles a board.
+        Number of boards in all; at least one a layer, and 12 triangles a board.
     angle : float
         By how many degrees the wall is turned about the z axis, anticlockwise as seen from +z.
     layers : int
-        How many, at least 1.
+        Number of layers, at least 1.
 
     Returns
     -------
@@ -39,6 +39,16 @@ def diagonal_wall(boards: int = 800, angle: float = 45.0, layers: int = 4) -> li
         If a number is out of its range.
     TypeError
         If a number is of the wrong type.
+
+    See Also
+    --------
+    scenes.turned : Turns any meshes.
+
+    Examples
+    --------
+    >>> wall = rw.scenes.diagonal_wall(boards=8)
+    >>> len(wall[0].faces)
+    96
     """
     layers = integer("layers", layers, 1)
     boards = integer("boards", boards, layers)

@@ -28,6 +28,16 @@ def whitted_spheres(width: int = 640, height: int = 480) -> tuple[Scene, Camera]
     scene : Scene
         Shapes: the glass ball, the shiny ball behind it, the checkerboard.
     camera : Camera
+
+    See Also
+    --------
+    Whitted : The integrator.
+
+    Examples
+    --------
+    >>> scene, camera = rw.scenes.whitted_spheres(width=8, height=6)
+    >>> rw.render(scene, camera, rw.Whitted(), samples=1, progress=False).rgb.shape
+    (6, 8, 3)
     """
     board = Mesh(
         [(-6, 0, 6), (6, 0, 6), (6, 0, -18), (-6, 0, -18)],

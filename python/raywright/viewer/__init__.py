@@ -41,6 +41,16 @@ class Viewer:
     ----------
     url : str
         Where the page is: on 127.0.0.1, under a token that nobody can guess.
+
+    See Also
+    --------
+    view : Makes it.
+
+    Examples
+    --------
+    >>> with rw.view(rw.Scene(rw.Sphere())) as viewer:
+    ...     print(viewer.url.startswith("http://127.0.0.1:"))
+    True
     """
 
     url: str
@@ -59,7 +69,7 @@ class Viewer:
 
     @property
     def rendering(self) -> bool:
-        """Whether a render is going on: not if nobody looks, nor if the picture is as good as it shall be."""
+        """True while a render is going on: not without viewers, nor when the picture is finished."""
         return self._session.rendering
 
     @property
@@ -68,18 +78,26 @@ class Viewer:
         return self._session.camera
 
     def show(self, integrator: AnyIntegrator) -> None:
-        """Show what another integrator makes of the scene, as the next state of a radiosity solution does.
+        """Show the scene by another integrator, such as the next state of a radiosity solution.
 
         Parameters
         ----------
         integrator : Path or another kind
-            What turns rays into radiance from now on. What is being rendered ends at once; the camera stays
-            where it was moved.
+            Estimator of radiance from now on. The current render ends at once; the camera stays in place.
 
         Raises
         ------
         TypeError
             If `integrator` is none.
+
+        See Also
+        --------
+        view : Takes the first integrator.
+
+        Examples
+        --------
+        >>> with rw.view(rw.Scene(rw.Sphere())) as viewer:
+        ...     viewer.show(rw.AmbientOcclusion())
         """
         check_integrator("integrator", integrator)
         self._session.show(integrator)
@@ -92,10 +110,25 @@ class Viewer:
         It is the page, by the notebook's own messages: it works with a kernel on another machine, too.
         Nothing is rendered while it is not seen.
 
+        Returns
+        -------
+        ViewerWidget
+
         Raises
         ------
         ImportError
             If anywidget is not installed.
+
+        See Also
+        --------
+        view : Serves a page instead.
+
+        Examples
+        --------
+        >>> import anywidget
+        >>> with rw.view(rw.Scene(rw.Sphere())) as viewer:
+        ...     print(type(viewer.widget()).__name__)
+        ViewerWidget
         """
         if self._widget is None:
             try:
@@ -106,7 +139,18 @@ class Viewer:
         return self._widget
 
     def wait(self) -> None:
-        """Wait until it is closed, or Ctrl-C is pressed, which closes it."""
+        """Wait until it is closed, or Ctrl-C is pressed, which closes it.
+
+        See Also
+        --------
+        Viewer.close : Ends the waiting.
+
+        Examples
+        --------
+        >>> viewer = rw.view(rw.Scene(rw.Sphere()))
+        >>> viewer.close()
+        >>> viewer.wait()
+        """
         try:
             # In short waits: signals that do not interrupt a wait are handled in between.
             while not self._closed.wait(0.5):
@@ -117,7 +161,19 @@ class Viewer:
             self.close()
 
     def close(self) -> None:
-        """End the render and the server. Pages that are open show what they last had."""
+        """End the render and the server. Pages that are open show what they last had.
+
+        See Also
+        --------
+        Viewer.wait : Waits for it.
+
+        Examples
+        --------
+        >>> viewer = rw.view(rw.Scene(rw.Sphere()))
+        >>> viewer.close()
+        >>> viewer.rendering
+        False
+        """
         if not self._closed.is_set():
             self._closed.set()
             atexit.unregister(self.close)
@@ -129,7 +185,7 @@ class Viewer:
             self._thread.join()
 
     def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> Any:
-        """Return what a notebook shows: the widget, or where the page is and what is missing."""
+        """Return the notebook's display: the widget, or the page's address and the missing package."""
         try:
             widget = self.widget()
         except ImportError as missing:
@@ -173,9 +229,9 @@ def view(
     Where the browser has WebGPU, and the scene is of meshes, it draws by itself: a ray and its shadow a pixel
     while the camera moves, and paths, more and more of them, once it stands; what of materials, lights and
     integrators it does not know the core renders once the camera stands. Elsewhere all pictures are the
-    core's: a small one comes at once and a better one after it. Either way it is told how wrong the picture
-    still is. The key g changes between both. While no page is open nothing is rendered. In a notebook, the
-    viewer shows itself where a cell ends with it (`Viewer.widget`).
+    core's: a small one comes at once and a better one after it. Either way the error of the picture is shown.
+    The key g changes between both. While no page is open nothing is rendered. In a notebook, the viewer shows
+    itself where a cell ends with it (`Viewer.widget`).
 
     Parameters
     ----------
@@ -187,11 +243,11 @@ def view(
     exposure, tone
         How pictures are shown, as `Image.save` has it. The page changes the exposure without a new render.
     fit : bool
-        Whether as many pixels are rendered as the window has room for, in the shape of the camera's picture,
-        or as many as the camera has. The camera that `Viewer.camera` gives back keeps its own.
+        True to render as many pixels as the window has room for, in the shape of the camera's picture, False
+        for as many as the camera has. The camera that `Viewer.camera` gives back keeps its own.
     boxes : int, optional
-        Which level of the accelerator's boxes is drawn over the picture, 0 for the root; of a level of more
-        than 20,000 the largest. The keys b and B go a level deeper and back. `Scene.tree` gives the boxes.
+        Level of the accelerator's boxes to draw over the picture, 0 for the root; of a level of more than
+        20,000 the largest. The keys b and B go a level deeper and back. `Scene.tree` gives the boxes.
     port : int
         Where to listen; any free port if 0.
     open : bool
@@ -209,6 +265,16 @@ def view(
         `Panorama`, in whose pictures edges are bent.
     OSError
         If the port is taken.
+
+    See Also
+    --------
+    render : A picture without a window.
+
+    Examples
+    --------
+    >>> with rw.view(rw.Scene(rw.Sphere()), samples=16) as viewer:
+    ...     print(viewer.camera.forward.shape)
+    (3,)
     """
     if not isinstance(fit, bool):
         raise TypeError(f"fit must be True or False, got {fit!r}")

@@ -37,7 +37,7 @@ def edges(camera: AnyCamera, corners: NDArray[np.float64]) -> NDArray[np.float64
     Returns
     -------
     (E, 2, 2) float64
-        The ends of edges, or of what of them is in front of the camera, from (0, 0) at the upper left of the
+        The ends of edges, clipped to the part in front of the camera, from (0, 0) at the upper left of the
         picture to (1, 1) at its lower right.
     """
     corners = largest(corners)
@@ -67,8 +67,8 @@ def spread(camera: AnyCamera) -> tuple[NDArray[np.float64], NDArray[np.float64]]
     Returns
     -------
     origins, ways : (3, 3) float64
-        The ray at the upper left of the picture, what is added to it across the picture, and what is added
-        down: where rays start, and which way they go, at no particular length.
+        The ray at the upper left of the picture, its increment across the picture, and its increment down:
+        origins and directions, at no particular length.
     """
     picture = np.array([(0, 0), (camera.width, 0), (0, camera.height), (camera.width, camera.height)], float)
     origins, ways = camera.rays_through(picture)

@@ -1,4 +1,4 @@
-"""What a page needs to draw a scene by itself: arrays for its graphics processor, and how rays spread."""
+"""Data for a page that draws a scene by itself: arrays for its graphics processor, and the spread of rays."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -45,9 +45,9 @@ class Drawn:
     orbit : Orbit
         Of the camera.
     integrator : Path or another kind
-        What the core would render it with.
+        Integrator of the core's renders.
     how : mapping
-        What else `render` takes.
+        Other arguments of `render`.
     tone : str
         As `Image.save` has it.
     """

@@ -29,9 +29,9 @@ def lamp(scene: Scene, camera: AnyCamera) -> dict[str, Any]:
     Returns
     -------
     dict
-        ``"place"``, 3 floats, and ``"far"``, whether that is a direction to the light rather than a point: of
-        the sun, or a lamp, or the middle of the largest mesh that shines, the first that there is; of none,
-        from over the shoulder of who looks.
+        ``"place"``, 3 floats, and ``"far"``, True if that is a direction to the light rather than a point: of
+        the sun, or a lamp, or the middle of the largest emissive mesh, the first that there is; otherwise
+        over the viewer's shoulder.
     """
     around = scene.environment
     all_around = around if isinstance(around, tuple) else (around,)

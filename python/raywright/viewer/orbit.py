@@ -19,16 +19,16 @@ _POLE = 1.0
 
 @dataclass(frozen=True)
 class View:
-    """How far a camera was moved from where it was to begin with.
+    """The motion of a camera from its start.
 
     Attributes
     ----------
     azimuth, elevation : float
         Degrees that it went around, to the right and upwards, always looking at the same point.
     zoom : float
-        How many times nearer it is to that point.
+        Factor by which it is nearer to that point.
     right, up : float
-        How far that point was moved in the picture, in heights of the picture at the start.
+        Displacement of that point in the picture, in heights of the picture at the start.
     """
 
     azimuth: float = 0.0

@@ -1,4 +1,4 @@
-"""What a page asks for and tells, by whatever way that comes: the server's, or a notebook's."""
+"""Requests and messages of a page, for the server and for notebooks."""
 
 from collections.abc import Callable
 from typing import Any
@@ -14,7 +14,7 @@ _DEEPEST = 1000
 
 
 def scene_told(session: Session) -> dict[str, Any]:
-    """Return what a page is told of a scene before anything else."""
+    """Return the first message of a scene to a page."""
     width, height = session.size
     return {
         "width": width,
@@ -33,7 +33,7 @@ def told(session: Session, what: str, given: Any) -> dict[str, Any] | None:
     Raises
     ------
     KeyError
-        If nobody knows what it asks for.
+        If the request is unknown.
     ValueError, TypeError
         If what it gives makes no sense.
     """
@@ -41,7 +41,7 @@ def told(session: Session, what: str, given: Any) -> dict[str, Any] | None:
 
 
 def is_known(what: str) -> bool:
-    """Whether a page may ask for it."""
+    """Return whether a page may request it."""
     return what in _ANSWERS
 
 

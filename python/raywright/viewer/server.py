@@ -91,15 +91,15 @@ class Server(ThreadingHTTPServer):
 
     @property
     def hosts(self) -> tuple[str, str]:
-        """What the server may be called."""
+        """Names of the server."""
         return f"{HOST}:{self.server_port}", f"localhost:{self.server_port}"
 
     def shutdown_request(self, request: Any) -> None:
         """Close a connection so that the last answer arrives.
 
-        If something that was sent is left unread, closing resets the connection, and whoever is still sending
-        may never see why it was refused (RFC 9112, section 9.6). So first our side is closed alone, and the
-        rest is read and thrown away.
+        Unread data would make closing reset the connection, and the sender might never see the reason of the
+        refusal (RFC 9112, section 9.6). So first our side is closed alone, and the rest is read and thrown
+        away.
         """
         try:
             request.shutdown(socket.SHUT_WR)
@@ -134,7 +134,7 @@ class _Handler(BaseHTTPRequestHandler):
         self._answer(self._post)
 
     def log_message(self, *_: Any) -> None:
-        """Keep quiet: the shell is for what matters."""
+        """Log nothing: the shell is for important messages."""
 
     def send_error(self, code: int, message: str | None = None, explain: str | None = None) -> None:
         """Answer what http.server itself refuses in one line as well."""

@@ -38,7 +38,7 @@ _GRACE = 0.2
 
 @dataclass(frozen=True)
 class Frame:
-    """A picture on its way to whoever looks.
+    """A picture on its way to a page.
 
     Attributes
     ----------
@@ -53,11 +53,11 @@ class Frame:
     size : (int, int)
         Width and height in pixels of the picture that it is, or that a smaller one stands for.
     camera : AnyCamera
-        What it is seen by, with the size that the caller gave it.
+        Camera of the picture, with the size that the caller gave it.
     exposure, tone
         How it is shown, as `Image.save` has it.
     boxes : TreeBoxes, optional
-        What of the accelerator is drawn over it: one level.
+        Level of the accelerator's boxes that is drawn over it.
     """
 
     number: int
@@ -91,7 +91,7 @@ class Frame:
         return shown.encoded(pixels, suffix)
 
     def told(self) -> dict[str, Any]:
-        """Return what there is to say of the picture, for JSON; None stands for what is not known."""
+        """Return what there is to say of the picture, for JSON; None stands for unknown values."""
         image, view = self.image, self.view
         error = (image.error.estimate, image.error.low, image.error.high)
         height, width = image.rgb.shape[:2]
@@ -119,19 +119,19 @@ class Session:
     Parameters
     ----------
     scene : Scene
-        What to look at.
+        The scene.
     camera : Camera or another kind
         From where to begin with.
     integrator : Path or another kind
-        What turns rays into radiance.
+        Estimator of radiance.
     how : mapping
-        What else `render` takes.
+        Other arguments of `render`.
     exposure, tone
         How pictures are shown, as `Image.save` has it.
     fits : bool
-        Whether the picture takes the size of the window that it is shown in.
+        True if the picture takes the size of its window.
     boxes : int, optional
-        Which level of the accelerator's boxes is drawn over pictures.
+        Level of the accelerator's boxes that is drawn over pictures.
     """
 
     def __init__(
@@ -168,7 +168,7 @@ class Session:
 
     @property
     def rendering(self) -> bool:
-        """Whether it renders now."""
+        """True while it renders."""
         return self._rendering
 
     @property
@@ -188,7 +188,7 @@ class Session:
 
     @property
     def closed(self) -> bool:
-        """Whether it was closed."""
+        """True if it was closed."""
         return self._closed
 
     @property
@@ -203,12 +203,12 @@ class Session:
 
     @property
     def depth(self) -> int | None:
-        """Which level of the accelerator's boxes is drawn over pictures."""
+        """Level of the accelerator's boxes that is drawn over pictures."""
         return None if self._boxes is None else int(self._boxes.depth[0])
 
     @cached_property
     def drawn(self) -> Drawn:
-        """What a page needs to draw the scene itself."""
+        """Data for a page that draws the scene itself."""
         return Drawn(self._scene, self._orbit, self._integrator, self._how, self._tone)
 
     @property
@@ -217,7 +217,7 @@ class Session:
         return self._orbit.camera(self._view)
 
     def turn(self, view: View) -> None:
-        """Show another view. What is being rendered ends at once."""
+        """Show another view. The current render ends at once."""
         with self._changed:
             if view != self._view:
                 self._view = view
@@ -278,7 +278,7 @@ class Session:
         return self.drawn.local(largest(self._tree.at(depth).corners)).tobytes()
 
     def pick(self, view: View, x: float, y: float) -> dict[str, Any]:
-        """Tell what is seen at a place of the picture of a view, from (0, 0) at its upper left to (1, 1)."""
+        """Describe the hit at a place of the picture of a view, from (0, 0) at its upper left to (1, 1)."""
         camera = resized(self._orbit.camera(view), *self._size)
         (column, right), (row, down) = (
             divmod(share * size, 1.0) for share, size in zip((x, y), self._size, strict=True)
@@ -351,7 +351,7 @@ class Session:
         self._thread.join()
 
     def is_wanted(self, job: "_Job") -> bool:
-        """Whether it is still of use to go on with something."""
+        """Return whether a job is still wanted."""
         unseen = self._watchers == 0 and time.monotonic() - self._left > _GRACE
         return not self._closed and not unseen and (job.is_preview or job.number == self._wanted)
 
@@ -438,12 +438,12 @@ class Session:
 
 
 class _UnwantedError(Exception):
-    """What is being rendered is of no use any more."""
+    """The current render is not wanted any more."""
 
 
 @dataclass(frozen=True)
 class _Job:
-    """What is to be rendered: what `render` takes as `stop`."""
+    """A render job, with the `stop` of `render`."""
 
     session: Session
     number: int

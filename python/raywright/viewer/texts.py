@@ -46,7 +46,7 @@ _EXPORT = re.compile(r"^export ", re.MULTILINE)
 
 @lru_cache
 def text(path: str) -> str:
-    """Return the text of a file of the page by what is asked for."""
+    """Return the text of a file of the page by its name."""
     if path in _KERNELS:
         return kernel(path)
     return (files(__package__) / (path or "page.html")).read_text(encoding="utf-8")

@@ -48,7 +48,7 @@ class ViewerWidget(anywidget.AnyWidget):  # type: ignore[misc]
 
     @property
     def watches(self) -> int:
-        """How many pages the core renders for."""
+        """Number of pages that the core renders for."""
         return sum(watch.is_alive() for watch in self._watches.values())
 
     def again(self) -> None:
@@ -62,7 +62,7 @@ class ViewerWidget(anywidget.AnyWidget):  # type: ignore[misc]
         self.send({"ended": True})
 
     def _hear(self, _: Any, content: Any, __: Any) -> None:
-        """Take a message of a page; what makes no sense is told so, or no more than that."""
+        """Handle a message of a page; nonsense gets an error, or no answer."""
         if not isinstance(content, dict):
             return
         page, what = content.get("page"), content.get("do")

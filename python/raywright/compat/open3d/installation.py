@@ -7,7 +7,7 @@ _switch = Switch()
 
 
 class TensorScene(RaycastingScene):
-    """What stands in Open3D: like the class there, it returns tensors whatever is passed."""
+    """The replacement in Open3D: like the class there, it always returns tensors."""
 
     _returns_tensors = True
 
@@ -27,6 +27,19 @@ def install() -> Installation:
     ------
     ImportError
         If Open3D is not installed.
+
+    See Also
+    --------
+    uninstall : Undoes it.
+
+    Examples
+    --------
+    >>> import open3d
+    >>> from raywright.compat.open3d import install
+    >>> with install():
+    ...     scene = open3d.t.geometry.RaycastingScene()
+    >>> type(scene).__module__.startswith("raywright")
+    True
     """
     import open3d
 
@@ -34,5 +47,15 @@ def install() -> Installation:
 
 
 def uninstall() -> None:
-    """Give Open3D its own class back; nothing happens if there is nothing to undo."""
+    """Give Open3D its own class back; nothing happens if there is nothing to undo.
+
+    See Also
+    --------
+    install : Its inverse.
+
+    Examples
+    --------
+    >>> from raywright.compat.open3d import uninstall
+    >>> uninstall()
+    """
     _switch.off()

@@ -19,8 +19,8 @@ _INVALID = 2**32 - 1
 class RaycastingScene:
     """Triangle meshes for rays and points; meshes can be added between queries.
 
-    Arrays of numpy and whatever becomes one are taken, of any real type, beside tensors of Open3D. Results
-    are tensors if what is passed, or a mesh of the scene, is of Open3D, and arrays otherwise.
+    It takes arrays of numpy and anything that becomes one, of any real type, beside tensors of Open3D.
+    Results are tensors if what is passed, or a mesh of the scene, is of Open3D, and arrays otherwise.
 
     Parameters
     ----------
@@ -34,10 +34,23 @@ class RaycastingScene:
     ValueError
         If the device is no CPU.
 
+    See Also
+    --------
+    install : Replaces Open3D's class by this one.
+    Scene : Raywright's own interface.
+
     Notes
     -----
     All results have the dtypes of Open3D: float32 for numbers and uint32 for ids. Vertices and rays are not
     rounded before.
+
+    Examples
+    --------
+    >>> from raywright.compat.open3d import RaycastingScene
+    >>> scene = RaycastingScene()
+    >>> _ = scene.add_triangles([[0, 0, 0], [4, 0, 0], [0, 4, 0]], [[0, 1, 2]])
+    >>> scene.cast_rays([[1, 1, 5, 0, 0, -1]])["t_hit"].tolist()
+    [5.0]
     """
 
     INVALID_ID: ClassVar[int] = _INVALID
@@ -78,6 +91,19 @@ class RaycastingScene:
             If an array has the wrong shape, an index has no vertex, or a tensor is not on the CPU.
         TypeError
             If an array has the wrong type, or the arguments are others.
+
+        See Also
+        --------
+        Mesh.of : Meshes of other libraries.
+
+        Examples
+        --------
+        >>> from raywright.compat.open3d import RaycastingScene
+        >>> scene = RaycastingScene()
+        >>> scene.add_triangles([[0, 0, 0], [4, 0, 0], [0, 4, 0]], [[0, 1, 2]])
+        0
+        >>> scene.add_triangles([[0, 0, 1], [4, 0, 1], [0, 4, 1]], [[0, 1, 2]])
+        1
         """
         vertices, faces = vertex_positions, triangle_indices
         if faces is None:
@@ -98,7 +124,7 @@ class RaycastingScene:
         rays : (..., 6) array or Tensor
             Origin and direction of each ray, which need not be unit.
         nthreads : int
-            How many threads to use; 0 for all cores.
+            Number of threads; 0 for all cores.
 
         Returns
         -------
@@ -113,6 +139,19 @@ class RaycastingScene:
             If the last dimension is not 6, or a tensor is not on the CPU.
         TypeError
             If the array does not hold real numbers.
+
+        See Also
+        --------
+        Scene.intersect : Raywright's own query.
+
+        Examples
+        --------
+        >>> from raywright.compat.open3d import RaycastingScene
+        >>> scene = RaycastingScene()
+        >>> _ = scene.add_triangles([[0, 0, 0], [4, 0, 0], [0, 4, 0]], [[0, 1, 2]])
+        >>> hits = scene.cast_rays([[1, 1, 5, 0, 0, -1], [9, 9, 5, 0, 0, -1]])
+        >>> hits["t_hit"].tolist(), hits["primitive_ids"].tolist()
+        ([5.0, inf], [0, 4294967295])
         """
         hits = self._compiled.intersect(*_ends(rays), threads=_threads(nthreads))
         answer = {
@@ -128,6 +167,31 @@ class RaycastingScene:
         """Find whether each ray hits anything between `tnear` and `tfar`: (...) bool.
 
         Takes and raises what `cast_rays` does. Both ends count, in lengths of the direction.
+
+        Parameters
+        ----------
+        rays : (..., 6) array or Tensor
+            Origin and direction of each ray, which need not be unit.
+        tnear, tfar : float
+            The part of the ray that counts, both ends included, in lengths of the direction.
+        nthreads : int
+            Number of threads; 0 for all cores.
+
+        Returns
+        -------
+        (...) bool array or Tensor
+
+        See Also
+        --------
+        Scene.occluded : Raywright's own query.
+
+        Examples
+        --------
+        >>> from raywright.compat.open3d import RaycastingScene
+        >>> scene = RaycastingScene()
+        >>> _ = scene.add_triangles([[0, 0, 0], [4, 0, 0], [0, 4, 0]], [[0, 1, 2]])
+        >>> scene.test_occlusions([[1, 1, 5, 0, 0, -1], [9, 9, 5, 0, 0, -1]]).tolist()
+        [True, False]
         """
         ends = float(tnear), float(tfar)
         return self._told(self._compiled.occluded(*_ends(rays), *ends, threads=_threads(nthreads)), rays)
@@ -136,6 +200,31 @@ class RaycastingScene:
         """Count how often each ray crosses the meshes: (...) int32.
 
         Takes and raises what `cast_rays` does.
+
+        Parameters
+        ----------
+        rays : (..., 6) array or Tensor
+            Origin and direction of each ray, which need not be unit.
+        nthreads : int
+            Number of threads; 0 for all cores.
+
+        Returns
+        -------
+        (...) int32 array or Tensor
+
+        See Also
+        --------
+        Scene.count : Raywright's own query.
+
+        Examples
+        --------
+        >>> import trimesh
+        >>> from raywright.compat.open3d import RaycastingScene
+        >>> box = trimesh.creation.box((2, 2, 2))
+        >>> scene = RaycastingScene()
+        >>> _ = scene.add_triangles(box.vertices, box.faces)
+        >>> scene.count_intersections([[0.1, 0.2, 5, 0, 0, -1]]).tolist()
+        [2]
         """
         count = self._compiled.count(*_ends(rays), threads=_threads(nthreads))
         return self._told(count.astype(np.int32), rays)
@@ -145,12 +234,34 @@ class RaycastingScene:
 
         Takes and raises what `cast_rays` does.
 
+        Parameters
+        ----------
+        rays : (..., 6) array or Tensor
+            Origin and direction of each ray, which need not be unit.
+        nthreads : int
+            Number of threads; 0 for all cores.
+
         Returns
         -------
         dict
             ``ray_splits`` (N + 1,) uint32, between which the K hits of each of the N rays are; ``ray_ids``,
             ``geometry_ids`` and ``primitive_ids`` (K,) uint32; ``t_hit`` (K,) and ``primitive_uvs`` (K, 2)
             float32.
+
+        See Also
+        --------
+        Scene.intersect_all : Raywright's own query.
+
+        Examples
+        --------
+        >>> import trimesh
+        >>> from raywright.compat.open3d import RaycastingScene
+        >>> box = trimesh.creation.box((2, 2, 2))
+        >>> scene = RaycastingScene()
+        >>> _ = scene.add_triangles(box.vertices, box.faces)
+        >>> hits = scene.list_intersections([[0.1, 0.2, 5, 0, 0, -1]])
+        >>> hits["t_hit"].tolist(), hits["ray_splits"].tolist()
+        ([4.0, 6.0], [0, 2])
         """
         hits = self._compiled.intersect_all(*_ends(rays), threads=_threads(nthreads))
         answer = {
@@ -171,7 +282,7 @@ class RaycastingScene:
         query_points : (..., 3) array or Tensor
             The points.
         nthreads : int
-            How many threads to use; 0 for all cores.
+            Number of threads; 0 for all cores.
 
         Returns
         -------
@@ -186,6 +297,18 @@ class RaycastingScene:
             If the last dimension is not 3, or a tensor is not on the CPU.
         TypeError
             If the array does not hold real numbers.
+
+        See Also
+        --------
+        Scene.closest_point : Raywright's own query.
+
+        Examples
+        --------
+        >>> from raywright.compat.open3d import RaycastingScene
+        >>> scene = RaycastingScene()
+        >>> _ = scene.add_triangles([[0, 0, 0], [4, 0, 0], [0, 4, 0]], [[0, 1, 2]])
+        >>> scene.compute_closest_points([[1, 1, 3]])["points"].tolist()
+        [[1.0, 1.0, 0.0]]
         """
         found = self._compiled.closest_point(_points(query_points), threads=_threads(nthreads))
         has = found.found[..., np.newaxis]
@@ -199,17 +322,67 @@ class RaycastingScene:
         return self._all_told(answer, query_points)
 
     def compute_distance(self, query_points: Any, nthreads: int = 0) -> Any:
-        """Compute how far each point is from the meshes: (...) float32.
+        """Compute the distance of each point from the meshes: (...) float32.
 
         Takes and raises what `compute_closest_points` does. It is inf without any mesh.
+
+        Parameters
+        ----------
+        query_points : (..., 3) array or Tensor
+            The points.
+        nthreads : int
+            Number of threads; 0 for all cores.
+
+        Returns
+        -------
+        (...) float32 array or Tensor
+
+        See Also
+        --------
+        Scene.closest_point : Raywright's own query.
+
+        Examples
+        --------
+        >>> from raywright.compat.open3d import RaycastingScene
+        >>> scene = RaycastingScene()
+        >>> _ = scene.add_triangles([[0, 0, 0], [4, 0, 0], [0, 4, 0]], [[0, 1, 2]])
+        >>> scene.compute_distance([[1, 1, 3]]).tolist()
+        [3.0]
         """
         found = self._compiled.closest_point(_points(query_points), threads=_threads(nthreads))
         return self._told(_single(found.distance), query_points)
 
     def compute_signed_distance(self, query_points: Any, nthreads: int = 0, nsamples: int = 1) -> Any:
-        """Compute how far each point is from the meshes, less than 0 for those inside: (...) float32.
+        """Compute the signed distance of each point from the meshes, negative inside: (...) float32.
 
         Takes and raises what `compute_occupancy` does, which decides what is inside.
+
+        Parameters
+        ----------
+        query_points : (..., 3) array or Tensor
+            The points.
+        nthreads : int
+            Number of threads; 0 for all cores.
+        nsamples : int
+            An odd number, which changes nothing: no ray is lost on an edge.
+
+        Returns
+        -------
+        (...) float32 array or Tensor
+
+        See Also
+        --------
+        Scene.signed_distance : Raywright's own query.
+
+        Examples
+        --------
+        >>> import trimesh
+        >>> from raywright.compat.open3d import RaycastingScene
+        >>> box = trimesh.creation.box((2, 2, 2))
+        >>> scene = RaycastingScene()
+        >>> _ = scene.add_triangles(box.vertices, box.faces)
+        >>> scene.compute_signed_distance([[0, 0, 0], [0, 0, 3]]).tolist()
+        [-1.0, 2.0]
         """
         inside = self._inside(query_points, nthreads, nsamples)
         found = self._compiled.closest_point(_points(query_points), threads=_threads(nthreads))
@@ -228,9 +401,13 @@ class RaycastingScene:
         query_points : (..., 3) array or Tensor
             The points.
         nthreads : int
-            How many threads to use; 0 for all cores.
+            Number of threads; 0 for all cores.
         nsamples : int
             An odd number, which changes nothing: no ray is lost on an edge.
+
+        Returns
+        -------
+        (...) float32 array or Tensor
 
         Raises
         ------
@@ -238,6 +415,20 @@ class RaycastingScene:
             If the last dimension is not 3, a tensor is not on the CPU, or `nsamples` is not odd.
         TypeError
             If the array does not hold real numbers.
+
+        See Also
+        --------
+        Scene.contains : Raywright's own query.
+
+        Examples
+        --------
+        >>> import trimesh
+        >>> from raywright.compat.open3d import RaycastingScene
+        >>> box = trimesh.creation.box((2, 2, 2))
+        >>> scene = RaycastingScene()
+        >>> _ = scene.add_triangles(box.vertices, box.faces)
+        >>> scene.compute_occupancy([[0, 0, 0], [0, 0, 3]]).tolist()
+        [1.0, 0.0]
         """
         return self._told(_single(self._inside(query_points, nthreads, nsamples)), query_points)
 
@@ -250,9 +441,9 @@ class RaycastingScene:
         *args, **kwargs
             In one of two forms. Either ``intrinsic_matrix``, (3, 3), from the camera to pixels,
             ``extrinsic_matrix``, (4, 4), from the world to the camera, ``width_px`` and ``height_px``. Or
-            ``fov_deg``, the horizontal field of view in degrees, ``center``, the point that the camera looks
-            at, ``eye``, its place, ``up``, the direction in which rows of pixels follow each other, as Open3D
-            has it, ``width_px`` and ``height_px``.
+            ``fov_deg``, the horizontal field of view in degrees, ``center``, the target of the camera,
+            ``eye``, its place, ``up``, the direction in which rows of pixels follow each other, as in Open3D,
+            ``width_px`` and ``height_px``.
 
         Returns
         -------
@@ -266,6 +457,19 @@ class RaycastingScene:
             is not between 0 and 180, `up` points along the view, or a size is less than 1.
         TypeError
             If arguments are missing or of the wrong type.
+
+        See Also
+        --------
+        Camera.rays : Raywright's own cameras.
+
+        Examples
+        --------
+        >>> from raywright.compat.open3d import RaycastingScene
+        >>> rays = RaycastingScene.create_rays_pinhole(
+        ...     fov_deg=90, center=[0, 0, 0], eye=[0, 0, 5], up=[0, 1, 0], width_px=4, height_px=2
+        ... )
+        >>> rays.shape
+        (2, 4, 6)
         """
         given = (*args, *kwargs.values())
         form = rays_of_view if len(given) == 6 or "fov_deg" in kwargs else rays_of_matrices

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 
 def is_tensor(value: object) -> bool:
-    """Whether a value is an ``open3d.core.Tensor``."""
+    """Return whether a value is an ``open3d.core.Tensor``."""
     core: Any = getattr(sys.modules.get("open3d"), "core", None)
     return core is not None and isinstance(value, core.Tensor)
 

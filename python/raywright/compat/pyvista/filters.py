@@ -31,11 +31,11 @@ def ray_trace(
     origin, end_point : 3 numbers
         The ends of the segment, which count.
     first_point : bool
-        Whether only the first of the points is returned.
+        True to return only the first of the points.
     plot : bool
         Whether to show a picture of it.
     off_screen : bool, optional
-        Whether the picture is made off screen.
+        True to make the picture off screen.
 
     Returns
     -------
@@ -50,6 +50,19 @@ def ray_trace(
         If an end is not 3 finite numbers.
     TypeError
         If `mesh` is no pyvista.PolyData, or an end does not hold real numbers.
+
+    See Also
+    --------
+    multi_ray_trace : Many rays.
+
+    Examples
+    --------
+    >>> import pyvista
+    >>> from raywright.compat.pyvista import ray_trace
+    >>> points, cells = ray_trace(pyvista.Cube(), [0.1, 0.2, 5], [0.1, 0.2, -5])
+    >>> print(points.round(4))
+    [[ 0.1  0.2  0.5]
+     [ 0.1  0.2 -0.5]]
     """
     start, end = np.array(triple("origin", origin)), np.array(triple("end_point", end_point))
     surface = surface_of("mesh", mesh)
@@ -76,7 +89,7 @@ def multi_ray_trace(
     origins, directions : (n, 3) arrays
         The rays.
     first_point : bool
-        Whether only the first hit of each ray is returned.
+        True to return only the first hit of each ray.
     retry : bool
         Changes nothing: no hit is lost.
 
@@ -95,6 +108,18 @@ def multi_ray_trace(
         If an array is not (n, 3), or the two differ in shape.
     TypeError
         If `mesh` is no pyvista.PolyData, or an array does not hold real numbers.
+
+    See Also
+    --------
+    ray_trace : One segment.
+
+    Examples
+    --------
+    >>> import pyvista
+    >>> from raywright.compat.pyvista import multi_ray_trace
+    >>> points, rays, cells = multi_ray_trace(pyvista.Cube(), [[0.1, 0.2, 5], [9, 9, 5]], [[0, 0, -1]] * 2)
+    >>> points.round(4).tolist(), rays.tolist()
+    ([[0.1, 0.2, 0.5], [0.1, 0.2, -0.5]], [0, 0])
     """
     surface = surface_of("mesh", mesh)
     points, rays, faces = surface.intersector.intersects_location(origins, directions, not first_point)
@@ -117,7 +142,7 @@ def select_interior_points(
     mesh : pyvista.DataSet
         The mesh.
     surface : pyvista.PolyData
-        What encloses its points; points on it are inside.
+        The enclosing surface; points on it are inside.
     method : {"signed_distance", "cell_locator"}
         Changes nothing: either way the side is decided exactly.
     inside_out : bool
@@ -141,6 +166,18 @@ def select_interior_points(
         If `method` is none of these.
     TypeError
         If `surface` is no pyvista.PolyData.
+
+    See Also
+    --------
+    Scene.contains : Raywright's own query.
+
+    Examples
+    --------
+    >>> import pyvista
+    >>> from raywright.compat.pyvista import select_interior_points
+    >>> points = pyvista.PolyData([[0.0, 0.0, 0.0], [2.0, 0.0, 0.0]])
+    >>> select_interior_points(points, pyvista.Sphere())["selected_points"].astype(bool).tolist()
+    [True, False]
     """
     choice("method", method, ("signed_distance", "cell_locator"))
     intersector = surface_of("surface", surface).intersector

@@ -22,6 +22,19 @@ def install() -> Installation:
     ------
     ImportError
         If pyvista is not installed.
+
+    See Also
+    --------
+    uninstall : Undoes it.
+
+    Examples
+    --------
+    >>> import pyvista
+    >>> from raywright.compat.pyvista import install
+    >>> with install():
+    ...     points, cells = pyvista.Sphere().ray_trace([0.01, 0.02, 5], [0.01, 0.02, -5])
+    >>> len(points)
+    2
     """
     import pyvista
 
@@ -36,5 +49,15 @@ def install() -> Installation:
 
 
 def uninstall() -> None:
-    """Give pyvista its own methods back; nothing happens if there is nothing to undo."""
+    """Give pyvista its own methods back; nothing happens if there is nothing to undo.
+
+    See Also
+    --------
+    install : Its inverse.
+
+    Examples
+    --------
+    >>> from raywright.compat.pyvista import uninstall
+    >>> uninstall()
+    """
     _switch.off()

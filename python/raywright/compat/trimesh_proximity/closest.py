@@ -31,7 +31,7 @@ def closest_point(mesh: trimesh.Trimesh, points: ArrayLike) -> tuple[Floats, Flo
     closest : (n, 3) float64
         The closest points; NaN for a point that is not finite, and for all if the mesh has no faces.
     distance : (n,) float64
-        How far they are; inf if there is none.
+        Their distances; inf if there is none.
     triangle_id : (n,) int64
         Their faces; -1 if there is none. Of faces that share an edge or a corner and are as close, the one
         whose normal points most towards the point, as in trimesh.
@@ -42,21 +42,51 @@ def closest_point(mesh: trimesh.Trimesh, points: ArrayLike) -> tuple[Floats, Flo
         If the array is not (n, 3).
     TypeError
         If the array does not hold real numbers, or `mesh` is not a trimesh.Trimesh.
+
+    See Also
+    --------
+    Scene.closest_point : Raywright's own query.
+
+    Examples
+    --------
+    >>> import trimesh
+    >>> from raywright.compat.trimesh_proximity import closest_point
+    >>> closest, distance, face = closest_point(trimesh.creation.box((2, 2, 2)), [[0.1, 0.2, 3]])
+    >>> closest.round(6).tolist(), distance.tolist()
+    ([[0.1, 0.2, 1.0]], [2.0])
     """
     return closest_of(_intersector(mesh), points)
 
 
 def signed_distance(mesh: trimesh.Trimesh, points: ArrayLike) -> Floats:
-    """Find how far each point is from a mesh: positive inside, negative outside, as trimesh has it.
+    """Compute the signed distance of each point from a mesh: positive inside, as in trimesh.
 
-    Takes and raises what `closest_point` does. The sign is that of the closest face where the point lies
-    above or below it, and what ``contains_points`` of `RayMeshIntersector` finds elsewhere. Points within
+    Takes and raises what `closest_point` does. The sign is that of the closest face if the point lies above
+    or below it, and otherwise by ``contains_points`` of `RayMeshIntersector`. Points within
     ``trimesh.constants.tol.merge`` of the surface are inside.
+
+    Parameters
+    ----------
+    mesh : trimesh.Trimesh
+        The mesh, which may change between calls.
+    points : (n, 3) array
+        The points.
 
     Returns
     -------
     (n,) float64
         Minus infinity for points that are not finite, and for all if the mesh has no faces.
+
+    See Also
+    --------
+    Scene.signed_distance : Raywright's own query, with the other sign.
+
+    Examples
+    --------
+    >>> import trimesh
+    >>> from raywright.compat.trimesh_proximity import signed_distance
+    >>> signed_distance(trimesh.creation.box((2, 2, 2)), [[0, 0, 0], [0, 0, 3]]).tolist()
+    [1.0, -2.0]
     """
     return signed(_intersector(mesh), points, _tolerance)
 
@@ -68,14 +98,67 @@ class ProximityQuery(trimesh.proximity.ProximityQuery):
     ----------
     mesh : trimesh.Trimesh
         The mesh, which may change between calls.
+
+    See Also
+    --------
+    closest_point, signed_distance
+
+    Examples
+    --------
+    >>> import trimesh
+    >>> from raywright.compat.trimesh_proximity import ProximityQuery
+    >>> query = ProximityQuery(trimesh.creation.box((2, 2, 2)))
+    >>> query.signed_distance([[0, 0, 0], [0, 0, 3]]).tolist()
+    [1.0, -2.0]
     """
 
     def on_surface(self, points: ArrayLike) -> tuple[Floats, Floats, Ints]:
-        """Find the closest point of the mesh to each point, as `closest_point` does."""
+        """Find the closest point of the mesh to each point, as `closest_point` does.
+
+        Parameters
+        ----------
+        points : (n, 3) array
+            The points.
+
+        Returns
+        -------
+        closest : (n, 3) float64
+            The closest points.
+        distance : (n,) float64
+            Their distances.
+        triangle_id : (n,) int64
+            Their faces.
+
+        Examples
+        --------
+        >>> import trimesh
+        >>> from raywright.compat.trimesh_proximity import ProximityQuery
+        >>> query = ProximityQuery(trimesh.creation.box((2, 2, 2)))
+        >>> query.on_surface([[0.1, 0.2, 3]])[1].tolist()
+        [2.0]
+        """
         return closest_point(self._mesh, points)
 
     def signed_distance(self, points: ArrayLike) -> Floats:
-        """Find how far each point is from the mesh, positive inside, as `signed_distance` does."""
+        """Compute the signed distance of each point from the mesh, as `signed_distance` does.
+
+        Parameters
+        ----------
+        points : (n, 3) array
+            The points.
+
+        Returns
+        -------
+        (n,) float64
+            As of the function.
+
+        Examples
+        --------
+        >>> import trimesh
+        >>> from raywright.compat.trimesh_proximity import ProximityQuery
+        >>> ProximityQuery(trimesh.creation.box((2, 2, 2))).signed_distance([[0, 0, 0.5]]).tolist()
+        [0.5]
+        """
         return signed_distance(self._mesh, points)
 
 

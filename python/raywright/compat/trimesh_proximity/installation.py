@@ -11,14 +11,27 @@ _switch = Switch()
 def install() -> Installation:
     """Let ``trimesh.proximity`` find closest points and signed distances with raywright, until `uninstall`.
 
-    So do ``mesh.nearest`` of every mesh and all of trimesh that calls them. What was imported by name from
-    ``trimesh.proximity`` before stays as it was. Rays are a switch of their own: see ``trimesh_ray``.
+    So do ``mesh.nearest`` of every mesh and all of trimesh that calls them. Functions imported by name from
+    ``trimesh.proximity`` before stay as they were. Rays are a switch of their own: see ``trimesh_ray``.
 
     Returns
     -------
     Installation
         A context manager that calls `uninstall` at its end, unless it was installed already:
         ``with raywright.compat.trimesh_proximity.install(): ...``.
+
+    See Also
+    --------
+    uninstall : Undoes it.
+
+    Examples
+    --------
+    >>> import trimesh
+    >>> from raywright.compat.trimesh_proximity import install
+    >>> with install():
+    ...     distance = trimesh.proximity.signed_distance(trimesh.creation.box((2, 2, 2)), [[0, 0, 0]])
+    >>> distance.tolist()
+    [1.0]
     """
     return _switch.on(
         [
@@ -29,5 +42,15 @@ def install() -> Installation:
 
 
 def uninstall() -> None:
-    """Give trimesh its own functions back; nothing happens if there is nothing to undo."""
+    """Give trimesh its own functions back; nothing happens if there is nothing to undo.
+
+    See Also
+    --------
+    install : Its inverse.
+
+    Examples
+    --------
+    >>> from raywright.compat.trimesh_proximity import uninstall
+    >>> uninstall()
+    """
     _switch.off()

@@ -1,8 +1,8 @@
 """Rays for trimesh: a `RayMeshIntersector` of its interface, and `install` to use that for every mesh.
 
-The methods are those of ``trimesh.ray.ray_pyembree.RayMeshIntersector``, in its order of answers. What is hit
-is decided exactly, and all hits of a ray are found in one pass, so that none is lost, and a crossing of an
-edge is told once, however small, large or far from the origin a mesh is.
+The methods are those of ``trimesh.ray.ray_pyembree.RayMeshIntersector``, in its order of answers. Hits are
+decided exactly, and all hits of a ray are found in one pass, so that none is lost, and a crossing of an edge
+counts once, however small, large or far from the origin a mesh is.
 """
 
 from ..switch import Installation

@@ -51,6 +51,19 @@ def install() -> Installation:
     Installation
         A context manager that calls `uninstall` at its end, unless it was installed already:
         ``with raywright.compat.trimesh_ray.install(): ...``.
+
+    See Also
+    --------
+    uninstall : Undoes it.
+
+    Examples
+    --------
+    >>> import trimesh
+    >>> from raywright.compat.trimesh_ray import install
+    >>> with install():
+    ...     inside = trimesh.creation.box((2, 2, 2)).contains([[0, 0, 0], [0, 0, 3]])
+    >>> inside.tolist()
+    [True, False]
     """
     return _switch.on(
         [
@@ -64,5 +77,15 @@ def install() -> Installation:
 
 
 def uninstall() -> None:
-    """Give every mesh back the intersector that it was given; nothing happens if there is nothing to undo."""
+    """Give every mesh back the intersector that it was given; nothing happens if there is nothing to undo.
+
+    See Also
+    --------
+    install : Its inverse.
+
+    Examples
+    --------
+    >>> from raywright.compat.trimesh_ray import uninstall
+    >>> uninstall()
+    """
     _switch.off()

@@ -33,9 +33,22 @@ class RayMeshIntersector:
     TypeError
         If `geometry` is not a trimesh.Trimesh.
 
+    See Also
+    --------
+    install : Replaces ``mesh.ray`` by it.
+    Scene : Raywright's own interface.
+
     Notes
     -----
     Directions need not be unit. Rays with NaN, infinity or a zero direction hit nothing.
+
+    Examples
+    --------
+    >>> import trimesh
+    >>> from raywright.compat.trimesh_ray import RayMeshIntersector
+    >>> rays = RayMeshIntersector(trimesh.creation.box((2, 2, 2)))
+    >>> rays.intersects_any([[0.1, 0.2, 5], [9, 9, 5]], [[0, 0, -1]] * 2).tolist()
+    [True, False]
     """
 
     def __init__(self, geometry: trimesh.Trimesh, scale_to_box: bool = True) -> None:
@@ -56,6 +69,11 @@ class RayMeshIntersector:
 
         Takes, raises and orders what `intersects_id` does.
 
+        Parameters
+        ----------
+        ray_origins, ray_directions, multiple_hits, max_hits
+            As for `intersects_id`.
+
         Returns
         -------
         locations : (m, 3) float64
@@ -64,6 +82,19 @@ class RayMeshIntersector:
             Which ray.
         index_tri : (m,) int64
             Which face.
+
+        See Also
+        --------
+        Scene.intersect_all : Raywright's own query.
+
+        Examples
+        --------
+        >>> import trimesh
+        >>> from raywright.compat.trimesh_ray import RayMeshIntersector
+        >>> rays = RayMeshIntersector(trimesh.creation.box((2, 2, 2)))
+        >>> locations, index_ray, index_tri = rays.intersects_location([[0.1, 0.2, 5]], [[0, 0, -1]])
+        >>> locations.round(6).tolist(), index_ray.tolist()
+        ([[0.1, 0.2, 1.0], [0.1, 0.2, -1.0]], [0, 0])
         """
         primitive, ray, position = self._hits(ray_origins, ray_directions, multiple_hits, max_hits, True)
         return position, ray, primitive
@@ -83,7 +114,7 @@ class RayMeshIntersector:
         ray_origins, ray_directions : (n, 3) arrays
             The rays.
         multiple_hits : bool
-            Whether every hit of a ray is wanted, or the first.
+            True for every hit of a ray, False for the first.
         max_hits : int, optional
             The most hits of a ray that are wanted, from the first on; all of them if not given.
         return_locations : bool
@@ -104,6 +135,19 @@ class RayMeshIntersector:
             If an array is not (n, 3), the two differ in shape, or `max_hits` is less than 0.
         TypeError
             If an array does not hold real numbers, or `max_hits` is not an integer.
+
+        See Also
+        --------
+        Scene.intersect_all : Raywright's own query.
+
+        Examples
+        --------
+        >>> import trimesh
+        >>> from raywright.compat.trimesh_ray import RayMeshIntersector
+        >>> rays = RayMeshIntersector(trimesh.creation.box((2, 2, 2)))
+        >>> index_tri, index_ray = rays.intersects_id([[0.1, 0.2, 5]], [[0, 0, -1]], max_hits=1)
+        >>> len(index_tri), index_ray.tolist()
+        (1, [0])
         """
         primitive, ray, position = self._hits(
             ray_origins, ray_directions, multiple_hits, max_hits, return_locations
@@ -115,10 +159,27 @@ class RayMeshIntersector:
 
         Takes and raises what `intersects_id` does.
 
+        Parameters
+        ----------
+        ray_origins, ray_directions : (n, 3) arrays
+            The rays.
+
         Returns
         -------
         (n,) int32
             Which face; -1 for none.
+
+        See Also
+        --------
+        Scene.intersect : Raywright's own query.
+
+        Examples
+        --------
+        >>> import trimesh
+        >>> from raywright.compat.trimesh_ray import RayMeshIntersector
+        >>> rays = RayMeshIntersector(trimesh.creation.box((2, 2, 2)))
+        >>> bool((rays.intersects_first([[0.1, 0.2, 5], [9, 9, 5]], [[0, 0, -1]] * 2) >= 0).sum() == 1)
+        True
         """
         hits = self._scene.intersect(*_rays(ray_origins, ray_directions))
         return hits.primitive.copy()
@@ -127,6 +188,27 @@ class RayMeshIntersector:
         """Find whether each ray hits anything: (n,) bool.
 
         Takes and raises what `intersects_id` does.
+
+        Parameters
+        ----------
+        ray_origins, ray_directions : (n, 3) arrays
+            The rays.
+
+        Returns
+        -------
+        (n,) bool array
+
+        See Also
+        --------
+        Scene.occluded : Raywright's own query.
+
+        Examples
+        --------
+        >>> import trimesh
+        >>> from raywright.compat.trimesh_ray import RayMeshIntersector
+        >>> rays = RayMeshIntersector(trimesh.creation.box((2, 2, 2)))
+        >>> rays.intersects_any([[0.1, 0.2, 5], [9, 9, 5]], [[0, 0, -1]] * 2).tolist()
+        [True, False]
         """
         return self._scene.occluded(*_rays(ray_origins, ray_directions))
 
@@ -141,12 +223,28 @@ class RayMeshIntersector:
         points : (n, 3) array
             The points.
 
+        Returns
+        -------
+        (n,) bool array
+
         Raises
         ------
         ValueError
             If the array is not (n, 3).
         TypeError
             If it does not hold real numbers.
+
+        See Also
+        --------
+        Scene.contains : Raywright's own query.
+
+        Examples
+        --------
+        >>> import trimesh
+        >>> from raywright.compat.trimesh_ray import RayMeshIntersector
+        >>> box = trimesh.creation.box((2, 2, 2))
+        >>> RayMeshIntersector(box).contains_points([[0, 0, 0], [0, 0, 3]]).tolist()
+        [True, False]
         """
         core = self._scene._compiled()
         return core.contains(*point_arguments(triples("points", points), None), is_even_odd=True)

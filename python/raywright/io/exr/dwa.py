@@ -64,7 +64,7 @@ class _Rule(NamedTuple):
     ignores_case: bool
 
     def fits(self, channel: Channel) -> bool:
-        """Whether the rule applies to a channel."""
+        """Return whether the rule applies to a channel."""
         suffix = channel.name.rpartition(".")[2]
         same = suffix.lower() == self.suffix.lower() if self.ignores_case else suffix == self.suffix
         return same and channel.kind == self.kind

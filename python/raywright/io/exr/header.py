@@ -59,7 +59,7 @@ class Part(NamedTuple):
     shown : 4 ints
         Left, top, right and bottom of the window that is the picture, black where it has no pixels.
     chromaticities : 8 floats, optional
-        x and y of red, green, blue and white, if they are told.
+        x and y of red, green, blue and white, if the file has them.
     """
 
     number: int
@@ -80,7 +80,7 @@ class Part(NamedTuple):
 
     @property
     def is_whole(self) -> bool:
-        """Whether all channels have all pixels."""
+        """True if all channels have all pixels."""
         return all(channel.sampling == (1, 1) for channel in self.channels)
 
     @property

@@ -1,4 +1,4 @@
-"""EXR files of a picture and what is known of it, in layers as compositing programs call them."""
+"""EXR files of a picture and its auxiliary buffers, in layers with the names of compositing programs."""
 
 from collections.abc import Mapping
 from pathlib import Path

@@ -24,9 +24,9 @@ def write_exr(path: Path, channels: Mapping[str, NDArray[Any]], attributes: Mapp
     path : Path
         The file.
     channels : mapping of str to (H, W) array
-        What each channel holds, rows from the top.
+        Contents of each channel, rows from the top.
     attributes : mapping of str to str
-        What else the header tells.
+        Other attributes of the header.
 
     Raises
     ------
