@@ -1,4 +1,4 @@
-"""What comes in as numbers: checked, converted, and refused with one clear line."""
+"""Numbers as input: checked, converted, and refused with one clear line."""
 
 import math
 import operator
@@ -27,13 +27,13 @@ _DOUBLE, _SINGLE = np.dtype(np.float64), np.dtype(np.float32)
 def real_array(name: str, value: ArrayLike) -> NDArray[Any]:
     """Return `value` as an array of float32 or float64 in native byte order, without a copy where possible.
 
-    Integers and the other real types become float64. What of other libraries is taken, `as_array` tells.
+    Integers and the other real types become float64. `as_array` lists the types of other libraries.
 
     Raises
     ------
     TypeError
         If the values are not real numbers (bool, complex, text, objects), have a unit, are not on the CPU, or
-        numpy cannot read them: why, and what helps.
+        numpy cannot read them: with the reason and a remedy.
     ValueError
         If nested sequences are ragged, or entries are masked.
     """
@@ -211,7 +211,7 @@ def choice(name: str, value: str, choices: tuple[str, ...]) -> None:
 
 
 def _is_constant(array: NDArray[Any]) -> bool:
-    """Whether an array, and what it is a view of, is an array of numpy's own that cannot be written to."""
+    """Return whether an array, and the base of its view, are numpy's own and cannot be written to."""
     base: Any = array
     while type(base) is np.ndarray and not base.flags.writeable:
         if base.base is None:

@@ -1,4 +1,4 @@
-"""Arrays of numpy from those of other libraries, and one clear line for what cannot become one."""
+"""Arrays of numpy from those of other libraries, and one clear line for those that cannot be converted."""
 
 from typing import Any
 
@@ -27,7 +27,8 @@ def as_array(name: str, value: ArrayLike) -> NDArray[Any]:
     Raises
     ------
     TypeError
-        If it has a unit, is not in the memory of the CPU, or numpy cannot read it: why, and what helps.
+        If it has a unit, is not in the memory of the CPU, or numpy cannot read it: with the reason and a
+        remedy.
     ValueError
         If nested sequences are ragged, or entries are masked.
     """
@@ -45,7 +46,7 @@ def as_array(name: str, value: ArrayLike) -> NDArray[Any]:
 
 
 def describe(value: object, array: NDArray[Any], short: bool = False) -> str:
-    """Return what came instead of numbers and, where it is objects, the first that is none and what helps."""
+    """Describe a value that is no number; of objects, the first that is no number, with a remedy."""
     if not array.ndim and not isinstance(value, np.ndarray):
         return f"{_short(value)}{cure(value)}"
     is_named = not (short and isinstance(value, np.ndarray))
@@ -102,7 +103,7 @@ def _device(value: Any) -> str:
 
 
 def _short(value: object) -> str:
-    """Return what something looks like, or of what type it is where that says less."""
+    """Return a short form of a value, or its type if that says more."""
     told = " ".join(repr(value).split())
     is_plain = len(told) <= 80 and " at 0x" not in told.lower()
     return told if is_plain or isinstance(value, str) else type(value).__name__

@@ -21,7 +21,7 @@ def html_table(
 
 
 def html_columns(title: str, columns: Mapping[str, Any], size: int) -> str:
-    """Return columns of numbers as a table in HTML, of which there are `size` rows in all."""
+    """Return columns of numbers as a table in HTML, `size` rows in all."""
     rows = list(zip(*columns.values(), strict=True))
     notes = [f"{len(rows):,} of {size:,} rows"] if size > len(rows) else []
     return html_table(title, list(columns), rows, notes)

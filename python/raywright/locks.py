@@ -12,8 +12,8 @@ _all: "weakref.WeakSet[Lock]" = weakref.WeakSet()
 class Lock:
     """A lock that the thread that holds it may take again.
 
-    A forked process has the one thread that forked, and would wait for ever for what another thread of its
-    parent held. There such a lock is open.
+    A forked process has one thread, the one that forked, and would wait for ever for locks that other threads
+    of its parent held. There such a lock is open.
 
     Parameters
     ----------

@@ -20,8 +20,8 @@ SIDES = ("front", "back", "both")
 class Emission:
     """Emission of a surface: the `emission` of a shape that shines on its back, or on both sides.
 
-    Normals point to the front: the outside of a closed shape, and the side from which the corners of a face
-    are seen anticlockwise. A sphere whose back shines lights what stands within.
+    Normals point to the front: the outside of a closed shape, and the side where the corners of a face turn
+    anticlockwise. A sphere whose back shines lights what stands within.
 
     Parameters
     ----------

@@ -6,8 +6,8 @@ from pathlib import Path
 def beside(folder: Path, name: str) -> Path | None:
     """Return a file of a folder, or of a folder within it; None if there is none of that name.
 
-    Names may be those of another machine: small and capital letters are told apart only between files that
-    are both there, and of a path that leads nowhere, or out of the folder, the last part is looked for.
+    Names may come from another machine. Upper and lower case differ only between files that are both there;
+    of a path that leads nowhere, or out of the folder, only the last part is used.
     """
     plain = name.strip().strip('"').replace("\\", "/")
     root = folder.resolve()

@@ -21,7 +21,7 @@ def pbr_of(material: Any, left_out: LeftOut) -> Pbr:
     ----------
     material : bpy.types.Material
     left_out : LeftOut
-        What is told of all that has no effect.
+        Warned of: every feature without effect.
     """
     shader = _shader(material)
     kind = None if shader is None else shader.type

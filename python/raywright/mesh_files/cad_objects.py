@@ -91,7 +91,7 @@ def of_labelled(shape: Any, tolerance: float | None) -> Iterator[Mesh]:
 
 
 def of_builder(builder: Any, tolerance: float | None) -> Iterator[Mesh]:
-    """Yield the meshes of what a BuildPart or BuildSketch of build123d has built.
+    """Yield the meshes of a BuildPart or BuildSketch of build123d.
 
     Raises
     ------
@@ -127,7 +127,7 @@ def _several(parts: list[Any], tolerance: float | None, whole: Any) -> Iterator[
 
 
 def _inherited(shape: Any) -> Any:
-    """Return the color of a shape of build123d, or of what it is part of."""
+    """Return the color of a shape of build123d, or of its parent."""
     while shape is not None:
         if shape.color is not None:
             return shape.color

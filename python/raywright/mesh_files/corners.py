@@ -1,4 +1,4 @@
-"""Corners of faces that share a vertex if all that is told of them is the same."""
+"""Corners of faces share a vertex if all of their attributes are equal."""
 
 import numpy as np
 from numpy.typing import NDArray

@@ -46,7 +46,7 @@ class Lists(NamedTuple):
 
 
 class Data(NamedTuple):
-    """What a file tells of its elements of one kind, by the names of properties."""
+    """Data of the elements of one kind in a file, by the names of properties."""
 
     numbers: dict[str, Numbers]
     lists: dict[str, Lists]

@@ -1,4 +1,4 @@
-"""How a mesh looks, by what a file or an object of trimesh says of it."""
+"""Appearance of a mesh, from a file or an object of trimesh."""
 
 from typing import Any, NamedTuple
 
@@ -11,7 +11,7 @@ from ..textures import VertexColors
 
 
 class Look(NamedTuple):
-    """How a mesh looks; None where nothing is said of it."""
+    """Appearance of a mesh; None where nothing is said of it."""
 
     material: Material | None = None
     emission: Emitted | None = None

@@ -1,4 +1,4 @@
-"""Materials, emission and colours from what trimesh calls visuals."""
+"""Materials, emission and colors from trimesh's visuals."""
 
 from typing import Any
 

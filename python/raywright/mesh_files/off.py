@@ -26,13 +26,13 @@ _FACE = Property("vertex_indices", "i4", "i4")
 
 
 class _Kind(NamedTuple):
-    """What vertices have besides their place, by the letters before OFF."""
+    """Attributes of vertices, by the letters before OFF."""
 
     letters: str
 
     @property
     def dimensions(self) -> int:
-        """Number of coordinates, the fourth of which is what the others are divided by."""
+        """Number of coordinates; the fourth is the divisor of the others."""
         return 4 if "4" in self.letters else 3
 
     def properties(self, colors: int, kind: str = "f8") -> tuple[Property, ...]:
@@ -88,7 +88,7 @@ def _mesh(path: Path) -> Mesh:
 
 
 def _elements(data: bytes) -> tuple[dict[str, Data], _Kind]:
-    """Return the vertices and faces of a file, and what vertices have."""
+    """Return the vertices and faces of a file, and the attributes of vertices."""
     keyword = _KEYWORD.match(data)
     binary = _BINARY.match(data, keyword.end()) if keyword else None
     if keyword and binary:
@@ -120,7 +120,7 @@ def _letters(keyword: bytes) -> str:
 
 
 def _counts(body: bytes) -> tuple[int, int, bytes]:
-    """Return how many vertices and faces there are, and what follows; the number of edges may be missing."""
+    """Return the numbers of vertices and faces, and the rest; the number of edges may be missing."""
     words = re.match(rb"\s*(\S+)\s+(\S+)", body)
     if words is None or not all(re.fullmatch(rb"\d{1,18}", word) for word in words.groups()):
         raise ValueError("it has no counts of vertices and faces")

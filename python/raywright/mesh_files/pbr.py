@@ -53,7 +53,7 @@ class Picture(NamedTuple):
 
     @property
     def has_alpha(self) -> bool:
-        """Whether its last channel is alpha."""
+        """True if its last channel is alpha."""
         return self.pixels.shape[2] in (2, 4)
 
     def texture(self, linear: bool = False, channel: Channel | None = None) -> ImageTexture:
@@ -62,12 +62,12 @@ class Picture(NamedTuple):
 
 
 class Within(NamedTuple):
-    """What clear materials enclose (KHR_materials_volume, KHR_materials_dispersion).
+    """Interiors of clear materials (KHR_materials_volume, KHR_materials_dispersion).
 
     Attributes
     ----------
     share : 3 floats
-        What is left of light after a way of the length of `distance`, above 0.
+        Transmittance after a way of the length of `distance`, above 0.
     distance : float
         That way, in units of the world; infinite where nothing is lost.
     abbe : float, optional
@@ -105,18 +105,18 @@ class Film(NamedTuple):
 
 
 class Pbr(NamedTuple):
-    """What glTF says of a material (3.9, and extensions); None where it says nothing.
+    """A material of glTF (3.9, and extensions); None where it says nothing.
 
     Attributes
     ----------
     color : (3,) or (4,) array, optional
         Linear base colour, and alpha.
     color_picture, rough_picture, normal_picture, emission_picture : Picture, optional
-        Of base colour, of roughness in green and metalness in blue, of normals, and of what it gives off.
+        Of base color, of roughness in green and metalness in blue, of normals, and of emission.
     metallic, roughness : float, optional
         1 if not given, where something else is.
     normal_scale : float
-        How much normals turn.
+        Strength of normals.
     emission : (3,) array, optional
         Radiance.
     alpha_mode : str, optional
@@ -124,12 +124,12 @@ class Pbr(NamedTuple):
     alpha_cutoff : float, optional
         Of a mask: the least alpha that is there; 0.5 if not given.
     both_sides : bool
-        Whether the back shines too.
+        True if the back shines too.
     colored : bool
-        Whether colours of vertices count.
+        True if vertex colors count.
     vertex_alpha : float or str
-        Their alpha, or where it is told: ``"u"`` along the picture that stands for it, for what has no
-        others, ``"colors"`` in place of their colours, for what is blended.
+        Their alpha, or its source: ``"u"`` along the picture that stands for it, for meshes without others,
+        ``"colors"`` in place of their colors, for blended ones.
     ior : float
         Index of refraction.
     transmission : float
@@ -137,11 +137,11 @@ class Pbr(NamedTuple):
     transmission_picture : Picture, optional
         Of that share, in red.
     within : Within, optional
-        What it bounds, unless it is a thin sheet.
+        Its interior, unless it is a thin sheet.
     film : Film, optional
-        What is on it, where it is clear or metal; what is partly metal has it on that part.
+        Its film, on clear materials or metal; a partly metallic one has it on the metal.
     unlit : bool
-        Whether it is to be shown without light (KHR_materials_unlit); it is matt here.
+        True if it is to be shown without light (KHR_materials_unlit); it is matt here.
     """
 
     color: NDArray[np.float64] | None = None
@@ -187,13 +187,13 @@ class Pbr(NamedTuple):
 
     @property
     def is_tinted(self) -> bool:
-        """Whether its base colour is not white."""
+        """True if its base color is not white."""
         tinted = self.color_picture is not None or self.colored
         return tinted or (self.color is not None and bool((self.color[:3] != 1).any()))
 
     @property
     def filmed(self) -> str:
-        """How much of what is not clear shows its film: "all", "metal", or "nothing"."""
+        """Share of the opaque part that shows its film: "all", "metal", or "nothing"."""
         metallic, _ = self._shares()
         if metallic == 0.0 or self.colored:
             return "nothing"
@@ -220,7 +220,7 @@ class Pbr(NamedTuple):
         return metal if metallic == 1.0 else Mix(MetallicRough(color, 0.0, roughness), metal, metallic)
 
     def _indices(self) -> Value:
-        """Return the indices of refraction by which metal reflects its base colour, picture and all."""
+        """Return the indices of refraction for which metal reflects its base color, picture and all."""
         factor = np.array(_WHITE if self.color is None else self.color[:3])
         picture = self.color_picture
         if picture is None:
@@ -341,7 +341,7 @@ def _share_of(share: Number, factor: float) -> Number:
 
 
 def _index(shares: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the indices of refraction by which such shares of light are reflected that come straight on."""
+    """Return the indices of refraction with these reflectances at normal incidence."""
     root = np.sqrt(np.clip(shares, 0.0, 0.9999))
     return np.asarray((1 + root) / (1 - root))
 

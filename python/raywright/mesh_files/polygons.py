@@ -67,7 +67,7 @@ def _values(vertex_data: Any, face_data: Any, cells: Any) -> dict[str, Any]:
 
 
 class LeftOut:
-    """What is left out of an object, told in one warning."""
+    """Parts of an object that are left out, for one warning."""
 
     def __init__(self, source: str) -> None:
         self._source = source

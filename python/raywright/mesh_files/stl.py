@@ -72,7 +72,7 @@ def _of_text(text: bytes) -> Iterator[tuple[str, Floats, NDArray[np.int64]]]:
 
 
 def _sections(text: bytes) -> Iterator[tuple[str, bytes]]:
-    """Yield the name of each solid, and what is in it in small letters."""
+    """Yield the name of each solid, and its contents in lower case."""
     lower = text.lower()
     at, name, begin = 0, "", -1
     while (found := lower.find(b"solid", at)) >= 0:

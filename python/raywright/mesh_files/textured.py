@@ -28,8 +28,8 @@ def split_corners(
     Returns
     -------
     sources : (W,) int64 array
-        Which vertex each one was: the first `count` are themselves, and behind them are those that vertices
-        with several coordinates have in addition.
+        Original index of each vertex: the first `count` are themselves, and behind them are the copies of
+        vertices with several coordinates.
     corners : (C,) int64 array
         The new vertex of each corner.
     uv : (W, 2) array

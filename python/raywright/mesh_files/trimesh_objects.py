@@ -107,7 +107,7 @@ def _by_material(visual: Any, count: int) -> Iterator[tuple[Any, NDArray[np.int6
 
 
 class _Plain:
-    """What trimesh calls a visual, of one material or none."""
+    """A visual of trimesh, with one material or none."""
 
     kind = "texture"
 

@@ -1,4 +1,4 @@
-"""Whatever a file holds, ready to be rendered."""
+"""Files of all kinds, ready to be rendered."""
 
 import errno
 from dataclasses import replace
@@ -23,7 +23,7 @@ SCENES = (".xml", ".pbrt", ".pbrt.gz", ".glb", ".gltf", *USD)
 
 
 def has_camera(path: str | PathLike[str]) -> bool:
-    """Whether a file is of a kind that has scenes rather than meshes only, by its suffix."""
+    """Return whether a file is of a kind that has scenes rather than meshes only, by its suffix."""
     return Path(path).name.lower().endswith(SCENES)
 
 
@@ -38,12 +38,11 @@ def load(
     weld: Weld = "auto",
     **parameters: Any,
 ) -> Shot:
-    """Read a scene, or a mesh, with all that it takes to make a picture of it.
+    """Read a scene, or a mesh, with the camera, lights and options of a picture.
 
-    What a file holds is shown in its own light where it has some: lights, or surfaces that shine and give
-    off enough, 0.02 W·sr⁻¹·m⁻² or more on average over all of its surface, or anything that shines where
-    the file has a camera. What has no light is lit as in `scenes.studio`: for a camera of its own, or else
-    framed, and on a floor.
+    A file with light is shown in its own light: lights, or surfaces that give off enough, 0.02 W·sr⁻¹·m⁻² or
+    more on average over all of its surface, or any emission if the file has a camera. A file without light is
+    lit as in `scenes.studio`: for its own camera, or else framed, and on a floor.
 
     Parameters
     ----------
@@ -62,17 +61,17 @@ def load(
         Where the random numbers come from, whatever the file says. If not given, the file's own; a scene of
         Mitsuba with the sampler ``independent``, which is the default there, counts as one that names none.
     weld : "auto", float or None
-        How close corners of meshes are one, in the scene's unit. "auto" is the rounding of the file's own
+        Welding distance of corners of meshes, in the scene's unit. "auto" is the rounding of the file's own
         precision, as for `Scene`; None for those alone that are equal. Only positions are made equal: corners
         with other normals, coordinates or colors stay vertices of their own.
     **parameters
-        What ``$name`` in a scene of Mitsuba stands for, in place of its defaults: ``spp=16``. Those of the
-        names above are given by ``from_mitsuba(parameters=)``.
+        Values of ``$name`` in a scene of Mitsuba, in place of its defaults: ``spp=16``. Those of the names
+        above are given by ``from_mitsuba(parameters=)``.
 
     Returns
     -------
     Shot
-        What ``.render()`` makes a picture of.
+        ``shot.render()`` makes a picture of it.
 
     Raises
     ------
@@ -92,6 +91,20 @@ def load(
     -----
     RuntimeWarning
         Once of each kind of thing in the file that is not shown as it says.
+
+    See Also
+    --------
+    from_mitsuba : Scenes of Mitsuba, from dicts too.
+    Mesh.of : Meshes alone.
+
+    Examples
+    --------
+    >>> rw.scenes.torus_knot(along=40, around=8).save("knot.ply")
+    >>> shot = rw.load("knot.ply", width=16)
+    >>> shot.camera.width, shot.camera.height
+    (16, 12)
+    >>> shot.render(samples=1, progress=False).rgb.shape
+    (12, 16, 3)
     """
     if not isinstance(path, str | PathLike):
         raise TypeError(f"path must be a str or a path, got {type(path).__name__}")

@@ -1,4 +1,4 @@
-"""How what a file holds is shown: lit, framed, and put on a floor where the file says nothing of it."""
+"""Lighting, framing and a floor for files that lack them."""
 
 from collections.abc import Sequence
 from typing import Any, Literal
@@ -34,23 +34,22 @@ def shown(
     width: int | None = None,
     height: int | None = None,
 ) -> Shot:
-    """Return a shot of what a file holds.
+    """Return a shot of a file's contents.
 
-    Where there is light of its own, all is shown as it is: where there are lights, where anything shines and
-    there is a camera, which somebody has put there, and where there is none but what shines gives off enough.
-    All else is put in a `studio`, or, where there is a camera, in the light of one. What has no camera is
-    framed.
+    Everything is shown as it is if there is light: if there are lights, if anything shines and there is a
+    camera, which is an author's, and without a camera if emission gives off enough. All else is put in a
+    `studio`, or, where there is a camera, in the light of one. A file without a camera is framed.
 
     Parameters
     ----------
     shapes : Mesh, another shape, Instance, or list of these
-        What can be hit.
+        Shapes of the file.
     lights : sequence of lights
         Lights that are no surfaces.
     camera : Camera or another kind, optional
-        Where the file has one.
+        If the file has one.
     up
-        As `framed` has it, for what has no camera.
+        As in `framed`, for files without a camera.
     width, height : int, optional
         Size of the picture, as `load` has them.
 
@@ -73,7 +72,7 @@ def shown(
 
 
 def size_of(width: int | None, height: int | None) -> tuple[int, int]:
-    """Return the size of a picture of what has no camera: if one of them is given, the other goes with it.
+    """Return the size of a picture without a camera: if one side is given, the other keeps the proportions.
 
     Raises
     ------

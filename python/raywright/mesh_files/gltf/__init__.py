@@ -1,4 +1,4 @@
-"""glTF files, .gltf and .glb: their meshes, and what is on them."""
+"""glTF files, .gltf and .glb: their meshes with materials and attributes."""
 
 import errno
 from os import PathLike

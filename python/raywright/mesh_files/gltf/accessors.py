@@ -35,8 +35,8 @@ class Accessors:
     def vectors(self, part: Part, name: str, *columns: int) -> NDArray[np.floating[Any]]:
         """Return the (N, columns) finite numbers of the accessor that a part names.
 
-        They are float32 as in the file, or float64 of what is stored in integers. (N, 16) are matrices,
-        column by column.
+        They are float32 as in the file, or float64 if stored as integers. (N, 16) are matrices, column by
+        column.
         """
         accessor = self._named(part, name)
         # Some programs share vertices among thousands of primitives.

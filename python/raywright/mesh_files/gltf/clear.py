@@ -1,4 +1,4 @@
-"""What clear materials of a glTF file have within, and films on them (KHR_materials_volume, and others)."""
+"""Interiors of clear materials of a glTF file, and films on them (KHR_materials_volume, and others)."""
 
 import math
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""What bends the meshes of a glTF file, as it stands at rest: skins and blended shapes (glTF 2.0, 3.7)."""
+"""Deformation of the meshes of a glTF file at rest: skins and blended shapes (glTF 2.0, 3.7)."""
 
 from typing import Any, NamedTuple
 
@@ -12,14 +12,14 @@ Array = NDArray[np.floating[Any]]
 
 
 class Deform(NamedTuple):
-    """How one node bends its mesh.
+    """Deformation of one node's mesh.
 
     Attributes
     ----------
     accessors : Accessors
         The arrays of the file.
     weights : tuple of float
-        How much of each shape is added to the mesh (3.7.2.2).
+        Weight of each blended shape (3.7.2.2).
     joints : (J, 4, 4) array, optional
         From the mesh as it was bound to a skin to the world, one matrix a joint (3.7.3); None without a skin.
     """

@@ -97,7 +97,7 @@ class Geometry:
     def _with_alpha(
         self, primitive: Part, surface: Surface, colors: Floats, uv: Floats | None
     ) -> tuple[Surface, Floats | None, Floats | None]:
-        """Return a material, colours and coordinates by which the alpha of colours of vertices counts."""
+        """Return a material, colors and coordinates in which the alpha of vertex colors counts."""
         tint, alpha = colors[0, :3], colors[:, 3]
         plain = bool((colors[:, :3] == tint).all())
         if (alpha == alpha[0]).all():

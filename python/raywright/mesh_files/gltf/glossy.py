@@ -16,7 +16,7 @@ def of_glossy(part: Part, diffuse: Picture | None, glossy: Picture | None) -> Pb
     Parameters
     ----------
     part : Part
-        What the extension says.
+        Contents of the extension.
     diffuse, glossy : Picture, optional
         Its two pictures. Where both are there, the first says how they lie on a surface.
     """

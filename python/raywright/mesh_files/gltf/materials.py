@@ -16,16 +16,16 @@ from .pictures import Pictures, coordinates
 
 
 class Surface(NamedTuple):
-    """What a primitive is made of.
+    """Material of a primitive.
 
     Attributes
     ----------
     material : Material, optional
         How it scatters; None where nothing is said.
     emission : Emitted, optional
-        What it gives off.
+        Its emission.
     coordinates : int, optional
-        Which set of texture coordinates its pictures lie on; None if it has no pictures.
+        Set of texture coordinates of its pictures; None if it has no pictures.
     alpha_mode : str
         ``"OPAQUE"``, or ``"MASK"`` or ``"BLEND"``, for which alpha counts.
     alpha : float
@@ -43,17 +43,17 @@ class Surface(NamedTuple):
 
 
 class Vertices(NamedTuple):
-    """What colours of vertices add to a material.
+    """Contribution of vertex colors to a material.
 
     Attributes
     ----------
     colored : bool
-        Whether they are a colour each.
+        True if each vertex has a color.
     tint : 3 floats
         The colour that all of them have, otherwise.
     alpha : float or str
-        The alpha that all of them have, or where it is told: ``"u"`` in texture coordinates, ``"colors"`` in
-        place of their colours.
+        The alpha of all of them, or its source: ``"u"`` in texture coordinates, ``"colors"`` in place of
+        their colours.
     """
 
     colored: bool = False
@@ -130,7 +130,7 @@ class Materials:
         return ior
 
     def _tell_of_glass(self, made: Pbr) -> None:
-        """Tell what of the model for clear materials, and of films, is not shown."""
+        """Report the features of clear materials and of films that are not supported."""
         tell = self._document.tell
         if made.film is not None and made.transmission > 0 and made.is_tinted:
             tell("what goes through clear materials with films on them is not tinted by their base colour")

@@ -30,7 +30,7 @@ def decompressed(path: Path, told: Part, data: memoryview, is_required: bool) ->
     data : memoryview
         The compressed bytes.
     is_required : bool
-        Whether the file has no other form of the view.
+        True if the file has no other form of the view.
 
     Returns
     -------

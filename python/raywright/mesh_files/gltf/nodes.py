@@ -1,4 +1,4 @@
-"""Where things stand in a glTF file: its nodes, and what of the file is at each (glTF 2.0, 3.5)."""
+"""Nodes of a glTF file: their transforms and contents (glTF 2.0, 3.5)."""
 
 from typing import NamedTuple
 
@@ -17,7 +17,7 @@ class Node(NamedTuple):
     Attributes
     ----------
     part : Part
-        What the file says of it.
+        Its JSON object.
     world : (4, 4) array
         From its own space to the world.
     """

@@ -1,4 +1,4 @@
-"""The JSON of a glTF file, read with nothing believed: what is wrong is told by where it stands."""
+"""The JSON of a glTF file, read without trust: errors name their place."""
 
 import math
 from typing import Any
@@ -18,12 +18,12 @@ class Part:
     place : str
         Where it stands.
     index : int
-        Which it is of its list; 0 of what is in none.
+        Its index in its list; 0 outside of lists.
 
     Raises
     ------
     ValueError
-        By its methods: one line that tells what is wrong where.
+        By its methods: one line with the error and its place.
     """
 
     def __init__(self, value: Any, place: str = "", index: int = 0) -> None:
@@ -37,7 +37,7 @@ class Part:
         return name in self._fields
 
     def names(self) -> tuple[str, ...]:
-        """Return the names of what is in it."""
+        """Return the names of its members."""
         return tuple(self._fields)
 
     def at(self, name: str) -> str:

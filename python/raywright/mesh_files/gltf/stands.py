@@ -77,7 +77,7 @@ def _copies(node: Node, accessors: Accessors) -> list[Matrix]:
 
 
 class _Skins:
-    """Where the joints of each skin take what hangs on them, as nodes stand."""
+    """Transforms of the joints of each skin, from the nodes."""
 
     def __init__(self, document: Document, accessors: Accessors, nodes: list[Node]) -> None:
         self._all = document.root.parts("skins")

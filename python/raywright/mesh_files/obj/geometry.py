@@ -27,14 +27,14 @@ class Part(NamedTuple):
     Attributes
     ----------
     material : str, optional
-        Its name; None of what stands before any is named.
+        Its name; None for parts before the first name.
     vertices : (V, 3) array
     faces : (F, 3) array
         In the order of the file; polygons as `triangulate` has them.
     normals, uv, colors : (V, 3), (V, 2), (V, 3) array, optional
         Those of the vertices. Colours are numbers as they stand there.
     cells : (F,) array, optional
-        Which face of the file each is part of; None if they are the same.
+        Index of each one's face in the file; None if they are the same.
     """
 
     material: str | None
@@ -47,21 +47,21 @@ class Part(NamedTuple):
 
 
 class Geometry:
-    """What faces of an OBJ file refer to, and the faces.
+    """Vertices of an OBJ file, and its faces.
 
     Parameters
     ----------
     text : bytes
         The file, as `text_of` has it.
     whole : bool
-        Whether all faces are one part, whatever their materials.
+        True if all faces are one part, whatever their materials.
 
     Attributes
     ----------
     libraries : list of bytes
-        What names files of materials, in the order of the file.
+        Names of material files, in the order of the file.
     lost : tuple of str
-        What of it cannot be shown, for a warning.
+        Features that are not supported, for a warning.
 
     Raises
     ------
@@ -105,7 +105,7 @@ class Geometry:
         self.lost: tuple[str, ...] = ()
 
     def parts(self) -> Iterator[Part]:
-        """Yield the triangles of each material, in the order in which faces have them first."""
+        """Yield the triangles of each material, in the order of their first faces."""
         numbers = self._numbers()
         for name, lines in self._faces.items():
             kept, counts, corners = _corners(lines)
@@ -202,7 +202,7 @@ def _uncommented(lines: list[bytes]) -> list[bytes]:
 
 
 def _corners(lines: list[bytes]) -> tuple[NDArray[np.bool_], Integers, Integers]:
-    """Return which faces have three corners or more, how many these have, and what each corner refers to.
+    """Return the faces with three corners or more, their numbers of corners, and the indices of each corner.
 
     The last is (C, 3), 0 where nothing.
     """

@@ -27,7 +27,7 @@ def look_of_held(material: Any) -> Look:
     Warns
     -----
     RuntimeWarning
-        Of what of it is not shown: pictures, for example, that trimesh does not keep.
+        If a part is not supported: pictures, for example, that trimesh does not keep.
     """
     from trimesh.visual.color import to_rgba
 

@@ -30,9 +30,9 @@ class Library:
     path : Path
         The file.
     lines : list of bytes
-        What it has to name their files.
+        Names of its files.
     notes : Notes
-        Where it is told what is missing.
+        Collects notes about missing files.
     """
 
     def __init__(self, path: Path, lines: list[bytes], notes: Notes) -> None:
@@ -86,7 +86,7 @@ class Library:
 
 
 def span_of(vertices: NDArray[np.float64], faces: NDArray[np.int64], uv: NDArray[np.float64]) -> float:
-    """Return how long on the surface 1 is in texture coordinates, on average; 0 if it cannot be told."""
+    """Return the mean length on the surface of 1 in texture coordinates; 0 if it is unknown."""
     a, b, c = (vertices[faces[:, i]] for i in range(3))
     p, q, r = (uv[faces[:, i]] for i in range(3))
     with np.errstate(all="ignore"):

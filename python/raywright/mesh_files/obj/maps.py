@@ -53,7 +53,7 @@ class Map(NamedTuple):
     multiplier : float
         Of bumps.
     textures : dict
-        Those that were made of pictures of the file so far: of what several materials share, one.
+        Textures made of the file's pictures so far: materials share them.
     """
 
     picture: Picture
@@ -72,7 +72,7 @@ class Map(NamedTuple):
 
     @property
     def is_of_normals(self) -> bool:
-        """Whether it looks like a picture of normals: mostly of that which points straight out, (½, ½, 1)."""
+        """True if it looks like a picture of normals: mostly straight ones, (½, ½, 1)."""
         pixels = self.picture.pixels
         if pixels.shape[2] < 3:
             return False

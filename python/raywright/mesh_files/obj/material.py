@@ -1,9 +1,9 @@
-"""What a material library says of a material, made of this library's materials.
+"""Materials of a material library, made of this library's materials.
 
 The models are those of the format's own illum (Alias|Wavefront, 1995): a matt surface; highlights by the
-formula of Blinn (1977); mirrors; panes; and glass that refracts. What the statements for physically based
-rendering say (Pr, Pm) takes precedence, and Blender, which fits a material of another kind to the numbers of
-this one, is read by the rule by which it writes.
+formula of Blinn (1977); mirrors; panes; and glass that refracts. Statements for physically based rendering
+(Pr, Pm) take precedence. Blender, which fits a material of another kind to these numbers, is read by its rule
+of writing.
 """
 
 import math
@@ -43,7 +43,7 @@ _BUMP = 0.01
 
 
 def look_of_mtl(said: Description, pictures: Pictures, span: float | None) -> Look:
-    """Return how a surface looks, by what a material library says of it.
+    """Return the appearance of a surface from a material library.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ def look_of_mtl(said: Description, pictures: Pictures, span: float | None) -> Lo
     pictures : Pictures
         Where its pictures are.
     span : float, optional
-        How long on the surface 1 is in texture coordinates; None where there are none.
+        Length on the surface of 1 in texture coordinates; None where there are none.
     """
     look = _Reading(said, pictures, span).look()
     # Ambient light is not simulated, and antialiasing of pictures has no effect.
@@ -66,7 +66,7 @@ def look_of_mtl(said: Description, pictures: Pictures, span: float | None) -> Lo
 
 
 class _Reading:
-    """What has been read of a material so far."""
+    """The state of reading a material."""
 
     def __init__(self, said: Description, pictures: Pictures, span: float | None) -> None:
         self._said = said
@@ -190,7 +190,7 @@ class _Reading:
         return MetallicRough(self._base(), metal, rough)
 
     def _mirror(self) -> Material | None:
-        """Return a matt surface of which Ks is a mirror, one brighter towards its edge with illum 5."""
+        """Return a matt surface with a mirror of reflectance Ks, brighter towards its edge with illum 5."""
         if self._illum not in _MIRRORS:
             return None
         shiny = self._color("Ks")
@@ -219,7 +219,7 @@ class _Reading:
         """Return a matt surface with highlights as bright as the format has them: Ks cos(h)^Ns.
 
         They are to Kd as the formula has it, ``(Kd + Ks cos(h)^Ns) / π``, and BlinnPhong has the share that
-        such highlights reflect at normal incidence. What they leave is what can be matt.
+        such highlights reflect at normal incidence. The rest can be matt.
         """
         said = self._said
         if self._illum in _MATT:
@@ -272,7 +272,7 @@ class _Reading:
         return BumpMap(body or Diffuse(), height, _BUMP * width * found.multiplier)
 
     def _seen_through(self, body: Material, opacity: Number) -> Material:
-        """Return a material of which only a part is there: a pane for the rest (illum 4), or nothing."""
+        """Return a partly transparent material: with a pane for the rest (illum 4), or a hole."""
         ior = self._ior() if self._illum == _PANE and self._said.blender is None else None
         if ior is None:
             return Mask(body, opacity)

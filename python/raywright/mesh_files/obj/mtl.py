@@ -22,7 +22,7 @@ OUTSIDE = "numbers out of range are moved into it"
 
 
 class Statement(NamedTuple):
-    """A line of a library: its keyword as it is written, and what follows."""
+    """A line of a library: its keyword as written, and the rest."""
 
     keyword: str
     rest: str
@@ -39,7 +39,7 @@ class Written(NamedTuple):
     materials : dict
         The statements of each material, by their keywords in small letters; of several alike the last.
     blender : float, optional
-        Where Blender wrote it: the exponent, Ns, of what is not rough at all.
+        Written by Blender: the exponent, Ns, of smooth materials.
     """
 
     materials: dict[str, Statements]
@@ -47,7 +47,7 @@ class Written(NamedTuple):
 
 
 def written(text: bytes) -> Written:
-    """Take a library apart. What stands twice in a file counts as it stands first."""
+    """Take a library apart. The first of duplicate entries counts."""
     materials: dict[str, Statements] = {}
     current: Statements = {}
     for word, rest in _LINE.findall(text):
@@ -64,7 +64,7 @@ def written(text: bytes) -> Written:
 
 
 class Description:
-    """What a library says of one material, each statement to be asked for by its keyword.
+    """Statements of a library about one material, by keyword.
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ class Description:
     statements : dict of Statement
         By their keywords in small letters.
     notes : Notes
-        Where it is told what cannot be read.
+        Collects notes about unreadable statements.
     blender : float, optional
         As `Written` has it.
     """
@@ -98,7 +98,7 @@ class Description:
         self._notes.add(kind, what, self.name)
 
     def take(self, *keywords: str) -> None:
-        """Pass over statements that say nothing of what is to be seen."""
+        """Skip statements without visible effect."""
         for keyword in keywords:
             self._left.pop(keyword.lower(), None)
 
@@ -149,7 +149,7 @@ class Description:
 
 
 def _number(word: str) -> float:
-    """Return a number, NaN for what is none."""
+    """Return a number, NaN for other text."""
     try:
         return float(word)
     except ValueError:

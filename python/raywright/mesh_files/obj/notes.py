@@ -1,4 +1,4 @@
-"""What of a file is not shown as it says, gathered to be told at once."""
+"""Unsupported features of a file, gathered for one warning."""
 
 from ...io.quiet import warn_caller
 from .text import told
@@ -7,7 +7,7 @@ _MOST = 12
 
 
 class Notes:
-    """What there is to warn of in one file: of each kind one warning, which names what it is about.
+    """Warnings about one file: one of each kind, which names its subjects.
 
     Parameters
     ----------

@@ -24,7 +24,7 @@ _TYPES = {
 
 
 class Header(NamedTuple):
-    """What a PLY file says of itself.
+    """The header of a PLY file.
 
     Attributes
     ----------

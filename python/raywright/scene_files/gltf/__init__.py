@@ -60,11 +60,11 @@ def read_gltf(path: str | PathLike[str], width: int | None = None, height: int |
 
     Of materials there is the metallic-roughness model with its pictures, alpha, normals and emission, and of
     the extensions KHR_materials_emissive_strength, KHR_materials_transmission (a `ThinDielectric`, or a
-    `Dielectric` where KHR_materials_volume says that there is a volume, with the tint of that; `Tinted` where
-    the base colour is not white), KHR_materials_dispersion, KHR_materials_iridescence (a `ThinFilm` on what
-    is clear and on metal, a `SoapFilm` where what is clear is a sheet), KHR_materials_ior and
-    KHR_texture_transform; trimesh turns KHR_materials_pbrSpecularGlossiness into that model. How thick a
-    volume is follows from its mesh, and not from the file's word for it.
+    `Dielectric` where KHR_materials_volume says that there is a volume, with the tint of that; `Tinted` if
+    the base color is not white), KHR_materials_dispersion, KHR_materials_iridescence (a `ThinFilm` on clear
+    materials and metal, a `SoapFilm` on clear sheets), KHR_materials_ior and KHR_texture_transform; trimesh
+    turns KHR_materials_pbrSpecularGlossiness into that model. The thickness of a volume follows from its
+    mesh, not from the file's number.
 
     Spots fall off between their two angles as a `SpotLight` does; the range of lights is a hint, and of no
     account. Skins and blended shapes are shown as the file has them at rest.

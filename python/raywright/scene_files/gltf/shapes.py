@@ -1,4 +1,4 @@
-"""What is to be seen in a glTF file: its meshes, where its nodes put them."""
+"""Shapes of a glTF file: its meshes, transformed by its nodes."""
 
 from collections.abc import Iterator
 
@@ -15,7 +15,7 @@ _MANY_FACES = 50_000
 
 
 def shapes(document: Document, nodes: list[Node]) -> Iterator[AnyShape]:
-    """Yield what `meshes` does, but what stands at several places, and is large, as an `Instance`."""
+    """Yield the meshes of `meshes`, with an `Instance` for large ones that stand at several places."""
     together: dict[int, tuple[tuple[Mesh, ...], list[Matrix]]] = {}
     for made, worlds in stands(document, nodes):
         together.setdefault(id(made), (made, []))[1].extend(worlds)

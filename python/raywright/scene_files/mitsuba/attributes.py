@@ -1,4 +1,4 @@
-"""What the vertices or the faces of a PLY file have besides their places: colours, weights."""
+"""Attributes of the vertices or faces of a PLY file: colors, weights."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -28,7 +28,7 @@ def named_within(plugin: Plugin) -> set[str]:
 
 
 def has_within(plugin: Plugin, kind: str) -> bool:
-    """Whether there is a plugin of a type within another, however deep."""
+    """Return whether there is a plugin of a type within another, however deep."""
     return any(str(one.get("type")).lower() == kind for one in all_within(plugin))
 
 

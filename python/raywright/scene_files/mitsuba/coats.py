@@ -1,4 +1,4 @@
-"""What a clear coat reflects back to the base under it, in Mitsuba's plastics."""
+"""Internal reflection of a clear coat to its base, in Mitsuba's plastics."""
 
 import math
 from functools import lru_cache

@@ -10,7 +10,7 @@ Floats = NDArray[np.float64]
 
 
 def read_curves(plugin: Plugin, least: int) -> list[Floats]:
-    """Return the control points of a file's curves, each (N, 4), the last of which is the radius.
+    """Return the control points of a file's curves, each (N, 4), with the radius last.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Emitters that are no surfaces: lights within a scene, and what surrounds it."""
+"""Emitters that are no surfaces: lights within a scene, and environments."""
 
 import math
 from collections.abc import Callable

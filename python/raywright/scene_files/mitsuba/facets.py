@@ -1,4 +1,4 @@
-"""What conductors and dielectrics have in common: facets, and shares of what they reflect."""
+"""Facets and factors shared by conductors and dielectrics."""
 
 from typing import NamedTuple, TypedDict
 
@@ -67,7 +67,7 @@ def dielectric(plugin: Plugin, uv: Uv) -> Material:
 
 
 def tinted(clear: Dielectric | ThinDielectric, plugin: Plugin, uv: Uv) -> Material:
-    """Return what is clear with the colours that its surface gives to what it reflects and lets through."""
+    """Return a clear material with the tints of its reflection and transmission."""
     reflected, through = (
         value(plugin, f"specular_{name}", 1.0, uv) for name in ("reflectance", "transmittance")
     )
@@ -76,7 +76,7 @@ def tinted(clear: Dielectric | ThinDielectric, plugin: Plugin, uv: Uv) -> Materi
 
 
 class Arguments(TypedDict):
-    """What raywright's rough materials are told of their facets."""
+    """Arguments of rough materials about their facets."""
 
     alpha: Rough
     distribution: str
@@ -84,7 +84,7 @@ class Arguments(TypedDict):
 
 
 class Facets(NamedTuple):
-    """What a rough surface is made of: the alpha, or two of them along raywright's u and v."""
+    """Roughness of a surface: the alpha, or two of them along raywright's u and v."""
 
     alpha: Rough
     distribution: str = "ggx"
@@ -118,7 +118,7 @@ def facets(plugin: Plugin, uv: Uv) -> Facets:
 
 
 def scaled(given: Material, plugin: Plugin, names: tuple[str, ...], uv: Uv) -> Material:
-    """Return a material of which only a share is left, the same for each of some parameters and grey."""
+    """Return a material scaled by a factor, the same for each of some parameters and grey."""
     shares = [value(plugin, name, 1.0, uv) for name in names]
     if any(isinstance(share, Texture) or len({*share}) != 1 for share in shares) or len({*shares}) != 1:
         plugin.fail(f"{' and '.join(names)} must be one number{', the same' if len(names) > 1 else ''}")

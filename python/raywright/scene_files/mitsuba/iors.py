@@ -38,7 +38,7 @@ def relative(plugin: Plugin, within: str) -> float:
     plugin : Plugin
         With ``int_ior`` and ``ext_ior``, numbers or names; air outside if not given.
     within : str
-        The name of what is inside if that is not given.
+        The default name of the inside.
     """
     return _index(plugin, "int_ior", within) / _index(plugin, "ext_ior", "air")
 

@@ -29,7 +29,7 @@ _WITHIN, _AROUND = "media within", "media around"
 
 
 def filled(plugin: Plugin, material: Material | None, box: Box | None = None) -> Material | None:
-    """Return the material of a shape, with what is within; None if it has none.
+    """Return the material of a shape, with its interior; None if it has none.
 
     `box` is the least and the greatest corner of the shape, where that is known: grids repeat as far.
 
@@ -174,7 +174,7 @@ def _shared(
 
 
 def _parts(extinction: Triple | Spectrum, albedo: Triple | Spectrum, scale: float) -> tuple[Any, Any]:
-    """Return what is absorbed and what is scattered, by wavelength if either is so told."""
+    """Return absorption and scattering, by wavelength if either is."""
     told = [one for one in (extinction, albedo) if isinstance(one, Spectrum)]
     if not told:
         all_of, share = scale * np.array(extinction), np.array(albedo)
@@ -185,7 +185,7 @@ def _parts(extinction: Triple | Spectrum, albedo: Triple | Spectrum, scale: floa
 
 
 def _at(told: Triple | Spectrum, nm: NDArray[np.float64], is_share: bool) -> NDArray[np.float64]:
-    """Return what is told at wavelengths: of red, green and blue by a smooth spectrum."""
+    """Return values at wavelengths: for red, green and blue by a smooth spectrum."""
     if isinstance(told, Spectrum):
         return np.asarray(told.at(nm))
     if len({*told}) == 1:
@@ -216,7 +216,7 @@ class Volume(NamedTuple):
 
     @property
     def density(self) -> NDArray[Any]:
-        """How dense it is: 1 where it has no numbers."""
+        """Its density: 1 if it has no numbers."""
         return np.ones((1, 1, 1)) if self.numbers is None else self.numbers
 
 

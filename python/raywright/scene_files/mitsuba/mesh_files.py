@@ -26,7 +26,7 @@ _FACES = (
 
 
 class Triangles(NamedTuple):
-    """What a mesh is made of: (V, 3), (F, 3), and if there are any (V, 3) normals and (V, 2) coordinates."""
+    """The arrays of a mesh: (V, 3), (F, 3), and if there are any (V, 3) normals and (V, 2) coordinates."""
 
     vertices: Floats
     faces: NDArray[np.int64]
@@ -36,7 +36,7 @@ class Triangles(NamedTuple):
     def placed(self, matrix: Matrix, flipped: bool) -> "Triangles":
         """Return them where a matrix puts them; `flipped`, with the other side outside.
 
-        A matrix that mirrors turns faces round where there are normals, so that what is outside stays so.
+        A matrix that mirrors turns faces round if there are normals, so that outside stays outside.
         """
         linear = matrix[:3, :3]
         vertices = self.vertices @ linear.T + matrix[:3, 3]
@@ -78,7 +78,7 @@ def rectangle() -> Triangles:
 
 
 def cube() -> Triangles:
-    """Return the cube from (-1, -1, -1) to (1, 1, 1), each face of which has coordinates of its own."""
+    """Return the cube from (-1, -1, -1) to (1, 1, 1), with own coordinates on each face."""
     vertices = np.array([corner for _, corners in _FACES for corner in corners], np.float64)
     normals = np.repeat(np.array([normal for normal, _ in _FACES], np.float64), 4, axis=0)
     uv = np.tile([(0.0, 1.0), (1.0, 1.0), (1.0, 0.0), (0.0, 0.0)], (6, 1))
@@ -89,7 +89,7 @@ def cube() -> Triangles:
 def of_file(plugin: Plugin) -> tuple[Triangles, bool]:
     """Return the mesh of an ``obj``, ``ply`` or ``serialized``, and whether it is still to be made smooth.
 
-    What is to be made smooth is so where it stands.
+    Meshes with `smooth` are smoothed in place.
     """
     path = plugin.path()
     mesh: Mesh | Stored

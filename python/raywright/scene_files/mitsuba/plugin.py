@@ -1,4 +1,4 @@
-"""One plugin of a scene: its type, where it stands, and its parameters, each of which must be understood."""
+"""One plugin of a scene: its type, its place, and its parameters, each of which must be understood."""
 
 import warnings
 from collections.abc import Iterator, Mapping
@@ -21,7 +21,7 @@ _MOST_WITHIN = 12
 
 
 class Context:
-    """What all plugins of a scene share: folders of files, objects by name, and warnings given once.
+    """Context shared by all plugins of a scene: folders of files, objects by name, and warnings given once.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ class Plugin:
     values : mapping
         The plugin as a dict.
     where : str
-        Its name with those of what it is in, dots between.
+        Its name with those of its parents, dots between.
     context : Context
         That of the scene.
     """
@@ -114,11 +114,11 @@ class Plugin:
         raise SceneError(f"{self}: {why}")
 
     def warn(self, message: str) -> None:
-        """Warn of what is approximated in all plugins of the type, once a scene."""
+        """Warn once a scene of an approximation in all plugins of the type."""
         self.context.warn(self, message)
 
     def has(self, name: str) -> bool:
-        """Whether a parameter is given."""
+        """Return whether a parameter is given."""
         return name in self.values
 
     def take(self, name: str, default: Any = None) -> Any:
@@ -129,7 +129,7 @@ class Plugin:
         return self.context.follow(self.values[name], f"{self}: {name}")
 
     def ignore(self, *names: str) -> None:
-        """Take what changes no picture here."""
+        """Skip a parameter that changes no picture here."""
         self._left.difference_update(names)
 
     def number(self, name: str, default: float) -> float:

@@ -44,8 +44,8 @@ def from_mitsuba(
 ) -> Shot:
     """Read a scene in the format of Mitsuba 3.
 
-    The picture is that of Mitsuba's ``_rgb`` variants. What is not supported is refused by the name of its
-    plugin; what is only approximated is warned of, once for each type.
+    The picture is that of Mitsuba's ``_rgb`` variants. Unsupported plugins are refused by name; approximated
+    ones give a warning, once for each type.
 
     Parameters
     ----------
@@ -56,11 +56,11 @@ def from_mitsuba(
         Where a dict's files are; the current one if not given. Those of an XML file are where it is, or in
         this folder if they are not there.
     sensor : int
-        Which of the scene's sensors looks.
+        Index of the scene's sensor.
     parameters : dict, optional
-        What ``$name`` in an XML file stands for, in place of its defaults: numbers, texts or bools by name.
+        Values of ``$name`` in an XML file, in place of its defaults: numbers, texts or bools by name.
     weld : "auto", float or None
-        How close corners of meshes are one, as `load` has it.
+        Welding distance of corners of meshes, as in `load`.
 
     Returns
     -------
@@ -76,6 +76,18 @@ def from_mitsuba(
         is negative or not finite.
     TypeError
         If `scene` is no dict and no path, or `sensor` is no integer.
+
+    See Also
+    --------
+    load : Reads files of all kinds.
+
+    Examples
+    --------
+    >>> ball = {"type": "sphere", "bsdf": {"type": "diffuse"}}
+    >>> lamp = {"type": "constant"}
+    >>> shot = rw.from_mitsuba({"type": "scene", "ball": ball, "lamp": lamp, "view": {"type": "perspective"}})
+    >>> shot.scene.shapes[0].radius, type(shot.scene.environment).__name__
+    (1.0, 'ConstantEnvironment')
     """
     sensor = integer("sensor", sensor, 0)
     weld_tolerance(weld)

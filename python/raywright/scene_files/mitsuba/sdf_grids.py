@@ -1,4 +1,4 @@
-"""Surfaces that are told by the distance to them on a grid, as meshes."""
+"""Meshes of signed distance grids."""
 
 from typing import NamedTuple
 

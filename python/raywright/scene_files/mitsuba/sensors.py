@@ -34,12 +34,12 @@ class Crop(NamedTuple):
 
     @property
     def whole(self) -> bool:
-        """Whether it is all of it."""
+        """True if it is the whole picture."""
         return self.size == self.part and self.offset == (0, 0)
 
     @property
     def centred(self) -> bool:
-        """Whether it is its middle, in the same proportions."""
+        """True if it is the picture's middle, in the same proportions."""
         (w, h), (a, b), (x, y) = self
         return w - a == 2 * x and h - b == 2 * y and a * h == b * w
 
@@ -199,7 +199,7 @@ def _one_ray(plugin: Plugin, crop: Crop, place: Matrix, way: Matrix) -> Orthogra
 
 
 def field_of_view(plugin: Plugin) -> tuple[float, str]:
-    """Return an angle of view in degrees, and what it is measured along."""
+    """Return an angle of view in degrees, and its axis."""
     if plugin.has("fov"):
         if plugin.has("focal_length"):
             plugin.fail("either fov or focal_length must be given, got both")

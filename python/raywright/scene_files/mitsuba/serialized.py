@@ -37,7 +37,7 @@ def read_serialized(path: Path, index: int) -> Stored:
     path : Path
         The file.
     index : int
-        Which of its meshes, from 0.
+        Index of the mesh, from 0.
 
     Raises
     ------
@@ -97,7 +97,7 @@ def _mesh(data: bytes, place: tuple[int, int], path: Path) -> Stored:
 
 
 class _Inflated:
-    """What is compressed, as far as somebody asks for it."""
+    """Decompressed data, on demand."""
 
     def __init__(self, data: bytes, path: Path) -> None:
         self._inflate = zlib.decompressobj()

@@ -38,18 +38,18 @@ _AOVS = {
 
 
 class Asked(NamedTuple):
-    """What an integrator asks for.
+    """Options of an integrator.
 
     Attributes
     ----------
     integrator : Path or another kind
-        How light is found.
+        The method of light transport.
     aov : tuple of str
-        What else is seen.
+        Auxiliary buffers.
     hidden : bool
-        Whether what shines is not seen itself.
+        True to hide emitters.
     unaimed : bool
-        Whether nobody looks for lights: what has no size is never found.
+        True without light sampling: lights without size are never found.
     """
 
     integrator: AnyIntegrator
@@ -165,8 +165,7 @@ class Sampling(NamedTuple):
 def sampler(plugin: Plugin | None) -> Sampling:
     """Return a sampler if one is named, how many samples a pixel it takes, and its seed.
 
-    Independent samples are what Mitsuba takes where nothing is named, and what its exporters write: they are
-    no choice.
+    Independent samples are Mitsuba's default, and its exporters write them: they are no choice.
     """
     if plugin is None:
         return Sampling()

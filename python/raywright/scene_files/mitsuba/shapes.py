@@ -25,7 +25,7 @@ GROUP, COPY, MERGED = "shapegroup", "instance", "merge"
 
 
 def shapes_of(plugin: Plugin) -> tuple[Mesh | Shape, ...]:
-    """Return the shape that a plugin stands for, or its parts, with its material and what it emits.
+    """Return the shape of a plugin, or its parts, with its material and emission.
 
     Raises
     ------
@@ -211,7 +211,7 @@ TYPES = tuple(_READERS)
 def _look(
     plugin: Plugin, uv: Uv, inside_out: bool = False, box: media.Box | None = None
 ) -> tuple[Material, Emitted | None]:
-    """Return the material of a shape and what it emits, None if nothing.
+    """Return the material of a shape and its emission, None if it has none.
 
     `inside_out`, of one whose front is its inside in Mitsuba; `box`, from where to where it is.
     """
@@ -239,7 +239,7 @@ def _moved(matrix: Matrix) -> Matrix | None:
 
 
 class Copies:
-    """The groups of a scene, each of which is read once, and where their copies are.
+    """The groups of a scene, each of which is read once, and the transforms of their copies.
 
     They stand in the scene where the first copy does.
     """
@@ -272,7 +272,7 @@ class Placed:
 
 
 def group(plugin: Plugin) -> tuple[Mesh | Shape, ...]:
-    """Return the shapes of a group, or of what is merged: how meshes lie in memory changes no picture."""
+    """Return the shapes of a group, or of merged meshes: the layout in memory changes no picture."""
     found: list[Mesh | Shape] = []
     for inner in plugin.children(*TYPES, MERGED):
         if inner.type == MERGED:
@@ -284,12 +284,12 @@ def group(plugin: Plugin) -> tuple[Mesh | Shape, ...]:
 
 
 def shines(one: "AnyShape | Placed") -> bool:
-    """Whether a shape, or one of a group, gives off light."""
+    """Return whether a shape, or one of a group, gives off light."""
     if isinstance(one, Placed):
         return any(map(shines, one.shapes))
     return not isinstance(one, Instance) and one.emission is not None
 
 
 def instances(found: "list[Any]") -> list[AnyShape]:
-    """Return shapes in which copies have become instances."""
+    """Return shapes with copies made instances."""
     return [one.instance() if isinstance(one, Placed) else one for one in found]

@@ -1,4 +1,4 @@
-"""Light that is the same at all wavelengths, and that of what is hot."""
+"""Uniform spectra, and blackbody spectra."""
 
 import numpy as np
 from numpy.typing import NDArray

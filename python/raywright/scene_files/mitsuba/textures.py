@@ -1,4 +1,4 @@
-"""Textures: pictures and checkerboards, and what may be a texture or the same everywhere."""
+"""Textures: pictures and checkerboards, and values that may be textures or constants."""
 
 from collections.abc import Callable
 from typing import Any
@@ -45,9 +45,9 @@ def value(
     uv : Uv
         Where the surface has its texture coordinates.
     emits : bool
-        Whether it is light rather than a share of light.
+        True for light rather than a share of light.
     change : function, optional
-        What is done to its colours.
+        Function applied to its colors.
     """
     inner = plugin.child(name)
     whole = _whole(inner)

@@ -12,14 +12,14 @@ Matrix = NDArray[np.float64]
 def of_elements(
     steps: list[tuple[str, dict[str, str]]], fail: Callable[[str], NoReturn]
 ) -> list[list[float]]:
-    """Return the (4, 4) matrix of a ``<transform>``: each step acts on what the ones before it made.
+    """Return the (4, 4) matrix of a ``<transform>``: each step is applied after the ones before it.
 
     Parameters
     ----------
     steps : list of (tag, attributes)
         Of ``<translate>``, ``<rotate>``, ``<scale>``, ``<lookat>`` and ``<matrix>``.
     fail : function
-        Called with what is wrong, and raises.
+        Called with an error, and raises.
     """
     matrix = np.eye(4)
     for tag, attributes in steps:
@@ -67,7 +67,7 @@ def rotation(axis: NDArray[np.float64], degrees: float) -> Matrix:
 
 
 def look_at(origin: Matrix, target: Matrix, up: Matrix) -> Matrix:
-    """Return the (4, 4) matrix of what stands at `origin`, looks along its +z, and has its +x to the left."""
+    """Return the (4, 4) matrix of an object at `origin` that looks along its +z, with its +x to the left."""
     forward = target - origin
     if not forward.any():
         raise ValueError("<lookat> must have an origin and a target that differ")
@@ -113,7 +113,7 @@ def uv_matrix(value: Any) -> Matrix:
 def straightened(matrix: Matrix) -> Matrix:
     """Return a (4, 4) matrix with axes at right angles, where they nearly are: files keep few digits.
 
-    What is skewed by more than 1e-3 stays so. Lengths do not count, and handedness stays.
+    Skews of more than 1e-3 stay. Lengths do not count, and handedness stays.
     """
     lengths = np.linalg.norm(matrix[:3, :3], axis=0)
     if not lengths.all():

@@ -8,16 +8,16 @@ from .transforms import Matrix
 
 
 class Uv(NamedTuple):
-    """How texture coordinates of a kind of shape differ.
+    """Texture coordinates of a kind of shape, compared with raywright's.
 
     Attributes
     ----------
     matrix : (3, 3) array
         From raywright's coordinates of a shape to Mitsuba's.
     turned : bool
-        Whether u and v change places.
+        True if u and v change places.
     left_handed : bool
-        Whether u, v and the normal are left-handed, as Mitsuba has them.
+        True if u, v and the normal are left-handed, as in Mitsuba.
     """
 
     matrix: Matrix

@@ -49,8 +49,7 @@ def shade(plugin: Plugin, name: str, default: float | Triple, emits: bool = Fals
     default : float or 3 floats
         If it is not given.
     emits : bool
-        Whether it is light rather than a share of light: a spectrum that is even over wavelengths is not
-        white then.
+        True for light rather than a share of light: a uniform spectrum is then not white.
     """
     value = plugin.take(name, default)
     if isinstance(value, Mapping):
@@ -124,7 +123,7 @@ def _hex(plugin: Plugin, text: str, coded: bool) -> Triple:
 
 
 def at_each_nm(spectrum: Spectrum, change: Any) -> Spectrum:
-    """Return a spectrum whose values are changed by what need not be linear."""
+    """Return a spectrum whose values are changed by a function that need not be linear."""
     ends = spectrum.wavelengths[0], spectrum.wavelengths[-1]
     between = np.arange(np.ceil(max(ends[0], 360.0)), min(ends[1], 830.0))
     nm = np.union1d(spectrum.wavelengths, between)

@@ -47,14 +47,14 @@ class Element:
 def read_xml(
     path: Path, parameters: Mapping[str, Any], folder: Path | None = None
 ) -> tuple[Tree, list[Path]]:
-    """Return the scene of an XML file as a dict, and the folders in which its files are looked for.
+    """Return the scene of an XML file as a dict, and the folders of its files.
 
     Parameters
     ----------
     path : Path
         The file.
     parameters : mapping of str to anything
-        What ``$name`` stands for, in place of the file's own defaults.
+        Values of ``$name``, in place of the file's own defaults.
     folder : Path, optional
         Where files are looked for that are nowhere else.
 
@@ -78,7 +78,7 @@ def read_xml(
 
 
 class _Reader:
-    """What one scene's files share: the values of their parameters, and where files are looked for."""
+    """State shared by the files of one scene: the values of their parameters, and the folders of files."""
 
     def __init__(self, given: dict[str, str], folder: Path | None) -> None:
         self.values = dict(given)

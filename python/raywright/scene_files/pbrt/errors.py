@@ -1,4 +1,4 @@
-"""What is wrong with a scene."""
+"""Errors of scenes."""
 
 
 class PbrtError(ValueError):

@@ -1,4 +1,4 @@
-"""Films: their size, and what their sensor makes of light."""
+"""Films: their size, and the response of their sensor."""
 
 import math
 from dataclasses import dataclass
@@ -31,7 +31,7 @@ class Film:
     speed : float
         Its ISO speed over 100, times its own exposure time if it has one.
     timed : bool
-        Whether the film has an exposure time, which then counts in place of the camera's shutter.
+        True if the film has an exposure time, which then counts in place of the camera's shutter.
     white : float, optional
         The temperature of the light that looks white, in kelvin.
     most : float, optional
@@ -45,12 +45,12 @@ class Film:
     most: float | None = None
 
     def imaging(self, exposure: float) -> Floats:
-        """Return the (3, 3) matrix from radiance to what a pixel of the film gets.
+        """Return the (3, 3) matrix from radiance to the film's pixels.
 
         Parameters
         ----------
         exposure : float
-            How long the camera's shutter is open.
+            Time for which the camera's shutter is open.
         """
         ratio = self.speed * (1.0 if self.timed else exposure)
         return ratio * (np.eye(3) if self.white is None else balance(self.white))

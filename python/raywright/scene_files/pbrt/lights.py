@@ -1,4 +1,4 @@
-"""Lights, and what surrounds a scene."""
+"""Lights and environments."""
 
 import math
 from typing import Any
@@ -25,7 +25,7 @@ from .textures import Textures
 def light(
     kind: str, parameters: Parameters, matrix: Floats, textures: Textures, imaging: Floats
 ) -> Light | Environment:
-    """Return a light, or what surrounds the scene.
+    """Return a light, or an environment.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ def light(
     textures : Textures
         Where files are looked for.
     imaging : (3, 3) array
-        From radiance to what the film gets.
+        Matrix from radiance to the film's pixels.
 
     Raises
     ------
@@ -80,7 +80,7 @@ def light(
 def _total(parameters: Parameters, name: str, of_one: float) -> float:
     """Return the factor by which a light has a power, or an illuminance; 1 if the light names none.
 
-    What is not above 0 counts as not given, for pbrt too.
+    Values not above 0 count as not given, in pbrt too.
     """
     total = parameters.number(name, -1.0)
     return total / of_one if total > 0 else 1.0

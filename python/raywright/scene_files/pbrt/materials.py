@@ -51,7 +51,7 @@ class Materials:
         self._named[name] = self.material(parameters.text("type"), parameters)
 
     def has(self, name: str) -> bool:
-        """Whether there is a material of that name so far."""
+        """Return whether there is a material of that name so far."""
         return name in self._named
 
     def named(self, name: str, parameters: Parameters) -> Material:

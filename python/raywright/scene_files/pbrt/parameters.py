@@ -1,4 +1,4 @@
-"""What stands after a directive: parameters by type and name, each of which must be understood."""
+"""Parameters of a directive, by type and name; each of them must be understood."""
 
 from collections.abc import Mapping
 from typing import Any, NoReturn
@@ -33,7 +33,7 @@ class Parameters:
         self._left = set(given)
 
     def over(self, defaults: Given) -> "Parameters":
-        """Return these with others for what is not among them, which need not be understood."""
+        """Return these, with the missing ones from others, which need not be understood."""
         both = Parameters({**defaults, **self.given}, self.where, self.what, self.notes)
         both._left = set(self.given)
         return both
@@ -43,15 +43,15 @@ class Parameters:
         raise PbrtError(f"{self.where}: {why}")
 
     def has(self, name: str) -> bool:
-        """Whether a parameter is given."""
+        """Return whether a parameter is given."""
         return name in self.given
 
     def ignore(self, *names: str) -> None:
-        """Take what changes no picture here."""
+        """Skip a parameter that changes no picture here."""
         self._left.difference_update(names)
 
     def leave_out(self, *names: str) -> None:
-        """Take what would change a picture, but is not supported, and note which of it is given."""
+        """Note and skip parameters that would change a picture, but are not supported."""
         for name in names:
             if self.has(name):
                 self.notes.tell(f"parameter {name!r} of {self.what} is left out")

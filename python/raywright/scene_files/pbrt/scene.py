@@ -78,7 +78,7 @@ class _Later(NamedTuple):
 
 @dataclass(frozen=True)
 class _State:
-    """What directives change, and what attributes keep."""
+    """State of the graphics, changed by directives and kept by attributes."""
 
     matrix: Floats = field(default_factory=lambda: np.eye(4))
     material: Material | _Later = field(default_factory=Diffuse)
@@ -142,7 +142,7 @@ class _Reader:
         return None
 
     def _read(self, one: Directive) -> None:
-        """Do what a directive asks for; whatever is wrong with it is told with its line."""
+        """Run a directive; errors name its line."""
         try:
             self._directive(one)
         except PbrtError:
@@ -342,7 +342,7 @@ class _Reader:
 
 
 def _step(one: Directive) -> Floats:
-    """Return the matrix of a directive, which acts on what comes after it first."""
+    """Return the matrix of a directive, which is applied before the ones before it."""
     values = np.array(one.numbers)
     if not np.isfinite(values).all():
         raise PbrtError(f"{one.where}: {one.name} must be finite numbers")

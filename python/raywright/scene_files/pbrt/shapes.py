@@ -29,7 +29,7 @@ _CELLS = 16
 
 
 class Look(NamedTuple):
-    """What a shape is made of and gives off, and whether its other side is outside."""
+    """Material and emission of a shape, and its orientation."""
 
     material: Material
     emission: Any
@@ -44,7 +44,7 @@ def emission(parameters: Parameters, imaging: Floats) -> Emission:
     parameters : Parameters
         Those of the light.
     imaging : (3, 3) array
-        From radiance to what the film gets.
+        Matrix from radiance to the film's pixels.
 
     Raises
     ------

@@ -26,7 +26,7 @@ GLASS = {
 def colour(parameters: Parameters, name: str, default: float | Triple, emits: bool = False) -> Triple:
     """Return a parameter that is one colour.
 
-    What emits, and is no rgb, has a luminance of 1, as pbrt makes it so.
+    Emission that is no rgb has a luminance of 1, as in pbrt.
     """
     found = parameters.take(name)
     if found is None:

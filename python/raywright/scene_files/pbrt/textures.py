@@ -1,4 +1,4 @@
-"""Textures, and what may be a texture or the same everywhere."""
+"""Textures, and values that may be textures or constants."""
 
 import math
 import warnings
@@ -119,7 +119,7 @@ class Textures:
         return made if inverted else _scaled(made, (scale,) * 3)
 
     def _gamma(self, path: Path, parameters: Parameters) -> float | None:
-        """Return the exponent by which the integers of a picture are decoded; None if they are sRGB."""
+        """Return the decoding exponent of a picture's integers; None if they are sRGB."""
         encoding = parameters.text("encoding", "sRGB")
         if encoding == "sRGB":
             return None
@@ -149,9 +149,9 @@ def image_map(picture: NDArray[Any], gamma: float | None, coloured: bool) -> tup
     picture : (H, W, C) array
         The picture.
     gamma : float, optional
-        The exponent by which integers are decoded; sRGB if not given.
+        Decoding exponent of integers; sRGB if not given.
     coloured : bool
-        Whether its colours count. If not, its alpha does where it has one that is not 1 everywhere, and the
+        True if its colors count. If not, its alpha does where it has one that is not 1 everywhere, and the
         mean of its colours elsewhere.
     """
     channels = picture.shape[2]

@@ -42,7 +42,7 @@ class Word(NamedTuple):
 
 
 class Directive(NamedTuple):
-    """What a file asks for: a name, and what stands after it."""
+    """A directive of a file: its name, and its arguments."""
 
     name: str
     texts: tuple[str, ...]

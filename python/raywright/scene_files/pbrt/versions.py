@@ -1,4 +1,4 @@
-"""Which version of pbrt a file is of."""
+"""The version of pbrt of a file."""
 
 import re
 

@@ -86,7 +86,7 @@ def read_usd(path: Path, width: int | None = None, height: int | None = None) ->
 
 
 def _shot(path: Path, notes: Notes, width: int | None, height: int | None) -> tuple[Shot, list[str]]:
-    """Return the shot of a file, and the errors by which its stage is not put together as it says."""
+    """Return the shot of a file, and the errors of composing its stage."""
     from pxr import Tf, Usd, UsdGeom
 
     try:
@@ -115,7 +115,7 @@ def _shot(path: Path, notes: Notes, width: int | None, height: int | None) -> tu
 
 
 def _read(stage: Any, reading: Reading) -> tuple[dict[str, list[Any]], AnyCamera | None]:
-    """Return shapes, lights and what is around, and the first camera."""
+    """Return shapes, lights and environment, and the first camera."""
     from pxr import UsdGeom
 
     found: dict[str, list[Any]] = {"shape": [], "light": [], "around": []}
@@ -140,7 +140,7 @@ def _read(stage: Any, reading: Reading) -> tuple[dict[str, list[Any]], AnyCamera
 
 
 def _why(stage: Any, reading: Reading) -> str:
-    """Return what of a stage was left out, for one of which nothing is seen."""
+    """Return the reasons for an empty stage: everything that was left out."""
     reasons = [
         f"{count} {'prims are' if count > 1 else 'prim is'} {why}" for why, count in reading.unseen.items()
     ]
@@ -153,7 +153,7 @@ def _why(stage: Any, reading: Reading) -> str:
 
 
 def _composed(stage: Any, path: Path, notes: Notes) -> list[str]:
-    """Note and return what of a stage could not be put together; refuse one of which a file is missing."""
+    """Note and return the composition errors of a stage; refuse a stage with a missing file."""
     kinds: dict[str, list[str]] = {}
     for error in stage.GetCompositionErrors():
         line = " ".join(str(error).split())

@@ -50,7 +50,7 @@ def camera(prim: Any, reading: Reading) -> AnyCamera:
 
 
 def exposure(prim: Any, reading: Reading) -> float:
-    """Return the factor by which a camera multiplies light."""
+    """Return the exposure factor of a camera."""
     from pxr import UsdGeom
 
     seen = UsdGeom.Camera(prim)

@@ -22,14 +22,14 @@ _RECT, _SPHERE, _DISK, _CYLINDER = "RectLight", "SphereLight", "DiskLight", "Cyl
 
 
 class Lit(NamedTuple):
-    """A light, a shape that shines, or what is around."""
+    """A light, an emissive shape, or an environment."""
 
     kind: str
     thing: Any
 
 
 def is_light(prim: Any) -> bool:
-    """Whether a prim is a light, and no shape that shines."""
+    """Return whether a prim is a light, and no emissive shape."""
     from pxr import UsdGeom, UsdLux
 
     return bool(UsdLux.LightAPI(prim)) and not prim.IsA(UsdGeom.Gprim)
@@ -72,7 +72,7 @@ class Source:
         Intensity times color times the camera's exposure: a radiance, or a power of its unit where it is
         normalised.
     normalised : bool
-        Whether the size of the light does not change its power.
+        True if the size of the light does not change its power.
     """
 
     def __init__(self, prim: Any, reading: Reading) -> None:

@@ -82,7 +82,7 @@ def _tell_what_is_left_out(mesh: Any, reading: Reading) -> None:
 
 
 def _own(prim: Any, reading: Reading) -> Surface:
-    """Return the surface of what has no material: grey, or of the colours of the mesh."""
+    """Return the surface of meshes without a material: grey, or of their colors."""
     primvar = found(prim, "displayColor")
     if primvar is not None and str(primvar.GetInterpolation()) != "constant":
         return coloured(None, opacity(prim, reading))

@@ -1,4 +1,4 @@
-"""Nodes of a USD material: values, and what they are connected to."""
+"""Nodes of a USD material: values and connections."""
 
 from typing import Any, NamedTuple
 
@@ -47,7 +47,7 @@ class Node:
         return Link(Node(UsdShade.Shader(source.GetPrim()), self._reading), source.GetBaseName())
 
     def is_given(self, name: str) -> bool:
-        """Whether an input is connected, or has a value of its own."""
+        """Return whether an input is connected, or has a value of its own."""
         return self.link(name) is not None or self.value(name) is not None
 
     def _source(self, name: str) -> Any:

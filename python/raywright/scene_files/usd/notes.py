@@ -11,7 +11,7 @@ __all__ = ["Notes", "told_of"]
 
 @contextmanager
 def told_of(prim: Any) -> Iterator[None]:
-    """Name the prim in whatever is wrong with its values."""
+    """Name the prim in errors about its values."""
     try:
         yield
     except (ValueError, TypeError, IndexError) as error:

@@ -41,7 +41,7 @@ class Corners:
     reading : Reading
         The stage.
     counts, indices : int arrays
-        How many corners each face has, and which points they are.
+        Number of corners of each face, and their points.
     """
 
     def __init__(

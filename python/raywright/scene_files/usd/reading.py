@@ -28,13 +28,13 @@ class Reading:
     pictures : Pictures
         The pictures that it names.
     exposure : float
-        The factor by which the camera multiplies light.
+        Exposure factor of the camera.
     surfaces : dict
         Surfaces that have been read, by material.
     textures : dict
         Textures that have been made, by all that they are made of.
     unseen : Counter
-        How many prims were passed over, by reason.
+        Number of skipped prims, by reason.
     """
 
     time: Any
@@ -97,7 +97,7 @@ def seen(root: Any, reading: Reading) -> Iterator[Any]:
 
 
 def numbers(given: Any, count: int, what: str) -> NDArray[np.int64]:
-    """Return numbers of things, of which there are so many."""
+    """Return `count` numbers of things."""
     found = np.array(() if given is None else given, np.int64).reshape(-1)
     if len(found) and not (found.min() >= 0 and found.max() < count):
         wrong = found[(found < 0) | (found >= count)][0]

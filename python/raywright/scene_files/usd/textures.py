@@ -64,9 +64,9 @@ class Textures:
         link : Link
             A UsdUVTexture, and which of its outputs counts.
         number : bool
-            Whether it is one number.
+            True for a single number.
         limit : float, optional
-            What it is at most; at least it is 0.
+            Its maximum; the minimum is 0.
         threshold : float
             Numbers that are below it become 0, and others 1, if it is above 0.
         """
