@@ -93,7 +93,7 @@ def singular_transform(transform: NDArray[np.float64]) -> tuple[int, str] | None
 
 @final
 class AcceleratorInfo:
-    """What the compiled accelerator looks like."""
+    """Statistics of a built accelerator."""
 
     @property
     def kind(self) -> str: ...

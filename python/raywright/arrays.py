@@ -98,7 +98,7 @@ def indices(name: str, value: ArrayLike, count: int, instead: str = "") -> NDArr
 
 
 def bools(name: str, value: ArrayLike, what: str) -> NDArray[np.bool_]:
-    """Return an array of bool of any shape; `what` says in an error what each of them is of."""
+    """Return an array of bool of any shape; `what` names each of them in an error."""
     array = as_array(name, value)
     if array.dtype != np.bool_:
         raise TypeError(f"{name} must be bool, {what}, got dtype {array.dtype}")
@@ -106,7 +106,7 @@ def bools(name: str, value: ArrayLike, what: str) -> NDArray[np.bool_]:
 
 
 def frozen(array: NDArray[Any]) -> NDArray[Any]:
-    """Return a read-only, C-contiguous copy, or the array itself where nobody can write to it."""
+    """Return a read-only, C-contiguous copy, or the array itself if it cannot be written to."""
     if array.flags.c_contiguous and array.flags.aligned and _is_constant(array):
         return array
     copy = np.array(array, order="C", copy=True, subok=False)
@@ -205,7 +205,7 @@ def thread_limit(threads: int | None) -> int | None:
 
 
 def choice(name: str, value: str, choices: tuple[str, ...]) -> None:
-    """Refuse what is not one of the choices."""
+    """Refuse other values than the choices."""
     if value not in choices:
         raise ValueError(f"{name} must be one of {', '.join(map(repr, choices))}, got {value!r}")
 

@@ -20,7 +20,7 @@ _DEVICES = {2: "CUDA", 4: "OpenCL", 7: "Vulkan", 8: "Metal", 10: "ROCm", 13: "CU
 def as_array(name: str, value: ArrayLike) -> NDArray[Any]:
     """Return `value` as an array of numpy, without a copy where possible.
 
-    Besides what numpy reads itself, this takes objects that have DLPack alone, numbers of ml_dtypes such as
+    Besides numpy's own inputs, this takes objects that have DLPack alone, numbers of ml_dtypes such as
     bfloat16 (as float64), frames of pandas' nullable columns without a missing entry, and quantities without
     a unit.
 
@@ -63,7 +63,7 @@ def describe(value: object, array: NDArray[Any], short: bool = False) -> str:
 
 
 def cure(value: object) -> str:
-    """Return what makes an array of something that numpy cannot read or finds no numbers in."""
+    """Return a remedy for a value that numpy cannot read or finds no numbers in."""
     module = type(value).__module__.partition(".")[0]
     if hasattr(value, "detach") and hasattr(value, "cpu"):
         return f"; pass its {''.join(_steps(value)) or '.detach().cpu()'}.numpy()"
@@ -197,7 +197,7 @@ def _unreadable(name: str, value: object, culprit: object, error: Exception) -> 
 
 
 def _culprit(value: object) -> object:
-    """Return what in nested lists numpy cannot read."""
+    """Return the entry in nested lists that numpy cannot read."""
     while isinstance(value, list | tuple):
         for entry in value:
             try:

@@ -28,7 +28,7 @@ def html_columns(title: str, columns: Mapping[str, Any], size: int) -> str:
 
 
 def escape(text: str) -> str:
-    """Return a text as HTML has it; the standard library's, which takes long to import, does the same."""
+    """Return a text as in HTML; the standard library's, which takes long to import, does the same."""
     for sign, name in (("&", "amp"), ("<", "lt"), (">", "gt"), ('"', "quot"), ("'", "#x27")):
         text = text.replace(sign, f"&{name};")
     return text

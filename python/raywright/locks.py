@@ -18,8 +18,7 @@ class Lock:
     Parameters
     ----------
     abandoned : callable, optional
-        Called in a forked process if another thread of the parent held the lock, to undo what that had done
-        by halves.
+        Called in a forked process if another thread of the parent held the lock, to undo its unfinished work.
     """
 
     def __init__(self, abandoned: Callable[[], None] | None = None) -> None:

@@ -44,7 +44,7 @@ class BVH:
         and ``"spatial"``.
     traversal_cost, intersection_cost : float
         Cost of visiting a node and of testing a leaf's block of primitives, in any one unit; only their ratio
-        matters. They decide what becomes a leaf.
+        matters. They decide between leaf and split.
     budget : float, optional
         Number of references that cuts and spatial splits may add, over the number of primitives, 0 to 8; 4 if
         not given. Where they gain little they add none. For ``"spatial"``.
@@ -54,9 +54,9 @@ class BVH:
         Optimizations of the tree, in turn. ``"reinsertion"`` moves subtrees to where they cost less (Meister
         and Bittner 2018, "Parallel reinsertion for bounding volume hierarchy optimization"). ``"treelet"``
         puts treelets of seven leaves together anew (Karras and Aila 2013, "Fast parallel construction of
-        high-quality bounding volume hierarchies"). If not given, what suits the scene's ``quality`` for
-        ``"binned"``, and nothing for the others; with ``()`` nothing at all. For long and diagonal geometry,
-        the quality may also choose spatial splits, or cutting into pieces first.
+        high-quality bounding volume hierarchies"). If not given, the scene's ``quality`` chooses for
+        ``"binned"``, and there are none for the others; ``()`` is none. For long and diagonal geometry, the
+        quality may also choose spatial splits, or cutting into pieces first.
     traversal : {"wide", "wide4", "wide8", "stack", "threaded", "packets4", "packets64", "flat", "stackless"}
         Traversal of the tree. Hits are the same.
 

@@ -16,8 +16,8 @@ _WIDEST = BVH(traversal="wide8")
 def every() -> dict[str, Accelerator]:
     """Return one accelerator of each kind, and of each way to build or to walk one, by their names.
 
-    An option that is a choice among words is varied alone, while all others are as they are by default, or as
-    it needs them. Trees that are 8 wide by name are left out: any wide one is, wherever the processor can.
+    Each option among words is varied alone, with all others at their defaults, or as it requires them. Trees
+    that are 8 wide by name are left out: any wide one is, wherever the processor can.
     """
     found: dict[str, Accelerator] = {}
     for kind in get_args(Accelerator):

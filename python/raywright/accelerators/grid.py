@@ -70,8 +70,8 @@ class Grid:
 class NestedGrid:
     """Grids in the dense cells of a grid (Jevans and Wyvill 1989, "Adaptive voxel subdivision").
 
-    For scenes that are much finer in some places than in others. A cell gets a grid of its own, around what
-    is in it, where that lowers the cost by the surface area heuristic.
+    For scenes that are much finer in some places than in others. A cell gets a grid of its own, around its
+    primitives, if that lowers the cost by the surface area heuristic.
 
     Parameters
     ----------

@@ -14,7 +14,7 @@ _MOST_LEVELS = 60
 class KdTree:
     """A kD-tree: space parted by planes across its axes, in nodes of 8 bytes.
 
-    A primitive stands in every leaf that it has a part in, and is tested once for a ray all the same.
+    A primitive is in every leaf that it overlaps, and is tested once for a ray all the same.
 
     Parameters
     ----------

@@ -157,9 +157,9 @@ class AnyCamera(Pose):
             In pixels from the picture's left and from its top: the centre of the pixel in row i and column j
             is at (j + 0.5, i + 0.5). Points beside the picture have rays too.
         lens : (..., 2) array, optional
-            Where in the lens, as `rays` has it; leading shapes broadcast.
+            Where in the lens, as in `rays`; leading shapes broadcast.
         time : float or (...) array, optional
-            When, as `rays` has it; shapes broadcast.
+            When, as in `rays`; shapes broadcast.
 
         Returns
         -------

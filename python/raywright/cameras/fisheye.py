@@ -25,7 +25,7 @@ class Fisheye(AnyCamera):
     Parameters
     ----------
     position, target, up, direction
-        Where the camera is, and where it looks, as `Camera` has it.
+        Where the camera is, and where it looks, as in `Camera`.
     fov : float
         Angle of view in degrees, from one edge of the circle to the other: up to 360, below 360 if the
         mapping is stereographic, up to 180 if it is orthographic.
@@ -39,7 +39,7 @@ class Fisheye(AnyCamera):
         Side of the picture that is the diameter of the circle: the ``"smaller"``, so that all of it is seen,
         ``"x"``, ``"y"``, the ``"larger"``, or the ``"diagonal"``, so that it fills the picture.
     moved_to, shutter
-        As `Camera` has it.
+        As in `Camera`.
 
     Raises
     ------

@@ -19,7 +19,7 @@ class Orthographic(AnyCamera):
     Parameters
     ----------
     position, target, up, direction
-        Where the middle of the picture is, and where the camera looks, as `Camera` has it.
+        Where the middle of the picture is, and where the camera looks, as in `Camera`.
     scale : float
         Length of the scene across the picture, in the scene's unit.
     width, height : int
@@ -28,7 +28,7 @@ class Orthographic(AnyCamera):
         Axis along which `scale` is measured: ``"x"``, ``"y"``, the ``"smaller"`` or ``"larger"`` of these, or
         the ``"diagonal"``. (glTF has ymag, half of the scale along y.)
     moved_to, shutter
-        As `Camera` has it.
+        As in `Camera`.
 
     Raises
     ------

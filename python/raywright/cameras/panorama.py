@@ -20,12 +20,12 @@ class Panorama(AnyCamera):
     Parameters
     ----------
     position, target, up, direction
-        Where the camera is, and where it looks, as `Camera` has it. With neither target nor direction it
-        looks along -z.
+        Where the camera is, and where it looks, as in `Camera`. With neither target nor direction it looks
+        along -z.
     width, height : int
         Size of the picture in pixels, 1 to 65536.
     moved_to, shutter
-        As `Camera` has it.
+        As in `Camera`.
 
     Raises
     ------

@@ -39,9 +39,8 @@ class Camera(AnyCamera):
     focal : 2 floats, optional
         Instead of `fov`, focal lengths in pixels, across and down; negative ones mirror the picture.
     principal : 2 floats, optional
-        The point of the picture that the view goes through, in pixels from its left and its top as
-        `rays_through` has them; the middle if not given. Elsewhere it is a shifted lens, or a part of a
-        picture.
+        The point of the picture that the view goes through, in pixels from its left and its top as in
+        `rays_through`; the middle if not given. Elsewhere it is a shifted lens, or a part of a picture.
     skew : float
         Skew coefficient K[0, 1] of a camera matrix, in pixels: the shift to the right for each focal length
         down. K[0, 1] of a camera matrix. With `focal` only.
@@ -176,7 +175,7 @@ class Camera(AnyCamera):
 
     @classmethod
     def from_matrix(cls, to_world: ArrayLike, convention: str = "gltf", **others: Any) -> "Camera":
-        """Return the camera that stands where a matrix says, as `Pose.from_matrix` has it.
+        """Return the camera at a matrix, as in `Pose.from_matrix`.
 
         Matrices that mirror are allowed, and mirror the picture.
         """
@@ -190,7 +189,7 @@ class Camera(AnyCamera):
 
     @property
     def intrinsics(self) -> NDArray[np.float64]:
-        """The camera matrix K, (3, 3), with the centres of pixels at integers, as OpenCV has it.
+        """The camera matrix K, (3, 3), with the centres of pixels at integers, as in OpenCV.
 
         To count from the picture's corner, add 0.5 to its K[0, 2] and K[1, 2].
         """

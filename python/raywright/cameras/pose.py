@@ -94,9 +94,9 @@ class Pose:
             From the camera's own space to the scene's, acting on column vectors (x, y, z, 1). Lengths of its
             axes do not count.
         convention : str
-            Axes of the camera's own space: ``"gltf"``, it looks along -z with x to the right and y up (as
-            Blender and OpenGL have it too); ``"mitsuba"``, along +z with x to the left and y up;
-            ``"opencv"``, along +z with x to the right and y down.
+            Axes of the camera's own space: ``"gltf"``, it looks along -z with x to the right and y up (as in
+            Blender and OpenGL); ``"mitsuba"``, along +z with x to the left and y up; ``"opencv"``, along +z
+            with x to the right and y down.
         **others
             Other arguments of the class, without `position`, `target`, `up` and `direction`.
 
@@ -189,7 +189,7 @@ class Pose:
 
     @property
     def matrix(self) -> NDArray[np.float64]:
-        """The (4, 4) matrix from camera to world, along -z with y up: what `from_matrix` takes."""
+        """The (4, 4) matrix from camera to world, along -z with y up: the inverse of `from_matrix`."""
         result = np.eye(4)
         result[:3, :3] = self.extrinsics[0].T * (1, -1, -1)
         result[:3, 3] = self.position

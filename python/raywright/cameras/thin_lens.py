@@ -26,7 +26,7 @@ class ThinLens(AnyCamera):
     Parameters
     ----------
     position, target, up, direction
-        Where the middle of the lens is, and where the camera looks, as `Camera` has it.
+        Where the middle of the lens is, and where the camera looks, as in `Camera`.
     fov : float, optional
         Angle of view in degrees, between 0 and 180; 40 if neither this nor `focal_length` is given.
     width, height : int
@@ -57,7 +57,7 @@ class ThinLens(AnyCamera):
         Where the middle of the view is seen, in pixels from the left and the top of the picture; its middle
         if not given. Elsewhere the lens is shifted.
     moved_to, shutter
-        As `Camera` has it. The distance in focus stays that at the shutter's opening.
+        As in `Camera`. The distance in focus stays that at the shutter's opening.
 
     Raises
     ------

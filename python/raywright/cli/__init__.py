@@ -26,7 +26,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Parameters
     ----------
     arguments : sequence of str, optional
-        What follows the command's name; those of the process if not given.
+        Arguments after the command's name; those of the process if not given.
     """
     warnings.showwarning = _show_warning
     try:
@@ -71,7 +71,7 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _told(error: Exception) -> str:
-    """Tell an error in one line; the system's own begin with a number that says nothing to most."""
+    """Print an error in one line; the system's own begin with a number that means nothing to most."""
     if isinstance(error, OSError) and error.strerror:
         told = error.strerror[:1].lower() + error.strerror[1:]
         return f"{error.filename}: {told}" if error.filename is not None else told

@@ -63,7 +63,7 @@ def _view(options: argparse.Namespace) -> None:
 
 
 def shot_of(options: argparse.Namespace) -> Shot:
-    """Return what SCENE names: what a file holds as it is shown, or the Cornell box."""
+    """Return the shot of SCENE: a file, or the Cornell box."""
     if options.up is not None and (options.scene == CORNELL or has_camera(options.scene)):
         options.refuse(f"argument --up: is for mesh files, and {options.scene} knows itself what is up")
     if options.scene == CORNELL:
@@ -72,7 +72,7 @@ def shot_of(options: argparse.Namespace) -> Shot:
 
 
 def _how(options: argparse.Namespace, shot: Shot) -> dict[str, Any]:
-    """Return what options say of a render."""
+    """Return the arguments of a render from the options."""
     how = {name: getattr(options, name) for name in _HOW}
     own = {"seed": shot.seed, "clamp": shot.clamp}
     return how | {name: value for name, value in own.items() if how[name] is None}
@@ -113,7 +113,7 @@ def _add_view(verb: argparse.ArgumentParser) -> None:
 
 
 def add_scene(verb: argparse.ArgumentParser) -> None:
-    """Add what names a scene."""
+    """Add the argument of a scene."""
     verb.add_argument("scene", metavar="SCENE", help=f"{SCENES}; or {CORNELL!r}")
     verb.add_argument(
         "--up", choices=("y", "z"), help="axis that points up in a mesh file, not in a scene (default: y)"

@@ -26,7 +26,7 @@ class Switch:
         return self._before is not None
 
     def before(self, owner: Any, name: str) -> Any:
-        """Return what an attribute was before the switch was turned on, and is where it is off."""
+        """Return an attribute from before the switch was turned on, or its current value if it is off."""
         for replaced in self._before or ():
             if replaced.owner is owner and replaced.name == name:
                 return replaced.value
@@ -44,7 +44,7 @@ class Switch:
         return Installation(self, True)
 
     def off(self) -> None:
-        """Put back what was there; nothing happens if nothing is replaced."""
+        """Restore the attributes; nothing happens if nothing is replaced."""
         before, self._before = self._before or (), None
         for owner, name, value in before:
             if value is _ABSENT:

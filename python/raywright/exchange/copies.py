@@ -48,7 +48,7 @@ def laid_out(scene: Scene) -> LaidOut:
     Raises
     ------
     ValueError
-        If copies move: what they exchange is another at each moment.
+        If copies move: their exchange changes with time.
     """
     shapes: list[AnyShape] = []
     shape, copy, face, mirrored = [], [], [], []

@@ -13,7 +13,7 @@ _CREASE = 30.0
 def at_corners(
     values: Floats, corners: Floats, areas: Floats, shapes: NDArray[np.int32]
 ) -> NDArray[np.float64]:
-    """Return what patches have at each of their corners, (N, 3, 3).
+    """Return the values at each corner of patches, (N, 3, 3).
 
     At a corner it is the mean, by area, of the patches of the same shape that meet there and do not stand at
     an edge to the patch itself.

@@ -81,7 +81,7 @@ class Problem:
         return made
 
     def check(self) -> None:
-        """Refuse what has no solution that could be bounded.
+        """Refuse problems whose solution has no bound.
 
         Raises
         ------
@@ -191,7 +191,7 @@ class Problem:
         return np.add.reduceat(self.areas[: len(self.areas) // (2 if self.both else 1)], starts)
 
     def _surface_area(self) -> float:
-        """Return the area of all that stands in no copy, faces that coincide counted each."""
+        """Return the area of all shapes but copies, coincident faces counted each."""
         is_own = self.laid.copy < 0
         covered = self.covered.areas[is_own[self.covered.faces]]
         return float(self._face_areas()[is_own].sum() + covered.sum())

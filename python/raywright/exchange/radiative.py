@@ -43,12 +43,11 @@ class RadiativeExchange(Tabular):
     Attributes
     ----------
     flux : (N,) float64
-        The net flux that a surface loses, W/m²: what leaves it less what arrives. Below 0 it gains.
+        The net flux that a surface loses, W/m²: radiosity less irradiance. Below 0 it gains.
     power : (N,) float64
         The same of all its area, W.
     standard_error : (N,) float64
-        That of `flux`; 0 where nothing is drawn. In a room that nothing leaves it is next to nothing at one
-        temperature.
+        That of `flux`; 0 where nothing is drawn. In a closed room at one temperature it is almost 0.
     radiosity, irradiance : (N,) float64
         Emitted and reflected flux, and arriving flux, of heat, W/m²; light of the scene is in
         `absorbed_light`.
@@ -178,7 +177,7 @@ def radiative_exchange(
         the sun and the sky, and its emission. By default the emissivity. The mean of red, green and blue is
         taken for all of the light, in W: ``DirectionalLight(down, 800.0)`` is a sun of 800 W/m².
     method : {"matrix", "stochastic"}, optional
-        By `view_factors`, or by rays as `radiosity` has it. By default the first up to 2048 faces.
+        By `view_factors`, or by rays as in `radiosity`. By default the first up to 2048 faces.
     error, rays : optional
         As of `radiosity`.
     sides : {"front", "both"}
@@ -300,8 +299,8 @@ def radiative_exchange(
 def _lost(problem: Problem) -> float | None:
     """Return the standard error of the share that a room loses, if no ray leaves it; None if one does.
 
-    In a room that nothing leaves, surfaces of one temperature exchange nothing, whatever their emissivities.
-    Only what others have beyond the coldest is then shot, and errors are shares of that.
+    In a closed room, surfaces of one temperature exchange nothing, whatever their emissivities. Only the
+    excess over the coldest surface is then shot, and errors are shares of that.
     """
     rays = max(_LOOKS * len(problem.areas), _LEAST_LOOKS)
     problem.begin(0, 1)
@@ -320,7 +319,7 @@ def _light(
     absorbing: Floats,
     solve: Any,
 ) -> tuple[Floats, Floats]:
-    """Return what is absorbed of the scene's own light, W/m², and its error."""
+    """Return the absorbed flux of the scene's own light, W/m², and its error."""
     shines = any(getattr(shape, "emission", None) is not None for shape in laid.scene.shapes)
     lamps = lamps_of(laid.scene)
     if lamps is None and not shines:

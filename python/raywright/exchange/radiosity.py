@@ -86,7 +86,7 @@ def radiosity(
     error : float, optional
         Target, as a share: of "stochastic", `RadiositySolution.error`, with the bound on unshot power below a
         tenth of it; of "progressive", that bound; of "matrix", the error of view factors found by rays. By
-        default 0.01, or for "stochastic" with `rays` what these give, and for "matrix" that of
+        default 0.01; for "stochastic" with `rays`, as these give; for "matrix", the default of
         `view_factors`.
     rays : int, optional
         Number of rays of the first light, all replicates together; reflected light takes rays in proportion.
@@ -135,15 +135,16 @@ def radiosity(
     Notes
     -----
     Where flat faces touch front to front, as a box and the floor beneath do, the covered part of each
-    exchanges light with the other alone. Faces without area exchange nothing. Eight replicates, each of
-    rays of its own, give the standard error; the most that unshot power may add is a part of it. Within
-    each, what is emitted is absorbed, has left or is unshot, to rounding. Iterations end by ‖unshot‖ / (1
+    exchanges light with the other alone. Faces without area exchange nothing. Eight replicates, each of rays
+    of its own, give the standard error; the most that unshot power may add is a part of it. Within each,
+    emitted power is absorbed, has left or is unshot, to rounding. Iterations end by ‖unshot‖ / (1
     - the greatest reflectance).
 
-    The error of "stochastic" is the root mean square over the area, of patches each by itself: what comes to
-    a patch is known by the rays that land there, so that N patches take about N / `error`² rays for the light
-    that is shot first, and as much more as is reflected. Half as long sides take four times the rays: a large
-    `patch_size` with ``per="vertex"`` costs less than small ones. Means over many patches are known better.
+    The error of "stochastic" is the root mean square over the area, of patches each by itself: the irradiance
+    of a patch is known by the rays that land there, so that N patches take about N / `error`² rays for the
+    light that is shot first, and as much more as is reflected. Half as long sides take four times the rays: a
+    large `patch_size` with ``per="vertex"`` costs less than small ones. Means over many patches are known
+    better.
 
     Examples
     --------

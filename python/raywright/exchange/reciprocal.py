@@ -83,7 +83,7 @@ def _halves(matrix: Any, areas: Floats) -> Any:
 
 
 def _mend_diagonal(variance: Any) -> None:
-    """Double, in place, what is an estimate that was added to itself, not to another."""
+    """Double, in place, estimates that were added to themselves, not to another."""
     for start in range(0, variance.shape[0], _TOGETHER):
         rows, part = _part(variance, start)
         variance.data[part][rows == variance.indices[part]] *= 2.0

@@ -1,4 +1,4 @@
-"""Radiosity by shooting what is unshot: how many rays, how often, and when to stop."""
+"""Radiosity by shooting: number of rays, iterations, and the stopping rule."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -40,13 +40,13 @@ def to_the_end(
 
 
 def states(problem: Problem, error: float, rays: int | None) -> Iterator[RadiositySolution]:
-    """Give the solution as it is after each shot of each replicate."""
+    """Yield the solution after each shot of each replicate."""
     for _ in _shots(problem, error, rays, _Teller(None), at_once=1):
         yield problem.solution("progressive", problem.core.arrived, problem.core.books, problem.core.unshot)
 
 
 class _Teller:
-    """Tells a share that never falls."""
+    """Reports a share that never falls."""
 
     def __init__(self, report: Callable[[float], object] | None) -> None:
         self._report, self._share = report, 0.0

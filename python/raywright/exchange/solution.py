@@ -79,8 +79,8 @@ class RadiositySolution(Tabular):
         In m²; 0 for a face that coincides with one before it, which counts for both and whose light it has.
     patches : (N,) structured
         Index of the "shape", its "face", the "cell" of the face, and the "side": 1 for the front, -1 for the
-        back. Of an `Instance`, "copy" is which of its copies, and "face" is numbered as `Instance.locate` has
-        it; "copy" is -1 elsewhere.
+        back. Of an `Instance`, "copy" is which of its copies, and "face" is numbered as in `Instance.locate`;
+        "copy" is -1 elsewhere.
     corners : (N, 3, 3) float64
         Where the corners are, in the order of the face's; NaN for shapes that are no triangles.
     cuts : (F,) uint32

@@ -224,9 +224,9 @@ class ViewFactors(Tabular):
     def _centered(self, x: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Return (N, N) errors of x as each row weights it, and the covariance of rows and columns.
 
-        Errors of a row that adds up to one cancel where x is the same everywhere, so that x is taken relative
-        to its mean over what the row samples. The first is s_ij (x_j - c_i), with the standard error s. The
-        exchange of two faces is one estimate: the second is the product of the first and its transpose.
+        Errors of a row that adds up to one cancel if x is the same everywhere, so x is taken relative to its
+        mean over the surfaces that the row samples. The first is s_ij (x_j - c_i), with the standard error s.
+        The exchange of two faces is one estimate: the second is the product of the first and its transpose.
         """
         spread = np.asarray(self.standard_error)
         weights = spread**2
@@ -277,7 +277,7 @@ class ViewFactors(Tabular):
     def to_dict(self) -> dict[str, NDArray[Any]]:
         """Return flat arrays by name, an entry for each view factor that is not 0, row by row.
 
-        ``from`` and ``to`` are its row and column, ``factor`` and ``standard_error`` what it is.
+        ``from`` and ``to`` are row and column, ``factor`` and ``standard_error`` the entry.
         """
         matrix: Any = self.matrix
         row, column = matrix.nonzero()
@@ -310,9 +310,8 @@ def view_factors(
 
     Every surface sends from its front alone, the side that the normal points to, and receives there alone,
     whatever its material: a `TwoSided` one too. Occluders hide from either side. Two triangles that nothing
-    lies between have a closed form, to 1e-9 of itself; that nothing does is proven by their shaft. Where
-    something may, stratified rays tell the difference from the closed form. Shapes that are no meshes send
-    rays.
+    lies between have a closed form, to 1e-9 of itself; that nothing does is proven by their shaft. Otherwise
+    stratified rays estimate the difference from the closed form. Shapes that are no meshes send rays.
 
     Parameters
     ----------
@@ -324,9 +323,9 @@ def view_factors(
     rays : int, optional
         Number of rays between two faces with a possible occluder, up to 2**20. A shape that is no mesh sends
         4096 times as many, up to 2**26. In a scene of more than 10,000 faces each face sends 16 times as
-        many. If neither this nor `error` is given, 16, and then as many as bring the standard error below 1 %
-        of the greatest factor of either row, unless all together would be more than 33 million; a shape that
-        is no mesh sends up to 2**20, and a face of more than 10,000 sends 256, whatever error these leave.
+        many. If neither this nor `error` is given, 16, and then enough for a standard error below 1 % of the
+        greatest factor of either row, unless all together would be more than 33 million; a shape that is no
+        mesh sends up to 2**20, and a face of more than 10,000 sends 256, whatever error results.
     error : float, optional
         The standard error that no view factor between faces should exceed. More rays are sent until it is
         met, up to 2**20 for a pair.
@@ -355,7 +354,7 @@ def view_factors(
     -----
     RuntimeWarning
         If faces coincide: they are one, which exchanges light once. If they overlap in a part, or one is no
-        mesh, what they exchange there counts twice.
+        mesh, their exchange there counts twice.
 
     See Also
     --------

@@ -53,5 +53,5 @@ def chosen(adapter: Any) -> Any:
 
 
 def name_of(adapter: Any) -> str:
-    """Return what an adapter is called."""
+    """Return the name of an adapter."""
     return str(adapter.info["device"] or adapter.info["description"])

@@ -30,7 +30,7 @@ def pairs(count: int = 8192, seed: int = 0) -> NDArray[np.float32]:
 
 
 def trouble(given: NDArray[np.float32], results: NDArray[np.float32]) -> str | None:
-    """Return what is wrong with a device that makes these results, (N, 12), of pairs; None if nothing is."""
+    """Return the error of a device that makes these results, (N, 12), of pairs; None if nothing is."""
     x, y = given.astype(np.float64).T
     sizes = np.abs(x), np.abs(y)
     exact = np.stack(

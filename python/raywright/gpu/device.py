@@ -137,7 +137,7 @@ class Gpu:
         Raises
         ------
         LeftError
-            If something is only known to the CPU: says what.
+            If only the CPU supports a feature, with its name.
         MemoryError
             If the device has no room for the scene.
         """

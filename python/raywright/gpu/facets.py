@@ -72,7 +72,7 @@ _COSINES: list[float] = np.maximum(np.linspace(0, 1, ENTRIES) ** 2, 1e-6).tolist
 
 @lru_cache(64)
 def loss_table(alpha: float, eta: float | None = None) -> Floats:
-    """Return what is lost of light from 64 cosines, evenly spaced in their roots from 0 to 1.
+    """Return the lost share of light from 64 cosines, evenly spaced in their roots from 0 to 1.
 
     Of mirrors, or of a dielectric whose index on the other side is `eta` times that before it.
     """
@@ -81,12 +81,12 @@ def loss_table(alpha: float, eta: float | None = None) -> Floats:
 
 @lru_cache(64)
 def coat_table(alpha: float, eta: float) -> Floats:
-    """Return what a rough dielectric reflects of light from such cosines, in one scattering."""
+    """Return the reflectance of a rough dielectric for light from such cosines, in one scattering."""
     return np.clip([_out(alpha, eta, z)[0] for z in _COSINES], 0, 1)
 
 
 def mean_of(table: Floats) -> float:
-    """Return what is lost, or reflected, of even light, by a table as it is interpolated."""
+    """Return the lost, or reflected, share of uniform light, by interpolation in a table."""
     roots = (np.arange(4096) + 0.5) / 4096
     loss = np.interp(roots, np.linspace(0, 1, ENTRIES), table)
     # With the cosine r², 2 c dc is 4 r³ dr.

@@ -25,8 +25,8 @@ _OPEN = 0xFFFFFFFE
 class GpuScene:
     """A scene on a graphics processor: `Scene.on` makes it. It answers as the scene does, to the bit.
 
-    The CPU decides the rays that the device cannot; `stats` tells how much that is. Should the device be
-    lost, that is warned of, once, and the CPU answers from then on.
+    The CPU decides the rays that the device cannot; `stats` counts them. Should the device be lost, that is
+    warned of, once, and the CPU answers from then on.
 
     See Also
     --------
@@ -76,9 +76,9 @@ class GpuScene:
         threads: int | None = None,
         time: ArrayLike | None = None,
     ) -> Hits:
-        """Find the closest hit of each ray: what `Scene.intersect` finds, to the bit.
+        """Find the closest hit of each ray: the same as `Scene.intersect`, to the bit.
 
-        Takes, returns and raises what that does.
+        Arguments, results and errors are those of the scene's query.
 
         Parameters
         ----------
@@ -122,9 +122,9 @@ class GpuScene:
         threads: int | None = None,
         time: ArrayLike | None = None,
     ) -> NDArray[np.bool_]:
-        """Find whether each ray hits anything: what `Scene.occluded` finds.
+        """Find whether each ray hits anything: the same as `Scene.occluded`.
 
-        Takes, returns and raises what that does.
+        Arguments, results and errors are those of the scene's query.
 
         Parameters
         ----------
@@ -160,7 +160,7 @@ class GpuScene:
         return found
 
     def _ask(self, kernel: str, rays: AskedRays) -> NDArray[np.uint32]:
-        """Return what a kernel says of all rays; what it does not say is left open."""
+        """Return a kernel's answers for all rays; undecided ones are left open."""
         if self._is_closed:
             raise RuntimeError("the scene is on the device no more: its with block has ended")
         count = int(np.prod(rays[4], dtype=np.int64))

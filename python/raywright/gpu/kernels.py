@@ -77,7 +77,7 @@ class Kernels:
     device : wgpu.GPUDevice
         Which.
     nodes, triangles : structured arrays
-        As `FlatArrays` has them.
+        As in `FlatArrays`.
     depth : int
         Of the tree.
     most : int
@@ -155,7 +155,7 @@ class Kernels:
         return self._slots[slot]
 
     def submit(self, kernel: str, rays: NDArray[np.float32], slot: int) -> tuple[str, int, int]:
-        """Set "closest" or "occluded" to work on rays, (N, 8), in slot 0 or 1; return what `read` takes."""
+        """Start "closest" or "occluded" on rays, (N, 8), in slot 0 or 1; return the argument of `read`."""
         count = len(rays)
         job, given, answers = self._room(slot, count)
         queue = self._device.queue
@@ -172,7 +172,7 @@ class Kernels:
         return kernel, count, slot
 
     def read(self, work: tuple[str, int, int]) -> NDArray[np.uint32]:
-        """Wait for work, and return what "closest", (N, 4), or "occluded", (N,), says."""
+        """Wait for work, and return the answers of "closest", (N, 4), or of "occluded", (N,)."""
         kernel, count, slot = work
         width = 4 if kernel == "closest" else 1
         answers = self._device.queue.read_buffer(self._slots[slot][2], size=4 * width * count)
@@ -198,7 +198,7 @@ class Kernels:
 
 
 def probed(device: Any, pairs: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Return what probe.wgsl makes of pairs of numbers, (N, 2), on a device: (N, 12)."""
+    """Return the results of probe.wgsl for pairs of numbers, (N, 2), on a device: (N, 12)."""
     import wgpu
 
     usage = wgpu.BufferUsage

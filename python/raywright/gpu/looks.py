@@ -33,7 +33,7 @@ _WRAPS = {"repeat": 1, "clamp": 2, "mirror": 3}
 
 
 class LeftError(Exception):
-    """Something that only the CPU knows; its text says what."""
+    """A feature that only the CPU supports; its text names it."""
 
 
 def told(thing: object) -> str:

@@ -17,7 +17,7 @@ _SEEN = np.arange(400.0, 701.0, 5.0)
 
 
 def _met(metal: Conductor, cosines: NDArray[np.float64]) -> Interactions:
-    """Return what rays meet at a plate, at some cosines."""
+    """Return the scattering of rays at a plate, at some cosines."""
     plate = Mesh([(-2.0, -2, 0), (2, -2, 0), (2, 2, 0), (-2, 2, 0)], [(0, 1, 2), (0, 2, 3)], material=metal)
     ways = np.stack([-np.sqrt(1 - cosines**2), np.zeros_like(cosines), -cosines], axis=1)
     rays = Rays(np.array([0.1, 0.2, 0.0]) - ways, ways, np.zeros(len(ways)))
@@ -26,7 +26,7 @@ def _met(metal: Conductor, cosines: NDArray[np.float64]) -> Interactions:
 
 @lru_cache(64)
 def reflectances(name: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return what a smooth metal of a name reflects, and how much of that is left the second time.
+    """Return the reflectance of a smooth metal by name, and the share that is left at a second reflection.
 
     Returns
     -------
@@ -46,7 +46,7 @@ def reflectances(name: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
 
 
 def made_up(metal: Conductor, loss: float) -> NDArray[np.float64]:
-    """Return what scattering more than once gives back of each unit lost, over π and the mean loss: (3,).
+    """Return the multiple scattering for each unit lost, over π and the mean loss: (3,).
 
     From the total scattering of a plate, rough and smooth.
     """

@@ -105,7 +105,7 @@ class Packed:
 
 
 def known_lit(lit: NDArray[np.void]) -> str:
-    """Return what of a `Lit` kernels are compiled with, as WGSL: what there is none of is not compiled.
+    """Return the features of a `Lit` as WGSL for the kernels: missing ones are not compiled.
 
     A driver in software (llvmpipe of Mesa 22.3) makes another kernel of one that branches by numbers of a
     uniform each time that it is bound, and keeps them all.
@@ -127,7 +127,7 @@ def packed(scene: Scene, flat: FlatArrays) -> Packed:
     Raises
     ------
     LeftError
-        If something of it is not known to the kernels: says what.
+        If the kernels do not support a feature, with its name.
     """
     looks = Looks()
     faces = np.zeros(max(int(flat.first[-1]), 1), FACE)
@@ -225,7 +225,7 @@ def _delta(scene: Scene, flat: FlatArrays) -> NDArray[np.void]:
 
 
 def _share(lights: NDArray[np.void], lit: NDArray[np.void], faces: NDArray[np.void]) -> None:
-    """Share draws among lights by about their power, and tell faces which light they are."""
+    """Distribute draws among lights by about their power, and give faces the index of their light."""
     strength = lights["radiance"].astype(np.float64).max(axis=1, initial=0.0)
     # Lights without extent: the power through a ball of the size of a box unit.
     reach = np.full(len(lights), 4 * np.pi)

@@ -218,7 +218,7 @@ class Wavefront:
         return self._groups[entry, now]
 
     def _used(self, entry: str) -> list[int]:
-        """Return the bindings that a kernel asks for."""
+        """Return the bindings of a kernel."""
         scene = list(range(_OWN, _OWN + len(self._scene)))
         walk, some, numbers = (
             [i for i in scene if self._kinds[i - _OWN] in kinds]
@@ -247,7 +247,7 @@ class Wavefront:
         first_sample, samples : int
             Their numbers.
         look : callable
-            Called between pieces of work; what it raises ends them.
+            Called between pieces of work; an exception ends them.
 
         Returns
         -------
@@ -273,7 +273,7 @@ class Wavefront:
     def _block(
         self, first: int, pixels: int, first_sample: int, samples: int, look: Callable[[], object]
     ) -> NDArray[np.float32]:
-        """Take samples of some pixels, and return what the film has of them."""
+        """Take samples of some pixels, and return the film's share of them."""
         queue = self._device.queue
         encoder = self._device.create_command_encoder()
         encoder.clear_buffer(self._film)
@@ -301,7 +301,7 @@ class Wavefront:
         return np.frombuffer(queue.read_buffer(self._film, size=_PIXEL * pixels), np.float32)
 
     def _keep_pace(self, paths: int, took: float) -> None:
-        """Have more paths or fewer at work next time, so that nobody waits for long who wants to end it.
+        """Adapt the number of paths at work, so that stopping never takes long.
 
         Sums are the same: paths of a pixel join them in the order of their numbers.
         """
@@ -310,7 +310,7 @@ class Wavefront:
             self._wave = min(max(int(wave) // _GROUP * _GROUP, _LEAST), self._capacity)
 
     def _rounds(self) -> Iterator[tuple[list[Step], bool]]:
-        """Yield what is to be done until paths end, and whether they have ended then for sure."""
+        """Yield the remaining work until paths end, and whether they have certainly ended."""
         steps: list[Step] = [("generate", 0, None), ("plan_first", 0, 1)]
         bounce, last = 0, self._max_depth
         while True:

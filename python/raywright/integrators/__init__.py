@@ -53,7 +53,7 @@ __all__ = [
 
 
 def check_integrator(name: str, value: object) -> None:
-    """Refuse what is no integrator.
+    """Refuse other objects than integrators.
 
     Raises
     ------

@@ -20,7 +20,7 @@ class AmbientOcclusion:
     cosine : bool
         True if directions are weighed by their cosine, as for uniform light, or all alike.
     samples : int
-        Directions that each camera ray asks, 1 to 1024.
+        Directions for each camera ray, 1 to 1024.
 
     Raises
     ------

@@ -53,8 +53,8 @@ class Integrator(ABC):
         Returns
         -------
         (N, 3) array
-            Red, green and blue, in W·sr⁻¹·m⁻²; what is negative or not finite counts as black, with a
-            warning.
+            Red, green and blue, in W·sr⁻¹·m⁻²; negative values and those that are not finite count as black,
+            with a warning.
 
         See Also
         --------

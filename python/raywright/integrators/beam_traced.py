@@ -17,8 +17,8 @@ class BeamTraced:
     and flat faces of glass let them through, and beams from lights part them into lit and shadowed. A pixel
     is the sum over the polygons in its square of their areas there, each times its radiance, taken at three
     points of each of its triangles; so the picture has no noise, and one sample is as good as many (with two,
-    the error is 0 where with one it is not known). It is `Whitted`'s picture: what is scattered otherwise
-    than as by a mirror or smooth glass is left to `ambient`.
+    the error is 0 where with one it is not known). It is `Whitted`'s picture: all scattering but by mirrors
+    and smooth glass is left to `ambient`.
 
     Refraction is an approximation, as in the paper: behind a face of glass, rays have no point in common. The
     beam gets one from which its middle ray is exact and the others go by tangents in the place of Snell's

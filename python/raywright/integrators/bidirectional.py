@@ -15,18 +15,17 @@ class Bidirectional:
     camera. Light that can be found in several of these ways counts in each by the balance heuristic, whose
     weights are gathered along the walks (Georgiev 2012). It finds the light that `Path` and `LightTraced`
     find, and by connections also light that is hard to reach from either end, such as in a room lit by way of
-    a door ajar. A sample takes several times as long as one of `Path`, which is better in a scene that has
-    nothing hard in it.
+    a door ajar. A sample takes several times as long as one of `Path`, which is better in simple scenes.
 
-    It has no bias, and error estimates hold as usual. No connection reaches what the camera sees by way of a
-    mirror or glass if it is lit by way of another from a small light: that is found only where a path comes
-    upon the light, or with ``merge=True``.
+    It has no bias, and error estimates hold as usual. One kind of path has no connections: from the camera by
+    a mirror or glass to a surface lit by another one from a small light. It is found only if a path hits the
+    light, or with ``merge=True``.
 
     Merged (vertex connection and merging: Georgiev et al. 2012; Hachisuka et al. 2012), each sample of all
     pixels has photons of its own besides, and every path of the camera gathers those that lie about it on
     matt surfaces, as `ProgressivePhotonMap` does, from ever less far away. Merging is one more strategy,
     weighed with all others: most of a picture is as sharp as without it, and light that no other strategy
-    finds is found. Gathered light is blurred while radii are long: ``image.bias`` tells about how much. With
+    finds is found. Gathered light is blurred while radii are long: ``image.bias`` estimates the blur. With
     more samples both noise and blur vanish.
 
     Where media scatter light on its way counts as a surface, and is connected as such. There nothing can be
@@ -42,9 +41,9 @@ class Bidirectional:
     merge : bool
         True if paths are merged too (vertex merging).
     radius : float, optional
-        Merged, how far photons may lie in the first sample; of the squared radii, that of sample s + 1 is
-        (s + 2/3) / (s + 1) of that of s. If not given, as far as the 24th neighbour of a photon lies in half
-        of all cases, which the scene and the number of photons tell.
+        Merged, how far photons may lie in the first sample; of the squared radii, that of sample s + 1 is (s
+        + 2/3) / (s + 1) of that of s. If not given, the distance of a photon's 24th neighbor in half of all
+        cases, by the scene and the number of photons.
     photons : int, optional
         Merged, paths from lights for each sample, 1 to 2**31 - 1. If not given, as many as there are pixels,
         but at least 1,024 and at most about a million. They take some 100 bytes for each surface come to.

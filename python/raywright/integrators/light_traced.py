@@ -13,7 +13,7 @@ class LightTraced:
     to surface; at each of them it is connected to the camera, wherever on the film that is seen. Emitters are
     seen by the camera's own rays. So it finds caustics, light that mirrors and glass throw on matt surfaces,
     which path tracing hardly finds. It never finds light that the camera sees in a mirror or through glass:
-    there only what shines itself is seen. Where media scatter light on its way counts as a surface.
+    only emitters are seen there. Where media scatter light on its way counts as a surface.
 
     Error estimates hold as usual, since contributions of different samples are independent.
 

@@ -43,9 +43,9 @@ class Path:
         False for small pictures of few samples. Photons are sent from the lights before the first render of a
         scene, and paths draw some of their directions from where those came from (Jensen 1995), the others as
         ever, weighed by the density of both, which leaves no bias. It pays where small lamps shine through
-        glass or into mirrors: what would be fireflies is found by most paths. Elsewhere it takes samples from
-        other light, and time, and it has no effect where nothing is sharp. With `reuse`, first surfaces do
-        not aim where paths are shared.
+        glass or into mirrors: most paths find the light of would-be fireflies. Elsewhere it takes samples
+        from other light, and time, and it has no effect where nothing is sharp. With `reuse`, first surfaces
+        do not aim where paths are shared.
 
     Raises
     ------

@@ -18,7 +18,7 @@ def _photons(count: int) -> int:
 
 
 def _settle(of: "PhotonMap | ProgressivePhotonMap") -> None:
-    """Check what both have, and settle its types."""
+    """Check the common arguments, and settle their types."""
     settled = {
         "radius": None if of.radius is None else positive("radius", of.radius),
         "gather": integer("gather", of.gather, 0, counts.MOST_SAMPLES),
@@ -40,12 +40,11 @@ class PhotonMap:
     gather rays find the surfaces beyond, where the same holds, with a global map for all other light. So
     light is found that was sent through glass and is seen through glass, which no path finds from a small
     lamp. Where nothing is matt, the picture is that of paths. Where a medium scatters the camera's path,
-    photons that came to be scattered about there tell all of its light (Jensen and Christensen 1998).
+    photons scattered nearby give all of its light (Jensen and Christensen 1998).
 
-    Light that is gathered from about a point is blurred: the picture is biased, however many samples it has,
-    and ``image.bias`` tells about how much, give or take ``image.bias_error``; ``image.standard_error`` tells
-    how much noise there is besides. Each batch of samples (``image.plan.sampler``) has maps of its own, so
-    the error includes the noise of maps.
+    Density estimation blurs: the picture is biased, however many samples it has, and ``image.bias`` estimates
+    the bias, with the error ``image.bias_error``; ``image.standard_error`` is the noise besides. Each batch
+    of samples (``image.plan.sampler``) has maps of its own, so the error includes the noise of maps.
 
     Parameters
     ----------
@@ -125,17 +124,16 @@ class ProgressivePhotonMap:
     in media the cubed radius, of map s + 1 is (s + alpha) / (s + 1) of that of map s. So both noise and bias
     vanish with more samples, and ``error=`` and ``seconds=`` may take the picture as far as they want. With
     ``alpha=2/3`` the error falls as the cube root of the samples' number, relMSE as its 2/3rd power, which is
-    the most that can be had. ``image.error`` tells noise alone; ``image.bias`` tells the bias that is left.
+    optimal. ``image.error`` is the noise alone; ``image.bias`` is the remaining bias.
 
     Parameters
     ----------
     photons : int, optional
         Paths from lights for each map, 1 to 2**31 - 1. If not given, four for each pixel, from 20,000 to
-        500,000, which take about as long as the rest.
+        500,000: about as much work as the rest.
     radius : float, optional
-        Maximum distance of photons in the first map, at surfaces and in media. If not given, as far as the
-        24th neighbour of a photon lies there in half of all cases, which the scene and the number of photons
-        tell.
+        Maximum distance of photons in the first map, at surfaces and in media. If not given, the distance of
+        a photon's 24th neighbor there in half of all cases, by the scene and the number of photons.
     alpha : float
         The share of new photons that is kept, above 0 and at most 1: with more, radii shrink more slowly,
         for less noise and more bias.

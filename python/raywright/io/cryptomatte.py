@@ -34,7 +34,7 @@ def identity(name: str) -> int:
 
 
 def name_of(shape: int) -> str:
-    """Return what a shape is called."""
+    """Return the name of a shape."""
     return f"shape {shape}"
 
 

@@ -23,7 +23,7 @@ def check_writable(
 ) -> Path:
     """Find out, before any work is done, whether a picture can be saved at `path`.
 
-    Nothing is left behind, and a file that is there already stays as it is.
+    Nothing is left behind, and an existing file stays unchanged.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ def check_writable(
 
 
 def read(path: str | PathLike[str]) -> NDArray[Any]:
-    """Read a picture as it is: (H, W, C), rows from the top, of 1 to 4 channels.
+    """Read a picture without conversion: (H, W, C), rows from the top, of 1 to 4 channels.
 
     Parameters
     ----------
@@ -133,7 +133,7 @@ def read(path: str | PathLike[str]) -> NDArray[Any]:
 
 
 def decode(source: Path | bytes, formats: tuple[str, ...] | None = None) -> NDArray[Any]:
-    """Read what Pillow reads, from a file or from its bytes: (H, W, C), rows from the top.
+    """Read a picture with Pillow, from a file or from its bytes: (H, W, C), rows from the top.
 
     Parameters
     ----------
@@ -252,10 +252,10 @@ def _colours(names: list[str]) -> list[str]:
 
 
 def read_linear(path: str | PathLike[str]) -> NDArray[np.floating[Any]]:
-    """Return the linear colours of a picture file, (H, W, 3) or of an NPY what it holds, from the top row on.
+    """Return the linear colors of a picture file, (H, W, 3), or an NPY file's contents, from the top row on.
 
-    EXR, HDR and NPY files hold them as they are. Files of 8 or 16 bits are taken as sRGB. Transparency is
-    left out. Raises what `read` does.
+    EXR, HDR and NPY files are not converted. Files of 8 or 16 bits are taken as sRGB. Transparency is left
+    out. Errors are those of `read`.
     """
     array = read(path)
     if Path(path).suffix.lower() == ".npy":

@@ -22,7 +22,7 @@ def plotted(where: Any, draw: Callable[[Any], object], solid: bool = False, **fi
     solid : bool
         True if the axes have three dimensions.
     **figure
-        What a new figure is like, as `matplotlib.figure.Figure` takes it.
+        Arguments of a new figure, as in `matplotlib.figure.Figure`.
 
     Raises
     ------

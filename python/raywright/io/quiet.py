@@ -1,4 +1,4 @@
-"""Silence for other libraries while they read: what there is to say is in our own errors."""
+"""Silence for other libraries while they read: our own errors have the message."""
 
 import sys
 import warnings

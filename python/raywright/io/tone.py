@@ -42,11 +42,11 @@ def check_tone(exposure: float, tone: str) -> float:
 def toned(rgb: NDArray[np.floating[Any]], exposure: float, tone: str) -> NDArray[np.float64]:
     """Return linear colours between 0 and 1: exposed by so many stops, then brought into range.
 
-    ``"linear"`` clips. ``"filmic"`` keeps colours up to half of white as they are, and brings all that is
-    brighter in between there and white: the largest channel by the shoulder of the Khronos PBR Neutral tone
-    mapper (Khronos Group, 2024), and the others with it, so that hues stay; what is far brighter than white
-    fades to white, as on film. Its toe, which would darken mid-greys by more than a fifth, is left out, and
-    its shoulder begins at 0.5 rather than at 0.76, so that skies and lamps keep their shapes.
+    ``"linear"`` clips. ``"filmic"`` keeps colors up to half of white unchanged, and compresses brighter ones:
+    the largest channel by the shoulder of the Khronos PBR Neutral tone mapper (Khronos Group, 2024), and the
+    others with it, so that hues stay; far brighter colors fade to white, as on film. Its toe, which would
+    darken mid-greys by more than a fifth, is left out, and its shoulder begins at 0.5 rather than at 0.76, so
+    that skies and lamps keep their shapes.
     """
     light = np.nan_to_num(np.asarray(rgb, np.float64), nan=0.0, posinf=_BRIGHTEST)
     light = np.maximum(light, 0.0) * 2.0**exposure

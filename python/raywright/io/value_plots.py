@@ -15,7 +15,7 @@ _LARGEST, _SMALLEST = 30.0, 1.0
 
 
 def scale(values: NDArray[Any], cmap: Any = COLORS) -> Any:
-    """Return what makes colors of values: from the least finite one to the largest; NaN is grey."""
+    """Return the color map of values: from the least finite one to the largest; NaN is grey."""
     from matplotlib import colormaps
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Colormap, Normalize

@@ -1,4 +1,4 @@
-"""Light: what stands in a scene and is no surface, what surrounds it, and how surfaces shine."""
+"""Lights: light sources without surface, environments, and emission of surfaces."""
 
 from collections.abc import Sequence
 from typing import TypeAlias, cast, get_args
@@ -45,7 +45,7 @@ def lights(value: object) -> tuple[Light, ...]:
 def environments(
     value: "Environment | Sequence[Environment] | ArrayLike | None",
 ) -> "Environment | tuple[Environment, ...] | None":
-    """Return what surrounds a scene: numbers as a constant radiance, and several environments as a tuple."""
+    """Return an environment: numbers as a constant radiance, and several environments as a tuple."""
     kinds = get_args(Environment)
     if value is None or isinstance(value, kinds):
         return value

@@ -21,7 +21,7 @@ class Emission:
     """Emission of a surface: the `emission` of a shape that shines on its back, or on both sides.
 
     Normals point to the front: the outside of a closed shape, and the side where the corners of a face turn
-    anticlockwise. A sphere whose back shines lights what stands within.
+    anticlockwise. A sphere whose back shines lights its inside.
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ class Emission:
 
 
 def emitted(name: str, value: Any) -> Value:
-    """Return what may be given as a radiance: the one place that knows."""
+    """Return a checked radiance: the one place that knows its forms."""
     return checked_value(name, value)
 
 

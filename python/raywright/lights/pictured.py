@@ -23,8 +23,8 @@ def texels(name: str, value: ArrayLike | str | PathLike[str]) -> Texels:
     Raises
     ------
     ValueError
-        If it is empty, has another shape, or holds what is not finite, or is no file and negative by more
-        than a hundredth of all its light (tells where).
+        If it is empty, has another shape, or holds numbers that are not finite, or is no file and negative by
+        more than a hundredth of all its light (the error says where).
     TypeError
         If it does not hold real numbers.
     FileNotFoundError

@@ -28,7 +28,7 @@ class ProjectorLight(Pictured):
     target : 3 floats
         The point that the middle of the picture is thrown to.
     up : 3 floats
-        The direction that points up in the picture as it is thrown.
+        The direction that points up in the projected picture.
     fov : float
         Vertical angle of the picture in degrees, between 0 and 180.
     intensity : float, 3 floats or Spectrum

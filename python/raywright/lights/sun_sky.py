@@ -139,8 +139,9 @@ class SunSky:
     ) -> "SunSky | tuple[SunSky, ...]":
         """Return the daylight at a time and place, or at each of several times.
 
-        The sun is where the low-precision formulas of the Astronomical Almanac have it, to 0.01° from 1950 to
-        2050 (Michalsky, "The Astronomical Almanac's Algorithm for Approximate Solar Position", 1988).
+        The position of the sun is that of the low-precision formulas of the Astronomical Almanac, to 0.01°
+        from 1950 to 2050 (Michalsky, "The Astronomical Almanac's Algorithm for Approximate Solar Position",
+        1988).
 
         Parameters
         ----------
@@ -157,7 +158,7 @@ class SunSky:
         Returns
         -------
         SunSky, or tuple of SunSky
-            One for each time, if there are several. Its `elevation` tells whether it is night.
+            One for each time, if there are several. Its `elevation` is negative at night.
 
         Raises
         ------

@@ -23,7 +23,7 @@ def one_or_many(name: str, value: Time | Times) -> datetime | list[datetime]:
     ------
     ValueError
         If a time has no zone, is none at all, is a text that is no ISO 8601, or is outside of the years 1 to
-        9999; or if an array has more than one dimension. Of several it tells which.
+        9999; or if an array has more than one dimension. An error about several names the one.
     TypeError
         If it is no time.
     """

@@ -19,9 +19,9 @@ class Boundary(Material):
     interior : Homogeneous or GridMedium
         The medium inside.
     priority : int
-        Where several things overlap that are filled, the one of the greatest priority alone is there; of
-        equal ones, what has the greater index of refraction, so that glass stands in smoke; and of those,
-        what comes later in the scene. Media do not add up.
+        If several filled shapes overlap, only the one of the greatest priority counts; of equal ones, the one
+        with the greater index of refraction, so that glass displaces smoke; and of those, the later one in
+        the scene. Media do not add up.
 
     Raises
     ------

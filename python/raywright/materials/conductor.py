@@ -29,8 +29,8 @@ class Conductor(Material):
     Parameters
     ----------
     metal : str, optional
-        Its name or symbol, as ``"gold"`` or ``"Au"``; `metals` tells all that are known, `metal_index` what
-        was measured of each.
+        Its name or symbol, as ``"gold"`` or ``"Au"``; `metals` lists all names, `metal_index` has the
+        measured index of each.
     eta, k : float, 3 floats or Texture, optional
         Real and imaginary part of its index of refraction, in place of a name: above 0, and at least 0. Three
         are those of red, green and blue, each with a reflectance of its own.
@@ -111,7 +111,7 @@ class Conductor(Material):
 
 
 class MetalIndex(NamedTuple):
-    """A metal's index of refraction, eta + ik, as it was measured: see `metal_index`.
+    """A metal's measured index of refraction, eta + ik: see `metal_index`.
 
     Attributes
     ----------
@@ -156,7 +156,7 @@ def metals() -> tuple[str, ...]:
 
 
 def metal_index(metal: str) -> MetalIndex:
-    """Return what was measured of a metal: its index of refraction by wavelength.
+    """Return the measured index of refraction of a metal, by wavelength.
 
     `Conductor` takes it as linear between these wavelengths. The sources are the "Handbook of Optical
     Constants of Solids" (Palik, 1985 and 1991) and papers that refractiveindex.info lists, one for a metal:

@@ -50,8 +50,8 @@ class Dielectric(Material):
         Tint of the inside, in place of `interior`: the share of light, one number or red, green and blue,
         above 0 and at most 1, that is left after a way of length `distance` inside (Bouguer, 1729; Beer,
         1852). It is kept as an `interior` of the absorption -ln(transmittance) / distance; where all is left,
-        there is none. One by wavelength, such as makers tell of their filters, must be above 0 from 360 to
-        830 nm.
+        there is none. One by wavelength, such as makers of filters publish, must be above 0 from 360 to 830
+        nm.
     distance : float, optional
         The length of that way, above 0, in units of the world. 1 if not given.
 

@@ -83,7 +83,7 @@ class Dispersion(ABC):
 
     @abstractmethod
     def _index(self, squares: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return the index of wavelengths, told by their squares."""
+        """Return the index at wavelengths, given by their squares."""
 
 
 @dataclass(frozen=True)
@@ -221,7 +221,7 @@ def one_index(given: Any, why: str) -> float:
     ValueError
         If it is not finite and above 0.
     TypeError
-        If it is no number; of one that goes with wavelength, tells why that is none.
+        If it is no number; for a dispersive one, with the reason.
     """
     if isinstance(given, Dispersion):
         kind = type(given).__name__

@@ -42,7 +42,7 @@ class Glasses(Mapping[str, Sellmeier]):
     Raises
     ------
     KeyError
-        If there is no such name; it tells those that there are.
+        If there is no such name; the error lists all names.
     """
 
     def __getitem__(self, name: str) -> Sellmeier:

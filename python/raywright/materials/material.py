@@ -21,7 +21,7 @@ class Material:
 
 
 def material(name: str, given: Material) -> Material:
-    """Return a material as it is.
+    """Return a checked material.
 
     Raises
     ------

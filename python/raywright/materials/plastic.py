@@ -17,7 +17,7 @@ class Plastic(Material):
     Parameters
     ----------
     reflectance : float, 3 floats or Texture
-        Share of the light that reaches what is under the coat and leaves it again, in [0, 1].
+        Reflectance of the base under the coat, in [0, 1].
     ior : float
         The coat's index of refraction, at least 1.
     roughness : float or Texture, optional

@@ -19,10 +19,10 @@ class Principled(Material):
     """The principled model: many looks by a few numbers, from plastic to metal to glass, under a clear coat.
 
     Burley's ("Physically Based Shading at Disney", 2012, and "Extending the Disney BRDF to a BSDF with
-    Integrated Subsurface Scattering", 2015), with lobes that together give back what comes, to 0.2 %: white
-    is white from every direction, whatever the other numbers are. It is a mixture of metal, of a matt base
-    under a dielectric, and of clear dielectric, of GGX's facets. Light scattered between facets is kept, the
-    base gets the light that the facets above it leave, and both get the light that the coat leaves. The base
+    Integrated Subsurface Scattering", 2015), with lobes that together conserve energy, to 0.2 %: white is
+    white from every direction, whatever the other numbers are. It is a mixture of metal, of a matt base under
+    a dielectric, and of clear dielectric, of GGX's facets. Light scattered between facets is kept, the base
+    gets the light that the facets above it leave, and both get the light that the coat leaves. The base
     spreads its light over azimuths as Burley's does. All parts are reciprocal.
 
     Opaque materials are the same on both sides. Transmissive ones are solids, whose normals point out.
@@ -36,8 +36,8 @@ class Principled(Material):
     metallic : float or Texture
         From 0, none, to 1, metal.
     ior : float, Cauchy or Sellmeier
-        The index of refraction of the dielectric parts, above 0. One that goes with wavelength, as those of
-        `glasses`, spreads what goes through into its colours; where nothing does, it is that of yellow light.
+        The index of refraction of the dielectric parts, above 0. A dispersive one, as those of `glasses`,
+        spreads transmitted light into its colors; without transmission, it is that of yellow light.
     transmission : float or Texture
         Share of the dielectric part that is clear, in [0, 1].
     anisotropic : float or Texture
@@ -51,7 +51,7 @@ class Principled(Material):
     clearcoat, clearcoat_gloss : float or Texture
         Weight of a coat of index 1.5 on opaque parts, and its gloss, in [0, 1].
     priority : int
-        Where solids overlap, as `Dielectric` has it.
+        Where solids overlap, as in `Dielectric`.
     energy_conserving : bool
         True for a model without gain or loss of energy. If not, it is the model as published, and as in
         Mitsuba 3: rough facets lose light, as the base keeps the light that the facets above reflect. White
@@ -128,8 +128,9 @@ class Principled(Material):
 class PrincipledThin(Material):
     """The principled model of a sheet: leaves, paper, bubbles.
 
-    Burley's ("Extending the Disney BRDF to a BSDF with Integrated Subsurface Scattering", 2015), as Mitsuba 3
-    has it. Both sides are alike, and nothing is enclosed: light goes on as it came, spread, or is scattered.
+    Burley's ("Extending the Disney BRDF to a BSDF with Integrated Subsurface Scattering", 2015), as in
+    Mitsuba 3. Both sides are alike, and nothing is enclosed: light is transmitted straight, spread, or
+    scattered.
 
     Parameters
     ----------
@@ -144,10 +145,10 @@ class PrincipledThin(Material):
     diffuse_transmission : float or Texture
         Share of the diffuse light that is scattered to the other side, in [0, 1].
     anisotropic, specular_tint, sheen, sheen_tint, flatness : float or Texture
-        As `Principled` has them; highlights are not stretched, but of the published model.
+        As in `Principled`; highlights are not stretched, but of the published model.
     energy_conserving : bool
-        As `Principled` has it. The published model also lets light through by a roughness of its own,
-        which goes with the index; otherwise `roughness` serves for both.
+        As in `Principled`. The published model also lets light through by a roughness of its own, which goes
+        with the index; otherwise `roughness` serves for both.
 
     Raises
     ------

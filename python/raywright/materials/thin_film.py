@@ -90,7 +90,7 @@ class ThinFilm(_Film):
     Light from both faces of the film interferes: Airy's sum over all reflections within it, of both
     polarisations, integrated over the wavelengths of daylight (CIE D65) as the standard observer sees them
     (CIE 1931), in linear Rec. 709, at each angle. Light comes to it unpolarised. The rest goes through, or
-    into the metal: a film absorbs nothing. Where it has no thickness, what it lies on is bare.
+    into the metal: a film absorbs nothing. Where it has no thickness, its base is bare.
 
     A color may be outside the gamut of red, green and blue. Each channel of the reflectance is then cut off
     at 0, and of clear bases at 1, by some thousandths of the light (0.005 for a soap film): no light is

@@ -9,7 +9,7 @@ from .material import Material, material
 class TwoSided(Material):
     """A sheet of one material where its normals point to, and of another behind.
 
-    Neither lets light through or has holes; a `Mask` of the whole has them in both.
+    Both are opaque and without holes; a `Mask` of the whole has them in both.
 
     Parameters
     ----------

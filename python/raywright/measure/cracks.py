@@ -25,7 +25,7 @@ class Topology(Tabular):
         Open edges, by their ends: those that an odd number of faces share.
     t_junctions : (K, 3) float64
         Corners of faces within edges of other faces that are open otherwise. Rays pass there only through
-        what rounding leaves.
+        gaps of rounding.
     volumes : tuple of float
         Of each body, which is faces that hang together without an open edge; negative where normals point in,
         NaN where some of the faces are turned.
@@ -102,7 +102,7 @@ def topology(scene: SceneLike) -> Topology:
     Raises
     ------
     ValueError
-        If something in the scene is no mesh or moves; tells which shape.
+        If something in the scene is no mesh or moves; the error names the shape.
 
     See Also
     --------

@@ -119,11 +119,11 @@ def cross_section(
 
     Notes
     -----
-    On which side of the plane a corner lies is decided once for all faces that share it, and a corner exactly
-    on it counts as above (Edelsbrunner and Mücke, "Simulation of Simplicity", 1990): so lines of closed
-    meshes close, whatever the plane goes through, and a face that lies in the plane is cut along its edge if
-    at all. Each point is computed once, on its edge, and is right to a few units in the last place of the
-    corners. Vertices are those of the meshes, not rounded as a scene may round them.
+    The side of a corner is decided once for all faces that share it, and a corner exactly on the plane counts
+    as above (Edelsbrunner and Mücke, "Simulation of Simplicity", 1990): so lines of closed meshes always
+    close, and a face that lies in the plane is cut along its edge if at all. Each point is computed once, on
+    its edge, and is right to a few units in the last place of the corners. Vertices are those of the meshes,
+    not rounded as a scene may round them.
 
     Equal corners are one. Where lines do not close so, corners that differ by rounding are one too, as
     ``Scene(weld=)`` says, and ends of lines where a corner of one face is within the edge of another.

@@ -84,10 +84,10 @@ def sky_view(
     scene : Scene, Mesh or anything else that a Scene is made of
         Obstructions.
     points : Hits, ClosestPoints or (..., 3) array, optional
-        Where. Rays leave what was hit exactly as `Hits.leave` has it, and plain points as `offset` tells. The
-        middle of every face if not given, which only meshes have.
+        Where. Rays leave hits exactly as in `Hits.leave`, and plain points by `offset`. The middle of every
+        face if not given, which only meshes have.
     normals : (..., 3) array, optional
-        Of any length; those of the surfaces if not given, which only what was hit has.
+        Of any length; those of the surfaces if not given, which only hits have.
     rays : int
         Directions for each point, at least 16; rounded up to a multiple of 16.
     up : 3 floats, optional

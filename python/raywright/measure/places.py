@@ -86,7 +86,7 @@ def places(
     offset: float | None,
     threads: int | None = None,
 ) -> Places:
-    """Check points and normals, and tell where rays start that leave them; the middles of all faces if None.
+    """Check points and normals, and find the origins of rays that leave them; all faces' middles if None.
 
     Raises
     ------
@@ -172,7 +172,7 @@ class Touching:
         return _SAFETY / _STEEP * self.error + self.distance
 
     def beside(self, points: Floats, ways: Floats) -> Floats:
-        """Return where rays start that go along directions, as `Hits.leave` has it."""
+        """Return origins of rays along directions, as in `Hits.leave`."""
         normal, lift = self.lift(ways)
         starts: Floats = points + np.where((lift > 0)[..., None], lift[..., None] * normal, 0.0)
         return starts

@@ -116,7 +116,7 @@ class Where(NamedTuple):
 
 
 class Plotted(Tabular):
-    """Values at points of a scene, which they remember as long as they are not pickled or copied."""
+    """Values at points of a scene, kept unless they are pickled or copied."""
 
     _where: Where | None = None
     # Names of the arrays that can be drawn, the main one first.

@@ -42,8 +42,7 @@ class LidarScan(Tabular):
     position : (K, 3) float64
         Where the scanner takes it to be: on the middle of the beam, at the range.
     incidence : (K,) float64
-        Between the beam and the normal of the surface, in degrees, 0 to 90; the mean over what the beam
-        meets.
+        Between the beam and the normal of the surface, in degrees, 0 to 90; the mean over the footprint.
     strength : (K,) float64
         Share of the beam that came to the surface there, 0 to 1.
     shape_id, primitive : (K,) int32
@@ -295,7 +294,7 @@ def _scanned(
     seed: int,
     threads: int | None,
 ) -> dict[str, NDArray[Any]]:
-    """Return what some beams come to, without noise."""
+    """Return the returns of some beams, without noise."""
     ways = beams_of(middles[beams], beams, scanner.divergence, scanner.rays, seed)
     place = np.asarray(scanner.position)
     at = touching(scene, place, threads)
@@ -336,7 +335,7 @@ def _scanned(
 
 
 def _width(scanner: Lidar, t: Floats, angle: Floats) -> Floats:
-    """Return by how much ranges differ within the part of the beam that each ray stands for."""
+    """Return the spread of ranges within the part of the beam of each ray."""
     apart = math.tan(math.radians(scanner.divergence) / 2.0) / math.sqrt(scanner.rays)
     with np.errstate(invalid="ignore"):
         width: Floats = t * apart * np.tan(np.radians(np.minimum(angle, _GRAZING)))

@@ -71,8 +71,7 @@ def line_of_sight(
     margin : float, optional
         The share of the way at either end that does not count, at least 0 and less than 0.5. With 0, both
         points count. If not given, points that lie on a surface to within rounding are not hidden by it
-        there: the way leaves it by the bound on its error, as `Hits.leave` has it. All else counts, however
-        near.
+        there: the way leaves it by the bound on its error, as in `Hits.leave`. All else counts, however near.
     threads : int, optional
         Number of threads; all cores if not given. The answer does not depend on it.
 

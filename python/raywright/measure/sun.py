@@ -27,7 +27,7 @@ class SolarExposure(Plotted):
     ----------
     exposure : (...) float64
         The weights of the moments at which the sun reaches the point, each times the cosine of the sun to the
-        normal, summed: of weights that are direct normal irradiance times hours, what falls on the surface.
+        normal, summed: for direct normal irradiance times hours, the irradiation of the surface.
     sunlit : (...) float64
         The weights of these moments, summed: with a weight of 1 their number, with the hours between them the
         hours of sun.
@@ -71,7 +71,7 @@ def sun_directions(
     Parameters
     ----------
     times : datetime, numpy.datetime64, str, or sequence or (T,) array of these
-        As `SunSky.at` has them: with their zones, datetime64 in UTC.
+        As in `SunSky.at`: with their zones, datetime64 in UTC.
     latitude, longitude : float
         The place in degrees, north and east positive.
     up, north : 3 floats
@@ -125,10 +125,10 @@ def solar_exposure(
     scene : Scene, Mesh or anything else that a Scene is made of
         What casts shadows.
     points : Hits, ClosestPoints or (..., 3) array, optional
-        Where. Rays leave what was hit exactly as `Hits.leave` has it, and plain points as `offset` tells. The
-        middle of every face if not given, which only meshes have.
+        Where. Rays leave hits exactly as in `Hits.leave`, and plain points by `offset`. The middle of every
+        face if not given, which only meshes have.
     normals : (..., 3) array, optional
-        Of any length; those of the surfaces if not given, which only what was hit has.
+        Of any length; those of the surfaces if not given, which only hits have.
     sun : (T, 3) array, optional
         Directions to the sun, of any length; or `times` with `latitude` and `longitude`, as `sun_directions`
         takes them.

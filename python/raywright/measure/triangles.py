@@ -23,7 +23,7 @@ def triangles(scene: Scene, tolerance: float | None) -> tuple[Floats, NDArray[np
     Raises
     ------
     ValueError
-        If something is no mesh, or moves; tells which shape.
+        If something is no mesh, or moves; the error names the shape.
     """
     distances: list[float] = []
     corners, faces, count = [np.zeros((0, 3))], [np.zeros((0, 3), np.uint32)], 0

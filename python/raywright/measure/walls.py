@@ -38,7 +38,7 @@ def thickness(
     points : Hits, ClosestPoints or (..., 3) array, optional
         Where. The middle of every face if not given, which only meshes have.
     normals : (..., 3) array, optional
-        Outward normals, of any length; those of the surfaces if not given, which only what was hit has.
+        Outward normals, of any length; those of the surfaces if not given, which only hits have.
     method : {"ray", "sphere"}
         "ray" goes straight in, against the normal, to where the surface is met next. "sphere" is the diameter
         of the largest ball inside that touches the surface at the point, which is never more, does not depend

@@ -17,7 +17,7 @@ _TOGETHER = 1 << 22
 
 
 def peaks(t: Floats, width: Floats, resolution: float) -> NDArray[np.int64]:
-    """Tell which peak of its beam's waveform each ray belongs to.
+    """Return the peak of its beam's waveform that each ray belongs to.
 
     The waveform is a sum of normal distributions, one a ray, as wide as the pulse and the part of the beam
     that the ray stands for. Rays belong together as far as no dip lies between them.
@@ -27,7 +27,7 @@ def peaks(t: Floats, width: Floats, resolution: float) -> NDArray[np.int64]:
     t : (N, R) float64
         Ranges of the rays of each beam, in order; inf for a miss.
     width : (N, R) float64
-        By how much ranges differ within what a ray stands for: a standard deviation.
+        Spread of ranges within the part of each ray: a standard deviation.
     resolution : float
         The full width at half maximum of the pulse.
 

@@ -44,8 +44,8 @@ class GridMedium(Medium):
     phase : HenyeyGreenstein, Rayleigh or Isotropic
         Phase function.
     emission : float, 3 floats, Spectrum, array of (X', Y', Z') or (X', Y', Z', 3), or SparseGrid
-        The radiance that it gives off by itself, per unit of length: numbers where the density is 1, or an
-        array, over the same bounds, whatever the density.
+        Emitted radiance per unit of length: numbers where the density is 1, or an array, over the same
+        bounds, whatever the density.
     at : {"corners", "centres"}
         Where the numbers stand. "corners": those of the outermost lie on the faces of the bounds. "centres":
         each is in the middle of a cell, and the same up to the face, as OpenVDB's, pbrt's and Mitsuba's are.

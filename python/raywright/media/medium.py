@@ -18,7 +18,7 @@ class Medium:
 
 
 def medium(name: str, given: Any) -> Medium | None:
-    """Return a medium as it is, or None.
+    """Return a checked medium, or None.
 
     Raises
     ------

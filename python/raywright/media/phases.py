@@ -25,8 +25,8 @@ class Isotropic:
 class Rayleigh:
     """Rayleigh's phase function (1871) of particles far below a wavelength, as of air: 3 (1 + cos²) / 16π.
 
-    That short waves are scattered more than long ones is said by the coefficients of a medium, which go with
-    the inverse fourth power of the wavelength.
+    The greater scattering of short waves is in the coefficients of a medium, which go with the inverse fourth
+    power of the wavelength.
 
     See Also
     --------
@@ -47,8 +47,8 @@ class HenyeyGreenstein:
     Parameters
     ----------
     g : float
-        That mean, between -1 and 1, both excluded: above 0 light mostly goes on, as in clouds (about 0.85)
-        and milk (about 0.9); below 0 it mostly turns back; at 0 it goes everywhere alike.
+        That mean, between -1 and 1, both excluded: above 0 light is mostly scattered forward, as in clouds
+        (about 0.85) and milk (about 0.9); below 0 mostly back; at 0 everywhere alike.
 
     Raises
     ------
@@ -81,7 +81,7 @@ Phase: TypeAlias = HenyeyGreenstein | Isotropic | Rayleigh
 
 
 def phase(name: str, given: Any) -> Phase:
-    """Return a phase function as it is.
+    """Return a checked phase function.
 
     Raises
     ------

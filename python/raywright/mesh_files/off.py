@@ -47,8 +47,8 @@ class _Kind(NamedTuple):
 def read_off(path: Path) -> tuple[Mesh, ...]:
     """Read an OFF file as one mesh, with normals, texture coordinates and colors of vertices.
 
-    Vertices and faces are those of the file, in its order; polygons as `triangulate` has them. Colors of
-    faces are left out.
+    Vertices and faces are those of the file, in its order; polygons as in `triangulate`. Colors of faces are
+    left out.
 
     Raises
     ------

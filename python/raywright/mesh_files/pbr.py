@@ -43,7 +43,7 @@ class Picture(NamedTuple):
     pixels : (H, W, C) array
         Rows from the top.
     wrap, filter, transform
-        As `ImageTexture` has them.
+        As in `ImageTexture`.
     """
 
     pixels: NDArray[Any]

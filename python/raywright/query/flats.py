@@ -80,7 +80,7 @@ class FlatArrays:
     own : int
         Number of `nodes` of the scene's own tree: a walk of it ends there.
     unbounded : (U,) uint32
-        Primitives without an end, as a `Plane`: they stand in no leaf.
+        Infinite primitives, as a `Plane`: they are in no leaf.
     first : (S + 1,) int64
         The number of the first primitive of each of the scene's shapes, and how many there are in all.
     centre : (3,) float64

@@ -73,7 +73,7 @@ class SurfacePoints(Known, Tabular, PlottedPoints):
 
     @cached_property
     def cell(self) -> NDArray[np.int64]:
-        """Cell of the mesh as it was given, such as a polygon or a volume cell: (...) int64; -1 for none.
+        """Cell of the original mesh, such as a polygon or a volume cell: (...) int64; -1 for none.
 
         The face where ``Mesh.cells`` is None, and 0 on a shape that is no mesh.
         """
@@ -185,12 +185,12 @@ class SurfacePoints(Known, Tabular, PlottedPoints):
         (Pharr, Jakob and Humphreys 2023, 6.8.6), by the rule that rays of pictures go by: some 1e-14 of the
         largest coordinate, so that a plate of 1e-5 of its distance from the origin does not leak.
 
-        Of a face, a copy's face and a flat shape, no ray meets what it leaves; of a curved shape, only those
-        that go through it meet it again. A direction along the surface, at right angles to the normal, starts
-        on the side of the normal and stays there. Where the angle to the surface is within rounding, 1e-16 or
-        so (on a sliver, that times its length over its height), so is the side.
+        On flat surfaces, faces and copied faces included, no ray meets the surface that it leaves; on a
+        curved shape, only rays that go through it meet it again. A direction along the surface, at right
+        angles to the normal, starts on the side of the normal and stays there. Where the angle to the surface
+        is within rounding, 1e-16 or so (on a sliver, that times its length over its height), so is the side.
 
-        Where copies move, rays are to be asked at the `time` of the hits.
+        If copies move, trace the rays at the `time` of the hits.
 
         Examples
         --------
@@ -228,7 +228,7 @@ class SurfacePoints(Known, Tabular, PlottedPoints):
         return Surface(*(part.reshape(lead + part.shape[1:]) for part in parts))
 
     def to_dict(self) -> dict[str, NDArray[Any]]:
-        """Return what is known as flat arrays by name, an entry or a row for each point.
+        """Return the data as flat arrays by name, an entry or a row for each point.
 
         Returns
         -------
@@ -282,8 +282,8 @@ class SurfacePoints(Known, Tabular, PlottedPoints):
 class Hits(SurfacePoints):
     """The closest hit of each ray; every array begins with the leading shape of the rays.
 
-    Arrays of floats and bools belong to the caller. Those of integers are read-only, as the scene looks up by
-    them what else is known; what was worked out already does not follow a change.
+    Arrays of floats and bools belong to the caller. Arrays of integers are read-only, since further data is
+    looked up by them; computed results do not follow a change.
 
     Attributes
     ----------
@@ -339,7 +339,7 @@ class Hits(SurfacePoints):
         compiled: _core.CompiledScene,
         rays: tuple[Any, ...] | None,
     ) -> None:
-        """Tell of these hits, and forget what was worked out of others."""
+        """Take these hits, and forget results computed for others."""
         self.__dict__.clear()
         # Setting the fields of a frozen dataclass takes longer than tracing a ray.
         self.__dict__.update(
@@ -537,7 +537,7 @@ def one_or_some(kind: type[Points], of: Any, index: Any) -> Points:
 
 
 def chosen(kind: type[Points], of: SurfacePoints, own: dict[str, Any], rays: NDArray[np.int64]) -> Points:
-    """Return what is picked of points, which know as much as those do; `rays` are places of theirs."""
+    """Return a selection of points, with the private data of all; `rays` are places of theirs."""
     points = kind.__new__(kind)
     vars(points).update(own, _compiled=of._compiled, _rays=rows.rays_of(of._rays, rays))
     return points

@@ -38,7 +38,7 @@ class Rays:
     origins, directions : (N, 3) float64
         Directions are unit.
     time : (N,) float64
-        When each is asked, from 0 as the shutter opens to 1 as it closes.
+        Times of the rays, from 0 as the shutter opens to 1 as it closes.
 
     See Also
     --------
@@ -82,7 +82,8 @@ class Scattered:
     direction : (N, 3) float64
         Unit directions that paths go on to; NaN where nothing is scattered.
     weight : (N, 3) float64
-        Scattering function times cosine over density: what throughput is multiplied by; 0 where nothing is.
+        Scattering function times cosine over density: the factor of the throughput; 0 where nothing is
+        scattered.
     pdf : (N,) float64
         Density in solid angle; infinite where a single direction has all of it, as with a mirror.
 
@@ -310,8 +311,8 @@ class Interactions:
         Returns
         -------
         Scattered
-            As `reflected` has it, on the other side. Weights are those of radiance, which has the square of
-            the index of refraction in it.
+            As in `reflected`, on the other side. Weights are those of radiance, which has the square of the
+            index of refraction in it.
 
         See Also
         --------
@@ -449,7 +450,7 @@ class Interactions:
         return self._core.light_pdf(before._core)
 
     def leave(self, directions: ArrayLike) -> Rays:
-        """Return the rays that leave along some unit directions, (N, 3), and do not meet what they leave.
+        """Return rays that leave along some unit directions, (N, 3), without meeting the same surface.
 
         Parameters
         ----------

@@ -19,7 +19,7 @@ _TOLD = 64
 class Photons:
     """Light where it comes to surfaces and is scattered by media: K photons, in order along each path.
 
-    ``photons[mask]`` has some of them; what is emitted, escapes and is absorbed stays that of all. All arrays
+    ``photons[mask]`` selects some of them; emitted, escaped and absorbed flux stay those of all. All arrays
     are read-only.
 
     Attributes
@@ -31,8 +31,8 @@ class Photons:
     normals : (K, 3) float64
         Unit geometric normals there, on the side that they came to; 0 in a medium.
     powers : (K, 3) float64
-        The flux, W, that each stands for as it comes there: power over area is irradiance, and power over
-        volume and extinction is fluence.
+        Flux of each photon, W: power over area is irradiance, and power over volume and extinction is
+        fluence.
     shape_id, primitive : (K,) int32
         Shape and primitive of the surface; -1 in a medium.
     path : (K,) int64

@@ -80,7 +80,7 @@ class PlottedPoints:
 
 
 def _values(points: Any, name: str) -> NDArray[np.float64]:
-    """Return what points are colored by: NaN or infinity for a miss."""
+    """Return the colored values of points: NaN or infinity for a miss."""
     if name in _COUNTED:
         counted = np.asarray(getattr(points, name), np.float64)
         return np.where(np.asarray(points.primitive) >= 0, counted, np.nan)

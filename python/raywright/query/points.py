@@ -30,7 +30,7 @@ class PointQueries:
     ) -> NDArray[np.bool_]:
         """Find whether each point is inside a closed shape.
 
-        Decided exactly; what is on a closed surface counts as inside. Shapes that are not closed have no
+        Decided exactly; points on a closed surface count as inside. Shapes that are not closed have no
         inside: a plane, a disk, a terrain, a box without its lid. The union counts: a point in two shapes at
         once is inside.
 
@@ -150,9 +150,9 @@ class PointQueries:
         Points that are NaN or infinite have no closest point. Moving instances are where they are as the
         shutter opens.
 
-        Shapes that are no meshes, and instances, are found through a tree of their boxes, which is built when
-        the first point is asked. Distances to shapes in an instance are measured in the scene's space, so
-        that transforms that scale some lengths more than others, nested ones too, are as good as any.
+        Shapes that are no meshes, and instances, are found through a tree of their boxes, which is built by
+        the first query. Distances to shapes in an instance are measured in the scene's space, so that
+        transforms that scale some lengths more than others, nested ones too, are as good as any.
 
         Most shapes have a closed form; of ellipsoids the closest point is where a sum that falls is 1, which
         halving finds to the last digit (Eberly, "Distance from a Point to an Ellipse, an Ellipsoid, or a

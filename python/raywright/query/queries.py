@@ -47,20 +47,19 @@ class Queries(PointQueries):
         threads : int, optional
             Number of threads; all cores if not given. The answer does not depend on it.
         time : float or (...) array, optional
-            When the rays are asked, from 0 as the shutter opens, which it is if not given, to 1 as it closes:
-            instances that move are where they then are.
+            Times of the rays, from 0 as the shutter opens, which it is if not given, to 1 as it closes:
+            moving instances are taken at these times.
         out : Hits, optional
             An earlier answer, of this scene or another, to as many rays of the same leading shape. Its arrays
-            are written to and it is returned, so that a loop over batches allocates nothing; what it told
-            before is gone.
+            are overwritten and it is returned, so that a loop over batches allocates nothing.
         mask : (...) bool array, optional
             Rays to trace, broadcast to their leading shape; the others hit nothing.
         shapes : (S,) bool array, str or sequence of str, optional
             Shapes that count, one bool for each of ``scene.shapes`` or their names: as in a scene of these
             alone. An `Instance` counts as a whole.
         cull : {"back"}, optional
-            Leaves out what is met from behind, where the geometric normal goes along with the ray. Of
-            triangles that is decided exactly; of curved shapes and of copies by the normal as float64 has it.
+            Back-face culling: leaves out hits from behind, where the geometric normal goes along with the
+            ray. Triangles are culled exactly; curved shapes and copies by the normal in float64.
 
         Returns
         -------
@@ -122,8 +121,8 @@ class Queries(PointQueries):
     ) -> NDArray[np.bool_]:
         """Find whether each ray hits anything between `t_min` and `t_max`.
 
-        The same as ``intersect(...).hit``, and faster: a ray ends at the first hit that it meets. Takes and
-        raises what `intersect` does, but for `out`.
+        The same as ``intersect(...).hit``, and faster: a ray ends at the first hit that it meets. Arguments
+        and errors are those of `intersect`, but for `out`.
 
         Parameters
         ----------
@@ -215,8 +214,7 @@ class Queries(PointQueries):
     ) -> NDArray[np.float64]:
         """Compute the share of light that media leave along each ray: exp(-`optical_depth`).
 
-        Rays go straight through all surfaces, as for `optical_depth`, which keeps its digits where next to
-        nothing gets through.
+        Surfaces do not stop the rays, as for `optical_depth`, which keeps its digits for tiny transmittances.
 
         Parameters
         ----------
@@ -251,8 +249,8 @@ class Queries(PointQueries):
     def interactions(self, rays: Rays) -> Interactions:
         """Find the surface interaction of each ray: the hit, with its scattering and its light.
 
-        For integrators that are written in Python (see `Integrator`): what comes back tells emission, and
-        answers whole batches of questions about scattering and light.
+        It is for integrators written in Python (see `Integrator`): the result has the emission, and samples
+        scattering and light for the whole batch.
 
         Parameters
         ----------
@@ -303,8 +301,7 @@ class Queries(PointQueries):
     ) -> AllHits:
         """Find every hit of each ray, in order.
 
-        Takes and raises what `intersect` does, and the first hit that it finds of each ray is that of
-        `intersect`.
+        Arguments and errors are those of `intersect`, and the first hit of each ray is that of `intersect`.
 
         Parameters
         ----------
@@ -326,8 +323,8 @@ class Queries(PointQueries):
         A surface is crossed once where a ray goes through an edge or a vertex of it, not once for each face
         there. A ray that only touches an edge or a vertex gets two hits there, as if in and out: of two
         faces, or twice of the same one if the ray meets no other. So a closed surface has an even number of
-        hits seen from outside, and an odd number from inside, however the ray is aimed. Faces that lie upon
-        each other are all told.
+        hits seen from outside, and an odd number from inside, however the ray is aimed. Hits of coincident
+        faces are all listed.
 
         Examples
         --------
@@ -352,7 +349,7 @@ class Queries(PointQueries):
     ) -> NDArray[np.int32]:
         """Count the hits of each ray, as `intersect_all` finds them, without the memory for them.
 
-        Takes and raises what `intersect` does.
+        Arguments and errors are those of `intersect`.
 
         Parameters
         ----------
@@ -388,8 +385,8 @@ class Queries(PointQueries):
     ) -> QueryCost:
         """Count the nodes visited and primitives tested for the closest hit of each ray.
 
-        Takes and raises what `intersect` does. Neighbouring rays share visits, so a ray's cost may depend on
-        which others are asked with it. A copy of an instance counts as one primitive, whatever it takes.
+        Arguments and errors are those of `intersect`. Neighbouring rays share visits, so a ray's cost may
+        depend on the others of the batch. A copy of an instance counts as one primitive.
 
         Parameters
         ----------
@@ -435,8 +432,8 @@ class Queries(PointQueries):
             picture, (width - 1, height - 1) its lower right. For points between, such as mouse clicks in
             floating point, use ``intersect(*camera.rays_through(points))``.
         offsets : (2,) or (..., 2) array
-            Where in the pixel, for all or for each, as `Camera.rays` has it: (0, 0) is its upper left, (1, 1)
-            its lower right. The default is the centre.
+            Where in the pixel, for all or for each, as in `Camera.rays`: (0, 0) is its upper left, (1, 1) its
+            lower right. The default is the centre.
         threads : int, optional
             Number of threads; all cores if not given. The answer does not depend on it.
         time : float or (...) array, optional
@@ -493,15 +490,15 @@ class Queries(PointQueries):
         Faces are projected into the picture (Catmull 1974), and at the pixels that one may cover it is
         decided for the pixel's ray, exactly, as `intersect` does. Parts of the picture with too many faces
         are traced instead, and all of it is if there are more faces than a quarter of its pixels, something
-        in the scene is no mesh, or the camera is not a pinhole that stands still. ``report.first_hits`` tells
-        where it pays.
+        in the scene is no mesh, or the camera is not a pinhole that stands still. ``report.first_hits``
+        measures the gain.
 
         Parameters
         ----------
         camera : Camera or another kind
             Whose picture it is.
         offsets : (2,) or (height, width, 2) array
-            Where in the pixel, for all or for each, as `Camera.rays` has it.
+            Where in the pixel, for all or for each, as in `Camera.rays`.
         threads : int, optional
             Number of threads; all cores if not given. The answer does not depend on it.
         time : float, optional
@@ -555,7 +552,7 @@ class Queries(PointQueries):
         """Find all faces that solid cones touch, the nearest first.
 
         A face is touched if any point of it, its edges and corners included, is in the cone, its surface
-        included. Nothing hides what is behind it.
+        included. There is no occlusion.
 
         Parameters
         ----------
@@ -616,8 +613,8 @@ class Queries(PointQueries):
         """Compute the covered share of solid cones: the share of their directions that meet something.
 
         It is exact for meshes, whose faces hide parts of each other, and for one sphere (Tovchigrechko and
-        Vakser 2001). Beyond that, what is behind a sphere counts by the share of the cone that the sphere
-        leaves, as if both were strewn over it (Amanatides 1984).
+        Vakser 2001). Beyond that, coverage behind a sphere counts by the share of the cone that the sphere
+        leaves, as if both were spread evenly (Amanatides 1984).
 
         Parameters
         ----------
@@ -719,5 +716,5 @@ class Queries(PointQueries):
 
 
 def known_by(core: CompiledScene, rays: AskedRays) -> tuple[Any, ...] | None:
-    """Return what hits have to keep of their rays to know their points: nothing of meshes."""
+    """Return the data of rays that hits need for their points: none on meshes."""
     return (*rays[:2], 0.0 if rays[6] is None else rays[6]) if core.curved else None

@@ -29,7 +29,7 @@ def places(shape: tuple[int, ...], index: Any) -> NDArray[np.int64]:
 
 
 def picked(own: dict[str, Any], which: NDArray[np.int64]) -> dict[str, Any]:
-    """Return what is known of all, of some: copies."""
+    """Return the private data of some points: copies."""
     parts = {name: value for name, value in own.items() if name not in ("_compiled", "_rays")}
     return {name: _some(name, value, which) for name, value in parts.items()}
 
@@ -69,7 +69,7 @@ def run(shape: tuple[int, ...], first: int) -> NDArray[np.int64]:
 
 
 def cut(own: dict[str, Any], which: int | slice) -> dict[str, Any]:
-    """Return what is known of all, of one place of the first dimension or of a run: copies."""
+    """Return the private data of one place of the first dimension or of a run: copies."""
     parts = {name: value for name, value in own.items() if name not in ("_compiled", "_rays")}
     return {name: _cut(value, which) for name, value in parts.items()}
 
@@ -94,7 +94,7 @@ def rays_of(rays: tuple[Any, ...] | None, which: NDArray[np.int64]) -> tuple[Any
 
 
 def _at(array: NDArray[Any], lead: tuple[int, ...], which: NDArray[np.int64]) -> NDArray[Any]:
-    """Return the entries of places of a leading shape, told by number in C order."""
+    """Return the entries of places of a leading shape, numbered in C order."""
     some: NDArray[Any] = array[np.unravel_index(which, lead)]
     return some
 

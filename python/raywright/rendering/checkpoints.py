@@ -1,4 +1,4 @@
-"""Renders that survive: what has been rendered, in a file, to go on from."""
+"""Checkpoints of renders: files to resume from."""
 
 import errno
 import json
@@ -25,7 +25,7 @@ _MOST_HEADER = 1 << 16
 
 
 def held(path: str | PathLike[str]) -> dict[str, Any]:
-    """Return what the file at a path says that it is a render of; nothing where there is no such file.
+    """Return the settings of the render in a checkpoint file; nothing if there is no such file.
 
     Raises
     ------
@@ -114,7 +114,7 @@ class Checkpoints:
         return max(self._last + max(_SECONDS, _SHARE * self._cost) - time.monotonic(), 0.0)
 
     def write_beside(self, rendering: _core.Rendering) -> None:
-        """Write the file while the render goes on; if the last time is not over yet, another time."""
+        """Write the file while the render goes on, unless the last write is still running."""
         if self._writer is not None and self._writer.is_alive():
             return
         self._tell()
@@ -158,7 +158,7 @@ class Checkpoints:
         self._cost = time.monotonic() - began
 
     def _tell(self) -> None:
-        """Warn of trouble as it comes: it may be hours until the picture is there to tell."""
+        """Warn of trouble at once: the picture may take hours."""
         if self.trouble is not None:
             # If warnings are errors, this one must not cost the picture.
             with suppress(RuntimeWarning):

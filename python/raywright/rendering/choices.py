@@ -50,7 +50,7 @@ def chosen(
     apart: bool = False,
     photons: bool = False,
 ) -> tuple[Sampler, RenderPlan]:
-    """Return the sampler of a render, with its batches, and the plan that tells of it.
+    """Return the sampler of a render, with its batches, and the plan with its row.
 
     Parameters
     ----------
@@ -86,7 +86,7 @@ def chosen(
 
 
 def waves(scene: Scene) -> tuple[Choice, ...]:
-    """Return why paths carry wavelengths, in a row of the plan; none where red, green and blue tell all."""
+    """Return the reason for spectral rendering, as a row of the plan; none if red, green and blue suffice."""
     why = scene.wavelengths
     return () if why is None else (Choice("wavelengths", "three a path", why),)
 

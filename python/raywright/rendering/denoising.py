@@ -22,7 +22,7 @@ class Denoised(NamedTuple):
 
 
 def check_method(name: str, value: object) -> str:
-    """Return what `value` calls a way to denoise, or raise a ValueError."""
+    """Return a method of the denoiser by `value`, or raise a ValueError."""
     if value not in METHODS:
         raise ValueError(f"{name} must be one of {', '.join(METHODS)}, got {value!r}")
     return str(value)
@@ -44,7 +44,7 @@ def denoised(halves: Halves, method: str, threads: int | None) -> Denoised:
 
 
 def _by_oidn(halves: Halves) -> NDArray[np.float32]:
-    """Return both halves as they are, and as Open Image Denoise has them."""
+    """Return both halves without filter, and by Open Image Denoise."""
     try:
         import pyoidn
     except ImportError as error:

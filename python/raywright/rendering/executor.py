@@ -1,4 +1,4 @@
-"""Renders by any executor: a pool of processes, a cluster, whatever has ``submit``.
+"""Renders by any executor: a pool of processes, a cluster, or anything else with ``submit``.
 
 A pass over the picture is cut into pieces, each some tiles and the samples of one pass, that take some tenths
 of a second each. Where all pixels get the same samples, pieces of later passes are worked on before the first
@@ -121,7 +121,7 @@ class Distribution:
         BrokenError
             If the executor broke. The render can be gone on with.
         Exception
-            Whatever the scene or the integrator raised.
+            An exception of the scene or the integrator.
         """
         try:
             with self._courier.ready():
@@ -353,7 +353,7 @@ class _Courier:
 
     @contextmanager
     def ready(self) -> Iterator[None]:
-        """Have the job where workers find it, for as long as they need it."""
+        """Keep the job where workers find it."""
         if self._client is not None:
             self.check()
             yield
@@ -379,7 +379,7 @@ class _Courier:
         return (self._bytes if feeds else None), self._spool
 
     def asked(self, worker: str) -> str | None:
-        """Return the worker if it is to be fed now: it asks again and again until the job arrives."""
+        """Return the worker if it needs the job now: it asks again until the job arrives."""
         if worker in self._fed:
             return None
         self._fed.add(worker)

@@ -164,7 +164,7 @@ def _writer(
     tone: str,
     stack: ExitStack,
 ) -> Callable[[int, Image], Path | None]:
-    """Return what takes each picture to where it belongs, and gives the file that it is in."""
+    """Return the sink of pictures, which returns the file of each."""
     if callable(out):
 
         def hand(number: int, image: Image) -> None:

@@ -58,7 +58,7 @@ def with_bias(
 
 
 def _relative(picture: NDArray[np.float32], off: NDArray[np.float32], noise: NDArray[np.float32]) -> float:
-    """Return the relMSE of a picture that is so much off, as far as it is more than noise."""
+    """Return the relMSE of a picture with this bias, as far as it is more than noise."""
     off = off.astype(np.float64)
     truth = picture.astype(np.float64) - off
     return max(0.0, float(np.mean((off**2 - noise.astype(np.float64) ** 2) / (truth**2 + 0.01))))

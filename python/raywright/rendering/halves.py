@@ -18,7 +18,7 @@ _SAMPLES = 8
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Halves:
-    """A picture in two halves of its samples, which know nothing of each other. Arrays are read-only.
+    """A picture in two independent halves of its samples. Arrays are read-only.
 
     Attributes
     ----------
@@ -26,7 +26,7 @@ class Halves:
         Means of four independent parts of the samples: the first two are one half, the others the other. The
         batches of a sampler go to the parts in turns.
     variance : (2, H, W, 3) float32
-        The variance of the mean of either half, as it is where samples are independent of each other.
+        The variance of the mean of either half, as for independent samples.
     albedo, normal : (2, H, W, 3) float32
         Two independent pictures of the first hit's albedo and shading normal.
     depth : (2, H, W) float32

@@ -35,10 +35,9 @@ class ErrorEstimate:
         The estimate, and the ends of its interval; NaN where there are too few samples to know.
     trusted : bool
         True if the estimate rests on many samples that agree on it. If not, light is found so rarely that a
-        few samples carry more than half of the estimate, when one more of their kind, or one fewer, would
-        make it another; or that the interval is more than thirtyfold, when what they found may be a stray or
-        the first of many. A sample whose neighbors' samples all show the same, as on the rim of a lamp, is no
-        such rare find.
+        few samples carry more than half of the estimate, and one more or one fewer would change it; or the
+        interval is more than thirtyfold, so that finds may be strays or the first of many. A sample whose
+        neighbors' samples all show the same, as on the rim of a lamp, is no such rare find.
 
     See Also
     --------
@@ -117,8 +116,8 @@ class Image:
     plan : RenderPlan
         Options that were chosen automatically, such as the sampler, with reasons.
     pooled_error : (H, W, 3) float32, optional
-        The standard error as far as pixels around tell of it too, which `interval` goes by: where samples
-        come in batches, one pixel has few of them. `standard_error` is taken if it is not given.
+        The standard error, pooled with the pixels around, for `interval`: where samples come in batches, one
+        pixel has few of them. `standard_error` is taken if it is not given.
     degrees : (H, W) float32, optional
         Degrees of freedom of `pooled_error`; without them it is taken as exact.
     alpha : (H, W) float32, optional
@@ -132,7 +131,7 @@ class Image:
         it is more and they differ by more than four standard errors. A bias that is alike in all three disks,
         such as that of a shadow's edge through the point, is not included.
     bias_error : (H, W, 3) float32, optional
-        Standard error of `bias`, told by groups of its samples: it is often more than the bias itself.
+        Standard error of `bias`, by groups of its samples: it is often more than the bias itself.
     halves : Halves, optional
         Two independent halves of the picture, for `denoise`; ``halves`` of `render` keeps them.
 
@@ -250,10 +249,10 @@ class Image:
     def denoise(self, method: str = "regression", *, threads: int | None = None) -> "Image":
         """Return a denoised picture, with its error.
 
-        Each half of the samples is filtered by itself, in several ways. A quarter of the samples that are in
-        the other half tells which way is best where, to leave pixels as they are being one of the ways; and
-        the last quarter tells how wrong the outcome is. So `error` is of the picture that is returned, blur
-        included, as it is for pictures that were not filtered: without bias, and with an interval.
+        Each half of the samples is filtered by itself, in several ways. A quarter of the samples, in the
+        other half, selects the best filter for each place, no filter included; the last quarter measures the
+        error of the result. So `error` is that of the returned picture, blur included: without bias, and with
+        an interval, as for unfiltered pictures.
 
         Parameters
         ----------
@@ -267,9 +266,9 @@ class Image:
         Returns
         -------
         Image
-            With the error of its own. `standard_error` is how far pixels are off, blur included, as the
-            squares of 13 by 13 pixels around tell. `plan` tells that it was denoised; `biased` is True, and
-            `halves` and other fields that describe the noisy picture are None.
+            With the error of its own. `standard_error` is the error of pixels, blur included, estimated in
+            squares of 13 by 13 pixels. `plan` has a row about it; `biased` is True, and `halves` and other
+            fields that describe the noisy picture are None.
 
         Raises
         ------
@@ -287,8 +286,8 @@ class Image:
         Notes
         -----
         Light that no sample has found is in no estimate. Where that of the picture with its noise cannot be
-        trusted, that of the other cannot either. Below some 10,000 pixels intervals are wide, since one
-        quarter of the samples has to tell.
+        trusted, that of the other cannot either. Below some 10,000 pixels intervals are wide, since only one
+        quarter of the samples measures the error.
 
         Examples
         --------
@@ -339,8 +338,8 @@ class Image:
         exposure : float
             Exposure in stops: 1 is twice as bright.
         tone : str
-            Tone mapping of values brighter than white: ``"filmic"`` keeps colours up to half of white as they
-            are, and rolls off what is brighter by the shoulder of the Khronos PBR Neutral tone mapper
+            Tone mapping of values brighter than white: ``"filmic"`` keeps colors up to half of white
+            unchanged, and compresses brighter ones by the shoulder of the Khronos PBR Neutral tone mapper
             (Khronos Group, 2024); ``"linear"`` clips.
 
         Returns
@@ -378,13 +377,13 @@ class Image:
             them, with alpha if the picture has one. JPEG knows none: there it stands before black. ``.npy``
             holds `rgb`. ``.exr`` holds `rgb` as channels R, G, B, `alpha` as A, `standard_error` as
             standard_error.R, .G, .B, and the buffers of `aov` as layers of 32-bit floats, as compositing
-            programs call them: depth.Z, normal.X, .Y, .Z, albedo.R, .G, .B, and so on. Numbers are of 32 bits
-            without a sign (4294967295 for none), shapes also as Cryptomatte 1.2 has them, by the names "shape
-            0", "shape 1", ...
+            programs call them: depth.Z, normal.X, .Y, .Z, albedo.R, .G, .B, and so on. Indices are of 32 bits
+            without a sign (4294967295 for none), shapes also as Cryptomatte 1.2, by the names "shape 0",
+            "shape 1", ...
         exposure : float
             Exposure of 8-bit pictures, in stops.
         tone : str
-            ``"filmic"`` or ``"linear"``, see `srgb`. Files that hold numbers have them as they are.
+            ``"filmic"`` or ``"linear"``, see `srgb`. Files of numbers are not tone-mapped.
 
         Raises
         ------

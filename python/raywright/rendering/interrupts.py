@@ -14,7 +14,7 @@ class _TerminatedError(BaseException):
 
 
 def unless_terminated(work: Callable[[], None], keep: Callable[[], None]) -> None:
-    """Do work; if SIGTERM comes meanwhile, keep what there is, and let the signal do what it would have done.
+    """Do work; if SIGTERM comes meanwhile, keep the result, and then let the signal act.
 
     Without a handler of its own the process then ends, by the signal. Where one lets it live, the work goes
     on. SIGTERM is heard in the main thread alone, and not where the process ignores it, or hears it in C.

@@ -1,4 +1,4 @@
-"""Pictures made of renders as the core has them."""
+"""Pictures of the core's renders."""
 
 from collections.abc import Iterable
 from dataclasses import replace
@@ -21,7 +21,7 @@ def made(
     plan: RenderPlan,
     alpha: NDArray[np.float32] | None = None,
 ) -> Image:
-    """Return the picture of a render that nobody works on.
+    """Return the picture of a render at rest.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ def doubted(image: Image, scene: Scene) -> Image:
 
 
 def overall(done: _core.Rendering) -> dict[str, Any]:
-    """Return what is known of all pixels together."""
+    """Return the statistics of all pixels."""
     rows = done.history
     history = np.empty(len(rows), HISTORY)
     for i, name in enumerate(HISTORY.names or ()):
@@ -95,7 +95,7 @@ def overall(done: _core.Rendering) -> dict[str, Any]:
 
 
 def doubts(done: _core.Rendering) -> list[str]:
-    """Return what there is to warn of in the error estimate."""
+    """Return the warnings about the error estimate."""
     if done.carried is not None:
         few, share = done.carried
         carriers = "one sample carries" if few == 1 else f"{few} samples carry"

@@ -1,4 +1,4 @@
-"""Pictures in notebooks, where they change while a render goes on."""
+"""Pictures in notebooks, updated during a render."""
 
 import sys
 from collections.abc import Callable
@@ -8,10 +8,10 @@ from .image import Image
 
 
 def display() -> Callable[[Image], None] | None:
-    """Return what shows pictures under the notebook cell that is being run, one in the place of the other.
+    """Return the display under the running notebook cell, in which each picture replaces the last.
 
     None where no notebook is. Nothing is imported then: a notebook has imported IPython already. The last
-    picture knows that the cell has it, and shows no second one should the cell end with it.
+    picture knows that it is displayed, and shows no second one if the cell ends with it.
     """
     ipython = sys.modules.get("IPython")
     shell = ipython.get_ipython() if ipython is not None else None

@@ -1,4 +1,4 @@
-"""Pictures whose paths are traced by a graphics processor: what can be, and pass after pass."""
+"""Pictures whose paths are traced by a graphics processor: supported features, and the passes."""
 
 import time
 import warnings
@@ -88,7 +88,7 @@ class OnDevice:
         return self._paths is not None
 
     def row(self) -> Choice:
-        """Return what the plan says of it."""
+        """Return its row of the plan."""
         if self._lost:
             return Choice("device", "CPU", f"{self.name} was lost: {self._lost}")
         if self._left:
@@ -175,7 +175,7 @@ def _faces(shape: AnyShape) -> int:
 
 
 def _left(integrator: AnyIntegrator, asked: dict[str, bool], sampler: Sampler | None, filter: Filter) -> str:
-    """Return what of a render devices do not do; nothing if they do all of it."""
+    """Return the features of a render that devices lack; nothing if they support all."""
     if not isinstance(integrator, Path):
         return f"the integrator is a {type(integrator).__name__}, not a Path"
     for name, plain in _PLAIN.items():

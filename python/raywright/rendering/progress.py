@@ -1,4 +1,4 @@
-"""A bar on stderr that tells how far a render is, and how wrong its picture still is."""
+"""A progress bar on stderr with the error of the picture."""
 
 import math
 import sys

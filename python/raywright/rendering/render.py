@@ -97,9 +97,9 @@ def render(
     error : float, optional
         Limit on the relMSE of the picture (see `ErrorEstimate`): the whole 95 % interval of its estimate is
         at or below, and the estimate can be trusted. At least 16 samples a pixel are taken, since light that
-        was never found is in no estimate. Where light is so rare that the estimate stays below the limit and
-        is not trusted, the render goes on to 64 times the samples since which it has been below, or to
-        another limit; ``image.error.trusted`` is False then.
+        was never found is in no estimate. If light is so rare that the estimate stays below the limit and is
+        not trusted, the render goes on to 64 times the samples at which it first fell below, or to another
+        limit; ``image.error.trusted`` is False then.
     seconds : float, optional
         Limit on run time in seconds, to the nearest sample of all pixels.
     seed : int, Generator or SeedSequence
@@ -114,33 +114,33 @@ def render(
         Whether to show a bar on stderr and, in a notebook, the picture as it comes; before, where the scene
         takes longer than two seconds to compile, a bar for that. A function is called with the picture so
         far, an Image, ten times a second, less often where it takes more than a tenth of the work, and in the
-        end with the final image. Pixels so far are computed when the function asks for them, or keeps the
-        image: large pictures take no time from those who only want to know how far they are. Within a pass
-        some pixels have more samples than others; before the end of the first, ``image.samples`` is 0. An
-        exception of the function ends the render.
+        end with the final image. Pixels so far are computed when the function reads them, or keeps the image:
+        large pictures cost nothing if only the progress is read. Within a pass some pixels have more samples
+        than others; before the end of the first, ``image.samples`` is 0. An exception of the function ends
+        the render.
     adaptive : bool
         Adaptive sampling: pixels with more of the estimated relMSE get more samples; `samples` is then their
-        mean, and ``image.aov["samples"]`` tells how many each pixel has. It begins after 16 samples. It adds
-        no bias: each pixel has two halves, and each half decides the number of samples of the other.
+        mean, and ``image.aov["samples"]`` the number for each pixel. It begins after 16 samples. It adds no
+        bias: each pixel has two halves, and each half decides the number of samples of the other.
     clamp : float, optional
         Maximum radiance of a sample, in its largest channel; brighter samples are scaled down. It takes
-        fireflies away, and light with them: the picture is biased, and says so. If not given, samples count
-        as they are.
+        fireflies away, and light with them: the picture is biased, and says so. If not given, samples are not
+        clamped.
     sampler : Independent, Stratified, Halton, Sobol or Lattice, optional
         Where the random numbers come from. If not given, it is chosen for the least error, and ``image.plan``
-        tells which and why: a `Lattice`, or `Sobol` where batches are of 4 samples or fewer.
-        Those with batches take fewer samples to the same error, and tell the error of a single pixel from
-        fewer independent parts. A number of samples that is no multiple of its batches is best avoided: part
-        of a batch is right as well, but worth less.
+        has the choice and the reason: a `Lattice`, or `Sobol` for batches of 4 samples or fewer. Those with
+        batches take fewer samples to the same error, and estimate the error of a single pixel from fewer
+        independent parts. A number of samples that is no multiple of its batches is best avoided: part of a
+        batch is right as well, but worth less.
     filter : BoxFilter, GaussianFilter or another kind
         Reconstruction filter of pixels.
     checkpoint : str or path, optional
         A file that is kept up to date with the render: every minute, at its end, and when it is interrupted.
         If there is such a file, the render goes on from it, with all limits counted from its first start, and
-        ends with the same bits as one that was never interrupted, even by ``kill -9``. A sampler that is
-        not given, or given no batch, is that of the file. The file stays when the render is done, so that it
-        can be taken further by other limits. If it cannot be written, ``image.warnings`` and a RuntimeWarning
-        tell so, and it costs nothing else.
+        ends with the same bits as one that was never interrupted, even by ``kill -9``. A sampler that is not
+        given, or given no batch, is that of the file. The file stays when the render is done, so that it can
+        be taken further by other limits. If it cannot be written, there is a RuntimeWarning and a note in
+        ``image.warnings``, and the render goes on.
     executor : concurrent.futures.Executor, optional
         Executor that does the work: a ``ProcessPoolExecutor``, ``client.get_executor()`` of
         `dask.distributed`, the pool of `mpi4py.futures`, or any other. The picture has the same bits as a
@@ -152,31 +152,31 @@ def render(
         `aovs`; coverage comes from the picture's own samples and filter.
     stop : threading.Event, or anything with a method is_set, optional
         Ends the render at once when it is set, from another thread or from `progress`. The picture so far is
-        returned, even if some of its pixels have no sample yet, which ``image.warnings`` then tells.
+        returned, even if some of its pixels have no sample yet, with a note in ``image.warnings``.
     background : str
         ``"transparent"`` leaves the background out where the camera sees it directly, past the scene and
         through the holes of masks: ``image.alpha`` is the covered share of each pixel, and `rgb` and its
-        error are premultiplied by it. The background lights the scene as ever; glass and mirrors show it, and
-        cover what is behind them. ``"shown"`` is the picture with its background. The pictures that
+        error are premultiplied by it. The background still lights the scene; glass and mirrors show it, and
+        cover everything behind them. ``"shown"`` is the picture with its background. The pictures that
         `progress` is shown have no alpha yet, and stand before black.
     on_interrupt : str
         Effect of Ctrl-C during the render: ``"raise"`` raises a KeyboardInterrupt at once, whose ``image`` is
         the picture so far, without alpha and `aov`; ``"return"`` returns it whole. Either way
-        ``image.warnings`` tells of pixels without samples.
+        ``image.warnings`` mentions pixels without samples.
     halves : bool
         True if ``image.halves`` keeps two independent halves of the picture, with albedo, normal and depth of
         the first hit, for `Image.denoise`. The picture is the same; it takes 290 bytes a pixel more while it
         is rendered, and 130 when it is done.
     denoise : bool or str
         True if `Image.denoise` is applied in the end; a text is its `method`. `error` limits the error before
-        denoising. If it has too few samples, it stays as it is, and ``image.warnings`` says so.
+        denoising. If it has too few samples, it stays as it is, with a note in ``image.warnings``.
     device : Gpu, optional
-        Who follows paths, in place of the CPU: a picture that agrees with the CPU's within the errors of
+        Device that traces paths, in place of the CPU: the picture agrees with the CPU's within the errors of
         both, by the same estimator with other random numbers. It does pictures by a `Path` and a `Camera` of
         meshes that are `Diffuse`, `Mirror`, `Dielectric`, `Conductor` or `Plastic`, in the light of emission,
         points, directions and an environment. Pictures with unsupported features are rendered by the CPU,
         whole and with the same bits as ever; ``image.plan["device"]`` names the feature. If the device is
-        lost, that is warned of, and the CPU goes on. Limits, `progress`, `stop` and Ctrl-C are heard between
+        lost, there is a warning, and the CPU goes on. Limits, `progress`, `stop` and Ctrl-C are heard between
         its pieces of work.
 
     Returns
@@ -204,8 +204,8 @@ def render(
 
     Notes
     -----
-    With a checkpoint, SIGTERM writes it before it does what it would have done: by default, end the process.
-    It is heard in the main thread alone.
+    With a checkpoint, SIGTERM writes it before its usual effect: by default, the end of the process. It is
+    heard in the main thread alone.
 
     Examples
     --------
@@ -468,7 +468,7 @@ def check(
 
 
 def _unseen(rendering: _core.Rendering, how: str) -> list[str]:
-    """Return what there is to say of pixels without samples, in a picture that ended so."""
+    """Return the warnings about pixels without samples, in a picture that ended so."""
     return [] if rendering.counts.all() else [f"{how} before every pixel had a sample"]
 
 

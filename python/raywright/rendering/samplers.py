@@ -2,7 +2,7 @@
 
 The numbers of each sample are uniform, and those of its dimensions independent, for every kind: pictures
 differ in their noise only. Those with a `batch` spread that many consecutive samples of a pixel evenly among
-each other; batches are independent, and the spread between them tells the error. `render` takes lattices in
+each other; batches are independent, and the spread between them gives the error. `render` takes lattices in
 few large batches unless another is named.
 """
 
@@ -186,7 +186,7 @@ Sampler = Independent | Stratified | Halton | Sobol | Lattice
 
 @dataclass(frozen=True)
 class Unnamed:
-    """No sampler, and why none is named, which the plan of a picture tells."""
+    """No sampler, with the reason for the plan of a picture."""
 
     why: str
 

@@ -18,7 +18,7 @@ _LIMITS = ("samples", "error", "seconds")
 
 @dataclass(frozen=True)
 class Shot:
-    """A scene, a camera, and how they are rendered: what `load` and `from_mitsuba` return.
+    """A scene, a camera and the options of a render: the result of `load` and `from_mitsuba`.
 
     Shots compare by contents, and pickle.
 
@@ -45,7 +45,7 @@ class Shot:
     clamp : float, optional
         Limit on the largest channel of a sample, as `raywright.render` takes it.
     unnamed : str, optional
-        Why no sampler is named although the file has one; the plan of the picture tells it.
+        Reason for ignoring the sampler of the file, for the plan of the picture.
 
     See Also
     --------

@@ -12,7 +12,7 @@ from .image import Image
 
 
 class AtRest:
-    """A render that nobody works on at the moment, as `_core.Sight` shows others."""
+    """A render at rest, with the interface of `_core.Sight`."""
 
     def __init__(self, rendering: _core.Rendering) -> None:
         self._rendering = rendering
@@ -72,7 +72,7 @@ class ImageSoFar(Image):
         sight : Sight
             Where the render is seen.
         made : callable
-            Makes a whole picture of a render that nobody works on.
+            Makes a whole picture of a render at rest.
         outline : callable
             Pictures of a render in progress: statistics of all pixels without any pixels, and warnings as
             ``_doubts``.
@@ -99,7 +99,7 @@ class ImageSoFar(Image):
             getattr(self, name)
 
     def settle_seen(self) -> None:
-        """Compute what is seen, for those who keep it and ask for no error of pixels: these are NaN."""
+        """Compute the buffers for callers that keep them without errors of pixels: these are NaN."""
         unknown = np.broadcast_to(np.float32(np.nan), self.rgb.shape)
         vars(self).update(standard_error=unknown, pooled_error=None, degrees=None)
         self.settle()
@@ -116,7 +116,7 @@ class ImageSoFar(Image):
 
     @cached_property
     def rgb(self) -> NDArray[np.float32]:
-        """The picture, as far as it is."""
+        """The picture so far."""
         if self.is_whole:
             return self._whole.rgb
         pixels = self._sight.rgb
@@ -155,6 +155,6 @@ class ImageSoFar(Image):
 
 
 def _sealed(array: NDArray[Any]) -> NDArray[Any]:
-    """Return an array that nobody else has, read-only."""
+    """Return a read-only array that is not shared."""
     array.setflags(write=False)
     return array

@@ -143,7 +143,7 @@ def _options(names: list[str]) -> list[tuple[Any, Any]]:
 
 
 def _told(name: str, ways: list[dict[str, Any]], worth: list[float]) -> str:
-    """Return what a pilot found of a way."""
+    """Return the result of a pilot for one variant."""
     with_, without = (
         min(w for way, w in zip(ways, worth, strict=True) if (way[name] != _PLAIN[name]) is more)
         for more in (True, False)

@@ -1,7 +1,7 @@
 """The worker's side of an executor: it renders parts of pictures.
 
 A render is described by a job, which each process needs once: the first piece of work that finds it missing
-reads it from a file, or asks for it. The scene is compiled once a process, however many pieces are worked on
+reads it from a file, or requests it. The scene is compiled once a process, however many pieces are worked on
 there.
 """
 
@@ -60,7 +60,7 @@ def keep(key: str, job: Job) -> None:
 def work(
     key: str, payload: bytes | None, spool: str | None, requests: Sequence[bytes], threads: int, attempt: int
 ) -> Done | Missing | Raised:
-    """Work on requests for a job; `attempt` only tells apart what is asked for again."""
+    """Work on requests for a job; `attempt` only distinguishes repeated requests."""
     me = f"{socket.gethostname()}/{os.getpid()}"
     try:
         job = _job(key, payload, spool)

@@ -1,4 +1,4 @@
-"""Reports that set error against time: what the library's parts cost, and how wrong they are."""
+"""Reports on cost and error against time."""
 
 from .accelerators import AcceleratorReport, accelerators, rays_per_build
 from .contest import Measured

@@ -91,7 +91,7 @@ class AcceleratorReport(Table[tuple[Any, ...]]):
     def rays_per_build(self, counts: Sequence[float] = COUNTS) -> RaysPerBuild:
         """Rank the accelerators by rays a second, builds included, for some numbers of rays.
 
-        Takes and raises what `rays_per_build` does, and measures nothing anew.
+        Arguments and errors are those of `rays_per_build`; nothing is measured anew.
 
         Parameters
         ----------
@@ -149,8 +149,8 @@ def accelerators(
     scene : Scene
         The scene; its own accelerator does not matter.
     rays : Camera, Rays, (origins, directions), or dict of these by names, optional
-        What is asked. A camera stands for its primary, diffuse and shadow rays, as `typical_rays` makes them;
-        if not given, it is one that sees all of the scene from outside.
+        What is asked. A camera gives its primary, diffuse and shadow rays, as in `typical_rays`; if not
+        given, it is one that sees all of the scene from outside.
     accelerators : accelerator, list of them, or dict of them by names, optional
         All that there are, each with its default options and with each builder and traversal, if not given.
     threads : int or None
@@ -189,7 +189,7 @@ def accelerators(
     Notes
     -----
     An accelerator that would take more than about a second for a set is timed on fewer rays of it, evenly
-    spread, and a note tells on how many. Fewer rays of an image lie further apart, and may take more each.
+    spread, with a note on their number. Fewer rays of an image lie further apart, and may take more each.
 
     Examples
     --------

@@ -195,7 +195,7 @@ class _Contest:
 
 
 def _answer(scene: Scene, rays: Rays, threads: int | None) -> Answer:
-    """Return what must be the same for every accelerator, bit for bit."""
+    """Return the results that must be the same for every accelerator, bit for bit."""
     if rays.any_hit:
         return (scene.occluded(rays.origins, rays.directions, t_max=rays.t_max, threads=threads),)
     hits = scene.intersect(rays.origins, rays.directions, t_max=rays.t_max, threads=threads)

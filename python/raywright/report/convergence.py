@@ -139,8 +139,8 @@ def convergence(
         Columns: `contender`; `budget`, seconds given; `seconds`, taken, the median over seeds; `samples` per
         pixel, the median; `relmse`, the mean over seeds; `ratio` of the mean estimate to the mean true
         relMSE, None without a reference; `error_seconds`, relMSE times seconds, less being better; `trusted`,
-        the share of seeds whose renders trust their own estimates. Where the
-        reference is an Image, or made, its own estimated relMSE is taken off what is measured against it.
+        the share of seeds whose renders trust their own estimates. If the reference is an Image, or was
+        rendered, its own estimated relMSE is subtracted.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Where rays meet triangles, in exact arithmetic: what the routines are held against.
+"""Exact ray-triangle intersection: the reference of the routines.
 
 Floats are integers times powers of two. With the powers multiplied out, all that is decided here is decided
 in arrays of Python's integers: without any rounding, and without anything that the core computes.
@@ -73,8 +73,8 @@ def exact_hits(
 ) -> ExactHits:
     """Decide exactly whether each ray meets its triangle, and where.
 
-    The line meets a triangle if it passes no edge on the side opposite to another's: the signs of three
-    volumes tell (Segura and Feito 2001).
+    The line hits the triangle if it passes no edge on the side opposite to another's: by the signs of three
+    volumes (Segura and Feito 2001).
 
     Parameters
     ----------

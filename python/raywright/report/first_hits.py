@@ -27,9 +27,9 @@ def first_hits(scene: Scene, camera: AnyCamera, threads: int | None = 1, repeats
     """Time `Scene.intersect` and `Scene.first_hits` on the same picture.
 
     Both are timed in turns, and medians are returned. `intersect` is timed twice: with the rays at hand, and
-    with the time that it takes to make them, which rasterising does on its way. Rasterising pays where faces
-    are few next to pixels and little lies behind what is seen; where it does not, the tree is asked: for
-    parts of the picture, or for all of it if there are more faces than a quarter of its pixels.
+    with the time that it takes to make them, which rasterising does on its way. Rasterization pays if faces
+    are few next to pixels and little is hidden; otherwise the tree is traced: for parts of the picture, or
+    for all of it if there are more faces than a quarter of its pixels.
 
     Parameters
     ----------

@@ -29,7 +29,7 @@ _NAMES = {"nodes": "nodes visited", "primitives": "primitives tested"}
 class Heatmap:
     """The traversal cost of a picture's rays: `heatmap` makes it. Arrays are read-only; row 0 is the top.
 
-    ``print`` tells its numbers, a notebook shows the picture.
+    ``print`` shows its numbers, a notebook shows the picture.
 
     Attributes
     ----------
@@ -38,7 +38,7 @@ class Heatmap:
     what : {"nodes", "primitives"}
         The count in the picture.
     most : int
-        The count that has the last colour; what is above has it, too.
+        The count of the last color; greater counts have it, too.
     share : TimeShare or None
         The estimated share of time in boxes and in primitives, if it was asked for.
 
@@ -285,9 +285,9 @@ def heatmap(
 
     Notes
     -----
-    The colours are Green's (2011, "A colour scheme for the display of astronomical intensity images"), which
-    rise evenly from black to white, also for those who do not see colours. Neighbouring rays are traced
-    together by some accelerators, and then share what each of them is said to visit.
+    The colors are Green's (2011, "A colour scheme for the display of astronomical intensity images"), which
+    rise evenly from black to white, also for the color-blind. Some accelerators trace neighboring rays
+    together; then these share the counted visits.
 
     Examples
     --------

@@ -170,7 +170,7 @@ def _slanted(normal: Array, along: Array, sine: Array) -> Array:
 
 
 def _aimed(origins: Array, targets: Array, corners: Array, unit: bool = True) -> Pairs:
-    """Rays from where float32 puts their origins, in the direction of their targets as float32 has it."""
+    """Rays from where float32 puts their origins, in the direction of their targets as in float32."""
     starts = origins.astype(np.float32)
     ways = targets - starts
     return Pairs(starts, (_units(ways) if unit else ways).astype(np.float32), corners.astype(np.float32))

@@ -1,4 +1,4 @@
-"""The rays that accelerators are compared on: what a camera, a diffuse surface and a shadow ask for."""
+"""Typical rays for comparisons of accelerators: primary, diffuse and shadow rays of a camera."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace

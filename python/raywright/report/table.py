@@ -26,7 +26,7 @@ class Column:
     heading : str
         Heading with the unit.
     form : str
-        Format of its numbers, as for `format`; text is written as it is, None as ``-``.
+        Format of its numbers, as for `format`; text is not formatted, None is ``-``.
 
     See Also
     --------
@@ -109,7 +109,7 @@ class Table(Generic[Row]):
     columns : sequence of Column
         Columns of each row.
     rows : sequence of tuples
-        Text, numbers, or None where there is nothing to tell.
+        Text, numbers, or None for missing entries.
     notes : sequence of str
         Notes for the reader.
     chart : Chart, optional

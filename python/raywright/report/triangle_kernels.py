@@ -134,9 +134,9 @@ def kernels(pairs: int = 10_000, seed: SeedLike = 0, repeat: int = 15) -> Kernel
 
     The routines: Möller and Trumbore (1997) with edges stored and without; Badouel (1990); signed volumes
     (Segura and Feito 2001); Woop, Benthin and Wald (2013); and the edge form in float32, and in float64 with
-    an exact fallback, which is the library's own. Each tests one triangle at a time on one thread; what
-    depends on the ray alone is computed beforehand, and not timed. (Scenes are traced by the same float64
-    test, after one in vectors has rejected most triangles.)
+    an exact fallback, which is the library's own. Each tests one triangle at a time on one thread; terms of
+    the ray alone are computed beforehand, and not timed. (Scenes are traced by the same float64 test, after
+    one in vectors has rejected most triangles.)
 
     Parameters
     ----------

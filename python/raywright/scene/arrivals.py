@@ -20,14 +20,14 @@ class Arrival:
 
     @classmethod
     def of(cls, scene: object) -> "Arrival | None":
-        """Return what a scene is known by; None if it holds what Python's own pickler cannot take."""
+        """Return the key of a scene; None if Python's own pickler cannot take its contents."""
         try:
             return cls(digest(scene))
         except TypeError:
             return None
 
     def core(self) -> _core.CompiledScene | None:
-        """Return what was compiled of such a scene in this process, if that is kept."""
+        """Return the compiled form of such a scene in this process, if it is kept."""
         with _lock:
             found = _kept.get(self._name)
             if found is not None:
@@ -35,7 +35,7 @@ class Arrival:
             return found
 
     def keep(self, core: _core.CompiledScene) -> None:
-        """Keep what was compiled of it; the oldest makes room."""
+        """Keep the compiled form; the oldest makes room."""
         with _lock:
             _kept[self._name] = core
             while len(_kept) > _MOST:

@@ -61,7 +61,7 @@ class Instance:
     ----------
     shapes : Mesh or another shape, Instance, path, object of another library, or list or dict of these
         Shapes to copy: everything that a `Scene` takes. Instances of the same shapes, the very same objects,
-        share what is compiled.
+        share the compiled form.
     transform : (4, 4) or (N, 4, 4) array
         Where the copies are: affine matrices that act on column vectors (x, y, z, 1), each with (0, 0, 0, 1)
         as its last row, and invertible.
@@ -79,8 +79,8 @@ class Instance:
     ------
     ValueError
         If a matrix has the wrong shape, is not finite, has another last row or no inverse, or is too badly
-        conditioned for rays to keep their digits (tells which and why), or there are 2^31 primitives or more,
-        all copies within counted.
+        conditioned for rays to keep their digits (the error says which and why), or there are 2^31 primitives
+        or more, all copies within counted.
     TypeError
         If something is not of the kinds above.
 
@@ -91,12 +91,12 @@ class Instance:
 
     Notes
     -----
-    ``hits.instance`` tells which copy is hit, and ``hits.primitive`` what in it, numbered flat: shape after
-    shape, a mesh by its faces, an instance by its copies and for each of them all that is in it. `locate`
-    takes such a number apart.
+    ``hits.instance`` is the copy, and ``hits.primitive`` the place in it, numbered flat: shape after shape, a
+    mesh by its faces, an instance by its copies and for each of them all of its contents. `locate` takes such
+    a number apart.
 
-    A ray is taken to the space of the shapes by the inverse of the matrix, rounded to float64, and hits are
-    exact for it as it is taken there. Compared with transformed vertices, hits differ by the rounding of
+    Rays are transformed to the space of the shapes by the inverse of the matrix, rounded to float64, and hits
+    are exact for the transformed ray. Compared with transformed vertices, hits differ by the rounding of
     these vertices, and not at all where neither rounds, as with integers and powers of two. By how much
     depends on the condition of the matrix, the greatest row sum of ``|L| |L⁻¹|`` of its linear part ``L``. It
     is at most 3 for a scaling along the axes of the shapes and a turn after it; matrices of more than 2^20
@@ -167,7 +167,7 @@ class Instance:
         return self._first[-1]
 
     def locate(self, primitive: int) -> Location:
-        """Decode a number of ``hits.primitive`` into the place that it stands for.
+        """Decode a number of ``hits.primitive``.
 
         Parameters
         ----------
@@ -249,7 +249,7 @@ class Instance:
             yield shape, which, own % shape.primitives if isinstance(shape, Instance) else own
 
     def moved(self, transform: ArrayLike, transform_end: ArrayLike | None = None) -> "Instance":
-        """Return as many copies of the same shapes elsewhere; they share what is compiled.
+        """Return an instance of the same shapes elsewhere; both share the compiled form.
 
         Parameters
         ----------

@@ -20,7 +20,7 @@ def check_progress(progress: object) -> None:
 
 
 def watcher(progress: BuildProgress | None, what: str = "build") -> AbstractContextManager[Report | None]:
-    """Return a callback that takes the finished share of the work; None if nobody wants to know.
+    """Return a callback that takes the finished share of the work; None for no report.
 
     By default, a bar is shown if stderr is a terminal.
     """

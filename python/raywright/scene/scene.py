@@ -53,7 +53,7 @@ class Device(Protocol[Held]):
     """A device that holds a scene: a `Gpu`."""
 
     def hold(self, scene: "Scene") -> AbstractContextManager[Held]:
-        """Hold a scene as long as a ``with`` block lasts."""
+        """Hold a scene during a ``with`` block."""
 
 
 class Scene(Queries):
@@ -93,9 +93,9 @@ class Scene(Queries):
         Medium outside of all shapes: haze, fog, sea. None is clear.
     shading_normals : {"faded", "as given"}
         Treatment of shading normals that differ from those of faces: of vertices, bumps and normal maps.
-        "faded" lets it fade towards the horizon of the face, so that facets do not show where it grazes them,
-        and bends towards the viewer what faces away from him. "as given" does neither, as other renderers:
-        see Notes.
+        "faded" lets it fade towards the horizon of the face, so that facets do not show at grazing angles,
+        and bends normals that face away towards the viewer. "as given" does neither, as other renderers: see
+        Notes.
     weld : "auto", float or None
         Distance at which corners of meshes are merged, in the scene's unit: see Notes. None for those alone
         that are equal.
@@ -120,9 +120,9 @@ class Scene(Queries):
     -----
     With "auto", only vertices that faces use count. One mesh that has digits beyond float32 keeps the digits
     of all meshes of the scene, so that vertices which they share stay shared; the shapes of an `Instance` are
-    a group of their own in this. `plan` tells how far rounding would move a vertex, and
-    ``accelerator.precision`` what became of it. Where "single" moves a vertex by more than 1e-7 of the extent
-    of its mesh, it gives one RuntimeWarning, with the figure, when the scene is compiled.
+    a group of their own in this. `plan` has the displacement by rounding, and ``accelerator.precision`` the
+    result. Where "single" moves a vertex by more than 1e-7 of the extent of its mesh, it gives one
+    RuntimeWarning, with the figure, when the scene is compiled.
 
     With "as given", light counts by its cosine to shading normals alone, and these decide which side is seen:
     a `TwoSided` whose shading normal points away from the viewer shows its back. Light on one side of a face
@@ -141,10 +141,10 @@ class Scene(Queries):
     objects and for CAD shapes, each by itself; a `Mesh` of arrays, or an object of another library, is hit
     where its vertices are, and welded for `contains`, `signed_distance` and in ``rw.measure``. A distance
     goes for all meshes, together; those of an `Instance` are a group of their own. ``rw.measure.topology``
-    tells which cracks remain.
+    lists the remaining cracks.
 
     Faces with a corner that is NaN or infinite are left out when the scene is compiled, with one
-    RuntimeWarning that tells how many. Scenes compare by contents, and pickle without compiled data. A
+    RuntimeWarning that gives their number. Scenes compare by contents, and pickle without compiled data. A
     process keeps the last two unpickled scenes that it has compiled: if the tasks of a pool bring the same
     scene again and again, each process compiles it once.
 
@@ -281,8 +281,8 @@ class Scene(Queries):
     def replace(self, **changes: Any) -> "Scene":
         """Return a copy of the scene with some arguments changed.
 
-        It is compiled when it is asked: where it differs in lights, environment and medium alone, with
-        the accelerator that this one has, and anew otherwise. ``copy.replace`` (Python 3.13) does the same.
+        The first query compiles it: if it differs in lights, environment and medium alone, it shares this
+        one's accelerator. ``copy.replace`` (Python 3.13) does the same.
 
         Parameters
         ----------
@@ -357,7 +357,7 @@ class Scene(Queries):
         The accelerator is rebuilt if it cannot be refitted, for example if other faces than before have a
         corner that is NaN or infinite, or if it holds pieces of faces; ``scene.accelerator.kind`` then does
         not end in "refitted". With ``quality="fast build"`` the default accelerator holds no pieces. A scene
-        that was not asked anything yet is built when it is.
+        without queries so far is built by the first one.
 
         Examples
         --------

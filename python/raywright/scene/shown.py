@@ -12,7 +12,7 @@ _QUICK = 100_000
 
 
 def scene_html(scene: Any) -> str:
-    """Return what a scene holds, its accelerator and its plan as a table in HTML.
+    """Return a scene's contents, its accelerator and its plan as a table in HTML.
 
     A large scene that is not compiled is not compiled for that.
     """

@@ -13,7 +13,7 @@ from .instance import Instance
 
 
 def reason(shapes: Iterable[Any], others: Iterable[Any]) -> str | None:
-    """Return what of shapes, lights and media goes with wavelength: None where red, green and blue do."""
+    """Return the dispersive parts of shapes, lights and media: None where red, green and blue do."""
     seen: set[int] = set()
     told = (_of_shape(shape, seen) for shape in shapes)
     first = next((why for why in told if why), None)

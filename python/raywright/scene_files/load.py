@@ -58,8 +58,8 @@ def load(
         Size of the picture in pixels: the file's own if not given, or for a file without a camera 640 by 480;
         if only one is given, the other keeps these proportions.
     sampler : Independent, Stratified, Halton, Sobol or Lattice, optional
-        Where the random numbers come from, whatever the file says. If not given, the file's own; a scene of
-        Mitsuba with the sampler ``independent``, which is the default there, counts as one that names none.
+        Sampler in place of the file's. If not given, the file's own; a scene of Mitsuba with the sampler
+        ``independent``, which is the default there, counts as one that names none.
     weld : "auto", float or None
         Welding distance of corners of meshes, in the scene's unit. "auto" is the rounding of the file's own
         precision, as for `Scene`; None for those alone that are equal. Only positions are made equal: corners

@@ -51,7 +51,7 @@ def shown(
     up
         As in `framed`, for files without a camera.
     width, height : int, optional
-        Size of the picture, as `load` has them.
+        Size of the picture, as in `load`.
 
     Raises
     ------

@@ -19,8 +19,7 @@ def material_ball(
 ) -> tuple[Scene, Camera]:
     """Return a ball of some material on a ring over a checkerboard, lit by a lamp and a soft sky.
 
-    The board shows what is seen through it and in it, the lamp how its highlights are, and the sky how it
-    looks at its rim.
+    The board shows refraction and reflection, the lamp the highlights, and the sky the rim.
 
     Parameters
     ----------

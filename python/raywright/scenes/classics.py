@@ -36,7 +36,7 @@ def classics(
     """Return the scenes on which textbooks compare accelerators, and a camera for each.
 
     ``for name, (scene, camera) in rw.scenes.classics().items(): print(rw.report.accelerators(scene,
-    camera))`` shows what each is known for:
+    camera))`` compares accelerators on all:
 
     - ``"stadium"``: all detail in one place, `teapot_in_stadium`. Grids collapse.
     - ``"terrain"``: detail evenly spread, `terrain`. Grids do well.

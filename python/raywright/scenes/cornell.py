@@ -62,7 +62,7 @@ def cornell_box(
     Parameters
     ----------
     mesh : Mesh, trimesh object, path, or list of these, optional
-        Stands in place of the short block, scaled to fit there, with its y axis up.
+        Replaces the short block, scaled to fit there, with its y axis up.
     width, height : int
         Size of the picture in pixels.
     emission : float or 3 floats

@@ -1,4 +1,4 @@
-"""The same scene, turned: to find out what an accelerator owes to the axes."""
+"""The same scene, rotated: it shows the dependence of an accelerator on the axes."""
 
 import math
 from collections.abc import Iterable

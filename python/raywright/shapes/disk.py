@@ -26,7 +26,7 @@ class Disk(Shape):
         The distance of the rim of a round hole, at least 0 and less than `radius`; 0, the default, for none.
     transform : (4, 4) array, optional
         An affine matrix that acts on column vectors (x, y, z, 1), as from the shape's own space to the world.
-        Rays are decided for the matrix as it is given, not for a rounded inverse.
+        Hits are exact for the given matrix, not for a rounded inverse.
     material : Material, optional
         Material of the surface; ``Diffuse()`` if not given.
     emission : float, 3 floats, Texture or Emission, optional

@@ -40,9 +40,9 @@ class Implicit(Shape):
     Raises
     ------
     ValueError
-        If the expression does not parse or names something unknown (tells the column and the known names), or
-        the box is not finite or has no volume. If the transform is not a finite affine (4, 4) matrix, or has
-        no inverse.
+        If the expression does not parse or names something unknown (the error gives the column and the known
+        names), or the box is not finite or has no volume. If the transform is not a finite affine (4, 4)
+        matrix, or has no inverse.
     TypeError
         If the expression is no string, or a number or a material is something else.
 
@@ -54,8 +54,7 @@ class Implicit(Shape):
     -----
     Values that float64 cannot tell from zero count as zero: roots closer together than rounding are one,
     which is touched. A stretch along which the expression is zero is hit once, where it begins. A pole or a
-    jump is no root. After some thousand intervals a line is taken as it is known by then, so no expression
-    hangs.
+    jump is no root. After some thousand intervals a line is accepted as known so far, so no expression hangs.
 
     ``u`` and ``v`` are the position in the box along two axes: those that follow the axis nearest to the
     normal, in the order x, y, z, x. `area` is measured by many thousand lines, to about a thousandth.

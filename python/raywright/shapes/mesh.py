@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
 class Mesh:
-    """A mesh of triangles. All arrays are kept read-only: as copies, unless nobody can write to them anyway.
+    """A mesh of triangles. All arrays are read-only: copies, unless they cannot be written to anyway.
 
     Parameters
     ----------
@@ -58,8 +58,8 @@ class Mesh:
     Raises
     ------
     ValueError
-        If an array has the wrong shape, a face index is negative or not below V (tells which face), a
-        colour is not between 0 and 1 (tells which vertex), or a cell is negative.
+        If an array has the wrong shape, a face index is negative or not below V (the error names the face), a
+        colour is not between 0 and 1 (the error names the vertex), or a cell is negative.
     TypeError
         If an array has the wrong type, such as float faces.
 
@@ -189,7 +189,7 @@ class Mesh:
         return made
 
     def to_trimesh(self) -> "trimesh.Trimesh":
-        """Return the mesh as trimesh has it, with vertices, faces, normals, attributes, and colors or uv.
+        """Return the mesh as a trimesh.Trimesh, with vertices, faces, normals, attributes, and colors or uv.
 
         `cells` are the face attribute "cell". Of the material, a plain diffuse color is kept.
 
@@ -212,7 +212,7 @@ class Mesh:
         return made
 
     def to_pyvista(self) -> "pyvista.PolyData":
-        """Return the mesh as pyvista has it, with attributes as point and cell data.
+        """Return the mesh as a pyvista.PolyData, with attributes as point and cell data.
 
         `cells` are the cell data "cell"; normals, uv and colors are point data of these names.
 
@@ -240,7 +240,7 @@ class Mesh:
         return to_pyvista(self)
 
     def to_open3d(self) -> "open3d.t.geometry.TriangleMesh":
-        """Return the mesh as Open3D has it, with attributes as vertex and triangle attributes.
+        """Return the mesh as one of Open3D, with attributes as vertex and triangle attributes.
 
         `cells` are the triangle attribute "cell". Its ``to_legacy()`` has no attributes.
 
@@ -275,7 +275,7 @@ class Mesh:
         path : path
             Its suffix says how. ``.ply`` holds everything but the material: float64 as it is, attributes as
             properties by name (those with more than one number a row as ``name_0``, ``name_1``, ...), and
-            `cells` as the face property "cell". ``.vtp`` and ``.vtk`` hold what `to_pyvista` does.
+            `cells` as the face property "cell". ``.vtp`` and ``.vtk`` hold the data of `to_pyvista`.
             ``.glb``, ``.obj``, ``.off`` and ``.stl`` hold no attributes.
 
         Raises

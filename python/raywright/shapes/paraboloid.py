@@ -28,7 +28,7 @@ class Paraboloid(Shape):
         True to close the rim by a disk; False by default.
     transform : (4, 4) array, optional
         An affine matrix that acts on column vectors (x, y, z, 1), as from the shape's own space to the world.
-        Rays are decided for the matrix as it is given, not for a rounded inverse.
+        Hits are exact for the given matrix, not for a rounded inverse.
     material : Material, optional
         Material of the surface; ``Diffuse()`` if not given.
     emission : float, 3 floats, Texture or Emission, optional

@@ -105,7 +105,8 @@ def affine(name: str, given: ArrayLike) -> NDArray[np.float64]:
     Raises
     ------
     ValueError
-        If the matrix has another shape, is not finite, is not affine, or is singular (tells the determinant).
+        If the matrix has another shape, is not finite, is not affine, or is singular (the error gives the
+        determinant).
     """
     matrix = frozen(real_array(name, given).astype(np.float64))
     if matrix.shape != (4, 4):

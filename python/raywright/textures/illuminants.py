@@ -63,7 +63,7 @@ class Illuminants(Mapping[str, Spectrum]):
     Raises
     ------
     KeyError
-        If there is no such name; it tells those that there are.
+        If there is no such name; the error lists all names.
 
     See Also
     --------

@@ -40,7 +40,7 @@ class Viewer:
     Attributes
     ----------
     url : str
-        Where the page is: on 127.0.0.1, under a token that nobody can guess.
+        Address of the page: on 127.0.0.1, under a secret token.
 
     See Also
     --------
@@ -74,7 +74,7 @@ class Viewer:
 
     @property
     def camera(self) -> AnyCamera:
-        """The camera as it was moved; what it prints as is the line that makes it."""
+        """The current camera; it prints as the expression that makes it."""
         return self._session.camera
 
     def show(self, integrator: AnyIntegrator) -> None:
@@ -161,7 +161,7 @@ class Viewer:
             self.close()
 
     def close(self) -> None:
-        """End the render and the server. Pages that are open show what they last had.
+        """End the render and the server. Open pages keep their last picture.
 
         See Also
         --------
@@ -225,26 +225,26 @@ def view(
 ) -> Viewer:
     """Show a scene in the browser, or in a notebook's cell, and let the mouse move the camera.
 
-    The page is served to this machine alone, as long as the process lives or until the viewer is closed.
-    Where the browser has WebGPU, and the scene is of meshes, it draws by itself: a ray and its shadow a pixel
-    while the camera moves, and paths, more and more of them, once it stands; what of materials, lights and
-    integrators it does not know the core renders once the camera stands. Elsewhere all pictures are the
-    core's: a small one comes at once and a better one after it. Either way the error of the picture is shown.
-    The key g changes between both. While no page is open nothing is rendered. In a notebook, the viewer shows
-    itself where a cell ends with it (`Viewer.widget`).
+    The page is served to this machine alone, as long as the process lives or until the viewer is closed. If
+    the browser has WebGPU, and the scene is of meshes, the page draws by itself: a ray and its shadow a pixel
+    while the camera moves, and paths, more and more of them, when it stands. The core renders unsupported
+    materials, lights and integrators once the camera stands. Elsewhere all pictures are the core's: a small
+    one comes at once and a better one after it. Either way the error of the picture is shown. The key g
+    changes between both. While no page is open nothing is rendered. In a notebook, the viewer shows itself
+    where a cell ends with it (`Viewer.widget`).
 
     Parameters
     ----------
     scene, integrator, samples, error, seconds, seed, threads, adaptive, clamp, sampler, filter
-        As `render` has them. If no limit is given, it renders to a relMSE of 1e-4.
+        As in `render`. If no limit is given, it renders to a relMSE of 1e-4.
     camera : Camera or another kind, optional
         From where to begin with. If not given, all of the scene is in the picture, and a scene without any
         light is lit as by a studio's lamps.
     exposure, tone
-        How pictures are shown, as `Image.save` has it. The page changes the exposure without a new render.
+        How pictures are shown, as in `Image.save`. The page changes the exposure without a new render.
     fit : bool
         True to render as many pixels as the window has room for, in the shape of the camera's picture, False
-        for as many as the camera has. The camera that `Viewer.camera` gives back keeps its own.
+        for as many as the camera has. `Viewer.camera` keeps its own size.
     boxes : int, optional
         Level of the accelerator's boxes to draw over the picture, 0 for the root; of a level of more than
         20,000 the largest. The keys b and B go a level deeper and back. `Scene.tree` gives the boxes.

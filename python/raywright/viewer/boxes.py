@@ -32,7 +32,7 @@ def edges(camera: AnyCamera, corners: NDArray[np.float64]) -> NDArray[np.float64
     camera : Camera, ThinLens or Orthographic
         From where, as the shutter opens.
     corners : (K, 8, 3) array
-        Of boxes, as `TreeBoxes` has them.
+        Of boxes, as in `TreeBoxes`.
 
     Returns
     -------
@@ -81,7 +81,7 @@ def spread(camera: AnyCamera) -> tuple[NDArray[np.float64], NDArray[np.float64]]
 
 
 def drawn(pixels: NDArray[np.uint8], lines: NDArray[np.float64]) -> NDArray[np.uint8]:
-    """Return a picture, (H, W, 3), with lines drawn over it, as `edges` tells them."""
+    """Return a picture, (H, W, 3), with the lines of `edges` drawn over it."""
     from PIL import Image, ImageDraw
 
     image = Image.fromarray(pixels)

@@ -36,7 +36,7 @@ _EACH = 48 + 64 + 112 + 8
 
 
 class Drawn:
-    """A scene as a page draws it, laid out when the first one asks.
+    """A scene for pages that draw it themselves, laid out on the first request.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ class Drawn:
     how : mapping
         Other arguments of `render`.
     tone : str
-        As `Image.save` has it.
+        As in `Image.save`.
     """
 
     def __init__(
@@ -71,7 +71,7 @@ class Drawn:
         self._integrator = integrator
 
     def told(self) -> dict[str, Any]:
-        """Return what there is to tell a page: if it cannot draw the scene ``{"why": ...}``, in one line."""
+        """Return the first message to a page: if it cannot draw the scene ``{"why": ...}``, in one line."""
         why = self._refused()
         if why is not None:
             return {"why": why}
@@ -123,7 +123,7 @@ class Drawn:
         return None
 
     def _left_out(self) -> str | None:
-        """Return why the core renders what stands still, though the page knows all surfaces and lights."""
+        """Return the reason why the core renders still pictures of supported surfaces and lights."""
         integrator = self._integrator
         if type(integrator) is not Path:
             return f"the page has no {type(integrator).__name__}"
@@ -152,7 +152,7 @@ class Drawn:
         }
 
     def _laid_out(self) -> FlatArrays:
-        """Return the arrays of the scene as it is now; whoever asks holds the lock."""
+        """Return the arrays of the current scene; the caller holds the lock."""
         core = self._scene._compiled()
         if self._flat is None or self._core is not core:
             # Copies become separate shapes.

@@ -1,4 +1,4 @@
-"""Where a camera comes to when it is moved around what it looks at."""
+"""Camera motion around a point."""
 
 import math
 from collections.abc import Mapping
@@ -48,7 +48,7 @@ class View:
 
     @classmethod
     def read(cls, told: Any) -> "View":
-        """Return the view that a mapping tells, whoever it comes from; what is missing is as at the start.
+        """Return the view of a mapping; missing entries are those of the start.
 
         Raises
         ------
@@ -101,7 +101,7 @@ class Orbit:
 
     @property
     def elevations(self) -> tuple[float, float]:
-        """The least and the greatest elevation of a view: what is beyond comes to the same as these."""
+        """The least and the greatest elevation of a view; others are clamped to these."""
         most = max(90.0 - _POLE, abs(self._elevation))
         return -most - self._elevation, most - self._elevation
 
@@ -179,7 +179,7 @@ def _distance(camera: AnyCamera, bounds: NDArray[np.float64] | None) -> float:
 
 
 def _height(camera: AnyCamera, distance: float) -> float:
-    """Return how much of the plane through what it goes around is seen from bottom to top."""
+    """Return the visible height of the plane through the center of the orbit."""
     middle = 0.5 * camera.width
     origins, directions = camera.rays_through([(middle, 0.0), (middle, camera.height)])
     forward = camera.forward

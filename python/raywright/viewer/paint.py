@@ -18,7 +18,7 @@ _SHINES = 255
 
 
 def paints(shapes: Sequence[Any], flat: FlatArrays) -> NDArray[np.uint32]:
-    """Return a colour and the normal of each primitive, as far as they are known without asking where on it.
+    """Return a color and the normal of each primitive, as far as they do not depend on the place.
 
     Parameters
     ----------

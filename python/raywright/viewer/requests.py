@@ -28,14 +28,14 @@ def scene_told(session: Session) -> dict[str, Any]:
 
 
 def told(session: Session, what: str, given: Any) -> dict[str, Any] | None:
-    """Do what a page asks for, and return the answer, for JSON; None if there is nothing to say.
+    """Run a page's request, and return the answer, for JSON; None if there is nothing to say.
 
     Raises
     ------
     KeyError
         If the request is unknown.
     ValueError, TypeError
-        If what it gives makes no sense.
+        If its arguments are invalid.
     """
     return _ANSWERS[what](session, given)
 
@@ -117,7 +117,7 @@ _ANSWERS: dict[str, Callable[[Session, Any], dict[str, Any] | None]] = {
 
 
 def _named(given: Any, what: str, *names: str) -> list[Any]:
-    """Return what an object has by these names, and by no others."""
+    """Return an object's entries of these names, and no others."""
     if not isinstance(given, dict) or set(given) != set(names):
         raise ValueError(f"{what} must be an object with {' and '.join(names) or 'nothing in it'}")
     return [given[name] for name in names]

@@ -115,7 +115,7 @@ class Server(ThreadingHTTPServer):
         self.close_request(request)
 
     def handle_error(self, request: Any, client_address: Any) -> None:
-        """Say nothing of browsers that leave."""
+        """Log nothing about browsers that leave."""
         if not isinstance(sys.exc_info()[1], OSError):
             super().handle_error(request, client_address)
 
@@ -137,7 +137,7 @@ class _Handler(BaseHTTPRequestHandler):
         """Log nothing: the shell is for important messages."""
 
     def send_error(self, code: int, message: str | None = None, explain: str | None = None) -> None:
-        """Answer what http.server itself refuses in one line as well."""
+        """Answer http.server's own errors in one line as well."""
         self.close_connection = True
         self._send(HTTPStatus(code), "text/plain; charset=utf-8", f"{message or 'refused'}\n".encode())
 
@@ -150,7 +150,7 @@ class _Handler(BaseHTTPRequestHandler):
             self._send(refusal.status, "text/plain; charset=utf-8", f"{refusal.line}\n".encode())
 
     def _path(self) -> str:
-        """Return what is asked for, of those who may ask."""
+        """Return the answer to an authorized request."""
         server = self.server
         if self.headers.get_all("Host") not in [[host] for host in server.hosts]:
             raise _RefusedError(HTTPStatus.FORBIDDEN, "this server answers to its own name only")
@@ -238,7 +238,7 @@ class _Handler(BaseHTTPRequestHandler):
             server.pages -= 1
 
     def _news(self, session: Session, last: tuple[View, int]) -> None:
-        """Tell where the camera is moved to, by whichever page, and of other integrators."""
+        """Push camera motions, by whichever page, and changes of the integrator."""
         spoke = time.monotonic()
         while not session.closed and not _has_left(self.connection):
             view, shown = news = session.next_news(last, _LOOK)

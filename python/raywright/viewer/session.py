@@ -1,4 +1,4 @@
-"""A render that goes on as long as someone looks, and begins anew when the camera is moved."""
+"""A render that goes on while pages are open, and begins anew when the camera is moved."""
 
 import math
 import re
@@ -51,11 +51,11 @@ class Frame:
     state : str
         ``"preview"`` if it is a smaller one, ``"refining"``, or ``"done"``.
     size : (int, int)
-        Width and height in pixels of the picture that it is, or that a smaller one stands for.
+        Width and height in pixels of the full picture.
     camera : AnyCamera
         Camera of the picture, with the size that the caller gave it.
     exposure, tone
-        How it is shown, as `Image.save` has it.
+        How it is shown, as in `Image.save`.
     boxes : TreeBoxes, optional
         Level of the accelerator's boxes that is drawn over it.
     """
@@ -91,7 +91,7 @@ class Frame:
         return shown.encoded(pixels, suffix)
 
     def told(self) -> dict[str, Any]:
-        """Return what there is to say of the picture, for JSON; None stands for unknown values."""
+        """Return the description of the picture, for JSON; None stands for unknown values."""
         image, view = self.image, self.view
         error = (image.error.estimate, image.error.low, image.error.high)
         height, width = image.rgb.shape[:2]
@@ -114,7 +114,7 @@ class Frame:
 
 
 class Session:
-    """Renders a scene on a thread of its own, for those who look.
+    """Renders a scene on a thread of its own, for open pages.
 
     Parameters
     ----------
@@ -127,7 +127,7 @@ class Session:
     how : mapping
         Other arguments of `render`.
     exposure, tone
-        How pictures are shown, as `Image.save` has it.
+        How pictures are shown, as in `Image.save`.
     fits : bool
         True if the picture takes the size of its window.
     boxes : int, optional
@@ -225,7 +225,7 @@ class Session:
                 self._changed.notify_all()
 
     def show(self, integrator: AnyIntegrator) -> None:
-        """Show what another integrator makes of the scene. The render before ends at once."""
+        """Show the scene by another integrator. The render before ends at once."""
         with self._changed:
             self._integrator = integrator
             self.drawn.show(integrator)
@@ -295,7 +295,7 @@ class Session:
         }
 
     def _show_again(self) -> None:
-        """Show the last picture as pictures are to be shown now; whoever asks holds the lock."""
+        """Show the last picture with the current exposure and tone; the caller holds the lock."""
         if self._frame is not None:
             self._count += 1
             self._frame = replace(
@@ -309,7 +309,7 @@ class Session:
 
     @contextmanager
     def watched(self) -> Iterator[None]:
-        """Look on: while nobody does, nothing is rendered."""
+        """Register a viewer: without viewers, nothing is rendered."""
         with self._changed:
             self._watchers += 1
             self._changed.notify_all()
@@ -454,7 +454,7 @@ class _Job:
     is_preview: bool = False
 
     def is_set(self) -> bool:
-        """Raise rather than say so: nobody waits for the picture so far."""
+        """Raise rather than return: the picture so far is not needed."""
         if not self.session.is_wanted(self):
             raise _UnwantedError
         return False
@@ -466,5 +466,5 @@ def line_of(camera: AnyCamera) -> str:
 
 
 def _divisor(times: float) -> int:
-    """Return by how much a picture is made smaller in each direction to have so many times fewer pixels."""
+    """Return the factor in each direction for a picture with this many times fewer pixels."""
     return max(_LEAST_DIVISOR, min(math.ceil(math.sqrt(times)), _MOST_DIVISOR))

@@ -52,11 +52,11 @@ class ViewerWidget(anywidget.AnyWidget):  # type: ignore[misc]
         return sum(watch.is_alive() for watch in self._watches.values())
 
     def again(self) -> None:
-        """Tell pages that the core renders another picture now."""
+        """Notify pages that the core renders another picture now."""
         self.send({"again": True})
 
     def end(self) -> None:
-        """Tell pages that there is nothing more to come."""
+        """Notify pages of the end."""
         for watch in self._watches.values():
             watch.end()
         self.send({"ended": True})

@@ -15,7 +15,7 @@ class TensorScene(RaycastingScene):
 def install() -> Installation:
     """Let ``open3d.t.geometry.RaycastingScene`` be `RaycastingScene`, until `uninstall`.
 
-    It returns tensors whatever is passed, as Open3D's own class does.
+    It always returns tensors, as Open3D's own class does.
 
     Returns
     -------

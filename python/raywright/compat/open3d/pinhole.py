@@ -1,4 +1,4 @@
-"""Rays through the pixels of a pinhole camera, as Open3D has them."""
+"""Rays through the pixels of a pinhole camera, as in Open3D."""
 
 import math
 

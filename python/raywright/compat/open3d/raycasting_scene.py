@@ -1,4 +1,4 @@
-"""Ray and point queries on triangle meshes, as Open3D has them."""
+"""Ray and point queries on triangle meshes, as in Open3D."""
 
 import inspect
 from typing import Any, ClassVar
@@ -20,7 +20,7 @@ class RaycastingScene:
     """Triangle meshes for rays and points; meshes can be added between queries.
 
     It takes arrays of numpy and anything that becomes one, of any real type, beside tensors of Open3D.
-    Results are tensors if what is passed, or a mesh of the scene, is of Open3D, and arrays otherwise.
+    Results are tensors if an argument, or a mesh of the scene, is of Open3D, and arrays otherwise.
 
     Parameters
     ----------
@@ -166,7 +166,7 @@ class RaycastingScene:
     def test_occlusions(self, rays: Any, tnear: float = 0.0, tfar: float = np.inf, nthreads: int = 0) -> Any:
         """Find whether each ray hits anything between `tnear` and `tfar`: (...) bool.
 
-        Takes and raises what `cast_rays` does. Both ends count, in lengths of the direction.
+        Arguments and errors are those of `cast_rays`. Both ends count, in lengths of the direction.
 
         Parameters
         ----------
@@ -199,7 +199,7 @@ class RaycastingScene:
     def count_intersections(self, rays: Any, nthreads: int = 0) -> Any:
         """Count how often each ray crosses the meshes: (...) int32.
 
-        Takes and raises what `cast_rays` does.
+        Arguments and errors are those of `cast_rays`.
 
         Parameters
         ----------
@@ -232,7 +232,7 @@ class RaycastingScene:
     def list_intersections(self, rays: Any, nthreads: int = 0) -> dict[str, Any]:
         """Find every hit of each ray, by ray and then along it.
 
-        Takes and raises what `cast_rays` does.
+        Arguments and errors are those of `cast_rays`.
 
         Parameters
         ----------
@@ -324,7 +324,7 @@ class RaycastingScene:
     def compute_distance(self, query_points: Any, nthreads: int = 0) -> Any:
         """Compute the distance of each point from the meshes: (...) float32.
 
-        Takes and raises what `compute_closest_points` does. It is inf without any mesh.
+        Arguments and errors are those of `compute_closest_points`. It is inf without any mesh.
 
         Parameters
         ----------
@@ -355,7 +355,7 @@ class RaycastingScene:
     def compute_signed_distance(self, query_points: Any, nthreads: int = 0, nsamples: int = 1) -> Any:
         """Compute the signed distance of each point from the meshes, negative inside: (...) float32.
 
-        Takes and raises what `compute_occupancy` does, which decides what is inside.
+        Arguments and errors are those of `compute_occupancy`, which decides what is inside.
 
         Parameters
         ----------
@@ -480,7 +480,7 @@ class RaycastingScene:
 
     @property
     def _compiled(self) -> Scene:
-        """The meshes as they are now."""
+        """The current meshes."""
         if self._scene is None:
             self._scene = Scene(self._meshes, precision="double")
         return self._scene

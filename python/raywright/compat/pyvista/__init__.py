@@ -1,8 +1,8 @@
 """Rays for pyvista: three of its filters, and `install` to put them into its meshes.
 
-`ray_trace`, `multi_ray_trace` and `select_interior_points` take and return what the methods of
-``pyvista.PolyData`` do. Hits are decided exactly, come in their order along the ray, and need neither embree
-nor meshes of triangles alone.
+`ray_trace`, `multi_ray_trace` and `select_interior_points` have the arguments and results of the methods of
+``pyvista.PolyData``. Hits are decided exactly, come in their order along the ray, and need neither embree nor
+meshes of triangles alone.
 """
 
 from .filters import multi_ray_trace, ray_trace, select_interior_points

@@ -29,7 +29,7 @@ class Surface(NamedTuple):
 
 
 def surface_of(name: str, mesh: Any) -> Surface:
-    """Return the triangles of a ``pyvista.PolyData`` as it is now.
+    """Return the triangles of a ``pyvista.PolyData`` in its current state.
 
     Raises
     ------

@@ -1,6 +1,6 @@
 """Closest points for trimesh: functions of its ``trimesh.proximity``, and `install` to put them there.
 
-`closest_point`, `signed_distance` and `ProximityQuery` take and return what those of trimesh do, and find
+`closest_point`, `signed_distance` and `ProximityQuery` have the arguments and results of trimesh's, and find
 closest points without rtree and scipy. With `install` they also answer ``mesh.nearest.on_surface``,
 ``mesh.nearest.signed_distance``, ``trimesh.proximity.thickness`` and registration by closest points. All
 other names of ``trimesh.proximity`` can be read here too, and are trimesh's own.

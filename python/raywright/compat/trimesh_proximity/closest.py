@@ -61,8 +61,8 @@ def closest_point(mesh: trimesh.Trimesh, points: ArrayLike) -> tuple[Floats, Flo
 def signed_distance(mesh: trimesh.Trimesh, points: ArrayLike) -> Floats:
     """Compute the signed distance of each point from a mesh: positive inside, as in trimesh.
 
-    Takes and raises what `closest_point` does. The sign is that of the closest face if the point lies above
-    or below it, and otherwise by ``contains_points`` of `RayMeshIntersector`. Points within
+    Arguments and errors are those of `closest_point`. The sign is that of the closest face if the point lies
+    above or below it, and otherwise by ``contains_points`` of `RayMeshIntersector`. Points within
     ``trimesh.constants.tol.merge`` of the surface are inside.
 
     Parameters
@@ -163,7 +163,7 @@ class ProximityQuery(trimesh.proximity.ProximityQuery):
 
 
 def closest_of(intersector: RayMeshIntersector, points: ArrayLike) -> tuple[Floats, Floats, Ints]:
-    """Return what `closest_point` does, of the mesh of an intersector."""
+    """Return the result of `closest_point` for the mesh of an intersector."""
     at = triples("points", points)
     found = intersector._scene.closest_point(at)
     position, face = found.position.copy(), found.primitive.astype(np.int64)
@@ -174,7 +174,7 @@ def closest_of(intersector: RayMeshIntersector, points: ArrayLike) -> tuple[Floa
 
 
 def signed(intersector: RayMeshIntersector, points: ArrayLike, tolerance: float) -> Floats:
-    """Return what `signed_distance` does, of the mesh of an intersector; within a tolerance all is inside."""
+    """Return `signed_distance` for the mesh of an intersector; within a tolerance all is inside."""
     at = triples("points", points)
     position, distance, face = closest_of(intersector, at)
     away = np.flatnonzero(np.isfinite(distance) & (distance > tolerance))
@@ -201,7 +201,7 @@ def _intersector(mesh: trimesh.Trimesh) -> RayMeshIntersector:
 
 
 def _neighbors(intersector: RayMeshIntersector) -> Neighbors:
-    """Return the neighbors of the faces of a mesh as it is now."""
+    """Return the neighbors of the faces of a mesh in its current state."""
 
     def make() -> Any:
         return Neighbors(np.asarray(intersector.mesh.triangles))

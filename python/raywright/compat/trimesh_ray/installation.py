@@ -43,8 +43,7 @@ def install() -> Installation:
 
     So all of trimesh that casts rays does it with raywright (``mesh.contains``, thickness, voxels, ...), and
     so do packages that look for embree there, such as pyvista's ``PolyData.multi_ray_trace``. It holds for
-    meshes that there are already and for new ones, whatever was assigned to ``mesh.ray``; that counts again
-    after `uninstall`.
+    existing and for new meshes, whatever was assigned to ``mesh.ray``; that counts again after `uninstall`.
 
     Returns
     -------

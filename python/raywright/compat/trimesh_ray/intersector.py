@@ -25,8 +25,8 @@ class RayMeshIntersector:
     geometry : trimesh.Trimesh
         The mesh.
     scale_to_box : bool
-        Changes nothing: no size of a mesh needs scaling here. It is there because
-        ``trimesh.ray.ray_pyembree.RayMeshIntersector`` has it.
+        Changes nothing: no size of a mesh needs scaling here. It exists for compatibility with
+        ``trimesh.ray.ray_pyembree.RayMeshIntersector``.
 
     Raises
     ------
@@ -67,7 +67,7 @@ class RayMeshIntersector:
     ) -> tuple[Points, Int64s, Int64s]:
         """Find where rays hit the mesh.
 
-        Takes, raises and orders what `intersects_id` does.
+        Arguments, errors and order are those of `intersects_id`.
 
         Parameters
         ----------
@@ -157,7 +157,7 @@ class RayMeshIntersector:
     def intersects_first(self, ray_origins: ArrayLike, ray_directions: ArrayLike) -> NDArray[np.int32]:
         """Find the first face that each ray hits.
 
-        Takes and raises what `intersects_id` does.
+        Arguments and errors are those of `intersects_id`.
 
         Parameters
         ----------
@@ -187,7 +187,7 @@ class RayMeshIntersector:
     def intersects_any(self, ray_origins: ArrayLike, ray_directions: ArrayLike) -> NDArray[np.bool_]:
         """Find whether each ray hits anything: (n,) bool.
 
-        Takes and raises what `intersects_id` does.
+        Arguments and errors are those of `intersects_id`.
 
         Parameters
         ----------
@@ -215,8 +215,8 @@ class RayMeshIntersector:
     def contains_points(self, points: ArrayLike) -> NDArray[np.bool_]:
         """Find whether each point is inside the mesh: (n,) bool.
 
-        As trimesh has it, a point is inside if a ray from there crosses the mesh an odd number of times. That
-        is decided exactly; where the mesh is open, by the majority of seven rays.
+        As in trimesh, a point is inside if a ray from there crosses the mesh an odd number of times. That is
+        decided exactly; where the mesh is open, by the majority of seven rays.
 
         Parameters
         ----------
@@ -251,7 +251,7 @@ class RayMeshIntersector:
 
     @property
     def _scene(self) -> Scene:
-        """The mesh as it is now."""
+        """The current mesh."""
 
         def make() -> Scene:
             # No precision of the vertices is lost; the core stores float32 if that is exact.

@@ -106,7 +106,7 @@ def read_header(file: BinaryIO, size: int) -> tuple[Part, int, bool]:
     Raises
     ------
     ValueError
-        If the header is broken, or promises what is not read.
+        If the header is broken, or announces unsupported features.
     """
     magic, flags = struct.unpack("<4sI", _exactly(file, 8))
     if magic != MAGIC:
@@ -222,7 +222,7 @@ def _part(number: int, found: dict[bytes, bytes], tiled: bool) -> Part:
 
 
 def _shown(found: dict[bytes, bytes], data: tuple[int, int, int, int]) -> tuple[int, int, int, int]:
-    """Return the window of the picture, that of its pixels if it is not told."""
+    """Return the window of the picture, that of its pixels if it has none."""
     window = found.get(b"displayWindow", b"")
     if len(window) != 16:
         return data

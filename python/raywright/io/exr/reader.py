@@ -90,7 +90,7 @@ def _pixels(data: bytes, part: Part, chunks: list[Chunk], wanted: list[Channel])
 
 
 def _shown(pixels: NDArray[np.float32], part: Part) -> NDArray[np.float32]:
-    """Return what the display window shows of all pixels."""
+    """Return the part of all pixels within the display window."""
     left, top, right, bottom = part.shown
     if (left, top, right - left + 1, bottom - top + 1) == (part.left, part.top, part.width, part.height):
         return pixels

@@ -16,8 +16,8 @@ __all__ = ["read_obj", "read_obj_whole"]
 def read_obj(path: Path) -> tuple[Mesh, ...]:
     """Read an OBJ file: a mesh for each material, in the order of their first faces.
 
-    Faces of a mesh are in the order of the file; polygons as `triangulate` has them. Vertices are those that
-    faces use, one for each that is used with other texture coordinates or another normal.
+    Faces of a mesh are in the order of the file; polygons as in `triangulate`. Vertices are those that faces
+    use, one for each that is used with other texture coordinates or another normal.
 
     Raises
     ------

@@ -30,7 +30,7 @@ class Part(NamedTuple):
         Its name; None for parts before the first name.
     vertices : (V, 3) array
     faces : (F, 3) array
-        In the order of the file; polygons as `triangulate` has them.
+        In the order of the file; polygons as in `triangulate`.
     normals, uv, colors : (V, 3), (V, 2), (V, 3) array, optional
         Those of the vertices. Colours are numbers as they stand there.
     cells : (F,) array, optional
@@ -52,7 +52,7 @@ class Geometry:
     Parameters
     ----------
     text : bytes
-        The file, as `text_of` has it.
+        The file, as in `text_of`.
     whole : bool
         True if all faces are one part, whatever their materials.
 

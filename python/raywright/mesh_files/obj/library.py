@@ -46,7 +46,7 @@ class Library:
                 self._add(found)
 
     def look(self, name: str | None, span: float | None) -> Look | None:
-        """Return how a material looks, None where nothing is said of it; `span` as `look_of_mtl` has it."""
+        """Return how a material looks, None where nothing is said of it; `span` as in `look_of_mtl`."""
         if name is None:
             return None
         for library, pictures, notes in self._files:

@@ -75,7 +75,7 @@ class Description:
     notes : Notes
         Collects notes about unreadable statements.
     blender : float, optional
-        As `Written` has it.
+        As in `Written`.
     """
 
     def __init__(self, name: str, statements: Statements, notes: Notes, blender: float | None = None) -> None:

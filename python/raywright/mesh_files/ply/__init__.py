@@ -37,8 +37,8 @@ def read_ply(path: Path) -> tuple[Mesh, ...]:
     """Read a PLY file as one mesh with its picture or colors; no mesh if it has no faces.
 
     Vertices are those of the file, in its order, unless faces have texture coordinates for their corners.
-    Faces are in the order of the file; polygons as `triangulate` has them. Numbers of vertices and faces that
-    are neither places, normals, coordinates nor colors are attributes.
+    Faces are in the order of the file; polygons as in `triangulate`. Numbers of vertices and faces that are
+    neither places, normals, coordinates nor colors are attributes.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""glTF files, .gltf and .glb: all that is in them, as far as it is to be seen."""
+"""glTF files, .gltf and .glb, with all of their visible contents."""
 
 from os import PathLike
 
@@ -26,7 +26,7 @@ def read_gltf(path: str | PathLike[str], width: int | None = None, height: int |
     path : str or path
         The file. Others that it names must be in its folder, or in a folder within that.
     width, height : int, optional
-        Size of the picture in pixels, as `load` has them.
+        Size of the picture in pixels, as in `load`.
 
     Returns
     -------
@@ -67,7 +67,7 @@ def read_gltf(path: str | PathLike[str], width: int | None = None, height: int |
     mesh, not from the file's number.
 
     Spots fall off between their two angles as a `SpotLight` does; the range of lights is a hint, and of no
-    account. Skins and blended shapes are shown as the file has them at rest.
+    account. Skins and blended shapes are shown at rest.
     """
     path = there(path)
     for name, size in (("width", width), ("height", height)):

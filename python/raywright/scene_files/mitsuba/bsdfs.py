@@ -51,7 +51,7 @@ def material(plugin: Plugin, uv: Uv) -> Material:
     Raises
     ------
     ValueError
-        If its type, or a parameter of it, is not supported; tells which.
+        If its type, or a parameter of it, is not supported; the error names it.
     """
     return sides(plugin, uv).closed()
 

@@ -50,7 +50,7 @@ def emitter(plugin: Plugin) -> Light | Environment:
     FileNotFoundError
         If its file is missing.
     ValueError
-        If its type, or a parameter of it, is not supported; tells which.
+        If its type, or a parameter of it, is not supported; the error names it.
     """
     readers: dict[str, Callable[[Plugin], Light | Environment]] = {
         "point": _point,

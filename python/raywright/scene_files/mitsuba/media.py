@@ -36,7 +36,7 @@ def filled(plugin: Plugin, material: Material | None, box: Box | None = None) ->
     Raises
     ------
     ValueError
-        If a medium, or a parameter of it, is not supported; tells which.
+        If a medium, or a parameter of it, is not supported; the error names it.
     """
     is_null = False
     for null in plugin.children("null"):
@@ -100,7 +100,7 @@ def medium(plugin: Plugin, box: Box | None = None) -> Medium:
     FileNotFoundError
         If its file is missing.
     ValueError
-        If its type, or a parameter of it, is not supported; tells which.
+        If its type, or a parameter of it, is not supported; the error names it.
     """
     key = ("medium", id(plugin.values), None if box is None else box.tobytes())
     if key in plugin.context.kept:

@@ -1,4 +1,4 @@
-"""Meshes as Mitsuba has them: of OBJ, PLY and its own files, its rectangle and its cube."""
+"""Meshes as in Mitsuba: of OBJ, PLY and its own files, its rectangle and its cube."""
 
 from typing import NamedTuple
 

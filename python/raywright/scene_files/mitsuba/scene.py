@@ -72,8 +72,8 @@ def from_mitsuba(
     FileNotFoundError
         If a file is missing.
     ValueError
-        If something is not supported, or is not as it must be (tells which plugin, or which line), or `weld`
-        is negative or not finite.
+        If something is not supported, or is not as it must be (the error gives plugin or line), or `weld` is
+        negative or not finite.
     TypeError
         If `scene` is no dict and no path, or `sensor` is no integer.
 

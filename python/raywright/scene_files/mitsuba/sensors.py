@@ -59,7 +59,7 @@ def camera(plugin: Plugin, film: Plugin | None, scene: Scene) -> AnyCamera:
     Raises
     ------
     ValueError
-        If its type, or a parameter of it, is not supported; tells which.
+        If its type, or a parameter of it, is not supported; the error names it.
     """
     readers: dict[str, Callable[[Plugin, Crop], AnyCamera]] = {
         "perspective": _perspective,

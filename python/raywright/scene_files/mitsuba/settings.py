@@ -64,7 +64,7 @@ def integrator(plugin: Plugin | None) -> Asked:
     Raises
     ------
     ValueError
-        If its type, or a parameter of it, is not supported; tells which.
+        If its type, or a parameter of it, is not supported; the error names it.
     """
     if plugin is None:
         return Asked(Path())

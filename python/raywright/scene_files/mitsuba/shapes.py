@@ -32,7 +32,7 @@ def shapes_of(plugin: Plugin) -> tuple[Mesh | Shape, ...]:
     FileNotFoundError
         If its file is missing.
     ValueError
-        If its type, or a parameter of it, is not supported; tells which.
+        If its type, or a parameter of it, is not supported; the error names it.
     """
     reader = _READERS[plugin.type]
     try:

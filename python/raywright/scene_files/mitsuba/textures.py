@@ -170,7 +170,7 @@ def heights(plugin: Plugin) -> NDArray[np.float64]:
 
 
 def normals(plugin: Plugin, uv: Uv) -> ImageTexture:
-    """Return a picture of normals, along u and v as raywright has them."""
+    """Return a picture of normals, along u and v as in raywright."""
 
     def turn(colours: NDArray[np.float64]) -> NDArray[np.float64]:
         # Mitsuba's bitangent makes a right-handed frame with u and the normal.

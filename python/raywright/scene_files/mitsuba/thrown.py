@@ -21,12 +21,12 @@ def size_of(plugin: Plugin) -> tuple[int, int]:
 
 
 def at(plugin: Plugin, u: Floats, v: Floats) -> Floats:
-    """Return the colours of a texture at coordinates as Mitsuba has them, (..., 3), and take it.
+    """Return the colours of a texture at coordinates as in Mitsuba, (..., 3), and take it.
 
     Raises
     ------
     ValueError
-        If its type, or a parameter of it, is not supported; tells which.
+        If its type, or a parameter of it, is not supported; the error names it.
     """
     if plugin.type in UNIFORM:
         return np.broadcast_to(of_plugin(plugin, True), (*u.shape, 3))

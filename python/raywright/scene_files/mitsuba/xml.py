@@ -63,8 +63,8 @@ def read_xml(
     FileNotFoundError
         If the file, or one that it includes, is missing.
     ValueError
-        If it is no XML, has a DOCTYPE, or is not as Mitsuba's scenes are; tells the line. If a parameter is
-        asked for nowhere in it.
+        If it is no XML, has a DOCTYPE, or is not as Mitsuba's scenes are; the error gives the line. If a
+        parameter is asked for nowhere in it.
     """
     reader = _Reader({name: _text(value) for name, value in parameters.items()}, folder)
     tree = reader.file(path, 0)

@@ -62,7 +62,7 @@ def film(kind: str, parameters: Parameters) -> Film:
     Raises
     ------
     ValueError
-        If its type, or a parameter of it, is not supported; tells which.
+        If its type, or a parameter of it, is not supported; the error names it.
     """
     if kind not in ("rgb", "gbuffer", "spectral"):
         parameters.fail(f"a film {kind!r} is not supported")

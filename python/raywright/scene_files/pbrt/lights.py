@@ -43,7 +43,7 @@ def light(
     Raises
     ------
     ValueError
-        If its type, or a parameter of it, is not supported; tells which.
+        If its type, or a parameter of it, is not supported; the error names it.
     """
     scale = parameters.number("scale", 1.0)
 

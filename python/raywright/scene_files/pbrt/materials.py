@@ -66,7 +66,7 @@ class Materials:
         Raises
         ------
         ValueError
-            If its type, or a parameter of it, is not supported; tells which.
+            If its type, or a parameter of it, is not supported; the error names it.
         """
         readers: dict[str, Callable[[Parameters], Material]] = {
             "diffuse": self._diffuse,

@@ -50,7 +50,7 @@ def read_pbrt(path: Path) -> Shot:
     FileNotFoundError
         If a file is missing.
     ValueError
-        If something is not supported, or is not as it must be; tells the line.
+        If something is not supported, or is not as it must be; the error gives the line.
 
     Warns
     -----

@@ -49,7 +49,7 @@ def emission(parameters: Parameters, imaging: Floats) -> Emission:
     Raises
     ------
     ValueError
-        If a parameter of it is not supported; tells which.
+        If a parameter of it is not supported; the error names it.
     """
     for name in ("filename", "power"):
         if parameters.has(name):
@@ -70,7 +70,7 @@ def shape(kind: str, parameters: Parameters, matrix: Floats, look: Look, texture
     FileNotFoundError
         If its file is missing.
     ValueError
-        If its type, or a parameter of it, is not supported; tells which.
+        If its type, or a parameter of it, is not supported; the error names it.
     """
     readers: dict[str, Callable[..., Mesh | Shape]] = {
         "trianglemesh": _triangles,

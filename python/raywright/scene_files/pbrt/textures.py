@@ -40,7 +40,7 @@ class Textures:
         Raises
         ------
         ValueError
-            If its type, or a parameter of it, is not supported; tells which.
+            If its type, or a parameter of it, is not supported; the error names it.
         """
         if of not in ("spectrum", "float"):
             parameters.fail(f"a texture must be of spectrum or float, got {of!r}")

@@ -66,7 +66,7 @@ def directives(path: Path, notes: Notes) -> Iterator[Directive]:
     FileNotFoundError
         If the file is missing.
     ValueError
-        If it is not as pbrt's files are; tells the line.
+        If it is not as pbrt's files are; the error gives the line.
     """
     words = _Words(path)
     while (word := words.next()) is not None:

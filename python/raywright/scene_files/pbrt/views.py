@@ -47,7 +47,7 @@ def camera(kind: str, parameters: Parameters, matrix: Floats, size: tuple[int, i
     Raises
     ------
     ValueError
-        If its type, or a parameter of it, is not supported; tells which.
+        If its type, or a parameter of it, is not supported; the error names it.
     """
     width, height = size
     exposure(parameters)

@@ -34,7 +34,7 @@ def read_usd(path: Path, width: int | None = None, height: int | None = None) ->
     path : Path
         The file.
     width, height : int, optional
-        Size of the picture in pixels, as `load` has them.
+        Size of the picture in pixels, as in `load`.
 
     Returns
     -------
@@ -49,7 +49,7 @@ def read_usd(path: Path, width: int | None = None, height: int | None = None) ->
     FileNotFoundError
         If a file that it names is missing.
     ValueError
-        If it is no USD file that can be read, or holds nothing that is seen; tells which prim is wrong.
+        If it is no USD file that can be read, or holds nothing that is seen; the error names the prim.
 
     Warns
     -----
