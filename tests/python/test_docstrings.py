@@ -20,10 +20,8 @@ SECTIONS = (
     "Parameters", "Attributes", "Returns", "Yields", "Raises", "Warns",
     "See Also", "Notes", "References", "Examples",
 )  # fmt: skip
-# Packages whose callables do not all have their sections yet. This may only shrink.
-UNFINISHED = {
-    "_core",
-}
+# Callables without all of their sections. This may only shrink.
+UNFINISHED: set[str] = set()
 
 
 def members(name, value):
@@ -174,17 +172,34 @@ def missing(value):
     return sorted(needed - found)
 
 
-def package(value):
-    """Return the subpackage that a public object comes from."""
-    return value.__module__.removeprefix("raywright.").partition(".")[0]
-
-
 def test_callables_have_their_sections():
-    found = {name: missing(value) for name, value in CALLABLES.items()}
-    lacking = {name: gaps for name, gaps in found.items() if gaps}
-    assert {n: gaps for n, gaps in lacking.items() if package(CALLABLES[n]) not in UNFINISHED} == {}
-    # A package that is finished leaves the list.
-    assert {package(CALLABLES[name]) for name in lacking} == set(UNFINISHED)
+    lacking = {name: gaps for name, value in CALLABLES.items() if (gaps := missing(value))}
+    assert {name: gaps for name, gaps in lacking.items() if name not in UNFINISHED} == {}
+    # A name leaves the list when it is finished.
+    assert set(lacking) >= UNFINISHED
+
+
+def exists(name, places):
+    """Return whether a name with dots leads from one of some modules to a thing, or to a field of a class."""
+    for value in places:
+        for part in name.split("."):
+            fields = getattr(value, "__annotations__", {}) if inspect.isclass(value) else {}
+            value = getattr(value, part, fields.get(part))
+        if value is not None:
+            return True
+    return False
+
+
+def test_what_is_seen_also_exists():
+    modules = [value for value in PUBLIC.values() if isinstance(value, ModuleType)]
+    strangers = {}
+    for full, value in CALLABLES.items():
+        home = value.__module__.removesuffix(".installation")
+        places = [rw, *(module for module in modules if home.startswith(module.__name__))]
+        lines = sections(inspect.getdoc(value)).get("See Also", ())
+        names = [name.strip() for line in lines if line for name in line.partition(" : ")[0].split(",")]
+        strangers |= {f"{full}: {name}": "is not there" for name in names if not exists(name, places)}
+    assert strangers == {}
 
 
 def imports(source):

@@ -30,9 +30,9 @@ class BVH:
         - ``"sweep"``: by the surface area heuristic wherever a set can be parted along an axis (MacDonald and
           Booth 1990, "Heuristics for ray tracing using space subdivision").
         - ``"spatial"``: by the surface area heuristic with spatial splits, which part what straddles a plane
-          (Stich, Friedrich and Dietrich 2009, "Spatial splits in bounding volume hierarchies"). Where much is
-          long and diagonal, that has been cut into pieces before (Ernst and Greiner 2007, "Early split
-          clipping for bounding volume hierarchies"). A scene that moves has to build it again.
+          (Stich, Friedrich and Dietrich 2009, "Spatial splits in bounding volume hierarchies"). If many
+          primitives are long and diagonal, they are cut into pieces before (Ernst and Greiner 2007, "Early
+          split clipping for bounding volume hierarchies"). A scene that moves has to build it again.
         - ``"morton"``: a linear tree in the order of Morton codes of 63 bits (Lauterbach et al. 2009, "Fast
           BVH construction on GPUs").
         - ``"ploc"``: from the bottom up (Meister and Bittner 2018, "Parallel locally-ordered clustering for
@@ -47,7 +47,7 @@ class BVH:
         matters. They decide between leaf and split.
     budget : float, optional
         Number of references that cuts and spatial splits may add, over the number of primitives, 0 to 8; 4 if
-        not given. Where they gain little they add none. For ``"spatial"``.
+        not given. They add none if they gain little. For ``"spatial"``.
     radius : int, optional
         Search radius of clusters in the order of Morton codes, 1 to 128; 14 if not given. For ``"ploc"``.
     optimise : {"reinsertion", "treelet"} or a tuple of these, optional

@@ -16,15 +16,15 @@ _GREATEST_DENSITY = 1000.0
 class Grid:
     """A uniform grid, walked from cell to cell (Amanatides and Woo 1987, "A fast voxel traversal algorithm").
 
-    Fast where primitives are of about one size and evenly spread, soon built, and small. Where a little of
-    the scene is fine and most of it is not, a single resolution does not suit both: see `NestedGrid`.
+    Fast where primitives are of about one size and evenly spread, soon built, and small. A single resolution
+    does not suit scenes with little fine detail: see `NestedGrid`.
 
     Parameters
     ----------
     resolution : int or 3 ints, optional
         Number of cells along the longest side, with the others in proportion, or along x, y and z; 1 to 4096
-        each and at most 2^27 together. As `density` says if not given. There are fewer if they would be
-        thinner than the resolution of rays (about 1/20,000 of the scene), or if references to primitives
+        each and at most 2^27 together. It follows from `density` if not given. There are fewer if they would
+        be thinner than the resolution of rays (about 1/20,000 of the scene), or if references to primitives
         would exhaust the memory.
     density : float
         Cells for each primitive, more than 0 and at most 1000, by the cube-root rule (Cleary and Wyvill 1988,

@@ -20,7 +20,7 @@ _CENTRE = (0.5, 0.5)
 class AnyCamera(Pose):
     """The base class of all cameras.
 
-    To be made as one of them: `Camera`, `ThinLens`, `Orthographic`, `Fisheye`, `Panorama`.
+    Make one of its subclasses: `Camera`, `ThinLens`, `Orthographic`, `Fisheye`, `Panorama`.
 
     All take the arguments of `Pose`, and these.
 
@@ -29,8 +29,8 @@ class AnyCamera(Pose):
     width, height : int
         Size of the picture in pixels, 1 to 65536.
     moved_to : Pose, optional
-        Where the camera is as the shutter closes; another camera will do. In between it goes straight at an
-        even pace, and turns about one axis at an even pace (slerp; Shoemake 1985).
+        Pose as the shutter closes; another camera will do. In between it moves straight and turns about one
+        axis, both at an even pace (slerp; Shoemake 1985).
     shutter : 2 floats
         Opening and closing time, in the scene's time, in which instances move from 0 to 1.
 
@@ -93,22 +93,22 @@ class AnyCamera(Pose):
         Parameters
         ----------
         offsets : (2,) or (height, width, 2) array
-            Where in the pixel, for all or for each: (0, 0) is its upper left, (1, 1) its lower right. The
+            Place in the pixel, for all or for each: (0, 0) is its upper left, (1, 1) its lower right. The
             default is the centre; ``rng.random((height, width, 2))`` is anywhere in it.
         dtype : float64 or float32
-            Of the arrays; rays of float32 are the fastest to read.
+            Type of the arrays; rays of float32 are the fastest to read.
         lens : (2,) or (height, width, 2) array, optional
-            Where in the lens, each number from 0 to 1, for all or for each: uniform numbers are uniform over
+            Place in the lens, two numbers from 0 to 1, for all or for each: uniform numbers are uniform over
             its area. Its centre if not given; of no account for cameras without a lens.
         time : float or (height, width) array, optional
-            When, from 0 as the shutter opens, which it is if not given, to 1 as it closes, for all or for
-            each. For queries of a scene in motion, pass ``time=camera.scene_time(time)``.
+            Time from 0, the default, as the shutter opens to 1 as it closes, for all or for each. For queries
+            of a scene in motion, pass ``time=camera.scene_time(time)``.
 
         Returns
         -------
         origins, directions : (height, width, 3) arrays
-            Directions are unit, to rounding. Row 0 is the top of the picture, column 0 its left. Where the
-            camera sees nothing, as beyond the circle of a fisheye, they are NaN, and hit nothing.
+            Directions are unit, to rounding. Row 0 is the top of the picture, column 0 its left. Directions
+            that the camera does not see, as beyond the circle of a fisheye, are NaN, and hit nothing.
 
         Raises
         ------
@@ -154,12 +154,12 @@ class AnyCamera(Pose):
         Parameters
         ----------
         points : (..., 2) array
-            In pixels from the picture's left and from its top: the centre of the pixel in row i and column j
-            is at (j + 0.5, i + 0.5). Points beside the picture have rays too.
+            Points in pixels from the picture's left and from its top: the centre of the pixel in row i and
+            column j is at (j + 0.5, i + 0.5). Points beside the picture have rays too.
         lens : (..., 2) array, optional
-            Where in the lens, as in `rays`; leading shapes broadcast.
+            Place in the lens, as in `rays`; leading shapes broadcast.
         time : float or (...) array, optional
-            When, as in `rays`; shapes broadcast.
+            Time, as in `rays`; shapes broadcast.
 
         Returns
         -------
@@ -210,7 +210,7 @@ class AnyCamera(Pose):
         Parameters
         ----------
         time : float or (...) array, optional
-            From 0 as the shutter opens, which it is if not given, to 1 as it closes.
+            Times from 0, the default, as the shutter opens to 1 as it closes.
 
         Returns
         -------

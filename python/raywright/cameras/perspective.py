@@ -22,7 +22,7 @@ class Camera(AnyCamera):
     Parameters
     ----------
     position : 3 floats
-        Where the camera is, in the scene's unit of length.
+        Position of the camera, in the scene's unit of length.
     target : 3 floats, optional
         The point that comes to the middle of the picture. Either this or `direction` is given.
     up : 3 floats
@@ -45,7 +45,7 @@ class Camera(AnyCamera):
         Skew coefficient K[0, 1] of a camera matrix, in pixels: the shift to the right for each focal length
         down. K[0, 1] of a camera matrix. With `focal` only.
     moved_to : Pose, optional
-        Where the camera is as the shutter closes; another camera will do.
+        Pose as the shutter closes; another camera will do.
     shutter : 2 floats
         Opening and closing time, in the scene's time, in which instances move from 0 to 1.
 
@@ -134,7 +134,7 @@ class Camera(AnyCamera):
         K : (3, 3) array
             ``[[fx, skew, cx], [0, fy, cy], [0, 0, 1]]``, in pixels.
         R, t : (3, 3) and (3,) or (3, 1) arrays
-            From world to camera, whose x is to the right, y down and z forward.
+            Rotation and translation from world to camera, whose x is to the right, y down and z forward.
         width, height : int
             Size of the picture in pixels.
         pixel_centre : float

@@ -22,7 +22,7 @@ class Pose:
     Parameters
     ----------
     position : 3 floats
-        Where it is, in the scene's unit of length.
+        Position, in the scene's unit of length.
     target : 3 floats, optional
         The point that it looks at. Either this or `direction` is given.
     up : 3 floats
@@ -91,8 +91,8 @@ class Pose:
         Parameters
         ----------
         to_world : (4, 4) array
-            From the camera's own space to the scene's, acting on column vectors (x, y, z, 1). Lengths of its
-            axes do not count.
+            Matrix from the camera's own space to the scene's, acting on column vectors (x, y, z, 1). Lengths
+            of its axes do not count.
         convention : str
             Axes of the camera's own space: ``"gltf"``, it looks along -z with x to the right and y up (as in
             Blender and OpenGL); ``"mitsuba"``, along +z with x to the left and y up; ``"opencv"``, along +z
@@ -149,8 +149,8 @@ class Pose:
         Raises
         ------
         ValueError
-            If a shape is another, a number is not finite, or `R` is not a rotation to within 1e-6. Of one
-            that is off by less, the third row counts, and then the second.
+            If a shape is another, a number is not finite, or `R` is not a rotation to within 1e-6. A small
+            deviation is corrected from the third row, and then the second.
 
         See Also
         --------

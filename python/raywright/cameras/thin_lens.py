@@ -36,26 +36,26 @@ class ThinLens(AnyCamera):
     aperture_radius : float, optional
         Radius of the aperture, in the scene's unit; 0 makes a pinhole.
     focus_distance : float, optional
-        From the lens to the plane in focus, along the view, in the scene's unit.
+        Distance from the lens to the plane in focus, along the view, in the scene's unit.
     focus_point : 3 floats, optional
         A point of the plane in focus, instead of its distance.
     focal_length : float, optional
-        Of the lens, in the scene's unit, instead of `fov`: with the sensor's height, it gives the vertical
-        angle of view.
+        Focal length of the lens, in the scene's unit, instead of `fov`: with the sensor's height, it gives
+        the vertical angle of view.
     sensor_height : float
-        Of the sensor behind the lens, in the scene's unit. The default is 24 mm in scenes in metres; only
-        `f_stop` and `focal_length` need it.
+        Height of the sensor behind the lens, in the scene's unit. The default is 24 mm in scenes in metres;
+        only `f_stop` and `focal_length` need it.
     blades : int
         Number of sides of the aperture: a regular polygon with its corners at the aperture's radius, or a
         disk if 0.
     blade_rotation : float
-        By how much the polygon is turned, in degrees, counterclockwise as the camera looks, from where a
-        corner is to the right.
+        Rotation of the polygon, in degrees, counterclockwise as the camera looks; at 0 a corner is to the
+        right.
     fov_axis : str
         Axis along which `fov` is measured, as in `Camera`.
     principal : 2 floats, optional
-        Where the middle of the view is seen, in pixels from the left and the top of the picture; its middle
-        if not given. Elsewhere the lens is shifted.
+        Center of the view, in pixels from the left and the top of the picture; its middle if not given.
+        Elsewhere the lens is shifted.
     moved_to, shutter
         As in `Camera`. The distance in focus stays that at the shutter's opening.
 
@@ -154,7 +154,7 @@ class ThinLens(AnyCamera):
 
     @property
     def focused_distance(self) -> float:
-        """From the lens to the plane in focus, along the view, in the scene's unit."""
+        """Distance from the lens to the plane in focus, along the view, in the scene's unit."""
         if self.focus_distance is not None:
             return self.focus_distance
         sharp = self.target if self.focus_point is None else self.focus_point

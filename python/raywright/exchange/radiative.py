@@ -47,14 +47,14 @@ class RadiativeExchange(Tabular):
     power : (N,) float64
         The same of all its area, W.
     standard_error : (N,) float64
-        That of `flux`; 0 where nothing is drawn. In a closed room at one temperature it is almost 0.
+        Standard error of `flux`; 0 without sampling. In a closed room at one temperature it is almost 0.
     radiosity, irradiance : (N,) float64
         Emitted and reflected flux, and arriving flux, of heat, W/m²; light of the scene is in
         `absorbed_light`.
     absorbed_light : (N,) float64
         Absorbed flux of the scene's lights, environment and emission, W/m²; `flux` is less by it.
     areas : (N,) float64
-        In m²; 0 for a face that coincides with one before it, which counts for both.
+        Areas in m²; 0 for a face that coincides with one before it, which counts for both.
     patches : (N,) structured
         "shape", "copy", "face" and "side" of each row, as in `RadiositySolution`.
     temperature, emissivity : (N,) float64
@@ -166,18 +166,18 @@ def radiative_exchange(
         The surfaces; a shape that is no mesh is one of them. The faces of an `Instance` are those of all its
         copies, one after the other.
     temperature : float, list, dict or array
-        In kelvin, at least 0: one for all; a list of one a shape, or a dict by their numbers, where each is a
-        number or an array of one a face; or an array of one a face, shape after shape.
+        Temperatures in kelvin, at least 0: one for all; a list with one a shape, or a dict by shape index, of
+        numbers or arrays with one a face; or an array with one a face, shape after shape.
     emissivity : the same
         Above 0, and at most 1.
     sky_temperature : float, optional
-        Of black surroundings, in kelvin, that are seen wherever a surface sees nothing else; 0 K by default.
+        Temperature of black surroundings, in kelvin, beyond the scene; 0 K by default.
     absorptance : the same as emissivity, optional
         The share that is absorbed of the light that the scene itself has: of its lights, its environment, as
         the sun and the sky, and its emission. By default the emissivity. The mean of red, green and blue is
         taken for all of the light, in W: ``DirectionalLight(down, 800.0)`` is a sun of 800 W/m².
     method : {"matrix", "stochastic"}, optional
-        By `view_factors`, or by rays as in `radiosity`. By default the first up to 2048 faces.
+        By `view_factors`, or by rays as in `radiosity`. By default "matrix" for up to 2048 faces.
     error, rays : optional
         As of `radiosity`.
     sides : {"front", "both"}

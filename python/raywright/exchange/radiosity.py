@@ -71,7 +71,7 @@ def radiosity(
     Parameters
     ----------
     scene : Scene, Mesh or anything else that a Scene is made of
-        Of `Diffuse` surfaces, or `TwoSided` of them. Surfaces that shine and all other lights and
+        Scene of `Diffuse` surfaces, or `TwoSided` of them. Surfaces that shine and all other lights and
         environments count. A shape that is no mesh is one patch; shading normals do not count. Each copy of
         an `Instance` has patches of its own, and so takes the memory that its shapes would take; copies that
         move have no solution.
@@ -90,8 +90,8 @@ def radiosity(
         `view_factors`.
     rays : int, optional
         Number of rays of the first light, all replicates together; reflected light takes rays in proportion.
-        By default as many as `error` needs, for "progressive" 64 a patch and at least 65536 for each
-        replicate. Of "matrix", those for lights that are no surfaces.
+        The default is as many as `error` needs, for "progressive" 64 a patch and at least 65536 for each
+        replicate. For "matrix", it is the number for lights that are no surfaces.
     patch_size : float, optional
         The longest side of a patch; each triangle is cut into n² that are similar to it. By default faces are
         not cut.
@@ -104,7 +104,7 @@ def radiosity(
     threads : int, optional
         Number of threads; one a core by default.
     progress : bool or callable
-        As for `Scene.build`: the share of the way to where it stops.
+        As for `Scene.build`: the share of the work.
     states : bool
         Whether to give a generator of solutions on their way instead, of "progressive": one a shot, the last
         of them the end.
@@ -134,10 +134,10 @@ def radiosity(
 
     Notes
     -----
-    Where flat faces touch front to front, as a box and the floor beneath do, the covered part of each
-    exchanges light with the other alone. Faces without area exchange nothing. Eight replicates, each of rays
-    of its own, give the standard error; the most that unshot power may add is a part of it. Within each,
-    emitted power is absorbed, has left or is unshot, to rounding. Iterations end by ‖unshot‖ / (1
+    If flat faces touch front to front, as a box and the floor beneath do, the covered part of each exchanges
+    light with the other alone. Faces without area exchange nothing. Eight replicates, each of rays of its
+    own, give the standard error; the most that unshot power may add is a part of it. Within each, emitted
+    power is absorbed, has left or is unshot, to rounding. Iterations end by ‖unshot‖ / (1
     - the greatest reflectance).
 
     The error of "stochastic" is the root mean square over the area, of patches each by itself: the irradiance

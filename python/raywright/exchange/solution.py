@@ -68,21 +68,22 @@ class RadiositySolution(Tabular):
     irradiance : (N, 3) float64
         The flux that arrives, W/m².
     standard_error : (N, 3) float64
-        That of `radiosity`: the spread of independent replicates, and the most that unshot power may add to
-        it; 0 where nothing is drawn. Variation within a patch, such as the edge of a shadow, is not part of
-        it.
+        Standard error of `radiosity`: the spread of independent replicates, and the most that unshot power
+        may add to it; 0 without sampling. Variation within a patch, such as the edge of a shadow, is not part
+        of it.
     irradiance_error : (N, 3) float64
         The standard error of `irradiance`.
     emission, reflectance : (N, 3) float64
         Emission, W/m², and reflectance of each: the means of four points.
     areas : (N,) float64
-        In m²; 0 for a face that coincides with one before it, which counts for both and whose light it has.
+        Areas in m²; 0 for a face that coincides with one before it, which counts for both and whose light it
+        has.
     patches : (N,) structured
         Index of the "shape", its "face", the "cell" of the face, and the "side": 1 for the front, -1 for the
-        back. Of an `Instance`, "copy" is which of its copies, and "face" is numbered as in `Instance.locate`;
-        "copy" is -1 elsewhere.
+        back. In an `Instance`, "copy" is the index of the copy, and "face" is numbered as in
+        `Instance.locate`; "copy" is -1 elsewhere.
     corners : (N, 3, 3) float64
-        Where the corners are, in the order of the face's; NaN for shapes that are no triangles.
+        Positions of the corners, in the order of the face's; NaN for shapes that are no triangles.
     cuts : (F,) uint32
         Into how many strips each face is cut, all copies counted.
     mirrored : (F,) bool
@@ -249,8 +250,7 @@ class RadiositySolution(Tabular):
         Parameters
         ----------
         ax : matplotlib.axes.Axes, str or path, optional
-            Where to draw: a new figure if not given, axes with three dimensions, or a file, .png, .svg or
-            .pdf.
+            Target: a new figure if not given, axes with three dimensions, or a file, .png, .svg or .pdf.
         name : {"radiosity", "irradiance", "standard_error", "irradiance_error"}
             Name of the array; red, green and blue are weighted as in ITU-R BT.709.
         side : {"front", "back"}

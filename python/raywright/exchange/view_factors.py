@@ -112,7 +112,7 @@ class ViewFactors(Tabular):
         Parameters
         ----------
         ax : matplotlib.axes.Axes, str or path, optional
-            Where to draw: a new figure if not given, or a file, .png, .svg or .pdf.
+            Target: a new figure if not given, axes, or a file, .png, .svg or .pdf.
         name : {"matrix", "standard_error"}
             Which. Zeros are grey.
         cmap : str or matplotlib.colors.Colormap
@@ -322,7 +322,7 @@ def view_factors(
         Rows of the matrix: faces, or shapes with all of their faces.
     rays : int, optional
         Number of rays between two faces with a possible occluder, up to 2**20. A shape that is no mesh sends
-        4096 times as many, up to 2**26. In a scene of more than 10,000 faces each face sends 16 times as
+        4096 times as many, up to 2**26. Each face of a scene of more than 10,000 faces sends 16 times as
         many. If neither this nor `error` is given, 16, and then enough for a standard error below 1 % of the
         greatest factor of either row, unless all together would be more than 33 million; a shape that is no
         mesh sends up to 2**20, and a face of more than 10,000 sends 256, whatever error results.
@@ -363,16 +363,16 @@ def view_factors(
 
     Notes
     -----
-    Of each pair A_i F_ij is found once, so that A_i F_ij = A_j F_ji to the last digit but one. Faces without
-    area see nothing. In a closed room each row adds up to 1 within 1e-9: estimates are moved, as little as
-    their errors allow, until they do (weighted least squares within 0 and the factor of an unblocked pair). A
-    room is closed if none of at least 65,536 rays from its sampled faces meets a back or nothing. If some do,
-    the share that each row loses is estimated too. Standard errors are those before estimates are moved, and
-    so are upper bounds.
+    The exchange A_i F_ij of each pair is computed once, so that A_i F_ij = A_j F_ji to the last digit but
+    one. Faces without area see nothing. In a closed room each row adds up to 1 within 1e-9: estimates are
+    moved, as little as their errors allow, until they do (weighted least squares within 0 and the factor of
+    an unblocked pair). A room is closed if none of at least 65,536 rays from its sampled faces meets a back
+    or nothing. If some do, the share that each row loses is estimated too. Standard errors are those before
+    estimates are moved, and so are upper bounds.
 
-    Where flat faces touch front to front, as a box or the cap of a cylinder and the floor beneath do, all
-    that leaves the covered part of one comes to the other. Two triangles exchange the area in common; the
-    share of a shape that is no mesh is sampled, as its row is. An `Implicit` is taken to have no flat parts.
+    If flat faces touch front to front, as a box or the cap of a cylinder and the floor beneath do, all light
+    from the covered part of one arrives at the other. Two triangles exchange the area in common; the share of
+    a shape that is no mesh is sampled, as its row is. An `Implicit` is taken to have no flat parts.
 
     More than 10,000 faces have a sparse matrix (``pip install 'raywright[sparse]'``), sampled by rays even if
     little is hidden: the rows of two faces are combined into one estimate of their exchange, and rows are

@@ -11,7 +11,7 @@ from . import counts
 class AmbientOcclusion:
     """Ambient occlusion: the share of directions in which nothing is near.
 
-    After Zhukov, Iones and Kronin (1998). Where nothing is seen, the picture is white.
+    After Zhukov, Iones and Kronin (1998). The background is white.
 
     Parameters
     ----------

@@ -10,12 +10,12 @@ from . import counts
 class Bidirectional:
     """Bidirectional path tracing (Lafortune and Willems 1993; Veach and Guibas 1994): paths from both ends.
 
-    For each sample of each pixel a path is walked from the camera and another from a light, chosen by its
-    power, and every surface of the one is connected to every surface of the other, to a light and to the
-    camera. Light that can be found in several of these ways counts in each by the balance heuristic, whose
-    weights are gathered along the walks (Georgiev 2012). It finds the light that `Path` and `LightTraced`
-    find, and by connections also light that is hard to reach from either end, such as in a room lit by way of
-    a door ajar. A sample takes several times as long as one of `Path`, which is better in simple scenes.
+    Each sample of each pixel traces a path from the camera and another from a light, chosen by its power.
+    Every surface of the one is connected to every surface of the other, to a light and to the camera. Light
+    that can be found in several of these ways counts in each by the balance heuristic, whose weights are
+    gathered along the walks (Georgiev 2012). It finds the light that `Path` and `LightTraced` find, and by
+    connections also light that is hard to reach from either end, such as in a room lit by way of a door ajar.
+    A sample takes several times as long as one of `Path`, which is better in simple scenes.
 
     It has no bias, and error estimates hold as usual. One kind of path has no connections: from the camera by
     a mirror or glass to a surface lit by another one from a small light. It is found only if a path hits the
@@ -28,8 +28,7 @@ class Bidirectional:
     finds is found. Gathered light is blurred while radii are long: ``image.bias`` estimates the blur. With
     more samples both noise and blur vanish.
 
-    Where media scatter light on its way counts as a surface, and is connected as such. There nothing can be
-    merged yet.
+    Scattering events in media count as surfaces, and are connected as such. There nothing can be merged yet.
 
     Parameters
     ----------
@@ -52,8 +51,8 @@ class Bidirectional:
     ------
     ValueError
         If a number is out of its range, or `radius` or `photons` are given and nothing is merged. When
-        rendering, with `adaptive=True`, of a scene where a light is that no path can start at: one that
-        has no end, or that moves in instances; and merged, of a scene that has media.
+        rendering: with `adaptive=True`; if no path can start at a light of the scene (infinite emitters,
+        emitters that move in instances); and merged, if the scene has media.
     TypeError
         If a number is none, or `merge` is neither True nor False.
 

@@ -13,13 +13,13 @@ class ConeTraced:
     """Cone tracing (Amanatides 1984): one cone a pixel in place of samples.
 
     A cone has the solid angle of its pixel. A hit counts by the share of the cone that it covers, the nearest
-    first. A lamp throws a soft shadow by the share that is free of the cone to it: exact for the sphere that
-    one sphere hides; a face is taken for a cone of its solid angle. Mirrors throw cones back, wider where
-    they bulge, and a rough `Conductor` (of GGX facets) throws them back as wide as half of its light is
-    spread. So a picture has no noise, and one sample is as good as many (with two, the error is 0 where with
-    one it is not known). It is biased by design, as `Whitted` is, and where a cone covers different surfaces:
-    surfaces are shaded at one point of each face, spheres dim everything behind them evenly, and rough metal
-    at a grazing angle is too dark, by the part of its cone below the surface.
+    first. A lamp throws a soft shadow by the unoccluded share of the cone to it: exact for a sphere hidden by
+    one sphere; a face is taken for a cone of its solid angle. Mirrors throw cones back, wider where they
+    bulge, and a rough `Conductor` (of GGX facets) throws them back as wide as half of its light is spread. So
+    a picture has no noise, and one sample is as good as many (with two, the error is 0 where with one it is
+    not known). It is biased by design, as `Whitted` is, and where a cone covers different surfaces: surfaces
+    are shaded at one point of each face, spheres dim everything behind them evenly, and rough metal at a
+    grazing angle is too dark, by the part of its cone below the surface.
 
     Cones meet meshes and spheres, of any opaque material or `ThinDielectric`, in the light of surfaces that
     shine and of lights without extent, seen through a pinhole and a `BoxFilter`.

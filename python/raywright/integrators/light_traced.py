@@ -9,11 +9,11 @@ from . import counts
 class LightTraced:
     """Light tracing (Arvo 1986; Dutré, Lafortune and Willems 1993): paths that start at lights.
 
-    For each sample of each pixel a path starts at a light, chosen by its power, and is scattered from surface
-    to surface; at each of them it is connected to the camera, wherever on the film that is seen. Emitters are
-    seen by the camera's own rays. So it finds caustics, light that mirrors and glass throw on matt surfaces,
-    which path tracing hardly finds. It never finds light that the camera sees in a mirror or through glass:
-    only emitters are seen there. Where media scatter light on its way counts as a surface.
+    Each sample of each pixel traces a path from a light, chosen by its power; each of its surfaces is
+    connected to the camera, wherever on the film that is. Emitters are seen by the camera's own rays. So it
+    finds caustics, light that mirrors and glass throw on matt surfaces, which path tracing hardly finds. It
+    never finds light that the camera sees in a mirror or through glass: only emitters are seen there.
+    Scattering events in media count as surfaces.
 
     Error estimates hold as usual, since contributions of different samples are independent.
 
@@ -28,8 +28,8 @@ class LightTraced:
     Raises
     ------
     ValueError
-        If a number is negative. When rendering, with `adaptive=True`, and of a scene where a light is that no
-        path can start at: one that has no end, or that moves in instances, or a medium that glows.
+        If a number is negative. When rendering: with `adaptive=True`, or if no path can start at a light of
+        the scene (infinite emitters, emitters that move in instances, media that glow).
     TypeError
         If it is not an integer.
 

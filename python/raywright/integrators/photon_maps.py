@@ -38,9 +38,9 @@ class PhotonMap:
     roughness of 0.2. Paths of the camera go through mirrors, glass and gloss until they come to such a
     surface. There lights are sampled directly and a caustic map gives the light of mirrors and glass. Final
     gather rays find the surfaces beyond, where the same holds, with a global map for all other light. So
-    light is found that was sent through glass and is seen through glass, which no path finds from a small
-    lamp. Where nothing is matt, the picture is that of paths. Where a medium scatters the camera's path,
-    photons scattered nearby give all of its light (Jensen and Christensen 1998).
+    light of a small lamp through glass is found that is seen through glass, which no path finds. Without matt
+    surfaces, the picture is that of paths. Where a medium scatters the camera's path, photons scattered
+    nearby give all of its light (Jensen and Christensen 1998).
 
     Density estimation blurs: the picture is biased, however many samples it has, and ``image.bias`` estimates
     the bias, with the error ``image.bias_error``; ``image.standard_error`` is the noise besides. Each batch
@@ -75,9 +75,9 @@ class PhotonMap:
     Raises
     ------
     ValueError
-        If a number is out of its range, or `filter` none of the three. When rendering, with `adaptive=True`,
-        and of a scene where a light is that no photon can start at: one that has no end, or that moves in
-        instances, or a medium that glows.
+        If a number is out of its range, or `filter` none of the three. When rendering: with `adaptive=True`,
+        or if no photon can start at a light of the scene (infinite emitters, emitters that move in instances,
+        media that glow).
     TypeError
         If a number is none.
 
@@ -121,10 +121,10 @@ class ProgressivePhotonMap:
     """Progressive photon mapping (Hachisuka et al. 2008; Knaus and Zwicker 2011): blur that goes to zero.
 
     Like `PhotonMap`, with a map for each sample of all pixels and a shrinking radius: the squared radius, or
-    in media the cubed radius, of map s + 1 is (s + alpha) / (s + 1) of that of map s. So both noise and bias
-    vanish with more samples, and ``error=`` and ``seconds=`` may take the picture as far as they want. With
-    ``alpha=2/3`` the error falls as the cube root of the samples' number, relMSE as its 2/3rd power, which is
-    optimal. ``image.error`` is the noise alone; ``image.bias`` is the remaining bias.
+    in media the cubed radius, of map s + 1 is (s + alpha) / (s + 1) of that of map s. Both noise and bias
+    vanish with more samples, so ``error=`` and ``seconds=`` may be as strict as needed. With ``alpha=2/3``
+    the error falls as the cube root of the samples' number, relMSE as its 2/3rd power, which is optimal.
+    ``image.error`` is the noise alone; ``image.bias`` is the remaining bias.
 
     Parameters
     ----------
@@ -150,7 +150,7 @@ class ProgressivePhotonMap:
     Raises
     ------
     ValueError
-        If a number is out of its range, or `filter` none of the three. When rendering, as of `PhotonMap`.
+        If a number is out of its range, or `filter` none of the three. When rendering, as for `PhotonMap`.
     TypeError
         If a number is none.
 

@@ -15,7 +15,7 @@ class DirectionalLight:
     Parameters
     ----------
     direction : 3 floats
-        Where it travels to, of any length but 0.
+        Direction in which it travels, of any length but 0.
     irradiance : float, 3 floats or Spectrum
         Irradiance of a surface that faces it in W·m⁻², at least 0: one number, or red, green and blue.
 

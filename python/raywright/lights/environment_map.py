@@ -15,8 +15,8 @@ class EnvironmentMap(Pictured):
     """An equirectangular picture all around a scene, drawn from by its light.
 
     The middle of the picture is seen along -z, its top at +y, and its right half towards +x: as a `Camera`
-    sees it that looks along -z. Between the middles of texels radiance is interpolated, and it is drawn by
-    exactly that: a sun of one texel does no harm.
+    sees it that looks along -z. Radiance is interpolated between the middles of texels, and sampled exactly:
+    a sun of one texel does no harm.
 
     Parameters
     ----------

@@ -15,7 +15,7 @@ class PointLight:
     Parameters
     ----------
     position : 3 floats
-        Where it is, in the scene's unit of length.
+        Position, in the scene's unit of length.
     intensity : float, 3 floats or Spectrum
         Radiant intensity in W·sr⁻¹, at least 0: one number, or red, green and blue.
 

@@ -24,7 +24,7 @@ class ProjectorLight(Pictured):
         Linear colours from the top row on, at least 0, kept as read-only float32; a path as `EnvironmentMap`
         takes it.
     position : 3 floats
-        Where it is, in the scene's unit of length.
+        Position, in the scene's unit of length.
     target : 3 floats
         The point that the middle of the picture is thrown to.
     up : 3 floats

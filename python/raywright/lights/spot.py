@@ -18,7 +18,7 @@ class SpotLight:
     Parameters
     ----------
     position : 3 floats
-        Where it is, in the scene's unit of length.
+        Position, in the scene's unit of length.
     target : 3 floats
         A point on the axis of the cone.
     intensity : float, 3 floats or Spectrum

@@ -19,9 +19,9 @@ class Boundary(Material):
     interior : Homogeneous or GridMedium
         The medium inside.
     priority : int
-        If several filled shapes overlap, only the one of the greatest priority counts; of equal ones, the one
-        with the greater index of refraction, so that glass displaces smoke; and of those, the later one in
-        the scene. Media do not add up.
+        Priority among overlapping filled shapes; the greatest one counts. Of equal ones it is the one with
+        the greater index of refraction, so that glass displaces smoke; and of those, the later one in the
+        scene. Media do not add up.
 
     Raises
     ------

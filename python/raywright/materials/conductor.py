@@ -17,14 +17,13 @@ class Conductor(Material):
 
     Light that facets throw on facets is made up for (Kulla and Conty, 2017). Both sides reflect.
 
-    A metal that is named has the colour of its spectrum: at each angle, Fresnel's reflectance by the index of
-    refraction that was measured, integrated over the wavelengths of daylight (CIE D65) as the standard
-    observer sees them (CIE 1931), in linear Rec. 709. So a light of (1, 1, 1) looks in it as in a spectral
-    renderer with daylight as white. In a channel it may reflect more than there is: gold is (1.022, 0.782,
-    0.344), an orange that no mixture of red, green and blue quite has. In repeated reflections by gold, each
-    but the first gives at most 96.2 % of the red, the reflectance of the wavelength that is reflected best:
-    two and five reflections are right to 3 % so, and energy stays bounded. An integrator in Python sees each
-    reflection as if it were the first.
+    A named metal has the color of its spectrum: at each angle, Fresnel's reflectance by the measured index of
+    refraction, integrated over the wavelengths of daylight (CIE D65) as the standard observer sees them (CIE
+    1931), in linear Rec. 709. So a light of (1, 1, 1) looks in it as in a spectral renderer with daylight as
+    white. A channel's reflectance may exceed 1: gold is (1.022, 0.782, 0.344), an orange outside the gamut of
+    red, green and blue. In repeated reflections by gold, each but the first gives at most 96.2 % of the red,
+    the reflectance of the wavelength that is reflected best: two and five reflections are right to 3 % so,
+    and energy stays bounded. An integrator in Python sees each reflection as if it were the first.
 
     Parameters
     ----------
@@ -38,7 +37,7 @@ class Conductor(Material):
         Roughness from 0, smooth, to 1; along u and along v if they are two. Its square is the alpha of its
         facets' distribution, as in glTF. 0 if not given.
     alpha : float, Texture, or a pair of them, optional
-        That alpha itself, in place of `roughness`.
+        Alpha itself, in place of `roughness`.
     distribution : {"ggx", "beckmann"}
         Distribution of facet slopes: "ggx" with long tails (Walter et al., "Microfacet Models for Refraction
         through Rough Surfaces", 2007), or "beckmann", normal (Beckmann and Spizzichino, 1963), which makes
@@ -116,7 +115,7 @@ class MetalIndex(NamedTuple):
     Attributes
     ----------
     wavelengths : (N,) array
-        In nm, rising, from below 360 to beyond 830.
+        Wavelengths in nm, rising, from below 360 to beyond 830.
     eta, k : (N,) array
         The real and the imaginary part there.
 

@@ -31,10 +31,10 @@ class Dielectric(Material):
         Roughness from 0, smooth, to 1. Its square is the alpha of its facets' distribution, as in glTF. 0 if
         not given.
     alpha : float or Texture, optional
-        That alpha itself, in place of `roughness`.
+        Alpha itself, in place of `roughness`.
     priority : int
-        Where several such solids overlap, the one of the greatest priority is there (Schmidt and Budge,
-        "Simple Nested Dielectrics in Ray Traced Images", 2002): a drink may reach into its glass.
+        Priority among overlapping solids; the greatest one counts (Schmidt and Budge, "Simple Nested
+        Dielectrics in Ray Traced Images", 2002): a drink may reach into its glass.
     distribution : {"ggx", "beckmann"}
         Distribution of facet slopes: "ggx" with long tails (Walter et al., "Microfacet Models for Refraction
         through Rough Surfaces", 2007), or "beckmann", normal (Beckmann and Spizzichino, 1963), which makes

@@ -76,7 +76,7 @@ class Dispersion(ABC):
     def abbe(self) -> float:
         """The number of Abbe, (n_d - 1) / (n_F - n_C): how little it disperses.
 
-        From 20, much, to 95; infinite if the index is the same everywhere.
+        It goes from 20, much, to 95; infinite without dispersion.
         """
         blue, yellow, red = (self.index(line) for line in (BLUE, YELLOW, RED))
         return float(np.inf) if blue == red else float((yellow - 1) / (blue - red))

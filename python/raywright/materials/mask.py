@@ -11,7 +11,7 @@ from .material import material as checked
 class Mask(Material):
     """A material with holes: leaves, lace, fences.
 
-    Where it is partly there, rays go through it in proportion, and a shape that shines gives off light in
+    With partial opacity, rays go through it in proportion, and an emissive shape gives off light in
     proportion. Holes are for pictures: `Scene.intersect` and the like hit the shape.
 
     Parameters

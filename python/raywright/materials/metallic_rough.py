@@ -20,9 +20,9 @@ class MetallicRough(Material):
     base_color : float, 3 floats or Texture
         Diffuse color, or reflectance of the metal, linear, in [0, 1].
     metallic : float or Texture
-        From 0, none, to 1, metal.
+        Metalness from 0, none, to 1, metal.
     roughness : float or Texture
-        From 0, smooth, to 1. Its square is the alpha of the GGX distribution.
+        Roughness from 0, smooth, to 1. Its square is the alpha of the GGX distribution.
 
     Raises
     ------

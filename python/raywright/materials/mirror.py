@@ -15,7 +15,7 @@ class Mirror(Material):
     Parameters
     ----------
     reflectance : float, 3 floats or Texture
-        That share, in [0, 1].
+        Reflectance, in [0, 1].
 
     Raises
     ------

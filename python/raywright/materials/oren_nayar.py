@@ -20,7 +20,7 @@ class OrenNayar(Material):
     reflectance : float, 3 floats or Texture
         Share of the light that a facet reflects, in [0, 1].
     roughness : float or Texture
-        From 0, Lambert's law, to 1. It is not the alpha of any facets.
+        Roughness from 0, Lambert's law, to 1. It is not the alpha of any facets.
 
     Raises
     ------

@@ -24,7 +24,7 @@ class Plastic(Material):
         Roughness from 0, smooth, to 1. Its square is the alpha of its facets' distribution, as in glTF. 0 if
         not given.
     alpha : float or Texture, optional
-        That alpha itself, in place of `roughness`.
+        Alpha itself, in place of `roughness`.
     distribution : {"ggx", "beckmann"}
         Distribution of facet slopes: "ggx" with long tails (Walter et al., "Microfacet Models for Refraction
         through Rough Surfaces", 2007), or "beckmann", normal (Beckmann and Spizzichino, 1963), which makes

@@ -32,9 +32,9 @@ class Principled(Material):
     base_color : float, 3 floats or Texture
         Color of diffuse reflection, of metal, and of light that passed two surfaces, in [0, 1].
     roughness : float or Texture
-        From 0, smooth, to 1. Its square is the alpha of the facets, 0.001 at least.
+        Roughness from 0, smooth, to 1. Its square is the alpha of the facets, 0.001 at least.
     metallic : float or Texture
-        From 0, none, to 1, metal.
+        Metalness from 0, none, to 1, metal.
     ior : float, Cauchy or Sellmeier
         The index of refraction of the dielectric parts, above 0. A dispersive one, as those of `glasses`,
         spreads transmitted light into its colors; without transmission, it is that of yellow light.
@@ -51,7 +51,7 @@ class Principled(Material):
     clearcoat, clearcoat_gloss : float or Texture
         Weight of a coat of index 1.5 on opaque parts, and its gloss, in [0, 1].
     priority : int
-        Where solids overlap, as in `Dielectric`.
+        Priority among overlapping solids, as in `Dielectric`.
     energy_conserving : bool
         True for a model without gain or loss of energy. If not, it is the model as published, and as in
         Mitsuba 3: rough facets lose light, as the base keeps the light that the facets above reflect. White
@@ -137,7 +137,7 @@ class PrincipledThin(Material):
     base_color : float, 3 floats or Texture
         Color of diffuse reflection and of transmission, in [0, 1].
     roughness : float or Texture
-        From 0, smooth, to 1. Its square is the alpha of the facets, 0.001 at least.
+        Roughness from 0, smooth, to 1. Its square is the alpha of the facets, 0.001 at least.
     ior : float
         The index of refraction, above 0.
     transmission : float or Texture

@@ -20,7 +20,7 @@ class ThinDielectric(Material):
     interior : Homogeneous or GridMedium, optional
         Medium that it encloses; normals point out of it.
     priority : int
-        Where several things overlap that are filled, the one of the greatest priority is there.
+        Priority among overlapping filled shapes; the greatest one counts.
 
     Raises
     ------

@@ -24,13 +24,13 @@ class _Film(Material):
     def reflectance(self, wavelength: ArrayLike, degrees: ArrayLike = 0.0, *, outside: float = 1.0) -> Any:
         """Return the share of unpolarised light that the film reflects at one wavelength.
 
-        It is Airy's sum over all reflections within the film, of both polarisations, without tables. The
-        rest goes through, or into the metal. Of a rough base it is the share of each facet.
+        It is Airy's sum over all reflections within the film, of both polarisations, without tables. The rest
+        goes through, or into the metal. For a rough base it is the share of each facet.
 
         Parameters
         ----------
         wavelength : array_like
-            In vacuum, nm, above 0; of a named metal, from 360 to 830.
+            Wavelength in vacuum, nm, above 0; for a named metal, from 360 to 830.
         degrees : array_like
             The angle of incidence, 0 to 90. It broadcasts against `wavelength`.
         outside : float
@@ -94,15 +94,15 @@ class ThinFilm(_Film):
 
     A color may be outside the gamut of red, green and blue. Each channel of the reflectance is then cut off
     at 0, and of clear bases at 1, by some thousandths of the light (0.005 for a soap film): no light is
-    negative, and reflectance and transmittance add up to 1. Of named metals a channel may exceed 1, as
-    `Conductor` says.
+    negative, and reflectance and transmittance add up to 1. A channel of named metals may exceed 1, as in
+    `Conductor`.
 
     The indices of the film and of clear bases are the same at all wavelengths, those of a named metal as
     measured, and `eta` and `k` of others the same for all wavelengths of their channel. For clear bases, and
     metals by `eta` and `k`, the reflectance is the integral to within 1e-5; for named metals, tables over
     angle hold it to 5e-5, and if the film's thickness varies, tables over that too, to 3e-4 up to 66 degrees
-    and to 5e-3 near grazing incidence. Of films thicker than some 6 µm hardly any fringes are seen: of light
-    that is more than 48 µm behind, they are left out.
+    and to 5e-3 near grazing incidence. Films thicker than some 6 µm hardly show any fringes: those of light
+    more than 48 µm behind are left out.
 
     On a rough base each facet has the film. Light scattered between facets sees the bare base, and on a clear
     base so does the light that a facet reflects or refracts into other facets: a rough film keeps all light
@@ -111,7 +111,7 @@ class ThinFilm(_Film):
     Parameters
     ----------
     thickness : float or Texture
-        Thickness in nanometres, not negative. Of a texture with colours, the mean of the channels.
+        Thickness in nanometres, not negative. For textures with colors, it is the mean of the channels.
     ior : float
         The index of refraction within the film, above 0: 1.33 for water, 1.38 for magnesium fluoride, 1.47
         for oil, 2.5 for the oxide of titanium.
@@ -183,7 +183,7 @@ class SoapFilm(_Film):
     Parameters
     ----------
     thickness : float or Texture
-        Thickness in nanometres, not negative. Of a texture with colours, the mean of the channels.
+        Thickness in nanometres, not negative. For textures with colors, it is the mean of the channels.
     ior : float
         The index of refraction within the film, above 0.
 

@@ -14,7 +14,7 @@ class TwoSided(Material):
     Parameters
     ----------
     front, back : Material
-        On the side of the normals, and on the other.
+        Material on the side of the normals, and on the other.
 
     Raises
     ------

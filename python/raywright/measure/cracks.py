@@ -27,8 +27,8 @@ class Topology(Tabular):
         Corners of faces within edges of other faces that are open otherwise. Rays pass there only through
         gaps of rounding.
     volumes : tuple of float
-        Of each body, which is faces that hang together without an open edge; negative where normals point in,
-        NaN where some of the faces are turned.
+        Volume of each body, which is connected faces without an open edge; negative if normals point in, NaN
+        if some of the faces are turned.
     open_faces : int
         Number of faces that are part of no body.
     inner_faces : int

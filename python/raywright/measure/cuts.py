@@ -90,7 +90,7 @@ def cross_section(
     point : (3,) or (N, 3) array
         Through which each plane goes.
     normal : (3,) or (N, 3) array
-        Of each plane, of any length; broadcast against `point`.
+        Normal of each plane, of any length; broadcast against `point`.
     rule : {"winding", "even-odd"}
         Area that the closed lines cover: "winding" all that they wind about, counted once, so that
         overlapping bodies are their union and holes count by the way they turn; it is negative where normals
@@ -125,8 +125,8 @@ def cross_section(
     its edge, and is right to a few units in the last place of the corners. Vertices are those of the meshes,
     not rounded as a scene may round them.
 
-    Equal corners are one. Where lines do not close so, corners that differ by rounding are one too, as
-    ``Scene(weld=)`` says, and ends of lines where a corner of one face is within the edge of another.
+    Equal corners are one. If lines do not close so, corners that differ by rounding are merged, by
+    ``Scene(weld=)``, and ends of lines at a corner of one face within the edge of another.
 
     Lines are joined whichever way the faces turn, and turn as most of their length does; where each face is
     there from both sides, as if normals pointed out. Faces with the same corners count once. Eight planes or

@@ -32,9 +32,9 @@ class Estimate(Plotted):
         The estimate; NaN where there is no point.
     standard_error : (...) float64
         Its standard error: from the spread of 16 independent batches of rays, widened by 15 / 13, the
-        variance of Student's distribution with 15 degrees of freedom, and by one ray. Where all agree it is
-        3 / `rays`: with so large a share of others, all agree in 5 % of cases (Hanley and Lippman-Hand, "If
-        Nothing Goes Wrong, Is Everything All Right?", 1983).
+        variance of Student's distribution with 15 degrees of freedom, and by one ray. If all agree it is 3 /
+        `rays`: with this share of others, all agree in 5 % of cases (Hanley and Lippman-Hand, "If Nothing
+        Goes Wrong, Is Everything All Right?", 1983).
     rays : int
         Number of rays from each point.
 
@@ -87,7 +87,7 @@ def sky_view(
         Where. Rays leave hits exactly as in `Hits.leave`, and plain points by `offset`. The middle of every
         face if not given, which only meshes have.
     normals : (..., 3) array, optional
-        Of any length; those of the surfaces if not given, which only hits have.
+        Normals of any length; those of the surfaces if not given, which only hits have.
     rays : int
         Directions for each point, at least 16; rounded up to a multiple of 16.
     up : 3 floats, optional

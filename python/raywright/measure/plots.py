@@ -38,7 +38,7 @@ def plot(
     points : Hits, ClosestPoints or (..., 3) array, optional
         Where. The meshes are grey below them, unless the points are their vertices.
     ax : matplotlib.axes.Axes, str or path, optional
-        Where to draw: a new figure if not given, axes with three dimensions, or a file, .png, .svg or .pdf.
+        Target: a new figure if not given, axes with three dimensions, or a file, .png, .svg or .pdf.
     label : str
         Label of the color bar.
     up : {"x", "y", "z"}
@@ -128,8 +128,7 @@ class Plotted(Tabular):
         Parameters
         ----------
         ax : matplotlib.axes.Axes, str or path, optional
-            Where to draw: a new figure if not given, axes with three dimensions, or a file, .png, .svg or
-            .pdf.
+            Target: a new figure if not given, axes with three dimensions, or a file, .png, .svg or .pdf.
         name : str, optional
             Name of the array; the first if not given.
         up : {"x", "y", "z"}

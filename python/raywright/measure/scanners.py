@@ -47,14 +47,14 @@ class SpinningLidar(_Scanner):
     Parameters
     ----------
     elevations : (R,) array
-        Of the beams above the horizon, in degrees: a row each, in their order.
+        Elevations of the beams above the horizon, in degrees: a row each, in their order.
     columns : int
         Number of columns of a turn.
     start, stop : float
         First and last azimuth, in degrees from `forward` on, anticlockwise as seen from above; `stop` is not
         reached.
     position : 3 floats
-        Where the scanner is.
+        Position of the scanner.
     forward, up : 3 floats
         Its azimuth 0 and its vertical, y if not given as everywhere in `raywright.measure`; only what of
         `forward` is at right angles to `up` counts.
@@ -142,7 +142,7 @@ class RasterLidar(_Scanner):
     columns, rows : int
         Beams of a line, from the left to the right, and lines, from above to below.
     position : 3 floats
-        Where the scanner is.
+        Position of the scanner.
     forward, up : 3 floats
         The middle of the field's horizon, and the vertical, y if not given; only what of `forward` is at
         right angles to `up` counts.

@@ -38,17 +38,18 @@ class LidarScan(Tabular):
     number : (K,) int32
         Number of the return within its beam, from 0 on, before any were left out.
     range : (K,) float64
-        As measured: with its noise, from the scanner's `min_range` to its `max_range`.
+        Measured range: with its noise, from the scanner's `min_range` to its `max_range`.
     position : (K, 3) float64
-        Where the scanner takes it to be: on the middle of the beam, at the range.
+        Position by the scanner: on the middle of the beam, at the range.
     incidence : (K,) float64
-        Between the beam and the normal of the surface, in degrees, 0 to 90; the mean over the footprint.
+        Angle between the beam and the normal of the surface, in degrees, 0 to 90; the mean over the
+        footprint.
     strength : (K,) float64
         Share of the beam that came to the surface there, 0 to 1.
     shape_id, primitive : (K,) int32
         First shape and primitive of the return, as in `Hits`.
     shape : tuple of int
-        Of the beams: rows and columns.
+        Shape of the beams: rows and columns.
 
     See Also
     --------
@@ -119,8 +120,7 @@ class LidarScan(Tabular):
         Parameters
         ----------
         ax : matplotlib.axes.Axes, str or path, optional
-            Where to draw: a new figure if not given, axes with three dimensions, or a file, .png, .svg or
-            .pdf.
+            Target: a new figure if not given, axes with three dimensions, or a file, .png, .svg or .pdf.
         name : {"range", "incidence", "strength"}
             Values that are colored.
         up : {"x", "y", "z"}
@@ -186,7 +186,7 @@ def lidar(
     scene : Scene, Mesh or anything else that a Scene is made of
         What is scanned.
     scanner : SpinningLidar or RasterLidar
-        Where it stands and which beams it sends.
+        Scanner with its position and beams.
     returns : {"all", "first", "last", "strongest"}
         Returns of a beam to keep. A beam that does not widen has one at most.
     range_sigma, range_sigma_share : float
@@ -229,7 +229,7 @@ def lidar(
     surface. Each peak of it is a return, if the waveform falls by 5 % at least before the next (Wagner,
     Ullrich, Ducic, Melzer and Studnicka, "Gaussian Decomposition and Calibration of a Novel Small-Footprint
     Full-Waveform Digitising Airborne Laser Scanner", 2006); its range is the mean over the rays that make it
-    up. So ground that is met at a grazing angle returns once, though it stretches over many resolutions.
+    up. Ground at a grazing angle thus returns once, though it stretches over many resolutions.
 
     Ranges are true before noise; losses are decided of true ranges. Noise that leads out of the scanner's
     limits ends at these. Random numbers belong to beam and return, so that a scan is the same however it is

@@ -24,7 +24,7 @@ class LineOfSight(Plotted):
     obstruction : Hits
         First obstruction, from `a` on; `t` is its share of the way.
     distance : (...) float64
-        From the one point to the other.
+        Distance from one point to the other.
 
     See Also
     --------

@@ -71,7 +71,7 @@ def sun_directions(
     Parameters
     ----------
     times : datetime, numpy.datetime64, str, or sequence or (T,) array of these
-        As in `SunSky.at`: with their zones, datetime64 in UTC.
+        Times, as in `SunSky.at`: with their zones, datetime64 in UTC.
     latitude, longitude : float
         The place in degrees, north and east positive.
     up, north : 3 floats
@@ -128,7 +128,7 @@ def solar_exposure(
         Where. Rays leave hits exactly as in `Hits.leave`, and plain points by `offset`. The middle of every
         face if not given, which only meshes have.
     normals : (..., 3) array, optional
-        Of any length; those of the surfaces if not given, which only hits have.
+        Normals of any length; those of the surfaces if not given, which only hits have.
     sun : (T, 3) array, optional
         Directions to the sun, of any length; or `times` with `latitude` and `longitude`, as `sun_directions`
         takes them.
@@ -163,8 +163,8 @@ def solar_exposure(
 
     Notes
     -----
-    The sun counts as a point. Where its centre is hidden it is down, so that edges of shadows, half a degree
-    wide, are sharp. Nothing is sampled.
+    The sun counts as a point. A hidden center hides all of it, so that edges of shadows, half a degree wide,
+    are sharp. Nothing is sampled.
 
     Examples
     --------

@@ -47,7 +47,7 @@ class GridMedium(Medium):
         Emitted radiance per unit of length: numbers where the density is 1, or an array, over the same
         bounds, whatever the density.
     at : {"corners", "centres"}
-        Where the numbers stand. "corners": those of the outermost lie on the faces of the bounds. "centres":
+        Place of the numbers. "corners": those of the outermost lie on the faces of the bounds. "centres":
         each is in the middle of a cell, and the same up to the face, as OpenVDB's, pbrt's and Mitsuba's are.
     extinction : float, 3 floats or Spectrum
         With `albedo`, and in place of `absorption` and `scattering`: the share of light that is absorbed or

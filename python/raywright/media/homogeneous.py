@@ -14,8 +14,8 @@ from .phases import Isotropic, Phase, phase
 class Homogeneous(Medium):
     """A homogeneous medium: the same everywhere.
 
-    Of light that goes through it, the share exp(-(absorption + scattering) · length) is left (Beer and
-    Lambert). Lengths are those of the world, in instances too.
+    Its transmittance is exp(-(absorption + scattering) · length) (Beer and Lambert). Lengths are those of the
+    world, in instances too.
 
     Parameters
     ----------

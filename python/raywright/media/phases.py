@@ -47,7 +47,7 @@ class HenyeyGreenstein:
     Parameters
     ----------
     g : float
-        That mean, between -1 and 1, both excluded: above 0 light is mostly scattered forward, as in clouds
+        Mean cosine, between -1 and 1, both excluded: above 0 light is mostly scattered forward, as in clouds
         (about 0.85) and milk (about 0.9); below 0 mostly back; at 0 everywhere alike.
 
     Raises

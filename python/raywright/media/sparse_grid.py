@@ -29,17 +29,17 @@ class Sliced(Protocol):
 class SparseGrid:
     """A sparse grid: numbers on a regular grid, in which zeros take next to no memory.
 
-    Blocks of 8 by 8 by 8 points that are all 0 are not kept. It stands wherever a `GridMedium` takes an
-    array, and the compiled scene has no copy of it: 512³ numbers that are all above 0 take 541 MB in all,
-    where an array of them would take as much again.
+    Blocks of 8 by 8 by 8 points that are all 0 are not kept. `GridMedium` takes it in place of an array, and
+    the compiled scene has no copy of it: 512³ numbers that are all above 0 take 541 MB in all; an array of
+    them would take as much again.
 
     Parameters
     ----------
     shape : 3 or 4 int
         (X, Y, Z), the first axis being x, or (X, Y, Z, 3) for a number each of red, green and blue.
     parts : iterable of (3 int, array)
-        Where parts of it begin, and their numbers, finite and at least 0, which are kept as float32. Later
-        parts overwrite earlier ones; the rest is 0.
+        Origins of parts, with their numbers, finite and at least 0, which are kept as float32. Later parts
+        overwrite earlier ones; the rest is 0.
 
     Raises
     ------
@@ -131,7 +131,7 @@ class SparseGrid:
 
     @property
     def parts(self) -> "Iterator[tuple[tuple[int, int, int], NDArray[np.float32]]]":
-        """Where blocks begin that are not all 0, and their numbers."""
+        """Origins of the blocks that are not all 0, with their numbers."""
         for low, high in self._blocks.kept().tolist():
             size = [b - a for a, b in zip(low, high, strict=True)]
             yield tuple(low), self._blocks.part(low, high).reshape(*size, *self.shape[3:])

@@ -22,12 +22,12 @@ class AllHits(SurfacePoints):
     """Every hit of each ray, one after the other: by ray, then `t`, then (shape_id, primitive).
 
     There are K hits of N rays in all, and those of ray i, counted along the rays in C order, are from
-    ``ray_splits[i]`` to ``ray_splits[i + 1]``. As of `Hits`, arrays of integers are read-only.
+    ``ray_splits[i]`` to ``ray_splits[i + 1]``. Arrays of integers are read-only, as in `Hits`.
 
     Attributes
     ----------
     ray_splits : (N + 1,) int64
-        Where the hits of each ray begin, and at the end how many there are.
+        Start of each ray's hits, and at the end their total number.
     t : (K,) float64
         Distance in lengths of the ray's direction, so that the hit is at ``origin + t * direction``.
     shape_id : (K,) int32

@@ -32,13 +32,14 @@ class ConeTouches(Tabular):
     Attributes
     ----------
     cone_splits : (N + 1,) int64
-        Where the touches of each cone begin, and at the end how many there are.
+        Start of each cone's touches, and at the end their total number.
     shape_id : (K,) int32
         Which of ``scene.shapes``.
     primitive : (K,) int32
         Face of that shape.
     distance : (K,) float64
-        From the apex to the nearest point of the face that is in the cone, in the scene's unit of length.
+        Distance from the apex to the nearest point of the face that is in the cone, in the scene's unit of
+        length.
     shape : tuple of int
         Leading shape of the cones.
 

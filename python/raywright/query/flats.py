@@ -50,9 +50,9 @@ class FlatArrays:
         - ``count``, 28 to 31: uint32, how many entries a leaf has, 0 for an inner node.
 
         The first child of an inner node i is i + 1, and the second is the node after all that is below the
-        first: i + 2 if that is a leaf, and its ``index`` if not. So a walk needs no stack: from a node whose
-        box is met it goes on to i + 1, from another to i + 1 if it is a leaf and to its ``index`` if not, and
-        it ends at `own`.
+        first: i + 2 if that is a leaf, and its ``index`` if not. A walk needs no stack: from a node whose box
+        is hit it goes on to i + 1, from another to i + 1 if it is a leaf and to its ``index`` if not, and it
+        ends at `own`.
     triangles : (M,) structured, 48 bytes each
         Entries of the leaves, leaf after leaf; a split face may have several entries. Its fields:
 
@@ -86,7 +86,7 @@ class FlatArrays:
     centre : (3,) float64
         The middle of box units, in the scene's own.
     scale : float
-        From the scene's units to box units: a power of two.
+        Factor from the scene's units to box units: a power of two.
     depth : int
         The longest way from the root to a leaf, in steps: a stack needs so many entries.
 

@@ -85,7 +85,8 @@ class SurfacePoints(Known, Tabular, PlottedPoints):
         Parameters
         ----------
         name : str
-            Of ``Mesh.vertex_attributes``, which are linear on each face, or else of ``Mesh.face_attributes``.
+            Name in ``Mesh.vertex_attributes``, which are linear on each face, or else in
+            ``Mesh.face_attributes``.
 
         Returns
         -------
@@ -124,7 +125,7 @@ class SurfacePoints(Known, Tabular, PlottedPoints):
 
     @cached_property
     def position(self) -> NDArray[np.float64]:
-        """Where the point is, from the corners of the face: (..., 3) float64; NaN for none."""
+        """Position of the point, from the corners of the face: (..., 3) float64; NaN for none."""
         if self._rays is not None:
             return self.surface.position
         points = self._known("position").positions(
@@ -157,8 +158,8 @@ class SurfacePoints(Known, Tabular, PlottedPoints):
         Parameters
         ----------
         directions : (..., 3) array
-            Where the rays go; they need not be unit. They and the points broadcast as arrays do: of points of
-            shape (N,), directions of shape (3,) or (N, 3) give a ray each, and (S, N, 3) S of them.
+            Directions of the rays; they need not be unit. They and the points broadcast as arrays do: of
+            points of shape (N,), directions of shape (3,) or (N, 3) give a ray each, and (S, N, 3) S of them.
 
         Returns
         -------
@@ -179,16 +180,16 @@ class SurfacePoints(Known, Tabular, PlottedPoints):
 
         Notes
         -----
-        `position` itself is no place to start from: it is rounded, so that it lies a little before the
-        surface or behind it, and about half of the rays from there meet the face that they leave. Origins
-        are moved along the normal by 8 times ``surface.error``, as far as rounding can matter and no farther
-        (Pharr, Jakob and Humphreys 2023, 6.8.6), by the rule that rays of pictures go by: some 1e-14 of the
-        largest coordinate, so that a plate of 1e-5 of its distance from the origin does not leak.
+        Rays should not start at `position` itself: it is rounded, so that it lies a little before the surface
+        or behind it, and about half of the rays from there meet the face that they leave. Origins are offset
+        along the normal by 8 times ``surface.error``, as far as rounding can matter and no farther (Pharr,
+        Jakob and Humphreys 2023, 6.8.6), as in renders: some 1e-14 of the largest coordinate, so that a plate
+        of 1e-5 of its distance from the origin does not leak.
 
         On flat surfaces, faces and copied faces included, no ray meets the surface that it leaves; on a
         curved shape, only rays that go through it meet it again. A direction along the surface, at right
-        angles to the normal, starts on the side of the normal and stays there. Where the angle to the surface
-        is within rounding, 1e-16 or so (on a sliver, that times its length over its height), so is the side.
+        angles to the normal, starts on the side of the normal and stays there. If the angle to the surface is
+        within rounding, 1e-16 or so (on a sliver, that times its length over its height), so is the side.
 
         If copies move, trace the rays at the `time` of the hits.
 
@@ -377,7 +378,7 @@ class Hits(SurfacePoints):
 class ClosestPoints(SurfacePoints):
     """The closest point of the surface to each point; every array begins with their leading shape.
 
-    As of `Hits`, arrays of integers are read-only.
+    Arrays of integers are read-only, as in `Hits`.
 
     Attributes
     ----------

@@ -156,7 +156,7 @@ class LightSamples:
         scene : Scene
             The scene that it was drawn from.
         which : (N,) bool array, optional
-            Mask of samples to test; the others count as hidden. By default, all that bring light.
+            Mask of samples to test; the others count as hidden. The default is all that bring light.
 
         Returns
         -------
@@ -249,12 +249,12 @@ class Interactions:
 
     @cached_property
     def uv(self) -> Floats:
-        """Where on it, as `Hits.uv`: (N, 2)."""
+        """Surface coordinates, as `Hits.uv`: (N, 2)."""
         return self._core.uv
 
     @cached_property
     def position(self) -> Floats:
-        """Where it was hit: (N, 3)."""
+        """Position of the hit: (N, 3)."""
         return self._core.position
 
     @cached_property
@@ -426,7 +426,7 @@ class Interactions:
         Parameters
         ----------
         before : Interactions
-            Where the rays come from, an entry a ray.
+            Surfaces that the rays leave, an entry a ray.
 
         Returns
         -------

@@ -18,7 +18,7 @@ class LeavingRays(NamedTuple):
     origins : (..., 3) float64
         Start points, offset from the surface to the side of the direction; NaN where there is no surface.
     directions : (..., 3) float64 or float32
-        Where they go, as given; broadcast to the shape of the origins.
+        Directions as given; broadcast to the shape of the origins.
 
     See Also
     --------

@@ -25,7 +25,7 @@ class Photons:
     Attributes
     ----------
     positions : (K, 3) float64
-        Where they came to a surface, or to where a medium absorbs or scatters them.
+        Positions on surfaces, or of absorption or scattering in a medium.
     directions : (K, 3) float64
         Unit, along which they came.
     normals : (K, 3) float64
@@ -36,18 +36,17 @@ class Photons:
     shape_id, primitive : (K,) int32
         Shape and primitive of the surface; -1 in a medium.
     path : (K,) int64
-        On which path, from 0 on.
+        Index of the path, from 0 on.
     bounces : (K,) int64
         Number of scattering events before.
     sharp : (K,) uint64
-        At which of these sharply, by mirrors, glass or gloss: a bit each, of the first 64, the lowest for the
-        first.
+        Bits of the specular bounces, by mirrors, glass or gloss: the first 64, the lowest bit for the first.
     adrift : (K,) uint64
-        At which by a medium, likewise.
+        Bits of the bounces in media, likewise.
     emitted, escaped, absorbed : tuple of 3 floats
-        Flux of all emitted light, of light that leaves the scene, and of light absorbed by media. Where red,
-        green and blue are dimmed alike, each path's account is exact; where they are not, or where a medium
-        that scatters nothing differs from place to place, it is on average.
+        Flux of all emitted light, of light that leaves the scene, and of light absorbed by media. If red,
+        green and blue are dimmed alike, each path's balance is exact; otherwise, or if a medium without
+        scattering varies from place to place, the balance holds on average.
 
     See Also
     --------

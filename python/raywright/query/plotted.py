@@ -22,8 +22,8 @@ class PlottedPoints:
         Parameters
         ----------
         ax : matplotlib.axes.Axes, str or path, optional
-            Where to draw: a new figure if not given, axes, which have three dimensions but for pictures, or a
-            file, .png, .svg or .pdf.
+            Target: a new figure if not given, axes, which have three dimensions but for pictures, or a file,
+            .png, .svg or .pdf.
         name : str, optional
             Values that are colored: "t" of hits or "distance" of closest points, as if not given; "shape_id",
             "primitive", "cell", or the name of an attribute. Misses are grey in pictures.

@@ -78,9 +78,9 @@ class PointQueries:
         turn, and a wall between two parts not at all. Meshes that only close together, as the walls of a
         room, are one.
 
-        From a point one way out is tried where all that is closed are meshes with equal corners at shared
-        edges, and two opposite ones otherwise. Where these do not agree there is a crack that rounding has
-        left, and the majority of seven ways decides.
+        One ray decides if all closed shapes are meshes with equal corners at shared edges, and two opposite
+        ones otherwise. If these do not agree there is a crack left by rounding, and the majority of seven
+        rays decides.
 
         Examples
         --------
@@ -130,8 +130,7 @@ class PointQueries:
         Returns
         -------
         ClosestPoints
-            With the leading shape of the points. Of faces at the same distance, the one of the lowest
-            (shape_id, primitive).
+            With the leading shape of the points. Ties go to the lowest (shape_id, primitive).
 
         Raises
         ------
@@ -154,12 +153,12 @@ class PointQueries:
         the first query. Distances to shapes in an instance are measured in the scene's space, so that
         transforms that scale some lengths more than others, nested ones too, are as good as any.
 
-        Most shapes have a closed form; of ellipsoids the closest point is where a sum that falls is 1, which
-        halving finds to the last digit (Eberly, "Distance from a Point to an Ellipse, an Ellipsoid, or a
-        Hyperellipsoid", 2013). Disks, cylinders, cones, paraboloids and tori under such a transform are a
-        curve at each turn about their axis; its closest point is found by bounds on the derivative of the
-        distance (Piyavskii 1972). Of an `Implicit` no part of the box is left out that intervals cannot rule
-        out; where all of it is about as far, as from the middle of a sphere, it is a close one.
+        Most shapes have a closed form; for ellipsoids bisection finds the root of a falling sum to the last
+        digit (Eberly, "Distance from a Point to an Ellipse, an Ellipsoid, or a Hyperellipsoid", 2013). Disks,
+        cylinders, cones, paraboloids and tori under such a transform are a curve at each turn about their
+        axis; its closest point is found by bounds on the derivative of the distance (Piyavskii 1972). For an
+        `Implicit`, intervals exclude parts of the box that are farther; if all of it is about as far, as from
+        the middle of a sphere, the result is a close point.
 
         Examples
         --------

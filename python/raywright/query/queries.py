@@ -64,8 +64,8 @@ class Queries(PointQueries):
         Returns
         -------
         Hits
-            With the leading shape of the rays. Of hits at the same `t`, the one of the lowest
-            (shape_id, instance, primitive).
+            With the leading shape of the rays. Ties at the same `t` go to the lowest (shape_id, instance,
+            primitive).
 
         Raises
         ------
@@ -129,7 +129,7 @@ class Queries(PointQueries):
         origins, directions, t_min, t_max, threads, time, mask, shapes, cull
             As for `intersect`.
         out : (...) bool array, optional
-            Where the answer is written, with the leading shape of the rays and C-contiguous; it is returned.
+            Array for the answer, with the leading shape of the rays and C-contiguous; it is returned.
 
         Returns
         -------
@@ -191,7 +191,7 @@ class Queries(PointQueries):
         Notes
         -----
         It is exact but for rounding, on a `GridMedium` too: its density is a polynomial along a ray in each
-        of its cells. Where a medium is given by spectra, it is that of its colors.
+        of its cells. For a medium given by spectra, it is that of its colors.
 
         Examples
         --------
@@ -322,9 +322,9 @@ class Queries(PointQueries):
         -----
         A surface is crossed once where a ray goes through an edge or a vertex of it, not once for each face
         there. A ray that only touches an edge or a vertex gets two hits there, as if in and out: of two
-        faces, or twice of the same one if the ray meets no other. So a closed surface has an even number of
-        hits seen from outside, and an odd number from inside, however the ray is aimed. Hits of coincident
-        faces are all listed.
+        faces, or twice of the same one if the ray meets no other. A closed surface thus has an even number of
+        hits seen from outside, and an odd number from inside, for every ray. Hits of coincident faces are all
+        listed.
 
         Examples
         --------
@@ -432,18 +432,18 @@ class Queries(PointQueries):
             picture, (width - 1, height - 1) its lower right. For points between, such as mouse clicks in
             floating point, use ``intersect(*camera.rays_through(points))``.
         offsets : (2,) or (..., 2) array
-            Where in the pixel, for all or for each, as in `Camera.rays`: (0, 0) is its upper left, (1, 1) its
+            Place in the pixel, for all or for each, as in `Camera.rays`: (0, 0) is its upper left, (1, 1) its
             lower right. The default is the centre.
         threads : int, optional
             Number of threads; all cores if not given. The answer does not depend on it.
         time : float or (...) array, optional
-            When, from 0 as the camera's shutter opens, which it is if not given, to 1 as it closes.
+            Time from 0, the default, as the camera's shutter opens to 1 as it closes.
 
         Returns
         -------
         Hits
             With the leading shape of the pixels: the same bits as ``intersect(*camera.rays(...))`` at these
-            pixels. As directions are unit, `t` is the distance from the camera.
+            pixels. `t` is the distance from the camera, since directions are unit.
 
         Raises
         ------
@@ -498,17 +498,17 @@ class Queries(PointQueries):
         camera : Camera or another kind
             Whose picture it is.
         offsets : (2,) or (height, width, 2) array
-            Where in the pixel, for all or for each, as in `Camera.rays`.
+            Place in the pixel, for all or for each, as in `Camera.rays`.
         threads : int, optional
             Number of threads; all cores if not given. The answer does not depend on it.
         time : float, optional
-            When, from 0 as the camera's shutter opens, which it is if not given, to 1 as it closes.
+            Time from 0, the default, as the camera's shutter opens to 1 as it closes.
 
         Returns
         -------
         Hits
-            Of shape (height, width), row 0 on top: the same bits as ``intersect(*camera.rays(offsets))``. As
-            directions are unit, `t` is the distance from the camera.
+            Of shape (height, width), row 0 on top: the same bits as ``intersect(*camera.rays(offsets))``. `t`
+            is the distance from the camera, since directions are unit.
 
         Raises
         ------
@@ -559,7 +559,8 @@ class Queries(PointQueries):
         origins, directions : (..., 3) arrays
             Apexes and axes, broadcast against each other; directions need not be unit.
         half_angle : float or (...) array
-            Between the axis and the surface, in degrees, at least 0 and less than 90. A cone of 0 is a ray.
+            Angle between the axis and the surface, in degrees, at least 0 and less than 90. A cone of 0 is a
+            ray.
         t_max : float or (...) array
             Maximum distance from the apex, inclusive, in the scene's unit whatever the length of the
             direction. A cone then ends in a part of a sphere.
@@ -666,10 +667,10 @@ class Queries(PointQueries):
     ) -> Photons:
         """Trace photons from the lights, and record them at each surface that they meet.
 
-        So many paths start at lights, chosen by their power, at points by area and in directions by the
-        cosine, and are scattered from surface to surface as light is, until they leave the scene, are
-        absorbed by roulette, or have come to `max_depth` surfaces. Where a medium absorbs or scatters light
-        on its way counts as a surface, and is noted as well.
+        Paths start at lights, chosen by their power, at points by area and in directions by the cosine. They
+        are scattered from surface to surface as light is, until they leave the scene, are absorbed by
+        roulette, or have met `max_depth` surfaces. Absorption and scattering events in media count as
+        surfaces, and are recorded as well.
 
         Parameters
         ----------

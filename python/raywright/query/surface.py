@@ -13,7 +13,7 @@ class Surface:
     Attributes
     ----------
     position : (..., 3)
-        Where the points are.
+        Positions of the points.
     error : (...)
         Bound on how far each coordinate of `position` is from a point of the surface.
     normal : (..., 3)

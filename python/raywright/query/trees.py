@@ -13,8 +13,7 @@ from .hits import sealed
 class TreeBoxes:
     """The boxes of all nodes of an accelerator, from the root down: `Scene.tree` makes it.
 
-    Arrays are read-only. Where a scene has meshes and other shapes, there are two trees, one over each,
-    and so two roots.
+    Arrays are read-only. A scene of meshes and other shapes has two trees, one over each, and so two roots.
 
     Attributes
     ----------

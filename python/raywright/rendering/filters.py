@@ -54,7 +54,7 @@ class TriangleFilter:
     Parameters
     ----------
     radius : float
-        Where it ends, 1e-6 to 64; 1 interpolates between pixels.
+        Radius, 1e-6 to 64; 1 interpolates between pixels.
 
     Raises
     ------
@@ -86,7 +86,7 @@ class GaussianFilter:
     Parameters
     ----------
     radius : float
-        Where it ends, 1e-6 to 64.
+        Radius, 1e-6 to 64.
     sigma : float
         Its standard deviation, 1e-6 to 64.
 
@@ -126,7 +126,7 @@ class MitchellFilter:
     Parameters
     ----------
     radius : float
-        Where it ends, 1e-6 to 64.
+        Radius, 1e-6 to 64.
     b, c : float
         Blur and ringing, 0 to 1; the authors advise ``b + 2 * c == 1``.
 
@@ -163,7 +163,7 @@ class BlackmanHarrisFilter:
     Parameters
     ----------
     radius : float
-        Where it ends, 1e-6 to 64.
+        Radius, 1e-6 to 64.
 
     Raises
     ------
@@ -195,7 +195,7 @@ class LanczosFilter:
     Parameters
     ----------
     lobes : int
-        Where it ends in pixels, 1 to 16.
+        Radius in pixels, 1 to 16.
 
     Raises
     ------
@@ -229,9 +229,8 @@ WholeFilter = (
 class CroppedFilter:
     """Another filter, cropped at the border of the film.
 
-    Pixels that are nearer to the film's edge than its radius take the part of it that lies on the film, as if
-    it were the whole; other pixels are as by the filter itself. Mitsuba's films are so, unless they have a
-    ``sample_border``.
+    Pixels nearer to the film's edge than its radius use the part of it on the film, normalized; other pixels
+    are unaffected. Mitsuba's films are so, unless they have a ``sample_border``.
 
     Parameters
     ----------

@@ -285,8 +285,8 @@ class Image:
 
         Notes
         -----
-        Light that no sample has found is in no estimate. Where that of the picture with its noise cannot be
-        trusted, that of the other cannot either. Below some 10,000 pixels intervals are wide, since only one
+        Light that no sample has found is in no estimate. If the error of the noisy picture cannot be trusted,
+        that of the denoised one cannot either. Below some 10,000 pixels intervals are wide, since only one
         quarter of the samples measures the error.
 
         Examples

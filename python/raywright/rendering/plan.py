@@ -37,8 +37,8 @@ class RenderPlan:
     rows : tuple of Choice
         Each option with its value and the reason. None for a picture that was not rendered.
     sampler : Independent, Stratified, Halton, Sobol or Lattice, or None
-        Where the random numbers came from. With this, and the same number of samples, the same seed gives the
-        same picture, whichever limit ended it.
+        Sampler of the random numbers. With this, and the same number of samples, the same seed gives the same
+        picture, whichever limit ended it.
     path : Path or None
         The path tracer, with all that was chosen for it; None for other kinds of integrators.
 

@@ -108,8 +108,8 @@ def render(
         are given. A `numpy.random.Generator` is advanced by one draw, so that the next picture has other
         numbers; a `numpy.random.SeedSequence` is not changed and always stands for the same number.
     threads : int, optional
-        Number of threads; all cores if not given. With an executor, for each piece of its work; 1 if not
-        given.
+        Number of threads; all cores if not given. An executor's pieces of work take this number each; 1 if
+        not given.
     progress : bool or callable
         Whether to show a bar on stderr and, in a notebook, the picture as it comes; before, where the scene
         takes longer than two seconds to compile, a bar for that. A function is called with the picture so
@@ -127,8 +127,8 @@ def render(
         fireflies away, and light with them: the picture is biased, and says so. If not given, samples are not
         clamped.
     sampler : Independent, Stratified, Halton, Sobol or Lattice, optional
-        Where the random numbers come from. If not given, it is chosen for the least error, and ``image.plan``
-        has the choice and the reason: a `Lattice`, or `Sobol` for batches of 4 samples or fewer. Those with
+        Sampler of the random numbers. If not given, it is chosen for the least error, and ``image.plan`` has
+        the choice and the reason: a `Lattice`, or `Sobol` for batches of 4 samples or fewer. Those with
         batches take fewer samples to the same error, and estimate the error of a single pixel from fewer
         independent parts. A number of samples that is no multiple of its batches is best avoided: part of a
         batch is right as well, but worth less.

@@ -40,9 +40,9 @@ class Stratified:
     Parameters
     ----------
     batch : int, optional
-        Samples of a batch: 1, 2, 4, ... 64. If not given, as many as make 4 batches of the samples that are
-        asked for, or that an error is likely to take; 16 at most if time may end the render; half of that if
-        it is adaptive. ``image.plan`` tells.
+        Samples of a batch: 1, 2, 4, ... 64. If not given, a quarter of the requested samples, or of those
+        that an error is likely to take; 16 at most if time may end the render; half of that if it is
+        adaptive. ``image.plan`` tells.
 
     Raises
     ------
@@ -76,9 +76,9 @@ class Halton:
     Parameters
     ----------
     batch : int, optional
-        Samples of a batch: 1, 2, 4, ... 64. If not given, as many as make 4 batches of the samples that are
-        asked for, or that an error is likely to take; 16 at most if time may end the render; half of that if
-        it is adaptive. ``image.plan`` tells.
+        Samples of a batch: 1, 2, 4, ... 64. If not given, a quarter of the requested samples, or of those
+        that an error is likely to take; 16 at most if time may end the render; half of that if it is
+        adaptive. ``image.plan`` tells.
 
     Raises
     ------
@@ -112,9 +112,9 @@ class Sobol:
     Parameters
     ----------
     batch : int, optional
-        Samples of a batch: 1, 2, 4, ... 64. If not given, as many as make 4 batches of the samples that are
-        asked for, or that an error is likely to take; 16 at most if time may end the render; half of that if
-        it is adaptive. ``image.plan`` tells.
+        Samples of a batch: 1, 2, 4, ... 64. If not given, a quarter of the requested samples, or of those
+        that an error is likely to take; 16 at most if time may end the render; half of that if it is
+        adaptive. ``image.plan`` tells.
 
     Raises
     ------
@@ -147,15 +147,15 @@ class Sobol:
 class Lattice:
     """Rank-1 lattices, each shifted at random (Cranley and Patterson 1976).
 
-    The generators are those of the least P2 (Sloan and Joe 1994). In most batches errors are smaller than
-    with `Sobol`; the points of a batch of 4 lie on a diagonal, and are worse.
+    The generators are those of the least P2 (Sloan and Joe 1994). Errors are smaller than with `Sobol` for
+    most batches; the points of a batch of 4 lie on a diagonal, and are worse.
 
     Parameters
     ----------
     batch : int, optional
-        Samples of a batch: 1, 2, 4, ... 64. If not given, as many as make 4 batches of the samples that are
-        asked for, or that an error is likely to take; 16 at most if time may end the render; half of that if
-        it is adaptive. ``image.plan`` tells.
+        Samples of a batch: 1, 2, 4, ... 64. If not given, a quarter of the requested samples, or of those
+        that an error is likely to take; 16 at most if time may end the render; half of that if it is
+        adaptive. ``image.plan`` tells.
 
     Raises
     ------

@@ -33,7 +33,7 @@ class Shot:
     samples : int, optional
         Samples per pixel; None leaves it to `render`.
     sampler : Independent, Stratified, Halton, Sobol or Lattice, optional
-        Where the random numbers come from; None leaves it to `render`.
+        Sampler of the random numbers; None leaves it to `render`.
     filter : BoxFilter, GaussianFilter or another kind
         What part of the film a pixel is the mean of.
     seed : int, Generator or SeedSequence

@@ -45,8 +45,8 @@ def first_hits(scene: Scene, camera: AnyCamera, threads: int | None = 1, repeats
     Returns
     -------
     Table
-        A row for each way: milliseconds, million rays a second, the speed-up over `intersect` with rays at
-        hand, which part of the pixels the tree was asked for, and how many pixels differ from `intersect`
+        A row for each method: milliseconds, million rays a second, the speed-up over `intersect` with rays at
+        hand, the share of pixels that the tree traced, and the number of pixels that differ from `intersect`
         (0, or there is a bug).
 
     Raises

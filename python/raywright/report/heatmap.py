@@ -163,7 +163,7 @@ class Heatmap:
         Parameters
         ----------
         ax : matplotlib.axes.Axes, str or path, optional
-            Where to draw: a new figure if not given, or a file, .png, .svg or .pdf.
+            Target: a new figure if not given, axes, or a file, .png, .svg or .pdf.
 
         Returns
         -------

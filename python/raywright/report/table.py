@@ -289,7 +289,7 @@ class Table(Generic[Row]):
         Parameters
         ----------
         ax : matplotlib.axes.Axes, str or path, optional
-            Where to draw: a new figure if not given, or a file, .png, .svg or .pdf.
+            Target: a new figure if not given, axes, or a file, .png, .svg or .pdf.
         x, y : str, optional
             Columns other than those of `chart`.
 

@@ -63,10 +63,10 @@ class Instance:
         Shapes to copy: everything that a `Scene` takes. Instances of the same shapes, the very same objects,
         share the compiled form.
     transform : (4, 4) or (N, 4, 4) array
-        Where the copies are: affine matrices that act on column vectors (x, y, z, 1), each with (0, 0, 0, 1)
-        as its last row, and invertible.
+        Transforms of the copies: affine matrices that act on column vectors (x, y, z, 1), each with (0, 0, 0,
+        1) as its last row, and invertible.
     transform_end : array of the same shape, optional
-        Where they are as the shutter closes, for copies that move. At a time between 0 and 1 the matrix is
+        Transforms as the shutter closes, for copies that move. At a time between 0 and 1 the matrix is
         ``transform + (transform_end - transform) * time``, number by number: every point moves on a straight
         line, and large rotations should be cut into shorter times. Should a matrix between have no inverse,
         the copy is not seen then.
@@ -97,7 +97,7 @@ class Instance:
 
     Rays are transformed to the space of the shapes by the inverse of the matrix, rounded to float64, and hits
     are exact for the transformed ray. Compared with transformed vertices, hits differ by the rounding of
-    these vertices, and not at all where neither rounds, as with integers and powers of two. By how much
+    these vertices, and not at all where neither rounds, as with integers and powers of two. The difference
     depends on the condition of the matrix, the greatest row sum of ``|L| |L⁻¹|`` of its linear part ``L``. It
     is at most 3 for a scaling along the axes of the shapes and a turn after it; matrices of more than 2^20
     are refused.
@@ -254,9 +254,9 @@ class Instance:
         Parameters
         ----------
         transform : (4, 4) or (N, 4, 4) array
-            Where the copies are, as for `Instance`.
+            Transforms of the copies, as for `Instance`.
         transform_end : array of the same shape, optional
-            Where they are as the shutter closes.
+            Transforms as the shutter closes.
 
         Returns
         -------

@@ -121,7 +121,7 @@ class Scene(Queries):
     With "auto", only vertices that faces use count. One mesh that has digits beyond float32 keeps the digits
     of all meshes of the scene, so that vertices which they share stay shared; the shapes of an `Instance` are
     a group of their own in this. `plan` has the displacement by rounding, and ``accelerator.precision`` the
-    result. Where "single" moves a vertex by more than 1e-7 of the extent of its mesh, it gives one
+    result. If "single" moves a vertex by more than 1e-7 of the extent of its mesh, there is one
     RuntimeWarning, with the figure, when the scene is compiled.
 
     With "as given", light counts by its cosine to shading normals alone, and these decide which side is seen:
@@ -134,14 +134,13 @@ class Scene(Queries):
     slower, ``Path(reuse=)`` shares nothing at their surfaces, and graphics processors leave them to the CPU.
 
     Corners that differ by rounding leave cracks, through which rays slip, and surfaces that do not close. So
-    corners on open edges are put in one place where they are as close as `weld` says: "auto" is 2^-21 of the
-    largest coordinate of a mesh where all are float32 numbers, 2^-47 where not, and a 64th of its mean edge
-    at most, before it was transformed; between two meshes the lesser. Two corners of one face are never
-    merged, and closed meshes stay unchanged, however thin. With "auto" that goes for files, for trimesh's
-    objects and for CAD shapes, each by itself; a `Mesh` of arrays, or an object of another library, is hit
-    where its vertices are, and welded for `contains`, `signed_distance` and in ``rw.measure``. A distance
-    goes for all meshes, together; those of an `Instance` are a group of their own. ``rw.measure.topology``
-    lists the remaining cracks.
+    corners on open edges are merged within the distance `weld`: "auto" is 2^-21 of the largest coordinate of
+    a mesh if all are float32 numbers, 2^-47 if not, and a 64th of its mean edge at most, before it was
+    transformed; between two meshes the lesser. Two corners of one face are never merged, and closed meshes
+    stay unchanged, however thin. With "auto" that goes for files, for trimesh's objects and for CAD shapes,
+    each by itself; a `Mesh` of arrays, or an object of another library, is hit where its vertices are, and
+    welded for `contains`, `signed_distance` and in ``rw.measure``. A distance goes for all meshes, together;
+    those of an `Instance` are a group of their own. ``rw.measure.topology`` lists the remaining cracks.
 
     Faces with a corner that is NaN or infinite are left out when the scene is compiled, with one
     RuntimeWarning that gives their number. Scenes compare by contents, and pickle without compiled data. A
@@ -331,8 +330,8 @@ class Scene(Queries):
         ----------
         vertices : (V, 3) array, or list of them
             The vertices of the only shape, or of each shape; as many as it has. None in the list leaves a
-            shape where it is, the only choice for a curved one. Of an `Instance` the transforms, (4, 4) or
-            (N, 4, 4), or a tuple of two such arrays for copies that move; its shapes stay as they are.
+            shape where it is, the only choice for a curved one. An `Instance` takes transforms, (4, 4) or (N,
+            4, 4), or a tuple of two such arrays for copies that move; its shapes stay as they are.
 
         Returns
         -------

@@ -74,7 +74,7 @@ def cornell_box(
         Shapes: light, floor, ceiling, back, right (green), left (red), tall block, then the short block or
         `mesh`.
     camera : Camera
-        In front of the open side.
+        Camera in front of the open side.
 
     Raises
     ------

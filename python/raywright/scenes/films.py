@@ -80,7 +80,7 @@ def _room() -> NDArray[np.float32]:
 def oil_on_water(width: int = 480, height: int = 320) -> tuple[Scene, Camera]:
     """Return a film of oil that spreads on a puddle on black asphalt, under an even sky, and a camera.
 
-    Where there is no oil, water is all that reflects; the rims of the slick are the thinnest.
+    Beside the oil only water reflects; the rims of the slick are the thinnest.
 
     Parameters
     ----------

@@ -28,7 +28,7 @@ class Forest(NamedTuple):
     tree : (N,) int64
         Index of the tree at each place.
     transforms : (N, 4, 4) float64
-        Where and how: each acts on column vectors (x, y, z, 1).
+        Transforms of the trees: each acts on column vectors (x, y, z, 1).
 
     See Also
     --------
@@ -116,7 +116,7 @@ def forest(
     unique : int
         Number of unique trees.
     triangles : int
-        Of each unique tree, exactly; more than 400.
+        Triangles of each unique tree, exactly; more than 400.
     spacing : float
         Side of the squares, in metres.
     seed : int, Generator or SeedSequence

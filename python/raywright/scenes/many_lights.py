@@ -18,7 +18,7 @@ def many_lights(
 ) -> tuple[Scene, Camera]:
     """Return the room of `room` lit by many small lamps of all colours, and a camera.
 
-    Of so many, few matter anywhere: a choice among them by power alone spends its samples on lamps that are
+    Few of them matter at any point: a choice among them by power alone spends its samples on lamps that are
     far away or turned away.
 
     Parameters

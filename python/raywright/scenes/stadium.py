@@ -23,13 +23,13 @@ def teapot_in_stadium(
     Parameters
     ----------
     divisions : int
-        Of the teapot's patches; it has about 64 triangles times their square.
+        Divisions of the teapot's patches; it has about 64 triangles times their square.
     tiers : int
         Number of rows of seats.
     around : int
         Number of pieces of each row, 3 at least; four triangles each.
     width : float
-        Of the teapot from handle to spout, in metres.
+        Width of the teapot from handle to spout, in metres.
 
     Returns
     -------

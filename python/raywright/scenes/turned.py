@@ -18,7 +18,7 @@ def turned(shapes: Iterable[Mesh], angle: float, axis: ArrayLike = (0.0, 1.0, 0.
     shapes : iterable of Mesh
         What to turn.
     angle : float
-        In degrees, anticlockwise as seen from where the axis points to.
+        Angle in degrees, anticlockwise as seen from the tip of the axis.
     axis : 3 floats
         Need not be unit.
 

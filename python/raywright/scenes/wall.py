@@ -24,7 +24,7 @@ def diagonal_wall(boards: int = 800, angle: float = 45.0, layers: int = 4) -> li
     boards : int
         Number of boards in all; at least one a layer, and 12 triangles a board.
     angle : float
-        By how many degrees the wall is turned about the z axis, anticlockwise as seen from +z.
+        Rotation of the wall about the z axis in degrees, anticlockwise as seen from +z.
     layers : int
         Number of layers, at least 1.
 

@@ -19,7 +19,7 @@ class Disk(Shape):
     center : 3 floats
         Its centre.
     normal : 3 floats
-        At right angles to it, towards its outer side; of any length but 0.
+        Normal, towards the outer side; of any length but 0.
     radius : float
         The distance of its rim, greater than 0.
     inner_radius : float

@@ -22,9 +22,9 @@ class Implicit(Shape):
     Parameters
     ----------
     expression : str
-        In Python's notation, with x, y, z, numbers, ``+ - * / **``, parentheses, pi, e, abs, sqrt, exp, log,
-        sin, cos, tan, asin, acos, atan, atan2, sinh, cosh, tanh, pow, min and max. A power that is no whole
-        number written out is defined where its base is not negative.
+        Expression in Python's notation, with x, y, z, numbers, ``+ - * / **``, parentheses, pi, e, abs, sqrt,
+        exp, log, sin, cos, tan, asin, acos, atan, atan2, sinh, cosh, tanh, pow, min and max. A power that is
+        no whole number written out is defined where its base is not negative.
     min, max : 3 floats
         The least and the greatest corner of the box. The surface is cut open where the box ends.
     transform : (4, 4) array, optional

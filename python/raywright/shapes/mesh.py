@@ -191,7 +191,7 @@ class Mesh:
     def to_trimesh(self) -> "trimesh.Trimesh":
         """Return the mesh as a trimesh.Trimesh, with vertices, faces, normals, attributes, and colors or uv.
 
-        `cells` are the face attribute "cell". Of the material, a plain diffuse color is kept.
+        `cells` are the face attribute "cell". A plain diffuse color of the material is kept.
 
         Returns
         -------

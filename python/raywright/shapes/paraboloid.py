@@ -21,7 +21,7 @@ class Paraboloid(Shape):
     Parameters
     ----------
     apex, tip : 3 floats
-        Where it begins, and the middle of the rim, which differ.
+        Apex, and the middle of the rim, which differ.
     radius : float
         The distance of the rim from the axis, greater than 0.
     capped : bool
@@ -51,7 +51,7 @@ class Paraboloid(Shape):
     Notes
     -----
     ``u`` is the angle about the axis, in turns, anticlockwise as seen from the tip; ``v`` the distance from
-    the axis as a share of the rim's. Of a closed one that is the first half of ``v``, and the second goes on
+    the axis as a share of the rim's. If it is closed, that is the first half of ``v``, and the second goes on
     from the rim to the cap's middle.
 
     Examples

@@ -21,7 +21,7 @@ class Plane(Shape):
     point : 3 floats
         A point on it.
     normal : 3 floats
-        At right angles to it, towards its outer side; of any length but 0.
+        Normal, towards the outer side; of any length but 0.
     transform : (4, 4) array, optional
         An affine matrix that acts on column vectors (x, y, z, 1), as from the shape's own space to the world.
         Hits are exact for the given matrix, not for a rounded inverse.

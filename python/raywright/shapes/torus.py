@@ -22,7 +22,7 @@ class Torus(Shape):
     center : 3 floats
         Centre of the circle.
     axis : 3 floats
-        At right angles to the circle's plane; of any length but 0.
+        Axis, at right angles to the circle's plane; of any length but 0.
     major_radius, minor_radius : float
         The circle's radius and the distance from it, each from 1e-140 to 1e140. The minor one is at most the
         major one; where they are equal, the surface touches itself in the centre.

@@ -18,8 +18,8 @@ class Checker(Texture):
     a, b : float, 3 floats or Texture
         Values of the cells; the one at the lower left is `a`.
     transform : UvTransform, ObjectTransform or float, optional
-        Where they lie: squares in texture coordinates, or cubes in the space of the shape. A number is how
-        many squares there are to a unit of texture coordinates.
+        Map to the texture: squares in texture coordinates, or cubes in the space of the shape. A number is
+        how many squares there are to a unit of texture coordinates.
 
     Raises
     ------

@@ -38,7 +38,7 @@ class FBm(Texture):
     a, b : float, 3 floats or Texture
         Values where the sum is -1 or less, and where it is 1 or more.
     transform : ObjectTransform, UvTransform or float, optional
-        Where it lies, as of `Noise`: the coarsest has spots about a unit in size.
+        Map to the texture, as for `Noise`: the coarsest has spots about a unit in size.
     octaves : int
         Number of noises, 1 to 32.
     lacunarity : float

@@ -38,7 +38,7 @@ class ImageTexture(Texture):
     wrap : {"repeat", "clamp", "mirror"}, or two of them
         Extension beyond the edges, along both axes or along u and along v.
     transform : UvTransform or float, optional
-        From the surface's coordinates to the picture's; a number is how often it is repeated.
+        Map from the surface's coordinates to the picture's; a number is the number of repetitions.
 
     Attributes
     ----------

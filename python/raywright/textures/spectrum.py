@@ -23,7 +23,7 @@ class Spectrum(Texture):
     Parameters
     ----------
     wavelengths : (N,) array_like
-        In nm, two or more, rising. Visible light is between 360 and 830.
+        Wavelengths in nm, two or more, rising. Visible light is between 360 and 830.
     values : (N,) array_like
         Value at each wavelength, at least 0.
 

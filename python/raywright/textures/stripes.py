@@ -20,8 +20,8 @@ class Stripes(Texture):
     fraction : float
         Share of each unit that a stripe takes, at its end: between 0 and 1.
     transform : UvTransform, ObjectTransform or float, optional
-        Where they lie: in texture coordinates, or in the space of the shape. A number is how many stripes
-        there are to a unit of texture coordinates.
+        Map to the texture: from texture coordinates, or from the space of the shape. A number is how many
+        stripes there are to a unit of texture coordinates.
 
     Raises
     ------

@@ -22,9 +22,9 @@ class UvTransform:
     scale : float or 2 floats
         Number of repetitions along u and v.
     rotation : float
-        By how many degrees coordinates turn, anticlockwise.
+        Rotation of coordinates in degrees, anticlockwise.
     offset : 2 floats
-        By how much they move.
+        Translation of coordinates.
     matrix : (2, 3) array, optional
         All of it at once: acts on column vectors (u, v, 1). The others then do not count.
 
@@ -85,7 +85,7 @@ class ObjectTransform:
     scale : float or 3 floats
         Units of the texture in one unit of the shape, along x, y and z.
     offset : 3 floats
-        By how much points move, in units of the texture.
+        Translation of points, in units of the texture.
     matrix : (3, 4) or (4, 4) array, optional
         All of it at once: acts on column vectors (x, y, z, 1). The others then do not count.
 

@@ -21,8 +21,8 @@ class Wood(Texture):
     a, b : float, 3 floats or Texture
         Early wood, and the late wood that a ring darkens to.
     transform : ObjectTransform, UvTransform or float, optional
-        Where it lies: in the space of the shape, or in texture coordinates. A number is how many rings there
-        are to a unit of the shape's space.
+        Map to the texture: from the space of the shape, or from texture coordinates. A number is how many
+        rings there are to a unit of the shape's space.
     distortion : float
         Displacement by noise, in units; 0 for none.
     octaves, lacunarity, gain, seed

@@ -238,8 +238,8 @@ def view(
     scene, integrator, samples, error, seconds, seed, threads, adaptive, clamp, sampler, filter
         As in `render`. If no limit is given, it renders to a relMSE of 1e-4.
     camera : Camera or another kind, optional
-        From where to begin with. If not given, all of the scene is in the picture, and a scene without any
-        light is lit as by a studio's lamps.
+        Camera at the start. If not given, all of the scene is in the picture, and a scene without any light
+        is lit as by a studio's lamps.
     exposure, tone
         How pictures are shown, as in `Image.save`. The page changes the exposure without a new render.
     fit : bool
@@ -249,7 +249,7 @@ def view(
         Level of the accelerator's boxes to draw over the picture, 0 for the root; of a level of more than
         20,000 the largest. The keys b and B go a level deeper and back. `Scene.tree` gives the boxes.
     port : int
-        Where to listen; any free port if 0.
+        Port of the server; any free port if 0.
     open : bool
         Whether to open a browser.
 

@@ -58,7 +58,22 @@ fn level() -> PyResult<Level> {
     Level::current().map_err(PyValueError::new_err)
 }
 
-/// The SIMD level of the kernels.
+/// Return the SIMD level that kernels run at; ``RAYWRIGHT_SIMD`` forces one.
+///
+/// Returns
+/// -------
+/// str
+///     "scalar", "neon", "sse2", "avx2" or "avx512".
+///
+/// Raises
+/// ------
+/// ValueError
+///     If ``RAYWRIGHT_SIMD`` names no level that the processor has.
+///
+/// Examples
+/// --------
+/// >>> rw.simd() in ("scalar", "neon", "sse2", "avx2", "avx512")
+/// True
 #[pyfunction]
 fn simd() -> PyResult<&'static str> {
     Ok(level()?.name())

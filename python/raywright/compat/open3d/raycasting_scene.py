@@ -78,7 +78,7 @@ class RaycastingScene:
         triangle_indices : (F, 3) integer array or Tensor
             Three vertices for each triangle.
         mesh : open3d.t.geometry.TriangleMesh
-            In place of the two; or anything else with vertices, and triangles or faces.
+            Mesh in place of the two; or anything else with vertices, and triangles or faces.
 
         Returns
         -------
@@ -392,9 +392,8 @@ class RaycastingScene:
     def compute_occupancy(self, query_points: Any, nthreads: int = 0, nsamples: int = 1) -> Any:
         """Find whether each point is inside the meshes: (...) float32, 1 inside and 0 outside.
 
-        A point is inside if a ray from there crosses all meshes together an odd number of times. That is
-        decided exactly, with points on a surface inside; where meshes are open, by the majority of seven
-        rays.
+        A point is inside if a ray from there crosses all meshes together an odd number of times. The test is
+        exact, with points on a surface inside; for open meshes it is the majority of seven rays.
 
         Parameters
         ----------

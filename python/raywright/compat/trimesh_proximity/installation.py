@@ -11,8 +11,8 @@ _switch = Switch()
 def install() -> Installation:
     """Let ``trimesh.proximity`` find closest points and signed distances with raywright, until `uninstall`.
 
-    So do ``mesh.nearest`` of every mesh and all of trimesh that calls them. Functions imported by name from
-    ``trimesh.proximity`` before stay as they were. Rays are a switch of their own: see ``trimesh_ray``.
+    ``mesh.nearest`` of every mesh does so too, and all of trimesh that calls them. Functions imported by name
+    from ``trimesh.proximity`` before stay as they were. Rays are a switch of their own: see ``trimesh_ray``.
 
     Returns
     -------

@@ -127,7 +127,7 @@ class RayMeshIntersector:
         index_ray : (m,) int64
             Which ray.
         locations : (m, 3) float64
-            Where; only with `return_locations`.
+            Hit points; only with `return_locations`.
 
         Raises
         ------
@@ -215,8 +215,8 @@ class RayMeshIntersector:
     def contains_points(self, points: ArrayLike) -> NDArray[np.bool_]:
         """Find whether each point is inside the mesh: (n,) bool.
 
-        As in trimesh, a point is inside if a ray from there crosses the mesh an odd number of times. That is
-        decided exactly; where the mesh is open, by the majority of seven rays.
+        As in trimesh, a point is inside if a ray from there crosses the mesh an odd number of times. The test
+        is exact; for open meshes it is the majority of seven rays.
 
         Parameters
         ----------

@@ -53,7 +53,7 @@ def from_mitsuba(
         A scene as ``mitsuba.load_dict`` takes it, or an XML file. Transforms may be nested lists, arrays, or
         Mitsuba's own objects; Mitsuba is not needed.
     folder : path, optional
-        Where a dict's files are; the current one if not given. Those of an XML file are where it is, or in
+        Folder of a dict's files; the current one if not given. Those of an XML file are where it is, or in
         this folder if they are not there.
     sensor : int
         Index of the scene's sensor.
