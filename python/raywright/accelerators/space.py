@@ -19,7 +19,7 @@ class KdTree:
     Parameters
     ----------
     builder : {"sah", "median", "middle", "cycle"}
-        Where planes stand. All clip primitives to the cell.
+        Placement of planes. All clip primitives to the cell.
 
         - ``"sah"``: where the surface area heuristic expects the least work, among all ends of clipped
           primitives, in n log n (Wald and Havran 2006, "On building fast kd-trees for ray tracing, and on

@@ -197,7 +197,7 @@ class RadiositySolution(Tabular):
             Factor of radiance before it is clipped to 0..1 and coded as sRGB; by default the one that brings
             99 % of the reflecting patches below 1.
         side : {"front", "back"}
-            Which side.
+            Side of the patches.
 
         Returns
         -------
@@ -254,7 +254,7 @@ class RadiositySolution(Tabular):
         name : {"radiosity", "irradiance", "standard_error", "irradiance_error"}
             Name of the array; red, green and blue are weighted as in ITU-R BT.709.
         side : {"front", "back"}
-            Which side.
+            Side of the patches.
         up : {"x", "y", "z"}
             The axis that points up.
         cmap : str or matplotlib.colors.Colormap

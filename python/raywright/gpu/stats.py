@@ -10,19 +10,19 @@ class GpuStats:
     Attributes
     ----------
     closest : int
-        Rays asked for their closest hit.
+        Number of rays traced for their closest hit.
     closest_decided : int
-        Those of them whose hit the CPU decided among up to four candidates. (Of all that hit something it
+        Number of them whose hit the CPU decided among up to four candidates. (Of all that hit something it
         computes `t` and `uv`.)
     closest_walked : int
         Those of them that the CPU traced by itself: there were more candidates, or the ray was not one for
         float32.
     any : int
-        Rays asked whether they hit anything.
+        Number of rays tested for any hit.
     any_decided : int
-        Those of them for which the CPU decided the hit of one face.
+        Number of them for which the CPU decided the hit of one face.
     any_walked : int
-        Those of them that the CPU traced by itself.
+        Number of them that the CPU traced by itself.
 
     See Also
     --------

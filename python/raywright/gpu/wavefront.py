@@ -68,13 +68,13 @@ class Wavefront:
     Parameters
     ----------
     device : wgpu.GPUDevice
-        Which.
+        The device.
     flat : FlatArrays
         The scene's tree.
     scene : Packed
         Appearance of the scene.
     eye : Eye
-        From where.
+        Camera of the picture.
     max_depth, roulette_depth, seed : int
         As `Path` and `render` have them; None for no greatest depth.
     quantiles : (1025,) array

@@ -28,9 +28,9 @@ def check_writable(
     Parameters
     ----------
     path : str or path
-        Where to.
+        File to write.
     suffixes : tuple of str
-        Those of the files that there are, in lower case.
+        Suffixes of supported files, in lower case.
     what : str
         Kind of file, for the error message.
 

@@ -84,7 +84,7 @@ class LidarScan(Tabular):
         Parameters
         ----------
         name : {"range", "incidence", "strength"}
-            What of it.
+            Quantity of the returns.
         fill : float
             Value of beams without a return.
 
@@ -184,7 +184,7 @@ def lidar(
     Parameters
     ----------
     scene : Scene, Mesh or anything else that a Scene is made of
-        What is scanned.
+        The scanned scene.
     scanner : SpinningLidar or RasterLidar
         Scanner with its position and beams.
     returns : {"all", "first", "last", "strongest"}

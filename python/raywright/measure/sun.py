@@ -123,7 +123,7 @@ def solar_exposure(
     Parameters
     ----------
     scene : Scene, Mesh or anything else that a Scene is made of
-        What casts shadows.
+        Shapes that cast shadows.
     points : Hits, ClosestPoints or (..., 3) array, optional
         Where. Rays leave hits exactly as in `Hits.leave`, and plain points by `offset`. The middle of every
         face if not given, which only meshes have.

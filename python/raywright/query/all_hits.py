@@ -31,7 +31,7 @@ class AllHits(SurfacePoints):
     t : (K,) float64
         Distance in lengths of the ray's direction, so that the hit is at ``origin + t * direction``.
     shape_id : (K,) int32
-        Which of ``scene.shapes``.
+        Index in ``scene.shapes``.
     primitive : (K,) int32
         Face of that shape, 0 if it is no mesh; on an instance, a number for `Instance.locate`.
     uv : (K, 2) float64

@@ -34,7 +34,7 @@ class ConeTouches(Tabular):
     cone_splits : (N + 1,) int64
         Start of each cone's touches, and at the end their total number.
     shape_id : (K,) int32
-        Which of ``scene.shapes``.
+        Index in ``scene.shapes``.
     primitive : (K,) int32
         Face of that shape.
     distance : (K,) float64

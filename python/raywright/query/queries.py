@@ -426,7 +426,7 @@ class Queries(PointQueries):
         Parameters
         ----------
         camera : Camera or another kind
-            Whose picture it is.
+            Camera of the picture.
         x, y : int or (...) integer arrays
             Column and row of the pixel, broadcast against each other: (0, 0) is the upper left of the
             picture, (width - 1, height - 1) its lower right. For points between, such as mouse clicks in
@@ -496,7 +496,7 @@ class Queries(PointQueries):
         Parameters
         ----------
         camera : Camera or another kind
-            Whose picture it is.
+            Camera of the picture.
         offsets : (2,) or (height, width, 2) array
             Place in the pixel, for all or for each, as in `Camera.rays`.
         threads : int, optional

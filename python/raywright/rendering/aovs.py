@@ -70,7 +70,7 @@ def aovs(
     scene : Scene
         The scene.
     camera : camera
-        From where.
+        Camera of the picture.
     aov : str or some of them
         Names of buffers: ``"depth"`` (distance along the ray; infinite for the background), ``"position"``,
         ``"normal"`` (unit geometric normal, as the winding gives it), ``"shading_normal"``, ``"uv"``,

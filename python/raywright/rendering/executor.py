@@ -84,9 +84,9 @@ class Distribution:
     job : Job
         The job that is distributed.
     executor : concurrent.futures.Executor
-        Who works.
+        The executor.
     limits : (samples, error, seconds)
-        When to end.
+        The limits.
     threads : int
         Threads of each piece of work.
     """

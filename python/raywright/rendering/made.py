@@ -34,9 +34,9 @@ def made(
     told : iterable of str
         Further warnings.
     plan : RenderPlan
-        What was chosen.
+        The plan.
     alpha : (H, W) array, optional
-        What is covered.
+        Coverage of pixels.
     """
     warnings = list(told)
     rgb = done.rgb

@@ -43,7 +43,7 @@ class OnDevice:
     Parameters
     ----------
     device : Gpu
-        Which.
+        The device.
     scene, camera, integrator, seed
         As in `render`.
     asked : dict of str to bool

@@ -87,7 +87,7 @@ def render(
     scene : Scene
         The scene.
     camera : Camera or another kind
-        From where.
+        Camera of the picture.
     integrator : Path or another kind
         Estimator of radiance; an `Integrator` may be written in Python. Options that a `Path` leaves open are
         chosen: if the picture has a million samples or more, by a pilot, which renders a few parts of it with

@@ -27,7 +27,7 @@ class Shot:
     scene : Scene
         The scene.
     camera : Camera or another kind
-        From where.
+        Camera of the picture.
     integrator : Path or another kind
         Estimator of radiance; an `Integrator` may be written in Python.
     samples : int, optional

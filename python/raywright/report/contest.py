@@ -90,13 +90,13 @@ def measured(
     scene : Scene
         The scene; its own accelerator does not matter.
     sets : dict of Rays
-        What is asked.
+        Sets of rays.
     accelerators : dict of accelerators
         By the names that they get.
     threads : int or None
         Number of threads that trace rays; None is all cores.
     repeats : int
-        How many turns.
+        Number of turns.
     check : int or None
         Number of rays compared with brute force, of all sets together; None is as many as it answers soon.
     """

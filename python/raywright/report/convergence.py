@@ -119,7 +119,7 @@ def convergence(
     scene : Scene
         The scene.
     camera : Camera
-        From where.
+        Camera of the picture.
     contenders : dict of str to integrator or dict, optional
         An integrator, or arguments of `render` by name, such as ``{"integrator": ..., "adaptive": True}``. If
         not given: path tracing with as many samples everywhere, and with adaptive sampling.

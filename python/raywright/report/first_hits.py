@@ -34,9 +34,9 @@ def first_hits(scene: Scene, camera: AnyCamera, threads: int | None = 1, repeats
     Parameters
     ----------
     scene : Scene
-        What is seen.
+        The scene.
     camera : Camera or another kind
-        Whose picture it is.
+        Camera of the picture.
     threads : int, optional
         Number of threads; all cores if None.
     repeats : int

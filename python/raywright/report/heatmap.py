@@ -256,7 +256,7 @@ def heatmap(
     scene : Scene
         The scene, whose accelerator is measured.
     camera : Camera or another kind
-        Whose rays go through the centres of the pixels.
+        Camera whose rays go through the centres of the pixels.
     what : {"nodes", "primitives"}
         The count in the picture: nodes visited, or primitives tested.
     most : int, optional

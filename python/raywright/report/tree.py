@@ -23,7 +23,7 @@ def tree(
     Parameters
     ----------
     scene : Scene
-        Whose tree it is; `Scene.tree` gives the boxes themselves.
+        Scene with the tree; `Scene.tree` gives the boxes themselves.
     depth : int, optional
         The last level to be drawn; all, if not given.
     plane : {"xy", "xz", "yz"}

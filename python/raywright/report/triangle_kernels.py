@@ -32,9 +32,9 @@ class KernelRow(NamedTuple):
     Attributes
     ----------
     family : str
-        Which pairs.
+        Name of the family.
     routine : str
-        Which routine.
+        Name of the routine.
     ns : float
         Nanoseconds per test, the median of several runs.
     bytes : int

@@ -588,7 +588,7 @@ class Scene(Queries):
         Parameters
         ----------
         device : Gpu
-            Which.
+            The device.
 
         Returns
         -------

@@ -12,7 +12,7 @@ def soup(triangles: int = 10_000, size: float | None = None, seed: SeedLike = 0)
     Parameters
     ----------
     triangles : int
-        How many.
+        Number of triangles.
     size : float, optional
         Maximum distance of corners from the middle of their triangle. If not given, the less the more there
         are, so that a ray sees about a third of the cube's edge far.

@@ -88,7 +88,7 @@ def lit(shapes: Any, camera: AnyCamera) -> Scene:
     shapes : Mesh, another shape, Instance, trimesh object, path, or list of these
         Shapes to show; their y points up.
     camera : Camera or another kind
-        From where it is looked at.
+        Camera of the picture.
 
     Raises
     ------

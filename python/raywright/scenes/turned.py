@@ -16,7 +16,7 @@ def turned(shapes: Iterable[Mesh], angle: float, axis: ArrayLike = (0.0, 1.0, 0.
     Parameters
     ----------
     shapes : iterable of Mesh
-        What to turn.
+        Meshes to turn.
     angle : float
         Angle in degrees, anticlockwise as seen from the tip of the axis.
     axis : 3 floats

@@ -40,9 +40,9 @@ def value(
     name : str
         The argument's, for errors.
     given : float, 3 floats or Texture
-        What came.
+        The value.
     least, most : float
-        What is allowed.
+        Allowed range.
     above : bool
         True if `least` itself is not allowed.
 

@@ -30,7 +30,7 @@ def edges(camera: AnyCamera, corners: NDArray[np.float64]) -> NDArray[np.float64
     Parameters
     ----------
     camera : Camera, ThinLens or Orthographic
-        From where, as the shutter opens.
+        Camera, as the shutter opens.
     corners : (K, 8, 3) array
         Of boxes, as in `TreeBoxes`.
 

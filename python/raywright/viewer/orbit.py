@@ -80,7 +80,7 @@ class Orbit:
     Parameters
     ----------
     camera : Camera or another kind
-        Where it starts.
+        Camera at the start.
     bounds : (2, 3) array, optional
         The least and greatest corner of the scene: a camera without a target goes around the point of its
         view that is nearest to the middle.

@@ -60,7 +60,7 @@ class Server(ThreadingHTTPServer):
     session : Session
         What to show.
     port : int
-        Where; 0 for any that is free.
+        Port; 0 for any that is free.
 
     Raises
     ------

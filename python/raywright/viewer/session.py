@@ -47,7 +47,7 @@ class Frame:
     image : Image
         The picture.
     view : View
-        Where from.
+        Camera of the picture.
     state : str
         ``"preview"`` if it is a smaller one, ``"refining"``, or ``"done"``.
     size : (int, int)
@@ -55,7 +55,7 @@ class Frame:
     camera : AnyCamera
         Camera of the picture, with the size that the caller gave it.
     exposure, tone
-        How it is shown, as in `Image.save`.
+        Exposure and tone of the picture, as in `Image.save`.
     boxes : TreeBoxes, optional
         Level of the accelerator's boxes that is drawn over it.
     """
@@ -121,13 +121,13 @@ class Session:
     scene : Scene
         The scene.
     camera : Camera or another kind
-        From where to begin with.
+        Camera at the start.
     integrator : Path or another kind
         Estimator of radiance.
     how : mapping
         Other arguments of `render`.
     exposure, tone
-        How pictures are shown, as in `Image.save`.
+        Exposure and tone of pictures, as in `Image.save`.
     fits : bool
         True if the picture takes the size of its window.
     boxes : int, optional

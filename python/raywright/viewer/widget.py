@@ -29,7 +29,7 @@ class ViewerWidget(anywidget.AnyWidget):  # type: ignore[misc]
     Parameters
     ----------
     session : Session
-        What to show.
+        The session to show.
     height : int
         Of the cell's output, in pixels.
     """

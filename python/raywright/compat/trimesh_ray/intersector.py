@@ -77,11 +77,11 @@ class RayMeshIntersector:
         Returns
         -------
         locations : (m, 3) float64
-            Where.
+            Hit points.
         index_ray : (m,) int64
-            Which ray.
+            Index of each hit's ray.
         index_tri : (m,) int64
-            Which face.
+            Index of each hit's face.
 
         See Also
         --------
@@ -118,14 +118,14 @@ class RayMeshIntersector:
         max_hits : int, optional
             The most hits of a ray that are wanted, from the first on; all of them if not given.
         return_locations : bool
-            Whether to return where, too.
+            Whether to return the hit points, too.
 
         Returns
         -------
         index_tri : (m,) int64
             Which face. All first hits of rays come first, then all second ones, and so on.
         index_ray : (m,) int64
-            Which ray.
+            Index of each hit's ray.
         locations : (m, 3) float64
             Hit points; only with `return_locations`.
 
@@ -167,7 +167,7 @@ class RayMeshIntersector:
         Returns
         -------
         (n,) int32
-            Which face; -1 for none.
+            Index of the face; -1 for none.
 
         See Also
         --------

@@ -21,7 +21,7 @@ class Surface(NamedTuple):
     Attributes
     ----------
     material : Material, optional
-        How it scatters; None where nothing is said.
+        Its material; None if it has none.
     emission : Emitted, optional
         Its emission.
     coordinates : int, optional

@@ -26,7 +26,7 @@ def decompressed(path: Path, told: Part, data: memoryview, is_required: bool) ->
     path : Path
         The file, for the error.
     told : Part
-        What `compressed` returns.
+        Result of `compressed`.
     data : memoryview
         The compressed bytes.
     is_required : bool

@@ -16,7 +16,7 @@ class Part:
     Attributes
     ----------
     place : str
-        Where it stands.
+        Its place in the file.
     index : int
         Its index in its list; 0 outside of lists.
 

@@ -48,9 +48,9 @@ def look_of_mtl(said: Description, pictures: Pictures, span: float | None) -> Lo
     Parameters
     ----------
     said : Description
-        What it says.
+        Its statements.
     pictures : Pictures
-        Where its pictures are.
+        Folder of its pictures.
     span : float, optional
         Length on the surface of 1 in texture coordinates; None where there are none.
     """

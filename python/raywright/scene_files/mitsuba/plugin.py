@@ -28,7 +28,7 @@ class Context:
     tree : mapping
         The scene as a dict.
     folders : list of Path
-        Where files are looked for, first to last.
+        Folders of files, first to last.
     """
 
     def __init__(self, tree: Mapping[str, Any], folders: list[Path]) -> None:

@@ -37,7 +37,7 @@ def value(
     Parameters
     ----------
     plugin : Plugin
-        Whose parameter it is.
+        Plugin with the parameter.
     name : str
         Its name.
     default : float or 3 floats

@@ -43,7 +43,7 @@ def shade(plugin: Plugin, name: str, default: float | Triple, emits: bool = Fals
     Parameters
     ----------
     plugin : Plugin
-        Whose parameter it is.
+        Plugin with the parameter.
     name : str
         Its name.
     default : float or 3 floats

@@ -56,7 +56,7 @@ def read_xml(
     parameters : mapping of str to anything
         Values of ``$name``, in place of the file's own defaults.
     folder : Path, optional
-        Where files are looked for that are nowhere else.
+        Last folder of files.
 
     Raises
     ------

@@ -36,7 +36,7 @@ def light(
     matrix : (4, 4) array
         To the world.
     textures : Textures
-        Where files are looked for.
+        Folder of files.
     imaging : (3, 3) array
         Matrix from radiance to the film's pixels.
 

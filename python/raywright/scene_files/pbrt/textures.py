@@ -26,7 +26,7 @@ class Textures:
     Parameters
     ----------
     folder : Path
-        Where files are looked for.
+        Folder of files.
     """
 
     def __init__(self, folder: Path) -> None:
