@@ -1,7 +1,7 @@
-"""A Sphinx extension that writes the reference: a page for each part of the package, from its own names.
+"""A Sphinx extension that writes the reference: a page for each public name, and one for each part.
 
-What stands in ``raywright.__all__`` is put to the page of the module or subpackage that it comes from, whose
-docstring heads the page; modules among the names have pages of their own. So a new name needs nothing here.
+A name of ``raywright.__all__`` belongs to the module or subpackage that it comes from, whose docstring heads
+the part's page; modules among the names are parts themselves. So a new name needs nothing here.
 """
 
 import inspect
@@ -36,7 +36,7 @@ _HEADINGS = {
 
 
 def parts() -> dict[str, tuple[str, str, list[str]]]:
-    """Return by file name what each page holds: a heading, a text, and full names."""
+    """Return the parts by file name, each with a heading, a text, and full names."""
     grouped: dict[str, list[str]] = defaultdict(list)
     found: dict[str, tuple[str, str, list[str]]] = {}
     named = {name: getattr(raywright, name) for name in raywright.__all__}
@@ -66,21 +66,44 @@ def _home(name: str, value: Any) -> str:
 
 def _text(module: ModuleType | None) -> str:
     if module is None:
-        return "What the compiled part of the package says of itself."
+        return "Names of the compiled part of the package."
     return inspect.getdoc(module) or ""
 
 
-def _entry(name: str) -> str:
+def _value(name: str) -> Any:
     module, _, last = name.rpartition(".")
-    value = getattr(import_module(module), last)
-    lines = [f".. py:currentmodule:: {module}", ""]
-    if inspect.isclass(value):
-        lines += [f".. autoclass:: {name}", "   :members:", f"   :inherited-members: {_STRANGERS}"]
-    elif inspect.isroutine(value):
-        lines += [f".. autofunction:: {name}"]
-    else:
-        lines += [f".. autodata:: {name}"]
+    return getattr(import_module(module), last)
+
+
+def _kind(name: str) -> str:
+    value = _value(name)
+    return "class" if inspect.isclass(value) else "function" if inspect.isroutine(value) else "data"
+
+
+def _page_of(name: str) -> str:
+    """Return the file of a name, which some file systems could not tell from one in other letters."""
+    return f"{_kind(name)}_{name}"
+
+
+def _page(name: str) -> str:
+    """Return the page of a name."""
+    module, _, last = name.rpartition(".")
+    kind = _kind(name)
+    lines = [_underlined(last, "="), f".. py:currentmodule:: {module}", "", f".. auto{kind}:: {name}"]
+    if kind == "class":
+        lines += ["   :members:", f"   :inherited-members: {_STRANGERS}"]
     return "\n".join([*lines, ""])
+
+
+def _part(heading: str, text: str, names: list[str]) -> str:
+    """Return the page of a part: its text, and its names with the first lines of their docstrings."""
+    lines = [_underlined(heading, "="), text, ""]
+    for name in names:
+        summary = "" if _kind(name) == "data" else (inspect.getdoc(_value(name)) or "").partition("\n")[0]
+        lines += [f":py:obj:`{name.rpartition('.')[2]} <{name}>`", f"    {summary or 'Data.'}", ""]
+    return "\n".join(
+        [*lines, ".. toctree::", "   :hidden:", "", *(f"   {_page_of(name)}" for name in names), ""]
+    )
 
 
 def _underlined(text: str, line: str) -> str:
@@ -88,14 +111,17 @@ def _underlined(text: str, line: str) -> str:
 
 
 def write(folder: Path) -> None:
-    """Write the pages, and take away those of names that are no more."""
+    """Write the pages, and remove those of names that are no more."""
     pages = parts()
     folder.mkdir(exist_ok=True)
-    texts = {
-        file: "\n".join([_underlined(heading, "="), text, "", *map(_entry, names)])
-        for file, (heading, text, names) in pages.items()
-    }
-    index = [_underlined("Reference", "="), "Everything public, part by part, from its docstrings.", ""]
+    texts = {file: _part(heading, text, names) for file, (heading, text, names) in pages.items()}
+    texts |= {_page_of(name): _page(name) for _, _, names in pages.values() for name in names}
+    index = [
+        _underlined("Reference", "="),
+        "Every public name, part by part, each on a page with an example.",
+        "In the examples, ``np`` is numpy and ``rw`` is raywright.",
+        "",
+    ]
     for file, (_, _, names) in sorted(pages.items(), key=lambda page: page[1][0].removeprefix("raywright.")):
         index.append(f":doc:`{file}`")
         links = (f":py:obj:`{name.rpartition('.')[2]} <{name}>`" for name in names)
@@ -107,7 +133,7 @@ def write(folder: Path) -> None:
             old.unlink()
     for file, text in texts.items():
         path = folder / f"{file}.rst"
-        # What did not change keeps its time, so that it is not read anew.
+        # An unchanged page keeps its time, so that it is not read anew.
         if not path.exists() or path.read_text(encoding="utf-8") != text:
             path.write_text(text, encoding="utf-8")
 

@@ -28,9 +28,13 @@ def members(name, value):
     """Yield the public objects under a name: itself, its members (inherited ones too), its contents."""
     yield name, value
     if inspect.isclass(value):
+        found = set()
         for base in value.__mro__:
             if base.__module__.startswith("raywright"):
                 for own, member in vars(base).items():
+                    if own in found:
+                        continue
+                    found.add(own)
                     inner = getattr(
                         member, "__func__", getattr(member, "fget", getattr(member, "func", member))
                     )

@@ -42,8 +42,8 @@ class Camera(AnyCamera):
         The point of the picture that the view goes through, in pixels from its left and its top as in
         `rays_through`; the middle if not given. Elsewhere it is a shifted lens, or a part of a picture.
     skew : float
-        Skew coefficient K[0, 1] of a camera matrix, in pixels: the shift to the right for each focal length
-        down. K[0, 1] of a camera matrix. With `focal` only.
+        Skew coefficient K[0, 1] of a camera matrix, in pixels: the shift to the right of a point as far below
+        the view as it is away. With `focal` only.
     moved_to : Pose, optional
         Pose as the shutter closes; another camera will do.
     shutter : 2 floats
@@ -178,6 +178,31 @@ class Camera(AnyCamera):
         """Return the camera at a matrix, as in `Pose.from_matrix`.
 
         Matrices that mirror are allowed, and mirror the picture.
+
+        Parameters
+        ----------
+        to_world, convention, **others
+            As for `Pose.from_matrix`.
+
+        Returns
+        -------
+        Camera
+
+        Raises
+        ------
+        ValueError
+            If the matrix has another shape, is not finite, or has axes that are not at right angles to within
+            1e-6.
+
+        See Also
+        --------
+        Camera.from_intrinsics : With a camera matrix.
+
+        Examples
+        --------
+        >>> camera = rw.Camera.from_matrix(np.diag([-1, 1, 1, 1]), fov=90, width=4, height=4)
+        >>> camera.project([1, 0, -2]).round(6).tolist()
+        [1.0, 2.0]
         """
         stand = of_world(to_world, convention)
         camera = cls._at(stand, others)

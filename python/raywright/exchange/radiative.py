@@ -117,7 +117,19 @@ class RadiativeExchange(Tabular):
         return float(self.power[self.patches["shape"] == integer("shape", shape, 0, last)].sum())
 
     def to_dict(self) -> dict[str, NDArray[Any]]:
-        """Return flat arrays by name, an entry for each row, with the fields of `patches`."""
+        """Return flat arrays by name, an entry for each row, with the fields of `patches`.
+
+        Returns
+        -------
+        dict
+            An array for each column.
+
+        Examples
+        --------
+        >>> plate = rw.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+        >>> rw.radiative_exchange(plate, 300.0, progress=False).to_dict()["temperature"].tolist()
+        [300.0]
+        """
         columns = {name: self.patches[name] for name in ("shape", "copy", "face", "side")}
         columns["area"] = self.areas
         for name in ("temperature", "emissivity", "flux", "power", "standard_error"):

@@ -369,6 +369,18 @@ class RadiositySolution(Tabular):
         """Return flat arrays by name, an entry for each side of a patch, with the fields of `patches`.
 
         Colors are apart, as ``radiosity_red``, ``radiosity_green``, ``radiosity_blue``, and so on.
+
+        Returns
+        -------
+        dict
+            An array for each column.
+
+        Examples
+        --------
+        >>> scene, _ = rw.scenes.cornell_box()
+        >>> columns = rw.radiosity(scene, rays=1000, progress=False).to_dict()
+        >>> columns["radiosity_red"].shape == columns["face"].shape
+        True
         """
         columns = {name: self.patches[name] for name in ("shape", "copy", "face", "cell", "side")}
         columns["area"] = self.areas

@@ -278,6 +278,19 @@ class ViewFactors(Tabular):
         """Return flat arrays by name, an entry for each view factor that is not 0, row by row.
 
         ``from`` and ``to`` are row and column, ``factor`` and ``standard_error`` the entry.
+
+        Returns
+        -------
+        dict
+            An array for each column.
+
+        Examples
+        --------
+        >>> floor = rw.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+        >>> ceiling = rw.Mesh([[0, 0, 1], [0, 1, 1], [1, 0, 1]], [[0, 1, 2]])
+        >>> columns = rw.view_factors([floor, ceiling], progress=False).to_dict()
+        >>> columns["from"].tolist(), columns["to"].tolist()
+        ([0, 1], [1, 0])
         """
         matrix: Any = self.matrix
         row, column = matrix.nonzero()

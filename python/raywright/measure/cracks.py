@@ -68,7 +68,19 @@ class Topology(Tabular):
         return bool(self.volumes) and not self.open_faces
 
     def to_dict(self) -> dict[str, NDArray[Any]]:
-        """Return the counts by name, and the tolerance, as arrays of one entry."""
+        """Return the counts by name, and the tolerance, as arrays of one entry.
+
+        Returns
+        -------
+        dict
+            An array for each column.
+
+        Examples
+        --------
+        >>> lid = rw.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+        >>> rw.measure.topology(lid).to_dict()["cracks"].tolist()
+        [3]
+        """
         counts = {"bodies": len(self.volumes), "cracks": len(self.cracks)}
         counts["t_junctions"] = len(self.t_junctions)
         for kind in ("open_faces", "inner_faces", "turned_edges", "duplicate_faces", "degenerate_faces"):

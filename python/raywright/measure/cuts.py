@@ -64,7 +64,20 @@ class CrossSection(Tabular):
         return tuple(float(np.linalg.norm(line[-1] - line[0])) for line in self.lines)
 
     def to_dict(self) -> dict[str, NDArray[Any]]:
-        """Return flat arrays by name, an entry for each point of each line: its line, and x, y and z."""
+        """Return flat arrays by name, an entry for each point of each line: its line, and x, y and z.
+
+        Returns
+        -------
+        dict
+            An array for each column.
+
+        Examples
+        --------
+        >>> import trimesh
+        >>> section = rw.measure.cross_section(trimesh.creation.box((2, 2, 2)), (0, 0, 0.5), (0, 0, 1))
+        >>> sorted(section.to_dict())
+        ['closed', 'line', 'x', 'y', 'z']
+        """
         counts = [len(line) for line in self.lines]
         points = np.concatenate([np.empty((0, 3)), *self.lines])
         columns = {

@@ -56,7 +56,19 @@ class Estimate(Plotted):
     _drawn = ("value", "standard_error")
 
     def to_dict(self) -> dict[str, NDArray[Any]]:
-        """Return flat arrays by name, an entry for each point, in C order."""
+        """Return flat arrays by name, an entry for each point, in C order.
+
+        Returns
+        -------
+        dict
+            An array for each column.
+
+        Examples
+        --------
+        >>> plain = rw.Mesh([[-9, 0, 9], [9, 0, 9], [0, 0, -9]], [[0, 1, 2]])
+        >>> rw.measure.sky_view(plain).to_dict()["value"].tolist()
+        [1.0]
+        """
         return {"value": self.value.reshape(-1), "standard_error": self.standard_error.reshape(-1)}
 
     def __repr__(self) -> str:

@@ -154,7 +154,20 @@ class LidarScan(Tabular):
         return plot((), getattr(self, name), self.position, ax, name, up, cmap)
 
     def to_dict(self) -> dict[str, NDArray[Any]]:
-        """Return flat arrays by name, an entry for each return; its place as x, y and z."""
+        """Return flat arrays by name, an entry for each return; its place as x, y and z.
+
+        Returns
+        -------
+        dict
+            An array for each column.
+
+        Examples
+        --------
+        >>> scanner = rw.measure.SpinningLidar(elevations=[-30], columns=2, position=(0, 1, 0))
+        >>> scan = rw.measure.lidar(rw.Plane(normal=(0, 1, 0)), scanner)
+        >>> scan.to_dict()["y"].round(9).tolist()
+        [0.0, 0.0]
+        """
         names = ("beam", "number", "range", "incidence", "strength", "shape_id", "primitive")
         columns = {name: getattr(self, name) for name in names}
         return columns | dict(zip("xyz", self.position.T, strict=True))

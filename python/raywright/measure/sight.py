@@ -46,6 +46,17 @@ class LineOfSight(Plotted):
         """Return flat arrays by name, an entry for each pair, in C order.
 
         Of the obstruction there are its share of the way, ``t``, its shape and its face.
+
+        Returns
+        -------
+        dict
+            An array for each column.
+
+        Examples
+        --------
+        >>> sight = rw.measure.line_of_sight(rw.Sphere(), (0, 0, -4), [[0, 0, 4], [4, 0, -4]])
+        >>> sight.to_dict()["visible"].tolist()
+        [False, True]
         """
         first = self.obstruction
         columns = {"visible": self.visible, "distance": self.distance, "t": first.t}

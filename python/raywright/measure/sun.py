@@ -52,7 +52,19 @@ class SolarExposure(Plotted):
     _drawn = ("exposure", "sunlit")
 
     def to_dict(self) -> dict[str, NDArray[Any]]:
-        """Return flat arrays by name, an entry for each point, in C order."""
+        """Return flat arrays by name, an entry for each point, in C order.
+
+        Returns
+        -------
+        dict
+            An array for each column.
+
+        Examples
+        --------
+        >>> plain = rw.Mesh([[-9, 0, 9], [9, 0, 9], [0, 0, -9]], [[0, 1, 2]])
+        >>> rw.measure.solar_exposure(plain, sun=[[0, 1, 0]]).to_dict()["sunlit"].tolist()
+        [1.0]
+        """
         return {"exposure": self.exposure.reshape(-1), "sunlit": self.sunlit.reshape(-1)}
 
     def __repr__(self) -> str:

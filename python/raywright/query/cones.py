@@ -72,7 +72,19 @@ class ConeTouches(Tabular):
         return sealed(np.diff(self.cone_splits).reshape(self.shape))
 
     def to_dict(self) -> dict[str, NDArray[Any]]:
-        """Return flat arrays by name, an entry for each touch, with the cone that it is of."""
+        """Return flat arrays by name, an entry for each touch, with the cone that it is of.
+
+        Returns
+        -------
+        dict
+            An array for each column.
+
+        Examples
+        --------
+        >>> scene = rw.Scene(rw.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]))
+        >>> list(scene.cone([0, 0, 4], [0, 0, -1], half_angle=5).to_dict())
+        ['cone', 'shape_id', 'primitive', 'distance']
+        """
         names = ("cone", "shape_id", "primitive", "distance")
         return {name: getattr(self, name) for name in names}
 

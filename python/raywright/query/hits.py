@@ -236,6 +236,17 @@ class SurfacePoints(Known, Tabular, PlottedPoints):
         dict
             One entry a ray or point for `Hits` and `ClosestPoints`, one entry a hit for `AllHits`, with its
             `ray`. Arrays of three columns are apart, as x, y and z, and those of two as u and v.
+
+        See Also
+        --------
+        Hits.to_dataframe : The same as a table of pandas.
+
+        Examples
+        --------
+        >>> hits = rw.Scene(rw.Sphere()).intersect([[0, 0, 5], [9, 0, 5]], [0, 0, -1])
+        >>> columns = hits.to_dict()
+        >>> columns["t"].tolist(), columns["shape_id"].tolist()
+        ([4.0, inf], [0, -1])
         """
         return rows.flat(self)
 
