@@ -215,6 +215,16 @@ def imports(source):
             yield node.module
 
 
+@functools.cache
+def why_no_device():
+    """Return why there is no graphics processor; an empty text if there is one."""
+    try:
+        rw.Gpu()
+    except (ImportError, RuntimeError) as missing:
+        return str(missing)
+    return ""
+
+
 @pytest.mark.parametrize("name", WITH_EXAMPLES)
 def test_examples_run(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
@@ -224,11 +234,8 @@ def test_examples_run(name, tmp_path, monkeypatch):
     for example in test.examples:
         for module in imports(example.source):
             pytest.importorskip(module, exc_type=ImportError)
-    if any("rw.Gpu(" in example.source for example in test.examples):
-        try:
-            rw.Gpu()
-        except (ImportError, RuntimeError) as missing:
-            pytest.skip(str(missing))
+    if any("rw.Gpu(" in example.source for example in test.examples) and (reason := why_no_device()):
+        pytest.skip(reason)
     told = []
     failed = doctest.DocTestRunner().run(test, out=told.append).failed
     if "matplotlib.pyplot" in sys.modules:
