@@ -80,7 +80,7 @@ class NestedGrid:
     density : float
         Cells for each primitive in every grid, more than 0 and at most 1000, by the cube-root rule.
     leaf : int
-        A cell with no more primitives than that gets no grid; at least 1.
+        Maximum number of primitives of a cell without a grid; at least 1.
     depth : int
         The most grids in each other, 1 to 16.
     mailbox : {"stamps", "cache", "none"}

@@ -39,9 +39,9 @@ class KdTree:
     empty_bonus : float
         Reduction of the cost of a plane with nothing on one side, 0 to 1. For ``"sah"``.
     max_depth : int, optional
-        Most levels below the root, 0 to 60; 8 + 1.3 log2(n) for n primitives if not given.
+        Maximum depth below the root, 0 to 60; 8 + 1.3 log2(n) for n primitives if not given.
     leaf_size : int
-        A cell with no more primitives than that is not parted.
+        Maximum number of primitives of a leaf that is not split.
 
     Raises
     ------
@@ -93,9 +93,9 @@ class Octree:
     Parameters
     ----------
     max_depth : int
-        Most levels below the root, 0 to 18.
+        Maximum depth below the root, 0 to 18.
     leaf_size : int
-        A cell with no more primitives than that is not parted. Nor is one where that would save no tests.
+        Maximum number of primitives of a leaf that is not split. Nor is one where that would save no tests.
 
     Raises
     ------
@@ -128,7 +128,7 @@ class Octree:
 
 @dataclass(frozen=True)
 class BSP:
-    """A tree of planes that lie as they like, taken from the polygons.
+    """A binary space partition: a tree of planes in any direction, taken from the polygons.
 
     After Fuchs, Kedem and Naylor (1980, "On visible surface generation by a priori tree structures") and,
     for rays, Ize, Wald and Parker (2008, "Ray tracing with the BSP tree"): each cell tries planes of a few
@@ -142,9 +142,9 @@ class BSP:
     traversal_cost, intersection_cost : float
         Cost of visiting a node and of testing a primitive, in any one unit; only their ratio matters.
     max_depth : int, optional
-        Most levels below the root, 0 to 60; 8 + 1.3 log2(n) for n primitives if not given.
+        Maximum depth below the root, 0 to 60; 8 + 1.3 log2(n) for n primitives if not given.
     leaf_size : int
-        A cell with no more primitives than that is not parted.
+        Maximum number of primitives of a leaf that is not split.
 
     Raises
     ------

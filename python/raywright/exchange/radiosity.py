@@ -106,8 +106,8 @@ def radiosity(
     progress : bool or callable
         As for `Scene.build`: the share of the work.
     states : bool
-        Whether to give a generator of solutions on their way instead, of "progressive": one a shot, the last
-        of them the end.
+        Whether to return a generator of intermediate solutions, for "progressive": one a shot, the final one
+        last.
 
     Returns
     -------

@@ -85,7 +85,7 @@ class RadiositySolution(Tabular):
     corners : (N, 3, 3) float64
         Positions of the corners, in the order of the face's; NaN for shapes that are no triangles.
     cuts : (F,) uint32
-        Into how many strips each face is cut, all copies counted.
+        Number of strips of each face, all copies counted.
     mirrored : (F,) bool
         True for faces of mirrored copies: their second and third corners change places.
     per : {"face", "vertex"}

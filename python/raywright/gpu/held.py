@@ -25,8 +25,8 @@ _OPEN = 0xFFFFFFFE
 class GpuScene:
     """A scene on a graphics processor: `Scene.on` makes it. It answers as the scene does, to the bit.
 
-    The CPU decides the rays that the device cannot; `stats` counts them. Should the device be lost, that is
-    warned of, once, and the CPU answers from then on.
+    The CPU decides the rays that the device cannot; `stats` counts them. If the device is lost, there is one
+    warning, and the CPU answers from then on.
 
     See Also
     --------

@@ -18,7 +18,7 @@ class AmbientOcclusion:
     radius : float
         Maximum distance of occluders, in the scene's unit, above 0; infinite by default.
     cosine : bool
-        True if directions are weighed by their cosine, as for uniform light, or all alike.
+        True to weigh directions by their cosine, as for uniform light; False for equal weights.
     samples : int
         Directions for each camera ray, 1 to 1024.
 

@@ -16,9 +16,9 @@ if TYPE_CHECKING:
 class Integrator(ABC):
     """The base class of integrators written in Python, which work on whole batches.
 
-    A subclass is given to `render` as the core's integrators are, and its pictures have error estimates,
-    limits and history as theirs do. Batches are of some thousand rays; several threads may call `radiance` at
-    once, so it must not change the integrator.
+    `render` takes a subclass like the core's integrators, with error estimates, limits and history. Batches
+    are of some thousand rays; several threads may call `radiance` at once, so it must not change the
+    integrator.
 
     See Also
     --------

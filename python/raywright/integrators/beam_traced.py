@@ -33,7 +33,7 @@ class BeamTraced:
     Parameters
     ----------
     max_depth : int
-        Greatest number of surfaces that light comes by.
+        Maximum number of surfaces on a light path.
     ambient : float or 3 floats
         Uniform radiance in place of light that is not followed; surfaces reflect their ambient share of it,
         as in `RayCast`.

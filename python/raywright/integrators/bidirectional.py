@@ -33,8 +33,8 @@ class Bidirectional:
     Parameters
     ----------
     max_depth : int or None
-        Greatest number of bounces, off surfaces or in media: 0 shows emitters only, 1 adds direct light. None
-        ends paths by Russian roulette alone, which leaves no bias.
+        Maximum number of bounces, off surfaces or in media: 0 shows emitters only, 1 adds direct light
+        (Mitsuba's max_depth minus 1). None ends paths by Russian roulette alone, which leaves no bias.
     roulette_depth : int
         Bounces before Russian roulette begins, from either end, at least 0.
     merge : bool

@@ -27,7 +27,7 @@ class ConeTraced:
     Parameters
     ----------
     max_depth : int
-        Greatest number of surfaces that light comes by.
+        Maximum number of surfaces on a light path.
     contribution : float
         Cones that contribute less than this share to their pixel are not followed: 0 (all are) to below 1.
     ambient : float or 3 floats

@@ -18,7 +18,7 @@ class Distributed:
     Parameters
     ----------
     max_depth : int
-        Greatest number of surfaces that light comes by.
+        Maximum number of surfaces on a light path.
     splits : int
         Rays that the first surface splits one into, and light samples there: 1 to 1024.
     ambient : float or 3 floats

@@ -20,8 +20,8 @@ class LightTraced:
     Parameters
     ----------
     max_depth : int or None
-        Greatest number of bounces, off surfaces or in media: 0 shows emitters only, 1 adds direct light. None
-        ends paths by Russian roulette alone, which leaves no bias.
+        Maximum number of bounces, off surfaces or in media: 0 shows emitters only, 1 adds direct light
+        (Mitsuba's max_depth minus 1). None ends paths by Russian roulette alone, which leaves no bias.
     roulette_depth : int
         Bounces before Russian roulette begins, at least 0.
 

@@ -67,8 +67,8 @@ class PhotonMap:
         Kernel of the density estimate: constant, or falling with the distance (Jensen's cone with k = 1;
         Epanechnikov 1969), which blurs less and is noisier.
     max_depth : int or None
-        Greatest number of bounces, off surfaces or in media: 0 shows emitters only, 1 adds direct light. None
-        ends paths by Russian roulette alone, which leaves no bias.
+        Maximum number of bounces, off surfaces or in media: 0 shows emitters only, 1 adds direct light
+        (Mitsuba's max_depth minus 1). None ends paths by Russian roulette alone, which leaves no bias.
     roulette_depth : int
         Bounces before Russian roulette begins, at least 0.
 
@@ -142,8 +142,8 @@ class ProgressivePhotonMap:
     filter : {"box", "cone", "epanechnikov"}
         Kernel of the density estimate.
     max_depth : int or None
-        Greatest number of bounces, off surfaces or in media: 0 shows emitters only, 1 adds direct light. None
-        ends paths by Russian roulette alone, which leaves no bias.
+        Maximum number of bounces, off surfaces or in media: 0 shows emitters only, 1 adds direct light
+        (Mitsuba's max_depth minus 1). None ends paths by Russian roulette alone, which leaves no bias.
     roulette_depth : int
         Bounces before Russian roulette begins, at least 0.
 

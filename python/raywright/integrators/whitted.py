@@ -14,12 +14,12 @@ class Whitted:
 
     Only smooth surfaces are followed, to a depth or for as long as they contribute (Hall and Greenberg 1983);
     diffuse light between surfaces is left to `ambient`, so the picture is biased by design, and without noise
-    where lights are points and the camera a pinhole.
+    for point lights and a pinhole camera.
 
     Parameters
     ----------
     max_depth : int
-        Greatest number of surfaces that light comes by.
+        Maximum number of surfaces on a light path.
     contribution : float
         Rays that contribute less than this share to their pixel are not followed: 0 (all are) to below 1.
     ambient : float or 3 floats

@@ -151,7 +151,7 @@ class SunSky:
         latitude, longitude : float
             The place in degrees, north and east positive.
         north : 3 floats
-            The direction of the north; only what of it is at right angles to `up` counts.
+            The direction of the north; only its component at right angles to `up` counts.
         turbidity, ground_albedo, up, sun_scale, sky_scale
             As the class takes them.
 

@@ -96,8 +96,8 @@ def sky_view(
     scene : Scene, Mesh or anything else that a Scene is made of
         Obstructions.
     points : Hits, ClosestPoints or (..., 3) array, optional
-        Where. Rays leave hits exactly as in `Hits.leave`, and plain points by `offset`. The middle of every
-        face if not given, which only meshes have.
+        Points on surfaces. Rays leave hits exactly as in `Hits.leave`, and plain points by `offset`. The
+        middle of every face if not given, which only meshes have.
     normals : (..., 3) array, optional
         Normals of any length; those of the surfaces if not given, which only hits have.
     rays : int

@@ -36,7 +36,7 @@ def plot(
         One for each point; without points one for each face, or one for each vertex, of all meshes in order.
         NaN is drawn in grey, and infinity in the color of the nearest end.
     points : Hits, ClosestPoints or (..., 3) array, optional
-        Where. The meshes are grey below them, unless the points are their vertices.
+        Places of the values. The meshes are grey below them, unless the points are their vertices.
     ax : matplotlib.axes.Axes, str or path, optional
         Target: a new figure if not given, axes with three dimensions, or a file, .png, .svg or .pdf.
     label : str

@@ -56,8 +56,8 @@ class SpinningLidar(_Scanner):
     position : 3 floats
         Position of the scanner.
     forward, up : 3 floats
-        Its azimuth 0 and its vertical, y if not given as everywhere in `raywright.measure`; only what of
-        `forward` is at right angles to `up` counts.
+        Its azimuth 0 and its vertical, y if not given as everywhere in `raywright.measure`; only the
+        component of `forward` at right angles to `up` counts.
     min_range, max_range : float
         Limits of the measured range, both included. Nearer surfaces are not measured, and hide surfaces
         behind them.
@@ -144,8 +144,8 @@ class RasterLidar(_Scanner):
     position : 3 floats
         Position of the scanner.
     forward, up : 3 floats
-        The middle of the field's horizon, and the vertical, y if not given; only what of `forward` is at
-        right angles to `up` counts.
+        The middle of the field's horizon, and the vertical, y if not given; only the component of `forward`
+        at right angles to `up` counts.
     min_range, max_range, divergence, rays, resolution
         As for `SpinningLidar`.
 

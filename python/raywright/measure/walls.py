@@ -36,7 +36,7 @@ def thickness(
     scene : Scene, Mesh or anything else that a Scene is made of
         The body; normals point out of it.
     points : Hits, ClosestPoints or (..., 3) array, optional
-        Where. The middle of every face if not given, which only meshes have.
+        Points on the surface. The middle of every face if not given, which only meshes have.
     normals : (..., 3) array, optional
         Outward normals, of any length; those of the surfaces if not given, which only hits have.
     method : {"ray", "sphere"}

@@ -152,7 +152,7 @@ class GridMedium(Medium):
         path : str or path
             A file of numpy's (``.npy``), Mitsuba's (``.vol``, version 3, of one or three channels of
             float32), or OpenVDB's (``.vdb``, of float grids). Most of the last are compressed by Blosc, and
-            want ``pip install 'raywright[vdb]'``.
+            need ``pip install 'raywright[vdb]'``.
         bounds : (2, 3) array, optional
             Bounds of the grid, in place of the file's.
         density : str

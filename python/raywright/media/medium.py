@@ -4,7 +4,9 @@ from typing import Any
 
 
 class Medium:
-    """The base class of media, which absorb, scatter and emit light. Its subclasses say how much where.
+    """The base class of media, which absorb, scatter and emit light.
+
+    Its subclasses give the coefficients.
 
     See Also
     --------

@@ -92,7 +92,7 @@ class SparseGrid:
 
         Parameters
         ----------
-        numbers : array_like, or what has a shape and gives slabs by slices
+        numbers : array_like, or object with a shape that gives slabs by slices
             (X, Y, Z) or (X, Y, Z, 3), finite and at least 0: an array, a memory map such as
             ``np.load(path, mmap_mode="r")``, or a dataset of h5py or zarr.
 

@@ -174,7 +174,7 @@ class PointQueries:
     def signed_distance(
         self, points: ArrayLike, threads: int | None = None, shapes: ShapeMask | None = None
     ) -> NDArray[np.float64]:
-        """Find how far each point is from the surface: negative inside, positive outside, zero on it.
+        """Compute the signed distance of each point to the surface: negative inside, positive outside.
 
         Points are inside where `contains` finds them inside, with its warnings. The nearest surface may be of
         a shape that is open. (Open3D and most of CAD have this sign, trimesh has the other.)

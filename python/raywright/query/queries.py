@@ -487,11 +487,10 @@ class Queries(PointQueries):
     ) -> Hits:
         """Find the hit at every pixel by rasterization: the same as ``intersect(*camera.rays(offsets))``.
 
-        Faces are projected into the picture (Catmull 1974), and at the pixels that one may cover it is
-        decided for the pixel's ray, exactly, as `intersect` does. Parts of the picture with too many faces
-        are traced instead, and all of it is if there are more faces than a quarter of its pixels, something
-        in the scene is no mesh, or the camera is not a pinhole that stands still. ``report.first_hits``
-        measures the gain.
+        Faces are projected into the picture (Catmull 1974), and tested exactly, as in `intersect`, against
+        the rays of the pixels that they may cover. Parts of the picture with too many faces are traced
+        instead, and all of it is if there are more faces than a quarter of its pixels, something in the scene
+        is no mesh, or the camera is not a pinhole that stands still. ``report.first_hits`` measures the gain.
 
         Parameters
         ----------

@@ -373,13 +373,12 @@ class Image:
         Parameters
         ----------
         path : str or path
-            ``.png``, ``.jpg``, ``.jpeg``, ``.webp`` and ``.avif`` are for the eye: 8 bits, as `srgb` gives
-            them, with alpha if the picture has one. JPEG knows none: there it stands before black. ``.npy``
-            holds `rgb`. ``.exr`` holds `rgb` as channels R, G, B, `alpha` as A, `standard_error` as
-            standard_error.R, .G, .B, and the buffers of `aov` as layers of 32-bit floats, as compositing
-            programs call them: depth.Z, normal.X, .Y, .Z, albedo.R, .G, .B, and so on. Indices are of 32 bits
-            without a sign (4294967295 for none), shapes also as Cryptomatte 1.2, by the names "shape 0",
-            "shape 1", ...
+            ``.png``, ``.jpg``, ``.jpeg``, ``.webp`` and ``.avif`` hold the 8 bits of `srgb`, with alpha if
+            the picture has one. JPEG has no alpha: the background is black. ``.npy`` holds `rgb`. ``.exr``
+            holds `rgb` as channels R, G, B, `alpha` as A, `standard_error` as standard_error.R, .G, .B, and
+            the buffers of `aov` as layers of 32-bit floats, as compositing programs call them: depth.Z,
+            normal.X, .Y, .Z, albedo.R, .G, .B, and so on. Indices are of 32 bits without a sign (4294967295
+            for none), shapes also as Cryptomatte 1.2, by the names "shape 0", "shape 1", ...
         exposure : float
             Exposure of 8-bit pictures, in stops.
         tone : str

@@ -222,13 +222,13 @@ def rays_per_build(
     """Rank accelerators by rays a second, builds included.
 
     A scene that changes pays for a build again and again: the fewer rays it traces in between, the less a
-    good tree is worth. Times to build and rays a second are measured as `accelerators` does it; times for
-    more rays than that are reckoned from them.
+    good tree is worth. Times to build and rays a second are measured as in `accelerators`; times for more
+    rays are extrapolated.
 
     Parameters
     ----------
     scene, accelerators, rays, threads, repeats, seed
-        As in `accelerators`; rays take all cores if nobody says, as builds do.
+        As in `accelerators`; by default rays take all cores, as builds do.
     counts : sequence of numbers
         Number of rays traced after a build; whole, and 1 at least.
 

@@ -87,7 +87,7 @@ def time_share(scene: Scene, rays: Any, repeats: int = 7) -> TimeShare:
     scene : Scene
         The scene, whose accelerator is measured.
     rays : Camera, Rays, or (origins, directions)
-        Their closest hits are found.
+        Rays to time, for their closest hits.
     repeats : int
         Number of timings of each batch.
 

@@ -79,10 +79,10 @@ class Scene(Queries):
     accelerator : BVH, KdTree, Octree, BSP, Grid, NestedGrid or BruteForce
         The structure that finds hits.
     precision : {"auto", "single", "double"}
-        Precision of vertices: "single" to float32, which takes the least memory and is the fastest, "double"
-        not at all. "auto" loses no digit: vertices are kept as float32 where all of them are float32 numbers,
-        as those of most binary files are, and as float64 otherwise. Either way hits are exact for the
-        vertices as they then are. "double" costs nothing where all vertices are float32 numbers anyway.
+        Precision of vertices: "single" rounds them to float32, which takes the least memory and is the
+        fastest, "double" does not round. "auto" loses no digit: vertices are float32 if all of them are
+        float32 numbers, as those of most binary files are, and float64 otherwise. Either way hits are exact
+        for the stored vertices. "double" costs nothing if all vertices are float32 numbers anyway.
     quality : {"balanced", "fast build", "fast rays"}
         Effort spent on the accelerator's build to make rays faster. Except with "fast build": if the geometry
         is rotated as a whole, oriented bounding boxes are used, and long diagonal primitives may be split, by
@@ -93,12 +93,12 @@ class Scene(Queries):
         Medium outside of all shapes: haze, fog, sea. None is clear.
     shading_normals : {"faded", "as given"}
         Treatment of shading normals that differ from those of faces: of vertices, bumps and normal maps.
-        "faded" lets it fade towards the horizon of the face, so that facets do not show at grazing angles,
+        "faded" lets light fade towards the horizon of the face, so that facets do not show at grazing angles,
         and bends normals that face away towards the viewer. "as given" does neither, as other renderers: see
         Notes.
     weld : "auto", float or None
-        Distance at which corners of meshes are merged, in the scene's unit: see Notes. None for those alone
-        that are equal.
+        Distance at which corners of meshes are merged, in the scene's unit: see Notes. None merges equal
+        corners only.
 
     Raises
     ------

@@ -24,7 +24,7 @@ def material_ball(
     Parameters
     ----------
     material : material, optional
-        Of the ball; ``Diffuse(0.5)`` if not given.
+        Material of the ball; ``Diffuse(0.5)`` if not given.
     width, height : int
         Size of the picture in pixels.
 

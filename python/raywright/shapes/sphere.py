@@ -49,8 +49,8 @@ class Sphere(Shape):
     Notes
     -----
     ``u`` is the longitude about +z from +x on, in turns; ``v`` the latitude, from 0 at the pole on -z to 1 at
-    the pole on +z. Tangent rays are hits, and cross nothing where all crossings are asked for. It is sampled
-    uniformly in the cone that it fills as seen from outside, and in all directions from inside.
+    the pole on +z. Tangent rays are hits, but no crossings. It is sampled uniformly in the cone that it fills
+    as seen from outside, and in all directions from inside.
 
     Examples
     --------

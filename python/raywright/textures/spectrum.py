@@ -13,12 +13,13 @@ from .texture import Texture
 
 @dataclass(frozen=True, init=False)
 class Spectrum(Texture):
-    """A colour, or light, by wavelength: linear between its values, and 0 beyond them.
+    """A spectrum of reflectance or of light: linear between its values, and 0 beyond them.
 
-    It may stand wherever a colour may. A scene that has one is rendered by wavelength (see `Scene.plan`). As
-    a reflectance it is a share of light; as a radiance, intensity or irradiance, light itself, in the unit of
-    that for each of red, green and blue: a value of 1 at all wavelengths has a luminance of 1, like a white
-    of (1, 1, 1). Such an even light is reddish, since white is daylight (CIE D65).
+    Every color parameter also accepts a spectrum. A scene with one is rendered by wavelength (see
+    `Scene.plan`). As a reflectance it is a share of light; as a radiance, intensity or irradiance, light
+    itself, in the unit of that for each of red, green and blue: a value of 1 at all wavelengths has a
+    luminance of 1, like a white of (1, 1, 1). Such an even light is reddish, since white is daylight (CIE
+    D65).
 
     Parameters
     ----------

@@ -241,7 +241,7 @@ def view(
         Camera at the start. If not given, all of the scene is in the picture, and a scene without any light
         is lit as by a studio's lamps.
     exposure, tone
-        How pictures are shown, as in `Image.save`. The page changes the exposure without a new render.
+        Exposure and tone of pictures, as in `Image.save`. The page changes the exposure without a new render.
     fit : bool
         True to render as many pixels as the window has room for, in the shape of the camera's picture, False
         for as many as the camera has. `Viewer.camera` keeps its own size.
