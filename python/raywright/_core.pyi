@@ -157,7 +157,7 @@ class CompiledScene:
         out: NDArray[np.bool_] | None = None,
         counted: tuple[list[bool] | None, bool] | None = None,
     ) -> NDArray[np.bool_]:
-        """Whether each ray hits anything. Arguments as `intersect`."""
+        """Return whether each ray hits anything. Arguments as `intersect`."""
     def optical_depth(self, rays: _Rays) -> NDArray[np.float64]:
         """Return the optical depths of the media along rays, (..., 3)."""
     def intersect_all(
@@ -180,7 +180,7 @@ class CompiledScene:
         self,
         rays: _Rays,
     ) -> NDArray[np.int32]:
-        """How many hits each ray has."""
+        """Return the number of hits of each ray."""
     def cost(
         self,
         rays: _Rays,
@@ -195,7 +195,7 @@ class CompiledScene:
         tolerance: float | None = None,
         is_even_odd: bool = False,
     ) -> NDArray[np.bool_]:
-        """Whether points of leading shape `shape` are inside something closed or on it."""
+        """Return whether points of leading shape `shape` are inside a closed shape or on it."""
     def inverted(self, shapes: list[bool] | None = None, tolerance: float | None = None) -> list[int]:
         """Return the meshes whose normals point into them."""
     def nearest(
@@ -247,10 +247,10 @@ class CompiledScene:
         """The shapes that it was compiled from, in their order."""
     @property
     def is_rounded(self) -> bool:
-        """Whether rounding to float32 has moved vertices."""
+        """True if rounding to float32 has moved vertices."""
     @property
     def loss(self) -> tuple[float, float] | None:
-        """How far rounding has moved vertices, and as a share of their mesh's extent, where it is a loss."""
+        """Displacement of vertices by rounding, and its share of their mesh's extent, where it is a loss."""
     @property
     def growth(self) -> float:
         """The accelerator's SAH cost over what it was when it was built."""
@@ -258,7 +258,7 @@ class CompiledScene:
     def accelerator(self) -> AcceleratorInfo: ...
     @property
     def curved(self) -> bool:
-        """Whether anything in it is no mesh."""
+        """True if anything in it is no mesh."""
 
     @property
     def dropped(self) -> int:
@@ -294,15 +294,15 @@ class Job:
 
 @final
 class Sight:
-    """What can be seen of a render while a pass is worked on; None between passes."""
+    """A view of a render during a pass; None between passes."""
 
     def __new__(cls, rendering: Rendering) -> Sight: ...
     @property
     def is_open(self) -> bool:
-        """Whether a pass is worked on, or has just been done."""
+        """True during a pass, and just after it."""
     @property
     def is_done(self) -> bool:
-        """Whether nobody works on it: whoever looks is waited for."""
+        """True if it is at rest: viewers are waited for."""
     def outline(self) -> Rendering | None:
         """Return the render without its pixels."""
     def copy(self) -> Rendering | None:
@@ -313,16 +313,16 @@ class Sight:
     def counts(self) -> NDArray[np.uint32] | None: ...
     @property
     def amiss(self) -> tuple[int, int] | None:
-        """How many samples were not finite or negative, and how many were clamped."""
+        """Number of samples that were not finite or negative, and number of clamped samples."""
 
 @final
 class Rendering:
-    """A render: its picture so far, and what it takes to go on with it."""
+    """A render: its picture so far, and its state."""
 
     def __new__(cls, job: Job, threads: int | None, patch: int) -> Rendering: ...
     @staticmethod
     def from_bytes(data: bytes, job: Job, threads: int | None, patch: int) -> Rendering:
-        """From what `to_bytes` gave; a ValueError says why bytes are not that, whoever made them."""
+        """Decode the bytes of `to_bytes`; a ValueError gives the reason if bytes are invalid."""
     @staticmethod
     def most_bytes(job: Job) -> int:
         """Return how many bytes `to_bytes` gives at most."""
@@ -349,10 +349,10 @@ class Rendering:
         """Samples of each pixel (H,W)."""
     @property
     def trusted(self) -> bool:
-        """Whether the error estimate rests on many samples that agree on it; True where there is none."""
+        """True if the error estimate rests on many samples that agree on it; True where there is none."""
     @property
     def carried(self) -> tuple[int, float] | None:
-        """How few finds carry more than half of the error estimate, and their share; None if many do."""
+        """Fewest finds with more than half of the error estimate, and their share; None if there are many."""
     @property
     def dropped(self) -> int:
         """Samples that were NaN, infinite or negative, and are counted as black."""
@@ -410,13 +410,13 @@ class Rendering:
         """Samples after the pass that is being worked on; as many as there are if none is."""
     @property
     def tiles(self) -> int:
-        """How many tiles the picture has."""
+        """Number of tiles of the picture."""
     @property
     def block(self) -> int:
         """Samples that are added up by themselves."""
     @property
     def appends(self) -> bool:
-        """Whether samples that fill blocks can be requested before those that come first are there."""
+        """True if samples that fill blocks can be requested before earlier ones are there."""
     @property
     def rate(self) -> float:
         """Seconds that a sample of all pixels took in the last pass; 0 before there was one."""
@@ -461,7 +461,7 @@ def student(level: float, degrees: NDArray[np.float64]) -> NDArray[np.float64]:
 def chances(
     scene: CompiledScene, path: Any, threads: int | None, look: Callable[[], None] | None
 ) -> tuple[bool, bool]:
-    """Whether paths can share what they find in a scene, and whether there are mirrors or glass to aim at.
+    """Return whether paths can be reused in a scene, and whether there are mirrors or glass to aim at.
 
     Signals are checked, and ``look`` is called, as by `Rendering.go_on`.
     """
@@ -490,7 +490,7 @@ def aovs(
     """
 
 def plan(scene: CompiledScene) -> tuple[str, list[tuple[str, bool, str]]]:
-    """Name the kernel that shades the scene, and tell rows of what, whether, and what follows."""
+    """Return the kernel that shades the scene, and rows of a feature, its presence, and the consequence."""
 
 def denoise_candidates(
     halves: dict[str, Any], features: NDArray[np.float64], threads: int | None
@@ -498,7 +498,7 @@ def denoise_candidates(
     """Return each half of a picture as it is and filtered in some ways, (2, ways, H, W, 3).
 
     ``halves`` has ``quarters`` and ``variances`` of `Rendering.halves`, the ``samples`` of a pixel and the
-    ``patch``; ``features`` are two independent pictures of what is seen first, (2, H, W, 7).
+    ``patch``; ``features`` are two independent pictures of the first hit, (2, H, W, 7).
     """
 
 def denoise_settle(
@@ -529,7 +529,7 @@ def camera_rays_through(
 
 @final
 class FlatScene:
-    """A compiled scene as flat arrays, and what kernels over these need of the core."""
+    """A compiled scene as flat arrays, and the core's part in kernels over these."""
 
     def __new__(cls, scene: CompiledScene, accelerator: Any, quality: str, prototypes: bool) -> FlatScene: ...
     @property
@@ -543,7 +543,7 @@ class FlatScene:
         """(I, 16), the bytes of instances: a (3, 4) matrix, first node, node after, primitive, 0."""
     @property
     def own(self) -> tuple[int, int]:
-        """How many of the nodes and of the triangles are the scene's own."""
+        """Number of nodes and of triangles of the scene's own tree."""
     @property
     def unbounded(self) -> NDArray[np.uint32]:
         """Primitives without end: (U,)."""
@@ -577,21 +577,21 @@ class FlatScene:
     ]:
         """Find the closest hits among candidates (N, 4), as `CompiledScene.intersect` gives them.
 
-        And of how many rays candidates had to be decided, and how many the accelerator was asked about.
+        And the number of rays with candidates to decide, and of rays left to the accelerator.
         """
     def occluded(
         self,
         rays: _Rays,
         told: NDArray[np.uint32],
     ) -> tuple[NDArray[np.bool_], tuple[int, int]]:
-        """Find whether rays hit anything, of which (N,) tells what they may hit.
+        """Find whether rays hit anything, from their candidates (N,).
 
-        And of how many rays that had to be decided, and how many the accelerator was asked about.
+        And the number of rays to decide, and of rays left to the accelerator.
         """
 
 @final
 class GridBlocks:
-    """Numbers on a grid, one or three a point, of which zeros take no memory."""
+    """Numbers on a grid, one or three a point; zeros take no memory."""
 
     def __new__(
         cls,
@@ -668,8 +668,8 @@ def photons(
 ]:
     """Return light at each surface that it comes to: positions, directions, normals and powers (K,3).
 
-    Then shape_id, primitive, path and bounces (K,), bits of which bounces were sharp and which by media, and
-    what is emitted, escapes and is absorbed by media. Signals are checked.
+    Then shape_id, primitive, path and bounces (K,), bits of specular bounces and of those in media, and the
+    flux that is emitted, escapes and is absorbed by media. Signals are checked.
     """
 
 def cone_coverage(
@@ -692,7 +692,7 @@ def cones(
     shape: tuple[int, ...],
     threads: int | None,
 ) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.int32], NDArray[np.int32]]:
-    """Find what N cones touch, nearest first: splits (N+1,), distance (K,), shape_id (K,), primitive (K,).
+    """Find faces in N cones, nearest first: splits (N+1,), distance (K,), shape_id (K,), primitive (K,).
 
     Arguments as `CompiledScene.intersect`; `half_angle` is in degrees.
     """
@@ -751,7 +751,7 @@ def metals() -> list[tuple[str, str]]:
     """Tell the metals that are known: symbol and name."""
 
 def metal_index(name: str) -> list[list[float]]:
-    """Tell what was measured of a metal: rows of wavelength (nm), real and imaginary part of its index."""
+    """Return the measured index of a metal: rows of wavelength (nm), real and imaginary part."""
 
 def daylight_power() -> list[float]:
     """Tell the power of daylight (D65) at each nm from 360 to 830, 100 at 560."""
@@ -773,7 +773,7 @@ def spectrum_rgb(rows: Sequence[Sequence[float]], of_daylight: bool) -> list[flo
 def polygon_trouble(
     outline: Sequence[Sequence[float]], holes: Sequence[Sequence[Sequence[float]]]
 ) -> str | None:
-    """Say what is wrong with a polygon; None if nothing is."""
+    """Describe the error of a polygon; None if nothing is."""
 
 def leading_numbers(text: bytes, skipped: Sequence[bytes]) -> tuple[NDArray[np.float64], bool]:
     """Return the numbers at the beginning of a text, and whether nothing else follows them.
@@ -787,7 +787,7 @@ def triangulate_polygons(
     """Return the triangles of polygons with so many corners each, (T, 3) indices of corners."""
 
 def implicit_trouble(expression: str, min: Sequence[float], max: Sequence[float]) -> str | None:
-    """Say what is wrong with an expression or its box; None if nothing is."""
+    """Describe the error of an expression or its box; None if nothing is."""
 
 @final
 class Interactions:
@@ -827,7 +827,7 @@ class Interactions:
     def light_pdf(self, before: Interactions) -> NDArray[np.float64]: ...
 
 def interactions(scene: CompiledScene, origins: _Floats, directions: _Floats, time: _Numbers) -> Interactions:
-    """Find what rays of unit direction meet: (N,3) origins and directions, and a time for all or each."""
+    """Find the hits of rays of unit direction: (N,3) origins and directions, and a time for all or each."""
 
 def random_numbers(
     seed: int, pixel: NDArray[np.uint32], sample: NDArray[np.uint32], dimension: int, pair: bool
@@ -868,7 +868,7 @@ def points(
 
 @final
 class MeshTopology:
-    """How the faces of a mesh hang together."""
+    """Topology of the faces of a mesh."""
 
     @property
     def volumes(self) -> list[float]: ...
@@ -915,13 +915,13 @@ def weld_rounding(vertices: _Floats, faces: NDArray[np.uint32]) -> float:
 def tree(
     scene: CompiledScene,
 ) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.float64]] | None:
-    """Return depth (K,), primitives (K,), -1 of what is no leaf, and corners (K, 24) of a tree's boxes."""
+    """Return depth (K,), primitives (K,), -1 for inner nodes, and corners (K, 24) of a tree's boxes."""
 
 def coincident_faces(
     scene: CompiledScene,
     touching: bool,
 ) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_], NDArray[np.float64]]:
-    """Return pairs of faces that share a part of one plane (K,2), and what they share.
+    """Return pairs of faces that share a part of one plane (K,2), and the shared area.
 
     The areas in common (K,), whether both look the same way (K,), whether they touch front to front (K,), if
     `touching`, and the areas of all faces (N,).
@@ -944,11 +944,10 @@ def view_factor_matrix(
 ]:
     """Return areas (N,), view factors (N,N), what is sampled, and numbers of pairs.
 
-    Those are the pairs that are closed, hidden and sampled. What is sampled: pairs of faces (K,2), and
-    standard errors (K,) of the area of each times its view factor to the other. Last, the number of
-    rays, and which rows are sampled and add up to one (N,). ``errors`` are the greatest standard error of a
-    factor, and that as a share of the greatest factor of its rows. ``rays`` are those between two faces,
-    and those of a row.
+    Those are the pairs that are closed, hidden and sampled. Sampled pairs of faces (K,2), and standard errors
+    (K,) of the area of each times its view factor to the other. Last, the number of rays, and which rows are
+    sampled and add up to one (N,). ``errors`` are the greatest standard error of a factor, and that as a
+    share of the greatest factor of its rows. ``rays`` are those between two faces, and those of a row.
     """
 
 def view_factor_rows(
