@@ -1,5 +1,5 @@
-//! Paths of a group that share the light found beyond their second points (Bekaert, Sbert and Halton, "Accelerating Path
-//! Tracing by Re-Using Paths", 2002).
+//! Path sharing: paths of a group share the light found beyond their second points (Bekaert, Sbert and Halton,
+//! "Accelerating Path Tracing by Re-Using Paths", 2002).
 //!
 //! Path j of a group goes from a first point xⱼ, where scattering is diffuse, to a second, yⱼ. If that is diffuse too,
 //! the radiance that yⱼ reflects is the same for all first points that see it. So each first point takes a share of it

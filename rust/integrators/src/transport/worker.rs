@@ -136,8 +136,8 @@ impl<'a, N: Features> TransportWorker<'a, N> {
         if N::SHARES && index >= samples { index - samples } else { index }
     }
 
-    /// A path comes to a surface, on a primitive of the scene. Where what it finds from there on is shared, it goes on as
-    /// the path of a sample of number `samples` or more.
+    /// Records the first and the second point of a path that shares. If the light beyond is shared, the path goes on as
+    /// the path of its sample's number plus `samples`.
     #[inline]
     pub(super) fn visit<S: Bsdf>(
         &mut self,

@@ -103,8 +103,7 @@ loops! {
             let (v, w) = (greater(v, 0.0), greater(w, 0.0));
             let sum = 1.0 / greater(v + w, 1.0);
             let (v, w) = (f64::from(lesser(v * sum, 1.0)), f64::from(lesser(w * sum, 1.0)));
-            // The first point errs by 2⁻²³ of the triangle's size. A second step from there errs by as much of the ray's
-            // length.
+            // The first point errs by 2⁻²³ of the triangle's size, a second step by as much of the ray's length.
             let rest = (origin.get(i) - (a * (1.0 - v - w) + b * v + c * w)).as_vec3();
             let v = v + f64::from(rest.dot(across) * inverse);
             let w = w + f64::from(d.dot(rest.cross(first)) * inverse);
