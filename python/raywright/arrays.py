@@ -49,7 +49,7 @@ def real_array(name: str, value: ArrayLike) -> NDArray[Any]:
 def last_axis(name: str, value: ArrayLike, length: int) -> NDArray[Any]:
     """Return `value` as `real_array` does, having checked that its last dimension has `length` entries."""
     array = real_array(name, value)
-    if array.ndim == 0 or array.shape[-1] != length:
+    if array.shape[-1:] != (length,):
         raise ValueError(f"{name} must have shape (..., {length}), got {array.shape}")
     return array
 

@@ -57,12 +57,10 @@ def ray_arguments(
     threads = thread_limit(threads)
     when = None if time is None else _times(time)
     shape, lead = starts.shape[:-1], ways.shape[:-1]
-    if type(near) is float and type(far) is float and not isinstance(when, np.ndarray):
+    is_usual = type(near) is float and type(far) is float and not isinstance(when, np.ndarray)
+    if is_usual and (not lead or not shape or shape == lead):
         # Ordinary rays need no broadcasting; for a few rays it would take as long as tracing.
-        if not lead or shape == lead:
-            return view(starts, shape, 1), view(ways, lead, 1), near, far, shape, threads, when
-        if not shape:
-            return _in_order(starts), view(ways, lead, 1), near, far, lead, threads, when
+        return _rows(starts, shape), _rows(ways, lead), near, far, shape or lead, threads, when
     parts = {"origins": shape, "directions": lead, "t_min": np.shape(near), "t_max": np.shape(far)}
     if isinstance(when, np.ndarray):
         parts["time"] = when.shape
@@ -138,6 +136,12 @@ def _in_order(array: NDArray[Any]) -> NDArray[Any]:
     """Return it C-contiguous and aligned."""
     flags = array.flags
     return array if flags.c_contiguous and flags.aligned else np.require(array, requirements=["C", "A"])
+
+
+def _rows(array: NDArray[Any], lead: tuple[int, ...]) -> NDArray[Any]:
+    """Return what `view` does of vectors whose leading shape this is."""
+    flags = array.flags
+    return array if flags.c_contiguous and flags.aligned else view(array, lead, 1)
 
 
 def view(array: NDArray[Any], lead: tuple[int, ...], columns: int = 0) -> NDArray[Any]:
