@@ -11,7 +11,7 @@ _HEAD = """# Benchmarks
 raywright beside other engines on one machine. `python benches/benchmarks_page.py` measures all of it in
 about five minutes and writes this page; each section has its date and machine, and its figures are in
 `docs/benchmarks/`. On your machine, the same scripts print more: `benches/peers.py`, `stress.py`,
-`points.py`, `view_factors.py` and `render_peers.py`.
+`small_calls.py`, `points.py`, `view_factors.py` and `render_peers.py`.
 """
 
 _TITLES = {
