@@ -1,15 +1,18 @@
-"""Frames a second from Python: a camera moves around a mesh, with a ray and a shadow ray for each pixel.
+"""Frames a second: a camera moves around a mesh, with a ray and a shadow ray for each pixel.
 
     python benches/frames.py                                  # a sphere, a torus and a room, 800 by 600
     python benches/frames.py --mesh bunny.npz --mesh room --threads 1,2 --frames 120
 
-A frame is all that an interactive ray tracer does but show the picture: a new camera, its rays as float32
+A frame is all that an interactive ray tracer does but show the picture. It is drawn in two ways.
+`Scene.preview` is one call. The other way is numpy between two calls: a new camera, its rays as float32
 arrays, their closest hits, the rays from there to a lamp, whether these are blocked, and grey values by
-Lambert's law. Arrays of the frame before are used again. It is checked once that lit pixels are what closest
-hits of the shadow rays say.
+Lambert's law. Both write to the arrays of the frame before.
 
-The table has medians over the frames, in milliseconds a frame for each part, and frames a second for all
-parts together.
+Before anything is timed, the preview of a frame is compared with `intersect`, `leave` and `occluded` in
+numpy, pixel by pixel; and lit pixels of the numpy way with the closest hits of its shadow rays.
+
+The table has medians over the frames: frames a second of both ways, milliseconds of processor time a
+frame of the preview, over all threads, and milliseconds a frame of each part of the numpy way.
 """
 
 import argparse
@@ -26,6 +29,8 @@ from peers_meshes import MADE, given
 import raywright as rw
 
 PARTS = ("rays", "closest", "towards the lamp", "blocked", "grey")
+# The greatest t of a segment to a lamp: a little before its end.
+_END = 1 - 2.0**-45
 
 
 class Shots:
@@ -39,6 +44,22 @@ class Shots:
         self.points, self.ways, self.normals = (np.empty((*shape, 3), np.float32) for _ in range(3))
         self.t, self.squares, self.grey = (np.empty(shape, np.float32) for _ in range(3))
 
+        self.picture = np.empty((*shape, 3), np.uint8)
+        self.light = rw.PointLight(subject.lamp, 1)
+
+    def camera(self, turn):
+        """Return the camera at a place on the way around."""
+        cos, sin = np.cos(turn), np.sin(turn)
+        x, y, z = self.subject.eye - self.subject.target
+        eye = self.subject.target + np.array([cos * x + sin * z, y, cos * z - sin * x])
+        return rw.Camera(eye, self.subject.target, fov=50, width=self.size[0], height=self.size[1])
+
+    def preview(self, turn):
+        """Fill `picture` by one call, and return its seconds, and those of all processors."""
+        start, busy = time.perf_counter(), time.process_time()
+        self.scene.preview(self.camera(turn), self.light, out=self.picture, threads=self.threads)
+        return time.perf_counter() - start, time.process_time() - busy
+
     def frame(self, turn):
         """Fill `grey` with a picture from a place on the way around, and return the seconds of each part."""
         marks = [time.perf_counter()]
@@ -46,11 +67,8 @@ class Shots:
         def done():
             marks.append(time.perf_counter())
 
-        subject, size, threads = self.subject, self.size, self.threads
-        cos, sin = np.cos(turn), np.sin(turn)
-        x, y, z = subject.eye - subject.target
-        eye = subject.target + np.array([cos * x + sin * z, y, cos * z - sin * x])
-        camera = rw.Camera(eye, subject.target, fov=50, width=size[0], height=size[1])
+        threads = self.threads
+        camera = self.camera(turn)
         origins, directions = camera.rays(dtype=np.float32)
         done()
         hits = self.hits = self.scene.intersect(origins, directions, threads=threads, out=self.hits)
@@ -74,12 +92,28 @@ class Shots:
 
 
 def check(shots):
-    """Fail where shadow rays are not blocked by what they hit first."""
+    """Fail where shadow rays are not blocked by what they hit first, or a preview differs from numpy's."""
     shots.frame(0.3)
     first = shots.scene.intersect(shots.points, shots.ways, t_max=1.0)
     lit = shots.hits.hit & ~shots.blocked
     if not np.array_equal(first.hit, shots.blocked) or not lit.any() or not (shots.grey[lit] > 0).all():
         raise SystemExit("shadow rays and closest hits disagree, or nothing is lit")
+    camera = shots.camera(0.3)
+    origins, directions = camera.rays()
+    hits = shots.scene.intersect(origins, directions)
+    facing = np.where(np.sum(hits.normal * directions, axis=-1, keepdims=True) <= 0, 1, -1) * hits.normal
+    lamp = np.array(shots.light.position)
+    ways = lamp - hits.position
+    starts = hits.leave(ways).origins
+    blocked = shots.scene.occluded(starts, lamp - starts, t_max=_END)
+    cosine = np.sum(facing * ways, axis=-1) / np.linalg.norm(ways, axis=-1)
+    grey = np.where(hits.hit & ~blocked & (cosine > 0), cosine, 0.0)
+    (albedo,) = {shape.material.reflectance for shape in shots.scene.shapes}
+    wanted = grey[..., None] * np.array(albedo)
+    found = shots.scene.preview(camera, shots.light, dtype=np.float32)
+    if not np.allclose(found, wanted, rtol=1e-6, atol=1e-6):
+        worst = np.abs(found - wanted).max(axis=-1)
+        raise SystemExit(f"{np.count_nonzero(worst > 1e-6)} pixels of a preview differ, by {worst.max():.2g}")
 
 
 def main():
@@ -93,8 +127,9 @@ def main():
     told = parser.parse_args()
     size = tuple(int(side) for side in told.size.split("x"))
     rng = np.random.default_rng(1)
-    print(f"| mesh | triangles | threads | frames/s | {' | '.join(f'{part}, ms' for part in PARTS)} |")
-    print("|---" * (4 + len(PARTS)) + "|")
+    heads = ("mesh", "triangles", "threads", "preview, frames/s", "processor, ms", "numpy, frames/s")
+    print(f"| {' | '.join([*heads, *(f'{part}, ms' for part in PARTS)])} |")
+    print("|---" * (len(heads) + len(PARTS)) + "|")
     for name in told.mesh or MADE:
         subject = MADE[name](told.triangles, rng) if name in MADE else given(name)
         scene = rw.Scene(rw.Mesh(subject.vertices, subject.faces))
@@ -102,10 +137,12 @@ def main():
         for threads in map(int, told.threads.split(",")):
             turns = np.linspace(0, 2 * np.pi, told.frames, endpoint=False)
             shots = Shots(scene, subject, size, threads)
+            wall, busy = np.median([shots.preview(turn) for turn in turns], axis=0)
             parts = np.array([shots.frame(turn) for turn in turns])
             rate = 1 / statistics.median(parts.sum(axis=1))
             cells = " | ".join(f"{1e3 * ms:.1f}" for ms in np.median(parts, axis=0))
-            print(f"| {subject.name} | {len(subject.faces):,} | {threads} | {rate:.1f} | {cells} |")
+            row = f"{threads} | {1 / wall:.1f} | {1e3 * busy:.1f} | {rate:.1f} | {cells}"
+            print(f"| {subject.name} | {len(subject.faces):,} | {row} |")
 
 
 if __name__ == "__main__":

@@ -64,6 +64,7 @@ __all__ = [
     "plan",
     "points",
     "polygon_trouble",
+    "preview",
     "random_numbers",
     "sections",
     "shape_area",
@@ -703,6 +704,21 @@ def first_hits(
     """Closest hits of the rays through all pixels: t, shape_id and primitive (H,W), uv (H,W,2).
 
     The last is for how many pixels the accelerator was asked. ``offsets`` as `camera_rays`.
+    """
+
+def preview(
+    scene: CompiledScene,
+    camera: Any,
+    light: tuple[float, float, float] | None,
+    is_place: bool,
+    ambient: float,
+    background: tuple[float, float, float],
+    out: NDArray[Any],
+    threads: int | None,
+) -> None:
+    """Draw a picture into ``out``, (H,W,3) of uint8 or float32, by a ray and a shadow ray a pixel.
+
+    ``light`` is a direction towards a light, or its position if ``is_place``; None is a light at the eye.
     """
 
 @final

@@ -170,3 +170,21 @@ def test_wrong_arguments_are_told_in_one_line(moving, tmp_path, monkeypatch, cha
     with pytest.raises(error, match=told):
         rw.render_frames(**how)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_frames_may_be_previews(moving, tmp_path):
+    seen = {}
+    sun = (0, 1, 1)
+    assert rw.render_frames(moving, seen.__setitem__, 3, progress=False, preview=sun, ambient=0.25) == []
+    for number, image in seen.items():
+        scene, camera = moving(number)
+        wanted = scene.preview(camera, sun, dtype=np.float32, ambient=0.25)
+        assert np.array_equal(image.rgb, wanted)
+        # How wrong it is nobody knows.
+        assert np.isnan(image.error.estimate)
+    files = rw.render_frames(moving, str(tmp_path / "{}.png"), 2, progress=False, preview="headlight")
+    assert [file.name for file in files] == ["0.png", "1.png"]
+    with pytest.raises(TypeError, match="scene of frame 0 must be a Scene, got str"):
+        rw.render_frames([("scene", moving(0)[1])], print, progress=False, preview="headlight")
+    with pytest.raises(TypeError, match="samples"):
+        rw.render_frames(moving, print, 1, progress=False, preview="headlight", samples=4)

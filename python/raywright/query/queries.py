@@ -16,11 +16,12 @@ from .interactions import Interactions, Rays
 from .masks import Cull, ShapeMask, asked, counted
 from .photons import Photons, photon_arguments
 from .points import PointQueries
-from .rays import AskedRays, flags, ray_arguments
+from .previews import Previews
+from .rays import AskedRays, ray_arguments, written_to
 
 
-class Queries(PointQueries):
-    """Ray queries; the first query compiles the scene."""
+class Queries(PointQueries, Previews):
+    """What a compiled scene answers; asking compiles it."""
 
     def intersect(
         self,
@@ -151,7 +152,9 @@ class Queries(PointQueries):
         rays = asked(ray_arguments(origins, directions, t_min, t_max, threads, time), mask)
         core = self._core or self._compiled()
         what = None if shapes is None and cull is None else counted(shapes, cull, core.shapes)
-        return core.occluded(rays, None if out is None else flags("out", out, rays[4]), what)
+        if out is not None:
+            written_to("out", out, rays[4], (np.dtype(np.bool_),))
+        return core.occluded(rays, out, what)
 
     def optical_depth(
         self,

@@ -74,14 +74,16 @@ def ray_arguments(
     return view(starts, shape, 1), view(ways, shape, 1), near, far, shape, threads, when
 
 
-def flags(name: str, array: NDArray[np.bool_], shape: tuple[int, ...]) -> NDArray[np.bool_]:
-    """Check an array that a bool for each ray is written to, and return it."""
-    if not isinstance(array, np.ndarray) or array.dtype != np.bool_:
+def written_to(
+    name: str, array: Any, shape: tuple[int, ...], types: tuple[np.dtype[Any], ...]
+) -> NDArray[Any]:
+    """Check an array of one of some types that an answer is written to, and return it."""
+    if not isinstance(array, np.ndarray) or array.dtype not in types:
         came = f"dtype {array.dtype}" if isinstance(array, np.ndarray) else type(array).__name__
-        raise TypeError(f"{name} must be an array of bool, got {came}")
+        raise TypeError(f"{name} must be an array of {' or '.join(map(str, types))}, got {came}")
     if array.shape != shape:
         raise ValueError(f"{name} has shape {array.shape}, expected {shape}")
-    if not (array.flags.c_contiguous and array.flags.writeable):
+    if not (array.flags.c_contiguous and array.flags.aligned and array.flags.writeable):
         raise ValueError(f"{name} must be C-contiguous and writable")
     return array
 

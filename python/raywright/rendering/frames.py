@@ -1,18 +1,22 @@
 """From scenes that change to animations."""
 
 import errno
+import math
 import os
+import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack, closing
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from ..arrays import SeedLike, integer, positive, seed_number
 from ..cameras import AnyCamera
 from ..io.pictures import check_writable
 from ..io.tone import DEFAULT, check_tone
 from ..scene.scene import Scene
-from .image import Image
+from .image import HISTORY, ErrorEstimate, Image
 from .render import render
 
 Frame = tuple[Scene, AnyCamera]
@@ -34,6 +38,7 @@ def render_frames(
     exposure: float = 0.0,
     tone: str = DEFAULT,
     progress: bool = True,
+    preview: Any = None,
     **how: Any,
 ) -> list[Path]:
     """Render the frames of an animation, one after the other.
@@ -60,8 +65,12 @@ def render_frames(
         As for `Image.save`; the same for all frames.
     progress : bool
         Whether to show a bar on stderr that counts frames.
+    preview : "headlight", 3 floats, DirectionalLight or PointLight, optional
+        A light by which `Scene.preview` draws the frames instead, to see how things move before they are
+        rendered.
     **how
-        Other arguments of `render`, for all frames: its integrator, limits, and so on.
+        Other arguments of `render`, for all frames: its integrator, limits, and so on; or of `Scene.preview`:
+        its ambient light, background and threads.
 
     Returns
     -------
@@ -114,7 +123,10 @@ def render_frames(
             every = stack.enter_context(closing(tqdm(every, desc="frames", total=count, unit="frame")))
         for number, frame in enumerate(every):
             scene, camera = _checked(number, frame, even)
-            image = render(scene, camera, seed=(seed + number) % 2**64, progress=False, **how)
+            if preview is None:
+                image = render(scene, camera, seed=(seed + number) % 2**64, progress=False, **how)
+            else:
+                image = _previewed(number, scene, camera, preview, how)
             path = write(number, image)
             if path is not None:
                 written[path] = None
@@ -123,6 +135,18 @@ def render_frames(
         if not path.is_file() or not path.stat().st_size:
             raise OSError(errno.EIO, "its encoder has written no film", str(path))
     return list(written)
+
+
+def _previewed(number: int, scene: Any, camera: AnyCamera, light: Any, how: dict[str, Any]) -> Image:
+    """Return a preview as a picture of whose error nothing is known."""
+    if not isinstance(scene, Scene):
+        raise TypeError(f"scene of frame {number} must be a Scene, got {type(scene).__name__}")
+    began = time.monotonic()
+    pixels = scene.preview(camera, light, dtype=np.float32, **how)
+    seconds = time.monotonic() - began
+    unknown = ErrorEstimate(math.nan, math.nan, math.nan, False)
+    nothing = np.full(pixels.shape, np.nan, np.float32)
+    return Image(pixels, nothing, unknown, np.empty(0, HISTORY), seconds, 1)
 
 
 def _each(frames: Callable[[int], Frame] | Iterable[Frame], count: int | None) -> Iterable[Frame]:

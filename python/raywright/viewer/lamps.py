@@ -52,6 +52,13 @@ def lamp(scene: Scene, camera: AnyCamera) -> dict[str, Any]:
     return {"place": (_RIGHT * right + _UP * up - forward).tolist(), "far": True}
 
 
+def preview_light(scene: Scene, camera: AnyCamera) -> PointLight | list[float]:
+    """Return `lamp` as `Scene.preview` takes it."""
+    found = lamp(scene, camera)
+    place: list[float] = found["place"]
+    return place if found["far"] else PointLight(place, 1.0)
+
+
 def behind(scene: Scene) -> list[float]:
     """Return the radiance that surrounds a scene, everywhere the same: of a picture the mean."""
     sums = np.zeros(3)

@@ -8,7 +8,10 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
 
 from ..cameras import AnyCamera
 from ..integrators import AnyIntegrator
@@ -16,24 +19,44 @@ from ..io import shown
 from ..io.tone import DEFAULT
 from ..locks import Lock
 from ..query.trees import TreeBoxes
-from ..rendering.image import Image
+from ..rendering.image import ErrorEstimate, Image
 from ..rendering.render import render
 from ..rendering.so_far import ImageSoFar
 from ..scene.scene import Scene
 from .boxes import check_flat, drawn, edges, largest
 from .drawn import Drawn
+from .lamps import behind, preview_light
 from .orbit import Orbit, View, resized, scaled
 
-# Samples and seconds of a preview.
-_SAMPLES = 4
-_SECONDS = 0.03
-# Seconds without a move after which a camera counts as standing: moves of a mouse follow faster.
+# The share of a preview's light that is everywhere, so that shadows are not black.
+_AMBIENT = 0.2
+# How long a camera may rest, in seconds, before it counts as standing: moves of a mouse are nearer.
 _REST = 0.02
-# Pixels of the first preview, and bounds of its reduction in each direction.
-_PIXELS = 20_000
-_LEAST_DIVISOR, _MOST_DIVISOR = 2, 32
-# Seconds that a render continues without viewers: a reloaded page is back soon.
+# How long a render goes on without anyone who looks: a page that is loaded anew is soon back.
 _GRACE = 0.2
+
+
+@dataclass(frozen=True)
+class Sketch:
+    """A picture of `Scene.preview`, shown as it is: it knows nothing of how bright lamps are.
+
+    Attributes
+    ----------
+    rgb : (H, W, 3) uint8
+        Its pixels, with the curve of sRGB.
+    seconds : float
+        How long it took.
+    """
+
+    rgb: NDArray[np.uint8]
+    seconds: float
+    samples: ClassVar[int] = 0
+    error: ClassVar[ErrorEstimate] = ErrorEstimate(math.nan, math.nan, math.nan, False)
+    warnings: ClassVar[tuple[str, ...]] = ()
+
+    def srgb(self, _exposure: float, _tone: str) -> NDArray[np.uint8]:
+        """Return the pixels."""
+        return self.rgb
 
 
 @dataclass(frozen=True)
@@ -44,14 +67,14 @@ class Frame:
     ----------
     number : int
         Counts the pictures of a session.
-    image : Image
+    image : Image or Sketch
         The picture.
     view : View
         Camera of the picture.
     state : str
-        ``"preview"`` if it is a smaller one, ``"refining"``, or ``"done"``.
+        ``"preview"`` if it is a `Sketch`, ``"refining"``, or ``"done"``.
     size : (int, int)
-        Width and height in pixels of the full picture.
+        Width and height in pixels.
     camera : AnyCamera
         Camera of the picture, with the size that the caller gave it.
     exposure, tone
@@ -61,7 +84,7 @@ class Frame:
     """
 
     number: int
-    image: Image
+    image: Image | Sketch
     view: View
     state: str
     size: tuple[int, int]
@@ -158,7 +181,6 @@ class Session:
         self._frame: Frame | None = None
         self._count = self._shown = 0
         self._trouble: str | None = None
-        self._divisor = _divisor(camera.width * camera.height / _PIXELS)
         self._watchers, self._left = 0, -math.inf
         self._closed = False
         self._rendering = False
@@ -239,7 +261,6 @@ class Session:
         with self._changed:
             if size != self._size:
                 self._size = size
-                self._divisor = _divisor(size[0] * size[1] / _PIXELS)
                 self._wanted += 1
                 self._changed.notify_all()
 
@@ -353,7 +374,7 @@ class Session:
     def is_wanted(self, job: "_Job") -> bool:
         """Return whether a job is still wanted."""
         unseen = self._watchers == 0 and time.monotonic() - self._left > _GRACE
-        return not self._closed and not unseen and (job.is_preview or job.number == self._wanted)
+        return not self._closed and not unseen and job.number == self._wanted
 
     def _work(self) -> None:
         def due() -> bool:
@@ -367,7 +388,7 @@ class Session:
                 job = _Job(self, self._wanted, self._view, self._size)
                 self._rendering = True
             try:
-                self._preview(replace(job, is_preview=True))
+                self._preview(job)
                 if self._rests(job):
                     self._picture(job)
             except _UnwantedError:
@@ -386,14 +407,17 @@ class Session:
             return not self._changed.wait_for(lambda: self._closed or self._wanted != job.number, _REST)
 
     def _preview(self, job: "_Job") -> None:
-        """Show something soon: fewer pixels, and few samples of them."""
-        small = resized(self._orbit.camera(job.view), *scaled(job.size, 1 / self._divisor))
-        limits = {"samples": _SAMPLES, "seconds": _SECONDS, "error": None, "adaptive": False}
-        image = render(self._scene, small, self._integrator, progress=False, stop=job, **self._how | limits)
-        self._show(image, job, "preview")
-        # Sized so that one sample of all pixels takes about the time of a preview.
-        each = image.seconds / image.samples * self._divisor**2
-        self._divisor = _divisor(each / _SECONDS)
+        """Show something soon: a ray and a shadow ray a pixel."""
+        camera = resized(self._orbit.camera(job.view), *job.size)
+        began = time.monotonic()
+        pixels = self._scene.preview(
+            camera,
+            preview_light(self._scene, camera),
+            ambient=_AMBIENT,
+            background=behind(self._scene),
+            threads=self._how.get("threads"),
+        )
+        self._show(Sketch(pixels, time.monotonic() - began), job, "preview")
 
     def _picture(self, job: "_Job") -> None:
         def show(image: Image) -> None:
@@ -409,7 +433,7 @@ class Session:
         self._done = job.number
         self._show(image, job, "done")
 
-    def _show(self, image: Image, job: "_Job", state: str) -> None:
+    def _show(self, image: Image | Sketch, job: "_Job", state: str) -> None:
         with self._changed:
             last = self._frame
             if (
@@ -450,8 +474,6 @@ class _Job:
     view: View
     # Size of the picture, in pixels.
     size: tuple[int, int]
-    # A preview finishes even if the camera moves on: otherwise nothing would appear during a move.
-    is_preview: bool = False
 
     def is_set(self) -> bool:
         """Raise rather than return: the picture so far is not needed."""
@@ -463,8 +485,3 @@ class _Job:
 def line_of(camera: AnyCamera) -> str:
     """Return the line of Python that makes a camera."""
     return re.sub(r"\b([A-Z]\w*\()", r"rw.\1", repr(camera))
-
-
-def _divisor(times: float) -> int:
-    """Return the factor in each direction for a picture with this many times fewer pixels."""
-    return max(_LEAST_DIVISOR, min(math.ceil(math.sqrt(times)), _MOST_DIVISOR))

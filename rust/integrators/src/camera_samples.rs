@@ -54,7 +54,8 @@ impl CameraSamples {
             }
         }
         let ([ox, oy, oz], [dx, dy, dz]) = (&mut self.origin, &mut self.direction);
-        let ([from_ox, from_oy, from_oz], [from_dx, from_dy, from_dz]) = (rays.origin(), rays.direction());
+        let ([from_ox, from_oy, from_oz], [from_dx, from_dy, from_dz]) =
+            (rays.origin().by_axis(), rays.direction().by_axis());
         let columns = [
             Column::new(from_ox, &mut ox[at..]),
             Column::new(from_oy, &mut oy[at..]),

@@ -29,6 +29,7 @@ mod media;
 mod photons;
 mod points;
 mod polygons;
+mod preview;
 mod query;
 mod radiosity;
 mod random;
@@ -119,6 +120,8 @@ mod _core {
     use super::points::points;
     #[pymodule_export]
     use super::polygons::triangulate_polygons;
+    #[pymodule_export]
+    use super::preview::preview;
     #[pymodule_export]
     use super::query::CompiledScene;
     #[pymodule_export]

@@ -24,10 +24,10 @@ impl RayOrigin {
     /// ample ([`raywright_shapes::triangle::EdgeRay`]).
     const SAFETY: f64 = 8.0;
 
-    /// End of a segment, relative to its length. The remaining gap exceeds the f64 error of the end surface's
-    /// intersection test, which is bounded by 2⁻⁴⁶ of the length except at grazing angles. So most shapes can rule out
-    /// self-shadowing without extended precision.
-    const END: f64 = 1.0 - 1.0 / (1u64 << 45) as f64;
+    /// Where a segment ends, as a share of its way. What is left to the surface that it goes to is more than the error
+    /// of that surface's test in f64, whose bounds are within 2⁻⁴⁶ of the way except where it is grazed. So most shapes
+    /// can tell without longer numbers that they do not shadow themselves.
+    pub const END: f64 = 1.0 - 1.0 / (1u64 << 45) as f64;
 
     /// The origin of rays from a surface point.
     #[inline(always)]

@@ -38,7 +38,22 @@ impl SurfaceLanes {
         }
     }
 
-    /// Shape number of a lane.
+    /// The points.
+    pub fn position(&self) -> &VectorLanes {
+        &self.position
+    }
+
+    /// Bounds on the errors of coordinates of the points.
+    pub fn error(&self) -> &[f64; LANES] {
+        &self.error
+    }
+
+    /// Unit normals as the winding gives them.
+    pub fn normal(&self) -> &VectorLanes {
+        &self.normal
+    }
+
+    /// Of which shape that of a lane is.
     #[inline(always)]
     pub fn shape(&self, lane: usize) -> u32 {
         self.shape[lane]

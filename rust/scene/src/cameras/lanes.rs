@@ -18,16 +18,16 @@ impl CameraRayLanes {
     pub const NONE: Self =
         Self { origin: VectorLanes::ZERO, direction: VectorLanes::ZERO, time: [0.0; LANES], weight: [0.0; LANES] };
 
-    /// Origins, by axis.
+    /// Origins of the rays.
     #[inline(always)]
-    pub fn origin(&self) -> [&[f64; LANES]; 3] {
-        self.origin.by_axis()
+    pub fn origin(&self) -> &VectorLanes {
+        &self.origin
     }
 
-    /// Unit directions of the rays, by axis.
+    /// Unit directions of the rays.
     #[inline(always)]
-    pub fn direction(&self) -> [&[f64; LANES]; 3] {
-        self.direction.by_axis()
+    pub fn direction(&self) -> &VectorLanes {
+        &self.direction
     }
 
     /// When each sees the scene.

@@ -34,33 +34,45 @@ loops! {
 }
 
 impl Geometry {
-    /// Computes the surface points of sixteen hits; each lane's result equals that of [`Geometry::surface`].
+    /// Points of triangles by the weights of their second and third corners, a lane each; their shading normals are not
+    /// computed.
     ///
     /// # Panics
-    /// If one is a miss.
-    pub fn surface_lanes(&self, level: Level, rays: &[Ray; LANES], hits: &[Hit; LANES], surfaces: &mut SurfaceLanes) {
+    /// If a primitive is not there.
+    pub fn triangle_lanes(&self, level: Level, primitives: &[u32; LANES], uv: &Pairs, surfaces: &mut SurfaceLanes) {
         let mut corners = [VectorLanes::ZERO; 3];
-        let mut uv = [[0.0; LANES]; 2];
         let has_facets = self.is_single() && self.facets.get(0).is_some();
-        for (lane, hit) in hits.iter().enumerate() {
-            let (of_face, shape) = match self.facets.get(hit.primitive) {
+        for (lane, &primitive) in primitives.iter().enumerate() {
+            let (of_face, shape) = match self.facets.get(primitive) {
                 Some(facet) if has_facets => {
                     surfaces.normal.set(lane, facet.normal);
                     (facet.corners.map(Vec3::as_dvec3), facet.shape)
                 }
-                _ => (self.corners(hit.primitive), self.locate(hit.primitive).0),
+                _ => (self.corners(primitive), self.locate(primitive).0),
             };
             for (corners, corner) in corners.iter_mut().zip(of_face) {
                 corners.set(lane, corner);
             }
             surfaces.shape[lane] = shape;
-            [uv[0][lane], uv[1][lane]] = hit.uv;
         }
         if !has_facets {
             normals(level, &corners, &mut surfaces.normal);
         }
         let SurfaceLanes { position, error, .. } = surfaces;
-        points(level, &corners, &uv, position, error);
+        points(level, &corners, uv, position, error);
+    }
+
+    /// What [`Geometry::surface`] gives for a ray and its hit, a lane each.
+    ///
+    /// # Panics
+    /// If one is a miss.
+    pub fn surface_lanes(&self, level: Level, rays: &[Ray; LANES], hits: &[Hit; LANES], surfaces: &mut SurfaceLanes) {
+        let (mut primitives, mut uv) = ([0; LANES], [[0.0; LANES]; 2]);
+        for (lane, hit) in hits.iter().enumerate() {
+            primitives[lane] = hit.primitive;
+            [uv[0][lane], uv[1][lane]] = hit.uv;
+        }
+        self.triangle_lanes(level, &primitives, &uv, surfaces);
         surfaces.shading_normal = surfaces.normal;
         if !self.normals.is_empty() {
             for (lane, hit) in hits.iter().enumerate() {
