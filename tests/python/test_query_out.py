@@ -60,7 +60,7 @@ def test_what_cannot_be_written_to_is_refused():
     origin, ways = fan(1)
     hits = scene.intersect(origin, ways)
     before = hits.t.copy()
-    with pytest.raises(TypeError, match="out must be Hits, got ndarray"):
+    with pytest.raises(TypeError, match="out must be Hits or arrays by name, got ndarray"):
         scene.intersect(origin, ways, out=np.zeros(3))
     with pytest.raises(ValueError, match=r"out has shape \(5, 7\), expected \(7,\)"):
         scene.intersect(origin, ways[0], out=hits)

@@ -1,10 +1,11 @@
 """What rays hit."""
 
-from collections.abc import Iterator
+import math
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, ClassVar, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -36,8 +37,10 @@ class Known:
     @cached_property
     def instance(self) -> NDArray[np.int32]:
         """Which instance the point is on: (...) int32; -1 for none and for what is not instanced."""
-        # One element seen from every index: scenes without instances spend no memory on it.
-        return np.broadcast_to(np.int32(-1), self.primitive.shape)
+        if "instance" not in vars(self).get("_fields", ("instance",)):
+            raise AttributeError
+        # One number seen from every index: scenes without instances spend no memory on them.
+        return np.broadcast_to(np.int32(-1), _lead(vars(self)))
 
 
 @dataclass(frozen=True, eq=False, repr=False, init=False)
@@ -120,7 +123,11 @@ class SurfacePoints(Known, Tabular, PlottedPoints):
     def _known(self, name: str) -> _core.CompiledScene:
         """Return the scene of the points."""
         if self._compiled is None:
-            raise ValueError(f"{name.strip('_')} is not kept in a pickle unless it was asked for before")
+            told = name.strip("_")
+            why = "is not kept in a pickle unless it was asked for before"
+            if vars(self).get("_fields") is not None:
+                why += ", nor known of hits in arrays of the caller's"
+            raise ValueError(f"{told} {why}")
         return self._compiled
 
     @cached_property
@@ -251,27 +258,39 @@ class SurfacePoints(Known, Tabular, PlottedPoints):
         return rows.flat(self)
 
     def _first_rows(self, count: int) -> tuple[int, dict[str, NDArray[Any]]]:
-        # Only these points are computed.
-        shape = self.primitive.shape
-        first = np.arange(min(count, self.primitive.size))
+        # Nothing is worked out for the others.
+        shape = _lead(vars(self))
+        size = math.prod(shape)
         of: Any = self
-        return self.primitive.size, rows.flat(of[np.unravel_index(first, shape)] if shape else of)
+        return size, rows.flat(of[np.unravel_index(np.arange(min(count, size)), shape)] if shape else of)
 
     def __eq__(self, other: object) -> bool:
         if type(other) is not type(self):
             return NotImplemented
         if self._more() != other._more():
             return False
+        names = self._asked()
+        if names != other._asked():
+            return False
         copies = ("instance",) if "instance" in vars(self) or "instance" in vars(other) else ()
-        return all(same(getattr(self, name), getattr(other, name)) for name in (*self._parts, *copies))
+        return all(
+            same(getattr(self, name), getattr(other, name)) for name in dict.fromkeys((*names, *copies))
+        )
+
+    def _asked(self) -> tuple[str, ...]:
+        """Return the parts that there are of the arrays."""
+        names = vars(self).get("_fields", self._parts)
+        return tuple(name for name in (*self._parts, "instance", "hit") if name in names)
 
     __hash__ = None  # type: ignore[assignment]
 
     def __reduce__(self) -> tuple[Any, ...]:
         # Pickles omit the scene, and attributes not computed so far.
         own = vars(self)
-        kept = {name: own[name] for name in (*self._parts, "instance", *_ASKED) if name in own}
-        # Pickles omit the rays, too: only the scene could compute points from them.
+        kept = {name: own[name] for name in (*self._parts, "instance", *_ASKED, "_fields") if name in own}
+        if "hit" in own.get("_fields", ()):
+            kept["hit"] = own["hit"]
+        # Where hits know their points by their rays, and the scene is gone, those are of no use.
         return restored, (type(self), kept, self._more())
 
     def __copy__(self) -> "SurfacePoints":
@@ -341,6 +360,18 @@ class Hits(SurfacePoints):
     ) -> None:
         self._tell(t, shape_id, primitive, uv, instance, compiled, rays)
 
+    def _tell_some(
+        self,
+        parts: dict[str, NDArray[Any]],
+        fields: tuple[str, ...],
+        compiled: _core.CompiledScene | None,
+        rays: tuple[Any, ...] | None,
+    ) -> "Hits":
+        """Tell of these hits no more than some parts, forget what was worked out of others, and return it."""
+        self.__dict__.clear()
+        self.__dict__.update(parts, _fields=fields, _compiled=compiled, _rays=rays)
+        return self
+
     def _tell(
         self,
         t: NDArray[np.float64],
@@ -360,15 +391,26 @@ class Hits(SurfacePoints):
         if instance is not None:
             self.__dict__["instance"] = instance
 
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            fields = vars(self).get("_fields")
+            if fields is None or name.startswith("__"):
+                raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+            raise AttributeError(f"hits that were found with fields={fields} have no {name}")
+
     @cached_property
     def hit(self) -> NDArray[np.bool_]:
-        """Mask of rays that hit something: (...) bool."""
+        """Whether each ray hits anything: (...) bool."""
+        own = vars(self)
+        if "primitive" not in own and "shape_id" in own:
+            return np.asarray(self.shape_id >= 0)
         return np.asarray(self.primitive >= 0)
 
     @property
     def shape(self) -> tuple[int, ...]:
         """Leading shape of the rays."""
-        return self.t.shape
+        return _lead(vars(self))
 
     def __getitem__(self, index: Any) -> "Hits":
         """Return the hits at some places of the leading shape, which is indexed as arrays are."""
@@ -378,11 +420,13 @@ class Hits(SurfacePoints):
         return (self[i] for i in range(len(self)))
 
     def __len__(self) -> int:
-        return len(self.t)
+        return rows.length(self.shape)
 
     def __repr__(self) -> str:
+        if not {"hit", "primitive", "shape_id"} & set(vars(self)):
+            return f"Hits(shape={self.shape}, fields={self._asked()})"
         count = int(np.count_nonzero(self.hit))
-        return f"Hits(shape={self.shape}, {count} of {self.t.size} rays hit)"
+        return f"Hits(shape={self.shape}, {count} of {self.hit.size} rays hit)"
 
 
 @dataclass(frozen=True, eq=False, repr=False, init=False)
@@ -511,18 +555,28 @@ class QueryCost:
     __hash__ = None  # type: ignore[assignment]
 
 
+def _lead(own: Mapping[str, Any]) -> tuple[int, ...]:
+    """Return the leading shape of what is known of hits."""
+    name = next(name for name in ("t", "primitive", "shape_id", "hit", "instance", "uv") if name in own)
+    shape: tuple[int, ...] = own[name].shape
+    return shape[:-1] if name == "uv" else shape
+
+
 @contextmanager
 def rewritten(out: Hits, shape: tuple[int, ...]) -> Iterator[tuple[Any, ...]]:
     """Give the arrays of hits of rays of a leading shape, which can be written to meanwhile."""
     if not isinstance(out, Hits):
-        raise TypeError(f"out must be Hits, got {type(out).__name__}")
+        raise TypeError(f"out must be Hits or arrays by name, got {type(out).__name__}")
     if out.shape != shape:
         raise ValueError(f"out has shape {out.shape}, expected {shape}")
     instance = vars(out).get("instance")
     if instance is not None and not instance.flags.owndata:
         # One element seen from every index.
         instance = None
-    arrays = (out.t, out.shape_id, out.primitive, out.uv)
+    # What an earlier answer left out, or told in another type, is new.
+    types = {"t": np.float64, "shape_id": np.int32, "primitive": np.int32, "uv": np.float64}
+    own = {name: vars(out).get(name) for name in types}
+    arrays = tuple(a if a is not None and a.dtype == types[name] else None for name, a in own.items())
     known = [array for array in (*arrays, instance) if array is not None]
     try:
         for array in known:

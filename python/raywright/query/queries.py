@@ -1,5 +1,6 @@
 """The questions that rays and points ask of a scene."""
 
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -11,9 +12,10 @@ from ..arrays import SeedLike, indices, last_axis, number, thread_limit
 from ..cameras import AnyCamera, pixel_offsets
 from .all_hits import AllHits
 from .cones import ConeCoverage, ConeTouches, cone_arguments, cone_solid_angle
+from .fields import Asked
 from .hits import Hits, QueryCost, rewritten
 from .interactions import Interactions, Rays
-from .masks import Cull, ShapeMask, asked, counted
+from .masks import Counted, Cull, ShapeMask, asked, counted
 from .photons import Photons, photon_arguments
 from .points import PointQueries
 from .previews import Previews
@@ -31,10 +33,11 @@ class Queries(PointQueries, Previews):
         t_max: ArrayLike = np.inf,
         threads: int | None = None,
         time: ArrayLike | None = None,
-        out: Hits | None = None,
+        out: Hits | Mapping[str, NDArray[Any]] | None = None,
         mask: ArrayLike | None = None,
         shapes: ShapeMask | None = None,
         cull: Cull | None = None,
+        fields: str | Sequence[str] | None = None,
     ) -> Hits:
         """Find the closest hit of each ray.
 
@@ -48,34 +51,43 @@ class Queries(PointQueries, Previews):
         threads : int, optional
             Number of threads; all cores if not given. The answer does not depend on it.
         time : float or (...) array, optional
-            Times of the rays, from 0 as the shutter opens, which it is if not given, to 1 as it closes:
-            moving instances are taken at these times.
-        out : Hits, optional
+            When the rays are asked, from 0 as the shutter opens, which it is if not given, to 1 as it closes:
+            instances that move are where they then are.
+        out : Hits or mapping of str to arrays, optional
             An earlier answer, of this scene or another, to as many rays of the same leading shape. Its arrays
-            are overwritten and it is returned, so that a loop over batches allocates nothing.
+            are written to and it is returned, so that a loop over batches allocates nothing; what it told
+            before is gone. Or arrays by name of field, such as ``{"t": distances}``, C-contiguous and of the
+            shape that the field has: of any float type for t and uv, int32 for numbers, bool for hit.
         mask : (...) bool array, optional
             Rays to trace, broadcast to their leading shape; the others hit nothing.
         shapes : (S,) bool array, str or sequence of str, optional
             Shapes that count, one bool for each of ``scene.shapes`` or their names: as in a scene of these
             alone. An `Instance` counts as a whole.
         cull : {"back"}, optional
-            Back-face culling: leaves out hits from behind, where the geometric normal goes along with the
-            ray. Triangles are culled exactly; curved shapes and copies by the normal in float64.
+            Leaves out what is met from behind, where the geometric normal goes along with the ray. Of
+            triangles that is decided exactly; of curved shapes and of copies by the normal as float64 has it.
+        fields : str or sequence of str, optional
+            The parts of the answer that are wanted, of "t", "shape_id", "primitive", "uv", "instance" and
+            "hit"; only these are computed and written. "hit" alone is a byte a ray, as `occluded` has it.
+            Those of the arrays in `out` if not given, and all without such arrays.
 
         Returns
         -------
         Hits
-            With the leading shape of the rays. Ties at the same `t` go to the lowest (shape_id, instance,
-            primitive).
+            With the leading shape of the rays. Of hits at the same `t`, the one of the lowest
+            (shape_id, instance, primitive). Where `fields` are given, or arrays, it has these parts and what
+            follows from them; an AttributeError tells which parts others would need.
 
         Raises
         ------
         ValueError
             If a last dimension is not 3, leading shapes do not broadcast, `t_min` or `t_max` is NaN, or
             `time` is not between 0 and 1; if `out` is of another shape, or its arrays are among the rays or
-            cannot be written to; if a mask has the wrong shape, or no shape has a name of `shapes`.
+            cannot be written to; if a mask has the wrong shape, or no shape has a name of `shapes`; if a
+            field is not known, or `out` has an array that is not among `fields`.
         TypeError
-            If an array does not hold real numbers, `out` is no `Hits`, or a mask is not bool.
+            If an array does not hold real numbers, `out` is neither `Hits` nor a mapping, an array in it has
+            another type, or a mask is not bool.
 
         See Also
         --------
@@ -100,6 +112,8 @@ class Queries(PointQueries, Previews):
         rays = asked(ray_arguments(origins, directions, t_min, t_max, threads, time), mask)
         core = self._core or self._compiled()
         what = None if shapes is None and cull is None else counted(shapes, cull, core.shapes)
+        if fields is not None or isinstance(out, Mapping):
+            return _some_of(core, rays, what, fields, out)
         if out is None:
             return Hits(*core.intersect(rays, None, what), core, known_by(core, rays))
         with rewritten(out, rays[4]) as arrays:
@@ -721,3 +735,18 @@ class Queries(PointQueries, Previews):
 def known_by(core: CompiledScene, rays: AskedRays) -> tuple[Any, ...] | None:
     """Return the data of rays that hits need for their points: none on meshes."""
     return (*rays[:2], 0.0 if rays[6] is None else rays[6]) if core.curved else None
+
+
+def _some_of(core: CompiledScene, rays: AskedRays, what: Counted, fields: Any, out: Any) -> Hits:
+    """Return hits of which only some parts are computed."""
+    if isinstance(out, Hits):
+        raise TypeError("out must be arrays by name where fields are given, got Hits")
+    if out is not None and not isinstance(out, Mapping):
+        raise TypeError(f"out must be arrays by name where fields are given, got {type(out).__name__}")
+    asked_for = Asked(fields, out or {}, rays[4])
+    if asked_for.is_hit_alone:
+        parts = {"hit": core.occluded(rays, asked_for.out.get("hit"), what)}
+    else:
+        parts = asked_for.told(core.intersect(rays, asked_for.given(), what, asked_for.bits))
+    hits = Hits.__new__(Hits)
+    return hits._tell_some(parts, asked_for.names, None if asked_for.is_lent else core, known_by(core, rays))

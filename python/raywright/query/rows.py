@@ -149,6 +149,9 @@ def flat(points: Any) -> dict[str, NDArray[Any]]:
         # Unpickled points cannot compute further attributes.
         if not hasattr(type(points), name) and name not in vars(points):
             continue
+        # Nor of hits that were asked for some parts.
+        if "_fields" in vars(points) and name not in vars(points):
+            continue
         if points._compiled is None and name not in vars(points) and name != "instance":
             continue
         array = getattr(points, name)

@@ -1,6 +1,7 @@
 //! Ray arrays in columns, and their closest hits back in arrays.
 
 use super::arrays::Rows;
+use super::hit_parts::{HitParts, Rounded, To};
 use super::rays::{BATCH, RayArrays};
 use raywright::accel::ByColumns;
 use raywright::math::coherence::is_coherent;
@@ -10,10 +11,7 @@ use raywright::scene::Geometry;
 use raywright::simd::{ask_for, columns_of_four};
 use std::cell::Cell;
 
-/// Output arrays of t, shape_id, primitive and uv.
-pub type HitParts<'a> = (&'a mut [f64], &'a mut [i32], &'a mut [i32], &'a mut [[f64; 2]]);
-
-/// Rays traced together, from a chunk of `count`.
+/// Rays that are asked together, of a chunk of `count`.
 #[derive(Clone, Copy)]
 struct Part<'a> {
     tiling: Tiling,
@@ -51,7 +49,21 @@ impl Part<'_> {
         self.runs(|Run { place, at, len }| copy(&from[place..][..len], &mut to[at..][..len]));
     }
 
-    /// Scatters values back from traversal order.
+    /// The same the other way, of numbers that may be wanted in f32 and may be there already.
+    #[inline(always)]
+    fn deliver<T: Rounded>(&self, from: &[T], to: Option<&mut To<'_, T>>) {
+        match to {
+            Some(To::Double(to)) if !self.is_sequence() => self.write(from, to),
+            Some(To::Single(to)) => self.runs(|Run { place, at, len }| {
+                for (to, &from) in to[place..][..len].iter_mut().zip(&from[at..][..len]) {
+                    *to = from.single();
+                }
+            }),
+            _ => {}
+        }
+    }
+
+    /// The same the other way.
     #[inline(always)]
     fn write<T: Copy>(&self, from: &[T], to: &mut [T]) {
         self.runs(|Run { place, at, len }| copy(&from[at..][..len], &mut to[place..][..len]));
@@ -82,6 +94,7 @@ struct Answers {
     uv: Vec<[f64; 2]>,
     shape: Vec<i32>,
     primitive: Vec<i32>,
+    first: Vec<u32>,
     found: Vec<bool>,
 }
 
@@ -248,24 +261,45 @@ impl RayArrays<'_> {
         })
     }
 
-    /// Closest hits of the rays from `start` on, as many as `to` has room for.
-    pub fn closest(&self, geometry: &Geometry, tree: &dyn ByColumns, start: usize, to: HitParts<'_>) {
-        let (t, shape, primitive, uv) = to;
-        self.columns(tree, start, t.len(), |rays, part, room| {
-            if part.is_sequence() {
-                let here = part.from..part.from + part.len;
-                let (t, uv, primitive) = (&mut t[here.clone()], &mut uv[here.clone()], &mut primitive[here.clone()]);
-                tree.intersect(rays, HitColumns { t, uv, primitive });
-                return locate(geometry, &mut shape[here], primitive);
+    /// The closest hits of the rays from `start` on, of which there are as many as there is room for.
+    pub fn closest(&self, geometry: &Geometry, tree: &dyn ByColumns, start: usize, mut to: HitParts<'_>) {
+        self.columns(tree, start, to.count, |rays, part, room| {
+            let (is_direct, len, here) = (part.is_sequence(), part.len, part.from..part.from + part.len);
+            let primitives = match &mut to.primitive {
+                Some(to) if is_direct => &mut to[here.clone()],
+                _ => some(&mut room.primitive, len),
+            };
+            if to.t.is_none() && to.uv.is_none() {
+                let first = some(&mut room.first, len);
+                tree.first_primitives(rays, first);
+                for (to, &first) in primitives.iter_mut().zip(&*first) {
+                    *to = first as i32;
+                }
+            } else {
+                let t = match &mut to.t {
+                    Some(To::Double(to)) if is_direct => &mut to[here.clone()],
+                    _ => some(&mut room.t, len),
+                };
+                let uv = match &mut to.uv {
+                    Some(To::Double(to)) if is_direct => &mut to[here.clone()],
+                    _ => some(&mut room.uv, len),
+                };
+                tree.intersect(rays, HitColumns { t, uv, primitive: primitives });
             }
-            let (ts, uvs) = (some(&mut room.t, part.len), some(&mut room.uv, part.len));
-            let (shapes, primitives) = (some(&mut room.shape, part.len), some(&mut room.primitive, part.len));
-            tree.intersect(rays, HitColumns { t: ts, uv: uvs, primitive: primitives });
+            let shapes = match &mut to.shape {
+                Some(to) if is_direct => &mut to[here.clone()],
+                _ => some(&mut room.shape, len),
+            };
             locate(geometry, shapes, primitives);
-            part.write(ts, t);
-            part.write(uvs, uv);
-            part.write(shapes, shape);
-            part.write(primitives, primitive);
+            part.deliver(&room.t, to.t.as_mut());
+            part.deliver(&room.uv, to.uv.as_mut());
+            if !is_direct {
+                for (from, to) in [(&room.shape, &mut to.shape), (&room.primitive, &mut to.primitive)] {
+                    if let Some(to) = to {
+                        part.write(from, to);
+                    }
+                }
+            }
         });
     }
 

@@ -7,10 +7,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::accelerators;
 use super::arrays::{numbers, rows, sealed, unwritten};
-use super::hits::{HitArrays, Hits};
-use super::instances;
+use super::hits::{ALL, HitArrays, Hits};
 use super::level;
-use super::query::{CompiledScene, write};
+use super::query::CompiledScene;
 use super::rays::{BATCH, RayArguments, RayBatch, answer, share};
 use raywright::accel::Primitives;
 use raywright::accel::flat::{CANDIDATES, CERTAIN, Flat, NO_CANDIDATE, Settled, Settler, flat_ray};
@@ -157,34 +156,24 @@ impl FlatScene {
         let scene = self.scene.get().scene();
         let settler = Settler::new(scene.geometry(), &self.flat, scene.accelerator(), level()?);
         let (decided, walked) = (AtomicUsize::new(0), AtomicUsize::new(0));
-        let hits = HitArrays::new(py, scene, lead, None)?.written(|parts| {
-            answer(
-                py,
-                rays.count(),
-                rays.chunk(),
-                threads,
-                parts,
-                |start, ((t, shape, primitive, uv), mut instance)| {
-                    let count = t.len();
-                    let mut hits = vec![Hit::MISS; BATCH.min(count)];
-                    let mut mine = Vec::with_capacity(hits.len());
-                    let candidates = &candidates[start..];
-                    rays.part(start, count, |rays, start| {
-                        rays.gathered(start, count, |batch, places| {
-                            let hits = &mut hits[..batch.len()];
-                            mine.clear();
-                            mine.extend(places.iter().map(|&place| candidates[place]));
-                            let told: Settled = settler.closest(batch, &mine, hits);
-                            decided.fetch_add(told.decided, Ordering::Relaxed);
-                            walked.fetch_add(told.walked, Ordering::Relaxed);
-                            write(scene, hits, places, (t, shape, primitive, uv));
-                            if let Some(instance) = &mut instance {
-                                instances::write(scene, hits, places, instance, primitive);
-                            }
-                        });
+        let hits = HitArrays::new(py, scene, lead, None, ALL)?.written(|parts| {
+            answer(py, rays.count(), rays.chunk(), threads, parts, |start, mut parts| {
+                let count = parts.count;
+                let mut hits = vec![Hit::MISS; BATCH.min(count)];
+                let mut mine = Vec::with_capacity(hits.len());
+                let candidates = &candidates[start..];
+                rays.part(start, count, |rays, start| {
+                    rays.gathered(start, count, |batch, places| {
+                        let hits = &mut hits[..batch.len()];
+                        mine.clear();
+                        mine.extend(places.iter().map(|&place| candidates[place]));
+                        let told: Settled = settler.closest(batch, &mine, hits);
+                        decided.fetch_add(told.decided, Ordering::Relaxed);
+                        walked.fetch_add(told.walked, Ordering::Relaxed);
+                        parts.write(scene, hits, places);
                     });
-                },
-            )
+                });
+            })
         })?;
         Ok((hits, (decided.into_inner(), walked.into_inner())))
     }

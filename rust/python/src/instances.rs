@@ -155,14 +155,7 @@ pub fn singular_transform(py: Python<'_>, transform: PyReadonlyArrayDyn<'_, f64>
     Ok(checked.err().map(|bad| (bad.index, bad.why.to_string())))
 }
 
-/// Writes the instance of each hit, −1 for none, and the primitive number in its prototype.
-pub fn write(scene: &scene::Scene, hits: &[Hit], places: &[usize], instance: &mut [i32], primitive: &mut [i32]) {
-    for (hit, &i) in hits.iter().zip(places) {
-        (instance[i], primitive[i]) = located(scene, hit, primitive[i]);
-    }
-}
-
-/// Instance of a hit and primitive number within it; −1 and `number` if there is none.
+/// The copy that was hit and what in it; −1 and `number` where it is none.
 pub fn located(scene: &scene::Scene, hit: &Hit, number: i32) -> (i32, i32) {
     if !hit.is_hit() || scene.geometry().instances_of(scene.geometry().locate(hit.primitive).0).is_none() {
         return (-1, number);

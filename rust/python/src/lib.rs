@@ -16,6 +16,7 @@ mod flat;
 mod freeform;
 mod grid_blocks;
 mod held_rows;
+mod hit_parts;
 mod hits;
 mod info;
 mod instances;

@@ -7,10 +7,10 @@ use pyo3::prelude::*;
 use super::accelerators;
 use super::arrays::{Numbers, Triples, numbers, rows, sealed, unwritten, writable};
 use super::builds::{self, Builds};
-use super::columns::HitParts;
 use super::describe::Scene;
 use super::every;
-use super::hits::{HitArrays, Hits};
+use super::hit_parts::located;
+use super::hits::{ALL, HitArrays, Hits};
 use super::info::AcceleratorInfo;
 use super::instances;
 use super::rays::{BATCH, RayArguments, answer, share};
@@ -114,26 +114,26 @@ impl CompiledScene {
             .map_err(|e| PyValueError::new_err(e.to_string()))
     }
 
-    #[pyo3(signature = (rays, out=None, counted=None))]
+    #[pyo3(signature = (rays, out=None, counted=None, fields=ALL))]
     fn intersect<'py>(
         &self,
         py: Python<'py>,
         rays: RayArguments<'py>,
         out: Option<Hits<'py>>,
         counted: Option<Counted>,
+        fields: u32,
     ) -> PyResult<Hits<'py>> {
         let (lead, threads, rays) = (&rays.shape, rays.threads, rays.rays()?);
         let (scene, filter) = (&self.0, counted.map(scene::Filter::from));
         let by_columns = scene.accelerator().by_columns().filter(|_| filter.is_none());
         let chunk = if by_columns.is_some() { rays.window() } else { rays.chunk() };
-        HitArrays::new(py, scene, lead, out)?.written(|parts| {
-            answer(py, rays.count(), chunk, threads, parts, |start, (parts, mut instance)| {
-                let count = parts.0.len();
+        HitArrays::new(py, scene, lead, out, fields)?.written(|parts| {
+            answer(py, rays.count(), chunk, threads, parts, |start, mut parts| {
+                let count = parts.count;
                 rays.part(start, count, |rays, start| {
                     if let Some(tree) = by_columns {
                         return rays.closest(scene.geometry(), tree, start, parts);
                     }
-                    let (t, shape, primitive, uv) = parts;
                     let mut hits = vec![Hit::MISS; BATCH.min(count)];
                     rays.gathered(start, count, |batch, places| {
                         let hits = &mut hits[..batch.len()];
@@ -141,10 +141,7 @@ impl CompiledScene {
                             Some(filter) => filter.intersect(scene, batch, false, hits),
                             None => scene.intersect(batch, hits),
                         }
-                        write(scene, hits, places, (t, shape, primitive, uv));
-                        if let Some(instance) = &mut instance {
-                            instances::write(scene, hits, places, instance, primitive);
-                        }
+                        parts.write(scene, hits, places);
                     });
                 });
             })
@@ -517,26 +514,4 @@ impl CompiledScene {
         }
         Ok(out)
     }
-}
-
-/// Writes hits to their positions.
-// A separate function, because otherwise the loop's pointers do not fit into registers.
-#[inline(never)]
-pub(super) fn write(scene: &scene::Scene, hits: &[Hit], places: &[usize], (t, shape, primitive, uv): HitParts<'_>) {
-    // Slices of equal length, so that one bounds check serves all four.
-    let count = t.len();
-    let (shape, primitive, uv) = (&mut shape[..count], &mut primitive[..count], &mut uv[..count]);
-    for (hit, &i) in hits.iter().zip(places) {
-        (t[i], uv[i]) = (hit.t, hit.uv);
-        (shape[i], primitive[i]) = located(scene, hit.primitive);
-    }
-}
-
-/// Shape and face of a primitive as in arrays: −1 for none.
-fn located(scene: &scene::Scene, primitive: u32) -> (i32, i32) {
-    if primitive == Hit::MISS.primitive {
-        return (-1, -1);
-    }
-    let (shape, primitive) = scene.geometry().locate(primitive);
-    (shape as i32, primitive as i32)
 }
