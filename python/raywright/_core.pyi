@@ -42,6 +42,7 @@ __all__ = [
     "coincident_faces",
     "cone_coverage",
     "cones",
+    "cores",
     "daylight_power",
     "denoise_candidates",
     "denoise_settle",
@@ -82,6 +83,13 @@ __all__ = [
     "weld",
     "weld_rounding",
 ]
+
+def cores() -> int:
+    """Return the number of threads that are used where none is given.
+
+    One for each core that the process may use, by its affinity and the quota of its control group, and at
+    most ``os.process_cpu_count()``; ``RAYON_NUM_THREADS`` sets another.
+    """
 
 def simd() -> str:
     """Return the SIMD level the kernels run at; ``RAYWRIGHT_SIMD`` forces one.

@@ -2,13 +2,12 @@
 
 import math
 import operator
-import os
-import sys
-from typing import TYPE_CHECKING, Any, TypeAlias, Union, cast
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ._core import cores
 from .foreign_arrays import as_array, describe
 
 if TYPE_CHECKING:
@@ -201,7 +200,7 @@ def thread_limit(threads: int | None) -> int | None:
     if threads is None:
         return None
     limit = integer("threads", threads, 1)
-    return limit if limit <= _THREADS else min(limit, max(_THREADS, os.cpu_count() or 1))
+    return limit if limit <= _THREADS else min(limit, max(_THREADS, cores()))
 
 
 def choice(name: str, value: str, choices: tuple[str, ...]) -> None:

@@ -149,3 +149,47 @@ def test_ctrl_c_ends_a_query_at_once():
         scene.intersect(origins, directions)
     # The documented limit is a tenth of a second on an idle machine; tests run beside other work.
     assert time.monotonic() - start < 2.0
+
+
+# Says how many threads a call without a number of them is shared out among, and how many are told.
+COUNTED = """
+import os
+{before}
+import numpy as np
+import raywright as rw
+from raywright import _core
+
+scene = rw.Scene([rw.Sphere((0, 0, 0), 1)])
+scene.intersect(np.zeros((10**5, 3)), (0, 0, 1))
+names = [open(f"/proc/self/task/{{task}}/comm").read() for task in os.listdir("/proc/self/task")]
+print(_core.cores(), sum(name.startswith("raywright-") for name in names))
+"""
+
+
+def threads_after(before, **environment):
+    found = subprocess.run(
+        [sys.executable, "-c", COUNTED.format(before=before)],
+        check=True,
+        timeout=60,
+        capture_output=True,
+        text=True,
+        env={**{k: v for k, v in os.environ.items() if k != "RAYON_NUM_THREADS"}, **environment},
+    )
+    return [int(count) for count in found.stdout.split()]
+
+
+@pytest.mark.skipif(not hasattr(os, "sched_getaffinity"), reason="no affinity there")
+def test_threads_are_as_many_as_cores_that_the_process_may_use():
+    own = sorted(os.sched_getaffinity(0))
+    # A control group may allow fewer.
+    assert threads_after("")[0] == threads_after("")[1] <= len(own)
+    for count in {1, min(2, len(own))}:
+        told, started = threads_after(f"os.sched_setaffinity(0, {own[:count]})")
+        assert told == started <= count
+    # What `-X cpu_count` and PYTHON_CPU_COUNT say from Python 3.13 on; more than there are is of no use.
+    assert threads_after("os.process_cpu_count = lambda: 1") == [1, 1]
+    assert threads_after("os.process_cpu_count = lambda: None") == threads_after("")
+    assert threads_after("os.process_cpu_count = lambda: 4096") == threads_after("")
+    assert threads_after("", RAYON_NUM_THREADS="3") == [3, 3]
+    if sys.version_info >= (3, 13):
+        assert threads_after("", PYTHON_CPU_COUNT="1") == [1, 1]

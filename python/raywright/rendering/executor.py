@@ -407,7 +407,7 @@ def _slots(executor: Executor) -> int:
         count = getattr(executor, name, None)
         if isinstance(count, int) and count > 0:
             return count
-    return os.cpu_count() or 1
+    return _core.cores()
 
 
 def _line(error: BaseException) -> str:

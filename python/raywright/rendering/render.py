@@ -312,7 +312,7 @@ def render(
     sight = _core.Sight(rendering)
     # Integrators written in Python run on the thread that shows pictures.
     alone = isinstance(integrator, Integrator)
-    snapshots = None if show is None else Snapshots(show, 1 if alone else threads or os.cpu_count() or 1)
+    snapshots = None if show is None else Snapshots(show, 1 if alone else threads or _core.cores())
 
     def whole(done: _core.Rendering, told: Iterable[str] = ()) -> Image:
         return made(done, clamp, {"samples": done.counts} if adaptive else {}, told, plan)

@@ -2,7 +2,7 @@
 
 use rayon::ThreadPoolBuilder;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::time::Duration;
@@ -56,8 +56,27 @@ impl Pool {
     }
 }
 
-/// The pool with the given number of threads, or with one per core. It is created on first use and kept. The default
-/// pool is kept forever, others as long as more recent ones have at most 64 threads in total.
+/// The most threads of a pool of one a core.
+static MOST_CORES: AtomicUsize = AtomicUsize::new(usize::MAX);
+
+/// Bounds the threads of pools of one a core that are made from now on.
+pub fn limit_cores(most: usize) {
+    MOST_CORES.store(most.max(1), Ordering::Relaxed);
+}
+
+/// Return how many threads a pool of one a core has that is made now: as many as the environment variable
+/// `RAYON_NUM_THREADS` says; without it one for each core that the process may use, by its affinity and by the quota of
+/// its control group, at most the limit.
+pub fn cores() -> usize {
+    let told = std::env::var("RAYON_NUM_THREADS").ok().and_then(|told| told.parse().ok()).filter(|&told| told > 0);
+    told.unwrap_or_else(|| {
+        let available = std::thread::available_parallelism().map_or(1, usize::from);
+        available.min(MOST_CORES.load(Ordering::Relaxed))
+    })
+}
+
+/// The pool of so many threads, or of one a core. Made when it is first used and kept: the latter for ever, others as
+/// long as those used since have no more than 64 threads in all.
 ///
 /// A forked process has none of its parent's threads and would wait for them forever, so pools are kept per process.
 /// This is also why the global pool is never used.
@@ -93,7 +112,7 @@ impl Pools {
         }
         let (_, threads, _) = key;
         let pool = ThreadPoolBuilder::new()
-            .num_threads(threads.unwrap_or(0))
+            .num_threads(threads.unwrap_or_else(cores))
             .thread_name(|i| format!("raywright-{i}"))
             .build()
             .map_err(|e| format!("no pool of {threads:?} threads: {e}"))?;
@@ -222,6 +241,7 @@ mod tests {
             assert_eq!(pool.install(crate::parallel::threads), threads);
             assert!(Arc::ptr_eq(&pool, &super::pool(Some(threads)).unwrap()));
         }
+        assert_eq!(pool(None).unwrap().threads(), cores());
     }
 
     #[test]

@@ -54,6 +54,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use raywright::simd::Level;
+use raywright::workers;
 
 /// The SIMD level of the kernels, or a `ValueError` if the requested one is invalid.
 fn level() -> PyResult<Level> {
@@ -81,14 +82,38 @@ fn simd() -> PyResult<&'static str> {
     Ok(level()?.name())
 }
 
-// Free-threaded interpreters keep their lock disabled: shared data is frozen, behind a mutex, or borrowed at run time,
-// and no unsafe code relies on the lock.
+/// The number of threads that are used where none is given.
+#[pyfunction]
+fn cores() -> usize {
+    workers::cores()
+}
+
+// Free-threaded interpreters keep their lock off: what threads share is frozen, behind a mutex, or borrowed at
+// run time, and no unsafe code relies on the lock.
 #[pymodule(gil_used = false)]
 mod _core {
+    use pyo3::prelude::*;
+    use raywright::workers;
+
+    /// Has the interpreter's own limit respected, which `-X cpu_count` and `PYTHON_CPU_COUNT` set.
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        let os = module.py().import("os")?;
+        // From Python 3.13 on.
+        if let Some(count) = os.getattr_opt("process_cpu_count")?
+            && let Some(most) = count.call0()?.extract::<Option<usize>>()?
+        {
+            workers::limit_cores(most);
+        }
+        Ok(())
+    }
+
     #[pymodule_export]
     use super::cameras::{camera_rays, camera_rays_through};
     #[pymodule_export]
     use super::cones::{cone_coverage, cones};
+    #[pymodule_export]
+    use super::cores;
     #[pymodule_export]
     use super::denoise::{denoise_candidates, denoise_settle};
     #[pymodule_export]

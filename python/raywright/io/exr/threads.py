@@ -1,8 +1,9 @@
 """Threads for the chunks of a picture: zlib, numpy and the core release the interpreter's lock."""
 
-import os
 from collections.abc import Callable, Iterator, Sequence
 from typing import TypeVar
+
+from ..._core import cores
 
 T = TypeVar("T")
 Result = TypeVar("Result")
@@ -13,7 +14,7 @@ _FEW = 2**20
 
 def each(function: Callable[[T], Result], items: Sequence[T], size: int) -> Iterator[Result]:
     """Yield the result of a function for each item, in order; `size` is the number of bytes of all items."""
-    workers = min(os.cpu_count() or 1, len(items))
+    workers = min(cores(), len(items))
     if workers < 2 or size < _FEW:
         yield from map(function, items)
         return
