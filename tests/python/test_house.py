@@ -11,6 +11,7 @@ PACKAGE = Path(raywright.__file__).parent
 FLOORS = [
     {"_core", "debug_log", "foreign_arrays", "html_tables"},
     {"arrays", "locks"},
+    {"descriptions"},
     {"accelerators", "cameras", "io"},
     {"textures"},
     {"media"},

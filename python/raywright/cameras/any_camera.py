@@ -1,13 +1,14 @@
 """The base class of all cameras: a picture, a shutter, and rays."""
 
-from dataclasses import dataclass, replace
-from typing import Any, ClassVar
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from .. import _core
 from ..arrays import choice, integer, last_axis, number, real_array
+from ..descriptions import changed
 from .pose import Pose
 
 Pair = tuple[float, float]
@@ -50,8 +51,6 @@ class AnyCamera(Pose):
     >>> isinstance(rw.Camera((0, 0, 5), (0, 0, 0)), rw.AnyCamera)
     True
     """
-
-    kind: ClassVar[str]
 
     width: int
     height: int
@@ -310,11 +309,14 @@ def pair(name: str, value: ArrayLike) -> Pair:
 def resized(camera: AnyCamera, width: int, height: int) -> AnyCamera:
     """Return the camera with a picture of the same view that has so many pixels."""
     across, down = width / camera.width, height / camera.height
-    changes: dict[str, Any] = {"width": width, "height": height}
-    # Lengths in pixels scale with the resolution.
+    changes: dict[str, Any] = {
+        "width": integer("width", width, 1, 65536),
+        "height": integer("height", height, 1, 65536),
+    }
+    # Lengths in pixels grow with their number.
     for name in ("focal", "principal"):
         if (lengths := getattr(camera, name, None)) is not None:
             changes[name] = (lengths[0] * across, lengths[1] * down)
     if hasattr(camera, "skew"):
         changes["skew"] = camera.skew * across
-    return replace(camera, **changes)
+    return changed(camera, **changes)

@@ -1,7 +1,6 @@
 """The camera that sees wide angles in a circle."""
 
 from dataclasses import dataclass
-from typing import ClassVar
 
 from numpy.typing import ArrayLike
 
@@ -59,8 +58,6 @@ class Fisheye(AnyCamera):
     >>> directions[2, 2].tolist(), bool(np.isnan(directions[0, 0]).all())
     ([0.0, 0.0, -1.0], True)
     """
-
-    kind: ClassVar[str] = "fisheye"
 
     fov: float
     mapping: str = "equidistant"

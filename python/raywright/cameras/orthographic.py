@@ -1,7 +1,6 @@
 """The camera of parallel rays."""
 
 from dataclasses import dataclass
-from typing import ClassVar
 
 from numpy.typing import ArrayLike
 
@@ -48,8 +47,6 @@ class Orthographic(AnyCamera):
     >>> origins[0, :, 0].tolist(), directions[0, 0].tolist()
     ([-1.5, -0.5, 0.5, 1.5], [0.0, 0.0, -1.0])
     """
-
-    kind: ClassVar[str] = "orthographic"
 
     scale: float
     scale_axis: str = "y"

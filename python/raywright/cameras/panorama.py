@@ -1,7 +1,6 @@
 """The camera that sees all around."""
 
 from dataclasses import dataclass
-from typing import ClassVar
 
 from numpy.typing import ArrayLike
 
@@ -51,8 +50,6 @@ class Panorama(AnyCamera):
     >>> directions.round(6).tolist()
     [[0.0, 0.0, -1.0], [1.0, 0.0, -0.0], [0.0, 1.0, -0.0]]
     """
-
-    kind: ClassVar[str] = "panorama"
 
     def __init__(
         self,

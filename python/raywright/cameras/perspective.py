@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass, replace
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -70,8 +70,6 @@ class Camera(AnyCamera):
     >>> camera.project([[0, 0, 0], [2.5, 0, 0]]).round(6).tolist()
     [[2.0, 2.0], [3.0, 2.0]]
     """
-
-    kind: ClassVar[str] = "perspective"
 
     fov: float | None = None
     fov_axis: str = "y"

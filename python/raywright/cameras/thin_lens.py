@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import dataclass
-from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -82,8 +81,6 @@ class ThinLens(AnyCamera):
     >>> round(float(np.abs(origins - sharp).max()), 6)
     0.1
     """
-
-    kind: ClassVar[str] = "thin lens"
 
     fov: float | None = None
     f_stop: float | None = None

@@ -1,16 +1,17 @@
 """Copies of instances as shapes of their own, each face of which exchanges light for itself."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, fields
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..descriptions import changed
 from ..scene.instance import AnyShape, Instance
 from ..scene.scene import Scene
 from ..shapes import Shape
 from ..shapes.mesh import Mesh
+from ..shapes.shape import affine
 
 Integers = NDArray[np.int64]
 # Copy number for faces of an instance that is not copied.
@@ -102,7 +103,5 @@ def _parts(instance: Instance, outer: NDArray[np.float64], number: int) -> Itera
 
 
 def _moved(shape: Shape, matrix: NDArray[np.float64]) -> Shape:
-    values: dict[str, Any] = {field.name: getattr(shape, field.name) for field in fields(shape)}
-    own = values["transform"]
-    values["transform"] = matrix if own is None else matrix @ own
-    return type(shape)(**values)
+    whole = matrix if shape.transform is None else matrix @ shape.transform
+    return changed(shape, transform=affine("transform", whole))

@@ -1,9 +1,9 @@
 """Integrators: estimators of the radiance along rays."""
 
-from typing import TypeAlias, get_args
+from typing import TypeAlias
 
 from .ambient_occlusion import AmbientOcclusion
-from .base import Integrator
+from .base import CoreIntegrator, Integrator
 from .beam_traced import BeamTraced
 from .bidirectional import Bidirectional
 from .cone_traced import ConeTraced
@@ -16,22 +16,7 @@ from .radiosity import Radiosity
 from .ray_cast import RayCast
 from .whitted import Whitted
 
-AnyIntegrator: TypeAlias = (
-    Path
-    | Bidirectional
-    | LightTraced
-    | PhotonMap
-    | ProgressivePhotonMap
-    | Direct
-    | Radiosity
-    | RayCast
-    | Whitted
-    | Distributed
-    | ConeTraced
-    | BeamTraced
-    | AmbientOcclusion
-    | Integrator
-)
+AnyIntegrator: TypeAlias = CoreIntegrator | Integrator
 
 __all__ = [
     "AmbientOcclusion",
@@ -60,5 +45,5 @@ def check_integrator(name: str, value: object) -> None:
     TypeError
         If it is none.
     """
-    if not isinstance(value, get_args(AnyIntegrator)):
+    if not isinstance(value, CoreIntegrator | Integrator):
         raise TypeError(f"{name} must be a raywright.Path, got {type(value).__name__}")

@@ -5,10 +5,11 @@ from dataclasses import dataclass
 
 from ..arrays import positive
 from . import counts
+from .base import CoreIntegrator
 
 
 @dataclass(frozen=True)
-class AmbientOcclusion:
+class AmbientOcclusion(CoreIntegrator):
     """Ambient occlusion: the share of directions in which nothing is near.
 
     After Zhukov, Iones and Kronin (1998). The background is white.

@@ -1,4 +1,4 @@
-"""Integrators that are written in Python."""
+"""What all integrators have in common."""
 
 from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING
@@ -11,6 +11,10 @@ from .rng import Rng
 
 if TYPE_CHECKING:
     from ..scene.scene import Scene
+
+
+class CoreIntegrator:
+    """What turns rays into radiance, in the core. Its subclasses say how."""
 
 
 class Integrator(ABC):

@@ -7,10 +7,11 @@ from numpy.typing import ArrayLike
 
 from ..arrays import Triple, colour, positive
 from . import counts
+from .base import CoreIntegrator
 
 
 @dataclass(frozen=True, init=False)
-class BeamTraced:
+class BeamTraced(CoreIntegrator):
     """Beam tracing (Heckbert and Hanrahan 1984): polygonal beams in place of rays, and edges that are exact.
 
     All that the camera sees is one beam. Faces part it into polygons, flat mirrors throw these back, panes

@@ -4,10 +4,11 @@ from dataclasses import KW_ONLY, dataclass
 
 from ..arrays import integer, positive
 from . import counts
+from .base import CoreIntegrator
 
 
 @dataclass(frozen=True)
-class Bidirectional:
+class Bidirectional(CoreIntegrator):
     """Bidirectional path tracing (Lafortune and Willems 1993; Veach and Guibas 1994): paths from both ends.
 
     Each sample of each pixel traces a path from the camera and another from a light, chosen by its power.

@@ -6,10 +6,11 @@ from numpy.typing import ArrayLike
 
 from ..arrays import Triple, colour, number
 from . import counts
+from .base import CoreIntegrator
 
 
 @dataclass(frozen=True, init=False)
-class ConeTraced:
+class ConeTraced(CoreIntegrator):
     """Cone tracing (Amanatides 1984): one cone a pixel in place of samples.
 
     A cone has the solid angle of its pixel. A hit counts by the share of the cone that it covers, the nearest

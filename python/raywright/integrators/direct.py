@@ -3,10 +3,11 @@
 from dataclasses import dataclass
 
 from . import counts
+from .base import CoreIntegrator
 
 
 @dataclass(frozen=True)
-class Direct:
+class Direct(CoreIntegrator):
     """Direct lighting: emitters, and surfaces that they light in one bounce.
 
     Lights and surfaces are both sampled and combined by multiple importance sampling (Veach and Guibas 1995).

@@ -6,10 +6,11 @@ from numpy.typing import ArrayLike
 
 from ..arrays import Triple, colour
 from . import counts
+from .base import CoreIntegrator
 
 
 @dataclass(frozen=True, init=False)
-class Distributed:
+class Distributed(CoreIntegrator):
     """Distributed ray tracing (Cook, Porter and Carpenter 1984): soft shadows, gloss, depth of field, motion.
 
     A direction is followed where the surface scatters into it with a density of more than 1 per steradian,

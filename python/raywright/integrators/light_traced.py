@@ -3,10 +3,11 @@
 from dataclasses import dataclass
 
 from . import counts
+from .base import CoreIntegrator
 
 
 @dataclass(frozen=True, init=False)
-class LightTraced:
+class LightTraced(CoreIntegrator):
     """Light tracing (Arvo 1986; Dutré, Lafortune and Willems 1993): paths that start at lights.
 
     Each sample of each pixel traces a path from a light, chosen by its power; each of its surfaces is

@@ -3,13 +3,14 @@
 from dataclasses import dataclass
 
 from ..arrays import integer
+from .base import CoreIntegrator
 
 # Larger patches need more rays than they save.
 _SIDES = (1, 2, 4, 8)
 
 
 @dataclass(frozen=True)
-class Path:
+class Path(CoreIntegrator):
     """Path tracing with next-event estimation, multiple importance sampling and Russian roulette.
 
     The estimator is Kajiya's (1986); emitters are sampled at every bounce and combined with the path's own

@@ -5,6 +5,7 @@ from typing import Literal, TypeAlias
 
 from ..arrays import choice, integer, number, positive
 from . import counts
+from .base import CoreIntegrator
 
 PhotonFilter: TypeAlias = Literal["box", "cone", "epanechnikov"]
 
@@ -31,7 +32,7 @@ def _settle(of: "PhotonMap | ProgressivePhotonMap") -> None:
 
 
 @dataclass(frozen=True)
-class PhotonMap:
+class PhotonMap(CoreIntegrator):
     """Photon mapping (Jensen 1996, 2001): radiance from the density of photons.
 
     Paths from the lights leave photons on matt surfaces, those whose scattering is wider than that of a
@@ -117,7 +118,7 @@ class PhotonMap:
 
 
 @dataclass(frozen=True)
-class ProgressivePhotonMap:
+class ProgressivePhotonMap(CoreIntegrator):
     """Progressive photon mapping (Hachisuka et al. 2008; Knaus and Zwicker 2011): blur that goes to zero.
 
     Like `PhotonMap`, with a map for each sample of all pixels and a shrinking radius: the squared radius, or

@@ -7,10 +7,11 @@ from typing import Any
 import numpy as np
 
 from ..exchange.solution import RadiositySolution
+from .base import CoreIntegrator
 
 
 @dataclass(frozen=True)
-class Radiosity:
+class Radiosity(CoreIntegrator):
     """Lookup of a radiosity solution from any camera: one ray a sample, without further scattering.
 
     A hit shows its emission and the reflected irradiance of its patch. Textures are those of the scene, not

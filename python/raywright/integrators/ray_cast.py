@@ -6,10 +6,11 @@ from numpy.typing import ArrayLike
 
 from ..arrays import Triple, colour
 from . import counts
+from .base import CoreIntegrator
 
 
 @dataclass(frozen=True, init=False)
-class RayCast:
+class RayCast(CoreIntegrator):
     """Ray casting with shadows (Appel 1968): direct light at the first hit, and ambient light.
 
     Nothing is followed further: mirrors and glass are black.

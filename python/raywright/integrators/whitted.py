@@ -6,10 +6,11 @@ from numpy.typing import ArrayLike
 
 from ..arrays import Triple, colour, number
 from . import counts
+from .base import CoreIntegrator
 
 
 @dataclass(frozen=True, init=False)
-class Whitted:
+class Whitted(CoreIntegrator):
     """Whitted's ray tracing (1980): lights, ambient light, and both the reflected and the refracted ray.
 
     Only smooth surfaces are followed, to a depth or for as long as they contribute (Hall and Greenberg 1983);

@@ -1,7 +1,7 @@
 """Lights: light sources without surface, environments, and emission of surfaces."""
 
 from collections.abc import Sequence
-from typing import TypeAlias, cast, get_args
+from typing import cast
 
 from numpy.typing import ArrayLike
 
@@ -9,13 +9,11 @@ from .constant import ConstantEnvironment
 from .directional import DirectionalLight
 from .emission import Emission
 from .environment_map import EnvironmentMap
+from .light import Environment, Light
 from .point import PointLight
 from .projector import ProjectorLight
 from .spot import SpotLight
 from .sun_sky import SunSky
-
-Light: TypeAlias = PointLight | SpotLight | DirectionalLight | ProjectorLight
-Environment: TypeAlias = ConstantEnvironment | EnvironmentMap | SunSky
 
 __all__ = [
     "ConstantEnvironment",
@@ -37,7 +35,7 @@ def lights(value: object) -> tuple[Light, ...]:
     """Return one light or a sequence of them as a tuple, having checked that they are."""
     given = tuple(value) if isinstance(value, list | tuple) else (value,)
     for light in given:
-        if not isinstance(light, get_args(Light)):
+        if not isinstance(light, Light):
             raise TypeError(f"lights must be raywright lights, got {type(light).__name__}")
     return given
 
@@ -45,13 +43,12 @@ def lights(value: object) -> tuple[Light, ...]:
 def environments(
     value: "Environment | Sequence[Environment] | ArrayLike | None",
 ) -> "Environment | tuple[Environment, ...] | None":
-    """Return an environment: numbers as a constant radiance, and several environments as a tuple."""
-    kinds = get_args(Environment)
-    if value is None or isinstance(value, kinds):
+    """Return what surrounds a scene: numbers as a constant radiance, and several environments as a tuple."""
+    if value is None or isinstance(value, Environment):
         return value
-    if isinstance(value, list | tuple) and any(isinstance(one, kinds) for one in value):
+    if isinstance(value, list | tuple) and any(isinstance(one, Environment) for one in value):
         for one in value:
-            if not isinstance(one, kinds):
+            if not isinstance(one, Environment):
                 raise TypeError(
                     f"environment must be environments only, if several, got {type(one).__name__}"
                 )

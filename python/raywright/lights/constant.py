@@ -6,10 +6,11 @@ from numpy.typing import ArrayLike
 
 from ..arrays import Triple
 from ..textures.spectrum import Spectrum, colour_or_spectrum
+from .light import Environment
 
 
 @dataclass(frozen=True, init=False)
-class ConstantEnvironment:
+class ConstantEnvironment(Environment):
     """The same radiance from every direction that the scene leaves open.
 
     Parameters

@@ -6,10 +6,11 @@ from numpy.typing import ArrayLike
 
 from ..arrays import Triple, triple
 from ..textures.spectrum import Spectrum, colour_or_spectrum
+from .light import Light
 
 
 @dataclass(frozen=True, init=False)
-class DirectionalLight:
+class DirectionalLight(Light):
     """Light that comes from far outside along a single direction, as of a star.
 
     Parameters

@@ -7,11 +7,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import frozen, number, real_array
+from .light import Environment
 from .pictured import Pictured, Texels, texels
 
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
-class EnvironmentMap(Pictured):
+class EnvironmentMap(Pictured, Environment):
     """An equirectangular picture all around a scene, drawn from by its light.
 
     The middle of the picture is seen along -z, its top at +y, and its right half towards +x: as a `Camera`

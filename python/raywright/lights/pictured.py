@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import frozen, real_array
+from ..descriptions import restored, state
 from ..io.pictures import read_linear
 from ..io.quiet import warn_caller
 
@@ -84,9 +85,7 @@ class Pictured:
         return hash((type(self), self._values()))
 
     def __reduce__(self) -> tuple[Any, ...]:
-        # Through the constructor, because an unpickled array would be writeable.
-        values = tuple(getattr(self, field.name) for field in fields(self))  # type: ignore[arg-type]
-        return type(self), values
+        return restored, (type(self), state(self))
 
     def __repr__(self) -> str:
         def told(value: Any) -> str:

@@ -6,10 +6,11 @@ from numpy.typing import ArrayLike
 
 from ..arrays import Triple, triple
 from ..textures.spectrum import Spectrum, colour_or_spectrum
+from .light import Light
 
 
 @dataclass(frozen=True, init=False)
-class PointLight:
+class PointLight(Light):
     """A point that shines evenly into all directions.
 
     Parameters

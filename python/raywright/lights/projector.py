@@ -8,11 +8,12 @@ from numpy.typing import ArrayLike
 
 from ..arrays import Triple, number, triple
 from ..textures.spectrum import Spectrum, colour_or_spectrum
+from .light import Light
 from .pictured import Pictured, Texels, texels
 
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
-class ProjectorLight(Pictured):
+class ProjectorLight(Pictured, Light):
     """A slide projector: a point whose light goes through a picture only.
 
     A screen at right angles to its axis shows the picture as bright at the corners as in the middle: the

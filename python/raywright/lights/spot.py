@@ -7,12 +7,13 @@ from numpy.typing import ArrayLike
 
 from ..arrays import Triple, choice, number, triple
 from ..textures.spectrum import Spectrum, colour_or_spectrum
+from .light import Light
 
 Profile: TypeAlias = Literal["smooth", "linear"]
 
 
 @dataclass(frozen=True, init=False)
-class SpotLight:
+class SpotLight(Light):
     """A point that shines into a cone, evenly in its middle and falling off to its rim.
 
     Parameters

@@ -8,12 +8,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import Triple, colour, number
+from .light import Environment
 from .sun_position import sun_directions, way
 from .times import Time, Times, one_or_many
 
 
 @dataclass(frozen=True, init=False)
-class SunSky:
+class SunSky(Environment):
     """A clear sky, the sun in it, and a plain below the horizon that reflects both.
 
     The sky is that of Preetham, Shirley and Smits ("A Practical Analytic Model for Daylight", 1999). The sun

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import Triple, choice, number, real_array
+from ..descriptions import restored, state
 from ..textures.spectrum import Spectrum, colour_or_spectrum
 from .files import read_grids
 from .medium import Medium
@@ -217,8 +218,7 @@ class GridMedium(Medium):
         return hash((self.density.shape, self.bounds, *told))
 
     def __reduce__(self) -> tuple[Any, ...]:
-        # Through the constructor, because an unpickled array would be writeable.
-        return _made, tuple(getattr(self, field.name) for field in fields(self))
+        return restored, (type(self), state(self))
 
     def __repr__(self) -> str:
         parts = [_told(self.density)]
@@ -243,10 +243,6 @@ _USUAL: dict[str, Any] = {
     "brightness": 1.0,
 }
 _GRIDS = ("emission", "albedo", "temperature")
-
-
-def _made(density: Numbers, bounds: Any, *rest: Any) -> GridMedium:
-    return GridMedium(density, bounds, **dict(zip([*_USUAL][1:], rest, strict=True)))
 
 
 def _told(value: Any) -> str:

@@ -1,9 +1,9 @@
 """Choice of the sampler if none is named, by the render's limits."""
 
-from dataclasses import replace
 from typing import TypeAlias
 
 from .. import _core
+from ..descriptions import changed
 from ..scene.scene import Scene
 from .plan import Choice, RenderPlan
 from .samplers import Halton, Independent, Lattice, Sampler, Sobol, Stratified
@@ -77,7 +77,7 @@ def chosen(
         why = f"{why}; {_PARTED} times as many, for each sample has its photons"
         batch = max(batch // _PARTED, 1)
     if sampler is not None:
-        return _planned(replace(sampler, batch=batch), "as named", why)
+        return _planned(changed(sampler, batch=batch), "as named", why)
     if batch == 1:
         return _planned(Independent(), "a batch of one has nothing to place", why)
     if batch <= _FEW:
@@ -104,10 +104,14 @@ def _of(begun: object, sampler: Sampler | None) -> Sampler | None:
     """Return the sampler that a ``repr`` is of, if it is one of those that are wanted."""
     if sampler is None and begun == repr(Independent()):
         return Independent()
-    batches = (1 << bits for bits in range(_MOST.bit_length()))
-    known = (kind(batch) for batch in batches for kind in (Stratified, Halton, Sobol, Lattice))
-    wanted = (one for one in known if sampler is None or type(one) is type(sampler))
-    return next((one for one in wanted if repr(one) == begun), None)
+    batches = [1 << bits for bits in range(_MOST.bit_length())]
+    known: list[Sampler] = []
+    for batch in batches:
+        if sampler is None:
+            known += [kind(batch) for kind in (Stratified, Halton, Sobol, Lattice)]
+        else:
+            known.append(changed(sampler, batch=batch))
+    return next((one for one in known if repr(one) == begun), None)
 
 
 def _batch(limits: Limits, adaptive: bool, apart: bool) -> tuple[int, str]:

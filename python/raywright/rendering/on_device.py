@@ -3,11 +3,11 @@
 import time
 import warnings
 from collections.abc import Callable
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from .. import _core
 from ..cameras import AnyCamera
+from ..descriptions import changed
 from ..integrators import AnyIntegrator, Path
 from ..scene.instance import AnyShape, Instance
 from ..scene.scene import Scene
@@ -98,7 +98,7 @@ class OnDevice:
     def plan(self, integrator: AnyIntegrator) -> tuple[Path, Sampler, RenderPlan]:
         """Return the path tracer, sampler and plan of a picture there."""
         assert isinstance(integrator, Path)
-        path = replace(integrator, **_PLAIN)
+        path = changed(integrator, **_PLAIN)
         rows = (
             self.row(),
             Choice("sampler", "Independent", "devices hash what a number is for (pcg4d), not Philox"),

@@ -2,12 +2,12 @@
 
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from itertools import product
 from typing import Any
 
 from .. import _core
 from ..cameras import AnyCamera
+from ..descriptions import changed
 from ..integrators import Path
 from ..scene.scene import Scene
 from .choices import Limits, expected
@@ -100,7 +100,7 @@ def followed(
                 return 1 + sum(costs[name][value] for name, value in way.items())
 
             def sent(ways: list[dict[str, Any]]) -> list[float]:
-                paths = [replace(path, **way) for way in ways]
+                paths = [changed(path, **way) for way in ways]
                 errors = _core.pilot(compiled, camera, paths, threads, clamp, filter, look)
                 return [error * cost(way) for error, way in zip(errors, ways, strict=True)]
 
@@ -113,7 +113,7 @@ def followed(
                 chosen = ways[worth.index(min(worth))]
             why |= {name: _told(name, ways, worth) for name in open_}
     rows = tuple(Choice(name, str(chosen[name]), why[name]) for name in _PLAIN)
-    return replace(path, **chosen), rows, time.perf_counter() - began
+    return changed(path, **chosen), rows, time.perf_counter() - began
 
 
 def _tried(

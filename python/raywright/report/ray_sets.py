@@ -9,7 +9,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import SeedLike, last_axis, seed_number
 from ..cameras import AnyCamera, Camera
-from ..lights import DirectionalLight
 from ..query.rays import ray_arguments
 from ..scene.scene import Scene
 from ..shapes.mesh import Mesh
@@ -211,9 +210,9 @@ def _lamps(
     scene: Scene, camera: AnyCamera, away: float, count: int, rng: np.random.Generator
 ) -> NDArray[np.float64]:
     """Return `count` points (N, 3) that shine."""
-    points = [light for light in scene.lights if not isinstance(light, DirectionalLight)]
+    points = [light.position for light in scene.lights if hasattr(light, "position")]
     if points:
-        places = np.array([light.position for light in points])
+        places = np.array(points)
         return np.asarray(places[np.arange(count) % len(places)])
     meshes = [shape for shape in scene.shapes if isinstance(shape, Mesh)]
     shining = [mesh.vertices[mesh.faces] for mesh in meshes if mesh.emission]

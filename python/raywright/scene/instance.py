@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from .. import _core
 from ..accelerators import BVH, Accelerator
 from ..arrays import frozen, integer, label, real_array
+from ..descriptions import as_kind
 from ..shapes import Shape
 from ..shapes.mesh import Mesh, face_count, stretched
 from ..shapes.sources import EXPECTED, leaves, meshes_of, named, refused
@@ -298,7 +299,7 @@ class Instance:
         return hash((self.shapes, self.transform.shape, self.accelerator))
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return Instance, self._parts()
+        return _unpickled, (type(self), self._parts())
 
     def __repr__(self) -> str:
         shapes, copies = len(self.shapes), len(self)
@@ -310,6 +311,10 @@ class Instance:
         parts += [] if self.name is None else [f"name={self.name!r}"]
         parts += [] if self.accelerator == _BVH else [repr(self.accelerator)]
         return f"Instance({', '.join(parts)})"
+
+
+def _unpickled(kind: type[Instance], parts: tuple[Any, ...]) -> Instance:
+    return as_kind(kind, Instance(*parts))
 
 
 def _count(shape: Mesh | Shape) -> int:

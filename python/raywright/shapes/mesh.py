@@ -1,7 +1,7 @@
 """Triangle meshes."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from importlib import import_module
 from os import PathLike
 from typing import TYPE_CHECKING, Any
@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .. import _core
 from ..arrays import frozen, label, last_axis, positive, rows, triangles
+from ..descriptions import as_kind, changed
 from ..lights.emission import EmissionLike, Emitted
 from ..lights.emission import emission as checked_emission
 from ..materials import Diffuse, Material
@@ -415,7 +416,11 @@ class Mesh:
         look = (self.material, self.emission, self.colors, self.name)
         values = (dict(self.vertex_attributes), dict(self.face_attributes), self.cells)
         parts = (self.vertices, self.faces, self.normals, self.uv, *look, *values)
-        return (Mesh, parts, {"_noise": self._noise}) if self._noise else (Mesh, parts)
+        # What a subclass has of its own, and the noise where there is any.
+        own = {name: value for name, value in vars(self).items() if name not in _UNPICKLED}
+        if self._noise:
+            own["_noise"] = self._noise
+        return _unpickled, (type(self), parts), own or None
 
     def __repr__(self) -> str:
         parts = [f"{len(self.vertices)} vertices", f"{len(self.faces)} faces", repr(self.material)]
@@ -438,6 +443,13 @@ def _shares(name: str, given: ArrayLike, count: int) -> NDArray[np.floating[Any]
     return array
 
 
+_UNPICKLED = {*(field.name for field in fields(Mesh)), "_noise", "_continues"}
+
+
+def _unpickled(kind: type[Mesh], parts: tuple[Any, ...]) -> Mesh:
+    return as_kind(kind, Mesh(*parts))
+
+
 def face_count(shape: object) -> int:
     """Return how many faces a shape has: none if it is no mesh."""
     return len(shape.faces) if isinstance(shape, Mesh) else 0
@@ -450,21 +462,16 @@ def moved(mesh: object, name: str, vertices: ArrayLike) -> Mesh:
     return replaced(mesh, vertices=rows(name, vertices, 3, len(mesh.vertices)))
 
 
-def replaced(mesh: Mesh, **fields: Any) -> Mesh:
+def replaced(mesh: Mesh, **values: Any) -> Mesh:
     """Return the mesh with other values of some fields, which are checked already."""
-    result = object.__new__(Mesh)
-    # The other arrays are validated and immutable, so they are shared.
-    vars(result).update(vars(mesh), **fields)
-    return result
+    return changed(mesh, **values)
 
 
 def wound(mesh: Mesh, faces: ArrayLike, normals: ArrayLike | None) -> Mesh:
     """Return the mesh with other faces and normals of the same vertices, and all else as it is."""
     count = len(mesh.vertices)
     pointing = None if normals is None else rows("normals", normals, 3, count)
-    result = object.__new__(Mesh)
-    vars(result).update(vars(mesh), faces=triangles("faces", faces, count), normals=pointing)
-    return result
+    return changed(mesh, faces=triangles("faces", faces, count), normals=pointing)
 
 
 def rounding(mesh: Mesh) -> float:

@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .._core import matrix_trouble, shape_area, shape_bounds
 from ..arrays import Triple, frozen, label, real_array, triple
+from ..descriptions import restored, state
 from ..lights.emission import EmissionLike, Emitted
 from ..lights.emission import emission as checked_emission
 from ..materials import Diffuse, Material
@@ -80,8 +81,7 @@ class Shape:
         return hash((type(self), self._values()))
 
     def __reduce__(self) -> tuple[Any, ...]:
-        # Through the constructor, because an unpickled array would be writeable.
-        return _restored, (type(self), {field.name: getattr(self, field.name) for field in fields(self)})
+        return restored, (type(self), state(self))
 
     def __repr__(self) -> str:
         parts = [
@@ -93,10 +93,6 @@ class Shape:
 
 
 _COMMON = ("transform", "material", "emission", "name")
-
-
-def _restored(kind: type[Shape], values: dict[str, Any]) -> Shape:
-    return kind(**values)
 
 
 def affine(name: str, given: ArrayLike) -> NDArray[np.float64]:

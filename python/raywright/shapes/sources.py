@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..descriptions import changed
 from .mesh import Mesh
 from .welding import Weld, welded
 
@@ -208,10 +209,7 @@ def named(shape: Any, name: str | None) -> Any:
     """Return a shape with another name; the same if None is given."""
     if name is None or shape.name == name:
         return shape
-    result = object.__new__(type(shape))
-    # All other values are validated and immutable, so they are shared.
-    vars(result).update(vars(shape), name=name)
-    return result
+    return changed(shape, name=name)
 
 
 def only_mesh(given: Any, tolerance: float | None) -> Mesh:

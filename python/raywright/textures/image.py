@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Triple, choice, frozen
+from ..descriptions import restored, state
 from ..foreign_arrays import as_array
 from .texture import Texture
 from .transform import UvTransform
@@ -164,8 +165,7 @@ class ImageTexture(Texture):
         return hash((self.image.shape, self._parts()[1:]))
 
     def __reduce__(self) -> tuple[Any, ...]:
-        # Through the constructor, because an unpickled array would be writeable.
-        return ImageTexture, self._parts()
+        return restored, (type(self), state(self))
 
     def __repr__(self) -> str:
         height, width, count = self.image.shape

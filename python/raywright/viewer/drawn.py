@@ -125,7 +125,7 @@ class Drawn:
     def _left_out(self) -> str | None:
         """Return the reason why the core renders still pictures of supported surfaces and lights."""
         integrator = self._integrator
-        if type(integrator) is not Path:
+        if not isinstance(integrator, Path):
             return f"the page has no {type(integrator).__name__}"
         if isinstance(self._orbit.camera(View()), ThinLens):
             return "the page has no lenses"

@@ -2,15 +2,16 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arrays import number
+from ..arrays import number, triple
 from ..cameras import AnyCamera, Orthographic, Pose, ThinLens
 from ..cameras.any_camera import resized as resized
+from ..descriptions import changed
 from .boxes import check_flat, spread
 
 # Least angle in degrees to straight up or down, where the roll would be undefined.
@@ -144,10 +145,10 @@ class Orbit:
         def pose(one: Pose) -> dict[str, Any]:
             away = turn @ (np.array(one.position) - self._pivot) / view.zoom
             return {
-                "position": pivot + away,
+                "position": triple("position", pivot + away),
                 "target": None,
-                "direction": turn @ one.forward,
-                "up": turn @ np.array(one.up),
+                "direction": triple("direction", turn @ one.forward),
+                "up": triple("up", turn @ np.array(one.up)),
             }
 
         changes = pose(self._camera)
@@ -160,7 +161,7 @@ class Orbit:
             sharp = self._camera.focused_distance
             own = self._camera.focus_distance is not None
             changes |= {"focus_point": None, "focus_distance": sharp if own else sharp / view.zoom}
-        return replace(self._camera, **changes)
+        return changed(self._camera, **changes)
 
 
 def scaled(size: tuple[int, int], factor: float) -> tuple[int, int]:

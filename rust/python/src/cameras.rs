@@ -1,10 +1,11 @@
 //! Camera descriptions of the Python package, read by attribute, and camera rays.
 
 use numpy::{Element, PyArrayMethods, PyReadonlyArrayDyn};
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use super::arrays::{Numbers, Row, unwritten, vectors};
+use super::kinds::Kinds;
 use super::rays::{answer, share};
 use raywright::math::DVec3;
 use raywright::scene::cameras::{
@@ -12,17 +13,19 @@ use raywright::scene::cameras::{
     Viewpoint, Window,
 };
 
-/// Creates a kind of camera from its description and the common parts.
-type Kind = fn(&Bound<'_, PyAny>, Body) -> PyResult<Box<dyn Camera>>;
+/// Reads a camera from its description and the common parts.
+type Read = fn(&Bound<'_, PyAny>, Body) -> PyResult<Box<dyn Camera>>;
 
-/// All kinds, by the `kind` of their class.
-const KINDS: [(&str, Kind); 5] = [
-    ("perspective", perspective),
-    ("thin lens", thin_lens),
-    ("orthographic", orthographic),
-    ("fisheye", fisheye),
-    ("panorama", panorama),
-];
+static KINDS: Kinds<Read> = Kinds::new(
+    "camera must be a raywright camera",
+    &[
+        ("cameras.perspective", "Camera", perspective),
+        ("cameras.thin_lens", "ThinLens", thin_lens),
+        ("cameras.orthographic", "Orthographic", orthographic),
+        ("cameras.fisheye", "Fisheye", fisheye),
+        ("cameras.panorama", "Panorama", panorama),
+    ],
+);
 
 /// Any camera, read from its attributes.
 pub struct AnyCamera(pub Box<dyn Camera>);
@@ -39,7 +42,6 @@ struct Pose {
 /// Attributes of all cameras.
 #[derive(FromPyObject)]
 struct Common {
-    kind: String,
     width: u32,
     height: u32,
     shutter: [f64; 2],
@@ -50,6 +52,7 @@ impl FromPyObject<'_, '_> for AnyCamera {
     type Error = PyErr;
 
     fn extract(object: Borrowed<'_, '_, PyAny>) -> PyResult<Self> {
+        let read = KINDS.reader(&object)?;
         let (common, pose): (Common, Pose) = (object.extract()?, object.extract()?);
         let mut body =
             Body::new(pose.viewpoint()?, common.width, common.height).and_then(|b| b.with_shutter(common.shutter));
@@ -57,10 +60,7 @@ impl FromPyObject<'_, '_> for AnyCamera {
             let end = end.viewpoint()?;
             body = body.map(|body| body.moved_to(end));
         }
-        match KINDS.iter().find(|(name, _)| *name == common.kind) {
-            Some((_, make)) => Ok(Self(make(&object, body.map_err(refused)?)?)),
-            None => Err(PyTypeError::new_err(format!("there is no camera of kind {:?}", common.kind))),
-        }
+        Ok(Self(read(&object, body.map_err(refused)?)?))
     }
 }
 

@@ -9,6 +9,7 @@ use std::sync::Arc;
 use super::arrays::{Rows, Triples, pairs, rows};
 use super::builds::Builds;
 use super::instances::{self, Wishes};
+use super::kinds::Class;
 use super::lights;
 use super::materials::Appearances;
 use super::media;
@@ -123,6 +124,8 @@ fn read(
     Ok(shapes)
 }
 
+static MESH: Class = Class::new("shapes.mesh", "Mesh");
+
 /// Reads a mesh or another shape. A mesh whose vertices were rounded is read with all digits.
 fn describe<'py>(
     shape: &Bound<'py, PyAny>,
@@ -135,7 +138,7 @@ fn describe<'py>(
         .emission
         .map_or_else(|| Ok(scene::Emission::default()), |e| lights::read_emission(&e, &appearances.textures))?;
     let appearance = scene::Shape { material, emission, ..scene::Shape::default() };
-    if shape.get_type().name()? != "Mesh" {
+    if !MESH.has(shape)? {
         return Ok((scene::Shape { surface: shapes::read(shape)?.into(), ..appearance }, None));
     }
     let given = shape.extract::<Mesh<'py>>()?;

@@ -31,36 +31,35 @@ struct PyImplicit {
     max: [f64; 3],
 }
 
-fn polygon(outline: Vec<[f64; 3]>, holes: Vec<Vec<[f64; 3]>>) -> Result<Polygon, String> {
+fn polygon_of(outline: Vec<[f64; 3]>, holes: Vec<Vec<[f64; 3]>>) -> Result<Polygon, String> {
     let ring = |points: Vec<[f64; 3]>| points.into_iter().map(DVec3::from_array).collect();
     Polygon::new(ring(outline), holes.into_iter().map(ring).collect())
 }
 
-/// The shape in its own space, if the class name is one of these.
-pub fn read(name: &str, shape: &Bound<'_, PyAny>) -> PyResult<Option<Arc<dyn Shape>>> {
-    let vector = DVec3::from_array;
-    Ok(Some(match name {
-        "Torus" => {
-            let PyTorus { center, axis, major_radius, minor_radius } = shape.extract()?;
-            let torus = Torus::new(vector(center), vector(axis), major_radius, minor_radius);
-            Arc::new(torus.map_err(PyValueError::new_err)?)
-        }
-        "Polygon" => {
-            let PyPolygon { outline, holes } = shape.extract()?;
-            Arc::new(polygon(outline, holes).map_err(PyValueError::new_err)?)
-        }
-        "Implicit" => {
-            let PyImplicit { expression, min, max } = shape.extract()?;
-            Arc::new(Implicit::new(&expression, vector(min), vector(max)).map_err(PyValueError::new_err)?)
-        }
-        _ => return Ok(None),
-    }))
+/// Reads a torus in its own space.
+pub fn torus(shape: &Bound<'_, PyAny>) -> PyResult<Arc<dyn Shape>> {
+    let PyTorus { center, axis, major_radius, minor_radius } = shape.extract()?;
+    let torus = Torus::new(DVec3::from_array(center), DVec3::from_array(axis), major_radius, minor_radius);
+    Ok(Arc::new(torus.map_err(PyValueError::new_err)?))
+}
+
+/// Reads a polygon in its own space.
+pub fn polygon(shape: &Bound<'_, PyAny>) -> PyResult<Arc<dyn Shape>> {
+    let PyPolygon { outline, holes } = shape.extract()?;
+    Ok(Arc::new(polygon_of(outline, holes).map_err(PyValueError::new_err)?))
+}
+
+/// Reads an implicit surface in its own space.
+pub fn implicit(shape: &Bound<'_, PyAny>) -> PyResult<Arc<dyn Shape>> {
+    let PyImplicit { expression, min, max } = shape.extract()?;
+    let implicit = Implicit::new(&expression, DVec3::from_array(min), DVec3::from_array(max));
+    Ok(Arc::new(implicit.map_err(PyValueError::new_err)?))
 }
 
 /// The reason why a polygon is invalid, or None.
 #[pyfunction]
 pub fn polygon_trouble(outline: Vec<[f64; 3]>, holes: Vec<Vec<[f64; 3]>>) -> Option<String> {
-    polygon(outline, holes).err()
+    polygon_of(outline, holes).err()
 }
 
 /// The reason why an expression or its box is invalid, or None.

@@ -10,6 +10,7 @@ use std::sync::{Arc, LazyLock, Mutex, Weak};
 use super::accelerators;
 use super::arrays::vectors;
 use super::builds::{self, Builds};
+use super::kinds::Class;
 use raywright::math::Hit;
 use raywright::scene::{self, Instances, Matrix, Precision, Prototype, Surface};
 use raywright::workers;
@@ -59,9 +60,11 @@ fn matrices(name: &str, array: &PyReadonlyArrayDyn<'_, f64>) -> PyResult<Vec<Mat
     Ok(rows.as_chunks::<4>().0.iter().map(|&[x, y, z, _]| [x, y, z]).collect())
 }
 
+static INSTANCE: Class = Class::new("scene.instance", "Instance");
+
 /// Returns whether a description is an instance.
 pub fn is_instance(shape: &Bound<'_, PyAny>) -> PyResult<bool> {
-    Ok(shape.get_type().name()?.to_str()? == "Instance")
+    INSTANCE.has(shape)
 }
 
 /// Reads the shapes of a prototype; objects that must live as long as nested prototypes are added to the last argument.

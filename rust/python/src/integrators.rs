@@ -2,11 +2,12 @@
 
 use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyReadonlyArray1, PyReadonlyArrayDyn};
 use pyo3::conversion::FromPyObjectOwned;
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use super::arrays::{numbers, vectors};
 use super::cameras::AnyCamera;
+use super::kinds::{Kinds, Read};
 use super::query::CompiledScene;
 use super::signals::heard;
 use raywright::integrators::{
@@ -84,20 +85,18 @@ fn radiosity(of: &Bound<'_, PyAny>) -> PyResult<Radiosity> {
     Ok(Radiosity { patches, first, mirrored, has_backs, irradiance, area })
 }
 
-impl<'a, 'py> FromPyObject<'a, 'py> for AnyIntegrator {
-    type Error = PyErr;
-
-    fn extract(of: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
-        let kind = of.get_type().name()?.to_string();
-        let of = &*of;
-        let light_samples = || attribute(of, "light_samples");
-        Ok(Self(match kind.as_str() {
-            "Path" => Box::new(path(of)?),
-            "LightTraced" => Box::new(LightTraced {
+static KINDS: Kinds<Read<Box<dyn Integrator>>> = Kinds::new(
+    "integrator must be one of raywright's",
+    &[
+        ("integrators.path", "Path", |of| Ok(Box::new(path(of)?))),
+        ("integrators.light_traced", "LightTraced", |of| {
+            Ok(Box::new(LightTraced {
                 max_depth: attribute(of, "max_depth")?,
                 roulette_depth: attribute(of, "roulette_depth")?,
-            }),
-            "PhotonMap" => Box::new(PhotonMap {
+            }))
+        }),
+        ("integrators.photon_maps", "PhotonMap", |of| {
+            Ok(Box::new(PhotonMap {
                 photons: attribute(of, "photons")?,
                 nearest: attribute(of, "nearest")?,
                 radius: attribute(of, "radius")?,
@@ -108,8 +107,10 @@ impl<'a, 'py> FromPyObject<'a, 'py> for AnyIntegrator {
                 max_depth: attribute(of, "max_depth")?,
                 roulette_depth: attribute(of, "roulette_depth")?,
                 scale: 1.0,
-            }),
-            "ProgressivePhotonMap" => Box::new(ProgressivePhotonMap {
+            }))
+        }),
+        ("integrators.photon_maps", "ProgressivePhotonMap", |of| {
+            Ok(Box::new(ProgressivePhotonMap {
                 photons: attribute(of, "photons")?,
                 radius: attribute(of, "radius")?,
                 alpha: attribute(of, "alpha")?,
@@ -119,50 +120,74 @@ impl<'a, 'py> FromPyObject<'a, 'py> for AnyIntegrator {
                 roulette_depth: attribute(of, "roulette_depth")?,
                 scale: 1.0,
                 mean_of: None,
-            }),
-            "Bidirectional" => Box::new(Bidirectional {
+            }))
+        }),
+        ("integrators.bidirectional", "Bidirectional", |of| {
+            Ok(Box::new(Bidirectional {
                 max_depth: attribute(of, "max_depth")?,
                 roulette_depth: attribute(of, "roulette_depth")?,
                 merge: merge(of)?,
                 alone: None,
-            }),
-            "Direct" => {
-                Box::new(Direct { light_samples: light_samples()?, surface_samples: attribute(of, "surface_samples")? })
-            }
-            "Radiosity" => Box::new(radiosity(of)?),
-            "RayCast" => Box::new(RayCast {
+            }))
+        }),
+        ("integrators.direct", "Direct", |of| {
+            Ok(Box::new(Direct {
+                light_samples: attribute(of, "light_samples")?,
+                surface_samples: attribute(of, "surface_samples")?,
+            }))
+        }),
+        ("integrators.radiosity", "Radiosity", |of| Ok(Box::new(radiosity(of)?))),
+        ("integrators.ray_cast", "RayCast", |of| {
+            Ok(Box::new(RayCast {
                 ambient: rgb(of, "ambient")?,
                 shadows: attribute(of, "shadows")?,
-                light_samples: light_samples()?,
-            }),
-            "Whitted" => Box::new(Whitted {
+                light_samples: attribute(of, "light_samples")?,
+            }))
+        }),
+        ("integrators.whitted", "Whitted", |of| {
+            Ok(Box::new(Whitted {
                 max_depth: attribute(of, "max_depth")?,
                 contribution: attribute(of, "contribution")?,
                 ambient: rgb(of, "ambient")?,
-                light_samples: light_samples()?,
-            }),
-            "Distributed" => Box::new(Distributed {
+                light_samples: attribute(of, "light_samples")?,
+            }))
+        }),
+        ("integrators.distributed", "Distributed", |of| {
+            Ok(Box::new(Distributed {
                 max_depth: attribute(of, "max_depth")?,
                 splits: attribute(of, "splits")?,
                 ambient: rgb(of, "ambient")?,
-            }),
-            "BeamTraced" => Box::new(BeamTraced {
+            }))
+        }),
+        ("integrators.beam_traced", "BeamTraced", |of| {
+            Ok(Box::new(BeamTraced {
                 max_depth: attribute(of, "max_depth")?,
                 ambient: rgb(of, "ambient")?,
                 tolerance: attribute(of, "tolerance")?,
-            }),
-            "ConeTraced" => Box::new(ConeTraced {
+            }))
+        }),
+        ("integrators.cone_traced", "ConeTraced", |of| {
+            Ok(Box::new(ConeTraced {
                 max_depth: attribute(of, "max_depth")?,
                 contribution: attribute(of, "contribution")?,
                 ambient: rgb(of, "ambient")?,
-            }),
-            "AmbientOcclusion" => Box::new(AmbientOcclusion {
+            }))
+        }),
+        ("integrators.ambient_occlusion", "AmbientOcclusion", |of| {
+            Ok(Box::new(AmbientOcclusion {
                 radius: attribute(of, "radius")?,
                 cosine: attribute(of, "cosine")?,
                 samples: attribute(of, "samples")?,
-            }),
-            other => return Err(PyTypeError::new_err(format!("integrator must be one of raywright's, got {other}"))),
-        }))
+            }))
+        }),
+    ],
+);
+
+impl FromPyObject<'_, '_> for AnyIntegrator {
+    type Error = PyErr;
+
+    fn extract(of: Borrowed<'_, '_, PyAny>) -> PyResult<Self> {
+        KINDS.reader(&of)?(&of).map(Self)
     }
 }
 

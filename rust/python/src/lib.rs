@@ -23,6 +23,7 @@ mod instances;
 mod integrators;
 mod interactions;
 mod job;
+mod kinds;
 mod leave;
 mod lights;
 mod materials;

@@ -1,17 +1,17 @@
 //! Light descriptions of the Python package, one dataclass per kind, read by attribute; and emission of surfaces.
 
 use numpy::PyReadonlyArrayDyn;
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 use std::sync::Arc;
 
 use super::arrays::vectors;
+use super::kinds::{Class, Kinds};
 use super::spectra::{self, Meaning};
 use super::textures::Textures;
 use raywright::math::DVec3;
 use raywright::optics::Rgb;
-
 use raywright::scene::{
     ConstantEnvironment, DirectionalLight, Emission, EnvironmentMap, Light, Picture, PointLight, Profile, Projector,
     Sides, SpotLight, SunSky, Waved,
@@ -85,17 +85,18 @@ struct PyEmission<'py> {
     side: String,
 }
 
-/// Reads a light or an environment by the name of its class; spectral if `waves`.
-pub fn read(light: &Bound<'_, PyAny>, waves: bool) -> PyResult<Arc<dyn Light>> {
-    let (vector, rgb) = (DVec3::from_array, Rgb::from_array);
-    let name = light.get_type().name()?;
-    Ok(match name.to_str()? {
-        "PointLight" => {
+/// Reads a light or an environment; spectral if the flag is set.
+type Read = fn(&Bound<'_, PyAny>, bool) -> PyResult<Arc<dyn Light>>;
+
+static KINDS: Kinds<Read> = Kinds::new(
+    "expected a raywright light",
+    &[
+        ("lights.point", "PointLight", |light, waves| {
             let PyPoint { position, intensity } = light.extract()?;
             let position = vector(position);
-            shining(&intensity, waves, false, |intensity| Ok(Arc::new(PointLight { position, intensity })))?
-        }
-        "SpotLight" => {
+            shining(&intensity, waves, false, |intensity| Ok(Arc::new(PointLight { position, intensity })))
+        }),
+        ("lights.spot", "SpotLight", |light, waves| {
             let PySpot { position, target, intensity, angle, falloff, profile } = light.extract()?;
             let position = vector(position);
             let (angle, falloff) = (angle.to_radians(), falloff.to_radians());
@@ -103,43 +104,51 @@ pub fn read(light: &Bound<'_, PyAny>, waves: bool) -> PyResult<Arc<dyn Light>> {
             shining(&intensity, waves, false, |intensity| {
                 let spot = SpotLight::new(position, vector(target) - position, intensity, angle, falloff);
                 Ok(Arc::new(spot.with_profile(profile)))
-            })?
-        }
-        "DirectionalLight" => {
+            })
+        }),
+        ("lights.directional", "DirectionalLight", |light, waves| {
             let PyDirectional { direction, irradiance } = light.extract()?;
             let new = |irradiance| -> PyResult<Arc<dyn Light>> {
                 Ok(Arc::new(DirectionalLight::new(vector(direction), irradiance)))
             };
-            shining(&irradiance, waves, false, new)?
-        }
-        "ProjectorLight" => {
+            shining(&irradiance, waves, false, new)
+        }),
+        ("lights.projector", "ProjectorLight", |light, waves| {
             let PyProjector { image, position, target, up, fov, intensity } = light.extract()?;
             let places = [position, target, up].map(vector);
             let image = picture(&image)?;
             shining(&intensity, waves, true, |intensity| {
                 let projector = Projector::new(image, places, fov.to_radians(), intensity);
                 Ok(Arc::new(projector.map_err(PyValueError::new_err)?))
-            })?
-        }
-        "ConstantEnvironment" => {
+            })
+        }),
+        ("lights.constant", "ConstantEnvironment", |light, waves| {
             let PyConstant { radiance } = light.extract()?;
-            shining(&radiance, waves, false, |radiance| Ok(Arc::new(ConstantEnvironment { radiance })))?
-        }
-        "EnvironmentMap" => {
+            shining(&radiance, waves, false, |radiance| Ok(Arc::new(ConstantEnvironment { radiance })))
+        }),
+        ("lights.environment_map", "EnvironmentMap", |light, waves| {
             let PyMap { image, to_world, scale } = light.extract()?;
             let rows = vectors::<f64, 3>("to_world", &to_world)?;
             let &[x, y, z] = rows else {
                 return Err(PyValueError::new_err(format!("to_world has {} rows, expected 3", rows.len())));
             };
-            coloured(EnvironmentMap::new(picture(&image)?, [x, y, z].map(vector), scale), waves)
-        }
-        "SunSky" => {
+            Ok(coloured(EnvironmentMap::new(picture(&image)?, [x, y, z].map(vector), scale), waves))
+        }),
+        ("lights.sun_sky", "SunSky", |light, waves| {
             let PySunSky { sun, turbidity, ground_albedo, up, sun_scale, sky_scale } = light.extract()?;
-            let ways = [sun, up].map(vector);
-            coloured(SunSky::new(ways, turbidity, rgb(ground_albedo), [sun_scale, sky_scale]), waves)
-        }
-        other => return Err(PyTypeError::new_err(format!("expected a raywright light, got {other}"))),
-    })
+            let (ways, ground) = ([sun, up].map(vector), Rgb::from_array(ground_albedo));
+            Ok(coloured(SunSky::new(ways, turbidity, ground, [sun_scale, sky_scale]), waves))
+        }),
+    ],
+);
+
+/// Reads a light or an environment; spectral if `waves`.
+pub fn read(light: &Bound<'_, PyAny>, waves: bool) -> PyResult<Arc<dyn Light>> {
+    KINDS.reader(light)?(light, waves)
+}
+
+fn vector(row: [f64; 3]) -> DVec3 {
+    DVec3::from_array(row)
 }
 
 /// A light with its RGB colours or, if `waves`, with their smooth spectra.
@@ -179,9 +188,11 @@ pub fn read_environment(environment: Option<Bound<'_, PyAny>>, waves: bool) -> P
     }
 }
 
+static EMISSION: Class = Class::new("lights.emission", "Emission");
+
 /// Reads the emission of a shape: a radiance, or a `raywright.Emission`.
 pub fn read_emission(emission: &Bound<'_, PyAny>, textures: &Textures) -> PyResult<Emission> {
-    if emission.get_type().name()?.to_str()? != "Emission" {
+    if !EMISSION.has(emission)? {
         return Ok(Emission { radiance: textures.value(emission, Meaning::Light)?, ..Emission::default() });
     }
     let PyEmission { radiance, side } = emission.extract()?;

@@ -4,6 +4,7 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use std::sync::Arc;
 
+use super::kinds::Kinds;
 use super::media;
 use super::spectra::{self, Meaning};
 use super::textures::{Cache, Textures};
@@ -16,6 +17,7 @@ use raywright::scene::materials::{
     Roughness, SoapFilmMaterial, ThinDielectricMaterial, ThinFilmMaterial, TintedBase, TintedMaterial, TwoSided,
 };
 use raywright::scene::media::Medium;
+use raywright::scene::textures::Value;
 
 /// Reads materials and textures; a shared one is read once.
 pub struct Appearances {
@@ -36,155 +38,218 @@ impl Appearances {
     /// # Errors
     /// A `TypeError` if it is not a material, and errors of reading its textures.
     pub fn material(&self, given: &Bound<'_, PyAny>) -> PyResult<Arc<dyn Material>> {
-        self.materials.of(given, || self.read(given))
+        self.materials.of(given, || KINDS.reader(given)?(&Description { all: self, given }))
     }
+}
 
-    /// Reads a material by the name of its class.
-    fn read(&self, given: &Bound<'_, PyAny>) -> PyResult<Arc<dyn Material>> {
-        let name = given.get_type().name()?;
-        let value = |name: &str| self.textures.attribute(given, name, Meaning::Share);
-        let number = |name: &str| self.textures.number(given, name);
-        let float = |name: &str| given.getattr(name)?.extract::<f64>();
-        let inner = |name: &str| self.material(&given.getattr(name)?);
-        let roughness = || self.roughness(given);
-        Ok(match name.to_str()? {
-            "Diffuse" => Arc::new(DiffuseMaterial { reflectance: value("reflectance")? }),
-            "OrenNayar" => {
-                Arc::new(OrenNayarMaterial { reflectance: value("reflectance")?, roughness: number("roughness")? })
-            }
-            "Mirror" => Arc::new(MirrorMaterial { reflectance: value("reflectance")? }),
-            "Conductor" => Arc::new(self.conductor(given)?),
-            "Dielectric" => Arc::new(self.dielectric(given)?),
-            "ThinFilm" => Arc::new(ThinFilmMaterial {
-                thickness: number("thickness")?,
-                ior: float("ior")?,
-                base: self.film_base(&given.getattr("base")?)?,
-                by_wave: self.textures.has_waves(),
-            }),
-            "Tinted" => Arc::new(TintedMaterial {
-                base: self.tinted_base(&given.getattr("base")?)?,
-                reflectance: value("reflectance")?,
-                transmittance: value("transmittance")?,
-            }),
-            "SoapFilm" => Arc::new(SoapFilmMaterial {
-                thickness: number("thickness")?,
-                ior: float("ior")?,
-                by_wave: self.textures.has_waves(),
-            }),
-            "Boundary" => {
-                let medium = self.medium(given)?.ok_or_else(|| PyTypeError::new_err("interior must be a medium"))?;
-                Arc::new(BoundaryMaterial { medium, priority: given.getattr("priority")?.extract()? })
-            }
-            "ThinDielectric" => {
-                let priority = given.getattr("priority")?.extract()?;
-                let within = self.medium(given)?.map(|medium| (medium, priority));
-                Arc::new(ThinDielectricMaterial { ior: float("ior")?, within })
-            }
-            "Plastic" => Arc::new(PlasticMaterial {
-                reflectance: value("reflectance")?,
-                ior: float("ior")?,
-                roughness: roughness()?,
+/// The description of a material, and the cache of others.
+struct Description<'a, 'py> {
+    all: &'a Appearances,
+    given: &'a Bound<'py, PyAny>,
+}
+
+/// Reads a material, or a part made from one.
+type Read<T> = fn(&Description<'_, '_>) -> PyResult<T>;
+
+static KINDS: Kinds<Read<Arc<dyn Material>>> = Kinds::new(
+    "material must be a raywright material",
+    &[
+        ("materials.diffuse", "Diffuse", |of| Ok(Arc::new(DiffuseMaterial { reflectance: of.value("reflectance")? }))),
+        ("materials.oren_nayar", "OrenNayar", |of| {
+            Ok(Arc::new(OrenNayarMaterial {
+                reflectance: of.value("reflectance")?,
+                roughness: of.number("roughness")?,
+            }))
+        }),
+        ("materials.mirror", "Mirror", |of| Ok(Arc::new(MirrorMaterial { reflectance: of.value("reflectance")? }))),
+        ("materials.conductor", "Conductor", |of| Ok(Arc::new(of.conductor()?))),
+        ("materials.dielectric", "Dielectric", |of| Ok(Arc::new(of.dielectric()?))),
+        ("materials.thin_film", "ThinFilm", |of| {
+            Ok(Arc::new(ThinFilmMaterial {
+                thickness: of.number("thickness")?,
+                ior: of.float("ior")?,
+                base: of.base(&FILM_BASES)?,
+                by_wave: of.waves(),
+            }))
+        }),
+        ("materials.tinted", "Tinted", |of| {
+            Ok(Arc::new(TintedMaterial {
+                base: of.base(&TINTED_BASES)?,
+                reflectance: of.value("reflectance")?,
+                transmittance: of.value("transmittance")?,
+            }))
+        }),
+        ("materials.thin_film", "SoapFilm", |of| {
+            Ok(Arc::new(SoapFilmMaterial {
+                thickness: of.number("thickness")?,
+                ior: of.float("ior")?,
+                by_wave: of.waves(),
+            }))
+        }),
+        ("materials.boundary", "Boundary", |of| {
+            let medium = of.medium()?.ok_or_else(|| PyTypeError::new_err("interior must be a medium"))?;
+            Ok(Arc::new(BoundaryMaterial { medium, priority: of.given.getattr("priority")?.extract()? }))
+        }),
+        ("materials.thin_dielectric", "ThinDielectric", |of| {
+            let priority = of.given.getattr("priority")?.extract()?;
+            let within = of.medium()?.map(|medium| (medium, priority));
+            Ok(Arc::new(ThinDielectricMaterial { ior: of.float("ior")?, within }))
+        }),
+        ("materials.plastic", "Plastic", |of| {
+            Ok(Arc::new(PlasticMaterial {
+                reflectance: of.value("reflectance")?,
+                ior: of.float("ior")?,
+                roughness: of.roughness()?,
                 coats: Arc::default(),
-            }),
-            "Phong" => Arc::new(PhongMaterial {
-                diffuse: value("diffuse")?,
-                specular: value("specular")?,
-                exponent: number("exponent")?,
-                ambient: value("ambient")?,
-            }),
-            "BlinnPhong" => Arc::new(BlinnPhongMaterial {
-                diffuse: value("diffuse")?,
-                specular: value("specular")?,
-                exponent: number("exponent")?,
-                ambient: value("ambient")?,
-            }),
-            "MetallicRough" => Arc::new(MetallicRoughMaterial {
-                base_colour: value("base_color")?,
-                metallic: number("metallic")?,
-                roughness: number("roughness")?,
-            }),
-            "Principled" => Arc::new(PrincipledMaterial {
-                looks: self.looks(given)?,
-                interior: interior(given)?,
-                metallic: number("metallic")?,
-                clearcoat: number("clearcoat")?,
-                clearcoat_gloss: number("clearcoat_gloss")?,
-            }),
-            "PrincipledThin" => Arc::new(PrincipledThinMaterial {
-                looks: self.looks(given)?,
-                ior: float("ior")?,
-                diffuse_transmission: number("diffuse_transmission")?,
-            }),
-            "Mix" => Arc::new(MixMaterial { a: inner("a")?, b: inner("b")?, amount: number("amount")? }),
-            "Mask" => Arc::new(Mask { material: inner("material")?, opacity: number("opacity")? }),
-            "BumpMap" => {
-                Arc::new(BumpMap { material: inner("material")?, height: number("height")?, scale: float("scale")? })
-            }
-            "NormalMap" => Arc::new(NormalMap {
-                material: inner("material")?,
-                normals: self.textures.attribute(given, "normals", Meaning::Numbers)?,
-                scale: float("scale")?,
-            }),
-            "TwoSided" => Arc::new(TwoSided { front: inner("front")?, back: inner("back")? }),
-            other => return Err(PyTypeError::new_err(format!("material must be a raywright material, got {other}"))),
-        })
+            }))
+        }),
+        ("materials.phong", "Phong", |of| {
+            Ok(Arc::new(PhongMaterial {
+                diffuse: of.value("diffuse")?,
+                specular: of.value("specular")?,
+                exponent: of.number("exponent")?,
+                ambient: of.value("ambient")?,
+            }))
+        }),
+        ("materials.blinn_phong", "BlinnPhong", |of| {
+            Ok(Arc::new(BlinnPhongMaterial {
+                diffuse: of.value("diffuse")?,
+                specular: of.value("specular")?,
+                exponent: of.number("exponent")?,
+                ambient: of.value("ambient")?,
+            }))
+        }),
+        ("materials.metallic_rough", "MetallicRough", |of| {
+            Ok(Arc::new(MetallicRoughMaterial {
+                base_colour: of.value("base_color")?,
+                metallic: of.number("metallic")?,
+                roughness: of.number("roughness")?,
+            }))
+        }),
+        ("materials.principled", "Principled", |of| {
+            Ok(Arc::new(PrincipledMaterial {
+                looks: of.looks()?,
+                interior: of.interior()?,
+                metallic: of.number("metallic")?,
+                clearcoat: of.number("clearcoat")?,
+                clearcoat_gloss: of.number("clearcoat_gloss")?,
+            }))
+        }),
+        ("materials.principled", "PrincipledThin", |of| {
+            Ok(Arc::new(PrincipledThinMaterial {
+                looks: of.looks()?,
+                ior: of.float("ior")?,
+                diffuse_transmission: of.number("diffuse_transmission")?,
+            }))
+        }),
+        ("materials.mix", "Mix", |of| {
+            Ok(Arc::new(MixMaterial { a: of.inner("a")?, b: of.inner("b")?, amount: of.number("amount")? }))
+        }),
+        ("materials.mask", "Mask", |of| {
+            Ok(Arc::new(Mask { material: of.inner("material")?, opacity: of.number("opacity")? }))
+        }),
+        ("materials.bump_map", "BumpMap", |of| {
+            Ok(Arc::new(BumpMap {
+                material: of.inner("material")?,
+                height: of.number("height")?,
+                scale: of.float("scale")?,
+            }))
+        }),
+        ("materials.normal_map", "NormalMap", |of| {
+            Ok(Arc::new(NormalMap {
+                material: of.inner("material")?,
+                normals: of.all.textures.attribute(of.given, "normals", Meaning::Numbers)?,
+                scale: of.float("scale")?,
+            }))
+        }),
+        ("materials.two_sided", "TwoSided", |of| {
+            Ok(Arc::new(TwoSided { front: of.inner("front")?, back: of.inner("back")? }))
+        }),
+    ],
+);
+
+static FILM_BASES: Kinds<Read<FilmBase>> = Kinds::new(
+    "base must be a Dielectric or a Conductor",
+    &[
+        ("materials.dielectric", "Dielectric", |of| Ok(FilmBase::Dielectric(of.dielectric()?))),
+        ("materials.conductor", "Conductor", |of| Ok(FilmBase::Conductor(of.conductor()?, FilmedMetals::default()))),
+    ],
+);
+
+static TINTED_BASES: Kinds<Read<TintedBase>> = Kinds::new(
+    "base must be a Dielectric or a ThinDielectric",
+    &[
+        ("materials.dielectric", "Dielectric", |of| Ok(TintedBase::Dielectric(of.dielectric()?))),
+        ("materials.thin_dielectric", "ThinDielectric", |of| Ok(TintedBase::Pane(of.float("ior")?))),
+    ],
+);
+
+impl Description<'_, '_> {
+    fn value(&self, name: &str) -> PyResult<Value> {
+        self.all.textures.attribute(self.given, name, Meaning::Share)
     }
 
-    fn conductor(&self, given: &Bound<'_, PyAny>) -> PyResult<ConductorMaterial> {
-        let index = match given.getattr("metal")?.extract::<Option<String>>()? {
-            Some(name) => Index::Measured(metal(&name).ok_or_else(|| unknown(&name))?, self.textures.has_waves()),
+    fn number(&self, name: &str) -> PyResult<Value<f64>> {
+        self.all.textures.number(self.given, name)
+    }
+
+    fn float(&self, name: &str) -> PyResult<f64> {
+        self.given.getattr(name)?.extract()
+    }
+
+    /// Returns whether rendering is spectral.
+    fn waves(&self) -> bool {
+        self.all.textures.has_waves()
+    }
+
+    /// The material that an attribute is.
+    fn inner(&self, name: &str) -> PyResult<Arc<dyn Material>> {
+        self.all.material(&self.given.getattr(name)?)
+    }
+
+    fn conductor(&self) -> PyResult<ConductorMaterial> {
+        let index = match self.given.getattr("metal")?.extract::<Option<String>>()? {
+            Some(name) => Index::Measured(metal(&name).ok_or_else(|| unknown(&name))?, self.waves()),
             None => {
-                let value = |name: &str| self.textures.attribute(given, name, Meaning::Amount);
+                let value = |name: &str| self.all.textures.attribute(self.given, name, Meaning::Amount);
                 Index::Constants { eta: value("eta")?, k: value("k")? }
             }
         };
-        Ok(ConductorMaterial { index, roughness: self.roughness(given)? })
+        Ok(ConductorMaterial { index, roughness: self.roughness()? })
     }
 
-    fn dielectric(&self, given: &Bound<'_, PyAny>) -> PyResult<DielectricMaterial> {
-        let interior = interior(given)?;
-        Ok(DielectricMaterial { interior, roughness: self.roughness(given)?, medium: self.medium(given)? })
+    fn dielectric(&self) -> PyResult<DielectricMaterial> {
+        let interior = self.interior()?;
+        Ok(DielectricMaterial { interior, roughness: self.roughness()?, medium: self.medium()? })
     }
 
-    /// Reads the base of a film.
-    fn film_base(&self, given: &Bound<'_, PyAny>) -> PyResult<FilmBase> {
-        Ok(match given.get_type().name()?.to_str()? {
-            "Dielectric" => FilmBase::Dielectric(self.dielectric(given)?),
-            "Conductor" => FilmBase::Conductor(self.conductor(given)?, FilmedMetals::default()),
-            other => {
-                return Err(PyTypeError::new_err(format!("base must be a Dielectric or a Conductor, got {other}")));
-            }
-        })
+    /// Reads the base of a film or a tint, one of several materials.
+    fn base<T>(&self, kinds: &Kinds<Read<T>>) -> PyResult<T> {
+        let base = self.given.getattr("base")?;
+        kinds.reader(&base)?(&Description { all: self.all, given: &base })
     }
 
-    /// Reads the base of a tint.
-    fn tinted_base(&self, given: &Bound<'_, PyAny>) -> PyResult<TintedBase> {
-        Ok(match given.get_type().name()?.to_str()? {
-            "Dielectric" => TintedBase::Dielectric(self.dielectric(given)?),
-            "ThinDielectric" => TintedBase::Pane(given.getattr("ior")?.extract()?),
-            other => {
-                return Err(PyTypeError::new_err(format!(
-                    "base must be a Dielectric or a ThinDielectric, got {other}"
-                )));
-            }
-        })
+    /// Reads the interior of a solid.
+    fn interior(&self) -> PyResult<Interior> {
+        let (ior, dispersion) = spectra::index(&self.given.getattr("ior")?)?;
+        Ok(Interior { ior, dispersion, priority: self.given.getattr("priority")?.extract()? })
     }
 
     /// Reads the participating medium inside a material.
-    fn medium(&self, given: &Bound<'_, PyAny>) -> PyResult<Option<Arc<dyn Medium>>> {
-        let interior = given.getattr("interior")?;
+    fn medium(&self) -> PyResult<Option<Arc<dyn Medium>>> {
+        let interior = self.given.getattr("interior")?;
         if interior.is_none() {
             Ok(None)
         } else {
-            self.media.of(&interior, || media::read(&interior, self.textures.has_waves())).map(Some)
+            self.all.media.of(&interior, || media::read(&interior, self.waves())).map(Some)
         }
     }
 
     /// Reads the parameters that the principled materials share.
-    fn looks(&self, given: &Bound<'_, PyAny>) -> PyResult<LookTextures> {
-        let number = |name: &str| self.textures.number(given, name);
+    fn looks(&self) -> PyResult<LookTextures> {
+        let number = |name: &str| self.number(name);
         Ok(LookTextures {
-            base_color: self.textures.attribute(given, "base_color", Meaning::Share)?,
+            base_color: self.value("base_color")?,
             roughness: number("roughness")?,
             anisotropic: number("anisotropic")?,
             transmission: number("transmission")?,
@@ -192,24 +257,24 @@ impl Appearances {
             sheen: number("sheen")?,
             sheen_tint: number("sheen_tint")?,
             flatness: number("flatness")?,
-            conserves: given.getattr("energy_conserving")?.extract()?,
+            conserves: self.given.getattr("energy_conserving")?.extract()?,
         })
     }
 
     /// Reads roughness, or alpha if given, isotropic or anisotropic, and the facet distribution.
-    fn roughness(&self, given: &Bound<'_, PyAny>) -> PyResult<Roughness> {
-        let alpha = given.getattr("alpha")?;
+    fn roughness(&self) -> PyResult<Roughness> {
+        let alpha = self.given.getattr("alpha")?;
         let is_alpha = !alpha.is_none();
-        let told = if is_alpha { alpha } else { given.getattr("roughness")? };
+        let told = if is_alpha { alpha } else { self.given.getattr("roughness")? };
         let along = match told.extract::<[Bound<'_, PyAny>; 2]>() {
-            Ok([u, v]) => [self.textures.plain(&u)?.number(), self.textures.plain(&v)?.number()],
+            Ok([u, v]) => [self.all.textures.plain(&u)?.number(), self.all.textures.plain(&v)?.number()],
             Err(_) => {
-                let both = self.textures.plain(&told)?.number();
+                let both = self.all.textures.plain(&told)?.number();
                 [both.clone(), both]
             }
         };
-        let distribution: String = given.getattr("distribution")?.extract()?;
-        let facets = match (distribution.as_str(), given.getattr("multiple_scattering")?.extract()?) {
+        let distribution: String = self.given.getattr("distribution")?.extract()?;
+        let facets = match (distribution.as_str(), self.given.getattr("multiple_scattering")?.extract()?) {
             ("beckmann", true) => FacetKind::Beckmann,
             ("beckmann", false) => FacetKind::BeckmannOnce,
             (_, true) => FacetKind::Ggx,
@@ -236,10 +301,4 @@ pub fn metal_index(name: &str) -> PyResult<Vec<[f64; 3]>> {
 
 fn unknown(name: &str) -> PyErr {
     PyValueError::new_err(format!("metal must be one that is known, got '{name}'"))
-}
-
-/// Reads the interior of a solid.
-fn interior(given: &Bound<'_, PyAny>) -> PyResult<Interior> {
-    let (ior, dispersion) = spectra::index(&given.getattr("ior")?)?;
-    Ok(Interior { ior, dispersion, priority: given.getattr("priority")?.extract()? })
 }

@@ -1,11 +1,12 @@
 //! Medium descriptions of the Python package, read by attribute.
 
 use numpy::{PyReadonlyArrayDyn, PyUntypedArrayMethods};
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::sync::Arc;
 
 use super::grid_blocks::{GridBlocks, Kept};
+use super::kinds::{Kinds, Read};
 use super::spectra::{self, Meaning};
 use raywright::optics::spectra::{Role, Smooth, Spectrum};
 use raywright::optics::{HenyeyGreenstein, Phase, Rgb};
@@ -21,31 +22,44 @@ struct PyMedium<'py> {
     phase: Bound<'py, PyAny>,
 }
 
+/// The parts of all media, read.
+struct Parts {
+    absorbs: Tinted,
+    scatters: Tinted,
+    phase: Phase,
+}
+
+/// Reads a medium; spectral if the flag is set.
+type ReadMedium = fn(&Bound<'_, PyAny>, bool, Parts) -> PyResult<Arc<dyn Medium>>;
+
+static KINDS: Kinds<ReadMedium> = Kinds::new(
+    "medium must be a raywright medium",
+    &[("media.homogeneous", "Homogeneous", homogeneous), ("media.grid", "GridMedium", grid)],
+);
+
 /// Reads a medium; spectral if `waves`.
 ///
 /// # Errors
 /// A `TypeError` if it is not a medium, a `ValueError` if it is invalid.
 pub fn read(given: &Bound<'_, PyAny>, waves: bool) -> PyResult<Arc<dyn Medium>> {
-    let name = given.get_type().name()?;
+    let read = KINDS.reader(given)?;
     let PyMedium { absorption, scattering, phase } = given.extract()?;
     let absorbs = tint(&absorption, Meaning::Amount, waves)?;
     let scatters = tint(&scattering, Meaning::Amount, waves)?;
-    let phase = read_phase(&phase)?;
-    match name.to_str()? {
-        "Homogeneous" => {
-            let emission = tint(&given.getattr("emission")?, Meaning::Light, waves)?;
-            let medium = Homogeneous::new(absorbs.1, scatters.1, emission.1, phase);
-            let medium = medium.ok_or_else(|| PyValueError::new_err("a medium must be finite and not negative"))?;
-            let medium = Arc::new(medium);
-            Ok(if waves { Arc::new(WavedMedium::new(medium, [absorbs, scatters], Some(emission))) } else { medium })
-        }
-        "GridMedium" => read_grid(given, waves, [absorbs, scatters], phase),
-        other => Err(PyTypeError::new_err(format!("medium must be a raywright medium, got {other}"))),
-    }
+    read(given, waves, Parts { absorbs, scatters, phase: read_phase(&phase)? })
+}
+
+/// A medium that is the same everywhere.
+fn homogeneous(given: &Bound<'_, PyAny>, waves: bool, parts: Parts) -> PyResult<Arc<dyn Medium>> {
+    let Parts { absorbs, scatters, phase } = parts;
+    let emission = tint(&given.getattr("emission")?, Meaning::Light, waves)?;
+    let medium = Homogeneous::new(absorbs.1, scatters.1, emission.1, phase);
+    let medium = Arc::new(medium.ok_or_else(|| PyValueError::new_err("a medium must be finite and not negative"))?);
+    Ok(if waves { Arc::new(WavedMedium::new(medium, [absorbs, scatters], Some(emission))) } else { medium })
 }
 
 /// A spectrum, used only if spectral, and the RGB colour that represents it.
-fn tint(told: &Bound<'_, PyAny>, meaning: Meaning, waves: bool) -> PyResult<(Arc<Spectrum>, Rgb)> {
+fn tint(told: &Bound<'_, PyAny>, meaning: Meaning, waves: bool) -> PyResult<Tinted> {
     if waves { spectra::tint(told, meaning) } else { Ok((flat(), Rgb::from_array(told.extract()?))) }
 }
 
@@ -53,11 +67,13 @@ fn flat() -> Arc<Spectrum> {
     Arc::new(Spectrum::Smooth(Smooth::of(Rgb::ONE, Role::Amount)))
 }
 
-/// Absorption and scattering: spectra, and the RGB colours that represent them.
-type Told = [(Arc<Spectrum>, Rgb); 2];
+/// A spectrum, and the RGB colour that represents it.
+type Tinted = (Arc<Spectrum>, Rgb);
 
 /// A medium on a grid.
-fn read_grid(given: &Bound<'_, PyAny>, waves: bool, told: Told, phase: Phase) -> PyResult<Arc<dyn Medium>> {
+fn grid(given: &Bound<'_, PyAny>, waves: bool, parts: Parts) -> PyResult<Arc<dyn Medium>> {
+    let Parts { absorbs, scatters, phase } = parts;
+    let told = [absorbs, scatters];
     let at = match given.getattr("at")?.extract::<String>()?.as_str() {
         "centres" => At::Centres,
         _ => At::Corners,
@@ -124,15 +140,19 @@ fn field(name: &str, given: &Bound<'_, PyAny>, at: At) -> PyResult<Field> {
     }
 }
 
+static PHASES: Kinds<Read<Phase>> = Kinds::new(
+    "phase must be a raywright phase function",
+    &[
+        ("media.phases", "Isotropic", |_| Ok(Phase::Isotropic)),
+        ("media.phases", "Rayleigh", |_| Ok(Phase::Rayleigh)),
+        ("media.phases", "HenyeyGreenstein", |of| {
+            let by = HenyeyGreenstein::new(of.getattr("g")?.extract()?);
+            by.map(Phase::HenyeyGreenstein).ok_or_else(|| PyValueError::new_err("g must be between -1 and 1"))
+        }),
+    ],
+);
+
 /// Reads a phase function.
 fn read_phase(given: &Bound<'_, PyAny>) -> PyResult<Phase> {
-    match given.get_type().name()?.to_str()? {
-        "Isotropic" => Ok(Phase::Isotropic),
-        "Rayleigh" => Ok(Phase::Rayleigh),
-        "HenyeyGreenstein" => {
-            let by = HenyeyGreenstein::new(given.getattr("g")?.extract()?);
-            by.map(Phase::HenyeyGreenstein).ok_or_else(|| PyValueError::new_err("g must be between -1 and 1"))
-        }
-        other => Err(PyTypeError::new_err(format!("phase must be a raywright phase function, got {other}"))),
-    }
+    PHASES.reader(given)?(given)
 }

@@ -1,8 +1,9 @@
 //! Sampler and filter descriptions of the Python package, one dataclass per kind, read by attribute.
 
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
+use super::kinds::{Kinds, Read};
 use raywright::render::filter::{self, Filter, Profile, Separable};
 use raywright::sampling::{BatchSize, SamplerKind};
 
@@ -19,23 +20,29 @@ pub fn batch_for(samples: Option<u32>) -> u32 {
     SamplerKind::Sobol(BatchSize::for_budget(samples)).batch()
 }
 
-/// Reads a sampler by the name of its class.
+static SAMPLERS: Kinds<Read<SamplerKind>> = Kinds::new(
+    "sampler must be one of raywright's",
+    &[
+        ("rendering.samplers", "Independent", |_| Ok(SamplerKind::Independent)),
+        ("rendering.samplers", "Stratified", |of| batch(of).map(SamplerKind::Stratified)),
+        ("rendering.samplers", "Halton", |of| batch(of).map(SamplerKind::Halton)),
+        ("rendering.samplers", "Sobol", |of| batch(of).map(SamplerKind::Sobol)),
+        ("rendering.samplers", "Lattice", |of| batch(of).map(SamplerKind::Lattice)),
+    ],
+);
+
+/// Reads a sampler.
 pub fn sampler(sampler: &Bound<'_, PyAny>) -> PyResult<SamplerKind> {
-    let name = sampler.get_type().name()?;
-    let kind = match name.to_str()? {
-        "Independent" => return Ok(SamplerKind::Independent),
-        "Stratified" => SamplerKind::Stratified,
-        "Halton" => SamplerKind::Halton,
-        "Sobol" => SamplerKind::Sobol,
-        "Lattice" => SamplerKind::Lattice,
-        other => return Err(PyTypeError::new_err(format!("sampler is a {other}, expected one of raywright's"))),
-    };
-    let size = match sampler.extract::<Batched>()?.batch {
-        None => BatchSize::for_budget(None),
+    SAMPLERS.reader(sampler)?(sampler)
+}
+
+/// The batches of a sampler.
+fn batch(sampler: &Bound<'_, PyAny>) -> PyResult<BatchSize> {
+    match sampler.extract::<Batched>()?.batch {
+        None => Ok(BatchSize::for_budget(None)),
         Some(batch) => BatchSize::new(batch)
-            .ok_or_else(|| PyValueError::new_err(format!("batch is {batch}, expected a power of two from 1 to 64")))?,
-    };
-    Ok(kind(size))
+            .ok_or_else(|| PyValueError::new_err(format!("batch is {batch}, expected a power of two from 1 to 64"))),
+    }
 }
 
 /// `raywright.BoxFilter`, `TriangleFilter` and `BlackmanHarrisFilter`.
@@ -71,40 +78,43 @@ struct Cropped<'py> {
     filter: Bound<'py, PyAny>,
 }
 
-/// Reads a filter by the name of its class.
-pub fn filter(filter: &Bound<'_, PyAny>) -> PyResult<Box<dyn Filter>> {
-    let name = filter.get_type().name()?;
-    match name.to_str()? {
-        "BoxFilter" => {
-            let Wide { radius } = filter.extract()?;
+static FILTERS: Kinds<Read<Box<dyn Filter>>> = Kinds::new(
+    "filter must be one of raywright's",
+    &[
+        ("rendering.filters", "BoxFilter", |of| {
+            let Wide { radius } = of.extract()?;
             Ok(Box::new(filter::Box::new(radius).map_err(PyValueError::new_err)?))
-        }
-        "TriangleFilter" => {
-            let Wide { radius } = filter.extract()?;
+        }),
+        ("rendering.filters", "TriangleFilter", |of| {
+            let Wide { radius } = of.extract()?;
             separable(filter::Triangle::new(radius))
-        }
-        "GaussianFilter" => {
-            let Gaussian { radius, sigma } = filter.extract()?;
+        }),
+        ("rendering.filters", "GaussianFilter", |of| {
+            let Gaussian { radius, sigma } = of.extract()?;
             separable(filter::Gaussian::new(radius, sigma))
-        }
-        "MitchellFilter" => {
-            let Mitchell { radius, b, c } = filter.extract()?;
+        }),
+        ("rendering.filters", "MitchellFilter", |of| {
+            let Mitchell { radius, b, c } = of.extract()?;
             separable(filter::Mitchell::new(radius, b, c))
-        }
-        "BlackmanHarrisFilter" => {
-            let Wide { radius } = filter.extract()?;
+        }),
+        ("rendering.filters", "BlackmanHarrisFilter", |of| {
+            let Wide { radius } = of.extract()?;
             separable(filter::BlackmanHarris::new(radius))
-        }
-        "LanczosFilter" => {
-            let Lanczos { lobes } = filter.extract()?;
+        }),
+        ("rendering.filters", "LanczosFilter", |of| {
+            let Lanczos { lobes } = of.extract()?;
             separable(filter::Lanczos::new(lobes))
-        }
-        "CroppedFilter" => {
-            let Cropped { filter: whole } = filter.extract()?;
+        }),
+        ("rendering.filters", "CroppedFilter", |of| {
+            let Cropped { filter: whole } = of.extract()?;
             Ok(Box::new(filter::Cropped(self::filter(&whole)?)))
-        }
-        other => Err(PyTypeError::new_err(format!("filter is a {other}, expected one of raywright's"))),
-    }
+        }),
+    ],
+);
+
+/// Reads a filter.
+pub fn filter(filter: &Bound<'_, PyAny>) -> PyResult<Box<dyn Filter>> {
+    FILTERS.reader(filter)?(filter)
 }
 
 fn separable<P: Profile + 'static>(profile: Result<P, String>) -> PyResult<Box<dyn Filter>> {

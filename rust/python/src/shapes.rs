@@ -1,9 +1,11 @@
 //! Descriptions of shapes that are not meshes, read by attribute.
 
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::sync::Arc;
 
+use super::freeform;
+use super::kinds::{Kinds, Read};
 use raywright::math::{Affine, DVec3};
 use raywright::shapes::{Cuboid, Disk, Ellipsoid, Placed, Plane, Revolution, Shape, Sphere};
 
@@ -78,7 +80,7 @@ struct PyParaboloid {
 ///
 /// A `TypeError` if it is not a shape, and a `ValueError` for a transform without an inverse.
 pub fn read(shape: &Bound<'_, PyAny>) -> PyResult<Arc<dyn Shape>> {
-    let own = read_own(shape)?;
+    let own = KINDS.reader(shape)?(shape)?;
     match shape.getattr("transform")?.extract::<Option<[[f64; 4]; 4]>>()? {
         None => Ok(own),
         Some([x, y, z, _]) => {
@@ -89,48 +91,50 @@ pub fn read(shape: &Bound<'_, PyAny>) -> PyResult<Arc<dyn Shape>> {
     }
 }
 
-/// The shape in its own space, by the name of its class.
-fn read_own(shape: &Bound<'_, PyAny>) -> PyResult<Arc<dyn Shape>> {
-    let vector = DVec3::from_array;
-    let name = shape.get_type().name()?;
-    if let Some(shape) = super::freeform::read(name.to_str()?, shape)? {
-        return Ok(shape);
-    }
-    Ok(match name.to_str()? {
-        "Sphere" => {
-            let PySphere { center, radius } = shape.extract()?;
-            Arc::new(Sphere { center: vector(center), radius })
-        }
-        "Plane" => {
-            let PyPlane { point, normal } = shape.extract()?;
-            Arc::new(Plane { point: vector(point), normal: vector(normal) })
-        }
-        "Disk" => {
-            let PyDisk { center, normal, radius, inner_radius } = shape.extract()?;
-            Arc::new(Disk { center: vector(center), normal: vector(normal), radius, inner_radius })
-        }
-        "Cylinder" => {
-            let PyCylinder { base, tip, radius, capped } = shape.extract()?;
-            Arc::new(Revolution::cylinder(vector(base), vector(tip), radius, capped))
-        }
-        "Cone" => {
-            let PyCone { base, tip, base_radius, tip_radius, capped } = shape.extract()?;
-            Arc::new(Revolution::cone(vector(base), vector(tip), [base_radius, tip_radius], capped))
-        }
-        "Box" => {
-            let PyBox { min, max } = shape.extract()?;
-            Arc::new(Cuboid { min: vector(min), max: vector(max) })
-        }
-        "Ellipsoid" => {
-            let PyEllipsoid { center, semi_axes } = shape.extract()?;
-            Arc::new(Ellipsoid { center: vector(center), semi_axes: vector(semi_axes) })
-        }
-        "Paraboloid" => {
-            let PyParaboloid { apex, tip, radius, capped } = shape.extract()?;
-            Arc::new(Revolution::paraboloid(vector(apex), vector(tip), radius, capped))
-        }
-        other => return Err(PyTypeError::new_err(format!("expected a raywright shape, got {other}"))),
-    })
+/// Shapes, in their own space.
+static KINDS: Kinds<Read<Arc<dyn Shape>>> = Kinds::new(
+    "expected a raywright shape",
+    &[
+        ("shapes.sphere", "Sphere", |of| {
+            let PySphere { center, radius } = of.extract()?;
+            Ok(Arc::new(Sphere { center: vector(center), radius }))
+        }),
+        ("shapes.plane", "Plane", |of| {
+            let PyPlane { point, normal } = of.extract()?;
+            Ok(Arc::new(Plane { point: vector(point), normal: vector(normal) }))
+        }),
+        ("shapes.disk", "Disk", |of| {
+            let PyDisk { center, normal, radius, inner_radius } = of.extract()?;
+            Ok(Arc::new(Disk { center: vector(center), normal: vector(normal), radius, inner_radius }))
+        }),
+        ("shapes.cylinder", "Cylinder", |of| {
+            let PyCylinder { base, tip, radius, capped } = of.extract()?;
+            Ok(Arc::new(Revolution::cylinder(vector(base), vector(tip), radius, capped)))
+        }),
+        ("shapes.cone", "Cone", |of| {
+            let PyCone { base, tip, base_radius, tip_radius, capped } = of.extract()?;
+            Ok(Arc::new(Revolution::cone(vector(base), vector(tip), [base_radius, tip_radius], capped)))
+        }),
+        ("shapes.box", "Box", |of| {
+            let PyBox { min, max } = of.extract()?;
+            Ok(Arc::new(Cuboid { min: vector(min), max: vector(max) }))
+        }),
+        ("shapes.ellipsoid", "Ellipsoid", |of| {
+            let PyEllipsoid { center, semi_axes } = of.extract()?;
+            Ok(Arc::new(Ellipsoid { center: vector(center), semi_axes: vector(semi_axes) }))
+        }),
+        ("shapes.paraboloid", "Paraboloid", |of| {
+            let PyParaboloid { apex, tip, radius, capped } = of.extract()?;
+            Ok(Arc::new(Revolution::paraboloid(vector(apex), vector(tip), radius, capped)))
+        }),
+        ("shapes.torus", "Torus", freeform::torus),
+        ("shapes.polygon", "Polygon", freeform::polygon),
+        ("shapes.implicit", "Implicit", freeform::implicit),
+    ],
+);
+
+fn vector(row: [f64; 3]) -> DVec3 {
+    DVec3::from_array(row)
 }
 
 /// Lower and upper corner of a shape's bounds under its transform, rounded outwards.

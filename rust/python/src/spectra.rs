@@ -1,9 +1,10 @@
 //! Spectra and indices of refraction of the Python package, read by attribute, and colours of spectra.
 
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::sync::Arc;
 
+use super::kinds::{Kinds, Read};
 use raywright::optics::spectra::{self, FIRST, Illuminant, LAST, Response, Role, Smooth, Spectrum, Table, Told};
 use raywright::optics::thin_film::{self, Complex};
 use raywright::optics::{Dispersion, Dispersive, Rgb};
@@ -106,6 +107,19 @@ pub fn tint(given: &Bound<'_, PyAny>, meaning: Meaning) -> PyResult<(Arc<Spectru
     Ok((spectrum, colour))
 }
 
+static DISPERSIONS: Kinds<Read<Dispersion>> = Kinds::new(
+    "ior must be a number or a dispersion",
+    &[
+        ("materials.dispersion", "Cauchy", |of| {
+            Ok(Dispersion::Cauchy([of.getattr("B")?.extract()?, of.getattr("C")?.extract()?]))
+        }),
+        ("materials.dispersion", "Sellmeier", |of| {
+            let [b, c] = ["B", "C"].map(|name| of.getattr(name)?.extract::<Vec<f64>>());
+            Ok(Dispersion::Sellmeier(b?.into_iter().zip(c?).map(|(b, c)| [b, c]).collect()))
+        }),
+    ],
+);
+
 /// Reads an index of refraction, for yellow light if it varies, and its dispersion.
 ///
 /// # Errors
@@ -115,14 +129,7 @@ pub fn index(given: &Bound<'_, PyAny>) -> PyResult<(f64, Dispersive)> {
     if let Ok(number) = given.extract::<f64>() {
         return Ok((number, Dispersive::NONE));
     }
-    let dispersion = match given.get_type().name()?.to_str()? {
-        "Cauchy" => Dispersion::Cauchy([given.getattr("B")?.extract()?, given.getattr("C")?.extract()?]),
-        "Sellmeier" => {
-            let [b, c] = ["B", "C"].map(|name| given.getattr(name)?.extract::<Vec<f64>>());
-            Dispersion::Sellmeier(b?.into_iter().zip(c?).map(|(b, c)| [b, c]).collect())
-        }
-        other => return Err(PyTypeError::new_err(format!("ior must be a number or a dispersion, got {other}"))),
-    };
+    let dispersion = DISPERSIONS.reader(given)?(given)?;
     if !dispersion.is_physical(FIRST, LAST) {
         return Err(PyValueError::new_err(format!(
             "ior must be above 0 from {FIRST} to {LAST} nm, which {dispersion:?} is not"

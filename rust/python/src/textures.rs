@@ -1,12 +1,13 @@
 //! Texture descriptions of the Python package, read by attribute.
 
 use numpy::PyReadonlyArrayDyn;
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::cell::RefCell;
 use std::collections::HashMap;
 use std::sync::Arc;
 
+use super::kinds::Kinds;
 use super::spectra::{self, Meaning};
 use raywright::optics::Rgb;
 use raywright::optics::spectra::Role;
@@ -193,44 +194,9 @@ impl Textures {
         }
     }
 
-    /// Reads a texture by the name of its class.
+    /// Reads a texture.
     fn read(&self, given: &Bound<'_, PyAny>, meaning: Meaning) -> PyResult<Arc<dyn Texture>> {
-        let name = given.get_type().name()?;
-        let domain = || given.getattr("transform")?.extract::<PyTransform>().map(Domain::from);
-        let octaves = || given.extract::<PyOctaves>().map(Octaves::from);
-        let float = |name: &str| given.getattr(name)?.extract::<f64>();
-        Ok(match name.to_str()? {
-            "Checker" => self.between(given, meaning, Checker(domain()?))?,
-            "Stripes" => self.between(given, meaning, Stripes { domain: domain()?, fraction: float("fraction")? })?,
-            "Noise" => {
-                let seed = given.getattr("seed")?.extract()?;
-                self.between(given, meaning, Noise { domain: domain()?, seed })?
-            }
-            "FBm" => self.between(given, meaning, Fbm { domain: domain()?, octaves: octaves()? })?,
-            "Marble" => {
-                let distortion = float("distortion")?;
-                self.between(given, meaning, Marble { domain: domain()?, distortion, octaves: octaves()? })?
-            }
-            "Wood" => {
-                let distortion = float("distortion")?;
-                self.between(given, meaning, Wood { domain: domain()?, distortion, octaves: octaves()? })?
-            }
-            "MixTexture" => {
-                let [a, b] = ["a", "b"].map(|name| self.attribute(given, name, meaning));
-                // Blend weights are shares.
-                let amount = if meaning == Meaning::Numbers { meaning } else { Meaning::Share };
-                let amount = self.attribute(given, "amount", amount);
-                Arc::new(MixTexture { a: a?, b: b?, amount: amount? })
-            }
-            "ProductTexture" => {
-                let [a, b] = ["a", "b"].map(|name| self.attribute(given, name, meaning));
-                Arc::new(ProductTexture { a: a?, b: b? })
-            }
-            "VertexColors" => self.coloured(VertexColours, meaning),
-            "ImageTexture" => self.coloured(self.image(given.extract()?)?, meaning),
-            "Spectrum" | "Blackbody" => Arc::new(Spectral::new(spectra::table(given, meaning)?)),
-            other => return Err(PyTypeError::new_err(format!("expected a number, 3 or a texture, got {other}"))),
-        })
+        KINDS.reader(given)?(self, given, meaning)
     }
 
     fn between(
@@ -276,6 +242,62 @@ impl Textures {
         };
         Ok(ImageTexture { picture, uv: UvTransform(given.transform.matrix), wrap, filter })
     }
+}
+
+/// Reads a texture, given the quantity of its numbers.
+type Read = fn(&Textures, &Bound<'_, PyAny>, Meaning) -> PyResult<Arc<dyn Texture>>;
+
+static KINDS: Kinds<Read> = Kinds::new(
+    "expected a number, 3 or a texture",
+    &[
+        ("textures.checker", "Checker", |all, of, meaning| all.between(of, meaning, Checker(domain(of)?))),
+        ("textures.stripes", "Stripes", |all, of, meaning| {
+            let fraction = of.getattr("fraction")?.extract()?;
+            all.between(of, meaning, Stripes { domain: domain(of)?, fraction })
+        }),
+        ("textures.noise", "Noise", |all, of, meaning| {
+            let seed = of.getattr("seed")?.extract()?;
+            all.between(of, meaning, Noise { domain: domain(of)?, seed })
+        }),
+        ("textures.fbm", "FBm", |all, of, meaning| {
+            all.between(of, meaning, Fbm { domain: domain(of)?, octaves: octaves(of)? })
+        }),
+        ("textures.marble", "Marble", |all, of, meaning| {
+            let distortion = of.getattr("distortion")?.extract()?;
+            all.between(of, meaning, Marble { domain: domain(of)?, distortion, octaves: octaves(of)? })
+        }),
+        ("textures.wood", "Wood", |all, of, meaning| {
+            let distortion = of.getattr("distortion")?.extract()?;
+            all.between(of, meaning, Wood { domain: domain(of)?, distortion, octaves: octaves(of)? })
+        }),
+        ("textures.mix", "MixTexture", |all, of, meaning| {
+            let [a, b] = ["a", "b"].map(|name| all.attribute(of, name, meaning));
+            // Blend weights are shares.
+            let amount = if meaning == Meaning::Numbers { meaning } else { Meaning::Share };
+            let amount = all.attribute(of, "amount", amount);
+            Ok(Arc::new(MixTexture { a: a?, b: b?, amount: amount? }))
+        }),
+        ("textures.product", "ProductTexture", |all, of, meaning| {
+            let [a, b] = ["a", "b"].map(|name| all.attribute(of, name, meaning));
+            Ok(Arc::new(ProductTexture { a: a?, b: b? }))
+        }),
+        ("textures.vertex_colors", "VertexColors", |all, _, meaning| Ok(all.coloured(VertexColours, meaning))),
+        ("textures.image", "ImageTexture", |all, of, meaning| Ok(all.coloured(all.image(of.extract()?)?, meaning))),
+        ("textures.spectrum", "Spectrum", spectrum),
+        ("textures.blackbody", "Blackbody", spectrum),
+    ],
+);
+
+fn spectrum(_: &Textures, of: &Bound<'_, PyAny>, meaning: Meaning) -> PyResult<Arc<dyn Texture>> {
+    Ok(Arc::new(Spectral::new(spectra::table(of, meaning)?)))
+}
+
+fn domain(of: &Bound<'_, PyAny>) -> PyResult<Domain> {
+    of.getattr("transform")?.extract::<PyTransform>().map(Domain::from)
+}
+
+fn octaves(of: &Bound<'_, PyAny>) -> PyResult<Octaves> {
+    of.extract::<PyOctaves>().map(Octaves::from)
 }
 
 /// A picture of one channel of an (H, W, C) array, or of its first three.

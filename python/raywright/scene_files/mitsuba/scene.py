@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path
-from typing import Any, cast, get_args
+from typing import Any
 
 import numpy as np
 
@@ -121,10 +121,10 @@ def _read(scene: Plugin, number: int, weld: Weld) -> Shot:
             found += shapes.group(plugin)
         elif plugin.type in emitters.TYPES:
             one = emitters.emitter(plugin)
-            if isinstance(one, get_args(Light)):
-                lights.append(cast(Light, one))
+            if isinstance(one, Light):
+                lights.append(one)
             else:
-                around.append(cast(Environment, one))
+                around.append(one)
         else:
             found += shapes.shapes_of(plugin)
     integrators = list(scene.children(*settings.INTEGRATORS))

@@ -4,7 +4,7 @@ import errno
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, NamedTuple, cast, get_args
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -242,10 +242,10 @@ class _Reader:
                 self._textures,
                 self._imaging,
             )
-            if isinstance(made, get_args(Light)):
-                self._lights.append(cast(Light, made))
+            if isinstance(made, Light):
+                self._lights.append(made)
             else:
-                self._around.append(cast(Environment, made))
+                self._around.append(made)
         elif one.name == "Shape":
             self._shape(texts[0], parameters.over(self._defaults("shape")))
         elif one.name == "ObjectBegin":

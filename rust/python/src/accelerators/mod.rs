@@ -4,11 +4,12 @@ mod bvh;
 mod grid;
 mod space;
 
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::fmt::Display;
 use std::ops::RangeInclusive;
 
+use super::kinds::{Class, Kinds};
 use super::level;
 use raywright::accel::bvh::Options;
 use raywright::accel::walk::{Built, Input, Mailbox};
@@ -18,27 +19,34 @@ use raywright::simd::Level;
 /// Builds an accelerator in the current thread pool.
 pub type Build = Box<dyn FnOnce(&dyn Primitives) -> Box<dyn Accelerator> + Send>;
 
-/// Reads an accelerator by the name of its class; `quality` sets the build effort.
+/// Reads an accelerator, given the build effort and the level of its kernels.
+type Read = fn(&Bound<'_, PyAny>, &str, Level) -> PyResult<Build>;
+
+static KINDS: Kinds<Read> = Kinds::new(
+    "accelerator must be one of raywright's",
+    &[
+        ("accelerators.bvh", "BVH", |of, quality, level| of.extract::<bvh::Bvh>()?.build(quality, level)),
+        ("accelerators.grid", "Grid", |of, _, level| of.extract::<grid::Grid>()?.build(level)),
+        ("accelerators.grid", "NestedGrid", |of, _, level| of.extract::<grid::NestedGrid>()?.build(level)),
+        ("accelerators.space", "KdTree", |of, _, level| of.extract::<space::KdTree>()?.build(level)),
+        ("accelerators.space", "Octree", |of, _, level| of.extract::<space::Octree>()?.build(level)),
+        ("accelerators.space", "BSP", |of, _, level| of.extract::<space::Bsp>()?.build(level)),
+        ("accelerators.brute", "BruteForce", |_, _, level| {
+            Ok(Box::new(move |geometry| BruteForce::over(geometry, level)))
+        }),
+    ],
+);
+
+static BVH: Class = Class::new("accelerators.bvh", "BVH");
+
+/// Reads an accelerator; `quality` sets the build effort.
 pub fn read(choice: &Bound<'_, PyAny>, quality: &str) -> PyResult<Build> {
-    let (name, level) = (choice.get_type().name()?, level()?);
-    match name.to_str()? {
-        "BVH" => choice.extract::<bvh::Bvh>()?.build(quality, level),
-        "Grid" => choice.extract::<grid::Grid>()?.build(level),
-        "NestedGrid" => choice.extract::<grid::NestedGrid>()?.build(level),
-        "KdTree" => choice.extract::<space::KdTree>()?.build(level),
-        "Octree" => choice.extract::<space::Octree>()?.build(level),
-        "BSP" => choice.extract::<space::Bsp>()?.build(level),
-        "BruteForce" => Ok(Box::new(move |geometry| BruteForce::over(geometry, level))),
-        other => Err(PyTypeError::new_err(format!("accelerator is a {other}, expected one of raywright's"))),
-    }
+    KINDS.reader(choice)?(choice, quality, level()?)
 }
 
 /// Build options of a binary tree if the accelerator is one, otherwise the defaults.
 pub fn tree_options(choice: &Bound<'_, PyAny>, quality: &str) -> PyResult<Options> {
-    match choice.get_type().name()?.to_str()? {
-        "BVH" => choice.extract::<bvh::Bvh>()?.options(quality),
-        _ => Ok(Options::DEFAULT),
-    }
+    if BVH.has(choice)? { choice.extract::<bvh::Bvh>()?.options(quality) } else { Ok(Options::DEFAULT) }
 }
 
 /// Builds a structure that is traversed one ray at a time.

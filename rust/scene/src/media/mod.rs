@@ -113,7 +113,7 @@ enum Kind<'m> {
 
 impl<'m> Stretches<'m> {
     /// A single segment.
-    fn whole(stretch: Stretch) -> Self {
+    pub fn whole(stretch: Stretch) -> Self {
         Self(Kind::Whole(Some(stretch)))
     }
 
