@@ -73,6 +73,20 @@ def slow(session):
 
 
 @nox.session
+def outside(session):
+    """Test the examples of docs/extending.md in a crate outside the tree, which sees public names only."""
+    root, folder = Path.cwd(), Path(session.create_tmp())
+    shutil.copytree(root / "tests" / "extending", folder / "tests" / "extending", dirs_exist_ok=True)
+    for name in ("src", "docs"):
+        (folder / name).mkdir(exist_ok=True)
+    (folder / "src" / "lib.rs").write_text("")
+    shutil.copy(root / "docs" / "extending.md", folder / "docs")
+    manifest = '[package]\nname = "outside"\nedition = "2024"\n[workspace]\n[dependencies.raywright]\n'
+    (folder / "Cargo.toml").write_text(f'{manifest}path = "{root.as_posix()}"\n')
+    cargo(session, "test", "--quiet", "--manifest-path", str(folder / "Cargo.toml"))
+
+
+@nox.session
 def package(session):
     """Build the sdist, and test that it holds what the package is built and tested from."""
     run_module(session, "pip", "install", "--quiet", "maturin>=1.9,<2")
