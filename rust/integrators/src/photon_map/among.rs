@@ -1,4 +1,4 @@
-//! From photons about a point of a medium to the light that is scattered there.
+//! In-scattered radiance from photons in media.
 
 use super::estimate::Estimate;
 use super::kernel::Kernel;
@@ -13,11 +13,11 @@ use raywright_scene::{Encounter, Scene};
 use std::f64::consts::TAU;
 
 impl Estimate {
-    /// The light that a medium scatters back along the ray that came here, of each unit that it scatters: by photons of
-    /// the same medium in a ball, of which a share is in it; `share` tells it by the square of the ball's radius
-    /// (Jensen and Christensen, "Efficient Simulation of Light Transport in Scenes with Participating Media using
-    /// Photon Maps", 1998). Photons count by the extinction where each is, so that only light has to be even about
-    /// here, and not what fills the space.
+    /// Return the in-scattered radiance toward the incident ray's origin, per unit of scattering, from photons of the
+    /// same medium in a ball. `share` returns the share of the ball in the medium for its squared radius (Jensen and
+    /// Christensen, "Efficient Simulation of Light Transport in Scenes with Participating Media using Photon Maps",
+    /// 1998). Each photon is divided by the extinction at its own position. So only the light needs to be uniform
+    /// within the ball, not the medium.
     pub fn scattered(
         &self,
         of: &VolumeIndex,
@@ -46,10 +46,10 @@ impl Estimate {
     }
 }
 
-/// The share of a ball about a point in some media, of a radius whose square is told, that is in the same medium and
-/// seen from there, weighed by a kernel: beyond the rim of a cloud no photon lies.
+/// Return the kernel-weighted share of a ball, given its squared radius, that is in the same medium and visible from
+/// its center. There are no photons beyond the boundary of a cloud.
 ///
-/// Rays in sixteen directions that are evenly spread tell how far it goes; a flat rim is told to some hundredths.
+/// Rays in sixteen evenly spread directions measure the extent; a flat boundary is accurate to some hundredths.
 pub(super) fn room(
     scene: &Scene,
     position: DVec3,
@@ -59,10 +59,10 @@ pub(super) fn room(
     time: f64,
 ) -> f64 {
     const RAYS: usize = 16;
-    /// Of a turn, from one to the next, so that all are as far apart as can be.
+    /// Fraction of a turn between consecutive directions that spreads them evenly.
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
     let (radius, there) = (squared.sqrt(), Filled::there(media));
-    // How they are turned is as good as random, and goes by the place alone.
+    // The rotation of the directions is pseudorandom and depends on the position alone.
     let bits = position.to_array().map(f64::to_bits);
     let mut sampler = Sampler::new(bits[0] ^ bits[1].rotate_left(21) ^ bits[2].rotate_left(42), 1, 0);
     let frame = Frame::new(warp::uniform_sphere(sampler.two(0)));
@@ -78,7 +78,7 @@ pub(super) fn room(
     scene.intersect(&rays, &mut hits);
     let ends = |(ray, hit): (&Ray, &Hit)| {
         let (mut ray, mut hit, mut now) = (*ray, *hit, *media);
-        // Rims within rims of the same medium are not many.
+        // Nested boundaries of the same medium are few.
         for _ in 0..16 {
             if !hit.is_hit() {
                 return 1.0;
@@ -97,7 +97,7 @@ pub(super) fn room(
         kernel.ball_share((hit.t / radius).min(1.0))
     };
     let sum: f64 = rays.iter().zip(&hits).map(ends).sum();
-    // The point itself is in it.
+    // The point itself is in the medium.
     (sum / RAYS as f64).max(1.0 / (2 * RAYS) as f64)
 }
 
@@ -123,8 +123,8 @@ mod tests {
 
     #[test]
     fn even_light_is_told_without_bias() {
-        // A fluence of 1 scatters 1 / 4π into each direction. The nearest of 50 are told by 49 of them, all kernels
-        // alike; of 1,000 maps that is known to half a percent.
+        // A fluence of 1 scatters 1 / 4π into each direction. An estimate from the 50 nearest counts 49 with any
+        // kernel; 1,000 maps give its mean to half a percent.
         let here = Scattering { position: DVec3::ZERO, before: DVec3::X, phase: Phase::Isotropic };
         let visit = Visit { number: 0, looks_about: false, gilded: false, single: false, bounces: None };
         for kernel in [Kernel::Box, Kernel::Cone, Kernel::Epanechnikov] {
@@ -148,8 +148,8 @@ mod tests {
 
     #[test]
     fn balls_have_their_bias() {
-        // A fluence of 1 + x²: on average over a ball of radius r, 1 + r²/5. Photons on a lattice tell it as well as
-        // their number in a ball is its volume.
+        // A fluence of 1 + x² has the average 1 + r²/5 over a ball of radius r. The error of photons on a lattice is
+        // that of the number of lattice points as the ball's volume.
         let fine = 80;
         let place = |i: i32| (f64::from(i) + 0.5) * 2.0 / f64::from(fine) - 1.0;
         let one = |i: i32, j: i32, k: i32| {

@@ -1,4 +1,4 @@
-//! How much of a disk about a point is surface.
+//! Surface share of a lookup disk.
 
 use super::kernel::Kernel;
 use super::photon::{FLAT, SAME_SIDE};
@@ -8,17 +8,17 @@ use raywright_optics::Bsdf;
 use raywright_scene::{Encounter, Scene, SurfaceInteraction};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
-/// Rings of equal area, and probes on each.
+/// Number of rings of equal area, and of probes on each.
 const RINGS: usize = 4;
 const TURNS: usize = 4;
 
-/// The share of a disk about a point, of a radius whose square is told, that is surface from which photons would count,
-/// weighed by a kernel. Beyond the edge of a floor, or behind a wall that stands on it, no photon lies: light that is
-/// gathered there is divided by the area that exists (Jensen 2001), or it would be too dark.
+/// Return the kernel-weighted share of a disk, given its squared radius, that is surface with photons that would count.
+/// There are no photons beyond a floor's edge or behind a wall on it. The estimate is divided by the existing area
+/// (Jensen 2001), or it would be too dark.
 ///
-/// Rays are sent down on the disk, from as far above as photons count, and stop as far below. Those of the outermost of
-/// four rings go first: if all of them come to surface, all of it is. A straight edge is overlooked by that where less
-/// than a tenth of the disk lies beyond, and by chance.
+/// Probe rays cross the disk perpendicularly, from the maximum photon distance above it to as far below. The probes of
+/// the outermost of four rings go first: if all of them hit, the share is 1. A straight edge is missed only if less
+/// than a tenth of the disk lies beyond it, and by chance.
 pub(crate) fn cover<B: Bsdf>(
     scene: &Scene,
     here: &SurfaceInteraction<B>,
@@ -27,7 +27,7 @@ pub(crate) fn cover<B: Bsdf>(
     time: f64,
 ) -> f64 {
     let (position, frame) = (here.position(), Frame::new(here.normal()));
-    // How the rings are turned is as good as random, and goes by the place alone.
+    // The rotation of the rings is pseudorandom and depends on the position alone.
     let bits = position.to_array().map(f64::to_bits);
     let mut sampler = Sampler::new(bits[0] ^ bits[1].rotate_left(21) ^ bits[2].rotate_left(42), 0, 0);
     let turn = sampler.one(0);
@@ -42,7 +42,7 @@ pub(crate) fn cover<B: Bsdf>(
         });
         let mut hits = [Hit::MISS; TURNS];
         scene.intersect(&rays, &mut hits);
-        // A slope has more area than what is seen of it from above.
+        // A sloped surface has more area than its projection.
         let area = |(ray, hit): (&Ray, &Hit)| {
             if !hit.is_hit() {
                 return 0.0;
@@ -63,7 +63,7 @@ pub(crate) fn cover<B: Bsdf>(
         sum += area * weight;
         all += weight;
     }
-    // A point of the surface is there: no less of it than a probe stands for.
+    // The point itself is on a surface: its share is at least that of one probe.
     (sum / all).max(1.0 / (RINGS * TURNS) as f64)
 }
 
@@ -73,7 +73,7 @@ mod tests {
     use raywright_scene::SceneDescription;
     use raywright_scene::fixtures::{rectangle, scene, shape};
 
-    /// A floor from x = 0 and y = 0 on, and what a ray straight down meets there.
+    /// Return a floor over x ≥ 0 and y ≥ 0.
     fn floor() -> Scene {
         let mesh = rectangle([0.0, 0.0, 0.0], [20.0, 0.0, 0.0], [0.0, 20.0, 0.0]);
         scene(SceneDescription { shapes: vec![shape(mesh, [1.0; 3], 0.0)], ..Default::default() })
@@ -88,8 +88,9 @@ mod tests {
 
     #[test]
     fn shares_are_those_of_disks() {
-        // At an edge and in a corner, and half a radius from the edge: 1 - (π/3 - √3/4) / π. Sixteen probes tell it
-        // to a few hundredths each, and a thousand places to a thousandth, but for what the outermost overlook.
+        // At an edge, in a corner, and half a radius from the edge: 1 - (π/3 - √3/4) / π. Sixteen probes are accurate
+        // to a few hundredths each, and their mean over a thousand places to a thousandth, except for edges missed by
+        // the outermost ring.
         let scene = floor();
         let places = 1000;
         let mean = |x: f64, y: Option<f64>, kernel| {

@@ -1,4 +1,4 @@
-//! From photons about a point to the light that is scattered there.
+//! Radiance estimates from surface photons.
 
 use super::kernel::Kernel;
 use super::maps::PhotonIndex;
@@ -7,21 +7,21 @@ use crate::transport::Visit;
 use raywright_optics::{Bsdf, Rgb};
 use raywright_scene::{Encounter, SurfaceInteraction};
 
-/// How light is gathered from photons.
+/// Parameters of the radiance estimate.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Estimate {
-    /// How many of the nearest, where there are so many within the radius; all of these without a number.
+    /// Number of nearest photons, where the radius has as many; `None` for all within the radius.
     pub nearest: Option<u32>,
-    /// The square of the farthest distance that nearest ones are looked for at.
+    /// Maximum squared distance of nearest neighbors.
     pub most: f64,
     pub kernel: Kernel,
-    /// How much of the radius that is found so counts, at most 1: what the same photons say of a smaller disk.
+    /// Factor on the radius found, at most 1: the estimate of a smaller disk from the same photons.
     pub scale: f64,
 }
 
 impl Estimate {
-    /// The light of photons that is scattered back along the ray that came here. It is told by a disk of which a share
-    /// is surface that photons can lie on: `share` tells it by the square of the disk's radius.
+    /// Return the radiance of photons scattered back along the incident ray. `share` returns the surface share of the
+    /// disk for its squared radius.
     pub fn radiance<B: Bsdf>(
         &self,
         of: &PhotonIndex,
@@ -35,7 +35,8 @@ impl Estimate {
             let weight = self.kernel.weight(squared, radius * scale);
             if weight > 0.0 {
                 let towards = -photon.direction.as_dvec3();
-                // Power is counted across the geometric normal, and light over solid angle is scattered.
+                // Photon power is per area across the geometric normal; the BSDF is per solid angle, so its cosine is
+                // divided out.
                 let scattered = here.evaluate(towards).0 / here.normal().dot(towards);
                 sum += scattered * photon.power(visit.gilded, visit.single) * weight;
             }
@@ -62,7 +63,7 @@ mod tests {
     use raywright_scene::{Scene, SceneDescription};
     use std::f64::consts::PI;
 
-    /// A white floor, and what a ray straight down meets there.
+    /// Return a white floor.
     fn floor() -> Scene {
         let mesh = rectangle([-10.0, -10.0, 0.0], [20.0, 0.0, 0.0], [0.0, 20.0, 0.0]);
         scene(SceneDescription { shapes: vec![shape(mesh, [1.0; 3], 0.0)], ..Default::default() })
@@ -85,12 +86,12 @@ mod tests {
         Visit { number: 0, looks_about: false, gilded: false, single: false, bounces }
     }
 
-    /// Irradiance about a point: of a white floor, π times what it sends.
+    /// Return the irradiance at a point of a white floor: π times its radiance.
     fn irradiance(estimate: Estimate, of: &PhotonIndex, scene: &Scene, x: f64) -> f64 {
         estimate.radiance(of, &look(scene, x), &visit(None), |_| 1.0).mean() * PI
     }
 
-    /// Photons on a lattice of so many a unit length, about a point of the floor, of the power that a density gives.
+    /// Make photons on a square lattice around a point of the floor, with power from a density.
     fn lattice(density: impl Fn(f64, f64) -> f64, at: f64, half: f64, fine: i32) -> Vec<StoredPhoton> {
         let step = 2.0 * half / f64::from(fine);
         let of = |i: i32, j: i32| {
@@ -101,8 +102,8 @@ mod tests {
         (0..fine).flat_map(|j| (0..fine).map(move |i| (i, j))).map(|(i, j)| of(i, j)).collect()
     }
 
-    /// Photons on rings about a point of the floor, within a radius, of the power that a density gives: by Gauss's rule
-    /// from ring to ring, and evenly along each.
+    /// Make photons on rings around a point of the floor within a radius, with power from a density: Gauss quadrature
+    /// over rings, equal steps along each.
     fn rings(density: impl Fn(f64, f64) -> f64, at: f64, radius: f64) -> Vec<StoredPhoton> {
         let turns = 64;
         let of = |(share, weight): (f64, f64), j: i32| {
@@ -111,7 +112,7 @@ mod tests {
             let (x, y) = (at + far * cos, far * sin);
             photon(x, y, density(x, y) * PI * radius * radius * weight / f64::from(turns))
         };
-        // Half of the area is a disk of its own.
+        // The inner half of the area is a disk of its own.
         let half = |half: f64| gauss(16).into_iter().map(move |(x, weight)| (0.5 * (x + half), 0.5 * weight));
         let rings = half(0.0).chain(half(1.0));
         rings.flat_map(|ring| (0..turns).map(move |j| (ring, j))).map(|(ring, j)| of(ring, j)).collect()
@@ -119,8 +120,8 @@ mod tests {
 
     #[test]
     fn disks_have_their_bias() {
-        // A lamp of intensity 1, 1 above the floor: under it, and 1 aside. The rules are exact to more digits than
-        // photons keep of their power: 32 roundings to single precision, of a ring each, leave some 1e-8.
+        // A lamp of intensity 1 at height 1, at points below it and 1 aside. The quadrature is more exact than the
+        // photons' f32 power: the roundings of 32 rings leave some 1e-8.
         let light = |x: f64, y: f64| (1.0 + x * x + y * y).powf(-1.5);
         let scene = floor();
         for (radius, under, aside) in
@@ -131,7 +132,7 @@ mod tests {
                 let found = irradiance(FIXED, &of, &scene, x);
                 assert!((found / expected - 1.0).abs() < 3e-8, "{found} {expected}");
                 if radius == 0.5 && x == 0.0 {
-                    // Richardson's combination of two radii, of the same photons.
+                    // Richardson extrapolation of two radii from the same photons.
                     let half = Estimate { scale: 0.5f64.sqrt(), ..FIXED };
                     let better = 2.0 * irradiance(half, &of, &scene, x) - found;
                     assert!((better - 0.985_528_197_373_299).abs() < 8e-8, "{better}");
@@ -143,8 +144,9 @@ mod tests {
 
     #[test]
     fn edges_have_their_bias() {
-        // Light on a half plane and on a quarter: at the edge, in the corner, and half a radius from the edge. These
-        // lie between points of the lattice, whose number in a circle of 500 steps is its area to some 2e-5.
+        // A lit half plane and a lit quadrant: at the edge, in the corner, and half a radius from the edge. These
+        // points lie between lattice points. A circle of 500 steps contains its area's number of lattice points to some
+        // 2e-5.
         let scene = floor();
         type IsLit = fn(f64, f64) -> bool;
         let cases: [(IsLit, f64, f64); 3] = [
@@ -161,9 +163,9 @@ mod tests {
 
     #[test]
     fn the_nearest_are_n_less_one() {
-        // Photons that fall evenly on a square of 2 a side, 400 of them, of which 50 are gathered: on average the
-        // truth, with a relative standard deviation of 1/√48. Of 4,000 maps that is known to 0.2 %; 4 standard errors
-        // are exceeded once in 16,000 times.
+        // 400 photons uniform on a square of side 2, with 50 in each estimate. The estimate is unbiased, with a
+        // relative standard deviation of 1/√48. 4,000 maps give its mean to 0.2 %; the false alarm rate at 4 standard
+        // errors is 1 in 16,000.
         let scene = floor();
         let nearest = |kernel| Estimate { nearest: Some(50), kernel, ..FIXED };
         let maps = 4000;
@@ -187,7 +189,7 @@ mod tests {
         for (mean, deviation) in stats {
             assert!((mean - 1.0).abs() < 4.0 * deviation / f64::from(maps).sqrt(), "{mean}");
         }
-        // That of a Poisson process is 0.144338; of 400 photons alone, a few percent less.
+        // A Poisson process has 0.144338; 400 photons have a few percent less.
         assert!((stats[0].1 / 0.144_337_567 - 1.0).abs() < 0.1, "{}", stats[0].1);
     }
 

@@ -1,22 +1,22 @@
-//! Points in cells, for all of them within a distance that is known before.
+//! A hashed grid for fixed-radius queries.
 
 use raywright_base::math::DVec3;
 
-/// Points sorted into cells of twice a radius, by cell and then by number, which is the same for any number of threads.
-/// What lies within the radius of a place is in at most eight cells (Teschner et al., "Optimized Spatial Hashing for
+/// Points sorted into cells of twice the radius, by cell and then by index, so that their order is the same for any
+/// number of threads. A query ball overlaps at most eight cells (Teschner et al., "Optimized Spatial Hashing for
 /// Collision Detection of Deformable Objects", 2003).
 #[derive(Debug)]
 pub struct HashedGrid {
     radius: f64,
     origin: DVec3,
-    /// Where in `points` those of each bucket start, and where the last ends. A bucket has the points of one cell, or
-    /// of several that fall on it.
+    /// Start of each bucket in `points`, and the end of the last. A bucket has the points of one cell, or of several
+    /// cells with equal hashes.
     starts: Vec<u32>,
     points: Vec<(DVec3, u32)>,
 }
 
 impl HashedGrid {
-    /// Of points in their order, for distances up to a radius above 0.
+    /// Build the grid for query radii up to a positive radius. Points are numbered in their order.
     pub fn new(points: impl ExactSizeIterator<Item = DVec3> + Clone, radius: f64) -> Self {
         let buckets = points.len().next_power_of_two();
         let origin = points.clone().fold(DVec3::INFINITY, DVec3::min);
@@ -38,31 +38,30 @@ impl HashedGrid {
         this
     }
 
-    /// The distance that it was made for.
+    /// Return the maximum query radius.
     pub fn radius(&self) -> f64 {
         self.radius
     }
 
     fn cell(&self, point: DVec3) -> [i64; 3] {
-        // What is too far for a cell of its own shares the last.
+        // Cells beyond the integer range share the last one.
         ((point - self.origin) / (2.0 * self.radius)).floor().to_array().map(|x| x as i64)
     }
 
     fn bucket(&self, cell: [i64; 3]) -> u32 {
         let mixed = cell.into_iter().zip([0x9e37_79b9_7f4a_7c15, 0xc2b2_ae3d_27d4_eb4f, 0x1656_67b1_9e37_79f9]);
         let hash = mixed.fold(0u64, |hash, (x, by): (i64, u64)| (hash ^ x as u64).wrapping_mul(by).rotate_left(31));
-        // A power of two of them, and one more start.
+        // The number of buckets is a power of two; `starts` has one entry more.
         hash as u32 & (self.starts.len() as u32 - 2)
     }
 
-    /// Calls a function for each point nearer than the radius, with its number and the square of its distance: always
-    /// in the same order.
+    /// Call a function for each point within the radius, in a fixed order, with its index and squared distance.
     pub fn within(&self, place: DVec3, mut visit: impl FnMut(u32, f64)) {
         if self.points.is_empty() {
             return;
         }
         let (low, high) = (self.cell(place - self.radius), self.cell(place + self.radius));
-        // Two cells of a side, or three where roundings are as large as a cell.
+        // Two cells a side, or three where rounding errors are as large as a cell.
         let mut seen = [0; 27];
         let mut count = 0;
         for z in low[2]..=high[2] {
@@ -140,7 +139,7 @@ mod tests {
         let grid = HashedGrid::new(points.iter().copied(), 1e-300);
         let mut found = 0;
         grid.within(points[7], |_, _| found += 1);
-        // The square of such a radius is 0, below which nothing lies.
+        // The square of this radius underflows to 0, and no squared distance is below it.
         assert_eq!(found, 0);
     }
 }

@@ -1,10 +1,11 @@
-//! Points in a balanced tree, for those nearest to a place.
+//! A balanced kd-tree for nearest-neighbor queries.
 
 use raywright_base::math::DVec3;
 use std::collections::BinaryHeap;
 
-/// A balanced kD-tree without pointers (Bentley, "Multidimensional Binary Search Trees", 1975; Jensen, "Realistic Image
-/// Synthesis Using Photon Mapping", 2001): the middle point of a range divides it along the widest side of its box.
+/// A balanced, pointerless kd-tree (Bentley, "Multidimensional Binary Search Trees", 1975; Jensen, "Realistic Image
+/// Synthesis Using Photon Mapping", 2001). The median point of a range splits it along the longest side of its bounding
+/// box.
 #[derive(Debug)]
 pub struct KdTree {
     nodes: Vec<Node>,
@@ -14,16 +15,16 @@ pub struct KdTree {
 struct Node {
     point: DVec3,
     number: u32,
-    /// Along which axis those before it in its range, and after, lie on either side of it.
+    /// Split axis between the points before and after this one in its range.
     axis: u32,
 }
 
-/// A point that was found: how far, squared, and its number.
+/// A neighbor: its squared distance and its index.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Near {
-    /// The square of its distance, as it is measured.
+    /// Squared distance as measured.
     pub squared: f64,
-    /// Its number.
+    /// Index of the point.
     pub number: u32,
 }
 
@@ -42,7 +43,7 @@ impl PartialOrd for Near {
 }
 
 impl KdTree {
-    /// Of points in their order.
+    /// Build the tree. Points are numbered in their order.
     pub fn new(points: impl Iterator<Item = DVec3>) -> Self {
         let node = |(number, point)| Node { point, number, axis: 0 };
         let mut nodes: Vec<Node> = (0u32..).zip(points).map(node).collect();
@@ -58,7 +59,7 @@ impl KdTree {
                 .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(min, max), n| (min.min(n.point), max.max(n.point)));
             let axis = (max - min).max_position();
             let middle = part.len() / 2;
-            // By number where places are equal: no order of equal ones is left open.
+            // Ties are broken by index, so that the order is deterministic.
             part.select_nth_unstable_by(middle, |a, b| {
                 a.point[axis].total_cmp(&b.point[axis]).then(a.number.cmp(&b.number))
             });
@@ -69,9 +70,9 @@ impl KdTree {
         Self { nodes }
     }
 
-    /// Finds the nearest points, `count` at most, whose squares are below `most`. `measure` tells the square of each by
-    /// its number and that of its distance: the same, or more, or none of a point that does not count. They come
-    /// in the order of their distances.
+    /// Find the nearest points, at most `count`, with squared distances below `most`. `measure` maps the index and the
+    /// squared distance of a point to the squared distance to use. It may only increase it, or reject the point with
+    /// `None`. Points are returned by increasing distance.
     pub fn nearest(
         &self,
         place: DVec3,
@@ -85,7 +86,7 @@ impl KdTree {
             return;
         }
         let mut heap = BinaryHeap::from(std::mem::take(found));
-        // Ranges to look at, and how far away, squared, they are at least.
+        // Ranges to visit, with lower bounds of their squared distances.
         let mut ranges = vec![(0, self.nodes.len(), 0.0)];
         while let Some((start, end, least)) = ranges.pop() {
             let bound = |heap: &BinaryHeap<Near>| match heap.peek() {
@@ -113,7 +114,7 @@ impl KdTree {
             let across = least.max(beyond * beyond);
             let (before, after) = ((start, at), (at + 1, end));
             let (near, far) = if beyond < 0.0 { (before, after) } else { (after, before) };
-            // The last is looked at first.
+            // The stack's last entry is visited first.
             ranges.extend([(far.0, far.1, across), (near.0, near.1, least)]);
         }
         *found = heap.into_sorted_vec();
@@ -126,7 +127,7 @@ mod tests {
     use raywright_base::sampling::Sampler;
 
     fn points(count: u32) -> Vec<DVec3> {
-        // Some of them lie at the same place, and many on a line.
+        // Some points coincide, and many are collinear.
         let point = |i: u32| {
             let mut sampler = Sampler::new(2, i / 3 * 2, 0);
             let point = DVec3::new(sampler.one(0), sampler.one(1), sampler.one(2));

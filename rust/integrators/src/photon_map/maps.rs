@@ -1,4 +1,4 @@
-//! Maps of photons, as they are made.
+//! Photon tracing.
 
 use super::photon::StoredPhoton;
 use super::places::Places;
@@ -15,24 +15,24 @@ use raywright_optics::Rgb;
 use raywright_optics::spectra::Waves;
 use raywright_scene::{Camera, EmissionSample, Emitters, Scene};
 
-/// How photons of one map are sent.
+/// Parameters for tracing the photons of one map.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Flight {
-    /// How many paths start at lights.
+    /// Number of light paths.
     pub paths: u32,
     pub limits: Limits,
-    /// Whether those that have come by way of sharp surfaces alone have a map of their own.
+    /// Store caustic photons (those that arrive through specular surfaces alone) in a separate map.
     pub caustic: bool,
     pub seed: u64,
-    /// Which of all maps of the seed.
+    /// Index of the map among those of the seed.
     pub number: u32,
-    /// When all are on their way, while the shutter is open, if anything moves.
+    /// Time within the shutter interval of all photons, if anything moves.
     pub time: Option<f64>,
-    /// The wavelengths of all; none for red, green and blue.
+    /// Wavelengths of all photons; `None` for RGB.
     pub waves: Option<Waves>,
 }
 
-/// Photons, and where they are found.
+/// Photons with their lookup structure.
 #[derive(Debug)]
 pub(crate) struct PhotonIndex {
     pub photons: Vec<StoredPhoton>,
@@ -40,15 +40,15 @@ pub(crate) struct PhotonIndex {
 }
 
 impl PhotonIndex {
-    /// For all within a radius, or for the nearest.
+    /// Build a lookup structure for a given radius, or for nearest neighbors.
     pub fn new(photons: Vec<StoredPhoton>, radius: Option<f64>) -> Self {
         let places = Places::new(photons.iter().map(|photon| photon.position), radius);
         Self { photons, places }
     }
 }
 
-/// Photons of one flight: those that matt surfaces get by way of sharp ones alone, if they are kept apart, and all
-/// others that have been scattered; and all that media get.
+/// Photon maps of one flight: caustic photons on matte surfaces if separate, all other indirect photons on matte
+/// surfaces, and all photons in media.
 #[derive(Debug)]
 pub(crate) struct Maps {
     pub caustic: PhotonIndex,
@@ -62,27 +62,27 @@ impl Counted for Maps {
     }
 }
 
-/// Photons of one flight, in the order of their paths.
+/// Photons of one flight, ordered by path.
 #[derive(Default)]
 pub(super) struct Flown {
-    /// At surfaces: by way of sharp ones alone, if they are kept apart, and others.
+    /// Surface photons: caustic ones if separate, and others.
     pub surfaces: [Vec<StoredPhoton>; 2],
-    /// Among media.
+    /// Photons in media.
     pub among: Vec<VolumePhoton>,
 }
 
-/// Follows the paths of a flight, by all threads of the current pool or by this one alone: some thousands at a time,
-/// for each of which a visitor is made, and sent along with `walk`. What they are told depends on the flight alone. Of
-/// no use once it is cancelled.
+/// Trace the paths of a flight in chunks of some thousands, on all threads of the current pool or on this one alone.
+/// `walk` receives a visitor for each chunk. Results depend on the flight alone. After a cancellation they are
+/// incomplete and must be discarded.
 fn chunked<V: Send>(
     flight: &Flight,
     (alone, cancel): (bool, &Cancel),
     visitor: impl Fn(usize) -> V + Sync,
     walk: impl Fn(&mut [Sampler], &mut V) + Sync,
 ) -> Vec<V> {
-    /// Paths that are followed together.
+    /// Number of paths per chunk.
     const TOGETHER: u32 = 4096;
-    /// Paths from lights are numbered as pixels that no picture has.
+    /// Light paths use pixel indices beyond those of any picture.
     const BEYOND: u32 = 1 << 31;
     let follow = |chunk: u32| {
         let paths = chunk * TOGETHER..flight.paths.min((chunk + 1).saturating_mul(TOGETHER));
@@ -98,7 +98,7 @@ fn chunked<V: Send>(
     if alone { (0..chunks).map(follow).collect() } else { parallel::map(chunks as usize, |chunk| follow(chunk as u32)) }
 }
 
-/// Follows the paths of a flight from surface to surface, by all threads or by this one alone, each some of visitors.
+/// Trace the paths of a flight between surfaces, on all threads or on this one alone, with one visitor per chunk.
 pub(crate) fn flown<'a, V: Visitor<'a> + Send>(
     scene: &'a Scene,
     emitters: &'a Emitters<'a>,
@@ -115,7 +115,7 @@ pub(crate) fn flown<'a, V: Visitor<'a> + Send>(
     })
 }
 
-/// Sends photons, and gives what is kept of them.
+/// Trace photons and return the stored ones.
 pub(super) fn fly<'a>(
     scene: &'a Scene,
     emitters: &'a Emitters<'a>,
@@ -145,11 +145,11 @@ pub(super) fn fly<'a>(
     })
 }
 
-/// Keeps what comes to matt surfaces, and what media scatter.
+/// A visitor that stores photons at matte surfaces and scattering events in media.
 struct Storing {
     share: f64,
     caustic: bool,
-    /// Of each path, whether all that it has been scattered at was sharp.
+    /// For each path, true if all its bounces so far were specular.
     chains: Vec<bool>,
     stored: Flown,
 }
@@ -159,7 +159,7 @@ impl Storing {
         self.chains.resize(path as usize + 1, true);
     }
 
-    /// A path has been scattered, sharply or not.
+    /// Record whether a bounce was specular.
     fn scattered(&mut self, path: u32, is_sharp: bool) {
         self.chains[path as usize] &= is_sharp;
     }
@@ -179,7 +179,7 @@ impl Visitor<'_> for Storing {
     }
 
     fn meet(&mut self, arrived: &Arrived, path: &Flying, _: &MediumStack, _: (&mut Sampler, Dimensions)) {
-        // What comes straight from a light is found by asking that.
+        // Light at the first surface is direct, and found by light sampling.
         if path.bounce == 1 {
             return;
         }
@@ -223,8 +223,8 @@ mod tests {
 
     #[test]
     fn stored_power_is_the_series_of_bounces() {
-        // Of what six walls send, each meeting absorbs the share 1 − ρ: without first ones, emitted ρ / (1 − ρ) is
-        // stored.
+        // Each bounce in a closed furnace absorbs the share 1 − ρ. Without direct light, the stored power is emitted
+        // power times ρ / (1 − ρ).
         let (_, camera) = cornell(8, 8);
         let (scene, rho) = (furnace(0.7, 1.0), 0.7);
         let emitters = scene.emitters().unwrap();
@@ -234,10 +234,10 @@ mod tests {
         assert!(caustic.is_empty());
         let stored: Rgb = global.iter().map(|photon| photon.power(false, false)).sum();
         let expected = 24.0 * std::f64::consts::PI * rho / (1.0 - rho);
-        // Before roulette, all are alike; after it a path brings what is left, 0.7⁴ of all, with a standard deviation
-        // of about its mean: of 100,000 it is known to 0.1 %.
+        // Before roulette starts, all paths carry equal power. Then each carries 0.7⁴ of it with a standard deviation
+        // of about its mean: 100,000 paths give it to 0.1 %.
         assert!((stored.mean() / expected - 1.0).abs() < 0.004, "{stored:?}");
-        // Each bounce leaves the share ρ, exactly, as long as there is no roulette.
+        // Without roulette, each bounce leaves exactly the share ρ.
         let exact = Limits { max_depth: Some(6), roulette_depth: u32::MAX };
         let found = fly(&scene, &emitters, &camera, &flight(2000, exact), true, &Cancel::default());
         let [_, global] = found.surfaces;

@@ -1,6 +1,6 @@
-//! Photon maps: how photons are kept (`maps`, `photon`), found (`places`, `grid`, `kd_tree`) and weighed (`estimate`,
-//! `kernel`), the same among media (`volume_photon`, `among`), how far light is gathered from (`radius`) and how much
-//! of that is surface (`cover`), the maps of a picture (`series`, `store`), and the pictures that are made of them
+//! Photon mapping: photon storage (`maps`, `photon`), lookup (`places`, `grid`, `kd_tree`), density estimation
+//! (`estimate`, `kernel`), the same for media (`volume_photon`, `among`), the lookup radius (`radius`), the surface
+//! share of a lookup disk (`cover`), the maps of one picture (`series`, `store`), and the integrator sessions
 //! (`session`).
 
 mod among;
@@ -33,62 +33,63 @@ use raywright_scene::{Camera, Scene};
 use session::{Mapped, Recipe};
 
 /// Photon mapping (Jensen, "Global Illumination using Photon Maps", 1996; "Realistic Image Synthesis Using Photon
-/// Mapping", 2001): paths from lights leave photons on matt surfaces, and how densely they lie there is the light.
+/// Mapping", 2001). Light paths store photons on matte surfaces, and radiance is estimated from their density.
 ///
-/// Lights are asked directly; what mirrors and glass throw together is told by a caustic map; all else by a global map,
-/// at the matt surfaces that rays from the first one come to, or there at once. The camera's paths go through mirrors
-/// and glass to what is matt, so light is found that came through glass and is seen through glass. Samples of a batch
-/// are shared out among maps of its own, so that batches are independent and their spread tells the noise of maps too.
+/// Direct light is sampled. A caustic map stores photons that arrive through specular surfaces alone. A global map
+/// stores all other indirect light. It is looked up by final gathering from the first matte surface, or at that surface
+/// directly. Camera paths continue through specular surfaces to a matte one, so light is found that entered through
+/// glass and is seen through glass. Each batch of samples has its own maps. So batches are independent, and their
+/// variance includes the noise of the maps.
 ///
-/// Media have a map of their own, of all light that comes to be scattered in them: a path from the camera draws where
-/// it is scattered, and asks the photons about that place for what comes back along it (Jensen and Christensen,
-/// "Efficient Simulation of Light Transport in Scenes with Participating Media using Photon Maps", 1998).
+/// Media have a photon map of all light scattered in them. A camera path samples its scattering point and estimates
+/// in-scattered radiance from the photons around it (Jensen and Christensen, "Efficient Simulation of Light Transport
+/// in Scenes with Participating Media using Photon Maps", 1998).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PhotonMap {
-    /// Paths from lights for each map; at least 1.
+    /// Light paths per map; at least 1.
     pub photons: u32,
-    /// How many photons a density is told by; `None` for all within the radius.
+    /// Number of nearest photons of an estimate; `None` uses all photons within the radius.
     pub nearest: Option<u32>,
-    /// How far they may lie; `None` for as far as it takes, or, without a number, as far as suits the first map.
+    /// Maximum lookup distance. `None` means unlimited with `nearest`, and a radius derived from the first map without.
     pub radius: Option<f64>,
-    /// Whether there is a caustic map.
+    /// Use a separate caustic map.
     pub caustic: bool,
-    /// Rays from the first matt surface; 0 looks the global map up there.
+    /// Final gather rays from the first matte surface; 0 looks up the global map there.
     pub gather: u32,
-    /// Maps for each batch of samples, where it has as many; at least 1.
+    /// Maps per batch of samples, at most one per sample; at least 1.
     pub maps: u32,
-    /// How photons count by their distance.
+    /// Kernel that weights photons by distance.
     pub kernel: Kernel,
-    /// The greatest number of bounces off surfaces. `None` sets no limit.
+    /// Maximum number of surface bounces. `None` sets no limit.
     pub max_depth: Option<u32>,
-    /// Roulette is played from this number of bounces on.
+    /// Number of bounces after which Russian roulette starts.
     pub roulette_depth: u32,
-    /// How much of each radius counts, at most 1.
+    /// Factor on each lookup radius, at most 1.
     pub scale: f64,
 }
 
-/// Progressive photon mapping (Hachisuka, Ogaki and Jensen 2008) with no statistics to keep (Knaus and Zwicker 2011):
-/// each sample of all pixels has a map and a radius of its own, which shrinks from one to the next so that both noise
-/// and bias go to zero. Among media the volume of balls shrinks as the area of disks does.
+/// Progressive photon mapping (Hachisuka, Ogaki and Jensen 2008) in its stateless form (Knaus and Zwicker 2011). Each
+/// sample of all pixels has its own map and radius. The radius shrinks from map to map, so both noise and bias converge
+/// to zero. In media the volume of balls shrinks as the area of disks does.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProgressivePhotonMap {
-    /// Paths from lights for each map, at least 1; `None` for as many as suit the picture.
+    /// Light paths per map, at least 1; `None` derives a number from the picture.
     pub photons: Option<u32>,
-    /// How far photons may lie in the first map; `None` for as far as suits that.
+    /// Lookup radius of the first map; `None` derives it from that map.
     pub radius: Option<f64>,
-    /// The share of new photons that is kept: how noise falls for bias, above 0 and at most 1, where radii stay.
+    /// Share of new photons that is kept, above 0 and at most 1: trades noise for bias. Radii are constant at 1.
     pub alpha: f64,
-    /// Rays from the first matt surface; 0 looks the map up there.
+    /// Final gather rays from the first matte surface; 0 looks up the map there.
     pub gather: u32,
-    /// How photons count by their distance.
+    /// Kernel that weights photons by distance.
     pub kernel: Kernel,
-    /// The greatest number of bounces off surfaces. `None` sets no limit.
+    /// Maximum number of surface bounces. `None` sets no limit.
     pub max_depth: Option<u32>,
-    /// Roulette is played from this number of bounces on.
+    /// Number of bounces after which Russian roulette starts.
     pub roulette_depth: u32,
-    /// How much of each radius counts, at most 1.
+    /// Factor on each lookup radius, at most 1.
     pub scale: f64,
-    /// Of how many samples all have the mean of the squared radii; `None` where they shrink.
+    /// Number of maps whose mean squared radius all maps use; `None` for shrinking radii.
     pub mean_of: Option<u32>,
 }
 
@@ -125,14 +126,14 @@ impl Default for ProgressivePhotonMap {
     }
 }
 
-/// Paths from lights that take about as long as a sample of all pixels does. More make the radius smaller, and not the
-/// noise; fewer would leave the picture's own paths the only ones that cost.
+/// Return the number of light paths that takes about as long as one sample of all pixels. More paths reduce the radius
+/// but not the noise. Fewer leave the camera paths as the only cost.
 fn suited(camera: &dyn Camera) -> u32 {
     const OF_A_PIXEL: u32 = 4;
     (camera.width() * camera.height()).saturating_mul(OF_A_PIXEL).clamp(20_000, 500_000)
 }
 
-/// What neither can do.
+/// Return why neither integrator supports these settings, if so.
 fn objection(scene: &Scene, adaptive: bool) -> Option<String> {
     if adaptive {
         return Some("maps are of samples of all pixels alike, so these cannot be adaptive: use adaptive=False".into());
@@ -175,7 +176,8 @@ impl Integrator for ProgressivePhotonMap {
         let sending = Sending {
             paths: self.photons.unwrap_or_else(|| suited(job.camera)),
             limits: Limits { max_depth: self.max_depth, roulette_depth: self.roulette_depth },
-            // All light is gathered from as far, in one map; apart, it is known what rays need not look for.
+            // One map holds all light, with one radius. The caustic photons stay separate so that final gathering can
+            // skip them.
             caustic: true,
             spread: Spread::Progressive { alpha: self.alpha, mean_of: self.mean_of },
         };

@@ -1,4 +1,4 @@
-//! Photons as maps keep them.
+//! Compact storage of surface photons.
 
 use crate::light_paths::Arrived;
 use raywright_base::math::{DVec3, Vec3};
@@ -6,28 +6,28 @@ use raywright_optics::spectra::Waves;
 use raywright_optics::{Bsdf, Rgb};
 use raywright_scene::{Encounter, SurfaceInteraction};
 
-/// Light that has come to a matt surface, in as few bytes as its numbers need.
+/// A photon at a matte surface, in compact form.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StoredPhoton {
     pub position: DVec3,
-    /// The unit direction that it came along.
+    /// Unit direction of propagation.
     pub direction: Vec3,
-    /// The unit geometric normal, on the side that it came to.
+    /// Unit geometric normal on the side of incidence.
     pub normal: Vec3,
     power: [f32; 3],
-    /// What is left of it for a viewer who looks by way of what gives more than there is ([`Bsdf::again`]).
+    /// Remaining share for camera paths with a reflectance above 1 on the way ([`Bsdf::again`]).
     again: [f32; 3],
-    /// How many surfaces it has been scattered at before.
+    /// Number of previous surface bounces.
     pub bounces: u32,
-    /// Whether the hero of its wavelengths is all that it has come by.
+    /// True if only the hero wavelength is left.
     single: bool,
 }
 
-/// The least cosine between the normals of surfaces that light is gathered from together.
+/// Minimum cosine between the normals of surfaces that share photons.
 pub(super) const SAME_SIDE: f64 = 0.5;
 
-/// How much thinner than wide the place is that light is gathered from: what lies off the plane of the surface counts
-/// as farther (Jensen 2001), so that photons of other surfaces are left out.
+/// Flattening of the lookup ball: distance from the surface's plane counts this many times (Jensen 2001), which rejects
+/// photons of other surfaces.
 pub(super) const FLAT: f64 = 4.0;
 
 impl StoredPhoton {
@@ -37,28 +37,28 @@ impl StoredPhoton {
         Self { position, direction: direction.as_vec3(), normal: normal.as_vec3(), power, again, bounces, single }
     }
 
-    /// That of a path which has come to a surface, of so much flux, which may be that of the hero of its wavelengths
-    /// alone, after so many others; with what is left of it for a viewer who looks by way of what gives more than there
-    /// is.
+    /// Store the photon of a light path at a surface. `bounces` counts the earlier surfaces, and `single` says that the
+    /// power is of the hero wavelength alone. `again` is the remaining share for camera paths with a reflectance above
+    /// 1.
     pub fn arrived(arrived: &Arrived, (power, single): (Rgb, bool), bounces: u32, again: Rgb) -> Self {
         let here = &arrived.here;
         let photon = Self::new(here.position(), arrived.ray.direction, here.normal(), power, bounces);
-        // Where this very surface gives more than there is, the viewer's path knows what it leaves of it.
+        // If this surface's own reflectance exceeds 1, the camera path applies its factor.
         let own = here.bsdf().again() != Rgb::ONE;
         let again = if own { Rgb::ONE } else { again };
         Self { again: again.to_array().map(|x| x as f32), single, ..photon }
     }
 
-    /// The flux that it stands for, W, as a viewer sees it who looks by way of what gives more than there is, or not,
-    /// and who has ended all wavelengths but the hero, or not.
+    /// Return the flux, W. `gilded` is for camera paths with a reflectance above 1, and `single` for those that
+    /// terminated all wavelengths but the hero.
     pub fn power(&self, gilded: bool, single: bool) -> Rgb {
         let power = Rgb::from_array(self.power.map(f64::from));
         let power = if single && self.single { Waves::joined(power) } else { power };
         if gilded { power * Rgb::from_array(self.again.map(f64::from)) } else { power }
     }
 
-    /// The square of its distance from a point, told that of the straight way, if it came to the same side of a surface
-    /// there and has been scattered at so many surfaces at most.
+    /// Return the flattened squared distance from a point, given the Euclidean one. Return `None` if the photon is on
+    /// another side of a surface or has more than `bounces` bounces.
     #[inline]
     pub fn measured<B: Bsdf>(&self, here: &SurfaceInteraction<B>, squared: f64, bounces: Option<u32>) -> Option<f64> {
         let normal = here.normal();

@@ -1,20 +1,20 @@
-//! Where photons are, for those that ask what is about a place.
+//! Photon lookup by position.
 
 use super::grid::HashedGrid;
 use super::kd_tree::KdTree;
 use raywright_base::math::DVec3;
 
-/// Where photons are.
+/// A lookup structure for photon positions.
 #[derive(Debug)]
 pub(crate) enum Places {
-    /// For all within a radius.
+    /// For lookups of all photons within a radius.
     Grid(HashedGrid),
-    /// For the nearest.
+    /// For lookups of the nearest photons.
     Tree(KdTree),
 }
 
 impl Places {
-    /// For all within a radius, or for the nearest.
+    /// Build a grid for a given radius, else a kd-tree.
     pub fn new(positions: impl ExactSizeIterator<Item = DVec3> + Clone, radius: Option<f64>) -> Self {
         match radius {
             Some(radius) => Self::Grid(HashedGrid::new(positions, radius)),
@@ -22,9 +22,8 @@ impl Places {
         }
     }
 
-    /// Adds what is about a place: all within the radius, or so many of the nearest, up to a distance whose square is
-    /// told. Each comes with the square of its distance as it is measured, if it counts, and that of the radius, which
-    /// is what comes back.
+    /// Append the photons around a place: all within the radius, or the `count` nearest within a maximum squared
+    /// distance. Each has its squared distance as measured; `measure` can reject photons. Return the squared radius.
     pub fn gather(
         &self,
         place: DVec3,
@@ -45,7 +44,7 @@ impl Places {
             Self::Tree(tree) => {
                 let (count, mut found) = (nearest.unwrap_or(u32::MAX) as usize, Vec::new());
                 tree.nearest(place, count, most, measured, &mut found);
-                // Where the farthest tells the radius, the others alone are counted: N − 1 of N (García et al., "On the
+                // If the farthest photon sets the radius, the other N − 1 are counted (García et al., "On the
                 // Convergence of Density Estimation for Radiative Transfer", 2012).
                 let radius = match found.last() {
                     Some(farthest) if found.len() == count || most == f64::INFINITY => farthest.squared,

@@ -1,25 +1,25 @@
-//! How wide light is gathered.
+//! Lookup radii.
 
 use super::kd_tree::KdTree;
 use raywright_base::math::DVec3;
 
-/// The square of a progressive estimate's radius in each of its maps, over that in the first: r²ₛ₊₁ / r²ₛ = (s + α) /
-/// (s + 1), s from 1 on (Knaus and Zwicker, "Progressive Photon Mapping: A Probabilistic Approach", 2011, eq. 17). It
-/// depends on the number of the map alone, not on what was found.
+/// Squared radius of each map of a progressive estimate, relative to the first map: r²ₛ₊₁ / r²ₛ = (s + α) / (s + 1), s
+/// from 1 on (Knaus and Zwicker, "Progressive Photon Mapping: A Probabilistic Approach", 2011, eq. 17). It depends on
+/// the index of the map alone, not on its photons.
 #[derive(Debug)]
 pub struct Radii {
     alpha: f64,
-    /// Those known so far.
+    /// Squared radii computed so far.
     squares: Vec<f64>,
 }
 
 impl Radii {
-    /// Those by which, on average, the share `alpha` of new photons is kept.
+    /// Make radii that keep the share `alpha` of new photons on average.
     pub fn new(alpha: f64) -> Self {
         Self { alpha, squares: vec![1.0] }
     }
 
-    /// That of a map, from 0 on.
+    /// Return the squared radius of a map, counted from 0.
     pub fn square(&mut self, map: u32) -> f64 {
         while self.squares.len() <= map as usize {
             let before = self.squares.len();
@@ -29,37 +29,39 @@ impl Radii {
         self.squares[map as usize]
     }
 
-    /// Their mean over so many maps, at least one: where the bias goes by r², that of a picture of them all.
+    /// Return the mean squared radius of at least one map. The bias is proportional to r², so this gives the bias of
+    /// all maps.
     pub fn mean_square(&mut self, maps: u32) -> f64 {
         let maps = maps.max(1);
         (0..maps).map(|map| self.square(map)).sum::<f64>() / f64::from(maps)
     }
 
-    /// That of a ball, of whose photons the same share is kept: what is true of disks' squares is true of balls' cubes.
+    /// Return the squared radius of a ball that keeps the same share of photons: cubes of ball radii follow the
+    /// recurrence of squared disk radii.
     pub fn ball(&mut self, map: u32) -> f64 {
         self.square(map).powf(2.0 / 3.0)
     }
 
-    /// As [`Radii::mean_square`], of balls.
+    /// Return the mean as [`Radii::mean_square`] does, for balls.
     pub fn mean_ball(&mut self, maps: u32) -> f64 {
         let maps = maps.max(1);
         (0..maps).map(|map| self.ball(map)).sum::<f64>() / f64::from(maps)
     }
 }
 
-/// Photons of which half of all have so many within the first radius.
+/// Number of photons that half of all photons have within the first radius.
 pub(super) const NEIGHBOURS: usize = 24;
 
-/// A radius that suits a map: the median, over its photons, of the distance to the 24th nearest. So it goes by how
-/// densely light lies where most of it is. `None` if there are not as many.
+/// Return the median distance of photons to their 24th nearest neighbor. It follows the photon density where most of
+/// the light is. Return `None` with fewer photons.
 pub(super) fn first(photons: &[DVec3]) -> Option<f64> {
-    /// Photons that are asked, evenly spread over all.
+    /// Number of photons in the median, evenly spread over all.
     const ASKED: usize = 512;
     let tree = KdTree::new(photons.iter().copied());
     let mut found = Vec::new();
     let mut far: Vec<f64> = Vec::new();
     for place in photons.iter().step_by(photons.len().div_ceil(ASKED).max(1)) {
-        // It is the nearest to itself.
+        // Each photon's nearest neighbor is itself.
         tree.nearest(*place, NEIGHBOURS + 1, f64::INFINITY, |_, squared| Some(squared), &mut found);
         far.extend(found.get(NEIGHBOURS).map(|near| near.squared));
     }
@@ -80,7 +82,7 @@ mod tests {
             assert!((radii.square(map) / expected - 1.0).abs() < 1e-12);
         }
         assert_eq!([radii.square(0), Radii::new(1.0).square(50)], [1.0, 1.0]);
-        // Γ as above: r³ falls as r² does.
+        // Γ as above: r³ falls as r² does for disks.
         assert!((radii.ball(99).powf(1.5) / 0.23838878553836 - 1.0).abs() < 1e-12);
         assert!((radii.mean_ball(2) - (1.0 + (5.0f64 / 6.0).powf(2.0 / 3.0)) / 2.0).abs() < 1e-15);
         assert!((radii.mean_square(2) - (1.0 + 5.0 / 6.0) / 2.0).abs() < 1e-15);

@@ -1,4 +1,4 @@
-//! The maps of a picture, one after the other.
+//! The sequence of photon maps of one picture.
 
 use super::maps::{Flight, fly};
 use super::radius::{Radii, first};
@@ -14,17 +14,17 @@ use std::any::Any;
 use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError, RwLock};
 
-/// Which samples are by which maps.
+/// Assignment of samples to maps.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Spread {
-    /// Each batch of samples, so many, has so many maps of its own, one for each of equal parts.
+    /// Each batch of `size` samples has `maps` maps of its own, one for each of equal parts.
     Batches { size: u32, maps: u32 },
-    /// Each sample has one, and a radius that shrinks, or is the mean of so many.
+    /// Each sample has a map of its own. Radii shrink, or all equal the root mean square of `mean_of` radii.
     Progressive { alpha: f64, mean_of: Option<u32> },
 }
 
 impl Spread {
-    /// The map of a sample. No two batches share one.
+    /// Return the index of a sample's map. Batches never share a map.
     fn map(self, number: u32) -> u32 {
         match self {
             Self::Batches { size, maps } => {
@@ -35,10 +35,10 @@ impl Spread {
     }
 }
 
-/// What all photons of a picture have in common.
+/// Photon tracing parameters common to all maps of a picture.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sending {
-    /// Paths from lights for each map.
+    /// Light paths per map.
     pub paths: u32,
     pub limits: Limits,
     /// As [`Flight::caustic`].
@@ -46,20 +46,20 @@ pub(crate) struct Sending {
     pub spread: Spread,
 }
 
-/// The maps of a picture: those that samples are being taken by, and how each is made.
+/// The maps of a picture: those now in use, and how to make each.
 pub(crate) struct Series<'a, M> {
     job: Job<'a>,
     sending: Sending,
-    /// How far light is gathered from in the first map; `None` where that is told by the nearest.
+    /// Lookup radius of the first map; `None` for nearest-neighbor lookups.
     radius: Option<f64>,
-    /// The same among media.
+    /// The same in media.
     ball: Option<f64>,
     radii: Mutex<Radii>,
     store: Arc<MapStore<M>>,
     ready: RwLock<Vec<(u32, Arc<M>)>>,
 }
 
-/// A radius where there are hardly any photons: a fiftieth of the scene.
+/// Return a radius for maps with hardly any photons: a fiftieth of the scene.
 fn coarse(job: &Job) -> f64 {
     let region = job.scene.region();
     let size = (region.max - region.min).length() / 50.0;
@@ -80,20 +80,20 @@ impl<'a, M: Counted + Any + Send + Sync> Series<'a, M> {
         }
     }
 
-    /// The same whose first map has a radius.
+    /// Set the radius of the first map.
     pub fn with_radius(self, radius: f64) -> Self {
         Self { radius: Some(radius), ..self }
     }
 
-    /// The same whose first map has a radius among media.
+    /// Set the radius of the first map in media.
     pub fn with_ball(self, radius: f64) -> Self {
         Self { ball: Some(radius), ..self }
     }
 
-    /// Radii that suit the first map, told by photons of no picture: by the scene and the number of photons alone.
+    /// Derive radii for the first map from pilot photons. They depend on the scene and the number of photons alone.
     pub fn suitable(&self, emitters: Option<&Emitters>, cancel: &Cancel) -> Suitable {
         const SEED: u64 = 0x7069_6c6f_7400;
-        /// They are told by no more photons, and others by the roots of their numbers.
+        /// Maximum number of pilot photons. Radii for more photons are scaled by the square or cube root of the ratio.
         const MOST: u32 = 100_000;
         let all = self.sending.paths;
         let paths = all.min(MOST);
@@ -112,7 +112,7 @@ impl<'a, M: Counted + Any + Send + Sync> Series<'a, M> {
         Suitable { disk: of(|told| told.disk, fewer.sqrt()), ball: of(|told| told.ball, fewer.cbrt()) }
     }
 
-    /// How far light is gathered from in a map; `None` where that is told by the nearest.
+    /// Return the lookup radius of a map; `None` for nearest-neighbor lookups.
     fn radius(&self, map: u32) -> Option<f64> {
         let mut radii = self.radii.lock().unwrap_or_else(PoisonError::into_inner);
         let squared = match self.sending.spread {
@@ -122,7 +122,7 @@ impl<'a, M: Counted + Any + Send + Sync> Series<'a, M> {
         self.radius.map(|radius| radius * squared.sqrt())
     }
 
-    /// The same among media.
+    /// Return the lookup radius of a map in media; `None` for nearest-neighbor lookups.
     pub fn ball(&self, map: u32) -> Option<f64> {
         let mut radii = self.radii.lock().unwrap_or_else(PoisonError::into_inner);
         let squared = match self.sending.spread {
@@ -132,29 +132,30 @@ impl<'a, M: Counted + Any + Send + Sync> Series<'a, M> {
         self.ball.map(|radius| radius * squared.sqrt())
     }
 
-    /// How far light is gathered from in the map of a sample.
+    /// Return the lookup radius of a sample's map.
     pub fn radius_of(&self, number: u32) -> Option<f64> {
         self.radius(self.sending.spread.map(number))
     }
 
-    /// A number in [0, 1) of a map, which a dimension has: evenly spread over the maps of a seed.
+    /// Return a number in [0, 1) for a map and a dimension, evenly spread over the maps of a seed.
     fn spread(&self, map: u32, dimension: u32) -> f64 {
         const GOLDEN: f64 = 0.618_033_988_749_894_9;
         let start = Sampler::new(self.job.seed, u32::MAX, u32::MAX).one(dimension);
         (start + f64::from(map) * GOLDEN).fract()
     }
 
-    /// When all of a map is on its way, while the shutter is open.
+    /// Return the time within the shutter interval of a map's photons.
     fn time_of(&self, map: u32) -> f64 {
         self.spread(map, 0)
     }
 
-    /// The wavelengths of all of a map, in a scene that needs them: light meets the paths of samples at these alone.
+    /// Return the wavelengths of a map's photons, in scenes that need them. Photons and camera paths must have equal
+    /// wavelengths.
     fn waves_of(&self, map: u32) -> Option<Waves> {
         self.job.scene.plan().needs().waves.then(|| Waves::of(self.spread(map, 1)))
     }
 
-    /// The same of the map of a sample.
+    /// Return the wavelengths of a sample's map.
     pub fn waves(&self, number: u32) -> Option<Waves> {
         self.waves_of(self.sending.spread.map(number))
     }
@@ -163,12 +164,12 @@ impl<'a, M: Counted + Any + Send + Sync> Series<'a, M> {
         self.job.scene.geometry().moves() || self.job.camera.uses_time()
     }
 
-    /// When samples of a number see the scene, while the shutter is open, if anything moves.
+    /// Return the time within the shutter interval of the samples with an index, if anything moves.
     pub fn time(&self, number: u32) -> Option<f64> {
         self.moves().then(|| self.time_of(self.sending.spread.map(number)))
     }
 
-    /// The same as the scene counts time.
+    /// Return the same as scene time.
     pub fn scene_time(&self, number: u32) -> f64 {
         self.time(number).map_or(0.0, |time| self.job.camera.body().scene_time(time))
     }
@@ -187,7 +188,7 @@ impl<'a, M: Counted + Any + Send + Sync> Series<'a, M> {
         Key { seed, number, paths, max_depth, roulette_depth, caustic, radius, ball, time }
     }
 
-    /// How many samples of each pixel maps can be made ready for at a time.
+    /// Return the number of samples per pixel whose maps fit in memory together.
     pub fn at_once(&self) -> u32 {
         let maps = (MapStore::<M>::MOST as u32 / self.sending.paths.max(1)).clamp(1, 16);
         match self.sending.spread {
@@ -196,10 +197,10 @@ impl<'a, M: Counted + Any + Send + Sync> Series<'a, M> {
         }
     }
 
-    /// Makes the maps ready that samples of these numbers are taken by, as `make` makes that of a flight and a radius.
+    /// Make the maps for a range of samples; `make` makes a map from its flight and radius.
     pub fn prepare(&self, numbers: Range<u32>, cancel: &Cancel, make: impl Fn(&Flight, Option<f64>) -> Option<M>) {
         let lock = || self.ready.write().unwrap_or_else(PoisonError::into_inner);
-        // One after the other, each by all threads: those that are not needed any longer first make place.
+        // Maps are made in turn, each on all threads. Maps no longer needed are dropped first.
         let mut wanted: Vec<u32> = numbers.map(|number| self.sending.spread.map(number)).collect();
         wanted.dedup();
         let mut maps = std::mem::take(&mut *lock());
@@ -214,7 +215,7 @@ impl<'a, M: Counted + Any + Send + Sync> Series<'a, M> {
         *lock() = maps;
     }
 
-    /// The map of a sample, if it was made ready.
+    /// Return the map of a sample, if it was prepared.
     pub fn of(&self, number: u32) -> Option<Arc<M>> {
         let number = self.sending.spread.map(number);
         let ready = self.ready.read().unwrap_or_else(PoisonError::into_inner);

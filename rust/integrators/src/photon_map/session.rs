@@ -1,4 +1,4 @@
-//! Pictures by photon maps.
+//! Integrator sessions of photon mapping.
 
 use super::among::room;
 use super::cover::cover;
@@ -23,7 +23,7 @@ use std::cell::Cell;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// How a picture is made of photons.
+/// Parameters of a photon-mapped picture.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Recipe {
     pub sending: Sending,
@@ -33,11 +33,11 @@ pub(super) struct Recipe {
     pub scale: f64,
 }
 
-/// What samples are being taken by.
+/// Shared data for taking samples.
 struct Known<'a> {
     scene: &'a Scene,
     estimate: Estimate,
-    /// That among media.
+    /// Estimate parameters in media.
     among: Estimate,
     series: Series<'a, Maps>,
 }
@@ -46,7 +46,7 @@ impl Known<'_> {
     fn matt<B: Bsdf>(&self, here: &SurfaceInteraction<B>, visit: Visit) -> Rgb {
         let Some(maps) = self.series.of(visit.number) else { return Rgb::ZERO };
         let time = || self.series.scene_time(visit.number);
-        // Of both maps the disk is the same where all within a radius count, and probed once.
+        // With a fixed radius both maps use the same disk, which is probed once.
         let probed = Cell::new((f64::NAN, 0.0));
         let share = |squared: f64| {
             if probed.get().0 != squared {
@@ -86,14 +86,14 @@ impl KnownLight for Known<'_> {
     }
 }
 
-/// How many times as far nearest photons are looked for as they lie where most are. Where there are hardly any, the
-/// whole map would be looked through at each place, and light is too dark there to need as many.
+/// Maximum distance of nearest neighbors, as a multiple of their usual distance. Without it, lookups in regions with
+/// hardly any photons would visit the whole map. Such regions are too dark to need as many photons.
 const FARTHEST: f64 = 8.0;
 
-/// What workers on a picture share.
+/// Data shared by the workers of a picture.
 pub(super) struct Mapped<'a> {
     job: Job<'a>,
-    /// None where nothing shines, or no photon would be kept.
+    /// `None` if there are no lights or no photon would be stored.
     emitters: Option<Emitters<'a>>,
     known: Arc<Known<'a>>,
     seen: Box<dyn Session + 'a>,
@@ -103,7 +103,7 @@ impl<'a> Mapped<'a> {
     pub fn new(job: Job<'a>, recipe: Recipe, radius: Option<f64>, cancel: &Cancel) -> Self {
         let Recipe { sending, nearest, gather, kernel, scale } = recipe;
         let limits = sending.limits;
-        // What comes straight from lights is kept among media alone.
+        // Direct light is stored in media only.
         let media = job.scene.plan().needs().media;
         let least = u32::from(!media);
         let emitters = job.scene.emitters().filter(|_| limits.max_depth.is_none_or(|depth| depth > least));

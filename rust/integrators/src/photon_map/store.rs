@@ -1,9 +1,9 @@
-//! Maps that are kept with their scene.
+//! A cache of photon maps, kept with the scene.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// All that the photons of a map, and what finds them, depend on besides the scene.
+/// All inputs of a photon map and its lookup structure, besides the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Key {
     pub seed: u64,
@@ -12,28 +12,28 @@ pub(crate) struct Key {
     pub max_depth: Option<u32>,
     pub roulette_depth: u32,
     pub caustic: bool,
-    /// Bits of the radius of grids, at surfaces and among media, and of the time in the scene.
+    /// Bits of the grid radius at surfaces and in media, and of the scene time.
     pub radius: Option<u64>,
     pub ball: Option<u64>,
     pub time: Option<u64>,
 }
 
-/// What has so many photons.
+/// Maps with a known number of photons.
 pub(crate) trait Counted {
-    /// How many.
+    /// Return the number of photons.
     fn count(&self) -> usize;
 }
 
-/// The maps that were made last: pieces of one picture that are rendered in one process one after the other, and
-/// pictures by the same maps, find them here.
+/// The most recent maps. Pieces of one picture that are rendered in turn by one process share them, and so do pictures
+/// with equal maps.
 #[derive(Debug)]
 pub(crate) struct MapStore<M> {
     maps: Mutex<VecDeque<(Key, Arc<M>)>>,
-    /// Radii that suit, by the photons that tell them.
+    /// Derived radii, by the key of the pilot photons.
     radii: Mutex<Vec<(Key, Suitable<Option<f64>>)>>,
 }
 
-/// Radii that suit a map, at surfaces and among media; none where there are too few photons.
+/// Derived lookup radii at surfaces and in media; `None` with too few photons.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Suitable<T = f64> {
     pub disk: T,
@@ -47,14 +47,14 @@ impl<M> Default for MapStore<M> {
 }
 
 impl<M: Counted> MapStore<M> {
-    /// Photons that are kept, besides a last map that has more: some 200 MB.
+    /// Maximum number of cached photons, apart from a larger latest map: some 200 MB.
     pub const MOST: usize = 1 << 21;
 
-    /// A map that was made before, or is made now and kept.
+    /// Return a cached map, or make and cache it.
     pub fn map(&self, key: Key, make: impl FnOnce() -> Option<M>) -> Option<Arc<M>> {
         let lock = || self.maps.lock().unwrap_or_else(PoisonError::into_inner);
         let found = lock().iter().find(|(other, _)| *other == key).map(|(_, maps)| Arc::clone(maps));
-        // Not within the lock: threads that wait for others take up work of theirs, which may come here too.
+        // Made outside the lock: a thread that waits for others runs their tasks, which may call this function.
         found.or_else(|| {
             let made = Arc::new(make()?);
             let mut kept = lock();
@@ -68,7 +68,7 @@ impl<M: Counted> MapStore<M> {
         })
     }
 
-    /// Radii that were told before, or are told now and kept.
+    /// Return cached radii, or derive and cache them.
     pub fn radius(
         &self,
         key: Key,
@@ -76,7 +76,7 @@ impl<M: Counted> MapStore<M> {
     ) -> Option<Suitable<Option<f64>>> {
         let lock = || self.radii.lock().unwrap_or_else(PoisonError::into_inner);
         let found = lock().iter().find(|(other, _)| *other == key).map(|(_, radius)| *radius);
-        // Nor here.
+        // Outside the lock for the same reason.
         found.or_else(|| {
             let told = tell()?;
             lock().push((key, told));

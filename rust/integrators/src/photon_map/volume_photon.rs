@@ -1,4 +1,4 @@
-//! Photons among media, as maps keep them.
+//! Compact storage of photons in media.
 
 use super::places::Places;
 use crate::nesting::MediumStack;
@@ -7,26 +7,26 @@ use raywright_base::math::{DVec3, Vec3};
 use raywright_optics::Rgb;
 use raywright_optics::spectra::Waves;
 
-/// Light that a medium has scattered, in as few bytes as its numbers need.
+/// A photon scattered in a medium, in compact form.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct VolumePhoton {
     pub position: DVec3,
-    /// The unit direction that it came along.
+    /// Unit direction of propagation.
     pub direction: Vec3,
-    /// Flux over the extinction where it was met, W times a length: over volume, that is fluence.
+    /// Flux over the extinction at the photon, W times a length. Divided by a volume it is fluence.
     power: [f32; 3],
-    /// As photons of surfaces have it.
+    /// Remaining share for camera paths with a reflectance above 1, as in surface photons.
     again: [f32; 3],
-    /// How often it has been scattered before.
+    /// Number of previous scattering events.
     bounces: u32,
-    /// In what.
+    /// Medium of the photon.
     filled: (u32, u32),
-    /// Whether it is light of the first of its wavelengths alone, which stands for all.
+    /// True if the power is of the hero wavelength alone.
     single: bool,
 }
 
 impl VolumePhoton {
-    /// Of so much power, which may be that of the first of its wavelengths alone.
+    /// Make a photon of a given power; `single` says that it is of the hero wavelength alone.
     pub fn new(
         here: &Scattering,
         (power, single): (Rgb, bool),
@@ -39,14 +39,14 @@ impl VolumePhoton {
         Self { position: here.position, direction, power, again, bounces, filled: Filled::there(media), single }
     }
 
-    /// Whether it counts in what fills a place, and has been scattered so many times at most.
+    /// Return whether the photon is in the same medium and has at most `bounces` scattering events.
     #[inline]
     pub fn counts(&self, filled: (u32, u32), bounces: Option<u32>) -> bool {
         self.filled == filled && bounces.is_none_or(|most| self.bounces <= most)
     }
 
-    /// The power as a viewer sees it who looks by way of what gives more than there is, or not, and who has ended all
-    /// wavelengths but the first, or not.
+    /// Return the power. `gilded` is for camera paths with a reflectance above 1, and `single` for those that
+    /// terminated all wavelengths but the hero.
     pub fn power(&self, gilded: bool, single: bool) -> Rgb {
         let power = Rgb::from_array(self.power.map(f64::from));
         let power = if single && self.single { Waves::joined(power) } else { power };
@@ -54,7 +54,7 @@ impl VolumePhoton {
     }
 }
 
-/// Photons among media, and where they are found.
+/// Photons in media with their lookup structure.
 #[derive(Debug)]
 pub(crate) struct VolumeIndex {
     pub photons: Vec<VolumePhoton>,
@@ -62,7 +62,7 @@ pub(crate) struct VolumeIndex {
 }
 
 impl VolumeIndex {
-    /// For all within a radius, or for the nearest.
+    /// Build a lookup structure for a given radius, or for nearest neighbors.
     pub fn new(photons: Vec<VolumePhoton>, radius: Option<f64>) -> Self {
         let places = Places::new(photons.iter().map(|photon| photon.position), radius);
         Self { photons, places }
