@@ -1,4 +1,4 @@
-//! What a path from the camera is connected to: lights, and where light has come to.
+//! Connections of camera paths to lights and to light vertices.
 
 use super::Alone;
 use super::eye::{EyePath, EyeVertex};
@@ -11,7 +11,7 @@ use raywright_optics::{Bsdf, Rgb};
 use raywright_scene::{Emitters, Encounter, LightSampleContext};
 
 impl<'a> BidirectionalWorker<'a> {
-    /// Asks for light of one light, drawn by a choice and two numbers.
+    /// Sample one light, chosen and sampled by the given numbers.
     pub(super) fn ask(&mut self, emitters: &Emitters, at: &EyeVertex, path: &EyePath, (choice, u): (f64, [f64; 2])) {
         let here = at.here();
         let receiver = LightSampleContext { waves: at.arrived.waves, ..at.arrived.here.light_context() };
@@ -36,7 +36,7 @@ impl<'a> BidirectionalWorker<'a> {
         self.send(at, path, at.leaving(ray, light.primitive), arriving * weight);
     }
 
-    /// Connects to a point that light has come to.
+    /// Connect to a light vertex.
     pub(super) fn connect(&mut self, emitters: &Emitters, at: &EyeVertex, path: &EyePath, light: &LightVertex<'a>) {
         let (here, there) = (at.here(), &light.arrived);
         let way = there.here.position() - here.position();
@@ -76,13 +76,13 @@ impl<'a> BidirectionalWorker<'a> {
         self.send(at, path, at.leaving(segment, there.hit.primitive), arriving * weight);
     }
 
-    /// The weight of a way where one alone counts.
+    /// Return the weight of a strategy if only one is shown: 1 or 0.
     pub(super) fn full(&self, light: u32, camera: u32) -> f64 {
         let way = Alone { vertices: [light, camera], merges: false };
         if self.alone == Some(way) { 1.0 } else { 0.0 }
     }
 
-    /// Queues the ray that tells whether light arrives.
+    /// Queue the shadow ray of a connection.
     fn send(&mut self, at: &EyeVertex, path: &EyePath, ray: Ray, arriving: Rgb) {
         if arriving.is_black() || !arriving.is_finite() {
             return;

@@ -1,4 +1,4 @@
-//! Paths from the camera.
+//! Camera paths.
 
 use crate::light_paths::{Arrived, Partial};
 use crate::nesting::MediumStack;
@@ -8,40 +8,40 @@ use raywright_optics::spectra::Waves;
 use raywright_optics::{Bsdf, BsdfSample, Rgb};
 use raywright_scene::{Encounter, Footprint, LightSampleContext, SurfaceInteraction};
 
-/// A path on its way.
+/// The state of a camera path.
 #[derive(Clone, Copy)]
 pub(super) struct EyePath {
-    /// Whose sample it is.
+    /// Index of its sample.
     pub sample: u32,
     pub throughput: Rgb,
-    /// How much less radiance is here than where the path started, because of the index of refraction alone.
+    /// Ratio of radiance here to radiance at the start of the path due to the index of refraction alone.
     pub scale: f64,
-    /// Surfaces that it has been scattered at.
+    /// Number of surface bounces.
     pub bounce: u32,
     pub media: MediumStack,
-    /// As [`crate::passing::Passing::meet`] has it.
+    /// Random number for masks, as in [`crate::passing::Passing::meet`].
     pub chance: f64,
-    /// How wide the bundle of neighbouring rays is at the ray's origin.
+    /// Width and spread of the ray at its origin.
     pub footprint: Footprint,
-    /// Whether it has been at a surface that gives more than there is, in a channel ([`Bsdf::again`]).
+    /// True if a surface of the path has a reflectance above 1 in a channel ([`Bsdf::again`]).
     pub gilded: bool,
     pub partial: Partial,
-    /// As [`Partial::merging`] has it, 0 where paths do not merge.
+    /// Merging disk as in [`Partial::merging`]; 0 without merging.
     pub disk: f64,
-    /// The normal that lights were drawn by where it was scattered last.
+    /// Normal for light sampling at the last surface.
     pub normal: DVec3,
-    /// Its wavelengths; none for red, green and blue. And whether the first is all that it carries.
+    /// Wavelengths, `None` for RGB; and true if only the hero is left.
     pub waves: Option<Waves>,
     pub single: bool,
 }
 
 impl EyePath {
-    /// What light that comes upon its ray would have been asked for from.
+    /// Return the context of light sampling at the ray's origin, for MIS with lights that the ray hits.
     pub fn receiver(&self, ray: &Ray) -> LightSampleContext {
         LightSampleContext { position: ray.origin, normal: self.normal, waves: self.waves }
     }
 
-    /// Leaves the hero of its wavelengths alone, which stands for all from here on.
+    /// Terminate all wavelengths but the hero, which then stands for all.
     pub fn end_all_but_hero(&mut self) {
         if !self.single {
             self.throughput = Waves::ended(self.throughput);
@@ -49,7 +49,8 @@ impl EyePath {
         }
     }
 
-    /// It goes on along a direction drawn at a surface that parts wavelengths, if they have come together so far.
+    /// Continue along a sampled direction. At a dispersive surface, refraction terminates the secondary
+    /// wavelengths, and reflection reweights them.
     pub fn part(&mut self, parting: Option<&Parting>, wo: DVec3, next: &BsdfSample) {
         match parting {
             Some(_) if next.is_through => self.end_all_but_hero(),
@@ -59,7 +60,7 @@ impl EyePath {
     }
 }
 
-/// Paths that go on, and the ray that each is about to follow.
+/// Active paths and their next rays.
 #[derive(Default)]
 pub(super) struct EyeQueue {
     pub rays: RayQueue,
@@ -67,60 +68,59 @@ pub(super) struct EyeQueue {
 }
 
 impl EyeQueue {
-    /// Forgets all.
+    /// Remove all paths.
     pub fn clear(&mut self) {
         self.rays.clear();
         self.paths.clear();
     }
 
-    /// A path and its ray.
+    /// Append a path and its ray.
     pub fn push(&mut self, ray: &Ray, path: EyePath) {
         self.rays.push(ray);
         self.paths.push(path);
     }
 }
 
-/// Where a path from the camera has come to.
+/// A vertex of a camera path.
 pub(super) struct EyeVertex<'a> {
-    /// As rays without width meet it: densities that are compared are those.
+    /// The interaction of a ray without width, which MIS densities refer to.
     pub arrived: Arrived<'a>,
-    /// As it is seen, if that differs.
+    /// The interaction of the ray with its width, if that differs.
     pub wide: Option<SurfaceInteraction>,
-    /// What a ray that goes through is in.
+    /// Media of a transmitted ray.
     pub through: MediumStack,
-    /// What parts wavelengths where a path goes on, if it has not parted them already.
+    /// Wavelength dependence of scattering at this vertex, if the wavelengths are still together.
     pub parting: Option<Parting>,
 }
 
 impl EyeVertex<'_> {
-    /// As it is seen.
+    /// Return the interaction of the ray with its width.
     pub fn here(&self) -> &SurfaceInteraction {
         self.wide.as_ref().unwrap_or(&self.arrived.here)
     }
 
-    /// How much light from a direction it scatters along the path, and with which density a ray without width is
-    /// scattered there.
+    /// Return the BSDF value for light from a direction, and the density of that direction for a ray without width.
     pub fn evaluate(&self, direction: DVec3) -> (Rgb, f64) {
         let (scattered, pdf) = self.here().evaluate(direction);
         (scattered, if self.wide.is_some() { self.arrived.here.evaluate(direction).1 } else { pdf })
     }
 
-    /// Whether light from a direction cannot be scattered along the path, to be told at once.
+    /// Return true if light from a direction certainly contributes nothing: a cheap test.
     pub fn is_hidden_from(&self, direction: DVec3) -> bool {
         self.here().is_through(direction) && !self.here().bsdf().transmits()
     }
 
-    /// The density with which light from a direction goes on along the path.
+    /// Return the density with which a light path from a direction continues along the camera path.
     pub fn onward_pdf(&self, direction: DVec3) -> f64 {
         self.arrived.met_from(direction, 1.0, 0.0).onward_pdf(self.arrived.back())
     }
 
-    /// What a ray that leaves in a direction is in.
+    /// Return the media of a ray that leaves in a direction.
     pub fn media(&self, direction: DVec3, path: &EyePath) -> MediumStack {
         if self.here().is_through(direction) { self.through } else { path.media }
     }
 
-    /// The ray that leaves as another has it.
+    /// Return the ray with this vertex's time, that skips this primitive and `to`.
     pub fn leaving(&self, ray: Ray, to: u32) -> Ray {
         Ray { time: self.arrived.ray.time, misses: [self.arrived.hit.primitive, to], ..ray }
     }

@@ -1,4 +1,4 @@
-//! Where light has come to, kept to be connected to.
+//! Stored vertices of light paths.
 
 use crate::light_paths::{Arrived, Dimensions, Flying, LightEnd, Onward, Partials, Visitor};
 use crate::nesting::MediumStack;
@@ -6,41 +6,41 @@ use raywright_base::sampling::Sampler;
 use raywright_optics::{Bsdf, Rgb};
 use raywright_scene::EmissionSample;
 
-/// A surface that light has come to.
+/// A vertex of a light path.
 pub(super) struct LightVertex<'a> {
     pub arrived: Arrived<'a>,
-    /// The flux that the path stands for, more where not all such are kept.
+    /// Flux of the path, divided by the probability that the vertex is stored.
     pub flux: Rgb,
-    /// What is left of it for a viewer who looks by way of what gives more than there is ([`Bsdf::again`]).
+    /// Remaining share for camera paths with a reflectance above 1 on the way ([`Bsdf::again`]).
     pub again: Rgb,
-    /// Which of the path's surfaces it is, from 1 on.
+    /// Index of the vertex among the path's surfaces, from 1 on.
     pub bounce: u32,
-    /// Whether the hero of its wavelengths is all that it has come by.
+    /// True if only the hero wavelength is left.
     pub single: bool,
     pub end: LightEnd,
-    /// That of the same path before this.
+    /// Previous vertex of the same path.
     before: Option<u32>,
 }
 
-/// The surfaces that each path of a batch has come to, but for those which scatter in single directions alone. Of a
-/// path that has been to many, as in a white room without a window, those beyond the first [`LightVertices::ALL`] are
-/// kept the less likely the later they are: all connections of two such paths would take hours.
+/// The vertices of each light path of a batch, except delta ones. Beyond the first [`LightVertices::ALL`] of a path, as
+/// in a white room without a window, later vertices are stored with decreasing probability. Otherwise all connections
+/// of two such paths would take hours.
 pub(super) struct LightVertices<'a> {
     partials: Partials<'a>,
     vertices: Vec<LightVertex<'a>>,
-    /// The last of each path.
+    /// Last vertex of each path.
     last: Vec<Option<u32>>,
 }
 
 impl<'a> LightVertices<'a> {
-    /// The first that are kept of each path, whatever the odds; of 4,000 that is one in twenty.
+    /// Number of vertices of a path that are always stored; one in twenty of 4,000 is stored.
     const ALL: f64 = 32.0;
 
     pub fn new(partials: Partials<'a>) -> Self {
         Self { partials, vertices: Vec::new(), last: Vec::new() }
     }
 
-    /// Forgets all, before so many paths are followed, which merge by these disks, if they do.
+    /// Clear, and set the number of paths and their merging disks, if vertices are merged.
     pub fn begin(&mut self, paths: usize, disks: impl Iterator<Item = f64>) {
         self.partials.begin(disks);
         self.vertices.clear();
@@ -48,7 +48,7 @@ impl<'a> LightVertices<'a> {
         self.last.resize(paths, None);
     }
 
-    /// Those of a path, from the last on.
+    /// Return the vertices of a path, last one first.
     pub fn of(&self, path: u32) -> impl Iterator<Item = &LightVertex<'a>> {
         let get = |index: u32| &self.vertices[index as usize];
         let last = self.last.get(path as usize).copied().flatten();
@@ -56,7 +56,7 @@ impl<'a> LightVertices<'a> {
     }
 }
 
-/// Arrivals are borrowed for as long as a visit takes; what they hold lives as long as the scene.
+/// A visit borrows its arrival, but the data in it lives as long as the scene.
 impl<'a> Visitor<'a> for LightVertices<'a> {
     fn set_out(&mut self, path: &Flying, light: &EmissionSample) {
         self.partials.set_out(path, light);

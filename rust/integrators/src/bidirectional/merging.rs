@@ -1,4 +1,4 @@
-//! Paths that merge: what light brings to about where a path from the camera has come to.
+//! Vertex merging of camera paths with photons.
 
 use super::eye::{EyePath, EyeVertex};
 use crate::light_paths::{Arrived, Dimensions, Flying, Limits, Onward, Partial, Partials, Visitor, of_merged};
@@ -14,16 +14,16 @@ use std::f64::consts::PI;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// How paths merge.
+/// Parameters of vertex merging.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Merge {
-    /// How far photons may lie in the first sample; `None` for as far as suits their number.
+    /// Lookup radius of the first sample; `None` derives it from the number of photons.
     pub radius: Option<f64>,
-    /// Paths of light for each sample; `None` for as many as there are pixels, a million at most.
+    /// Light paths per sample; `None` for one per pixel, at most a million.
     pub photons: Option<u32>,
-    /// How much of each radius counts, at most 1. Weights are those of the whole.
+    /// Factor on each lookup radius, at most 1. MIS weights use the full radius.
     pub scale: f64,
-    /// Of how many samples all have the mean of the squared radii; `None` where they shrink.
+    /// Number of samples whose mean squared radius all samples use; `None` for shrinking radii.
     pub mean_of: Option<u32>,
 }
 
@@ -33,7 +33,7 @@ impl Default for Merge {
     }
 }
 
-/// What light brings in samples of a number: where it has come to matt surfaces, and what it knows there.
+/// Photons for all samples with an index, with their MIS partials.
 pub(super) struct MergeMap {
     photons: Vec<(StoredPhoton, Partial)>,
     places: HashedGrid,
@@ -45,7 +45,7 @@ impl Counted for MergeMap {
     }
 }
 
-/// Those of all samples of a picture.
+/// Photon maps of all samples of a picture.
 pub(super) struct Merging<'a> {
     job: Job<'a>,
     series: Series<'a, MergeMap>,
@@ -55,11 +55,11 @@ pub(super) struct Merging<'a> {
 
 impl<'a> Merging<'a> {
     pub fn new(job: Job<'a>, merge: Merge, limits: Limits, emitters: &Emitters, cancel: &Cancel) -> Self {
-        /// Paths that are kept at most unless more are asked for.
+        /// Default maximum of light paths per sample.
         const MOST: u32 = 1 << 20;
-        /// So that each pixel of a small picture finds some.
+        /// Minimum, so that pixels of a small picture find some photons.
         const LEAST: u32 = 1 << 10;
-        /// The share of new photons that is kept from sample to sample: both noise and bias fall as fast as they can.
+        /// Share of new photons kept from sample to sample: the optimum for the convergence of noise and bias together.
         const ALPHA: f64 = 2.0 / 3.0;
         let pixels = job.camera.width().saturating_mul(job.camera.height());
         let photons = merge.photons.unwrap_or(pixels.clamp(LEAST, MOST));
@@ -69,7 +69,7 @@ impl<'a> Merging<'a> {
         Self { job, series: series.with_radius(radius), photons, scale: merge.scale }
     }
 
-    /// That of all samples of a number: the area that photons count from, times the number of paths that bring them.
+    /// Return the merging disk of a sample index: the lookup disk's area times the number of light paths.
     pub fn disk(&self, number: u32) -> f64 {
         let radius = self.series.radius_of(number).unwrap_or(0.0);
         f64::from(self.photons) * PI * radius * radius
@@ -83,12 +83,12 @@ impl<'a> Merging<'a> {
         self.series.time(number)
     }
 
-    /// The wavelengths of all paths of samples of a number; none for red, green and blue.
+    /// Return the wavelengths of all paths of a sample index; `None` for RGB.
     pub fn waves(&self, number: u32) -> Option<Waves> {
         self.series.waves(number)
     }
 
-    /// Makes maps ready for samples of these numbers.
+    /// Make the maps for a range of samples.
     pub fn prepare(&self, numbers: Range<u32>, emitters: &Emitters, alone: bool, cancel: &Cancel) {
         let Job { scene, camera, .. } = self.job;
         self.series.prepare(numbers, cancel, |flight, radius| {
@@ -107,13 +107,13 @@ impl<'a> Merging<'a> {
         });
     }
 
-    /// That of samples of a number.
+    /// Return the map of a sample index.
     pub fn map(&self, number: u32) -> Option<Arc<MergeMap>> {
         self.series.of(number)
     }
 
-    /// What a path from the camera finds in a map where it has come to, of light that has been scattered at so many
-    /// surfaces at most; or what merges alone bring by photons of so many surfaces, in full.
+    /// Return the light merged at a camera vertex, from photons with at most `most` bounces. If merging alone is shown,
+    /// use only photons with a given number of bounces, unweighted.
     pub fn found(
         &self,
         map: &MergeMap,
@@ -149,7 +149,7 @@ impl<'a> Merging<'a> {
     }
 }
 
-/// Keeps what comes to matt surfaces, but for what comes there straight from lights.
+/// A visitor that stores indirect photons at matte surfaces.
 struct Keeping<'a> {
     share: f64,
     partials: Partials<'a>,

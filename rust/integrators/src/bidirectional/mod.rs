@@ -1,4 +1,4 @@
-//! Paths that are walked from lights and from the camera, and meet.
+//! Bidirectional path tracing and vertex merging.
 
 mod connections;
 mod eye;
@@ -20,36 +20,35 @@ use std::ops::Range;
 use worker::BidirectionalWorker;
 
 /// Bidirectional path tracing (Lafortune and Willems, "Bi-Directional Path Tracing", 1993; Veach and Guibas,
-/// "Bidirectional Estimators for Light Transport", 1994): for each sample of each pixel a path is walked from the
-/// camera and one from a light, and each surface of the one is connected to each of the other, to the light and to the
-/// camera. A path that is found in several of these ways counts in each by the balance heuristic.
+/// "Bidirectional Estimators for Light Transport", 1994). Each sample of each pixel traces a camera path and a light
+/// path. Each camera vertex is connected to each light vertex and to the lights, and each light vertex to the camera.
+/// The strategies are combined with the balance heuristic.
 ///
-/// Walks may be merged as well, which meet at about the same place (vertex connection and merging: Georgiev et al.
-/// 2012; Hachisuka et al. 2012): each sample of all pixels has photons of its own, as many as there are paths of light,
-/// and gathers them at matt surfaces from ever less far away. Then path tracing, light tracing and progressive photon
-/// maps are all special cases.
+/// Vertices can also be merged (vertex connection and merging: Georgiev et al. 2012; Hachisuka et al. 2012). Each
+/// sample of all pixels has its own photons, one per light path, and gathers them at matte surfaces within shrinking
+/// radii. So path tracing, light tracing and progressive photon mapping are special cases.
 ///
-/// What path tracing finds well, and what light tracing does, is found as well by both together, and light that is hard
-/// to reach from either end, such as behind a door ajar, by their connections. Only what is seen by way of something
-/// sharp, lit by way of something sharp from a small light, is found no better unless walks are merged.
+/// The combination finds all light that path tracing or light tracing alone finds well. Connections find light that is
+/// hard to reach from either end, such as behind a door ajar. Only specular-diffuse-specular paths from small lights
+/// gain nothing unless vertices are merged.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bidirectional {
-    /// The greatest number of times that light is scattered; 0 shows only what shines itself. `None` sets no limit.
+    /// Maximum number of scattering events; 0 shows only emission. `None` sets no limit.
     pub max_depth: Option<u32>,
-    /// Roulette is played from this number of bounces on, along either walk.
+    /// Number of bounces after which Russian roulette starts, on both subpaths.
     pub roulette_depth: u32,
-    /// How walks are merged, if they are.
+    /// Vertex merging, if any.
     pub merge: Option<Merge>,
-    /// If one way alone is to be shown, at its full weight.
+    /// The one strategy to show unweighted, if any.
     pub alone: Option<Alone>,
 }
 
-/// A way to find paths.
+/// A strategy of sampling paths.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Alone {
-    /// The number of vertices from the light on, and of those from the camera on, itself the first.
+    /// Number of vertices from the light, and from the camera, which counts as the first.
     pub vertices: [u32; 2],
-    /// Whether the last of either are the same, where they merge.
+    /// True if the last vertices of both ends are merged.
     pub merges: bool,
 }
 
@@ -62,9 +61,10 @@ impl Default for Bidirectional {
 impl Integrator for Bidirectional {
     fn begin<'a>(&'a self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a> {
         let limits = Limits { max_depth: self.max_depth, roulette_depth: self.roulette_depth };
-        // Light that is merged, or splatted from what is matt alone (`LightTraced`), has more noise where it is aimed.
+        // Aimed emission would add noise to merging, and to connections from matte surfaces to the camera
+        // (`LightTraced`).
         let emitters = if self.merge.is_none() { emitters(job.scene) } else { job.scene.emitters() };
-        // Of light that has been scattered once at least, at the second surface.
+        // Merging requires light scattered at least once: photons start at the second surface.
         let merge = self.merge.filter(|_| self.max_depth.is_none_or(|depth| depth > 1));
         let merging = merge.zip(emitters.as_ref());
         let merging = merging.map(|(merge, emitters)| Merging::new(job, merge, limits, emitters, cancel));
@@ -72,7 +72,7 @@ impl Integrator for Bidirectional {
     }
 
     fn objection(&self, scene: &Scene, adaptive: bool) -> Option<String> {
-        // What glows is found from the camera alone.
+        // Emission of media is found by camera paths alone.
         if adaptive || scene.not_drawn().is_some() {
             return super::LightTraced::default().objection(scene, adaptive);
         }
@@ -95,11 +95,11 @@ impl Integrator for Bidirectional {
     }
 }
 
-/// What workers on a picture share.
+/// Data shared by the workers of a picture.
 struct Bidirection<'a> {
     limits: Limits,
     job: Job<'a>,
-    /// None where nothing shines.
+    /// `None` without lights.
     emitters: Option<Emitters<'a>>,
     merging: Option<Merging<'a>>,
     alone: Option<Alone>,
@@ -110,7 +110,7 @@ impl Bidirection<'_> {
         self.job.scene.plan().needs().media
     }
 
-    /// The way that alone counts, if one does and is no merge: no way has no vertices.
+    /// Return the one strategy to show, if it is not a merge; no strategy has no vertices.
     fn way_alone(&self) -> Option<[u32; 2]> {
         self.alone.map(|alone| if alone.merges { [0; 2] } else { alone.vertices })
     }

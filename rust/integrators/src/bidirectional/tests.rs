@@ -1,4 +1,4 @@
-//! Paths from both ends against closed forms, and against each other.
+//! Bidirectional path tracing against closed forms, and strategies against each other.
 
 use super::{Alone, Bidirectional, Merge};
 use crate::{CameraSample, Integrator, Job, Splat};
@@ -15,7 +15,7 @@ use raywright_shapes::Sphere;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-/// Mean of a picture and its standard error, by samples of all pixels and as many paths of light.
+/// Return the mean of a picture and its standard error, with one light path per sample.
 fn mean(scene: &Scene, camera: &dyn Camera, integrator: &Bidirectional, samples: u32) -> (f64, f64) {
     let cancel = Cancel::default();
     let session = integrator.begin(Job::new(scene, camera, 0, 1), &cancel);
@@ -43,7 +43,7 @@ fn mean(scene: &Scene, camera: &dyn Camera, integrator: &Bidirectional, samples:
             let is_on = |splat: &&Splat| {
                 (0.0..f64::from(width)).contains(&splat.film[0]) && (0.0..f64::from(height)).contains(&splat.film[1])
             };
-            // A mean over all pixels, of which each has what comes to it over the number of paths.
+            // A mean over all pixels; each splat is divided by the number of paths per pixel.
             sum += splats.iter().filter(is_on).map(|splat| splat.light.mean()).sum::<f64>() / f64::from(pixels);
         }
         means.push(sum / f64::from(pixels));
@@ -54,7 +54,7 @@ fn mean(scene: &Scene, camera: &dyn Camera, integrator: &Bidirectional, samples:
     (mean, (variance / count).sqrt())
 }
 
-/// A sphere of radius 1 that shines inwards.
+/// A sphere of radius 1 with inward emission.
 fn ball(reflectance: f64, emission: f64) -> Shape {
     let surface = Arc::new(Sphere::UNIT) as Arc<dyn raywright_shapes::Shape>;
     let material = Arc::new(DiffuseMaterial { reflectance: Rgb::splat(reflectance).into() });
@@ -67,9 +67,8 @@ fn inside(size: u32) -> Perspective {
     Perspective::looking_at(at, DVec3::new(1.0, 0.3, 0.2), DVec3::Z, 70.0, size, size).unwrap()
 }
 
-/// Inside of a diffuse sphere of radius 1 and reflectance ρ with a point light of intensity I at its centre, light that
-/// was reflected k times has the radiance I ρᵏ / π everywhere: each way to find paths of so many vertices does so
-/// alone.
+/// Inside a diffuse sphere of radius 1 and reflectance ρ with a point light of intensity I at its center, light
+/// reflected k times has the radiance I ρᵏ / π everywhere. Each strategy alone finds it all.
 #[test]
 fn each_way_alone_finds_all_paths_of_its_length() {
     let light = PointLight { position: DVec3::ZERO, intensity: Rgb::splat(PI) };
@@ -77,7 +76,7 @@ fn each_way_alone_finds_all_paths_of_its_length() {
     let (scene, camera) = (scene(description), inside(8));
     for bounces in 1..=4u32 {
         let expected = 0.5f64.powi(bounces as i32);
-        // A single point is never come upon.
+        // A point light is never hit.
         for camera_vertices in 1..=bounces + 1 {
             let light_vertices = bounces + 2 - camera_vertices;
             let alone = Some(Alone { vertices: [light_vertices, camera_vertices], merges: false });
@@ -86,7 +85,7 @@ fn each_way_alone_finds_all_paths_of_its_length() {
             assert!(error < 0.06 * expected, "{alone:?}: {error}");
             assert!((mean - expected).abs() < 4.0 * error + 1e-9, "{alone:?}: {mean} ± {error}, not {expected}");
         }
-        // All of them up to here, weighed.
+        // All lengths up to this one, weighted.
         let all = Bidirectional { max_depth: Some(bounces), ..Bidirectional::default() };
         let (mean, error) = mean(&scene, &camera, &all, 200);
         let expected = 1.0 - expected;
@@ -94,7 +93,7 @@ fn each_way_alone_finds_all_paths_of_its_length() {
     }
 }
 
-/// The same where the wall itself shines: what is reflected k times has the radiance ρᵏ times its own.
+/// The same with an emissive wall: light reflected k times has ρᵏ times the emitted radiance.
 #[test]
 fn each_way_alone_finds_light_of_a_surface() {
     let description = SceneDescription { shapes: vec![ball(0.5, 1.0)], ..Default::default() };
@@ -103,7 +102,7 @@ fn each_way_alone_finds_light_of_a_surface() {
         let expected = 0.5f64.powi(bounces as i32);
         for camera_vertices in 1..=bounces + 2 {
             let light_vertices = bounces + 2 - camera_vertices;
-            // The camera's own rays see what shines.
+            // Camera rays see emitters directly.
             if bounces == 0 && light_vertices > 0 {
                 continue;
             }
@@ -116,10 +115,9 @@ fn each_way_alone_finds_light_of_a_surface() {
     }
 }
 
-/// Merging at any one of the surfaces that are matt finds all paths of a length, but what comes straight from a light.
-/// Light is the same everywhere, so that disks have no bias but that a sphere is bent within them: photons at a
-/// distance d are off the plane by d²/2, and count where d² + (4² − 1) d⁴/4 is below r², on an area of π d². All ways
-/// together find as much as there is, less a part of that.
+/// Merging at any one matte vertex finds all paths of a length, except direct light. Light is uniform, so disks have no
+/// bias but for the sphere's curvature. Photons at a distance d are off the plane by d²/2, and count if d² + (4² − 1)
+/// d⁴/4 is below r²: an area of π d². All strategies together find the whole light less part of this bias.
 #[test]
 fn merges_alone_find_all_paths_of_their_length() {
     let light = PointLight { position: DVec3::ZERO, intensity: Rgb::splat(PI) };

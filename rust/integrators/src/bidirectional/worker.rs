@@ -1,4 +1,4 @@
-//! Batches of paths from the camera, each with a path from a light.
+//! Batches of camera paths, each with a light path.
 
 use super::eye::{EyePath, EyeQueue, EyeVertex};
 use super::light_vertices::LightVertices;
@@ -20,41 +20,41 @@ use raywright_optics::{Bsdf, Dispersive, Rgb};
 use raywright_scene::{Emitters, Encounter, Gaze, SurfaceInteraction};
 use std::sync::Arc;
 
-/// What one thread works with.
+/// Per-thread state.
 pub(super) struct BidirectionalWorker<'a> {
     job: Job<'a>,
     emitters: Option<&'a Emitters<'a>>,
     limits: Limits,
     pub(super) alone: Option<Alone>,
-    /// How many paths there are from lights to the camera for each of its samples.
+    /// Number of light paths per camera sample of the whole picture.
     paths: f64,
-    /// Whether the camera's samples are spread over time.
+    /// True if samples are spread over time.
     moves: bool,
-    /// Whether anybody asks how wide rays are.
+    /// True if materials need ray widths.
     widths: bool,
-    /// The wavelengths of samples; none where they find red, green and blue.
+    /// Wavelengths of samples; `None` for RGB.
     waves: Vec<Waves>,
     pub(super) passing: Passing,
     now: EyeQueue,
     next: EyeQueue,
     hits: Vec<Hit>,
     pub(super) shadows: Shadows,
-    /// Paths of light, if any light can be drawn.
+    /// Light paths, if any light can be sampled.
     light: Option<(LightWalk<'a>, LightVertices<'a>)>,
-    /// How paths merge, if they do, and the maps of samples that are being worked on.
+    /// Vertex merging if enabled, and the maps of the current samples.
     merging: Option<&'a Merging<'a>>,
     maps: Vec<(u32, Arc<MergeMap>)>,
     samplers: Vec<Sampler>,
 }
 
 impl<'a> BidirectionalWorker<'a> {
-    /// Samples that are worked on together. What light finds is kept for so many: half a kilobyte for each surface.
+    /// Samples per batch. Their light vertices are stored at half a kilobyte each.
     const TOGETHER: usize = 512;
 
     pub fn new(shared: &'a Bidirection<'a>) -> Self {
         let (job, limits, emitters) = (shared.job, shared.limits, shared.emitters.as_ref());
         let (scene, camera, needs) = (job.scene, job.camera, job.scene.plan().needs());
-        // A surface that is connected to another is a bounce, too.
+        // A connection of two surfaces counts as a bounce, too.
         let within = Limits { max_depth: limits.max_depth.map(|depth| depth.saturating_sub(1)), ..limits };
         let light = |emitters: &'a Emitters<'a>| {
             let walk = LightWalk::new(scene, emitters, within, Some(camera));
@@ -81,7 +81,7 @@ impl<'a> BidirectionalWorker<'a> {
         }
     }
 
-    /// Follows the paths of these samples to their ends, and adds what they find.
+    /// Trace the paths of samples to their ends and add their contributions.
     fn follow(&mut self, samples: &mut [CameraSample], cancel: &Cancel, radiance: &mut [Rgb]) {
         self.draw_waves(samples);
         let mut light = self.light.take();
@@ -113,7 +113,7 @@ impl<'a> BidirectionalWorker<'a> {
         }
     }
 
-    /// Draws the wavelengths of samples, which both of their paths carry, in a scene that needs them.
+    /// Sample the wavelengths, common to both paths of a sample, in scenes that need them.
     fn draw_waves(&mut self, samples: &mut [CameraSample]) {
         if self.job.scene.plan().needs().waves {
             self.waves.clear();
@@ -125,7 +125,7 @@ impl<'a> BidirectionalWorker<'a> {
         }
     }
 
-    /// Gets the maps that samples are to be merged with.
+    /// Look up the maps of the current samples.
     fn begin_merging(&mut self, samples: &[CameraSample]) {
         self.maps.clear();
         let Some(merging) = self.merging else { return };
@@ -136,14 +136,13 @@ impl<'a> BidirectionalWorker<'a> {
         }
     }
 
-    /// Adds what has come to about where a path is.
+    /// Return the light merged at a camera vertex.
     fn merge(&self, at: &EyeVertex<'a>, path: &EyePath, number: u32, most: Option<u32>) -> Rgb {
         let Some(merging) = self.merging.filter(|_| is_matt(at.arrived.here.bsdf())) else { return Rgb::ZERO };
         let Some((_, map)) = self.maps.iter().find(|(other, _)| *other == number) else { return Rgb::ZERO };
         let alone = match self.alone {
             None => None,
-            // The point that both have come to is a vertex of either; the light and this very surface scatter nothing
-            // on the way of the photon.
+            // The merged vertex belongs to both subpaths. The light and this surface are not bounces of the photon.
             Some(Alone { vertices: [light, camera], merges: true }) if camera == path.bounce + 2 && light > 2 => {
                 Some(light - 2)
             }
@@ -152,7 +151,7 @@ impl<'a> BidirectionalWorker<'a> {
         path.throughput * merging.found(map, (at, path), most, alone)
     }
 
-    /// Puts the camera's rays into the queue.
+    /// Queue the camera rays.
     fn start(&mut self, samples: &[CameraSample]) {
         self.now.clear();
         for (number, sample) in (0u32..).zip(samples) {
@@ -182,7 +181,7 @@ impl<'a> BidirectionalWorker<'a> {
         }
     }
 
-    /// Takes all paths from their rays' hits to their next rays.
+    /// Advance all paths by one ray.
     fn bounce(&mut self, samples: &mut [CameraSample], light: Option<&LightVertices<'a>>, radiance: &mut [Rgb]) {
         self.next.clear();
         self.passing.begin(self.job.scene, &self.now.rays, &self.hits);
@@ -221,7 +220,7 @@ impl<'a> BidirectionalWorker<'a> {
         std::mem::swap(&mut self.now, &mut self.next);
     }
 
-    /// Takes a path that has come to a surface, where its ray is so wide, to its next ray.
+    /// Advance a path from a surface to its next ray, given the ray's width there.
     fn arrive(
         &mut self,
         at: &EyeVertex<'a>,
@@ -270,7 +269,7 @@ impl<'a> BidirectionalWorker<'a> {
         self.go_on(at, path, width, sampler, dimensions);
     }
 
-    /// With which density the camera's rays come to what it sees first, by area across them, in pixels.
+    /// Return the density of camera rays at the first hit, per area perpendicular to them, in pixels.
     fn seen(&self, at: &EyeVertex, sampler: &mut Sampler) -> f64 {
         let camera = self.job.camera;
         let lens = if camera.uses_lens() { sampler.two(1) } else { [0.5; 2] };
@@ -278,7 +277,7 @@ impl<'a> BidirectionalWorker<'a> {
         camera.connect(at.arrived.here.position(), lens, time).map_or(0.0, |seen| seen.density)
     }
 
-    /// Light from outside that a path has come upon.
+    /// Return the weighted light of infinite lights that a path hits.
     fn outside(&self, ray: &Ray, path: &EyePath) -> Rgb {
         let lights = self.job.scene.lights();
         let arriving = lights.infinite_radiance_at(ray.direction, path.waves.as_ref());
@@ -296,7 +295,7 @@ impl<'a> BidirectionalWorker<'a> {
             }
     }
 
-    /// What a surface sends back that a path has come upon.
+    /// Return the weighted emission of a surface that a path hits.
     fn emitted(&self, at: &EyeVertex, path: &EyePath, width: f64) -> Rgb {
         let (scene, Arrived { ray, hit, .. }) = (self.job.scene, &at.arrived);
         let (geometry, surface) = (scene.geometry(), at.arrived.here.surface());
@@ -319,7 +318,7 @@ impl<'a> BidirectionalWorker<'a> {
         }
     }
 
-    /// Sends a path on from a surface, unless it ends there.
+    /// Continue a path from a surface, unless it ends there.
     fn go_on(&mut self, at: &EyeVertex, mut path: EyePath, width: f64, sampler: &mut Sampler, dimensions: Dimensions) {
         let here = at.here();
         let u = sampler.two(dimensions.direction());

@@ -1,4 +1,4 @@
-//! Cones on their way, and what they meet.
+//! Cones and their intersections.
 
 use crate::Job;
 use raywright_accel::Primitives;
@@ -7,43 +7,43 @@ use raywright_optics::{Bsdf, BsdfSample, Rgb};
 use raywright_scene::{Geometry, SurfaceInteraction};
 use raywright_shapes::triangle::SolidCone;
 
-/// A cone, and how much what it meets counts.
+/// A cone and its weight.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cone {
     pub apex: DVec3,
     pub axis: DVec3,
-    /// Of half its opening, in radians.
+    /// Half opening angle in radians.
     pub angle: f64,
-    /// Where it begins: a normal n and an offset, and only where n · x is above it.
+    /// Plane where the cone begins: a normal n and an offset; the cone is the part where n · x exceeds it.
     pub beyond: Option<(DVec3, f64)>,
     pub weight: Rgb,
-    /// How many surfaces it has met.
+    /// Number of surfaces so far.
     pub bounce: u32,
-    /// Whether a rough surface has sent it, which has asked lamps itself.
+    /// True for cones from rough surfaces, where lamps have been sampled already.
     pub is_dull: bool,
 }
 
-/// The least half angle of a cone, in radians, and the greatest.
+/// Minimum and maximum half angle in radians.
 const ANGLES: [f64; 2] = [1e-7, 1.4];
 
 impl Cone {
-    /// The cone that all of it is in.
+    /// Return the enclosing solid cone.
     pub fn solid(&self) -> Option<SolidCone> {
         SolidCone::new(self.apex, self.axis, self.angle.to_degrees(), f64::INFINITY)
     }
 }
 
-/// Where a cone meets a surface.
+/// The intersection of a cone with a surface.
 pub(super) struct Meeting {
     pub ray: Ray,
     pub hit: Hit,
-    /// The cone's diameter there.
+    /// Cone diameter there.
     pub width: f64,
     pub here: SurfaceInteraction,
 }
 
 impl Meeting {
-    /// What a cone meets of a primitive along a direction; `None` if that misses it.
+    /// Intersect a cone's ray in a direction with a primitive; `None` for a miss.
     pub fn new(job: &Job, cone: &Cone, primitive: u32, direction: DVec3) -> Option<Self> {
         let ray = Ray::new(cone.apex, direction);
         let hit = meet(job.scene.geometry(), &ray, primitive, cone.beyond)?;
@@ -52,7 +52,7 @@ impl Meeting {
         Some(Self { ray, hit, width, here: SurfaceInteraction::new(job.scene, &ray, &hit, surface, width, 1.0) })
     }
 
-    /// The radiance that a surface that shines shows to a ray; `None` if that misses it.
+    /// Return the emitted radiance of a surface toward a ray; `None` for a miss.
     pub fn shown(&self, job: &Job, ray: &Ray, primitive: u32) -> Option<Rgb> {
         let geometry = job.scene.geometry();
         let hit = meet(geometry, ray, primitive, None)?;
@@ -60,7 +60,7 @@ impl Meeting {
         Some(job.scene.emission_at(&surface).sent(geometry, ray, &hit, &surface, || 0.0))
     }
 
-    /// The radiance that the surface itself shines with.
+    /// Return the emitted radiance.
     pub fn own(&self, job: &Job) -> Rgb {
         let surface = self.here.surface();
         let emission = job.scene.emission_at(surface);
@@ -70,22 +70,22 @@ impl Meeting {
         emission.sent(job.scene.geometry(), &self.ray, &self.hit, surface, || self.width)
     }
 
-    /// What is sent back of an even light.
+    /// Return the reflected radiance of uniform incident radiance.
     pub fn ambient(&self, job: &Job, radiance: Rgb) -> Rgb {
         self.here.ambient(job.scene, &self.ray, &self.hit, self.width, 1.0) * radiance
     }
 
-    /// The part of [`Meeting::ambient`]'s share that rough metals have, which cones follow.
+    /// Return the part of the albedo of [`Meeting::ambient`] that is due to rough metals, for which cones are traced.
     pub fn dull_albedo(&self) -> Rgb {
         let mut albedo = Rgb::ZERO;
         self.here.bsdf().dull_lobes(|weight, metal| albedo += weight * metal.albedo());
         albedo
     }
 
-    /// Calls with the cones that go on as from a mirror or through a pane, and those of rough metals.
+    /// Visit the reflected, refracted and rough metal cones.
     ///
-    /// The facets of a metal of roughness α deviate by more than atan α as often as by less, and light by twice that;
-    /// of an even cone half is within its half angle over √2.
+    /// The facets of a metal of roughness α have the median slope α, and light deviates by twice the facet's angle.
+    /// Half of a uniform cone lies within its half angle over √2.
     pub fn goes_on(&self, cone: &Cone, share: f64, mut each: impl FnMut(Cone)) {
         self.here.bsdf().delta_lobes(self.here.wo(), |single| {
             let Some(BsdfSample { wi, weight, is_through, .. }) = self.here.to_world(single) else { return };
@@ -106,15 +106,15 @@ impl Meeting {
         });
     }
 
-    /// The cone that goes on to a direction, with a half angle.
+    /// Return the cone that continues in a direction with a half angle.
     ///
-    /// A surface of mean curvature H, met by a cone of radius r, adds 2 H r to its half angle: neighbouring normals
-    /// differ by H r (Amanatides 1984). So it starts at an apex behind the surface, with its radius there; light that
-    /// comes together behind a hollow mirror is taken to spread as much instead.
+    /// A surface of mean curvature H, hit by a cone of radius r, adds 2 H r to the half angle: neighboring normals
+    /// differ by H r (Amanatides 1984). The new apex lies behind the surface, so that the radii agree there. Convergent
+    /// light behind a concave mirror is replaced by equally divergent light.
     fn onward(&self, cone: &Cone, (wi, is_through): (DVec3, bool), bent: f64, weight: Rgb) -> Cone {
         let surface = self.here.surface();
-        // The axis is thrown back as the ray is, from where it meets the plane that touches the surface: so a flat
-        // mirror shows the very cone, whichever part of it is met.
+        // The axis is reflected like the ray, about its intersection with the tangent plane. So a flat mirror reflects
+        // the same cone from any point on it.
         let along = surface.normal.dot(surface.position - cone.apex) / surface.normal.dot(cone.axis);
         let is_near = along > 0.5 * self.hit.t && along < 2.0 * self.hit.t;
         let (axis, distance) = if is_near { (cone.axis, along) } else { (self.ray.direction, self.hit.t) };
@@ -129,8 +129,8 @@ impl Meeting {
     }
 }
 
-/// Where a ray meets a primitive, or the plane of a face within its outline or nearest to it; `None` where it does not,
-/// or only before the cone begins.
+/// Intersect a ray with a primitive, or with the plane of a face inside its outline or nearest to it. Return `None` for
+/// a miss, or if all intersections precede the start of the cone.
 fn meet(geometry: &Geometry, ray: &Ray, primitive: u32, beyond: Option<(DVec3, f64)>) -> Option<Hit> {
     let is_beyond = |t: f64| beyond.is_none_or(|(normal, offset)| normal.dot(ray.at(t)) > offset);
     if let Some(shape) = geometry.shape(primitive) {

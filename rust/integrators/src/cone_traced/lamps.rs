@@ -1,4 +1,4 @@
-//! Light that a surface gets from lamps, and how much of each is free.
+//! Direct light from lamps, with soft shadows by cones.
 
 use super::cone::Meeting;
 use crate::Job;
@@ -8,40 +8,40 @@ use raywright_optics::Rgb;
 use raywright_scene::{Counted, Coverage, Encounter, LightSample};
 use raywright_shapes::triangle::SolidCone;
 
-/// What shines within a scene: a primitive, and the shape that it is of.
+/// An emissive primitive and its shape.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Lamp {
     primitive: u32,
     shape: u32,
 }
 
-/// All surfaces of a scene that shine.
+/// Return all emissive primitives of a scene.
 pub(super) fn lamps(job: &Job) -> Vec<Lamp> {
     let (geometry, lights) = (job.scene.geometry(), job.scene.lights());
     let shapes = (0..geometry.shapes() as u32).filter(|&shape| lights.shines(shape));
     shapes.flat_map(|shape| geometry.primitives_of(shape).map(move |primitive| Lamp { primitive, shape })).collect()
 }
 
-/// How a lamp is seen from a point.
+/// The solid angle of a lamp from a point.
 struct Sight {
     direction: DVec3,
     distance: f64,
-    /// Of half the cone that it is taken for, in radians.
+    /// Half angle of the equivalent cone, in radians.
     angle: f64,
-    /// What its radiance is multiplied by to give its irradiance on what faces it.
+    /// Factor from radiance to irradiance on a surface that faces the lamp.
     solid_angle: f64,
 }
 
 impl Lamp {
-    /// How it is seen from a point; `None` where it is not. A face is taken for a cone about its middle of the same
-    /// solid angle.
+    /// Return the lamp's cone from a point; `None` if it is not visible. A face is replaced by a cone about its center
+    /// of the same solid angle.
     fn seen_from(&self, job: &Job, from: DVec3) -> Option<Sight> {
         let geometry = job.scene.geometry();
         if let Some((center, radius)) = geometry.shape(self.primitive).and_then(|shape| shape.ball()) {
             let way = center - from;
             let distance = way.length();
             let sine = radius / distance;
-            // Of a sphere above the horizon, π sin² by the cosine to its middle is exact.
+            // For a sphere above the horizon, π sin² times the cosine to its center is exact.
             return (sine < 1.0).then(|| Sight {
                 direction: way / distance,
                 distance,
@@ -61,7 +61,7 @@ impl Lamp {
     }
 }
 
-/// What a surface sends back of the light of all lamps and lights.
+/// Return the reflected light of all lamps and lights.
 pub(super) fn light(job: &Job, coverage: &Coverage, lamps: &[Lamp], met: &Meeting) -> Rgb {
     let mut light = Rgb::ZERO;
     let here = &met.here;
@@ -95,7 +95,7 @@ pub(super) fn light(job: &Job, coverage: &Coverage, lamps: &[Lamp], met: &Meetin
     light
 }
 
-/// Whether nothing is in the way of light from a single direction.
+/// Return true if light from a single direction is unoccluded.
 fn is_free(job: &Job, met: &Meeting, drawn: &LightSample) -> bool {
     let origin = met.here.ray_origin();
     let ray = match &drawn.source {

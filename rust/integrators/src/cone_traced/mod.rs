@@ -11,21 +11,21 @@ use raywright_base::workers::Cancel;
 use raywright_optics::Rgb;
 use raywright_scene::{Camera, Counted, Coverage, Perspective, Scene};
 
-/// Cone tracing (Amanatides, "Ray Tracing with Cones", 1984): one cone a pixel, of its solid angle, in place of
-/// samples. What it meets counts by the share that it covers of the cone, the nearest first; lamps of some size throw
-/// soft shadows by the share of the cone to them that is free; mirrors throw cones back, wider where they are curved,
-/// and rough metals as wide as they are dull. So one sample has no noise.
+/// Cone tracing (Amanatides, "Ray Tracing with Cones", 1984): one cone per pixel, of its solid angle, instead of
+/// samples. Surfaces are weighted by the share of the cone that they cover, nearest first. Area lamps have soft shadows
+/// by the unoccluded share of the cone to them. Mirrors reflect cones, wider if curved, and rough metals widen them by
+/// their roughness. So one sample has no noise.
 ///
-/// It is Whitted's picture, and shares his limits. What the paper takes to be small is wrong where it is not: a surface
-/// is shaded at one point of what a cone meets, and spheres dim what is behind them evenly.
+/// It has the limits of Whitted ray tracing, and approximations of the paper that require small cones: a surface is
+/// shaded at one point within a cone, and spheres dim their background uniformly.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ConeTraced {
-    /// The greatest number of surfaces that light comes by.
+    /// Maximum number of surfaces on a path of light.
     pub max_depth: u32,
-    /// Cones are not followed that contribute less than this share to their pixel, in any colour.
+    /// Minimum contribution of a cone to its pixel in any color; others are not traced.
     pub contribution: f64,
-    /// Radiance that arrives from everywhere in place of what is not followed. Surfaces reflect their ambient share of
-    /// it ([`Material::ambient`](raywright_scene::Material::ambient)).
+    /// Uniform incident radiance that replaces light not traced. Surfaces reflect their ambient share of it
+    /// ([`Material::ambient`](raywright_scene::Material::ambient)).
     pub ambient: Rgb,
 }
 
@@ -66,22 +66,22 @@ impl Integrator for ConeTraced {
     }
 }
 
-/// What workers on a picture share.
+/// Data shared by the workers of a picture.
 struct Tracing<'a> {
     settings: ConeTraced,
     job: Job<'a>,
     lamps: Vec<Lamp>,
-    /// None for a scene that cones do not meet.
+    /// `None` for scenes that cones cannot intersect.
     coverage: Option<Coverage<'a>>,
 }
 
-/// The cone of a pixel: around the ray through its middle, of the solid angle of its square.
+/// Return the cone of a pixel: around the ray through its center, with the solid angle of its square.
 fn of_pixel(camera: &Perspective, [x, y]: [f64; 2]) -> Cone {
     let corner = |dx: f64, dy: f64| camera.ray_through(x + dx, y + dy).direction;
     let middle = camera.ray_through(x + 0.5, y + 0.5);
     let [a, b, c, d] = [corner(0.0, 0.0), corner(1.0, 0.0), corner(1.0, 1.0), corner(0.0, 1.0)];
     let triangle = |p: DVec3, q: DVec3, r: DVec3| {
-        // By differences, which keep the digits of small ones.
+        // Computed from differences, which keep the precision of small angles.
         2.0 * p.dot((q - p).cross(r - p)).abs().atan2(1.0 + p.dot(q) + q.dot(r) + r.dot(p))
     };
     let solid_angle = triangle(a, b, c) + triangle(a, c, d);
@@ -98,7 +98,7 @@ fn of_pixel(camera: &Perspective, [x, y]: [f64; 2]) -> Cone {
 }
 
 impl Tracing<'_> {
-    /// The mean radiance over a pixel.
+    /// Return the mean radiance of a pixel.
     fn pixel(&self, pixel: u32) -> Rgb {
         let (Some(coverage), Some(camera)) = (&self.coverage, self.job.camera.as_perspective()) else {
             return Rgb::ZERO;
@@ -145,7 +145,7 @@ impl Session for Tracing<'_> {
     }
 }
 
-/// What looks pixels up.
+/// The worker that shades pixels.
 struct Looking<'a>(&'a Tracing<'a>);
 
 impl Worker for Looking<'_> {

@@ -1,15 +1,15 @@
-//! How light scatters along the way that it takes.
+//! Adjoint BSDFs: scattering of flux along light paths.
 //!
-//! Surfaces say how they scatter radiance towards a viewer ([`raywright_optics::Bsdf`]). Light that comes from `i` and
-//! goes to `o` is flux instead, and must make the same picture: with F(o, i) what a viewer in `o` evaluates for `i`,
-//! cosine included, so much of it goes into a solid angle of `o` as
+//! BSDFs scatter radiance toward a viewer ([`raywright_optics::Bsdf`]). Light from `i` scattered to `o` is flux, and
+//! must give the same picture. Let F(o, i) be the BSDF value, cosine included, that a viewer in direction `o` gets for
+//! light from `i`. Then the share of the flux scattered into a solid angle around `o` is
 //!
 //! F(o, i) |ng·o| / |ng·i|
 //!
-//! with ng the geometric normal, across which flux is counted (Veach, "Robust Monte Carlo Methods for Light Transport
-//! Simulation", 1997, 5.3). All that is not symmetric is in it: shading normals, the index of refraction, and that a
-//! shading normal is bent towards who looks. So what is evaluated is always what the viewer would see; what the light
-//! itself would see only says where to go.
+//! with ng the geometric normal, across which flux is measured (Veach, "Robust Monte Carlo Methods for Light Transport
+//! Simulation", 1997, 5.3). This covers every asymmetry: shading normals, the index of refraction, and shading normals
+//! bent toward the viewer. The BSDF is always evaluated as for the viewer. Its evaluation from the light's side only
+//! guides sampling.
 
 use crate::parting::Parting;
 use raywright_base::math::{DVec3, Frame, Hit, Ray};
@@ -19,34 +19,34 @@ use raywright_optics::{Bsdf, BsdfSample, Dispersive, Rgb};
 use raywright_scene::materials::BsdfMix;
 use raywright_scene::{Encounter, Gaze, LightSampleContext, Scene, SurfaceInteraction};
 
-/// Where light has come to, along a ray of its own; or a path from a camera, which light then meets from elsewhere.
+/// A surface vertex of a light path. Also a vertex of a camera path, for light that meets it from elsewhere.
 #[derive(Clone)]
 pub(crate) struct Arrived<'a> {
     pub scene: &'a Scene,
     pub ray: Ray,
     pub hit: Hit,
-    /// The index of refraction on the other side of what the surface encloses.
+    /// Index of refraction outside the object.
     pub outside: f64,
-    /// The wavelengths of the light; none for red, green and blue.
+    /// Wavelengths of the light; `None` for RGB.
     pub waves: Option<Waves>,
-    /// As the light meets it.
+    /// The interaction as seen along the path's ray.
     pub here: SurfaceInteraction,
 }
 
-/// The same point as it is met by what comes from elsewhere.
+/// The interaction at the same point along another direction.
 #[expect(
     clippy::large_enum_variant,
     reason = "it lives on the stack, and a box would be allocated at every connection"
 )]
 pub(crate) enum Met<'a> {
-    /// As before, but for the direction.
+    /// The same BSDF with another direction.
     Alike(SurfaceInteraction<&'a BsdfMix>),
-    /// Otherwise.
+    /// A new BSDF.
     Anew(SurfaceInteraction),
 }
 
 impl Met<'_> {
-    /// As [`Encounter::evaluate`].
+    /// Evaluate as [`Encounter::evaluate`] does.
     pub fn evaluate(&self, direction: DVec3) -> (Rgb, f64) {
         match self {
             Self::Alike(here) => here.evaluate(direction),
@@ -54,7 +54,7 @@ impl Met<'_> {
         }
     }
 
-    /// As [`Encounter::light_context`].
+    /// Return the same as [`Encounter::light_context`].
     pub fn light_context(&self) -> LightSampleContext {
         match self {
             Self::Alike(here) => here.light_context(),
@@ -62,7 +62,7 @@ impl Met<'_> {
         }
     }
 
-    /// As [`onward_pdf`], if it is light that meets it.
+    /// Return [`onward_pdf`] for light along this direction.
     pub fn onward_pdf(&self, direction: DVec3) -> f64 {
         match self {
             Self::Alike(here) => onward_pdf(here, direction),
@@ -71,29 +71,29 @@ impl Met<'_> {
     }
 }
 
-/// Where light goes on to.
+/// A sampled direction of a light path.
 pub(crate) struct Onward {
     pub direction: DVec3,
-    /// What its flux is multiplied by.
+    /// Factor on the flux.
     pub weight: Rgb,
-    /// The density with which it is drawn, by solid angle; without meaning for a single direction.
+    /// Density per solid angle; undefined for a delta direction.
     pub pdf: f64,
-    /// Whether it goes to the other side.
+    /// True for transmission.
     pub is_through: bool,
-    /// Whether it is a single direction.
+    /// True for a delta direction.
     pub is_single: bool,
 }
 
-/// How often a direction is drawn about the geometric normal where the shading normal is another: the horizon of the
-/// one is not that of the other, and what a viewer sees below the latter is not drawn otherwise.
+/// Probability of sampling about the geometric normal if the shading normal differs. Directions below the light's
+/// shading horizon but visible from the viewer would never be sampled otherwise.
 const ABOUT_GEOMETRIC: f64 = 0.1;
 
-/// How often it is where light meets a surface.
+/// Return that probability for a surface.
 fn about_geometric<B: Bsdf>(here: &SurfaceInteraction<B>) -> f64 {
     if here.is_flat() || here.bsdf().is_delta() { 0.0 } else { ABOUT_GEOMETRIC }
 }
 
-/// The density with which a direction is drawn in either way, where that of scattering is given.
+/// Return the density of the sampling mixture, given the BSDF's density.
 fn mixed_pdf<B: Bsdf>(here: &SurfaceInteraction<B>, direction: DVec3, scattering: f64) -> f64 {
     let about = about_geometric(here);
     if about == 0.0 {
@@ -106,8 +106,7 @@ fn mixed_pdf<B: Bsdf>(here: &SurfaceInteraction<B>, direction: DVec3, scattering
     about * about_geometric + (1.0 - about) * scattering
 }
 
-/// The density with which light that meets a surface goes on along a direction, by solid angle
-/// ([`Arrived::onward`]).
+/// Return the density per solid angle with which light continues in a direction from a surface ([`Arrived::onward`]).
 pub(crate) fn onward_pdf<B: Bsdf>(here: &SurfaceInteraction<B>, direction: DVec3) -> f64 {
     mixed_pdf(here, direction, here.evaluate(direction).1)
 }
@@ -119,8 +118,9 @@ impl<'a> Arrived<'a> {
         Self { scene, ray, hit, outside, waves: None, here }
     }
 
-    /// The same at some wavelengths, and what parts them there, if anything does: `outside` is the index of refraction
-    /// for yellow light, and `around` has how it goes with wavelength, on the front and on the back of the surface.
+    /// Make the vertex at given wavelengths, and return the wavelength dependence that splits them, if any. `outside`
+    /// is the index of refraction for yellow light. `around` holds the dispersion in front of the surface and behind
+    /// it.
     pub fn by_waves(
         scene: &'a Scene,
         (ray, hit): (Ray, Hit),
@@ -135,7 +135,7 @@ impl<'a> Arrived<'a> {
         (Self { scene, ray, hit, outside, waves: Some(waves), here }, parting)
     }
 
-    /// As what comes from a direction meets it, from a distance, whose rays are so wide here.
+    /// Return the interaction of a ray from a direction and distance, with a given width at this point.
     pub fn met_from(&self, direction: DVec3, distance: f64, width: f64) -> Met<'_> {
         if width == 0.0
             && let Some(here) = self.here.met_from(direction)
@@ -150,34 +150,34 @@ impl<'a> Arrived<'a> {
         Met::Anew(SurfaceInteraction::new(self.scene, &ray, &hit, surface, gaze, self.outside))
     }
 
-    /// Back to where it came from.
+    /// Return the direction back along the path's ray.
     pub fn back(&self) -> DVec3 {
         -self.ray.direction
     }
 
-    /// The cosine between a direction and the geometric normal, on either side.
+    /// Return the absolute cosine between a direction and the geometric normal.
     pub fn cosine(&self, direction: DVec3) -> f64 {
         self.here.surface().normal.dot(direction).abs()
     }
 
-    /// The share of the flux that goes into a solid angle of a direction, as a viewer there sees it.
+    /// Return the share of the flux per solid angle in a direction, for a viewer there.
     pub fn towards(&self, direction: DVec3, distance: f64, width: f64) -> Rgb {
         self.share(direction, || self.met_from(direction, distance, width).evaluate(self.back()).0)
     }
 
-    /// The same by what a viewer evaluates.
+    /// Return the same, given the viewer's BSDF value.
     pub fn share(&self, direction: DVec3, evaluated: impl FnOnce() -> Rgb) -> Rgb {
         let (arriving, leaving) = (self.cosine(self.back()), self.cosine(direction));
         if arriving == 0.0 { Rgb::ZERO } else { evaluated() * (leaving / arriving) }
     }
 
-    /// Draws where light goes on to.
+    /// Sample the next direction of the light.
     pub fn onward(&self, choice: &mut dyn FnMut() -> f64, [u, v]: [f64; 2]) -> Option<Onward> {
         let here = &self.here;
         let transmits = here.bsdf().transmits();
         let about = about_geometric(here);
         let (direction, is_through, pdf) = if u < about {
-            // On either side where light goes through.
+            // Transmissive surfaces sample either side.
             let (u, sign) = match (u / about, transmits) {
                 (u, true) if u < 0.5 => (2.0 * u, -1.0),
                 (u, true) => (2.0 * u - 1.0, 1.0),
@@ -193,13 +193,14 @@ impl<'a> Arrived<'a> {
             (drawn.wi, drawn.is_through, Some(drawn.pdf))
         };
         let pdf = mixed_pdf(here, direction, pdf.unwrap_or_else(|| here.evaluate(direction).1));
-        // From how far away a viewer looks does not matter to rays without width.
+        // The viewer's distance is irrelevant for rays without width.
         let weight = self.towards(direction, 1.0, 0.0) / pdf;
         (pdf > 0.0).then_some(Onward { direction, weight, pdf, is_through, is_single: false })
     }
 
-    /// A single direction, of those that are drawn with a probability. What a viewer there would draw is the same one
-    /// back, and of it the same share; radiance that is refracted has 1 / η² in it, which is the solid angles' doing.
+    /// Return a delta direction from a sample with a given probability. A viewer would sample the reverse direction
+    /// with the same share. Refracted radiance has the factor 1 / η² from the change of solid angle, which the flux
+    /// does not have.
     fn single(&self, drawn: &BsdfSample, probability: f64) -> Option<Onward> {
         let (here, back) = (&self.here, -self.ray.direction);
         let (normal, shading) = (here.surface().normal, here.shading_normal());

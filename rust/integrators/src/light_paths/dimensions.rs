@@ -1,28 +1,28 @@
-//! Which random number of a path from a light is for what.
+//! Sample dimensions of light paths.
 
 use raywright_base::sampling::Sampler;
 use raywright_scene::EmissionNumbers;
 
-/// The dimensions of light that sets out.
+/// The dimensions of emission.
 pub(crate) struct EmissionDimensions;
 
 impl EmissionDimensions {
-    /// Which light the path starts at; where on it is told by the pair that follows.
+    /// Choice of the light; the pair that follows chooses the point on it.
     const LIGHT_CHOICE: u32 = 0;
-    /// Where it starts.
+    /// Point on the light.
     const PLACE: u32 = 1;
-    /// Which of the lights outside.
+    /// Choice of the infinite light.
     const OUTSIDE: u32 = 2;
-    /// Where it goes.
+    /// Direction of emission.
     const DIRECTION: u32 = 3;
-    /// When.
+    /// Time.
     pub const TIME: u32 = 4;
-    /// Which wavelength decides how far it gets among media.
+    /// Hero wavelength of distance sampling in media.
     pub const HERO: u32 = 5;
-    /// Which wavelengths it carries, of which the first decides.
+    /// Wavelengths of the path; the first is the hero.
     pub const WAVES: u32 = Self::HERO;
 
-    /// What it is drawn by.
+    /// Draw the numbers of an emission sample.
     pub fn numbers(sampler: &mut Sampler) -> EmissionNumbers {
         EmissionNumbers {
             choice: sampler.one(Self::LIGHT_CHOICE),
@@ -33,49 +33,49 @@ impl EmissionDimensions {
     }
 }
 
-/// Those of the first surface.
+/// First dimension of the first surface.
 const FIRST: u32 = 6;
 
-/// The dimensions of a surface. A choice stands at an even one, before the pair that follows from it, with which
-/// samplers place it together.
+/// The dimensions of a surface vertex. Choices have even dimensions, before the pair that depends on them: samplers
+/// stratify the three together.
 #[derive(Clone, Copy)]
 pub(crate) struct Dimensions(u32);
 
 impl Dimensions {
     const EACH: u32 = 6;
 
-    /// Those of the surface after so many.
+    /// Return the dimensions of the surface after `bounce` bounces.
     pub fn of(bounce: u32) -> Self {
-        // Wrapping after 700 million bounces harms nobody.
+        // Wrapping after 700 million bounces is harmless.
         Self(FIRST.wrapping_add(bounce.wrapping_mul(Self::EACH)))
     }
 
-    /// Among several kinds of scattering, which.
+    /// Return the dimension of the choice of a lobe.
     pub fn scattering_choice(self) -> u32 {
         self.0
     }
 
-    /// Where the path goes on to.
+    /// Return the dimension of the scattered direction.
     pub fn direction(self) -> u32 {
         self.0 + 1
     }
 
-    /// Whether it goes on.
+    /// Return the dimension of Russian roulette.
     pub fn roulette(self) -> u32 {
         self.0 + 2
     }
 
-    /// From which point of the lens it is seen.
+    /// Return the dimension of the point on the lens.
     pub fn lens(self) -> u32 {
         self.0 + 3
     }
 
-    /// Which masks the ray passes.
+    /// Return the dimension of stochastic alpha masks.
     pub fn mask(self) -> u32 {
         self.0 + 4
     }
 
-    /// Whether it is kept where the path has come to.
+    /// Return the dimension of the choice to store the vertex.
     pub fn keeping(self) -> u32 {
         self.0 + 5
     }

@@ -1,6 +1,6 @@
-//! Paths that start at lights: what they are aimed at (`targets`), how they go (`walk`), how surfaces scatter along the
-//! way of light (`adjoint`), and where cameras see them (`to_camera`). What light finds may be weighed beside what is
-//! found in other ways (`weights`, `partials`). Maps of what comes to surfaces are a room of their own, `photon_map`.
+//! Light paths: aiming emission at specular objects (`targets`), tracing (`walk`), adjoint scattering (`adjoint`) and
+//! connections to the camera (`to_camera`). MIS weights combine them with other strategies (`weights`, `partials`).
+//! Photon maps are in `photon_map`.
 
 mod adjoint;
 mod dimensions;

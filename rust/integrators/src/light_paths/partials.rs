@@ -1,4 +1,4 @@
-//! What paths of light know of the other ways to find them.
+//! MIS partials of light paths.
 
 use super::adjoint::{Arrived, Met, Onward};
 use super::walk::Flying;
@@ -6,37 +6,36 @@ use super::weights::Partial;
 use crate::is_matt;
 use raywright_scene::{EmissionDensity, EmissionSample, Emitters};
 
-/// That of each path of a batch.
+/// MIS partials of each path of a batch.
 pub(crate) struct Partials<'a> {
     emitters: &'a Emitters<'a>,
     ends: Vec<LightEnd>,
-    /// The disk of each path, where paths merge ([`Partial::merging`]).
+    /// Merging disk of each path, if vertices are merged ([`Partial::merging`]).
     disks: Vec<f64>,
 }
 
-/// That of one path.
+/// MIS partials of one path.
 #[derive(Clone, Copy)]
 pub(crate) struct LightEnd {
     partial: Partial,
-    /// How its light set out, where it has come to its first surface: with which density that would ask for light
-    /// depends on who looks.
+    /// Emission density, at the first surface only: the density of light sampling there depends on the viewer.
     departure: Option<EmissionDensity>,
 }
 
 impl LightEnd {
-    /// What it knows where it has come to by way of other surfaces.
+    /// Return the partials at a vertex after the first surface.
     pub fn partial(&self) -> Partial {
         self.partial
     }
 
-    /// What it knows where it has come to, if somebody meets the point so.
+    /// Return the partials at the vertex as seen along `met`.
     fn met(&self, emitters: &Emitters, arrived: &Arrived, met: &Met) -> Partial {
         let Some(departure) = &self.departure else { return self.partial };
         let receiver = met.light_context();
         self.partial.asked(emitters.asked_from(&receiver, departure, arrived.ray.direction, arrived.hit.t))
     }
 
-    /// As [`Partial::others`], if somebody meets the point so who comes there with a density, by area.
+    /// Return [`Partial::others`] as seen along `met`, for a camera path that arrives with a density per area.
     pub fn others(&self, emitters: &Emitters, arrived: &Arrived, met: &Met, comes: f64) -> f64 {
         self.met(emitters, arrived, met).others(comes, met.evaluate(arrived.back()).1)
     }
@@ -47,21 +46,21 @@ impl<'a> Partials<'a> {
         Self { emitters, ends: Vec::new(), disks: Vec::new() }
     }
 
-    /// What light that sets out is drawn from.
+    /// Return the distribution of emission.
     pub fn emitters(&self) -> &'a Emitters<'a> {
         self.emitters
     }
 
-    /// Of a path that has set out.
+    /// Start a path.
     pub fn set_out(&mut self, path: &Flying, light: &EmissionSample) {
         let departure = self.emitters.of_sample(light);
         let end = LightEnd { partial: Partial::of_light(&departure), departure: Some(departure) };
-        // Paths set out in order; some of them do not.
+        // Paths start in order, but some do not start.
         self.ends.resize(path.number as usize, end);
         self.ends.push(end);
     }
 
-    /// Of a path that has come to a surface.
+    /// Update the partials of a path that arrives at a surface.
     pub fn arrive(&mut self, path: &Flying, arrived: &Arrived) {
         let end = &mut self.ends[path.number as usize];
         let cosine = arrived.cosine(arrived.back());
@@ -75,12 +74,12 @@ impl<'a> Partials<'a> {
         };
     }
 
-    /// Of a path where it is.
+    /// Return the partials of a path.
     pub fn end(&self, path: &Flying) -> &LightEnd {
         &self.ends[path.number as usize]
     }
 
-    /// Of a path that goes on from there.
+    /// Update the partials of a path that leaves a surface.
     pub fn go_on(&mut self, path: &Flying, arrived: &Arrived, next: &Onward) {
         let end = &mut self.ends[path.number as usize];
         let cosine = arrived.cosine(next.direction);
@@ -94,7 +93,7 @@ impl<'a> Partials<'a> {
         end.departure = None;
     }
 
-    /// Of none: others are to set out, which merge by these disks, if they do.
+    /// Clear, and set the merging disks of the next paths, if vertices are merged.
     pub fn begin(&mut self, disks: impl Iterator<Item = f64>) {
         self.ends.clear();
         self.disks.clear();

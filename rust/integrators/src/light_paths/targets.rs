@@ -1,4 +1,4 @@
-//! Light that sets out towards what is sharp.
+//! Emission aimed at specular objects.
 
 use crate::is_matt;
 use raywright_base::math::{DVec3, Region};
@@ -7,26 +7,26 @@ use raywright_optics::AnyBsdf;
 use raywright_scene::materials::BsdfMix;
 use raywright_scene::{Aim, Emitters, Geometry, Scene};
 
-/// The most balls that are aimed at: all of them are asked of each direction.
+/// Maximum number of bounding spheres; each direction is tested against all.
 const BALLS: usize = 16;
 
-/// How large one may be, in radii of the scene: what is about as large as the scene is met without any aim.
+/// Maximum radius relative to the scene's. Larger objects are hit without aiming.
 const LARGE: f64 = 0.5;
 
-/// About how many primitives of a shape tell where it is.
+/// Approximate number of primitives that locate a shape.
 const POINTS: usize = 4096;
 
-/// What balls about some points of a shape are made larger by: others may be farther out.
+/// Enlargement of spheres around sampled points, as other points may be farther out.
 const BEYOND: f64 = 1.05;
 
-/// The light of a scene that sets out, aimed at mirrors and glass that are small: what they gather is sought in vain
-/// from the camera, and is found by the few paths that fall on them. `None` if nothing shines that could be drawn.
+/// Return the scene's emission, aimed at small specular objects. Their caustics are hardly found by camera paths, and
+/// only by the few light paths that hit these objects. Return `None` if no light can be sampled.
 pub(crate) fn emitters(scene: &Scene) -> Option<Emitters<'_>> {
     let aim = scene.kept(|| Some(Aim::at(balls(scene)))).map_or_else(Aim::default, |aim| (*aim).clone());
     scene.emitters().map(|emitters| emitters.aimed(aim))
 }
 
-/// Balls around what is sharp.
+/// Return bounding spheres of the specular shapes.
 fn balls(scene: &Scene) -> Vec<(DVec3, f64)> {
     let mut groups: Vec<Vec<DVec3>> = Vec::new();
     for shape in 0..scene.geometry().shapes() as u32 {
@@ -53,17 +53,17 @@ fn balls(scene: &Scene) -> Vec<(DVec3, f64)> {
     balls
 }
 
-/// Whether it is sharp, and more than a gap.
+/// Return whether a BSDF is specular and not just a gap.
 fn is_sharp(bsdf: &AnyBsdf) -> bool {
     !is_matt(bsdf) && !matches!(bsdf, AnyBsdf::Transparent(_) | AnyBsdf::Null(_))
 }
 
-/// The same of what is of one kind.
+/// Return whether a mixture is a single specular BSDF.
 fn is_sharp_alone(bsdf: &BsdfMix) -> bool {
     matches!(bsdf, BsdfMix::One(bsdf) if is_sharp(bsdf))
 }
 
-/// Some points of a shape, which tell about where it is.
+/// Return some points of a shape, which locate it approximately.
 fn points(geometry: &Geometry, shape: u32) -> Vec<DVec3> {
     let primitives = geometry.primitives_of(shape);
     let each = (primitives.len() / POINTS).max(1);
@@ -79,7 +79,7 @@ fn points(geometry: &Geometry, shape: u32) -> Vec<DVec3> {
         .collect()
 }
 
-/// Divides groups of points at the longest side of the box around them, as evenly as can be, into at most so many.
+/// Split point groups along the longest side of their bounding box, as evenly as possible, into at most `most` groups.
 fn divide(groups: &mut [Vec<DVec3>], most: usize, each: &mut impl FnMut(&[Vec<DVec3>])) {
     if groups.is_empty() {
         return;
@@ -123,12 +123,12 @@ mod tests {
         };
         let of = |shapes: Vec<Shape>| balls(&scene(SceneDescription { shapes, lights: Vec::new() }));
         assert!(of(vec![floor(false)]).is_empty());
-        // A mirror as large as the scene is met anyway.
+        // A mirror as large as the scene is hit without aiming.
         let found = of(vec![floor(true), ball([0.0, 1.0, 0.0], 0.5)]);
         assert_eq!(found.len(), 1);
         let (middle, radius) = found[0];
         assert!(middle.distance(DVec3::Y) < 0.1 && (0.45..0.6).contains(&radius), "{found:?}");
-        // Many are taken together.
+        // Many spheres are grouped.
         let many = (0..100).map(|k| ball([f64::from(k % 10) - 5.0, 1.0, f64::from(k / 10) - 5.0], 0.1));
         let found = of([floor(false)].into_iter().chain(many).collect());
         assert_eq!(found.len(), BALLS);

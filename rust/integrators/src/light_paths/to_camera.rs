@@ -1,4 +1,4 @@
-//! Light that comes to a camera.
+//! Connections of light paths to the camera.
 
 use super::adjoint::{Arrived, Onward};
 use super::dimensions::{Dimensions, EmissionDimensions};
@@ -15,39 +15,39 @@ use raywright_optics::spectra::Waves;
 use raywright_optics::{Bsdf, Rgb};
 use raywright_scene::{Camera, EmissionSample, Emitters, Encounter, Footprint, RayOrigin, Scene};
 
-/// What one thread follows paths from lights with to where a camera sees them.
+/// Per-thread state for tracing light paths to a camera.
 pub(crate) struct LightPaths<'a> {
     walk: LightWalk<'a>,
     connections: Connections<'a>,
 }
 
-/// How what they bring is weighed beside what is found in other ways.
+/// MIS weighting of these connections.
 pub(crate) struct Weighing<'a> {
     pub partials: Partials<'a>,
-    /// The disk by which paths merge that belong to samples of a number ([`super::Partial::merging`]), if they do.
+    /// Merging disk for a sample index, if vertices are merged ([`super::Partial::merging`]).
     pub disks: Option<Box<dyn Fn(u32) -> f64 + Send + 'a>>,
-    /// How many paths there are for all that the camera's rays find.
+    /// Number of light paths per sample of the whole picture.
     pub paths: f64,
-    /// The way that alone counts, in full, by its vertices on the light's side and on the camera's, if one does.
+    /// The one strategy to show, unweighted: its vertex counts on the light's and the camera's side.
     pub alone: Option<[u32; 2]>,
 }
 
-/// What a camera sees of paths.
+/// Camera connections of a batch.
 struct Connections<'a> {
     scene: &'a Scene,
     camera: &'a dyn Camera,
     footprint: Footprint,
-    /// Whether anybody asks how wide the camera's rays are.
+    /// True if materials need ray widths.
     widths: bool,
-    /// Whether there is anything that rays may pass, and whether media lie in one another.
+    /// True if the scene has masks; if media are nested.
     passes: bool,
     nested: bool,
-    /// From surfaces to the camera.
+    /// Shadow rays from surfaces to the camera.
     shadows: Shadows,
-    /// What these bring, and where to.
+    /// Their image positions, and their contributions if unoccluded.
     seen: Vec<[f64; 2]>,
     light: Vec<Rgb>,
-    /// None where all that is found counts in full.
+    /// `None` if all contributions have the weight 1.
     weighing: Option<Weighing<'a>>,
     splats: Vec<Splat>,
 }
@@ -89,7 +89,7 @@ impl LightWorker for LightPaths<'_> {
 }
 
 impl Weighing<'_> {
-    /// The weight of a path that the camera sees in a direction at a distance.
+    /// Return the MIS weight of a connection to the camera in a direction at a distance.
     fn weigh(&mut self, arrived: &Arrived, path: &Flying, (direction, distance): (DVec3, f64), seen: f64) -> f64 {
         if let Some([light, camera]) = self.alone {
             return if camera == 1 && light == path.bounce + 1 { 1.0 } else { 0.0 };
@@ -114,7 +114,7 @@ impl<'a> Visitor<'a> for Connections<'a> {
         }
     }
 
-    /// Finds out where the camera sees light that has come to a surface, if nothing lies between.
+    /// Connect a surface vertex to the camera, pending visibility.
     fn meet(
         &mut self,
         arrived: &Arrived<'a>,
@@ -158,7 +158,7 @@ impl<'a> Visitor<'a> for Connections<'a> {
         self.seen.push(seen.film);
     }
 
-    /// Finds out which of them nothing lies between.
+    /// Resolve the visibility of the queued connections.
     fn pause(&mut self) {
         self.light.clear();
         self.light.resize(self.seen.len(), Rgb::ZERO);

@@ -1,4 +1,4 @@
-//! The way of paths that start at lights, one bounce at a time.
+//! Tracing of light paths, bounce by bounce.
 
 use super::adjoint::{Arrived, Onward};
 use super::dimensions::{Dimensions, EmissionDimensions};
@@ -13,26 +13,26 @@ use raywright_optics::spectra::Waves;
 use raywright_optics::{Bsdf, Dispersive, Rgb};
 use raywright_scene::{Camera, EmissionSample, Emitters, Encounter, Scene};
 
-/// When paths end.
+/// Path termination.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Limits {
-    /// The greatest number of bounces.
+    /// Maximum number of bounces.
     pub max_depth: Option<u32>,
-    /// Roulette is played from this number of bounces on.
+    /// Number of bounces after which Russian roulette starts.
     pub roulette_depth: u32,
 }
 
-/// What one thread walks with.
+/// Per-thread state for tracing light paths.
 pub(crate) struct LightWalk<'a> {
     scene: &'a Scene,
     emitters: &'a Emitters<'a>,
     limits: Limits,
-    /// Whose shutter paths are on their way under; at any of the scene's times without one.
+    /// Camera whose shutter interval paths fall into; without one, any scene time.
     camera: Option<&'a dyn Camera>,
-    /// Whether anything moves, the camera included.
+    /// True if anything moves, the camera included.
     moves: bool,
     times: Times,
-    /// The wavelengths of paths; none where they carry red, green and blue.
+    /// Wavelengths of the paths; `None` for RGB.
     waves: Vec<Waves>,
     passing: Passing,
     now: Queue,
@@ -40,25 +40,25 @@ pub(crate) struct LightWalk<'a> {
     hits: Vec<Hit>,
 }
 
-/// When paths are on their way.
+/// Times of the paths.
 #[derive(Clone, Debug)]
 pub(crate) enum Times {
-    /// Each at a time that it draws.
+    /// Sampled for each path.
     Drawn,
-    /// All at one, while the shutter is open from 0 to 1.
+    /// Common to all, as a fraction of the shutter interval.
     All(f64),
-    /// Each at its own, as the scene counts time.
+    /// One scene time per path.
     Each(Vec<f64>),
 }
 
 impl Times {
-    /// When a path is on its way, while the shutter is open, and as the scene counts time.
+    /// Return a path's time as a fraction of the shutter interval, and as scene time.
     pub fn of(&self, number: usize, moves: bool, camera: Option<&dyn Camera>, sampler: &mut Sampler) -> (f64, f64) {
         let time = match self {
             _ if !moves => 0.0,
             Self::Drawn => sampler.one(EmissionDimensions::TIME),
             Self::All(time) => *time,
-            // Nobody asks where the camera is then.
+            // The camera's pose is not needed in this case.
             Self::Each(_) => 0.0,
         };
         match self {
@@ -68,12 +68,12 @@ impl Times {
     }
 }
 
-/// Who is told where paths have come to.
+/// Receives the vertices of light paths.
 pub(crate) trait Visitor<'a> {
-    /// A path has set out.
+    /// A path starts.
     fn set_out(&mut self, _path: &Flying, _light: &EmissionSample) {}
 
-    /// A path has come to a surface, where a ray that goes through is in these media.
+    /// A path arrives at a surface; `through` are the media of a transmitted ray.
     fn meet(
         &mut self,
         arrived: &Arrived<'a>,
@@ -82,17 +82,17 @@ pub(crate) trait Visitor<'a> {
         numbers: (&mut Sampler, Dimensions),
     );
 
-    /// A path goes on from a surface, unless roulette ends it.
+    /// A path leaves a surface, unless roulette terminates it.
     fn go_on(&mut self, _arrived: &Arrived<'a>, _path: &Flying, _next: &Onward) {}
 
-    /// A path has left the scene.
+    /// A path leaves the scene.
     fn leave(&mut self, _path: &Flying) {}
 
-    /// All paths have come to the ends of their rays.
+    /// All paths of the batch have advanced by one ray.
     fn pause(&mut self) {}
 }
 
-/// Paths that go on, and the ray that each is about to follow.
+/// Active paths and their next rays.
 #[derive(Default)]
 struct Queue {
     rays: RayQueue,
@@ -111,35 +111,35 @@ impl Queue {
     }
 }
 
-/// A path on its way.
+/// The state of a light path.
 #[derive(Clone, Copy)]
 pub(crate) struct Flying {
-    /// Its number among those of the batch.
+    /// Index within the batch.
     pub number: u32,
-    /// The flux that it stands for.
+    /// Flux.
     pub flux: Rgb,
-    /// That when it set out, in its largest channel.
+    /// Largest channel of the initial flux.
     start: f64,
-    /// When it is on its way, while the shutter is open.
+    /// Time as a fraction of the shutter interval.
     pub time: f64,
-    /// Surfaces that it has been scattered at.
+    /// Number of surface bounces.
     pub bounce: u32,
     pub media: MediumStack,
-    /// As [`Passing::meet`] has it.
+    /// Random number for masks, as in [`Passing::meet`].
     chance: f64,
-    /// What the last surface leaves of light that comes to such a surface again ([`Bsdf::again`]), which counts once
-    /// the path has come to another: of all of them on a way, the one that is nearest to the viewer has none.
+    /// Remaining share after the last surface, for a reflectance above 1 met again ([`Bsdf::again`]). It applies once
+    /// the path reaches another surface: of all such surfaces of a path, the one nearest to the viewer has none.
     pub again: Rgb,
-    /// Whether it was scattered into a single direction, or nearly so, the last time.
+    /// True if the last bounce was specular or nearly so.
     pub is_sharp: bool,
-    /// How many times in a row glass has held it ([`roulette::held`]).
+    /// Number of consecutive specular reflections at transmissive surfaces ([`roulette::held`]).
     held: u32,
-    /// Whether the hero of its wavelengths is all that it carries.
+    /// True if only the hero wavelength is left.
     pub single: bool,
 }
 
 impl Flying {
-    /// Leaves the hero of its wavelengths alone, which stands for all from here on.
+    /// Terminate all wavelengths but the hero, which then stands for all.
     fn end_all_but_hero(&mut self) {
         if !self.single {
             self.flux = Waves::ended(self.flux);
@@ -166,28 +166,28 @@ impl<'a> LightWalk<'a> {
         }
     }
 
-    /// When the paths that will be followed are on their way.
+    /// Set the times of the next paths.
     pub fn set_times(&mut self, times: Times) {
         self.times = times;
     }
 
-    /// At which wavelengths the paths that will be followed go.
+    /// Set the wavelengths of the next paths.
     pub fn set_waves(&mut self, waves: impl Iterator<Item = Waves>) {
         self.waves.clear();
         self.waves.extend(waves);
     }
 
-    /// Whether there is anything that rays may pass.
+    /// Return whether the scene has masks.
     pub fn passes(&self) -> bool {
         self.passing.is_needed()
     }
 
-    /// Whether media lie in one another.
+    /// Return whether media are nested.
     pub fn is_nested(&self) -> bool {
         self.passing.is_nested()
     }
 
-    /// Follows a path for each of these numbers to its end.
+    /// Trace one path per sampler to its end.
     pub fn follow(&mut self, paths: &mut [Sampler], cancel: &Cancel, visitor: &mut impl Visitor<'a>) {
         self.start(paths, visitor);
         while !self.now.rays.is_empty() && !cancel.is_raised() {
@@ -198,7 +198,7 @@ impl<'a> LightWalk<'a> {
         }
     }
 
-    /// Lets paths set out.
+    /// Start the paths.
     fn start(&mut self, paths: &mut [Sampler], visitor: &mut impl Visitor<'a>) {
         self.now.clear();
         for (number, sampler) in (0u32..).zip(paths) {
@@ -222,7 +222,7 @@ impl<'a> LightWalk<'a> {
         }
     }
 
-    /// Takes all paths from their rays' hits to their next rays.
+    /// Advance all paths by one ray.
     fn bounce(&mut self, samplers: &mut [Sampler], visitor: &mut impl Visitor<'a>) {
         self.next.clear();
         self.passing.begin(self.scene, &self.now.rays, &self.hits);
@@ -264,13 +264,13 @@ impl<'a> LightWalk<'a> {
         std::mem::swap(&mut self.now, &mut self.next);
     }
 
-    /// How the index of refraction goes with wavelength around what a surface encloses that a path has come to, by what
-    /// the path is in and what it would be in beyond: if it has come to the front, and to the back.
+    /// Return the dispersion on both sides of a surface, from the path's media and those of a transmitted ray: for a
+    /// hit on the front, and on the back.
     fn around(&self, media: &MediumStack, through: &MediumStack) -> [Dispersive; 2] {
         if self.passing.is_nested() { [media, through].map(MediumStack::dispersion) } else { [Dispersive::NONE; 2] }
     }
 
-    /// Sends a path on from a surface, unless it ends there.
+    /// Continue a path from a surface, unless it ends there.
     fn go_on(
         &mut self,
         arrived: &Arrived<'a>,

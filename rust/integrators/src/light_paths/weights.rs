@@ -1,106 +1,104 @@
-//! How much each of the ways counts in which one path may be found.
+//! MIS weights of bidirectional strategies.
 //!
-//! A path of s vertices walked from a light and t from the camera, which is one of them, is found by every split of its
-//! vertices among the two. By the balance heuristic (Veach, "Robust Monte Carlo Methods for Light Transport
-//! Simulation", 1997, 9.2) each counts by its density over the sum of all. The ratios of the others' densities to one's
-//! own are gathered along both walks, each in two sums that are known without the other end (Georgiev, "Implementing
-//! Vertex Connection and Merging", 2012): no walk is looked at again.
+//! Every split of a path's vertices into s from the light and t from the camera, which counts as one, is a strategy
+//! that samples it. The balance heuristic (Veach, "Robust Monte Carlo Methods for Light Transport Simulation", 1997,
+//! 9.2) weights each strategy by its density over the sum of all. Both subpaths accumulate the ratios of the other
+//! densities to their own. Each needs two sums, which do not depend on the other end (Georgiev, "Implementing Vertex
+//! Connection and Merging", 2012). So no subpath is traversed again.
 //!
-//! Where walks merge, a path is found as well by walks that come to the same vertex from both ends: as nearly the same
-//! as photons count, of as many walks from lights as there are photons (Georgiev et al., "Light Transport Simulation
-//! with Vertex Connection and Merging", 2012; Hachisuka et al., "A Path Space Extension for Robust Light Transport
-//! Simulation", 2012). With the density with which either walk comes there, that has the disk's area times the number
-//! of photons: what all share, so that it is but one more summand where a vertex can be merged at. None merges where
-//! light comes first: that is found by asking for it.
+//! Vertex merging is another strategy. The subpaths from both ends meet within the lookup radius, with as many light
+//! paths as there are photons (Georgiev et al., "Light Transport Simulation with Vertex Connection and Merging", 2012;
+//! Hachisuka et al., "A Path Space Extension for Robust Light Transport Simulation", 2012). Its density is that of both
+//! subpaths times the disk's area times the number of photons. The last two factors are common to all merges. So
+//! merging adds one summand per vertex where it is possible. Vertices that light reaches first are not merged: direct
+//! light is sampled.
 //!
-//! Weights of one path add up to 1 as long as all of its ways put the same numbers in, whatever these are. So roulette
-//! and masks, which are passed by chance, are left out, and where a direction is single, the chance that it was drawn
-//! with counts as the same from both ends.
+//! The weights of one path sum to 1 if all its strategies use the same numbers, whatever they are. So roulette and the
+//! random passage of masks are left out. The probability of a delta direction counts as equal from both ends.
 
 use raywright_scene::EmissionDensity;
 
-/// What is known, where a walk has come to, of the other ways to find its vertices: Georgiev's d_VCM and d_VC.
+/// MIS partials of a subpath at a vertex: Georgiev's d_VCM and d_VC, and a term for merging.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Partial {
-    /// Of the way in which the walk from the other end comes to this vertex, less the density of that: the inverse of
-    /// the density with which this one came here.
+    /// Strategies where the other subpath arrives at this vertex, without the density of arriving: the inverse of
+    /// this subpath's density.
     here: f64,
-    /// Of those in which the other walk goes on from here, less the density with which it does.
+    /// Strategies where the other subpath continues from here, without the density of continuing.
     beyond: f64,
-    /// Of that which merges here, less the density with which the other walk comes here. Once the walk has gone on, it
-    /// waits to be part of the former until it is known that there is light before.
+    /// The strategy that merges here, without the other subpath's density of arriving. After scattering it is pending,
+    /// and joins `beyond` on the next arrival: merging needs another vertex toward the light.
     merged: f64,
 }
 
 impl Partial {
-    /// That of light that sets out. At its first surface, [`Partial::asked`] comes before all else but arriving.
+    /// Return the partials of emission. [`Partial::asked`] comes next, but for arriving, at the first surface.
     pub fn of_light(departure: &EmissionDensity) -> Self {
         let share = departure.cosine / departure.density;
         Self { here: share, beyond: if departure.is_single() { 0.0 } else { share }, merged: 0.0 }
     }
 
-    /// Light has come to its first surface, under the cosine of an angle to the normal.
+    /// Update for the first surface of a light path, given its cosine.
     pub fn arrived_first(self, cosine: f64) -> Self {
         Self { here: self.here / cosine, beyond: self.beyond / cosine, merged: 0.0 }
     }
 
-    /// With the density with which light is asked for from the first surface.
+    /// Multiply by the density of light sampling from the first surface.
     pub fn asked(self, density: f64) -> Self {
         Self { here: self.here * density, ..self }
     }
 
-    /// That of what the camera sees first: `density` is that of its rays, of which there are as many as paths from
-    /// lights, by area.
+    /// Return the partials of the camera's first vertex. `density` is that of its rays per area, of as many rays as
+    /// there are light paths.
     pub fn of_camera(paths: f64, density: f64) -> Self {
         Self { here: if density > 0.0 { paths / density } else { 0.0 }, beyond: 0.0, merged: 0.0 }
     }
 
-    /// The walk has come to a surface over a distance, under the cosine of an angle to the normal.
+    /// Update for arrival at a surface, given the distance and the cosine.
     pub fn arrived(self, distance: f64, cosine: f64) -> Self {
         let here = self.here * (distance * distance / cosine);
         Self { here, beyond: (self.beyond + self.merged) / cosine, merged: 0.0 }
     }
 
-    /// The same where walks merge: `disk` is the area from which photons count, times their number.
+    /// Add merging at this vertex: `disk` is the lookup disk's area times the number of photons.
     pub fn merging(self, disk: f64) -> Self {
         Self { merged: disk, ..self }
     }
 
-    /// The walk goes on under the cosine of an angle to the normal, in a direction of a density, where the other would
-    /// go back with another.
+    /// Update for scattering, given the cosine and the densities of the direction and of the reverse one.
     pub fn scattered(self, cosine: f64, forward: f64, reverse: f64) -> Self {
         let share = cosine / forward;
         let beyond = share * (self.beyond * reverse + self.here);
         Self { here: 1.0 / forward, beyond, merged: share * self.merged }
     }
 
-    /// The same in a single direction: no other walk ends or begins here.
+    /// Update for specular scattering: no strategy connects or ends here.
     pub fn scattered_singly(self, cosine: f64) -> Self {
         Self { here: 0.0, beyond: self.beyond * cosine, merged: 0.0 }
     }
 
-    /// The densities of all ways in which the other walk comes here and on, over that of a connection to here: it comes
-    /// with a density, by area, and goes back along this one with another.
+    /// Return the densities of all strategies where the other subpath arrives here and continues, relative to a
+    /// connection. `comes` is its density per area of arriving, and `reverse` that of continuing along this subpath.
     pub fn others(&self, comes: f64, reverse: f64) -> f64 {
         comes * (self.here + self.merged + self.beyond * reverse)
     }
 
-    /// The densities of all ways in which the other walk comes here or beyond, but that of merging here, over what that
-    /// has in common with the other end's: its disk.
+    /// Return the densities of all strategies where the other subpath arrives here or continues, except merging
+    /// here. They are relative to the factor common to both ends of the merge, without its disk.
     fn unmerged(&self, reverse: f64) -> f64 {
         self.here + self.beyond * reverse
     }
 
-    /// How much it counts that a walk from the camera has come upon light that is asked for with a density, and sets
-    /// out so; `self` before arriving.
+    /// Return the weight of a camera path that hits a light, given the densities of light sampling and of emission;
+    /// `self` is before arrival.
     pub fn of_found(&self, asked: f64, departure: &EmissionDensity) -> f64 {
         weight(self.here * asked, self.beyond * departure.density / departure.cosine)
     }
 }
 
-/// How much it counts where light was asked for with a density, which sets out so: a ray of the walk comes upon it with
-/// another density, and light comes under the cosine of an angle to the normal, where the walk from the light would go
-/// on along the other with the last.
+/// Return the weight of light sampling. `asked` is its density and `departure` that of emission. `forward` is the
+/// camera path's density of hitting the light. `cosine` is that of the light's direction, and `reverse` the density
+/// with which a light path would continue along the camera path.
 pub(crate) fn of_asked(
     eye: &Partial,
     (asked, departure): (f64, &EmissionDensity),
@@ -112,16 +110,15 @@ pub(crate) fn of_asked(
     weight(found, eye.merging(0.0).others(departure.density * cosine / (asked * departure.cosine), reverse))
 }
 
-/// How much it counts that walks merge: as either end has come to the same vertex, with the density with which its walk
-/// would go on from there along the other one, and of what disk.
+/// Return the weight of merging two vertices. Each comes with the density of continuing along the other subpath.
 pub(crate) fn of_merged(light: (&Partial, f64), eye: (&Partial, f64), disk: f64) -> f64 {
     weight(light.0.unmerged(light.1) / disk, eye.0.unmerged(eye.1) / disk)
 }
 
-/// The weight of a way by what all others have, of vertices on either side.
+/// Return the weight of a strategy from the densities of all others, relative to its own, on either side.
 pub(crate) fn weight(one: f64, other: f64) -> f64 {
     let weight = 1.0 / (1.0 + one + other);
-    // Densities that no number holds, or that are known for none of the ways.
+    // Overflowed densities, or none known for any strategy.
     if weight.is_nan() { 0.0 } else { weight }
 }
 
@@ -131,19 +128,20 @@ mod tests {
     use raywright_base::sampling::Sampler;
     use raywright_scene::Source;
 
-    /// A path of any densities: x₀ at the light, and then surfaces up to the one that the camera sees first.
+    /// A path with arbitrary densities: x₀ on the light, then surfaces up to the camera's first hit.
     struct Made {
-        /// Between a vertex and the next.
+        /// Distance from each vertex to the next.
         distance: Vec<f64>,
-        /// At a vertex, towards the one before and the one after.
+        /// Cosine at each vertex toward the previous and the next one.
         before: Vec<f64>,
         after: Vec<f64>,
-        /// With which light goes on at a vertex, and a walk from the camera goes back, by solid angle.
+        /// Densities per solid angle at each vertex: of a light path that continues, and of a camera path that
+        /// continues.
         onward: Vec<f64>,
         back: Vec<f64>,
         is_single: Vec<bool>,
         is_matt: Vec<bool>,
-        /// The disk of photons, times their number; 0 where walks do not merge.
+        /// The lookup disk times the number of photons; 0 without merging.
         disk: f64,
         departure: EmissionDensity,
         asked: f64,
@@ -161,7 +159,7 @@ mod tests {
         let mut all = || (0..=length).map(|_| any()).collect::<Vec<f64>>();
         let [distance, before, after, onward, back] = [(); 5].map(|()| all());
         let single = all();
-        // Neither the light nor its neighbours in turn: of two singles in a row there is no other way.
+        // The light is never specular. Two consecutive specular vertices leave no other strategy between them.
         let is_single: Vec<bool> = (0..=length).map(|i| i > 0 && single[i] < 1.0).collect();
         let is_matt = (0..=length).map(|i| i > 0 && single[i] > 2.0).collect();
         let cosine = if is_point { 1.0 } else { after[0] };
@@ -182,11 +180,11 @@ mod tests {
             self.before.len() - 1
         }
 
-        /// The density of the way that has s vertices from the light, up to a factor that all have; none if there is no
-        /// such way. Written out with no regard to the recursion.
+        /// Return the density of the strategy with s light vertices, up to a common factor; `None` if it is impossible.
+        /// Computed directly, without the recursion.
         fn density(&self, s: usize) -> Option<f64> {
             let last = self.last();
-            // Vertices that either walk scatters at may be single; those that are connected may not.
+            // Scattering vertices may be specular, but connected ones may not.
             if s > 0 && s <= last && (self.is_single[s] || s > 1 && self.is_single[s - 1]) {
                 return None;
             }
@@ -196,10 +194,10 @@ mod tests {
             Some((0..=last).map(|i| if i < s { self.of_light(i, s) } else { self.of_eye(i) }).product())
         }
 
-        /// With which density a walk from the light, of s vertices, comes to a vertex.
+        /// Return the density with which a light path of s vertices samples a vertex.
         fn of_light(&self, i: usize, s: usize) -> f64 {
             match i {
-                // Where the light is, times its direction to the first surface.
+                // Point on the light times the direction to the first surface.
                 0 if s > 1 => area(self.departure.density, self.before[1], self.distance[0]),
                 0 => area(self.asked, self.departure.cosine, self.distance[0]),
                 1 => 1.0,
@@ -207,7 +205,7 @@ mod tests {
             }
         }
 
-        /// With which density a walk from the camera comes to a vertex.
+        /// Return the density with which a camera path samples a vertex.
         fn of_eye(&self, i: usize) -> f64 {
             if i == self.last() {
                 return self.seen / self.paths;
@@ -220,25 +218,25 @@ mod tests {
             if self.is_single[i] { 1.0 } else { pdf }
         }
 
-        /// Whether walks merge at a vertex.
+        /// Return whether merging is possible at a vertex.
         fn merges(&self, i: usize) -> bool {
             i > 1 && self.is_matt[i] && self.disk > 0.0
         }
 
-        /// The density of merging at a vertex, up to the same factor.
+        /// Return the density of merging at a vertex, up to the same factor.
         fn merged_density(&self, i: usize) -> Option<f64> {
             let light = || (0..=i).map(|j| self.of_light(j, i + 1)).product::<f64>();
             let eye = || (i..=self.last()).map(|j| self.of_eye(j)).product::<f64>();
             self.merges(i).then(|| light() * eye() * self.disk)
         }
 
-        /// The weight of merging there, by the recursion.
+        /// Return the weight of merging at a vertex by the recursion.
         fn merged_weight(&self, i: usize) -> f64 {
             let (light, eye) = (self.light(i), self.eye(i, false));
             of_merged((&light, self.back[i]), (&eye, self.onward[i]), self.disk)
         }
 
-        /// What a walk from the camera knows where it has come to a vertex, or as it goes on.
+        /// Return the partials of a camera path at a vertex, or after it if it continues.
         fn eye(&self, to: usize, goes_on: bool) -> Partial {
             let last = self.last();
             let mut eye = Partial::of_camera(self.paths, self.seen);
@@ -246,7 +244,7 @@ mod tests {
                 if i < last {
                     eye = eye.arrived(self.distance[i], self.after[i]);
                 }
-                // It does not know whether light comes here first.
+                // The camera path does not know whether this is the light's first surface.
                 eye = eye.merging(if self.is_matt[i] { self.disk } else { 0.0 });
                 let goes_on = i > to || goes_on;
                 if goes_on && self.is_single[i] {
@@ -258,7 +256,7 @@ mod tests {
             eye
         }
 
-        /// What a walk from the light knows where it has come to a vertex.
+        /// Return the partials of a light path at a vertex.
         fn light(&self, to: usize) -> Partial {
             let mut light = Partial::of_light(&self.departure);
             for i in 1..=to {
@@ -276,7 +274,7 @@ mod tests {
             light
         }
 
-        /// The weight of that way by the recursion.
+        /// Return the weight of the strategy by the recursion.
         fn weight(&self, s: usize) -> f64 {
             let last = self.last();
             let eye = if s > last { Partial::of_camera(self.paths, self.seen) } else { self.eye(s.max(1), s == 0) };
