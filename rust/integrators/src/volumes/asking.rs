@@ -1,8 +1,7 @@
-//! What paths ask of a scene on their way, and who answers.
+//! Ray intersection as asynchronous calls.
 //!
-//! A path is written as if it were alone, one thing after the other. Where it has to know what a ray hits it waits for
-//! the answer: of one path alone that is there at once ([`Alone`]); of many that are followed side by side
-//! (`together.rs`) the rays of all that wait are asked about in one go.
+//! A path is written as sequential code that awaits its ray queries. For a single path the result is immediate
+//! ([`Alone`]). For a batch of paths (`together.rs`), the pending queries of all are traced together.
 
 use raywright_base::math::{Hit, Ray};
 use raywright_scene::Scene;
@@ -10,16 +9,16 @@ use std::future::Future;
 use std::pin::pin;
 use std::task::{Context, Poll, Waker};
 
-/// Who answers. Whoever it is, the answers are the same.
+/// Ray queries. All implementations return the same results.
 pub(crate) trait Asks: Copy {
-    /// The first hit of a ray.
+    /// Return the first hit of a ray.
     async fn first(self, ray: &Ray) -> Hit;
 
-    /// Tells all that a ray crosses.
+    /// Pass all hits of a ray to a function.
     async fn crossed<T>(self, ray: &Ray, told: impl FnOnce(&[Hit]) -> T) -> T;
 }
 
-/// The scene itself, each time it is asked.
+/// Trace each query immediately.
 #[derive(Clone, Copy)]
 pub(crate) struct Alone<'a>(pub &'a Scene);
 
@@ -33,10 +32,10 @@ impl Asks for Alone<'_> {
     }
 }
 
-/// What comes of a path that asks [`Alone`].
+/// Run a path that uses [`Alone`].
 ///
 /// # Panics
-/// If it waits for anybody else.
+/// If it awaits anything else.
 pub(crate) fn at_once<T>(path: impl Future<Output = T>) -> T {
     match pin!(path).poll(&mut Context::from_waker(Waker::noop())) {
         Poll::Ready(found) => found,

@@ -1,7 +1,7 @@
-//! Paths that are walked from lights and from the camera through media, and are connected: one sample after the other.
+//! Volumetric bidirectional path tracing, one sample at a time.
 //!
-//! As among surfaces alone ([`crate::Bidirectional`]), with points of media among the vertices
-//! ([`super::vertex`] has how these are weighed). What glows is found by the camera's paths alone.
+//! It works as among surfaces alone ([`crate::Bidirectional`]), with points of media as additional vertices, whose MIS
+//! weights are in [`super::vertex`]. Emission of media is found by camera paths alone.
 
 use super::asking::at_once;
 use super::course::{Course, Going, Nobody, Place};
@@ -23,23 +23,23 @@ use raywright_optics::Rgb;
 use raywright_optics::spectra::Waves;
 use raywright_scene::{EmissionSample, Emitters, Encounter, Footprint, Gaze, LightSampleContext, SurfaceInteraction};
 
-/// What one thread works with.
+/// Per-thread state.
 pub(crate) struct BothEnds<'a> {
     job: Job<'a>,
     emitters: Option<&'a Emitters<'a>>,
     limits: Limits,
-    /// The way that alone counts, by its vertices from the light and from the camera, if one does.
+    /// The one strategy to show, if any: its vertex counts from the light and from the camera.
     alone: Option<[u32; 2]>,
-    /// How many paths there are from lights to the camera for each of its samples.
+    /// Number of light paths per camera sample of the whole picture.
     paths: f64,
-    /// Whether the camera's samples are spread over time.
+    /// True if samples are spread over time.
     moves: bool,
-    /// Whether textures are looked at by how wide rays are.
+    /// True if texture lookups use ray widths.
     widths: bool,
     light: Option<(MediaLightWalk<'a>, LightVertices<'a>)>,
 }
 
-/// Where light has come to.
+/// A vertex of a light path.
 struct LightVertex<'a> {
     at: Vertex<'a>,
     flux: Rgb,
@@ -49,36 +49,36 @@ struct LightVertex<'a> {
     end: LightEnd,
 }
 
-/// Where one path of light has come to, but for what scatters in single directions alone: later ones of long paths the
-/// less likely the later they are.
+/// The vertices of one light path, except delta ones. Later vertices of long paths are stored with decreasing
+/// probability.
 struct LightVertices<'a> {
     emitters: &'a Emitters<'a>,
     end: Option<LightEnd>,
     all: Vec<LightVertex<'a>>,
 }
 
-/// A path from the camera.
+/// A camera path.
 struct EyePath {
     going: Going,
     scale: f64,
     bounce: u32,
     gilded: bool,
     partial: Partial,
-    /// The normal that lights were drawn by where it was scattered last.
+    /// Normal for light sampling at the last scattering event.
     normal: DVec3,
-    /// Its wavelengths; none for red, green and blue. And whether the first is all that it carries.
+    /// Wavelengths, `None` for RGB; and true if only the first is left.
     waves: Option<Waves>,
     single: bool,
-    /// The bundle of its neighbours where its ray starts.
+    /// Footprint at the ray's origin.
     footprint: Footprint,
 }
 
-/// What a sample has besides its path.
+/// Data of a sample besides its path.
 struct Sample<'s, 'n> {
     hero: usize,
     numbers: &'s mut Numbers<'n>,
     cancel: &'s Cancel,
-    /// For the camera's lens and shutter.
+    /// Random numbers for the camera's lens and shutter.
     lens: [f64; 2],
     time: f64,
 }
@@ -96,7 +96,7 @@ impl<'a> MediaVisitor<'a> for LightVertices<'a> {
         dimensions: light_paths::Dimensions,
         _: &Cancel,
     ) {
-        /// The first that are kept whatever the odds.
+        /// Number of vertices that are always stored.
         const ALL: f64 = 32.0;
         let Some(end) = &mut self.end else { return };
         end.arrive(at);
@@ -121,17 +121,17 @@ impl EyePath {
         self.going.weights.throughput()
     }
 
-    /// What light that comes upon its ray would have been asked for from.
+    /// Return the context of light sampling at the ray's origin, for MIS with lights that the ray hits.
     fn receiver(&self) -> LightSampleContext {
         LightSampleContext { position: self.going.ray.origin, normal: self.normal, waves: self.waves }
     }
 
-    /// The wavelengths at which it goes through media, or at which light goes that has come by one alone, too.
+    /// Return the wavelengths for traversing media; one alone if the light carries only one.
     fn waves_with(&self, single: bool) -> Option<Waves> {
         if single || self.single { self.waves.map(|waves| waves.alone()) } else { self.waves }
     }
 
-    /// Leaves the first of its wavelengths alone, which stands for all from here on.
+    /// Terminate all wavelengths but the first, which then stands for all.
     fn end_all_but_first(&mut self) {
         if !self.single {
             self.going.weights.end_all_but_first();
@@ -143,7 +143,7 @@ impl EyePath {
 impl<'a> BothEnds<'a> {
     pub fn new(job: Job<'a>, emitters: Option<&'a Emitters<'a>>, limits: Limits, alone: Option<[u32; 2]>) -> Self {
         let Job { scene, camera, .. } = job;
-        // What is connected to another is a bounce, too.
+        // A connection counts as a scattering event, too.
         let within = Limits { max_depth: limits.max_depth.map(|depth| depth.saturating_sub(1)), ..limits };
         let light = |emitters: &'a Emitters<'a>| {
             let walk = MediaLightWalk::new(scene, emitters, within, Some(camera));
@@ -165,12 +165,12 @@ impl<'a> BothEnds<'a> {
         Course::alone(self.job.scene, waves)
     }
 
-    /// The weight of a way where one alone counts.
+    /// Return the weight of a strategy if only one is shown: 1 or 0.
     fn full(&self, light: u32, camera: u32) -> f64 {
         f64::from(u8::from(self.alone == Some([light, camera])))
     }
 
-    /// What arrives along a camera's ray.
+    /// Return the radiance along a camera ray.
     fn follow(&mut self, sample: &mut CameraSample, media: MediumStack<Filled>, cancel: &Cancel) -> Rgb {
         let u = sample.sampler.one(Dimensions::WAVES);
         let waves = self.job.scene.plan().needs().waves.then(|| Waves::of(u));
@@ -185,7 +185,7 @@ impl<'a> BothEnds<'a> {
         let lens = if camera.uses_lens() { sample.sampler.two(1) } else { [0.5; 2] };
         let time = if self.moves { sample.sampler.one(3) } else { 0.0 };
         let mut numbers = Numbers::apart(&mut sample.sampler);
-        // Not by the number of the wavelengths: what parts these goes by the first.
+        // This choice must be independent of the wavelengths' own: dispersion keeps the first.
         let hero = if waves.is_some() { numbers.hero() } else { hero };
         let going = Going { ray: sample.ray, weights: Weights::START, media, passed: 0 };
         let partial = Partial::of_camera(self.paths, 0.0);
@@ -199,7 +199,7 @@ impl<'a> BothEnds<'a> {
         waves.map_or(light, |waves| waves.seen(light))
     }
 
-    /// Takes a path to where it is scattered next and on from there, and says whether it goes on.
+    /// Advance a path to its next scattering event, scatter it, and return whether it continues.
     fn advance(&self, path: &mut EyePath, sample: &mut Sample, light: &mut Rgb) -> bool {
         sample.numbers.ray = Dimensions::of(path.bounce, 0);
         let u = sample.numbers.ray.mask();
@@ -271,7 +271,7 @@ impl<'a> BothEnds<'a> {
         self.go_on(&at, path, parting, sample)
     }
 
-    /// Light from outside that a path has come upon.
+    /// Return the weighted light of infinite lights that a path hits.
     fn outside(&self, path: &EyePath) -> Rgb {
         let (lights, direction) = (self.job.scene.lights(), path.going.ray.direction);
         let arriving = lights.infinite_radiance_at(direction, path.waves.as_ref());
@@ -289,7 +289,7 @@ impl<'a> BothEnds<'a> {
             }
     }
 
-    /// What a surface sends back that a path has come upon.
+    /// Return the weighted emission of a surface that a path hits.
     fn emitted(&self, arrived: &Arrived, path: &EyePath, gaze: Gaze) -> Rgb {
         let (scene, Arrived { ray, hit, .. }) = (self.job.scene, arrived);
         let (geometry, surface) = (scene.geometry(), arrived.here.surface());
@@ -312,7 +312,7 @@ impl<'a> BothEnds<'a> {
         }
     }
 
-    /// What comes of one light that is asked.
+    /// Return the contribution of one light sample.
     fn ask(&self, emitters: &Emitters, at: &Vertex, path: &EyePath, sample: &mut Sample) -> Rgb {
         let choice = sample.numbers.ray.light_choice(0);
         let (choice, u) = (sample.numbers.one(choice), sample.numbers.two(choice + 1));
@@ -340,7 +340,7 @@ impl<'a> BothEnds<'a> {
         self.arriving(arriving * weight, ray, (at, path.waves_with(false)), at.is_in_medium(), sample)
     }
 
-    /// What comes of a point that light has come to.
+    /// Return the contribution of a connection to a light vertex.
     fn connect(
         &self,
         emitters: &Emitters,
@@ -386,7 +386,8 @@ impl<'a> BothEnds<'a> {
         self.arriving(arriving * weight, segment, (at, path.waves_with(light.single)), roulette, sample)
     }
 
-    /// What of some light gets to a vertex, on a way that has an end which was drawn in a medium, or has not.
+    /// Return the share of light that reaches a vertex. `roulette` applies if an end of the segment was sampled in a
+    /// medium.
     fn arriving(
         &self,
         light: Rgb,
@@ -404,7 +405,7 @@ impl<'a> BothEnds<'a> {
         if light.is_finite() { light } else { Rgb::ZERO }
     }
 
-    /// Sends a path on, unless it ends there.
+    /// Continue a path unless it ends here.
     fn go_on(&self, at: &Vertex, path: &mut EyePath, parting: Option<Parting>, sample: &mut Sample) -> bool {
         let ray = sample.numbers.ray;
         let (u, choice) = (sample.numbers.two(ray.direction()), ray.scattering_choice());
@@ -428,7 +429,7 @@ impl<'a> BothEnds<'a> {
         path.bounce += 1;
         let throughput = path.throughput();
         if path.bounce >= self.limits.roulette_depth.min(roulette::AT_LATEST) {
-            // Light leaves a medium sooner or later, unless that has no end.
+            // Light leaves a finite medium eventually.
             let may_never_end = matches!(at.point, Point::Surface { .. }) || self.job.scene.surrounding().is_some();
             let survival = if may_never_end {
                 roulette::survival(throughput, path.scale)

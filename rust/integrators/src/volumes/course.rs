@@ -1,4 +1,4 @@
-//! How a path gets on among media, from where it was scattered last to where it is next.
+//! Medium traversal between scattering events.
 
 use super::asking::{Alone, Asks};
 use super::filled::{self, Filled};
@@ -16,48 +16,48 @@ use raywright_optics::{Phase, Rgb};
 use raywright_scene::Scene;
 use raywright_scene::media::Coefficients;
 
-/// What lies on the way of any path.
+/// Constant parameters of a traversal.
 #[derive(Clone, Copy)]
 pub(crate) struct Course<'a, A = Alone<'a>> {
     pub scene: &'a Scene,
-    /// Who tells what rays hit.
+    /// Ray intersection.
     pub asks: A,
-    /// Whether what media scatter counts; if not, they only dim.
+    /// False if media only attenuate.
     pub scatters: bool,
-    /// Whether faint light is ended by roulette on straight ways whatever they lead through: where an end of them was
-    /// drawn in a medium.
+    /// True if roulette terminates faint light on straight segments in any medium. This requires an end of the segment
+    /// that was sampled in a medium.
     pub roulette: bool,
-    /// The wavelengths of what is on the way; none for red, green and blue.
+    /// Wavelengths of the light; `None` for RGB.
     pub waves: Option<Waves>,
 }
 
-/// What is on its way: its ray, what it carries, and what it is in.
+/// The state of a traversal: ray, path weights and media.
 #[derive(Clone, Copy)]
 pub(crate) struct Going {
     pub ray: Ray,
     pub weights: Weights,
     pub media: MediumStack<Filled>,
-    /// How many ends of media it has passed on this way; what it has passed in part counts for several.
+    /// Number of medium boundaries passed on this segment. A partial passage counts as several.
     pub passed: u32,
 }
 
-/// Where a path has come to.
+/// The end of a traversal.
 pub(crate) enum Place {
-    /// Where a medium scatters it, and the part of its ray in that medium.
+    /// A scattering event, and the span of the ray in its medium.
     Medium { here: Scattering, collision: Collision, span: [f64; 2] },
     /// A surface.
     Surface { hit: Hit, outside: f64, through: MediumStack<Filled> },
-    /// Out of the scene.
+    /// Outside the scene.
     Outside,
 }
 
-/// Who adds what light comes to a path on its way.
+/// Adds light that reaches a path along its ray.
 pub(super) trait OnTheWay {
-    /// That on a part of its ray in an even medium that scatters.
+    /// Return the light on a span of the ray in a homogeneous scattering medium.
     async fn add(&self, now: &Going, span: [f64; 2], here: (&Coefficients, Phase), numbers: &mut Numbers<'_>) -> Rgb;
 }
 
-/// Nobody does.
+/// Adds no light.
 pub(super) struct Nobody;
 
 impl OnTheWay for Nobody {
@@ -67,16 +67,16 @@ impl OnTheWay for Nobody {
 }
 
 impl<'a> Course<'a> {
-    /// That of a path that is followed by itself.
+    /// Make a traversal for a single path.
     pub fn alone(scene: &'a Scene, waves: Option<Waves>) -> Self {
         Self { scene, asks: Alone(scene), scatters: true, roulette: false, waves }
     }
 }
 
 impl<A: Asks> Course<'_, A> {
-    /// Takes a path along its ray to where it is scattered next; none if nothing of it is left. `way` is the optical
-    /// depth that it gets through before that, for its hero: drawn once for a ray, however many media it goes through.
-    /// `light` is added what it comes by that glows.
+    /// Advance a path along its ray to the next scattering event; `None` if its weight is zero. `way` is the optical
+    /// depth of its hero before the event, sampled once for all media along the ray. Emission along the way is added to
+    /// `light`.
     pub async fn advance(
         &self,
         path: &mut Going,
@@ -98,7 +98,7 @@ impl<A: Asks> Course<'_, A> {
             let even = even.filter(|here| !here.scattering.is_black());
             let mut asked = path.ray;
             if let Some(here) = even.filter(|here| here.emission.is_black() && on_the_way.is_none()) {
-                // Nobody asks what lies beyond where it is scattered.
+                // Intersections beyond the scattering event are not needed.
                 let reach = start + way / here.extinction[hero] * (1.0 + 1e-12);
                 asked.t_max = reach.next_up().min(asked.t_max);
             }
@@ -145,8 +145,8 @@ impl<A: Asks> Course<'_, A> {
         None
     }
 
-    /// Dims light along a ray that starts in some media, by all that lies on it. Which wavelength decides by chance is
-    /// drawn where that is asked for, unless it is told.
+    /// Attenuate light along a ray that starts in given media, by everything on it. The wavelength that samples by
+    /// chance is drawn when needed, unless given.
     #[allow(clippy::too_many_arguments)]
     pub async fn shadow(
         &self,
@@ -193,16 +193,16 @@ impl<A: Asks> Course<'_, A> {
                 Some(Met::Surface { hit, .. }) => ray.t_min = hit.t.next_up(),
             }
             if ray.t_min > ray.t_max {
-                // The rest of the way is shorter than rounding tells.
+                // The rest of the segment is within rounding.
                 return;
             }
         }
         weights.carried = Rgb::ZERO;
     }
 
-    /// What of some light gets along a ray that starts in some media: right on average where media are uneven. The
-    /// light may have come by a draw of its own, of which another wavelength decided: the mean of a product is that of
-    /// the means only where these have nothing to do with each other.
+    /// Return the transmitted share of some light along a ray that starts in given media, unbiased in heterogeneous
+    /// media. The light may have been sampled by another wavelength. The mean of the product is the product of the
+    /// means only for independent choices.
     pub async fn through(
         &self,
         light: Rgb,

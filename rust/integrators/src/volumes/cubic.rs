@@ -1,6 +1,6 @@
-//! Parts of rays along which the extinction of a medium is a polynomial of the third degree, as in the cells of a grid.
+//! Ray segments with cubic extinction, as in grid cells.
 //!
-//! Optical depths are closed there.
+//! Their optical depth has a closed form.
 
 use super::flight::{Collision, Flight};
 use super::numbers::Numbers;
@@ -9,7 +9,7 @@ use raywright_optics::Rgb;
 use raywright_scene::media::Cubic;
 
 impl Flight<'_> {
-    /// The extinction between two `t` of such a part.
+    /// Return the extinction between two `t` of a segment.
     #[inline]
     fn cubic(&self, [start, end]: [f64; 2]) -> Cubic {
         match &self.waves {
@@ -21,14 +21,14 @@ impl Flight<'_> {
         }
     }
 
-    /// The optical depth between two `t` of such a part.
+    /// Return the optical depth between two `t` of a segment.
     #[inline]
     pub(super) fn cubic_depth(&self, [start, end]: [f64; 2]) -> Rgb {
         self.cubic([start, end]).mean() * self.way(start, end)
     }
 
-    /// Draws how far it gets in such a part, as [`Flight::fly`] does. The optical depth of all parts that it has gone
-    /// through since it last was in another is `passed`, which the weights have not been told yet.
+    /// Sample a collision in a segment as [`Flight::fly`] does. `passed` accumulates the optical depth of consecutive
+    /// segments, which the weights do not include yet.
     pub(super) fn fly_through_cell(
         &self,
         span: [f64; 2],
@@ -41,7 +41,7 @@ impl Flight<'_> {
         let [start, end] = span;
         let (cubic, way) = (self.cubic(span), self.way(start, end));
         if self.medium.glows() {
-            // What glows at a point drawn evenly, dimmed on its way from the start.
+            // Emission is sampled at a uniform point and attenuated from the start.
             self.leave_cells(passed, weights, hero);
             let share = numbers.next();
             let left = (cubic.up_to(share) * -way).map(f64::exp);
@@ -58,7 +58,7 @@ impl Flight<'_> {
             let t = (start + (end - start) * share).min(end);
             let (here, left) = (self.at(t), (cubic.up_to(share) * -way).map(f64::exp));
             if here.extinction[hero] <= 0.0 {
-                // Rounding has put it beside what it meets, into nothing.
+                // Rounding has placed it next to the collision, where extinction is zero.
                 weights.carried = Rgb::ZERO;
                 return None;
             }
@@ -72,7 +72,7 @@ impl Flight<'_> {
         None
     }
 
-    /// Tells the weights the optical depth of all such parts that it has gone through.
+    /// Apply the accumulated optical depth to the weights.
     pub(super) fn leave_cells(&self, passed: &mut Rgb, weights: &mut Weights, hero: usize) {
         let passed = std::mem::replace(passed, Rgb::ZERO);
         if passed.is_black() {

@@ -1,4 +1,4 @@
-//! Light that is asked for where paths are scattered.
+//! Light sampling at scattering events.
 
 use super::asking::Asks;
 use super::course::Course;
@@ -15,8 +15,8 @@ use raywright_optics::Rgb;
 use raywright_scene::{Encounter, LightSample, LightSampleContext};
 
 impl<A: Asks> Walker<'_, A> {
-    /// Next-event estimation: draws light where a path is, and tells what arrives of it. `through` is what rays start
-    /// in that leave to the other side, if they do. The draw is one of so many, each in a share of the lights.
+    /// Sample a light at a vertex (next-event estimation) and return the light that arrives. `through` are the media of
+    /// rays that leave to the other side, if any do. The sample is one of a number, stratified over the lights.
     pub(super) async fn direct_light(
         &self,
         here: &impl Encounter,
@@ -30,13 +30,13 @@ impl<A: Asks> Walker<'_, A> {
         let (choice, u) = (share(numbers.one(choice), draw), numbers.two(choice + 1));
         let (lights, geometry) = (self.scene.lights(), self.scene.geometry());
         let receiver = LightSampleContext { waves: path.waves, ..here.light_context() };
-        // As if all draws were one, which finds each direction so many times as often.
+        // MIS treats all samples as one with the density multiplied by their number.
         let light = lights.sample(geometry, &receiver, choice, u)?.chosen(f64::from(draw.1));
         let arrives = self.arriving(here, path, &light, media(&light), hero, numbers, cancel).await?;
         Some((light, arrives))
     }
 
-    /// What arrives where a path is of light that was drawn, weighed beside running into it by chance.
+    /// Return the light of a sample that arrives at a vertex, weighted by MIS with BSDF or phase function sampling.
     #[allow(clippy::too_many_arguments)]
     pub(super) async fn arriving(
         &self,
@@ -59,7 +59,7 @@ impl<A: Asks> Walker<'_, A> {
             None => from.ray(light.direction),
         };
         let ray = Ray { time: path.ray.time, misses: [Ray::NO_TRIANGLE, light.primitive], ..ray };
-        // Running into a light that is a point or of a single direction never happens.
+        // Sampling a direction never hits a point light or a directional light.
         let by_chance = path.weights.drawn * if self.follows_all() { path.splits * pdf / light.pdf } else { 0.0 };
         let mut weights = Weights { carried, drawn: by_chance, asked: path.weights.drawn };
         let course = Course { roulette: here.light_context().is_free(), ..self.course(path.waves) };

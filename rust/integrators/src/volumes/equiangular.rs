@@ -1,4 +1,4 @@
-//! Light of points, scattered into a path on its way.
+//! Equiangular sampling of point lights along rays.
 
 use super::asking::Asks;
 use super::course::{Going, OnTheWay};
@@ -14,18 +14,18 @@ use raywright_optics::{Phase, Rgb};
 use raywright_scene::media::Coefficients;
 use raywright_scene::{Encounter, LightSampleContext};
 
-/// A part of a ray of unit direction on which places are drawn as a point sees them, the same number in the same angle
-/// (Kulla and Fajardo, "Importance Sampling Techniques for Path Tracing in Participating Media", 2012): what the point
-/// lights is 1/d² along the ray, and this is the density that it has.
+/// Equiangular sampling of a ray segment of unit direction: distances are uniform in the angle seen from a point (Kulla
+/// and Fajardo, "Importance Sampling Techniques for Path Tracing in Participating Media", 2012). The density is
+/// proportional to 1/d², as is the point's illumination.
 pub(super) struct Equiangular {
-    /// Where on the ray the point is nearest, and how far it is there.
+    /// The `t` of the ray's closest point to the light, and the distance there.
     foot: f64,
     distance: f64,
     angles: [f64; 2],
 }
 
 impl Equiangular {
-    /// Of a part of a ray, which may be endless, as a point sees it. None if the point lies on the ray.
+    /// Make the sampling of a segment, which may be infinite; `None` if the point lies on the ray.
     pub fn new(ray: &Ray, [start, end]: [f64; 2], point: DVec3) -> Option<Self> {
         let foot = (point - ray.origin).dot(ray.direction);
         let distance = (point - ray.origin).cross(ray.direction).length();
@@ -33,20 +33,20 @@ impl Equiangular {
         (distance > 0.0 && angles[1] > angles[0]).then_some(Self { foot, distance, angles })
     }
 
-    /// The density of a place, by length.
+    /// Return the density per length of a distance.
     pub fn pdf(&self, t: f64) -> f64 {
         let (along, [from, to]) = (t - self.foot, self.angles);
         self.distance / ((to - from) * (self.distance * self.distance + along * along))
     }
 
-    /// Draws a place.
+    /// Sample a distance.
     pub fn sample(&self, u: f64) -> f64 {
         let [from, to] = self.angles;
         self.foot + self.distance * (from + u * (to - from)).tan()
     }
 }
 
-/// Light of points that comes to a path as it sets out on a part of its way.
+/// Adds the light of points along a path's segments.
 struct OfPoints<'p, 'a, A> {
     walker: &'p Walker<'a, A>,
     path: &'p PathState,
@@ -69,7 +69,7 @@ impl<A: Asks> OnTheWay for OfPoints<'_, '_, A> {
 }
 
 impl<'a, A: Asks> Walker<'a, A> {
-    /// Who adds light of points as a path sets out on its way.
+    /// Return the adder of point lights for a path.
     pub(super) fn of_points<'p>(
         &'p self,
         path: &'p PathState,
@@ -79,8 +79,8 @@ impl<'a, A: Asks> Walker<'a, A> {
         OfPoints { walker: self, path, hero, cancel }
     }
 
-    /// What comes to a path of the light of points that a medium on its way scatters: of an even medium between two `t`
-    /// of its ray. It is weighed beside what is asked for where the path itself is scattered.
+    /// Return the in-scattered light of point lights from a homogeneous medium between two `t` of a path's ray. MIS
+    /// combines it with light sampling at the path's own scattering events.
     #[allow(clippy::too_many_arguments)]
     async fn lit_on_the_way(
         &self,
@@ -115,7 +115,7 @@ impl<'a, A: Asks> Walker<'a, A> {
         arrives * power_heuristic(pdf, drawn)
     }
 
-    /// How much light of a point counts that was asked for where a path was scattered, beside what is drawn on the way.
+    /// Return the MIS weight of a point light sampled at a scattering event, against equiangular sampling.
     pub(super) fn beside_the_way(&self, ray: &Ray, span: [f64; 2], t: f64, density: f64, place: DVec3) -> f64 {
         if !self.points.iter().any(|(point, _)| *point == place) {
             return 1.0;
@@ -140,7 +140,7 @@ mod tests {
             (DVec3::new(3.0, 2.0, 3.01), [0.0, f64::INFINITY]),
         ] {
             let ways = Equiangular::new(&ray, span, point).unwrap();
-            // The places that part all into twenty of the same probability.
+            // Boundaries of twenty segments of equal probability.
             let cuts: Vec<f64> = (0..=20).map(|i| ways.sample(f64::from(i) / 20.0)).collect();
             for pair in cuts.windows(2).filter(|pair| pair[1] < 1e6) {
                 let steps = 4000;
@@ -156,7 +156,7 @@ mod tests {
             }
             assert_frequencies(&counts, &[0.05; 20]);
         }
-        // From a point on the ray itself, all is one direction.
+        // From a point on the ray itself all directions coincide.
         assert!(Equiangular::new(&ray, [0.0, 5.0], DVec3::new(4.0, 2.0, 3.0)).is_none());
     }
 }

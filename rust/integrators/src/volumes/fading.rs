@@ -1,4 +1,4 @@
-//! How much light gets through a medium on a straight way.
+//! Transmittance along ray segments.
 
 use super::flight::Flight;
 use super::numbers::Numbers;
@@ -7,26 +7,26 @@ use raywright_base::workers::Cancel;
 use raywright_optics::Rgb;
 use raywright_scene::media::Content;
 
-/// What carries less than this share of what it did is ended by roulette, three times of four.
+/// Roulette terminates light below this share of its initial value, with the probability 3/4.
 const FAINT: f64 = 0.05;
 const SURVIVAL: f64 = 0.25;
-/// The optical depth at which light is as faint, −ln 0.05, and the one from which on nothing of it is left in f64.
+/// The optical depth of that share, −ln 0.05, and the one beyond which transmittance underflows in f64.
 const FAINT_DEPTH: f64 = 2.995_732_273_553_991;
 const LAST_DEPTH: f64 = 746.0;
 
 impl Flight<'_> {
-    /// Dims light on its way, and tells with which densities a path would have come along it; `hero` is drawn where it
-    /// is needed, unless it is there.
+    /// Attenuate light along the segment, and update the densities of sampling it by distance. `hero` is drawn when
+    /// needed, unless given.
     ///
-    /// Where the medium is even or its extinction is a cubic, that is closed; elsewhere it is estimated from the shares
-    /// of nothing in what light meets at random, as often as in the densest medium that it could be (Novák, Selle and
-    /// Jarosz, "Residual Ratio Tracking for Estimating Attenuation in Participating Media", 2014, 3.2). Where that way
-    /// has an end that was drawn in a medium, faint light is ended by roulette: its error is far below that of the
-    /// place, and most such ways lead through all of a cloud.
+    /// Homogeneous media and cubic extinction have closed forms. Elsewhere, ratio tracking multiplies by the share of
+    /// null collisions at points sampled with the majorant (Novák, Selle and Jarosz, "Residual Ratio Tracking for
+    /// Estimating Attenuation in Participating Media", 2014, 3.2). If an end of the segment was sampled in a medium,
+    /// roulette terminates faint light. Its error is far below that of the sampled point, and most such segments lead
+    /// through a whole cloud.
     pub fn fade(&self, weights: &mut Weights, hero: &mut Option<usize>, numbers: &mut Numbers, cancel: &Cancel) {
         let scatters = self.scatters && self.medium.scatters();
         let mut start = self.span[0];
-        // Of the cells that it has gone through since it last was elsewhere.
+        // Optical depth of consecutive cells.
         let mut passed = Rgb::ZERO;
         for stretch in self.medium.stretches(&self.ray, self.span) {
             let span = [start, stretch.end];
@@ -60,7 +60,7 @@ impl Flight<'_> {
         Self::fade_by(&mut passed, weights, scatters);
     }
 
-    /// Dims light by the optical depth of the cells that it has gone through.
+    /// Attenuate light by the optical depth of the passed cells.
     fn fade_by(passed: &mut Rgb, weights: &mut Weights, scatters: bool) {
         let passed = std::mem::replace(passed, Rgb::ZERO);
         if !passed.is_black() {
@@ -69,8 +69,8 @@ impl Flight<'_> {
         }
     }
 
-    /// Dims light on a part of its way where the extinction lies between two: by what is there at least, and by chance
-    /// by what there is beside.
+    /// Attenuate light where the extinction lies between two bounds: analytically by the lower bound, and by ratio
+    /// tracking for the rest.
     #[allow(clippy::too_many_arguments)]
     pub(super) fn fade_between(
         &self,
@@ -109,7 +109,7 @@ impl Flight<'_> {
     }
 }
 
-/// Ends a path by roulette.
+/// Play one round of roulette.
 fn survive(weights: &mut Weights, numbers: &mut Numbers) {
     if numbers.next() < SURVIVAL {
         weights.carried /= SURVIVAL;

@@ -1,4 +1,4 @@
-//! What fills the space that a path is in.
+//! The medium at a point of a path.
 
 use crate::nesting::{Filling, MediumStack};
 use raywright_base::math::{Hit, Ray};
@@ -6,13 +6,13 @@ use raywright_optics::Dispersive;
 use raywright_scene::Scene;
 use raywright_scene::media::Medium;
 
-/// What fills a closed shape, or one copy of it: two of the same kind are two.
+/// The interior of a closed shape or of one instance. Two instances of a kind are distinct.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Filled {
     priority: i32,
     ior: Option<f64>,
     dispersion: Dispersive,
-    /// The primitive that stands for the shape, and of an instance the one in it.
+    /// Primitive that identifies the shape, and the primitive inside an instance.
     shape: (u32, u32),
 }
 
@@ -28,7 +28,7 @@ impl Filling for Filled {
         Some(Self { priority, ior, dispersion, shape: scene.geometry().first_alike(hit.primitive, hit.inner) })
     }
 
-    /// By priority; of equal ones, what refracts more; of those, what was described later.
+    /// Compare by priority, then by higher index of refraction, then by later description.
     fn is_above(&self, other: &Self) -> bool {
         let order = |filled: &Self| (filled.priority, filled.ior.unwrap_or(0.0), filled.shape);
         order(self) > order(other)
@@ -44,18 +44,18 @@ impl Filling for Filled {
 }
 
 impl Filled {
-    /// What stands for the shape.
+    /// Return the shape's identifier.
     pub fn shape(&self) -> (u32, u32) {
         self.shape
     }
 
-    /// What stands for the shape that is around a point in some media, the same for all points in it.
+    /// Return the identifier of the shape around a point, the same for all its interior points.
     pub fn there(media: &MediumStack<Self>) -> (u32, u32) {
         media.top().unwrap_or(&Self::NONE).shape
     }
 }
 
-/// The medium that a ray is in, and the ray in the space in which that is described. None where space is clear.
+/// Return the current medium of a ray, and the ray in medium space; `None` in empty space.
 pub(super) fn around<'a>(scene: &'a Scene, media: &MediumStack<Filled>, ray: &Ray) -> Option<(&'a dyn Medium, Ray)> {
     let Some(&Filled { shape: (primitive, inner), .. }) = media.top() else {
         return scene.surrounding().map(|medium| (medium, *ray));

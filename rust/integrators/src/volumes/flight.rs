@@ -1,4 +1,4 @@
-//! How far a path gets in a medium.
+//! Distance sampling in a medium.
 
 use super::numbers::Numbers;
 use super::weights::Weights;
@@ -8,45 +8,44 @@ use raywright_optics::Rgb;
 use raywright_optics::spectra::Waves;
 use raywright_scene::media::{Coefficients, Content, Medium, Stretch};
 
-/// A part of a ray in a medium.
+/// A segment of a ray in a medium.
 pub(super) struct Flight<'a> {
     pub medium: &'a dyn Medium,
-    /// The ray in the space of the medium.
+    /// The ray in medium space.
     pub ray: Ray,
-    /// The `t` where it begins and ends; the end may be infinite.
+    /// Start and end `t`; the end may be infinite.
     pub span: [f64; 2],
-    /// The length of the ray's direction in the world.
+    /// Length of the ray's direction in world space.
     pub length: f64,
-    /// Whether what is scattered counts; if not, it is lost.
+    /// False if scattered light is lost.
     pub scatters: bool,
-    /// Whether faint light is ended by roulette on its way through cells, too.
+    /// True if roulette also terminates faint light within cells.
     pub roulette: bool,
-    /// The wavelengths of what is on the way; none for red, green and blue.
+    /// Wavelengths of the light; `None` for RGB.
     pub waves: Option<Waves>,
 }
 
-/// What a ray in a medium has come to.
+/// A sampled collision in a medium.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Collision {
-    /// Where.
+    /// Ray parameter.
     pub t: f64,
-    /// The density, by length, with which such a place is drawn by all wavelengths together; none where that is not
-    /// known.
+    /// Density per length of this distance over all wavelengths together; `None` if unknown.
     pub density: Option<f64>,
-    /// What the medium does to light there.
+    /// Coefficients of the medium there.
     pub here: Coefficients,
-    /// What the path carries for each unit of scattering there: what has come, over the density of the place.
+    /// Path weight per unit of scattering there: the arriving weight over the density of the distance.
     pub came: Rgb,
 }
 
 impl Flight<'_> {
-    /// A length in the world, between two `t`.
+    /// Return the world length between two `t`.
     #[inline]
     pub(super) fn way(&self, from: f64, to: f64) -> f64 {
         (to - from) * self.length
     }
 
-    /// What is at a `t` of the ray.
+    /// Return the coefficients at a `t`.
     #[inline]
     pub(super) fn at(&self, t: f64) -> Coefficients {
         let point = self.ray.at(t);
@@ -56,7 +55,7 @@ impl Flight<'_> {
         }
     }
 
-    /// The extinction there.
+    /// Return the extinction at a `t`.
     #[inline]
     pub(super) fn extinction(&self, t: f64) -> Rgb {
         match &self.waves {
@@ -65,7 +64,7 @@ impl Flight<'_> {
         }
     }
 
-    /// What is in a stretch of it.
+    /// Return the contents of a stretch.
     #[inline]
     pub(super) fn content(&self, stretch: &Stretch) -> Content {
         match (stretch.content, &self.waves) {
@@ -78,12 +77,12 @@ impl Flight<'_> {
         }
     }
 
-    /// Draws how far it gets: where it is scattered, or none if it gets to its end. `depth` is the optical depth that
-    /// it is still to get through before that, for its hero; `light` is added what it comes by that glows.
+    /// Sample a collision; return `None` if the path passes through. `depth` is the remaining optical depth of its hero
+    /// before a collision. Emission along the way is added to `light`.
     ///
-    /// Where the medium is even or its extinction is a cubic, that is closed; elsewhere it meets, as often as in the
-    /// densest medium that it could be, things of which so many are nothing as the medium is thinner (Woodcock et al.,
-    /// "Techniques Used in the GEM Code", 1965). Where nothing is scattered, it is not drawn, but dimmed.
+    /// Homogeneous media and cubic extinction are sampled in closed form. Elsewhere, delta tracking samples tentative
+    /// collisions at the majorant extinction, and rejects null collisions (Woodcock et al., "Techniques Used in the GEM
+    /// Code", 1965). A medium without scattering only attenuates.
     pub fn fly(
         &self,
         weights: &mut Weights,
@@ -139,7 +138,7 @@ impl Flight<'_> {
             let way = *depth / extinction;
             let left = here.left(way);
             let density = || (weights.drawn * here.extinction * left).mean() / weights.drawn.mean();
-            // Of parts of what is not even, nobody asks.
+            // Density is not needed in heterogeneous media.
             let density = self.medium.is_even().then(density);
             let by = left / (extinction * left[hero]);
             let came = weights.carried * by;
@@ -168,7 +167,7 @@ impl Flight<'_> {
         light: &mut Rgb,
     ) -> Option<Collision> {
         let scatters = self.scatters && self.medium.scatters();
-        // What asking for light meets in its place ([`Flight::fade`]).
+        // These are the null collisions of shadow rays ([`Flight::fade`]).
         let spread = (most - least).at_least(Rgb::ZERO);
         while !cancel.is_raised() {
             let rest = self.way(t, end);

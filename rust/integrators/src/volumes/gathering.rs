@@ -1,4 +1,4 @@
-//! Paths where light is known: they end there, or look about once.
+//! Paths at vertices with precomputed light: they end there, or continue with final gather rays.
 
 use super::path_state::PathState;
 use super::scattering::Scattering;
@@ -8,29 +8,29 @@ use crate::transport::Visit;
 use raywright_optics::Rgb;
 use raywright_scene::SurfaceInteraction;
 
-/// What becomes of a path at a surface.
+/// Use of precomputed light at a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Arrival {
-    /// It is scattered as any.
+    /// None: the path is scattered as usual.
     GoesOn,
-    /// The same, but what lights send there was known where the path looked about.
+    /// The path is scattered, but direct light was included in the lookup that its final gather ray started from.
     IsLit,
-    /// Light is known there, and so many paths look about.
+    /// The surface has precomputed light, and a number of final gather rays start there.
     IsKnown(u32),
 }
 
 impl Arrival {
-    /// Whether what lights send is known.
+    /// Return whether direct light is already included.
     pub fn is_lit(self) -> bool {
         self == Self::IsLit
     }
 
-    /// Whether all light is, but what comes straight from lights.
+    /// Return whether all light but direct light is precomputed.
     pub fn is_known(self) -> bool {
         matches!(self, Self::IsKnown(_))
     }
 
-    /// Into how many paths that goes on.
+    /// Return the number of paths that continue.
     pub fn splits(self) -> f64 {
         if let Self::IsKnown(rays) = self { f64::from(rays) } else { 1.0 }
     }
@@ -42,7 +42,7 @@ impl<A> Walker<'_, A> {
         Visit { number, looks_about, gilded: path.gilded, single: path.single, bounces }
     }
 
-    /// What is known of light where a medium scatters a path, of a sample of a number.
+    /// Return the precomputed in-scattered radiance at a scattering event, for a sample index.
     pub(super) fn known_among(&self, path: &PathState, here: &Scattering, number: u32) -> Rgb {
         if self.settings.max_depth.is_some_and(|most| path.bounce >= most) {
             return Rgb::ZERO;
@@ -54,12 +54,12 @@ impl<A> Walker<'_, A> {
         path.weights.throughput() * known.unwrap_or(Rgb::ZERO)
     }
 
-    /// Whether what shines at the end of a path was known where that looked about.
+    /// Return whether emission at the end of a path was included in the lookup that its final gather ray started from.
     pub(super) fn is_shining_known(&self, path: &PathState) -> bool {
         self.settings.gather.is_some_and(|gather| gather.caustic) && path.is_sharp_since
     }
 
-    /// What becomes of a path at a surface; what is known of light there is added.
+    /// Decide how a path continues from a surface, and add its precomputed light.
     pub(super) fn arrive(&self, path: &PathState, here: &SurfaceInteraction, number: u32, light: &mut Rgb) -> Arrival {
         let (Some(known), Some(gather)) = (self.known, self.settings.gather) else { return Arrival::GoesOn };
         if !is_matt(here.bsdf()) {

@@ -1,4 +1,4 @@
-//! The way of paths that start at lights and go through media, one path after the other.
+//! Tracing of light paths through media, one path at a time.
 
 use super::asking::at_once;
 use super::course::{Course, Going, Nobody, Place};
@@ -17,57 +17,57 @@ use raywright_optics::spectra::Waves;
 use raywright_optics::{Bsdf, Rgb};
 use raywright_scene::{Camera, EmissionSample, Emitters, Scene};
 
-/// What one thread walks with.
+/// Per-thread state.
 pub(crate) struct MediaLightWalk<'a> {
     scene: &'a Scene,
     emitters: &'a Emitters<'a>,
     limits: Limits,
-    /// Whose shutter paths are on their way under; at any of the scene's times without one.
+    /// Camera whose shutter interval paths fall into; without one, any scene time.
     camera: Option<&'a dyn Camera>,
-    /// Whether anything moves, the camera included.
+    /// True if anything moves, the camera included.
     moves: bool,
     times: Times,
-    /// The wavelengths of paths; none where they carry red, green and blue.
+    /// Wavelengths of the paths; `None` for RGB.
     waves: Vec<Waves>,
 }
 
-/// A path on its way.
+/// The state of a light path in media.
 #[derive(Clone, Copy)]
 pub(crate) struct Drifting {
-    /// Its number among those of the batch.
+    /// Index within the batch.
     pub number: u32,
     pub going: Going,
-    /// Which wavelength decides how far it gets.
+    /// Wavelength that samples distances.
     pub hero: usize,
-    /// Its flux when it set out, in the largest channel.
+    /// Largest channel of the initial flux.
     start: f64,
-    /// When it is on its way, while the shutter is open.
+    /// Time as a fraction of the shutter interval.
     pub time: f64,
-    /// How often it has been scattered.
+    /// Number of scattering events.
     pub bounce: u32,
-    /// As [`crate::light_paths::Flying::again`].
+    /// Remaining share as in [`crate::light_paths::Flying::again`].
     pub again: Rgb,
-    /// Whether it was scattered into a single direction, or nearly so, the last time; or by a medium.
+    /// True if the last bounce was specular or nearly so; and true if a medium scattered it.
     pub is_sharp: bool,
     pub is_adrift: bool,
     held: u32,
-    /// Its wavelengths; none for red, green and blue. And whether the first is all that it carries.
+    /// Wavelengths, `None` for RGB; and true if only the first is left.
     waves: Option<Waves>,
     pub single: bool,
 }
 
 impl Drifting {
-    /// The flux that it stands for; where a medium scatters it, that of what is scattered.
+    /// Return the flux; at a scattering event in a medium, the scattered flux.
     pub fn flux(&self) -> Rgb {
         self.going.weights.throughput()
     }
 
-    /// The wavelengths at which it goes through media.
+    /// Return the wavelengths for traversing media.
     pub fn waves(&self) -> Option<Waves> {
         if self.single { self.waves.map(|waves| waves.alone()) } else { self.waves }
     }
 
-    /// Leaves the first of its wavelengths alone, which stands for all from here on.
+    /// Terminate all wavelengths but the first, which then stands for all.
     fn end_all_but_first(&mut self) {
         if !self.single {
             self.going.weights.end_all_but_first();
@@ -76,12 +76,12 @@ impl Drifting {
     }
 }
 
-/// Who is told where paths have come to, path by path.
+/// Receives the vertices of light paths, one path after the other.
 pub(crate) trait MediaVisitor<'a> {
-    /// A path has set out.
+    /// A path starts.
     fn set_out(&mut self, _path: &Drifting, _light: &EmissionSample) {}
 
-    /// A path has come to a surface, or to where a medium scatters it.
+    /// A path arrives at a surface or a scattering event.
     fn meet(
         &mut self,
         at: &Vertex<'a>,
@@ -91,13 +91,13 @@ pub(crate) trait MediaVisitor<'a> {
         cancel: &Cancel,
     );
 
-    /// A path goes on, unless roulette ends it.
+    /// A path continues, unless roulette terminates it.
     fn go_on(&mut self, _at: &Vertex<'a>, _path: &Drifting, _next: &Onward) {}
 
-    /// Media have taken so much of the light.
+    /// Media have absorbed flux.
     fn absorb(&mut self, _flux: Rgb) {}
 
-    /// A path has left the scene.
+    /// A path leaves the scene.
     fn leave(&mut self, _path: &Drifting) {}
 }
 
@@ -107,12 +107,12 @@ impl<'a> MediaLightWalk<'a> {
         Self { scene, emitters, limits, camera, moves, times: Times::Drawn, waves: Vec::new() }
     }
 
-    /// When the paths that will be followed are on their way.
+    /// Set the times of the next paths.
     pub fn set_times(&mut self, times: Times) {
         self.times = times;
     }
 
-    /// At which wavelengths the paths that will be followed go.
+    /// Set the wavelengths of the next paths.
     pub fn set_waves(&mut self, waves: impl Iterator<Item = Waves>) {
         self.waves.clear();
         self.waves.extend(waves);
@@ -122,7 +122,7 @@ impl<'a> MediaLightWalk<'a> {
         Course::alone(self.scene, path.waves())
     }
 
-    /// Follows a path for each of these numbers to its end.
+    /// Trace one path per sampler to its end.
     pub fn follow(&self, paths: &mut [Sampler], cancel: &Cancel, visitor: &mut impl MediaVisitor<'a>) {
         let mut setting_out = Vec::new();
         for (number, sampler) in (0u32..).zip(paths.iter_mut()) {
@@ -152,7 +152,7 @@ impl<'a> MediaLightWalk<'a> {
         }
     }
 
-    /// Follows one path.
+    /// Trace one path.
     fn send(
         &self,
         mut path: Drifting,
@@ -163,7 +163,7 @@ impl<'a> MediaLightWalk<'a> {
     ) {
         let mut numbers = Numbers::apart(sampler);
         if path.waves.is_some() {
-            // Not by the number of the wavelengths: what parts these goes by the first.
+            // This choice must be independent of the wavelengths' own: dispersion keeps the first.
             path.hero = numbers.hero();
         }
         visitor.set_out(&path, light);
@@ -215,7 +215,7 @@ impl<'a> MediaLightWalk<'a> {
         }
     }
 
-    /// Light from outside has come through a medium without an end.
+    /// Attenuate light from outside by the infinite medium.
     fn come_from_afar(
         &self,
         path: &mut Drifting,
@@ -231,7 +231,7 @@ impl<'a> MediaLightWalk<'a> {
         path.going.weights.carried = left;
     }
 
-    /// Scatters a path, and says whether it goes on.
+    /// Scatter a path and return whether it continues.
     fn go_on(
         &self,
         at: &Vertex<'a>,
@@ -262,7 +262,7 @@ impl<'a> MediaLightWalk<'a> {
             Point::Medium { .. } => None,
         };
         if path.bounce >= self.limits.roulette_depth.min(roulette::AT_LATEST) {
-            // Light leaves a medium sooner or later, unless that has no end.
+            // Light leaves a finite medium eventually.
             let survival = if bsdf.is_some() || self.scene.surrounding().is_some() {
                 roulette::survival(flux / path.start, 1.0).min(roulette::held(path.held))
             } else {

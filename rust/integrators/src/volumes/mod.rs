@@ -1,9 +1,9 @@
-//! Paths through smoke, haze and whatever else fills space: from the camera (`walker`), many side by side (`asking`,
-//! `together`), and one at a time from lights (`light_walk`, `to_camera`), and from both ends (`both_ends`).
+//! Volumetric path tracing: camera paths (`walker`) in batches (`asking`, `together`), light paths (`light_walk`,
+//! `to_camera`), and bidirectional paths (`both_ends`).
 //!
-//! Paths carry densities for three wavelengths, of which one decides how far they get; all count by the mean of what
-//! each of the three would have done (Wilkie et al., "Hero Wavelength Spectral Sampling", 2014; Miller, Georgiev and
-//! Jarosz, "A Null-Scattering Path Integral Formulation of Light Transport", 2019).
+//! Paths carry densities for three wavelengths. One of them, the hero, samples distances. All are weighted by the mean
+//! of the three densities (Wilkie et al., "Hero Wavelength Spectral Sampling", 2014; Miller, Georgiev and Jarosz, "A
+//! Null-Scattering Path Integral Formulation of Light Transport", 2019).
 
 mod asking;
 mod both_ends;
@@ -53,42 +53,42 @@ use raywright_scene::{Footprint, Scene};
 use std::sync::Arc;
 use walker::Walkers;
 
-/// Along which of the directions into which light is scattered paths go on.
+/// The scattered directions that paths follow.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Onwards {
-    /// All.
+    /// All directions.
     All,
-    /// Single directions only, and of these every one: paths are split.
+    /// Delta directions only, each of them: paths are split.
     DeltaLobes,
 }
 
-/// How light is transported among media.
+/// Parameters of volumetric path tracing.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Volumes {
-    /// The greatest number of times that light is scattered, at surfaces or between them.
+    /// Maximum number of scattering events, at surfaces or in media.
     pub max_depth: Option<u32>,
-    /// Roulette is played from this number on.
+    /// Number of scattering events after which Russian roulette starts.
     pub roulette_depth: u32,
-    /// Whether what media scatter comes back to the path; if not, they only dim.
+    /// False if media only absorb: scattered light is lost.
     pub scatters: bool,
-    /// How often light is asked at the first surface, and into how many a path is split there.
+    /// Number of light samples at the first surface, and of paths that continue from there.
     pub light_samples: u32,
     pub splits: u32,
-    /// Which directions are followed.
+    /// Directions that are followed.
     pub onwards: Onwards,
-    /// Radiance that arrives from everywhere in place of what is not followed, where it is scattered diffusely.
+    /// Uniform radiance that replaces light not followed, where it is scattered diffusely.
     pub ambient: Rgb,
-    /// Paths end that contribute less than this, in any colour.
+    /// Minimum contribution of a path in any color; others end.
     pub least: f64,
-    /// What becomes of paths at matt surfaces whose light is known, as it is among media then; where that is so,
-    /// [`Volumes::begin_with`] is told of it. `None` where they go on.
+    /// Use of precomputed light at matte surfaces and in media, which [`Volumes::begin_with`] receives. `None`
+    /// continues paths there.
     pub gather: Option<Gather>,
-    /// Whether paths of a group share what they find, in scenes where they can ([`can_share`]).
+    /// Paths of a group share their results, in scenes that allow it ([`can_share`]).
     pub shares: bool,
 }
 
 impl Volumes {
-    /// Those of a path tracer.
+    /// Return the parameters of a path tracer.
     pub fn path(max_depth: Option<u32>, roulette_depth: u32) -> Self {
         Self {
             max_depth,
@@ -104,17 +104,17 @@ impl Volumes {
         }
     }
 
-    /// Those of what follows light among surfaces alone, to so many of them, and is dimmed between.
+    /// Return the parameters for integrators that scatter at surfaces only, where media just attenuate.
     pub fn dimmed(max_depth: u32) -> Self {
         Self { scatters: false, ..Self::path(Some(max_depth), u32::MAX) }
     }
 
-    /// Begins to work on a picture.
+    /// Begin a session for a picture.
     pub fn begin<'a>(self, job: Job<'a>) -> Box<dyn Session + 'a> {
         self.among(job, None)
     }
 
-    /// As [`Volumes::begin`], where light is known where paths are scattered.
+    /// Begin a session with precomputed light at scattering events.
     pub fn begin_with<'a>(self, job: Job<'a>, known: Arc<dyn KnownLight + 'a>) -> Box<dyn Session + 'a> {
         self.among(job, Some(known))
     }
@@ -129,15 +129,15 @@ impl Volumes {
     }
 }
 
-/// What workers on a picture share.
+/// Data shared by the workers of a picture.
 struct Among<'a> {
     settings: Volumes,
     scene: &'a Scene,
-    /// How wide cameras' rays are.
+    /// Footprint of camera rays.
     footprint: Footprint,
-    /// Lights that are points.
+    /// Point lights.
     points: Vec<(DVec3, &'a dyn Light)>,
-    /// What is known of light where paths are scattered.
+    /// Precomputed light at scattering events.
     known: Option<Arc<dyn KnownLight + 'a>>,
 }
 

@@ -8,7 +8,7 @@ use raywright_optics::Rgb;
 use raywright_scene::Scene;
 use raywright_scene::media::Content;
 
-/// Writes the optical depth of the media along each ray, up to its `t_max`: they go straight, through all surfaces.
+/// Write the optical depth of all media along each ray up to its `t_max`. Rays pass straight through all surfaces.
 pub fn optical_depths(scene: &Scene, rays: &[Ray], depths: &mut [Rgb]) {
     assert_eq!(rays.len(), depths.len(), "a depth for each ray");
     depths.fill(Rgb::ZERO);
@@ -30,7 +30,7 @@ pub fn optical_depths(scene: &Scene, rays: &[Ray], depths: &mut [Rgb]) {
     }
 }
 
-/// The optical depth between two `t` of a ray in some media.
+/// Return the optical depth between two `t` of a ray in given media.
 fn along(scene: &Scene, ray: &Ray, media: &MediumStack<Filled>, span: [f64; 2]) -> Rgb {
     let Some((medium, within)) = around(scene, media, ray).filter(|_| span[0] < span[1]) else { return Rgb::ZERO };
     let length = ray.direction.length();
@@ -38,7 +38,8 @@ fn along(scene: &Scene, ray: &Ray, media: &MediumStack<Filled>, span: [f64; 2]) 
 }
 
 impl Flight<'_> {
-    /// The optical depth of all of it: closed, but where neither the medium is even nor its extinction a cubic.
+    /// Return the total optical depth: in closed form, unless the medium is heterogeneous with extinction that is not
+    /// cubic.
     fn optical_depth(&self) -> Rgb {
         let mut start = self.span[0];
         let mut sum = Rgb::ZERO;
@@ -47,7 +48,7 @@ impl Flight<'_> {
             sum += match stretch.content {
                 Content::Even(here) => {
                     let way = (stretch.end - start) * self.length;
-                    // 0 times infinity is no number.
+                    // 0 times infinity is NaN.
                     here.extinction.map(|sigma| if sigma == 0.0 { 0.0 } else { sigma * way })
                 }
                 Content::Cubic => self.cubic_depth(span),
@@ -58,8 +59,8 @@ impl Flight<'_> {
         sum
     }
 
-    /// The optical depth of a part of which only the most is known: the sum over so many parts that none is deeper than
-    /// a tenth.
+    /// Return the optical depth of a stretch with only an upper bound of the extinction. It is a sum over so many parts
+    /// that each has an optical depth of at most a tenth.
     fn summed(&self, most: Rgb, [start, end]: [f64; 2]) -> Rgb {
         const LEAST: f64 = 64.0;
         let parts = (10.0 * most.max() * (end - start) * self.length).clamp(LEAST, 1e6).ceil();

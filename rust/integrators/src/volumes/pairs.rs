@@ -1,11 +1,11 @@
-//! Ways from many points of an even medium to one: loops over columns, which become vectors.
+//! Segments from many points of a homogeneous medium to one, as vectorizable loops over columns.
 
 use raywright_base::math::DVec3;
 use raywright_base::math::exponential::exp;
 use raywright_base::simd::{Level, loops};
 use raywright_optics::{Phase, PhaseTerms, Rgb};
 
-/// Points that light is scattered at on its way back along paths, a column a coordinate, and what they are to another.
+/// Scattering points of paths, one column per coordinate, and their factors to another point.
 pub(super) struct Takers {
     level: Level,
     position: [Vec<f64>; 3],
@@ -17,21 +17,21 @@ pub(super) struct Takers {
     left: [Vec<f64>; 3],
 }
 
-/// A point that they look to, and two directions from there, which are unit.
+/// A target point and two unit directions from it.
 pub(super) struct Way {
     pub to: DVec3,
     pub onward: DVec3,
     pub to_light: DVec3,
 }
 
-/// What one is to that point.
+/// Factors of a pair of points.
 pub(super) struct Pair {
-    /// The phase function, and the cosine at a surface, over the distance's square.
+    /// The phase function and the surface cosine, over the squared distance.
     pub share: f64,
-    /// The phase function at the point, into the two directions; of a surface, which reflects the same to all, 1 and 0.
+    /// The phase function at the target into its two directions; 1 and 0 for a surface, which reflects uniformly.
     pub onward: f64,
     pub to_light: f64,
-    /// The share of light that gets there.
+    /// Transmittance.
     pub left: Rgb,
 }
 
@@ -57,7 +57,7 @@ loops! {
             let length = square.sqrt();
             let unit = [way[0] / length, way[1] / length, way[2] / length];
             let part = phase.pdf([a[i], b[i], c[i]], unit) / square;
-            // What is at the same place is nowhere in particular.
+            // Coincident points have no direction.
             share[i] = if part < f64::INFINITY { part } else { 0.0 };
             distance[i] = length;
             onward[i] = if square > 0.0 { phase.pdf(unit, *next) } else { 0.0 };
@@ -90,7 +90,7 @@ impl Takers {
         position.iter_mut().chain(before).for_each(Vec::clear);
     }
 
-    /// A point, and the direction in which its path comes to it.
+    /// Append a point with the incident direction of its path.
     pub fn push(&mut self, position: DVec3, before: DVec3) {
         for axis in 0..3 {
             self.position[axis].push(position[axis]);
@@ -98,8 +98,8 @@ impl Takers {
         }
     }
 
-    /// Finds what all of them are to a point, in a medium of an extinction in which these shares of their ways lie; to
-    /// one of a surface, by the cosine at its normal.
+    /// Compute the factors of all points to a target, given the extinction and the shares of the segments in the
+    /// medium. For a surface, its normal gives the cosine.
     pub fn meet(&mut self, way: &Way, normal: Option<DVec3>, inside: &[f64], phase: &Phase, extinction: Rgb) {
         let count = self.position[0].len();
         let Self { level, position, before, share, distance, onward, to_light, left } = self;
@@ -131,7 +131,7 @@ impl Takers {
         }
     }
 
-    /// What one is to the point.
+    /// Return the factors of a point to the target.
     #[inline]
     pub fn pair(&self, i: usize) -> Pair {
         let left = self.left.each_ref().map(|column| column[i]);
@@ -158,7 +158,7 @@ mod tests {
         for level in Level::ALL.into_iter().filter(|level| level.is_available()) {
             let mut takers = Takers { level, ..Takers::default() };
             (0..21).for_each(|i| takers.push(place(10 + i), unit(50 + i)));
-            // One stands where the way leads to.
+            // One point coincides with the target.
             takers.push(way.to, DVec3::X);
             let mut found = Vec::new();
             for normal in [None, Some(DVec3::Z)] {

@@ -1,4 +1,4 @@
-//! Paths on their way.
+//! State of volumetric camera paths.
 
 use super::filled::Filled;
 use super::weights::Weights;
@@ -9,50 +9,48 @@ use raywright_optics::spectra::Waves;
 use raywright_optics::{BsdfSample, Rgb};
 use raywright_scene::{Footprint, Scene, SurfacePoint};
 
-/// A path on its way.
+/// The state of a path.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PathState {
-    /// Of unit direction.
+    /// Ray of unit direction.
     pub ray: Ray,
     pub weights: Weights,
-    /// What the ray starts in.
+    /// Media at the ray's origin.
     pub media: MediumStack<Filled>,
-    /// The normal that lights were drawn by where it was scattered last ([`raywright_scene::LightSampleContext`]).
+    /// Normal for light sampling at the last scattering event ([`raywright_scene::LightSampleContext`]).
     pub normal: DVec3,
-    /// Density with which this direction was drawn; infinite for a camera's ray.
+    /// Sampling density of the ray's direction; infinite for camera rays.
     pub pdf: f64,
-    /// How much less radiance is here than where the path started, because of the index of refraction alone.
+    /// Ratio of radiance here to radiance at the start of the path due to the index of refraction alone.
     pub scale: f64,
-    /// How often it has been scattered.
+    /// Number of scattering events.
     pub bounce: u32,
-    /// Which of the branches that its sample has split into.
+    /// Index of the branch among those of a split sample.
     pub branch: u32,
-    /// Whether it has come to a surface that gives more than there is, in a channel.
+    /// True if a surface of the path has a reflectance above 1 in a channel.
     pub gilded: bool,
-    /// Its wavelengths; none for red, green and blue. And whether the first is all that it carries.
+    /// Wavelengths, `None` for RGB; and true if only the hero is left.
     pub waves: Option<Waves>,
     pub single: bool,
-    /// Whether other paths have the same, and the one that decides may be any of them.
+    /// True if other paths share the wavelengths, and any of them may be the hero.
     pub shares_waves: bool,
-    /// Into how many it is split where it is; 0 where it ends.
+    /// Number of paths that it is split into here; 0 if it ends.
     pub splits: f64,
-    /// Whether it looks about from where light is known, and has been at something sharp since.
+    /// True for a final gather ray; and true if a specular surface followed.
     pub is_gathered: bool,
     pub is_sharp_since: bool,
-    /// Whether it has just been where it takes from others, and whether what it finds is shared with them
-    /// ([`super::reuse`]).
+    /// True at the path's first shared vertex; and true if its further contributions are shared ([`super::reuse`]).
     pub is_first: bool,
     pub is_shared: bool,
-    /// The bundle of its neighbours where its ray starts, as far as anybody looks at a texture by its width; and the
-    /// mean curvature of the surface there.
+    /// Footprint at the ray's origin, if texture lookups use it; and the mean curvature of the surface there.
     pub footprint: Footprint,
     pub curvature: f64,
-    /// How many ends of media its ray has passed ([`super::course::Going::passed`]).
+    /// Number of medium boundaries on this ray ([`super::course::Going::passed`]).
     pub passed: u32,
 }
 
 impl PathState {
-    /// That of a camera's ray, which starts in these media.
+    /// Make the state of a camera ray that starts in given media.
     pub fn of_camera(ray: Ray, media: MediumStack<Filled>, waves: Option<Waves>) -> Self {
         Self {
             ray,
@@ -78,13 +76,13 @@ impl PathState {
         }
     }
 
-    /// It has come to a `t` of its ray, to a surface of mean curvature `curvature` or to none.
+    /// Move to a `t` of the ray, to a surface of mean curvature `curvature` or to none.
     pub fn come_to(&mut self, t: f64, curvature: f64) {
         (self.footprint, self.curvature) = (self.footprint.at(t), curvature);
     }
 
-    /// It comes to a surface, beyond which it would be in other media: what parts its wavelengths there, if anything
-    /// does, and the index of refraction around.
+    /// Return the dispersion of a surface, if any, and the surrounding index of refraction. `through` are the media
+    /// beyond it.
     pub fn parting(
         &self,
         scene: &Scene,
@@ -98,7 +96,8 @@ impl PathState {
         Parting::at(scene.material_at(surface), is_front, (outside, around), waves)
     }
 
-    /// It goes on along a direction drawn at a surface that parts wavelengths, if they have come together so far.
+    /// Continue along a sampled direction. At a dispersive surface, refraction terminates the secondary wavelengths,
+    /// and reflection reweights them.
     pub fn part(&mut self, parting: Option<&Parting>, wo: DVec3, next: &BsdfSample) {
         match parting {
             Some(_) if next.is_through => self.end_all_but_hero(),
@@ -110,7 +109,7 @@ impl PathState {
         }
     }
 
-    /// Leaves the first of its wavelengths alone, which stands for all from here on.
+    /// Terminate all wavelengths but the hero, which then stands for all.
     pub fn end_all_but_hero(&mut self) {
         if !self.single {
             if self.shares_waves {
@@ -122,14 +121,14 @@ impl PathState {
         }
     }
 
-    /// From here on it counts by itself, for all that share what it finds; roulette knows what it has lost.
+    /// Reset the weights for shared contributions; roulette keeps the lost throughput.
     pub fn share(&mut self) {
         self.scale *= self.weights.throughput().max();
         self.weights.carried = Rgb::splat(self.weights.drawn.mean());
         self.is_shared = true;
     }
 
-    /// It comes to a surface that leaves so much of its light if it has been at such a surface before
+    /// Apply the correction of a surface with reflectance above 1, if the path has met such a surface before
     /// ([`raywright_optics::Bsdf::again`]).
     pub fn meet(&mut self, again: Rgb) {
         if again != Rgb::ONE {

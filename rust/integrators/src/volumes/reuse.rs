@@ -1,4 +1,4 @@
-//! Paths that share what they find in an even medium.
+//! Path reuse in homogeneous media.
 
 use super::filled::Filled;
 use super::pairs::{Takers, Way};
@@ -13,8 +13,8 @@ use raywright_scene::media::Coefficients;
 use raywright_scene::{Encounter, RayOrigin, Scene, SurfaceInteraction};
 use std::f64::consts::FRAC_1_PI;
 
-/// Whether paths can share what they find among media: some medium is even and scatters, and whatever is seen of it is
-/// seen at any time. Light of points is drawn where it comes to a path on its way, which each has to itself.
+/// Return whether paths can be reused: some medium is homogeneous and scatters, and nothing moves. Scenes with point
+/// lights are excluded, as these are sampled along each path's own rays.
 pub(crate) fn can_share(scene: &Scene) -> bool {
     let needs = scene.plan().needs();
     let is_point = |place| matches!(place, Some(Place::Point(_)));
@@ -25,71 +25,70 @@ pub(crate) fn can_share(scene: &Scene) -> bool {
         && !scene.lights().others().any(|light| is_point(light.place()))
 }
 
-/// What a path leaves to be shared: from where an even medium scattered it first, and from where it came next, through
-/// nothing but that medium, or out of it to a matt surface (after Bekaert, Sbert and Halton, "Accelerating Path Tracing
-/// by Re-Using Paths", 2002).
+/// The shared vertices of a path: its first scattering event in a homogeneous medium, and the next vertex. The segment
+/// between them lies in that medium alone, or leaves it for a matte surface (after Bekaert, Sbert and Halton,
+/// "Accelerating Path Tracing by Re-Using Paths", 2002).
 ///
-/// Path j of a group goes from a first point xⱼ to a second, yⱼ. If that is in the medium, light from two directions
-/// is known there: that of a light that was asked for, and one that was drawn and the rest of the path followed. It is
-/// worth the same to all first points that see yⱼ, with nothing between but the medium. So each takes its part of it,
-/// as one more sample, weighed by the balance heuristic (Veach and Guibas, 1995) over the densities with which the
-/// paths of the group would have drawn the same: pₖ = f(xₖ → yⱼ) σ e^(−σs) / d², of phase function f, extinction σ and
-/// a way of d of which s lies in the medium; for the direction that was drawn at yⱼ, times f(xₖ → yⱼ → ω). If yⱼ is
-/// matt, what it reflects is the same for all, and its cosine stands for σ. Of several colours e^(−σs) is the mean, by
-/// how likely each is to have drawn what came before.
+/// Path j of a group goes from a first vertex xⱼ to a second, yⱼ. If yⱼ is in the medium, its incident light is known
+/// from two directions: a light sample, and the sampled continuation of the path. This light serves every first vertex
+/// that sees yⱼ through the medium alone. So each first vertex uses it as one more sample. The balance heuristic (Veach
+/// and Guibas, 1995) combines the densities of the group's paths: pₖ = f(xₖ → yⱼ) σ e^(−σs) / d², with the phase
+/// function f, the extinction σ and a distance d of which the length s lies in the medium. For the sampled direction,
+/// the density also has the factor f(xₖ → yⱼ → ω). If yⱼ is matte, its reflected radiance is the same in all
+/// directions, and its cosine replaces σ. For several colors, e^(−σs) is the mean, weighted by each color's density of
+/// sampling the path before.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Parts {
     pub first: Option<First>,
     pub second: Option<Second>,
 }
 
-/// A first point, which takes.
+/// A first vertex, which receives light.
 #[derive(Clone, Copy)]
 pub(super) struct First {
     position: DVec3,
     before: DVec3,
     phase: Phase,
     here: Coefficients,
-    /// What the path brings there, scattered.
+    /// Path throughput including scattering there.
     brought: Rgb,
-    /// How likely each colour is to have drawn it.
+    /// Relative density with which each color sampled it.
     drawn: Rgb,
-    /// What stands for the shape that the medium fills; and how often the path was scattered before, where that limits
-    /// what is found.
+    /// Identifier of the medium's shape, and the number of earlier scattering events if that limits the contributions.
     among: ((u32, u32), u32),
-    /// Whether beyond that shape space is clear.
+    /// True if space is empty beyond that shape.
     pub is_alone: bool,
 }
 
-/// A second point, which gives.
+/// A second vertex, which provides light.
 #[derive(Clone, Copy)]
 pub(super) struct Second {
     departure: RayOrigin,
-    /// Of a surface its normal on the side that is seen; none in the medium.
+    /// Surface normal on the visible side; `None` in the medium.
     normal: Option<DVec3>,
-    /// How much of the way there is in the medium, and whether any is not.
+    /// Share of the segment in the medium; and true if the segment leaves it.
     inside: f64,
     is_beyond: bool,
-    /// To the light that was asked for, and what arrives from there; and the way on.
+    /// Direction of the light sample and its light; and the sampled direction.
     to_light: DVec3,
     lit: Rgb,
     onward: DVec3,
-    /// What the path found there; of a surface, what it reflects.
+    /// Light found along the sampled direction; for a surface, its reflected radiance.
     pub found: Rgb,
 }
 
 impl First {
-    /// How much more goes straight on than by even scattering, at most, where paths share: those of a group seldom go
-    /// where another looks, and then bring all the more (at a mean cosine of 0.95, 120 times the error, and too little
-    /// of it is told).
+    /// Maximum forward scattering relative to isotropic scattering with reuse. With a narrower phase function, the
+    /// paths of a group rarely look into each other's directions, and such samples have high weights. At a mean cosine
+    /// of 0.95 the error is 120 times larger, and underestimated.
     const NARROWEST: f64 = 256.0;
 
-    /// Whether what is found from there is worth sharing.
+    /// Return whether reuse is worthwhile at a scattering event.
     pub fn may_be(here: &Scattering) -> bool {
         here.phase.greatest() <= Self::NARROWEST * 0.25 * FRAC_1_PI
     }
 
-    /// Where a path is scattered, with what the medium does there, and whether there is a last bounce.
+    /// Make a first vertex. `is_limited` says that the path length is limited.
     pub fn new(here: &Scattering, of: Coefficients, path: &PathState, is_limited: bool) -> Self {
         let weights = &path.weights;
         Self {
@@ -106,14 +105,15 @@ impl First {
 }
 
 impl Second {
-    /// A point of the medium, and what arrives from a light, and the way on.
+    /// Make a second vertex in the medium.
     pub fn of_medium(position: DVec3, (to_light, lit): (DVec3, Rgb), onward: DVec3) -> Self {
         let (normal, inside, is_beyond) = (None, 1.0, false);
         let departure = RayOrigin::free(position);
         Self { departure, normal, inside, is_beyond, to_light, lit, onward, found: Rgb::ZERO }
     }
 
-    /// A surface to which a path has come by a `t` of its ray, if that reflects the same to all.
+    /// Make a second vertex on a surface at a `t` of the path's ray, if its reflected radiance is the same in all
+    /// directions.
     pub fn of_surface<B: Bsdf>(here: &SurfaceInteraction<B>, path: &PathState, t: f64) -> Option<Self> {
         let is_matt = here.bsdf().diffuse().is_some() && here.is_flat() && !here.is_bent() && here.cosine() > 0.0;
         let is_beyond = path.passed > 0;
@@ -130,12 +130,12 @@ impl Second {
         is_matt.then_some(second)
     }
 
-    /// Whether what it gives is worth nothing.
+    /// Return whether it provides no light.
     fn is_black(&self) -> bool {
         self.lit.is_black() && self.found.is_black()
     }
 
-    /// How much of the way from there to a first point lies in its medium, if it sees it, by what else does.
+    /// Return the share of the segment to a first vertex that lies in its medium, given all hits on it; 0 if occluded.
     fn seen(&self, scene: &Scene, first: &First, hits: &[Hit]) -> f64 {
         match hits {
             [] if !self.is_beyond => 1.0,
@@ -148,24 +148,24 @@ impl Second {
     }
 }
 
-/// Who shares: room for one group at a time.
+/// Path reuse, with storage for one group at a time.
 #[derive(Default)]
 pub(super) struct Reuse {
     takers: Takers,
-    /// The samples that take, and those that give.
+    /// Samples that receive and samples that provide light.
     taking: Vec<usize>,
     giving: Vec<usize>,
     rays: Vec<Ray>,
     occluded: Vec<bool>,
-    /// Of the way from each that gives to each that takes, how much is in the medium; 0 where nothing is seen.
+    /// For each pair of a provider and a receiver, the share of the segment in the medium; 0 if occluded.
     seen: Vec<f64>,
 }
 
 impl Reuse {
-    /// Rays that the accelerator takes through its tree together, if they have one origin.
+    /// Rays with a common origin that the accelerator traverses as one packet.
     const BUNDLE: usize = 16;
 
-    /// Adds to the radiance of each sample what it takes of what all of its group have found.
+    /// Add to each sample's radiance its share of the group's results.
     pub fn share(&mut self, scene: &Scene, groups: &[u32], parts: &[Parts], cancel: &Cancel, radiance: &mut [Rgb]) {
         let mut start = 0;
         for &count in groups {
@@ -174,7 +174,7 @@ impl Reuse {
             }
             let (parts, radiance) = (&parts[start..][..count as usize], &mut radiance[start..][..count as usize]);
             start += count as usize;
-            // One medium after the other, and one depth.
+            // For each medium, and each depth.
             let mut done = Vec::new();
             for first in parts.iter().filter(|parts| parts.second.is_some()).filter_map(|parts| parts.first) {
                 if !done.contains(&first.among) {
@@ -185,7 +185,7 @@ impl Reuse {
         }
     }
 
-    /// The same in one medium, that of a path.
+    /// Share within one medium, that of a path.
     fn share_within(&mut self, scene: &Scene, of: &First, parts: &[Parts], radiance: &mut [Rgb]) {
         let Self { takers, taking, giving, .. } = self;
         takers.clear();
@@ -205,7 +205,7 @@ impl Reuse {
         }
     }
 
-    /// Shares out what one gives.
+    /// Distribute the light of one provider.
     fn give(&mut self, number: usize, of: &First, parts: &[Parts], radiance: &mut [Rgb]) {
         let (giver, count) = (self.giving[number], self.taking.len());
         let Some(second) = parts[giver].second else { return };
@@ -213,7 +213,7 @@ impl Reuse {
         if let Some(own) = self.taking.iter().position(|&taker| taker == giver)
             && seen[own] == 0.0
         {
-            // What its own path would not have seen, as where surfaces lie on each other, nobody else is to take.
+            // If its own path would be occluded, as with coincident surfaces, no other path receives this light.
             seen.fill(0.0);
             seen[own] = second.inside;
         }
@@ -241,7 +241,7 @@ impl Reuse {
         }
     }
 
-    /// Looks from all that give to all that take.
+    /// Test the visibility of all pairs.
     fn look(&mut self, scene: &Scene, parts: &[Parts]) {
         self.seen.clear();
         for &giver in &self.giving {
@@ -262,7 +262,7 @@ impl Reuse {
                 self.seen.extend(seen);
                 continue;
             }
-            // None of another origin goes with them.
+            // Pad so that the packet has a single origin.
             let last = self.rays[self.rays.len() - 1];
             self.rays.resize(self.rays.len().next_multiple_of(Self::BUNDLE), last);
             self.occluded.clear();

@@ -1,14 +1,14 @@
-//! A point of a medium that scatters light.
+//! Scattering events in media.
 
 use raywright_base::math::DVec3;
 use raywright_optics::{BsdfSample, Phase, Rgb};
 use raywright_scene::{Encounter, LightSampleContext, RayOrigin};
 
-/// Where a path is scattered by a medium. How much is scattered there is in the path's weights already.
+/// A scattering event in a medium. The path weights already include the scattering coefficient.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Scattering {
     pub position: DVec3,
-    /// The direction in which the path has come, which is unit.
+    /// Unit direction of incidence.
     pub before: DVec3,
     pub phase: Phase,
 }

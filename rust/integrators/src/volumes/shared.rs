@@ -1,4 +1,4 @@
-//! Where paths come to what they share.
+//! Paths at their shared vertices.
 
 use super::asking::Asks;
 use super::numbers::Numbers;
@@ -12,11 +12,11 @@ use raywright_optics::{BsdfSample, Rgb};
 use raywright_scene::{Encounter, LightSampleContext, RayOrigin};
 use std::f64::consts::FRAC_1_PI;
 
-/// A point of a medium that scatters the same into all directions: what arrives there is told, and not from where.
+/// A scattering point with an isotropic phase function. It gives incident light without a weight by direction.
 struct AllWays(Scattering);
 
 impl AllWays {
-    /// In whose place each phase function is weighed beside asking for light: one weight for all that take.
+    /// Replacement for each phase function's density in MIS with light sampling: one weight for all receivers.
     const PDF: f64 = 0.25 * FRAC_1_PI;
 }
 
@@ -43,7 +43,7 @@ impl Encounter for AllWays {
 }
 
 impl<A: Asks> Walker<'_, A> {
-    /// Scatters a path where what it finds is shared, and says whether it goes on.
+    /// Scatter a path at a shared vertex and return whether it continues.
     pub(super) async fn scatter_shared(
         &self,
         path: &mut PathState,
@@ -67,7 +67,7 @@ impl<A: Asks> Walker<'_, A> {
         Some((second, goes_on))
     }
 
-    /// Whether a surface that a path has come to from a first point lies in the same medium, or next beyond its end.
+    /// Return whether the segment from the first vertex to a surface lies in its medium, or leaves it just once.
     pub(super) fn is_within_reach(&self, first: &First, path: &PathState) -> bool {
         match path.passed {
             0 => true,

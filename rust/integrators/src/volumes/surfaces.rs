@@ -1,4 +1,4 @@
-//! What a ray among media comes to.
+//! Classification of hits of rays in media.
 
 use super::asking::{Alone, Asks, at_once};
 use super::filled::Filled;
@@ -6,25 +6,25 @@ use crate::nesting::{Boundary, Filling, MediumStack, around};
 use raywright_base::math::{Hit, Ray};
 use raywright_scene::{Scene, SurfaceInteraction};
 
-/// What a ray has come to.
+/// The classification of a hit.
 pub(crate) enum Met {
-    /// Nothing: another medium begins there, or not even that. The ray goes on from this `t` in these media.
+    /// A medium boundary or nothing. The ray continues from this `t` in these media.
     Passed(f64, MediumStack<Filled>),
     /// A surface.
     Surface {
-        /// Which hit has it.
+        /// Its hit.
         hit: Hit,
-        /// The index of refraction on the other side of what it encloses, or around what encloses nothing.
+        /// Index of refraction outside a closed object, or around an open one.
         outside: f64,
-        /// What a ray that goes through is in.
+        /// Media of a transmitted ray.
         through: MediumStack<Filled>,
-        /// The `t` from which a ray goes on that passes straight.
+        /// Start `t` of a ray that continues straight on.
         beyond: f64,
     },
 }
 
-/// What it is that a ray in some media has hit. Where neither light is reflected nor bent, there is no surface, unless
-/// one that encloses nothing stands at the same place, as the floor that smoke lies on.
+/// Classify a hit of a ray in given media. A boundary that neither reflects nor refracts is no surface, unless an open
+/// surface coincides with it, such as the floor under smoke.
 pub(super) async fn come_to(
     (scene, asks): (&Scene, impl Asks),
     ray: &Ray,
@@ -39,12 +39,12 @@ pub(super) async fn come_to(
     asks.crossed(&window, |crossed| meet_at(scene, ray, (hit, beyond), media, crossed)).await
 }
 
-/// As [`come_to`], of a ray by itself.
+/// Classify a hit as [`come_to`] does, for a single ray.
 pub(crate) fn meet(scene: &Scene, ray: &Ray, hit: &Hit, media: &MediumStack<Filled>) -> Met {
     at_once(come_to((scene, Alone(scene)), ray, hit, media))
 }
 
-/// The same by all that is crossed about the hit, beyond which the ray goes on from a `t`.
+/// Classify a hit, given all hits at its position and the `t` from which the ray continues.
 fn meet_at(scene: &Scene, ray: &Ray, (hit, beyond): (&Hit, f64), media: &MediumStack<Filled>, crossed: &[Hit]) -> Met {
     let through = match Boundary::new(scene, ray, media, crossed) {
         Boundary::None(media) => media,
@@ -65,7 +65,8 @@ fn meet_at(scene: &Scene, ray: &Ray, (hit, beyond): (&Hit, f64), media: &MediumS
     }
 }
 
-/// The share of a ray that goes straight on through a surface ([`raywright_scene::materials::Material::straight`]).
+/// Return the share of light that passes straight through a surface
+/// ([`raywright_scene::materials::Material::straight`]).
 pub(super) fn straight(scene: &Scene, ray: &Ray, hit: &Hit, outside: f64) -> f64 {
     let material = scene.material_of(hit);
     if material.boundary().is_none() {
@@ -73,6 +74,6 @@ pub(super) fn straight(scene: &Scene, ray: &Ray, hit: &Hit, outside: f64) -> f64
     }
     let surface = scene.geometry().surface(ray, hit);
     let here = SurfaceInteraction::new(scene, ray, hit, surface, None, outside);
-    // Rays to lights are as long as the way there.
+    // Shadow ray directions have the length of the segment.
     material.straight((here.wo().z.abs() / ray.direction.length()).min(1.0), outside)
 }

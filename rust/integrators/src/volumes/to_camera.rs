@@ -1,4 +1,4 @@
-//! Light that comes to a camera through media.
+//! Connections of light paths in media to the camera.
 
 use super::asking::at_once;
 use super::course::Course;
@@ -15,31 +15,31 @@ use raywright_optics::Rgb;
 use raywright_optics::spectra::Waves;
 use raywright_scene::{EmissionSample, Emitters, RayOrigin};
 
-/// What one thread follows paths from lights with to where a camera sees them.
+/// Per-thread state for tracing light paths to a camera.
 pub(crate) struct MediaLightPaths<'a> {
     walk: MediaLightWalk<'a>,
     connections: Connections<'a>,
 }
 
-/// How what they bring is weighed.
+/// Weighting of camera connections.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Counting {
-    /// In full.
+    /// Unweighted.
     Full,
-    /// Beside what is found in other ways, of so many paths for all that the camera's rays find.
+    /// MIS with the other strategies, for a number of light paths per sample of the whole picture.
     Beside(f64),
-    /// In full for paths of so many vertices from the light, the camera being the other, and no others.
+    /// Only paths with a number of light vertices, unweighted; the camera is the only other vertex.
     Alone(u32),
-    /// Not at all.
+    /// None.
     Nothing,
 }
 
-/// What a camera sees of paths.
+/// Camera connections.
 struct Connections<'a> {
     job: Job<'a>,
     emitters: &'a Emitters<'a>,
     counting: Counting,
-    /// What the path that is on its way knows.
+    /// MIS partials of the current path.
     end: Option<LightEnd>,
     splats: Vec<Splat>,
 }
@@ -63,7 +63,7 @@ impl LightWorker for MediaLightPaths<'_> {
 }
 
 impl Connections<'_> {
-    /// How much it counts that the camera sees a path from a direction, with rays of a density.
+    /// Return the weight of a connection to the camera, given the density of camera rays there.
     fn weigh(&self, at: &Vertex, path: &Drifting, (direction, distance): (DVec3, f64), seen: f64) -> f64 {
         match (self.counting, &self.end) {
             (Counting::Full, _) => 1.0,
@@ -90,7 +90,7 @@ impl<'a> MediaVisitor<'a> for Connections<'a> {
         }
     }
 
-    /// Finds out where the camera sees light, and how much of it comes there.
+    /// Connect a vertex to the camera and attenuate the light on the segment.
     fn meet(
         &mut self,
         at: &Vertex<'a>,

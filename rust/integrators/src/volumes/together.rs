@@ -1,4 +1,4 @@
-//! Paths side by side: what all of them ask is answered in one go.
+//! Batch execution of paths: the pending ray queries of all are traced together.
 
 use super::asking::Asks;
 use raywright_base::math::{Hit, Ray};
@@ -8,18 +8,17 @@ use std::future::{Future, poll_fn};
 use std::pin::Pin;
 use std::task::{Context, Poll, Waker};
 
-/// So many are followed at a time: enough for rays to be asked about in large groups, few enough for all that is known
-/// of them to stay in the cache.
+/// Number of concurrent paths: enough for large ray batches, few enough that their state stays in the cache.
 const TOGETHER: usize = 128;
 
-/// What a path waits for, and what it is told.
+/// A path's pending query and its result.
 pub struct Lane {
     asked: Cell<Asked>,
     hit: Cell<Hit>,
     crossed: RefCell<Vec<Hit>>,
 }
 
-/// A question.
+/// A pending query.
 #[derive(Clone, Copy)]
 enum Asked {
     Nothing,
@@ -32,7 +31,7 @@ impl Lane {
         Self { asked: Cell::new(Asked::Nothing), hit: Cell::new(Hit::MISS), crossed: RefCell::default() }
     }
 
-    /// Waits for the answer to a question.
+    /// Await the result of a query.
     async fn ask(&self, question: Asked) {
         self.asked.set(question);
         let mut is_asked = false;
@@ -52,12 +51,12 @@ impl Asks for &Lane {
     }
 }
 
-/// As many lanes as so many paths are worth.
+/// Make the lanes for a number of paths.
 pub fn lanes(paths: usize) -> Vec<Lane> {
     (0..paths.min(TOGETHER)).map(|_| Lane::new()).collect()
 }
 
-/// Does what is to be done on each of some lanes, side by side.
+/// Run a task on each lane concurrently.
 pub fn together<'l, F: Future<Output = ()> + 'l>(scene: &Scene, lanes: &'l [Lane], work: impl Fn(&'l Lane) -> F) {
     let mut context = Context::from_waker(Waker::noop());
     let mut busy: Vec<(&Lane, Pin<Box<F>>)> = lanes.iter().map(|lane| (lane, Box::pin(work(lane)))).collect();
@@ -94,7 +93,7 @@ pub fn together<'l, F: Future<Output = ()> + 'l>(scene: &Scene, lanes: &'l [Lane
     }
 }
 
-/// Rays, and who asks about them.
+/// Pending rays and their lanes.
 #[derive(Default)]
 struct Questions<'l> {
     lanes: Vec<&'l Lane>,

@@ -1,11 +1,10 @@
-//! Points that a path has come to among media, as either end of it sees them.
+//! Vertices of volumetric bidirectional paths.
 //!
-//! Where a path is scattered by a medium, all that is known of a surface by its cosines is known of the medium by its
-//! extinction: a direction of density p that comes there over a distance d has the density p σ / d² by volume, as it
-//! has p cos θ / d² by area on a surface. So both are weighed alike. What is left out of the densities is how much
-//! light gets through on the way, which all ways to find a path have in common but for the part on which its ends are
-//! connected; and σ is the mean of the wavelengths'. Weights of all ways still add up to 1, as all put the same in, and
-//! what a way brings stays as bounded as without media: its own transmittance is in what it carries.
+//! In media, the extinction takes the place of the surface cosine. A direction of density p that arrives over a
+//! distance d has the density p σ / d² per volume, as it has p cos θ / d² per area on a surface. So MIS treats both
+//! alike. Transmittance is left out of these densities: it is common to all strategies except for the connecting
+//! segment. σ is the mean over the wavelengths. The weights of all strategies still sum to 1, as all use the same
+//! densities. Contributions stay as bounded as without media, since their own transmittance is included.
 
 use super::filled::{self, Filled};
 use super::flight::Collision;
@@ -18,46 +17,46 @@ use raywright_optics::{Bsdf, Rgb};
 use raywright_scene::media::Coefficients;
 use raywright_scene::{Encounter, LightSampleContext, RayOrigin, Scene, SurfaceInteraction};
 
-/// Where a path has come to.
+/// A vertex of a path.
 #[derive(Clone)]
 pub(crate) struct Vertex<'a> {
     pub point: Point<'a>,
-    /// The ray that came there, and at which `t`.
+    /// The incident ray, and its `t` at the vertex.
     pub ray: Ray,
     pub t: f64,
-    /// What is on the side that the ray came from.
+    /// Media on the side of incidence.
     pub media: MediumStack<Filled>,
 }
 
-/// What is there.
+/// Scattering at a vertex.
 #[derive(Clone)]
 pub(crate) enum Point<'a> {
     Surface {
-        /// As rays without width meet it: densities that are compared are those.
+        /// The interaction of a ray without width, which MIS densities refer to.
         arrived: Box<Arrived<'a>>,
-        /// As a path from a camera sees it, if that differs.
+        /// The interaction of the camera path's wide ray, if that differs.
         wide: Option<Box<SurfaceInteraction>>,
-        /// What a ray that goes through is in.
+        /// Media of a transmitted ray.
         through: MediumStack<Filled>,
     },
     Medium {
         here: Scattering,
-        /// What the medium does to light there.
+        /// Coefficients of the medium there.
         medium: Coefficients,
-        /// What stands for the cosine of a direction: the same whoever comes there, at whichever wavelengths.
+        /// Replacement for the cosine; it is the same for all paths and wavelengths.
         density: f64,
-        /// As [`Collision::came`].
+        /// Path weight as in [`Collision::came`].
         came: Rgb,
     },
 }
 
-/// A vertex as whoever comes from the other end sees it.
+/// A light vertex as seen from a camera vertex.
 pub(crate) struct Met {
-    /// The share of the light that is sent into a solid angle there.
+    /// Share of the flux per solid angle in its direction.
     pub sent: Rgb,
-    /// The density with which a walk from there would go on back along the ray.
+    /// Density with which a camera path from there would continue back along the light path.
     pub back: f64,
-    /// What light is drawn for.
+    /// Context for light sampling.
     pub receiver: LightSampleContext,
 }
 
@@ -67,7 +66,7 @@ impl<'a> Vertex<'a> {
         Self { point: Point::Surface { arrived: Box::new(arrived), wide: None, through }, ray, t, media }
     }
 
-    /// The same as a path from a camera sees it, where that differs.
+    /// Set the interaction of a camera path's wide ray, if that differs.
     pub fn seen(mut self, seen: Option<SurfaceInteraction>) -> Self {
         if let Point::Surface { wide, .. } = &mut self.point {
             *wide = seen.map(Box::new);
@@ -88,7 +87,7 @@ impl<'a> Vertex<'a> {
         Self { point: Point::Medium { here, medium, density, came }, ray, t, media }
     }
 
-    /// Back to where it came from.
+    /// Return the direction back along the incident ray.
     pub fn back(&self) -> DVec3 {
         -self.ray.direction
     }
@@ -107,17 +106,17 @@ impl<'a> Vertex<'a> {
         }
     }
 
-    /// Whether a medium scatters there.
+    /// Return whether this is a point of a medium.
     pub fn is_in_medium(&self) -> bool {
         matches!(self.point, Point::Medium { .. })
     }
 
-    /// Whether it scatters in single directions alone.
+    /// Return whether it has delta directions only.
     pub fn is_single(&self) -> bool {
         matches!(&self.point, Point::Surface { arrived, .. } if arrived.here.bsdf().is_delta())
     }
 
-    /// Whether light cannot be scattered to or from a direction, to be told at once.
+    /// Return true if light to or from a direction certainly contributes nothing: a cheap test.
     pub fn is_hidden_from(&self, direction: DVec3) -> bool {
         match &self.point {
             Point::Surface { arrived, .. } => arrived.here.is_through(direction) && !arrived.here.bsdf().transmits(),
@@ -125,7 +124,7 @@ impl<'a> Vertex<'a> {
         }
     }
 
-    /// What stands for the cosine of a direction.
+    /// Return the cosine of a direction, or its replacement in a medium.
     pub fn cosine(&self, direction: DVec3) -> f64 {
         match &self.point {
             Point::Surface { arrived, .. } => arrived.cosine(direction),
@@ -133,7 +132,7 @@ impl<'a> Vertex<'a> {
         }
     }
 
-    /// What light is drawn for.
+    /// Return the context for light sampling.
     pub fn receiver(&self) -> LightSampleContext {
         match &self.point {
             Point::Surface { arrived, .. } => arrived.here.light_context(),
@@ -141,7 +140,7 @@ impl<'a> Vertex<'a> {
         }
     }
 
-    /// As [`Encounter::evaluate`].
+    /// Evaluate as [`Encounter::evaluate`] does.
     pub fn evaluate(&self, direction: DVec3) -> (Rgb, f64) {
         match &self.point {
             Point::Surface { arrived, wide: None, .. } => arrived.here.evaluate(direction),
@@ -152,7 +151,7 @@ impl<'a> Vertex<'a> {
         }
     }
 
-    /// Of a path from a camera, the density with which light from a direction goes on along it.
+    /// Return the density with which a light path from a direction continues along this camera path.
     pub fn light_back_pdf(&self, direction: DVec3) -> f64 {
         match &self.point {
             Point::Surface { arrived, .. } => arrived.met_from(direction, 1.0, 0.0).onward_pdf(arrived.back()),
@@ -160,7 +159,7 @@ impl<'a> Vertex<'a> {
         }
     }
 
-    /// Of a path of light, the density with which it goes on in a direction.
+    /// Return the density with which this light path continues in a direction.
     pub fn light_pdf(&self, direction: DVec3) -> f64 {
         match &self.point {
             Point::Surface { arrived, .. } => onward_pdf(&arrived.here, direction),
@@ -168,7 +167,7 @@ impl<'a> Vertex<'a> {
         }
     }
 
-    /// Of a path of light, as somebody meets it who comes from a direction over a distance.
+    /// Return this light vertex as seen from a direction and distance.
     pub fn met_from(&self, direction: DVec3, distance: f64) -> Met {
         match &self.point {
             Point::Surface { arrived, .. } => {
@@ -183,8 +182,8 @@ impl<'a> Vertex<'a> {
         }
     }
 
-    /// Of a path of light, the share that is sent into a solid angle in a direction, seen from such a distance by what
-    /// is so wide.
+    /// Return the share of this light path's flux per solid angle in a direction. The viewer has a given distance and
+    /// ray width.
     pub fn towards(&self, direction: DVec3, distance: f64, width: f64) -> Rgb {
         match &self.point {
             Point::Surface { arrived, .. } => arrived.towards(direction, distance, width),
@@ -192,7 +191,7 @@ impl<'a> Vertex<'a> {
         }
     }
 
-    /// Draws where light goes on to.
+    /// Sample the next direction of a light path.
     pub fn onward(&self, choice: &mut dyn FnMut() -> f64, u: [f64; 2]) -> Option<Onward> {
         match &self.point {
             Point::Surface { arrived, .. } => arrived.onward(choice, u),
@@ -204,7 +203,7 @@ impl<'a> Vertex<'a> {
         }
     }
 
-    /// What a ray that leaves in a direction is in.
+    /// Return the media of a ray that leaves in a direction.
     pub fn media(&self, direction: DVec3) -> MediumStack<Filled> {
         match &self.point {
             Point::Surface { arrived, through, .. } if arrived.here.is_through(direction) => *through,
@@ -212,7 +211,7 @@ impl<'a> Vertex<'a> {
         }
     }
 
-    /// What a ray that was drawn is in, by whether it goes through.
+    /// Return the media of a sampled ray, which is transmitted or not.
     pub fn media_after(&self, is_through: bool) -> MediumStack<Filled> {
         match &self.point {
             Point::Surface { through, .. } if is_through => *through,
@@ -220,12 +219,12 @@ impl<'a> Vertex<'a> {
         }
     }
 
-    /// Whether a path from a camera sees it in another way than rays without width.
+    /// Return whether the camera path's wide ray has a different interaction.
     pub fn is_wide(&self) -> bool {
         matches!(&self.point, Point::Surface { wide: Some(_), .. })
     }
 
-    /// Mean curvature, as a path from a camera sees it.
+    /// Return the mean curvature for the camera path.
     pub fn curvature(&self) -> f64 {
         match &self.point {
             Point::Surface { wide: Some(wide), .. } => wide.curvature(),
@@ -233,12 +232,12 @@ impl<'a> Vertex<'a> {
         }
     }
 
-    /// The ray that leaves, to a primitive or to none, as another has it.
+    /// Return the ray with this vertex's time, that skips this primitive and `to`.
     pub fn leaving(&self, ray: Ray, to: u32) -> Ray {
         Ray { time: self.ray.time, misses: [self.primitive(), to], ..ray }
     }
 
-    /// Which primitive it is on.
+    /// Return the primitive.
     pub fn primitive(&self) -> u32 {
         match &self.point {
             Point::Surface { arrived, .. } => arrived.hit.primitive,
@@ -246,7 +245,7 @@ impl<'a> Vertex<'a> {
         }
     }
 
-    /// What is left of light that has come by way of what gives more than there is ([`Bsdf::again`]).
+    /// Return the remaining share of light that met a reflectance above 1 before ([`Bsdf::again`]).
     pub fn again(&self) -> Rgb {
         match &self.point {
             Point::Surface { arrived, .. } => arrived.here.bsdf().again(),

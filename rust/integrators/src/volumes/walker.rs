@@ -1,4 +1,4 @@
-//! Paths from the camera.
+//! Volumetric camera paths.
 
 use super::asking::Asks;
 use super::course::{Course, Going, Place};
@@ -22,33 +22,33 @@ use raywright_optics::{Bsdf, BsdfSample, Rgb};
 use raywright_scene::{Encounter, Footprint, Gaze, Light, LightSample, LightSampleContext, Scene, SurfaceInteraction};
 use std::cell::{Cell, RefCell};
 
-/// The number and the count of the draws of those who draw once.
+/// Index and count of a single light sample.
 pub(super) const ONCE: (u32, u32) = (0, 1);
 
-/// Who follows paths, and asks what their rays hit.
+/// A path tracer that is generic over ray intersection.
 #[derive(Clone, Copy)]
 pub(super) struct Walker<'a, A> {
     pub(super) settings: Volumes,
     pub(super) scene: &'a Scene,
-    /// How wide cameras' rays are, if anybody asks.
+    /// Footprint of camera rays, if materials need it.
     footprint: Option<Footprint>,
-    /// Lights that are points.
+    /// Point lights.
     pub(super) points: &'a [(DVec3, &'a dyn Light)],
-    /// What is known of light where paths are scattered, if anything is.
+    /// Precomputed light at scattering events, if any.
     pub(super) known: Option<&'a dyn KnownLight>,
-    /// Who tells what they hit.
+    /// Ray intersection.
     asks: A,
 }
 
-/// What one thread works with.
+/// Per-thread state.
 pub(super) struct Walkers<'a> {
     walker: Walker<'a, ()>,
     reuse: Reuse,
-    /// What each path leaves to be shared, where any is.
+    /// Shared vertices of each path, if any.
     parts: Vec<Parts>,
 }
 
-/// The part of a ray in an even medium in which it was scattered, and the density of the place.
+/// The span of a ray in a homogeneous medium where it was scattered, and the density of the sampled distance.
 struct Part {
     span: [f64; 2],
     t: f64,
@@ -69,13 +69,13 @@ impl<'a> Walkers<'a> {
 }
 
 impl<'a, A: Asks> Walker<'a, A> {
-    /// Whether paths go on in all directions into which light is scattered.
+    /// Return whether paths continue in all scattered directions.
     pub(super) fn follows_all(&self) -> bool {
         self.settings.onwards == Onwards::All
     }
 
-    /// What arrives along a camera's ray. `waiting` is room for paths that have been split off and wait, and `parts` is
-    /// told what is to be shared, which is not in what is returned.
+    /// Return the radiance along a camera ray. `waiting` is storage for split paths. `parts` receives shared
+    /// contributions, which the result excludes.
     async fn follow(
         &self,
         sample: &mut CameraSample,
@@ -92,8 +92,8 @@ impl<'a, A: Asks> Walker<'a, A> {
             None => self.scene.plan().needs().waves.then(|| Waves::of(u)),
         };
         let mut numbers = Numbers::new(&mut sample.sampler);
-        // The first of the wavelengths is the hero, unless other paths have the same: what parts these ends all but the
-        // first, and the one that decides is to have nothing to do with that. Of red, green and blue it is any.
+        // The first wavelength is the hero, unless other paths share the wavelengths: dispersion terminates all but the
+        // first. The wavelength that samples distances must be independent of that. For RGB it is any of the three.
         let hero = match (waves, self.known) {
             (Some(_), Some(_)) => numbers.hero(),
             (Some(_), None) => 0,
@@ -118,7 +118,7 @@ impl<'a, A: Asks> Walker<'a, A> {
                         *light += self.known_among(&path, &here, number);
                         false
                     }
-                    // Nothing but the medium lies between.
+                    // Only the medium lies between.
                     Place::Medium { here, collision, .. } if was_first && path.passed == 0 => {
                         path.come_to(collision.t, 0.0);
                         let met = self.scatter_shared(&mut path, &here, hero, &mut numbers, cancel).await;
@@ -160,13 +160,13 @@ impl<'a, A: Asks> Walker<'a, A> {
         waves.map_or(light, |waves| waves.seen(light))
     }
 
-    /// What lies on the way of paths.
+    /// Return the medium traversal of the path's wavelengths.
     pub(super) fn course(&self, waves: Option<Waves>) -> Course<'a, A> {
         Course { scene: self.scene, asks: self.asks, scatters: self.settings.scatters, roulette: false, waves }
     }
 
-    /// Takes a path along its ray to where it is scattered next; none if it leaves the scene, and with what arrives
-    /// from there.
+    /// Advance a path along its ray to its next scattering event. Return `None` if it leaves the scene, after adding
+    /// the light from outside.
     async fn advance(
         &self,
         path: &mut PathState,
@@ -190,13 +190,13 @@ impl<'a, A: Asks> Walker<'a, A> {
         place
     }
 
-    /// Whether light of points is asked for on the way of a path through even media.
+    /// Return whether point lights are sampled along the path through homogeneous media.
     fn is_lit(&self, path: &PathState) -> bool {
         let may_scatter = self.settings.max_depth.is_none_or(|most| path.bounce < most);
         may_scatter && !self.points.is_empty() && self.known.is_none()
     }
 
-    /// What comes from outside the scene along a path's ray, weighed beside asking for it.
+    /// Return the weighted light of infinite lights along a path's ray.
     fn light_from_outside(&self, path: &PathState) -> Rgb {
         let lights = self.scene.lights();
         let arriving = lights.infinite_radiance_at(path.ray.direction, path.waves.as_ref());
@@ -207,8 +207,8 @@ impl<'a, A: Asks> Walker<'a, A> {
         arriving * self.by_chance(path, || lights.infinite_pdf(&receiver, path.ray.direction))
     }
 
-    /// How much light counts that a path has run into, beside asking for it where the path was scattered last, which
-    /// has this density.
+    /// Return the MIS weight of light that a path hits, given the density of light sampling at its last scattering
+    /// event.
     fn by_chance(&self, path: &PathState, asked: impl FnOnce() -> f64) -> f64 {
         if path.pdf == f64::INFINITY {
             return 1.0;
@@ -222,7 +222,7 @@ impl<'a, A: Asks> Walker<'a, A> {
         }
     }
 
-    /// Scatters a path in a medium, and says whether it goes on.
+    /// Scatter a path in a medium and return whether it continues.
     #[allow(clippy::too_many_arguments)]
     async fn scatter(
         &self,
@@ -255,8 +255,7 @@ impl<'a, A: Asks> Walker<'a, A> {
         self.go_on(path, here, &next, media, numbers.one(chance), self.never_ends())
     }
 
-    /// Scatters a path at a surface, and says whether it goes on. Where what it finds from there on may be shared,
-    /// that is told apart from what is its own.
+    /// Scatter a path at a surface and return whether it continues. Contributions that may be shared are kept separate.
     #[allow(clippy::too_many_arguments)]
     async fn reflect(
         &self,
@@ -272,7 +271,7 @@ impl<'a, A: Asks> Walker<'a, A> {
         let (scene, geometry) = (self.scene, self.scene.geometry());
         let surface = geometry.surface(&ray, &hit);
         let emission = scene.emission_at(&surface);
-        // What is shared is seen by paths of other widths as well.
+        // Shared contributions are also used by paths of other widths.
         let is_wide = self.footprint.is_some() && shared.is_none() && !path.is_shared;
         let width = if is_wide { path.footprint.at(hit.t).width } else { 0.0 };
         let gaze = Gaze { width, waves: path.waves };
@@ -329,7 +328,7 @@ impl<'a, A: Asks> Walker<'a, A> {
         let choice = numbers.ray.scattering_choice();
         let u = numbers.two(choice + 1);
         let Some(next) = here.sample(&mut || numbers.one(choice), u) else { return false };
-        // What is known is scattered by all but single directions.
+        // Precomputed light covers all but delta directions.
         if arrival.is_known() && !next.is_delta() {
             return false;
         }
@@ -341,7 +340,7 @@ impl<'a, A: Asks> Walker<'a, A> {
         self.go_on(path, &here, &next, media, numbers.one(chance), true)
     }
 
-    /// Sends on a path for every single direction that a surface scatters into.
+    /// Continue a path in every delta direction of a surface.
     fn split(
         &self,
         path: &PathState,
@@ -365,7 +364,7 @@ impl<'a, A: Asks> Walker<'a, A> {
         false
     }
 
-    /// Sends on as many paths as look about from where light is known.
+    /// Continue with final gather rays from a surface with precomputed light.
     fn look_about(
         &self,
         path: &PathState,
@@ -375,7 +374,7 @@ impl<'a, A: Asks> Walker<'a, A> {
         numbers: &mut Numbers,
     ) {
         for branch in 0..path.splits as u32 {
-            // The first goes on as the path that it comes from.
+            // The first branch keeps the path's index.
             let branch = if branch == 0 { path.branch } else { branch };
             let dimensions = Dimensions::of(path.bounce, branch);
             let choice = dimensions.scattering_choice();
@@ -384,7 +383,7 @@ impl<'a, A: Asks> Walker<'a, A> {
             let media = if next.is_through { through } else { path.media };
             next.pdf *= path.splits;
             next.weight /= path.splits;
-            // A coat that is like a mirror is one, whatever lies below.
+            // A specular coat stays specular, whatever is below it.
             let is_gathered = !next.is_delta() || path.is_gathered;
             let is_sharp_since = next.is_delta() && path.is_gathered;
             let mut one = PathState { branch, is_gathered, is_sharp_since, splits: 1.0, ..*path };
@@ -395,13 +394,13 @@ impl<'a, A: Asks> Walker<'a, A> {
         }
     }
 
-    /// Whether paths could be scattered for ever between surfaces.
+    /// Return whether paths could scatter indefinitely between surfaces.
     pub(super) fn never_ends(&self) -> bool {
         self.scene.surrounding().is_some()
     }
 
-    /// Sends a path on along a direction drawn, unless roulette ends it by a uniform number, and says whether it did.
-    /// Where light leaves a medium sooner or later, none of it has to be ended that has lost nothing.
+    /// Continue a path in a sampled direction, unless roulette with a uniform number ends it, and return whether it
+    /// continues. In finite media, unattenuated light is never terminated, as it leaves them eventually.
     pub(super) fn go_on(
         &self,
         path: &mut PathState,
@@ -426,7 +425,7 @@ impl<'a, A: Asks> Walker<'a, A> {
         if throughput.max() * path.scale < self.settings.least {
             return false;
         }
-        // Whether a path gets to where it shares is for the densities there alone to tell.
+        // Roulette must not affect the path up to its shared vertex: only the sampling densities do.
         if path.is_first || path.bounce < self.settings.roulette_depth.min(roulette::AT_LATEST) {
             return !throughput.is_black();
         }
@@ -444,7 +443,7 @@ impl<'a, A: Asks> Walker<'a, A> {
 }
 
 impl Walkers<'_> {
-    /// Follows the paths of some samples to their ends.
+    /// Trace the paths of some samples to their ends.
     fn follow(&mut self, samples: &mut [CameraSample], cancel: &Cancel, radiance: &mut [Rgb]) {
         assert_eq!(samples.len(), radiance.len());
         let Walker { settings, scene, footprint, points, known, .. } = self.walker;

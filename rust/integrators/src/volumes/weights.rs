@@ -1,43 +1,43 @@
-//! How much what is found along a path counts.
+//! Spectral MIS weights of paths.
 
 use raywright_optics::Rgb;
 use raywright_optics::spectra::Waves;
 
-/// What a path carries for three wavelengths, all over the density with which the one that decides, the hero, has
-/// drawn it so far: its own density there is 1, so that no mean of three is below a third.
+/// Path weights for three wavelengths, all relative to the density of the hero's path sampling. So the hero's own
+/// density is 1, and the mean of the three is at least a third.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Weights {
-    /// How much of the light from here gets back to where the path started.
+    /// Throughput from the vertex to the start of the path (pbrt-v4: beta).
     pub carried: Rgb,
-    /// The density with which each would have drawn the path.
+    /// Density of the path for each wavelength as the hero (r_u).
     pub drawn: Rgb,
-    /// The same with light asked for where the path was scattered last, in place of the way that it has come since.
+    /// The same with light sampling at the last scattering event instead of the segment since (r_l).
     pub asked: Rgb,
 }
 
 impl Weights {
-    /// Of a path that starts.
+    /// Weights at the start of a path.
     pub const START: Self = Self { carried: Rgb::ONE, drawn: Rgb::ONE, asked: Rgb::ONE };
 
-    /// What light from here adds.
+    /// Return the weight of light at this vertex.
     #[inline]
     pub fn throughput(&self) -> Rgb {
         self.carried / self.drawn.mean()
     }
 
-    /// Leaves the light of the first alone, the hero, which stands for all three: no other could have drawn what
-    /// follows, and so its own density is all that the path so far counts over.
+    /// Keep the light of the first wavelength, the hero, which then stands for all three. No other wavelength could
+    /// sample the rest of the path, so only its own density counts for the path so far.
     pub fn end_all_but_hero(&mut self) {
         let (carried, asked) = (Waves::ended(self.carried), Rgb::splat(self.asked[0]));
         *self = Self { carried, drawn: Rgb::ONE, asked };
     }
 
-    /// The same where any of the three decides, whichever is the hero at what parts them.
+    /// Keep the light of the first wavelength if any of the three may sample distances.
     pub fn end_all_but_first(&mut self) {
         *self = Self { carried: Waves::ended(self.throughput()), ..Self::START };
     }
 
-    /// Multiplies all three.
+    /// Multiply all three.
     #[inline]
     pub fn times(&mut self, carried: Rgb, drawn: Rgb, asked: Rgb) {
         self.carried *= carried;
