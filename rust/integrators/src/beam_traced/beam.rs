@@ -1,10 +1,9 @@
-//! Beams, and what faces look like in them.
+//! Beams and the projection of faces into them.
 //!
-//! A flat mirror turns a beam into one that comes from behind it, from where the eye is seen in the mirror. Told by the
-//! place on the film that it comes from, each of its rays is `apex + t · direction(x, y)`, and the direction is linear
-//! in x and y, however many mirrors it has met, and faces of glass where refraction is taken for linear (`onward.rs`).
-//! So the film is the plane that all is cut in: straight edges are straight there, and 1 / t, the nearness, is linear
-//! in x and y on every plane.
+//! A flat mirror turns a beam into one from the mirror image of the eye. In film coordinates each ray of a beam is
+//! `apex + t · direction(x, y)`. The direction is linear in x and y after any number of mirrors, and of faces of glass
+//! with linearized refraction (`onward.rs`). So all clipping is done in the film plane: straight edges project to
+//! straight edges, and 1 / t, the nearness, is linear in x and y on every plane.
 
 use glam::DMat3;
 use raywright_accel::Primitives;
@@ -12,27 +11,27 @@ use raywright_base::math::convex::{Convex, HalfPlane, above, area, sides};
 use raywright_base::math::{DVec2, DVec3, Ray};
 use raywright_scene::{Camera, Geometry, Perspective};
 
-/// Corners that are so near to a line of the film, in pixels, are on it.
+/// Distance, in pixels, below which corners are on a line of the film.
 pub(super) const ON_LINE: f64 = 1e-11;
 
-/// What is smaller, in pixels, is left out.
+/// Size, in pixels, below which polygons are dropped.
 pub(super) const LEAST: f64 = 1e-13;
 
-/// All points x with `normal · x` above an offset.
+/// The half-space of points x with `normal · x` above an offset.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct HalfSpace {
     pub normal: DVec3,
     pub offset: f64,
 }
 
-/// Which face a beam comes from, and how.
+/// The face that a beam comes from.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Origin {
-    /// The beam that has met it, by its number.
+    /// Index of the beam that hit the face.
     pub beam: usize,
     pub primitive: u32,
     pub nearness: DVec3,
-    /// Of one that goes on on the other side, how many times as far from the face it comes from: 1 if straight on.
+    /// For transmission, the factor on the apex's distance from the face: 1 if straight on.
     pub through: Option<f64>,
 }
 
@@ -40,15 +39,15 @@ pub(super) struct Origin {
 #[derive(Clone, Debug)]
 pub(super) struct Beam {
     pub apex: DVec3,
-    /// What x, y and 1 are multiplied by in the direction of the ray through (x, y), and the inverse of that.
+    /// Matrix from (x, y, 1) to the ray direction, and its inverse.
     axes: DMat3,
     inverse: DMat3,
-    /// What of the film it is seen at.
+    /// Its part of the film.
     pub window: Convex,
-    /// Where it begins; `None` at the eye.
+    /// Plane where it begins; `None` at the eye.
     beyond: Option<HalfSpace>,
     pub origin: Option<Origin>,
-    /// How many surfaces it has met.
+    /// Number of surfaces so far.
     pub bounce: u32,
 }
 
@@ -56,19 +55,19 @@ pub(super) struct Beam {
 #[derive(Clone, Debug)]
 pub(super) struct Seen {
     pub primitive: u32,
-    /// What of it is in the beam, on the film.
+    /// Its visible part on the film.
     pub outline: Convex,
     pub sides: Vec<HalfPlane>,
-    /// The corners of the least rectangle around it.
+    /// Corners of the bounding rectangle.
     pub bounds: [DVec2; 2],
-    /// 1 / t at (x, y) is its product with (x, y, 1).
+    /// Coefficients of nearness: 1 / t at (x, y) is the product with (x, y, 1).
     pub nearness: DVec3,
-    /// The greatest there is.
+    /// Maximum nearness.
     pub nearest: f64,
 }
 
 impl Beam {
-    /// All that a camera sees.
+    /// Return the beam of a camera's whole view.
     pub fn of(camera: &Perspective) -> Self {
         let [width, height] = camera.body().size();
         let [middle, right, up] = camera.window().axes(camera.viewpoint());
@@ -78,7 +77,7 @@ impl Beam {
         Self { apex, axes, inverse: axes.inverse(), window, beyond: None, origin: None, bounce: 0 }
     }
 
-    /// The beam that goes on from a part of a face: that which a mirror throws back, or which goes through.
+    /// Return the reflected or transmitted beam of a part of a face.
     pub fn goes_on(&self, part: Convex, geometry: &Geometry, origin: Origin) -> Self {
         let (normal, corner) = (geometry.normal(origin.primitive), geometry.corners(origin.primitive)[0]);
         let normal = if normal.dot(self.apex - corner) < 0.0 { -normal } else { normal };
@@ -97,38 +96,38 @@ impl Beam {
         next
     }
 
-    /// Changes the way of each ray, linearly.
+    /// Apply a linear map to the ray directions.
     fn turn(&mut self, changed: impl Fn(DVec3) -> DVec3) {
         let DMat3 { x_axis, y_axis, z_axis } = self.axes;
         self.axes = DMat3::from_cols(changed(x_axis), changed(y_axis), changed(z_axis));
         self.inverse = self.axes.inverse();
     }
 
-    /// The place of the film whose ray has a direction; `None` if there is none.
+    /// Return the film position of a ray direction, if there is one.
     pub fn place(&self, direction: DVec3) -> Option<DVec2> {
         let at = self.inverse * direction;
         (at.z > 0.0).then(|| at.truncate() / at.z)
     }
 
-    /// The way of the ray through a place, of the length that t counts in.
+    /// Return the ray direction at a film position, of the length that t refers to.
     pub fn direction(&self, at: DVec2) -> DVec3 {
         self.axes * at.extend(1.0)
     }
 
-    /// The ray through a place, of unit direction, and where it meets a plane of this nearness.
+    /// Return the ray at a film position, of unit direction, and its intersection with a plane of given nearness.
     pub fn ray(&self, at: DVec2, nearness: DVec3) -> (Ray, f64) {
         let way = self.direction(at);
         let length = way.length();
         (Ray::new(self.apex, way / length), length / nearness.dot(at.extend(1.0)))
     }
 
-    /// On a plane of this nearness, what a half-space is: a point is in it where the product with (x, y, 1) is above 0,
-    /// which is its distance times its nearness.
+    /// Restrict a half-space to a plane of given nearness: a point is inside if the product with (x, y, 1) is positive.
+    /// That product is its distance times its nearness.
     pub fn on_plane(&self, space: &HalfSpace, nearness: DVec3) -> DVec3 {
         self.axes.transpose() * space.normal + nearness * (space.normal.dot(self.apex) - space.offset)
     }
 
-    /// How a face is seen; `None` where it is not.
+    /// Project a face; return `None` if it is not visible.
     pub fn see(&self, geometry: &Geometry, primitive: u32) -> Option<Seen> {
         let corners = geometry.corners(primitive);
         let normal = geometry.normal(primitive);
@@ -141,7 +140,7 @@ impl Beam {
         let farthest = outline.iter().map(|c| c.abs().max_element()).fold(0.0, f64::max);
         if let Some(HalfSpace { normal, offset }) = self.beyond {
             let (slope, value) = (self.axes.transpose() * normal, normal.dot(self.apex) - offset);
-            // What lies in the mirror's own plane is not beyond it.
+            // Points in the mirror's own plane are not beyond it.
             let slack = 1e-12 * (offset.abs() + value.abs() + slope.abs().dot(DVec3::splat(farthest)));
             outline = above(&outline, |c| slope.dot(c) + value, slack);
         }

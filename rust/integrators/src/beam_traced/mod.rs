@@ -16,23 +16,23 @@ use raywright_optics::Rgb;
 use raywright_scene::{Camera, Scene, SurfaceInteraction};
 use tree::Tree;
 
-/// Beam tracing (Heckbert and Hanrahan, "Beam Tracing Polygonal Objects", 1984): in place of rays, the whole view is
-/// followed as a beam. What is seen in it parts it into polygons; flat mirrors throw these back, as beams from where
-/// the eye is seen in them, flat faces of glass refract them, and beams from lights part them into lit and shadowed.
-/// Each pixel is the mean over its own square: of every polygon, its area there times its radiance, by three points of
-/// each triangle that it is cut into. So edges are exact, and the picture has no noise.
+/// Beam tracing (Heckbert and Hanrahan, "Beam Tracing Polygonal Objects", 1984): the whole view is one beam instead of
+/// rays. The faces in it divide it into polygons. Flat mirrors reflect these as beams from the mirror image of the eye,
+/// and flat glass refracts them. Beams from lights divide them into lit and shadowed parts. Each pixel is the mean over
+/// its square: the area of each polygon in it times its radiance, by three-point quadrature over triangles. So edges
+/// are exact, and the picture has no noise.
 ///
-/// It is Whitted's picture (what is scattered otherwise than as by a mirror is not followed) of meshes in the light of
-/// lights without extent. Its time grows with the square of the number of faces in view.
+/// It renders meshes with Whitted's model: only specular reflection and transmission are followed, and lights have no
+/// extent. Its time is quadratic in the number of visible faces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BeamTraced {
-    /// The greatest number of surfaces that light comes by, from the light on.
+    /// Maximum number of surfaces on a path of light, counted from the light.
     pub max_depth: u32,
-    /// Radiance that arrives from everywhere in place of what is not followed. Surfaces reflect their ambient share of
-    /// it ([`Material::ambient`](raywright_scene::Material::ambient)).
+    /// Uniform incident radiance that replaces light not followed. Surfaces reflect their ambient share of it
+    /// ([`Material::ambient`](raywright_scene::Material::ambient)).
     pub ambient: Rgb,
-    /// How many pixels a refracted ray may be off, seen from afar; refracted beams are cut until none is. Infinite cuts
-    /// none, as the paper does.
+    /// Maximum error of refracted rays, in pixels, as seen from afar; refracted beams are split until they satisfy it.
+    /// Infinite never splits, as in the paper.
     pub tolerance: f64,
 }
 
@@ -42,7 +42,7 @@ impl Default for BeamTraced {
     }
 }
 
-/// Lights that a piece of the film can tell apart.
+/// Maximum number of lights, one bit each in a piece of the film.
 const MOST_LIGHTS: usize = u64::BITS as usize;
 
 impl Integrator for BeamTraced {
@@ -89,7 +89,7 @@ impl Integrator for BeamTraced {
     }
 }
 
-/// What of a shape beams cannot do.
+/// Return what beam tracing does not support about a shape.
 fn unsuited(scene: &Scene, shape: u32) -> Option<&'static str> {
     let material = scene.material(shape);
     if scene.lights().shines(shape) {
@@ -101,12 +101,12 @@ fn unsuited(scene: &Scene, shape: u32) -> Option<&'static str> {
     }
 }
 
-/// What beams cannot do of the single directions that the faces of a shape scatter into in their middles.
+/// Return what beam tracing does not support about the delta directions of a shape's faces, tested at their centers.
 fn is_unlike_paper(scene: &Scene, shape: u32) -> Option<&'static str> {
     scene.geometry().primitives_of(shape).find_map(|face| is_face_unlike_paper(scene, face))
 }
 
-/// The same of one face, if it has an area.
+/// Return the same for one face, if it has an area.
 fn is_face_unlike_paper(scene: &Scene, face: u32) -> Option<&'static str> {
     let geometry = scene.geometry();
     let third = [1.0 / 3.0; 2];
@@ -130,7 +130,7 @@ fn is_face_unlike_paper(scene: &Scene, face: u32) -> Option<&'static str> {
     (etas.len() > 1).then_some("lets light through in two ways, and a beam goes one")
 }
 
-/// Two shapes of glass whose boxes have space in common.
+/// Return two glass shapes with overlapping bounding boxes.
 fn nested(scene: &Scene) -> Option<[u32; 2]> {
     let geometry = scene.geometry();
     let of = |shape: u32| {
@@ -147,21 +147,21 @@ fn nested(scene: &Scene) -> Option<[u32; 2]> {
     })
 }
 
-/// The film, in pieces.
+/// The film, divided into pieces.
 struct Film<'a> {
     job: Job<'a>,
     ambient: Rgb,
-    /// None for a camera that beams do not start from.
+    /// `None` for cameras that beams do not support.
     tree: Option<Tree>,
-    /// The pieces in each block of pixels.
+    /// Pieces in each block of pixels.
     blocks: Vec<Vec<u32>>,
 }
 
 impl Film<'_> {
-    /// Pixels along a side of a block.
+    /// Side of a block, in pixels.
     const SIDE: u32 = 8;
 
-    /// The mean radiance over a pixel.
+    /// Return the mean radiance of a pixel.
     fn pixel(&self, pixel: u32) -> Rgb {
         let width = self.job.camera.width();
         let [x, y] = [pixel % width, pixel / width];
@@ -181,7 +181,7 @@ impl Film<'_> {
             for i in 2..here.len() {
                 let corners = [here[0], here[i - 1], here[i]];
                 let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
-                // Exact where radiance is quadratic over the triangle.
+                // Exact for radiance that is quadratic over the triangle.
                 for corner in corners {
                     let at = middle + (corner - middle) * 0.5;
                     light += tree.radiance(&self.job, self.ambient, piece, at) * (area(&corners) / 3.0);
@@ -198,7 +198,7 @@ impl Session for Film<'_> {
     }
 }
 
-/// What looks pixels up.
+/// The worker that shades pixels.
 struct Looking<'a>(&'a Film<'a>);
 
 impl Worker for Looking<'_> {

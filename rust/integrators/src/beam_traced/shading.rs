@@ -1,4 +1,4 @@
-//! What light a place on the film shows of a face.
+//! Shading of a face at a film position.
 
 use super::beam::Beam;
 use crate::Job;
@@ -6,7 +6,7 @@ use raywright_base::math::{DVec2, DVec3, Hit, Ray};
 use raywright_optics::{BsdfSample, Rgb};
 use raywright_scene::{Encounter, SurfaceInteraction};
 
-/// Where the ray through a place on the film meets a face.
+/// The intersection of a film position's ray with a face.
 pub(super) struct Met {
     ray: Ray,
     hit: Hit,
@@ -15,7 +15,7 @@ pub(super) struct Met {
 }
 
 impl Met {
-    /// Looks up what a beam's ray meets on a face of this nearness.
+    /// Intersect a beam's ray with a face of given nearness.
     pub fn new(job: &Job, beam: &Beam, primitive: u32, nearness: DVec3, at: DVec2) -> Self {
         let geometry = job.scene.geometry();
         let (ray, t) = beam.ray(at, nearness);
@@ -25,7 +25,7 @@ impl Met {
         Self { ray, hit, width, here: SurfaceInteraction::new(job.scene, &ray, &hit, surface, width, 1.0) }
     }
 
-    /// What is sent back of the light of those of the scene's lights whose bits are set, and of an even light.
+    /// Return the reflected radiance of the lights whose bits are set, and of uniform light.
     pub fn light(&self, job: &Job, lit: u64, ambient: Rgb) -> Rgb {
         let mut light = Rgb::ZERO;
         if !ambient.is_black() {
@@ -42,7 +42,7 @@ impl Met {
         light
     }
 
-    /// Calls with each single direction that light is scattered into.
+    /// Visit each delta direction.
     pub fn single_directions(&self, mut each: impl FnMut(BsdfSample)) {
         self.here.bsdf().delta_lobes(self.here.wo(), |single| {
             if let Some(single) = self.here.to_world(single) {
@@ -51,7 +51,7 @@ impl Met {
         });
     }
 
-    /// What of light is thrown back as by a mirror, or goes straight through.
+    /// Return the specular reflectance or the straight transmittance.
     pub fn share(&self, is_through: bool) -> Rgb {
         let mut share = Rgb::ZERO;
         self.single_directions(|single| {

@@ -1,7 +1,7 @@
-//! Which parts of faces a light reaches: beams from lights, cut by what stands in them.
+//! Exact shadow polygons: beams from lights, clipped by occluders.
 //!
-//! What a face keeps a light from is bounded by four planes: its own, and those through the light and its sides. On
-//! another face, each of them is a line of the film, so that edges of shadows are as exact as those of faces.
+//! The shadow volume of a face is bounded by four planes: its own, and those through the light and its sides. On
+//! another face, each plane is a line of the film, so shadow edges are as exact as those of faces.
 
 use super::beam::{Beam, HalfSpace, LEAST};
 use raywright_accel::Primitives;
@@ -10,16 +10,16 @@ use raywright_base::math::{DVec2, DVec3};
 use raywright_base::workers::Cancel;
 use raywright_scene::{Geometry, Place};
 
-/// The space that each of the faces keeps from a light.
+/// The shadow volumes of all faces for one light.
 pub(super) struct Shadows {
     place: Place,
-    /// By face, those that keep anything from it.
+    /// Faces that cast a shadow, with their volumes.
     faces: Vec<(u32, [HalfSpace; 4])>,
-    /// Points that are so near to a plane are in it.
+    /// Distance below which points are on a plane.
     on_plane: f64,
 }
 
-/// From a point, where a light is: of any length but 0.
+/// Return a vector from a point toward a light, of any length but 0.
 fn towards(place: Place, from: DVec3) -> DVec3 {
     match place {
         Place::Point(at) => at - from,
@@ -28,7 +28,7 @@ fn towards(place: Place, from: DVec3) -> DVec3 {
 }
 
 impl Shadows {
-    /// Those of a light in a scene that reaches so far from the origin.
+    /// Make the shadow volumes of a light in a scene of a given extent from the origin.
     pub fn new(place: Place, geometry: &Geometry, reach: f64) -> Self {
         let faces = (0..geometry.count() as u32).filter_map(|p| Some((p, shadow(place, geometry, p)?))).collect();
         let far = match place {
@@ -38,13 +38,13 @@ impl Shadows {
         Self { place, faces, on_plane: 1e-12 * (reach + far) }
     }
 
-    /// Whether a light is on the side of a face that is seen from a point.
+    /// Return whether a light and a point are on the same side of a face.
     pub fn is_before(&self, geometry: &Geometry, primitive: u32, from: DVec3) -> bool {
         let (normal, corner) = (geometry.normal(primitive), geometry.corners(primitive)[0]);
         normal.dot(towards(self.place, corner)) * normal.dot(from - corner) > 0.0
     }
 
-    /// Parts a piece of a face into what the light reaches and what it does not.
+    /// Divide a piece of a face into its lit and its shadowed parts.
     pub fn part(
         &self,
         beam: &Beam,
@@ -83,7 +83,7 @@ impl Shadows {
     }
 }
 
-/// What a face keeps from a light: within all four. `None` if it is seen edge-on from there, or has no area.
+/// Return the shadow volume of a face as four half-spaces; `None` if it is edge-on to the light or has no area.
 fn shadow(place: Place, geometry: &Geometry, primitive: u32) -> Option<[HalfSpace; 4]> {
     let corners = geometry.corners(primitive);
     let normal = geometry.normal(primitive);

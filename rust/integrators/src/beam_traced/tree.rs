@@ -1,4 +1,4 @@
-//! The tree of beams, and the pieces of the film that its leaves are.
+//! The beam tree, whose leaves are pieces of the film.
 
 use super::BeamTraced;
 use super::beam::{Beam, LEAST, Origin, Seen};
@@ -16,16 +16,16 @@ use raywright_optics::Rgb;
 use raywright_scene::Perspective;
 use std::ops::Range;
 
-/// A part of the film that shows one face, by way of certain mirrors and in the light of certain lights.
+/// A piece of the film: one face, seen through a sequence of mirrors and lit by a set of lights.
 #[derive(Clone, Debug)]
 pub(super) struct Piece {
     pub outline: Convex,
-    /// The corners of the least rectangle around it.
+    /// Corners of the bounding rectangle.
     pub bounds: [DVec2; 2],
     beam: usize,
     primitive: u32,
     nearness: DVec3,
-    /// By the number of a light, whether it comes here.
+    /// Bit mask of the lights that reach it.
     lit: u64,
 }
 
@@ -35,21 +35,21 @@ pub(super) struct Tree {
     pub pieces: Vec<Piece>,
 }
 
-/// What one face gives in one beam.
+/// Pieces and next beams of one face in one beam.
 #[derive(Default)]
 struct Found {
     pieces: Vec<Piece>,
     next: Vec<Beam>,
 }
 
-/// What is smaller, in pixels, is not followed further.
+/// Minimum size, in pixels, of parts that are followed further.
 const LEAST_FOLLOWED: f64 = 1e-10;
 
-/// Faces that a thread looks at at a time.
+/// Faces per task of a thread.
 const TOGETHER: usize = 256;
 
 impl Tree {
-    /// Follows the view of a camera.
+    /// Trace the view of a camera.
     pub fn new(job: &Job, camera: &Perspective, settings: &BeamTraced, cancel: &Cancel) -> Self {
         let scene = job.scene;
         let region = scene.region();
@@ -71,7 +71,7 @@ impl Tree {
         tree
     }
 
-    /// What each face gives in a beam.
+    /// Process each face in a beam.
     fn trace(
         &self,
         job: &Job,
@@ -84,7 +84,7 @@ impl Tree {
         let follows = beam.bounce + 1 < settings.max_depth;
         let see = |faces: Range<usize>| faces.filter_map(|face| beam.see(geometry, face as u32)).collect::<Vec<_>>();
         let mut seen: Vec<Seen> = parallel::map_chunks(geometry.count(), TOGETHER, see).into_iter().flatten().collect();
-        // What is near hides most.
+        // Near faces hide most.
         seen.sort_by(|a, b| b.nearest.total_cmp(&a.nearest).then(a.primitive.cmp(&b.primitive)));
         let one = |which: usize| {
             let mut found = Found::default();
@@ -122,7 +122,7 @@ impl Tree {
         parallel::map(seen.len(), one)
     }
 
-    /// The radiance that comes from a piece at a place of the film.
+    /// Return the radiance of a piece at a film position.
     pub fn radiance(&self, job: &Job, ambient: Rgb, piece: &Piece, at: DVec2) -> Rgb {
         let mut beam = &self.beams[piece.beam];
         let mut light = Met::new(job, beam, piece.primitive, piece.nearness, at).light(job, piece.lit, ambient);
@@ -133,7 +133,7 @@ impl Tree {
         light
     }
 
-    /// The numbers of pieces that may be seen in blocks of so many pixels a side, row by row.
+    /// Return the indices of pieces that may be visible in blocks of pixels of a given side, row by row.
     pub fn by_block(&self, size: [u32; 2], side: u32) -> Vec<Vec<u32>> {
         let blocks = size.map(|length| length.div_ceil(side));
         let mut all = vec![Vec::new(); (blocks[0] * blocks[1]) as usize];

@@ -1,15 +1,15 @@
-//! What of each face is seen: all that no other face is before.
+//! Hidden surface removal.
 //!
-//! Where two planes are seen, the one is nearer on one side of a straight line, that on which their nearness is equal.
-//! So what a face hides of another is convex: what lies within its outline, and on that side. It is taken out of the
-//! other's outline, after Weiler and Atherton ("Hidden Surface Removal Using Polygon Area Sorting", 1977), and nothing
-//! has to be sorted, nor do faces that pass through each other make a difference.
+//! Two visible planes have equal nearness on a straight line, and one is nearer on each side of it. So the part of a
+//! face hidden by another is convex: the inside of the other's outline on that side. It is subtracted from the face's
+//! outline, after Weiler and Atherton ("Hidden Surface Removal Using Polygon Area Sorting", 1977). No sorting is
+//! needed, and intersecting faces need no special case.
 
 use super::beam::{LEAST, Seen};
 use raywright_base::math::convex::{Convex, HalfPlane, area, take_out};
 use raywright_base::workers::Cancel;
 
-/// What of one of some faces is seen, in convex parts that do not overlap.
+/// Return the visible part of a face, as disjoint convex polygons.
 pub(super) fn visible(all: &[Seen], which: usize, cancel: &Cancel) -> Vec<Convex> {
     let mine = &all[which];
     let mut parts = vec![mine.outline.clone()];
@@ -32,13 +32,13 @@ pub(super) fn visible(all: &[Seen], which: usize, cancel: &Cancel) -> Vec<Convex
     parts
 }
 
-/// Whether the rectangles around two faces share something.
+/// Return whether the bounding rectangles of two faces overlap.
 fn overlap(a: &Seen, b: &Seen) -> bool {
     a.bounds[0].cmplt(b.bounds[1]).all() && b.bounds[0].cmplt(a.bounds[1]).all()
 }
 
-/// Where another face is before one; `None` if nowhere, and no half-plane if everywhere. Of faces in one plane, the one
-/// with the lower number is.
+/// Return the half-plane where another face is in front; `None` if nowhere, and no half-plane if everywhere. Of
+/// coplanar faces the one with the lower index is in front.
 fn nearer(mine: &Seen, other: &Seen) -> Option<Option<HalfPlane>> {
     let line = other.nearness - mine.nearness;
     let size = other.nearness.abs() + mine.nearness.abs();

@@ -1,4 +1,4 @@
-//! Places, divided by how much light comes there.
+//! A spatial subdivision into cells of similar numbers of guiding photons.
 
 use super::lobe::{Lobe, LobeLanes};
 use super::photon::Photon;
@@ -6,7 +6,7 @@ use raywright_base::math::{DVec3, LANES};
 use raywright_base::parallel;
 use std::ops::Range;
 
-/// Places in cells, by halving the photons at the longest side of the box around them until few are left.
+/// Cells made by halving the photons along the longest side of their bounding box, until few are left.
 #[derive(Debug)]
 pub(super) struct Cells {
     nodes: Vec<Node>,
@@ -14,8 +14,8 @@ pub(super) struct Cells {
     lobes: Vec<LobeLanes>,
 }
 
-/// What is below `at` along an axis is in the first child, which is the next node; the rest is in the second, of this
-/// number. Without an axis it is a leaf, of this number.
+/// A node of the tree. The first child, of points below `at` along an axis, is the next node; `second` is the index of
+/// the other. A node without an axis is a leaf, and `second` its index.
 #[derive(Clone, Copy, Debug)]
 struct Node {
     at: f64,
@@ -24,7 +24,7 @@ struct Node {
 }
 
 impl Node {
-    /// In place of an axis.
+    /// Axis value that marks a leaf.
     const NONE: u32 = 3;
 
     fn leaf(number: usize) -> Self {
@@ -32,7 +32,7 @@ impl Node {
     }
 }
 
-/// A cell, and roughly where photons came to it.
+/// A cell and the bounds of its photons.
 #[derive(Clone, Debug)]
 struct Leaf {
     min: DVec3,
@@ -40,48 +40,48 @@ struct Leaf {
     share: f64,
     gain: f64,
     rarity: f64,
-    /// How many lobes, and in which lanes.
+    /// Number of lobes, and their lane groups.
     count: usize,
     lobes: Range<usize>,
 }
 
-/// What is known of a cell.
+/// Guiding data of a cell.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cell<'a> {
-    /// Where light comes from: one lobe at least, [`LOBES`] at most, whose shares add up to 1; and how many.
+    /// Lobes toward the light, at least one and at most [`LOBES`], whose probabilities sum to 1; and their number.
     pub lobes: &'a [LobeLanes],
     pub count: usize,
-    /// How often to aim.
+    /// Probability of guided sampling.
     pub share: f64,
-    /// How much brighter than usual it is there.
+    /// Brightness relative to direct light.
     pub gain: f64,
-    /// How rarely that light is found: see [`LocalGuide::rarity`](super::LocalGuide::rarity).
+    /// Rarity of the light in BSDF sampling: see [`LocalGuide::rarity`](super::LocalGuide::rarity).
     pub rarity: f64,
 }
 
-/// The most photons in a cell. With 32 or 128 there is more noise in pictures of balls of glass.
+/// Maximum number of photons per cell. With 32 or 128, pictures of glass balls have more noise.
 const PHOTONS: usize = 64;
 
-/// The most lobes of a cell. With 16 there is more noise.
+/// Maximum number of lobes per cell. With 16 there is more noise.
 const LOBES: usize = 32;
 
-/// What a cell knows of those beside it, in sizes of its own: without, light at its borders is missed.
+/// Margin of a cell, relative to its size, from which it includes photons. Without it, light at cell borders is missed.
 const BESIDE: f64 = 0.5;
 
-/// How often directions are drawn from the ball around all others, in case that one is missing.
+/// Probability of sampling the sphere around all others, in case a lobe is missing.
 const WIDE: f64 = 0.1;
 
-/// How often paths aim, at least and at most.
+/// Minimum and maximum probability of guided sampling.
 const SHARES: [f64; 2] = [0.1, 0.6];
 
-/// The smallest share of all directions that light is told to come from.
+/// Minimum solid angle of a lobe as a share of all directions.
 const SMALLEST: f64 = 1e-8;
 
-/// The most that a cell is brighter than usual.
+/// Maximum brightness of a cell relative to direct light.
 const BRIGHTEST: f64 = 1e6;
 
 impl Cells {
-    /// Those of some photons, where so much light over area is usual.
+    /// Build the cells of some photons; `usual` is the mean direct irradiance.
     pub fn new(mut photons: Vec<Photon>, usual: f64) -> Self {
         let mut all = Self { nodes: Vec::new(), leaves: Vec::new(), lobes: Vec::new() };
         let mut ranges = Vec::new();
@@ -104,7 +104,7 @@ impl Cells {
         all
     }
 
-    /// Divides a range of photons. Leaves are numbered in the order of their ranges.
+    /// Split a range of photons. Leaves are numbered in the order of their ranges.
     fn divide(&mut self, photons: &mut [Photon], range: Range<usize>, ranges: &mut Vec<Range<usize>>) {
         let mine = &mut photons[range.clone()];
         let (min, max) = bounds(mine);
@@ -124,7 +124,7 @@ impl Cells {
         self.divide(photons, range.start + half..range.end, ranges);
     }
 
-    /// Adds those photons of a node that are in a box.
+    /// Append the photons of a node inside a box.
     fn gather(&self, node: usize, photons: &[Photon], (min, max): (DVec3, DVec3), near: &mut Vec<Photon>) {
         let Node { at, axis, second } = self.nodes[node];
         if axis == Node::NONE {
@@ -132,7 +132,7 @@ impl Cells {
             near.extend(photons.iter().filter(inside));
             return;
         }
-        // Halves are where `divide` made them.
+        // `divide` splits ranges in the middle.
         let (one, other) = photons.split_at(photons.len() / 2);
         if min[axis as usize] <= at {
             self.gather(node + 1, one, (min, max), near);
@@ -142,10 +142,11 @@ impl Cells {
         }
     }
 
-    /// The cell of a place; `None` where no photon has been about.
+    /// Return the cell of a place; `None` far from any photon.
     #[inline]
     pub fn find(&self, place: DVec3) -> Option<Cell<'_>> {
-        // The way down is about as long for all places, but which it is nobody can foretell: no branch depends on it.
+        // Depths are similar for all places but paths are unpredictable, so the descent is free of data-dependent
+        // branches.
         let coordinates = [place.x, place.y, place.z, 0.0];
         let mut node = 0;
         while self.nodes[node].axis != Node::NONE {
@@ -161,13 +162,13 @@ impl Cells {
 }
 
 impl Leaf {
-    /// What photons that have come to a cell and those beside it tell of it, and its lobes, which stand nowhere yet.
+    /// Make a leaf and its lobes, not yet stored, from the photons in and around a cell.
     fn told(near: &mut [Photon], (min, max): (DVec3, DVec3), usual: f64) -> (Self, Vec<Lobe>) {
         let sides = max - min;
         let size = sides.max_element();
         let light: f64 = near.iter().map(|photon| photon.flux).sum();
         let area = (sides.x * sides.y).max(sides.y * sides.z).max(sides.z * sides.x);
-        // Where no light comes straight, or on no area, all that comes is by way of what is sharp.
+        // Without direct light, or with no area, all light arrives through specular surfaces.
         let brighter = if usual > 0.0 { (light / area / usual).min(BRIGHTEST) } else { BRIGHTEST };
         let all = Lobe::around(near, size);
         let of_all = if usual > 0.0 { brighter / (1.0 + brighter) } else { 1.0 };
@@ -176,12 +177,12 @@ impl Leaf {
         for prototype in near.chunk_by_mut(|a, b| a.chain == b.chain) {
             Lobe::divide(prototype, size, 3, &mut each);
         }
-        // What comes from a lobe is found with the share of directions that it fills.
+        // BSDF sampling finds a lobe with the probability of its share of directions.
         let found = |(lobe, of_lobe): &(Lobe, f64)| (of_lobe / light).powi(2) / lobe.fills().max(SMALLEST);
         let rarity = if light > 0.0 { of_all * of_all * each.iter().map(found).sum::<f64>() } else { 0.0 };
-        // The variance of what is sought in a lobe is its light times its brightness times its solid angle, over how
-        // often it is drawn: so it is best drawn in proportion to the root of their product. The larger ones are mostly
-        // less bright, so that of both together a root of the solid angle is left.
+        // The variance of a lobe's light is its flux times its brightness times its solid angle, over the probability
+        // of sampling it. So the optimal probability is proportional to the square root of that product. Larger lobes
+        // are usually less bright, so the combined factor is the square root of the solid angle.
         let mut strengths: Vec<(Lobe, f64)> =
             each.into_iter().map(|(lobe, light)| (lobe, (light * lobe.fills().sqrt()).sqrt())).collect();
         strengths.sort_by(|a, b| b.1.total_cmp(&a.1));
@@ -192,8 +193,8 @@ impl Leaf {
             strengths.iter().filter(|(_, s)| *s > 0.0).map(|(lobe, s)| lobe.drawn(s * part)).collect();
         let wide = if total > 0.0 { WIDE } else { 1.0 };
         lobes.push(all.drawn(wide));
-        // By how much noise it takes from what paths find of the rest, and adds to it, were each lobe half filled by
-        // what is sought.
+        // Weighs the noise that guiding removes from BSDF sampling against the noise that it adds, if light half filled
+        // each lobe.
         let share = (2.0 * brighter / (2.0 * brighter + 1.0)).clamp(SHARES[0], SHARES[1]);
         let leaf = Self { min, max, share, gain: 1.0 + brighter, rarity, count: lobes.len(), lobes: 0..0 };
         (leaf, lobes)

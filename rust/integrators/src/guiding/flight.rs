@@ -1,4 +1,4 @@
-//! Photons that come to matt surfaces by way of sharp ones.
+//! Tracing of guiding photons: through specular surfaces to matte ones.
 
 use super::is_matt;
 use super::photon::Photon;
@@ -9,23 +9,23 @@ use raywright_base::workers::Cancel;
 use raywright_optics::{AnyBsdf, Bsdf, BsdfSample};
 use raywright_scene::{Encounter, Geometry, LightSample, LightSampleContext, RayOrigin, Scene, SurfaceInteraction};
 
-/// How many are sent.
+/// Number of photons.
 const SENT: u32 = 1 << 16;
 
-/// How many of them go together.
+/// Number of photons per batch.
 const TOGETHER: u32 = 2048;
 
-/// The most surfaces that one meets.
+/// Maximum number of surfaces of a photon's path.
 const SURFACES: u32 = 12;
 
-/// The most matt surfaces that one is scattered at.
+/// Maximum number of matte bounces.
 const MATT: u32 = 2;
 
-/// What is drawn with a density above this, in solid angle, was scattered sharply: a matt surface has at most 1/π.
+/// Minimum density per solid angle of a specular direction: matte surfaces have at most 1/π.
 const SHARP: f64 = 4.0;
 
-/// Photons that came to matt surfaces by way of sharp ones, in an order that depends on the scene only; `None` if
-/// cancelled.
+/// Return the photons that reach matte surfaces through specular ones, in an order that depends on the scene alone.
+/// Return `None` if canceled.
 pub(super) fn photons(scene: &Scene, cancel: &Cancel) -> Option<Vec<Photon>> {
     if scene.lights().is_dark() {
         return Some(Vec::new());
@@ -37,9 +37,9 @@ pub(super) fn photons(scene: &Scene, cancel: &Cancel) -> Option<Vec<Photon>> {
     parts.map(|parts| parts.concat())
 }
 
-/// The light that comes straight from lights to where photons have fallen, over area, on average.
+/// Return the mean direct irradiance at the photons.
 pub(super) fn usual(scene: &Scene, photons: &[Photon]) -> f64 {
-    /// How many are asked.
+    /// Number of photons in the mean.
     const ASKED: usize = 4096;
     let (mut rays, mut arriving, mut asked) = (Vec::new(), Vec::new(), 0.0);
     for (number, photon) in (0..).zip(photons.iter().step_by(photons.len().div_ceil(ASKED).max(1))) {
@@ -60,15 +60,15 @@ pub(super) fn usual(scene: &Scene, photons: &[Photon]) -> f64 {
     arriving.iter().zip(&occluded).filter(|(_, occluded)| !**occluded).map(|(brings, _)| brings).sum::<f64>() / asked
 }
 
-/// Radiance over density, a mean of the channels.
+/// Return radiance over density, averaged over the channels.
 fn strength(light: &LightSample) -> f64 {
     light.weight.mean()
 }
 
-/// What photons are sent to: the primitives that may be sharp.
+/// Targets of emission: primitives that may be specular.
 struct Targets {
     primitives: Vec<u32>,
-    /// By area.
+    /// Choice by area.
     choice: AliasTable,
     area: f64,
 }
@@ -76,7 +76,7 @@ struct Targets {
 impl Targets {
     fn new(scene: &Scene) -> Option<Self> {
         let geometry = scene.geometry();
-        // What is not the same at every point may be sharp at some.
+        // Materials that vary over a surface may be specular somewhere.
         let may_be_sharp = |bsdf: AnyBsdf| !is_matt(&bsdf) || bsdf.roughness() == 0.0;
         let is_target = |shape: u32| {
             geometry.instances_of(shape).is_some() || scene.material(shape).constant().is_none_or(may_be_sharp)
@@ -95,7 +95,7 @@ impl Targets {
         Some(Self { primitives, choice, area: areas.iter().sum() })
     }
 
-    /// A point on one of them, and the normal there; of an instance, any point within the box around it, and no normal.
+    /// Sample a point on a target, with its normal; for an instance, a point in its bounding box, without a normal.
     fn point(&self, geometry: &Geometry, sampler: &mut Sampler) -> Option<(DVec3, Option<DVec3>)> {
         let primitive = self.primitives[self.choice.sample(sampler.one(0))];
         let u = sampler.two(1);
@@ -114,7 +114,7 @@ impl Targets {
     }
 }
 
-/// The area of a primitive; of an instance, half of that of the box around it.
+/// Return the area of a primitive; for an instance, half that of its bounding box.
 fn area(geometry: &Geometry, primitive: u32) -> f64 {
     let Some((instances, instance)) = geometry.instance(primitive) else { return geometry.area(primitive) };
     instances.bounds(instance).map_or(0.0, |bounds| {
@@ -123,31 +123,30 @@ fn area(geometry: &Geometry, primitive: u32) -> f64 {
     })
 }
 
-/// Photons on their way, and the ray that each is about to follow.
+/// Photons in flight, and their next rays.
 #[derive(Default)]
 struct Flight {
     rays: Vec<Ray>,
     flying: Vec<Flying>,
 }
 
-/// A photon on its way.
+/// The state of a photon.
 #[derive(Clone, Copy)]
 struct Flying {
     number: u32,
     flux: f64,
-    /// Whether its light shines into this direction only, or from one point: where that is scattered into single
-    /// directions, no path can find the light.
+    /// True for light from a single direction or point: after delta scattering alone, no path can find it.
     is_single: bool,
-    /// The last surface, and by which ones it came.
+    /// The last surface, and a hash of the surfaces before.
     target: DVec3,
     chain: u64,
-    /// How often it was scattered sharply since the light or a matt surface, and at matt surfaces.
+    /// Number of specular bounces since the light or the last matte surface, and number of matte bounces.
     sharp: u32,
     matt: u32,
 }
 
 impl Flight {
-    /// Part of all that are sent.
+    /// Start one batch of the photons.
     fn new(scene: &Scene, targets: &Targets, part: u32) -> Self {
         let mut all = Self::default();
         for number in part * TOGETHER..(part + 1) * TOGETHER {
@@ -156,7 +155,7 @@ impl Flight {
         all
     }
 
-    /// Sends one from a light to a point of what is sharp.
+    /// Send a photon from a light to a point on a target.
     fn send(&mut self, scene: &Scene, targets: &Targets, number: u32) -> Option<()> {
         let mut sampler = Sampler::new(0, number, 0);
         let geometry = scene.geometry();
@@ -167,7 +166,7 @@ impl Flight {
             Some(source) => source.ray(-light.direction),
             None => Ray::new(point + light.direction * (4.0 * scene.region().radius), -light.direction),
         };
-        // What is hit may be in front of the point; so a closed surface counts twice.
+        // The photon may hit a surface in front of the point, so closed surfaces count twice.
         let cosine = normal.map_or(0.5, |normal| normal.dot(light.direction).abs());
         let flux = strength(&light) * cosine * targets.area / f64::from(SENT);
         if flux > 0.0 && flux.is_finite() {
@@ -178,7 +177,7 @@ impl Flight {
         Some(())
     }
 
-    /// Follows all to their ends.
+    /// Trace all photons to their ends.
     fn follow(mut self, scene: &Scene) -> Vec<Photon> {
         let (mut hits, mut fallen) = (Vec::new(), Vec::new());
         for surface in 0..SURFACES {
@@ -214,7 +213,7 @@ impl Flight {
 }
 
 impl Flying {
-    /// Where it goes on to from the surface of this number on its way; `None` if that is its end.
+    /// Scatter a photon at the surface of an index on its path; return `None` if it ends there.
     fn scattered(&self, here: &SurfaceInteraction, time: f64, surface: u32) -> Option<(Ray, Self)> {
         let mut sampler = Sampler::new(0, self.number, surface + 1);
         let (next, counts) = branch(here, sampler.one(0), sampler.two(1))?;
@@ -222,10 +221,10 @@ impl Flying {
         let goes_on = if is_sharp {
             surface > 0 || !self.is_single || next.pdf < f64::INFINITY
         } else {
-            // What is bright because light is gathered there is seen in mirrors and through glass as a lamp is.
+            // Caustics are seen in mirrors and through glass like lamps.
             self.sharp > 0 && self.matt < MATT
         };
-        // What is refracted stands for as much light as before, though it is another radiance.
+        // Refraction preserves flux, although it changes radiance.
         let flux = self.flux * counts * (next.weight * (next.eta * next.eta)).mean();
         if !goes_on || flux <= 0.0 || !flux.is_finite() {
             return None;
@@ -240,9 +239,9 @@ impl Flying {
     }
 }
 
-/// Draws where a photon goes on to, and how much it counts. Of several lobes, the first and the last are each drawn in
-/// a quarter of all cases at least: what glass reflects is seldom drawn otherwise, and as bright, where it falls, as
-/// what goes through.
+/// Sample a photon's direction and return its weight. Of several lobes, the first and the last each have a probability
+/// of at least a quarter. Reflection by glass would be rare otherwise, but is as bright at its destination as
+/// transmission.
 fn branch(here: &SurfaceInteraction, choice: f64, u: [f64; 2]) -> Option<(BsdfSample, f64)> {
     let choice = if choice < 0.5 {
         2.0 * choice

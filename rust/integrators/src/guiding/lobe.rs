@@ -1,4 +1,4 @@
-//! Balls that light comes from, as they are seen from a neighbourhood.
+//! Spherical emitters as seen from a cell.
 
 use super::photon::Photon;
 use glam::DMat3;
@@ -7,27 +7,28 @@ use raywright_base::math::{DVec3, Frame, LANES, VectorLanes};
 use raywright_base::simd::{Level, loops};
 use std::f64::consts::TAU;
 
-/// A ball that light comes from. As the image of a lamp in a mirror moves with the viewer, its place depends on the
-/// viewer's: linearly, as photons tell by least squares.
+/// A sphere that light comes from. Like the image of a lamp in a mirror, its center moves with the viewer. It is a
+/// linear function of the viewer's position, fitted to the photons by least squares.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Lobe {
-    /// The middle of the places that it is seen from.
+    /// Center of the viewers' positions.
     place: DVec3,
-    /// Where it is as seen from there.
+    /// Center of the sphere as seen from there.
     target: DVec3,
-    /// How it moves.
+    /// Derivative of the center by the viewer's position.
     moves: DMat3,
-    /// The square of its radius.
+    /// Squared radius.
     square: f64,
-    /// How often it is drawn.
+    /// Sampling probability.
     share: f64,
 }
 
 impl Lobe {
-    /// Fewer photons than this do not tell how it moves.
+    /// Minimum number of photons for fitting the derivative.
     const FEW: usize = 6;
 
-    /// The ball that holds where some photons came from, at least one, whose places lie within `size` of each other.
+    /// Return the sphere around the origins of some photons, at least one. Their positions lie within `size` of each
+    /// other.
     pub fn around(photons: &[Photon], size: f64) -> Self {
         let count = photons.len() as f64;
         let place = photons.iter().map(|p| p.position).sum::<DVec3>() / count;
@@ -36,41 +37,38 @@ impl Lobe {
         let fitted = (photons.len() >= Self::FEW).then(|| still.fitted(photons, size));
         let lobe = fitted.filter(|fitted| 2.0 * fitted.spread(photons) < still.spread(photons)).unwrap_or(still);
         let farthest = photons.iter().map(|p| lobe.off(p).length_squared()).fold(0.0, f64::max);
-        // A few photons do not come from as far out as others will. And neighbours see something other than what a few
-        // saw from one place.
+        // A few photons underestimate the extent, and neighbors see other parts than one place does.
         let radius = farthest.sqrt() * (1.0 + 2.0 / count) + if photons.len() < Self::FEW { size / count } else { 0.0 };
-        // Not so small that squares of cosines could not tell its directions from others.
+        // A minimum size keeps squared cosines accurate enough to distinguish the sphere's directions.
         let least = (1e-10 * still.target.distance_squared(still.place)).max(f64::MIN_POSITIVE);
         Self { square: (radius * radius).max(least), ..lobe }
     }
 
-    /// The same, drawn so often.
+    /// Set the sampling probability.
     pub fn drawn(self, share: f64) -> Self {
         Self { share, ..self }
     }
 
-    /// The middle of the ball, as seen from a place.
+    /// Return the sphere's center as seen from a place.
     #[inline(always)]
     pub fn target(&self, place: DVec3) -> DVec3 {
         self.target + self.moves * (place - self.place)
     }
 
-    /// The share of its surroundings that it fills, as seen from the middle: about its solid angle over that of a
-    /// hemisphere.
+    /// Return the share of the surroundings that the sphere fills, seen from the center: about its solid angle over
+    /// that of a hemisphere.
     pub fn fills(&self) -> f64 {
         let far = self.target.distance_squared(self.place);
         self.square / (self.square + far)
     }
 
-    /// Draws a direction to it, all with the same density: a cone's, of less than half of all directions even from
-    /// within.
+    /// Sample a direction to the sphere, uniformly in a cone of less than half of all directions, even from inside.
     #[inline]
     pub fn sample(&self, place: DVec3, u: [f64; 2]) -> DVec3 {
         let way = self.target(place) - place;
         let far = way.length_squared();
         let all = far + self.square;
-        // The height of the cone's cap, 1 − cos θ with cos² θ = d² / (d² + r²), without the cancellation of small
-        // cones.
+        // The height of the cone's cap, 1 − cos θ with cos² θ = d² / (d² + r²), without cancellation for narrow cones.
         let height = self.square / all / (1.0 + (far / all).sqrt());
         let down = u[0] * height;
         let across = (down * (2.0 - down)).sqrt();
@@ -79,15 +77,15 @@ impl Lobe {
         Frame::new(axis).to_world(DVec3::new(across * cos, across * sin, 1.0 - down))
     }
 
-    /// The density in solid angle of a unit direction, times how often the lobe is drawn.
+    /// Return the density per solid angle of a unit direction, times the sampling probability.
     #[cfg(test)]
     pub fn pdf(&self, place: DVec3, direction: DVec3) -> f64 {
         let (is_met, far) = self.meets(place, direction);
         if is_met { self.density(far) } else { 0.0 }
     }
 
-    /// Whether a direction from a place meets it, and the square of how far its middle is from there. Most are missed,
-    /// and told by products alone.
+    /// Return whether a direction from a place hits the sphere, and the squared distance of its center. Most directions
+    /// miss, which products alone decide.
     #[inline(always)]
     fn meets(&self, place: DVec3, direction: DVec3) -> (bool, f64) {
         let way = self.target(place) - place;
@@ -95,27 +93,28 @@ impl Lobe {
         ((along > 0.0) & (along * along * (far + self.square) >= far * far), far)
     }
 
-    /// The density of directions that meet it, times how often it is drawn, where its middle is so far away.
+    /// Return the density of directions that hit the sphere times its sampling probability, for a squared distance of
+    /// its center.
     #[inline]
     fn density(&self, far: f64) -> f64 {
         let all = far + self.square;
         self.share * (1.0 + (far / all).sqrt()) * (all / self.square) / TAU
     }
 
-    /// How far from its middle a photon came from.
+    /// Return the offset of a photon's origin from the center.
     fn off(&self, photon: &Photon) -> DVec3 {
         photon.target - self.target(photon.position)
     }
 
-    /// The sum of squares of those.
+    /// Return the sum of the squared offsets.
     fn spread(&self, photons: &[Photon]) -> f64 {
         photons.iter().map(|p| self.off(p).length_squared()).sum()
     }
 
-    /// With the motion that suits photons best.
+    /// Fit the derivative to the photons.
     fn fitted(self, photons: &[Photon], size: f64) -> Self {
-        // Places mostly lie in a plane, and nothing is known of how it moves across: what is added keeps it still
-        // there.
+        // Positions mostly lie in a plane, which leaves the perpendicular derivative open: regularization makes it
+        // zero.
         let mut places = DMat3::from_diagonal(DVec3::splat(1e-4 * size * size * photons.len() as f64));
         let mut moves = DMat3::ZERO;
         for photon in photons {
@@ -127,8 +126,8 @@ impl Lobe {
         if moves.is_finite() { Self { moves, ..self } } else { self }
     }
 
-    /// Divides photons, at least one, into those that came from one ball each, by halving at most so often: of each,
-    /// the ball, and the light that came from it.
+    /// Split photons, at least one, into clusters of one sphere each, by at most `halvings` levels. Append the sphere
+    /// and the flux of each.
     pub fn divide(photons: &mut [Photon], size: f64, halvings: u32, each: &mut Vec<(Self, f64)>) {
         let lobe = Self::around(photons, size);
         if halvings > 0 && photons.len() > Self::FEW {
@@ -140,7 +139,7 @@ impl Lobe {
             let (one, other) = photons.split_at_mut(half);
             if one.len() > 2 && other.len() > 2 {
                 let halves = Self::around(one, size).spread(one) + Self::around(other, size).spread(other);
-                // Half of an even square, halved, leaves 5/8 of its squares.
+                // Halving a uniform square leaves 5/8 of its variance.
                 if halves < 0.4 * spread {
                     Self::divide(one, size, halvings - 1, each);
                     Self::divide(other, size, halvings - 1, each);
@@ -152,7 +151,7 @@ impl Lobe {
     }
 }
 
-/// Lobes of one place, a lane each; there may be fewer than lanes.
+/// Lobes of one cell, one per lane, with possibly unused lanes.
 #[derive(Clone, Debug)]
 pub(super) struct LobeLanes {
     place: VectorLanes,
@@ -163,7 +162,7 @@ pub(super) struct LobeLanes {
 }
 
 loops! {
-    /// Which lobes a direction meets, a bit each, and how far their middles are.
+    /// Find the lobes that a direction hits, as a bit mask, and the squared distances of their centers.
     fn meet(of: &LobeLanes, place: DVec3, direction: DVec3, met: &mut u32, far: &mut [f64; LANES]) {
         let mut bits = [0; LANES];
         for i in 0..LANES {
@@ -176,7 +175,7 @@ loops! {
 }
 
 impl LobeLanes {
-    /// Of no more than there are lanes. Those that are left are never drawn.
+    /// Store at most as many lobes as lanes. Unused lanes have the probability 0.
     pub fn of(lobes: &[Lobe]) -> Self {
         let nothing = VectorLanes::ZERO;
         let mut lanes =
@@ -192,7 +191,7 @@ impl LobeLanes {
         lanes
     }
 
-    /// That of a lane.
+    /// Return the lobe of a lane.
     #[inline(always)]
     pub fn get(&self, lane: usize) -> Lobe {
         let [x, y, z] = &self.moves;
@@ -205,14 +204,13 @@ impl LobeLanes {
         }
     }
 
-    /// How often that of a lane is drawn.
+    /// Return the sampling probability of a lane's lobe.
     #[inline]
     pub fn share(&self, lane: usize) -> f64 {
         self.share[lane]
     }
 
-    /// A sum, and what all of them in turn add to it: the density in solid angle of a unit direction, times how often
-    /// they are drawn.
+    /// Add to `sum`, lane by lane, the density per solid angle of a unit direction times the sampling probability.
     #[inline]
     pub fn add_pdf(&self, level: Level, place: DVec3, direction: DVec3, mut sum: f64) -> f64 {
         let (mut met, mut far) = (0, [0.0; LANES]);

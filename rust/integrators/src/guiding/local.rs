@@ -1,10 +1,10 @@
-//! Directions towards where light comes from.
+//! Guided sampling of directions at a place.
 
 use super::cells::Cell;
 use raywright_base::math::{DVec3, LANES};
 use raywright_base::simd::Level;
 
-/// Directions from a place towards where light comes from: those to one of several balls.
+/// The distribution of guided directions at a place: a mixture of cones to spheres.
 #[derive(Clone, Copy, Debug)]
 pub struct LocalGuide<'a> {
     cell: Cell<'a>,
@@ -12,35 +12,35 @@ pub struct LocalGuide<'a> {
 }
 
 impl<'a> LocalGuide<'a> {
-    /// Those from a place in a cell.
+    /// Make the distribution at a place in a cell.
     #[inline]
     pub(super) fn new(cell: Cell<'a>, place: DVec3) -> Self {
         Self { cell, place }
     }
 
-    /// How often it is worth while to aim, rather than to leave it to the surface.
+    /// Return the optimal probability of guided sampling instead of BSDF sampling.
     #[inline]
     pub fn share(&self) -> f64 {
         self.cell.share
     }
 
-    /// How much brighter than others the place is, for the light that comes to it by way of what is sharp.
+    /// Return the brightness of the light through specular surfaces relative to direct light.
     #[inline]
     pub fn gain(&self) -> f64 {
         self.cell.gain
     }
 
-    /// How much the light that comes by way of what is sharp varies among samples of surfaces that do not aim, over the
-    /// square of what comes straight and so together.
+    /// Return the variance of the light through specular surfaces with BSDF sampling alone, over the squared sum of
+    /// that light and direct light.
     pub fn rarity(&self) -> f64 {
         self.cell.rarity
     }
 
-    /// Draws a direction: `choice` among the balls, `u` of those to one, all uniform in [0, 1).
+    /// Sample a direction: `choice` selects a sphere and `u` a direction to it, all uniform in [0, 1).
     #[inline]
     pub fn sample(&self, mut choice: f64, u: [f64; 2]) -> DVec3 {
         let Cell { lobes, count, .. } = self.cell;
-        // Shares add up to 1 but for roundings.
+        // Probabilities sum to 1 except for rounding.
         let last = count - 1;
         let mut chosen = last;
         for lobe in 0..last {
@@ -54,7 +54,7 @@ impl<'a> LocalGuide<'a> {
         lobes[chosen / LANES].get(chosen % LANES).sample(self.place, u)
     }
 
-    /// The density in solid angle with which [`LocalGuide::sample`] draws a unit direction.
+    /// Return the density per solid angle of a unit direction in [`LocalGuide::sample`].
     #[inline]
     pub fn pdf(&self, level: Level, direction: DVec3) -> f64 {
         self.cell.lobes.iter().fold(0.0, |sum, lobes| lobes.add_pdf(level, self.place, direction, sum))

@@ -1,4 +1,4 @@
-//! Where light comes from by way of mirrors and glass.
+//! Path guiding toward light through mirrors and glass.
 
 mod cells;
 mod flight;
@@ -18,27 +18,26 @@ use raywright_optics::Bsdf;
 use raywright_scene::Scene;
 use std::sync::Arc;
 
-/// Where light comes from, to the places of a scene, by way of mirrors and glass: paths that want to find it had better
-/// go where photons came from (Jensen, "Importance Driven Path Tracing using the Photon Map", 1995).
+/// Path guiding toward the light that reaches a scene's surfaces through mirrors and glass, in the directions of
+/// photons (Jensen, "Importance Driven Path Tracing using the Photon Map", 1995).
 ///
-/// A path from a matt surface finds a lamp behind a ball of glass only by chance, the less often the smaller the lamp's
-/// image, and each time it counts for the more: the fireflies of path tracing. The lamp cannot be asked, for nothing
-/// goes straight to it. So photons are sent from the lights to what is sharp, and followed to where they fall
-/// (`flight.rs`); places are divided into cells of about as many of them (`cells.rs`), and photons of a cell
-/// that came by the same surfaces are taken together for a ball that light comes from (`lobe.rs`). A path draws its
-/// direction from the cones to these or from its surface, and is weighed by the density of both together
-/// (`local.rs`). So photons that are missing, or wrong, make a picture noisier and never another one, and nothing about
-/// them need be exact.
+/// A path from a matte surface hits a lamp behind a glass ball only by chance. The smaller the lamp's image, the rarer
+/// are the hits, and the higher their weights: the fireflies of path tracing. Light sampling cannot help, as no
+/// straight segment reaches the lamp. So photons are sent from the lights to specular surfaces, and traced to matte
+/// ones (`flight.rs`). Space is divided into cells of similar numbers of photons (`cells.rs`). Photons of a cell with
+/// the same specular chain are fitted by a sphere that light comes from (`lobe.rs`). A path samples the cones to these
+/// spheres or its BSDF, and is weighted by the density of the mixture (`local.rs`). So missing or inaccurate photons
+/// add noise but no bias, and no part of the guide has to be exact.
 ///
-/// It depends on the scene alone: not on the camera, nor on threads.
+/// It depends on the scene alone, neither on the camera nor on the number of threads.
 #[derive(Debug)]
 pub struct Guide {
     cells: Cells,
 }
 
 impl Guide {
-    /// That of a scene, which keeps it. Photons are sent when it is first asked for. `None` where none comes anywhere
-    /// by way of what is sharp, and when it is cancelled before all have come.
+    /// Return the guide of a scene, which caches it. Photons are traced on the first call. Return `None` if no light
+    /// arrives through specular surfaces, or after a cancellation.
     pub fn of(scene: &Scene, cancel: &Cancel) -> Option<Arc<Self>> {
         let sent = || {
             let photons = flight::photons(scene, cancel)?;
@@ -48,24 +47,23 @@ impl Guide {
         scene.kept(sent).and_then(|guide| (*guide).clone())
     }
 
-    /// What photons tell of it, and how much light comes straight from lights to where they have fallen, over area, on
-    /// average; `None` without photons.
+    /// Make the guide from photons and the mean direct irradiance at them; `None` without photons.
     fn new(photons: Vec<Photon>, usual: f64) -> Option<Self> {
         (!photons.is_empty()).then(|| Self { cells: Cells::new(photons, usual) })
     }
 
-    /// Where light comes to a place from; `None` where no photon has been about.
+    /// Return the distribution of directions at a place; `None` far from any photon.
     #[inline]
     pub fn at(&self, place: DVec3) -> Option<LocalGuide<'_>> {
         self.cells.find(place).map(|cell| LocalGuide::new(cell, place))
     }
 }
 
-/// Whether a surface scatters light so widely that it is worth while to aim: not in single directions alone, nor in a
-/// lobe that knows better where light matters, nor to both sides.
+/// Return whether a surface scatters so widely that guiding pays: not in delta directions alone, nor in a narrow lobe,
+/// which is better sampled itself, nor to both sides.
 #[inline]
 pub fn is_matt<S: Bsdf>(bsdf: &S) -> bool {
-    /// The roughness of what is sharp, at most.
+    /// Maximum roughness of a specular surface.
     const SHARP: f64 = 0.2;
     let roughness = bsdf.roughness();
     !bsdf.is_delta() && !bsdf.transmits() && (roughness == 0.0 || roughness > SHARP)

@@ -1,18 +1,18 @@
-//! Light that has come to a matt surface by way of sharp ones.
+//! Guiding photons.
 
 use raywright_base::math::DVec3;
 
-/// Light that has come to a place.
+/// A photon on a matte surface that arrived through specular ones.
 #[derive(Clone, Copy, Debug)]
 pub struct Photon {
-    /// Where it fell, just off the surface.
+    /// Position just off the surface.
     pub position: DVec3,
-    /// The shading normal there, on its side.
+    /// Shading normal on the side of incidence.
     pub normal: DVec3,
-    /// The last surface before, that it came from.
+    /// Position on the last specular surface.
     pub target: DVec3,
-    /// About how much light it stands for, W, a mean of the channels.
+    /// Approximate flux, W, averaged over the channels.
     pub flux: f64,
-    /// Tells by which surfaces it came, since the light or a matt one.
+    /// Hash of the specular surfaces since the light or the last matte surface.
     pub chain: u64,
 }

@@ -1,4 +1,4 @@
-//! Cones, images and cells, against what they are in closed form.
+//! Cones, images and cells, against closed forms.
 
 use super::Guide;
 use super::cells::Cells;
@@ -19,7 +19,7 @@ fn photon(position: DVec3, target: DVec3) -> Photon {
     Photon { position, normal: DVec3::Z, target, flux: 1.0, chain: 0 }
 }
 
-/// Photons on the plane z = 0 in a square of this size, from the image of a lamp in the mirror x = 1.
+/// Return photons on the plane z = 0 in a square of this size, from the image of a lamp in the mirror x = 1.
 fn mirrored(lamp: DVec3, size: f64, count: u32) -> Vec<Photon> {
     let image = DVec3::new(2.0 - lamp.x, lamp.y, lamp.z);
     (0..count)
@@ -40,7 +40,7 @@ fn cones_have_the_density_of_their_solid_angle() {
             &[photon(DVec3::ZERO, middle - apart * DVec3::X), photon(DVec3::ZERO, middle + apart * DVec3::X)],
             0.0,
         );
-        // Two are taken to be half as far out as others will be.
+        // The extent of two photons is enlarged by a factor of two.
         let angle = radius.atan2(distance);
         let solid = 2.0 * TAU * (angle / 2.0).sin().powi(2);
         let axis = middle / distance;
@@ -60,7 +60,7 @@ fn cones_have_the_density_of_their_solid_angle() {
 fn an_image_is_followed_where_it_goes() {
     let lamp = DVec3::new(0.2, 0.1, 2.0);
     let lobe = Lobe::around(&mirrored(lamp, 0.1, 64), 0.1);
-    // As seen from places that no photon has been to; what is left is of second order.
+    // From places without photons; the remaining error is of second order.
     for place in [DVec3::new(0.02, -0.03, 0.0), DVec3::new(-0.03, 0.02, 0.0)] {
         let image = DVec3::new(1.8, 0.1, 2.0) - place;
         let seen = place + image * ((1.0 - place.x) / image.x);
@@ -100,7 +100,7 @@ fn cells_are_found_and_their_densities_integrate_to_one() {
         let count = 200_000;
         let evenly = |number| warp::uniform_sphere(Sampler::new(6, 0, number).two(0));
         let sum: f64 = (0..count).map(|number| local.pdf(Level::Scalar, evenly(number))).sum();
-        // Cones are wide here: the densities spread by less than three times their mean.
+        // Cones are wide here: the standard deviation of the densities is below three times their mean.
         let integral = sum * 2.0 * TAU / f64::from(count);
         assert!((integral - 1.0).abs() < 4.0 * 3.0 / f64::from(count).sqrt(), "{integral}");
         for number in 0..1000 {
@@ -164,13 +164,13 @@ fn what_is_cancelled_is_not_kept() {
     cancel.raise();
     assert!(Guide::of(&scene, &cancel).is_none());
     let found = Guide::of(&scene, &Cancel::default()).unwrap();
-    // From then on it is there, for whoever asks.
+    // Later calls return the cached guide.
     assert!(Arc::ptr_eq(&Guide::of(&scene, &cancel).unwrap(), &found));
 }
 
 #[test]
 fn light_is_the_rarer_the_smaller_what_it_comes_from() {
-    // From a ball above the middle of a square. The cell is twice as wide, and as much light comes straight to it.
+    // From a sphere above the center of a square. The cell is twice as wide, and direct light is as bright.
     let from_ball = |radius: f64| {
         let photons: Vec<Photon> = (0..64)
             .map(|number| {
@@ -183,7 +183,7 @@ fn light_is_the_rarer_the_smaller_what_it_comes_from() {
         Guide { cells: Cells::new(photons, 0.25) }.at(DVec3::new(0.5, 0.5, 0.0)).unwrap().rarity()
     };
     for radius in [0.5, 0.05, 0.005] {
-        // Half of the light, squared, over the share of directions that the ball fills.
+        // Half of the light, squared, over the share of directions that the sphere fills.
         let told = from_ball(radius) / (0.25 * 4.0 / (radius * radius));
         assert!((0.3..3.0).contains(&told), "{radius}: {told}");
     }

@@ -1,4 +1,4 @@
-//! Few lights over what is glossy, each of which is asked.
+//! Light sampling of a few lights over glossy surfaces.
 
 use super::kinds::{DOWN, floor, of};
 use super::{job, radiance, samples_of};
@@ -22,7 +22,7 @@ fn metal() -> AnyBsdf {
     Conductor::new(Rgb::splat(0.2), Rgb::splat(3.9), [0.2; 2]).into()
 }
 
-/// Diffuse under a coat.
+/// A diffuse surface under a coat.
 fn glaze() -> AnyBsdf {
     Coated::new(Rgb::splat(0.5), 1.5, 0.2).into()
 }
@@ -36,7 +36,7 @@ fn round(surface: impl raywright_shapes::Shape + 'static, radiance: f64) -> Shap
     Shape { surface: surface.into(), emission: Rgb::splat(radiance).into(), ..Shape::default() }
 }
 
-/// Panels and a ball about where the metal mirrors, and what hides a part of them.
+/// Panels and a ball around the metal's mirror direction, and an occluder of some of them.
 fn lamps() -> Vec<Shape> {
     vec![
         shape(panel(0.0, 1.3, 0.3), [0.0; 3], 3.0),
@@ -57,7 +57,7 @@ fn over(bsdf: AnyBsdf, mut shapes: Vec<Shape>, lights: Vec<Arc<dyn Light>>) -> S
     scene(SceneDescription { shapes, lights })
 }
 
-/// What the floor shows by rays that its scattering alone chooses: no light is asked. Mean and standard error.
+/// Return the mean and standard error of the floor's radiance by BSDF sampling alone, without light sampling.
 fn by_scattering(scene: &Scene, count: u32) -> (f64, f64) {
     let mut hit = [Hit::MISS];
     scene.intersect(&[DOWN], &mut hit);
@@ -82,7 +82,7 @@ fn by_scattering(scene: &Scene, count: u32) -> (f64, f64) {
     (mean, ((squares / count - mean * mean) / count).sqrt())
 }
 
-/// Lights in a prototype that moves, which are never drawn.
+/// Lights in a moving prototype, which are never sampled.
 fn in_copies() -> Shape {
     let prototype = vec![shape(panel(0.2, 0.9, 0.2), [0.0; 3], 2.0)];
     let prototype = Prototype::new(prototype, |geometry| BruteForce::over(geometry, Level::Scalar)).unwrap();
@@ -112,9 +112,9 @@ fn each_light_brings_what_scattering_finds() {
                 &Direct { light_samples: 1, surface_samples: 4 },
                 &Distributed { max_depth: 1, splits: 3, ..Distributed::default() },
             ];
-            // What is never drawn is lost to those who do not follow all.
+            // Integrators that do not follow all directions miss lights that are never sampled.
             for (number, integrator) in each.into_iter().enumerate().take(if which == 3 { 4 } else { 5 }) {
-                // Chance exceeds four standard errors once in 16,000 cases, of which there are 38.
+                // Chance exceeds four standard errors once in 16,000 cases; there are 38.
                 let (mean, other) = radiance(&scene, integrator, DOWN, 20_000);
                 assert!(
                     (mean - expected).abs() < 4.0 * error.hypot(other),
@@ -128,7 +128,7 @@ fn each_light_brings_what_scattering_finds() {
 
 #[test]
 fn lights_alone_bring_the_same() {
-    // Without rays that scattering chooses: what is drawn is all, and nothing is weighed.
+    // Without BSDF sampling: light samples alone, without MIS weights.
     let scene = over(glaze(), lamps(), vec![]);
     let (expected, error) = by_scattering(&scene, 400_000);
     for light_samples in [1, 2, 5] {
@@ -140,7 +140,7 @@ fn lights_alone_bring_the_same() {
 
 #[test]
 fn single_directions_are_shared_in_without_noise() {
-    // Points and suns, of which nothing is hidden: what is chosen stands for the sum exactly.
+    // Unoccluded point and distant lights: the resampled estimate is the sum exactly.
     let place = DVec3::new(0.3, 1.0, 1.4);
     let way = DVec3::new(0.1, -0.5, -0.8);
     let point = PointLight { position: place, intensity: Rgb::splat(2.0) };

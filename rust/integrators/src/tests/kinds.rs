@@ -1,4 +1,4 @@
-//! The other integrators, each against what it should leave out and against path tracing.
+//! The other integrators, each against the light it leaves out and against path tracing.
 
 use super::{assert_radiance, radiance, samples_of};
 use crate::{AmbientOcclusion, Direct, Distributed, Integrator, Path, RayCast, Whitted};
@@ -11,7 +11,7 @@ use raywright_scene::{Light, Material, PointLight, Scene, SceneDescription, Shad
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-/// A kind of scattering that is the same everywhere.
+/// A uniform BSDF.
 #[derive(Debug)]
 struct Of(BsdfMix);
 
@@ -37,7 +37,7 @@ pub(super) fn floor() -> raywright_scene::Mesh {
 
 pub(super) const DOWN: Ray = Ray::new(DVec3::new(0.0, -0.6, 0.8), DVec3::new(0.0, 0.6, -0.8));
 
-/// What a square of side 2 and radiance 3 gives the origin from height 1, over a floor of 0.8 (Lambert, 1760).
+/// Radiance at the origin of a floor of albedo 0.8 under a square of side 2 and radiance 3 at height 1 (Lambert, 1760).
 const LIT: f64 = 0.8 / PI * 3.0 * 1.740_839_502_734_206;
 
 fn lit_floor() -> Scene {
@@ -70,7 +70,7 @@ fn more_samples_take_less_than_as_many_paths() {
     let error = |light_samples, surface_samples| {
         radiance(&lit_floor(), &Direct { light_samples, surface_samples }, DOWN, 4000).1
     };
-    // Four independent draws would halve it; equal shares do better.
+    // Four independent samples would halve it; stratified ones do better.
     assert!(error(4, 4) < 0.55 * error(1, 1));
 }
 
@@ -84,7 +84,7 @@ fn a_furnace_shows_as_many_bounces_as_are_followed() {
     assert_radiance(&scene, &Distributed::default(), ray, 40_000, 1.5);
 }
 
-/// The radiance of a lamp of 2 behind a pane of smooth glass, seen straight, and of one of 5 in front of it.
+/// A lamp of radiance 2 behind a pane of smooth glass, at normal incidence, and one of 5 in front of it.
 fn window() -> Scene {
     let (behind, before) = (floor(), rectangle([-9.0, -9.0, 3.0], [0.0, 18.0, 0.0], [18.0, 0.0, 0.0]));
     let pane = rectangle([-9.0, -9.0, 1.0], [18.0, 0.0, 0.0], [0.0, 18.0, 0.0]);
@@ -94,24 +94,24 @@ fn window() -> Scene {
 
 #[test]
 fn whitted_follows_both_the_reflected_and_the_refracted_ray() {
-    // Without noise: 4 % of what is in front, and 96 % of what is behind, as bright as the index squared makes it.
+    // Noise-free: 4 % of the front lamp and 96 % of the back lamp, whose radiance is scaled by the squared index.
     let ray = Ray::new(DVec3::new(0.1, 0.2, 2.0), DVec3::NEG_Z);
     let expected = 0.04 * 5.0 + 0.96 * 2.0 / 2.25;
     for value in samples_of(&window(), &Whitted::default(), ray, 10) {
         assert!((value[1] / expected - 1.0).abs() < 1e-8, "{value}");
     }
     assert_radiance(&window(), &Path::default(), ray, 60_000, expected);
-    // What contributes less than a tenth is not followed.
+    // Rays with a contribution below a tenth are not traced.
     let coarse = Whitted { contribution: 0.1, ..Whitted::default() };
     let (mean, _) = radiance(&window(), &coarse, ray, 10);
     assert!((mean - 0.96 * 2.0 / 2.25).abs() < 1e-8, "{mean}");
-    // Nor is anything at depth 0.
+    // Nothing is traced at depth 0.
     assert_eq!(radiance(&window(), &Whitted { max_depth: 0, ..Whitted::default() }, ray, 10), (0.0, 0.0));
 }
 
 #[test]
 fn mirrors_face_to_face_end_at_the_depth() {
-    // Two mirrors of 0.5, of which one shines: 1 + 1/4 + 1/16 ..., a term for each return to it.
+    // Two mirrors of reflectance 0.5, one of them emissive: 1 + 1/4 + 1/16 ..., a term for each return to it.
     let up = rectangle([-9.0, -9.0, 0.0], [18.0, 0.0, 0.0], [0.0, 18.0, 0.0]);
     let down = rectangle([-9.0, -9.0, 1.0], [0.0, 18.0, 0.0], [18.0, 0.0, 0.0]);
     let mirror = Mirror { reflectance: Rgb::splat(0.5) };
@@ -135,8 +135,8 @@ fn mirrors_face_to_face_end_at_the_depth() {
 
 #[test]
 fn gloss_is_followed_and_matt_light_is_not() {
-    // A rough metal over which hangs a lamp that reaches everywhere it can see: direct light by both techniques,
-    // followed or not, is the same.
+    // A rough metal under a lamp that fills its hemisphere: direct light agrees for both techniques, with paths
+    // continued or not.
     let metal = Conductor::new(Rgb::splat(0.2), Rgb::splat(3.9), [0.15; 2]);
     let lamp = rectangle([-1.0, -1.0, 1.0], [0.0, 2.0, 0.0], [2.0, 0.0, 0.0]);
     let shapes = vec![of(floor(), metal), shape(lamp, [0.0; 3], 3.0)];
@@ -167,8 +167,8 @@ fn a_point_light_is_asked_by_all() {
 
 #[test]
 fn a_corner_occludes_half_its_surroundings() {
-    // Before an endless wall at right angles, as near as can be, half of even light is hidden; what is farther away
-    // than the radius is not.
+    // At the foot of an infinite perpendicular wall, half of uniform light is occluded; surfaces beyond the radius do
+    // not count.
     let wall = rectangle([-900.0, 1e-3, 0.0], [1800.0, 0.0, 0.0], [0.0, 0.0, 900.0]);
     let shapes = vec![shape(floor(), [0.0; 3], 0.0), shape(wall, [0.0; 3], 0.0)];
     let scene = scene(SceneDescription { shapes, ..Default::default() });
@@ -179,6 +179,6 @@ fn a_corner_occludes_half_its_surroundings() {
         assert!((mean - 0.5).abs() < 4.0 * error + 2e-3, "{mean} ± {error}");
         assert_eq!(radiance(&scene, &AmbientOcclusion { radius: 9e-4, ..open }, ray, 100).0, 1.0);
     }
-    // What sees nothing is open.
+    // Rays that hit nothing are unoccluded.
     assert_eq!(radiance(&scene, &AmbientOcclusion::default(), Ray::new(DVec3::Z, DVec3::Z), 10), (1.0, 0.0));
 }

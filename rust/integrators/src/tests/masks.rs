@@ -1,4 +1,4 @@
-//! Surfaces that let a share of rays pass.
+//! Partially transparent masks.
 
 use super::{assert_radiance, radiance};
 use crate::{Path, RayCast};
@@ -53,10 +53,10 @@ fn veils_multiply() {
         assert_radiance(&at(vec![veil(1.0, 0.25)]), &path, DOWN, 60_000, 1.5);
         let three = vec![veil(1.0, 0.25), veil(1.000_001, 0.5), veil(2.0, 0.1)];
         assert_radiance(&at(three), &path, DOWN, 200_000, 2.0 * 0.75 * 0.5 * 0.9);
-        // Nothing, and everything.
+        // Fully transparent, and fully opaque.
         assert_radiance(&at(vec![veil(1.0, 0.0), veil(2.0, 0.0)]), &path, DOWN, 100, 2.0);
         assert_eq!(radiance(&at(vec![veil(1.0, 1.0)]), &path, DOWN, 100), (0.0, 0.0));
-        // Of those that coincide, one counts.
+        // Coincident surfaces count once.
         assert_radiance(&at(vec![veil(1.0, 0.25), veil(1.0, 0.25)]), &path, DOWN, 60_000, 1.5);
     }
 }

@@ -1,4 +1,4 @@
-//! Glass in glass, beside glass, and over glass.
+//! Nested, adjacent and overlapping dielectrics.
 
 use super::assert_radiance;
 use crate::Path;
@@ -30,7 +30,7 @@ impl Material for Glass {
     }
 }
 
-/// A box from `low` to `high`, faces outwards.
+/// A box from `low` to `high` with outward faces.
 fn block(low: [f32; 3], high: [f32; 3]) -> Mesh {
     let corner = |i: usize| Vec3::from([0, 1, 2].map(|axis| if i >> axis & 1 == 0 { low[axis] } else { high[axis] }));
     let quads = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
@@ -50,7 +50,7 @@ fn slab(low: f32, high: f32, ior: f64, priority: i32) -> Shape {
     glass(block([-1.0, -1.0, low], [1.0, 1.0, high]), ior, priority, 0.0)
 }
 
-/// A lamp of radiance 1 at the height −1 below slabs, looked at from straight above.
+/// A lamp of radiance 1 at the height −1 below slabs, seen vertically from above.
 fn over_a_lamp(slabs: Vec<Shape>) -> Scene {
     let lamp = rectangle([-1.0, -1.0, -1.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0]);
     let shapes = slabs.into_iter().chain([shape(lamp, [0.0; 3], 1.0)]).collect();
@@ -59,14 +59,14 @@ fn over_a_lamp(slabs: Vec<Shape>) -> Scene {
 
 const DOWN: Ray = Ray::new(DVec3::new(0.1, 0.2, 5.0), DVec3::NEG_Z);
 
-/// What gets straight through interfaces between media of these indices, one after the other, all reflections between
-/// them counted (Stokes, 1862): of two stacks, T = T₁T₂ / (1 − R₁R₂).
+/// Return the transmittance at normal incidence of consecutive interfaces between media of these indices, with all
+/// interreflections (Stokes, 1862): for two stacks, T = T₁T₂ / (1 − R₁R₂).
 fn transmitted(indices: &[f64]) -> f64 {
     let (mut through, mut back) = (1.0, 0.0);
     for pair in indices.windows(2) {
         let r = ((pair[0] - pair[1]) / (pair[0] + pair[1])).powi(2);
         let between = 1.0 - back * r;
-        // Radiance over the square of the index is what is kept.
+        // Radiance over the squared index is conserved.
         (through, back) = (through * (1.0 - r) / between, r + (1.0 - r) * (1.0 - r) * back / between);
     }
     through
@@ -79,14 +79,14 @@ fn slabs_let_through_what_stokes_says_whether_they_touch_or_nearly_do_or_overlap
     let c = |low, high| slab(low, high, 1.5, 1);
     let cases: [(Vec<Shape>, &[f64]); 10] = [
         (vec![a(0.0, 1.0)], &[1.0, 1.5, 1.0]),
-        // A gap of a millionth is air; none is none, whichever is described first, and whatever the priorities.
+        // A gap of a millionth is air. Touching slabs have no gap, in any order of description and with any priorities.
         (vec![a(0.0, 1.0), a(1.000_001, 2.0)], &[1.0, 1.5, 1.0, 1.5, 1.0]),
         (vec![a(0.0, 1.0), a(1.0, 2.0)], &[1.0, 1.5, 1.0]),
         (vec![a(0.0, 1.0), c(1.0, 2.0)], &[1.0, 1.5, 1.0]),
         (vec![c(0.0, 1.0), a(1.0, 2.0)], &[1.0, 1.5, 1.0]),
         (vec![a(0.0, 1.0), b(1.0, 2.0)], &[1.0, 2.0, 1.5, 1.0]),
         (vec![b(0.0, 1.0), a(1.0, 2.0)], &[1.0, 1.5, 2.0, 1.0]),
-        // One in the other, and one that reaches into the other.
+        // One inside the other, and partial overlap.
         (vec![a(0.0, 3.0), b(1.0, 2.0)], &[1.0, 1.5, 2.0, 1.5, 1.0]),
         (vec![b(0.0, 3.0), a(1.0, 2.0)], &[1.0, 2.0, 1.0]),
         (vec![a(0.0, 2.0), b(1.0, 3.0)], &[1.0, 2.0, 1.5, 1.0]),
@@ -102,7 +102,7 @@ fn the_index_may_be_one_or_nearly_or_ten() {
     for ior in [1.0, 1.0 + 1e-7, 1.0001, 10.0, 0.5] {
         let (expected, count) = (transmitted(&[1.0, ior, 1.0]), 60_000);
         let (mean, error) = super::radiance(&over_a_lamp(vec![slab(0.0, 1.0, ior, 0)]), &Path::default(), DOWN, count);
-        // At 1.0001 five rays in a thousand million are reflected: none is drawn here.
+        // At 1.0001 the reflectance is 5e-9, so no reflected ray is sampled here.
         assert!((mean - expected).abs() < 4.0 * error + 1e-8, "{ior}: {mean} ± {error}, not {expected}");
         assert!(error < 0.01 * expected);
     }
@@ -110,8 +110,8 @@ fn the_index_may_be_one_or_nearly_or_ten() {
 
 #[test]
 fn glass_in_an_even_light_cannot_be_seen_from_outside_or_inside() {
-    // Radiance over the square of the index is the same everywhere. Seen from outside, from within one, and from within
-    // both. Along none of these ways does a block hold light for ever by total reflection.
+    // Radiance over the squared index is uniform. Cameras are outside, inside one block, and inside both. Along none of
+    // these rays does total internal reflection trap light forever.
     let ways = [DVec3::new(0.3, 0.2, 0.93), DVec3::new(-0.2, -0.96, 0.25), DVec3::new(0.01, -0.999_95, 0.0)];
     for alpha in [0.0, 0.3] {
         for gap in cases::every(2, usize::from(alpha > 0.0), [0.0, 1e-6, 0.25]) {
@@ -122,8 +122,8 @@ fn glass_in_an_even_light_cannot_be_seen_from_outside_or_inside() {
                 scene(SceneDescription { shapes, lights: vec![Arc::new(ConstantEnvironment { radiance: Rgb::ONE })] });
             for way in ways {
                 let way = way.normalize();
-                // Rough glass gives back on average what it loses, to half a percent. In smooth glass roulette ends
-                // about one of these paths, and by chance more than ten once in ten million.
+                // Rough glass loses up to half a percent on average. In smooth glass roulette terminates about one of
+                // these paths, and more than ten with a probability of 1e-7.
                 let slack = if alpha == 0.0 { 5e-4 } else { 0.005 };
                 for (origin, index) in
                     [(-3.0 * way, 1.0f64), (DVec3::new(0.75, 0.8, 0.7), 1.5), (DVec3::new(0.1, 0.2, -0.1), 1.8)]
@@ -139,8 +139,8 @@ fn glass_in_an_even_light_cannot_be_seen_from_outside_or_inside() {
 
 #[test]
 fn shadow_rays_pass_surfaces_that_are_none() {
-    // A floor and a lamp, both in a glass, which refracts nothing since they are in it, and a glass of less priority
-    // between them: as if nothing were there.
+    // A floor and a lamp in one glass, which does not refract between them, and a glass of lower priority inside it: as
+    // in empty space.
     let floor = rectangle([-0.5, -0.5, 0.1], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]);
     let lamp = rectangle([-0.5, -0.5, 1.1], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]);
     let all = |more: Vec<Shape>| {

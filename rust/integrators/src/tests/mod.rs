@@ -16,14 +16,14 @@ use raywright_optics::Rgb;
 use raywright_scene::{Footprint, Perspective, Scene};
 use std::sync::LazyLock;
 
-/// That of rays without width, which no camera sends.
+/// Return a job with rays without width, which no camera sends.
 fn job(scene: &Scene) -> Job<'_> {
     static CAMERA: LazyLock<Perspective> =
         LazyLock::new(|| Perspective::looking_at(DVec3::ZERO, DVec3::NEG_Z, DVec3::Y, 60.0, 1, 1).expect("a camera"));
     Job { scene, camera: &*CAMERA, footprint: Footprint::default(), seed: 0, batch: 1 }
 }
 
-/// The radiance of so many samples of a ray.
+/// Return the radiance of a number of samples of a ray.
 fn samples_of(scene: &Scene, integrator: &dyn Integrator, ray: Ray, count: u32) -> Vec<Rgb> {
     let mut samples: Vec<_> =
         (0..count).map(|number| CameraSample { ray, sampler: Sampler::new(3, 0, number) }).collect();
@@ -36,7 +36,7 @@ fn samples_of(scene: &Scene, integrator: &dyn Integrator, ray: Ray, count: u32) 
     values
 }
 
-/// Mean and standard error of the green radiance along a ray.
+/// Return the mean and standard error of the green radiance along a ray.
 fn radiance(scene: &Scene, integrator: &dyn Integrator, ray: Ray, count: u32) -> (f64, f64) {
     let values = samples_of(scene, integrator, ray, count);
     let mean = values.iter().map(|v| v[1]).sum::<f64>() / f64::from(count);
@@ -44,7 +44,8 @@ fn radiance(scene: &Scene, integrator: &dyn Integrator, ray: Ray, count: u32) ->
     (mean, (variance / f64::from(count)).sqrt())
 }
 
-/// Within four standard errors (chance exceeds them once in 16,000 cases), which are below 1 %, and what f32 rounds.
+/// Assert agreement within four standard errors (false alarm rate 1 in 16,000) plus f32 rounding. The standard error
+/// must be below 1 %.
 #[track_caller]
 fn assert_radiance(scene: &Scene, integrator: &dyn Integrator, ray: Ray, count: u32, expected: f64) {
     let (mean, error) = radiance(scene, integrator, ray, count);

@@ -35,8 +35,8 @@ fn a_furnace_shines_so_many_bounces() {
 
 #[test]
 fn a_furnace_of_copies_shines_as_one_of_walls() {
-    // Six instances of one wall, each under a map of its own, in a copy that is still or moves out of shape: light that
-    // is not sampled but found, and rays that leave walls under such maps without meeting them.
+    // Six instances of one wall with different transforms, in a copy that is still or deforms. Light is found by BSDF
+    // sampling alone, and rays that leave such walls must not hit them again.
     let wall = Prototype::new(
         vec![shape(rectangle([-1.0, -1.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0]), [0.5; 3], 2.0)],
         brute,
@@ -90,7 +90,7 @@ fn roulette_changes_no_mean() {
 
 #[test]
 fn a_bright_furnace_leaves_no_heavy_tail() {
-    // The length of a path in it has mean 1000 and standard deviation 1000, and so has what it brings.
+    // Path lengths have the mean 1000 and the standard deviation 1000, and so have the contributions.
     let (mean, error) = radiance(&furnace(0.999, 0.1), &Path::default(), ANYWHERE, 2000);
     assert!((mean - 100.0).abs() < 4.0 * error, "{mean} ± {error}");
     assert!(error < 2.0 * 100.0 / 2000f64.sqrt(), "{error}");
@@ -104,8 +104,8 @@ fn a_furnace_that_loses_nothing_ends() {
 
 #[test]
 fn a_floor_reflects_the_irradiance_of_a_disk() {
-    // Radius 1 at height 1, centred: E = π L r² / (r² + h²) = π/2 L (Howell, C-41 with one small disk). The disk is a
-    // polygon of 720 sides of the same area, and the floor an albedo of 0.8.
+    // Radius 1 at height 1, centered: E = π L r² / (r² + h²) = π/2 L (Howell, C-41 with one small disk). The disk is a
+    // polygon of 720 sides of equal area, and the floor has an albedo of 0.8.
     let sides = 720u32;
     let radius = (std::f64::consts::TAU / f64::from(sides) / (std::f64::consts::TAU / f64::from(sides)).sin()).sqrt();
     let corner = |i: u32| {
@@ -136,7 +136,7 @@ fn a_point_and_the_sky_light_a_floor() {
         lights: vec![Arc::new(ConstantEnvironment { radiance: Rgb::splat(2.0) })],
     });
     assert_radiance(&sky, &Path::default(), ray, 1000, 1.0);
-    // A ray that meets nothing sees the sky itself.
+    // A ray that hits nothing sees the sky itself.
     assert_radiance(&sky, &Path::default(), Ray::new(DVec3::Z, DVec3::Z), 2, 2.0);
 }
 
@@ -169,7 +169,7 @@ fn every_kernel_gives_the_same_bits() {
         shapes: vec![shape(floor, [0.7, 0.1, 0.4], 0.3)],
         lights: vec![Arc::new(lamp), Arc::new(ConstantEnvironment { radiance: Rgb::new(0.1, 0.2, 0.3) })],
     };
-    // From where the camera is, and from within the furnace.
+    // From the camera, and from inside the furnace.
     let within = ANYWHERE.origin;
     for (scene, from) in [(room, None), (furnace(0.9, 0.3), Some(within)), (scene(open), None)] {
         assert_eq!(scene.plan().variant(), ShadingVariant::Plain);
@@ -196,7 +196,7 @@ fn every_kernel_gives_the_same_bits() {
 
 #[test]
 fn no_film_has_nan_however_bright_or_dim_or_small_the_light() {
-    // A lamp of any strength and size over a floor: what it gives is in proportion to its radiance.
+    // A lamp of any strength and size over a floor: the light is proportional to its radiance.
     let floor = || shape(rectangle([-9.0, -9.0, 0.0], [18.0, 0.0, 0.0], [0.0, 18.0, 0.0]), [0.5; 3], 0.0);
     let ray = Ray::new(DVec3::new(0.0, 0.3, 0.4), DVec3::new(0.0, -0.6, -0.8));
     for (side, strength) in [(1e-6f32, 1e12), (1e-6, 1e30), (1e-3, 1e-30), (1e-10, 1e20)] {
@@ -205,7 +205,7 @@ fn no_film_has_nan_however_bright_or_dim_or_small_the_light() {
         let scene = scene(SceneDescription { shapes, ..Default::default() });
         let values = samples_of(&scene, &Path::default(), ray, 1000);
         assert!(values.iter().all(|rgb| rgb.is_finite()));
-        // As of a point right above: E = L A / h².
+        // Approximated by a point vertically above: E = L A / h².
         let side = f64::from(side);
         let expected = 0.5 / std::f64::consts::PI * strength * side * side;
         let mean = values.iter().map(|rgb| rgb[1]).sum::<f64>() / 1000.0;

@@ -1,4 +1,4 @@
-//! Paths that share what they find.
+//! Path reuse within groups of pixels.
 
 use super::{job, samples_of};
 use crate::{CameraSample, Integrator, Path};
@@ -14,12 +14,12 @@ use raywright_scene::{
 };
 use std::sync::Arc;
 
-/// Without roulette, which sharing paths play by what they reflect from their second surface on.
+/// Return an integrator without roulette, which reused paths play relative to their second surface.
 fn path(reuse: u32) -> Path {
     Path { max_depth: Some(6), roulette_depth: u32::MAX, reuse, ..Path::default() }
 }
 
-/// So many groups of samples, each through all pixels of a square of this side in the middle of a picture.
+/// Return groups of samples, each over all pixels of a centered square of a given side.
 fn groups(camera: &dyn Camera, side: u32, count: u32) -> Vec<CameraSample> {
     let [left, top] = [camera.width(), camera.height()].map(|n| (n - side) / 2);
     let through = |pixel: u32, number: u32| {
@@ -32,7 +32,7 @@ fn groups(camera: &dyn Camera, side: u32, count: u32) -> Vec<CameraSample> {
         .collect()
 }
 
-/// What arrives at samples that stand in groups of one size, which are worked on so many at a time.
+/// Return the radiance of samples in groups of one size, traced in batches of `together`.
 fn shared(scene: &Scene, path: &Path, samples: &[CameraSample], group: usize, together: usize) -> Vec<Rgb> {
     let session = path.begin(job(scene), &Cancel::default());
     let mut worker = session.worker();
@@ -46,8 +46,8 @@ fn shared(scene: &Scene, path: &Path, samples: &[CameraSample], group: usize, to
     all
 }
 
-/// The mean of groups' green means, its standard error, and the mean over samples of the squared deviation from the
-/// former.
+/// Return the mean of the groups' green means, its standard error, and the mean squared deviation of the samples from
+/// it.
 fn told(values: &[Rgb], group: usize) -> (f64, f64, f64) {
     let means: Vec<f64> = values.chunks(group).map(|g| g.iter().map(|v| v[1]).sum::<f64>() / group as f64).collect();
     let count = means.len() as f64;
@@ -59,7 +59,7 @@ fn told(values: &[Rgb], group: usize) -> (f64, f64, f64) {
 
 #[test]
 fn a_furnace_shines_by_its_geometric_series() {
-    // Groups of rays from one point within, in directions up to 71 degrees apart.
+    // Groups of rays from one point inside, in directions up to 71 degrees apart.
     let samples: Vec<_> = (0..40_000u32)
         .map(|i| {
             let turned = DVec3::new(f64::from(i % 4) - 1.5, f64::from(i / 4 % 4) - 1.5, 3.0).normalize();
@@ -92,7 +92,7 @@ fn a_group_of_one_is_a_path_on_its_own() {
 
 #[test]
 fn groups_have_the_mean_of_paths_and_an_eighth_of_their_variance() {
-    // What a point gives directly has no variance. Sixteen rays to a small part of a wall.
+    // Light that a point emits or scatters directly has no variance here. Sixteen rays to a small part of a wall.
     let scene = room(vec![]);
     let samples: Vec<_> = (0..64_000u32)
         .map(|i| {
@@ -139,14 +139,14 @@ fn both_kernels_give_the_same_bits() {
     assert_eq!(run(ShadingVariant::Plain), run(ShadingVariant::Open));
 }
 
-/// A box of grey walls with a lamp in it, and what else.
+/// A box of gray walls with a lamp in it, and further shapes.
 fn room(more: Vec<Shape>) -> Scene {
     let walls = inward_box([-1.0; 3], [2.0; 3]).into_iter().map(|wall| shape(wall, [0.6; 3], 0.0));
     let lamp = PointLight { position: DVec3::new(0.3, 0.5, 0.2), intensity: Rgb::splat(0.5) };
     scene(SceneDescription { shapes: walls.chain(more).collect(), lights: vec![Arc::new(lamp)] })
 }
 
-/// An octahedron whose normals are those of a ball: far from those of its faces.
+/// An octahedron with the normals of a ball, far from those of its faces.
 fn ball() -> Shape {
     let at = |i: usize| raywright_base::math::Vec3::AXES[i];
     let vertices: Vec<_> = (0..3).flat_map(|i| [at(i), -at(i)]).collect();
@@ -180,13 +180,13 @@ fn shading_normals_do_not_bias() {
     for pixel in 0..16 {
         let of = |values: &[Rgb]| told(&values.iter().skip(pixel).step_by(16).copied().collect::<Vec<_>>(), 1);
         let ((mean, error, _), (other, other_error, _)) = (of(&together), of(&alone));
-        // Of sixteen, one is beyond four and a half standard errors once in nine thousand cases.
+        // One of sixteen exceeds four and a half standard errors with a probability of 1 in 9,000.
         let off = (mean - other).abs() / error.hypot(other_error);
         assert!(off <= 4.5, "pixel {pixel}: {mean} ± {error}, {other} ± {other_error}");
     }
 }
 
-/// Grey, and not there for half of the rays.
+/// Gray with an opacity of one half.
 #[derive(Debug)]
 struct Lace;
 

@@ -1,4 +1,4 @@
-//! Paths by stages beside paths in f64.
+//! Wavefront stages against paths in f64.
 
 use super::{job, samples_of};
 use crate::wavefront::Wavefront;
@@ -13,7 +13,7 @@ use std::sync::Arc;
 
 const DEPTH: u32 = 4;
 
-/// What samples of rays from a place into all directions find, by a session.
+/// Return the radiance of samples in all directions from a place.
 fn found(session: &dyn Session, from: DVec3, count: u32) -> Vec<Rgb> {
     let samples = (0..count).map(|number| {
         let mut sampler = Sampler::new(3, 7, number);
@@ -26,8 +26,8 @@ fn found(session: &dyn Session, from: DVec3, count: u32) -> Vec<Rgb> {
     values
 }
 
-/// Whether samples find the same by stages as in f64, but for what f32 rounds: of a few, a ray passes an edge on its
-/// other side.
+/// Assert equal samples by wavefront stages and in f64, but for f32 rounding. A few rays pass an edge on its other
+/// side.
 #[track_caller]
 fn assert_same(scene: &Scene, from: DVec3) {
     assert!(Wavefront::takes(scene));
@@ -64,7 +64,7 @@ fn stages_know_all_lights() {
     same(vec![floor()], vec![sky()]);
     same(vec![floor(), lamp(-1.0, 9.0)], vec![sky(), point()]);
     same(vec![floor()], vec![point()]);
-    // Enough of them for a tree.
+    // Enough lights for a light BVH.
     same(vec![floor(), lamp(-1.0, 9.0), lamp(0.5, 4.0), lamp(2.0, 1.0)], vec![]);
 }
 
