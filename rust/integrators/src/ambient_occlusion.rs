@@ -7,16 +7,15 @@ use raywright_base::workers::Cancel;
 use raywright_optics::Rgb;
 use raywright_scene::{RayOrigin, Scene};
 
-/// How open the surroundings of what is seen are (Zhukov, Iones and Kronin, "An Ambient Light Illumination Model",
-/// 1998; Landis, "Production-Ready Global Illumination", 2002): the share of directions in which nothing is near. White
-/// where nothing is seen.
+/// Ambient occlusion (Zhukov, Iones and Kronin, "An Ambient Light Illumination Model", 1998; Landis, "Production-Ready
+/// Global Illumination", 2002): the share of directions without a nearby hit. The background is white.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AmbientOcclusion {
-    /// How near what occludes has to be; infinite for anything.
+    /// Maximum distance of occluders; infinite counts all.
     pub radius: f64,
-    /// Whether directions count by their cosine, as even light does, or all alike.
+    /// Weight directions by their cosine, as uniform light does, or equally.
     pub cosine: bool,
-    /// Directions a camera ray asks; at least 1.
+    /// Directions per camera ray; at least 1.
     pub samples: u32,
 }
 
@@ -36,7 +35,7 @@ impl Integrator for AmbientOcclusion {
     }
 }
 
-/// What there is to ask.
+/// Shared data of a session.
 struct Openness<'a> {
     settings: AmbientOcclusion,
     scene: &'a Scene,
@@ -60,7 +59,7 @@ struct Asking<'a> {
     scene: &'a Scene,
     hits: Vec<Hit>,
     rays: Vec<Ray>,
-    /// Whose sample each ray is.
+    /// Index of each ray's sample.
     of: Vec<u32>,
     occluded: Vec<bool>,
 }

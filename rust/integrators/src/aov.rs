@@ -1,4 +1,4 @@
-//! What is seen first, rather than how bright it is.
+//! Auxiliary buffers (AOVs) of the first hit.
 
 use super::nesting::indices_outside;
 use raywright_base::math::{Hit, Ray};
@@ -9,33 +9,34 @@ use raywright_optics::Bsdf;
 use raywright_scene::textures::Needs;
 use raywright_scene::{Camera, Footprint, Scene, ShadingPoint, SurfaceInteraction};
 
-/// Something that is known of the surface seen first.
+/// A property of the first hit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Channel {
-    /// Its distance along the ray.
+    /// Distance along the ray.
     Depth,
-    /// Where it is.
+    /// Position.
     Position,
-    /// Unit geometric normal, as the winding gives it.
+    /// Unit geometric normal, by the winding.
     Normal,
     /// Unit shading normal, bumps included.
     ShadingNormal,
     /// Texture coordinates.
     Uv,
-    /// Number of the shape, −1 where there is none.
+    /// Index of the shape; −1 for no hit.
     ShapeId,
-    /// Number of the primitive in its shape, or of the copy; −1 where there is none.
+    /// Index of the primitive in its shape, or of the copy; −1 for no hit.
     Primitive,
-    /// The share of light that is scattered.
+    /// Share of light that is scattered.
     Albedo,
-    /// How far the point goes while the shutter is open.
+    /// Displacement of the point during the shutter interval.
     Motion,
-    /// How far it goes in the picture meanwhile, in pixels to the right and down, as the camera moves too.
+    /// Displacement in the picture during the shutter interval, in pixels to the right and down, including camera
+    /// motion.
     ScreenMotion,
 }
 
 impl Channel {
-    /// Every one.
+    /// All channels.
     pub const ALL: [Self; 10] = [
         Self::Depth,
         Self::Position,
@@ -49,7 +50,7 @@ impl Channel {
         Self::ScreenMotion,
     ];
 
-    /// What it is called.
+    /// Return the name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Depth => "depth",
@@ -65,7 +66,7 @@ impl Channel {
         }
     }
 
-    /// How many numbers it has.
+    /// Return the number of components.
     pub fn width(self) -> usize {
         match self {
             Self::Depth | Self::ShapeId | Self::Primitive => 1,
@@ -74,12 +75,12 @@ impl Channel {
         }
     }
 
-    /// Whether it is a number of something, of which no mean can be taken: the middle of the pixel has it.
+    /// Return whether the values are indices, which cannot be averaged: the center of the pixel has the value.
     pub fn is_id(self) -> bool {
         matches!(self, Self::ShapeId | Self::Primitive)
     }
 
-    /// What it is where nothing is seen.
+    /// Return the value for no hit.
     pub fn nothing(self) -> f64 {
         match self {
             Self::Depth => f64::INFINITY,
@@ -88,7 +89,7 @@ impl Channel {
         }
     }
 
-    /// Its numbers at a hit.
+    /// Return the components at a hit.
     fn observe(
         self,
         scene: &Scene,
@@ -130,7 +131,7 @@ impl Channel {
                 let seen = |point, time| camera.connect(point, [0.5; 2], time).map(|there| there.film);
                 match (seen(start, 0.0), seen(end, 1.0)) {
                     (Some([x, y]), Some([right, down])) => [right - x, down - y, 0.0],
-                    // What one end of the way does not see has no way in the picture.
+                    // Points out of view at either end have no displacement in the picture.
                     _ => [0.0; 3],
                 }
             }
@@ -138,10 +139,10 @@ impl Channel {
     }
 }
 
-/// Pictures of channels, each a row of numbers a pixel, pixels row by row from the top.
+/// Render channels, each as rows of components per pixel, from the top.
 ///
-/// A pixel has the mean over its samples that see something, uniform over its square, lens and shutter; numbers of
-/// things are those of its middle, as the shutter opens. Returns soon after `cancel` is raised, with nothing of use.
+/// A pixel is the mean over its samples with a hit, uniform over its square, lens and shutter. Indices are those at its
+/// center at the start of the shutter interval. After a cancellation it returns soon, and the result must be discarded.
 pub fn aovs(
     scene: &Scene,
     camera: &dyn Camera,
@@ -216,7 +217,7 @@ fn expose_row(
                 let values = channels[i].observe(scene, camera, met, footprint.at(found[x].t).width);
                 let n = channels[i].width();
                 for (value, mean) in values.iter().zip(&mut row[i][x * n..(x + 1) * n]) {
-                    // The first is the mean; it takes the place of nothing, which may be infinite.
+                    // The first value replaces that for no hit, which may be infinite.
                     *mean = if seen[x] == 1 { *value } else { *mean + (value - *mean) / f64::from(seen[x]) };
                 }
             }
@@ -243,7 +244,7 @@ mod tests {
             let n = channel.width();
             assert_eq!(values.len(), 48 * n);
             for y in 0..6 {
-                // To the right is nothing.
+                // The right half is empty.
                 for x in 4..8 {
                     assert!(values[(y * 8 + x) * n..][..n].iter().all(|&v| v == channel.nothing()));
                 }

@@ -1,36 +1,36 @@
-//! Which random number is for what.
+//! Sample dimensions of camera paths.
 
 use raywright_base::sampling::CAMERA_DIMENSIONS;
 
-/// The dimensions of a bounce. A choice stands at an even one, before the pair that follows from it, with which
-/// samplers place it together; and what every surface asks for stands in the first four.
+/// The dimensions of a bounce. Choices have even dimensions, before the pair that depends on them: samplers stratify
+/// the three together. The first four are those that every surface uses.
 #[derive(Clone, Copy)]
 pub(crate) struct Dimensions(u32);
 
 impl Dimensions {
     const EACH: u32 = 6;
 
-    /// What of a group's light is shared: the one of the camera's dimensions that it leaves unused.
+    /// Choice of shared light in a group: an unused dimension of the camera.
     pub const SHARING: u32 = 2;
 
-    /// Which wavelengths a path carries: the same, since such paths share nothing.
+    /// Wavelengths of a path. The dimension may coincide, since such paths share nothing.
     pub const WAVES: u32 = Self::SHARING;
 
-    /// Bounces that the branches of a split path have to themselves. Beyond, they draw the same numbers, of different
-    /// meaning.
+    /// Number of bounces with separate dimensions for the branches of a split path. Later bounces use the same numbers
+    /// for different choices.
     const BRANCH: u32 = 1 << 9;
 
-    /// Where the numbers of further light samples start.
+    /// First dimension of further light samples.
     const MORE: u32 = 1 << 31;
 
-    /// Those of a bounce of a branch of a path.
+    /// Return the dimensions of a bounce of a branch.
     #[inline]
     pub fn of(bounce: u32, branch: u32) -> Self {
-        // Wrapping after 700 million bounces harms nobody.
+        // Wrapping after 700 million bounces is harmless.
         let place = bounce.wrapping_add(branch.wrapping_mul(Self::BRANCH));
         Self(CAMERA_DIMENSIONS.wrapping_add(place.wrapping_mul(Self::EACH)))
     }
-    /// Which light the sample of this number asks; where on it, the dimension that follows says.
+    /// Return the dimension of the light choice of a sample; the next dimension is the point on the light.
     #[inline]
     pub fn light_choice(self, number: u32) -> u32 {
         if number == 0 { self.0 } else { self.more(number) }
@@ -38,22 +38,22 @@ impl Dimensions {
     fn more(self, number: u32) -> u32 {
         Self::MORE | self.0.wrapping_mul(64).wrapping_add(2 * number)
     }
-    /// Where a path goes on to.
+    /// Return the dimension of the scattered direction.
     #[inline]
     pub fn direction(self) -> u32 {
         self.0 + 3
     }
-    /// Whether it goes on.
+    /// Return the dimension of Russian roulette.
     #[inline]
     pub fn roulette(self) -> u32 {
         self.0 + 4
     }
-    /// Among several kinds of scattering, which.
+    /// Return the dimension of the choice of a lobe.
     #[inline]
     pub fn scattering_choice(self) -> u32 {
         self.0 + 2
     }
-    /// Which masks the ray passes.
+    /// Return the dimension of stochastic alpha masks.
     #[inline]
     pub fn mask(self) -> u32 {
         self.0 + 5

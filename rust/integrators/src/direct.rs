@@ -5,13 +5,13 @@ use super::volumes::Volumes;
 use super::{Integrator, Job, Session};
 use raywright_base::workers::Cancel;
 
-/// What shines, and what is lit by it: one bounce. Lights are sampled and so are surfaces, combined through multiple
-/// importance sampling (Veach and Guibas, "Optimally Combining Sampling Techniques", 1995).
+/// Emission and direct light: one bounce. Light and BSDF sampling are combined by multiple importance sampling (Veach
+/// and Guibas, "Optimally Combining Sampling Techniques", 1995).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Direct {
-    /// How many light samples a surface takes, from equal shares of the lights; at least 1.
+    /// Light samples per surface, stratified over the lights; at least 1.
     pub light_samples: u32,
-    /// How many directions are drawn from its scattering; at least 1.
+    /// BSDF samples per surface; at least 1.
     pub surface_samples: u32,
 }
 

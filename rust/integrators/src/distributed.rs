@@ -5,26 +5,25 @@ use super::{Integrator, Job, Session};
 use raywright_base::workers::Cancel;
 use raywright_optics::Rgb;
 
-/// Distributed ray tracing (Cook, Porter and Carpenter, "Distributed Ray Tracing", 1984): rays are spread over lights,
-/// lobes, lens and shutter, for soft shadows, gloss, depth of field and motion blur. Diffuse light between surfaces is
-/// not followed: ambient light stands for it.
+/// Distributed ray tracing (Cook, Porter and Carpenter, "Distributed Ray Tracing", 1984): rays are distributed over
+/// lights, lobes, lens and shutter, for soft shadows, gloss, depth of field and motion blur. Diffuse interreflection is
+/// replaced by ambient light.
 ///
-/// A direction is followed if the surface scatters into it with more than [`Distributed::GLOSS`] per solid angle, three
-/// times the most that a matt surface has; what comes from the others is the lights' alone. The first surface splits
-/// its ray, the others do not.
+/// A direction is followed if its density exceeds [`Distributed::GLOSS`] per solid angle, three times the maximum of a
+/// matte surface. Other directions receive light from light sampling alone. Only the first surface splits its ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Distributed {
-    /// The greatest number of surfaces that light comes by, from the light on.
+    /// Maximum number of surfaces on a path of light, counted from the light.
     pub max_depth: u32,
-    /// Into how many rays the first surface splits one, and how often it asks for light; at least 1.
+    /// Number of rays that continue from the first surface, and of its light samples; at least 1.
     pub splits: u32,
-    /// Radiance that arrives from everywhere in place of what is not followed. Surfaces reflect their ambient share of
-    /// it ([`Material::ambient`](raywright_scene::Material::ambient)).
+    /// Uniform incident radiance that replaces light not followed. Surfaces reflect their ambient share of it
+    /// ([`Material::ambient`](raywright_scene::Material::ambient)).
     pub ambient: Rgb,
 }
 
 impl Distributed {
-    /// The density, per solid angle, above which directions are followed.
+    /// Minimum density, per solid angle, of directions that are followed.
     pub const GLOSS: f64 = 1.0;
 }
 

@@ -8,17 +8,16 @@ use raywright_base::workers::Cancel;
 use raywright_scene::{Emitters, Scene};
 
 /// Light tracing (Arvo, "Backward Ray Tracing", 1986; Dutré, Lafortune and Willems, "Monte Carlo Light Tracing with
-/// Direct Computation of Pixel Intensities", 1993): paths start at lights, are scattered from surface to surface, and
-/// at each of them are connected to the camera. What shines is seen by the camera's own rays.
+/// Direct Computation of Pixel Intensities", 1993). Paths start at lights, and each surface vertex is connected to the
+/// camera. Camera rays add visible emission.
 ///
-/// It finds what path tracing hardly does, light that mirrors and glass throw upon matt surfaces. It never finds light
-/// that the camera sees in a mirror or through glass, where no connection goes: such surfaces are black but for what
-/// shines in them without being seen so.
+/// It finds caustics on matte surfaces, which path tracing hardly does. It never finds light that the camera sees in
+/// mirrors or through glass, where no connection is possible. Such surfaces are black except for their own emission.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LightTraced {
-    /// The greatest number of times that light is scattered; 0 shows only what shines itself. `None` sets no limit.
+    /// Maximum number of scattering events; 0 shows only emission. `None` sets no limit.
     pub max_depth: Option<u32>,
-    /// Roulette is played from this number of bounces on.
+    /// Number of bounces after which Russian roulette starts.
     pub roulette_depth: u32,
 }
 
@@ -58,13 +57,13 @@ impl Integrator for LightTraced {
     }
 }
 
-/// What workers on a picture share.
+/// Data shared by the workers of a picture.
 struct LightTracing<'a> {
     limits: Limits,
     job: Job<'a>,
-    /// What the camera's own rays see.
+    /// Session of the camera's own rays.
     seen: Box<dyn Session + 'a>,
-    /// None where nothing shines.
+    /// `None` without lights.
     emitters: Option<Emitters<'a>>,
 }
 

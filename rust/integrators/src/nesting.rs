@@ -1,25 +1,25 @@
-//! Which media a path is in.
+//! Nested dielectrics: the media at a point of a path.
 
 use raywright_base::math::{DVec3, Hit, Ray};
 use raywright_optics::Dispersive;
 use raywright_scene::materials::Interior;
 use raywright_scene::{RayOrigin, Scene};
 
-/// What fills a closed surface, as far as whoever asks must know of it.
+/// The interior of a closed surface.
 pub(super) trait Filling: Copy + PartialEq {
-    /// In place of one where there is none.
+    /// Placeholder for no interior.
     const NONE: Self;
 
-    /// What fills that which a ray has hit; none where it encloses nothing.
+    /// Return the interior of a hit object; `None` for open surfaces.
     fn of(scene: &Scene, hit: &Hit) -> Option<Self>;
 
-    /// Whether it is there, and not another, where both are.
+    /// Return whether this interior replaces another where they overlap.
     fn is_above(&self, other: &Self) -> bool;
 
-    /// Its index of refraction; none if that is what is around it.
+    /// Return the index of refraction; `None` if it is that of the surroundings.
     fn ior(&self) -> Option<f64>;
 
-    /// How that goes with wavelength.
+    /// Return the dispersion.
     fn dispersion(&self) -> Dispersive;
 }
 
@@ -43,16 +43,16 @@ impl Filling for Interior {
     }
 }
 
-/// The media that a point lies in. The one of the greatest priority is there, and the surfaces of the others, within
-/// it, are not (Schmidt and Budge, "Simple Nested Dielectrics in Ray Traced Images", 2002). Of equal priority, the
-/// greater index.
+/// The interiors that contain a point. The one of highest priority exists there, and the surfaces of the others inside
+/// it do not (Schmidt and Budge, "Simple Nested Dielectrics in Ray Traced Images", 2002). Of equal priorities, the
+/// higher index wins.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct MediumStack<F = Interior> {
     count: u32,
     interiors: [F; MOST],
 }
 
-/// How many media are told apart that a point lies in. Beyond, those of the least priority are forgotten.
+/// Maximum number of interiors at a point. Beyond, those of lowest priority are forgotten.
 const MOST: usize = 4;
 
 impl<F: Filling> Default for MediumStack<F> {
@@ -62,36 +62,36 @@ impl<F: Filling> Default for MediumStack<F> {
 }
 
 impl<F: Filling> MediumStack<F> {
-    /// In nothing.
+    /// No interior.
     pub const NONE: Self = Self { count: 0, interiors: [F::NONE; MOST] };
 
-    /// How many enclose the point.
+    /// Return the number of interiors.
     pub(super) fn depth(&self) -> u32 {
         self.count
     }
 
-    /// What is there; `None` where nothing encloses the point.
+    /// Return the interior that exists there; `None` outside all.
     pub(super) fn top(&self) -> Option<&F> {
         self.interiors[..self.count as usize].iter().reduce(|a, b| if b.is_above(a) { b } else { a })
     }
 
-    /// What bends light there.
+    /// Return the refractive interior.
     fn clear(&self) -> Option<&F> {
         let all = self.interiors[..self.count as usize].iter().filter(|interior| interior.ior().is_some());
         all.reduce(|a, b| if b.is_above(a) { b } else { a })
     }
 
-    /// The index of refraction there.
+    /// Return the index of refraction.
     fn ior(&self) -> f64 {
         self.clear().and_then(F::ior).unwrap_or(1.0)
     }
 
-    /// The index of refraction around a hit surface that encloses nothing; 1 where that makes no difference to it.
+    /// Return the index of refraction around an open surface; 1 for materials that do not depend on it.
     pub(super) fn ior_around(&self, scene: &Scene, hit: &Hit) -> f64 {
         if self.count > 0 && scene.material_of(hit).minds_outside() { self.ior() } else { 1.0 }
     }
 
-    /// How the index of refraction there goes with wavelength.
+    /// Return the dispersion.
     pub(super) fn dispersion(&self) -> Dispersive {
         self.clear().map_or(Dispersive::NONE, F::dispersion)
     }
@@ -113,7 +113,7 @@ impl<F: Filling> MediumStack<F> {
         }
     }
 
-    /// Leaves one such medium; nothing if it is in none, as behind a surface that encloses nothing.
+    /// Leave one such interior. No effect if there is none, as behind an open surface.
     fn leave(&mut self, interior: &F) {
         let all = &mut self.interiors[..self.count as usize];
         if let Some(found) = all.iter().position(|i| i == interior) {
@@ -122,13 +122,13 @@ impl<F: Filling> MediumStack<F> {
         }
     }
 
-    /// What rays from these origins start in: each surface that encloses a medium is crossed outwards once more than
-    /// inwards, on the way out, from inside of it. With open surfaces, or a camera in a wall, it may be wrong.
+    /// Find the media at ray origins: on the way out, each boundary around the point is crossed outward once more than
+    /// inward. Open surfaces, or a camera in a wall, can make it wrong.
     pub(super) fn at(scene: &Scene, rays: &[Ray], inside: &mut Vec<Self>) {
         inside.clear();
         let region = scene.region();
         let is_within = |p: DVec3| p.cmpge(region.min).all() && p.cmple(region.max).all();
-        // Rays from one point, as a pinhole's, are asked once.
+        // Rays with a common origin, as of a pinhole, share one query.
         let is_asked = |i: usize| is_within(rays[i].origin) && (i == 0 || rays[i].origin != rays[i - 1].origin);
         let asked: Vec<Ray> = (0..rays.len()).filter(|&i| is_asked(i)).map(|i| rays[i]).collect();
         let crossings = scene.crossings(&asked);
@@ -151,8 +151,8 @@ impl<F: Filling> MediumStack<F> {
         }
     }
 
-    /// Goes through what a ray hits, along it or back. Returns the medium that it enters or leaves, and whether it
-    /// enters it.
+    /// Cross a hit, along the ray or backward. Return the interior that the ray enters or leaves, and whether it enters
+    /// it.
     pub(super) fn pass(&mut self, scene: &Scene, ray: &Ray, hit: &Hit, back: bool) -> Option<(F, bool)> {
         let interior = F::of(scene, hit)?;
         let surface = scene.geometry().surface(ray, hit);
@@ -166,8 +166,8 @@ impl<F: Filling> MediumStack<F> {
     }
 }
 
-/// The index of refraction around what each ray hits: on the side that is not its own medium's, if it encloses one. 1
-/// for rays that hit nothing, and where it makes no difference. Rays start in whatever their origins lie in.
+/// Return the index of refraction around each ray's hit, on the side away from the object's own interior. It is 1 for
+/// misses and for materials that do not depend on it. Rays start in the media at their origins.
 pub fn indices_outside(scene: &Scene, rays: &[Ray], hits: &[Hit]) -> Vec<f64> {
     let mut found = vec![1.0; rays.len()];
     if !scene.plan().needs().nested {
@@ -193,7 +193,7 @@ pub fn indices_outside(scene: &Scene, rays: &[Ray], hits: &[Hit]) -> Vec<f64> {
     found
 }
 
-/// What a ray crosses, of all that it is told to; not what it only touches, which is told twice.
+/// Return the hits where a ray crosses a boundary, without tangential ones, which are reported twice.
 pub(super) fn crossed(hits: &[Hit]) -> impl DoubleEndedIterator<Item = &Hit> {
     let is_twice = move |i: usize| {
         let same = |j: usize| hits.get(j).is_some_and(|other| *other == hits[i]);
@@ -202,24 +202,24 @@ pub(super) fn crossed(hits: &[Hit]) -> impl DoubleEndedIterator<Item = &Hit> {
     (0..hits.len()).filter(move |&i| !is_twice(i)).map(move |i| &hits[i])
 }
 
-/// What a hit is to a ray among media.
+/// The classification of a hit in nested dielectrics.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Boundary<F = Interior> {
-    /// None: the same medium is on both sides. The ray goes on in these media.
+    /// No boundary: the same medium is on both sides. The ray continues in these media.
     None(MediumStack<F>),
-    /// The surface hit is where one medium ends and another begins.
+    /// A boundary of two media.
     Between {
-        /// Which hit has the surface.
+        /// The hit of the surface.
         hit: Hit,
-        /// The index of refraction on the side of it that is not its own medium's.
+        /// Index of refraction on the side away from its own interior.
         outside: f64,
-        /// What a ray that goes through is in.
+        /// Media of a transmitted ray.
         through: MediumStack<F>,
     },
 }
 
-/// The part of a ray around a hit on whose crossings [`Boundary::new`] decides: surfaces that lie in one another, or
-/// closer than rounding tells, are one boundary. `None` if the surface hit encloses nothing.
+/// Return the ray span around a hit that [`Boundary::new`] needs: surfaces that coincide, or differ by less than
+/// rounding, are one boundary. Return `None` for open surfaces.
 pub(super) fn around<F: Filling>(scene: &Scene, ray: &Ray, hit: &Hit) -> Option<Ray> {
     F::of(scene, hit)?;
     let surface = scene.geometry().surface(ray, hit);
@@ -228,7 +228,7 @@ pub(super) fn around<F: Filling>(scene: &Scene, ray: &Ray, hit: &Hit) -> Option<
 }
 
 impl<F: Filling> Boundary<F> {
-    /// What a ray in some media comes to, by what it crosses around its hit ([`around`]).
+    /// Classify the hit of a ray in given media, from all crossings around it ([`around`]).
     pub(super) fn new(scene: &Scene, ray: &Ray, inside: &MediumStack<F>, hits: &[Hit]) -> Self {
         let mut through = *inside;
         let mut owner: Option<(F, bool, Hit)> = None;
@@ -239,7 +239,7 @@ impl<F: Filling> Boundary<F> {
             }
         }
         let Some((_, enters, hit)) = owner else { return Self::None(*inside) };
-        // What the path never entered, as where the camera's media were told wrongly, it leaves like anything else.
+        // A medium that the path never entered, as with wrong initial media of a camera, is left like any other.
         if inside.top() == through.top() && (enters || inside.top().is_some()) {
             return Self::None(through);
         }

@@ -1,22 +1,22 @@
-//! Where the index of refraction parts the wavelengths of a path.
+//! Dispersion: termination of secondary wavelengths.
 
 use raywright_base::math::DVec3;
 use raywright_optics::spectra::Waves;
 use raywright_optics::{Bsdf, Dispersive, Rgb, fresnel};
 use raywright_scene::materials::Material;
 
-/// What parts wavelengths at a surface. Bent light has one direction for each of them, so all but the hero end; what a
-/// smooth surface mirrors keeps its direction, and all go on.
+/// Dispersion at a surface. Refracted light has a direction per wavelength, so all but the hero are terminated.
+/// Specular reflection keeps its direction, and all continue.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Parting {
-    /// Of each wavelength, the index beyond over that before the surface, if all light that is not mirrored is bent.
+    /// Relative index of refraction of each wavelength, beyond over before the surface, if all transmitted light is
+    /// refracted.
     etas: Option<Rgb>,
 }
 
 impl Parting {
-    /// What parts them at a surface of a material, if anything does, and the hero's index of refraction on the other
-    /// side of what the surface encloses: that is `outside` for yellow light, and goes with wavelength as `around` has
-    /// it.
+    /// Return the dispersion at a surface of a material, if any, and the hero's index of refraction outside the object.
+    /// `outside` is that index for yellow light, and `around` its dispersion.
     pub fn at(
         material: &dyn Material,
         is_front: bool,
@@ -24,8 +24,7 @@ impl Parting {
         waves: &Waves,
     ) -> (f64, Option<Self>) {
         let Some(interior) = material.interior() else {
-            // What encloses nothing has the same around it on both sides. Each wavelength has an index of its own
-            // there.
+            // Open surfaces have the same surroundings on both sides, with an index per wavelength.
             if !(around.is_any() && material.minds_outside()) {
                 return (outside, None);
             }
@@ -40,14 +39,14 @@ impl Parting {
         (out[0], Some(Self { etas: material.is_clear().then(|| eta(within())) }))
     }
 
-    /// Whether light may be mirrored first, by how the surface scatters: if all wavelengths are mirrored about alike,
-    /// as by what is denser.
+    /// Return whether termination can wait for a possible specular reflection. This requires similar reflectances of
+    /// all wavelengths, as those of a denser medium.
     pub fn waits(&self, bsdf: &impl Bsdf) -> bool {
         bsdf.is_delta() && self.etas.is_some_and(|etas| etas.min() > 1.0)
     }
 
-    /// What each wavelength is to be multiplied by where the hero has been mirrored back along a direction of the
-    /// shading frame.
+    /// Return the factor of each wavelength after the hero was reflected specularly, along a direction of the shading
+    /// frame.
     pub fn mirrored(&self, wo: DVec3) -> Rgb {
         let Some(etas) = self.etas else { return Rgb::ONE };
         let reflectance = etas.map(|eta| fresnel::dielectric(wo.z.abs().min(1.0), eta));
@@ -76,10 +75,10 @@ mod tests {
             let of = |lane: usize| fresnel::dielectric(0.8, dispersion.at(waves.all()[lane]).unwrap() / 1.33);
             assert!((found[lane] - of(lane) / of(0)).abs() < 1e-14);
         }
-        // From within, all may be mirrored for one and hardly anything for another.
+        // From inside, one wavelength may be totally reflected and another hardly at all.
         let (_, within) = Parting::at(&glass, false, (1.0, Dispersive::NONE), &waves);
         assert!(!within.unwrap().waits(&Dielectric::new(0.6, 0.0)));
-        // What is the same for all wavelengths parts them in what disperses, if it encloses anything.
+        // A constant index inside a dispersive medium also disperses, if the object is closed.
         let plain = DielectricMaterial { interior: Interior::new(1.2, 0), ..glass };
         let (around, parting) = Parting::at(&plain, true, (1.66, dispersion), &waves);
         assert_eq!(around, dispersion.at(waves.hero()).unwrap());

@@ -1,4 +1,4 @@
-//! What rays come to among masks, which some of them pass, and media that lie in one another.
+//! Skipped intersections: alpha masks and nested dielectrics.
 
 use super::nesting::{Boundary, MediumStack, around};
 use super::shadows::opacity;
@@ -7,52 +7,52 @@ use raywright_base::math::{Hit, Ray, RayQueue};
 use raywright_scene::Scene;
 use raywright_scene::materials::Interior;
 
-/// Finds out which of the surfaces that rays hit are there for them.
+/// Decides which intersections of rays exist for them.
 #[derive(Default)]
 pub(super) struct Passing {
     masks: bool,
     nested: bool,
-    /// The parts of rays around hits of what encloses a medium, and which rays' they are.
+    /// Ray spans around hits on medium boundaries, and the indices of their rays.
     windows: Vec<Ray>,
     of: Vec<u32>,
     crossings: Crossings,
-    /// The first of these that was not asked for.
+    /// First span not yet processed.
     next: usize,
 }
 
-/// What a ray has come to.
+/// The result of an intersection.
 pub(super) enum Met {
-    /// Nothing that is there for it. It goes on, from the same origin so that nothing but the surface is left out, in
-    /// these media.
+    /// A skipped intersection. The ray continues in these media from the same origin, so that it skips nothing but this
+    /// surface.
     Nothing(Ray, MediumStack),
     /// A surface.
     Surface {
-        /// Which hit has it.
+        /// Its hit.
         hit: Hit,
-        /// The index of refraction on the other side of what it encloses, or around what encloses nothing.
+        /// Index of refraction outside a closed object, or around an open one.
         outside: f64,
-        /// What a ray that goes through is in.
+        /// Media of a transmitted ray.
         through: MediumStack,
     },
 }
 
 impl Passing {
-    /// For a scene that has masks, or nested media, or both.
+    /// Make it for a scene with masks, nested media or both.
     pub fn new(masks: bool, nested: bool) -> Self {
         Self { masks, nested, ..Self::default() }
     }
 
-    /// Whether there is anything to find out.
+    /// Return whether any intersection may be skipped.
     pub fn is_needed(&self) -> bool {
         self.masks || self.nested
     }
 
-    /// Whether there are nested media.
+    /// Return whether media are nested.
     pub fn is_nested(&self) -> bool {
         self.nested
     }
 
-    /// Begins with rays and what they hit.
+    /// Start with rays and their hits.
     pub fn begin(&mut self, scene: &Scene, rays: &RayQueue, hits: &[Hit]) {
         if !self.nested {
             return;
@@ -71,9 +71,9 @@ impl Passing {
         self.next = 0;
     }
 
-    /// What ray number `i`, which hits something, has come to; asked in the order of the rays. It is in some media.
-    /// `chance` is a uniform number that decides which masks it passes, negative until `number` is asked for it; given
-    /// what it has decided, the rest of it is uniform again.
+    /// Process the hit of ray number `i`; calls must be in the order of the rays. `media` are the ray's media. `chance`
+    /// is a uniform number that decides masks. It is negative until first needed, when `number` draws it. After each
+    /// decision its remainder is rescaled to be uniform again.
     pub fn meet(
         &mut self,
         scene: &Scene,

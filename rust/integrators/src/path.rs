@@ -6,21 +6,20 @@ use super::{Integrator, Job, Session};
 use raywright_base::workers::Cancel;
 use raywright_scene::{Scene, ShadingVariant};
 
-/// Unidirectional path tracing (Kajiya, "The Rendering Equation", 1986): at each bounce one light is asked directly,
-/// which is combined with running into lights by chance through multiple importance sampling (Veach and Guibas,
-/// "Optimally Combining Sampling Techniques", 1995), and Russian roulette ends paths (Arvo and Kirk, 1990).
+/// Unidirectional path tracing (Kajiya, "The Rendering Equation", 1986). Each bounce samples one light, combined with
+/// BSDF sampling by multiple importance sampling (Veach and Guibas, "Optimally Combining Sampling Techniques", 1995).
+/// Russian roulette terminates paths (Arvo and Kirk, 1990).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Path {
-    /// The greatest number of bounces off surfaces; 0 shows only what shines itself. `None` sets no limit.
+    /// Maximum number of surface bounces; 0 shows only emission. `None` sets no limit.
     pub max_depth: Option<u32>,
-    /// Roulette is played from this number of bounces on.
+    /// Number of bounces after which Russian roulette starts.
     pub roulette_depth: u32,
-    /// The side of the square patches of pixels whose paths share what they find from their second surface on, where
-    /// both that and the first are diffuse, or where both are points of one even medium; 1 for none
+    /// Side of the square pixel blocks that reuse paths, from their second surface on. Both this and the first surface
+    /// must be diffuse, or both vertices must be points of one homogeneous medium. 1 disables reuse
     /// ([`Integrator::patch`]).
     pub reuse: u32,
-    /// Whether matt surfaces draw directions also from where light comes by way of mirrors and glass
-    /// ([`super::Guide`]).
+    /// Guide paths at matte surfaces toward light through mirrors and glass ([`super::Guide`]).
     pub caustics: bool,
 }
 
@@ -36,9 +35,9 @@ impl Path {
         Settings { shares, guided, ..Settings::path(self.max_depth, self.roulette_depth) }
     }
 
-    /// Whether it is guided in a scene, as far as can be told without photons. There must be something sharp, and light
-    /// beyond it: scenes of the plain variant have nothing sharp. Among media no path is, nor one
-    /// of wavelengths.
+    /// Return whether paths are guided in a scene, as far as known without photons. Guiding requires specular surfaces,
+    /// which scenes of the plain variant do not have, and light beyond them. Paths in media and spectral paths are
+    /// never guided.
     pub fn is_guided(&self, scene: &Scene) -> bool {
         self.caustics
             && self.max_depth.is_none_or(|depth| depth > 1)
@@ -47,8 +46,8 @@ impl Path {
             && !scene.plan().needs().waves
     }
 
-    /// As [`Integrator::begin`], compiled as this variant, or as one that can do more. Every variant that suits a scene
-    /// gives the same bits.
+    /// Begin a session as [`Integrator::begin`] does, compiled as this variant or a more general one. All variants that
+    /// support a scene give the same bits.
     pub fn begin_as<'a>(&self, job: Job<'a>, variant: ShadingVariant, cancel: &Cancel) -> Box<dyn Session + 'a> {
         self.settings(job.scene).begin_as(job, variant, cancel)
     }
@@ -71,7 +70,7 @@ impl Integrator for Path {
         true
     }
 
-    /// 1 where nothing can be shared, or no path goes on from its second surface.
+    /// 1 if paths cannot be reused, or none continues from its second surface.
     fn patch(&self, scene: &Scene) -> u32 {
         let goes_on = self.max_depth.is_none_or(|depth| depth > 1);
         if goes_on && (can_share(scene) || volumes::can_share(scene)) { self.reuse.max(1) } else { 1 }

@@ -1,4 +1,4 @@
-//! Photons, to be looked at.
+//! Photons as data for inspection.
 
 use super::light_paths::{Arrived, Dimensions, Flying, LightWalk, Limits, Visitor};
 use super::nesting::MediumStack;
@@ -10,46 +10,47 @@ use raywright_base::workers::Cancel;
 use raywright_optics::Rgb;
 use raywright_scene::{EmissionSample, Encounter, Scene};
 
-/// Light that has come to a surface, or to where a medium absorbs or scatters it.
+/// Light at a surface, or at a point of a medium that absorbs or scatters it.
 #[derive(Clone, Copy, Debug)]
 pub struct Photon {
-    /// Where.
+    /// Position.
     pub position: DVec3,
-    /// The unit direction that it came along.
+    /// Unit direction of propagation.
     pub direction: DVec3,
-    /// The unit geometric normal there, on the side that it came to; zero in a medium.
+    /// Unit geometric normal on the side of incidence; zero in a medium.
     pub normal: DVec3,
-    /// The flux that it stands for, W.
+    /// Flux, W.
     pub power: Rgb,
-    /// Which shape, and which primitive of it; none in a medium.
+    /// Shape, and primitive of the shape; `None` in a medium.
     pub surface: Option<(u32, u32)>,
-    /// Which of the paths.
+    /// Index of the light path.
     pub path: u32,
-    /// How often it has been scattered before.
+    /// Number of previous scattering events.
     pub bounces: u32,
-    /// At which of these, from the first on, it was scattered sharply: a bit each, of the first 64.
+    /// Bit mask of the first 64 scattering events: specular ones.
     pub sharp: u64,
-    /// And at which by a medium.
+    /// Bit mask of the first 64 scattering events: those in media.
     pub adrift: u64,
 }
 
-/// Paths of light, at each surface that they come to, and wherever a medium absorbs or scatters them.
+/// Light paths: a photon at each surface, and at each absorption or scattering in a medium.
 #[derive(Clone, Debug, Default)]
 pub struct Photons {
-    /// In the order of the paths, and along each.
+    /// Photons ordered by path, and along each path.
     pub photons: Vec<Photon>,
-    /// The flux that sets out, W.
+    /// Emitted flux, W.
     pub emitted: Rgb,
-    /// What of it leaves the scene, at once or after it was scattered.
+    /// Part of the flux that leaves the scene, directly or after scattering.
     pub escaped: Rgb,
-    /// What of it media absorb.
+    /// Part of the flux that media absorb.
     pub absorbed: Rgb,
 }
 
-/// Follows so many paths from the lights of a scene, each by numbers of its own of a seed, to a greatest number of
-/// photons each, and from another number on by roulette.
+/// Trace light paths of a scene, each with its own random numbers of a seed. A path has at most `max_depth` photons;
+/// roulette starts after `roulette_depth`.
 ///
-/// They depend on the seed alone, not on threads. Returns soon after `cancel` is raised, with what is of no use.
+/// The result depends on the seed alone, not on threads. After a cancellation it returns soon, and the result must be
+/// discarded.
 pub fn photons(
     scene: &Scene,
     count: u32,
@@ -57,7 +58,7 @@ pub fn photons(
     seed: u64,
     cancel: &Cancel,
 ) -> Photons {
-    /// Paths that are followed together. It is part of the order in which what escapes is added up.
+    /// Paths per batch; it affects the order of summation of the escaped flux.
     const TOGETHER: u32 = 4096;
     let Some(emitters) = scene.emitters() else { return Photons::default() };
     let limits = Limits { max_depth, roulette_depth };
@@ -86,13 +87,13 @@ pub fn photons(
     })
 }
 
-/// Notes what there is to see.
+/// A visitor that records photons.
 struct Seen<'a> {
     scene: &'a Scene,
-    /// The number of the first path, and what of the light each stands for.
+    /// Index of the first path, and the share of the light per path.
     first: u32,
     share: f64,
-    /// As [`Photon::sharp`] and [`Photon::adrift`], of each path.
+    /// [`Photon::sharp`] and [`Photon::adrift`] of each path.
     chains: Vec<[u64; 2]>,
     found: Photons,
 }
@@ -107,7 +108,7 @@ impl<'a> Seen<'a> {
         self.chains.resize(path as usize + 1, [0; 2]);
     }
 
-    /// What is known of a path that has come somewhere, scattered before in such a way the last time.
+    /// Make the photon of a path; `is` says how it was scattered last.
     fn photon(&mut self, path: u32, bounces: u32, is: [bool; 2], flux: Rgb) -> Photon {
         let chain = &mut self.chains[path as usize];
         if (1..=u64::BITS).contains(&bounces) {
@@ -197,7 +198,7 @@ mod tests {
         let first: Rgb = found.photons.iter().filter(|p| p.bounces == 0).map(|p| p.power).sum();
         let off = (first + found.escaped - found.emitted).abs().max();
         assert!(off < 1e-9 * found.emitted.max(), "{off}");
-        // Of one lamp each path stands for as much: π times area and radiance.
+        // With one lamp all paths carry equal power: π times area and radiance in total.
         let power = std::f64::consts::PI * 0.09 * 15.0;
         assert!((found.emitted.mean() / power - 1.0).abs() < 1e-5, "{:?}", found.emitted);
         assert!(found.photons.iter().all(|p| p.bounces == 0 && p.sharp == 0));
@@ -206,12 +207,12 @@ mod tests {
 
     #[test]
     fn what_arrives_in_a_furnace_is_its_series() {
-        // Six walls of 4 that send π each, and of what arrives send on a half: 24 π / (1 − ½) arrive in all.
+        // Six walls of area 4 emit π each and reflect half of the incident light: 24 π / (1 − ½) arrive in total.
         let found = photons(&furnace(0.5, 1.0), 100_000, (None, 4), 1, &Cancel::default());
         let arrived: Rgb = found.photons.iter().map(|p| p.power).sum();
         let expected = 24.0 * std::f64::consts::PI / 0.5;
-        // Before roulette all paths are alike, and what is left after it is 1/8 of all. A path brings that with a
-        // standard deviation below its mean: of 100,000 it is known to 0.05 %.
+        // Before roulette all paths carry equal power, and afterward 1/8 of all is left. Each path carries that with a
+        // standard deviation below its mean: 100,000 paths give it to 0.05 %.
         assert!((arrived.mean() / expected - 1.0).abs() < 0.002, "{arrived:?}");
         assert!(found.escaped.is_black());
         let again = photons(&furnace(0.5, 1.0), 100_000, (None, 4), 1, &Cancel::default());

@@ -1,4 +1,4 @@
-//! Pictures of a radiosity solution.
+//! Rendering of a radiosity solution.
 
 use super::{CameraSample, Integrator, Job, Session, Worker};
 use raywright_accel::Primitives;
@@ -8,22 +8,22 @@ use raywright_optics::{Bsdf, Rgb};
 use raywright_scene::{Patches, Scene, SurfaceInteraction};
 use std::f64::consts::FRAC_1_PI;
 
-/// Looks up what arrives at the patch that a camera's ray meets, and shows what the surface reflects of it and emits:
-/// one ray a sample, from any camera. Textures are looked up where the ray meets them, not by the mean of a patch.
+/// Renders the irradiance of the patches at camera rays' hits, reflected by the surface, and its emission: one ray per
+/// sample, from any camera. Textures are evaluated at the hit, not averaged over a patch.
 #[derive(Clone, Debug)]
 pub struct Radiosity {
-    /// How the scene was cut, all copies in it counted.
+    /// Patches of the scene, including all copies.
     pub patches: Patches,
-    /// The first of `patches`' primitives that each primitive of the scene stands for, and their number at the end: a
-    /// copy of a prototype stands for as many as there are in it.
+    /// Index of the first of `patches`' primitives for each primitive of the scene, with their count at the end. A copy
+    /// of a prototype has all of its primitives.
     pub first: Vec<u32>,
-    /// Which of `patches`' primitives are mirrored: their second and third corners have changed places.
+    /// For each of `patches`' primitives, true if mirrored: the second and third corner are swapped.
     pub mirrored: Vec<bool>,
-    /// Whether backs follow fronts in `irradiance`; else they are black.
+    /// True if `irradiance` also has the back sides, after the front sides; else backs are black.
     pub has_backs: bool,
-    /// The irradiance at the three corners of each side of a patch, W/m²: between them it is linear.
+    /// Irradiance at the three corners of each side of a patch, W/m², linear in between.
     pub irradiance: Vec<[Rgb; 3]>,
-    /// The area of all that was cut and stands in no copy, by which another scene is told.
+    /// Total area of the patches outside copies, which detects another scene.
     pub area: f64,
 }
 
@@ -39,7 +39,7 @@ impl Integrator for Radiosity {
         if count != faces {
             return Some(format!("the radiosity is of a scene of {faces} faces, this one has {count}: solve it anew"));
         }
-        // The area of copies is not at hand; how many faces each of them has is.
+        // The area of copies is not available, but the number of their faces is.
         let mut area = 0.0;
         for primitive in 0..count as u32 {
             let (shape, _) = geometry.locate(primitive);
@@ -48,7 +48,7 @@ impl Integrator for Radiosity {
             if next - first != inside.unwrap_or(1) {
                 return Some(format!("the radiosity is of a scene whose shape {shape} is another one: solve it anew"));
             }
-            // What is not finite is never hit, and has no area in the solution.
+            // Surfaces that are not finite are never hit, and have no area in the solution.
             let own = if inside.is_none() { geometry.area(primitive) } else { 0.0 };
             area += if own.is_finite() { own } else { 0.0 };
         }
@@ -59,7 +59,7 @@ impl Integrator for Radiosity {
     }
 }
 
-/// A solution and its scene.
+/// A solution with its scene.
 struct Shown<'a> {
     solution: &'a Radiosity,
     scene: &'a Scene,
@@ -89,7 +89,7 @@ impl Shown<'_> {
         }
         let patch = patch as usize + if is_front { 0 } else { self.solution.patches.count() };
         let [a, b, c] = self.solution.irradiance[patch];
-        // Coordinates of what is no triangle are no weights, and its corners are alike.
+        // Coordinates of other primitives than triangles are no weights, but their corners are equal.
         let irradiance = a + (b - a) * u + (c - a) * v;
         let here = SurfaceInteraction::new(self.scene, ray, hit, surface, 0.0, 1.0);
         emission + here.bsdf().diffuse().unwrap_or(Rgb::ZERO) * irradiance * FRAC_1_PI

@@ -5,17 +5,16 @@ use super::{Integrator, Job, Session};
 use raywright_base::workers::Cancel;
 use raywright_optics::Rgb;
 
-/// Ray casting with shadows (Appel, "Some Techniques for Shading Machine Renderings of Solids", 1968): what shines,
-/// what the lights give a surface by its scattering, and ambient light. Nothing is followed further, so that mirrors
-/// and glass are black.
+/// Ray casting with shadows (Appel, "Some Techniques for Shading Machine Renderings of Solids", 1968): emission, direct
+/// light and ambient light. No further rays are traced, so mirrors and glass are black.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RayCast {
-    /// Radiance that arrives from everywhere, unshadowed. Surfaces reflect their ambient share of it
+    /// Uniform incident radiance, unshadowed. Surfaces reflect their ambient share of it
     /// ([`Material::ambient`](raywright_scene::Material::ambient)).
     pub ambient: Rgb,
-    /// Whether what lies on the way to a light shadows it.
+    /// Trace shadow rays to the lights.
     pub shadows: bool,
-    /// How many light samples a surface takes, from equal shares of the lights; at least 1.
+    /// Light samples per surface, stratified over the lights; at least 1.
     pub light_samples: u32,
 }
 

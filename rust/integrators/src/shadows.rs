@@ -1,4 +1,4 @@
-//! Whether light that was drawn arrives.
+//! Shadow rays.
 
 use super::nesting::{Boundary, MediumStack, around};
 use raywright_base::math::{Hit, Ray, RayLanes, RayQueue};
@@ -6,60 +6,60 @@ use raywright_optics::Rgb;
 use raywright_scene::materials::Interior;
 use raywright_scene::{Scene, opacity_at};
 
-/// Shadow rays of a batch, and what arrives along each if nothing lies on the way.
+/// Shadow rays of a batch with their contributions if unoccluded.
 #[derive(Default)]
 pub(super) struct Shadows {
     rays: RayQueue,
     arriving: Vec<(u32, Rgb)>,
-    /// What each starts in, in a scene of nested media.
+    /// Media at the origin of each ray, in scenes with nested media.
     media: Vec<MediumStack>,
     occluded: Vec<bool>,
     hits: Vec<Hit>,
-    /// The parts of rays around hits of what encloses a medium, and which rays' they are.
+    /// Ray spans around hits on medium boundaries, and the indices of their rays.
     windows: Vec<Ray>,
     of: Vec<usize>,
 }
 
 impl Shadows {
-    /// Forgets all.
+    /// Remove all rays.
     pub fn clear(&mut self) {
         self.rays.clear();
         self.arriving.clear();
         self.media.clear();
     }
 
-    /// A ray.
+    /// Append a ray.
     #[inline]
     pub fn push(&mut self, ray: &Ray) {
         self.rays.push(ray);
     }
 
-    /// Rays of the lanes in a mask.
+    /// Append the rays of a mask's lanes.
     #[inline]
     pub fn push_lanes(&mut self, rays: &RayLanes, mask: u32) {
         self.rays.push_lanes(rays, mask);
     }
 
-    /// How much arrives at a sample along the next ray, of those pushed, for which it is not said yet.
+    /// Set the sample and the contribution of the next ray without one.
     #[inline]
     pub fn bring(&mut self, sample: u32, arriving: Rgb) {
         self.arriving.push((sample, arriving));
     }
 
-    /// What the next ray starts in for which it is not said yet.
+    /// Set the media of the next ray without them.
     #[inline]
     pub fn start_in(&mut self, media: MediumStack) {
         self.media.push(media);
     }
 
-    /// Adds to each sample what arrives at it, as if nothing were in the way.
+    /// Add all contributions, without occlusion.
     pub fn add_all(&mut self, radiance: &mut [Rgb]) {
         for &(sample, arriving) in &self.arriving {
             radiance[sample as usize] += arriving;
         }
     }
 
-    /// Adds to each sample what arrives at it in a scene in which every hit blocks.
+    /// Add the contributions of unoccluded rays, in scenes where every hit occludes.
     pub fn add_unblocked(&mut self, scene: &Scene, radiance: &mut [Rgb]) {
         self.occluded.resize(self.rays.len(), false);
         scene.occluded_queue(&mut self.rays, &mut self.occluded);
@@ -70,10 +70,10 @@ impl Shadows {
         }
     }
 
-    /// Adds to each sample what arrives at it through masks, dimmed by their opacity, and through surfaces that are
-    /// none because another medium is there.
+    /// Add the contributions of rays through masks, attenuated by their opacity, and through surfaces that nested
+    /// dielectrics remove.
     pub fn add_through(&mut self, scene: &Scene, nested: bool, radiance: &mut [Rgb]) {
-        // Light is added in the order of the rays, whichever of them are followed for longer.
+        // Light is added in the order of the rays, regardless of their number of segments.
         let mut on_way: Vec<usize> = (0..self.rays.len()).collect();
         while !on_way.is_empty() {
             let rays: Vec<Ray> = on_way.iter().map(|&i| self.rays.get(i)).collect();
@@ -125,7 +125,7 @@ impl Shadows {
     }
 }
 
-/// The share of rays that meet what is hit.
+/// Return the opacity at a hit.
 pub(super) fn opacity(scene: &Scene, ray: &Ray, hit: &Hit) -> f64 {
     let material = scene.material_of(hit);
     if material.is_opaque() {

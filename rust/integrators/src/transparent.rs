@@ -1,4 +1,4 @@
-//! Pictures without what lies behind the scene.
+//! Rendering with a transparent background.
 
 use super::transport::FirstSeen;
 use super::{CameraSample, Integrator, Job, LightWorker, Session, Worker};
@@ -7,12 +7,11 @@ use raywright_optics::Rgb;
 use raywright_scene::Scene;
 use std::ops::Range;
 
-/// An integrator whose camera rays find nothing where they leave the scene without having come to a surface: the
-/// background is left out as the camera sees it directly. It lights the scene as before, and is seen in mirrors and
-/// through glass.
+/// An integrator whose camera rays see no background where they leave the scene without hitting a surface. The
+/// background still lights the scene and appears in mirrors and through glass.
 ///
-/// Each sample counts whole or not at all, so that a pixel's colour is that of what covers it, times its cover, by the
-/// very samples that tell the cover.
+/// Each sample counts fully or not at all. So a pixel's color is premultiplied by its alpha, and both come from the
+/// same samples.
 pub struct Transparent<'i>(pub &'i dyn Integrator);
 
 impl Integrator for Transparent<'_> {

@@ -1,4 +1,4 @@
-//! Recursive ray tracing, as a loop.
+//! Whitted ray tracing, without recursion.
 
 use super::transport::{Follow, Settings};
 use super::volumes::{Onwards, Volumes};
@@ -6,20 +6,20 @@ use super::{Integrator, Job, Session};
 use raywright_base::workers::Cancel;
 use raywright_optics::Rgb;
 
-/// Whitted's ray tracing ("An Improved Illumination Model for Shaded Display", 1980): lights and ambient light at each
-/// surface by its scattering, and both the reflected and the refracted ray of smooth ones, followed to a depth, or for
-/// as long as they contribute (Hall and Greenberg, "A Testbed for Realistic Image Synthesis", 1983). What is scattered
-/// otherwise is not followed.
+/// Whitted ray tracing ("An Improved Illumination Model for Shaded Display", 1980): direct and ambient light at each
+/// surface. Both the reflected and the refracted ray of smooth surfaces are traced to a maximum depth, or while their
+/// contribution suffices (Hall and Greenberg, "A Testbed for Realistic Image Synthesis", 1983). Other scattered light
+/// is not followed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Whitted {
-    /// The greatest number of surfaces that light comes by, from the light on.
+    /// Maximum number of surfaces on a path of light, counted from the light.
     pub max_depth: u32,
-    /// Rays are not followed that contribute less than this share to their pixel, in any colour; 0 follows all.
+    /// Minimum contribution of a ray to its pixel in any color; others are not traced. 0 traces all.
     pub contribution: f64,
-    /// Radiance that arrives from everywhere in place of what is not followed. Surfaces reflect their ambient share of
-    /// it ([`Material::ambient`](raywright_scene::Material::ambient)).
+    /// Uniform incident radiance that replaces light not followed. Surfaces reflect their ambient share of it
+    /// ([`Material::ambient`](raywright_scene::Material::ambient)).
     pub ambient: Rgb,
-    /// How many light samples the first surface takes, from equal shares of the lights; at least 1.
+    /// Light samples of the first surface, stratified over the lights; at least 1.
     pub light_samples: u32,
 }
 
