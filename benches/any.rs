@@ -1,5 +1,5 @@
-//! Any hits on one thread, by rays, mesh, SIMD level and width of the tree: an item is one ray. Each agrees with brute
-//! force before it is timed.
+//! Any-hit queries on one thread, by ray type, mesh, SIMD level and BVH width: an item is one ray. Hits are compared
+//! with brute force before timing.
 
 mod meshes;
 

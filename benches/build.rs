@@ -1,5 +1,5 @@
-//! Tree builds on all cores, by number of triangles: the binary tree alone (binned SAH), and the complete structure by
-//! quality. Each is valid and agrees with brute force before it is timed.
+//! BVH construction on all cores, by number of triangles: the binary BVH alone (binned SAH), and the complete structure
+//! for traversal, by quality. Each is validated, and its hits compared with brute force, before timing.
 
 mod meshes;
 

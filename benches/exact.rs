@@ -1,5 +1,5 @@
-//! The cost of one triangle decision: in f32, by the leaf, if that rejects it for certain; in f64, if its error bound
-//! makes it certain; and in integers otherwise. An item is one triangle.
+//! Cost of a triangle test by the level that decides: f32 in the leaf, for certain rejections; f64, if its error bound
+//! suffices; else integers. An item is one triangle.
 
 mod leaves;
 
@@ -14,7 +14,7 @@ fn main() {
     divan::main();
 }
 
-/// A triangle and a ray through its point with these weights.
+/// Return a triangle and a ray to the point with these weights.
 fn aimed(weights: [f64; 3]) -> (Ray, [DVec3; 3]) {
     let corners = [[0.75, -0.3125, 2.1], [-0.46, 0.8, 1.9], [-0.3, -0.7, 2.4]]
         .map(|c: [f32; 3]| DVec3::from_array(c.map(f64::from)));

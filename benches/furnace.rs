@@ -1,5 +1,6 @@
-//! White furnace test of single scattering: light that white materials gain or lose, by angle and quadrature. 0 is
-//! right; the table has the greatest errors over all angles, and over all indices of glass and of coats.
+//! Energy balance of white materials in one scattering event, by quadrature over the direction of incidence under
+//! uniform light. 0 is correct. The table has the largest errors over all angles and over all indices of refraction of
+//! glass and coats.
 
 use raywright::math::DVec3;
 use raywright::optics::albedo::Tabulated;
@@ -12,23 +13,23 @@ use raywright::optics::{
 };
 use raywright::parallel;
 
-/// Roughnesses, one column each.
+/// Roughness of each column.
 const ALPHAS: [f64; 9] = [1e-4, 0.001, 0.01, 0.03, 0.1, 0.2, 0.35, 0.6, 1.0];
 
-/// Indices of refraction of glass, below over above.
+/// Relative indices of refraction of glass, below over above.
 const GLASS: [f64; 13] = [0.5, 0.6, 0.667, 0.75, 0.9, 0.99, 1.01, 1.1, 1.33, 1.5, 1.8, 2.4, 3.0];
 
 /// Indices of refraction of coats.
 const COATS: [f64; 6] = [1.1, 1.33, 1.5, 1.8, 2.4, 3.0];
 
-/// Cosines of directions: even in angle, plus some grazing ones.
+/// Return cosines of directions: uniform in angle, and some at grazing angles.
 fn cosines() -> Vec<f64> {
     let even = (0..30).map(|i| f64::from(3 * i).to_radians().cos());
     even.chain([0.03, 0.01, 0.003, 0.001]).collect()
 }
 
-/// The greatest loss and gain, negative and positive, of one white material. `eta` is the index below over that above,
-/// and `width` that of its sharpest lobe; without a width, it samples.
+/// Return the largest loss (negative) and gain (positive) of a white material. `eta` is the index below over that
+/// above, and `width` that of its sharpest lobe; `None` uses sampling instead of quadrature.
 fn extremes(scatter: &(impl Bsdf + Sync), eta: f64, width: Option<f64>) -> [f64; 2] {
     let sides: &[f64] = if scatter.transmits() { &[1.0, -1.0] } else { &[1.0] };
     let ways: Vec<DVec3> = cosines()
@@ -68,7 +69,7 @@ fn plastic<F: Tabulated + Send + Sync>(alpha: f64) -> [f64; 2] {
     all(COATS.iter().map(|&eta| extremes(&Coated::of(Rgb::ONE, eta, F::rough([alpha; 2])), 1.0, Some(alpha))))
 }
 
-/// A white look; its other parameters should not matter.
+/// Return white parameters, with the other values set to `other`, which should not matter.
 fn white(alpha: f64, transmission: f64, other: f64) -> Look {
     Look {
         base_color: Rgb::ONE,
@@ -97,7 +98,7 @@ fn principled_sheet(alpha: f64) -> [f64; 2] {
         .map(|through| extremes(&LayeredPrincipledThin::new(white(alpha, through, 0.5), 1.5, 0.3), 1.0, None)))
 }
 
-/// A name, and the loss and gain at a roughness.
+/// A name, and a function from roughness to loss and gain.
 type Row = (&'static str, fn(f64) -> [f64; 2]);
 
 const ROWS: [Row; 12] = [
@@ -120,7 +121,7 @@ const ROWS: [Row; 12] = [
 ];
 
 fn main() {
-    // Without this flag, as `cargo test --benches` has it, one column is enough.
+    // Without this flag, as in `cargo test --benches`, one column suffices.
     let is_whole = std::env::args().any(|arg| arg == "--bench");
     let alphas = if is_whole { &ALPHAS[..] } else { &ALPHAS[5..6] };
     println!("Light lost and gained by white surfaces in one bsdf, in per cent, at the worst angle and index.");

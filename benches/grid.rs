@@ -1,5 +1,5 @@
-//! Grids against the tree, and against each other by their mailboxing: closest hits on one thread. Each agrees with
-//! brute force before it is timed.
+//! Grids compared with the BVH, and by their way of avoiding repeated tests: closest hits on one thread. Hits are
+//! compared with brute force before timing.
 
 mod meshes;
 
@@ -17,7 +17,7 @@ fn main() {
     divan::main();
 }
 
-/// A structure.
+/// An acceleration structure.
 #[derive(Clone, Copy, Debug)]
 enum Kind {
     Tree,
@@ -50,7 +50,7 @@ impl Kind {
     }
 }
 
-/// One line of a table.
+/// The parameters of a table row.
 #[derive(Clone, Copy, Debug)]
 struct Case {
     mesh: Mesh,

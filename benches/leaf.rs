@@ -1,5 +1,5 @@
-//! Cost of testing a leaf of one to eight triangles, by width of the leaves and SIMD level: an item is one leaf and one
-//! ray. Leaves are in the cache, and tests are independent of each other.
+//! Cost of testing a leaf of one to eight triangles against a ray, by leaf width and SIMD level: an item is one leaf
+//! and one ray. Leaves are in the cache, and tests are independent of each other.
 
 mod leaves;
 
@@ -13,19 +13,19 @@ fn main() {
     divan::main();
 }
 
-/// In f32 alone, with all triangles rejected: the cost of most leaves.
+/// The f32 test alone, which rejects all triangles: the usual case.
 #[divan::bench(args = Case::all())]
 fn missed_in_f32(bencher: Bencher, case: Case) {
     case.time(bencher, false, Test::Left);
 }
 
-/// In f32 alone, with one triangle left.
+/// The f32 test alone, which leaves one triangle undecided.
 #[divan::bench(args = Case::all())]
 fn met_in_f32(bencher: Bencher, case: Case) {
     case.time(bencher, true, Test::Left);
 }
 
-/// In f32, then in f64 for the triangles left.
+/// The f32 test, followed by f64 for undecided triangles.
 #[divan::bench(args = Case::all())]
 fn met(bencher: Bencher, case: Case) {
     case.time(bencher, true, Test::Met);
@@ -45,7 +45,7 @@ struct Case {
 }
 
 impl Case {
-    /// Every size of leaf at every level, each as wide as its level has lanes.
+    /// Return every leaf size at every SIMD level, each with its native width.
     fn all() -> Vec<Self> {
         let available = Level::ALL.into_iter().filter(|level| level.is_available());
         let sizes =

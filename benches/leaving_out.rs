@@ -1,6 +1,6 @@
-//! Gain of specialized kernels: the same paths in the same scene, traced by the kernel that the scene needs and by more
-//! general ones. They take turns, so that all share the machine's other load. Results agree bit for bit, which is
-//! checked before anything is timed.
+//! Gain from specialized kernels: the same paths in the same scene, traced by the kernel that the scene needs and by
+//! more general ones. They run in turns, so that other load on the machine affects all alike. Their results are
+//! compared bit for bit before timing.
 
 use raywright::accel::bvh::{self, Options};
 use raywright::integrators::{CameraSample, Job, Path};
@@ -13,14 +13,14 @@ use raywright::workers::Cancel;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// Number of turns each.
+/// Number of turns.
 const TURNS: usize = 31;
 
 /// Paths per timing.
 const PATHS: u32 = 4096;
 
 fn main() {
-    // Without this flag, as in `cargo test --benches`, all is checked and nothing timed.
+    // Without this flag, as in `cargo test --benches`, everything is checked and nothing timed.
     let is_timed = std::env::args().any(|arg| arg == "--bench");
     let scene = room();
     let camera =
@@ -67,7 +67,7 @@ fn median(mut values: Vec<f64>) -> f64 {
     values[values.len() / 2]
 }
 
-/// A path from the room's middle, in a random direction.
+/// Return a path from the room's center in a direction of its own.
 fn sample(number: u32) -> CameraSample {
     let mut sampler = Sampler::new(1, number, 0);
     let [x, y] = sampler.two(0);
@@ -75,7 +75,7 @@ fn sample(number: u32) -> CameraSample {
     CameraSample { ray: Ray::new(DVec3::new(0.0, 0.0, 0.9), direction), sampler }
 }
 
-/// A room from −1 to 1 with a lamp under its ceiling.
+/// Return a room from −1 to 1 with a lamp under its ceiling.
 fn room() -> Scene {
     let wall = |corner: Vec3, side: Vec3, other: Vec3, reflectance: Rgb, emission: f64| Shape {
         surface: Mesh {

@@ -1,8 +1,8 @@
-//! Cost of testing a node, by kernel, width of the tree and SIMD level: an item is one node and one ray.
+//! Cost of a node test, by kernel, BVH width and SIMD level: an item is one node and one ray.
 //!
-//! Kernels answer hits, not nodes. So rays run between triangles on both sides: every box of a node holds them, and
-//! none of a leaf does. The bench counts this before it times anything. Each ray tests some hundred nodes, so that its
-//! fixed cost is a few hundredths; nodes are in the cache.
+//! Kernels trace rays and cannot test a single node. So rays pass between triangles on both sides: they are in each
+//! node's bounding box but in none of a leaf, as counted before timing. A ray tests some hundred nodes, so its
+//! remaining cost is a few percent. All nodes are in the cache.
 
 mod meshes;
 
@@ -20,17 +20,17 @@ fn main() {
 /// One ray after the other.
 #[divan::bench(args = Kernel::all())]
 fn single(bencher: Bencher, kernel: Kernel) {
-    // Few enough for single-ray traversal.
+    // Too few for the batch kernels.
     time(bencher, kernel, 4, false);
 }
 
-/// Alternating rays in opposite directions.
+/// Rays of alternating directions.
 #[divan::bench(args = Kernel::all())]
 fn wave(bencher: Bencher, kernel: Kernel) {
     time(bencher, kernel, 64, true);
 }
 
-/// Parallel rays.
+/// Coherent rays.
 #[divan::bench(args = Kernel::all())]
 fn packet(bencher: Bencher, kernel: Kernel) {
     time(bencher, kernel, 64, false);
@@ -38,7 +38,7 @@ fn packet(bencher: Bencher, kernel: Kernel) {
 
 fn time(bencher: Bencher, kernel: Kernel, count: usize, both_ways: bool) {
     let zigzag = zigzag();
-    // The smallest possible leaves: two places in one leaf would have the axis in its box.
+    // Minimum leaf size: two positions in one leaf would have the axis in its box.
     let options = Options { quality: Quality::FastBuild, traversal_cost: 1e-3, ..Options::DEFAULT };
     let tree = kernel.build(&zigzag, &options);
     let rays: Vec<Ray> = (0..count).map(|i| ray(i, both_ways && i % 2 == 1)).collect();
@@ -47,17 +47,18 @@ fn time(bencher: Bencher, kernel: Kernel, count: usize, both_ways: bool) {
     bencher.counter(ItemsCount::new(nodes)).bench_local(|| tree.intersect(&rays, &mut hits));
 }
 
-/// Places along the axis.
+/// Number of positions along the axis.
 const COUNT: usize = 2048;
 
-/// Equal triangles at a place: more than the leaves of a binary tree hold, and as many as fit the narrowest leaf.
+/// Number of identical triangles per position: more than a leaf of a binary BVH holds, and as many as fit the narrowest
+/// leaf.
 const COPIES: usize = 4;
 
-/// Distance between places, so much larger than their width that trees split along the axis.
+/// Distance of positions: so much larger than the triangles that BVHs split along the axis.
 const APART: f64 = 64.0;
 
-/// Triangles along the x axis, alternating between its sides: the box of two places holds a part of the axis, the box
-/// of one does not. They are wider than the gap, so that splitting by sides does not pay.
+/// Return triangles along the x axis, alternately on either side of it. So the box of two positions contains a part of
+/// the axis, and the box of one does not. They are wider than the gap, or a split by sides would pay.
 fn zigzag() -> Triangles {
     let triangle = |i: usize| {
         let (x, side) = (i as f32 * APART as f32, if i.is_multiple_of(2) { 1.0 } else { -1.0 });
@@ -66,14 +67,14 @@ fn zigzag() -> Triangles {
     Triangles((0..COPIES * COUNT).map(|i| triangle(i / COPIES)).collect())
 }
 
-/// A ray along the axis, or back, slightly beside it.
+/// Return a ray along the axis, in either direction, slightly beside it.
 fn ray(i: usize, back: bool) -> Ray {
     let beside = DVec3::new(0.0, (i % 8) as f64 - 3.5, (i / 8) as f64 - 3.5) / 16.0;
     let start = DVec3::new(if back { COUNT as f64 * APART } else { -APART }, 0.0, 0.0);
     Ray::new(start + beside, if back { -DVec3::X } else { DVec3::X })
 }
 
-/// Number of nodes that all rays test. Panics if a ray tests anything else, or not every node.
+/// Return the number of node tests of all rays. Panic if a ray tests anything else, or not every node.
 fn nodes(tree: &dyn Accelerator, rays: &[Ray]) -> usize {
     let mut costs = vec![Cost::default(); rays.len()];
     tree.cost(rays, &mut costs);

@@ -1,7 +1,9 @@
-//! Cost of exact decisions on one thread: the same trees and kernels with plain f32 leaves, with our own, and with
-//! leaves that store f64. They take turns, so that all share the machine's other load.
+//! Cost of exact intersection per ray on one thread: the same BVHs and kernels with leaves that trust f32, with the
+//! exact leaves, and with leaves that store f64. They run in turns, so that other load on the machine affects all
+//! alike.
 //!
-//! Ours agree with brute force bit for bit before they are timed; for the others the table lists how often they err.
+//! The exact leaves' hits equal those of brute force bit for bit before timing. The table lists how often the others
+//! err.
 
 mod meshes;
 #[path = "leaves/plain.rs"]
@@ -16,20 +18,20 @@ use raywright::simd::Level;
 use std::hint::black_box;
 use std::time::Instant;
 
-/// Number of turns each.
+/// Number of turns.
 const TURNS: usize = 41;
 
-/// Rays per timing: a batch of a caller's thread, and much less than a time slice.
+/// Rays per timing: as many as in a typical batch per thread, and much less than a time slice.
 const CHUNK: usize = 2048;
 
-/// Types of queries.
+/// Ray query.
 #[derive(Clone, Copy)]
 enum Asked {
     Closest,
     Any,
 }
 
-/// The price of one leaf over another, relative to the other's speed.
+/// Cost of one leaf type relative to another's speed.
 #[derive(Default)]
 struct Prices {
     exact: Vec<f64>,
@@ -37,7 +39,7 @@ struct Prices {
 }
 
 fn main() {
-    // Without this flag, as in `cargo test --benches`, all is checked and nothing timed.
+    // Without this flag, as in `cargo test --benches`, everything is checked and nothing timed.
     let is_timed = std::env::args().any(|arg| arg == "--bench");
     let level = Level::current().expect("a level of this processor");
     println!(
@@ -89,7 +91,7 @@ fn main() {
     }
 }
 
-/// Plain, exact and f64 trees.
+/// Return the BVHs with plain, exact and double leaves.
 fn trees(triangles: &Triangles, level: Level) -> [Box<dyn Accelerator>; 3] {
     let plain = match level.lanes() {
         8 => bvh::with_leaves::<8, PlainLeaves<8>>(triangles, &Options::DEFAULT, level),
@@ -99,8 +101,8 @@ fn trees(triangles: &Triangles, level: Level) -> [Box<dyn Accelerator>; 3] {
     [plain, exact, bvh::widest(&Doubles(triangles), &Options::DEFAULT, level)]
 }
 
-/// Number of rays with another triangle, or none, in plain f32. Panics if ours are wrong, or if the plain ones err more
-/// often than a correct f32 test.
+/// Return the number of rays with wrong hits if f32 is trusted. Panic if the exact leaves err, or if the plain ones err
+/// more often than a correct f32 test does.
 fn disagreeing(triangles: &Triangles, trees: &[Box<dyn Accelerator>; 3], rays: &[Ray]) -> usize {
     validate(triangles, trees[1].as_ref(), rays);
     validate(triangles, trees[2].as_ref(), rays);
@@ -115,10 +117,10 @@ fn disagreeing(triangles: &Triangles, trees: &[Box<dyn Accelerator>; 3], rays: &
     wrong
 }
 
-/// Seconds that each tree takes for all rays.
+/// Return the seconds that each BVH takes for all rays.
 ///
-/// Each traces all rays before the next has its turn, so that it finds its own nodes in the cache; the order rotates.
-/// Chunks are timed, and the median over all turns counts for each: other load on the processor affects few of them.
+/// Each BVH traces all rays before the next one does, with its own nodes in the cache; the order rotates. The time of a
+/// chunk is the median over all turns, since other processes disturb only few turns.
 fn turns(trees: &[Box<dyn Accelerator>; 3], rays: &[Ray], asked: Asked) -> [f64; 3] {
     let mut hits = [Hit::MISS; CHUNK];
     let mut occluded = [false; CHUNK];
@@ -141,14 +143,14 @@ fn turns(trees: &[Box<dyn Accelerator>; 3], rays: &[Ray], asked: Asked) -> [f64;
     seconds.map(|turns| chunks.clone().map(|chunk| middle(turns.iter().map(|turn| turn[chunk]))).sum())
 }
 
-/// The median.
+/// Return the median.
 fn middle(numbers: impl Iterator<Item = f64>) -> f64 {
     let mut numbers: Vec<f64> = numbers.collect();
     numbers.sort_by(f64::total_cmp);
     numbers[numbers.len() / 2]
 }
 
-/// Least, middle and greatest.
+/// Format the minimum, median and maximum.
 fn range(prices: &[f64]) -> String {
     let least = prices.iter().copied().fold(f64::INFINITY, f64::min);
     let most = prices.iter().copied().fold(f64::NEG_INFINITY, f64::max);

@@ -1,5 +1,5 @@
-//! Closest hits on one thread through spatial subdivisions, beside the default BVH. Each agrees with brute force before
-//! it is timed.
+//! Closest hits on one thread with spatial subdivisions, compared with the default BVH. Hits are compared with brute
+//! force before timing.
 
 mod meshes;
 
@@ -26,7 +26,7 @@ enum Kind {
     Bsp,
 }
 
-/// One line of a table.
+/// The parameters of a table row.
 #[derive(Clone, Copy, Debug)]
 struct Case {
     mesh: Mesh,

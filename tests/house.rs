@@ -1,31 +1,30 @@
-//! Checks the modules against `ARCHITECTURE.md`, by the names in their text. Cargo ensures that crates only use lower
-//! ones.
+//! Module dependencies as in `ARCHITECTURE.md`, parsed from the source files. Cargo enforces the order of the floors,
+//! since each is a crate.
 //!
-//! An arrow goes from a file to the file where a used item is defined, through every re-export; uses by tests alone do
-//! not count. A `mod.rs` and the files and folders beside it are one room: they may use items of their `mod.rs`, and
-//! the reverse. But of any two of these files and folders, with all contents, only one may depend on the other,
-//! directly or not.
+//! A dependency leads from a file that uses an item to the file that defines it, through all re-exports; tests are
+//! ignored. A `mod.rs` and the files and folders beside it form one module: they may use items of their `mod.rs` and be
+//! used there. Among these files and folders, each with its contents, dependencies must not be cyclic.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The lowest crate, whose folders are rooms like the other crates.
+/// Lowest crate, whose folders correspond to the other crates.
 const BASE: &str = "base";
 
-/// Names from the crate to a module, and possibly on to an item.
+/// Path segments from the crate to a module or to an item in it.
 type Names = Vec<String>;
 
-/// Contents of a file without its tests.
+/// The dependencies of a file without its tests.
 #[derive(Default)]
 struct File {
-    /// Paths in its code, from the crate on.
+    /// Paths used, relative to the crate.
     paths: BTreeSet<Names>,
-    /// Imported names, with their paths.
+    /// Imported names and their paths.
     imports: BTreeMap<String, Names>,
 }
 
-/// A use in one file of an item in another.
+/// A dependency: an item of one file, used in another.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
 struct Arrow {
     from: Names,
@@ -108,9 +107,9 @@ fn no_line_is_longer_than_120_columns() {
     }
 }
 
-/// Arrows in a cycle between sibling files and folders.
+/// Return the dependencies that are part of a cycle between siblings.
 fn circles(arrows: &BTreeSet<Arrow>) -> Vec<&Arrow> {
-    // The common folder of both ends, and their names in it.
+    // The siblings at both ends, by name.
     let ends = |arrow: &Arrow| {
         let shared = arrow.from.iter().zip(&arrow.to).take_while(|(a, b)| a == b).count();
         (arrow.from[..shared].to_vec(), arrow.from[shared].clone(), arrow.to[shared].clone())
@@ -131,12 +130,12 @@ fn circles(arrows: &BTreeSet<Arrow>) -> Vec<&Arrow> {
     arrows.iter().filter(|arrow| matches!(ends(arrow), (place, from, to) if needs_it(&place, &to, &from))).collect()
 }
 
-/// One line for each arrow.
+/// Format one line per dependency.
 fn told(arrows: &[&Arrow]) -> String {
     arrows.iter().map(|a| format!("  {} -> {}: {}\n", a.from.join("::"), a.to.join("::"), a.item)).collect()
 }
 
-/// Every arrow from one file to another, except those between a `mod.rs` and its siblings.
+/// Return all dependencies between files, except those between a `mod.rs` and its siblings.
 fn arrows(files: &BTreeMap<Names, File>) -> BTreeSet<Arrow> {
     let mut arrows = BTreeSet::new();
     for (from, file) in files {
@@ -150,10 +149,10 @@ fn arrows(files: &BTreeMap<Names, File>) -> BTreeSet<Arrow> {
     arrows
 }
 
-/// The file that defines a path's item, and the item's name; the file itself has none.
+/// Return the file that defines the item of a path, and the item's name; the name is empty for the file itself.
 fn stands(files: &BTreeMap<Names, File>, path: &[String]) -> (Names, String) {
     let mut path = path.to_vec();
-    // A name leads to another once for each re-export.
+    // One step per re-export.
     for _ in 0..10 {
         let depth = (0..=path.len()).rev().find(|&n| files.contains_key(&path[..n])).expect("the crate itself is one");
         let (module, rest) = path.split_at(depth);
@@ -165,7 +164,7 @@ fn stands(files: &BTreeMap<Names, File>, path: &[String]) -> (Names, String) {
     panic!("{} leads nowhere", path.join("::"));
 }
 
-/// Every file of the crate with more than tests, by module path.
+/// Return all source files of the crate except tests, by module path.
 fn crate_files() -> BTreeMap<Names, File> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("rust");
     let read = |path: PathBuf| (path.strip_prefix(&root).unwrap().to_owned(), fs::read_to_string(&path).unwrap());
@@ -174,7 +173,7 @@ fn crate_files() -> BTreeMap<Names, File> {
     files
 }
 
-/// Files with more than tests, among all by path and text.
+/// Return the source files except tests, by module path, from their paths and texts.
 fn files(all: impl IntoIterator<Item = (PathBuf, String)>) -> BTreeMap<Names, File> {
     let (mut codes, mut tests) = (BTreeMap::new(), BTreeSet::new());
     for (path, text) in all {
@@ -199,7 +198,7 @@ fn files(all: impl IntoIterator<Item = (PathBuf, String)>) -> BTreeMap<Names, Fi
     codes.into_iter().map(|(module, (root, code))| (module.clone(), file(&module, &root, &code, &known))).collect()
 }
 
-/// All Rust files in a folder and its folders.
+/// Return all Rust files in a folder, recursively.
 fn rust_files(folder: &Path) -> Vec<PathBuf> {
     let mut files = Vec::new();
     for entry in fs::read_dir(folder).unwrap_or_else(|e| panic!("{}: {e}", folder.display())) {
@@ -213,7 +212,7 @@ fn rust_files(folder: &Path) -> Vec<PathBuf> {
     files
 }
 
-/// The text without comments and contents of strings.
+/// Return the text without comments and string contents.
 fn code(text: &str) -> String {
     let mut code = String::new();
     let mut in_string = false;
@@ -241,7 +240,7 @@ fn code(text: &str) -> String {
     code
 }
 
-/// Formatted code without its test items, and the names of test files.
+/// Return formatted code without test items, and the names of test files.
 fn without_tests(code: &str) -> (String, Vec<String>) {
     let (mut kept, mut files) = (String::new(), Vec::new());
     let mut lines = code.lines();
@@ -250,7 +249,7 @@ fn without_tests(code: &str) -> (String, Vec<String>) {
             kept.extend([line, "\n"]);
             continue;
         };
-        // The item ends with the first closing line of the same indentation.
+        // An item ends with the first line of equal indentation that closes a delimiter.
         for line in lines.by_ref() {
             let (before, item) = line.split_at(indent.min(line.len()));
             if before.trim().is_empty() && !item.starts_with(' ') && item.trim_end().ends_with([';', '}']) {
@@ -263,15 +262,15 @@ fn without_tests(code: &str) -> (String, Vec<String>) {
     (kept, files)
 }
 
-/// Paths used by code in a module of a crate with this root.
+/// Return the dependencies of the code in a module, in a crate with this root.
 fn file(module: &Names, root: &Names, code: &str, known: &BTreeSet<Names>) -> File {
     let words = words(code);
     let word = |at: usize| words.get(at).map_or("", String::as_str);
     let mut file = File::default();
-    // Modules within the file, and how many braces are open inside each.
+    // Modules within the file, each with the number of open braces inside it.
     let mut inner: Vec<(String, usize)> = Vec::new();
     let mut open = 0;
-    // Imports come first, since paths may start with them.
+    // Imports come first, as paths may start with an imported name.
     for imports in [true, false] {
         let mut at = 0;
         while at < words.len() {
@@ -313,7 +312,7 @@ fn file(module: &Names, root: &Names, code: &str, known: &BTreeSet<Names>) -> Fi
     file
 }
 
-/// The words and signs of code; `::` is one.
+/// Split code into words and signs; `::` is one sign.
 fn words(code: &str) -> Vec<String> {
     let is_word = |c: char| c.is_alphanumeric() || c == '_';
     let mut words: Vec<String> = Vec::new();
@@ -330,7 +329,7 @@ fn words(code: &str) -> Vec<String> {
     words
 }
 
-/// The leaves of a tree of imports: the path of each, and its local name. `at` moves behind the tree.
+/// Append the leaves of an import tree: each path and its local name. `at` moves past the tree.
 fn tree(words: &[String], at: &mut usize, before: &[String], leaves: &mut Vec<(Names, String)>) {
     let mut path = before.to_vec();
     loop {
@@ -367,7 +366,7 @@ fn tree(words: &[String], at: &mut usize, before: &[String], leaves: &mut Vec<(N
     }
 }
 
-/// A path from the crate on; none if it leads to another crate, or begins with a local item.
+/// Return a path relative to the crate; `None` if it leads to another crate or starts with an item of the file.
 fn from_crate(path: &[String], (root, here): (&Names, &Names), file: &File, known: &BTreeSet<Names>) -> Option<Names> {
     let child = [&**here, &path[..1]].concat();
     let ups = path.iter().take_while(|name| *name == "super").count();

@@ -1,7 +1,7 @@
-//! Tests of the crate's public API, as a user's own crate would call it.
+//! Tests of the public interface, as a user's crate sees it.
 //!
-//! They are compiled with the crate's unit tests (see `rust/lib.rs`): as crates of their own they would compile it once
-//! more, and all generic code again for each of them.
+//! They are compiled with the crate's unit tests (see `rust/lib.rs`). Separate crates would compile the crate again,
+//! and instantiate its generic code again for each.
 
 #[path = "extending/main.rs"]
 mod extending;
@@ -14,7 +14,7 @@ mod hits;
 mod house;
 mod routines;
 
-/// Number of cases to try: an eighth, or all if `RAYWRIGHT_SLOW` is set.
+/// Return how many of `all` cases to test: an eighth, or all of them if `RAYWRIGHT_SLOW` is set.
 fn cases(all: u32) -> u32 {
     if raywright_base::cases::are_all() { all } else { all.div_ceil(8) }
 }

@@ -1,4 +1,4 @@
-//! Laws of the textbook routines for any numbers: symmetries, shared edges, closed forms.
+//! Properties of the textbook routines for any input: symmetries, shared edges, closed forms.
 
 use proptest::prelude::*;
 use raywright::math::Vec3;
@@ -26,15 +26,15 @@ const ALL: [(&str, Meet); 7] = [
     (EdgeF64::NAME, meet::<EdgeF64>),
 ];
 
-/// Routines that decide by a number per edge; the reversed edge negates it.
+/// Routines with a number per edge that is negated if the edge is reversed.
 const BY_EDGES: [(&str, Meet); 4] = [ALL[3], ALL[4], ALL[5], ALL[6]];
 
-/// Any point of a cube.
+/// A point in a cube.
 fn point() -> impl Strategy<Value = Vec3> {
     prop::array::uniform3(-1.0..1.0f32).prop_map(Vec3::from_array)
 }
 
-/// Multiples of 1/64, whose sums and differences are exact in f32.
+/// A point with coordinates that are multiples of 1/64, whose sums and differences are exact in f32.
 fn lattice() -> impl Strategy<Value = Vec3> {
     prop::array::uniform3(-64i32..=64).prop_map(|p| Vec3::from_array(p.map(|x| x as f32 / 64.0)))
 }
@@ -43,7 +43,7 @@ fn triangle() -> impl Strategy<Value = [Vec3; 3]> {
     prop::array::uniform3(point())
 }
 
-/// A ray from outside the cube to a point of the triangle's plane with these weights.
+/// Return a ray from outside the cube to the point of the triangle's plane with these weights.
 fn aimed(from: Vec3, [a, b, c]: [Vec3; 3], u: f32, v: f32) -> SingleRay {
     let origin = 3.0 * from.normalize_or(Vec3::X) + from;
     SingleRay { origin, direction: a * (1.0 - u - v) + b * u + c * v - origin }
@@ -75,7 +75,7 @@ proptest! {
         for (name, meet) in ALL {
             let (here, there) = (meet(ray, corners), meet(moved, there));
             if name == EdgeF64::NAME {
-                // Its bound is larger farther out, and then t may come from the exact weights.
+                // The bound is larger farther out, where t may come from the exact weights.
                 prop_assert_eq!(here.is_some(), there.is_some());
                 for (x, y) in here.iter().zip(&there) {
                     prop_assert!((x.t - y.t).abs() <= 1e-7 * (1.0 + x.t));
@@ -101,7 +101,7 @@ proptest! {
     fn no_ray_passes_between_triangles_that_share_an_edge(
         a in point(), c in point(), from in point(), share in 0.1..0.9f32, wide in 0.1..1.0f32,
     ) {
-        // The others lie on either side of the edge from a to c as the ray sees it, far from where it is aimed.
+        // The other corners lie on opposite sides of the edge from a to c in the ray's view, far from the target.
         let ray = aimed(from, [a, c, c], share, 0.0);
         let side = (c - a).cross(ray.direction);
         prop_assume!(side.length() > 0.2);

@@ -1,27 +1,27 @@
-//! Leaves of triangles, and their tests.
+//! Leaves of triangles and their tests.
 
 use raywright::math::{DVec3, Ray, Region};
 use raywright::shapes::triangle::{BlockRay, EdgeRay, Leaves, SingleLeaves};
 use raywright::simd::{Dispatch, Kernel, Level, Simd};
 
-/// Leaves of equal size, and a ray for each.
+/// Leaves of equal size, with a ray for each.
 pub struct Full<const N: usize> {
     leaves: SingleLeaves<N>,
     count: u32,
     rays: Vec<(BlockRay, EdgeRay)>,
 }
 
-/// Number of leaves, few enough for the cache.
+/// Number of leaves, few enough to stay in the cache.
 const SOME: usize = 64;
 
 impl<const N: usize> Full<N>
 where
     Level: Dispatch<N>,
 {
-    /// Leaves of `count` triangles side by side. Each ray meets one triangle of its leaf, or misses all.
+    /// Make leaves of `count` adjacent triangles. Each ray hits one triangle of its leaf, or misses them all.
     pub fn new(count: u32, meets: bool) -> Self {
         let width = count as usize;
-        // One triangle of size 1 at each whole number, slightly turned so that no edge is parallel to an axis.
+        // A triangle of size 1 at each integer, slightly rotated, so that no edge is axis-aligned.
         let corners = |p: u32| {
             let at = DVec3::new(f64::from(p % count), f64::from(p / count), 0.0);
             [[0.0, 0.0, 0.25], [0.75, 0.125, 0.0], [0.25, 0.75, 0.5]].map(|c| at + DVec3::from_array(c))
@@ -46,17 +46,17 @@ where
         full
     }
 
-    /// Number of leaves.
+    /// Return the number of leaves.
     pub fn len(&self) -> usize {
         SOME
     }
 
-    /// Number of triangles that the f32 test leaves, with one ray per leaf.
+    /// Return the number of triangles that the f32 test leaves undecided, each leaf with its ray.
     pub fn left(&self, level: Level) -> u32 {
         level.dispatch(Left(self))
     }
 
-    /// Number of triangles hit: f32 first, then f64 for the rest.
+    /// Return the number of hits: the f32 test, and f64 for undecided triangles.
     pub fn met(&self, level: Level) -> u32 {
         level.dispatch(Met(self))
     }

@@ -1,10 +1,10 @@
-//! Leaves as in most ray tracers: the test of Möller and Trumbore (1997) in f32, without an exact fallback.
+//! Leaves as in most ray tracers: the f32 test of Möller and Trumbore (1997), whose result is final.
 
 use raywright::math::{DVec3, Region};
 use raywright::shapes::triangle::{BlockRay, BlockRays, Bracket, EdgeRay, Leaves, PlainRays, RAYS, Rows, SingleLeaves};
 use raywright::simd::Lanes;
 
-/// Triangles in the layout of [`SingleLeaves`], in the same order.
+/// Triangles stored like [`SingleLeaves`], in the same order.
 pub struct PlainLeaves<const N: usize>(SingleLeaves<N>);
 
 impl<const N: usize> Leaves<N> for PlainLeaves<N> {
@@ -63,7 +63,7 @@ impl<const N: usize> Leaves<N> for PlainLeaves<N> {
     }
 }
 
-/// Hits of triangles given by corner and edges, taken as certain.
+/// Intersect triangles stored by corner and edges.
 #[inline(always)]
 fn moller_trumbore<const N: usize, S: Lanes<N>>(
     simd: S,

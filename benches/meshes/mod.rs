@@ -1,4 +1,4 @@
-//! Meshes and rays for benches, the same at every run.
+//! Meshes and rays of the benchmarks, the same on every run.
 #![allow(dead_code, reason = "each bench takes what it needs")]
 
 use raywright::accel::bvh::{self, Options};
@@ -25,7 +25,7 @@ impl Primitives for Triangles {
     }
 }
 
-/// The same, for trees that store f64.
+/// The same triangles, for BVHs that store f64.
 pub struct Doubles<'a>(pub &'a Triangles);
 
 impl Primitives for Doubles<'_> {
@@ -42,17 +42,17 @@ impl Primitives for Doubles<'_> {
     }
 }
 
-/// Four numbers from 0 to 1 for a number and a purpose.
+/// Return four numbers from 0 to 1 for an index and a purpose.
 fn random(i: usize, purpose: u32) -> [f64; 4] {
     philox4x32([i as u32, (i >> 32) as u32, 0, 0], [purpose, 0]).map(|x| f64::from(x) / 2f64.powi(32))
 }
 
-/// A mesh and its view.
+/// A mesh with its camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Mesh {
     /// The unit sphere in 81,920 triangles of about equal size, on a floor of two.
     Icosphere,
-    /// A torus of about the same count, dented by a tenth of its radius.
+    /// A torus of about as many triangles, displaced by a tenth of its radius.
     NoisyTorus,
     /// A room of 3,000 slats, four hundred times as long as they are wide, seen from inside.
     Slats,
@@ -69,10 +69,10 @@ impl fmt::Display for Mesh {
 }
 
 impl Mesh {
-    /// All of them.
+    /// All meshes.
     pub const ALL: [Self; 3] = [Self::Icosphere, Self::NoisyTorus, Self::Slats];
 
-    /// Its triangles.
+    /// Return the triangles.
     pub fn triangles(self) -> Triangles {
         match self {
             Self::Icosphere => on_floor(icosphere(6)),
@@ -81,7 +81,7 @@ impl Mesh {
         }
     }
 
-    /// The eye, its target, and the tangent of half the field of view.
+    /// Return the eye, the target and the tangent of half the field of view.
     fn view(self) -> (DVec3, DVec3, f64) {
         match self {
             Self::Icosphere => (DVec3::new(1.0, 1.5, 2.5), DVec3::ZERO, 0.35),
@@ -90,7 +90,7 @@ impl Mesh {
         }
     }
 
-    /// Position of the light.
+    /// Return the position of the light.
     fn light(self) -> DVec3 {
         match self {
             Self::Icosphere | Self::NoisyTorus => DVec3::new(-2.0, -1.0, 5.0),
@@ -99,15 +99,15 @@ impl Mesh {
     }
 }
 
-/// The unit sphere in 20 · 4ⁿ faces: an icosahedron, whose corners are the cyclic turns of (0, ±1, ±φ), with every face
-/// divided into four and pushed out, n times.
+/// Return the unit sphere in 20 · 4ⁿ faces: an icosahedron, whose corners are the cyclic permutations of (0, ±1, ±φ),
+/// subdivided and projected n times.
 fn icosphere(divisions: u32) -> Triangles {
     let phi = (1.0 + 5f64.sqrt()) / 2.0;
     let mut corners = Vec::new();
     for (a, b) in [(1.0, phi), (1.0, -phi), (-1.0, phi), (-1.0, -phi)] {
         corners.extend([DVec3::new(0.0, a, b), DVec3::new(a, b, 0.0), DVec3::new(b, 0.0, a)]);
     }
-    // Three mutual neighbours, 2 apart, are a face.
+    // Three corners form a face if all are neighbors, 2 apart.
     let near = |a: DVec3, b: DVec3| (a.distance(b) - 2.0).abs() < 1e-9;
     let mut faces = Vec::new();
     for i in 0..12 {
@@ -133,14 +133,14 @@ fn icosphere(divisions: u32) -> Triangles {
     Triangles(faces.into_iter().map(|t| t.map(|c| c.as_vec3())).collect())
 }
 
-/// Adds a square below: without it, rays that leave a sphere would meet nothing.
+/// Add a square below the mesh: otherwise, rays that leave a sphere would hit nothing.
 fn on_floor(mut mesh: Triangles) -> Triangles {
     let [a, b, c, d] = [(-4.0, -4.0), (4.0, -4.0), (4.0, 4.0), (-4.0, 4.0)].map(|(x, y)| Vec3::new(x, y, -1.0));
     mesh.0.extend([[a, b, c], [a, c, d]]);
     mesh
 }
 
-/// A torus about the z axis, of radii 1 and 0.4, in about `count` triangles, dented at random.
+/// Return a torus around the z axis, of radii 1 and 0.4, in about `count` triangles with random displacement.
 pub fn noisy_torus(count: usize) -> Triangles {
     let around = (count as f64).sqrt() as usize;
     let across = count / 2 / around;
@@ -161,8 +161,8 @@ pub fn noisy_torus(count: usize) -> Triangles {
     Triangles(triangles)
 }
 
-/// Slats across a room from -1 to 1, each a triangle, in any direction near its walls; and the walls, in two triangles
-/// each.
+/// Return slats across a room from -1 to 1, each a triangle of any direction near its walls, and the walls, two
+/// triangles each.
 fn slats(count: usize) -> Triangles {
     let mut triangles = Vec::with_capacity(count + 12);
     for axis in 0..3 {
@@ -182,7 +182,7 @@ fn slats(count: usize) -> Triangles {
                 let across = DVec3::new(0.0, -turn.sin(), turn.cos()) * half;
                 let depth = side * (0.99 - 0.1 * place[2]);
                 let middle = DVec3::new(depth, place[0] * 1.2 - 0.6, place[1] * 1.2 - 0.6);
-                // Turned from x to the axis of the wall.
+                // Rotated from x to the wall's axis.
                 let turned = |p: DVec3| {
                     let mut q = DVec3::ZERO;
                     (q[axis], q[(axis + 1) % 3], q[(axis + 2) % 3]) = (p.x, p.y, p.z);
@@ -195,21 +195,21 @@ fn slats(count: usize) -> Triangles {
     Triangles(triangles)
 }
 
-/// Types of rays.
+/// Ray types.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Purpose {
     /// From the eye through the pixels of a square picture, row by row.
     Primary,
-    /// From primary hits to the light.
+    /// From the first hit to the light.
     Shadow,
-    /// From primary hits, scattered by a matt surface.
+    /// From the first hit, scattered as by a matte surface.
     Diffuse,
 }
 
-/// Pixels along a side.
+/// Pixels per side.
 const SIDE: usize = 128;
 
-/// Rays into a mesh. Those from a surface start slightly off it.
+/// Return rays for a mesh. Rays from surfaces start slightly off them.
 pub fn rays(mesh: Mesh, triangles: &Triangles, tree: &dyn Accelerator, purpose: Purpose) -> Vec<Ray> {
     let (eye, target, tangent) = mesh.view();
     let ahead = (target - eye).normalize();
@@ -239,9 +239,9 @@ pub fn rays(mesh: Mesh, triangles: &Triangles, tree: &dyn Accelerator, purpose: 
     primary.iter().zip(&seen).enumerate().filter(|(_, (_, hit))| hit.is_hit()).map(leave).collect()
 }
 
-/// A mesh as a type, which groups benches.
+/// A mesh as a type, to group benchmarks by.
 pub trait Subject {
-    /// Which one.
+    /// The mesh.
     const MESH: Mesh;
 }
 
@@ -264,7 +264,7 @@ impl Subject for Slats {
     const MESH: Mesh = Mesh::Slats;
 }
 
-/// A tree of some width and SIMD level that stores f32 or f64.
+/// A BVH of some width, traversed at some SIMD level, that stores f32 or f64.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Kernel {
     width: usize,
@@ -273,20 +273,20 @@ pub struct Kernel {
 }
 
 impl Kernel {
-    /// Every level that this processor has, with a tree as wide as the level has lanes.
+    /// Return all available SIMD levels, each with its native BVH width.
     pub fn all() -> Vec<Self> {
         let available = Level::ALL.into_iter().filter(|level| level.is_available());
         available.map(|level| Self { width: level.lanes(), level, is_single: true }).collect()
     }
 
-    /// The same, plus the best of them with f64.
+    /// Return the same, and the best level with f64.
     pub fn all_and_double() -> Vec<Self> {
         let mut all = Self::all();
         all.extend(all.last().map(|&best| Self { is_single: false, ..best }));
         all
     }
 
-    /// Builds the tree.
+    /// Build the BVH.
     pub fn build(self, triangles: &Triangles, options: &Options) -> Box<dyn Accelerator> {
         if self.is_single {
             bvh::wide(self.width, triangles, options, self.level)
@@ -295,7 +295,7 @@ impl Kernel {
         }
     }
 
-    /// The tree of a mesh, and rays for it, checked against brute force.
+    /// Build the BVH of a mesh and rays for it, and compare their hits with brute force.
     pub fn prepare(self, mesh: Mesh, purpose: Purpose) -> (Box<dyn Accelerator>, Vec<Ray>) {
         let triangles = mesh.triangles();
         let tree = self.build(&triangles, &Options::DEFAULT);
@@ -311,7 +311,7 @@ impl fmt::Display for Kernel {
     }
 }
 
-/// Panics unless a tree agrees with brute force, bit for bit, for a sample of the rays.
+/// Panic unless the hits of some rays equal those of brute force bit for bit, so that timings are of correct code.
 pub fn validate(triangles: &Triangles, tree: &dyn Accelerator, rays: &[Ray]) {
     const SOME: usize = 200;
     let sample: Vec<Ray> = rays.iter().step_by(rays.len() / SOME + 1).copied().collect();
