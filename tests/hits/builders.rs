@@ -148,7 +148,7 @@ fn a_tree_of_parts_is_not_refitted() {
     for options in [Options { builder: SPATIAL, ..default }, Options { quality: Quality::FastRays, ..default }, default]
     {
         let wrong = tree(options).refitted(&sticks).err().unwrap();
-        assert!(wrong.contains("parts") && wrong.contains("build the tree again"), "{wrong}");
+        assert!(wrong.contains("spatial splits") && wrong.contains("rebuild it"), "{wrong}");
     }
     for builder in BUILDERS.into_iter().filter(|b| *b != SPATIAL) {
         let options = Options { builder, optimisers: Some(Optimisers::NONE), ..default };

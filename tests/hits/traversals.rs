@@ -219,7 +219,7 @@ fn trees_are_fitted_to_what_moves_unless_they_hold_parts() {
         assert_eq!(told(moved.as_ref()), told(tree.as_ref()));
         let parts = trees::binary(&before, &Options { builder: SPATIAL, ..Options::DEFAULT }, traversal, best());
         let wrong = parts.refitted(&after).err().unwrap();
-        assert!(wrong.contains("spatial splits") && wrong.contains("build the tree again"), "{wrong}");
+        assert!(wrong.contains("spatial splits") && wrong.contains("rebuild it"), "{wrong}");
     }
 }
 

@@ -47,11 +47,11 @@ def test_values(shape):
         ),
         (
             lambda: shapes.Polygon(L, [HOLE, [(5, 5, 1), (6, 5, 1), (5, 6, 1)]]),
-            "polygon: hole 1 lies outside of the outline",
+            "polygon: hole 1 is outside the outline",
         ),
         (lambda: shapes.Polygon([(0, 0), (1, 0), (0, 1)]), r"outline must have shape \(N, 3\)"),
         (lambda: shapes.Implicit("x + foo"), "unknown name 'foo' at column 5; known: x, y, z, pi, e, abs"),
-        (lambda: shapes.Implicit("x +"), "expected a number, a name or .* at column 4, where it ends"),
+        (lambda: shapes.Implicit("x +"), "expected a number, a name or .* at column 4, but the expression ends there"),
         (lambda: shapes.Implicit("x^2"), r"unexpected '\^' at column 2, powers are written \*\*"),
         (lambda: shapes.Implicit("x", (0, 0, 0), (1, 0, 1)), "min is .* max is"),
     ],

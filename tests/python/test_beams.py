@@ -233,13 +233,13 @@ TWO_WAYS = rw.Mix(rw.Dielectric(1.5), rw.ThinDielectric(1.5), 0.5)
 BENT = rw.Mesh(FLOOR.vertices, FLOOR.faces, normals=[(0.1, 0, 1)] * 4, material=rw.Dielectric(1.5))
 VIEW = rw.Camera((0, 0, 5), (0, 0, 0), up=(0, 1, 0), width=4, height=4)
 REFUSED = [
-    ([SPHERE], {}, VIEW, rw.BeamTraced(), "beams meet meshes alone, and shape 0 is none"),
-    ([square(1, 0, emission=1.0)], {}, VIEW, rw.BeamTraced(), "shape 0 shines"),
+    ([SPHERE], {}, VIEW, rw.BeamTraced(), "beams support only meshes, and shape 0 is none"),
+    ([square(1, 0, emission=1.0)], {}, VIEW, rw.BeamTraced(), "shape 0 is emissive"),
     ([FLOOR, GLASS_BLOCK, WATER_BLOCK], {}, VIEW, rw.BeamTraced(), "shapes 1 and 2 are of glass"),
-    ([square(1, 0, material=TWO_WAYS)], {}, VIEW, rw.BeamTraced(), "shape 0 lets light through in two ways"),
-    ([BENT], {}, VIEW, rw.BeamTraced(), "shape 0 mirrors or refracts with bent normals"),
-    ([FLOOR], {"environment": 1.0}, VIEW, rw.BeamTraced(), "an environment has one"),
-    ([FLOOR], {"lights": [rw.PointLight((0, 0, 1), 1)] * 65}, VIEW, rw.BeamTraced(), "64 lights at most"),
+    ([square(1, 0, material=TWO_WAYS)], {}, VIEW, rw.BeamTraced(), "shape 0 refracts in several directions"),
+    ([BENT], {}, VIEW, rw.BeamTraced(), "shape 0 reflects or refracts with shading normals"),
+    ([FLOOR], {"environment": 1.0}, VIEW, rw.BeamTraced(), "the scene has an environment"),
+    ([FLOOR], {"lights": [rw.PointLight((0, 0, 1), 1)] * 65}, VIEW, rw.BeamTraced(), "at most 64 lights"),
 ]
 
 

@@ -363,7 +363,7 @@ def test_wrong_input_gets_one_clear_line():
     with pytest.raises(ValueError, match="use adaptive=False"):
         rw.render(scene, look, rw.Bidirectional(), 4, adaptive=True, progress=False)
     endless = rw.Scene([rw.Plane((0, 0, 0), (0, 0, 1))], environment=rw.ConstantEnvironment(1))
-    with pytest.raises(ValueError, match=r"shape 0, which has no end.*use Path"):
+    with pytest.raises(ValueError, match=r"shape 0, which is unbounded.*use Path"):
         rw.render(endless, look, rw.Bidirectional(), 4, progress=False)
 
 

@@ -205,7 +205,7 @@ REFUSED = [
     ([FLOOR, rw.Instance(FLOOR, np.eye(4))], {}, "shape 1 is neither"),
     ([GLASS_BALL], {}, "shape 0 is of glass"),
     ([MASKED], {}, "shape 0 has a mask"),
-    ([FLOOR], {"environment": 1.0}, "an environment is none"),
+    ([FLOOR], {"environment": 1.0}, "do not support environments"),
 ]
 
 

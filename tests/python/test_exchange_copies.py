@@ -95,10 +95,10 @@ def test_pictures_of_copies_are_those_of_moved_meshes() -> None:
     copies, _ = scenes()
     one = rw.Radiosity(rw.radiosity(copies, rays=64, progress=False))
     fewer = rw.Scene([*copies.shapes[:6], rw.Instance([block()], places()[:1])])
-    with pytest.raises(ValueError, match=r"of a scene of 14 faces, this one has 13: solve it anew"):
+    with pytest.raises(ValueError, match=r"of a scene with 14 faces, this one has 13: solve again"):
         rw.render(fewer, camera, one, 1, progress=False)
     other = rw.Scene([*copies.shapes[:6], rw.Instance([rw.Sphere((0, 0, 0), 0.1)], places())])
-    with pytest.raises(ValueError, match=r"whose shape 6 is another one: solve it anew"):
+    with pytest.raises(ValueError, match=r"with another shape 6: solve again"):
         rw.render(other, camera, one, 1, progress=False)
 
 

@@ -120,15 +120,15 @@ def test_sums_of_samples_are_worth_the_samples():
     rendering.begin(25)
     for wrong, why in [
         (sums[:-1], "another size"),
-        (np.where(np.arange(9) == 2, np.nan, sums), "sums are not finite and at least 0"),
-        (-sums, "sums are not finite"),
+        (np.where(np.arange(9) == 2, np.nan, sums), "sums must be finite and at least 0"),
+        (-sums, "sums must be finite"),
     ]:
         with pytest.raises(ValueError, match=why):
             rendering.add(1, wrong, 0)
-    with pytest.raises(ValueError, match="more samples of a kind"):
+    with pytest.raises(ValueError, match="more samples were dropped than taken"):
         rendering.add(1, sums, 36)
     clamped = Job(scene, camera, rw.Path(), 0, False, 1.0, rw.Independent(), rw.BoxFilter())
     other = _core.Rendering(clamped.core, 1, 1)
     other.begin(1)
-    with pytest.raises(ValueError, match="keeps more of samples than sums"):
+    with pytest.raises(ValueError, match="stores more than sums"):
         other.add(1, sums, 0)

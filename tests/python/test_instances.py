@@ -240,7 +240,7 @@ def test_rays_that_must_hit_do_up_to_the_condition_that_is_refused() -> None:
             linear = matrix[:3, :3]
             condition = (abs(linear) @ abs(np.linalg.inv(linear))).sum(axis=1).max()
             if condition > 1.1 * 2**20:
-                with pytest.raises(ValueError, match="badly conditioned"):
+                with pytest.raises(ValueError, match="its condition number is"):
                     rw.Instance(mesh, matrix)
                 continue
             if condition > 0.9 * 2**20:
@@ -268,14 +268,14 @@ def test_rays_that_must_hit_do_up_to_the_condition_that_is_refused() -> None:
         ),
         (
             np.diag((1e-320, 1, 1, 1)),
-            "transform must have an inverse: its inverse is more than float64 holds",
+            "transform must have an inverse: its inverse overflows float64",
         ),
         (
             np.stack([np.eye(4), sheared(1e-15)]),
             r"transform\[1\] must have an inverse that keeps its digits: "
-            r"it is too badly conditioned, by 3\.6e15 where 1\.0e6 is the most",
+            r"its condition number is 3\.6e15, expected at most 1\.0e6",
         ),
-        (sheared(1e-7), r"it is too badly conditioned, by 4\.0e7 where 1\.0e6 is the most"),
+        (sheared(1e-7), r"its condition number is 4\.0e7, expected at most 1\.0e6"),
     ],
 )
 def test_a_transform_that_cannot_be_says_why(box: rw.Mesh, transform: np.ndarray, told: str) -> None:

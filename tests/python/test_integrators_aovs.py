@@ -88,7 +88,7 @@ def test_the_way_in_the_picture_is_that_of_what_moves_and_of_what_looks():
 
 
 def test_unknown_names_are_refused(room):
-    with pytest.raises(ValueError, match=r"aov 'height' is not known, expected some of depth, "):
+    with pytest.raises(ValueError, match=r"aov 'height' is unknown, expected some of depth, "):
         rw.aovs(*room, "height")
     for other, told in ((["depth", 7], "7"), (7, "7"), (None, "None"), ([["depth"]], r"\['depth'\]")):
         with pytest.raises(TypeError, match=f"aov must be names, got {told}"):

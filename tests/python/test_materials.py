@@ -163,7 +163,7 @@ def test_what_cannot_be_is_refused_in_one_line(make, error, told):
 
 def test_sides_that_let_light_through_are_refused():
     scene = rw.Scene(rw.Sphere(material=rw.TwoSided(GREY, rw.Dielectric())))
-    with pytest.raises(ValueError, match="material of shape 0: back must let no light through"):
+    with pytest.raises(ValueError, match="material of shape 0: back must not transmit light"):
         scene.intersect((0, 0, 3), (0, 0, -1))
 
 

@@ -289,7 +289,7 @@ def test_who_knows_nothing_of_media_says_so(integrator):
             [rw.Instance([ball(rw.Dielectric(1.5, interior=rw.Homogeneous(1)))], np.eye(4))], lights=[lamp]
         ),
     ):
-        with pytest.raises(ValueError, match="knows nothing of media"):
+        with pytest.raises(ValueError, match="does not support media"):
             rw.render(scene, camera, integrator, 4, progress=False)
 
 

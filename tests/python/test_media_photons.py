@@ -140,5 +140,5 @@ def test_what_glows_is_refused_in_one_line(way):
     fire = ball(rw.Boundary(rw.Homogeneous(1, emission=1)))
     look = rw.Camera((0, 0, 4), (0, 0, 0), width=4, height=4)
     for scene in (rw.Scene([fire], lights=[LAMP]), rw.Scene([rw.Instance([fire], np.eye(4))], lights=[LAMP])):
-        with pytest.raises(ValueError, match=r"a medium glows.*use Path"):
+        with pytest.raises(ValueError, match=r"a medium is emissive.*use Path"):
             rw.render(scene, look, way, 4, progress=False)

@@ -397,7 +397,7 @@ def test_what_cannot_be_is_refused_in_one_line():
     with pytest.raises(ValueError, match="cannot be adaptive"):
         rw.render(scene, look, rw.PhotonMap(100), 4, adaptive=True, progress=False)
     endless = rw.Scene([rw.Plane((0, 0, 0), (0, 0, 1))], environment=rw.ConstantEnvironment(1))
-    with pytest.raises(ValueError, match="where no photon can start: use Path"):
+    with pytest.raises(ValueError, match="and photons cannot start there: use Path"):
         rw.render(endless, look, rw.ProgressivePhotonMap(100), 4, progress=False)
 
 

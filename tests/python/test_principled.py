@@ -143,7 +143,7 @@ def test_opaque_ones_are_alike_on_both_sides():
     assert seen[0] == pytest.approx(seen[1], rel=1e-3)
     two = rw.TwoSided(rw.Principled(), rw.Diffuse(0.0))
     rw.Scene([rw.Sphere(material=two)]).build(progress=False)
-    with pytest.raises(ValueError, match="front must let no light through"):
+    with pytest.raises(ValueError, match="front must not transmit light"):
         rw.Scene([rw.Sphere(material=rw.TwoSided(rw.Principled(transmission=0.5), rw.Diffuse()))]).build(
             progress=False
         )

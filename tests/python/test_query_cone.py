@@ -191,5 +191,5 @@ def test_what_is_no_cone_is_refused(scene, arguments, message):
 
 
 def test_curved_shapes_are_refused():
-    with pytest.raises(ValueError, match="meshes alone, and shape 0"):
+    with pytest.raises(ValueError, match="only meshes, and shape 0"):
         rw.Scene(rw.Sphere((0, 0, 0), 1)).cone((0, 0, 3), (0, 0, -1), 5)

@@ -423,7 +423,7 @@ REFUSED: list[tuple[str, Any, dict[str, Any]]] = [
         lambda: rw.Scene([*room().shapes], medium=rw.Homogeneous(1.0)),
         {},
     ),
-    ("has no area, or no end", lambda: rw.Scene([rw.Plane((0, 0, 0), (0, 0, 1), emission=1.0)]), {}),
+    ("must have a finite area above 0", lambda: rw.Scene([rw.Plane((0, 0, 0), (0, 0, 1), emission=1.0)]), {}),
     (
         "stretched",
         lambda: rw.Scene([rw.Ellipsoid((0, 0, 0), (1, 2, 3), emission=1.0)]),

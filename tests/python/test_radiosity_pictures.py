@@ -76,11 +76,11 @@ def test_a_solution_of_another_scene_is_refused(
     box: tuple[rw.Scene, rw.Camera, rw.Radiosity],
 ) -> None:
     _, camera, shown = box
-    with pytest.raises(ValueError, match=r"of a scene of .* faces, this one has 12: solve it anew"):
+    with pytest.raises(ValueError, match=r"of a scene with .* faces, this one has 12: solve again"):
         rw.render(room(), camera, shown, 1, progress=False)
     found = rw.radiosity(rw.Scene([square(0, True, 0.5, 1.0)]), rays=64, progress=False)
     larger = rw.Scene([square(0, True, 0.5, 1.0, size=2.0)])
-    with pytest.raises(ValueError, match=r"of a scene of area 1\.0+, this one has 4"):
+    with pytest.raises(ValueError, match=r"of a scene with area 1\.0+, this one has 4"):
         rw.render(larger, camera, rw.Radiosity(found), 1, progress=False)
     with pytest.raises(TypeError, match=r"solution must be of raywright.radiosity"):
         rw.Radiosity(3)  # type: ignore[arg-type]

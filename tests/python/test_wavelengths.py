@@ -434,7 +434,7 @@ def test_the_plan_says_why():
 @pytest.mark.parametrize("integrator", [rw.ConeTraced(), rw.BeamTraced()])
 def test_who_knows_no_wavelengths_says_so(integrator):
     scene = rw.Scene(rw.Sphere((0, 0, 0), 1, material=rw.Dielectric(BK7)), environment=1.0)
-    with pytest.raises(ValueError, match="knows nothing of wavelengths"):
+    with pytest.raises(ValueError, match="does not support wavelengths"):
         rw.render(scene, downwards(2), integrator, 1, progress=False)
 
 

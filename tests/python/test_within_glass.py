@@ -1,4 +1,4 @@
-"""What stands in glass or water and encloses nothing scatters light by the index around it."""
+"""What in or on glass or water and encloses nothing scatters light by the index around it."""
 
 import numpy as np
 import pytest
@@ -259,5 +259,5 @@ def test_the_plan_says_so_and_beams_refuse():
     )
     camera = rw.Camera((0, 0, 9), (0, 0, 0), up=(0, 1, 0), width=4, height=4)
     lit = rw.Scene([metal, box], lights=rw.PointLight((3, 3, 9), 5.0))
-    with pytest.raises(ValueError, match="stands in glass"):
+    with pytest.raises(ValueError, match="in or on glass"):
         rw.render(lit, camera, rw.BeamTraced(), filter=rw.BoxFilter(), samples=1, progress=False)

@@ -343,7 +343,7 @@ def _matrices(name: str, value: ArrayLike) -> NDArray[np.float64]:
     array = frozen(array)
     if (singular := _core.singular_transform(array)) is not None:
         index, why = singular
-        kept = " that keeps its digits" if "conditioned" in why else ""
+        kept = " that keeps its digits" if "condition" in why else ""
         raise ValueError(f"{which(index)} must have an inverse{kept}: {why}")
     return array
 

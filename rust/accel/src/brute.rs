@@ -88,7 +88,7 @@ impl<L: Leaves<LANES>> Answers for BruteForce<L> {
 
     fn refitted(&self, primitives: &dyn Primitives) -> Result<Self, String> {
         if L::PRECISION == "single" && !primitives.is_single() {
-            return Err("corners that are f64 do not fit leaves of f32".into());
+            return Err("f64 corners cannot be stored in f32 leaves".into());
         }
         Ok(Self::of(primitives, self.level))
     }
@@ -97,7 +97,7 @@ impl<L: Leaves<LANES>> Answers for BruteForce<L> {
         let (mut kept, wanted) = (self.contents.primitives(0), all(primitives));
         kept.sort_unstable();
         if kept != wanted {
-            return Err(format!("{} primitives are kept of {} that can be hit", kept.len(), wanted.len()));
+            return Err(format!("{} primitives are stored, expected the {} that can be hit", kept.len(), wanted.len()));
         }
         self.contents.validate(primitives)
     }

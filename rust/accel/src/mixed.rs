@@ -57,7 +57,7 @@ struct OnlyObjects<'a>(&'a dyn Primitives, Arc<dyn UserGeometry>, Work<'a>);
 
 impl<'a> OnlyObjects<'a> {
     fn of(primitives: &'a dyn Primitives) -> Result<Self, String> {
-        let objects = primitives.objects().ok_or("there are triangles only, and were others")?;
+        let objects = primitives.objects().ok_or("the scene has only triangles, but had other primitives")?;
         Ok(Self(primitives, objects, primitives.work()))
     }
 }

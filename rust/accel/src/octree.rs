@@ -63,12 +63,12 @@ impl Node {
     const EMPTY: Self = Self(u32::MAX);
 
     fn leaf(number: usize) -> Self {
-        assert!(number < Self::LEAF as usize - 1, "{number} leaves are more than an octree can number");
+        assert!(number < Self::LEAF as usize - 1, "an octree has at most 2^31 leaves, got {number}");
         Self(number as u32 | Self::LEAF)
     }
 
     fn inner(children: usize) -> Self {
-        assert!(children < Self::LEAF as usize, "{children} nodes are more than an octree can number");
+        assert!(children < Self::LEAF as usize, "an octree has at most 2^31 nodes, got {children}");
         Self(children as u32)
     }
 
@@ -295,7 +295,7 @@ impl Structure for Octree {
     fn validate(&self, input: &Input, primitives: &dyn Fn(u32) -> Vec<u32>) -> Result<(), String> {
         let (parts, bounds) = input.parts();
         if bounds != self.bounds {
-            return Err(format!("the box around everything is {bounds:?}, not {:?}", self.bounds));
+            return Err(format!("the bounding box is {bounds:?}, expected {:?}", self.bounds));
         }
         let mut parents = vec![0u32; self.nodes.len()];
         for (i, node) in self.nodes.iter().enumerate() {
@@ -315,7 +315,7 @@ impl Structure for Octree {
         let mut numbers: Vec<u32> = self.nodes.iter().filter_map(|node| node.number()).collect();
         numbers.sort_unstable();
         if let Some((leaf, number)) = (0..).zip(&numbers).find(|(leaf, number)| leaf != *number) {
-            return Err(format!("leaf {leaf} is numbered {number}"));
+            return Err(format!("leaf {leaf} has the number {number}"));
         }
         let mut lists: Vec<_> = numbers.iter().map(|&leaf| primitives(leaf)).collect();
         lists.iter_mut().for_each(|list| list.sort_unstable());

@@ -141,17 +141,17 @@ where
     fn refitted(&self, primitives: &dyn Primitives) -> Result<Self, String> {
         let start = Instant::now();
         if L::PRECISION == "single" && !primitives.is_single() {
-            return Err("corners that are f64 do not fit leaves of f32".into());
+            return Err("f64 corners cannot be stored in f32 leaves".into());
         }
         let (input, unbounded) = Input::new(primitives);
         let lists = self.contents.lists();
         let can_be_hit = |p: u32| input.boxes.get(p as usize).is_some_and(|b| !b.is_empty());
         if let Some(p) = lists.order.iter().find(|&&p| !can_be_hit(p)) {
-            return Err(format!("primitive {p} could be hit, and cannot any more"));
+            return Err(format!("primitive {p} can no longer be hit"));
         }
         let bounded = (0..primitives.count() as u32).filter(|&p| can_be_hit(p)).count();
         if bounded + unbounded.len() != self.info.primitives || unbounded != self.unbounded {
-            return Err(format!("{bounded} primitives can be hit, not {}", self.info.primitives));
+            return Err(format!("{bounded} primitives can be hit, expected {} as before", self.info.primitives));
         }
         let structure = self.structure.refitted(&input, &|leaf| self.contents.primitives(leaf))?;
         let contents = Contents::new(&input, &lists);
@@ -175,7 +175,7 @@ where
     fn validate(&self, primitives: &dyn Primitives) -> Result<(), String> {
         let (input, unbounded) = Input::new(primitives);
         if unbounded != self.unbounded {
-            return Err(format!("{unbounded:?} have no end, and {:?} are kept", self.unbounded));
+            return Err(format!("primitives {unbounded:?} are unbounded, but {:?} are stored", self.unbounded));
         }
         let lists = self.contents.lists();
         let mut met = vec![0u32; input.boxes.len()];
@@ -185,7 +185,7 @@ where
         let most = if self.mailboxes.is_some() { u32::MAX } else { 1 };
         let least = |p: usize| u32::from(!input.boxes[p].is_empty());
         if let Some(p) = (0..met.len()).find(|&p| met[p] < least(p) || met[p] > most * least(p)) {
-            return Err(format!("primitive {p} stands in {} leaves; its box is {:?}", met[p], input.boxes[p]));
+            return Err(format!("primitive {p} is in {} leaves; its box is {:?}", met[p], input.boxes[p]));
         }
         self.contents.validate(primitives)?;
         self.structure.validate(&input, &|leaf| self.contents.primitives(leaf))

@@ -115,7 +115,7 @@ impl Pools {
             .num_threads(threads.unwrap_or_else(cores))
             .thread_name(|i| format!("raywright-{i}"))
             .build()
-            .map_err(|e| format!("no pool of {threads:?} threads: {e}"))?;
+            .map_err(|e| format!("cannot start {threads:?} threads: {e}"))?;
         let pool = Arc::new(Pool(pool));
         self.0.push((key, Arc::clone(&pool)));
         self.forget_old();
@@ -222,7 +222,7 @@ pub fn unless_left<T: Send + 'static>(
             Ok(done) => return done.map_or_else(|panic| resume_unwind(panic), |value| Ok(Some(value))),
             Err(RecvTimeoutError::Timeout) if watch() => {}
             Err(RecvTimeoutError::Timeout) => return Ok(None),
-            Err(RecvTimeoutError::Disconnected) => return Err("work has ended without a result".into()),
+            Err(RecvTimeoutError::Disconnected) => return Err("a worker ended without a result".into()),
         }
     }
 }

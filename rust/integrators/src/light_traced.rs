@@ -40,12 +40,12 @@ impl Integrator for LightTraced {
 
     fn objection(&self, scene: &Scene, adaptive: bool) -> Option<String> {
         if adaptive {
-            return Some("light comes to all pixels alike, so samples cannot be adaptive: use adaptive=False".into());
+            return Some("light paths reach all pixels, so sampling cannot be adaptive: use adaptive=False".into());
         }
         scene
             .not_drawn()
             .or_else(|| scene.glow())
-            .map(|why| format!("{why}, where no path from a light can start: use Path"))
+            .map(|why| format!("{why}, and light paths cannot start there: use Path"))
     }
 
     fn takes_media(&self) -> bool {

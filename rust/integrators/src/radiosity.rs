@@ -37,7 +37,7 @@ impl Integrator for Radiosity {
         let count = geometry.count();
         let faces = self.first.len() - 1;
         if count != faces {
-            return Some(format!("the radiosity is of a scene of {faces} faces, this one has {count}: solve it anew"));
+            return Some(format!("the radiosity is of a scene with {faces} faces, this one has {count}: solve again"));
         }
         // The area of copies is not available, but the number of their faces is.
         let mut area = 0.0;
@@ -46,7 +46,7 @@ impl Integrator for Radiosity {
             let [first, next] = [0, 1].map(|more| self.first[primitive as usize + more]);
             let inside = geometry.instances_of(shape).map(|copies| copies.prototype().count());
             if next - first != inside.unwrap_or(1) {
-                return Some(format!("the radiosity is of a scene whose shape {shape} is another one: solve it anew"));
+                return Some(format!("the radiosity is of a scene with another shape {shape}: solve again"));
             }
             // Surfaces that are not finite are never hit, and have no area in the solution.
             let own = if inside.is_none() { geometry.area(primitive) } else { 0.0 };
@@ -54,7 +54,7 @@ impl Integrator for Radiosity {
         }
         let is_same = (area - self.area).abs() <= 1e-9 * self.area;
         (!is_same).then(|| {
-            format!("the radiosity is of a scene of area {:.6}, this one has {area:.6}: solve it anew", self.area)
+            format!("the radiosity is of a scene with area {:.6}, this one has {area:.6}: solve again", self.area)
         })
     }
 }

@@ -259,7 +259,7 @@ pub fn writable<'py, T: Element>(
         let shape = array.shape();
         return Err(PyValueError::new_err(format!("{name} has shape {shape:?}, expected C-contiguous, of {lead:?}")));
     }
-    let why = "is read-only, or shares memory with what is asked";
+    let why = "is read-only, or shares memory with an argument";
     array.try_readwrite().map_err(|_| PyValueError::new_err(format!("{name} cannot be written to: it {why}")))
 }
 

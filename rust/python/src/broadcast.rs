@@ -20,7 +20,8 @@ impl Repeats {
         array: &'a PyReadonlyArrayDyn<'_, T>,
         row: usize,
     ) -> PyResult<(&'a [T], Option<Self>)> {
-        let wrong = || PyValueError::new_err(format!("{name} must be C-contiguous, or broadcast from what is"));
+        let wrong =
+            || PyValueError::new_err(format!("{name} must be C-contiguous, or broadcast from a C-contiguous array"));
         if array.is_c_contiguous() {
             return Ok((array.as_slice().map_err(|_| wrong())?, None));
         }

@@ -66,7 +66,7 @@ impl Builds {
         if let Some(error) = raised {
             return Err(error);
         }
-        let made = made.ok_or_else(|| PyRuntimeError::new_err("a build was left, and no signal raised"))?;
+        let made = made.ok_or_else(|| PyRuntimeError::new_err("a build was canceled without a signal"))?;
         self.state.lock().unwrap_or_else(PoisonError::into_inner).done += size;
         made.map_err(|e| PyValueError::new_err(e.to_string()))
     }

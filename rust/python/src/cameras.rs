@@ -70,7 +70,7 @@ impl Pose {
         match (self.target, self.direction) {
             (Some(target), None) => Viewpoint::look_at(position, DVec3::from_array(target), up),
             (None, Some(direction)) => Viewpoint::towards(position, DVec3::from_array(direction), up),
-            _ => return Err(PyValueError::new_err("a camera has a target or a direction, and not both")),
+            _ => return Err(PyValueError::new_err("a camera must have either a target or a direction")),
         }
         .map_err(refused)
     }
@@ -97,7 +97,11 @@ impl FromPyObject<'_, '_> for Axis {
             "smaller" => Measured::Smaller,
             "larger" => Measured::Larger,
             "diagonal" => Measured::Diagonal,
-            other => return Err(PyValueError::new_err(format!("{other:?} is no axis of a picture"))),
+            other => {
+                return Err(PyValueError::new_err(format!(
+                    "axis is {other:?}, expected \"x\", \"y\", \"larger\", \"smaller\" or \"diagonal\""
+                )));
+            }
         }))
     }
 }
@@ -118,7 +122,7 @@ fn perspective(camera: &Bound<'_, PyAny>, body: Body) -> PyResult<Box<dyn Camera
     let window = match (fov, focal) {
         (None, Some(focal)) => Window::of_matrix(focal, principal.unwrap_or(size.map(|n| 0.5 * n)), skew, size),
         (Some(fov), None) => of_view((fov, fov_axis), principal, size),
-        _ => return Err(PyValueError::new_err("a camera has fov or focal, and not both")),
+        _ => return Err(PyValueError::new_err("a camera must have either fov or focal")),
     };
     made(window.map(|window| Perspective::new(body, window)))
 }
@@ -175,7 +179,7 @@ fn fisheye(camera: &Bound<'_, PyAny>, body: Body) -> PyResult<Box<dyn Camera>> {
         "equisolid" => Mapping::Equisolid,
         "stereographic" => Mapping::Stereographic,
         "orthographic" => Mapping::Orthographic,
-        other => return Err(PyValueError::new_err(format!("{other:?} is no mapping of a fisheye"))),
+        other => return Err(PyValueError::new_err(format!("fisheye mapping {other:?} is unknown"))),
     };
     made(Fisheye::new(body, fov, mapping, fov_axis.0))
 }

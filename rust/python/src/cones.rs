@@ -83,7 +83,7 @@ pub fn cones<'py>(
 ) -> PyResult<Touched<'py>> {
     let scene = scene.get().scene();
     if let Some(shape) = scene.geometry().first_other() {
-        return Err(PyValueError::new_err(format!("cones touch meshes alone, and shape {shape} is none")));
+        return Err(PyValueError::new_err(format!("cone queries support only meshes, and shape {shape} is none")));
     }
     let cones = Cones::of(&origins, &directions, &half_angle, &t_max, &shape)?;
     let count = cones.count;
@@ -127,7 +127,7 @@ pub fn cone_coverage<'py>(
 ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
     let scene = scene.get().scene();
     let coverage = Coverage::new(scene).map_err(|shape| {
-        PyValueError::new_err(format!("cones are covered by meshes and spheres alone, and shape {shape} is neither"))
+        PyValueError::new_err(format!("coverage supports only meshes and spheres, and shape {shape} is neither"))
     })?;
     let cones = Cones::of(&origins, &directions, &half_angle, &t_max, &shape)?;
     let found = each(py, threads, chunks(cones.count, share(cones.count)), |(start, count)| {

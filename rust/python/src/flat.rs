@@ -223,12 +223,14 @@ impl FlatScene {
     fn check<const K: usize>(&self, rays: &RayBatch<'_>, told: &[[u32; K]]) -> PyResult<()> {
         if rays.count() != told.len() {
             let count = told.len();
-            return Err(PyValueError::new_err(format!("{count} rays are told of, expected {}", rays.count())));
+            return Err(PyValueError::new_err(format!("got numbers of {count} rays, expected {}", rays.count())));
         }
         let count = Primitives::count(self.scene.get().scene().geometry()) as u32;
         let strange = |row: &[u32; K]| row.iter().any(|&p| p >= count && p < CERTAIN);
         match told.iter().position(strange) {
-            Some(i) => Err(PyValueError::new_err(format!("ray {i} is told of a primitive beyond the {count}"))),
+            Some(i) => {
+                Err(PyValueError::new_err(format!("primitive of ray {i} is out of range for {count} primitives")))
+            }
             None => Ok(()),
         }
     }

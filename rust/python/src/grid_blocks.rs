@@ -55,7 +55,7 @@ impl GridBlocks {
             Kept::Coloured(blocks) => blocks.size(),
         };
         if (0..3).any(|axis| low[axis] > high[axis] || high[axis] > size[axis]) {
-            return Err(PyValueError::new_err("part must lie within the grid"));
+            return Err(PyValueError::new_err("part must be inside the grid"));
         }
         let part = [0, 1, 2].map(|axis| low[axis]..high[axis]);
         let numbers = match &self.0 {

@@ -76,11 +76,11 @@ fn radiosity(of: &Bound<'_, PyAny>) -> PyResult<Radiosity> {
     let irradiance: Vec<_> = corners.as_chunks().0.iter().map(|all: &[_; 3]| all.map(Rgb::from_array)).collect();
     let wanted = patches.count() * if has_backs { 2 } else { 1 };
     if irradiance.len() != wanted {
-        return Err(PyValueError::new_err(format!("irradiance is of {} sides, not of {wanted}", irradiance.len())));
+        return Err(PyValueError::new_err(format!("irradiance is of {} sides, expected {wanted}", irradiance.len())));
     }
     let (first, mirrored) = (numbers("first", &first)?.to_vec(), numbers("mirrored", &mirrored)?.to_vec());
     if first.last().is_none_or(|&all| all as usize != patches.primitives()) || mirrored.len() != patches.primitives() {
-        return Err(PyValueError::new_err(format!("first and mirrored are not of {} faces", patches.primitives())));
+        return Err(PyValueError::new_err(format!("first and mirrored must be of {} faces", patches.primitives())));
     }
     Ok(Radiosity { patches, first, mirrored, has_backs, irradiance, area })
 }
@@ -206,7 +206,7 @@ pub fn aovs<'py>(
         let found = Channel::ALL.into_iter().find(|channel| channel.name() == name);
         found.ok_or_else(|| {
             let all = Channel::ALL.map(Channel::name).join(", ");
-            PyValueError::new_err(format!("aov {name:?} is not known, expected some of {all}"))
+            PyValueError::new_err(format!("aov {name:?} is unknown, expected some of {all}"))
         })
     };
     let channels: Vec<Channel> = names.iter().map(named).collect::<PyResult<_>>()?;

@@ -31,7 +31,9 @@ pub fn leave<'py>(
         || ![1, count].contains(&directions.len())
         || !which.map_or(points > 0 || count == 0, fits)
     {
-        return Err(PyValueError::new_err(format!("{count} rays cannot leave {points} points so")));
+        return Err(PyValueError::new_err(format!(
+            "position, normal, directions and which do not match {count} rays from {points} points"
+        )));
     }
     let origins = unwritten::<f64>(py, &shape, Some(3))?;
     answer(py, count, share(count), None, origins.readwrite().as_slice_mut()?.as_chunks_mut().0, |start, origins| {

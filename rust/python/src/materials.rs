@@ -300,5 +300,5 @@ pub fn metal_index(name: &str) -> PyResult<Vec<[f64; 3]>> {
 }
 
 fn unknown(name: &str) -> PyErr {
-    PyValueError::new_err(format!("metal must be one that is known, got '{name}'"))
+    PyValueError::new_err(format!("metal must be a known one, got '{name}'"))
 }

@@ -33,7 +33,7 @@ pub fn photons<'py>(
 ) -> PyResult<Found<'py>> {
     let scene = &scene.get().0;
     if let Some(why) = scene.not_drawn().or_else(|| scene.glow()) {
-        return Err(PyValueError::new_err(format!("{why}, where no path from a light can start")));
+        return Err(PyValueError::new_err(format!("{why}, and light paths cannot start there")));
     }
     let found = heard(py, threads, |cancel| follow(scene, count, (max_depth, roulette_depth), seed, cancel))?;
     let all = &found.photons;

@@ -47,7 +47,9 @@ pub fn points<'py>(
     let count = primitive.len();
     let others = [instances.map_or(count, <[i32]>::len), order.map_or(count, <[i64]>::len)];
     if [shape.len(), uv.len(), t.len()].iter().chain(&others).any(|&n| n != count) {
-        return Err(PyValueError::new_err(format!("hits are told {count} times by some, not by all")));
+        return Err(PyValueError::new_err(format!(
+            "all arrays of hits must have the same length, which is {count} for primitive"
+        )));
     }
     let vectors = || unwritten::<f64>(py, &[count], Some(3));
     let (position, normal, shading) = (vectors()?, vectors()?, vectors()?);

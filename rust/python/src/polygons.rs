@@ -20,7 +20,9 @@ pub fn triangulate_polygons<'py>(
     let counts: Vec<usize> = numbers("counts", &counts)?.iter().map(|&n| n.max(0) as usize).collect();
     let is_there = |&i: &i64| usize::try_from(i).is_ok_and(|i| i < points.len());
     if counts.iter().sum::<usize>() != corners.len() || !corners.iter().all(is_there) {
-        return Err(PyValueError::new_err("polygons have other corners than there are"));
+        return Err(PyValueError::new_err(
+            "counts must sum to the number of corners, and corners must be indices of points",
+        ));
     }
     let found = py.detach(|| triangulate(points, corners, &counts));
     let count = found.len();

@@ -20,7 +20,11 @@ pub fn random_numbers<'py>(
 ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
     let (pixel, sample) = (numbers("pixel", &pixel)?, numbers("sample", &sample)?);
     if pixel.len() != sample.len() {
-        return Err(PyValueError::new_err(format!("there are {} pixels and {} samples", pixel.len(), sample.len())));
+        return Err(PyValueError::new_err(format!(
+            "pixels and samples have lengths {} and {}, expected the same",
+            pixel.len(),
+            sample.len()
+        )));
     }
     let dimension = CAMERA_DIMENSIONS.wrapping_add(dimension);
     let array = unwritten::<f64>(py, &[pixel.len()], pair.then_some(2))?;

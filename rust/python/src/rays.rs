@@ -317,5 +317,5 @@ pub fn each<C: Send, T: Send>(
         })
         .map_err(PyRuntimeError::new_err)?;
     signal?;
-    made.ok_or_else(|| PyRuntimeError::new_err("work was stopped, and no signal raised"))
+    made.ok_or_else(|| PyRuntimeError::new_err("work was canceled without a signal"))
 }

@@ -201,7 +201,7 @@ impl Rendering {
         let film = &self.0.film;
         let tiles = first..first.saturating_add(count);
         if tiles.end > film.tile_count() || before.is_some_and(|b| !film.appends() || !b.is_multiple_of(film.block())) {
-            return Err(PyValueError::new_err("request must be of tiles of the film, and before of whole blocks"));
+            return Err(PyValueError::new_err("request must name tiles of the film, and before must be whole blocks"));
         }
         Ok(PyBytes::new(py, &self.0.request(tiles, before, samples)))
     }

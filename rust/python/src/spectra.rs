@@ -132,10 +132,11 @@ pub fn index(given: &Bound<'_, PyAny>) -> PyResult<(f64, Dispersive)> {
     let dispersion = DISPERSIONS.reader(given)?(given)?;
     if !dispersion.is_physical(FIRST, LAST) {
         return Err(PyValueError::new_err(format!(
-            "ior must be above 0 from {FIRST} to {LAST} nm, which {dispersion:?} is not"
+            "ior must be above 0 from {FIRST} to {LAST} nm, got {dispersion:?}"
         )));
     }
     let yellow = dispersion.at(587.5618);
     let kept = Dispersive::of(dispersion);
-    kept.map(|kept| (yellow, kept)).ok_or_else(|| PyValueError::new_err("ior must be one of at most 4096 dispersions"))
+    kept.map(|kept| (yellow, kept))
+        .ok_or_else(|| PyValueError::new_err("a process can use at most 4096 dispersions as ior"))
 }

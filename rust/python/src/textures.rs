@@ -210,7 +210,7 @@ impl Textures {
     }
 
     fn image(&self, given: PyImage<'_>) -> PyResult<ImageTexture> {
-        let unknown = |what: &str| PyValueError::new_err(format!("{what} is no way to read an image"));
+        let unknown = |what: &str| PyValueError::new_err(format!("{what} is unknown for reading an image"));
         let filter = match given.filter.as_str() {
             "nearest" => Filter::Nearest,
             "bilinear" => Filter::Bilinear,

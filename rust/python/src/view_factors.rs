@@ -149,7 +149,7 @@ fn told<T: Send>(
     match (raised, done) {
         (Some(error), _) => Err(error),
         (None, Ok(Ok(found))) => Ok(found),
-        (None, Ok(Err(Stopped))) => Err(PyRuntimeError::new_err("work was stopped, and nobody says why")),
+        (None, Ok(Err(Stopped))) => Err(PyRuntimeError::new_err("work was canceled without a signal")),
         (None, Err(why)) => Err(PyRuntimeError::new_err(why)),
     }
 }

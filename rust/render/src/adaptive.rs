@@ -89,11 +89,11 @@ impl Adaptive {
         self.epoch = Epoch::read(film.tiles().iter(), film.patch(), from)?;
         let Epoch { from: start, to, shares, .. } = &self.epoch;
         check((*start..=*to).contains(&film.samples()), "an epoch ends before it begins")?;
-        check(self.evidence > 0 && self.evidence <= *to, "there is no evidence")?;
+        check(self.evidence > 0 && self.evidence <= *to, "evidence is missing")?;
         let all: u64 = shares.iter().flatten().map(|&[_, end]| u64::from(end)).sum();
         // Bounds the length of a pass that malicious bytes may request. Cells are rounded to whole batches.
         let most = (u64::from(*to) + 2 * u64::from(film.batch())) * film.pixel_count() as u64;
-        check(all <= most, "cells were given more samples than there are")
+        check(all <= most, "cells have more samples than were taken")
     }
 
     /// Begins an epoch. The half `decider(half)` decides for each half.

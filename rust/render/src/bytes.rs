@@ -114,7 +114,7 @@ impl<'a> Reader<'a> {
 
     pub fn flag(&mut self) -> Result<bool, Malformed> {
         let byte = self.byte()?;
-        check(byte <= 1, "a flag is neither set nor not")?;
+        check(byte <= 1, "a flag is neither 0 nor 1")?;
         Ok(byte == 1)
     }
 
@@ -156,13 +156,13 @@ impl<'a> Reader<'a> {
                 let bytes = self.take(count.checked_mul(W::SIZE).ok_or(Malformed("they end too early"))?)?;
                 into.zip(bytes.chunks_exact(W::SIZE)).for_each(|(entry, word)| set(entry, W::get(word)));
             }
-            _ => return Err(Malformed("numbers are stored in an unknown way")),
+            _ => return Err(Malformed("numbers have an unknown encoding")),
         }
         Ok(())
     }
 
     /// Checks that nothing is left.
     pub fn end(&self) -> Result<(), Malformed> {
-        check(self.0.is_empty(), "they go on after their end")
+        check(self.0.is_empty(), "they have extra bytes at the end")
     }
 }

@@ -56,8 +56,8 @@ impl Epoch {
                 from.words(shares.iter_mut().map(|share| &mut share[end]))?;
             }
             let holds = |(&count, &[start, end]): (&u32, &[u32; 2])| start <= count && count <= end;
-            check(tile.counts().iter().zip(&*shares).all(holds), "a cell has other samples than it was given")?;
-            check(shares.iter().all(|&[_, end]| end <= FilmTile::MOST), "a cell wants too many samples")?;
+            check(tile.counts().iter().zip(&*shares).all(holds), "a cell's sample count is not the planned one")?;
+            check(shares.iter().all(|&[_, end]| end <= FilmTile::MOST), "a cell requests too many samples")?;
             this.shares.push(shares);
         }
         Ok(this)

@@ -83,7 +83,7 @@ impl Rendering {
         let (first, count) = (from.word::<u32>()? as usize, from.word::<u32>()? as usize);
         let before = if from.flag()? { Some(from.word::<u32>()?) } else { None };
         let all = self.film.tile_count();
-        check(first <= all && count <= all - first, "there are no such tiles")?;
+        check(first <= all && count <= all - first, "the tiles are out of range")?;
         let mut tiles = Vec::new();
         for number in first..first + count {
             let mut tile = self.film.empty_tile(number);
@@ -93,7 +93,7 @@ impl Rendering {
                 Some(before) => pairs.all(|(&here, &more)| here == before && more <= self.film.block()),
                 None => pairs.all(|(here, there)| here <= there),
             };
-            check(follows && (before.is_none() || self.film.appends()), "they do not follow the samples here")?;
+            check(follows && (before.is_none() || self.film.appends()), "they do not continue the samples here")?;
             tiles.push(tile);
         }
         from.end()?;
@@ -112,41 +112,41 @@ impl Request {
     pub fn from_bytes(bytes: &[u8], width: u32, height: u32) -> Result<Self, Malformed> {
         let mut from = Reader(bytes);
         let size: [u32; 2] = [from.word()?, from.word()?];
-        check(size == [width, height], "they are of a picture of another size")?;
+        check(size == [width, height], "they belong to a picture of another size")?;
         let (side, batch): (u32, u32) = (from.word()?, from.word()?);
-        check((1..=64).contains(&side), "tiles have no size")?;
-        check(batch.is_power_of_two() && batch <= 1 << 16, "a batch has no size")?;
+        check((1..=64).contains(&side), "the tile size is not from 1 to 64")?;
+        check(batch.is_power_of_two() && batch <= 1 << 16, "the batch size is not a power of two")?;
         let (halves, apart, clamps, clamp) = (from.flag()?, from.flag()?, from.flag()?, from.float()?);
         let film = Film::without_tiles(width, height, side, batch, halves, clamps.then_some(clamp)).kept_apart(apart);
         let (first, count): (u32, u32) = (from.word()?, from.word()?);
         let all = film.tile_count();
-        check(first as usize <= all && count as usize <= all - first as usize, "there are no such tiles")?;
+        check(first as usize <= all && count as usize <= all - first as usize, "the tiles are out of range")?;
         let numbers = first as usize..first as usize + count as usize;
         let kind = from.byte()?;
         let mut tiles: Vec<FilmTile> = numbers.map(|number| film.empty_tile(number)).collect();
         if kind == ALONE {
             let (before, samples): (u32, u32) = (from.word()?, from.word()?);
             let blocks = film.appends() && before.is_multiple_of(film.block());
-            check(blocks && before <= samples && samples - before <= film.block(), "they are no block")?;
+            check(blocks && before <= samples && samples - before <= film.block(), "the samples are not one block")?;
             from.end()?;
             return Ok(Self { first, tiles, wanted: Wanted::Alone(before, samples) });
         }
-        check(kind <= PLANNED && (kind == PLANNED) == halves, "they are of no kind")?;
+        check(kind <= PLANNED && (kind == PLANNED) == halves, "the kind of request is unknown")?;
         tiles.iter_mut().try_for_each(|tile| tile.read(&mut from))?;
         let planned = if kind == PLANNED {
             let patch = from.word()?;
-            check((1..=64).contains(&patch), "patches have no size")?;
+            check((1..=64).contains(&patch), "the patch size is not from 1 to 64")?;
             Some(Epoch::read(tiles.iter(), patch, &mut from)?)
         } else {
             None
         };
         let (done, samples) = (from.word()?, from.word()?);
         from.end()?;
-        check(done <= samples && samples <= FilmTile::MOST, "a cell wants too many samples")?;
+        check(done <= samples && samples <= FilmTile::MOST, "a cell requests too many samples")?;
         let wanted = match planned {
             None => Wanted::Even { done, samples },
             Some(epoch) => {
-                check(epoch.from <= done && samples <= epoch.to, "they are of another epoch")?;
+                check(epoch.from <= done && samples <= epoch.to, "they belong to another epoch")?;
                 Wanted::Planned { epoch, done, samples }
             }
         };
@@ -273,9 +273,9 @@ mod tests {
         rendering.begin(16);
         let (first, second) = (rendering.request(0..5, Some(0), 16), rendering.request(0..5, Some(16), 32));
         let (first, second) = (answer(&first, 1), answer(&second, 1));
-        assert_eq!(rendering.take(&second), Err(Malformed("they do not follow the samples here")));
+        assert_eq!(rendering.take(&second), Err(Malformed("they do not continue the samples here")));
         rendering.take(&first).unwrap();
-        assert_eq!(rendering.take(&first), Err(Malformed("they do not follow the samples here")));
+        assert_eq!(rendering.take(&first), Err(Malformed("they do not continue the samples here")));
         rendering.take(&second).unwrap();
         assert!(rendering.film.tiles()[..5].iter().all(|tile| tile.counts().iter().all(|&n| n == 32)));
     }

@@ -305,12 +305,12 @@ impl Rendering {
         // Bounds the length of a pass that malicious bytes may request.
         check(aim - done <= self.film.block(), "a pass is too long")?;
         let decided = self.plan.as_ref().is_none_or(|plan| aim == done || aim <= plan.epoch().to);
-        check(decided, "a pass goes on after its epoch")?;
+        check(decided, "a pass ends after its epoch")?;
         let even = |count: &u32| (done..=aim).contains(count);
         let fits = self.plan.is_some() || self.film.tiles().iter().all(|tile| tile.counts().iter().all(even));
-        check(fits, "a pixel has other samples than its pass")?;
+        check(fits, "a pixel's sample count is not that of its pass")?;
         let times = || self.history.iter().map(|row| row.seconds).chain([self.seconds]);
-        check(times().all(|t| t.is_finite() && t >= 0.0) && times().is_sorted(), "time does not go forward")?;
+        check(times().all(|t| t.is_finite() && t >= 0.0) && times().is_sorted(), "times decrease")?;
         let ordered = self.history.is_sorted_by(|a, b| a.samples < b.samples);
         let last = self.history.last().map_or(0, |row| row.samples);
         check(ordered && last == done, "passes are not in order")

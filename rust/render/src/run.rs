@@ -99,17 +99,16 @@ pub(super) fn check(
     let of_media = || {
         let is_lost = scene.plan().needs().media && !integrator.takes_media();
         is_lost.then(|| {
-            "this integrator knows nothing of media, and the scene has some; Path follows light through them, \
-             Direct and Whitted dim it"
+            "this integrator does not support media, which the scene has; Path scatters light in them, Direct and \
+             Whitted attenuate it"
                 .to_owned()
         })
     };
     let of_waves = || {
         let is_lost = scene.plan().needs().waves && !integrator.takes_waves();
         is_lost.then(|| {
-            "this integrator knows nothing of wavelengths, and the scene has a spectrum or an index of refraction \
-             that goes with wavelength; Path follows light by wavelength, and so do Bidirectional, PhotonMap, \
-             LightTraced, Direct, Whitted and others"
+            "this integrator does not support wavelengths, and the scene has a spectrum or a dispersive index of \
+             refraction; use Path, Bidirectional, PhotonMap, LightTraced, Direct or Whitted"
                 .to_owned()
         })
     };

@@ -17,13 +17,13 @@ impl Rendering {
     pub fn add(&mut self, count: u32, sums: &[[f64; 9]], dropped: u64) -> Result<(), Malformed> {
         let film = &self.film;
         let (batch, clamp, apart) = (film.batch(), film.clamp(), film.is_apart());
-        check(batch == 1 && film.appends() && clamp.is_none() && !apart, "the film keeps more of samples than sums")?;
-        check(sums.len() == film.pixel_count(), "they are of a picture of another size")?;
+        check(batch == 1 && film.appends() && clamp.is_none() && !apart, "the film stores more than sums")?;
+        check(sums.len() == film.pixel_count(), "they belong to a picture of another size")?;
         let most = self.aim().min(FilmTile::MOST);
         let fits = |tile: &FilmTile| tile.counts().iter().all(|&there| count <= most.saturating_sub(there));
         check(film.tiles().iter().all(fits), "the pass has fewer samples")?;
-        check(dropped <= sums.len() as u64 * u64::from(count), "there are more samples of a kind than samples")?;
-        check(sums.as_flattened().iter().all(|x| x.is_finite() && *x >= 0.0), "sums are not finite and at least 0")?;
+        check(dropped <= sums.len() as u64 * u64::from(count), "more samples were dropped than taken")?;
+        check(sums.as_flattened().iter().all(|x| x.is_finite() && *x >= 0.0), "sums must be finite and at least 0")?;
         let width = film.width() as usize;
         parallel::each_mut(self.film.tiles_mut(), &|_, tile| {
             tile.add_sums(count, |(x, y)| {

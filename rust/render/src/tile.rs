@@ -379,7 +379,7 @@ impl FilmTile {
         self.quarters.read(from)?;
         (self.dropped, self.clamped) = (from.word()?, from.word()?);
         let most = self.counts.len() as u64 * u64::from(Self::MOST);
-        check(self.dropped <= most && self.clamped <= most, "there are more samples of a kind than samples")
+        check(self.dropped <= most && self.clamped <= most, "more samples were dropped or clamped than taken")
     }
 }
 

@@ -389,7 +389,7 @@ impl Scene {
 
     /// The reason why some light does not come from emitters, if there is one.
     pub fn glow(&self) -> Option<String> {
-        self.plan.needs().glow.then(|| "a medium glows".to_owned())
+        self.plan.needs().glow.then(|| "a medium is emissive".to_owned())
     }
 
     /// Bounds of all geometry.

@@ -66,11 +66,10 @@ impl fmt::Display for DescriptionError {
             Self::Material(i, why) => write!(f, "material of shape {i}: {why}"),
             Self::Emission(i) => write!(f, "emission of shape {i} must be finite and not negative"),
             Self::Light(i, why) => write!(f, "light {i}: {why}"),
-            Self::TooMany(n) => write!(
-                f,
-                "an instance holds {n} primitives, all copies in it counted; fewer than 2^31 can be told apart"
-            ),
-            Self::Stopped => write!(f, "building was stopped"),
+            Self::TooMany(n) => {
+                write!(f, "an instance holds {n} primitives in all its copies, expected fewer than 2^31")
+            }
+            Self::Stopped => write!(f, "the build was canceled"),
         }
     }
 }
@@ -83,7 +82,7 @@ impl SceneDescription {
         for (i, shape) in self.shapes.iter().enumerate() {
             shape.material.validate().map_err(|why| DescriptionError::Material(i, why))?;
             if shape.material.is_passed() && !shape.emission.is_dark() {
-                let why = "it is the end of a medium and no surface, and cannot shine; a medium may, by its emission";
+                let why = "a medium interface cannot emit light; give the medium an emission";
                 return Err(DescriptionError::Material(i, why.into()));
             }
             if !shape.emission.is_physical() {

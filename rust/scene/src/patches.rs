@@ -42,7 +42,7 @@ impl Patches {
         for &cut in &cuts {
             count += u64::from(cut.max(1)).pow(2);
             if count > Self::MOST {
-                return Err("there are more than 2^30 patches: give a larger patch_size".into());
+                return Err("the scene has more than 2^30 patches: give a larger patch_size".into());
             }
             first.push(count as u32);
         }

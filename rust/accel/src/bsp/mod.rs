@@ -83,12 +83,12 @@ impl Child {
     const EMPTY: Self = Self(u32::MAX);
 
     fn node(number: usize) -> Self {
-        assert!(number < Self::LEAF as usize, "{number} nodes are more than a BSP tree can number");
+        assert!(number < Self::LEAF as usize, "a BSP tree has at most 2^31 nodes, got {number}");
         Self(number as u32)
     }
 
     fn leaf(number: usize) -> Self {
-        assert!(number < Self::LEAF as usize - 1, "{number} leaves are more than a BSP tree can number");
+        assert!(number < Self::LEAF as usize - 1, "a BSP tree has at most 2^31 leaves, got {number}");
         Self(number as u32 | Self::LEAF)
     }
 
@@ -179,7 +179,7 @@ impl Structure for Bsp {
     fn validate(&self, input: &Input, primitives: &dyn Fn(u32) -> Vec<u32>) -> Result<(), String> {
         let (parts, bounds) = input.parts();
         if bounds != self.bounds {
-            return Err(format!("the box around everything is {bounds:?}, not {:?}", self.bounds));
+            return Err(format!("the bounding box is {bounds:?}, expected {:?}", self.bounds));
         }
         let mut depths = vec![None; self.nodes.len()];
         let mut numbers = Vec::new();
@@ -193,7 +193,7 @@ impl Structure for Bsp {
             }
             let i = child.0 as usize;
             if i < least || i >= self.nodes.len() || depths[i].replace(depth).is_some() {
-                return Err(format!("node {i} of {} is the child of one behind it, or of two", self.nodes.len()));
+                return Err(format!("node {i} of {} has a parent behind it, or two parents", self.nodes.len()));
             }
             let Node { plane: Plane { normal, offset }, children } = self.nodes[i];
             if (normal.abs().element_sum() - 1.0).abs() > 1e-12 || !offset.is_finite() {
@@ -209,7 +209,7 @@ impl Structure for Bsp {
         }
         numbers.sort_unstable();
         if let Some((leaf, number)) = (0..).zip(&numbers).find(|(leaf, number)| leaf != *number) {
-            return Err(format!("leaf {leaf} is numbered {number}"));
+            return Err(format!("leaf {leaf} has the number {number}"));
         }
         let mut lists: Vec<_> = numbers.iter().map(|&leaf| primitives(leaf)).collect();
         lists.iter_mut().for_each(|list| list.sort_unstable());

@@ -81,13 +81,13 @@ impl BinaryBvh {
             for &p in primitives {
                 met[p as usize] += 1;
                 if !node.aabb().contains(&boxes[p as usize]) {
-                    return Err(format!("leaf {i} does not hold primitive {p}"));
+                    return Err(format!("leaf {i} does not contain primitive {p}"));
                 }
             }
             Ok(())
         })?;
         match met.iter().zip(boxes).position(|(&n, b)| n != u32::from(!b.is_empty())) {
-            Some(p) => Err(format!("primitive {p} stands in {} leaves; its box is {:?}", met[p], boxes[p])),
+            Some(p) => Err(format!("primitive {p} is in {} leaves; its box is {:?}", met[p], boxes[p])),
             None => Ok(()),
         }
     }
@@ -109,10 +109,10 @@ impl BinaryBvh {
         })?;
         for (p, (parts, whole)) in parts.iter().zip(boxes).enumerate() {
             if whole.is_empty() != parts.is_empty() {
-                return Err(format!("primitive {p} stands in {} leaves; its box is {whole:?}", parts.len()));
+                return Err(format!("primitive {p} is in {} leaves; its box is {whole:?}", parts.len()));
             }
             if !cover(parts, whole, |to| clip(p as u32, to)) {
-                return Err(format!("{} leaves do not hold primitive {p} together", parts.len()));
+                return Err(format!("{} leaves together do not contain primitive {p}", parts.len()));
             }
         }
         Ok(())
@@ -136,7 +136,7 @@ impl BinaryBvh {
                     }
                     parents[child] += 1;
                     if !node.aabb().contains(&self.nodes[child].aabb()) {
-                        return Err(format!("node {i} does not hold its child {child}"));
+                        return Err(format!("node {i} does not contain its child {child}"));
                     }
                 }
             }

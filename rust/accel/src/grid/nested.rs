@@ -210,11 +210,11 @@ impl Nested {
         for (cell, wanted) in expected(input, lattice, primitives).into_iter().enumerate() {
             match self.entry(part, cell) {
                 None if wanted.is_empty() => {}
-                None => return Err(format!("cell {cell} of grid {part} is empty, and should have {wanted:?}")),
+                None => return Err(format!("cell {cell} of grid {part} is empty, expected {wanted:?}")),
                 Some(entry) if entry & INNER != 0 => {
                     let grid = entry & !INNER;
                     if grid <= part {
-                        return Err(format!("grid {grid} stands in grid {part}"));
+                        return Err(format!("grid {grid} is inside grid {part}"));
                     }
                     check_border(&self.parts[grid as usize].lattice, &content(input, lattice, cell, &wanted))?;
                     depth = depth.max(1 + self.check(grid, input, &wanted, leaf)?);
@@ -223,7 +223,7 @@ impl Nested {
                     let mut own = leaf(entry);
                     own.sort_unstable();
                     if own != wanted {
-                        return Err(format!("cell {cell} of grid {part} has {own:?}, and should have {wanted:?}"));
+                        return Err(format!("cell {cell} of grid {part} has {own:?}, expected {wanted:?}"));
                     }
                 }
             }
@@ -269,7 +269,7 @@ impl Structure for Nested {
         })?;
         let leaves = (self.entries.len() + 1 - self.parts.len()) as u32;
         if next != leaves {
-            return Err(format!("{next} leaves stand in cells, of {leaves}"));
+            return Err(format!("cells refer to {next} leaves, expected {leaves}"));
         }
         if depth == self.depth { Ok(()) } else { Err(format!("depth is {depth}, not {}", self.depth)) }
     }

@@ -72,7 +72,7 @@ pub(super) fn check_border(lattice: &Lattice, bounds: &Aabb) -> Result<(), Strin
     let needed = Aabb { min: bounds.min - room, max: bounds.max + room };
     match lattice.aabb([0; 3], lattice.cells.map(|n| n - 1)) {
         all if all.contains(&needed) => Ok(()),
-        all => Err(format!("a grid in {all:?} has {bounds:?} in it")),
+        all => Err(format!("the grid {all:?} has no margin around its content {bounds:?}")),
     }
 }
 
@@ -111,7 +111,7 @@ impl Structure for Grid {
             let mut own = leaf.map_or(Vec::new(), primitives);
             own.sort_unstable();
             if own != wanted || leaf.is_some_and(|leaf| leaf != leaves) {
-                return Err(format!("cell {cell} is leaf {leaf:?} with {own:?}, and should have {wanted:?}"));
+                return Err(format!("cell {cell} is leaf {leaf:?} with {own:?}, expected {wanted:?}"));
             }
             leaves += u32::from(leaf.is_some());
         }

@@ -12,7 +12,7 @@ use raywright_base::math::Aabb;
 pub fn check(tree: &KdTree, input: &Input, primitives: &dyn Fn(u32) -> Vec<u32>) -> Result<(), String> {
     let (parts, bounds) = input.parts();
     if bounds != tree.bounds {
-        return Err(format!("the box around everything is {bounds:?}, not {:?}", tree.bounds));
+        return Err(format!("the bounding box is {bounds:?}, expected {:?}", tree.bounds));
     }
     let mut parents = vec![0u32; tree.nodes.len()];
     for (i, node) in tree.nodes.iter().enumerate().filter(|&(i, n)| i != 1 && !n.is_leaf()) {
@@ -43,7 +43,7 @@ pub fn check(tree: &KdTree, input: &Input, primitives: &dyn Fn(u32) -> Vec<u32>)
     }
     numbers.sort_unstable();
     if let Some((leaf, number)) = (0..).zip(&numbers).find(|(leaf, number)| leaf != *number) {
-        return Err(format!("leaf {leaf} is numbered {number}"));
+        return Err(format!("leaf {leaf} has the number {number}"));
     }
     let mut lists: Vec<Vec<u32>> = numbers.iter().map(|&leaf| primitives(leaf)).collect();
     for node in tree.nodes.iter().filter(|n| n.is_leaf() && n.count() > 0) {

@@ -31,7 +31,7 @@ impl Node {
     ///
     /// If there are too many nodes.
     pub fn inner(axis: usize, plane: f32, children: usize) -> Self {
-        assert!(axis < 3 && children < MOST, "{children} nodes are more than a kD-tree can number");
+        assert!(axis < 3 && children < MOST, "a kd-tree has fewer than {MOST} nodes, got {children}");
         Self { word: plane.to_bits(), bits: (children as u32) << 2 | axis as u32 }
     }
 
@@ -41,7 +41,7 @@ impl Node {
     ///
     /// If there are too many primitives.
     pub fn leaf(number: u32, count: usize) -> Self {
-        assert!(count < MOST, "{count} primitives are more than a leaf can hold");
+        assert!(count < MOST, "a leaf of a kd-tree has fewer than {MOST} primitives, got {count}");
         Self { word: number, bits: (count as u32) << 2 | LEAF }
     }
 

@@ -101,7 +101,7 @@ pub trait Structure: Send + Sync {
     /// Refit the structure to moved primitives, which stay in the same leaves.
     fn refitted(&self, input: &Input, primitives: &dyn Fn(u32) -> Vec<u32>) -> Result<Box<dyn Structure>, String> {
         let _ = (input, primitives);
-        Err(format!("a {} is built for where things are: build it anew", self.info().kind))
+        Err(format!("a {} cannot be refitted: rebuild it", self.info().kind))
     }
 }
 

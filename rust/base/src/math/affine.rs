@@ -35,11 +35,11 @@ pub enum Singular {
 impl std::fmt::Display for Singular {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            Self::NotFinite => f.write_str("a number of it is not finite"),
+            Self::NotFinite => f.write_str("it has a non-finite number"),
             Self::ZeroDeterminant => f.write_str("its determinant is 0"),
-            Self::OutOfRange => f.write_str("its inverse is more than float64 holds"),
+            Self::OutOfRange => f.write_str("its inverse overflows float64"),
             Self::IllConditioned(condition, most) => {
-                write!(f, "it is too badly conditioned, by {condition:.1e} where {most:.1e} is the most")
+                write!(f, "its condition number is {condition:.1e}, expected at most {most:.1e}")
             }
         }
     }

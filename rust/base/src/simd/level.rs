@@ -75,7 +75,7 @@ impl Level {
                 }
                 available.iter().copied().find(|l| l.name() == forced).ok_or_else(|| {
                     let names: Vec<_> = available.iter().map(|l| l.name()).collect();
-                    format!("RAYWRIGHT_SIMD is {forced:?}; this processor has {}", names.join(", "))
+                    format!("RAYWRIGHT_SIMD is {forced:?}, expected one of {}", names.join(", "))
                 })
             })
             .clone()

@@ -42,7 +42,7 @@ impl Enclosure {
     pub fn new(scene: &Scene, patches: Patches, sides: Sides) -> Result<Self, String> {
         let geometry = scene.geometry();
         if patches.primitives() != geometry.count() {
-            return Err(format!("{} faces are cut, of {}", patches.primitives(), geometry.count()));
+            return Err(format!("patches are of {} faces, expected all {}", patches.primitives(), geometry.count()));
         }
         let count = patches.count() as u32;
         let area = |patch: usize| {
@@ -58,7 +58,7 @@ impl Enclosure {
         };
         if let Some(bad) = areas.iter().enumerate().position(is_bad) {
             let (shape, face) = geometry.locate(patches.cell(bad as u32).primitive);
-            return Err(format!("face {face} of shape {shape} has no area, or no end: it cannot exchange light"));
+            return Err(format!("face {face} of shape {shape} must have a finite area above 0 to exchange light"));
         }
         let all = if sides == Sides::Both { 2 * count } else { count };
         let fronts = match sides {
@@ -81,7 +81,11 @@ impl Enclosure {
     pub fn with(self, emission: Vec<Rgb>, reflectance: Vec<Rgb>) -> Result<Self, String> {
         let count = self.sources();
         if emission.len() != count || reflectance.len() != count {
-            return Err(format!("{} emissions, {} reflectances of {count} sides", emission.len(), reflectance.len()));
+            return Err(format!(
+                "got {} emissions and {} reflectances, expected {count} of each",
+                emission.len(),
+                reflectance.len()
+            ));
         }
         Ok(Self { emission, reflectance, ..self })
     }
@@ -104,7 +108,7 @@ impl Enclosure {
                     let drawn = shape.sample(look).filter(|drawn| (drawn.pdf * shape.area() - 1.0).abs() < 1e-6);
                     let drawn = drawn.ok_or_else(|| {
                         let number = geometry.locate(cell.primitive).0;
-                        format!("shape {number} is stretched, and points cannot be drawn from it evenly: use a mesh")
+                        format!("shape {number} has a nonuniform scale and cannot be sampled uniformly: use a mesh")
                     })?;
                     (geometry.on_shape(cell.primitive, &drawn.point.site()), drawn.point.uv)
                 }

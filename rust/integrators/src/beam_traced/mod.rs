@@ -56,7 +56,7 @@ impl Integrator for BeamTraced {
     fn objection(&self, scene: &Scene, _: bool) -> Option<String> {
         let (geometry, lights) = (scene.geometry(), scene.lights());
         if let Some(shape) = geometry.first_other() {
-            return Some(format!("beams meet meshes alone, and shape {shape} is none: use Whitted"));
+            return Some(format!("beams support only meshes, and shape {shape} is none: use Whitted"));
         }
         let mut shapes = 0..geometry.shapes() as u32;
         if let Some((shape, why)) = shapes.find_map(|shape| Some((shape, unsuited(scene, shape)?))) {
@@ -64,28 +64,28 @@ impl Integrator for BeamTraced {
         }
         if let Some([a, b]) = nested(scene) {
             return Some(format!(
-                "shapes {a} and {b} are of glass and may be within each other, and beams know of one glass at a time: \
-                 use Whitted"
+                "shapes {a} and {b} are of glass and may overlap, and beams do not support nested glass: use Whitted"
             ));
         }
         if scene.plan().needs().standing.sheets {
             return Some(
-                "something stands in glass or at it, and beams shade what encloses nothing as in air: use Whitted"
-                    .into(),
+                "an open surface is in or on glass, and beams shade open surfaces as in air: use Whitted".into(),
             );
         }
         if lights.others().any(|light| light.place().is_none()) {
-            return Some("beams come from lights without extent alone, and an environment has one: use Whitted".into());
+            return Some(
+                "beams support only point and directional lights, and the scene has an environment: use Whitted".into(),
+            );
         }
         let count = lights.others().count();
-        (count > MOST_LIGHTS).then(|| format!("beams come from {MOST_LIGHTS} lights at most, not {count}: use Whitted"))
+        (count > MOST_LIGHTS).then(|| format!("beams support at most {MOST_LIGHTS} lights, got {count}: use Whitted"))
     }
 
     fn view_objection(&self, camera: &dyn Camera, filter_radius: f64) -> Option<String> {
         if camera.as_perspective().is_none() {
-            return Some("beams start from a pinhole that does not move: use a Camera, or Whitted".into());
+            return Some("beams support only a pinhole camera that does not move: use a Camera, or Whitted".into());
         }
-        (filter_radius != 0.5).then(|| "a beam's pixels are means over their own squares: use BoxFilter()".into())
+        (filter_radius != 0.5).then(|| "beams average each pixel over its square: use BoxFilter()".into())
     }
 }
 
@@ -93,9 +93,9 @@ impl Integrator for BeamTraced {
 fn unsuited(scene: &Scene, shape: u32) -> Option<&'static str> {
     let material = scene.material(shape);
     if scene.lights().shines(shape) {
-        Some("shines, and beams come from lights without extent alone")
+        Some("is emissive, and beams support only point and directional lights")
     } else if !material.is_opaque() {
-        Some("has a mask, which beams do not see")
+        Some("has a mask, which beams do not support")
     } else {
         is_unlike_paper(scene, shape)
     }
@@ -125,9 +125,9 @@ fn is_face_unlike_paper(scene: &Scene, face: u32) -> Option<&'static str> {
         }
     });
     if singles > 0 && !here.is_flat() {
-        return Some("mirrors or refracts with bent normals, and beams need flat ones");
+        return Some("reflects or refracts with shading normals, and beams need flat normals");
     }
-    (etas.len() > 1).then_some("lets light through in two ways, and a beam goes one")
+    (etas.len() > 1).then_some("refracts in several directions, and beams support one")
 }
 
 /// Return two glass shapes with overlapping bounding boxes.

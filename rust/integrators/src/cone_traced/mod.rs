@@ -43,26 +43,28 @@ impl Integrator for ConeTraced {
 
     fn objection(&self, scene: &Scene, _: bool) -> Option<String> {
         if let Err(shape) = Coverage::new(scene) {
-            return Some(format!("cones meet meshes and spheres alone, and shape {shape} is neither: use Distributed"));
+            return Some(format!(
+                "cones support only meshes and spheres, and shape {shape} is neither: use Distributed"
+            ));
         }
         let unsuited = |shape: u32| {
             let material = scene.material(shape);
-            let masked = (!material.is_opaque()).then_some("has a mask, which cones do not see");
-            masked.or(material.interior().map(|_| "is of glass, and cones are not refracted"))
+            let masked = (!material.is_opaque()).then_some("has a mask, which cones do not support");
+            masked.or(material.interior().map(|_| "is of glass, and cones do not support refraction"))
         };
         let mut shapes = 0..scene.geometry().shapes() as u32;
         if let Some((shape, why)) = shapes.find_map(|shape| Some((shape, unsuited(shape)?))) {
             return Some(format!("shape {shape} {why}: use Distributed"));
         }
         let is_around = scene.lights().others().any(|light| light.place().is_none());
-        is_around.then(|| "cones are sent to lamps alone, and an environment is none: use Distributed".into())
+        is_around.then(|| "cones do not support environments: use Distributed".into())
     }
 
     fn view_objection(&self, camera: &dyn Camera, filter_radius: f64) -> Option<String> {
         if camera.as_perspective().is_none() {
-            return Some("cones start from a pinhole that does not move: use a Camera, or Distributed".into());
+            return Some("cones support only a pinhole camera that does not move: use a Camera, or Distributed".into());
         }
-        (filter_radius != 0.5).then(|| "a cone stands for its pixel's own square: use BoxFilter()".into())
+        (filter_radius != 0.5).then(|| "cones average each pixel over its square: use BoxFilter()".into())
     }
 }
 

@@ -136,9 +136,9 @@ fn suited(camera: &dyn Camera) -> u32 {
 /// Return why neither integrator supports these settings, if so.
 fn objection(scene: &Scene, adaptive: bool) -> Option<String> {
     if adaptive {
-        return Some("maps are of samples of all pixels alike, so these cannot be adaptive: use adaptive=False".into());
+        return Some("all pixels share photon maps, so sampling cannot be adaptive: use adaptive=False".into());
     }
-    scene.not_drawn().or_else(|| scene.glow()).map(|why| format!("{why}, where no photon can start: use Path"))
+    scene.not_drawn().or_else(|| scene.glow()).map(|why| format!("{why}, and photons cannot start there: use Path"))
 }
 
 impl Integrator for PhotonMap {

@@ -34,15 +34,15 @@ impl fmt::Display for CameraError {
             Self::NoDirection => "target of a camera must differ from its position",
             Self::NoUp => "up of a camera must not be zero or parallel to its view",
             Self::FieldOfView => {
-                "fov of a camera must lie between 0 and 180 degrees; of a fisheye, within what its mapping can show"
+                "fov of a camera must be between 0 and 180 degrees; of a fisheye, within the range of its mapping"
             }
             Self::Size => "width and height of a camera must be positive, and their product below 2**31",
-            Self::Shutter => "shutter of a camera must open at 0 or later, and close no earlier, at 1 at the latest",
+            Self::Shutter => "shutter of a camera must have 0 <= open <= close <= 1",
             Self::Film => {
                 "focal lengths of a camera must not be zero, and these, principal point and skew must be finite"
             }
-            Self::Aperture => "the lens of a camera must have a radius of at least 0, and 0 blades or at least 3",
-            Self::Focus => "the distance in focus of a camera must be positive and finite",
+            Self::Aperture => "lens of a camera must have a radius of at least 0, and 0 blades or at least 3",
+            Self::Focus => "focus distance of a camera must be positive and finite",
             Self::Scale => "scale of a camera must be positive and finite",
         })
     }

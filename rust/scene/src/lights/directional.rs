@@ -25,9 +25,7 @@ impl Light for DirectionalLight {
         if self.from.is_finite() && self.irradiance.is_radiance() {
             Ok(())
         } else {
-            Err("a directional light must have a direction of a length other than 0, and an irradiance that is \
-                 finite and not negative"
-                .into())
+            Err("a directional light must have a nonzero direction and a finite irradiance of at least 0".into())
         }
     }
 

@@ -244,15 +244,16 @@ pub fn not_drawn(lights: &Lights, geometry: &Geometry) -> Option<String> {
         if let Some(instances) = geometry.instances_of(shape) {
             let shines = instances.prototype().appearances().any(|(_, emission)| !emission.is_dark());
             let is_missing = shines && !lights.copied.has(shape);
-            return is_missing.then(|| format!("shape {shape} shines in instances that move, nest or are too many"));
+            return is_missing
+                .then(|| format!("shape {shape} is emissive in instances that move, nest or are too many"));
         }
         if !geometry.primitives_of(shape).any(endless) {
             None
         } else if lights.shines(shape) {
-            Some(format!("shape {shape} shines and has no end"))
+            Some(format!("shape {shape} is emissive and unbounded"))
         } else {
             let is_lit = !lights.infinite.is_dark();
-            is_lit.then(|| format!("light from outside falls on shape {shape}, which has no end"))
+            is_lit.then(|| format!("light from outside falls on shape {shape}, which is unbounded"))
         }
     })
 }

@@ -131,7 +131,7 @@ impl Light for EnvironmentMap {
         });
         let most = self.flux * self.scale;
         if !orthonormal {
-            Err("an environment map may only be turned".into())
+            Err("an environment map's to_world must be a rotation".into())
         } else if self.scale >= 0.0 && self.scale.is_finite() && most.is_finite() {
             Ok(())
         } else {

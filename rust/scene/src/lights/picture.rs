@@ -16,13 +16,13 @@ impl Picture {
     /// A short reason if there are no texels, not a whole number of rows, or a value is negative or not finite.
     pub fn new(width: usize, texels: Vec<[f32; 3]>) -> Result<Self, String> {
         if width == 0 || texels.is_empty() || !texels.len().is_multiple_of(width) {
-            return Err(format!("a picture must have whole rows, and at least one: {} of {width}", texels.len()));
+            return Err(format!("a picture must have at least one row of {width} points, got {} points", texels.len()));
         }
         match texels.iter().position(|texel| texel.iter().any(|x| !(x.is_finite() && *x >= 0.0))) {
             Some(i) => {
                 let (row, column) = (i / width, i % width);
                 Err(format!(
-                    "a picture of light must be finite and not negative, but is {:?} in row {row}, column {column}",
+                    "a picture must be finite and at least 0, got {:?} in row {row}, column {column}",
                     texels[i]
                 ))
             }

@@ -35,8 +35,8 @@ impl Projector {
         fov: f64,
         intensity: Rgb,
     ) -> Result<Self, String> {
-        let axis = (target - position).try_normalize().ok_or("a projector's target is its position")?;
-        let right = axis.cross(up).try_normalize().ok_or("a projector's up points along its axis")?;
+        let axis = (target - position).try_normalize().ok_or("a projector's target must differ from its position")?;
+        let right = axis.cross(up).try_normalize().ok_or("a projector's up must not be parallel to its axis")?;
         let tall = (0.5 * fov).tan();
         let half = [tall * picture.width() as f64 / picture.height() as f64, tall];
         Ok(Self { picture, position, axes: [right, right.cross(axis), axis], half, intensity })

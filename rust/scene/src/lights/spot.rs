@@ -76,7 +76,7 @@ impl Light for SpotLight {
         if !(self.position.is_finite() && self.intensity.is_radiance()) {
             Err("a spot light must have a finite position and an intensity that is finite and not negative".into())
         } else if !self.axis.is_finite() {
-            Err("a spot light must have a direction of a length other than 0".into())
+            Err("a spot light must have a nonzero direction".into())
         } else if !(self.angle > 0.0 && self.angle <= FRAC_PI_2) {
             Err(format!("a spot light's angle is {}, expected above 0 and at most 90 degrees", self.angle.to_degrees()))
         } else if !(self.falloff >= 0.0 && self.falloff <= self.angle) {

@@ -104,7 +104,7 @@ impl Roughness {
     pub fn validate_alike(&self) -> Result<(), String> {
         self.validate()?;
         let alike = self.is_alike().then_some(());
-        alike.ok_or_else(|| format!("{} must be the same in all directions here, got two", self.name()))
+        alike.ok_or_else(|| format!("{} must be one number here, got two", self.name()))
     }
 
     fn name(&self) -> &'static str {

@@ -44,10 +44,10 @@ impl Material for TwoSided {
         for (name, side) in [("front", &self.front), ("back", &self.back)] {
             side.validate().map_err(|why| format!("in {name}: {why}"))?;
             if side.transmits() {
-                return Err(format!("{name} must let no light through, as the other side does not know of it"));
+                return Err(format!("{name} must not transmit light"));
             }
             if !side.is_opaque() {
-                return Err(format!("{name} must have no holes; those go through both sides, as a mask of the whole"));
+                return Err(format!("{name} must not have a mask; give it to the whole material"));
             }
         }
         Ok(())

@@ -178,7 +178,9 @@ impl<const C: usize> Building<C> {
         let shift = size.map(|n| n.next_power_of_two().trailing_zeros().min(3));
         let count = [0, 1, 2].map(|axis| size[axis].div_ceil(1 << shift[axis]));
         let blocks = count[0].checked_mul(count[1]).and_then(|n| n.checked_mul(count[2]));
-        let blocks = blocks.filter(|&n| n < 1 << 31).ok_or_else(|| format!("has {}, which are too many", told()))?;
+        let blocks = blocks
+            .filter(|&n| n < 1 << 31)
+            .ok_or_else(|| format!("has {}, expected fewer than 2^31 blocks of 8 x 8 x 8", told()))?;
         let zeros = vec![[0.0; C]; 1 << (shift[0] + shift[1] + shift[2])];
         Ok(Self(Blocks { size, shift, count, places: vec![0; blocks], numbers: zeros }))
     }

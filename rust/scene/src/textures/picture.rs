@@ -144,9 +144,11 @@ pub enum PictureError {
 impl fmt::Display for PictureError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Size => f.write_str("a picture must have a width and a height above 0, and as many points"),
+            Self::Size => {
+                f.write_str("a picture must have a width and a height above 0, and width times height points")
+            }
             Self::NotFinite(row, column) => {
-                write!(f, "a picture must be finite, and is not in row {row}, column {column}")
+                write!(f, "a picture must be finite, got NaN or infinity in row {row}, column {column}")
             }
         }
     }

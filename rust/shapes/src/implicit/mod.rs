@@ -61,11 +61,11 @@ impl Implicit {
         let side = (max - min).min_element();
         if !(min.is_finite() && max.is_finite() && extent <= 1e150 && side > 1e-150) {
             return Err(format!(
-                "min is {min} and max is {max}, expected finite numbers, each of max above that of min"
+                "min is {min} and max is {max}, expected finite numbers with min below max on each axis"
             ));
         }
         if side <= 64.0 * f64::EPSILON * extent {
-            return Err(format!("min is {min} and max is {max}, expected a box wider than 64 units in the last place"));
+            return Err(format!("min is {min} and max is {max}, expected a box wider than 64 ulps"));
         }
         Ok(Self { tape, bounds: Bounds { min, max }, extent, surface: OnceLock::new(), closed: OnceLock::new() })
     }

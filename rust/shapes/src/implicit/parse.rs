@@ -51,7 +51,7 @@ pub fn parse(text: &str) -> Result<Tape, String> {
     let mut tape = parser.tape;
     tape.finish(result);
     if tape.is_constant() {
-        return Err("there is none of x, y and z in it".to_owned());
+        return Err("it uses none of x, y and z".to_owned());
     }
     Ok(tape)
 }
@@ -94,7 +94,7 @@ impl Parser {
     fn missing(&mut self, what: &str) -> String {
         match self.peek() {
             Some(c) => format!("expected {what} at column {}, got {c:?}", self.place + 1),
-            None => format!("expected {what} at column {}, where it ends", self.place + 1),
+            None => format!("expected {what} at column {}, but the expression ends there", self.place + 1),
         }
     }
 
@@ -129,7 +129,7 @@ impl Parser {
     fn factor(&mut self) -> Result<usize, String> {
         self.depth += 1;
         if self.depth > DEPTH {
-            return Err(format!("it nests deeper than {DEPTH} levels at column {}", self.place + 1));
+            return Err(format!("nesting exceeds {DEPTH} levels at column {}", self.place + 1));
         }
         let result = match self.peek() {
             Some('-') => {
@@ -296,8 +296,8 @@ mod tests {
         let known = "x, y, z, pi, e, abs, sqrt, exp, log, sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, \
                      atan2, pow, min, max";
         assert_eq!(refusal("x*y + foo"), format!("unknown name 'foo' at column 7; known: {known}"));
-        assert_eq!(refusal("x + "), "expected a number, a name or \"(\" at column 5, where it ends");
-        assert_eq!(refusal("(x + 1"), "expected \")\" at column 7, where it ends");
+        assert_eq!(refusal("x + "), "expected a number, a name or \"(\" at column 5, but the expression ends there");
+        assert_eq!(refusal("(x + 1"), "expected \")\" at column 7, but the expression ends there");
         assert_eq!(refusal("x^2"), "unexpected '^' at column 2, powers are written **");
         assert_eq!(refusal("x < 2"), "unexpected '<' at column 3");
         assert_eq!(refusal("2x"), "\"2x\" at column 1 is not a finite number");
@@ -306,9 +306,9 @@ mod tests {
         assert_eq!(refusal("min(x)"), "min at column 1 takes 2 arguments, got 1");
         assert_eq!(refusal("1 + sin x"), "sin at column 5 is a function: expected \"(\" at column 9, got 'x'");
         assert_eq!(refusal("x // 2"), "unexpected '/' at column 3");
-        assert_eq!(refusal("3 + pi"), "there is none of x, y and z in it");
-        assert_eq!(refusal(""), "expected a number, a name or \"(\" at column 1, where it ends");
-        assert!(refusal(&"(".repeat(1000)).starts_with("it nests deeper than 200 levels at column"));
-        assert!(refusal(&format!("{}x", "-".repeat(1000))).starts_with("it nests deeper"));
+        assert_eq!(refusal("3 + pi"), "it uses none of x, y and z");
+        assert_eq!(refusal(""), "expected a number, a name or \"(\" at column 1, but the expression ends there");
+        assert!(refusal(&"(".repeat(1000)).starts_with("nesting exceeds 200 levels at column"));
+        assert!(refusal(&format!("{}x", "-".repeat(1000))).starts_with("nesting exceeds"));
     }
 }

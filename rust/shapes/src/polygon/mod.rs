@@ -76,7 +76,7 @@ impl Polygon {
             Bounds { min: all().fold(DVec3::INFINITY, DVec3::min), max: all().fold(DVec3::NEG_INFINITY, DVec3::max) };
         let size = (bounds.max - bounds.min).max_element();
         if !(size < f64::MAX / 4.0 && size > 1e-150) {
-            return Err(format!("the points are {size:e} apart, expected 1e-150 to 4e307"));
+            return Err(format!("the polygon's extent is {size:e}, expected 1e-150 to 4e307"));
         }
         let (scale, inverse) = normalising_scale(size);
         let first = rings[0][0];

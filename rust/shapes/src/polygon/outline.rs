@@ -56,10 +56,10 @@ pub fn check(rings: &[Vec<DVec2>]) -> Result<(), String> {
     }
     for (h, hole) in rings.iter().enumerate().skip(1) {
         if !is_inside(hole[0], &rings[0]) {
-            return Err(format!("{} lies outside of the outline", name(h)));
+            return Err(format!("{} is outside the outline", name(h)));
         }
         if let Some(other) = (1..rings.len()).find(|&other| other != h && is_inside(hole[0], &rings[other])) {
-            return Err(format!("{} lies inside of {}", name(h), name(other)));
+            return Err(format!("{} is inside {}", name(h), name(other)));
         }
     }
     Ok(())
@@ -202,8 +202,8 @@ mod tests {
         assert_eq!(refusal(&[&twice]), "points 1 and 2 of the outline are the same");
         let corner = [[2.0, 2.0], [4.0, 4.0], [2.0, 3.0]];
         assert!(refusal(&[&SQUARE, &corner]).contains("touches"));
-        assert_eq!(refusal(&[&SQUARE, &[[5.0, 5.0], [6.0, 5.0], [5.0, 6.0]]]), "hole 0 lies outside of the outline");
+        assert_eq!(refusal(&[&SQUARE, &[[5.0, 5.0], [6.0, 5.0], [5.0, 6.0]]]), "hole 0 is outside the outline");
         let (wide, small) = ([[1.0, 1.0], [3.0, 1.0], [1.0, 3.0]], [[1.2, 1.2], [1.4, 1.2], [1.2, 1.4]]);
-        assert_eq!(refusal(&[&SQUARE, &wide, &small]), "hole 1 lies inside of hole 0");
+        assert_eq!(refusal(&[&SQUARE, &wide, &small]), "hole 1 is inside hole 0");
     }
 }

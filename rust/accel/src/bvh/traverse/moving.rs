@@ -105,7 +105,7 @@ impl Structure for Moving {
                 node.children().into_iter().all(|child| within(self.ends[child]))
             };
             if !holds {
-                return Err(format!("node {i} does not hold what is below it as it moves"));
+                return Err(format!("node {i} does not contain its moving subtree"));
             }
         }
         Ok(())

@@ -88,7 +88,7 @@ impl Numbered {
     /// The same tree with boxes refitted to moved primitives.
     pub fn refitted(&self, input: &Input, primitives: &dyn Fn(u32) -> Vec<u32>) -> Result<Self, String> {
         if self.in_parts {
-            return Err("spatial splits are made for where things are: build the tree again".into());
+            return Err("a tree with spatial splits cannot be refitted: rebuild it".into());
         }
         let mut nodes = self.nodes.clone();
         // Children follow their parents.

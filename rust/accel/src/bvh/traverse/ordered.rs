@@ -93,7 +93,7 @@ impl<V: Volumes> Structure for Ordered<V> {
         let points = Points::new(input, &lists);
         let holds = |i: usize| points.below(&self.tree, i).into_iter().all(|p| self.volumes.holds(i, p));
         match (0..self.tree.nodes.len()).find(|&i| !V::NAME.is_empty() && !holds(i)) {
-            Some(i) => Err(format!("the volume of node {i} does not hold what is below it")),
+            Some(i) => Err(format!("the volume of node {i} does not contain its subtree")),
             None => Ok(()),
         }
     }

@@ -142,19 +142,19 @@ impl Structure for Threaded {
             while at != Link::END {
                 match met.get_mut(at as usize) {
                     Some(met) if !*met => *met = true,
-                    _ => return Err(format!("thread {way} comes to node {at} of {count} again")),
+                    _ => return Err(format!("thread {way} visits node {at} of {count} twice")),
                 }
                 at = links[at as usize].hit;
             }
             if let Some(i) = met.iter().position(|&met| !met) {
-                return Err(format!("thread {way} leaves node {i} out"));
+                return Err(format!("thread {way} skips node {i}"));
             }
             for (i, node) in self.tree.nodes.iter().enumerate().filter(|(_, n)| !n.is_leaf()) {
                 let [a, b] = node.children().map(|child| links[child].miss as usize);
                 let [first, second] = node.children();
                 let behind = links[i].miss as usize;
                 if !((a, b) == (second, behind) || (a, b) == (behind, first)) {
-                    return Err(format!("thread {way} goes on to {a} and {b} behind the children of node {i}"));
+                    return Err(format!("thread {way} continues to {a} and {b} after the children of node {i}"));
                 }
             }
         }

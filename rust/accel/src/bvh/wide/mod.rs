@@ -276,7 +276,7 @@ where
             for (outer, child) in node.children() {
                 deepest = deepest.max(depth + 1);
                 match child {
-                    Child::None => return Err(format!("node {index} has a box but no child in it")),
+                    Child::None => return Err(format!("node {index} has a box without a child")),
                     Child::Node(below) => {
                         if below <= index {
                             return Err(format!("node {index} has child {below}"));
@@ -284,7 +284,7 @@ where
                         stack.push((below, depth + 1));
                         let inner = self.nodes.get(below as usize).map_or(Aabb::EMPTY, WideNode::bounds);
                         if inner.is_empty() || !outer.contains(&inner) {
-                            return Err(format!("node {index} does not hold its child {below}"));
+                            return Err(format!("node {index} does not contain its child {below}"));
                         }
                     }
                     Child::Leaf { first, count } => {
@@ -296,7 +296,7 @@ where
                             if self.in_parts {
                                 parts.push((p, outer));
                             } else if !outer.contains(&aabb(primitives, &self.region, self.axes.as_ref(), p)) {
-                                return Err(format!("node {index} does not hold primitive {p}"));
+                                return Err(format!("node {index} does not contain primitive {p}"));
                             }
                         }
                     }
@@ -304,7 +304,7 @@ where
             }
         }
         if visited != self.nodes.len() {
-            return Err(format!("{visited} of {} nodes are reached", self.nodes.len()));
+            return Err(format!("{visited} of {} nodes are reachable", self.nodes.len()));
         }
         if deepest != self.info.depth {
             return Err(format!("depth is {deepest}, not {}", self.info.depth));
@@ -315,13 +315,13 @@ where
             let boxes: Vec<Aabb> = of_one.iter().map(|part| part.1).collect();
             let whole = aabb(primitives, &self.region, self.axes.as_ref(), p);
             if !cover(&boxes, &whole, |to| clip(primitives, &self.region, self.axes.as_ref(), p, to)) {
-                return Err(format!("{} leaves do not hold primitive {p} together", boxes.len()));
+                return Err(format!("{} leaves together do not contain primitive {p}", boxes.len()));
             }
             // Several are as good as one.
             met[p as usize] = 1;
         }
         match (0..met.len()).find(|&p| met[p] != u32::from(primitives.is_finite(p as u32))) {
-            Some(p) => Err(format!("primitive {p} stands in {} leaves", met[p])),
+            Some(p) => Err(format!("primitive {p} is in {} leaves", met[p])),
             None => Ok(()),
         }
     }

@@ -117,18 +117,18 @@ where
                         reached[below as usize] += 1;
                         self.nodes[below as usize].bounds()
                     }
-                    other => return Err(format!("node {index} has {other:?} below it")),
+                    other => return Err(format!("node {index} has the child {other:?}")),
                 };
                 if inner.is_empty() || !outer.contains(&inner) {
-                    return Err(format!("node {index} does not hold {child:?}"));
+                    return Err(format!("node {index} does not contain {child:?}"));
                 }
             }
         }
         if let Some(leaf) = met.iter().position(|&n| n != 1) {
-            return Err(format!("leaf {leaf} stands below {} nodes", met[leaf]));
+            return Err(format!("leaf {leaf} has {} parents", met[leaf]));
         }
         match reached.iter().skip(1).position(|&n| n != 1) {
-            Some(i) => Err(format!("node {} stands below {} others", i + 1, reached[i + 1])),
+            Some(i) => Err(format!("node {} has {} parents", i + 1, reached[i + 1])),
             None => Ok(()),
         }
     }

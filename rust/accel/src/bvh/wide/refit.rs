@@ -16,16 +16,16 @@ impl<const N: usize, L: Leaves<N>> WideBvh<N, L> {
     pub(super) fn refit(&self, primitives: &dyn Primitives) -> Result<Self, String> {
         let start = Instant::now();
         if L::PRECISION == "single" && !primitives.is_single() {
-            return Err("corners that are f64 do not fit leaves of f32".into());
+            return Err("f64 corners cannot be stored in f32 leaves".into());
         }
         if self.in_parts {
-            return Err("leaves hold parts of the primitives as they were: build the tree again".into());
+            return Err("a tree with spatial splits cannot be refitted: rebuild it".into());
         }
         let region = primitives.region();
         let finite = |range: Range<usize>| range.filter(|&p| primitives.is_finite(p as u32)).count();
         let finite: usize = parallel::map_chunks(primitives.count(), CHUNK, finite).into_iter().sum();
         if finite != self.info.primitives {
-            return Err(format!("{finite} primitives can be hit, not {}", self.info.primitives));
+            return Err(format!("{finite} primitives can be hit, expected {} as before", self.info.primitives));
         }
         // Leaf by leaf, as they stand.
         let mut leaves: Vec<(usize, u32)> = Vec::with_capacity(self.info.leaves);
@@ -35,12 +35,12 @@ impl<const N: usize, L: Leaves<N>> WideBvh<N, L> {
             }
         }
         leaves.sort_unstable();
-        let ended = |Stopped| "it was stopped".to_string();
+        let ended = |Stopped| "the refit was canceled".to_string();
         primitives.work().goes_on().map_err(ended)?;
         let numbers: Vec<u32> =
             leaves.iter().flat_map(|&(first, count)| self.leaves.primitives(first, count)).collect();
         if let Some(&p) = numbers.iter().find(|&&p| p as usize >= primitives.count() || !primitives.is_finite(p)) {
-            return Err(format!("primitive {p} could be hit, and cannot any more"));
+            return Err(format!("primitive {p} can no longer be hit"));
         }
         let counts: Vec<u32> = leaves.iter().map(|&(_, count)| count).collect();
         let new = L::new(&region, &numbers, &counts, |p| primitives.corners(p));

@@ -174,7 +174,7 @@ fn what_cannot_be_drawn_is_named() {
         ..Shape::default()
     };
     let why = |scene: &Scene| scene.not_drawn().expect("a reason");
-    assert!(why(&over_a_patch(vec![endless(1.0)], vec![])).contains("shape 1 shines and has no end"));
+    assert!(why(&over_a_patch(vec![endless(1.0)], vec![])).contains("shape 1 is emissive and unbounded"));
     let sky = || Arc::new(ConstantEnvironment { radiance: white(1.0) });
     assert!(why(&over_a_patch(vec![endless(0.0)], vec![sky()])).contains("falls on shape 1"));
     assert_eq!(over_a_patch(vec![endless(0.0)], vec![]).not_drawn(), None);
