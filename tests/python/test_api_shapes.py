@@ -48,7 +48,7 @@ def test_values(shape):
         (lambda: shapes.Sphere(radius=0), "radius must be greater than 0, got 0"),
         (lambda: shapes.Sphere(radius=math.nan), "radius must be finite, got nan"),
         (lambda: shapes.Sphere(center=(0, math.inf, 0)), "center must be finite"),
-        (lambda: shapes.Plane(normal=(0, 0, 0)), "normal must have a length"),
+        (lambda: shapes.Plane(normal=(0, 0, 0)), "normal must not be zero"),
         (
             lambda: shapes.Disk(inner_radius=1),
             "inner_radius must be at least 0 and less than radius = 1.0, got 1.0",

@@ -221,16 +221,16 @@ K = MATRICES["plain"]
         (lambda: vision(K=np.transpose(K)), "K must be upper triangular"),
         (lambda: vision(K=np.eye(4)), "K must have shape (3, 3), got (4, 4)"),
         (lambda: vision(K=np.full((3, 3), np.nan)), "K must be finite"),
-        (lambda: vision(R=BAD_R), "R must be a rotation, and it mirrors: its determinant is -1"),
+        (lambda: vision(R=BAD_R), "R must be a rotation, got a reflection: its determinant is -1"),
         (
             lambda: vision(R=np.eye(3) * 1.001),
-            "R must be a rotation, and R times its transpose is off 1 by 0.002",
+            "R must be a rotation, but R times its transpose deviates from 1 by 0.002",
         ),
         (lambda: vision(R=np.eye(3) + 2e-6), "R must be a rotation"),
         (lambda: vision(R=np.zeros((3, 3))), "R must be a rotation"),
         (lambda: vision(t=(0, 0, np.inf)), "t must be finite"),
         (lambda: vision(t=(0, 0)), "t must have shape (3,), got (2,)"),
-        (lambda: rw.Pose.from_matrix(SHEARED), "to_world must turn, move and scale only"),
+        (lambda: rw.Pose.from_matrix(SHEARED), "to_world must rotate, translate and scale only"),
         (lambda: rw.Pose.from_matrix(FLAT), "to_world must have an inverse: its column 1 is zero"),
         (lambda: rw.Pose.from_matrix(np.ones((4, 4))), "to_world must have (0, 0, 0, 1) as its last row"),
         (lambda: rw.Pose.from_matrix(np.eye(3)), "to_world must have shape (4, 4), got (3, 3)"),
@@ -253,5 +253,5 @@ def vision(K=K, R=None, t=(0, 0, 0)):
 def test_a_rotation_may_be_off_by_its_roundings():
     assert vision(R=np.float32(rotation())).position == (0, 0, 0)
     assert vision(t=np.array([[1.0], [2], [3]])).position == (-1, -2, -3)
-    with pytest.raises(TypeError, match="up is told by the matrix"):
+    with pytest.raises(TypeError, match="up must not be given: the matrix defines it"):
         rw.Camera.from_matrix(np.eye(4), up=(0, 0, 1))

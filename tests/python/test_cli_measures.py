@@ -202,7 +202,7 @@ def test_wrong_use_is_one_line_and_status_2(folder, verb, arguments, message):
         (["sky", "box.ply", "--normal", "0", "1", "0"], r"argument --normal: is for --points"),
         (
             ["sky", "box.ply", "--points", "p.csv", "--normal", "0", "0", "0"],
-            "argument --normal: must have a length, got 0 0 0",
+            "argument --normal: must not be zero, got 0 0 0",
         ),
         (
             ["sky", "box.ply", "--points", "p.csv", "--normal", "0", "inf", "0"],
@@ -234,7 +234,7 @@ def test_wrong_use_is_one_line_and_status_2(folder, verb, arguments, message):
         ),
         (["thickness", "box.ply", "--method", "x"], r"argument --method: invalid choice: .*"),
         (["lidar", "box.ply", "--dropout", "2"], r"argument --dropout: must be between 0 and 1, got 2"),
-        (["lidar", "box.ply", "--forward", "0", "1", "0"], r"forward must not be along up, .*"),
+        (["lidar", "box.ply", "--forward", "0", "1", "0"], r"forward must not be parallel to up, .*"),
         (["lidar", "box.ply", "--elevations", "-100", "0"], r"elevations must be .*"),
         (["lidar", "box.ply", "--min-range", "3", "--max-range", "2"], r"min_range must be .*"),
     ],

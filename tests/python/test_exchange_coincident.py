@@ -60,7 +60,7 @@ def test_shapes_listed_twice_are_one() -> None:
 
 def test_faces_that_overlap_in_part_are_told() -> None:
     beside = rw.Mesh(FLOOR + np.array((3, 0, 0)), [(0, 1, 2), (0, 2, 3)])
-    with pytest.warns(RuntimeWarning, match=r"2 of 14 faces overlap others in a part of one plane"):
+    with pytest.warns(RuntimeWarning, match=r"2 of 14 faces partly overlap coplanar faces"):
         rw.view_factors(rw.Scene([CLOSED, beside]), progress=False)
 
 
@@ -281,7 +281,7 @@ def test_rounded_solids_that_overlap_are_done_soon() -> None:
     # A corner of one face lies 7e-8 in front of another, beside a part of that which is 9e-8 wide and 2 long.
     shapes = [*inward_box((6, 5, 3), 1), block((1, 1, 0), (2, 2, 1)), block((2, 1, 0), (3, 2, 1))]
     turned = [rw.Mesh(np.array(mesh.vertices @ TURN.T, np.float32), mesh.faces) for mesh in shapes]
-    with pytest.warns(RuntimeWarning, match="overlap others in a part of one plane"):
+    with pytest.warns(RuntimeWarning, match="partly overlap coplanar faces"):
         found = rw.view_factors(rw.Scene(turned), rays=16, progress=False)
     assert ((found.matrix >= 0) & (found.matrix <= 1)).all()
 

@@ -168,5 +168,5 @@ def test_no_sky_shines_on_what_another_face_covers() -> None:
 
 
 def test_a_disk_that_lies_in_a_floor_and_looks_up_is_told() -> None:
-    with pytest.warns(RuntimeWarning, match=r"1 of 13 faces overlap others in a part of one plane"):
+    with pytest.warns(RuntimeWarning, match=r"1 of 13 faces partly overlap coplanar faces"):
         rw.view_factors(rw.Scene([*SIDES, rw.Disk((2, 2, 0), (0, 0, 1), 0.5)]), rays=1, progress=False)

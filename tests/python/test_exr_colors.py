@@ -145,7 +145,7 @@ def test_alpha_and_depth_are_no_colors(tmp_path):
 
 @pytest.mark.parametrize("primaries", [(0.0,) * 8, (0.3, 0.3) * 4, (np.nan,) * 8])
 def test_chromaticities_that_are_none_are_told(tmp_path, primaries):
-    with pytest.raises(ValueError, match="its chromaticities are no colors"):
+    with pytest.raises(ValueError, match="its chromaticities are not colors"):
         opened(tmp_path, colors(IMAGE), primaries=primaries)
 
 
@@ -193,10 +193,10 @@ def test_luminance_has_the_weights_of_its_primaries(tmp_path):
 @pytest.mark.parametrize(
     ("corner", "sampling", "message"),
     [
-        ((1, 0), (2, 2), "its channel BY has every 2 x 2 points of another window"),
-        ((0, 0), (4, 3), "its channel BY has every 4 x 3 points of another window"),
-        ((0, 0), (0, 1), "its channel BY has every 0 x 1 points"),
-        ((0, 0), (1000, 1), "its channel BY has every 1000 x 1 points"),
+        ((1, 0), (2, 2), "its channel BY is subsampled by 2 x 2, which does not divide its window"),
+        ((0, 0), (4, 3), "its channel BY is subsampled by 4 x 3, which does not divide its window"),
+        ((0, 0), (0, 1), "its channel BY is subsampled by 0 x 1"),
+        ((0, 0), (1000, 1), "its channel BY is subsampled by 1000 x 1"),
     ],
 )
 def test_samples_that_do_not_fit_are_told(tmp_path, corner, sampling, message):

@@ -114,7 +114,7 @@ def test_films_have_the_sizes_that_their_codecs_have(tmp_path, films):
         eye = rw.Camera((0, 0, 4), (0, 0, 0), width=16, height=12 + number)
         return rw.Scene(rw.Sphere(), environment=1.0), eye
 
-    with pytest.raises(ValueError, match="frame 1 is 16 by 13, but a film has an even width and height"):
+    with pytest.raises(ValueError, match="frame 1 is 16 by 13, but a video must have an even width"):
         rw.render_frames(odd, tmp_path / "a.mp4", 2, **HOW)
     assert len(films[0].frames) == 1
     rw.render_frames(odd, tmp_path / "a.webm", 2, **HOW)
@@ -123,7 +123,7 @@ def test_films_have_the_sizes_that_their_codecs_have(tmp_path, films):
 
 def test_an_encoder_that_fails_is_told(moving, tmp_path, films, monkeypatch):
     monkeypatch.setattr(Film, "close", lambda film: None)
-    with pytest.raises(OSError, match="its encoder has written no film"):
+    with pytest.raises(OSError, match="its encoder wrote no video"):
         rw.render_frames(moving, tmp_path / "a.mp4", 2, **HOW)
 
 

@@ -100,7 +100,7 @@ NAN[2, 1] = np.nan
 BROKEN = {
     "empty.glb": (b"", "JSON"),
     "text.gltf": (b"hello", "JSON is broken at character 0"),
-    "latin.gltf": (b'{"a": "\xff"}', "is no UTF-8 at byte 7"),
+    "latin.gltf": (b'{"a": "\xff"}', "is not UTF-8 at byte 7"),
     "list.gltf": (b"[]", "its JSON must be an object, and is a list of 0"),
     "nan.gltf": (b'{"asset": NaN}', "its JSON holds NaN"),
     "deep.gltf": (b"[" * 100_000, "nested too deep"),
@@ -148,7 +148,7 @@ BROKEN = {
                 0, {"componentType": 5126, "count": 10**9, "type": "VEC3"}
             )
         ),
-        "has 1000000000 elements that are nowhere in the file",
+        "has 1000000000 elements without data in the file",
     ),
     "sparse.glb": (
         setting("accessors", "sparse", {"count": 10**9, "indices": {}, "values": {}}),

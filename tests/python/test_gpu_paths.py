@@ -332,16 +332,16 @@ LEFT = {
     "the sampler is a Sobol": {"sampler": rw.Sobol(4)},
     "the filter is MitchellFilter": {"filter": rw.MitchellFilter()},
     "the camera is a Orthographic": {"camera": rw.Orthographic((0, 1, 6), (0, 0, 0), width=4, height=4)},
-    "the camera is far": {"camera": rw.Camera((0, 0, 1e5), (0, 0, 0), width=4, height=4)},
+    "the camera is too far": {"camera": rw.Camera((0, 0, 1e5), (0, 0, 0), width=4, height=4)},
     "shape 0 is a Sphere": {"scene": rw.Scene(rw.Sphere())},
     "the scene has motion": {
         "scene": rw.Scene(rw.Instance([lamp()], [np.eye(4)], [np.diag([2.0, 2, 2, 1])]))
     },
-    "the Phong of shape 0 is of no kind": {"scene": rw.Scene(floor(rw.Phong()))},
+    "the Phong of shape 0 has an unsupported type": {"scene": rw.Scene(floor(rw.Phong()))},
     "the scene has masks": {"scene": rw.Scene(floor(rw.Mask(rw.Diffuse(), 0.5)))},
     "the scene has smoke and haze": {"scene": rw.Scene(lamp(), medium=rw.Homogeneous(0.1))},
-    "shape 1 is tiny": {"scene": rw.Scene([lamp(), ball((0, 0, 0), rw.Diffuse(), 1e-4)])},
-    "is brushed": {"scene": rw.Scene(floor(rw.Conductor("gold", alpha=(0.1, 0.2))))},
+    "shape 1 is too small": {"scene": rw.Scene([lamp(), ball((0, 0, 0), rw.Diffuse(), 1e-4)])},
+    "is anisotropic": {"scene": rw.Scene(floor(rw.Conductor("gold", alpha=(0.1, 0.2))))},
     "has the distribution 'beckmann'": {
         "scene": rw.Scene(floor(rw.Conductor("gold", alpha=0.1, distribution="beckmann")))
     },
@@ -351,7 +351,7 @@ LEFT = {
     "the scene has shapes in glass": {
         "scene": rw.Scene([ball((0, 0, 0), rw.Dielectric()), ball((0, 0, 0), rw.Dielectric(1.3), 0.5)])
     },
-    "several shapes of glass, and not all are closed": {
+    "several glass shapes, and not all are closed": {
         "scene": rw.Scene(
             [
                 ball((-2, 0, 0), rw.Dielectric()),
@@ -359,7 +359,9 @@ LEFT = {
             ]
         )
     },
-    "a SpotLight shines": {"scene": rw.Scene([lamp()], lights=rw.SpotLight((0, 2, 0), (0, 0, 0), 1.0))},
+    "the scene has a SpotLight": {
+        "scene": rw.Scene([lamp()], lights=rw.SpotLight((0, 2, 0), (0, 0, 0), 1.0))
+    },
     "the environment is a SunSky": {"scene": rw.Scene([lamp()], environment=rw.SunSky((0, 1, 1)))},
 }
 

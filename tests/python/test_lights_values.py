@@ -70,12 +70,12 @@ def test_pictures_are_kept_read_only_and_grey_ones_become_colours():
         (rw.SpotLight, {"falloff": -1}, ValueError, "falloff must be between 0 and angle"),
         (rw.SpotLight, {"target": (1, 0, 0)}, ValueError, "target must differ from position"),
         (rw.SpotLight, {"intensity": -1}, ValueError, "intensity must be at least 0, got -1"),
-        (rw.DirectionalLight, {"direction": (0, 0, 0)}, ValueError, "direction must have a length"),
+        (rw.DirectionalLight, {"direction": (0, 0, 0)}, ValueError, "direction must not be zero"),
         (rw.DirectionalLight, {"irradiance": math.inf}, ValueError, "irradiance must be finite"),
         (rw.ProjectorLight, {"image": np.zeros((0, 4, 3))}, ValueError, "image must have shape"),
         (rw.ProjectorLight, {"fov": 180}, ValueError, "fov must be between 0 and 180 degrees, got 180"),
-        (rw.ProjectorLight, {"up": (2, 0, 0)}, ValueError, "up must have a length and not be along the axis"),
-        (rw.ProjectorLight, {"up": (0, 0, 0)}, ValueError, "up must have a length"),
+        (rw.ProjectorLight, {"up": (2, 0, 0)}, ValueError, "up must not be zero or parallel to the axis"),
+        (rw.ProjectorLight, {"up": (0, 0, 0)}, ValueError, "up must not be zero"),
         (rw.ProjectorLight, {"target": (1, 0, 0)}, ValueError, "target must differ from position"),
         (
             rw.EnvironmentMap,
@@ -92,7 +92,7 @@ def test_pictures_are_kept_read_only_and_grey_ones_become_colours():
         (rw.EnvironmentMap, {"scale": -1}, ValueError, "scale must be at least 0, got -1"),
         (rw.EnvironmentMap, {"to_world": np.diag([1, 2, 1])}, ValueError, "to_world must be a rotation"),
         (rw.EnvironmentMap, {"to_world": np.eye(2)}, ValueError, r"rotation of shape .* got \(2, 2\)"),
-        (rw.SunSky, {"sun": (0, 0, 0)}, ValueError, "sun must have a length"),
+        (rw.SunSky, {"sun": (0, 0, 0)}, ValueError, "sun must not be zero"),
         (rw.SunSky, {"turbidity": 1}, ValueError, "turbidity must be between 2 and 10, got 1"),
         (rw.SunSky, {"ground_albedo": 1.5}, ValueError, "ground_albedo must be between 0 and 1, got 1.5"),
         (rw.SunSky, {"sky_scale": -1}, ValueError, "sky_scale must be at least 0"),
@@ -137,7 +137,7 @@ def test_scenes_take_lights_and_environments_of_all_kinds():
     assert pickle.loads(pickle.dumps(both)) == both
     with pytest.raises(TypeError, match="lights must be raywright lights, got EnvironmentMap"):
         rw.Scene([], lights=[sky])
-    with pytest.raises(TypeError, match="environment must be environments only, if several, got int"):
+    with pytest.raises(TypeError, match="environment must be one environment or a sequence of them, got int"):
         rw.Scene([], environment=[sky, 1])
 
 
@@ -172,7 +172,7 @@ def test_daylight_of_a_time_and_place_points_to_the_sun():
         rw.SunSky.at(NOON.replace(tzinfo=None), 51.48, 0)
     with pytest.raises(ValueError, match="latitude must be between -90 and 90 degrees, got 91"):
         rw.SunSky.at(NOON, 91, 0)
-    with pytest.raises(ValueError, match="north must not be along up"):
+    with pytest.raises(ValueError, match="north must not be parallel to up"):
         rw.SunSky.at(NOON, 51.48, 0, north=(0, 2, 0))
 
 

@@ -223,7 +223,7 @@ def test_names_and_wrong_input():
             "elevations must be one or more numbers between -90 and 90",
         ),
         (measure.SpinningLidar, {"elevations": [0], "columns": 0}, "columns must be at least 1, got 0"),
-        (measure.SpinningLidar, {"elevations": [0], "up": (1, 0, 0)}, "forward must not be along up"),
+        (measure.SpinningLidar, {"elevations": [0], "up": (1, 0, 0)}, "forward must not be parallel to up"),
         (measure.RasterLidar, {"vertical": 190}, "vertical must be between 0 and 180 degrees, got 190"),
         (
             measure.RasterLidar,

@@ -94,8 +94,8 @@ def test_wrong_suns_get_one_line(box):
             {"times": ["2025-06-21T12:00Z"], "latitude": 3},
             "sun must be given, or times, latitude and longitude",
         ),
-        ({"sun": (0, 1, 0), "latitude": 3}, "sun is given, and times, latitude or longitude too"),
-        ({"sun": (0, 0, 0)}, "sun must have a length"),
+        ({"sun": (0, 1, 0), "latitude": 3}, "either sun or times, latitude and longitude must be given"),
+        ({"sun": (0, 0, 0)}, "sun must not contain zero vectors"),
         (
             {"sun": (0, 1, 0), "weights": [1, 2]},
             r"weights must be one number or have shape \(1,\), got \(2,\)",

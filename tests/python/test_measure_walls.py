@@ -148,7 +148,7 @@ def test_no_other_side_and_no_point():
     assert np.array_equal(measure.thickness(sheet, method="sphere"), [np.inf])
     scene = rw.Scene(sheet)
     assert np.isnan(measure.thickness(scene, scene.intersect((5.0, 5, 5), (0, 0, 1)))).all()
-    with pytest.raises(ValueError, match="points must be given: shape 1 is no mesh but a Sphere"):
+    with pytest.raises(ValueError, match="points must be given: shape 1 is a Sphere, not a mesh"):
         measure.thickness([sheet, rw.Sphere()])
     with pytest.raises(ValueError, match="method must be one of 'ray', 'sphere', got 'cone'"):
         measure.thickness(sheet, method="cone")
@@ -286,9 +286,9 @@ def test_open_meshes_and_copies_are_cut_too(triangle, box):
     # The first copy is where the box itself is.
     copies = measure.cross_section(rw.Scene([box, rw.Instance(box, places + 0)]), (0, 0.5, 0), (0, 1, 0))
     assert copies.area == pytest.approx(3.0)
-    with pytest.raises(ValueError, match="shape 1 is no mesh but a Sphere: only meshes can be cut"):
+    with pytest.raises(ValueError, match="shape 1 must be a mesh to be cut, got a Sphere"):
         measure.cross_section([box, rw.Sphere()], (0, 0, 0), (0, 0, 1))
     with pytest.raises(ValueError, match="shape 0 moves"):
         measure.cross_section(rw.Instance(box, places[0], places[1]), (0, 0, 0), (0, 0, 1))
-    with pytest.raises(ValueError, match="normal must have a length"):
+    with pytest.raises(ValueError, match="normal must not contain zero vectors"):
         measure.cross_section(box, (0, 0, 0), (0, 0, 0))

@@ -94,10 +94,10 @@ def test_chunks_of_blosc_that_lie_about_their_size_are_refused():
     for place, said in [(4, 4096), (4, 2**31 - 1), (12, len(chunk) + 1), (12, 2**31 - 1), (12, 16)]:
         lie = bytearray(chunk)
         struct.pack_into("<I", lie, place, said)
-        with pytest.raises(ValueError, match="no chunk of Blosc of 2048 bytes"):
+        with pytest.raises(ValueError, match="not a Blosc chunk of 2048 bytes"):
             _blosc(bytes(lie), len(numbers))
     for cut in (chunk[:15], chunk[:-1], chunk + b"\0"):
-        with pytest.raises(ValueError, match="no chunk of Blosc of 2048 bytes"):
+        with pytest.raises(ValueError, match="not a Blosc chunk of 2048 bytes"):
             _blosc(cut, len(numbers))
     with pytest.raises(ValueError, match="cannot be decompressed"):
         _blosc(chunk[:16] + b"\xff" * (len(chunk) - 16), len(numbers))
@@ -109,7 +109,7 @@ def test_chunks_of_blosc_that_lie_about_their_size_are_refused():
         (given.HALF, {"density": "wind"}, "the grid 'wind' is a Tree_vec3s_5_4_3, expected floats"),
         (given.HALF, {"density": "around"}, "is 2 where nothing is active"),
         (given.HALF, {"density": "smoke"}, "no grid 'smoke' among 'density', 'wind', 'around', 'elsewhere'"),
-        (given.HALF, {"temperature": "elsewhere"}, "'elsewhere' lies elsewhere than 'density'"),
+        (given.HALF, {"temperature": "elsewhere"}, "'elsewhere' has another transform than 'density'"),
         (given.FOLDER / "mitsuba_blocks.npz", {}, "must be a .npy, a .vol or a .vdb file"),
     ],
 )

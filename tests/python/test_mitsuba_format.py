@@ -51,7 +51,7 @@ def test_matrices_of_few_digits_are_straightened():
     assert np.allclose(turned @ turned.T, np.eye(3), rtol=0, atol=1e-15)
     assert np.allclose(turned @ np.diag([-1, 1, -1]), np.array(rough)[:3, :3], rtol=0, atol=2e-6)
     skewed = [[1, 0.1, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
-    with pytest.raises(ValueError, match="perspective 'sensor': to_world must turn, move and scale only"):
+    with pytest.raises(ValueError, match="'sensor': to_world must rotate, translate and scale only"):
         rw.from_mitsuba({"type": "scene", "sensor": {**EYE, "to_world": skewed}})
 
 
@@ -148,7 +148,7 @@ def test_spectra_are_told_in_any_way(tmp_path):
     # Values of Mitsuba's spectral variants (3.9), within their noise.
     assert ball.emission.rgb == pytest.approx((733.35, 350.0, 112.98), rel=4e-3)
     for bad, why in [
-        ({"type": "irregular", "wavelengths": "400 500", "values": "1 2 3"}, "as many as the 2 wavelengths"),
+        ({"type": "irregular", "wavelengths": "400 500", "values": "1 2 3"}, "length 2 like wavelengths"),
         ({"type": "irregular", "wavelengths": "500 400", "values": "1 2"}, "rise"),
         ({"type": "irregular", "wavelengths": "400 many", "values": "1 2"}, "finite numbers"),
         ({"type": "regular", "values": "1"}, "two or more finite numbers"),
@@ -287,7 +287,7 @@ def test_a_part_of_a_film_sees_what_the_whole_does_there():
             {"s": {"type": "sphere", "to_world": [[1]]}},
             "sphere 's': to_world must be a matrix of shape (4, 4)",
         ),
-        ({"s": {"type": "sphere", "b": {"type": "ref", "id": "x"}}}, "there is nothing of id 'x'"),
+        ({"s": {"type": "sphere", "b": {"type": "ref", "id": "x"}}}, "there is no object of id 'x'"),
         (
             {"s": {"type": "sphere", "b": {"type": "twosided", "i": {"type": "dielectric", "tint": 1}}}},
             "dielectric 's.b.i': parameter 'tint' is not supported",
@@ -342,7 +342,7 @@ def test_what_shines_is_hidden_as_a_transparent_background():
     assert shot(i=hidden, b=ball, s=sky).background == "transparent"
     assert shot(i={"type": "path"}, b=ball, s=sky).background == "shown"
     with pytest.warns(
-        RuntimeWarning, match="path 'i': hide_emitters hides what is around: surfaces that shine"
+        RuntimeWarning, match="path 'i': hide_emitters hides environments only: emissive surfaces"
     ):
         shot(i=hidden, b={**ball, "e": {"type": "area"}})
 

@@ -50,7 +50,7 @@ def test_compressed_meshes_that_are_broken_are_refused(tmp_path):
         return str(caught.value)
 
     assert "has no mesh 2: it has 2" in refused(data, 2)
-    assert "is no serialized mesh" in refused(b"PK" + data[2:])
+    assert "is not a serialized mesh" in refused(b"PK" + data[2:])
     assert "of version 9; 3 and 4 are read" in refused(data[:2] + b"\x09" + data[3:], 0)
     for length in range(0, 21, 3):
         refused(data[:length], 0)

@@ -63,12 +63,12 @@ def test_parameters_are_given_by_name(tmp_path):
     path = tmp_path / "scene.xml"
     assert rw.load(path, r=0.5).scene.shapes[0].radius == 0.5
     assert rw.load(path, width=8, r=0.5).camera.width == 8
-    with pytest.raises(ValueError, match=r"^spp is no parameter of .*scene\.xml; it has r$"):
+    with pytest.raises(ValueError, match=r"^spp is not a parameter of .*scene\.xml; it has r$"):
         rw.load(path, r=0.5, spp=16)
-    with pytest.raises(ValueError, match="parameters are of an XML file; a dict has none"):
+    with pytest.raises(ValueError, match="parameters are for XML files; a dict has none"):
         rw.from_mitsuba({"type": "scene"}, parameters={"r": 1})
     (tmp_path / "a.stl").write_bytes(b"")
-    with pytest.raises(TypeError, match=r"spp is no parameter of .*a\.stl: only scenes of Mitsuba have some"):
+    with pytest.raises(TypeError, match=r"spp is not a parameter of .*a\.stl: only Mitsuba scenes have"):
         rw.load(tmp_path / "a.stl", spp=16)
 
 
@@ -148,21 +148,21 @@ def test_scenes_of_version_one_have_their_names_renewed(tmp_path):
     ("text", "expected"),
     [
         ("<scene", "scene.xml is not XML that can be read"),
-        ("<mesh version='3'/>", "scene.xml, line 1: <mesh> is no plugin"),
+        ("<mesh version='3'/>", "scene.xml, line 1: <mesh> is not a plugin"),
         ("<scene/>", "line 1: the outermost element must have a version"),
         ("<shape version='3' type='sphere'/>", "must hold a <scene>"),
         ("<scene version='3'>\n<shape/></scene>", "line 2: <shape> must have a type"),
         ("<scene version='3'><blob name='x' value='1'/></scene>", "<blob> is not supported"),
-        ("<scene version='3'><float name='x' value='one'/></scene>", "'one' is no value of <float>"),
+        ("<scene version='3'><float name='x' value='one'/></scene>", "'one' is not a value of <float>"),
         ("<scene version='3'><float name='x'/></scene>", "<float> must have a value"),
-        ("<scene version='3'><boolean name='x' value='yes'/></scene>", "'yes' is no value of <boolean>"),
-        ("<scene version='3'><rgb name='x' value='1 2'/></scene>", "'1 2' is no value of <rgb>"),
+        ("<scene version='3'><boolean name='x' value='yes'/></scene>", "'yes' is not a value of <boolean>"),
+        ("<scene version='3'><rgb name='x' value='1 2'/></scene>", "'1 2' is not a value of <rgb>"),
         ("<scene version='3'><include/></scene>", "<include> must have 'filename'"),
         (
             "<scene version='3'><bsdf type='diffuse' id='a'/><bsdf type='diffuse' id='a'/></scene>",
             "'a' is there twice",
         ),
-        ("<scene version='3'><transform name='x'><spin/></transform></scene>", "<spin> is no step"),
+        ("<scene version='3'><transform name='x'><spin/></transform></scene>", "<spin> is not a step"),
         (
             "<scene version='3'><transform name='x'><lookat origin='1' target='1'/></transform></scene>",
             "<lookat> must have an origin and a target that differ",
@@ -174,7 +174,7 @@ def test_scenes_of_version_one_have_their_names_renewed(tmp_path):
         ),
         (
             f"<scene version='3'>{EYE}<alias id='a' as='b'/><alias id='b' as='a'/></scene>",
-            "references go round in a circle",
+            "references are cyclic",
         ),
         ("<scene version='3'>" + "<shape type='a'>" * 70, "elements nest more than 64 deep"),
     ],

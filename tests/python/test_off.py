@@ -169,7 +169,7 @@ def test_trimesh_reads_the_same(tmp_path, seed):
         ("nOFF\n4 3 1 0\n", "any number of dimensions"),
         (PLAIN.replace("4 0 2 3 1", "4 0 2 3 8"), "a face has vertex 8, but there are 8 vertices"),
         (PLAIN.replace("4 0 2 3 1", "4 0 2 3 -1"), "a face has vertex -1, but there are 8 vertices"),
-        (PLAIN.replace("1 0 1", "1 zero 1"), "'zero', which is no number"),
+        (PLAIN.replace("1 0 1", "1 zero 1"), "'zero', which is not a number"),
     ],
 )
 def test_what_cannot_be_read_is_told(tmp_path, text, message):

@@ -261,7 +261,7 @@ def test_files_include_others(tmp_path):
     (tmp_path / "more.pbrt").write_text('Material "diffuse" "rgb reflectance" [.1 .1 .1]\nShape "sphere"')
     assert load(tmp_path, 'Include "more.pbrt"').scene.shapes[0].material == rw.Diffuse(0.1)
     (tmp_path / "more.pbrt").write_text('Include "more.pbrt"')
-    with pytest.raises(ValueError, match=r"more\.pbrt: files include each other without end"):
+    with pytest.raises(ValueError, match=r"more\.pbrt: files include each other recursively"):
         load(tmp_path, 'Include "more.pbrt"')
     with pytest.raises(FileNotFoundError):
         load(tmp_path, 'Include "gone.pbrt"')
@@ -270,9 +270,9 @@ def test_files_include_others(tmp_path):
 @pytest.mark.parametrize(
     ("world", "told"),
     [
-        ("Blob", "line 9: 'Blob' is no directive that is known"),
+        ("Blob", "line 9: 'Blob' is not a known directive"),
         ('Shape "sphere" "float radius" [ 1', "a bracket is not closed"),
-        ('Shape "sphere', "a text in quotes does not end"),
+        ('Shape "sphere', "a quoted string does not end"),
         ('Shape "sphere" "float radius" "one"', "radius must be finite numbers"),
         ('Shape "sphere" "float size" 1', "line 9: Shape sphere: parameter 'size' is not supported"),
         ('Shape "teapot"', "Shape teapot: a shape 'teapot' is not supported"),
@@ -283,19 +283,19 @@ def test_files_include_others(tmp_path):
         ('LightSource "goniometric"', "a light 'goniometric' is not supported"),
         (
             'MakeNamedMedium "fog" "string type" "homogeneous"',
-            "MakeNamedMedium is not supported: there are no media",
+            "MakeNamedMedium is not supported, as media are not",
         ),
-        ('MediumInterface "fog" ""', "MediumInterface is not supported: there are no media"),
+        ('MediumInterface "fog" ""', "MediumInterface is not supported, as media are not"),
         (
             'Shape "trianglemesh" "point3 P" [0 0 0 1 0 0] "integer indices" [0 1 2]',
             "indices must be at least 0 and",
         ),
         ('NamedMaterial "x"', "line 9: NamedMaterial x: there is no material 'x'"),
         ('ObjectInstance "x"', "there is no object 'x'"),
-        ("AttributeEnd", "AttributeEnd without its beginning"),
+        ("AttributeEnd", "AttributeEnd without its begin"),
         ("AttributeBegin", "ends within an attribute or an object"),
         ("Scale 1 0 1", "Scale must not be 0"),
-        ("Translate 1 2", "is no value"),
+        ("Translate 1 2", "is not a value"),
         (
             'Shape "curve" "point3 P" [0 0 0 1 0 0 2 0 0 3 0 0] "integer degree" 2 "string type" "cylinder"',
             "a curve must be cubic",
@@ -315,7 +315,7 @@ def test_files_include_others(tmp_path):
         ('Shape "sphere" "bool radius" true', "radius must be finite numbers"),
         ('Material "conductor" "spectrum eta" []', "eta must be an rgb or a spectrum of numbers, got a"),
         ('Material "conductor" "rgb reflectance" [-1 0 0]', "reflectance must be at least 0, got -1"),
-        ('Material "dielectric" "spectrum eta" [500 1.5 400 1.4]', "eta must have wavelengths that rise"),
+        ('Material "dielectric" "spectrum eta" [500 1.5 400 1.4]', "eta must have increasing wavelengths"),
         ('Material "dielectric" "float roughness" -1', "a roughness must be at least 0"),
         ('Shape "bilinearmesh" "point3 P" [0 0 0] "integer indices" []', "indices must be given"),
         ('Shape "trianglemesh" "point3 P" [0 0 0] "integer indices" [0 0 1e300]', "at least 0 and below 1"),

@@ -125,7 +125,7 @@ def test_which_way_faces_are_wound_does_not_matter(box):
     assert np.array_equal(expected, ((points >= 0) & (points <= 1)).all(axis=1))
     assert np.array_equal(rw.Scene([mixed]).contains(points), expected)
     scene = rw.Scene([rw.Mesh(box.vertices + 5, box.faces), turned])
-    with pytest.warns(RuntimeWarning, match=r"normals point into shape 1 'turned', which is taken as if"):
+    with pytest.warns(RuntimeWarning, match=r"normals of shape 1 'turned' point inward and are treated as"):
         assert np.array_equal(scene.contains(points), expected)
     # Once.
     assert np.array_equal(scene.signed_distance(points) <= 0, expected)
@@ -199,7 +199,7 @@ def test_only_shapes_that_are_named_count(box):
     assert np.array_equal(scene.contains(points, shapes=["ball", "far"]), [False, True, True])
     assert np.array_equal(scene.contains(points, shapes=[True, False, False]), [True, True, False])
     assert not scene.contains(points, shapes=np.zeros(3, bool)).any()
-    with pytest.raises(ValueError, match="shapes has 'near', but no shape of the scene is called so"):
+    with pytest.raises(ValueError, match="shapes has 'near', which is not the name of a shape of the scene"):
         scene.contains(points, shapes="near")
 
 

@@ -175,7 +175,7 @@ def test_shapes_are_named():
         (
             {"shapes": "cube"},
             ValueError,
-            "shapes has 'cube', but no shape of the scene is called so: its names are",
+            "shapes has 'cube', which is not the name of a shape of the scene: its names are",
         ),
         ({"shapes": [True]}, ValueError, r"shapes must have shape \(6,\), one bool a shape, got \(1,\)"),
         (
@@ -196,5 +196,5 @@ def test_wrong_masks_get_one_line(arguments, error, told):
     for ask in (scene.intersect, scene.occluded, scene.intersect_all):
         with pytest.raises(error, match=told):
             ask(*rays(), **arguments)
-    with pytest.raises(ValueError, match="no shape of the scene is called so: none has a name"):
+    with pytest.raises(ValueError, match="not the name of a shape of the scene: none has a name"):
         rw.Scene(rw.Sphere()).intersect((0, 0, 3), (0, 0, -1), shapes="ball")

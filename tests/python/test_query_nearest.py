@@ -200,7 +200,7 @@ def test_only_shapes_that_are_named_count(accelerator):
     assert scene.signed_distance((1.2, 0, 0)) < 0
     assert scene.signed_distance((1.2, 0, 0), shapes="box") == pytest.approx(0.7)
     for ask in (scene.closest_point, scene.signed_distance):
-        with pytest.raises(ValueError, match="shapes has 'near', but no shape of the scene is called so"):
+        with pytest.raises(ValueError, match="shapes has 'near', which is not the name of a shape"):
             ask(points, shapes="near")
         with pytest.raises(TypeError, match="shapes must be bool"):
             ask(points, shapes=np.ones(5))

@@ -212,10 +212,10 @@ def test_a_pickle_is_as_small_as_its_arrays(scene):
     assert back == hits
     for name in ("position", "normal", "surface", "names"):
         with pytest.raises(
-            ValueError, match=f"{name} is not kept in a pickle unless it was asked for before"
+            ValueError, match=f"{name} is not in pickled hits unless it was computed before pickling"
         ):
             getattr(back, name)
-    with pytest.raises(ValueError, match="position is not kept"):
+    with pytest.raises(ValueError, match="position is not in pickled hits"):
         back.leave((0, 0, 1.0))
     # Computed attributes are kept.
     known = {name: getattr(hits, name) for name in ("position", "normal", "names")}

@@ -95,7 +95,7 @@ def test_numbers_may_be_told_in_several_ways() -> None:
     ("line", "options"),
     [
         ("temperature must be at least 0, got -1", {"temperature": -1.0}),
-        ("temperature must have one entry a shape, 6, got 2", {"temperature": [1.0, 2.0]}),
+        ("temperature must have 6 entries, one per shape, got 2", {"temperature": [1.0, 2.0]}),
         ("temperature must be one number, or one for each of 12 faces", {"temperature": np.ones(6)}),
         (
             "temperature must have an entry for each of 6 shapes by number, has none for 1",

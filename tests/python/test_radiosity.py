@@ -409,9 +409,9 @@ REFUSED: list[tuple[str, Any, dict[str, Any]]] = [
     ("rays must be between 1", lambda: room(), {"rays": 0}),
     ("patch_size must be greater than 0", lambda: room(), {"patch_size": 0.0}),
     ("give a larger one", lambda: room(), {"patch_size": 1e-7}),
-    ("states are those of method='progressive'", lambda: room(), {"states": True}),
+    ("states requires method='progressive'", lambda: room(), {"states": True}),
     ("shape 0 reflects all light", lambda: room(1.0), {}),
-    ("nothing shines", lambda: room(0.5, (0,) * 6), {}),
+    ("the scene has no light", lambda: room(0.5, (0,) * 6), {}),
     ("scene has no shapes", lambda: rw.Scene([]), {}),
     (
         "shape 0 is of Mirror",
@@ -419,7 +419,7 @@ REFUSED: list[tuple[str, Any, dict[str, Any]]] = [
         {},
     ),
     (
-        "scene has a medium",
+        "scene must have no medium",
         lambda: rw.Scene([*room().shapes], medium=rw.Homogeneous(1.0)),
         {},
     ),

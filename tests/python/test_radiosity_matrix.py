@@ -93,5 +93,5 @@ def test_what_one_wall_loses_the_others_gain() -> None:
 def test_what_knows_fronts_only_says_so() -> None:
     with pytest.raises(ValueError, match=r"sides must be 'front' for method='matrix'"):
         by_matrix(room(), sides="both")
-    with pytest.raises(ValueError, match=r"for 8192 patches at most, these are"):
+    with pytest.raises(ValueError, match=r"supports at most 8192 patches, got"):
         by_matrix(room(), patch_size=0.02)

@@ -82,5 +82,5 @@ def test_a_solution_of_another_scene_is_refused(
     larger = rw.Scene([square(0, True, 0.5, 1.0, size=2.0)])
     with pytest.raises(ValueError, match=r"of a scene with area 1\.0+, this one has 4"):
         rw.render(larger, camera, rw.Radiosity(found), 1, progress=False)
-    with pytest.raises(TypeError, match=r"solution must be of raywright.radiosity"):
+    with pytest.raises(TypeError, match=r"solution must be a result of raywright.radiosity"):
         rw.Radiosity(3)  # type: ignore[arg-type]

@@ -144,7 +144,7 @@ def test_a_plot_in_a_file_has_its_lines_too(report, tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "error", "message"),
     [
-        ({"contenders": {}}, ValueError, "contenders are empty"),
+        ({"contenders": {}}, ValueError, "contenders must not be empty"),
         ({"contenders": [rw.Path()]}, TypeError, "contenders must be a dict, got list"),
         (
             {"contenders": {"a": {"samples": 3}}},
@@ -154,7 +154,7 @@ def test_a_plot_in_a_file_has_its_lines_too(report, tmp_path):
         ({"contenders": {"a": 3}}, TypeError, "integrator must be"),
         ({"seconds": 0}, ValueError, "seconds must be greater than 0"),
         ({"seeds": 0}, ValueError, "seeds must be between 1"),
-        ({"seeds": []}, ValueError, "seeds are empty"),
+        ({"seeds": []}, ValueError, "seeds must not be empty"),
         ({"reference": np.zeros((2, 2, 3))}, ValueError, r"reference must have shape \(24, 24, 3\)"),
         ({"reference": np.full((24, 24, 3), np.nan)}, ValueError, "reference must be finite"),
     ],

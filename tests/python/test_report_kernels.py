@@ -384,7 +384,7 @@ def test_columns_and_rows_are_found_by_name(table):
     assert table.column("n") == (1234567, 3, 40)
     assert table.where(kind="a", name="z").rows == (("a", "z", 3, None),)
     for ask in (lambda: table.column("size"), lambda: table.where(size=1), lambda: table.plot(x="size")):
-        with pytest.raises(ValueError, match=r"^no column is called 'size'; there are kind, name, n, error$"):
+        with pytest.raises(ValueError, match=r"^no column is named 'size'; there are kind, name, n, error$"):
             ask()
 
 

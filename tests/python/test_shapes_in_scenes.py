@@ -194,7 +194,7 @@ def test_one_ray_alone():
 
 def test_what_cannot_be_is_told():
     scene = rw.Scene([rw.Sphere((0, 0, 0), 1)])
-    with pytest.raises(ValueError, match="vertices must be None for what is no mesh, which is a Sphere here"):
+    with pytest.raises(ValueError, match="vertices must be None for shapes other than meshes, got a Sphere"):
         scene.refit(np.zeros((3, 3)))
     with pytest.raises(ValueError, match=r"vertices\[1\] must be None"):
         rw.Scene([trimesh.creation.box(), rw.Sphere((0, 0, 0), 1)]).refit([None, np.zeros((3, 3))])

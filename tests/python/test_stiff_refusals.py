@@ -88,7 +88,7 @@ def test_a_light_with_a_direction_shines_somewhere():
     refused("target must differ from position", rw.SpotLight, (1, 2, 3), (1, 2, 3), 1)
     refused("target must differ from position", rw.ProjectorLight, [[1.0]], (1, 2, 3), (1, 2, 3))
     refused("up must", rw.ProjectorLight, [[1.0]], (0, 0, 0), (0, 3, 0), up=(0, 1, 0))
-    refused("direction must have a length", rw.DirectionalLight, (0, 0, 0), 1)
+    refused("direction must not be zero", rw.DirectionalLight, (0, 0, 0), 1)
 
 
 @pytest.mark.parametrize("ior", [0.0, -0.0, -1.5, NAN, INF])

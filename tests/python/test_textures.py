@@ -150,7 +150,7 @@ def test_files_that_are_no_pictures_are_refused(tmp_path):
             TypeError,
             r"uint8, uint16 or floats, got dtype int64",
         ),
-        (lambda: rw.ImageTexture(np.full((2, 2), np.nan)), ValueError, r"not in row 0, column 0"),
+        (lambda: rw.ImageTexture(np.full((2, 2), np.nan)), ValueError, r"NaN or infinity in row 0, column 0"),
         (
             lambda: rw.ImageTexture(np.zeros((2, 2)), channel="a"),
             ValueError,

@@ -100,7 +100,7 @@ def test_it_is_described_and_compared():
         (
             (rw.ThinDielectric(interior=rw.Homogeneous(1.0)),),
             ValueError,
-            "base must be a pane that encloses nothing",
+            "base must have no interior",
         ),
     ],
 )

@@ -246,5 +246,5 @@ def test_degenerate_faces_and_corners_that_are_not_finite_are_counted(box):
     found = measure.topology(mesh)
     assert (found.degenerate_faces, found.open_faces, found.volumes) == (2, 0, (pytest.approx(1.0),))
     assert measure.cross_section(mesh, (0, 0, 0.4), (0, 0, 1)).area == pytest.approx(1.0)
-    with pytest.raises(ValueError, match="shape 1 is no mesh but a Sphere"):
+    with pytest.raises(ValueError, match="shape 1 must be a mesh to be cut, got a Sphere"):
         measure.topology([box, rw.Sphere()])

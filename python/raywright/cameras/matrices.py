@@ -53,7 +53,7 @@ def of_world(to_world: ArrayLike, convention: str) -> Stand:
     off = float(np.abs(axes.T @ axes - np.eye(3)).max())
     if off > _SKEWED:
         raise ValueError(
-            f"to_world must turn, move and scale only, and its axes are off right angles by {off:.2g}"
+            f"to_world must rotate, translate and scale only, but its axes are not orthogonal, by {off:.2g}"
         )
     right, up, forward = axes.T
     return Stand(matrix[:3, 3], forward, up, bool(np.cross(forward, up) @ right < 0))
@@ -64,9 +64,9 @@ def of_extrinsics(R: ArrayLike, t: ArrayLike) -> Stand:
     rotation = finite("R", R, (3, 3))
     off = float(np.abs(rotation @ rotation.T - np.eye(3)).max())
     if off > _SKEWED:
-        raise ValueError(f"R must be a rotation, and R times its transpose is off 1 by {off:.2g}")
+        raise ValueError(f"R must be a rotation, but R times its transpose deviates from 1 by {off:.2g}")
     if np.linalg.det(rotation) < 0:
-        raise ValueError("R must be a rotation, and it mirrors: its determinant is -1")
+        raise ValueError("R must be a rotation, got a reflection: its determinant is -1")
     shift = real_array("t", t)
     shift = finite("t", shift.reshape(3) if shift.shape == (3, 1) else shift, (3,))
     return Stand(-(rotation.T @ shift), rotation[2], -rotation[1], False)
@@ -91,5 +91,5 @@ def finite(name: str, value: ArrayLike, shape: tuple[int, ...]) -> Matrix:
     if array.shape != shape:
         raise ValueError(f"{name} must have shape {shape}, got {array.shape}")
     if not np.isfinite(array).all():
-        raise ValueError(f"{name} must be finite, and has NaN or infinity")
+        raise ValueError(f"{name} must be finite, got NaN or infinity")
     return array.astype(np.float64, copy=False)

@@ -168,7 +168,7 @@ class Pose:
     def _at(cls: type[P], stand: Stand, others: dict[str, Any]) -> P:
         made = {"position": stand.position, "direction": stand.forward, "up": stand.up}
         if taken := sorted({*made, "target"} & others.keys()):
-            raise TypeError(f"{taken[0]} is told by the matrix, and must not be given")
+            raise TypeError(f"{taken[0]} must not be given: the matrix defines it")
         return cls(**made, **others)
 
     @property

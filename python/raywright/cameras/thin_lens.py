@@ -146,7 +146,7 @@ class ThinLens(AnyCamera):
             raise ValueError(f"blades must be 0 or at least 3, got {blades}")
         if not self.focused_distance > 0:
             if self.focus_point is None:
-                raise ValueError("focus_distance must be given with a direction that has no target")
+                raise ValueError("focus_distance must be given if the camera has a direction and no target")
             raise ValueError(f"focus_point must be in front of the camera, got {self.focus_point}")
 
     @property

@@ -241,7 +241,7 @@ def _measured(options: argparse.Namespace, what: str, measure: Callable[..., Any
     if options.normal is not None and options.points is None:
         options.refuse("argument --normal: is for --points")
     if options.normal is not None and not any(options.normal):
-        options.refuse("argument --normal: must have a length, got 0 0 0")
+        options.refuse("argument --normal: must not be zero, got 0 0 0")
     mesh = _mesh(options.mesh)
     scene = Scene(mesh).welded()
     sites = _sites(options, mesh, scene)

@@ -146,6 +146,6 @@ def _accelerators(text: str) -> dict[str, Accelerator]:
             if name.lower() in (key.lower(), type(one).__name__.lower())
         }
         if not mine:
-            raise argparse.ArgumentTypeError(f"{name!r} is none of: {', '.join(known)}")
+            raise argparse.ArgumentTypeError(f"{name!r} is not one of: {', '.join(known)}")
         found.update(mine)
     return found

@@ -140,15 +140,15 @@ def merged(laid: LaidOut, both: bool = False, stacklevel: int = 3) -> tuple[Laid
     partly |= {other for one, other in shapes_too.tolist() if one not in parts and other not in parts}
     if partly:
         warnings.warn(
-            f"{len(partly)} of {len(own)} faces overlap others in a part of one plane, "
-            f"{_named(laid, min(partly))} first: what they exchange there counts twice",
+            f"{len(partly)} of {len(own)} faces partly overlap coplanar faces, "
+            f"{_named(laid, min(partly))} first: their exchange there counts twice",
             RuntimeWarning,
             stacklevel=stacklevel,
         )
     if parts:
         first = min(parts)
         warnings.warn(
-            f"{len(parts)} of {len(own)} faces coincide with others and count once with them: "
+            f"{len(parts)} of {len(own)} faces coincide with others and are counted once with them: "
             f"{_named(laid, first)} first, with {_named(laid, parts[first][0][0])}",
             RuntimeWarning,
             stacklevel=stacklevel,

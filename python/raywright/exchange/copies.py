@@ -88,8 +88,7 @@ def _parts(instance: Instance, outer: NDArray[np.float64], number: int) -> Itera
     """Give the shapes of all copies, moved, and whether they are mirrored meshes."""
     if instance.transform_end is not None:
         raise ValueError(
-            f"shape {number} has copies that move, and what they exchange is another at each moment: "
-            "give a transform alone"
+            f"shape {number} has moving copies, whose exchange changes over time: give no transform_end"
         )
     for matrix in instance.transform.reshape(-1, 4, 4):
         whole = outer @ matrix

@@ -25,9 +25,7 @@ def solve(problem: Problem, error: float | None, rays: int | None) -> RadiosityS
     """
     count = len(problem.areas)
     if count > _MOST:
-        raise ValueError(
-            f"method='matrix' is for {_MOST} patches at most, these are {count}: use 'stochastic'"
-        )
+        raise ValueError(f"method='matrix' supports at most {_MOST} patches, got {count}: use 'stochastic'")
     factors = view_factors(
         _of_patches(problem),
         error=error,

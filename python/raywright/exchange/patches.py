@@ -34,7 +34,9 @@ def exchanging(scene: SceneLike, diffuse: bool = True) -> Scene:
     if not scene.shapes:
         raise ValueError("scene has no shapes: nothing exchanges light")
     if scene.medium is not None:
-        raise ValueError("scene has a medium: what surfaces exchange goes through nothing, give medium=None")
+        raise ValueError(
+            "scene must have no medium, as surfaces exchange light through empty space: give medium=None"
+        )
     for number, shape in enumerate(scene.shapes):
         other = _not_diffuse(shape) if diffuse else None
         if other is not None:
@@ -72,7 +74,7 @@ def cut(scene: Scene, patch_size: float | None) -> NDArray[np.uint32]:
         strips = np.ceil(np.where(np.isfinite(sides), sides, 0.0) / size * (1.0 - 1e-9))
         if strips.size and not strips.max() < _MOST:
             raise ValueError(
-                f"patch_size {size:g} cuts a side into more than {_MOST} parts: give a larger one"
+                f"patch_size {size:g} splits an edge into more than {_MOST} parts: give a larger one"
             )
         parts.append(np.maximum(strips, 1.0).astype(np.uint32))
     return np.concatenate(parts)

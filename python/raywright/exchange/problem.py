@@ -90,7 +90,7 @@ class Problem:
         """
         if not (self.has_lamps or self.emission.any()):
             raise ValueError(
-                "nothing shines: no shape that takes part has an emission, and there are no lights"
+                "the scene has no light: no participating shape has an emission, and there are no lights"
             )
         most = self.reflectance.max(axis=1)
         if most.max() >= 1.0:

@@ -239,7 +239,9 @@ def radiative_exchange(
         method = "matrix" if sum(faces) <= _SMALL and not both else "stochastic"
     choice("method", method, get_args(ExchangeMethod))
     if method == "matrix" and both:
-        raise ValueError("sides must be 'front' for method='matrix', whose view factors are of fronts")
+        raise ValueError(
+            "sides must be 'front' for method='matrix', which has view factors of front sides only"
+        )
     kelvin = _per_face("temperature", temperature, faces)
     _check("temperature", kelvin, kelvin >= 0, "at least 0")
     _check("temperature", kelvin, kelvin <= _HOTTEST, f"at most {_HOTTEST:g}")
@@ -362,7 +364,7 @@ def _per_face(name: str, given: PerFace, faces: list[int]) -> Floats:
         given = [given[shape] for shape in range(len(faces))]
     if isinstance(given, list | tuple):
         if len(given) != len(faces):
-            raise ValueError(f"{name} must have one entry a shape, {len(faces)}, got {len(given)}")
+            raise ValueError(f"{name} must have {len(faces)} entries, one per shape, got {len(given)}")
         parts = [
             _numbers(f"{name}[{i}]", one, count)
             for i, (one, count) in enumerate(zip(given, faces, strict=True))

@@ -158,7 +158,9 @@ def radiosity(
     if sides is not None:
         choice("sides", sides, get_args(Sides))
     if method == "matrix" and sides == "both":
-        raise ValueError("sides must be 'front' for method='matrix', whose view factors are of fronts")
+        raise ValueError(
+            "sides must be 'front' for method='matrix', which has view factors of front sides only"
+        )
     wanted = None if error is None else number("error", error)
     if wanted is not None and wanted <= 0:
         raise ValueError(f"error must be greater than 0, got {error}")
@@ -169,7 +171,7 @@ def radiosity(
     if not isinstance(states, bool):
         raise TypeError(f"states must be True or False, got {states!r}")
     if states and method != "progressive":
-        raise ValueError(f"states are those of method='progressive', got {method!r}")
+        raise ValueError(f"states requires method='progressive', got {method!r}")
     scene = exchanging(scene)
     both = method != "matrix" and sides != "front"
     laid, covered = merged(laid_out(scene), both)

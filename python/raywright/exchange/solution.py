@@ -308,7 +308,7 @@ class RadiositySolution(Tabular):
         rows = self.patches["side"] == (1 if side == "front" else -1)
         rows &= np.isfinite(self.corners).all(axis=(1, 2))
         if not rows.any():
-            raise ValueError(f"the solution has no {side} of a mesh to draw")
+            raise ValueError(f"the solution has no {side} side of a mesh to draw")
         return np.asarray(rows)
 
     def save(

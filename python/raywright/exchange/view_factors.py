@@ -435,7 +435,7 @@ def _first_faces(laid: LaidOut) -> NDArray[np.int64]:
         i = int(laid.shape[min(start, len(laid.shape) - 1)]) if len(laid.shape) else 0
         start += len(shape.faces) if isinstance(shape, Mesh) else 1
         if isinstance(shape, Plane):
-            raise ValueError(f"shapes[{i}] is a Plane, which has no end and so no area: give a Mesh that has")
+            raise ValueError(f"shapes[{i}] must have a finite area, got a Plane: give a Mesh")
     first = np.cumsum([0, *laid.counts])
     if first[-1] == 0:
         raise ValueError("the scene has no faces, and so no view factors")
@@ -452,7 +452,7 @@ def _check_finite(laid: LaidOut) -> None:
         ):
             return
     i = int(laid.shape[0])
-    raise ValueError(f"face {int(laid.face[0])} of shapes[{i}] has a corner that is not finite")
+    raise ValueError(f"face {int(laid.face[0])} of shapes[{i}] has a non-finite corner")
 
 
 def _exact(scene: Scene) -> Scene:

@@ -77,7 +77,7 @@ class Gpu:
         self._most = min(self._limits["max-storage-buffer-binding-size"], self._limits["max-buffer-size"])
         self._pipelines: dict[str, Any] = {}
         if wrong := trouble(given, computed):
-            raise RuntimeError(f"{self._name} does not compute as WGSL promises: {wrong}")
+            raise RuntimeError(f"{self._name} does not meet the accuracy that WGSL requires: {wrong}")
 
     @property
     def name(self) -> str:

@@ -162,7 +162,7 @@ class GpuScene:
     def _ask(self, kernel: str, rays: AskedRays) -> NDArray[np.uint32]:
         """Return a kernel's answers for all rays; undecided ones are left open."""
         if self._is_closed:
-            raise RuntimeError("the scene is on the device no more: its with block has ended")
+            raise RuntimeError("the scene is no longer on the device: its with block has ended")
         count = int(np.prod(rays[4], dtype=np.int64))
         shape = (count, 4) if kernel == "closest" else (count,)
         told = np.full(shape, _OPEN, np.uint32)

@@ -112,7 +112,7 @@ class Looks:
         elif isinstance(material, Plastic):
             self._coat(row, material, what)
         else:
-            raise LeftError(f"{what} is of no kind that it knows")
+            raise LeftError(f"{what} has an unsupported type")
         return row
 
     def _paint(self, row: NDArray[np.void], given: Any, what: str) -> None:
@@ -135,9 +135,9 @@ class Looks:
 
     def _glass(self, row: NDArray[np.void], glass: Dielectric, what: str) -> None:
         if glass.interior is not None:
-            raise LeftError(f"{what} is filled")
+            raise LeftError(f"{what} has an interior medium")
         if not isinstance(glass.ior, float | int):
-            raise LeftError(f"the index of {what} goes with wavelength")
+            raise LeftError(f"the index of refraction of {what} depends on wavelength")
         alpha = _alpha(glass, what)
         row["eta"] = glass.ior
         row["kind"] = _GLASS
@@ -162,7 +162,7 @@ class Looks:
         mean = mean_fresnel(eta)
         if alpha >= _SMOOTH:
             if not plastic.multiple_scattering:
-                raise LeftError(f"{what} is rough, and loses what its facets throw on each other")
+                raise LeftError(f"{what} is rough without multiple scattering")
             table = coat_table(alpha, eta)
             row["alpha"], row["losses"], mean = alpha, self.add(table), mean_of(table)
         row["k"][:2] = mean, mean_fresnel(1 / eta)
@@ -197,11 +197,11 @@ def _alpha(material: Any, what: str) -> float:
     if not all(isinstance(one, float | int) for one in both):
         raise LeftError(f"the roughness of {what} is a texture")
     if both[0] != both[1]:
-        raise LeftError(f"{what} is brushed")
+        raise LeftError(f"{what} is anisotropic")
     alpha = float(both[0]) if material.alpha is not None else float(both[0]) ** 2
     if alpha >= _SMOOTH:
         if material.distribution != "ggx":
             raise LeftError(f"{what} has the distribution {material.distribution!r}")
         if alpha < _LEAST:
-            raise LeftError(f"{what} is next to smooth, with an alpha of {alpha:g}")
+            raise LeftError(f"{what} is almost smooth, with an alpha of {alpha:g}")
     return alpha

@@ -140,9 +140,9 @@ def packed(scene: Scene, flat: FlatArrays) -> Packed:
             raise LeftError(f"shape {number} is a {type(shape).__name__}")
         bounds = shape.bounds
         if bounds is not None and (bounds[1] - bounds[0]).max() * flat.scale < _TINY:
-            raise LeftError(f"shape {number} is tiny beside the scene")
+            raise LeftError(f"shape {number} is too small relative to the scene")
         if end - first != len(shape.faces):
-            raise LeftError(f"shape {number} has faces that are left out")
+            raise LeftError(f"shape {number} has faces that are never hit")
         some = faces[first:end]
         _lay(some, shape, flat)
         if isinstance(shape.material, Dielectric):
@@ -161,7 +161,7 @@ def packed(scene: Scene, flat: FlatArrays) -> Packed:
 def _check_closed(glasses: list[Mesh]) -> None:
     """Raise a LeftError if paths may need their medium, which only closed shapes that are apart rule out."""
     if len(glasses) > 1 and not all(map(_is_closed, glasses)):
-        raise LeftError("there are several shapes of glass, and not all are closed")
+        raise LeftError("the scene has several glass shapes, and not all are closed")
 
 
 def _is_closed(mesh: Mesh) -> bool:
@@ -220,7 +220,7 @@ def _delta(scene: Scene, flat: FlatArrays) -> NDArray[np.void]:
             light["kind"], light["place"] = _DIRECTION, -way / np.linalg.norm(way)
             light["radiance"] = constant(given.irradiance, what)
         else:
-            raise LeftError(f"a {type(given).__name__} shines")
+            raise LeftError(f"the scene has a {type(given).__name__}")
     return lights
 
 
@@ -251,7 +251,7 @@ def _sky(scene: Scene, lit: NDArray[np.void], looks: Looks) -> None:
     given: Any = scene.environment
     if isinstance(given, tuple):
         if len(given) > 1:
-            raise LeftError("several environments surround the scene")
+            raise LeftError("the scene has several environments")
         given = given[0] if given else None
     if given is None:
         return

@@ -55,7 +55,7 @@ def imported_wgpu() -> Any:
     except Exception as error:
         if isinstance(error, ModuleNotFoundError) and error.name == "wgpu":
             raise ImportError(_MISSING) from error
-        raise ImportError(f"wgpu is installed and cannot be loaded: {error}") from error
+        raise ImportError(f"wgpu is installed but cannot be loaded: {error}") from error
     lacking = [
         f"{owner}.{name}"
         for owner, names in CALLED.items()
@@ -74,7 +74,7 @@ def changes_named() -> Iterator[None]:
         yield
     except (AttributeError, KeyError, TypeError) as error:
         told = f"{type(error).__name__}: {error}"
-        raise ImportError(_unfit(importlib.import_module("wgpu"), f"is called in vain ({told})")) from error
+        raise ImportError(_unfit(importlib.import_module("wgpu"), f"fails when called ({told})")) from error
 
 
 def _unfit(wgpu: Any, trouble: str) -> str:

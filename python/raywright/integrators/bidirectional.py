@@ -82,7 +82,7 @@ class Bidirectional(CoreIntegrator):
             raise TypeError(f"merge must be True or False, got {self.merge!r}")
         for name in ("radius", "photons"):
             if getattr(self, name) is not None and not self.merge:
-                raise ValueError(f"{name} is of paths that are merged, and none are: give merge=True as well")
+                raise ValueError(f"{name} requires merge=True")
         photons = None if self.photons is None else integer("photons", self.photons, 1, counts.MOST_PHOTONS)
         settled = {
             "max_depth": None if self.max_depth is None else counts.depth("max_depth", self.max_depth),

@@ -46,7 +46,9 @@ class Radiosity(CoreIntegrator):
 
     def __post_init__(self) -> None:
         if not isinstance(self.solution, RadiositySolution):
-            raise TypeError(f"solution must be of raywright.radiosity, got {type(self.solution).__name__}")
+            raise TypeError(
+                f"solution must be a result of raywright.radiosity, got {type(self.solution).__name__}"
+            )
 
     @cached_property
     def _table(self) -> tuple[Any, ...]:

@@ -25,16 +25,16 @@ def read_hdr(path: Path) -> NDArray[np.float32]:
     header = re.match(rb".*?\n[ \t\r]*\n", data[: 2**16], re.DOTALL)
     size = _SIZE.match(data, header.end()) if header else None
     if not (data.startswith(_MAGIC) and header and size):
-        raise ValueError("it is no Radiance picture")
+        raise ValueError("it is not a Radiance picture")
     if b"32-bit_rle_xyze" in header[0]:
-        raise ValueError("it must hold red, green and blue, and holds X, Y and Z")
+        raise ValueError("it must hold red, green and blue, got X, Y and Z")
     outer, inner = (int(size[k]) if len(size[k]) < 10 else -1 for k in (2, 4))
     if size[1][1:] == size[3][1:]:
-        raise ValueError("it is no Radiance picture")
+        raise ValueError("it is not a Radiance picture")
     try:
         rgbe = _pixels(data[size.end() :], inner, outer)
     except (ValueError, IndexError):
-        raise ValueError("it is cut short, or no Radiance picture") from None
+        raise ValueError("it is cut short, or not a Radiance picture") from None
     exponent = rgbe[..., 3:].astype(np.int32) - 136
     colours = np.ldexp(rgbe[..., :3].astype(np.float32), exponent)
     colours = np.where(rgbe[..., 3:] > 0, colours, np.float32(0)).astype(np.float32)

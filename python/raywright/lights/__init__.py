@@ -50,7 +50,7 @@ def environments(
         for one in value:
             if not isinstance(one, Environment):
                 raise TypeError(
-                    f"environment must be environments only, if several, got {type(one).__name__}"
+                    f"environment must be one environment or a sequence of them, got {type(one).__name__}"
                 )
         return tuple(value)
     return ConstantEnvironment(cast(ArrayLike, value))

@@ -47,6 +47,6 @@ class DirectionalLight(Light):
     def __init__(self, direction: ArrayLike, irradiance: ArrayLike | Spectrum) -> None:
         way = triple("direction", direction)
         if way == (0, 0, 0):
-            raise ValueError(f"direction must have a length, got {way}")
+            raise ValueError(f"direction must not be zero, got {way}")
         object.__setattr__(self, "direction", way)
         object.__setattr__(self, "irradiance", colour_or_spectrum("irradiance", irradiance))

@@ -80,5 +80,5 @@ def _rotation(name: str, value: ArrayLike) -> NDArray[np.float64]:
     if matrix.shape != (3, 3):
         raise ValueError(f"{name} must be a rotation of shape (3, 3) or (4, 4), got {matrix.shape}")
     if not np.abs(matrix @ matrix.T - np.eye(3)).max() < 1e-6:
-        raise ValueError(f"{name} must be a rotation, with rows of length 1 at right angles")
+        raise ValueError(f"{name} must be a rotation, with orthonormal rows")
     return frozen(matrix + 0.0)

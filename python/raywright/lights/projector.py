@@ -92,4 +92,4 @@ class ProjectorLight(Pictured, Light):
             raise ValueError(f"target must differ from position, both are {self.target}")
         axis = np.subtract(self.target, self.position)
         if not np.linalg.norm(np.cross(axis / np.abs(axis).max(), self.up)) > 0:
-            raise ValueError(f"up must have a length and not be along the axis, got {self.up}")
+            raise ValueError(f"up must not be zero or parallel to the axis, got {self.up}")

@@ -67,7 +67,7 @@ def sun_directions(
     zenith /= np.linalg.norm(zenith)
     ahead = ahead - zenith * (ahead @ zenith)
     if not np.linalg.norm(ahead) > 1e-12:
-        raise ValueError(f"north must not be along up, got {north!r}")
+        raise ValueError(f"north must not be parallel to up, got {north!r}")
     ahead /= np.linalg.norm(ahead)
     right = np.cross(ahead, zenith)
     azimuth, elevation = (angle[:, None] for angle in sun_positions(times, latitude, longitude))
@@ -80,5 +80,5 @@ def way(name: str, value: ArrayLike) -> Triple:
     """Return a direction that has a length."""
     given = triple(name, value)
     if given == (0, 0, 0):
-        raise ValueError(f"{name} must have a length, got {given}")
+        raise ValueError(f"{name} must not be zero, got {given}")
     return given

@@ -105,7 +105,7 @@ class Dielectric(Material):
         if transmittance is not None and interior is not None:
             raise ValueError("only one of interior and transmittance can be given: the tint is an interior")
         if transmittance is None and distance is not None:
-            raise ValueError(f"distance is that of transmittance, which is not given, got {distance!r}")
+            raise ValueError(f"distance requires transmittance, got {distance!r}")
         self._set(
             ior=ior if isinstance(ior, Dispersion) else positive("ior", ior),
             **rough(roughness, alpha, pair=False),
@@ -125,13 +125,14 @@ def _tint(transmittance: ArrayLike | Spectrum, distance: float | None) -> Homoge
     left = colour("transmittance", transmittance, most=1.0)
     if min(left) == 0:
         raise ValueError(
-            f"transmittance must be above 0, got {transmittance!r}: no way that has an end takes all of it"
+            f"transmittance must be above 0, got {transmittance!r}: no finite distance absorbs all light"
         )
     # 0 - x, since -ln(1) is the negative zero.
     absorption = [0.0 - math.log(share) / length for share in left]
     if not math.isfinite(max(absorption)):
         raise ValueError(
-            f"distance leaves -ln(transmittance) / distance infinite: {distance!r} for {transmittance!r}"
+            f"distance is too small, as -ln(transmittance) / distance is infinite: "
+            f"{distance!r} for {transmittance!r}"
         )
     return Homogeneous(absorption) if max(absorption) > 0 else None
 
@@ -150,5 +151,5 @@ def _tint_by_wavelength(transmittance: Spectrum, length: float) -> Homogeneous |
         )
     absorption = 0.0 - np.log(left) / length
     if not np.isfinite(absorption).all():
-        raise ValueError(f"distance leaves -ln(transmittance) / distance infinite: {length!r}")
+        raise ValueError(f"distance is too small, as -ln(transmittance) / distance is infinite: {length!r}")
     return Homogeneous(Spectrum(nm, absorption)) if absorption.max() > 0 else None

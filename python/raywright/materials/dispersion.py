@@ -69,7 +69,7 @@ class Dispersion(ABC):
         bad = ~(np.isfinite(found) & (found > 0))
         if bad.any():
             wrong = wavelengths[bad].ravel()[0]
-            raise ValueError(f"micrometres must be where the formula holds: at {wrong} it gives no index")
+            raise ValueError(f"micrometres must be in the range of the formula: it has no index at {wrong}")
         return found if found.ndim else float(found)
 
     @property
@@ -204,7 +204,7 @@ class Sellmeier(Dispersion):
                 raise ValueError(f"{name} must be one or more finite numbers, got {getattr(self, name)!r}")
             object.__setattr__(self, name, tuple(values.tolist()))
         if len(self.B) != len(self.C):
-            raise ValueError(f"B and C must be as many, got {len(self.B)} and {len(self.C)}")
+            raise ValueError(f"B and C must have equal lengths, got {len(self.B)} and {len(self.C)}")
         if min(self.C) < 0:
             raise ValueError(f"C must be at least 0, got {min(self.C)}")
 

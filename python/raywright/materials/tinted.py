@@ -62,9 +62,7 @@ class Tinted(Material):
         if not isinstance(base, (Dielectric, ThinDielectric)):
             raise TypeError(f"base must be a Dielectric or a ThinDielectric, got {type(base).__name__}")
         if isinstance(base, ThinDielectric) and base.interior is not None:
-            raise ValueError(
-                "base must be a pane that encloses nothing, and has an interior: give that to a Boundary"
-            )
+            raise ValueError("base must have no interior: give the interior to a Boundary")
         self._set(
             base=base,
             transmittance=value("transmittance", transmittance, most=1.0),

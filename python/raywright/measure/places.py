@@ -33,7 +33,7 @@ def vectors(name: str, given: ArrayLike) -> Floats:
     """Return finite vectors, (..., 3) float64."""
     array = np.asarray(last_axis(name, given, 3), np.float64)
     if not np.isfinite(array).all():
-        raise ValueError(f"{name} must be finite, and has NaN or infinity")
+        raise ValueError(f"{name} must be finite, got NaN or infinity")
     return array
 
 
@@ -43,7 +43,7 @@ def units(name: str, given: ArrayLike) -> Floats:
     # Divided by the largest coordinate first, so that no square overflows.
     size = np.abs(array).max(axis=-1, keepdims=True, initial=0.0)
     if not (size > 0).all():
-        raise ValueError(f"{name} must have a length, and one is 0")
+        raise ValueError(f"{name} must not contain zero vectors")
     scaled: Floats = array / size
     unit: Floats = scaled / np.linalg.norm(scaled, axis=-1, keepdims=True)
     return unit
@@ -99,7 +99,7 @@ def places(
     if isinstance(points, SurfacePoints):
         return _of_surface(points, normals)
     if normals is None:
-        raise ValueError("normals must be given, unless points are what rays have hit or closest points")
+        raise ValueError("normals must be given, unless points are hits or closest points")
     starts, ways = vectors("points", points), units("normals", normals)
     lead = common({"points": starts.shape[:-1], "normals": ways.shape[:-1]})
     ways = np.broadcast_to(ways, (*lead, 3))
@@ -122,7 +122,7 @@ def middles(scene: Scene) -> ClosestPoints:
     """
     for i, shape in enumerate(scene.shapes):
         if not isinstance(shape, Mesh):
-            raise ValueError(f"points must be given: shape {i} is no mesh but a {type(shape).__name__}")
+            raise ValueError(f"points must be given: shape {i} is a {type(shape).__name__}, not a mesh")
     counts = [len(shape.faces) for shape in scene.shapes if isinstance(shape, Mesh)]
     shape_id = np.repeat(np.arange(len(counts), dtype=np.int32), counts)
     primitive = np.concatenate(

@@ -80,7 +80,7 @@ def plot(
     whole = scene if isinstance(scene, Scene) else Scene(scene, weld=None)
     vertices, faces = _meshes(whole, is_all=points is None)
     if isinstance(points, str | PathLike):
-        raise TypeError(f"points must be places, got {str(points)!r}: a file to draw to is ax=")
+        raise TypeError(f"points must be positions, got {str(points)!r}: give a file to draw to as ax=")
     places = None if points is None else _places(points, shown.shape)
     if places is None and shown.shape not in ((len(faces),), (len(vertices),)):
         told = f"({len(faces)},), one a face, or ({len(vertices)},), one a vertex"
@@ -168,7 +168,7 @@ class Plotted(Tabular):
         choice("name", shown, self._drawn)
         if self._where is None:
             raise ValueError(
-                "the scene is not kept in pickles and copies: raywright.measure.plot(scene, values, points)"
+                "pickles and copies have no scene: use raywright.measure.plot(scene, values, points)"
             )
         values = getattr(self, shown)
         return plot(self._where.scene, values, self._where.points, ax, shown.replace("_", " "), up, cmap)
@@ -213,8 +213,7 @@ def _meshes(scene: Scene, is_all: bool) -> tuple[Floats, NDArray[np.int64]]:
         except ValueError:
             if is_all:
                 raise ValueError(
-                    f"points must be given: shape {i} is no mesh that stands still but a "
-                    f"{type(shape).__name__}"
+                    f"points must be given: shape {i} is a {type(shape).__name__}, not a static mesh"
                 ) from None
             continue
         for mesh in found:

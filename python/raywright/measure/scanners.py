@@ -224,6 +224,6 @@ def axes(forward: Triple, up: Triple) -> tuple[Floats, Floats, Floats]:
     ahead, above = unit("forward", forward), unit("up", up)
     level = ahead - above * (ahead @ above)
     if not np.linalg.norm(level) > 1e-12:
-        raise ValueError(f"forward must not be along up, got {forward} and {up}")
+        raise ValueError(f"forward must not be parallel to up, got {forward} and {up}")
     level = level / np.linalg.norm(level)
     return level, np.cross(above, level), above

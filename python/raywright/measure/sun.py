@@ -228,7 +228,7 @@ def _suns(
             raise ValueError("sun must be given, or times, latitude and longitude")
         return np.atleast_2d(sun_directions(times, latitude, longitude, up, north))
     if times is not None or latitude is not None or longitude is not None:
-        raise ValueError("sun is given, and times, latitude or longitude too: give one or the other")
+        raise ValueError("either sun or times, latitude and longitude must be given, got both")
     suns = np.atleast_2d(units("sun", sun))
     if suns.ndim != 2:
         raise ValueError(f"sun must have shape (T, 3), got {suns.shape}")
@@ -240,5 +240,5 @@ def _weights(given: ArrayLike, count: int) -> Floats:
     if array.shape not in ((), (count,)):
         raise ValueError(f"weights must be one number or have shape ({count},), got {array.shape}")
     if not np.isfinite(array).all():
-        raise ValueError("weights must be finite, and have NaN or infinity")
+        raise ValueError("weights must be finite, got NaN or infinity")
     return np.broadcast_to(array, count).astype(np.float64)

@@ -50,10 +50,10 @@ def meshes_in(shape: AnyShape, name: str) -> Iterator[Mesh]:
         yield shape
     elif isinstance(shape, Instance):
         if shape.transform_end is not None:
-            raise ValueError(f"{name} moves: it has no one cross section")
+            raise ValueError(f"{name} moves, so its cross section changes")
         for i, inner in enumerate(shape.shapes):
             for mesh in meshes_in(inner, f"{name}, shape {i} in it,"):
                 for matrix in shape.transform.reshape(-1, 4, 4):
                     yield mesh.transformed(matrix)
     else:
-        raise ValueError(f"{name} is no mesh but a {type(shape).__name__}: only meshes can be cut")
+        raise ValueError(f"{name} must be a mesh to be cut, got a {type(shape).__name__}")

@@ -80,7 +80,7 @@ class SparseGrid:
                 a < 0 or a + n > most for a, n, most in zip(begins, found.shape, self.shape, strict=False)
             ):
                 raise ValueError(
-                    f"a part of shape {found.shape} at {begins} lies beyond the grid of shape {self.shape}"
+                    f"a part of shape {found.shape} at {begins} is outside the grid of shape {self.shape}"
                 )
             # Overflow to infinity is reported later.
             with np.errstate(over="ignore"):
@@ -171,7 +171,7 @@ class SparseGrid:
 
     def __array__(self, dtype: DTypeLike | None = None, copy: bool | None = None) -> NDArray[Any]:
         if copy is False:
-            raise ValueError("a sparse grid becomes an array by a copy")
+            raise ValueError("a sparse grid cannot become an array without a copy")
         return self.dense().astype(dtype or np.float32, copy=False)
 
     def __eq__(self, other: object) -> bool:

@@ -57,10 +57,10 @@ def read_vdb(path: Path, names: tuple[str, ...]) -> tuple[dict[str, SparseGrid],
     first = found[names[0]].matrix
     for name, grid in found.items():
         if not np.array_equal(grid.matrix, first):
-            raise ValueError(f"{path}: the grid {name!r} lies elsewhere than {names[0]!r}")
+            raise ValueError(f"{path}: the grid {name!r} has another transform than {names[0]!r}")
     parts = [part for grid in found.values() for part in grid.parts]
     if not parts:
-        raise ValueError(f"{path}: nothing is active in {', '.join(map(repr, names))}")
+        raise ValueError(f"{path}: no voxel is active in {', '.join(map(repr, names))}")
     low = np.min([origin for origin, _ in parts], axis=0)
     high = np.max([np.add(origin, numbers.shape) for origin, numbers in parts], axis=0)
     try:
@@ -280,7 +280,7 @@ def _blosc(data: bytes, size: int) -> bytes:
         ) from error
     # Sizes before and after. The decoder trusts the header and would read and write that far.
     if len(data) < 16 or struct.unpack_from("<I4xI", data, 4) != (size, len(data)):
-        raise ValueError(f"a node is no chunk of Blosc of {size} bytes")
+        raise ValueError(f"a node is not a Blosc chunk of {size} bytes")
     if size == 0:
         # OpenVDB writes empty chunks, which the decoder rejects.
         return b""

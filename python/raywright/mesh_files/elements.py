@@ -145,7 +145,7 @@ class _Words:
         def read(at: int) -> int:
             value = view[at]
             if not value.is_integer():
-                raise ValueError(f"{value:g} is no length of a list")
+                raise ValueError(f"{value:g} is not a valid list length")
             return int(value)
 
         return read
@@ -164,7 +164,7 @@ class _Words:
         word = word_at(self.text, self.size)
         if word is None:
             return f"its body ends after {self.size} numbers"
-        return f"word {self.size + 1} of its body is {word}, which is no number"
+        return f"word {self.size + 1} of its body is {word}, which is not a number"
 
 
 def _typed(values: Numbers, kind: str) -> Numbers:

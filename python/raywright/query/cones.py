@@ -134,7 +134,7 @@ def cone_solid_angle(half_angle: float | NDArray[np.float64]) -> NDArray[np.floa
     """
     angles = np.asarray(half_angle)
     if not np.all(angles > 0):
-        raise ValueError("half_angle must be above 0, for a ray has no directions to be covered, got 0")
+        raise ValueError("half_angle must be above 0 for coverage, got 0")
     return np.asarray(4 * np.pi * np.sin(np.radians(angles) / 2) ** 2)
 
 

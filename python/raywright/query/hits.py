@@ -116,7 +116,7 @@ class SurfacePoints(Known, Tabular, PlottedPoints):
         [25.0, nan]
         """
         if self._compiled is None:
-            raise ValueError("attributes are not kept in a pickle: interpolate them before")
+            raise ValueError("pickled hits have no attributes: interpolate them before pickling")
         shapes = self._compiled.shapes
         return interpolated(shapes, name, self.shape_id, self.primitive, self.uv)
 

@@ -46,7 +46,9 @@ def _each(shapes: ShapeMask, all_shapes: Sequence[Any]) -> list[bool]:
         for name in wanted:
             if name not in known:
                 told = f"its names are {', '.join(map(repr, sorted(known)))}" if known else "none has a name"
-                raise ValueError(f"shapes has {name!r}, but no shape of the scene is called so: {told}")
+                raise ValueError(
+                    f"shapes has {name!r}, which is not the name of a shape of the scene: {told}"
+                )
         return [name in wanted for name in names]
     count = len(all_shapes)
     try:
@@ -54,7 +56,7 @@ def _each(shapes: ShapeMask, all_shapes: Sequence[Any]) -> list[bool]:
     except TypeError as error:
         if as_array("shapes", wanted).dtype.kind not in "iu":
             raise
-        raise TypeError(f"{error}; of numbers of shapes make one: np.isin(range({count}), shapes)") from None
+        raise TypeError(f"{error}; to select shapes by index, use np.isin(range({count}), shapes)") from None
     if mask.shape != (count,):
         raise ValueError(f"shapes must have shape ({count},), one bool a shape, got {mask.shape}")
     kept: list[bool] = mask.tolist()

@@ -100,8 +100,8 @@ class PointQueries:
             names = ", ".join(f"{i} {known[i]!r}" if known[i] else str(i) for i in inverted[:5])
             more = f" and {len(inverted) - 5} more" if len(inverted) > 5 else ""
             warnings.warn(
-                f"normals point into shape {names}{more}, which is taken as if they pointed out; "
-                "Mesh(vertices, faces[:, ::-1]) turns them",
+                f"normals of shape {names}{more} point inward and are treated as outward; flip them by "
+                "Mesh(vertices, faces[:, ::-1])",
                 RuntimeWarning,
                 stacklevel=3,
             )

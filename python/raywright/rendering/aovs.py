@@ -50,7 +50,7 @@ def names_of(aov: str | Iterable[str]) -> tuple[str, ...]:
         if not isinstance(name, str):
             raise TypeError(f"aov must be names, got {name!r}")
         if name not in AOVS:
-            raise ValueError(f"aov {name!r} is not known, expected some of {', '.join(AOVS)}")
+            raise ValueError(f"aov {name!r} is unknown, expected some of {', '.join(AOVS)}")
     return tuple(dict.fromkeys(names))
 
 

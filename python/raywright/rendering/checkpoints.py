@@ -83,7 +83,7 @@ class Checkpoints:
             return None
         with open(self.path, "rb") as file:
             if file.read(len(_MAGIC)) != _MAGIC:
-                self.refuse("is no checkpoint of this version")
+                self.refuse("is not a checkpoint of this version")
             length = int.from_bytes(file.read(4), "little")
             if length > _MOST_HEADER:
                 self.refuse("is damaged")

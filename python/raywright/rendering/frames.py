@@ -133,7 +133,7 @@ def render_frames(
     for path in written if is_film else ():
         # imageio does not report a failing encoder.
         if not path.is_file() or not path.stat().st_size:
-            raise OSError(errno.EIO, "its encoder has written no film", str(path))
+            raise OSError(errno.EIO, "its encoder wrote no video", str(path))
     return list(written)
 
 
@@ -177,7 +177,9 @@ def _checked(number: int, frame: Any, even: bool) -> Frame:
     scene, camera = frame
     if even and isinstance(camera, AnyCamera) and (camera.width % 2 or camera.height % 2):
         size = f"{camera.width} by {camera.height}"
-        raise ValueError(f"frame {number} is {size}, but a film has an even width and height, unless .webm")
+        raise ValueError(
+            f"frame {number} is {size}, but a video must have an even width and height, unless .webm"
+        )
     return scene, camera
 
 

@@ -301,11 +301,11 @@ class Image:
         method = check_method("method", method)
         threads = thread_limit(threads)
         if any(row.what == "denoised" for row in self.plan.rows):
-            raise ValueError("the picture is denoised already")
+            raise ValueError("the picture is already denoised")
         if self.halves is None:
             raise ValueError(
-                "the picture has no halves to be denoised by: render it with halves=True, and at least four "
-                "samples per pixel, or four batches of those of a sampler with batches"
+                "the picture has no halves, which denoising needs: render it with halves=True, and at least "
+                "four samples per pixel, or four batches of those of a sampler with batches"
             )
         began = time.monotonic()
         found = denoised(self.halves, method, threads)

@@ -111,7 +111,7 @@ class ImageSoFar(Image):
     def _whole(self) -> Image:
         rendering = self._sight.copy()
         if rendering is None:
-            raise RuntimeError("a picture so far was asked, by another thread, after it was shown")
+            raise RuntimeError("a partial picture was used by another thread after its callback had returned")
         return self._made(rendering)
 
     @cached_property

@@ -295,7 +295,7 @@ def named_accelerators(accelerators: Any) -> dict[str, Accelerator]:
                 raise ValueError(f"accelerators must differ, got {name_of(one)} twice")
             found[name_of(one)] = one
     if not found:
-        raise ValueError("accelerators are empty: there must be one at least")
+        raise ValueError("accelerators must not be empty")
     return found
 
 

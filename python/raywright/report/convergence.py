@@ -191,7 +191,7 @@ def _contenders(contenders: Mapping[str, Any] | None, threads: int | None) -> di
     if not isinstance(contenders, Mapping):
         raise TypeError(f"contenders must be a dict, got {type(contenders).__name__}")
     if not contenders:
-        raise ValueError("contenders are empty: there must be one at least")
+        raise ValueError("contenders must not be empty")
     known = [name for name in inspect.signature(render).parameters if name not in _TAKEN]
     ways = {}
     for name, one in contenders.items():

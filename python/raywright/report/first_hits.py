@@ -77,7 +77,7 @@ def first_hits(scene: Scene, camera: AnyCamera, threads: int | None = 1, repeats
     wanted, found = scene.intersect(*rays, threads=threads), scene.first_hits(camera, threads=threads)
     core = scene._compiled()
     if core.curved:
-        raise ValueError("only meshes are rasterised, and something in the scene is none")
+        raise ValueError("only meshes can be rasterised, and the scene has other shapes")
     by_tree = _core.first_hits(core, camera, np.array((0.5, 0.5)), threads)[4]
     pixels = camera.width * camera.height
     differ = wanted.t.view(np.int64) != found.t.view(np.int64)

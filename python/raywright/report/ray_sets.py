@@ -65,7 +65,7 @@ class Rays:
             array = np.broadcast_to(last_axis(name, getattr(self, name), 3), (*shape, 3))
             object.__setattr__(self, name, np.ascontiguousarray(array))
         if not self.count:
-            raise ValueError("rays are empty: there must be one at least")
+            raise ValueError("rays must not be empty")
 
     @property
     def count(self) -> int:
@@ -178,7 +178,7 @@ def ray_sets(scene: Scene, rays: Any, seed: int) -> dict[str, Rays]:
     if not isinstance(rays, Mapping):
         return {"rays": _one("rays", rays)}
     if not rays:
-        raise ValueError("rays are empty: there must be one set at least")
+        raise ValueError("rays must not be empty")
     return {str(name): _one(f"rays[{name!r}]", one) for name, one in rays.items()}
 
 
@@ -200,7 +200,7 @@ def outside(scene: Scene, side: int = 256) -> Camera:
     """
     bounds = scene.bounds
     if bounds is None:
-        raise ValueError("the scene is empty: there is nothing to aim rays at")
+        raise ValueError("the scene is empty, so no rays can be aimed at it")
     centre = bounds[0] / 2 + bounds[1] / 2
     radius = float(np.linalg.norm(bounds[1] / 2 - bounds[0] / 2)) or 1.0
     return Camera(centre + _DISTANCE * radius * _AWAY, centre, fov=_FOV, width=side, height=side)

@@ -364,7 +364,7 @@ class Table(Generic[Row]):
     def _at(self, name: str) -> int:
         names = [column.name for column in self.columns]
         if name not in names:
-            raise ValueError(f"no column is called {name!r}; there are {', '.join(names)}")
+            raise ValueError(f"no column is named {name!r}; there are {', '.join(names)}")
         return names.index(name)
 
     def _texts(self) -> list[list[str]]:

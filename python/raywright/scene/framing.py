@@ -91,7 +91,7 @@ def _points(shape: AnyShape) -> NDArray[np.float64]:
         return _copied(shape)
     low, high = shape.bounds
     if not np.isfinite([low, high]).all():
-        raise ValueError(f"a picture has no room for a {type(shape).__name__} without end")
+        raise ValueError(f"an unbounded {type(shape).__name__} cannot be framed")
     return _corners(low, high)
 
 

@@ -334,7 +334,7 @@ def _matrices(name: str, value: ArrayLike) -> NDArray[np.float64]:
     each = array.reshape(-1, 4, 4)
     finite = np.isfinite(each).all(axis=(1, 2))
     if not finite.all():
-        raise ValueError(f"{which(int(np.argmin(finite)))} must be finite, and has NaN or infinity")
+        raise ValueError(f"{which(int(np.argmin(finite)))} must be finite, got NaN or infinity")
     affine = (each[:, 3] == (0, 0, 0, 1)).all(axis=1)
     if not affine.all():
         first = int(np.argmin(affine))
@@ -406,7 +406,7 @@ def only_meshes(shapes: Any) -> tuple[Mesh, ...]:
     found = []
     for shape in _each(shapes, "auto"):
         if not isinstance(shape, Mesh):
-            raise TypeError(f"only meshes can be taken here, got {type(shape).__name__}")
+            raise TypeError(f"only meshes are supported here, got {type(shape).__name__}")
         found.append(shape)
     return tuple(found)
 

@@ -554,7 +554,7 @@ class Scene(Queries):
         boxes = _core.tree(self._compiled())
         if boxes is None:
             kind = type(self._accelerator).__name__
-            raise ValueError(f"a {kind} has no tree of boxes; BVH, KdTree and Octree have")
+            raise ValueError(f"a {kind} has no tree of boxes: use BVH, KdTree or Octree")
         depth, primitives, corners = boxes
         return TreeBoxes(depth, primitives, corners.reshape(-1, 8, 3))
 
@@ -625,7 +625,7 @@ class Scene(Queries):
         """Wait for another thread that builds the scene."""
         with self._lock:
             if self._building and self._building == os.getpid():
-                raise RuntimeError("the scene is being built: what watches that cannot ask it")
+                raise RuntimeError("the scene is being built: its progress function cannot query it")
             yield
 
     def _compiled(self, progress: BuildProgress | None = None) -> _core.CompiledScene:

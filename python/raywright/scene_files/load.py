@@ -131,7 +131,7 @@ def _read(
         return from_mitsuba(path, parameters=parameters, weld=weld).resized(width, height)
     if parameters:
         raise TypeError(
-            f"{next(iter(parameters))} is no parameter of {path}: only scenes of Mitsuba have some"
+            f"{next(iter(parameters))} is not a parameter of {path}: only Mitsuba scenes have parameters"
         )
     if path.name.lower().endswith((".pbrt", ".pbrt.gz")):
         from .pbrt import read_pbrt

@@ -458,7 +458,7 @@ def face_count(shape: object) -> int:
 def moved(mesh: object, name: str, vertices: ArrayLike) -> Mesh:
     """Return the mesh with its vertices elsewhere, and all else as it is, given normals too."""
     if not isinstance(mesh, Mesh):
-        raise ValueError(f"{name} must be None for what is no mesh, which is a {type(mesh).__name__} here")
+        raise ValueError(f"{name} must be None for shapes other than meshes, got a {type(mesh).__name__}")
     return replaced(mesh, vertices=rows(name, vertices, 3, len(mesh.vertices)))
 
 

@@ -80,7 +80,7 @@ def _columns(what: str, attributes: Any, others: list[Column]) -> list[Column]:
         names = [plain] if array.ndim == 1 else [f"{plain}_{k}" for k in range(flat.shape[1])]
         for k, one in enumerate(names):
             if not one or one.lower() in told or meant([*told, one.lower()]) & {one.lower()}:
-                raise ValueError(f"{what} has {name!r}, which is the name of something else in a PLY file")
+                raise ValueError(f"{what} has {name!r}, which is a reserved name in a PLY file")
             told.append(one.lower())
             found.append((one, _held(f"{what}[{name!r}]", flat[:, k])))
     return found

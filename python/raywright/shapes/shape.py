@@ -134,7 +134,7 @@ def direction(name: str, given: ArrayLike) -> Triple:
     """Return a vector that has a length."""
     vector = triple(name, given)
     if vector == (0, 0, 0):
-        raise ValueError(f"{name} must have a length, got {vector}")
+        raise ValueError(f"{name} must not be zero, got {vector}")
     return vector
 
 

@@ -52,7 +52,7 @@ class Blackbody(Spectrum):
     def __init__(self, kelvin: float, luminance: float = 1.0) -> None:
         temperature = positive("kelvin", kelvin)
         if temperature < 500:
-            raise ValueError(f"kelvin must be at least 500, got {kelvin}: nothing is seen of what is colder")
+            raise ValueError(f"kelvin must be at least 500, got {kelvin}: colder bodies are not visible")
         if number("luminance", luminance) < 0:
             raise ValueError(f"luminance must be at least 0, got {luminance}")
         wavelengths = np.arange(360.0, 831.0, 5.0)

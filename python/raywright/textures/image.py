@@ -205,7 +205,9 @@ def _pixels(image: Any, linear: bool) -> NDArray[Any]:
         finite = np.isfinite(array)
         if not finite.all():
             row, column, _ = np.argwhere(~finite)[0]
-            raise ValueError(f"image must be finite as float32, and is not in row {row}, column {column}")
+            raise ValueError(
+                f"image must be finite as float32, got NaN or infinity in row {row}, column {column}"
+            )
     return frozen(array)
 
 

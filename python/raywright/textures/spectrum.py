@@ -61,9 +61,11 @@ class Spectrum(Texture):
             for name, given in (("wavelengths", wavelengths), ("values", values))
         )
         if nm.ndim != 1 or len(nm) < 2 or not np.isfinite(nm).all() or not (np.diff(nm) > 0).all():
-            raise ValueError(f"wavelengths must be two or more finite numbers that rise, got {wavelengths!r}")
+            raise ValueError(
+                f"wavelengths must be two or more finite, increasing numbers, got {wavelengths!r}"
+            )
         if found.shape != nm.shape:
-            raise ValueError(f"values must be as many as the {len(nm)} wavelengths, got shape {found.shape}")
+            raise ValueError(f"values must have length {len(nm)} like wavelengths, got shape {found.shape}")
         if not (np.isfinite(found).all() and (found >= 0).all()):
             raise ValueError(f"values must be finite and at least 0, got {values!r}")
         self._set(wavelengths=tuple(nm.tolist()), values=tuple(found.tolist()))

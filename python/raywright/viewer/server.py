@@ -163,7 +163,7 @@ class _Handler(BaseHTTPRequestHandler):
             raise _RefusedError(HTTPStatus.FORBIDDEN, "this server answers to its own page only")
         _, token, *rest = [*self.path.partition("?")[0].split("/", 2), ""][:3]
         if not secrets.compare_digest(token.encode(), server.token.encode()):
-            raise _RefusedError(HTTPStatus.NOT_FOUND, "nothing is here; see the address that was printed")
+            raise _RefusedError(HTTPStatus.NOT_FOUND, "not found; use the address that was printed")
         return rest[0]
 
     def _get(self, path: str) -> None:
@@ -185,11 +185,11 @@ class _Handler(BaseHTTPRequestHandler):
             )
             self._send(HTTPStatus.OK, "application/octet-stream", data, kept)
         else:
-            raise _RefusedError(HTTPStatus.NOT_FOUND, "nothing is here")
+            raise _RefusedError(HTTPStatus.NOT_FOUND, "not found")
 
     def _post(self, path: str) -> None:
         if not is_known(path):
-            raise _RefusedError(HTTPStatus.NOT_FOUND, "nothing is here")
+            raise _RefusedError(HTTPStatus.NOT_FOUND, "not found")
         if self.headers.get_content_type() != "application/json":
             raise _RefusedError(HTTPStatus.BAD_REQUEST, f"a {path} must be application/json")
         try:
@@ -206,7 +206,7 @@ class _Handler(BaseHTTPRequestHandler):
         told = self.headers.get("Content-Length", "")
         # http.server does not decode chunked bodies.
         if "Transfer-Encoding" in self.headers or not (told.isascii() and told.isdigit()):
-            raise _RefusedError(HTTPStatus.LENGTH_REQUIRED, "the length of the body must be told")
+            raise _RefusedError(HTTPStatus.LENGTH_REQUIRED, "the body must have a Content-Length")
         if len(told) > 9 or int(told) > _MOST_BODY:
             raise _RefusedError(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, f"a body has {_MOST_BODY} bytes at most")
         body = self.rfile.read(int(told))
@@ -218,7 +218,7 @@ class _Handler(BaseHTTPRequestHandler):
         """Send pictures, or only where the camera is, as server-sent events until the page is closed."""
         server = self.server
         if server.pages >= _MOST_PAGES:
-            raise _RefusedError(HTTPStatus.SERVICE_UNAVAILABLE, "too many pages look at this already")
+            raise _RefusedError(HTTPStatus.SERVICE_UNAVAILABLE, "too many pages are connected already")
         server.pages += 1
         self.close_connection = True
         try:

@@ -64,7 +64,7 @@ def inflate(packed: bytes, size: int) -> bytes:
     """
     # zlib takes 0 for no bound at all.
     if size < 1:
-        raise ValueError("it is not as long as it should be")
+        raise ValueError("its length is wrong")
     inflater = zlib.decompressobj()
     try:
         raw = inflater.decompress(packed, size)
@@ -73,14 +73,14 @@ def inflate(packed: bytes, size: int) -> bytes:
     except zlib.error as error:
         raise ValueError("its zlib stream is broken") from error
     if len(raw) != size or more or not inflater.eof:
-        raise ValueError("it is not as long as it should be")
+        raise ValueError("its length is wrong")
     return raw
 
 
 def unpack_stored(raw: bytes | Octets, block: Block, wanted: Sequence[Channel]) -> list[Plane]:
     """Cut bytes into channels: row by row, each row channel by channel."""
     if len(raw) != block.size:
-        raise ValueError("it is not as long as it should be")
+        raise ValueError("its length is wrong")
     sizes = [channel.dtype.itemsize for channel in block.part.channels]
     cut = _cut_rows(np.frombuffer(raw, np.uint8), block, sizes, wanted)
     return [octets.view(c.dtype).reshape(block.shape(c)) for c, octets in zip(wanted, cut, strict=True)]

@@ -84,5 +84,5 @@ def _to_xyz(chromaticities: Sequence[float]) -> NDArray[np.float64]:
         matrix = np.full((3, 3), np.nan)
     if not np.isfinite(matrix).all() or not matrix[1, 1]:
         told = ", ".join(f"{value:g}" for value in chromaticities)
-        raise ValueError(f"its chromaticities are no colors: {told}")
+        raise ValueError(f"its chromaticities are not colors: {told}")
     return matrix

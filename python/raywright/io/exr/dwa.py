@@ -79,7 +79,7 @@ def unpack_dwa(packed: bytes, block: Block, wanted: Sequence[Channel]) -> list[P
         If `packed` does not hold them.
     """
     if not block.part.is_whole:
-        raise ValueError("channels of fewer points than the picture are not read of DWA")
+        raise ValueError("subsampled channels are not supported with DWA compression")
     if len(packed) < _HEAD.size:
         raise ValueError("it is cut short")
     sizes = _Sizes(*_HEAD.unpack_from(packed))
@@ -99,7 +99,7 @@ def unpack_dwa(packed: bytes, block: Block, wanted: Sequence[Channel]) -> list[P
         of_scheme = [c for c, one in zip(channels, schemes, strict=True) if one == scheme]
         size = samples * sum(c.dtype.itemsize for c in of_scheme)
         if count != size:
-            raise ValueError("it is not as long as it should be")
+            raise ValueError("its length is wrong")
         if size == 0:
             continue
         if scheme == _STORED:
@@ -130,7 +130,7 @@ def _cosine_planes(
     blocks = across * down
     count = blocks * sum(map(len, groups))
     if sizes.means != count or sizes.cosines > 63 * count or sizes.cosines_method > 1:
-        raise ValueError("it is not as long as it should be")
+        raise ValueError("its length is wrong")
     averages = exr_integrate(inflate(means, 2 * count)).view("<u2")
     if sizes.cosines_method == 0:
         tokens = exr_huffman(cosines, sizes.cosines)
@@ -173,7 +173,7 @@ def _coefficients(tokens: Words, blocks: int) -> Words:
     last = place[-1] + (63 - place[-1] % 63 if ends[-1] else steps[-1]) if len(tokens) else 0
     crosses = place % 63 + steps > 63
     if last != 63 * blocks or crosses.any():
-        raise ValueError("it has too few cosines, or too many")
+        raise ValueError("its number of cosine coefficients is wrong")
     found = np.zeros((blocks, 64), np.uint16)
     literal = ~is_run
     found[place[literal] // 63, place[literal] % 63 + 1] = tokens[literal]
@@ -219,7 +219,7 @@ def _classify(
                 if rule.colour:
                     slots[rule.colour] = number
         if scheme == _COSINES and channel.kind == 0:
-            raise ValueError("it has integers as cosines")
+            raise ValueError("its cosine coefficients are integers")
         schemes.append(scheme)
     threes = [
         [slots[k] for k in (1, 2, 3)]
@@ -240,7 +240,7 @@ def _read_rules(packed: bytes, at: int) -> tuple[tuple[_Rule, ...], int]:
     while rest:
         suffix, _, rest = rest.partition(b"\0")
         if len(rest) < 2 or rest[0] >> 4 > 3 or rest[0] >> 2 & 3 > 2 or len(rules) == _MOST_RULES:
-            raise ValueError("its rules are broken")
+            raise ValueError("its channel rules are broken")
         flags, kind = rest[:2]
         rules.append(
             _Rule(suffix.decode("utf-8", "replace"), kind, flags >> 2 & 3, flags >> 4, bool(flags & 1))

@@ -110,7 +110,7 @@ def read_header(file: BinaryIO, size: int) -> tuple[Part, int, bool]:
     """
     magic, flags = struct.unpack("<4sI", _exactly(file, 8))
     if magic != MAGIC:
-        raise ValueError("it is no EXR file")
+        raise ValueError("it is not an EXR file")
     numbered = bool(flags & PARTS)
     headers = [_attributes(file)]
     while numbered and (more := _attributes(file)):
@@ -127,7 +127,7 @@ def read_header(file: BinaryIO, size: int) -> tuple[Part, int, bool]:
         table += 8 * int.from_bytes(count, "little")
         if table > size:
             raise ValueError(f"it is cut short: its table of chunks begins at byte {table} of {size}")
-    raise ValueError("it has deep pixels, which are not read")
+    raise ValueError("it has deep pixels, which are not supported")
 
 
 def find_chunks(data: bytes, part: Part, table: int, numbered: bool) -> list[Chunk]:
@@ -206,16 +206,17 @@ def _part(number: int, found: dict[bytes, bytes], tiled: bool) -> Part:
         tiles = found.get(b"tiles", b"")
         tile = struct.unpack("<2I", tiles[:8]) if len(tiles) == 9 else (0, 0)
         if min(tile) < 1:
-            raise ValueError("its header has no size of tiles")
+            raise ValueError("its header has no tile size")
         tile = (min(tile[0], width), min(tile[1], height))
     channels = _channels(found.get(b"channels", b""))
     for channel in channels:
         across, down = channel.sampling
         if tiled and channel.sampling != (1, 1):
-            raise ValueError(f"its channel {channel.name} has fewer points than its tiles")
+            raise ValueError(f"its channel {channel.name} is subsampled, which is not supported with tiles")
         if left % across or top % down or width % across or height % down:
             raise ValueError(
-                f"its channel {channel.name} has every {across} x {down} points of another window"
+                f"its channel {channel.name} is subsampled by {across} x {down}, "
+                "which does not divide its window"
             )
     shown, colors = _shown(found, (left, top, right, bottom)), _chromaticities(found)
     return Part(number, width, height, left, top, shown, colors, compression[0], tile, channels)
@@ -252,9 +253,9 @@ def _channels(data: bytes) -> tuple[Channel, ...]:
         name = data[at:end].decode("utf-8", "replace")
         kind, is_perceptual, *sampling = struct.unpack_from("<iB3x2i", data, end + 1)
         if not 0 <= kind <= 2:
-            raise ValueError(f"its channel {name} is of no known type")
+            raise ValueError(f"its channel {name} has an unknown type")
         if not 1 <= min(sampling) <= max(sampling) <= _MOST_SAMPLING:
-            raise ValueError(f"its channel {name} has every {sampling[0]} x {sampling[1]} points")
+            raise ValueError(f"its channel {name} is subsampled by {sampling[0]} x {sampling[1]}")
         found.append(Channel(name, kind, bool(is_perceptual), start, (sampling[0], sampling[1])))
         start += found[-1].dtype.itemsize
         at = end + 17

@@ -74,7 +74,7 @@ class Accessors:
         elif "bufferView" in accessor:
             array = self._elements(accessor, kind, columns, count)
         elif count * columns * kind.itemsize > _MOST_ZEROS:
-            raise ValueError(f"{accessor.place} has {count} elements that are nowhere in the file")
+            raise ValueError(f"{accessor.place} has {count} elements without data in the file")
         else:
             array = np.zeros((count, columns), kind)
         if "sparse" in accessor:

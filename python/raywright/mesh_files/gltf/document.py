@@ -199,14 +199,14 @@ def _chunks(data: bytes) -> tuple[memoryview, memoryview | None]:
 
 def _json(text: memoryview) -> Any:
     def constant(name: str) -> NoReturn:
-        raise ValueError(f"its JSON holds {name}, which is no number")
+        raise ValueError(f"its JSON holds {name}, which is not a number")
 
     try:
         return json.loads(bytes(text).decode("utf-8-sig"), parse_constant=constant)
     except RecursionError:
         raise ValueError("its JSON is nested too deep") from None
     except UnicodeDecodeError as error:
-        raise ValueError(f"its JSON is no UTF-8 at byte {error.start}") from None
+        raise ValueError(f"its JSON is not UTF-8 at byte {error.start}") from None
     except json.JSONDecodeError as error:
         raise ValueError(f"its JSON is broken at character {error.pos}: {error.msg}") from None
 

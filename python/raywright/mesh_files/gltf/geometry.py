@@ -140,7 +140,9 @@ def _faces(corners: NDArray[np.int64], mode: int, primitive: Part) -> NDArray[np
     """Return the triangles of a list, a strip or a fan of corners (3.7.2.1)."""
     if mode == _TRIANGLES:
         if len(corners) % 3:
-            raise ValueError(f"{primitive.place} has {len(corners)} corners of triangles, which is no triple")
+            raise ValueError(
+                f"{primitive.place} has {len(corners)} corners of triangles, which is not a multiple of 3"
+            )
         return corners.reshape(-1, 3)
     first = np.arange(max(len(corners) - 2, 0))
     if mode == _FAN:

@@ -66,12 +66,12 @@ class Geometry:
     Raises
     ------
     ValueError
-        If it is no text, a number cannot be read, or a face has a vertex that is not there.
+        If it is not a text file, a number cannot be read, or a face has a vertex that is not there.
     """
 
     def __init__(self, text: bytes, whole: bool = False) -> None:
         if b"\0" in text:
-            raise ValueError("it is no text")
+            raise ValueError("it is not a text file")
         tables: dict[bytes, list[bytes]] = {b"v": [], b"vt": [], b"vn": []}
         self.libraries: list[bytes] = []
         self._faces: dict[str | None, list[bytes]] = {}
@@ -174,7 +174,7 @@ def _table(lines: list[bytes], what: str, least: int) -> Floats:
         raise ValueError(f"{what} must have shape (N, {least}), and one is {line}")
     numbers = _numbers(b" ".join(lines), np.float64)
     if len(numbers) != counts.sum():
-        raise ValueError(f"{what} have {_no_number(lines)}, which is no number")
+        raise ValueError(f"{what} have {_no_number(lines)}, which is not a number")
     first = np.cumsum(counts) - counts
     return np.asarray(numbers[first[:, np.newaxis] + np.arange(columns)], np.float64)
 

@@ -42,7 +42,7 @@ def _light(part: Part, node: Node) -> Light | None:
         return PointLight(position, amount)
     length = np.linalg.norm(node.world[:3, 2])
     if not length > 0:
-        raise ValueError(f"{node.part.place} is scaled to nothing, and has a light with a direction")
+        raise ValueError(f"{node.part.place} has a scale of 0, and a light with a direction")
     ahead = -node.world[:3, 2] / length
     if kind == "directional":
         return DirectionalLight(ahead, amount)

@@ -61,9 +61,9 @@ class Context:
                 return value
             name = value.get("id")
             if name not in self._named:
-                raise SceneError(f"{where}: there is nothing of id {name!r}")
+                raise SceneError(f"{where}: there is no object of id {name!r}")
             value = self._named[name]
-        raise SceneError(f"{where}: references go round in a circle")
+        raise SceneError(f"{where}: references are cyclic")
 
     def warn(self, plugin: "Plugin", message: str) -> None:
         """Warn of a plugin, once for all of its type."""

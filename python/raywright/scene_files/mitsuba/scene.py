@@ -93,7 +93,7 @@ def from_mitsuba(
     weld_tolerance(weld)
     if isinstance(scene, Mapping):
         if parameters:
-            raise ValueError("parameters are of an XML file; a dict has none")
+            raise ValueError("parameters are for XML files; a dict has none")
         tree, folders = scene, [Path("." if folder is None else folder)]
     elif isinstance(scene, str | PathLike):
         tree, folders = read_xml(Path(scene), parameters or {}, None if folder is None else Path(folder))
@@ -143,7 +143,7 @@ def _read(scene: Plugin, number: int, weld: Weld) -> Shot:
     eye = looking[number]
     asked = settings.integrator(integrators[0] if integrators else None)
     if asked.hidden and any(shapes.shines(one) for one in found):
-        integrators[0].warn("hide_emitters hides what is around: surfaces that shine are seen")
+        integrators[0].warn("hide_emitters hides environments only: emissive surfaces stay visible")
     if asked.unaimed:
         # No ray hits a light without extent.
         lights = []

@@ -55,7 +55,7 @@ def _start(path: Path, data: bytes, index: int) -> tuple[int, int]:
     """Return where a mesh begins after its magic number, and the version."""
     magic, version = struct.unpack_from("<HH", data)
     if magic != _MAGIC:
-        raise SceneError(f"{path} is no serialized mesh")
+        raise SceneError(f"{path} is not a serialized mesh")
     if version not in (3, 4):
         raise SceneError(f"{path} is a serialized mesh of version {version}; 3 and 4 are read")
     if index == 0:

@@ -120,10 +120,10 @@ def _direct(plugin: Plugin) -> Asked:
     # Either strategy alone finds the same light on average, except light that only the other can find.
     if surface == 0:
         plugin.warn(
-            "without bsdf_samples mirrors and smooth glass would be black; here they show what shines"
+            "without bsdf_samples mirrors and smooth glass would be black; here they reflect emitters"
         )
     elif light == 0:
-        plugin.warn("without emitter_samples pictures are noisier in Mitsuba than here, and else the same")
+        plugin.warn("without emitter_samples pictures are noisier in Mitsuba than here, but otherwise equal")
     return Asked(Direct(max(light, 1), max(surface, 1)), unaimed=light == 0)
 
 

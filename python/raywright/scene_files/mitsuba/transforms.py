@@ -54,7 +54,7 @@ def _step(tag: str, attributes: dict[str, str]) -> Matrix:
         size = 3 if len(found) == 9 else 4
         matrix[:size, :size] = np.reshape(found, (size, size))
     else:
-        raise ValueError(f"<{tag}> is no step of a <transform>")
+        raise ValueError(f"<{tag}> is not a step of a <transform>")
     return matrix
 
 
@@ -74,7 +74,7 @@ def look_at(origin: Matrix, target: Matrix, up: Matrix) -> Matrix:
     forward = forward / np.linalg.norm(forward)
     left = np.cross(frame(forward)[0] if not up.any() else up, forward)
     if not np.linalg.norm(left) > 1e-8 * np.linalg.norm(up):
-        raise ValueError("<lookat> must have an up that is not along the view")
+        raise ValueError("<lookat> must have an up that is not parallel to the view")
     left = left / np.linalg.norm(left)
     matrix = np.eye(4)
     matrix[:3] = np.column_stack([left, np.cross(forward, left), forward, origin])

@@ -167,7 +167,7 @@ def _spectrum(plugin: Plugin, nm: NDArray[np.float64], values: NDArray[np.float6
     if len(nm) < 2 or (np.diff(nm) <= 0).any():
         plugin.fail("wavelengths must be two or more, and rise")
     if len(values) != len(nm):
-        plugin.fail(f"values must be as many as the {len(nm)} wavelengths, got {len(values)}")
+        plugin.fail(f"values must have length {len(nm)} like wavelengths, got {len(values)}")
     if (values < 0).any():
         plugin.fail(f"values must be at least 0, got {values.min():g}")
     return Spectrum(nm, values)

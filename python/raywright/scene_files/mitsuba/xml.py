@@ -73,7 +73,7 @@ def read_xml(
     for name in parameters:
         if name not in reader.asked:
             known = ", ".join(sorted(reader.asked)) or "none"
-            raise SceneError(f"{name} is no parameter of {path}; it has {known}")
+            raise SceneError(f"{name} is not a parameter of {path}; it has {known}")
     return tree, reader.folders
 
 
@@ -93,7 +93,7 @@ class _Reader:
     def file(self, path: Path, depth: int) -> Tree:
         root = elements(path)
         if root.tag not in _OBJECTS:
-            raise SceneError(f"{path}, line {root.line}: <{root.tag}> is no plugin")
+            raise SceneError(f"{path}, line {root.line}: <{root.tag}> is not a plugin")
         if path.parent not in self.folders:
             # Folders given by the user come last.
             self.folders.insert(max(len(self.folders) - self._given, 0), path.parent)
@@ -194,7 +194,7 @@ class _Reader:
         try:
             return readers[tag](text if tag == "string" else text.strip())
         except ValueError:
-            self._fail(element, f"{text!r} is no value of <{tag}>")
+            self._fail(element, f"{text!r} is not a value of <{tag}>")
 
     def _vector(self, element: Element, attributes: dict[str, str]) -> list[float]:
         try:

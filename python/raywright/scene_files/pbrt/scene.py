@@ -125,7 +125,7 @@ class _Reader:
         """Read a file, and those that it includes."""
         self._files.append(path)
         if depth > _MOST_DEPTH or len(self._files) > _MOST_FILES:
-            raise PbrtError(f"{path}: files include each other without end")
+            raise PbrtError(f"{path}: files include each other recursively")
         if not path.exists():
             raise FileNotFoundError(errno.ENOENT, "no such file", str(path))
         for one in directives(path, self.notes):
@@ -190,7 +190,7 @@ class _Reader:
                 raise PbrtError(f"{one.where}: a colour space must be srgb")
         elif name in ("MakeNamedMedium", "MediumInterface"):
             if name == "MakeNamedMedium" or any(one.texts):
-                raise PbrtError(f"{one.where}: {name} is not supported: there are no media")
+                raise PbrtError(f"{one.where}: {name} is not supported, as media are not")
         elif name in ("Camera", "Film", "PixelFilter", "Sampler", "Integrator"):
             self._option(one)
         else:
@@ -250,7 +250,7 @@ class _Reader:
             self._shape(texts[0], parameters.over(self._defaults("shape")))
         elif one.name == "ObjectBegin":
             if self._group is not None:
-                raise PbrtError(f"{one.where}: an object within an object")
+                raise PbrtError(f"{one.where}: objects cannot be nested")
             self._kept.append(state)
             self._group = texts[0]
             self._groups[texts[0]] = []
@@ -293,7 +293,7 @@ class _Reader:
 
     def _restore(self, one: Directive, only_matrix: bool = False) -> None:
         if not self._kept:
-            raise PbrtError(f"{one.where}: {one.name} without its beginning")
+            raise PbrtError(f"{one.where}: {one.name} without its begin")
         before = self._kept.pop()
         self._state = replace(self._state, matrix=before.matrix) if only_matrix else before
 
@@ -367,7 +367,7 @@ def _step(one: Directive) -> Floats:
         forward = target - eye
         right = np.cross(up, forward)
         if not np.linalg.norm(right) > 0:
-            raise PbrtError(f"{one.where}: LookAt must have an up that is not along the view")
+            raise PbrtError(f"{one.where}: LookAt must have an up that is not parallel to the view")
         forward, right = forward / np.linalg.norm(forward), right / np.linalg.norm(right)
         placed = np.eye(4)
         placed[:3] = np.column_stack([right, np.cross(forward, right), forward, eye])

@@ -46,7 +46,7 @@ def colour(parameters: Parameters, name: str, default: float | Triple, emits: bo
     if plain and kind == "spectrum" and len(values) >= 4 and len(values) % 2 == 0:
         table = np.array(values, np.float64).reshape(-1, 2)
         if (np.diff(table[:, 0]) <= 0).any():
-            parameters.fail(f"{name} must have wavelengths that rise")
+            parameters.fail(f"{name} must have increasing wavelengths")
         rgb = np.maximum(_core.spectrum_rgb(table.tolist(), not emits), 0.0)
         return _bright(rgb) if emits else _triple(rgb)
     parameters.fail(f"{name} must be an rgb or a spectrum of numbers, got a {kind} of {_told(values)}")

@@ -73,7 +73,7 @@ def directives(path: Path, notes: Notes) -> Iterator[Directive]:
         where = f"{path}, line {word.line}"
         name = word.text
         if word.quoted or not (name in _NUMBERS or name in _TEXTS or name in (*_BARE, "ActiveTransform")):
-            raise PbrtError(f"{where}: {name[:40]!r} is no directive that is known")
+            raise PbrtError(f"{where}: {name[:40]!r} is not a known directive")
         numbers = words.numbers(_NUMBERS[name], where) if name in _NUMBERS else ()
         texts: list[str] = [words.time(where)] if name == "ActiveTransform" else []
         for _ in range(_TEXTS.get(name, 0)):
@@ -83,7 +83,7 @@ def directives(path: Path, notes: Notes) -> Iterator[Directive]:
                     # A single name applies to both sides.
                     words.back(text)
                     break
-                raise PbrtError(f"{where}: {name} must have a text in quotes")
+                raise PbrtError(f"{where}: {name} must have a quoted string")
             texts.append(text.text)
         takes = name in _TEXTS and name not in ("Include", "Import", "NamedMaterial", "MediumInterface")
         given = _parameters(words) if takes else {}
@@ -140,7 +140,7 @@ class _Words:
             return word
         for match in self._matches:
             if self._text[self._at : match.start()].strip():
-                raise PbrtError(f"{self.path}, line {self._line}: a text in quotes does not end")
+                raise PbrtError(f"{self.path}, line {self._line}: a quoted string does not end")
             self._at = match.end()
             if match[5] is not None:
                 self._line += 1
@@ -148,7 +148,7 @@ class _Words:
                 quoted = match[1] is not None
                 return Word(match[1] if quoted else match[3] or match[4], quoted, self._line)
         if self._text[self._at :].strip():
-            raise PbrtError(f"{self.path}, line {self._line}: a text in quotes does not end")
+            raise PbrtError(f"{self.path}, line {self._line}: a quoted string does not end")
         return None
 
     def back(self, word: Word | None) -> None:
@@ -157,7 +157,7 @@ class _Words:
     def numbers(self, count: int, where: str) -> tuple[float, ...]:
         values = [value for value in self._list(count, where) if isinstance(value, float)]
         if len(values) != count:
-            raise PbrtError(f"{where}: {count} numbers are expected, got {len(values)}")
+            raise PbrtError(f"{where}: {count} numbers expected, got {len(values)}")
         return tuple(values)
 
     def time(self, where: str) -> str:
@@ -196,4 +196,4 @@ class _Words:
         try:
             return float(word.text)
         except ValueError:
-            raise PbrtError(f"{where}: {word.text[:40]!r} is no value") from None
+            raise PbrtError(f"{where}: {word.text[:40]!r} is not a value") from None

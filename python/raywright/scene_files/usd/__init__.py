@@ -100,7 +100,7 @@ def _shot(path: Path, notes: Notes, width: int | None, height: int | None) -> tu
         found, eye = _read(stage, reading)
         shapes_of = found["shape"]
         if not shapes_of:
-            raise ValueError("it holds nothing that is seen" + _why(stage, reading))
+            raise ValueError("it has nothing visible" + _why(stage, reading))
         shot = shown(shapes_of, found["light"], eye, up=up, width=width, height=height)
         around = found["around"]
         if found["light"] or around or any(getattr(one, "emission", None) is not None for one in shapes_of):

@@ -67,7 +67,7 @@ def _faces(mesh: Any, reading: Reading) -> tuple[Floats, Integers, Integers]:
         or counts.sum() != len(indices)
         or (len(indices) and not (indices.min() >= 0 and indices.max() < len(points)))
     ):
-        raise ValueError(f"{mesh.GetPath()} has faces that do not fit its points")
+        raise ValueError(f"{mesh.GetPath()} has face counts or indices that do not match its points")
     return points, counts, indices
 
 
