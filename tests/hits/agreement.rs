@@ -1,4 +1,4 @@
-//! Every accelerator, at every width and level, gives the same hits, bit for bit, and these are the right ones.
+//! Agreement of all accelerators, at every width and level: hits are bit-identical and correct.
 
 use super::super::cases;
 use super::triangles::{Random, Triangles, accelerators, agreed, bits, hits, levels};
@@ -34,7 +34,7 @@ fn grids_of_small_integers_with_ties_and_coplanar_rays() {
 fn of_coincident_triangles_the_first_is_hit() {
     let mut random = Random(3);
     let first: Vec<_> = (0..40).map(|_| [0; 3].map(|_| random.grid(6).as_vec3())).collect();
-    // Forty copies of each, rotated through corners and both windings, and far apart in number.
+    // Forty copies of each, with rotated corners and both orientations, at distant indices.
     let turn = |k: usize, [a, b, c]: [Vec3; 3]| [[a, b, c], [b, c, a], [c, b, a]][k % 3];
     let triangles = Triangles((0..1600).map(|i| turn(i / 40, first[i % 40])).collect());
     let rays: Vec<_> = (0..500)
@@ -66,7 +66,7 @@ fn a_million_copies_of_one_triangle() {
 fn origins_far_away() {
     let mut random = Random(4);
     let soup = random.soup(80, 0.5);
-    // Beyond 2¹⁰⁰ extents boxes cannot cull, beyond 1e38 an f32 holds no origin, beyond 1e154 an f64 no square.
+    // Boxes are given up beyond 2¹⁰⁰ extents, an f32 origin overflows beyond 1e38, and an f64 square beyond 1e154.
     for exponent in [2, 4, 6, 7, 8, 10, 12, 14, 15, 16, 17, 18, 20, 25, 29, 30, 31, 37, 38, 39, 60, 150, 155, 300] {
         let distance = 10f64.powi(exponent);
         let rays: Vec<_> = (0..cases(80))
@@ -114,7 +114,7 @@ fn huge_and_tiny_together() {
 #[test]
 fn coordinates_of_any_size() {
     let mut random = Random(6);
-    // Products of coordinates exceed the range of an f32 at either end.
+    // Products of coordinates under- and overflow f32 at the ends of its range.
     for exponent in (-148..=126).step_by(2) {
         let scale = 2f64.powi(exponent);
         let soup = random.soup(30, 0.5);
@@ -123,7 +123,7 @@ fn coordinates_of_any_size() {
             .map(|_| {
                 let origin = random.point(2.0) * scale;
                 let way = random.target(&scaled) - origin;
-                // Nearly along an axis: large coordinates meet small parts of the direction.
+                // Nearly along an axis: large coordinates meet small components of the direction.
                 let squeezed = random.of(&[DVec3::X, DVec3::Y, DVec3::Z]) + random.of(&[1.0, 1e-3, 1e-6]);
                 Ray::new(origin + way * (DVec3::ONE - squeezed), way * squeezed * random.of(&[1.0, 1e-30, 1e30]))
             })
@@ -143,7 +143,7 @@ fn directions_of_any_length() {
         let found =
             agreed(&soup, &rays.iter().map(|r| Ray { direction: r.direction * scale, ..*r }).collect::<Vec<_>>());
         for (found, wanted) in found.iter().zip(&wanted) {
-            // A power of two only changes the unit of t.
+            // Scaling by a power of two only changes the unit of t.
             assert_eq!(bits(&Hit { t: found.t * scale, ..*found }), bits(wanted));
         }
     }
@@ -228,7 +228,7 @@ fn both_ends_of_the_interval_count() {
 fn neither_the_batch_nor_the_order_changes_an_answer() {
     let mut random = Random(11);
     let soup = random.soup(3000, 0.05);
-    // Coherent and incoherent batches, for different kernels.
+    // Some batches are coherent and some are not, which different kernels process.
     let eye = DVec3::new(0.0, 0.0, 3.0);
     let mut rays: Vec<_> = (0..400).map(|i| Ray::new(eye, DVec3::new(f64::from(i) * 2e-3 - 0.4, 0.01, -1.0))).collect();
     rays.extend(random.aimed(&soup, 600, 2.0));
@@ -238,7 +238,7 @@ fn neither_the_batch_nor_the_order_changes_an_answer() {
         assert!(hits(&wanted) > 500);
         let mut order: Vec<usize> = (0..rays.len()).collect();
         for batch in [1, 2, 7, 8, 9, 63, 64, 65, 200, 1000] {
-            // Another order each time (Fisher and Yates 1938).
+            // A random order each time (Fisher and Yates 1938).
             for i in (1..order.len()).rev() {
                 order.swap(i, random.below(i + 1));
             }
@@ -289,7 +289,7 @@ fn coordinate() -> impl Strategy<Value = f32> {
     prop_oneof![
         4 => (-3i32..=3).prop_map(|x| x as f32),
         4 => -1f32..1.0,
-        // Beside small integers.
+        // Close to small integers.
         2 => (-3i32..=3, -2i32..=2).prop_map(|(x, k)| x as f32 * (1.0 + k as f32 * f32::EPSILON)),
         1 => any::<f32>().prop_filter("finite", |x| x.is_finite()),
     ]

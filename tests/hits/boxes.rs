@@ -1,11 +1,11 @@
-//! A box test never rejects a true hit: triangles that fill their flat boxes to the border, and rays that graze them.
+//! Box tests never reject a true hit: triangles that fill their flat boxes, and grazing rays.
 
 use super::super::cases;
 use super::triangles::{Random, Triangles, agreed, hits};
 use proptest::prelude::*;
 use raywright::math::{DVec3, Ray, Vec3};
 
-/// Right triangles in axis-aligned planes, each half of its box, so that every leaf's box has no volume.
+/// Right triangles in axis-aligned planes, each half of its box, so that each leaf's box has no volume.
 fn flat(random: &mut Random, count: usize, size: f64) -> Triangles {
     let triangle = |_| {
         let corner = random.point(1.0);
@@ -18,14 +18,14 @@ fn flat(random: &mut Random, count: usize, size: f64) -> Triangles {
     Triangles((0..count).map(triangle).collect())
 }
 
-/// A point exactly on the border of a triangle: a corner, or a dyadic point of an edge.
+/// An exact point on the border of a triangle: a corner, or a point of an edge at a fraction of a power of two.
 fn on_border(random: &mut Random, triangles: &Triangles) -> DVec3 {
     let triangle = triangles.0[random.below(triangles.0.len())].map(|c| c.as_dvec3());
     let (i, k) = (random.below(3), random.below(9));
     triangle[i] + (triangle[(i + 1) % 3] - triangle[i]) * (k as f64 / 8.0)
 }
 
-/// Components of a direction: zero, tiny and large.
+/// Direction components from zero through tiny to large.
 const PARTS: [f64; 16] =
     [0.0, -0.0, 5e-324, -5e-324, 1e-310, 1e-300, -1e-100, 1e-40, -1e-30, 1e-19, 1e-18, -1e-12, 1e-8, -1e-7, 1e-3, 1.0];
 
@@ -41,7 +41,7 @@ fn rays_along_the_axes_and_nearly_so() {
                 let axis = random.below(3);
                 let mut direction = DVec3::new(random.of(&PARTS), random.of(&PARTS), random.of(&PARTS));
                 direction[axis] = random.of(&[1.0, -1.0]);
-                // Whole steps back, which often round to nothing across the axis.
+                // Whole steps back, whose components across the axis often round to zero.
                 Ray::new(target - direction * random.of(&[0.0, 1.0, 2.0, 7.0, 1000.0]), direction)
             })
             .collect();
@@ -55,7 +55,7 @@ fn rays_within_the_planes_of_boxes() {
     let mut random = Random(2);
     let mut met = 0;
     for _ in 0..40 {
-        // On a grid of eighths the planes of many boxes coincide, and rays lie in them exactly.
+        // On a grid of eighths, planes of many boxes coincide and contain rays exactly.
         let mut triangles = flat(&mut random, 150, 0.5);
         for corner in triangles.0.iter_mut().flatten() {
             *corner = (*corner * 8.0).round() / 8.0;
@@ -96,7 +96,7 @@ fn rays_that_graze_flat_boxes() {
 #[test]
 fn rays_from_far_that_only_just_arrive() {
     let mut random = Random(4);
-    // Large triangles, which a rounded far origin does not miss by much, and a box of the whole scene.
+    // Large triangles, so that distant rounded origins still hit near their borders, and a box that is the whole scene.
     for exponent in (0..=110).step_by(2) {
         let triangles = flat(&mut random, 40, 2.0);
         let distance = 2f64.powi(exponent);
@@ -105,7 +105,7 @@ fn rays_from_far_that_only_just_arrive() {
                 let target = on_border(&mut random, &triangles);
                 let way = random.point(1.0);
                 let origin = target - way * distance;
-                // Back to the target, as exact as f64 allows.
+                // The direction to the target, rounded to f64.
                 Ray::new(origin, (target - origin) / distance)
             })
             .collect();
@@ -129,7 +129,7 @@ fn intervals_that_end_at_the_hit() {
             })
             .collect();
         let found = agreed(&triangles, &rays);
-        // The box of the hit triangle must not begin after t, nor end before it.
+        // The box of the triangle that was hit must not begin after t or end before it.
         let exactly: Vec<_> = rays
             .iter()
             .zip(&found)
@@ -151,7 +151,7 @@ proptest! {
         count in 1usize..60,
         exponents in [-60i32..60, -60i32..60, -60i32..60],
     ) {
-        // Stretched by powers of two, so that axes differ in size and flat triangles stay flat.
+        // Scaled by powers of two, with a different size per axis; flat triangles stay flat.
         let mut random = Random(seed);
         let stretch = DVec3::from_array(exponents.map(|e| 2f64.powi(e)));
         let triangles = flat(&mut random, count, 0.5);

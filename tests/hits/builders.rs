@@ -1,4 +1,4 @@
-//! However a tree is built and improved, it is valid and gives the hits of brute force, bit for bit.
+//! Builders and optimizers: every tree is valid and gives the hits of brute force, bit for bit.
 
 use super::triangles::{Random, Triangles, bits, levels};
 use raywright::accel::bvh::build::halves::Way;
@@ -9,10 +9,10 @@ use raywright::accel::bvh::{self, Options, Quality};
 use raywright::accel::{Accelerator, BruteForce, Nearest};
 use raywright::math::{DVec3, Hit, Ray, Vec3};
 
-/// Spatial splits with a large budget.
+/// Spatial splits without a limit on their number.
 pub const SPATIAL: Builder = Builder::Spatial { bins: None, budget: 4.0 };
 
-/// Every builder.
+/// All builders.
 pub const BUILDERS: [Builder; 9] = [
     Builder::Binned { bins: Some(2) },
     Builder::Sweep,
@@ -25,13 +25,13 @@ pub const BUILDERS: [Builder; 9] = [
     Builder::Halves(Way::Mean),
 ];
 
-/// None, one, and all.
+/// No optimizer, one, and all.
 pub fn optimisers() -> [Optimisers; 3] {
     let both = Optimisers::new([Optimiser::Treelet, Optimiser::Reinsertion]).unwrap();
     [Optimisers::NONE, Optimisers::new([Optimiser::Treelet]).unwrap(), both]
 }
 
-/// Trees of every builder and every optimiser, and of every quality.
+/// Trees of every builder and optimizer, and of every quality.
 fn trees(triangles: &Triangles) -> Vec<Box<dyn Accelerator>> {
     let level = levels().last().unwrap();
     let chosen = BUILDERS.into_iter().flat_map(|builder| {
@@ -49,7 +49,7 @@ fn trees(triangles: &Triangles) -> Vec<Box<dyn Accelerator>> {
     trees
 }
 
-/// Number of rays that hit; panics unless all trees agree with brute force.
+/// Return the number of hits, after checking that all trees agree with brute force.
 fn agreed(triangles: &Triangles, rays: &[Ray]) -> usize {
     let ask = |accelerator: &dyn Accelerator| {
         let (mut hits, mut occluded) = (vec![Hit::MISS; rays.len()], vec![false; rays.len()]);

@@ -1,4 +1,4 @@
-//! On every accelerator, cones touch the same triangles as one by one, and these are the right ones.
+//! Cone queries: every accelerator agrees with a test of each triangle, and the results are correct.
 
 use super::triangles::{Random, Triangles, accelerators};
 use proptest::prelude::*;
@@ -17,14 +17,14 @@ pub fn cones(random: &mut Random, triangles: &Triangles, count: usize, reach: f6
     (0..count).map(|_| one()).collect()
 }
 
-/// Results of all accelerators, bit for bit: distances and primitives of each cone.
+/// Return the distances and primitives of each cone after checking that all accelerators agree bit for bit.
 pub fn agreed(triangles: &Triangles, cones: &[Option<SolidCone>]) -> Vec<Vec<(u64, u32)>> {
     let wanted: Vec<Vec<_>> = cones
         .iter()
         .map(|cone| {
             let touch = |p| Some((cone.as_ref()?.nearest(triangles.corners(p))?.to_bits(), p));
             let finite = (0..triangles.count() as u32).filter(|&p| triangles.is_finite(p));
-            // Distances are not negative, so the order of their bits is their own.
+            // Distances are nonnegative, so their bits sort like numbers.
             let mut touches: Vec<_> = finite.filter_map(touch).collect();
             touches.sort_unstable();
             touches
@@ -45,7 +45,7 @@ fn all_accelerators_agree() {
     let mut random = Random(11);
     for (count, size, reach) in [(0, 1.0, 1.0), (1, 1.0, 2.0), (9, 0.5, 2.0), (300, 0.3, 3.0), (1500, 0.05, 2.0)] {
         let mut soup = random.soup(count, size);
-        // Points, lines, and triangles that cannot be hit.
+        // Points, segments, and triangles that cannot be hit.
         for i in (0..count).step_by(7) {
             soup.0[i][2] = soup.0[i][0];
             soup.0[i][1] = if i % 2 == 0 { soup.0[i][0] } else { soup.0[i][1] };
@@ -136,7 +136,7 @@ fn point() -> impl Strategy<Value = DVec3> {
     prop::array::uniform3(coordinate()).prop_map(DVec3::from_array)
 }
 
-/// Distance of a point to the cone, from the angle alone.
+/// Return the distance of a point outside a cone, from the angle alone.
 fn outside(cone: &SolidCone, angle: f64, p: DVec3) -> f64 {
     let q = p - cone.apex;
     let turned = q.cross(cone.axis).length().atan2(q.dot(cone.axis)) - angle.to_radians();
@@ -167,8 +167,8 @@ proptest! {
         }
     }
 
-    /// An independent way by branch and bound: the squared distance is least over the part of the triangle in the cone.
-    /// The triangle is split repeatedly, and only parts that may have a nearer point remain.
+    /// An independent method: the minimum squared distance over the part of the triangle in the cone, by branch and
+    /// bound. The triangle is subdivided, and parts are kept that may contain a nearer point in the cone.
     #[test]
     fn distances_are_those_of_branch_and_bound(
         corners in [point(), point(), point()], apex in point(), way in point(),
@@ -177,7 +177,7 @@ proptest! {
         prop_assume!(way.length() > 1e-6);
         let cone = SolidCone::new(apex, way, angle, f64::INFINITY).unwrap();
         let size = corners.iter().map(|c| (*c - apex).length()).fold(0.0, f64::max);
-        // Bounds: the lower one from points that miss the cone by little, the upper one from points inside.
+        // Bounds over points slightly outside the cone, and over points inside.
         let (mut low, mut high) = (f64::INFINITY, f64::INFINITY);
         let mut queue = vec![(corners, 0)];
         while let Some((t, depth)) = queue.pop() {

@@ -1,4 +1,5 @@
-//! Every kernel at every level gives the hits of brute force: for single rays, a few, neighbours and scattered ones.
+//! Kernels: each gives the hits of brute force at each level, for single rays, small batches, coherent and incoherent
+//! ones.
 
 use super::super::fans::{Soup, fans, soup, soups, sticks};
 use super::triangles::levels;
@@ -6,14 +7,14 @@ use raywright::accel::bvh::{self, Options};
 use raywright::accel::{Accelerator, BruteForce};
 use raywright::math::{Hit, HitColumns, Numbers, Ray, RayColumns, Vectors};
 
-/// The same rays in incoherent order.
+/// The same rays in an incoherent order.
 fn scattered(rays: &[Ray]) -> Vec<Ray> {
     let mut rays = rays.to_vec();
     rays.sort_by_key(|r| (r.direction.x.to_bits() ^ r.origin.y.to_bits()).wrapping_mul(0x9e37_79b9));
     rays
 }
 
-/// Traces rays `at_once` at a time, and compares closest hits and occlusion.
+/// Trace rays in batches of a size, and compare closest hits and occlusion.
 fn agrees(tree: &dyn Accelerator, rays: &[Ray], wanted: &[Hit], at_once: usize) {
     for (rays, wanted) in rays.chunks(at_once).zip(wanted.chunks(at_once)) {
         let mut hits = vec![Hit::MISS; rays.len()];
@@ -55,7 +56,7 @@ fn kernels_agree_with_brute_force_bit_for_bit() {
     assert!(met > 50_000, "{met} rays hit anything");
 }
 
-/// Rays by columns; f32 if they are.
+/// Pass rays as columns, in f32 if possible.
 fn by_columns(rays: &[Ray], single: bool, ask: impl FnOnce(&RayColumns<'_>)) {
     let column = |of: fn(&Ray) -> f64| rays.iter().map(of).collect::<Vec<f64>>();
     let origin = [column(|r| r.origin.x), column(|r| r.origin.y), column(|r| r.origin.z)];
@@ -90,7 +91,7 @@ fn rays_by_columns_are_answered_as_the_same_rays_one_after_the_other() {
                     (ray.origin, ray.direction) = (ray.origin.as_vec3().as_dvec3(), ray.direction.as_vec3().as_dvec3());
                 }
             }
-            // Also incoherent, and in numbers with every remainder.
+            // Incoherent as well, in batches of every remainder.
             if which % 3 == 2 {
                 rays.sort_by_key(|r| (r.direction.x.to_bits() ^ r.origin.y.to_bits()).wrapping_mul(0x9e37_79b9));
             }

@@ -1,4 +1,4 @@
-//! Rays to hits: every accelerator gives the same answers, and these are the exact ones.
+//! Tests of intersection: all accelerators give the same, exact hits.
 
 mod agreement;
 mod boxes;

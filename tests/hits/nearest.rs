@@ -1,4 +1,4 @@
-//! Nearest points: every accelerator gives the same ones, bit for bit, and they are the right ones.
+//! Nearest points: all accelerators give the same bits, and correct ones.
 
 use super::signs::integer;
 use super::triangles::{Random, Triangles, levels};
@@ -9,7 +9,7 @@ use raywright::accel::{Accelerator, BruteForce, Nearest, Primitives};
 use raywright::math::{DVec3, Vec3};
 use raywright::shapes::triangle::{NearestPoint, nearest_point, point_of};
 
-/// Triangles whose corners are f64.
+/// Triangles with f64 corners.
 #[derive(Clone, Debug)]
 pub struct Doubles(Vec<[DVec3; 3]>);
 
@@ -33,7 +33,7 @@ impl From<&Triangles> for Doubles {
     }
 }
 
-/// The same, stored as f64 in any case.
+/// The same triangles, always stored as f64.
 struct Kept<'a>(&'a Doubles);
 
 impl Primitives for Kept<'_> {
@@ -50,7 +50,7 @@ impl Primitives for Kept<'_> {
     }
 }
 
-/// Trees of both widths and brute force at every level, at every lossless precision.
+/// Trees of both widths and brute force, at every level and every lossless precision.
 fn accelerators(triangles: &Doubles) -> Vec<(String, Box<dyn Accelerator>)> {
     let mut all: Vec<(String, Box<dyn Accelerator>)> = Vec::new();
     for level in levels() {
@@ -69,7 +69,7 @@ fn bits(nearest: &Nearest) -> ([u64; 6], u32) {
     ([*distance, p.x, p.y, p.z, uv[0], uv[1]].map(f64::to_bits), *primitive)
 }
 
-/// The nearest points, after a check that every accelerator gives the same bits, one by one and in a batch.
+/// Return the nearest points after checking that all accelerators give the same bits, in batches and one by one.
 pub fn agreed(triangles: &Doubles, points: &[DVec3], max_distances: &[f64]) -> Vec<Nearest> {
     let mut wanted: Option<Vec<Nearest>> = None;
     for (name, accelerator) in accelerators(triangles) {
@@ -89,7 +89,7 @@ pub fn agreed(triangles: &Doubles, points: &[DVec3], max_distances: &[f64]) -> V
     wanted.expect("an accelerator")
 }
 
-/// Triangle by triangle: without a tree.
+/// Return the nearest point by testing each triangle, without a tree.
 fn one_by_one(triangles: &Doubles, point: DVec3) -> (f64, u32) {
     let mut best = (f64::INFINITY, u32::MAX);
     for p in 0..triangles.count() as u32 {
@@ -128,7 +128,7 @@ fn cross(a: &Exact, b: &Exact) -> Exact {
     [(1, 2), (2, 0), (0, 1)].map(|(i, j)| &a[i] * &b[j] - &a[j] * &b[i])
 }
 
-/// The square of the distance, exactly, as a fraction in units of 2⁻²¹⁴⁸.
+/// Return the exact squared distance as a fraction in units of 2⁻²¹⁴⁸.
 fn exact_square(corners: [DVec3; 3], point: DVec3) -> (BigInt, BigInt) {
     let point = exact(point);
     let [a, b, c] = corners.map(|c| minus(&exact(c), &point));
@@ -156,7 +156,7 @@ fn exact_square(corners: [DVec3; 3], point: DVec3) -> (BigInt, BigInt) {
     segments.into_iter().reduce(|a, b| if &b.0 * &a.1 < &a.0 * &b.1 { b } else { a }).expect("three of them")
 }
 
-/// Asserts that a distance is right to within `error`.
+/// Assert that a distance is correct within `error`.
 fn assert_distance(corners: [DVec3; 3], point: DVec3, found: NearestPoint, error: f64) {
     let (square, divisor) = exact_square(corners, point);
     let (distance, error) = (integer(found.distance), integer(error));
@@ -166,8 +166,8 @@ fn assert_distance(corners: [DVec3; 3], point: DVec3, found: NearestPoint, error
     assert!(low.sign() != Sign::Plus || &low * &low * &divisor <= square, "too far: {told}");
 }
 
-/// Asserts the guarantee: an error of 2⁻⁴⁹ of the distance to the farthest corner. The weights belong to a point of the
-/// triangle at about that distance.
+/// Assert the guaranteed accuracy: 2⁻⁴⁹ of the distance to the farthest corner. The weights must be those of a point of
+/// the triangle at about that distance.
 fn assert_promised(corners: [DVec3; 3], point: DVec3) {
     let found = nearest_point(corners, point);
     let farthest = corners.iter().map(|&c| distance(c, point)).fold(0.0, f64::max);
@@ -181,7 +181,7 @@ fn assert_promised(corners: [DVec3; 3], point: DVec3) {
     assert!(off <= 2f64.powi(-46) * farthest + 2f64.powi(-50) * size, "{point} to {corners:?}: off by {off:e}");
 }
 
-/// By halves and a scale, so that nothing overflows on the way.
+/// Scaled down, so that nothing overflows.
 fn distance(a: DVec3, b: DVec3) -> f64 {
     let d = a / 8.0 - b / 8.0;
     let size = d.abs().max_element();
@@ -216,7 +216,7 @@ fn triangles_without_area_are_segments_and_points() {
     let point = at(1.0, 2.0, 2.0);
     assert_eq!(nearest_point([point; 3], DVec3::ZERO), NearestPoint { distance: 3.0, uv: [0.0, 0.0] });
     assert_eq!(nearest_point([point; 3], point).distance, 0.0);
-    // A segment from −1 to 3 along x, with its third corner an end or between.
+    // A segment from −1 to 3 along x, whose third corner is an end or in between.
     for third in [-1.0, 0.0, 0.3, 3.0] {
         for turn in 0..3 {
             let mut corners = [at(-1.0, 0.0, 0.0), at(3.0, 0.0, 0.0), at(third, 0.0, 0.0)];
@@ -259,7 +259,7 @@ fn an_edge_is_as_far_for_both_triangles_that_share_it() {
             1 => middle + random.grid(2),
             _ => random.grid(4),
         };
-        // So thin that the triangle is nothing but this edge.
+        // Both are degenerate, with only this edge.
         let one = nearest_point([a, b, b], point).distance;
         for corners in [[b, a, a], [a, a, b], [b, b, a], [b, a, b], [a, b, a]] {
             assert_eq!(nearest_point(corners, point).distance.to_bits(), one.to_bits());
@@ -316,7 +316,7 @@ fn soups() {
         let mut points: Vec<_> = (0..300).map(|_| random.point(1.5)).collect();
         points.extend((0..300).map(|_| random.target(&soup)));
         points.extend((0..100).map(|i| random.point(1.0) * 10f64.powi(i / 15)));
-        // A coherent sequence of points.
+        // A sequence of neighboring points.
         points.extend((0..300).map(|i| DVec3::splat(f64::from(i) / 150.0 - 1.0)));
         assert_right(&(&soup).into(), &points);
     }
@@ -378,10 +378,10 @@ fn points_far_away() {
     for exponent in [1, 3, 6, 7, 8, 9, 12, 15, 16, 17, 20, 38, 39, 100, 154, 155, 300, 307] {
         let points: Vec<_> = (0..50).map(|_| random.point(1.0) * 10f64.powi(exponent)).collect();
         for (found, &point) in agreed(&soup, &points, &[f64::INFINITY]).iter().zip(&points) {
-            // No triangle is nearer, except for rounding, though beyond 2²⁶ radii it may be another one.
+            // No triangle is nearer except by rounding, though beyond 2²⁶ radii another one may be found.
             let (wanted, _) = one_by_one(&soup, point);
             assert!((found.distance - wanted).abs() <= 4.0 * f64::EPSILON * wanted, "{found:?}, {wanted}");
-            // Where rounding leaves a difference, it is the triangle farthest in that direction.
+            // Where rounding still distinguishes them, it is the extreme one in that direction.
             if exponent > 16 {
                 let way = (point * 10f64.powi(-exponent)).normalize();
                 let reach = soup.0.iter().flatten().map(|c| c.dot(way)).fold(f64::NEG_INFINITY, f64::max);
@@ -435,7 +435,7 @@ fn what_has_no_nearest_point() {
     assert_eq!(found.iter().map(Nearest::is_hit).collect::<Vec<_>>(), [false, false, false, false, true]);
     assert!(found[0].distance == f64::INFINITY && found[0].position.is_nan());
     assert!(!agreed(&Doubles(Vec::new()), &[DVec3::ZERO], &[f64::INFINITY])[0].is_hit());
-    // A distance that overflows f64.
+    // Farther than f64 can represent.
     let far = Doubles(vec![[DVec3::splat(-f64::MAX); 3]]);
     assert!(!agreed(&far, &[DVec3::splat(f64::MAX)], &[f64::INFINITY])[0].is_hit());
     let wide = Doubles(vec![[-DVec3::X * f64::MAX, DVec3::X * f64::MAX, DVec3::Y * f64::MAX]]);
@@ -452,7 +452,7 @@ fn a_tree_that_was_refitted_finds_the_same() {
     let wanted = agreed(&moved, &points, &[f64::INFINITY]);
     for (name, accelerator) in accelerators(&soup) {
         let Ok(refitted) = accelerator.refitted(&moved) else {
-            // Leaves of f32 cannot store these.
+            // f32 leaves cannot store these.
             assert!(!name.contains("double"), "{name}");
             continue;
         };

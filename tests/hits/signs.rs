@@ -1,4 +1,4 @@
-//! Hits agree with big integers, and the error bound that avoids them holds.
+//! Exact signs: a triangle is hit if and only if big integers say so, and the f64 error bound holds.
 
 use super::triangles::Random;
 use num_bigint::{BigInt, Sign};
@@ -40,7 +40,7 @@ fn weights(origin: DVec3, direction: DVec3, corners: [DVec3; 3]) -> [BigInt; 3] 
     [volume(&d, &b, &c), volume(&d, &c, &a), volume(&d, &a, &b)]
 }
 
-/// True if the line through the ray meets the triangle, which is not coplanar with it.
+/// Return whether the ray's line hits the triangle, if they are not coplanar.
 fn is_met(weights: &[BigInt; 3]) -> bool {
     let has = |sign| weights.iter().any(|w| w.sign() == sign);
     has(Sign::Plus) != has(Sign::Minus)
@@ -56,7 +56,7 @@ fn check(origin: DVec3, direction: DVec3, corners: [Vec3; 3]) -> Result<(), Test
     let wide = corners.map(|c| c.as_dvec3());
     let met = is_met(&weights(origin, direction, wide));
     match EdgeRay::new(&ray, &region(corners)) {
-        // A t beyond the range of an f64 is no hit; a length of 2⁻⁶⁰⁰ and coordinates below 2³⁰⁰ give none.
+        // A t that overflows f64 is no hit; a length of 2⁻⁶⁰⁰ and coordinates below 2³⁰⁰ avoid that.
         Some(edges) => prop_assert_eq!(edges.meet(wide).is_some(), met, "{:?} {:?}", ray, corners),
         None => prop_assert!(direction.abs().max_element() < f64::MIN_POSITIVE),
     }
@@ -77,7 +77,7 @@ fn wide_coordinate() -> impl Strategy<Value = f64> {
         coordinate().prop_map(f64::from),
         -1.0..1.0f64,
         (-1.0..1.0f64, -250i32..250).prop_map(|(x, e)| x * 2f64.powi(e)),
-        // Beside small integers.
+        // Close to small integers.
         (-3i32..=3, -2i32..=2).prop_map(|(x, k)| f64::from(x) * (1.0 + f64::from(k) * f64::EPSILON)),
     ]
 }
@@ -113,7 +113,7 @@ proptest! {
 
 #[test]
 fn nearly_coplanar_and_nearly_on_an_edge() {
-    // Signs that the last bits decide, by construction: a target on an edge or a plane, off by an ulp or none.
+    // Targets on an edge or plane, exactly or off by an ulp, where the last bits decide signs.
     let mut random = Random(1);
     let (mut met, mut passed) = (0, 0);
     for _ in 0..60_000 {
@@ -134,19 +134,19 @@ fn nearly_coplanar_and_nearly_on_an_edge() {
     assert!(met > 5000 && passed > 5000, "{met} {passed}");
 }
 
-/// The error of the f64 weights in the unit of the bound: 2⁻⁵³ · 2 · largest².
+/// Return the error of the f64 weights in units of the bound: 2⁻⁵³ · 2 · largest².
 ///
 /// `rust/shapes/triangle/edge.rs` proves 208 of these units, to first order, and allows 256.
 fn error(origin: DVec3, direction: DVec3, corners: [Vec3; 3]) -> f64 {
     let edges = EdgeRay::new(&Ray::new(origin, direction), &region(corners)).unwrap();
     let wide = corners.map(|c| c.as_dvec3());
-    // With the scaled direction: exact, as all here are of moderate size. Twice, because of the edge form.
+    // Of the scaled direction, which is exact for these moderate sizes. Twice, because of the edge form.
     let wanted = weights(origin, edges.direction, wide);
     let [a, b, c] = wide.map(|p| p - origin);
     let found = [(b, c), (c, a), (a, b)].map(|(v, w)| edges.direction.dot((v - w).cross(v + w)));
     let worst = found.iter().zip(&wanted).map(|(f, w)| {
         let off: BigInt = (integer(*f) << (2 * 1074usize)) - w * 2;
-        // Converts the top bits to f64; the rest is far below the needs of the comparison.
+        // Converted to f64 by the top bits; the truncation is far below the precision needed.
         let off = off.magnitude();
         let cut = off.bits().saturating_sub(64);
         let top: u64 = (off >> cut).try_into().unwrap();
@@ -157,7 +157,7 @@ fn error(origin: DVec3, direction: DVec3, corners: [Vec3; 3]) -> f64 {
 
 #[test]
 fn the_bound_on_rounding_withstands_a_hunt() {
-    // Climbs from random starts to ever larger errors, by changing one number at a time.
+    // Hill climbing from random starts to larger errors, by changing one number at a time.
     let mut random = Random(2);
     let mut worst = 0f64;
     for _ in 0..40 {
@@ -192,11 +192,11 @@ fn the_bound_on_rounding_withstands_a_hunt() {
     }
     println!("the largest error found is {worst} units");
     assert!(worst <= 208.0, "an error of {worst} units");
-    // The search has worked: random numbers alone find errors of a few units.
+    // Checks that the search works: random inputs alone have errors of a few units.
     assert!(worst > 8.0, "no more than {worst} units found");
 }
 
-/// Small whole numbers times a power of two, up to the least and the greatest, where products under- and overflow.
+/// Small integers times a power of two, up to the ends of the range, where products under- and overflow.
 fn scaled() -> impl Strategy<Value = ([DVec3; 3], DVec3, DVec3)> {
     let point = || prop::array::uniform3(-9i32..=9).prop_map(|p| DVec3::from_array(p.map(f64::from)));
     let bit = || prop::array::uniform3(-1e-15..1e-15f64).prop_map(DVec3::from_array);

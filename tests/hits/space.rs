@@ -1,4 +1,5 @@
-//! Spatial subdivisions: bounded on any input, the same for any number of threads, and no primitive tested twice.
+//! Spatial subdivisions: bounded size on any input, deterministic for any number of threads, and no primitive tested
+//! twice.
 
 use super::triangles::{Random, Triangles, agreed, hits, levels};
 use raywright::accel::kdtree::{Builder, Traversal};
@@ -9,7 +10,7 @@ use raywright::workers;
 
 type Build = Box<dyn Fn(&Input) -> (Box<dyn Structure>, Lists) + Sync>;
 
-/// Every builder.
+/// All builders.
 fn builds() -> Vec<(String, Build)> {
     let mut builds: Vec<(String, Build)> = Vec::new();
     for builder in Builder::ALL {
@@ -45,7 +46,7 @@ fn many_copies_of_one_triangle_are_not_parted_for_ever() {
 #[test]
 fn a_spray_of_needles_through_one_point_stays_bounded() {
     let mut random = Random(21);
-    // All triangles straddle every plane near the middle.
+    // All of them straddle every plane near the center.
     let needle = |_| {
         let (way, across) = (random.point(1.0), random.point(1e-3));
         [-way - across, -way + across, way].map(|p| p.as_vec3())
@@ -56,11 +57,11 @@ fn a_spray_of_needles_through_one_point_stays_bounded() {
         let tree = over(&triangles, &build);
         tree.validate(&triangles).unwrap();
         let info = tree.info();
-        // A block takes 40 bytes per primitive reference. There are 9 references for each primitive, plus 64; leaves
-        // and nodes come on top.
+        // In blocks, a primitive takes 40 bytes per slot, with 9 slots per primitive and 64 more; leaves and nodes are
+        // extra.
         let most = (9 * 3000 + 64) * 40 + 60 * info.leaves + 48 * info.nodes + 4096;
         assert!(info.bytes < most, "{name}: {info:?}");
-        // None is tested twice.
+        // No primitive is tested twice.
         assert!(costs(&*tree, &rays).iter().all(|cost| cost.primitives <= 3000), "{name}");
     }
     agreed(&triangles, &rays);
@@ -105,7 +106,7 @@ fn flat_scenes_and_few_triangles() {
     for axis in 0..3 {
         for count in [1, 2, 3, 400] {
             let mut triangles = random.soup(count, 0.3);
-            // In one axis-aligned plane, with rays in the plane too.
+            // In one axis-aligned plane, which also contains rays along it.
             triangles.0.iter_mut().flatten().for_each(|p| p[axis] = 0.25);
             let mut rays = random.aimed(&triangles, 60, 2.0);
             let mut along = random.aimed(&triangles, 20, 1.0);
@@ -152,12 +153,12 @@ fn other_triangles_are_not_valid_and_are_not_refitted() {
 
 #[test]
 fn free_planes_part_slanted_needles_at_less_cost() {
-    // In one slanted plane, in any direction: axis-aligned planes cut many of them, planes along them few.
+    // In one slanted plane, in any direction: axis-aligned planes cut many of them, and planes along them few.
     let mut random = Random(27);
     let mut needle = || {
         let [x, y] = [0; 2].map(|_| random.below(2048) as i32 - 1024);
         let [u, v] = [0; 2].map(|_| random.below(401) as i32 - 200);
-        // Whole numbers of 1024ths: all lie in the plane exactly.
+        // Multiples of 1/1024: all are exactly in the plane.
         let at = |[u, v]: [i32; 2]| Vec3::from([x + u, y + v, -x - u - y - v].map(|k| k as f32 / 1024.0));
         [[0, 0], [u, v], [u - 4, v + 4]].map(at)
     };

@@ -1,4 +1,4 @@
-//! Cancelled builds: they end soon, for every structure, and hold nothing then.
+//! Canceled builds: every builder stops soon, with an empty result.
 
 use super::triangles::{Random, Triangles, levels};
 use raywright::accel::bvh::build::{Builder, halves, morton, ploc};
@@ -11,7 +11,7 @@ use raywright::work::{Watch, Work};
 use raywright::workers;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
-/// Triangles whose build is cancelled after `most` reads of corners.
+/// Triangles whose build is canceled after a number of corner lookups.
 struct Unwanted<'a> {
     triangles: &'a Triangles,
     asked: AtomicUsize,
@@ -42,7 +42,7 @@ impl Primitives for Unwanted<'_> {
 
 type Over = Box<dyn Fn(&dyn Primitives) -> Box<dyn Accelerator> + Sync + Send>;
 
-/// Every structure but brute force, by name.
+/// All structures but brute force, by name.
 fn all() -> Vec<(&'static str, Over)> {
     let level = levels().last().unwrap();
     let of = move |builder, quality| -> Over {
@@ -86,17 +86,17 @@ fn what_is_stopped_ends_soon_and_holds_nothing() {
             })
             .collect(),
     );
-    // One thread, so that the progress at cancellation is known.
+    // One thread, so that the progress at cancellation is deterministic.
     let pool = workers::pool(Some(1)).unwrap();
     for (name, over) in all() {
-        // While bounds are computed, while boxes are made, and later.
+        // During the bounds pass, the box pass, and later.
         for most in [0, COUNT + COUNT / 3, 2 * COUNT + 500] {
             let unwanted =
                 Unwanted { triangles: &triangles, asked: AtomicUsize::new(0), most, watch: Watch::default() };
             let built = pool.install(|| over(&unwanted));
             let asked = unwanted.asked.into_inner();
             if unwanted.watch.is_stopped() {
-                // At most, a round of boxes, the split of one node, or leaves remain after the stop.
+                // The rest of the current pass: bounds, boxes, a node's partition, or leaves.
                 assert!(asked <= most + COUNT, "{name}: {asked} after {most}");
                 assert!(most > 2 * COUNT || built.info().leaves == 0, "{name}");
             }

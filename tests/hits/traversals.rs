@@ -1,4 +1,4 @@
-//! Every traversal of a binary tree, over the tree of every builder, agrees with brute force on all queries.
+//! Traversals of binary trees: each gives the answers of brute force to every query, on the tree of every builder.
 
 use super::builders::{BUILDERS, SPATIAL, optimisers, sticks};
 use super::triangles::{Random, Triangles, levels};
@@ -18,7 +18,7 @@ fn best() -> Level {
     levels().last().unwrap()
 }
 
-/// A tree of each builder with some optimiser, with every traversal.
+/// A tree of each builder with some optimizer, with every traversal.
 fn trees(primitives: &dyn Primitives) -> Vec<Box<dyn Accelerator>> {
     let mut trees = Vec::new();
     for (i, builder) in BUILDERS.into_iter().enumerate() {
@@ -35,7 +35,7 @@ fn trees(primitives: &dyn Primitives) -> Vec<Box<dyn Accelerator>> {
     trees
 }
 
-/// Results of all queries.
+/// Answers to all queries.
 #[derive(Debug, PartialEq)]
 struct Answers {
     hits: Vec<Hit>,
@@ -44,7 +44,7 @@ struct Answers {
     sides: Vec<Side>,
 }
 
-/// Traces all rays, in batches.
+/// Run all queries in batches of a size.
 fn ask(accelerator: &dyn Accelerator, rays: &[Ray], batch: usize) -> Answers {
     let none = Answers { hits: vec![], occluded: vec![], crossings: Crossings::default(), sides: vec![] };
     let mut all = none;
@@ -66,7 +66,7 @@ fn ask(accelerator: &dyn Accelerator, rays: &[Ray], batch: usize) -> Answers {
     all
 }
 
-/// The results of brute force, after a check that all trees agree, for batches of several sizes.
+/// Return the answers of brute force, after checking that all trees give them for several batch sizes.
 fn agreed(primitives: &dyn Primitives, rays: &[Ray]) -> Answers {
     let wanted = ask(BruteForce::over(primitives, best()).as_ref(), rays, rays.len());
     for (i, tree) in trees(primitives).iter().enumerate() {
@@ -87,12 +87,12 @@ fn nodes(costs: &[Cost]) -> u64 {
 }
 
 fn over(triangles: &Triangles, traversal: Traversal) -> Box<dyn Accelerator> {
-    // Whole triangles only: trees over pieces have no such guarantee.
+    // Whole triangles only: these properties do not hold for trees over pieces.
     let options = Options { optimisers: Some(Optimisers::REINSERTION), ..Options::DEFAULT };
     trees::binary(triangles, &options, traversal, best())
 }
 
-/// Coherent rays through an eye, and incoherent rays, some of them invalid.
+/// Coherent rays through an eye, and rays in any direction, some of them invalid.
 fn some_of_one_mind(random: &mut Random, triangles: &Triangles) -> Vec<Ray> {
     let eye = DVec3::new(0.1, 0.2, 3.0);
     let fan = |i: u32| DVec3::new(f64::from(i % 16) * 0.04 - 0.3, f64::from(i / 16) * 0.04 - 0.3, -1.0);
@@ -133,7 +133,7 @@ fn ties_copies_planes_and_nothing() {
     }
 }
 
-/// Balls among triangles; the last ones are two infinite half-spaces.
+/// Balls among triangles; the last two are unbounded half-spaces.
 struct Balls {
     triangles: Triangles,
     balls: Arc<[(DVec3, f64)]>,
@@ -248,7 +248,7 @@ fn rays_of_one_mind_share_the_work_of_a_bundle() {
     let eye = DVec3::new(0.0, 0.0, 4.0);
     let fan: Vec<_> = (0..4096u32)
         .map(|i| {
-            // Bundles are squares of 8 by 8.
+            // Packets are squares of 8 by 8.
             let (tile, at) = (i / 64, i % 64);
             let (x, y) = (tile % 8 * 8 + at % 8, tile / 8 * 8 + at / 8);
             Ray::new(eye, DVec3::new(f64::from(x) / 640.0 - 0.05, f64::from(y) / 640.0 - 0.05, -1.0))

@@ -29,7 +29,7 @@ impl Primitives for Triangles {
 }
 
 impl Triangles {
-    /// The closest hit, triangle by triangle: without boxes, lanes or a test in f32 before.
+    /// Return the closest hit by testing each triangle, without boxes, lanes or the f32 pretest.
     fn closest(&self, ray: &Ray, region: &Region) -> Hit {
         let Some(edges) = EdgeRay::new(ray, region) else { return Hit::MISS };
         let mut best = Hit::MISS;
@@ -44,12 +44,12 @@ impl Triangles {
     }
 }
 
-/// The levels of this processor.
+/// The SIMD levels of this processor.
 pub fn levels() -> impl Iterator<Item = Level> {
     Level::ALL.into_iter().filter(|l| l.is_available())
 }
 
-/// Both trees and brute force at every level, and every structure, by name. All are valid.
+/// Both trees and brute force at every level, and every structure, by name. All are validated.
 pub fn accelerators(primitives: &dyn Primitives) -> Vec<(String, Box<dyn Accelerator>)> {
     let mut all: Vec<(String, Box<dyn Accelerator>)> = Vec::new();
     for level in levels() {
@@ -100,8 +100,8 @@ const fn kd(builder: Builder, traversal: kdtree::Traversal) -> kdtree::Options {
     kdtree::Options { builder, traversal, ..kdtree::Options::DEFAULT }
 }
 
-/// The closest hits, after a check that every accelerator at every level gives the same bits, and that `occluded`
-/// agrees. Rays are traced as one batch, and a few at a time, which use other kernels.
+/// Return the closest hits after checking that every accelerator at every level gives the same bits, and `occluded` the
+/// same answers. Rays are traced as one batch and in small batches, which other kernels process.
 pub fn agreed(triangles: &Triangles, rays: &[Ray]) -> Vec<Hit> {
     let region = triangles.region();
     let wanted: Vec<Hit> = rays.iter().map(|r| triangles.closest(r, &region)).collect();
@@ -125,21 +125,21 @@ pub fn agreed(triangles: &Triangles, rays: &[Ray]) -> Vec<Hit> {
     wanted
 }
 
-/// A hit as bits, to tell -0 from 0.
+/// Return a hit as bits, which distinguish -0 from 0.
 pub fn bits(hit: &Hit) -> (u64, [u64; 2], u32) {
     (hit.t.to_bits(), hit.uv.map(f64::to_bits), hit.primitive)
 }
 
-/// Number of hits.
+/// Return the number of hits.
 pub fn hits(hits: &[Hit]) -> usize {
     hits.iter().filter(|h| h.is_hit()).count()
 }
 
-/// Pseudo-random numbers, the same at every run (SplitMix64; Steele, Lea and Flood 2014).
+/// Pseudorandom numbers, the same on every run (SplitMix64; Steele, Lea and Flood 2014).
 pub struct Random(pub u64);
 
 impl Random {
-    /// 64 bits.
+    /// Return 64 random bits.
     pub fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -147,33 +147,33 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    /// From `a` to `b`.
+    /// Return a number from `a` to `b`.
     pub fn between(&mut self, a: f64, b: f64) -> f64 {
         a + (b - a) * (self.bits() >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    /// Below `n`.
+    /// Return an index below `n`.
     pub fn below(&mut self, n: usize) -> usize {
         (self.bits() % n as u64) as usize
     }
 
-    /// One of some.
+    /// Return one of some values.
     pub fn of<T: Copy>(&mut self, some: &[T]) -> T {
         some[self.below(some.len())]
     }
 
-    /// A point of the cube from `-r` to `r`.
+    /// Return a point in the cube from `-r` to `r`.
     pub fn point(&mut self, r: f64) -> DVec3 {
         DVec3::new(self.between(-r, r), self.between(-r, r), self.between(-r, r))
     }
 
-    /// A point of the grid of integers from `-r` to `r`.
+    /// Return a point of the integer grid from `-r` to `r`.
     pub fn grid(&mut self, r: i32) -> DVec3 {
         let mut x = || (self.below(2 * r as usize + 1) as i32 - r) as f64;
         DVec3::new(x(), x(), x())
     }
 
-    /// Triangles of about `size` in the cube from -1 to 1.
+    /// Return triangles of about `size` in the cube from -1 to 1.
     pub fn soup(&mut self, count: usize, size: f64) -> Triangles {
         let triangle = |_| {
             let centre = self.point(1.0);
@@ -182,7 +182,7 @@ impl Random {
         Triangles((0..count).map(triangle).collect())
     }
 
-    /// A vertex, a point of an edge, or one inside, of any of the triangles: exact for vertices.
+    /// Return a vertex, a point on an edge or an inner point of any of the triangles; vertices are exact.
     pub fn target(&mut self, triangles: &Triangles) -> DVec3 {
         let [a, b, c] = triangles.0[self.below(triangles.0.len())].map(|p| p.as_dvec3());
         match self.below(3) {
@@ -192,7 +192,7 @@ impl Random {
         }
     }
 
-    /// Rays from the cube of `reach` aimed at vertices, edges and insides.
+    /// Return rays from the cube of size `reach` to vertices, edges and inner points.
     pub fn aimed(&mut self, triangles: &Triangles, count: usize, reach: f64) -> Vec<Ray> {
         (0..count)
             .map(|_| {

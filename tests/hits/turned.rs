@@ -1,4 +1,4 @@
-//! Trees whose boxes have their own axes: the same answers, bit for bit, and the right ones.
+//! Rotated bounding boxes: the same bits, and correct ones.
 
 use super::super::cases;
 use super::triangles::{Random, Triangles, agreed, bits, hits, levels};
@@ -7,14 +7,14 @@ use raywright::accel::bvh::{self, Options};
 use raywright::accel::{Accelerator, BruteForce};
 use raywright::math::{DVec3, Hit, Ray, Vec3};
 
-/// Random orthonormal axes.
+/// Return orthonormal axes.
 fn axes(random: &mut Random) -> [DVec3; 3] {
     let x = random.point(1.0).normalize();
     let y = x.cross(random.point(1.0)).normalize();
     [x, y, x.cross(y)]
 }
 
-/// Long thin boxes along some axes, triangle by triangle.
+/// Return the triangles of long thin boxes along some axes.
 fn beams(random: &mut Random, axes: &[DVec3; 3], count: usize, place: impl Fn(DVec3) -> DVec3) -> Triangles {
     let mut all = Vec::new();
     for _ in 0..count {
@@ -35,7 +35,7 @@ fn beams(random: &mut Random, axes: &[DVec3; 3], count: usize, place: impl Fn(DV
     Triangles(all)
 }
 
-/// Asserts that the default tree's boxes are turned.
+/// Assert that the default tree has rotated boxes.
 fn assert_turned(tree: &dyn Accelerator) {
     assert!(tree.info().kind.contains(", turned, "), "{}", tree.info().kind);
 }
@@ -56,7 +56,7 @@ fn rays_at_any_distance_and_size() {
         for ray in &mut rays {
             ray.origin += shift;
         }
-        // Along the axes of the boxes, and nearly so; in the planes of faces, from near and far.
+        // Along the axes of the boxes, exactly and nearly; in the planes of faces, from near and far.
         for _ in 0..cases(400) {
             let way = random.of(&axes) * random.of(&[1.0, -1.0]);
             let way = way + random.of(&[0.0, 1e-9, 1e-6, 1e-3]) * random.point(1.0);
@@ -76,10 +76,10 @@ fn points_find_their_nearest() {
     assert_turned(widest(&beams).as_ref());
     let reach = |i: u32| [1.0, 3.0, 1e4, 1e7][i as usize % 4];
     let mut points: Vec<_> = (0..cases(200)).map(|i| random.point(reach(i))).collect();
-    // Equidistant from two triangles: beside their common part.
+    // Equidistant from two triangles: next to a shared vertex or edge.
     points.extend((0..cases(200)).map(|_| random.target(&beams) + random.of(&[0.0, 1e-3, 0.1]) * random.of(&axes)));
     nearest::assert_right(&(&beams).into(), &points);
-    // So far away that distances round to nearly the same.
+    // So far away that only the comparison of all triangles finds the nearest.
     let far: Vec<_> = (0..cases(60)).map(|i| random.point([1e9, 1e30, 1e300][i as usize % 3])).collect();
     nearest::agreed(&(&beams).into(), &far, &[f64::INFINITY]);
 }
