@@ -185,7 +185,7 @@ def test_wrong_use_is_one_line_and_status_2(tmp_path, arguments, message):
 def test_up_is_refused_where_a_scene_knows_it(tmp_path, verb, scene):
     done = shell(*verb, scene, "--up", "z", cwd=tmp_path)
     assert (done.returncode, done.stdout) == (2, "")
-    told = f"argument --up: is for mesh files, and {scene} knows itself what is up"
+    told = f"argument --up: only allowed for mesh files, and {scene} defines its own up"
     use = rf"\(see raywright {verb[0]}.* --help\)"
     assert re.fullmatch(rf"raywright: error: {re.escape(told)} {use}\n", done.stderr)
     assert list(tmp_path.iterdir()) == []

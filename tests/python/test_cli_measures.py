@@ -199,7 +199,7 @@ def test_wrong_use_is_one_line_and_status_2(folder, verb, arguments, message):
         (["sky", "box.ply", "--rays", "3"], r"argument --rays: must be between 16 and .*, got 3"),
         (["sky", "box.ply", "--offset", "-1"], r"argument --offset: must be at least 0, got -1"),
         (["sky", "box.ply", "--offset", "nan"], r"argument --offset: must be at least 0, got nan"),
-        (["sky", "box.ply", "--normal", "0", "1", "0"], r"argument --normal: is for --points"),
+        (["sky", "box.ply", "--normal", "0", "1", "0"], r"argument --normal: only allowed with --points"),
         (
             ["sky", "box.ply", "--points", "p.csv", "--normal", "0", "0", "0"],
             "argument --normal: must not be zero, got 0 0 0",

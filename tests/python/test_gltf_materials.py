@@ -120,7 +120,7 @@ def test_a_point_of_a_picture_is_where_it_belongs(tmp_path):
     writer.json["samplers"] = [{"magFilter": 9728, "wrapS": 33071, "wrapT": 33648}]
     writer.json["textures"][0]["sampler"] = 0
     material = {"pbrMetallicRoughness": {"baseColorTexture": info}, "extensions": {"KHR_materials_unlit": {}}}
-    told = "materials that are shown without light (unlit) are matt here"
+    told = "unlit materials are matte here"
     mesh = loaded(tmp_path, material, writer, told)
     texture = mesh.material.reflectance
     assert (texture.filter, texture.wrap) == ("nearest", ("clamp", "mirror"))
@@ -156,7 +156,7 @@ def test_pictures_lie_on_the_coordinates_that_they_name(tmp_path):
     writer = Writer()
     one = {**writer.picture(png(PIXELS)), "texCoord": 1}
     model = {"baseColorTexture": one, "metallicRoughnessTexture": {**one, "texCoord": 0}}
-    told = "materials whose pictures lie on several sets of texture coordinates keep those on the first"
+    told = "materials with pictures on several sets of texture coordinates keep those on the first"
     other = UV * np.float32(0.5)
     mesh = loaded(tmp_path, {"pbrMetallicRoughness": model}, writer, told, TEXCOORD_1=other)
     assert np.array_equal(mesh.uv, other * (1, -1) + (0, 1))
@@ -309,7 +309,7 @@ def test_metal_of_a_picture_has_its_film(tmp_path):
     writer = Writer()
     where = writer.picture(png(PIXELS[..., :3]))
     metal = {"baseColorTexture": writer.picture(png(shades)), "metallicRoughnessTexture": where}
-    told = "what is neither clear nor metal is bare of films"
+    told = "films are left out of opaque nonmetals"
     partly = loaded(tmp_path, {"pbrMetallicRoughness": metal, "extensions": FILM}, writer, told).material
     blue, green = (rw.ImageTexture(PIXELS[..., :3], linear=True, channel=name) for name in "bg")
     assert partly.a == rw.MetallicRough(rw.ImageTexture(shades), 0.0, green)
@@ -334,16 +334,16 @@ def test_metal_of_a_picture_has_its_film(tmp_path):
     [
         (
             clear(baseColorFactor=[1, 0, 0, 1], extensions={**VOLUME, **FILM}),
-            "what goes through clear materials with films on them is not tinted by their base colour",
+            "light through clear materials with films is not tinted by their base colour",
         ),
         (
             {"pbrMetallicRoughness": {"metallicFactor": 0}, "extensions": FILM},
-            "what is neither clear nor metal is bare of films",
+            "films are left out of opaque nonmetals",
         ),
-        (clear(roughnessFactor=0.5), "thin clear materials are smooth here, however rough they are"),
+        (clear(roughnessFactor=0.5), "thin clear materials are smooth here, whatever their roughness"),
         (
             {"extensions": {"KHR_materials_ior": {"ior": 1.8}}},
-            "the ior counts for what is clear, or no metal at all, and is left out elsewhere",
+            "the ior is left out of opaque materials that are metallic",
         ),
     ],
 )
@@ -388,7 +388,7 @@ def test_specular_and_glossy_materials_become_metallic_and_rough(tmp_path, pictu
 def test_extensions_that_may_be_left_out_are_named(tmp_path):
     writer = Writer()
     writer.json["extensionsUsed"] = ["KHR_materials_sheen", "KHR_materials_ior", "KHR_materials_clearcoat"]
-    told = "what its extensions KHR_materials_clearcoat, KHR_materials_sheen say is left out"
+    told = "its extensions KHR_materials_clearcoat, KHR_materials_sheen are left out"
     loaded(tmp_path, {}, writer, told)
 
 
@@ -412,7 +412,7 @@ def shown_alpha(mesh, places):
 
 BLACK = {"baseColorFactor": [0, 0, 0, 1]}
 UNLIT = {"extensions": {"KHR_materials_unlit": {}}}
-TOLD_UNLIT = "materials that are shown without light (unlit) are matt here"
+TOLD_UNLIT = "unlit materials are matte here"
 PLACES = [(0.2, 0.3), (0.6, 0.3), (0.9, 0.8)]
 
 

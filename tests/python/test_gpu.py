@@ -265,7 +265,7 @@ def test_a_device_that_is_lost_is_told_of_and_nothing_else_is(gpu, monkeypatch):
             return read(work)
 
         monkeypatch.setattr(there._kernels, "read", fails)
-        with pytest.warns(RuntimeWarning, match="was lost, and the CPU goes on: Parent device"):
+        with pytest.warns(RuntimeWarning, match="was lost, and the CPU takes over: Parent device"):
             assert there.intersect(*rays) == wanted
         assert there.stats.closest_walked >= 700
         # Once.

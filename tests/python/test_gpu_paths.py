@@ -400,7 +400,7 @@ def test_a_device_that_is_lost_is_told_of_and_the_cpu_goes_on(gpu, monkeypatch):
         return add(self, first, samples, look)
 
     monkeypatch.setattr(Wavefront, "add", fails)
-    with pytest.warns(RuntimeWarning, match="was lost, and the CPU goes on: Parent device"):
+    with pytest.warns(RuntimeWarning, match="was lost, and the CPU takes over: Parent device"):
         image = rw.render(scene, camera, PLAIN, 64, progress=False, device=gpu)
     assert image.samples == 64
     assert image.plan["device"].chosen == "CPU"

@@ -160,7 +160,7 @@ def test_scenes_of_version_one_have_their_names_renewed(tmp_path):
         ("<scene version='3'><include/></scene>", "<include> must have 'filename'"),
         (
             "<scene version='3'><bsdf type='diffuse' id='a'/><bsdf type='diffuse' id='a'/></scene>",
-            "'a' is there twice",
+            "'a' is given twice",
         ),
         ("<scene version='3'><transform name='x'><spin/></transform></scene>", "<spin> is not a step"),
         (

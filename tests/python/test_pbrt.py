@@ -321,7 +321,7 @@ def test_files_include_others(tmp_path):
         ('Shape "trianglemesh" "point3 P" [0 0 0] "integer indices" [0 0 1e300]', "at least 0 and below 1"),
         (
             'Shape "loopsubdiv" "point3 P" [0 0 0 1 0 0 0 1 0] "integer indices" [0 1 2 0 1 2 1 0 2]',
-            "its faces must be those of a surface",
+            "its faces must form a surface",
         ),
         ('Attribute "shapes" "float radius" 2', "its target must be one of shape, light, material"),
     ],

@@ -339,7 +339,7 @@ def test_moving_objects_stand_where_the_shutter_opens(tmp_path):
             HEAD.replace('"perspective" "float fov" 50', '"orthographic" "float lensradius" 1'),
             "'lensradius' of",
         ),
-        (LIT, HEAD.replace('Film "rgb"', 'Film "gbuffer"'), "a film 'gbuffer' is read as one of red, green"),
+        (LIT, HEAD.replace('Film "rgb"', 'Film "gbuffer"'), "a film 'gbuffer' is read as an RGB film"),
         (
             LIT,
             HEAD.replace('"volpath"', '"ambientocclusion"').replace(

@@ -185,9 +185,7 @@ def Sphere "Hidden" {
 
 def test_what_is_left_out_is_told(tmp_path):
     text = SQUARE.replace('subdivisionScheme = "none"', 'subdivisionScheme = "catmullClark"')
-    with pytest.warns(
-        RuntimeWarning, match=r"stage\.usda: meshes that are to be subdivided are shown as they are"
-    ):
+    with pytest.warns(RuntimeWarning, match=r"stage\.usda: subdivision is not applied to meshes"):
         shapes(tmp_path, text + paint(""))
 
 
@@ -244,7 +242,7 @@ def test_a_missing_reference_is_told_and_a_mesh_without_points_is_none(tmp_path)
     ball = 'def Sphere "S" {\n}\n'
     with pytest.raises(FileNotFoundError, match=r"gone\.usda"):
         load(tmp_path, ball + 'def Xform "A" (\n    references = @gone.usda@\n) {\n}\n')
-    with pytest.warns(RuntimeWarning, match="it is not put together as it says: Cycle detected"):
+    with pytest.warns(RuntimeWarning, match="it is not composed as specified: Cycle detected"):
         load(tmp_path, ball + 'def Xform "A" (\n    references = </A>\n) {\n}\n')
     assert len(shapes(tmp_path, ball + 'def Mesh "Empty" {\n}\n')) == 1
 

@@ -98,7 +98,7 @@ LINKED = """def DistantLight "Sun" (prepend apiSchemas = ["CollectionAPI:lightLi
             LAMP.replace('"Sun" {', '"Sun" (prepend apiSchemas = ["ShadowAPI"]) {').replace(
                 "}", "    bool inputs:shadow:enable = 0\n}"
             ),
-            "lights without shadows throw some",
+            "lights without shadows cast shadows here",
         ),
         (
             LAMP.replace("}", "    float inputs:shaping:focus = 2\n}"),
@@ -162,7 +162,7 @@ def BasisCurves "Hair" {
 }
 """
     told = (
-        "it holds nothing that is seen: 2 prims are invisible; 1 prim is of purpose guide; "
+        "it has nothing visible: 2 prims are invisible; 1 prim is of purpose guide; "
         "1 prim is of purpose proxy; shapes of type BasisCurves are left out"
     )
     with pytest.raises(ValueError, match=re.escape(told)):
@@ -171,10 +171,10 @@ def BasisCurves "Hair" {
 
 def test_what_there_is_instead_of_shapes_is_named(tmp_path):
     with pytest.raises(
-        ValueError, match=r"nothing that is seen: its prims are 1 of Camera, 1 of Material, 1 of Sha"
+        ValueError, match=r"nothing visible: its prims are 1 of Camera, 1 of Material, 1 of Sha"
     ):
         load(tmp_path, CAMERA + paint(""))
-    with pytest.raises(ValueError, match="nothing that is seen: it has no prims"):
+    with pytest.raises(ValueError, match="nothing visible: it has no prims"):
         load(tmp_path, "")
 
 

@@ -261,7 +261,7 @@ def test_spheres_that_are_points(tmp_path):
     for size in ("0.5", "0"):
         text = shine.format(size) + "    bool treatAsPoint = 1\n    bool inputs:normalize = 1"
         assert lamp(tmp_path, text).intensity == pytest.approx((2, 2, 2))
-    with pytest.warns(RuntimeWarning, match="SphereLights without a radius shine as if they were normalised"):
+    with pytest.warns(RuntimeWarning, match="SphereLights without a radius are taken as normalised"):
         assert lamp(tmp_path, shine.format(0)).intensity == pytest.approx((2, 2, 2))
     cone = "float inputs:shaping:cone:angle = 30\nfloat inputs:shaping:cone:softness = 0.25\n"
     cone += "bool treatAsPoint = 1"

@@ -132,7 +132,7 @@ def test_it_answers_as_the_server_does(viewer, monkeypatch):
 def test_what_makes_no_sense_is_told_so(viewer):
     cell = Cell(viewer)
     assert "zoom must be between" in cell.ask("view", {"zoom": 0})
-    assert cell.ask("none", {}) == cell.ask(["view"], {}) == "nobody knows what that is"
+    assert cell.ask("none", {}) == cell.ask(["view"], {}) == "unknown request"
     assert cell.bytes("page.py") == ("nothing has this name", b"")
     assert cell.bytes("../session.py") == ("nothing has this name", b"")
     assert "a name" in cell.bytes(None)[0]

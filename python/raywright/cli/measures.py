@@ -239,7 +239,7 @@ def _measured(options: argparse.Namespace, what: str, measure: Callable[..., Any
     """Measure where the options say, and write it."""
     output = _output(options)
     if options.normal is not None and options.points is None:
-        options.refuse("argument --normal: is for --points")
+        options.refuse("argument --normal: only allowed with --points")
     if options.normal is not None and not any(options.normal):
         options.refuse("argument --normal: must not be zero, got 0 0 0")
     mesh = _mesh(options.mesh)

@@ -65,7 +65,7 @@ def _view(options: argparse.Namespace) -> None:
 def shot_of(options: argparse.Namespace) -> Shot:
     """Return the shot of SCENE: a file, or the Cornell box."""
     if options.up is not None and (options.scene == CORNELL or has_camera(options.scene)):
-        options.refuse(f"argument --up: is for mesh files, and {options.scene} knows itself what is up")
+        options.refuse(f"argument --up: only allowed for mesh files, and {options.scene} defines its own up")
     if options.scene == CORNELL:
         return Shot(*cornell_box(None, *size_of(options.width, options.height)))
     return load(options.scene, options.up or "y", options.width, options.height)

@@ -96,7 +96,7 @@ class Problem:
         if most.max() >= 1.0:
             row = named(self.laid, self.cuts, self.both)[int(most.argmax())]
             raise ValueError(
-                f"shape {row['shape']} reflects all light of a channel, so that what is unshot has no bound: "
+                f"shape {row['shape']} reflects all light of a channel, so unshot radiosity is unbounded: "
                 "give it a reflectance below 1"
             )
 

@@ -181,7 +181,7 @@ class GpuScene:
             except Exception as lost:
                 self._kernels = None
                 warnings.warn(
-                    f"{self._name} was lost, and the CPU goes on: {str(lost).strip()}",
+                    f"{self._name} was lost, and the CPU takes over: {str(lost).strip()}",
                     RuntimeWarning,
                     stacklevel=3,
                 )

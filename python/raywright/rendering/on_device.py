@@ -150,7 +150,7 @@ class OnDevice:
         self._lost = (str(broken).strip() or type(broken).__name__).splitlines()[0]
         self._paths = None
         warnings.warn(
-            f"{self.name} was lost, and the CPU goes on: {self._lost}", RuntimeWarning, stacklevel=5
+            f"{self.name} was lost, and the CPU takes over: {self._lost}", RuntimeWarning, stacklevel=5
         )
 
     def end(self) -> None:

@@ -96,7 +96,7 @@ class ViewerWidget(anywidget.AnyWidget):  # type: ignore[misc]
             if asked == "scene":
                 return {"told": scene_told(self._session)}, []
             if not isinstance(asked, str) or not is_known(asked):
-                return {"error": "nobody knows what that is"}, []
+                return {"error": "unknown request"}, []
             return {"told": told(self._session, asked, given)}, []
         except (ValueError, TypeError) as error:
             return {"error": " ".join(str(error).split())[:200]}, []

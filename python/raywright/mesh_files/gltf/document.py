@@ -75,7 +75,7 @@ class Document:
         """Warn of all that was kept."""
         unknown = [name for name in self.root.texts("extensionsUsed") if name not in _KNOWN]
         if unknown:
-            self.tell(f"what its extensions {', '.join(sorted(set(unknown)))} say is left out")
+            self.tell(f"its extensions {', '.join(sorted(set(unknown)))} are left out")
         for what in self._told:
             warn_caller(f"{self.path.name}: {what}")
         self._told.clear()

@@ -82,7 +82,7 @@ class Materials:
     def _surface(self, part: Part, vertices: Vertices) -> Surface:
         unlit = part.extension("KHR_materials_unlit") is not None
         if unlit:
-            self._document.tell("materials that are shown without light (unlit) are matt here")
+            self._document.tell("unlit materials are matte here")
         seen = _Seen(self._document, self._pictures)
         clear = part.extension("KHR_materials_transmission")
         strength = part.extension("KHR_materials_emissive_strength")
@@ -125,7 +125,7 @@ class Materials:
         if 0 < ior < 1:
             raise ValueError(f"{part.place} must have an ior of 0 or at least 1, and has {ior:g}")
         if ior == 0:
-            self._document.tell("an ior of 0, for what reflects all, is left out")
+            self._document.tell("an ior of 0, which reflects all light, is left out")
             return IOR
         return ior
 
@@ -133,15 +133,15 @@ class Materials:
         """Report the features of clear materials and of films that are not supported."""
         tell = self._document.tell
         if made.film is not None and made.transmission > 0 and made.is_tinted:
-            tell("what goes through clear materials with films on them is not tinted by their base colour")
+            tell("light through clear materials with films is not tinted by their base colour")
         if made.film is not None and made.transmission == 0 and made.filmed != "all":
-            coloured = "metal with colours of its vertices is bare of films, and so is what is no metal"
-            tell(coloured if made.colored else "what is neither clear nor metal is bare of films")
+            coloured = "films are left out of metals with colours of vertices and of opaque nonmetals"
+            tell(coloured if made.colored else "films are left out of opaque nonmetals")
         if made.transmission > 0:
             if made.within is None and (made.roughness is None or made.roughness > 0):
-                tell("thin clear materials are smooth here, however rough they are")
+                tell("thin clear materials are smooth here, whatever their roughness")
         elif made.ior != IOR and made.metallic != 0.0:
-            tell("the ior counts for what is clear, or no metal at all, and is left out elsewhere")
+            tell("the ior is left out of opaque materials that are metallic")
 
 
 def _model(part: Part, seen: "_Seen") -> Pbr:
@@ -178,7 +178,7 @@ class _Seen:
             self.coordinates = wanted
         elif wanted != self.coordinates:
             self._document.tell(
-                "materials whose pictures lie on several sets of texture coordinates keep those on the first"
+                "materials with pictures on several sets of texture coordinates keep those on the first"
             )
             return None
         return self._pictures.of(info)

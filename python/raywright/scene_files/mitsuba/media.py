@@ -79,7 +79,7 @@ def around(scene: Plugin, eye: Plugin) -> Medium | None:
     # Media inside other shapes are none of the surroundings.
     outside = [one for one in found if one not in kept.get(_WITHIN, ())]
     if any(one != outside[0] for one in outside):
-        scene.fail("several media are around shapes; one can fill the space")
+        scene.fail("several media surround shapes; only one can fill the space")
     return outside[0] if outside else None
 
 

@@ -176,5 +176,5 @@ def _read(scene: Plugin, number: int, weld: Weld) -> Shot:
 def _only(plugin: Plugin, *types: str) -> Plugin | None:
     found = list(plugin.children(*types))
     if len(found) > 1:
-        plugin.fail(f"one {found[0].type} only can be within")
+        plugin.fail(f"only one {found[0].type} can be within")
     return found[0] if found else None

@@ -130,7 +130,7 @@ def _direct(plugin: Plugin) -> Asked:
 def _aov(plugin: Plugin) -> Asked:
     inner = [integrator(one) for one in plugin.children(*INTEGRATORS)]
     if len(inner) > 1:
-        plugin.fail("one integrator at most can be within")
+        plugin.fail("at most one integrator can be within")
     names = []
     for part in filter(None, (part.strip() for part in plugin.text("aovs").split(","))):
         kind = part.rpartition(":")[2].strip()

@@ -144,7 +144,7 @@ class _Reader:
         if key is None:
             key = f"{element.tag} {len(tree)}"
         if key in tree:
-            self._fail(element, f"{key!r} is there twice")
+            self._fail(element, f"{key!r} is given twice")
         tree[key] = value
 
     def _include(self, element: Element, attributes: dict[str, str], tree: Tree) -> None:

@@ -67,7 +67,7 @@ def film(kind: str, parameters: Parameters) -> Film:
     if kind not in ("rgb", "gbuffer", "spectral"):
         parameters.fail(f"a film {kind!r} is not supported")
     if kind != "rgb":
-        parameters.notes.tell(f"a film {kind!r} is read as one of red, green and blue")
+        parameters.notes.tell(f"a film {kind!r} is read as an RGB film")
     size = parameters.integer("xresolution", 1280), parameters.integer("yresolution", 720)
     for side in size:
         if not 1 <= side <= 65536:
@@ -81,8 +81,7 @@ def film(kind: str, parameters: Parameters) -> Film:
     white = _above_0(parameters, "whitebalance", 0.0, zero=True)
     if white and not math.isclose(white, 6500, rel_tol=0.01):
         parameters.notes.tell(
-            "whitebalance is applied to the light: it is exact where surfaces are grey, and near where they"
-            " are coloured"
+            "whitebalance is applied to the light: exact for grey surfaces, approximate for others"
         )
     if parameters.has("maxcomponentvalue"):
         parameters.notes.tell(

@@ -101,7 +101,7 @@ def imaged(radiance: Any, imaging: Floats, parameters: Parameters) -> NDArray[An
         return given if factor == 1 else (given * factor).astype(given.dtype)
     balanced = given @ matrix.T
     if balanced[given >= 0].min(initial=0.0) < 0:
-        parameters.notes.tell("whitebalance takes some light out of red, green and blue, where it is cut")
+        parameters.notes.tell("whitebalance moves some light out of the RGB gamut, where it is clipped")
     return np.where(given < 0, given, np.maximum(balanced, 0.0)).astype(given.dtype)
 
 

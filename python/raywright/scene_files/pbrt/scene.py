@@ -178,7 +178,7 @@ class _Reader:
             self._set(matrix=np.eye(4), starts=True)
             self._imaging = self._film.imaging(1.0 if self._camera is None else exposure(self._camera[1]))
         elif name == "ActiveTransform":
-            self.notes.tell("motion is left out: everything stands where it is when the shutter opens")
+            self.notes.tell("motion is left out: objects stay where they are when the shutter opens")
             self._set(starts=one.texts[0] != "EndTime")
         elif name == "Option":
             one.parameters.ignore(*_NEUTRAL)

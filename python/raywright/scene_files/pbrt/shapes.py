@@ -213,7 +213,7 @@ def _subdivided(parameters: Parameters, matrix: Floats, look: Look, _: Textures)
     try:
         vertices, faces = loop(vertices, faces, levels) if levels else (vertices, faces)
     except (ValueError, IndexError):
-        parameters.fail("its faces must be those of a surface, of which no edge has more than two")
+        parameters.fail("its faces must form a surface, with at most two faces at each edge")
     a, b, c = (vertices[faces[:, k]] for k in range(3))
     normals = np.zeros_like(vertices)
     for k in range(3):

@@ -206,7 +206,9 @@ def bounded(given: Value, name: str) -> Value:
         return given
     if isinstance(given, Texture):
         most = max(ends(given)[1])
-        warnings.warn(f"{name} is up to {most:.3g}, and is made darker by that", RuntimeWarning, stacklevel=2)
+        warnings.warn(
+            f"{name} has values up to {most:.3g}, and is scaled to at most 1", RuntimeWarning, stacklevel=2
+        )
         return ProductTexture(given, 1 / most)
     red, green, blue = (min(x, 1.0) for x in given)
     return red, green, blue

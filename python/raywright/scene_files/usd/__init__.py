@@ -163,7 +163,7 @@ def _composed(stage: Any, path: Path, notes: Notes) -> list[str]:
                 raise FileNotFoundError(errno.ENOENT, "no such file", str(path.parent / name))
         kinds.setdefault(type(error).__name__, []).append(line)
     for lines in kinds.values():
-        notes.tell(f"it is not put together as it says: {lines[0].partition(': ')[0][:200]}{_more(lines)}")
+        notes.tell(f"it is not composed as specified: {lines[0].partition(': ')[0][:200]}{_more(lines)}")
     return [line[:60] for lines in kinds.values() for line in lines]
 
 

@@ -125,7 +125,7 @@ class Source:
         if any(self.number(name, 1.0) != 1 for name in ("diffuse", "specular")):
             tell("the diffuse and specular multipliers of lights are left out")
         if self.reading.value(self.prim.GetAttribute("inputs:shadow:enable"), True) is False:
-            tell("lights without shadows throw some")
+            tell("lights without shadows cast shadows here")
         if self.number("shaping:focus", 0.0) or self.text("shaping:ies:file"):
             tell("the focus and the IES profiles of lights are left out")
 
@@ -146,7 +146,7 @@ def _point(source: Source, matrix: Matrix, ball: Any) -> PointLight | SpotLight:
     if ball.radius > 0 and not source.normalised:
         power = ball.area
     elif not source.normalised:
-        source.reading.notes.tell("SphereLights without a radius shine as if they were normalised")
+        source.reading.notes.tell("SphereLights without a radius are taken as normalised")
     intensity, place, angle = 0.25 * power * source.shine, matrix[:3, 3], source.cone
     if angle is None or angle >= 180:
         return PointLight(place, intensity)

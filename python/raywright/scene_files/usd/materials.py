@@ -52,7 +52,7 @@ def bound(prim: Any, reading: Reading, colour: Triple | None = None) -> Surface 
         shader = material.ComputeSurfaceSource()[0]
         reading.surfaces[key] = PLAIN
         if not shader or shader.GetShaderId() != "UsdPreviewSurface":
-            reading.notes.tell("materials that are no UsdPreviewSurface are shown as grey ones")
+            reading.notes.tell("materials other than UsdPreviewSurface are shown as grey")
         else:
             reading.surfaces[key] = _Reader(Node(shader, reading), reading, colour).surface()
     return reading.surfaces[key]  # type: ignore[no-any-return]
@@ -193,7 +193,7 @@ class _Reader:
         return picture.value
 
     def _left_out(self, name: str) -> None:
-        self._tell(f"what {name} is connected to is left out: it is no UsdUVTexture")
+        self._tell(f"the connection of {name} is left out: it is not a UsdUVTexture")
 
 
 def _times(value: Value, factor: float) -> Value:

@@ -75,7 +75,7 @@ def _tell_what_is_left_out(mesh: Any, reading: Reading) -> None:
     prim, tell = mesh.GetPrim(), reading.notes.tell
     scheme = mesh.GetSubdivisionSchemeAttr()
     if scheme.HasAuthoredValue() and reading.value(scheme) != "none":
-        tell("meshes that are to be subdivided are shown as they are")
+        tell("subdivision is not applied to meshes")
     skinned = prim.GetAttribute("primvars:skel:jointIndices"), prim.GetRelationship("skel:blendShapes")
     if (skinned[0] and skinned[0].HasAuthoredValue()) or (skinned[1] and skinned[1].GetTargets()):
         tell(UNPOSED)

@@ -144,9 +144,7 @@ class Textures:
         """Return an image texture of an array; one that has been made of the same picture is shared."""
         wraps = [str(node.value(axis, "useMetadata")) for axis in ("wrapS", "wrapT")]
         if "black" in wraps:
-            self._reading.notes.tell(
-                "pictures that are black beyond their edges (wrap mode black) go on as there"
-            )
+            self._reading.notes.tell("pictures with wrap mode black are clamped at their edges")
         across, up = (_WRAPS.get(one, "clamp" if one == "black" else "repeat") for one in wraps)
         file = node.value("file")
         key = str(file.resolvedPath or file.path), array.shape[2], linear, channel, across, up, transform, how
