@@ -2,7 +2,8 @@
 
 import math
 import operator
-from typing import Any
+import sys
+from typing import TYPE_CHECKING, Any, TypeAlias, Union, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -195,7 +196,7 @@ def seed_number(value: SeedLike, most: int | None = 2**64 - 1, name: str = "seed
 def thread_limit(threads: int | None) -> int | None:
     """Return how many threads may be used, or None for one a core.
 
-    Many more than there are cores bring nothing, and take long to be started: of those there are no more.
+    Many more threads than cores gain nothing and take long to start, so their number is limited.
     """
     if threads is None:
         return None
