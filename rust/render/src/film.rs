@@ -281,8 +281,10 @@ impl Film {
         for (tile, part) in band.iter().zip(row.chunks_mut(self.side as usize)) {
             let first = (y % self.side) as usize * part.len();
             for (i, entry) in part.iter_mut().enumerate() {
-                let cells = [tile.cell((first + i) * self.cells()), tile.cell((first + i + 1) * self.cells() - 1)];
-                *entry = of(&cells[..self.cells()]);
+                *entry = match self.cells() {
+                    1 => of(&[tile.cell(first + i)]),
+                    _ => of(&[tile.cell((first + i) * 2), tile.cell((first + i) * 2 + 1)]),
+                };
             }
         }
     }
