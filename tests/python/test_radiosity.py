@@ -425,7 +425,7 @@ REFUSED: list[tuple[str, Any, dict[str, Any]]] = [
     ),
     ("must have a finite area above 0", lambda: rw.Scene([rw.Plane((0, 0, 0), (0, 0, 1), emission=1.0)]), {}),
     (
-        "stretched",
+        "nonuniform scale",
         lambda: rw.Scene([rw.Ellipsoid((0, 0, 0), (1, 2, 3), emission=1.0)]),
         {},
     ),
