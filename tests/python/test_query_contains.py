@@ -219,7 +219,7 @@ def test_inverted_meshes_in_instances_are_told_by_the_normals_that_hits_have(box
             assert not scene.contains((0.0, 1.1, 0.0), shapes="copies")
             scene.contains((0.0, 0.0, 0.0))
         assert len(told) == is_inverted
-        assert all("normals point into shape 1 'copies'" in str(one.message) for one in told)
+        assert all("normals of shape 1 'copies' point inward" in str(one.message) for one in told)
     # The wall of a cavity does not count as inverted.
     shell = [rw.Mesh(4 * (box.vertices - 0.5), box.faces), mesh]
     with warnings.catch_warnings():

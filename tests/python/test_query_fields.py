@@ -87,10 +87,10 @@ def test_numbers_of_the_caller_stay_the_callers():
             assert array.flags.writeable
             np.testing.assert_array_equal(array, getattr(whole, part))
         np.testing.assert_array_equal(found.t, whole.t)
-    with pytest.raises(ValueError, match="nor known of hits in arrays of the caller's"):
+    with pytest.raises(ValueError, match="nor in hits that were written to given arrays"):
         _ = found.position
     held = scene.intersect(*some, out={**out, "uv": np.empty((500, 2))})
-    with pytest.raises(ValueError, match="nor known of hits in arrays of the caller's"):
+    with pytest.raises(ValueError, match="nor in hits that were written to given arrays"):
         _ = held.normal
 
 

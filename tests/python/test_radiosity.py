@@ -377,7 +377,7 @@ def test_a_solution_is_saved_as_a_coloured_mesh(tmp_path: Any, ending: str) -> N
         found.save(tmp_path / "room.png")
     with pytest.raises(ValueError, match=r"exposure must be greater than 0"):
         found.to_mesh(0.0)
-    with pytest.raises(ValueError, match=r"no back of a mesh"):
+    with pytest.raises(ValueError, match=r"no back side of a mesh"):
         found.to_mesh(side="back")
 
 

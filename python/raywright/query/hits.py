@@ -123,11 +123,10 @@ class SurfacePoints(Known, Tabular, PlottedPoints):
     def _known(self, name: str) -> _core.CompiledScene:
         """Return the scene of the points."""
         if self._compiled is None:
-            told = name.strip("_")
-            why = "is not kept in a pickle unless it was asked for before"
+            why = "is not in pickled hits unless it was computed before pickling"
             if vars(self).get("_fields") is not None:
-                why += ", nor known of hits in arrays of the caller's"
-            raise ValueError(f"{told} {why}")
+                why += ", nor in hits that were written to given arrays"
+            raise ValueError(f"{name.strip('_')} {why}")
         return self._compiled
 
     @cached_property

@@ -208,7 +208,7 @@ def _contenders(contenders: Mapping[str, Any] | None, threads: int | None) -> di
 def _seeds(seeds: int | Sequence[SeedLike]) -> list[int]:
     if isinstance(seeds, Sequence) and not isinstance(seeds, str):
         if not seeds:
-            raise ValueError("seeds are empty: there must be one at least")
+            raise ValueError("seeds must not be empty")
         return [seed_number(seed, name="seeds") for seed in seeds]
     return list(range(integer("seeds", seeds, 1, 10_000)))
 

@@ -120,7 +120,11 @@ def forest(
     spacing : float
         Side of the squares, in metres.
     seed : int, Generator or SeedSequence
-        Which trees, and where.
+        Seed of trees and places.
+
+    Returns
+    -------
+    Forest
 
     Raises
     ------

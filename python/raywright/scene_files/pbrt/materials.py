@@ -141,7 +141,7 @@ class Materials:
             table = parameters.numbers(name, 2)
             assert table is not None
             if not len(table) or (np.diff(table[:, 0]) <= 0).any():
-                parameters.fail(f"{name} must have wavelengths that rise, each with an index")
+                parameters.fail(f"{name} must have increasing wavelengths, each with an index")
             # The index at the Fraunhofer d line, since the table has no formula.
             return float(np.interp(587.6, table[:, 0], table[:, 1]))
         return parameters.number(name, default)
