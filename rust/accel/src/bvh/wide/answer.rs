@@ -1,26 +1,27 @@
-//! Where first hits are written.
+//! Outputs of first-hit and occlusion queries.
 
 use raywright_base::math::{Hit, HitColumns, Ray};
 use raywright_shapes::triangle::{Column, Met, RAYS};
 
-/// Where answers go.
+/// An output of hits.
 pub trait Answer {
-    /// Whether any hit will do, whatever it is.
+    /// True if any hit will do.
     const ANY: bool;
 
-    /// Where primitives are written, if nothing else is told of hits: then nobody computes the rest.
+    /// The output for primitives, if nothing else about hits is needed; then the rest is not computed.
     #[inline(always)]
     fn primitives(&mut self) -> Option<&mut [u32]> {
         None
     }
 
-    /// Ray `i` hits nothing.
+    /// Store a miss of ray `i`.
     fn miss(&mut self, i: usize);
 
-    /// Ray `i` hits a primitive, at `t` in lengths of its own direction.
+    /// Store a hit of ray `i`, with `t` in lengths of its own direction.
     fn hit(&mut self, i: usize, t: f64, uv: [f64; 2], primitive: u32);
 
-    /// Up to sixteen neighbours, the first of which is `start`: those in `hits` hit something, the others nothing.
+    /// Store the results of up to sixteen consecutive rays from `start`: hits for those in `hits`, misses for the
+    /// others.
     #[inline(always)]
     fn some(&mut self, start: usize, count: usize, hits: u32, all: &Met, primitives: &Column<u32>) {
         for i in 0..count.min(RAYS) {
@@ -74,8 +75,8 @@ impl Answer for HitColumns<'_> {
     }
 }
 
-/// Closest hits, in rows or in columns, or the primitives that are hit: which of them is decided where a hit is
-/// written, so that kernels are compiled once for all.
+/// Closest hits in rows or columns, or the hit primitives. The layout is chosen at each write, so that kernels are
+/// compiled once for all.
 pub enum Closest<'a> {
     Rows(&'a mut [Hit]),
     Columns(HitColumns<'a>),

@@ -1,4 +1,4 @@
-//! A batch of rays for one tree, by the kernel that suits them.
+//! Chooses the kernel for a batch of rays.
 
 use super::answer::Answer;
 use super::errand::{Errand, Telling};
@@ -10,17 +10,17 @@ use raywright_base::math::{RayBatch, coherence};
 use raywright_base::simd::{Kernel, Simd};
 use raywright_shapes::triangle::Leaves;
 
-/// Fewer rays than these leave a packet or a wave mostly empty.
+/// Fewer rays than this leave a packet or a wave mostly empty.
 const FEW: usize = 8;
 
 struct Width<const N: usize>;
 
 impl<const N: usize> Width<N> {
-    /// On x86-64, four lanes serve processors that lack AVX2: only the single-ray kernel is compiled for them.
+    /// On x86-64, four lanes serve processors without AVX2; only the single-ray kernel is compiled for them.
     const SINGLE_RAYS_ONLY: bool = N == 4 && cfg!(target_arch = "x86_64");
 }
 
-/// A question about all that a batch of rays meets.
+/// A query for all intersections of a batch of rays.
 pub struct All<'a, const N: usize, L, Q> {
     pub bvh: &'a WideBvh<N, L>,
     pub rays: RayBatch<'a>,
@@ -45,7 +45,7 @@ impl<const N: usize, L: Leaves<N>, Q: Query> Kernel<N> for All<'_, N, L, Q> {
     }
 }
 
-/// The first hits of a batch of rays, or whether they have any.
+/// First-hit or occlusion queries for a batch of rays.
 pub struct Firsts<'a, const N: usize, L, A> {
     pub bvh: &'a WideBvh<N, L>,
     pub rays: RayBatch<'a>,
@@ -54,7 +54,7 @@ pub struct Firsts<'a, const N: usize, L, A> {
 
 impl<const N: usize, L: Leaves<N>, A: Answer> Kernel<N> for Firsts<'_, N, L, A> {
     type Output = ();
-    // The crate's own tests compile all kernels again; those of the public face run them at every level.
+    // The crate's own tests would compile all kernels again; the tests of the Python interface run them at every level.
     const AVX512: bool = cfg!(not(test));
 
     #[inline(always)]
@@ -78,14 +78,13 @@ impl<const N: usize, L: Leaves<N>, A: Answer> Kernel<N> for Firsts<'_, N, L, A> 
         } else if is_coherent(bvh, rays) {
             packet::answer(simd, bvh, errand);
         } else {
-            // Scattered rays sorted by octant, so that packets would take them, are slower as soon as a tree has two
-            // nodes.
+            // Sorting incoherent rays by octant for packets is slower for any tree of more than one node.
             wave::answer(simd, bvh, &rays, errand);
         }
     }
 }
 
-/// Whether packets suit rays.
+/// Return whether packets suit the rays.
 #[inline(always)]
 fn is_coherent<const N: usize, L>(bvh: &WideBvh<N, L>, rays: RayBatch<'_>) -> bool {
     let ray = |i: usize| {
@@ -95,7 +94,7 @@ fn is_coherent<const N: usize, L>(bvh: &WideBvh<N, L>, rays: RayBatch<'_>) -> bo
     coherence::is_coherent(rays.len(), ray, bvh.region.radius)
 }
 
-/// Says that no ray hits anything.
+/// Report a miss for every ray.
 #[inline(always)]
 fn miss<const N: usize, L: Leaves<N>, E: Errand<N, L>>(_: &WideBvh<N, L>, rays: usize, errand: &mut E) {
     for i in 0..rays {
@@ -114,7 +113,7 @@ mod tests {
     use raywright_base::simd::{Level, Scalar};
     use raywright_shapes::triangle::{DoubleLeaves, SingleLeaves};
 
-    /// A kernel, as batches of four lanes have none but that of single rays on x86-64.
+    /// A kernel, named explicitly since batches of four lanes use only single rays on x86-64.
     #[derive(Clone, Copy, Debug)]
     enum Which {
         Single,
@@ -134,7 +133,7 @@ mod tests {
         }
     }
 
-    /// Hands each kernel to `agree`, with a tree, rays, and the rays' hits by brute force.
+    /// Run `agree` for each kernel with a tree, rays, and their hits by brute force.
     fn kernels_agree<L: Leaves<4>>(
         soup: &Soup,
         is_turned: bool,
@@ -160,7 +159,8 @@ mod tests {
         assert!(met > 100, "{met} rays hit anything");
     }
 
-    // Kernels are generic over leaves and answers independently: two pairs hold both, and compile in half of the time.
+    // Kernels are generic over leaves and outputs independently: two combinations cover both, and compile in half of
+    // the time.
     #[test]
     fn kernels_of_four_lanes_as_arrays_agree_with_brute_force_bit_for_bit() {
         for (triangles, is_turned) in soups().into_iter().map(|soup| (soup, false)).chain([(sticks(), true)]) {

@@ -1,4 +1,4 @@
-//! The best that is known of a ray's way so far, and how f64 decides between two.
+//! The closest hit of a ray so far as an interval of `t`, and comparisons in f64.
 
 use super::node::Packed;
 use raywright_base::math::robust::{greater, lesser};
@@ -6,23 +6,23 @@ use raywright_base::simd::Lanes;
 use raywright_shapes::Candidate;
 use raywright_shapes::triangle::{About, EdgeRay, Leaves};
 
-/// The best that is known, in the units of leaves ([`Leaves::unit`]).
+/// The closest hit so far, in the units of leaves ([`Leaves::unit`]).
 #[derive(Clone, Copy, Debug)]
 pub struct Best {
-    /// Its `t` is at least this, and at most `high`. At first, up to where the ray is asked.
+    /// Its `t` is between `low` and `high`. Initially both surround the ray's end.
     pub low: f32,
     pub high: f32,
-    /// In which leaf it stands; nothing yet if in none.
+    /// The leaf of the triangle; [`Packed::NONE`] without a hit.
     pub leaf: Packed,
-    /// And in which lane.
+    /// The lane of the triangle.
     pub lane: u32,
 }
 
 /// Four times the error of rounding to f32.
 const ULPS: f32 = 1.0 / (1u32 << 22) as f32;
 
-/// A number as two of f32, between which it lies: the first is never infinite above, nor the second below.
-// Without a branch, unlike the nearest two.
+/// An f64 as an interval of two f32. The lower bound is never +∞, nor the upper one −∞.
+// Branchless, unlike the tightest interval.
 #[inline(always)]
 pub fn between(x: f64) -> (f32, f32) {
     let y = greater(lesser(x as f32, f32::MAX), f32::MIN);
@@ -30,7 +30,7 @@ pub fn between(x: f64) -> (f32, f32) {
     (y - room, y + room)
 }
 
-/// The same of many that have been rounded already.
+/// The same for numbers that have already been rounded to f32.
 #[inline(always)]
 pub fn between_all<const N: usize, S: Lanes<N>>(simd: S, x: S::F32) -> (S::F32, S::F32) {
     let y = simd.max(simd.min(x, simd.splat(f32::MAX)), simd.splat(f32::MIN));
@@ -39,27 +39,27 @@ pub fn between_all<const N: usize, S: Lanes<N>>(simd: S, x: S::F32) -> (S::F32, 
 }
 
 impl Best {
-    /// Nothing, up to a `t`.
+    /// No hit, for a ray that ends at `t`.
     #[inline(always)]
     pub fn until(t: f64) -> Self {
         Self { leaf: Packed::NONE, lane: 0, low: 0.0, high: 0.0 }.at(t)
     }
 
-    /// The same, known to be at a `t`.
+    /// The same hit at a known `t`.
     #[inline(always)]
     fn at(self, t: f64) -> Self {
         let (low, high) = between(t);
         Self { low, high, ..self }
     }
 
-    /// Whether it is this triangle.
+    /// Return whether it is the given triangle.
     #[inline(always)]
     pub fn is<const N: usize, L: Leaves<N>>(&self, leaves: &L, leaf: Packed, lane: u32) -> bool {
         self.leaf != Packed::NONE && primitive(leaves, self.leaf, self.lane) == primitive(leaves, leaf, lane)
     }
 
-    /// Decides in f64 whether a ray meets a triangle before all that it has met, and notes it if it does. Of the same
-    /// `t` the lowest primitive counts.
+    /// Decide in f64 whether a ray hits a triangle closer than its closest hit so far, and update it. At equal `t`, the
+    /// lowest primitive wins.
     #[inline(never)]
     pub fn decide<const N: usize, L: Leaves<N>>(
         &mut self,
@@ -69,7 +69,7 @@ impl Best {
         leaf: Packed,
         lane: u32,
     ) {
-        // Most often nothing else is met there, and `t` need not be known to its last digit.
+        // Usually nothing else is hit nearby, and `t` is not needed to the last digit.
         match about(leaves, ray, leaf, lane) {
             About::Missed => return,
             About::Between(low, _) if low * unit > f64::from(self.high) => return,
@@ -91,14 +91,14 @@ impl Best {
     }
 }
 
-/// The number of the triangle in a lane of a leaf.
+/// The index of the triangle in a lane of a leaf.
 #[inline(always)]
 pub fn primitive<const N: usize, L: Leaves<N>>(leaves: &L, leaf: Packed, lane: u32) -> u32 {
     let (first, count) = leaf.leaf();
     leaves.primitive(first, count, lane as usize & (N - 1))
 }
 
-/// Whether a ray meets the triangle in a lane of a leaf.
+/// Return whether a ray hits the triangle in a lane of a leaf.
 #[inline(always)]
 pub fn is_met<const N: usize, L: Leaves<N>>(leaves: &L, ray: &EdgeRay, leaf: Packed, lane: u32) -> bool {
     match about(leaves, ray, leaf, lane) {
@@ -108,14 +108,14 @@ pub fn is_met<const N: usize, L: Leaves<N>>(leaves: &L, ray: &EdgeRay, leaf: Pac
     }
 }
 
-/// About where it does.
+/// Intersect the triangle in a lane of a leaf approximately.
 #[inline(always)]
 fn about<const N: usize, L: Leaves<N>>(leaves: &L, ray: &EdgeRay, leaf: Packed, lane: u32) -> About {
     let (first, count) = leaf.leaf();
     ray.meet_about(leaves.corners(first, count, lane as usize & (N - 1)))
 }
 
-/// Where a ray meets the triangle in a lane of a leaf.
+/// Intersect the triangle in a lane of a leaf exactly.
 #[inline(always)]
 pub fn meet<const N: usize, L: Leaves<N>>(leaves: &L, ray: &EdgeRay, leaf: Packed, lane: u32) -> Option<Candidate> {
     let (first, count) = leaf.leaf();

@@ -1,4 +1,4 @@
-//! The best that is known of sixteen rays together, and triangles that are tested against all of them.
+//! The closest hits of sixteen rays so far, and tests of triangles against all of them.
 
 use super::WideBvh;
 use super::best::{Best, is_met, primitive};
@@ -9,26 +9,26 @@ use raywright_base::math::RayBatch;
 use raywright_base::simd::{Lanes, Simd};
 use raywright_shapes::triangle::{ALL, Column, EdgeRay, Leaves, RAYS, Spread};
 
-/// Whether so few of sixteen rays are asked about a leaf that each is tested alone.
+/// Return whether so few of sixteen rays visit a leaf that testing them one by one is cheaper.
 #[inline(always)]
 pub fn are_few(asked: u32, leaf: Packed) -> bool {
     3 * asked.count_ones() <= 2 * leaf.leaf().1
 }
 
-/// The best that is known of sixteen rays, by columns; see [`Best`].
+/// The closest hits of sixteen rays so far in SoA layout; see [`Best`].
 pub struct Bests {
     low: Column<f32>,
     pub high: Column<f32>,
-    /// Bits of a [`Packed`], to be moved as f32.
+    /// The bits of [`Packed`] leaves, stored as f32 for blends.
     leaf: Column<f32>,
-    /// Bits of a lane.
+    /// The bits of lanes, stored likewise.
     lane: Column<f32>,
-    /// Where any hit will do, those that have one.
+    /// The rays with a hit, if any hit will do.
     pub answered: u32,
 }
 
 impl Bests {
-    /// Of no rays.
+    /// For no rays.
     pub const NOTHING: Self = Self {
         low: [0.0; RAYS],
         high: [0.0; RAYS],
@@ -37,14 +37,14 @@ impl Bests {
         answered: 0,
     };
 
-    /// Nothing, up to the `t_max` of each.
+    /// No hits, for rays that end at their `t_max`.
     #[inline(always)]
     pub fn none(rays: &Sixteen) -> Self {
         let [low, high] = rays.t_max;
         Self { low, high, ..Self::NOTHING }
     }
 
-    /// The best that is known of a ray.
+    /// The closest hit of one ray.
     #[inline(always)]
     pub fn get(&self, i: usize) -> Best {
         let i = i & (RAYS - 1);
@@ -59,19 +59,19 @@ impl Bests {
         (self.leaf[i], self.lane[i]) = (f32::from_bits(best.leaf.bits()), f32::from_bits(best.lane));
     }
 
-    /// One of the rays alone, the first of which is `start` of the batch.
+    /// Extract one ray, given the batch index of the first one.
     #[inline(always)]
     pub fn looking(&self, rays: &Sixteen, i: usize, start: usize) -> Looking {
         Looking { best: self.get(i), ..Looking::of(rays, i, start + i) }
     }
 
-    /// Those that have hit something.
+    /// The rays with a hit.
     #[inline(always)]
     pub fn hits<S: Lanes<RAYS>>(&self, simd: S) -> u32 {
         ALL & !simd.same(simd.load(&self.leaf), simd.splat(f32::from_bits(Packed::NONE.bits())))
     }
 
-    /// Those that have hit what one of them has.
+    /// The rays that hit the same triangle as ray `i`.
     #[inline(always)]
     pub fn like<S: Lanes<RAYS>>(&self, simd: S, i: usize) -> u32 {
         let i = i & (RAYS - 1);
@@ -79,10 +79,10 @@ impl Bests {
             & simd.same(simd.load(&self.lane), simd.splat(self.lane[i]))
     }
 
-    /// Takes note of new limits of some rays, in box units: `limits` are those before.
+    /// Update the limits of some rays in box units; `limits` are the previous ones.
     #[inline(always)]
     pub fn limits<S: Lanes<RAYS>>(&self, simd: S, to_box: f64, changed: u32, limits: S::F32) -> S::F32 {
-        // A power of two, or too great for an f32, and then nothing is left out.
+        // A power of two. If it overflows an f32, nothing is culled.
         let to_box = to_box as f32;
         if to_box > f32::MAX {
             return simd.select(changed, simd.splat(f32::INFINITY), limits);
@@ -91,8 +91,8 @@ impl Bests {
         simd.select(changed, simd.mul_add(simd.load(&self.high), simd.splat(to_box), least), limits)
     }
 
-    /// Tests a leaf against so few of the rays that each is tested alone against all of its triangles; says what
-    /// [`Bests::test`] does.
+    /// Test a leaf against a few rays one by one, each against all of its triangles. Returns the same as
+    /// [`Bests::test`].
     #[inline(always)]
     pub fn visit_alone<const ANY: bool, const N: usize, L: Leaves<N>, S: Simd<N>>(
         &mut self,
@@ -110,7 +110,7 @@ impl Bests {
             let mut ray = self.looking(rays, i, from.1);
             let has_changed = ray.visit::<ANY, N, L, S>(simd, &bvh.leaves, &bvh.region, leaf, from.0);
             if !ANY {
-                // What has won may lie no nearer in f32.
+                // The new closest hit may have the same bound in f32.
                 self.note(i, ray.best);
             }
             changed |= u32::from(has_changed) << i;
@@ -118,7 +118,7 @@ impl Bests {
         changed
     }
 
-    /// Tests a leaf against the rays in `asked`, each triangle against all of them; says what [`Bests::test`] does.
+    /// Test a leaf against the rays in `asked`, each triangle against all of them. Returns the same as [`Bests::test`].
     #[inline(always)]
     #[allow(clippy::too_many_arguments)]
     pub fn visit<const ANY: bool, const N: usize, L: Leaves<N>, S: Simd<N>>(
@@ -133,15 +133,15 @@ impl Bests {
     ) -> u32 {
         let mut changed = 0;
         for lane in 0..leaf.leaf().1 {
-            // Where any hit will do, what is answered is asked no more.
+            // If any hit will do, finished rays drop out.
             let asked = if ANY { asked & !changed } else { asked };
             changed |= self.test::<ANY, N, L, _>(simd.sixteen(), bvh, rays, from, triangles, leaf, lane, asked);
         }
         changed
     }
 
-    /// Tests the triangle in a lane of a leaf against those of the rays in `asked`; says of which what is known has
-    /// changed, or, if any hit will do, which are answered.
+    /// Test the triangle in a lane of a leaf against the rays in `asked`. Return the rays whose closest hit has changed
+    /// or, if any hit will do, those with a hit.
     #[inline(always)]
     #[allow(clippy::too_many_arguments)]
     fn test<const ANY: bool, const N: usize, L: Leaves<N>, S: Lanes<RAYS>>(
@@ -186,7 +186,7 @@ impl Bests {
         changed
     }
 
-    /// Decides about a ray and a triangle in f64.
+    /// Decide in f64 for a ray and a triangle.
     #[inline(never)]
     fn decide<const ANY: bool, const N: usize, L: Leaves<N>>(
         &mut self,

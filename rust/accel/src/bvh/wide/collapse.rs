@@ -1,12 +1,12 @@
-//! From a binary tree to a wide one of least cost, by dynamic programming (Ylitie, Karras and Laine, "Efficient
+//! Collapse of a binary tree to a wide one of least cost, by dynamic programming (Ylitie, Karras and Laine, "Efficient
 //! Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", 2017).
 //!
-//! For every binary node and every number i of up to N roots, the least cost of showing its primitives to a parent as
-//! at most i subtrees. A single root is either a block of triangles or a wide node whose N roots are shared out between
-//! the two children. A greedy collapse leaves more of the slots empty.
+//! For every binary node and every number i of up to N roots, the plan has the least cost of representing its
+//! primitives by at most i subtrees. A single root is either a block of triangles or a wide node, whose N roots are
+//! distributed to the two children. A greedy collapse leaves more slots empty.
 //!
-//! Sixteen children a node would take a ray through a quarter fewer nodes, by the same costs (5.6 instead of 7.6 on
-//! 69 k triangles; four take 11.5), and through as many leaves, with two and a half times the memory a node.
+//! By the same costs, sixteen children per node would reduce the visited nodes by a quarter (5.6 instead of 7.6 on 69 k
+//! triangles; four take 11.5). The number of leaves would be the same, with two and a half times the memory per node.
 
 use super::{Child, Info, Leaves, Options, Primitives, WideBvh, WideNode};
 use crate::bvh::{BinaryBvh, Node};
@@ -26,7 +26,7 @@ impl<const N: usize, L: Leaves<N>> WideBvh<N, L> {
     ) -> Result<Self, Stopped> {
         let [outline, last] = work.parts([1.0, 1.0]);
         let (outline, nodes) = Outline::of(&binary, options, N as u32, outline)?;
-        // Leaves take more memory than anything else that is kept.
+        // Leaves take the most memory of all, so free the binary tree first.
         drop(binary);
         let wide = Self::with(nodes, &outline, primitives, region, options);
         last.done();
@@ -34,7 +34,7 @@ impl<const N: usize, L: Leaves<N>> WideBvh<N, L> {
         Ok(wide)
     }
 
-    /// A tree of these nodes, with the triangles of its leaves.
+    /// Create a tree of these nodes and the triangles of its leaves.
     pub(super) fn with(
         nodes: Vec<WideNode<N>>,
         outline: &Outline<N>,
@@ -50,7 +50,7 @@ impl<const N: usize, L: Leaves<N>> WideBvh<N, L> {
             depth: outline.depth,
             ..Info::default()
         };
-        // Each step down leaves at most N − 1 siblings behind.
+        // Each level leaves at most N − 1 siblings pending.
         let mut wide = Self {
             nodes,
             leaves,
@@ -67,43 +67,43 @@ impl<const N: usize, L: Leaves<N>> WideBvh<N, L> {
     }
 }
 
-/// Half the surface, but never nothing, so that flat and pointlike trees still count their nodes.
+/// Half the surface area, bounded away from zero so that the nodes of flat and pointlike trees still count.
 fn area(node: &Node) -> f32 {
     node.aabb().half_area().max(f32::MIN_POSITIVE)
 }
 
-/// The best ways to show every binary node as 1 to N roots.
+/// The optimal representations of every binary node by 1 to N roots.
 struct Plan<const N: usize> {
-    /// How many primitives fit a leaf.
+    /// Maximum number of primitives in a leaf.
     block: u32,
-    /// Of every inner node, by the pair of its children.
+    /// The choice at every inner node, indexed by its pair of children.
     choices: Vec<AtomicU32>,
 }
 
-/// What is known of a binary node once it is planned.
+/// The plan of a binary node.
 #[derive(Clone, Copy)]
 struct Planned<const N: usize> {
-    /// Least cost for at most i + 1 roots, times the area of nothing in particular.
+    /// The least cost for at most i + 1 roots, as a sum of areas.
     cost: [f32; N],
-    /// How many primitives there are below.
+    /// The number of primitives below.
     count: u32,
     leaf: bool,
 }
 
-/// The choices at an inner node, three bits each: 32 bits for what is the bulk of a plan's memory.
+/// The choices at an inner node in three bits each: 32 bits, since these are the bulk of a plan's memory.
 #[derive(Clone, Copy)]
 struct Choice(u32);
 
 impl Choice {
-    /// A single root is a block of triangles.
+    /// Set if a single root is a block of triangles.
     const BLOCK: u32 = 1;
 
-    /// How many of so many roots, from 2 on, the left child gets; 0 where fewer roots do as well.
+    /// Of `roots` ≥ 2 roots, the number that the left child gets; 0 if fewer roots are as good.
     fn left(self, roots: usize) -> usize {
         (self.0 >> (3 * roots) & 7) as usize
     }
 
-    /// How many roots of a wide node made of this one the left child gets.
+    /// The number of the wide node's roots that the left child gets.
     fn share(self) -> usize {
         (self.0 >> 3 & 7) as usize
     }
@@ -132,9 +132,9 @@ impl<const N: usize> Plan<N> {
         if node.is_leaf() { Choice(Choice::BLOCK) } else { Choice(self.at(node).load(Relaxed)) }
     }
 
-    /// Plans all from `node` down, which lies `depth` steps below the root; no matter how, once that is stopped.
+    /// Plan the subtree at `node`, `depth` levels below the root. The result is arbitrary once canceled.
     fn plan(&self, binary: &BinaryBvh, options: &Options, node: usize, depth: usize, steps: &Steps) -> Planned<N> {
-        /// Down to here, halves are planned side by side.
+        /// Subtrees above this depth are planned in parallel.
         const PARALLEL: usize = 10;
         if depth == PARALLEL && steps.is_stopped() {
             return Planned { cost: [0.0; N], count: 0, leaf: true };
@@ -148,7 +148,7 @@ impl<const N: usize> Plan<N> {
         let below = |child| {
             let planned = self.plan(binary, options, child, depth + 1, steps);
             if depth + 1 == PARALLEL {
-                // Whether it goes on is asked by what comes next.
+                // Cancellation is noticed at the next step.
                 let _ = steps.did(planned.count as usize);
             }
             planned
@@ -161,7 +161,7 @@ impl<const N: usize> Plan<N> {
         };
         let count = left.count + right.count;
         let as_block = if count <= self.block { area * options.intersection_cost } else { f32::INFINITY };
-        // Half of all nodes have two leaves below, which are shared out in one way only.
+        // Half of all nodes have two leaves below, which can be distributed in one way only.
         let (mut cost, share) = if left.leaf && right.leaf {
             ([left.cost[0] + right.cost[0]; N], [1; N])
         } else {
@@ -175,18 +175,18 @@ impl<const N: usize> Plan<N> {
             choice |= if cost[i] < fewer { share[i] << (3 * (i + 1)) } else { 0 };
             cost[i] = if cost[i] < fewer { cost[i] } else { fewer };
         }
-        // A task of its own writes each, and is waited for before any is read.
+        // One task writes each entry, and ends before any is read.
         self.at(node).store(choice, Relaxed);
         Planned { cost, count, leaf: false }
     }
 }
 
-/// For i + 1 roots, from 2 to N, the least cost of sharing them out between two children, and how many the left one
-/// gets then; of equals the fewest. In lines of N, so that they are computed side by side.
+/// For 2 to N roots, at index i for i + 1: the least cost of distributing them to two children, and the number for the
+/// left one; the least of equal ones. In rows of N, for vectorization.
 #[inline(always)]
 fn shared<const N: usize>(left: &[f32; N], right: &[f32; N]) -> ([f32; N], [u32; N]) {
     let (mut best, mut share) = ([f32::INFINITY; N], [0; N]);
-    // `right`, moved on by any number of roots, is a part of this.
+    // Contains `right` shifted by any number of roots.
     let mut moved = [[f32::INFINITY; N]; 2];
     moved[1] = *right;
     let moved = moved.as_flattened();
@@ -200,17 +200,17 @@ fn shared<const N: usize>(left: &[f32; N], right: &[f32; N]) -> ([f32; N], [u32;
     (best, share)
 }
 
-/// The wide tree before its nodes and leaves are made: what stands where.
+/// The wide tree before its nodes and leaves are created.
 pub(super) struct Outline<const N: usize> {
     pub(super) nodes: Vec<NodeOutline<N>>,
     /// The primitives, leaf by leaf.
     pub(super) order: Vec<u32>,
-    /// How many each leaf has.
+    /// The number of primitives of each leaf.
     pub(super) counts: Vec<u32>,
     pub(super) depth: usize,
 }
 
-/// Which binary nodes stand below a wide one, and what they become.
+/// The binary nodes that become the children of a wide node.
 #[derive(Clone)]
 pub(super) struct NodeOutline<const N: usize> {
     roots: [u32; N],
@@ -234,7 +234,7 @@ impl<const N: usize> NodeOutline<N> {
 impl<const N: usize> Outline<N> {
     pub(super) const NOTHING: Self = Self { nodes: Vec::new(), order: Vec::new(), counts: Vec::new(), depth: 0 };
 
-    /// Where everything stands in the wide tree of least cost, with leaves of at most `block`; and its nodes.
+    /// Lay out the wide tree of least cost, with leaves of at most `block` primitives, and create its nodes.
     pub(super) fn of(
         binary: &BinaryBvh,
         options: &Options,
@@ -252,7 +252,7 @@ impl<const N: usize> Outline<N> {
     }
 
     fn new(binary: &BinaryBvh, plan: &Plan<N>, work: Work) -> Result<Self, Stopped> {
-        /// So many primitives between two looks up.
+        /// Primitives between two checks for cancellation.
         const SOME: usize = 1 << 14;
         let steps = work.steps(binary.order.len());
         let mut told = 0;
@@ -267,7 +267,7 @@ impl<const N: usize> Outline<N> {
             }
             let mut roots = Held::<N>::new();
             if plan.choice(&binary.nodes[top as usize]).is_block() {
-                // A single leaf has no box to stand in, so the root is always a node.
+                // A single leaf needs a node to hold its box, so the root is always a node.
                 roots.push(top);
             } else {
                 plan.wide_roots(binary, top, &mut roots);
@@ -295,7 +295,7 @@ impl<const N: usize> Outline<N> {
 }
 
 impl<const N: usize> Plan<N> {
-    /// The roots below a wide node made of `node`.
+    /// Collect the roots below a wide node made of `node`.
     fn wide_roots(&self, binary: &BinaryBvh, node: u32, roots: &mut Held<N>) {
         let node = &binary.nodes[node as usize];
         let share = self.choice(node).share();
@@ -303,8 +303,8 @@ impl<const N: usize> Plan<N> {
         self.gather(binary, node.index + 1, N - share, roots);
     }
 
-    /// The best at most `count` roots for a binary node. Recursion ends after `count` steps that share and as many that
-    /// lower it.
+    /// Collect the optimal roots, at most `count`, for a binary node. The recursion ends after at most `count`
+    /// distributing steps and as many that decrease `count`.
     fn gather(&self, binary: &BinaryBvh, top: u32, mut count: usize, roots: &mut Held<N>) {
         let node = &binary.nodes[top as usize];
         let choice = self.choice(node);
@@ -321,7 +321,7 @@ impl<const N: usize> Plan<N> {
     }
 }
 
-/// At most N numbers, held in place.
+/// At most N numbers, stored inline.
 struct Held<const N: usize> {
     items: [u32; N],
     len: usize,
@@ -341,7 +341,7 @@ impl<const N: usize> Held<N> {
         &self.items[..self.len]
     }
 
-    /// Adds the primitives below a binary node; several parts of one once.
+    /// Add the primitives below a binary node, without duplicates from several parts.
     fn add(&mut self, binary: &BinaryBvh, node: u32) {
         let node = &binary.nodes[node as usize];
         if node.is_leaf() {

@@ -1,4 +1,4 @@
-//! What rays are sent for: each kernel is compiled for each errand.
+//! Visitors of leaves: traversal kernels are generic over the visitor.
 
 use super::WideBvh;
 use super::node::{Packed, WideNode};
@@ -10,57 +10,57 @@ use raywright_base::math::RayBatch;
 use raywright_base::simd::Simd;
 use raywright_shapes::triangle::{BlockRay, EdgeRay, Leaves};
 
-/// What came of a ray's visit to a leaf.
+/// The effect of a ray's visit to a leaf.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Visited {
-    /// Nothing that changes its way.
+    /// No change.
     Nothing,
-    /// From now on it need not go beyond this `t` along its scaled direction.
+    /// The ray now ends at this `t` along its scaled direction.
     Until(f64),
-    /// All that was asked.
+    /// The query is done.
     Answered,
 }
 
-/// What is done with rays at leaves.
+/// A visitor that processes rays at leaves.
 pub trait Errand<const N: usize, L: Leaves<N>>: Sized {
-    /// What is known of a ray, and what it needs at leaves.
+    /// The state of a ray, with the data for its leaf tests.
     type Flight;
 
-    /// Whether the nearest triangles should be looked at first.
+    /// True if traversal should go nearest first.
     const NEAREST_FIRST: bool;
 
-    /// Whether [`Visited::Until`] is ever said.
+    /// True if [`Visited::Until`] is ever returned.
     const SHORTENS: bool;
 
-    /// What is known at first of ray `i` of the batch.
+    /// The initial state of ray `i` of the batch.
     fn start(&mut self, bvh: &WideBvh<N, L>, i: usize, edges: &EdgeRay) -> Self::Flight;
 
-    /// Up to which `t` along its scaled direction a ray is asked, at first.
+    /// The initial end of a ray along its scaled direction.
     fn limit(bvh: &WideBvh<N, L>, flight: &Self::Flight) -> f64;
 
-    /// What is known at first of a plain ray, one of sixteen, and where in box units it loses interest; nothing if it
-    /// hits nothing.
+    /// The initial state of a plain ray, given by its lane of sixteen, and its end in box units; None if it cannot hit
+    /// anything.
     fn launch(&mut self, bvh: &WideBvh<N, L>, i: usize, rays: &Sixteen, lane: usize) -> Option<(Self::Flight, f32)>;
 
-    /// A ray has tested a node's boxes.
+    /// Count a visited node.
     #[inline(always)]
     fn visit_node(_: &mut Self::Flight) {}
 
-    /// A ray is at a leaf.
+    /// Process a ray at a leaf.
     fn visit<S: Simd<N>>(&mut self, simd: S, bvh: &WideBvh<N, L>, flight: &mut Self::Flight, at: Packed) -> Visited;
 
-    /// A ray has seen all that it has to.
+    /// Finish a ray after its traversal.
     fn finish<S: Simd<N>>(&mut self, simd: S, bvh: &WideBvh<N, L>, flight: &Self::Flight);
 
-    /// Ray `i` hits nothing.
+    /// Report a miss of ray `i`.
     fn miss(&mut self, i: usize);
 
-    /// All rays have.
+    /// Finish the batch after all rays.
     #[inline(always)]
     fn end<S: Simd<N>>(&mut self, _: S, _: &WideBvh<N, L>) {}
 }
 
-/// A ray tests the children of a node, in the order that suits its errand.
+/// Test the children of a node with a ray, in the visitor's order.
 #[inline(always)]
 pub fn enter<const N: usize, L: Leaves<N>, S: Simd<N>, E: Errand<N, L>>(
     simd: S,
@@ -75,13 +75,13 @@ pub fn enter<const N: usize, L: Leaves<N>, S: Simd<N>, E: Errand<N, L>>(
     }
 }
 
-/// Tells a query all that rays meet.
+/// Offers all intersections to a query.
 pub struct Telling<'a, Q> {
     pub rays: &'a RayBatch<'a>,
     pub query: &'a mut Q,
 }
 
-/// A ray whose meetings are told.
+/// The state of a ray for a query.
 pub struct Told<T> {
     lanes: BlockRay,
     edges: EdgeRay,

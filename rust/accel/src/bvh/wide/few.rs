@@ -1,4 +1,4 @@
-//! Few triangles: sixteen rays at a time go to every leaf that some of them may meet, and to no node at all.
+//! Queries for few triangles: sixteen rays at a time visit every leaf that some of them may hit, without any nodes.
 
 use super::WideBvh;
 use super::answer::Answer;
@@ -13,7 +13,7 @@ use raywright_base::math::Aabb;
 use raywright_base::simd::{Lanes, Simd};
 use raywright_shapes::triangle::{ALL, Leaves, Met, RAYS};
 
-/// So many triangles are few, in so many leaves: a tree of more is walked sooner.
+/// Maximum numbers of triangles and of leaves; for more, traversal is faster.
 pub const TRIANGLES: usize = 64;
 const LEAVES: usize = 32;
 
@@ -28,7 +28,7 @@ pub fn leaves<const N: usize, L: Leaves<N>>(bvh: &WideBvh<N, L>) -> Option<Vec<(
     (leaves.len() <= LEAVES).then_some(leaves)
 }
 
-/// Answers all rays by the leaves of the tree.
+/// Process all rays with the leaves of the tree.
 #[inline(always)]
 pub fn answer<const N: usize, L: Leaves<N>, S: Simd<N>, A: Answer>(
     simd: S,

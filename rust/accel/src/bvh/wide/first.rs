@@ -1,5 +1,5 @@
-//! What rays hit first, or whether they hit anything ([`Looking`]). What has won is computed in f64 once, at the end
-//! ([`Winners`]), by the formula that all accelerators have.
+//! The visitor for first hits and occlusion ([`Looking`]). Closest hits are computed in f64 once, at the end
+//! ([`Winners`]), by the formula that all accelerators share.
 
 use super::WideBvh;
 use super::answer::Answer;
@@ -13,7 +13,7 @@ use raywright_base::math::RayBatch;
 use raywright_base::simd::Simd;
 use raywright_shapes::triangle::{EdgeRay, Leaves, RAYS};
 
-/// The first hits of rays, or whether they have any.
+/// The visitor for first hits or occlusion.
 pub struct First<'a, A, W = Winners> {
     pub rays: &'a RayBatch<'a>,
     pub answer: &'a mut A,
@@ -21,7 +21,7 @@ pub struct First<'a, A, W = Winners> {
 }
 
 impl<A: Answer, W: Settling> First<'_, A, W> {
-    /// Nothing better is to be found for ray `i`.
+    /// Finish ray `i`, whose closest hit is final.
     #[inline(always)]
     pub fn conclude<const N: usize, L: Leaves<N>, S: Simd<N>>(
         &mut self,
@@ -70,7 +70,7 @@ impl<const N: usize, L: Leaves<N>, A: Answer, W: Settling> Errand<N, L> for Firs
     fn visit<S: Simd<N>>(&mut self, simd: S, bvh: &WideBvh<N, L>, flight: &mut Looking, at: Packed) -> Visited {
         if A::ANY {
             if flight.visit::<true, N, L, S>(simd, &bvh.leaves, &bvh.region, at, self.rays) {
-                // Whatever it is.
+                // Any hit will do.
                 flight.best.leaf = at;
                 return Visited::Answered;
             }

@@ -1,4 +1,4 @@
-//! Rays on their way into a tree: made ready sixteen at a time, and those that pass it by answered at once.
+//! Setup of rays before traversal, sixteen at a time; rays that miss the tree are finished at once.
 
 use super::WideBvh;
 use super::errand::Errand;
@@ -10,27 +10,27 @@ use raywright_base::math::{Aabb, RayBatch};
 use raywright_base::simd::{Lanes, Simd};
 use raywright_shapes::triangle::{ALL, Leaves, RAYS};
 
-/// Rays of a batch that have not been launched.
+/// The rays of a batch that are not yet in flight.
 pub struct Gate<'a> {
     rays: &'a RayBatch<'a>,
-    /// Around the tree.
+    /// The bounding box of the tree.
     bounds: Aabb,
     sixteen: Sixteen,
-    /// The first of the sixteen.
+    /// The batch index of the first of the sixteen.
     start: usize,
-    /// The first that has not been looked at.
+    /// The first ray that has not been set up.
     next: usize,
-    /// Of the sixteen, those that wait to be launched.
+    /// The rays among the sixteen that wait for their launch.
     waiting: u32,
 }
 
 impl<'a> Gate<'a> {
-    /// All rays of a batch; the tree is not empty.
+    /// All rays of a batch, for a nonempty tree.
     pub fn new<const N: usize, L>(bvh: &WideBvh<N, L>, rays: &'a RayBatch<'a>) -> Self {
         Self { rays, bounds: bvh.nodes[0].bounds(), sixteen: Sixteen::NONE, start: 0, next: 0, waiting: 0 }
     }
 
-    /// Looks at the next sixteen, of which there is at least one.
+    /// Set up the next sixteen rays, of which there is at least one.
     #[inline(always)]
     fn look<const N: usize, L: Leaves<N>, S: Lanes<RAYS>, E: Errand<N, L>>(
         &mut self,
@@ -52,7 +52,7 @@ impl<'a> Gate<'a> {
         }
     }
 
-    /// The next ray that may hit something; the others are answered at once.
+    /// Launch the next ray that may hit something; others are finished at once.
     #[inline(always)]
     pub fn launch<const N: usize, L: Leaves<N>, S: Simd<N>, E: Errand<N, L>>(
         &mut self,

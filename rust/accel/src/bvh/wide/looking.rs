@@ -1,5 +1,5 @@
-//! A ray that looks for its first hit, or for any: f32 says between which two numbers the `t` of a triangle lies, and
-//! decides wherever that is enough; f64 decides the rest.
+//! A ray in search of its first hit or any hit. f32 gives an interval for the `t` of a triangle, and decides wherever
+//! that suffices; f64 decides the rest.
 
 use super::best::{Best, is_met, primitive};
 use super::node::Packed;
@@ -8,17 +8,17 @@ use raywright_base::math::{Ray, RayBatch, Region};
 use raywright_base::simd::Simd;
 use raywright_shapes::triangle::{BlockRay, EdgeRay, Leaves, RAYS};
 
-/// A ray that looks for its first hit.
+/// A ray in search of its first hit.
 pub struct Looking {
     pub lanes: BlockRay,
-    /// Between these its `t_min` lies.
+    /// An interval that contains its `t_min`.
     pub t_min: (f32, f32),
     pub best: Best,
     pub ray: usize,
 }
 
 impl Looking {
-    /// One of sixteen, ray `ray` of the batch.
+    /// Extract one of sixteen rays, with index `ray` in the batch.
     #[inline(always)]
     pub fn of(rays: &Sixteen, i: usize, ray: usize) -> Self {
         let i = i & (RAYS - 1);
@@ -30,7 +30,8 @@ impl Looking {
         }
     }
 
-    /// Tests the triangles of a leaf. Whether what is known has changed; if any hit will do, whether there is one.
+    /// Test the triangles of a leaf. Return whether the closest hit has changed or, if any hit will do, whether there
+    /// is one.
     #[inline(always)]
     pub fn visit<const ANY: bool, const N: usize, L: Leaves<N>, S: Simd<N>>(
         &mut self,
@@ -79,7 +80,7 @@ impl Looking {
         while open != 0 {
             let lane = open.trailing_zeros();
             open &= open - 1;
-            // What has won already, or won meanwhile, may lie before it.
+            // A closest hit found earlier, or in this loop, may be nearer.
             let is_beyond = bracket.known >> lane & 1 == 1 && low[lane as usize & (N - 1)] > best.high;
             if !is_beyond && !best.is(leaves, leaf, lane) {
                 let before = best.high;
@@ -109,7 +110,7 @@ fn decide<const N: usize, L: Leaves<N>>(
     }
 }
 
-/// Whether a ray meets a triangle, decided in f64.
+/// Return whether a ray hits a triangle, decided in f64.
 #[inline(never)]
 fn decide_any<const N: usize, L: Leaves<N>>(leaves: &L, region: &Region, ray: &Ray, leaf: Packed, lane: u32) -> bool {
     !ray.misses.contains(&primitive(leaves, leaf, lane))

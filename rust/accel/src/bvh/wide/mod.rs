@@ -1,4 +1,4 @@
-//! Wide trees: `N` children a node, tested at once, and blocks of `N` triangles for leaves. They are what rays walk.
+//! Wide BVHs for traversal: `N` children per node, tested at once, and leaves with blocks of `N` triangles.
 
 mod answer;
 mod batch;
@@ -45,16 +45,16 @@ use raywright_shapes::triangle::{Leaves, SolidCone, clipped};
 use std::ops::Range;
 use std::time::Instant;
 
-/// How to build a wide tree.
+/// Options of a wide BVH.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// How much time the build may take. It decides what nobody else does: bins where none are given, and for the
-    /// default builder what is cut before and what improves its tree.
+    /// The build quality. It determines everything that is not given: the number of bins and, for the default builder,
+    /// splitting before the build and the optimizers.
     pub quality: Quality,
-    /// How the binary tree is built.
+    /// The builder of the binary tree.
     pub builder: Builder,
-    /// What improves it then. If none is given, what suits the quality for [`Builder::Binned`], as does what is cut
-    /// before; and nothing otherwise.
+    /// The optimizers that run after the build. If None, they and presplitting follow the quality for
+    /// [`Builder::Binned`]; other builders use none.
     pub optimisers: Option<Optimisers>,
     /// Cost of testing a node's boxes.
     pub traversal_cost: f32,
@@ -63,7 +63,7 @@ pub struct Options {
 }
 
 impl Options {
-    /// Good for most scenes.
+    /// A good choice for most scenes.
     pub const DEFAULT: Self = Self {
         quality: Quality::Balanced,
         builder: Builder::Binned { bins: None },
@@ -72,12 +72,12 @@ impl Options {
         intersection_cost: 1.0,
     };
 
-    /// How to make a binary tree for leaves of blocks of so many triangles.
+    /// The build steps of a binary tree for leaves of blocks of the given size.
     pub fn steps(&self, block: usize) -> Steps {
         let Self { quality, builder, optimisers, traversal_cost, intersection_cost } = *self;
         let by_quality = quality.steps(block);
         let builder = builder.or_bins(quality.bins());
-        // What is named is not changed.
+        // Explicit options are not overridden.
         let (default, cuts, may_turn) = match builder {
             Builder::Binned { bins } if optimisers.is_none() => {
                 let cuts = by_quality.cuts.map(|cuts| cuts.with_bins(bins.unwrap_or(quality.bins())));
@@ -103,29 +103,30 @@ impl Default for Options {
     }
 }
 
-/// A tree of nodes with up to `N` children over leaves of up to `N` triangles.
+/// A tree of nodes with up to `N` children and leaves of up to `N` triangles.
 #[derive(Debug)]
 pub struct WideBvh<const N: usize, L> {
-    /// Empty only if there are no primitives.
+    /// Empty only without primitives.
     nodes: Vec<WideNode<N>>,
     leaves: L,
-    /// Where the triangles lie; boxes are kept in its units.
+    /// The region of the triangles, which defines box units.
     region: Region,
-    /// What boxes lie along, if not the scene's own axes.
+    /// The tree's own axes, if they differ from the scene's.
     axes: Option<Axes>,
-    /// Entries that a stack can need.
+    /// Maximum number of stack entries.
     stack: usize,
     level: Level,
     options: Options,
-    /// Whether a triangle may stand in several leaves, each of which holds a part of it.
+    /// True if triangles may be split among several leaves.
     in_parts: bool,
     info: Info,
 }
 
 impl<const N: usize, L: Leaves<N>> WideBvh<N, L> {
-    /// Builds a tree over triangles.
+    /// Build a tree over triangles.
     ///
     /// # Panics
+    ///
     /// If the level has fewer than `N` lanes.
     pub fn new(primitives: &dyn Primitives, options: &Options, level: Level) -> Self {
         assert!(level.lanes() >= N, "{N} lanes at {}", level.name());
@@ -150,7 +151,7 @@ impl<const N: usize, L: Leaves<N>> WideBvh<N, L> {
         let turned = if steps.may_turn { turned(primitives, &region, &boxes, turn)? } else { None };
         turn.done();
         let (axes, boxes) = turned.map_or((None, boxes), |(axes, boxes)| (Some(axes), boxes));
-        // What is no triangle here is nowhere.
+        // Other primitives are ignored here.
         let contents = Contents { primitives, region: &region, axes: axes.as_ref(), boxes: &[] };
         let (binary, name) = steps.build(boxes, contents, grow)?;
         let mut bvh = Self::collapse(binary, primitives, &region, options, collapse)?;
@@ -164,7 +165,7 @@ impl<const N: usize, L: Leaves<N>> WideBvh<N, L> {
     }
 }
 
-/// Axes along which boxes are worth their while, and the boxes along these; those along the scene's are given.
+/// Rotated axes and the boxes along them, if that pays; `boxes` are those along the scene's axes.
 fn turned(
     primitives: &dyn Primitives,
     region: &Region,
@@ -175,19 +176,19 @@ fn turned(
         return Ok(None);
     };
     let along = work.collect(boxes.len(), |p| aabb(primitives, region, Some(&axes), p as u32))?;
-    // A sample does not see what has a small box along the scene's axes and a large one along others.
+    // The sample misses primitives with a small box along the scene's axes and a large one along others.
     let area = |boxes: &[Aabb]| Total::of(boxes).area;
     let is_worthwhile = area(&along) <= axes::WORTHWHILE * Axes::SCALE * Axes::SCALE * area(boxes);
     Ok(is_worthwhile.then_some((axes, along)))
 }
 
-/// The box around a primitive in a region's units, along axes of its own if there are any; empty if nothing can hit it.
+/// The bounding box of a primitive in a region's units, along the tree's own axes if given; empty if it cannot be hit.
 fn aabb(primitives: &dyn Primitives, region: &Region, axes: Option<&Axes>, primitive: u32) -> Aabb {
     let corners = primitives.corners(primitive);
     if corners.iter().all(|c| c.is_finite()) { region.aabb_along(axes, corners) } else { Aabb::EMPTY }
 }
 
-/// A box around what of a primitive lies in another box, in a region's units, along axes of its own if there are any.
+/// The bounding box of a primitive's part inside another box, in a region's units, along the tree's own axes if given.
 fn clip(primitives: &dyn Primitives, region: &Region, axes: Option<&Axes>, primitive: u32, to: &Aabb) -> Aabb {
     clipped(primitives.corners(primitive).map(|c| region.to_box_along(axes, c)), to)
 }
@@ -261,9 +262,9 @@ where
         self.refit(primitives)
     }
 
-    /// Boxes hold what is below them, every primitive that can be hit stands in one block, once, with its corners, and
-    /// the tree is no deeper than recorded. Where primitives stand in several blocks, the boxes of these hold it
-    /// together, as far as [`cover`] sees.
+    /// Check that boxes contain their subtrees, that every primitive is in exactly one block with its corners, and that
+    /// the tree is no deeper than recorded. If primitives are split among several blocks, the boxes of these together
+    /// cover it, as far as [`cover`] detects.
     fn validate(&self, primitives: &dyn Primitives) -> Result<(), String> {
         let mut met = vec![0u32; primitives.count()];
         let mut parts = Vec::new();
@@ -317,7 +318,7 @@ where
             if !cover(&boxes, &whole, |to| clip(primitives, &self.region, self.axes.as_ref(), p, to)) {
                 return Err(format!("{} leaves together do not contain primitive {p}", boxes.len()));
             }
-            // Several are as good as one.
+            // Several parts count as one.
             met[p as usize] = 1;
         }
         match (0..met.len()).find(|&p| met[p] != u32::from(primitives.is_finite(p as u32))) {

@@ -1,5 +1,5 @@
-//! Nearest points on a wide tree: child by child, the nearest box first (Roussopoulos, Kelley and Vincent, "Nearest
-//! neighbor queries", 1995), until the nearest that is left is farther than what is found.
+//! Nearest-point queries on a wide tree: branch and bound, nearest box first (Roussopoulos, Kelley and Vincent,
+//! "Nearest neighbor queries", 1995).
 
 use super::WideBvh;
 use super::node::Child;
@@ -9,7 +9,7 @@ use raywright_base::math::DVec3;
 use raywright_base::simd::{Kernel, Simd};
 use raywright_shapes::triangle::Leaves;
 
-/// Points whose nearest is wanted.
+/// A batch of nearest-point queries.
 pub struct Points<'a, const N: usize, L> {
     pub bvh: &'a WideBvh<N, L>,
     pub points: &'a [DVec3],
@@ -18,7 +18,7 @@ pub struct Points<'a, const N: usize, L> {
     pub nearest: &'a mut [Nearest],
 }
 
-/// Something to visit, and the square of how far it is.
+/// A child to visit and its squared distance.
 #[derive(Clone, Copy)]
 struct Entry {
     square: f64,
@@ -32,7 +32,7 @@ impl<const N: usize, L: Leaves<N>> Kernel<N> for Points<'_, N, L> {
     fn run<S: Simd<N>>(self, simd: S) {
         let Self { bvh, points, max_distances, counts, nearest } = self;
         let mut stack = vec![Entry { square: 0.0, child: Child::None }; bvh.stack];
-        // Where the last point ended is a good place for the next to begin: neighbours then pass most of the tree by.
+        // The last point's nearest triangle is a good start for the next point: neighbours then cull most of the tree.
         let mut last = None;
         for (i, (&point, nearest)) in points.iter().zip(nearest).enumerate() {
             *nearest = match Search::along(bvh.axes.as_ref(), point, of(max_distances, i), &bvh.region) {
@@ -49,7 +49,7 @@ impl<const N: usize, L: Leaves<N>> Kernel<N> for Points<'_, N, L> {
     }
 }
 
-/// Visits all that may be nearer than what the search has found; `last` becomes the block and lane of what it finds.
+/// Visit everything that may be nearer than the current result; `last` becomes the block and lane of the result.
 #[inline(always)]
 fn walk<const N: usize, L: Leaves<N>, S: Simd<N>>(
     simd: S,
@@ -103,7 +103,7 @@ fn walk<const N: usize, L: Leaves<N>, S: Simd<N>>(
                 return;
             }
             top -= 1;
-            // What is exactly as far may hold a lower primitive.
+            // An equally distant child may contain a lower primitive.
             if stack[top].square <= limit {
                 break stack[top].child;
             }
@@ -111,7 +111,8 @@ fn walk<const N: usize, L: Leaves<N>, S: Simd<N>>(
     }
 }
 
-/// Offers a search the triangle in a lane of a leaf, if it counts; true if it is nearer than what was found.
+/// Offer the triangle in a lane of a leaf to a search, if it counts. Return true if it is nearer than the current
+/// result.
 #[inline(always)]
 fn offer<const N: usize, L: Leaves<N>>(
     bvh: &WideBvh<N, L>,

@@ -1,52 +1,52 @@
-//! A node of a wide tree: the boxes of its children by axis and side, so that each plane of all is one vector.
+//! Nodes of a wide tree: the boxes of the children by axis and side, so that each plane of all children is one vector.
 //!
-//! Planes of a byte, in steps from the node's own origin (Ylitie, Karras and Laine 2017), make a node half as large,
-//! but nodes are a fifth of a tree: on 69 k to 832 k triangles scattered rays took a tenth longer, for decoding, and on
-//! flat walls, which rays leave within coarse boxes, two fifths. Planes of two bytes win nothing.
+//! Quantized planes of one byte (Ylitie, Karras and Laine 2017) halve the size of a node, but nodes are only a fifth of
+//! a tree. On 69 k to 832 k triangles incoherent rays took a tenth longer, because of decoding. On flat walls, where
+//! rays start inside coarse boxes, they took two fifths longer. Planes of two bytes gain nothing.
 
 use crate::NodeBox;
 use raywright_base::math::{Aabb, Vec3};
 use std::array::from_fn;
 
-/// Boxes of up to `N` children, and what they are. Children fill the lanes from the first on: nodes, and then leaves,
-/// of each the largest box first.
+/// The boxes and references of up to `N` children. Children fill the lanes from the first: nodes, then leaves, each by
+/// decreasing box.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub struct WideNode<const N: usize> {
-    /// By axis and side (lower, upper). A missing child has an empty box, from ∞ to −∞, which no ray meets.
+    /// By axis and side (lower, upper). A missing child has an empty box, from ∞ to −∞, which no ray hits.
     pub planes: [[[f32; N]; 2]; 3],
-    /// As [`Packed`].
+    /// The bits of [`Packed`] children.
     pub children: [u32; N],
-    /// By the octant that a ray goes towards; see [`WideNode::order`].
+    /// The visiting orders by the ray's octant; see [`WideNode::order`].
     orders: [u32; N],
 }
 
 const _: () = assert!(size_of::<WideNode<4>>() == 128 && size_of::<WideNode<8>>() == 256);
 
-/// What stands below a node, unpacked.
+/// A child of a node, unpacked.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Child {
-    /// Nothing.
+    /// No child.
     None,
     /// Another node.
     Node(u32),
     /// A leaf.
     Leaf {
-        /// The first of its triangles, in the order of the leaves.
+        /// Its first triangle, in the order of the leaves.
         first: u32,
-        /// From 1 to 8.
+        /// The number of triangles, from 1 to 8.
         count: u32,
     },
 }
 
-/// A child in 32 bits: nodes have a clear top bit, leaves 28 bits of their first triangle and 3 of count − 1.
+/// A child in 32 bits: nodes have a clear top bit; leaves have 28 bits for their first triangle and 3 for count − 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Packed(u32);
 
 impl Packed {
     /// The root.
     pub const ROOT: Self = Self(0);
-    /// Nothing.
+    /// No child.
     pub const NONE: Self = Self(u32::MAX);
     const LEAF: u32 = 1 << 31;
 
@@ -66,25 +66,25 @@ impl Packed {
         }
     }
 
-    /// From what stands in [`WideNode::children`].
+    /// From the bits in [`WideNode::children`].
     #[inline(always)]
     pub fn of(bits: u32) -> Self {
         Self(bits)
     }
 
-    /// As it stands in [`WideNode::children`].
+    /// The bits in [`WideNode::children`].
     #[inline(always)]
     pub const fn bits(self) -> u32 {
         self.0
     }
 
-    /// 0 for a node, 1 for a leaf, 2 for nothing at all.
+    /// 0 for a node, 1 for a leaf, 2 for no child.
     #[inline(always)]
     pub fn kind(self) -> usize {
         (self.0 >> 31) as usize + usize::from(self == Self::NONE)
     }
 
-    /// 0 for a node, 1 for a leaf and for nothing at all.
+    /// 0 for a node, 1 for a leaf or no child.
     #[inline(always)]
     pub fn is_leaf(self) -> usize {
         (self.0 >> 31) as usize
@@ -96,13 +96,13 @@ impl Packed {
         self.0 as usize
     }
 
-    /// Of a leaf, its first triangle and its count.
+    /// The first triangle and the count of a leaf.
     #[inline(always)]
     pub fn leaf(self) -> (usize, u32) {
         ((self.0 >> 3 & ((1 << 28) - 1)) as usize, (self.0 & 7) + 1)
     }
 
-    /// What it is.
+    /// Unpack it.
     pub fn child(self) -> Child {
         match self.kind() {
             0 => Child::Node(self.0),
@@ -116,10 +116,10 @@ impl Packed {
 }
 
 impl<const N: usize> WideNode<N> {
-    /// A node over some children, at most `N`, given with their boxes.
+    /// Create a node with at most `N` children, given with their boxes.
     pub fn new(children: &[(Aabb, Child)]) -> Self {
-        // Any-hit rays visit leaves first, which may end them at once, and of each kind the smallest; their stacks give
-        // first what comes last. By area alone such rays take up to a sixth longer.
+        // Occlusion rays visit leaves first, which may end them at once, and the smallest of each kind; their stack is
+        // popped from the end. By area alone they take up to a sixth longer.
         let mut sorted = [(Aabb::EMPTY, Child::None); N];
         sorted[..children.len()].copy_from_slice(children);
         let children = &mut sorted[..children.len()];
@@ -140,12 +140,12 @@ impl<const N: usize> WideNode<N> {
         node
     }
 
-    /// How many children there are.
+    /// The number of children.
     pub fn count(&self) -> usize {
         self.children.iter().take_while(|&&child| child != Packed::NONE.bits()).count()
     }
 
-    /// Puts those of these lanes, of all that are not empty, into the lanes from the first on.
+    /// Move the children to new lanes: lane i gets the child of `lanes[i]`.
     pub fn permute(&mut self, lanes: &[u8]) {
         let before = self.clone();
         for (to, &from) in lanes.iter().enumerate() {
@@ -157,7 +157,7 @@ impl<const N: usize> WideNode<N> {
             }
             self.children[to] = before.children[from];
         }
-        // The same children in the same order, by the lanes where they stand now.
+        // The same visiting orders, in terms of the new lanes.
         let mut now: [usize; N] = from_fn(|lane| lane);
         for (to, &from) in lanes.iter().enumerate() {
             now[usize::from(from)] = to;
@@ -171,8 +171,7 @@ impl<const N: usize> WideNode<N> {
         }
     }
 
-    /// Notes for each octant in which order rays that go towards it should visit the children: by where the boxes'
-    /// middles lie along the octant's diagonal.
+    /// Compute the visiting order for each octant, by the boxes' centers along the octant's diagonal.
     fn sort(&mut self, count: usize) {
         for octant in 0..8 {
             let middle = |lane: usize| -> f32 {
@@ -190,14 +189,14 @@ impl<const N: usize> WideNode<N> {
         }
     }
 
-    /// The lanes from the farthest to the nearest for rays that go towards an octant (bit i is set where they go down
-    /// along axis i), three bits each from the lowest; then those that are empty.
+    /// The lanes from the farthest to the nearest for rays of an octant (bit i is set if the direction is negative
+    /// along axis i), three bits each from the lowest. Empty lanes follow.
     #[inline(always)]
     pub fn order(&self, octant: usize) -> u32 {
         self.orders[octant & (N - 1)] >> (16 * ((octant & 7) / N))
     }
 
-    /// What stands in a lane.
+    /// The child in a lane.
     pub fn child(&self, lane: usize) -> Child {
         Packed::of(self.children[lane]).child()
     }
@@ -207,19 +206,19 @@ impl<const N: usize> WideNode<N> {
         (0..N).map(|lane| (self.aabb(lane), self.child(lane))).take_while(|(_, child)| *child != Child::None)
     }
 
-    /// The box in a lane; empty if nothing stands there.
+    /// The box in a lane, possibly empty.
     pub fn aabb(&self, lane: usize) -> Aabb {
         let corner = |side: usize| Vec3::from_array(from_fn(|axis| self.planes[axis][side][lane]));
         Aabb { min: corner(0), max: corner(1) }
     }
 
-    /// The box around all children.
+    /// The bounding box of all children.
     pub fn bounds(&self) -> Aabb {
         self.children().fold(Aabb::EMPTY, |b, (child, _)| b.union(child))
     }
 }
 
-/// The boxes of all nodes of a tree, the first of which is the root, and of its leaves.
+/// The boxes of all nodes of a tree, root first, and of its leaves.
 pub fn boxes<const N: usize>(nodes: &[WideNode<N>], primitives: impl Fn(u32, u32) -> usize) -> Vec<NodeBox> {
     let mut all = Vec::with_capacity(nodes.len());
     let root = nodes.first().map(|root| (root.bounds(), Child::Node(0), 0));

@@ -1,4 +1,4 @@
-//! A wide tree over what is tested one by one: a leaf for each, walked by one ray at a time.
+//! A wide tree over objects with one object per leaf, traversed by single rays.
 
 use super::Options;
 use super::collapse::Outline;
@@ -11,10 +11,10 @@ use raywright_base::math::Aabb;
 use raywright_base::simd::{Dispatch, Kernel, Level, Simd};
 use raywright_base::work::{Stopped, Work};
 
-/// A tree of up to `N` children a node and one object a leaf.
+/// A tree with up to `N` children per node and one object per leaf.
 #[derive(Debug)]
 struct Objects<const N: usize> {
-    /// Leaves have their own number for their first primitive.
+    /// The nodes; the first primitive of a leaf is the leaf's own index.
     nodes: Vec<WideNode<N>>,
     depth: usize,
     leaves: usize,
@@ -22,9 +22,9 @@ struct Objects<const N: usize> {
     kind: String,
 }
 
-/// Builds a tree over boxes, as wide as the level's registers.
+/// Build a tree over boxes, as wide as the SIMD vectors.
 pub fn over(input: &Input, options: &Options, level: Level) -> Built {
-    // Objects are not parted, whatever is done with triangles.
+    // Objects are never split.
     let [grow, collapse] = input.work.parts([3.0, 1.0]);
     let (binary, name) = options.quality.steps(1).whole(&input.boxes, grow).unwrap_or_default();
     match level.lanes() {
@@ -45,11 +45,11 @@ where
 }
 
 impl<const N: usize> Objects<N> {
-    /// The tree with other boxes around the leaves.
+    /// The nodes refitted to other boxes of the leaves.
     fn fitted(&self, leaf: impl Fn(u32) -> Aabb) -> Vec<WideNode<N>> {
         let mut nodes = self.nodes.clone();
         let mut around = vec![Aabb::EMPTY; nodes.len()];
-        // Children come after their parents.
+        // Children follow their parents.
         for index in (0..nodes.len()).rev() {
             let children: Vec<_> =
                 nodes[index].children().map(|(_, child)| (below(child, &around, &leaf), child)).collect();
@@ -60,7 +60,7 @@ impl<const N: usize> Objects<N> {
     }
 }
 
-/// The box of what stands below a node.
+/// The bounding box of a child's subtree.
 fn below(child: Child, around: &[Aabb], leaf: impl Fn(u32) -> Aabb) -> Aabb {
     match child {
         Child::None => Aabb::EMPTY,
@@ -74,7 +74,7 @@ where
     Level: Dispatch<N>,
 {
     fn walker(&self, counted: bool) -> Box<dyn Walker + '_> {
-        // Each step down leaves at most N − 1 siblings behind.
+        // Each level leaves at most N − 1 siblings pending.
         let stacks = Stacks::spare::<N>(self.depth * (N - 1) + 1);
         if counted {
             Box::new(Walk::<N, true> { tree: self, ray: Boxes::NOWHERE, stacks, is_new: true, nodes: 0 })
@@ -144,7 +144,7 @@ struct Walk<'a, const N: usize, const COUNTED: bool> {
     tree: &'a Objects<N>,
     ray: Boxes,
     stacks: Stacks,
-    /// Nothing has been visited yet.
+    /// True before the first visit.
     is_new: bool,
     nodes: u32,
 }
@@ -174,7 +174,7 @@ where
     }
 }
 
-/// A walk that goes on to the next leaf.
+/// Advances to the next leaf.
 struct Next<'a, 'b, const N: usize, const COUNTED: bool> {
     walk: &'a mut Walk<'b, N, COUNTED>,
     limit: f32,
@@ -205,7 +205,7 @@ impl<const N: usize, const COUNTED: bool> Kernel<N> for Next<'_, '_, N, COUNTED>
                 }
                 1 => return Some(ray.at.leaf().0 as u32),
                 _ => {
-                    // Asked again, it stays here: below the stack there is nothing.
+                    // Further calls return here again: the stack is empty.
                     *is_new = true;
                     return None;
                 }

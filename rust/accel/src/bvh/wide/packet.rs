@@ -1,16 +1,16 @@
-//! Up to four times sixteen rays together: nodes are tested against all of them at once, by intervals; only before what
-//! is below a child is visited are its box and each ray tested, sixteen at a time, and where few are left they go on
-//! alone. (Boulos et al., "Packet-based Whitted and Distribution Ray Tracing", 2007.) In leaves, a triangle is tested
-//! against sixteen rays, or a ray against all triangles, whichever is less work.
+//! Packets of up to four times sixteen rays. Nodes are tested against the whole packet by interval arithmetic. Only
+//! when a child is popped is its box tested against each ray, sixteen at a time. When few rays remain, they continue
+//! one by one (Boulos et al., "Packet-based Whitted and Distribution Ray Tracing", 2007). In leaves, either triangles
+//! are tested against sixteen rays, or rays against all triangles, whichever is less work.
 //!
-//! A step waits for the one before, and for its outcome: what is done for many rays at once hides that. Sixteen alone
+//! Every step depends on the result of the one before; many rays per step hide that latency. Packets of sixteen rays
 //! take up to twice as long.
 //!
-//! The interval test: along an axis on which all rays go the same way, ray i meets the nearer plane of a box no earlier
-//! than `(plane − o) · r`, with o the latest origin of all rays, moved on by the pad, and r the least or the greatest
-//! inverse of all directions, whichever gives less. It errs by no more than the slab test of a single ray
-//! (`accel/slab.rs`): v·|o| for rounding the origin and as much for moving it, v·(|plane| + |o|) for the difference,
-//! and 2v + v of it for the inverse and the product: less than 6v·R in units of |r|.
+//! The interval test. Let all rays have the same sign along an axis. Ray i hits the near plane of a box no earlier than
+//! `(plane − o) · r`. Here o is the extreme origin of all rays, moved by the pad, and r the least or the greatest
+//! inverse of all directions, whichever gives the lesser result. The error is at most that of the slab test of a single
+//! ray (`accel/slab.rs`): v·|o| for rounding the origin and as much for moving it, v·(|plane| + |o|) for the
+//! difference, and 2v + v of it for the inverse and the product. That is less than 6v·R in units of |r|.
 
 use super::WideBvh;
 use super::answer::Answer;
@@ -25,37 +25,38 @@ use crate::slab::Clock;
 use raywright_base::simd::{ASCENDING, Lanes, Simd};
 use raywright_shapes::triangle::{ALL, Column, Leaves, Met, RAYS};
 
-/// So many rays or fewer go on alone, and so many more for each further sixteen that they are among.
+/// Up to this many rays continue one by one: the first number, plus the second for each further sixteen that they are
+/// among.
 const FEW: [u32; 2] = [3, 2];
 
-/// Sixteens of a packet, at most.
+/// Maximum number of sixteens in a packet.
 const SIXTEENS: usize = 4;
 
-/// Rays of one packet, all plain ([`Sixteen`]) and going the same way along every axis.
+/// A packet of rays, all plain ([`Sixteen`]) and with the same signs along every axis.
 struct Packet<'a> {
     rays: &'a [Sixteen],
     bests: [Bests; SIXTEENS],
-    /// Where in box units each loses interest; −∞ for rays that are answered or missing.
+    /// The end of each ray in box units; −∞ for finished or missing rays.
     limits: [Column<f32>; SIXTEENS],
     bounds: Bounds,
-    /// The plane that is met first, by axis; for all rays.
+    /// The near plane of all rays, by axis.
     first: [usize; 3],
-    /// The first of them in the batch.
+    /// The batch index of the first ray.
     start: usize,
 }
 
-/// What holds for all rays of a packet.
+/// Intervals that contain all rays of a packet.
 struct Bounds {
-    /// The origin from which the nearer plane is met last, by axis.
+    /// The origin for which the near plane is hit last, by axis.
     near: [f32; 3],
-    /// The origin from which the farther plane is met first.
+    /// The origin for which the far plane is hit first.
     far: [f32; 3],
-    /// The least inverse of a direction in magnitude, and the greatest.
+    /// The least and the greatest magnitude of the inverse directions.
     inverse: [[f32; 2]; 3],
     t_min: f32,
 }
 
-/// Answers all rays; the tree is not empty.
+/// Process all rays, for a nonempty tree.
 #[inline(always)]
 pub fn answer<const N: usize, L: Leaves<N>, S: Simd<N>, A: Answer>(
     simd: S,
@@ -134,7 +135,7 @@ impl Bounds {
 }
 
 impl<'a> Packet<'a> {
-    /// The first `count` of some sixteens.
+    /// Create a packet of the first `count` rays.
     #[inline(always)]
     fn new<S: Lanes<RAYS>>(simd: S, rays: &'a [Sixteen], first: [usize; 3], start: usize, count: usize) -> Self {
         let none = simd.splat(f32::NEG_INFINITY);
@@ -147,7 +148,7 @@ impl<'a> Packet<'a> {
         Self { rays, bests, limits, bounds: Bounds::of(simd, rays, first), first, start }
     }
 
-    /// Where the last ray loses interest.
+    /// The farthest end of all rays.
     #[inline(always)]
     fn last_limit<S: Lanes<RAYS>>(&self, simd: S) -> f32 {
         let [a, b, c, d] = &self.limits;
@@ -155,7 +156,7 @@ impl<'a> Packet<'a> {
         simd.greatest(most)
     }
 
-    /// Visits all that any ray may hit. With each child on the stack goes which of the sixteens may meet it.
+    /// Traverse everything that any ray may hit. Each stack entry has a mask of the sixteens that may hit its child.
     #[inline(always)]
     fn walk<const N: usize, L: Leaves<N>, S: Simd<N>, A: Answer>(
         &mut self,
@@ -172,13 +173,13 @@ impl<'a> Packet<'a> {
         'down: loop {
             let node = &bvh.nodes[index];
             let (nears, fars) = self.interval(simd, node, limit);
-            // A child is known by its node and lane, so that its box is at hand when it is popped.
+            // Entries refer to a child by node and lane, which makes its box available when it is popped.
             let mut places = [(index * N) as u32; N];
             for (lane, place) in places.iter_mut().enumerate() {
                 *place += lane as u32;
             }
             *masks[top..].first_chunk_mut::<N>().expect("as long as the stack") = [mask; N];
-            // For any hit, the nearest first is up to a sixth slower where much is hidden by large triangles.
+            // For occlusion, nearest first is up to a sixth slower if large triangles hide much.
             let order = if A::ANY { ASCENDING } else { node.order(octant) };
             top += stack.push::<true, N, S>(simd, top, nears, fars, &places, order);
             loop {
@@ -187,7 +188,7 @@ impl<'a> Packet<'a> {
                 }
                 top -= 1;
                 let (near, place) = stack.entry(top);
-                // What starts exactly at the limit may hold an equal t of a lower primitive.
+                // A child that starts exactly at the limit may contain a lower primitive at equal `t`.
                 if near > limit {
                     continue;
                 }
@@ -229,8 +230,8 @@ impl<'a> Packet<'a> {
         }
     }
 
-    /// Tests a leaf against the rays in `active`: each triangle against sixteen of them, or each of them against all
-    /// triangles. Whether some have a new limit.
+    /// Test a leaf against the rays in `active`: triangles against sixteen rays, or rays against all triangles. Return
+    /// whether some limit has changed.
     #[inline(always)]
     fn visit_leaf<const N: usize, L: Leaves<N>, S: Simd<N>, A: Answer>(
         &mut self,
@@ -264,7 +265,7 @@ impl<'a> Packet<'a> {
         has_changed
     }
 
-    /// Takes note of new limits of some rays.
+    /// Update the limits of some rays.
     #[inline(always)]
     fn lose_interest<const N: usize, L: Leaves<N>, S: Lanes<RAYS>, A: Answer>(
         &mut self,
@@ -308,7 +309,7 @@ impl<'a> Packet<'a> {
         }
     }
 
-    /// From where at the earliest to where at the latest any ray is in each child.
+    /// The interval in which any ray may be inside each child.
     #[inline(always)]
     fn interval<const N: usize, S: Simd<N>>(&self, simd: S, node: &WideNode<N>, limit: f32) -> (S::F32, S::F32) {
         let mut nears = simd.splat(self.bounds.t_min);
@@ -325,7 +326,7 @@ impl<'a> Packet<'a> {
         (nears, fars)
     }
 
-    /// Those of sixteen rays that meet the box in one lane of a node.
+    /// The mask of sixteen rays that hit the box in a lane of a node.
     #[inline(always)]
     fn meeting<const N: usize, S: Lanes<RAYS>>(&self, simd: S, which: usize, node: &WideNode<N>, lane: usize) -> u32 {
         let slabs = &self.rays[which].slabs;

@@ -1,11 +1,11 @@
-//! In which order rays that any hit will do visit the children of a node.
+//! The order in which occlusion rays visit the children of a node.
 //!
-//! Of children that may each end a ray with chance p, at cost C until it has ended there or passed, those with the
-//! greatest p / C are visited first: that is the order of least expected cost if chances are independent. (Ogaki and
-//! Derouet-Jourdan, "An N-ary BVH Child Node Sorting Technique for Occlusion Tests", 2016, sort by such estimates.) A
-//! ray anywhere that meets a convex box of surface S, with triangles of area T in it, meets T / (S / 2) of them on
-//! average (Cauchy's formula: shadows are a quarter of a convex body's surface and half of a triangle's), so one at
-//! all with a chance of about 1 − e^(−2T / S).
+//! Suppose that each child blocks a ray with probability p, at an expected cost C. Visiting by decreasing p / C
+//! minimizes the expected cost if the probabilities are independent. (Ogaki and Derouet-Jourdan, "An N-ary BVH Child
+//! Node Sorting Technique for Occlusion Tests", 2016, sort by such estimates.) A random ray that hits a convex box of
+//! surface area S, which contains triangles of area T, hits T / (S / 2) of them on average. This is Cauchy's formula:
+//! projected areas are a quarter of a convex body's surface and half of a triangle's. So it hits at least one with a
+//! probability of about 1 − e^(−2T / S).
 
 use super::WideBvh;
 use super::node::{Packed, WideNode};
@@ -14,45 +14,45 @@ use raywright_base::parallel;
 use raywright_shapes::triangle::Leaves;
 use std::array::from_fn;
 
-/// What a ray that meets a child's box has to expect there.
+/// The expectation for a ray that hits a child's box.
 #[derive(Clone, Copy)]
 struct Prospect {
-    /// Of a hit.
+    /// The probability of a hit.
     chance: f32,
-    /// Steps until there is one or there is known to be none.
+    /// The expected number of steps until a hit, or until all is visited.
     cost: f32,
 }
 
 impl Prospect {
-    /// What is gained by a step there.
+    /// The probability of a hit per step.
     fn worth(self) -> f32 {
         self.chance / self.cost
     }
 }
 
-/// What a node knows of a child by itself.
+/// The data about a child that do not depend on its descendants.
 struct Known {
-    /// How likely a ray that meets the node meets the child.
+    /// The probability that a ray through the node hits the child.
     met: f32,
     of_leaf: Option<Prospect>,
 }
 
 impl<const N: usize, L: Leaves<N>> WideBvh<N, L> {
-    /// Puts the children of all nodes into the lanes in which such rays should find them.
+    /// Move the children of all nodes to the lanes that suit occlusion rays.
     pub(super) fn arrange(&mut self) {
         let (region, axes) = (self.region, self.axes);
         arrange(&mut self.nodes, &self.leaves, |corner| region.to_box_along(axes.as_ref(), corner));
     }
 }
 
-/// The same for these nodes; rays go from the last lane to the first, and children come after their parents. `to_box`
-/// takes corners to where the boxes are.
+/// The same for given nodes. Rays visit lanes from the last to the first, and children follow their parents. `to_box`
+/// transforms corners to the space of the boxes.
 fn arrange<const N: usize, L: Leaves<N>>(
     nodes: &mut [WideNode<N>],
     leaves: &L,
     to_box: impl Fn(DVec3) -> DVec3 + Sync,
 ) {
-    // What a node knows by itself, side by side; then what it knows from below, which is little work; then the moves.
+    // Local data in parallel; then a sequential bottom-up pass, which is little work; then the moves.
     let known: Vec<[Known; N]> = parallel::collect(nodes.len(), |i| {
         let node = &nodes[i];
         let whole = node.bounds().half_area().max(f32::MIN_POSITIVE);
@@ -73,7 +73,7 @@ fn arrange<const N: usize, L: Leaves<N>>(
         *lanes = from_fn(|lane| lane as u8);
         let lanes = &mut lanes[..node.count()];
         lanes.sort_by(|&a, &b| of(a).worth().total_cmp(&of(b).worth()));
-        // From the last, which is visited first.
+        // The last one is visited first.
         let (mut still, mut cost) = (1.0, 1.0);
         for &lane in lanes.iter().rev() {
             let (of, met) = (of(lane), known[index][usize::from(lane)].met);
@@ -89,7 +89,7 @@ fn arrange<const N: usize, L: Leaves<N>>(
     });
 }
 
-/// What there is to expect of a leaf in a box.
+/// The expectation for a leaf in a box.
 fn leaf<const N: usize, L: Leaves<N>>(
     leaves: &L,
     to_box: &impl Fn(DVec3) -> DVec3,
@@ -116,7 +116,7 @@ mod tests {
 
     #[test]
     fn what_hides_more_for_less_is_visited_first() {
-        // Side by side in unit boxes: a wall, a splinter, and a node over two walls.
+        // Adjacent unit boxes: a wall, a splinter, and a node over two walls.
         let wall = |x: f64, size: f64| {
             let corner = DVec3::new(x, 0.0, 0.5);
             [corner, corner + DVec3::X * size, corner + DVec3::Y * size]
@@ -136,7 +136,7 @@ mod tests {
         };
         let mut nodes = [WideNode::<8>::new(&root), WideNode::new(&[(half(0.0), leaf(2)), (half(1.0), leaf(3))])];
         arrange(&mut nodes, &leaves, |corner| region.to_box(corner));
-        // The last is the first to be visited: a wall at once; walls after a step more; next to nothing.
+        // The last one is visited first: a wall at once; walls after another step; almost nothing.
         let order: Vec<_> = nodes[0].children().map(|(_, child)| child).collect();
         assert_eq!(order, [leaf(1), Child::Node(1), leaf(0)]);
     }

@@ -1,4 +1,4 @@
-//! The same tree over triangles that have moved.
+//! Refitting of a tree to moved triangles.
 
 use super::node::{Child, WideNode};
 use super::{WideBvh, aabb};
@@ -11,8 +11,8 @@ use std::ops::Range;
 use std::time::Instant;
 
 impl<const N: usize, L: Leaves<N>> WideBvh<N, L> {
-    /// The tree with the corners of `primitives` and boxes around them; which child stands where stays as it was. How
-    /// much worse it has become its [`Info::sah_cost`] tells.
+    /// The tree with the corners of `primitives` and refitted boxes, and the same topology. [`Info::sah_cost`] shows
+    /// how much worse it has become.
     pub(super) fn refit(&self, primitives: &dyn Primitives) -> Result<Self, String> {
         let start = Instant::now();
         if L::PRECISION == "single" && !primitives.is_single() {
@@ -27,7 +27,7 @@ impl<const N: usize, L: Leaves<N>> WideBvh<N, L> {
         if finite != self.info.primitives {
             return Err(format!("{finite} primitives can be hit, expected {} as before", self.info.primitives));
         }
-        // Leaf by leaf, as they stand.
+        // Leaf by leaf, in their order.
         let mut leaves: Vec<(usize, u32)> = Vec::with_capacity(self.info.leaves);
         for (_, child) in self.nodes.iter().flat_map(WideNode::children) {
             if let Child::Leaf { first, count } = child {
@@ -50,7 +50,7 @@ impl<const N: usize, L: Leaves<N>> WideBvh<N, L> {
             .map_err(ended)?;
         let mut nodes = self.nodes.clone();
         let mut around = vec![Aabb::EMPTY; nodes.len()];
-        // Children come after their parents.
+        // Children follow their parents.
         for index in (0..nodes.len()).rev() {
             let children: Vec<_> = nodes[index]
                 .children()
@@ -83,7 +83,7 @@ impl<const N: usize, L: Leaves<N>> WideBvh<N, L> {
         Ok(bvh)
     }
 
-    /// The expected cost of a random ray that meets the root's box.
+    /// The expected cost of a random ray that hits the root's box.
     pub(super) fn sah_cost(&self) -> f64 {
         let area = |b: &Aabb| f64::from(b.half_area().max(f32::MIN_POSITIVE));
         let Some(root) = self.nodes.first() else { return 0.0 };

@@ -1,4 +1,4 @@
-//! One ray after the other: for a few of them, and for those that a packet leaves behind.
+//! Traversal by single rays: for few rays, and for those that remain of a packet.
 
 use super::WideBvh;
 use super::errand::{Errand, Visited, enter};
@@ -9,7 +9,7 @@ use raywright_base::math::RayBatch;
 use raywright_base::simd::Simd;
 use raywright_shapes::triangle::Leaves;
 
-/// Answers all rays; the tree is not empty.
+/// Process all rays, for a nonempty tree.
 #[inline(always)]
 pub fn answer<const N: usize, L: Leaves<N>, S: Simd<N>, E: Errand<N, L>>(
     simd: S,
@@ -25,7 +25,7 @@ pub fn answer<const N: usize, L: Leaves<N>, S: Simd<N>, E: Errand<N, L>>(
     errand.end(simd, bvh);
 }
 
-/// Answers ray `i` of a batch.
+/// Process ray `i` of a batch.
 #[inline(always)]
 pub fn ask<const N: usize, L: Leaves<N>, S: Simd<N>, E: Errand<N, L>>(
     simd: S,
@@ -45,7 +45,8 @@ pub fn ask<const N: usize, L: Leaves<N>, S: Simd<N>, E: Errand<N, L>>(
     errand.finish(simd, bvh, &flight);
 }
 
-/// Visits all from where a ray is, with an empty stack at the front of `stacks`; true if the question is answered.
+/// Traverse from the current node of a ray, with an empty stack at the front of `stacks`. Return true if the query is
+/// done.
 #[inline(always)]
 pub fn walk<const N: usize, L: Leaves<N>, S: Simd<N>, E: Errand<N, L>>(
     simd: S,

@@ -1,4 +1,4 @@
-//! Sixteen rays made ready for nodes and for leaves.
+//! Sixteen rays prepared for nodes and leaves.
 
 use super::best::between_all;
 use super::node::Packed;
@@ -8,15 +8,15 @@ use raywright_base::math::{Axes, RayBatch, Region};
 use raywright_base::simd::Lanes;
 use raywright_shapes::triangle::{BlockRays, Column, Leaves, PlainRays, RAYS};
 
-/// Sixteen rays of a batch; of those that are not plain nothing is said.
+/// Sixteen rays of a batch. The data of rays that are not plain are undefined.
 #[derive(Debug)]
 pub struct Sixteen {
     pub plain: PlainRays,
     pub slabs: SlabRays,
     pub blocks: BlockRays,
-    /// Between these lies the `t_min` of each, in the units of leaves ([`Leaves::unit`]).
+    /// An interval for the `t_min` of each ray, in the units of leaves ([`Leaves::unit`]).
     pub t_min: [Column<f32>; 2],
-    /// Between these lies the `t_max` of each.
+    /// An interval for the `t_max` of each ray.
     pub t_max: [Column<f32>; 2],
 }
 
@@ -30,7 +30,7 @@ impl Sixteen {
         t_max: [[0.0; RAYS]; 2],
     };
 
-    /// Has some of them meet triangles by the same bounds.
+    /// Let several sixteens share their error bounds for triangles.
     #[inline(always)]
     pub fn unite(some: &mut [Self]) {
         let Some((sixteen, others)) = some.split_first_mut() else { return };
@@ -42,7 +42,7 @@ impl Sixteen {
         }
     }
 
-    /// Takes up to sixteen rays, at least one; the last stands for those that are missing.
+    /// Load up to sixteen rays, at least one. The last one fills missing places.
     #[inline(always)]
     pub fn take<const N: usize, L: Leaves<N>, S: Lanes<RAYS>>(
         &mut self,
@@ -63,13 +63,13 @@ impl Sixteen {
         }
     }
 
-    /// Where they start, by axes of the boxes, in their units.
+    /// Their origins in box units, along the tree's own axes if any.
     #[inline(always)]
     pub fn origins(&self) -> &[Column<f32>; 3] {
         self.slabs.turned.as_ref().unwrap_or(&self.plain.local)
     }
 
-    /// One of them, at a child, with nothing on the stack that starts at `bottom`.
+    /// One of the rays, at a child, with an empty stack that starts at `bottom`.
     #[inline(always)]
     pub fn boxes(&self, i: usize, limit: f32, at: Packed, bottom: usize) -> Boxes {
         Boxes::of(&self.slabs, i, limit, at, bottom)

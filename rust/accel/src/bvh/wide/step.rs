@@ -1,4 +1,4 @@
-//! What rays do at a node: test its children, and put those that they meet on to a stack.
+//! The traversal step at a node: test its children, and push those that are hit.
 
 use super::node::{Packed, WideNode};
 use crate::slab::{Clock, SlabRay, SlabRays};
@@ -7,7 +7,7 @@ use raywright_base::simd::{ASCENDING, Simd};
 use raywright_shapes::triangle::RAYS;
 use std::cell::RefCell;
 
-/// What a ray needs at nodes, a cache line.
+/// The data of a ray at nodes, one cache line.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub struct Boxes {
@@ -15,16 +15,16 @@ pub struct Boxes {
     near: [f32; 3],
     far: [f32; 3],
     t_min: f32,
-    /// Where in box units the query loses interest.
+    /// The end of the ray in box units.
     pub limit: f32,
-    /// Where in a pair of planes that stands which is met first, by axis: 0, or 8 where the ray goes down. Then the
-    /// octant that it goes towards, bit i for axis i.
+    /// The offset of the near plane in a pair of planes, by axis: 0, or 8 if the direction is negative. Then the ray's
+    /// octant, bit i for axis i.
     first: [u8; 4],
-    /// Where its stack ends.
+    /// The end of its stack.
     top: u32,
-    /// Where it is.
+    /// The current child.
     pub at: Packed,
-    /// How far along its origin was moved, in box units.
+    /// The distance by which its origin was moved, in box units.
     start: f64,
 }
 
@@ -44,7 +44,7 @@ impl Boxes {
         start: 0.0,
     };
 
-    /// At a child, with nothing on the stack that starts at `bottom`.
+    /// A ray at a child, with an empty stack that starts at `bottom`.
     #[inline(always)]
     pub fn new(slabs: &SlabRay, limit: f32, at: Packed, bottom: usize) -> Self {
         let SlabRay { inverse, near, far, t_min, .. } = *slabs;
@@ -52,8 +52,8 @@ impl Boxes {
         Self { inverse, near, far, t_min, limit, first, top: bottom as u32 + 1, at, start }
     }
 
-    /// One of sixteen, at a child, with nothing on the stack that starts at `bottom`.
-    // To transpose all sixteen at once takes as long.
+    /// One of sixteen rays, at a child, with an empty stack that starts at `bottom`.
+    // Transposing all sixteen at once takes as long.
     #[inline(always)]
     pub fn of(slabs: &SlabRays, i: usize, limit: f32, at: Packed, bottom: usize) -> Self {
         let i = i & (RAYS - 1);
@@ -72,23 +72,23 @@ impl Boxes {
         }
     }
 
-    /// From `t` along its scaled direction to box units.
+    /// The conversion of `t` along its scaled direction to box units.
     #[inline(always)]
     pub fn clock(&self, region: &Region) -> Clock {
         Clock::started(region, self.start)
     }
 
-    /// Goes on to what is on top of the stack.
+    /// Pop the stack.
     #[inline(always)]
     pub fn pop(&mut self, stacks: &Stacks) {
         self.top -= 1;
         self.at = Packed::of(stacks.items[self.top as usize]);
     }
 
-    /// Tests the children of the node where the ray is and puts those that it meets on to the stack, the nearest on top
-    /// or, if not `NEAREST_FIRST`, what stands in the last lane. Where on the ray they are met is kept if `KEPT`, for
-    /// [`Self::shorten`]. No branch depends on the ray.
-    // Written out, axis by axis: closures between a kernel's entry and here are not always compiled for its level.
+    /// Test the children of the current node and push those that the ray hits. The nearest is on top or, unless
+    /// `NEAREST_FIRST`, the one in the last lane. Their distances are kept if `KEPT`, for [`Self::shorten`]. No branch
+    /// depends on the ray.
+    // Written out axis by axis: closures between a kernel's entry and here are not always compiled for its SIMD level.
     #[inline(always)]
     pub fn enter<const N: usize, S: Simd<N>, const NEAREST_FIRST: bool, const KEPT: bool>(
         &mut self,
@@ -112,8 +112,8 @@ impl Boxes {
         self.top += stacks.push::<KEPT, N, S>(simd, top, nears, fars, &node.children, order) as u32;
     }
 
-    /// Takes note of a new limit: rids the stack, which starts at `bottom`, of what starts beyond. What starts exactly
-    /// there may hold an equal `t` of a lower primitive.
+    /// Set a new limit: remove the entries beyond it from the stack, which starts at `bottom`. An entry that starts
+    /// exactly there may contain a lower primitive at equal `t`.
     #[inline(always)]
     pub fn shorten<const N: usize, S: Simd<N>>(&mut self, simd: S, limit: f32, stacks: &mut Stacks, bottom: usize) {
         self.limit = limit;
@@ -121,7 +121,7 @@ impl Boxes {
         // The lowest entry always stays.
         let (mut kept, end) = (bottom + 1, self.top as usize);
         for from in (bottom + 1..end).step_by(N) {
-            // Read whole before the same places are written.
+            // All lanes are read before the same places are written.
             let nears = simd.load(room::<N, _>(&mut stacks.nears, from));
             let items = *room::<N, _>(&mut stacks.items, from);
             let count = (end - from).min(N) as u32;
@@ -145,19 +145,18 @@ fn pair<const N: usize>(planes: &[[f32; N]; 2]) -> &[f32] {
     planes.as_flattened()
 }
 
-/// One of them; the place is in eighths of a plane, so that it is an address as it stands where planes are of eight.
+/// One plane of a pair. The offset is in eighths of a plane, so that for planes of eight it is an index as it is.
 #[inline(always)]
 fn plane<const N: usize>(planes: &[f32], place: u8) -> &[f32; N] {
     planes[(usize::from(place) & 8) * N / 8..].first_chunk().expect("one of two")
 }
 
 thread_local! {
-    /// Stacks for one ray each that nobody uses. There are as many as accelerators are asked one within the other.
+    /// A pool of single-ray stacks. It grows to the maximum nesting of accelerators.
     static SPARE: RefCell<Vec<Stacks>> = const { RefCell::new(Vec::new()) };
 }
 
-/// What rays have still to visit, and from where on: a stack for each, of which the lowest entry says that there is
-/// nothing more.
+/// Stacks of children to visit and their distances, one stack per ray. The lowest entry of each marks the end.
 pub struct Stacks {
     nears: Vec<f32>,
     items: Vec<u32>,
@@ -165,32 +164,30 @@ pub struct Stacks {
 }
 
 impl Stacks {
-    /// For so many rays in a tree of which a walk leaves at most `entries` behind.
+    /// Create stacks for a number of rays, in a tree whose traversal leaves at most `entries` pending.
     pub fn new<const N: usize>(rays: usize, entries: usize) -> Self {
-        // Room for a move of all lanes behind the last.
+        // Padding for a vector store after the last entry.
         let depth = entries + 1 + N;
         assert!(depth * rays <= u32::MAX as usize, "stacks of fewer than 2^32 entries");
         Self { nears: vec![0.0; depth * rays], items: vec![Packed::NONE.bits(); depth * rays], depth }
     }
 
-    /// Of no ray.
+    /// Stacks for no rays.
     pub const NONE: Self = Self { nears: Vec::new(), items: Vec::new(), depth: 0 };
 
-    /// One of those that this thread has put away, or a new one, for one ray: to make them anew takes as long as some
-    /// nodes.
+    /// Take a stack for one ray from this thread's pool, or create one. Creating one takes as long as some nodes.
     pub fn spare<const N: usize>(entries: usize) -> Self {
         let fits = |stacks: &Self| stacks.depth > entries + N;
         SPARE.with_borrow_mut(Vec::pop).filter(fits).unwrap_or_else(|| Self::new::<N>(1, entries))
     }
 
-    /// Keeps it for the thread's next ray. What is in it means nothing to that, but for the lowest entry, which nothing
-    /// changes.
+    /// Return it to the thread's pool. Its content is irrelevant except the lowest entry, which never changes.
     pub fn put_away(self) {
         SPARE.with_borrow_mut(|spare| spare.push(self));
     }
 
-    /// Puts those of a node's children on top, which is `top`, for which `nears ≤ fars`, the last in `order` the
-    /// highest; says how many they are. Unless `KEPT`, `nears` are forgotten.
+    /// Push the children with `nears ≤ fars` at index `top`, the last in `order` on top; return their number. Unless
+    /// `KEPT`, `nears` are discarded.
     #[inline(always)]
     pub fn push<const KEPT: bool, const N: usize, S: Simd<N>>(
         &mut self,
@@ -207,20 +204,20 @@ impl Stacks {
         simd.pick(nears, fars, items, order, N as u32, to_nears, to_items)
     }
 
-    /// What was put at a place, and from where on it is met.
+    /// The distance and child of an entry.
     #[inline(always)]
     pub fn entry(&self, at: usize) -> (f32, u32) {
         (self.nears[at], self.items[at])
     }
 
-    /// Where the stack of one of them starts.
+    /// The start of a ray's stack.
     #[inline(always)]
     pub fn bottom(&self, ray: usize) -> usize {
         ray * self.depth
     }
 }
 
-/// Room for a move of all lanes from a place on.
+/// The N entries from an index, for a vector store.
 #[inline(always)]
 fn room<const N: usize, T>(stack: &mut [T], from: usize) -> &mut [T; N] {
     (&mut stack[from..from + N]).try_into().expect("stacks end with room for one move more")

@@ -1,4 +1,4 @@
-//! What a solid cone touches on a wide tree: every box that it may touch is opened, and every triangle there is asked.
+//! Solid cone queries on a wide tree: every box that a cone may touch is opened, and every triangle there is tested.
 
 use super::WideBvh;
 use super::node::Child;
@@ -6,7 +6,7 @@ use crate::touches::{Boxes, Touch, Touches};
 use raywright_base::simd::{Kernel, Simd};
 use raywright_shapes::triangle::{Leaves, SolidCone};
 
-/// Cones whose touches are wanted; none of what is no cone.
+/// A batch of cone queries; None is an invalid cone.
 pub struct Cones<'a, const N: usize, L> {
     pub bvh: &'a WideBvh<N, L>,
     pub cones: &'a [Option<SolidCone>],

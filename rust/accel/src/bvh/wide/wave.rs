@@ -1,10 +1,10 @@
-//! Many rays in flight on one thread: one takes a step, a node or a leaf; what it needs next is fetched from memory
-//! while the others take theirs.
+//! Waves of many rays in flight on one thread: one takes a step, at a node or a leaf; the data of its next step are
+//! prefetched while the others take theirs.
 //!
 //! A ray that waits for memory at every step, and for the outcome of every branch, leaves most of the processor idle.
-//! So each of many rays has a stack of its own; those that are at a node wait in one queue, those at a leaf in another;
-//! and a step at a node has no branch that depends on the ray ([`Boxes::enter`]). Only when a ray has hit something is
-//! its stack rid of what lies beyond.
+//! So each of many rays has a stack of its own. Rays at a node wait in one queue, those at a leaf in another, and a
+//! step at a node has no branch that depends on the ray ([`Boxes::enter`]). Only after a hit is a ray's stack cleared
+//! of entries beyond it.
 
 use super::WideBvh;
 use super::errand::{Errand, Visited, enter};
@@ -15,23 +15,23 @@ use raywright_base::math::RayBatch;
 use raywright_base::simd::Simd;
 use raywright_shapes::triangle::Leaves;
 
-/// Rays in flight: enough that what one has asked for is there when its turn comes.
+/// Rays in flight: enough to hide the latency of prefetches.
 const WAVE: usize = 32;
 
-/// So many rays test the children of their nodes before any of them looks where it goes on: that waits for the whole of
-/// the test, and so would all that the processor has begun meanwhile, which is about four steps. (All of a queue is
-/// slower where memory is far away, for which then all ask at once. The same at leaves, with what f32 says of each kept
-/// until all have been tested, is no faster: what is kept has to be written and read again.)
+/// The number of rays that test the children of their nodes before any of them reads its next child. That read waits
+/// for the whole test, and so would all later instructions in flight, about four steps. (Processing the whole queue is
+/// slower if memory latency is high, since all prefetches are issued at once. The same at leaves, with f32 results
+/// stored until all are tested, is no faster: they have to be written and read again.)
 const TOGETHER: usize = 8;
 
-/// The places of rays that wait for the same kind of step: at a node, or at a leaf and done.
+/// The indices of rays that wait for the same kind of step: at a node, or at a leaf or done.
 struct Queues {
     places: [[u8; WAVE]; 2],
     lens: [usize; 2],
 }
 
 impl Queues {
-    /// Both queues are written and one grows: no branch, and no address that waits for the kind.
+    /// Both queues are written and one grows, which avoids a branch and an address that depends on the kind.
     #[inline(always)]
     fn push(&mut self, kind: usize, place: usize) {
         self.places[0][self.lens[0] & (WAVE - 1)] = place as u8;
@@ -40,14 +40,14 @@ impl Queues {
         self.lens[1] += kind;
     }
 
-    /// All that wait in one; it is empty then.
+    /// Take all indices from a queue.
     #[inline(always)]
     fn take(&mut self, queue: usize) -> ([u8; WAVE], usize) {
         (self.places[queue], std::mem::take(&mut self.lens[queue]).min(WAVE))
     }
 }
 
-/// Answers all rays, of which there is at least one; the tree is not empty.
+/// Process at least one ray, for a nonempty tree.
 #[inline(always)]
 pub fn answer<const N: usize, L: Leaves<N>, S: Simd<N>, E: Errand<N, L>>(
     simd: S,
@@ -57,7 +57,7 @@ pub fn answer<const N: usize, L: Leaves<N>, S: Simd<N>, E: Errand<N, L>>(
 ) {
     let mut gate = Gate::new(bvh, rays);
     let width = WAVE.min(rays.len());
-    // As many as there can be, so that no place of a queue is out of bounds.
+    // The full size, so that no index of a queue is out of bounds.
     let mut boxes = [Boxes::NOWHERE; WAVE];
     let mut flights: Vec<E::Flight> = Vec::with_capacity(width);
     let mut stacks = Stacks::new::<N>(width, bvh.stack);
@@ -116,12 +116,12 @@ pub fn answer<const N: usize, L: Leaves<N>, S: Simd<N>, E: Errand<N, L>>(
     errand.end(simd, bvh);
 }
 
-/// Asks for what a reference stands for.
+/// Prefetch a child.
 #[inline(always)]
 fn fetch<const N: usize, L: Leaves<N>, S: Simd<N>>(simd: S, bvh: &WideBvh<N, L>, at: Packed) {
     let leaf = bvh.leaves.place(at.leaf().0);
     let node = bvh.nodes.as_ptr().wrapping_add(at.node()).cast::<u8>();
-    // The lines of a node, and of most leaves, which begin anywhere in a line. To ask for just those that are needed
+    // The lines of a node, and of most leaves, which may begin anywhere in a line. Prefetching exactly the needed lines
     // takes up to a tenth longer.
     simd.prefetch(if at.is_leaf() == 1 { leaf } else { node }, 5);
 }

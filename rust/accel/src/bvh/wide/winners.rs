@@ -1,4 +1,4 @@
-//! Triangles that have won, computed in f64 sixteen at a time.
+//! Computation of closest hits in f64, sixteen at a time.
 
 use super::WideBvh;
 use super::answer::Answer;
@@ -9,9 +9,9 @@ use raywright_base::math::{Ray, RayBatch};
 use raywright_base::simd::Lanes;
 use raywright_shapes::triangle::{Column, EdgeRay, EdgeRays, Leaves, Met, RAYS, Real};
 
-/// What computes the triangles that have won.
+/// A method that computes closest hits.
 pub trait Settling {
-    /// One more, of ray `i`.
+    /// Add the hit of ray `i`.
     fn add<const N: usize, L: Leaves<N>, A: Answer, S: Lanes<RAYS>>(
         &mut self,
         simd: S,
@@ -22,7 +22,7 @@ pub trait Settling {
         answer: &mut A,
     );
 
-    /// Answers all that there are.
+    /// Compute and store all pending hits.
     fn settle<const N: usize, L: Leaves<N>, A: Answer, S: Lanes<RAYS>>(
         &mut self,
         simd: S,
@@ -32,7 +32,7 @@ pub trait Settling {
     );
 }
 
-/// Each by itself, at once: what sixteen take together takes one ray as long.
+/// Each hit by itself, at once: sixteen together take as long as one.
 pub struct Alone;
 
 impl Settling for Alone {
@@ -60,27 +60,27 @@ impl Settling for Alone {
     }
 }
 
-/// Rays that are done, each with the triangle that it hits. While one sixteen fill up, the sixteen before wait: what is
-/// written number by number is not to be read as vectors at once, since a wide load must wait for narrow stores.
+/// Finished rays with the triangles they hit. While one group of sixteen fills up, the previous one waits. Scalar
+/// stores must not be followed at once by vector loads of the same data, which would stall.
 pub struct Winners {
     sixteens: [Sixteen; 2],
-    /// Which of them fill up.
+    /// The group that fills up.
     filling: usize,
 }
 
-/// Up to sixteen of them.
+/// Up to sixteen finished rays.
 struct Sixteen {
     rays: [usize; RAYS],
     leaves: Column<Packed>,
     lanes: Column<u32>,
     edges: EdgeRays,
-    /// Of the triangles, by corner and axis.
+    /// The triangles' corners, by corner and axis.
     corners: [[Column<f64>; 3]; 3],
     len: usize,
 }
 
 impl Winners {
-    /// None yet.
+    /// Without hits.
     pub fn new() -> Self {
         Self { sixteens: [Sixteen::new(), Sixteen::new()], filling: 0 }
     }
@@ -149,7 +149,7 @@ impl Sixteen {
         self.len = at + 1;
     }
 
-    /// Answers those that there are, and is empty then.
+    /// Compute and store the pending hits of a group.
     #[inline(always)]
     fn settle<const N: usize, L: Leaves<N>, A: Answer, S: Lanes<RAYS>>(
         &mut self,
@@ -190,7 +190,7 @@ struct Triangles<T> {
 }
 
 impl<T: Real> Triangles<T> {
-    /// Those of the rays in `hits`. Neighbours often hit the same, which is fetched once.
+    /// The triangles of the rays in `hits`. Neighbours often hit the same one, which is loaded once.
     #[inline(always)]
     fn of<const N: usize, L: Leaves<N, Real = T>, S: Lanes<RAYS>>(
         simd: S,
@@ -226,7 +226,7 @@ impl<T: Real> Triangles<T> {
     }
 }
 
-/// Answers up to sixteen neighbours of a batch, the first of which is `start`.
+/// Compute and store the hits of up to sixteen consecutive rays from `start`.
 #[inline(always)]
 pub fn settle<const N: usize, L: Leaves<N>, A: Answer, S: Lanes<RAYS>>(
     simd: S,
@@ -249,7 +249,7 @@ pub fn settle<const N: usize, L: Leaves<N>, A: Answer, S: Lanes<RAYS>>(
         }
         return;
     }
-    // Before the rays, so that what is written number by number is there when it is read as vectors.
+    // Before the rays, so that scalar stores complete before the data are loaded as vectors.
     let triangles = Triangles::of(simd, &bvh.leaves, bests, hits);
     let mut edges = EdgeRays::default();
     edges.take(rays, start);
@@ -265,7 +265,7 @@ pub fn settle<const N: usize, L: Leaves<N>, A: Answer, S: Lanes<RAYS>>(
     }
 }
 
-/// Answers one of which sixteen together do not know enough.
+/// Compute a hit that is undecided in the group of sixteen.
 #[inline(never)]
 fn alone<const N: usize, L: Leaves<N>, A: Answer>(
     bvh: &WideBvh<N, L>,
