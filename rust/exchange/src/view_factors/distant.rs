@@ -39,8 +39,8 @@ impl Rule {
         Self::new(&of)
     }
 
-    /// A symmetric rule given by orbits about the center. Each has a weight and one or two of the barycentric
-    /// coordinates; with one, the other two are equal. The remaining weight is at the center.
+    /// A symmetric rule given by orbits about the centre. Each has a weight and one or two of the barycentric
+    /// coordinates; with one, the other two are equal. The remaining weight is at the centre.
     fn of_orbits(pairs: &[[f64; 2]], triples: &[[f64; 3]]) -> Self {
         let mut of = Vec::with_capacity(MOST);
         for &[weight, a] in pairs {

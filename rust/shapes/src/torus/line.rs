@@ -16,7 +16,7 @@
 use crate::Contact;
 use raywright_base::math::{DVec3, DoubleDouble, Ray};
 
-/// An origin-centered torus, in units in which R lies in [1, 2).
+/// A torus centred at the origin, in units in which R lies in [1, 2).
 #[derive(Clone, Copy, Debug)]
 pub struct Tube {
     /// The unit axis.

@@ -98,7 +98,7 @@ fn thread(tree: &Numbered, direction: Vec3) -> Vec<Link> {
             continue;
         }
         let [a, b] = node.children();
-        // Doubled centers.
+        // Doubled centres.
         let at = |child: usize| (nodes[child].min + nodes[child].max).dot(direction);
         let (near, far) = if at(a) <= at(b) { (a, b) } else { (b, a) };
         links[i].hit = near as u32;
