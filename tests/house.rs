@@ -199,7 +199,7 @@ fn files(all: impl IntoIterator<Item = (PathBuf, String)>) -> BTreeMap<Names, Fi
 }
 
 /// Return all Rust files in a folder, recursively.
-fn rust_files(folder: &Path) -> Vec<PathBuf> {
+pub fn rust_files(folder: &Path) -> Vec<PathBuf> {
     let mut files = Vec::new();
     for entry in fs::read_dir(folder).unwrap_or_else(|e| panic!("{}: {e}", folder.display())) {
         let path = entry.unwrap().path();
@@ -213,7 +213,7 @@ fn rust_files(folder: &Path) -> Vec<PathBuf> {
 }
 
 /// Return the text without comments and string contents.
-fn code(text: &str) -> String {
+pub fn code(text: &str) -> String {
     let mut code = String::new();
     let mut in_string = false;
     let mut rest = text;
@@ -241,7 +241,7 @@ fn code(text: &str) -> String {
 }
 
 /// Return formatted code without test items, and the names of test files.
-fn without_tests(code: &str) -> (String, Vec<String>) {
+pub fn without_tests(code: &str) -> (String, Vec<String>) {
     let (mut kept, mut files) = (String::new(), Vec::new());
     let mut lines = code.lines();
     while let Some(line) = lines.next() {

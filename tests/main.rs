@@ -12,6 +12,7 @@ mod fuzz;
 #[path = "hits/main.rs"]
 mod hits;
 mod house;
+mod house_names;
 mod routines;
 
 /// Return how many of `all` cases to test: an eighth, or all of them if `RAYWRIGHT_SLOW` is set.

@@ -1,0 +1,77 @@
+//! Names of types: one concept has one name, and a name that stands for three things stands for none.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+use crate::house::{code, rust_files, without_tests};
+
+/// Names that every room may have: a tree's node, and the options of a builder.
+const COMMON: [&str; 2] = ["Node", "Options"];
+
+/// Names that stand three times or more, and how often; these numbers only fall.
+#[rustfmt::skip]
+const ALLOWED: &[(&str, usize)] = &[
+    ("Alone", 4), ("Along", 4), ("At", 3), ("Batch", 3), ("Body", 3), ("Bounds", 4), ("Boxes", 4), ("Builder", 4),
+    ("Carried", 3), ("Cell", 6), ("Chosen", 3), ("Closest", 3), ("Column", 3), ("Cones", 3), ("Counted", 4),
+    ("Edges", 4), ("Entry", 5), ("Facet", 3), ("Filter", 3), ("First", 4), ("Flight", 3), ("Found", 3), ("Grid", 3),
+    ("Halves", 3), ("KdTree", 3), ("Kept", 3), ("Key", 4), ("Kind", 4), ("Known", 5), ("Level", 4), ("Line", 6),
+    ("Looking", 4), ("Made", 3), ("Matrix", 3), ("Meeting", 4), ("Mesh", 3), ("Met", 7), ("Next", 3), ("Numbers", 3),
+    ("Open", 6), ("Outline", 4), ("Pair", 6), ("Pairs", 3), ("Part", 12), ("Parts", 5), ("Picture", 3), ("Piece", 3),
+    ("Place", 4), ("Plane", 4), ("Points", 5), ("Profile", 3), ("Rough", 5), ("Rows", 5), ("Run", 3), ("Search", 4),
+    ("Seen", 11), ("Shown", 3), ("Side", 5), ("Sides", 4), ("Sight", 4), ("Sixteen", 3), ("Split", 4), ("Spread", 5),
+    ("Sums", 3), ("Table", 4), ("Target", 3), ("Told", 3), ("Tree", 3), ("Volumes", 3), ("Walk", 11), ("Wanted", 4),
+    ("Way", 5),
+];
+
+#[test]
+fn no_type_name_stands_three_times() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("rust");
+    let mut places: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    let mut tests = Vec::new();
+    for path in rust_files(&root) {
+        let (text, modules) = without_tests(&code(&fs::read_to_string(&path).unwrap()));
+        let folder = match path.file_stem().unwrap().to_str() {
+            Some("mod" | "lib") => path.parent().unwrap().to_owned(),
+            _ => path.with_extension(""),
+        };
+        tests.extend(modules.into_iter().map(|name| folder.join(name)));
+        let place = path.strip_prefix(&root).unwrap().display().to_string();
+        for name in type_names(&text) {
+            places.entry(name).or_default().push(place.clone());
+        }
+    }
+    for files in places.values_mut() {
+        files.retain(|file| !tests.iter().any(|test| root.join(file).with_extension("").starts_with(test)));
+    }
+    assert!(places.len() > 500, "too few types: {}", places.len());
+    let allowed: BTreeMap<&str, usize> = ALLOWED.iter().copied().collect();
+    let most = |name: &str| allowed.get(name).copied().unwrap_or(2);
+    let told: String = places
+        .iter()
+        .filter(|(name, files)| !COMMON.contains(&name.as_str()) && files.len() > most(name))
+        .map(|(name, files)| format!("  {name}, {} times: {}\n", files.len(), files.join(", ")))
+        .collect();
+    assert!(told.is_empty(), "names of types that stand too often; take the field's term for the newest:\n{told}");
+}
+
+#[test]
+fn type_names_are_seen_where_they_are_defined() {
+    let text = "pub(super) struct Ray<T>(T);\nenum Side {\n    Left,\n}\npub trait Shape {\n    type Output;\n}\n\
+        type Row = u32;\nimpl Shape for Ray<u32> {\n    type Output = Side;\n}\nfn f() {\n    struct Inner;\n}\n";
+    assert_eq!(type_names(text), ["Ray", "Side", "Shape", "Row", "Inner"]);
+}
+
+/// The types that formatted code defines, but for those that belong to a trait.
+fn type_names(code: &str) -> Vec<String> {
+    let name_of = |line: &str| {
+        let mut words = line.trim_start().split(|c: char| !(c.is_alphanumeric() || c == '_')).filter(|w| !w.is_empty());
+        let mut word = words.next()?;
+        while ["pub", "crate", "super", "in", "unsafe"].contains(&word) {
+            word = words.next()?;
+        }
+        let is_type = ["struct", "enum", "trait", "union"].contains(&word) || word == "type" && !line.starts_with(' ');
+        words.next().filter(|name| is_type && name.starts_with(char::is_uppercase)).map(String::from)
+    };
+    code.lines().filter_map(name_of).collect()
+}
