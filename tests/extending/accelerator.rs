@@ -69,9 +69,14 @@ fn slices_find_what_brute_force_finds() {
     let mut random = raywright::sampling::Sampler::new(1, 0, 0);
     let mut number = (0..).map(|i| random.one(i));
     let mut point = || DVec3::from_array([(); 3].map(|()| number.next().unwrap()));
-    let vertices: Vec<Vec3> = (0..300).map(|i| (0.2 * point() + f64::from(i / 3) * 0.01).as_vec3()).collect();
+    let vertices: Vec<Vec3> = (0..300).map(|i| (0.4 * point() + f64::from(i / 3) * 0.01).as_vec3()).collect();
     let faces = (0..100).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-    let rays: Vec<Ray> = (0..500).map(|_| Ray::new(2.0 * point() - 0.5, point() - 0.5)).collect();
+    let mut ray = || {
+        let origin = 2.0 * point() - 0.5;
+        // Towards the diagonal, along which the triangles lie.
+        Ray::new(origin, DVec3::splat(point().x) - origin)
+    };
+    let rays: Vec<Ray> = (0..500).map(|_| ray()).collect();
     let hits = |build: &dyn Fn(&dyn Primitives) -> Box<dyn Accelerator>| {
         let mesh = Mesh { vertices: vertices.clone().into(), faces: Vec::clone(&faces), ..Mesh::default() };
         let shapes = vec![Shape { surface: mesh.into(), ..Shape::default() }];
