@@ -5,7 +5,7 @@
 
 The rays are those of `peers.py`, float32 and float64, at each mesh as it is, turned, and turned with all
 digits of float64. Each row is asked with several numbers of threads, which must agree; a hash is of all bytes
-of `t`, `shape_id`, `primitive` and `uv`, or of what is occluded.
+of `t`, `shape_id`, `primitive_id` and `uv`, or of what is occluded.
 """
 
 import argparse
@@ -41,7 +41,7 @@ def hashed(scene, rays, digits, threads):
         parts = [scene.occluded(origins, directions, t_max=rays.t_max, threads=threads)]
     else:
         hits = scene.intersect(origins, directions, t_max=rays.t_max, threads=threads)
-        parts = [hits.t, hits.shape_id, hits.primitive, hits.uv]
+        parts = [hits.t, hits.shape_id, hits.primitive_id, hits.uv]
     sums = hashlib.sha256()
     for part in parts:
         sums.update(np.ascontiguousarray(part).tobytes())

@@ -104,7 +104,7 @@ def check(shots):
     facing = np.where(np.sum(hits.normal * directions, axis=-1, keepdims=True) <= 0, 1, -1) * hits.normal
     lamp = np.array(shots.light.position)
     ways = lamp - hits.position
-    starts = hits.leave(ways).origins
+    starts = hits.spawn_rays(ways).origins
     blocked = shots.scene.occluded(starts, lamp - starts, t_max=_END)
     cosine = np.sum(facing * ways, axis=-1) / np.linalg.norm(ways, axis=-1)
     grey = np.where(hits.hit & ~blocked & (cosine > 0), cosine, 0.0)

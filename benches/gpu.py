@@ -123,8 +123,8 @@ def rate(count, took):
 
 def in_python(scene, rays, wanted):
     """Yield rows of the two walks in Python."""
-    flat = scene.flat()
-    origins = (rays[0][:FEW] - flat.centre) * flat.scale
+    flat = scene.gpu_arrays()
+    origins = (rays[0][:FEW] - flat.center) * flat.scale
     tree = Node(flat)
     ways = {
         "pointers, in Python": tree.hit,
@@ -134,7 +134,7 @@ def in_python(scene, rays, wanted):
         start = time.perf_counter()
         found = [walk(o, d, (np.inf, -1)) for o, d in zip(origins, rays[1], strict=False)]
         took = time.perf_counter() - start
-        wrong = sum(face != one for ((_, face), _), one in zip(found, wanted.primitive, strict=False))
+        wrong = sum(face != one for ((_, face), _), one in zip(found, wanted.primitive_id, strict=False))
         boxes = statistics.fmean(boxes for _, boxes in found)
         told = "" if "arrays" not in name else f"{flat.bytes / 1e6:.2f}"
         yield name, told, f"{boxes:.1f}", rate(FEW, took), "", f"{wrong} of {FEW} wrong"
@@ -155,10 +155,10 @@ def in_core(shapes, rays, wanted, repeats):
         any_hit, found = seconds(lambda scene=scene: scene.occluded(*rays), repeats)
         assert hits == wanted
         assert np.array_equal(found, wanted.hit)
-        boxes = scene.cost(*(part[:20_000] for part in rays)).nodes.mean()
+        boxes = scene.traversal_cost(*(part[:20_000] for part in rays)).nodes.mean()
         count = len(rays[0])
         yield (
-            *(name, f"{scene.accelerator.bytes / 1e6:.2f}", f"{boxes:.1f}"),
+            *(name, f"{scene.accelerator_info.bytes / 1e6:.2f}", f"{boxes:.1f}"),
             *(rate(count, closest), rate(count, any_hit), ""),
         )
 
@@ -168,7 +168,7 @@ def in_compute(scene, rays, wanted, repeats, gpu):
     if gpu is None:
         yield "compute, no device", "", "", "", "", ""
         return
-    with scene.on(gpu) as there:
+    with scene.on_device(gpu) as there:
         closest, hits = seconds(lambda: there.intersect(*rays), repeats)
         any_hit, found = seconds(lambda: there.occluded(*rays), repeats)
         assert hits == wanted
@@ -265,7 +265,7 @@ def in_bits(shapes, count, repeats, gpu):
         print(row(kind, said, "CPU", rate(number, closest), rate(number, any_hit), "", ""), flush=True)
         if gpu is None:
             continue
-        with scene.on(gpu) as there:
+        with scene.on_device(gpu) as there:
             closest, hits = seconds(lambda rays=rays, there=there: there.intersect(*rays), repeats)
             any_hit, found = seconds(lambda rays=rays, there=there: there.occluded(*rays), repeats)
             left = f"{100 * there.stats.closest_share:.2g} %, {100 * there.stats.any_share:.2g} %"
@@ -332,7 +332,7 @@ def in_pictures(size, seconds, gpu):
     columns = ("first pass, s", "M samples/s", *(f"{t:g} s" for t in times), f"{seconds:g} s", "z²")
     print(row("picture", "by", *columns))
     print("|---" * (len(columns) + 2) + "|")
-    path, same, wrong = rw.Path(reuse=1, caustics=False), rw.Independent(), 0
+    path, same, wrong = rw.Path(reuse=1, caustics=False), rw.rendering.Independent(), 0
     cpu = f"CPU, {os.cpu_count()} threads"
     ways = [(f"{cpu}, its own choice", None, rw.Path(), None), (cpu, None, path, same)]
     if gpu is not None:

@@ -27,7 +27,7 @@ WAYS = {
     "Path, as chosen": rw.Path(),
     "LightTraced": rw.LightTraced(),
     "Bidirectional": rw.Bidirectional(),
-    "Bidirectional, merged": rw.Bidirectional(merge=True),
+    "Bidirectional, merged": rw.Bidirectional(vertex_merging=True),
     "PhotonMap": rw.PhotonMap(),
     "ProgressivePhotonMap": rw.ProgressivePhotonMap(),
 }

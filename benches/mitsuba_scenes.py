@@ -66,7 +66,7 @@ def blocks(pixels: np.ndarray) -> np.ndarray:
     return cut.mean(axis=(1, 3))
 
 
-def compared(path: Path, shot: rw.Shot, given: dict[str, int], samples: int) -> str:
+def compared(path: Path, shot: rw.rendering.RenderSetup, given: dict[str, int], samples: int) -> str:
     """Return how far apart a scene's pictures by Mitsuba and by raywright are, of as many samples."""
     import mitsuba as mi
 

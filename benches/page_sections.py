@@ -131,7 +131,9 @@ def pictures(sizes):
         except ImportError as error:
             print(f"(mitsuba is left out: {error})")
         # The reference of `render_peers.py`.
-        caustics = Raywright(scene, camera, rw.Path(max_depth=depth, reuse=1, caustics=True), rw.Sobol())
+        caustics = Raywright(
+            scene, camera, rw.Path(max_depth=depth, reuse=1, caustics=True), rw.rendering.Sobol()
+        )
         for engines, long in ((ours, caustics), (theirs, theirs[0] if theirs else None)):
             if not engines:
                 continue

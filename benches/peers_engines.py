@@ -47,7 +47,7 @@ class Raywright(Engine):
     def build(self, vertices, faces):
         """Make the scene; asking for the accelerator compiles it."""
         self.scene = rw.Scene(rw.Mesh(vertices, faces))
-        self.accelerator = self.scene.accelerator
+        self.accelerator = self.scene.accelerator_info
 
     def trace(self, rays, mode):
         """Ask for the closest hits, or for occlusion."""
@@ -69,7 +69,7 @@ class RaywrightDouble(Raywright):
     def build(self, vertices, faces):
         """Make the scene in float64."""
         self.scene = rw.Scene(rw.Mesh(vertices.astype(np.float64), faces), precision="double")
-        self.accelerator = self.scene.accelerator
+        self.accelerator = self.scene.accelerator_info
 
 
 class Embreex(Engine):

@@ -117,7 +117,7 @@ def contest(name, make, arguments):
     scene, camera, depth = make()
     plain = {"reuse": 1, "caustics": False}
     ways = plain, plain | {"reuse": REUSE}, plain | {"caustics": True}
-    kinds = [(rw.Independent(), plain)] + [(rw.Sobol(), way) for way in ways]
+    kinds = [(rw.rendering.Independent(), plain)] + [(rw.rendering.Sobol(), way) for way in ways]
     ours = [Raywright(scene, camera, rw.Path(max_depth=depth))]
     ours += [Raywright(scene, camera, rw.Path(max_depth=depth, **way), sampler) for sampler, way in kinds]
     with_mitsuba = importlib.util.find_spec("mitsuba") is not None

@@ -89,7 +89,7 @@ def by_constants(scene, camera):
     def told(material):
         if not isinstance(material, rw.Conductor) or material.metal is None:
             return material
-        wavelengths, *index = rw.metal_index(material.metal)
+        wavelengths, *index = rw.materials.metal_index(material.metal)
         eta, k = (np.interp((630, 532, 465), wavelengths, values) for values in index)
         return rw.Conductor(eta=eta, k=k, alpha=material.alpha, multiple_scattering=False)
 

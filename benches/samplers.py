@@ -16,7 +16,7 @@ from render_peers import relmse, scenes
 
 import raywright as rw
 
-KINDS = (rw.Stratified, rw.Halton, rw.Sobol, rw.Lattice)
+KINDS = (rw.rendering.Stratified, rw.rendering.Halton, rw.rendering.Sobol, rw.rendering.Lattice)
 
 
 def errors(make, arguments):
@@ -29,13 +29,13 @@ def errors(make, arguments):
         )
         return image.rgb.astype(np.float64)
 
-    halves = [render(arguments.reference // 2, 10**6 + half, rw.Sobol(64)) for half in range(2)]
+    halves = [render(arguments.reference // 2, 10**6 + half, rw.rendering.Sobol(64)) for half in range(2)]
     reference = sum(halves) / 2
     # The halves differ by twice the variance of either; their mean has half of it.
     noise = relmse(halves[0], halves[1]) / 4
     for samples in arguments.samples:
         batched = (kind(min(batch, samples)) for batch, kind in product(arguments.batch, KINDS))
-        for sampler in dict.fromkeys((rw.Independent(), *batched)):
+        for sampler in dict.fromkeys((rw.rendering.Independent(), *batched)):
             told = [relmse(render(samples, seed, sampler), reference) for seed in range(arguments.repeat)]
             yield samples, sampler, np.mean(told) - noise
 
@@ -54,7 +54,7 @@ def main():
     known, rows = scenes(None, arguments.side), {}
     for name in arguments.scene or known:
         for samples, sampler, error in errors(known[name], arguments):
-            if isinstance(sampler, rw.Independent):
+            if isinstance(sampler, rw.rendering.Independent):
                 alone = error
                 print(f"{name}, {samples} samples: relMSE {alone:.2e} with independent ones", flush=True)
             else:

@@ -68,7 +68,7 @@ def calls(subject, size, rng):
     sphere = rng.normal(size=facing.shape)
     sphere /= np.linalg.norm(sphere, axis=-1, keepdims=True)
     ways = (facing + sphere)[hits.hit].astype(np.float32)
-    starts = hits.leave(facing).origins[hits.hit]
+    starts = hits.spawn_rays(facing).origins[hits.hit]
     mesh = subject.vertices.max(axis=0) - subject.vertices.min(axis=0)
     points = (subject.vertices.min(axis=0) + rng.random((50_000, 3)) * mesh).astype(np.float32)
     small = rw.Camera(subject.eye, subject.target, fov=50, width=160, height=120)

@@ -20,13 +20,13 @@ CONTENDERS = {
     "midpoint": rw.BVH(builder="midpoint", traversal="stack"),
     "Morton": rw.BVH(builder="morton", traversal="stack"),
     "PLOC": rw.BVH(builder="ploc", traversal="stack"),
-    "binned SAH": rw.BVH(builder="binned", optimise=(), traversal="stack"),
+    "binned SAH": rw.BVH(builder="binned", optimize=(), traversal="stack"),
     "spatial SAH": rw.BVH(builder="spatial", traversal="stack"),
-    "kD-tree": rw.KdTree(),
-    "grid": rw.Grid(),
-    "nested grid": rw.NestedGrid(),
-    "octree": rw.Octree(),
-    "BSP tree": rw.BSP(),
+    "kD-tree": rw.accelerators.KdTree(),
+    "grid": rw.accelerators.Grid(),
+    "nested grid": rw.accelerators.NestedGrid(),
+    "octree": rw.accelerators.Octree(),
+    "BSP tree": rw.accelerators.BSP(),
 }
 SETS = ("primary", "diffuse", "shadow")
 
@@ -79,10 +79,10 @@ def sayings(of):
     if "stadium" in of:
         nested = of["stadium"].mrays("nested grid") / of["stadium"].mrays("grid")
         yield f"A nested grid repairs that: {nested:.1f} times the rays a second of the plain grid."
-    if "diagonal wall" in of:
+    if "diagonal_wall" in of:
         straight, turned = (
             {name: of[wall].tests(name) for name in ("binned SAH", "spatial SAH")}
-            for wall in ("straight wall", "diagonal wall")
+            for wall in ("straight_wall", "diagonal_wall")
         )
         yield (
             "Spatial splits repair rotation: number of tests in the wall turned by 45 degrees, over the "
@@ -90,9 +90,9 @@ def sayings(of):
             + ", ".join(f"{turned[name] / straight[name]:.2f} ({name})" for name in turned)
             + "."
         )
-    if "turned room" in of:
+    if "turned_room" in of:
         rows = (
-            f"{of['room'].mrays(name) / of['turned room'].mrays(name):.2f} ({name})"
+            f"{of['room'].mrays(name) / of['turned_room'].mrays(name):.2f} ({name})"
             for name in ("default", "binned SAH", "spatial SAH", "kD-tree", "BSP tree", "grid")
         )
         yield f"Time in the turned room, over the straight one: {', '.join(rows)}."

@@ -52,7 +52,7 @@ def validate():
         for j in range(6):
             truth = 0.0 if i == j else opposed if i // 2 == j // 2 else (1 - opposed) / 4
             assert abs(sides.matrix[i, j] - truth) < 1e-10, (i, j)
-    assert np.abs(rw.view_factors(rw.Scene(room(4)), progress=False).rest).max() < 1e-9
+    assert np.abs(rw.view_factors(rw.Scene(room(4)), progress=False).to_surroundings).max() < 1e-9
 
 
 def peer(cuts):
@@ -125,7 +125,7 @@ def alone(cuts, rays):
                 "hidden": found.hidden,
                 "sampled": found.sampled,
                 "rays": found.rays,
-                "rows_off": float(np.abs(found.rest).max()),
+                "rows_off": float(np.abs(found.to_surroundings).max()),
                 "error_of_rows": float(np.sqrt((found.standard_error**2).sum(axis=1)).max()),
             }
         )

@@ -65,7 +65,7 @@ def caustic():
     lamp = rw.SpotLight((-2.6, 2.6, -1.6), (0.6, 0, 0.2), (44, 39, 32), angle=40, falloff=20)
     scene = rw.Scene([glass, water, air, ring, table, window], lights=[lamp])
     camera = rw.Camera((0.9, 2.1, 3.6), (0.6, 0.47, 0.1), fov=26, width=1000, height=520)
-    image = rw.render(scene, camera, rw.Bidirectional(merge=True), samples=20)
+    image = rw.render(scene, camera, rw.Bidirectional(vertex_merging=True), samples=20)
     image.save("caustic.jpg")
     return image
 
@@ -113,11 +113,11 @@ def prism():
     corners = [0.6 * np.array((np.cos(turn), np.sin(turn))) for turn in np.radians((90, 210, 330))]
     ends = [(x, y, z) for z in (0.002, 0.7) for x, y in corners]
     faces = [(0, 2, 1), (3, 4, 5), (0, 1, 4), (0, 4, 3), (1, 2, 5), (1, 5, 4), (2, 0, 3), (2, 3, 5)]
-    glass = rw.Mesh(ends, faces, material=rw.Dielectric(rw.glasses["SF10"]))
+    glass = rw.Mesh(ends, faces, material=rw.Dielectric(rw.materials.glasses["SF10"]))
     table = rw.Box((-4, -4, -1), (5, 4, 0), material=rw.Diffuse(0.8))
     # It comes down through the middle of a face, which it meets under 60 degrees.
     lamp, face = (-2.86, -1.35, 0.8), (-0.26, 0.15, 0.3)
-    white = 300 * rw.illuminants["D65"]
+    white = 300 * rw.textures.illuminants["D65"]
     slit = rw.ProjectorLight(np.ones((110, 1)), lamp, face, up=(0, 0, 1), fov=36, intensity=white)
     window = rw.Disk((-1.5, 3.5, 3), (1.5, -3.5, -3), 1.2, emission=1.4)
     scene = rw.Scene([table, glass, window], lights=[slit])
@@ -138,10 +138,10 @@ def haze():
         rw.Box((-2, 0, -0.04), (2, 0.9, 0.04), material=dark),
     ]
     floor = rw.Plane((0, 0, 0), (0, 1, 0), material=rw.Diffuse((0.3, 0.28, 0.25)))
-    ball = rw.Sphere((0, 0.5, 3.2), 0.5, material=rw.OrenNayar((0.6, 0.15, 0.1)))
+    ball = rw.Sphere((0, 0.5, 3.2), 0.5, material=rw.materials.OrenNayar((0.6, 0.15, 0.1)))
     lamp = rw.PointLight((0, 4.2, -3.6), (1100, 930, 690))
     haze = rw.Homogeneous(scattering=0.07, phase=rw.HenyeyGreenstein(0.3))
-    air = rw.Box((-9, -1, 0.05), (5, 8, 9), material=rw.Boundary(haze))
+    air = rw.Box((-9, -1, 0.05), (5, 8, 9), material=rw.MediumInterface(haze))
     camera = rw.Camera((-8, 1.7, 3.0), (0, 1.35, 2.6), fov=26, width=1000, height=520)
     scene = rw.Scene([*slats, *wall, floor, ball, air], lights=[lamp])
     image = rw.render(scene, camera, rw.Path(max_depth=1), samples=48, adaptive=True)
@@ -163,9 +163,9 @@ def cloud():
         body = np.maximum(body, 1 - np.sqrt((x - a) ** 2 + (y - b) ** 2 + (z - c) ** 2) / r)
     density = np.clip(6 * (body + 0.14 * waves / waves.std()), 0, 1) * np.clip(6 * (y + 0.8), 0, 1)
     bounds = [(-4, 1, -4), (4, 5, 4)]
-    vapour = rw.GridMedium(density, bounds, scattering=12.0, phase=rw.HenyeyGreenstein(0.6), at="centres")
+    vapour = rw.GridMedium(density, bounds, scattering=12.0, phase=rw.HenyeyGreenstein(0.6), at="centers")
     evening = rw.SunSky((-1, 0.13, 0.1), turbidity=2.5, sun_scale=0.08, sky_scale=0.08)
-    scene = rw.Scene(rw.Box(*bounds, material=rw.Boundary(vapour)), environment=evening)
+    scene = rw.Scene(rw.Box(*bounds, material=rw.MediumInterface(vapour)), environment=evening)
     camera = rw.Camera((1.5, 0, 11), (0.2, 3.1, 0), fov=26, width=1000, height=520)
     image = rw.render(scene, camera, samples=32, adaptive=True)
     image.save("cloud.jpg")
@@ -258,17 +258,17 @@ def photons():
 
 def shapes():
     """Curved shapes without triangles, seen through a lens with six blades."""
-    blue, rust = rw.Plastic((0.1, 0.35, 0.6), roughness=0.15), rw.OrenNayar((0.7, 0.3, 0.15))
+    blue, rust = rw.Plastic((0.1, 0.35, 0.6), roughness=0.15), rw.materials.OrenNayar((0.7, 0.3, 0.15))
     green, copper = rw.Plastic((0.2, 0.45, 0.15), roughness=0.25), rw.Conductor("Cu", roughness=0.2)
     stool = "(x - 0.5)**2 + (z - 1.4)**2 - 0.45 * (y + 0.1)**2 - 0.06"
     things = [
-        rw.Implicit(stool, (-0.2, -1, 0.7), (1.2, 0.7, 2.1), material=rust),
+        rw.shapes.Implicit(stool, (-0.2, -1, 0.7), (1.2, 0.7, 2.1), material=rust),
         rw.Cylinder((-0.6, -1, -1.6), (-0.6, 1.1, -1.6), 0.7, material=blue),
         rw.Torus((2.7, -0.55, 0.3), (0.2, 1, 0.3), 0.8, 0.3, material=copper),
         rw.Cone((-2.5, -1, -0.4), (-2.5, 1.1, -0.4), 0.9, material=green),
-        rw.Ellipsoid((-1.2, -0.6, 1.9), (0.7, 0.4, 0.4), material=rw.Dielectric(1.5)),
+        rw.shapes.Ellipsoid((-1.2, -0.6, 1.9), (0.7, 0.4, 0.4), material=rw.Dielectric(1.5)),
         rw.Sphere((1.9, -0.6, 2.1), 0.4, material=rw.Mirror()),
-        rw.Box((3.6, -1, -3.4), (5.2, 0.9, -1.8), material=rw.Diffuse(rw.Wood())),
+        rw.Box((3.6, -1, -3.4), (5.2, 0.9, -1.8), material=rw.Diffuse(rw.textures.Wood())),
         rw.Plane((0, -1, 0), (0, 1, 0), material=rw.Diffuse(rw.Checker(0.25, 0.5))),
         rw.Disk((-5, 8, 6), (5, -8, -6), 4, emission=3.6),
     ]
@@ -289,17 +289,18 @@ def shapes():
 
 def materials():
     """Materials and textures, each defined in a line or two."""
-    bumps = rw.BumpMap(rw.Plastic((0.55, 0.12, 0.1), roughness=0.2), rw.FBm(transform=4.0), scale=0.12)
+    lacquer = rw.Plastic((0.55, 0.12, 0.1), roughness=0.2)
+    bumps = rw.BumpMap(lacquer, rw.textures.FBm(transform=4.0), scale=0.12)
     paint = rw.Principled((0.1, 0.25, 0.45), roughness=0.5, metallic=0.6, clearcoat=1, clearcoat_gloss=1)
     kinds = [
         rw.Conductor("Au", roughness=0.35),
-        rw.Plastic(rw.Marble(transform=1.6), roughness=0.1),
+        rw.Plastic(rw.textures.Marble(transform=1.6), roughness=0.1),
         rw.Dielectric(1.5, transmittance=(0.45, 0.9, 0.6), distance=1.0),
         paint,
-        rw.Plastic(rw.Wood(transform=5.0), roughness=0.25),
+        rw.Plastic(rw.textures.Wood(transform=5.0), roughness=0.25),
         rw.Conductor("Cu", roughness=rw.Checker(0.1, 0.5, 12)),
         bumps,
-        rw.OrenNayar((0.25, 0.4, 0.2)),
+        rw.materials.OrenNayar((0.25, 0.4, 0.2)),
     ]
     places = [(2.3 * (i % 4) - 3.45, 0, -2.6 * (i // 4)) for i in range(8)]
     balls = [rw.Sphere(place, 1.0, material=kind) for place, kind in zip(places, kinds, strict=True)]
@@ -363,7 +364,7 @@ def whitted():
     """Whitted's picture of 1980: reflection and refraction as a tree of rays."""
     scene, camera = rw.scenes.whitted_spheres(1000, 640)
     tree = rw.Whitted(ambient=0.1, light_samples=2)
-    image = rw.render(scene, camera, tree, samples=64, filter=rw.BlackmanHarrisFilter())
+    image = rw.render(scene, camera, tree, samples=64, filter=rw.rendering.BlackmanHarrisFilter())
     image.save("whitted.jpg")
     return image
 

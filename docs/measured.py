@@ -36,7 +36,7 @@ def city(count: int = 9) -> rw.Scene:
     return rw.Scene(shapes)
 
 
-def painted(hits: rw.Hits, values: Any, cmap: str, label: str, **limits: float) -> Any:
+def painted(hits: rw.query.Hits, values: Any, cmap: str, label: str, **limits: float) -> Any:
     """Return a figure of values on the surfaces that a camera sees, shaded a little by their normals."""
     figure, axes = plt.subplots(figsize=(8, 4.5), dpi=100, layout="constrained")
     shown = axes.imshow(values, cmap=cmap, **limits)

@@ -42,9 +42,12 @@ def parts() -> dict[str, tuple[str, str, list[str]]]:
     named = {name: getattr(raywright, name) for name in raywright.__all__}
     for name, value in sorted((named | _APART).items(), key=lambda item: item[0].lower()):
         if isinstance(value, ModuleType):
-            names = [f"{value.__name__}.{one}" for one in value.__all__]
+            # Each thing once, by the shortest name that it has.
+            own = [one for one in value.__all__ if named.get(one) is not getattr(value, one)]
+            brought = [one for one in named if name != one and _home(one, named[one]) == name]
+            names = [f"raywright.{one}" for one in brought] + [f"{value.__name__}.{one}" for one in own]
             found[name] = (value.__name__, _text(value), names)
-        else:
+        elif _home(name, value) not in named:
             grouped[_home(name, value)].append(f"raywright.{name}")
     for home, names in grouped.items():
         module = None if home == _CORE else import_module(f"raywright.{home}")

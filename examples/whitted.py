@@ -7,7 +7,7 @@ import numpy as np
 import raywright as rw
 
 
-class Whitted(rw.Integrator):
+class Whitted(rw.integrators.Integrator):
     """Lights at every surface, and the reflected or the refracted ray of smooth ones, as `raywright.Whitted`.
 
     Of the two rays one is followed, drawn by its share: the mean is the same.
@@ -32,14 +32,14 @@ class Whitted(rw.Integrator):
             alive, throughput, here = alive[here.hit], throughput[here.hit], here[here.hit]
             if bounce == self.max_depth or not len(alive):
                 break
-            light = here.light(rng.one(alive), rng.two(alive))
+            light = here.sample_light(rng.next_1d(alive), rng.next_2d(alive))
             value, _ = here.evaluate(light.direction)
             arriving = throughput * value * light.weight
             result[alive] += arriving * light.visible(scene, arriving.any(axis=1))[:, None]
             # What is scattered into a single direction goes on, and nothing else.
-            drawn = here.sample(rng.one(alive), rng.two(alive))
+            drawn = here.sample_bsdf(rng.next_1d(alive), rng.next_2d(alive))
             goes_on = drawn.any & np.isinf(drawn.pdf)
-            rays = here.leave(drawn.direction)[goes_on]
+            rays = here.spawn_rays(drawn.direction)[goes_on]
             alive, throughput = alive[goes_on], (throughput * drawn.weight)[goes_on]
         return result
 

@@ -55,7 +55,6 @@ __all__ = [
     "implicit_trouble",
     "interactions",
     "leading_numbers",
-    "leave",
     "matrix_trouble",
     "mesh_topology",
     "metal_index",
@@ -73,10 +72,11 @@ __all__ = [
     "simd",
     "singular_transform",
     "smooth_spectrum",
+    "spawn_rays",
     "spectrum_luminance",
     "spectrum_rgb",
     "student",
-    "tree",
+    "tree_boxes",
     "triangulate_polygons",
     "view_factor_matrix",
     "view_factor_rows",
@@ -174,12 +174,12 @@ class CompiledScene:
 
         And in a scene with instances, instance (K,).
         """
-    def count(
+    def count_hits(
         self,
         rays: _Rays,
     ) -> NDArray[np.int32]:
         """Return the number of hits of each ray."""
-    def cost(
+    def traversal_cost(
         self,
         rays: _Rays,
     ) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
@@ -811,7 +811,7 @@ class Interactions:
     @property
     def shape_id(self) -> NDArray[np.int32]: ...
     @property
-    def primitive(self) -> NDArray[np.int32]: ...
+    def primitive_id(self) -> NDArray[np.int32]: ...
     @property
     def uv(self) -> NDArray[np.float64]: ...
     @property
@@ -826,15 +826,15 @@ class Interactions:
     def shading_normal(self) -> NDArray[np.float64]: ...
     @property
     def emission(self) -> NDArray[np.float64]: ...
-    def leave(self, directions: _Floats) -> NDArray[np.float64]: ...
+    def spawn_rays(self, directions: _Floats) -> NDArray[np.float64]: ...
     def evaluate(self, directions: _Floats) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
     def single(
         self, is_through: bool
     ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]: ...
-    def sample(
+    def sample_bsdf(
         self, choice: _Numbers, u: _Numbers
     ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]: ...
-    def light(
+    def sample_light(
         self, choice: _Numbers, u: _Numbers
     ) -> tuple[list[NDArray[np.float64]], NDArray[np.float64], NDArray[np.float64]]: ...
     def light_pdf(self, before: Interactions) -> NDArray[np.float64]: ...
@@ -847,7 +847,7 @@ def random_numbers(
 ) -> NDArray[np.float64]:
     """One number, or a pair, of a dimension of each sample of a pixel: (N,) or (N,2)."""
 
-def leave(
+def spawn_rays(
     position: NDArray[np.float64],
     error: NDArray[np.float64],
     normal: NDArray[np.float64],
@@ -925,7 +925,7 @@ def weld(vertices: _Floats, faces: NDArray[np.uint32], tolerances: NDArray[np.fl
 def weld_rounding(vertices: _Floats, faces: NDArray[np.uint32]) -> float:
     """Return how close corners of a mesh are that differ by rounding."""
 
-def tree(
+def tree_boxes(
     scene: CompiledScene,
 ) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.float64]] | None:
     """Return depth (K,), primitives (K,), -1 for inner nodes, and corners (K, 24) of a tree's boxes."""

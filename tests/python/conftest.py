@@ -51,4 +51,4 @@ def picture() -> rw.Image:
     """A picture of known numbers, 3 wide and 2 high."""
     history = np.array([(0.5, 8, np.nan), (1.0, 16, 0.25), (2.0, 32, 0.125)], rw.rendering.image.HISTORY)
     rgb = np.linspace(0, 1.5, 18, dtype=np.float32).reshape(2, 3, 3)
-    return rw.Image(rgb, rgb / 8, rw.ErrorEstimate(0.125, 0.1, 0.15), history, 2.0, 32)
+    return rw.Image(rgb, rgb / 8, rw.rendering.ErrorEstimate(0.125, 0.1, 0.15), history, 2.0, 32)

@@ -9,7 +9,7 @@ import raywright as rw
 
 # Its relMSE is below 3e-6. The .rgb of
 # rw.render(*rw.scenes.cornell_box(width=48, height=48), rw.Path(reuse=4, caustics=False), samples=16384,
-#           sampler=rw.Sobol(), seed=10**9)
+#           sampler=rw.rendering.Sobol(), seed=10**9)
 STORED = Path(__file__).parent / "data" / "cornell_48.npz"
 
 

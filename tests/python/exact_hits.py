@@ -63,18 +63,18 @@ def check(mesh, origins, directions, t_min=0.0, t_max=np.inf, precision="single"
     brute = rw.Scene(mesh, accelerator=rw.BruteForce(), precision=precision)
     hits, others = (s.intersect(origins, directions, t_min, t_max) for s in (scene, brute))
     assert np.array_equal(hits.t, others.t)
-    assert np.array_equal(hits.primitive, others.primitive)
+    assert np.array_equal(hits.primitive_id, others.primitive_id)
     assert np.array_equal(hits.uv, others.uv)
     for s in (scene, brute):
         assert np.array_equal(s.occluded(origins, directions, t_min, t_max), hits.hit)
-    assert np.array_equal(hits.hit, hits.primitive >= 0)
+    assert np.array_equal(hits.hit, hits.primitive_id >= 0)
 
     starts, ways = np.broadcast_arrays(*np.atleast_2d(origins, directions))
     nears, fars = np.broadcast_to(t_min, len(starts)), np.broadcast_to(t_max, len(starts))
     triangles = rounded(mesh, precision)
     outcome = Outcome()
     for i, found in enumerate(candidates(triangles, starts.astype(np.float64), ways.astype(np.float64))):
-        answer = (float(hits.t[i]), int(hits.primitive[i]), hits.uv[i])
+        answer = (float(hits.t[i]), int(hits.primitive_id[i]), hits.uv[i])
         check_ray(found, answer, float(nears[i]), float(fars[i]))
         outcome.hits += answer[1] >= 0
         outcome.choices += len(found) > 1

@@ -103,6 +103,6 @@ def square(**node: Any) -> Writer:
     return writer
 
 
-def own(shot: rw.Shot) -> tuple[Any, ...]:
+def own(shot: rw.rendering.RenderSetup) -> tuple[Any, ...]:
     """The shapes of a file without a camera: without the floor and the lamp of what has no light."""
     return shot.scene.shapes if shot.scene.environment is None else shot.scene.shapes[:-2]

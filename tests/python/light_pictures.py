@@ -51,10 +51,10 @@ def behind_glass():
 
 MATERIALS = {
     "diffuse": rw.Diffuse((0.8, 0.5, 0.2)),
-    "Oren-Nayar": rw.OrenNayar(0.7, 0.4),
+    "Oren-Nayar": rw.materials.OrenNayar(0.7, 0.4),
     "rough gold": rw.Conductor("Au", roughness=0.5),
     "plastic": rw.Plastic((0.2, 0.4, 0.7), roughness=0.4),
-    "Phong": rw.Phong(0.4, 0.4, 20),
+    "Phong": rw.materials.Phong(0.4, 0.4, 20),
     "rough glass": rw.Dielectric(1.5, roughness=0.6),
     "metallic": rw.MetallicRough((0.7, 0.3, 0.2), 0.5, 0.5),
 }

@@ -12,13 +12,13 @@ FLAT = 1000.0
 def slab(medium, thickness=1.0):
     """A layer that is so wide that its edges are not seen, its top at the height 0."""
     low, high = (-FLAT, -FLAT, -thickness), (FLAT, FLAT, 0)
-    return rw.Box(low, high, material=rw.Boundary(medium))
+    return rw.Box(low, high, material=rw.MediumInterface(medium))
 
 
 def of_depth(depth, albedo, g=0.0, length=1.0):
     """A medium of which so long a way has this optical depth."""
     extinction = depth / length
-    phase = rw.HenyeyGreenstein(g) if g else rw.Isotropic()
+    phase = rw.HenyeyGreenstein(g) if g else rw.media.Isotropic()
     return rw.Homogeneous((1 - albedo) * extinction, albedo * extinction, phase)
 
 

@@ -89,7 +89,7 @@ def zone(start: float, end: float, strips: int) -> list[tuple[float, float]]:
     return [(float(np.sin(a)), float(np.cos(a))) for a in angles]
 
 
-def mean(solution: rw.RadiositySolution, what: np.ndarray, shape: int, side: int = 1) -> float:
+def mean(solution: rw.exchange.RadiositySolution, what: np.ndarray, shape: int, side: int = 1) -> float:
     """The mean by area of the red channel of a shape."""
     rows = (solution.patches["shape"] == shape) & (solution.patches["side"] == side)
     return float(np.average(what[rows, 0], weights=solution.areas[rows]))

@@ -25,11 +25,11 @@ def curved():
         rw.Cylinder((-1, -1, 0), (-0.7, 0.2, 0.5), 0.2, transform=turned),
         rw.Cone((0, 0.5, 0.5), (0, 1, 0.5), 0.3, 0.0),
         rw.Box((0.2, 0.2, -1), (0.6, 0.5, -0.5)),
-        rw.Ellipsoid((0, -0.6, 0.5), (0.6, 0.1, 0.3)),
-        rw.Paraboloid((0.8, -1, 0.8), (0.8, -0.4, 0.8), 0.3),
+        rw.shapes.Ellipsoid((0, -0.6, 0.5), (0.6, 0.1, 0.3)),
+        rw.shapes.Paraboloid((0.8, -1, 0.8), (0.8, -0.4, 0.8), 0.3),
         rw.Torus((-0.3, 0, -0.6), (0, 1, 1), 0.4, 0.1),
         rw.Polygon([(-1, 0.9, -1), (1, 0.9, -1), (1, 0.9, 1), (0, 0.9, 0), (-1, 0.9, 1)]),
-        rw.Implicit("x**2 + y**2 - z**2 - 0.02", (-0.4, -0.4, -0.4), (0.4, 0.4, 0.4)),
+        rw.shapes.Implicit("x**2 + y**2 - z**2 - 0.02", (-0.4, -0.4, -0.4), (0.4, 0.4, 0.4)),
     ]
 
 
@@ -74,8 +74,10 @@ def test_no_structure_ever_disagrees(name):
         scene = rw.Scene(shapes, accelerator=accelerator)
         hits = scene.intersect(origins, directions)
         wrong = (
-            (hits.t != wanted.t) | (hits.shape_id != wanted.shape_id) | (hits.primitive != wanted.primitive)
+            (hits.t != wanted.t)
+            | (hits.shape_id != wanted.shape_id)
+            | (hits.primitive_id != wanted.primitive_id)
         )
-        wrong |= (hits.uv != wanted.uv).any(axis=-1) | (hits.instance != wanted.instance)
+        wrong |= (hits.uv != wanted.uv).any(axis=-1) | (hits.instance_id != wanted.instance_id)
         wrong |= scene.occluded(origins, directions) != wanted.hit
         assert np.count_nonzero(wrong) == 0, told

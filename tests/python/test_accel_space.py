@@ -6,13 +6,17 @@ import pytest
 import raywright as rw
 
 CHOICES = [
-    *(rw.KdTree(b, t) for b in ("sah", "median", "middle", "cycle") for t in ("stack", "restart")),
-    rw.KdTree(max_depth=0),
-    rw.KdTree(empty_bonus=1, leaf_size=1, traversal_cost=3, intersection_cost=2),
-    rw.Octree(),
-    rw.Octree(max_depth=18, leaf_size=1),
-    rw.BSP(),
-    rw.BSP(candidates=1, leaf_size=1, max_depth=60),
+    *(
+        rw.accelerators.KdTree(b, t)
+        for b in ("sah", "median", "middle", "cycle")
+        for t in ("stack", "restart")
+    ),
+    rw.accelerators.KdTree(max_depth=0),
+    rw.accelerators.KdTree(empty_bonus=1, leaf_size=1, traversal_cost=3, intersection_cost=2),
+    rw.accelerators.Octree(),
+    rw.accelerators.Octree(max_depth=18, leaf_size=1),
+    rw.accelerators.BSP(),
+    rw.accelerators.BSP(candidates=1, leaf_size=1, max_depth=60),
 ]
 KNOT = rw.scenes.torus_knot(along=60, around=8)
 BRUTE = rw.Scene(KNOT, accelerator=rw.BruteForce())
@@ -62,44 +66,51 @@ def test_no_primitive_is_tested_twice_for_a_ray(choice):
     # All of them lie across the middle, and stand in many leaves.
     count = 60
     fan = soup(count, size=1.0)
-    cost = rw.Scene(fan, accelerator=choice).cost(*rays())
+    cost = rw.Scene(fan, accelerator=choice).traversal_cost(*rays())
     assert cost.primitives.max() <= count
-    assert (rw.Scene(fan, accelerator=rw.BruteForce()).cost(*rays()).primitives == count).all()
+    assert (rw.Scene(fan, accelerator=rw.BruteForce()).traversal_cost(*rays()).primitives == count).all()
 
 
-@pytest.mark.parametrize("choice", [rw.KdTree(), rw.Octree(), rw.BSP()], ids=repr)
+@pytest.mark.parametrize(
+    "choice", [rw.accelerators.KdTree(), rw.accelerators.Octree(), rw.accelerators.BSP()], ids=repr
+)
 def test_most_primitives_are_not_tested(choice):
-    cost = rw.Scene(KNOT, accelerator=choice).cost(*rays())
+    cost = rw.Scene(KNOT, accelerator=choice).traversal_cost(*rays())
     assert cost.primitives.mean() < len(KNOT.faces) / 20
 
 
 def test_with_and_without_a_stack_the_same_primitives_are_tested():
-    tested = [rw.Scene(KNOT, accelerator=rw.KdTree(traversal=t)).cost(*rays()) for t in ("stack", "restart")]
+    tested = [
+        rw.Scene(KNOT, accelerator=rw.accelerators.KdTree(traversal=t)).traversal_cost(*rays())
+        for t in ("stack", "restart")
+    ]
     assert (tested[0].primitives == tested[1].primitives).all()
     assert (tested[0].nodes <= tested[1].nodes).all()
 
 
-@pytest.mark.parametrize("choice", [rw.KdTree(), rw.Octree(), rw.BSP()], ids=repr)
+@pytest.mark.parametrize(
+    "choice", [rw.accelerators.KdTree(), rw.accelerators.Octree(), rw.accelerators.BSP()], ids=repr
+)
 @pytest.mark.parametrize("count", [0, 1, 2])
 def test_few_faces(choice, count):
     mesh = rw.Mesh([(0.0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], [(0, 1, 2), (0, 1, 3)][:count])
     scene = rw.Scene(mesh, accelerator=choice)
     assert scene.intersect((0.2, 0.2, 5), (0, 0, -1)).hit == (count > 0)
     assert scene.intersect((0.2, 5, 0.2), (0, -1, 0)).hit == (count > 1)
-    assert (scene.accelerator.nodes, scene.accelerator.leaves) == (0, min(count, 1))
+    assert (scene.accelerator_info.nodes, scene.accelerator_info.leaves) == (0, min(count, 1))
 
 
 @pytest.mark.parametrize(
     ("choice", "kind"),
     [
-        (rw.KdTree(), "kD-tree, sah, stack, single"),
-        (rw.KdTree("cycle", "restart"), "kD-tree, cycle, restart, single"),
-        (rw.Octree(), "octree, single"),
-        (rw.BSP(), "BSP tree, single"),
+        (rw.accelerators.KdTree(), "kD-tree, sah, stack, single"),
+        (rw.accelerators.KdTree("cycle", "restart"), "kD-tree, cycle, restart, single"),
+        (rw.accelerators.Octree(), "octree, single"),
+        (rw.accelerators.BSP(), "BSP tree, single"),
     ],
 )
 def test_what_it_is_is_told(choice, kind):
-    told = rw.Scene(KNOT, accelerator=choice, precision="single").accelerator
+    told = rw.Scene(KNOT, accelerator=choice, precision="single").accelerator_info
     assert told.kind == kind
     assert told.leaves > told.nodes > 0
     assert 0 < told.depth <= 8 + 1.3 * np.log2(len(KNOT.faces))
@@ -107,40 +118,62 @@ def test_what_it_is_is_told(choice, kind):
 
 
 def test_doubles_are_kept():
-    choice = rw.KdTree()
+    choice = rw.accelerators.KdTree()
     mesh = rw.Mesh(KNOT.vertices.astype(float) + 1e-9, KNOT.faces)
     scene, brute = (rw.Scene(mesh, accelerator=a, precision="double") for a in (choice, rw.BruteForce()))
     assert scene.intersect(*rays()) == brute.intersect(*rays())
-    assert scene.accelerator.kind.endswith("double")
+    assert scene.accelerator_info.kind.endswith("double")
 
 
 @pytest.mark.parametrize(
     ("call", "error", "message"),
     [
         (
-            lambda: rw.KdTree("best"),
+            lambda: rw.accelerators.KdTree("best"),
             ValueError,
             r"builder must be one of 'sah', 'median', 'middle', 'cycle', got 'best'",
         ),
         (
-            lambda: rw.KdTree(traversal="ropes"),
+            lambda: rw.accelerators.KdTree(traversal="ropes"),
             ValueError,
             r"traversal must be one of 'stack', 'restart', got",
         ),
-        (lambda: rw.KdTree(empty_bonus=1.5), ValueError, r"empty_bonus must be between 0 and 1, got 1.5"),
-        (lambda: rw.KdTree(traversal_cost=0), ValueError, r"traversal_cost must be greater than 0, got 0"),
-        (lambda: rw.KdTree(max_depth=61), ValueError, r"max_depth must be between 0 and 60, got 61"),
-        (lambda: rw.KdTree(leaf_size=0), ValueError, r"leaf_size must be at least 1, got 0"),
-        (lambda: rw.Octree(max_depth=19), ValueError, r"max_depth must be between 0 and 18, got 19"),
-        (lambda: rw.Octree(leaf_size=1.5), TypeError, r"leaf_size must be an integer, got 1.5"),
-        (lambda: rw.BSP(candidates=0), ValueError, r"candidates must be between 1 and 1024, got 0"),
         (
-            lambda: rw.BSP(intersection_cost=-1),
+            lambda: rw.accelerators.KdTree(empty_bonus=1.5),
+            ValueError,
+            r"empty_bonus must be between 0 and 1, got 1.5",
+        ),
+        (
+            lambda: rw.accelerators.KdTree(traversal_cost=0),
+            ValueError,
+            r"traversal_cost must be greater than 0, got 0",
+        ),
+        (
+            lambda: rw.accelerators.KdTree(max_depth=61),
+            ValueError,
+            r"max_depth must be between 0 and 60, got 61",
+        ),
+        (lambda: rw.accelerators.KdTree(leaf_size=0), ValueError, r"leaf_size must be at least 1, got 0"),
+        (
+            lambda: rw.accelerators.Octree(max_depth=19),
+            ValueError,
+            r"max_depth must be between 0 and 18, got 19",
+        ),
+        (lambda: rw.accelerators.Octree(leaf_size=1.5), TypeError, r"leaf_size must be an integer, got 1.5"),
+        (
+            lambda: rw.accelerators.BSP(candidates=0),
+            ValueError,
+            r"candidates must be between 1 and 1024, got 0",
+        ),
+        (
+            lambda: rw.accelerators.BSP(intersection_cost=-1),
             ValueError,
             r"intersection_cost must be greater than 0, got -1",
         ),
         (
-            lambda: rw.Scene(KNOT, accelerator=rw.BSP(traversal_cost=1e-300)).intersect((0, 0, 0), (0, 0, 1)),
+            lambda: rw.Scene(KNOT, accelerator=rw.accelerators.BSP(traversal_cost=1e-300)).intersect(
+                (0, 0, 0), (0, 0, 1)
+            ),
             ValueError,
             r"traversal_cost is 0 in single precision, expected a finite number greater than 0",
         ),

@@ -20,15 +20,17 @@ def lamp(radius=1.0, material=BLACK, emission=1.0):
     return rw.Sphere((0.1, 0, 0), radius, material=material, emission=emission)
 
 
-@pytest.mark.parametrize("filter", [rw.BoxFilter(), rw.GaussianFilter(), rw.LanczosFilter()])
-@pytest.mark.parametrize("more", [{}, {"adaptive": True}, {"sampler": rw.Sobol(batch=4)}])
+@pytest.mark.parametrize(
+    "filter", [rw.rendering.BoxFilter(), rw.rendering.GaussianFilter(), rw.rendering.LanczosFilter()]
+)
+@pytest.mark.parametrize("more", [{}, {"adaptive": True}, {"sampler": rw.rendering.Sobol(batch=4)}])
 def test_what_shines_evenly_is_as_bright_as_it_covers(filter, more):
     scene = rw.Scene(lamp(), environment=1e5)
     image = rw.render(scene, CAMERA, filter=filter, background="transparent", aov="alpha", **HOW, **more)
     # The same samples and weights, in sums rounded to float32.
     np.testing.assert_allclose(image.rgb, np.repeat(image.alpha[..., None], 3, -1), rtol=2e-6, atol=1e-7)
     np.testing.assert_array_equal(image.alpha, image.aov["alpha"])
-    assert image.alpha[9, 12] == pytest.approx(1, abs=1e-6) if filter == rw.BoxFilter() else True
+    assert image.alpha[9, 12] == pytest.approx(1, abs=1e-6) if filter == rw.rendering.BoxFilter() else True
     assert image.alpha[0, 0] == 0
     assert not image.alpha.flags.writeable
 
@@ -83,9 +85,9 @@ def test_masks_let_through_what_of_them_is_open(integrator):
 
 
 def test_a_python_integrator_is_asked_about_all_and_heard_where_it_is_covered():
-    class One(rw.Integrator):
+    class One(rw.integrators.Integrator):
         def radiance(self, scene, rays, rng):
-            return np.ones((len(rng.one()), 3))
+            return np.ones((len(rng.next_1d()), 3))
 
     image = rw.render(rw.Scene(lamp()), CAMERA, One(), background="transparent", **HOW)
     np.testing.assert_allclose(image.rgb[..., 0], image.alpha, atol=1e-6)
@@ -98,7 +100,7 @@ def test_bits_stay_on_threads_elsewhere_and_after_a_break(tmp_path):
         **HOW,
         "background": "transparent",
         "aov": ["alpha", "cryptomatte"],
-        "sampler": rw.Lattice(batch=8),
+        "sampler": rw.rendering.Lattice(batch=8),
     }
     whole = rw.render(scene, CAMERA, rw.Path(), **how)
     with ThreadPoolExecutor(2) as pool:
@@ -141,7 +143,7 @@ def test_aovs_alone_take_their_own_samples():
     scene = rw.Scene(lamp())
     alpha = rw.aovs(scene, CAMERA, "alpha", samples=64, seed=2)["alpha"]
     again = rw.render(
-        scene, CAMERA, samples=64, seed=2, sampler=rw.Independent(), aov="alpha", progress=False
+        scene, CAMERA, samples=64, seed=2, sampler=rw.rendering.Independent(), aov="alpha", progress=False
     )
     assert np.array_equal(alpha, again.aov["alpha"])
 

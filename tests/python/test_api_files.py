@@ -57,11 +57,11 @@ def test_trimesh_and_raywright_agree_on_hits(ball):
     origins = np.random.default_rng(4).normal(size=(60, 3)) * 3
     hits = rw.Scene(ball).intersect(origins, -origins)
     assert hits.hit.all()
-    corners = ball.triangles[hits.primitive]
+    corners = ball.triangles[hits.primitive_id]
     u, v = hits.uv.T[..., np.newaxis]
     points = (1 - u - v) * corners[:, 0] + u * corners[:, 1] + v * corners[:, 2]
     assert np.allclose(points, origins * (1 - hits.t[:, np.newaxis]), atol=1e-6)
-    assert np.allclose(hits.normal, ball.face_normals[hits.primitive], atol=1e-5)
+    assert np.allclose(hits.normal, ball.face_normals[hits.primitive_id], atol=1e-5)
 
 
 def test_normals_count_only_when_they_were_given(ball, tmp_path):
@@ -133,7 +133,7 @@ def test_nan_in_a_file_is_dropped_with_a_warning(tmp_path):
     (tmp_path / "nan.ply").write_text(head + "nan 0 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 1 2 3\n")
     scene = rw.Scene(tmp_path / "nan.ply")
     with pytest.warns(RuntimeWarning, match="1 of 2 faces were dropped"):
-        assert scene.intersect((0.2, 0.3, 1), (0, 0, -1)).primitive == 1
+        assert scene.intersect((0.2, 0.3, 1), (0, 0, -1)).primitive_id == 1
 
 
 NOISE = np.random.default_rng(5).bytes(3000)

@@ -24,8 +24,8 @@ def hits(scene):
         ("hit", np.bool_, False),
         ("t", np.float64, np.inf),
         ("shape_id", np.int32, -1),
-        ("primitive", np.int32, -1),
-        ("instance", np.int32, -1),
+        ("primitive_id", np.int32, -1),
+        ("instance_id", np.int32, -1),
         ("uv", np.float64, None),
         ("position", np.float64, np.nan),
         ("normal", np.float64, np.nan),
@@ -44,7 +44,7 @@ def test_arrays_have_their_types_and_say_what_missed(hits, name, dtype, miss):
 
 
 def test_hits_agree_with_each_other(hits, box):
-    faces = box.faces[hits.primitive[hits.hit]]
+    faces = box.faces[hits.primitive_id[hits.hit]]
     a, b, c = (box.vertices[faces[:, i]] for i in range(3))
     u, v = hits.uv[hits.hit].T[..., np.newaxis]
     assert (u >= 0).all()
@@ -71,7 +71,7 @@ def test_uv_are_weights_of_the_second_and_third_corner(triangle):
 
 
 def test_lazy_arrays_are_worked_out_once(hits):
-    for name in ("hit", "instance", "position", "normal"):
+    for name in ("hit", "instance_id", "position", "normal"):
         assert getattr(hits, name) is getattr(hits, name)
 
 
@@ -106,7 +106,7 @@ def test_pickled_hits_keep_all_they_knew(hits, again):
     assert np.array_equal(back.normal, hits.normal, equal_nan=True)
     assert back.t.flags.writeable
     assert back.normal.flags.writeable
-    assert not back.primitive.flags.writeable
+    assert not back.primitive_id.flags.writeable
 
 
 def test_equality_is_by_content(scene):
@@ -118,15 +118,15 @@ def test_equality_is_by_content(scene):
 
 def test_asdict_gives_the_arrays_and_nothing_of_the_scene(scene, hits):
     rays = (0.5, 0.4, 3.0), (0.0, 0.0, -2.0)
-    corner = ("shape_id", "primitive", "uv", "instance")
+    corner = ("shape_id", "primitive_id", "uv", "instance_id")
     found = [
         (hits, {"t", *corner}),
         (scene.intersect(*rays), {"t", *corner}),
         (scene.intersect_all(*rays), {"ray_splits", "t", "shape", *corner}),
         (scene.closest_point([(2.0, 3.0, 4.0)]), {"distance", *corner}),
-        (scene.cost(*rays), {"nodes", "primitives"}),
+        (scene.traversal_cost(*rays), {"nodes", "primitives"}),
         (hits.surface, {"position", "error", "normal", "shading_normal", "dp_du", "dp_dv", "dn_du", "dn_dv"}),
-        (scene.cone(*rays, 10.0), {"cone_splits", "shape_id", "primitive", "distance", "shape"}),
+        (scene.faces_in_cone(*rays, 10.0), {"cone_splits", "shape_id", "primitive_id", "distance", "shape"}),
     ]
     for points, names in [*found, *((pickle.loads(pickle.dumps(points)), names) for points, names in found)]:
         told = dataclasses.asdict(points)
@@ -144,13 +144,13 @@ def test_asdict_gives_the_arrays_and_nothing_of_the_scene(scene, hits):
 def test_instances_are_among_what_asdict_gives():
     ball = rw.Instance(rw.scenes.torus_knot(along=30, around=6), [np.eye(4), np.diag([2.0, 2, 2, 1])])
     hits = rw.Scene([ball]).intersect(*rw.Camera((0, 0, 9), (0, 0, 0), width=9, height=9).rays())
-    told = dataclasses.asdict(hits)["instance"]
-    assert np.array_equal(told, hits.instance)
+    told = dataclasses.asdict(hits)["instance_id"]
+    assert np.array_equal(told, hits.instance_id)
     assert set(told.ravel().tolist()) > {-1}
 
 
 def test_all_about_points_is_told_whatever_was_asked_before(scene):
     down = ([[0.1, 0.2, 3.0], [9.0, 9.0, 3.0]], (0, 0, -2.0))
     asked, other = scene.intersect(*down), scene.intersect(*down)
-    assert (asked.instance == -1).all()
+    assert (asked.instance_id == -1).all()
     np.testing.assert_array_equal(asked.surface.normal, other.surface.normal)

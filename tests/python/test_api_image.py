@@ -17,7 +17,9 @@ from raywright.io import shown
 def test_linear_srgb_is_the_standard_curve():
     linear = np.array([-1, 0, 0.0031308, 0.05, 0.214041, 0.5, 1, 7, np.nan, np.inf], np.float32)
     rgb = np.repeat(linear[np.newaxis, :, np.newaxis], 3, axis=2)
-    image = rw.Image(rgb, rgb, rw.ErrorEstimate(0, 0, 0), np.empty(0, rw.rendering.image.HISTORY), 0.0, 1)
+    image = rw.Image(
+        rgb, rgb, rw.rendering.ErrorEstimate(0, 0, 0), np.empty(0, rw.rendering.image.HISTORY), 0.0, 1
+    )
     assert image.srgb().dtype == np.uint8
     assert image.srgb(tone="linear")[0, :, 0].tolist() == [0, 0, 10, 63, 127, 188, 255, 255, 0, 255]
 
@@ -109,12 +111,12 @@ def test_table_of_a_long_history_is_thinned(picture, rows):
 
 
 def test_error_estimate_is_a_number():
-    error = rw.ErrorEstimate(0.0125, 0.011, 0.014)
+    error = rw.rendering.ErrorEstimate(0.0125, 0.011, 0.014)
     assert float(error) == 0.0125
     assert f"{error:.2e}" == "1.25e-02"
     assert str(error) == f"{error}" == "0.0125 (95 % interval 0.011 to 0.014)"
-    assert str(rw.ErrorEstimate(math.nan, math.nan, math.nan)) == "unknown"
-    assert error != rw.ErrorEstimate(0.0125, 0.011, 0.015)
+    assert str(rw.rendering.ErrorEstimate(math.nan, math.nan, math.nan)) == "unknown"
+    assert error != rw.rendering.ErrorEstimate(0.0125, 0.011, 0.015)
     assert error != 0.0125
 
 
@@ -149,10 +151,10 @@ def test_exr_holds_the_numbers_and_their_error(picture, tmp_path):
 @pytest.mark.parametrize("suffix", [".png", ".npy", ".exr"])
 def test_check_leaves_nothing_behind_and_spares_what_is_there(tmp_path, suffix):
     path = tmp_path / f"a{suffix}"
-    assert rw.check_writable(path) == path
+    assert rw.io.check_writable(path) == path
     assert list(tmp_path.iterdir()) == []
     path.write_bytes(b"old")
-    rw.check_writable(str(path))
+    rw.io.check_writable(str(path))
     assert path.read_bytes() == b"old"
 
 
@@ -173,7 +175,7 @@ def test_places_that_cannot_be_written(tmp_path, picture, path, error, message, 
     (tmp_path / "file.txt").write_text("x")
     before = sorted(tmp_path.rglob("*"))
     with pytest.raises(error, match=message):
-        picture.save(tmp_path / path) if save else rw.check_writable(tmp_path / path)
+        picture.save(tmp_path / path) if save else rw.io.check_writable(tmp_path / path)
     assert sorted(tmp_path.rglob("*")) == before
 
 
@@ -188,13 +190,13 @@ def test_folders_and_files_without_permission(tmp_path, there):
         tmp_path.chmod(0o500)
     try:
         with pytest.raises(PermissionError, match="Permission denied"):
-            rw.check_writable(path)
+            rw.io.check_writable(path)
     finally:
         tmp_path.chmod(0o700)
 
 
 @pytest.mark.parametrize("path", [3, None, b"a.png"])
 def test_what_is_no_path_is_told(picture, path):
-    for ask in (rw.check_writable, picture.save, rw.load):
+    for ask in (rw.io.check_writable, picture.save, rw.load):
         with pytest.raises(TypeError, match=f"^path must be a str or a path, got {type(path).__name__}$"):
             ask(path)

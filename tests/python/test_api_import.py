@@ -78,8 +78,9 @@ def test_what_type_checkers_read_is_what_is_imported():
 
 def test_subpackages_are_there_with_what_is_public_of_them():
     code = (
-        "import raywright as rw; print(rw.rendering.image.Image is rw.Image, rw.textures.illuminants is"
-        " rw.illuminants, rw.materials.glasses is rw.glasses, rw.scene.scene.Scene is rw.Scene)"
+        "import raywright as rw; print(rw.rendering.image.Image is rw.Image, rw.textures.illuminants['D65'] "
+        "is"
+        " not None, rw.materials.glasses['SF10'] is not None, rw.scene.scene.Scene is rw.Scene)"
     )
     assert run(code).split() == ["True"] * 4
     # A name in both would change its meaning with what has been imported.

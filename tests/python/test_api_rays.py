@@ -97,8 +97,8 @@ def test_results_have_the_broadcast_leading_shape(scene, origins, directions, t_
     o = np.broadcast_to((0.5, 0.5, 5.0), origins)
     d = np.broadcast_to(DOWN, directions)
     hits = scene.intersect(o, d, np.zeros(t_min), np.full(t_max, 9.0))
-    assert hits.shape == hits.t.shape == hits.hit.shape == hits.primitive.shape == lead
-    assert hits.shape_id.shape == hits.instance.shape == lead
+    assert hits.shape == hits.t.shape == hits.hit.shape == hits.primitive_id.shape == lead
+    assert hits.shape_id.shape == hits.instance_id.shape == lead
     assert hits.uv.shape == (*lead, 2)
     assert hits.position.shape == hits.normal.shape == (*lead, 3)
     assert (hits.t == 4).all()
@@ -106,9 +106,9 @@ def test_results_have_the_broadcast_leading_shape(scene, origins, directions, t_
     assert shadowed.shape == lead
     assert shadowed.dtype == np.bool_
     assert shadowed.all()
-    assert scene.count(o, d, np.zeros(t_min), np.full(t_max, 9.0)).shape == lead
+    assert scene.count_hits(o, d, np.zeros(t_min), np.full(t_max, 9.0)).shape == lead
     assert scene.intersect_all(o, d, np.zeros(t_min), np.full(t_max, 9.0)).shape == lead
-    assert scene.cost(o, d, np.zeros(t_min), np.full(t_max, 9.0)).nodes.shape == lead
+    assert scene.traversal_cost(o, d, np.zeros(t_min), np.full(t_max, 9.0)).nodes.shape == lead
 
 
 def test_interval_is_closed_and_per_ray(scene):
@@ -138,7 +138,7 @@ def test_zero_directions_miss(scene):
     assert not scene.occluded((0.5, 0.5, 0.5), (0.0, -0.0, 0))
 
 
-@pytest.mark.parametrize("ask", ["intersect", "occluded", "intersect_all", "count", "cost"])
+@pytest.mark.parametrize("ask", ["intersect", "occluded", "intersect_all", "count_hits", "traversal_cost"])
 @pytest.mark.parametrize(
     ("arguments", "error", "message"),
     [
@@ -228,13 +228,15 @@ def test_each_ray_of_a_large_batch_gets_its_own_answer(shape, dtypes):
     t_max = rng.uniform(0.5, 3, shape)
     hits = scene.intersect(origins, directions, t_max=t_max)
     occluded = scene.occluded(origins, directions, t_max=t_max)
-    found = [a.reshape(-1, *a.shape[len(shape) :]) for a in (hits.t, hits.shape_id, hits.primitive, hits.uv)]
+    found = [
+        a.reshape(-1, *a.shape[len(shape) :]) for a in (hits.t, hits.shape_id, hits.primitive_id, hits.uv)
+    ]
     rays = origins.reshape(-1, 3), directions.reshape(-1, 3), t_max.reshape(-1)
     assert hits.hit.any()
     for start in range(0, t_max.size, 7):
         some = slice(start, start + 7)
         few = scene.intersect(rays[0][some], rays[1][some], t_max=rays[2][some])
-        for whole, part in zip(found, (few.t, few.shape_id, few.primitive, few.uv), strict=True):
+        for whole, part in zip(found, (few.t, few.shape_id, few.primitive_id, few.uv), strict=True):
             assert np.array_equal(whole[some], part)
         assert np.array_equal(occluded.reshape(-1)[some], few.hit)
 
@@ -264,7 +266,7 @@ def test_rays_that_go_much_the_same_way_keep_their_places(count, dtype, one):
         some = slice(start, start + 200)
         few = scene.intersect(origins[some], directions[some], t_max=t_max[some])
         assert np.array_equal(whole.t[some], few.t)
-        assert np.array_equal(whole.primitive[some], few.primitive)
+        assert np.array_equal(whole.primitive_id[some], few.primitive_id)
         assert np.array_equal(whole.uv[some], few.uv)
         assert np.array_equal(whole.shape_id[some], few.shape_id)
 

@@ -79,13 +79,13 @@ def test_numbers_that_were_changed_crash_nothing(kind, value):
         for name in ("t", "distance", "uv", "position"):
             if name in vars(points):
                 getattr(points, name)[...] = value
-        lead = points.primitive.shape
+        lead = points.primitive_id.shape
         assert points.position.shape == points.normal.shape == points.surface.dp_du.shape == (*lead, 3)
-        assert points.leave((0, 1, 0)).origins.shape == (*lead, 3)
+        assert points.spawn_rays((0, 1, 0)).origins.shape == (*lead, 3)
 
 
 def test_what_leads_back_into_the_scene_is_read_only():
     hits = rw.Scene(SCENES["copies"]).intersect(ORIGINS, WAYS)
-    for name in ("shape_id", "primitive", "instance", "cell", "names"):
+    for name in ("shape_id", "primitive_id", "instance_id", "cell", "names"):
         with pytest.raises(ValueError, match="read-only"):
             getattr(hits, name)[...] = 7

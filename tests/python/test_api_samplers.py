@@ -8,15 +8,15 @@ import pytest
 
 import raywright as rw
 
-BATCHED = [rw.Stratified, rw.Halton, rw.Sobol, rw.Lattice]
-SAMPLERS = [rw.Independent(), *(kind(8) for kind in BATCHED)]
+BATCHED = [rw.rendering.Stratified, rw.rendering.Halton, rw.rendering.Sobol, rw.rendering.Lattice]
+SAMPLERS = [rw.rendering.Independent(), *(kind(8) for kind in BATCHED)]
 FILTERS = [
-    rw.BoxFilter(),
-    rw.TriangleFilter(),
-    rw.GaussianFilter(),
-    rw.MitchellFilter(),
-    rw.BlackmanHarrisFilter(),
-    rw.LanczosFilter(),
+    rw.rendering.BoxFilter(),
+    rw.rendering.TriangleFilter(),
+    rw.rendering.GaussianFilter(),
+    rw.rendering.MitchellFilter(),
+    rw.rendering.BlackmanHarrisFilter(),
+    rw.rendering.LanczosFilter(),
 ]
 
 
@@ -49,14 +49,14 @@ def test_batches_are_powers_of_two(kind):
 @pytest.mark.parametrize(
     ("make", "message"),
     [
-        (lambda: rw.BoxFilter(0), "radius must be between 1e-06 and 64, got 0"),
-        (lambda: rw.TriangleFilter(-1), "radius must be between"),
-        (lambda: rw.GaussianFilter(sigma=float("nan")), "sigma must be finite"),
-        (lambda: rw.GaussianFilter(radius=65), "radius must be between"),
-        (lambda: rw.MitchellFilter(b=2), "b must be between 0 and 1, got 2"),
-        (lambda: rw.MitchellFilter(c=-0.1), "c must be between 0 and 1"),
-        (lambda: rw.BlackmanHarrisFilter(float("inf")), "radius must be finite"),
-        (lambda: rw.LanczosFilter(0), "lobes must be between 1 and 16, got 0"),
+        (lambda: rw.rendering.BoxFilter(0), "radius must be between 1e-06 and 64, got 0"),
+        (lambda: rw.rendering.TriangleFilter(-1), "radius must be between"),
+        (lambda: rw.rendering.GaussianFilter(sigma=float("nan")), "sigma must be finite"),
+        (lambda: rw.rendering.GaussianFilter(radius=65), "radius must be between"),
+        (lambda: rw.rendering.MitchellFilter(b=2), "b must be between 0 and 1, got 2"),
+        (lambda: rw.rendering.MitchellFilter(c=-0.1), "c must be between 0 and 1"),
+        (lambda: rw.rendering.BlackmanHarrisFilter(float("inf")), "radius must be finite"),
+        (lambda: rw.rendering.LanczosFilter(0), "lobes must be between 1 and 16, got 0"),
     ],
 )
 def test_filters_refuse_what_makes_no_sense(make, message):
@@ -76,7 +76,7 @@ def test_the_mean_does_not_depend_on_the_sampler(box, camera, sampler):
     scene = rw.Scene(box, environment=1.0)
     images = [
         rw.render(scene, camera, samples=512, seed=s, sampler=k, progress=False)
-        for s, k in ((1, rw.Independent()), (2, sampler))
+        for s, k in ((1, rw.rendering.Independent()), (2, sampler))
     ]
     difference = sum(i.rgb.astype(float).mean() * sign for i, sign in zip(images, (1, -1), strict=True))
     # Pixels are independent, and channels count as one. Five standard errors: once in two million.
@@ -87,7 +87,7 @@ def test_the_mean_does_not_depend_on_the_sampler(box, camera, sampler):
 @pytest.mark.parametrize("filter", FILTERS, ids=name)
 def test_filters_keep_an_even_picture(filter):
     camera = rw.Camera((0, 0, 5), (0, 0, 6), width=8, height=8)
-    how = {"samples": 256, "sampler": rw.Independent(), "filter": filter, "progress": False}
+    how = {"samples": 256, "sampler": rw.rendering.Independent(), "filter": filter, "progress": False}
     image = rw.render(rw.Scene([], environment=0.5), camera, **how)
     off = np.abs(image.rgb.astype(float) - 0.5)
     # Weights have the mean 1; 192 values within six standard errors: once in two million.

@@ -142,7 +142,7 @@ def test_studio_frames_copies_where_they_stand_and_go(box):
     for time in (0.0, 1.0):
         hits = scene.intersect(*camera.rays(), time=time)
         seen = hits.shape_id == 0
-        assert set(hits.instance[seen]) == {0, 1, 2}
+        assert set(hits.instance_id[seen]) == {0, 1, 2}
         border = np.concatenate([seen[0], seen[-1], seen[:, 0], seen[:, -1]])
         assert not border.any()
 

@@ -16,13 +16,13 @@ VALUES = [
     rw.Camera((0, 0, 5), (0, 0, 0)),
     rw.Path(max_depth=3),
     rw.BVH(bins=8),
-    rw.KdTree(max_depth=9),
-    rw.Octree(),
-    rw.BSP(leaf_size=3),
-    rw.Grid(resolution=(4, 5, 6)),
-    rw.NestedGrid(resolution=7),
+    rw.accelerators.KdTree(max_depth=9),
+    rw.accelerators.Octree(),
+    rw.accelerators.BSP(leaf_size=3),
+    rw.accelerators.Grid(resolution=(4, 5, 6)),
+    rw.accelerators.NestedGrid(resolution=7),
     rw.BruteForce(),
-    rw.ErrorEstimate(math.nan, math.nan, math.nan),
+    rw.rendering.ErrorEstimate(math.nan, math.nan, math.nan),
 ]
 
 
@@ -138,7 +138,7 @@ def test_camera_keeps_the_dimensions_of_extreme_scenes():
         (
             lambda: rw.Scene([], quality=3),
             ValueError,
-            r"quality must be one of 'fast build', 'balanced', 'fast rays', got 3",
+            r"quality must be one of 'low', 'medium', 'high', got 3",
         ),
         (lambda: rw.BVH("magic"), ValueError, r"builder must be one of 'binned', .*, got 'magic'"),
         (lambda: rw.BVH(bins=1), ValueError, r"bins must be between 2 and 64, got 1"),

@@ -38,7 +38,7 @@ def test_a_linear_attribute_is_itself_where_rays_hit():
     # QUADS has the top, z = 1, as its last.
     assert (hits.interpolate("number") == 50).all()
     assert (hits.cell == 5).all()
-    assert set(hits.primitive) == {10, 11}
+    assert set(hits.primitive_id) == {10, 11}
 
 
 def test_a_miss_has_no_value_and_no_cell():
@@ -72,12 +72,12 @@ def test_copies_within_copies_have_the_values_of_their_shape():
     local, row, copy = rng.uniform(0, 1, (80, 2)), rng.integers(0, 4, 80), rng.integers(0, 2, 80)
     origins = np.column_stack([local[:, 0] + 10 * copy, local[:, 1] + 2 * row, np.full(80, 9.0)])
     hits = scene.intersect(origins, DOWN)
-    assert np.array_equal(hits.instance, copy)
+    assert np.array_equal(hits.instance_id, copy)
     there = np.column_stack([local, np.ones(80)])
     assert np.allclose(hits.interpolate("temperature"), there @ (1.0, 2.0, 3.0), rtol=0, atol=1e-12)
     assert (hits.cell == 5).all()
     below = scene.intersect(origins * (1, 1, -1), (0, 0, 1))
-    for primitive, cell in zip(below.primitive, below.cell, strict=True):
+    for primitive, cell in zip(below.primitive_id, below.cell, strict=True):
         place = scene.shapes[1].locate(primitive)
         assert cell == (place.face if place.shape.cells is None else place.shape.cells[place.face])
 

@@ -25,7 +25,7 @@ def block(low, high, **kwargs):
 
 
 def look(scene, camera, way, samples=1):
-    return rw.render(scene, camera, way, samples=samples, sampler=rw.Independent(), progress=False)
+    return rw.render(scene, camera, way, samples=samples, sampler=rw.rendering.Independent(), progress=False)
 
 
 def edge(camera, slope, at):
@@ -48,7 +48,9 @@ def test_an_edge_covers_pixels_by_its_exact_area():
     camera = rw.Camera((0, 0, 5), (0, 0, 0), up=(0, 1, 0), fov=40, width=16, height=12)
     slope, at = 0.3, 0.137
     left = quad((-9, -9, 0), (at - 9 * slope, -9, 0), (at + 9 * slope, 9, 0), (-9, 9, 0), material=PAPER)
-    image = look(rw.Scene([left], precision="double"), camera, rw.BeamTraced(ambient=1.0), samples=2)
+    image = look(
+        rw.Scene([left], precision="double"), camera, rw.integrators.BeamTraced(ambient=1.0), samples=2
+    )
     # Pictures are float32, whose steps are 6e-8 just below 1.
     assert image.rgb[..., 0] == pytest.approx(edge(camera, slope, at), abs=6.1e-8)
     assert np.all(image.standard_error == 0)
@@ -61,7 +63,7 @@ def test_an_even_wall_has_no_edges():
     scene = rw.Scene([rw.Mesh(ball.vertices, ball.faces, material=rw.Diffuse(0.8))])
     camera = rw.Camera((0.1, 0.2, 0.3), (1, 0.4, 0.2), fov=70, width=12, height=9)
     # Half the light at a reflectance of 0.8; at 1e-6 a gap of a millionth of a pixel would show.
-    assert look(scene, camera, rw.BeamTraced(ambient=0.5)).rgb == pytest.approx(0.4, abs=1e-6)
+    assert look(scene, camera, rw.integrators.BeamTraced(ambient=0.5)).rgb == pytest.approx(0.4, abs=1e-6)
 
 
 def room(mirror=None):
@@ -73,7 +75,7 @@ def room(mirror=None):
         quad((0, 0, 0), (0, 1, 0), (0, 1, 1), (0, 0, 1), material=rw.Diffuse((0.6, 0.1, 0.1))),
         quad((1, 0, 0), (1, 1, 0), (1, 1, 1), (1, 0, 1), material=mirror or rw.Diffuse((0.1, 0.5, 0.1))),
         block((0.2, 0, 0.3), (0.45, 0.5, 0.55), material=white),
-        block((0.6, 0, 0.6), (0.8, 0.25, 0.8), material=rw.Phong((0.4, 0.4, 0.2), 0.3, 20)),
+        block((0.6, 0, 0.6), (0.8, 0.25, 0.8), material=rw.materials.Phong((0.4, 0.4, 0.2), 0.3, 20)),
     ]
 
 
@@ -86,7 +88,7 @@ PANE = quad((0.1, 0.1, 0.9), (0.5, 0.1, 0.9), (0.5, 0.6, 0.9), (0.1, 0.6, 0.9), 
 def test_beams_make_the_picture_that_rays_make(shapes):
     scene = rw.Scene(shapes, lights=LAMPS)
     camera = rw.Camera((0.5, 0.5, 2.6), (0.5, 0.5, 0), up=(0, 1, 0), fov=38, width=16, height=16)
-    beams = look(scene, camera, rw.BeamTraced(ambient=0.1)).rgb.astype(float)
+    beams = look(scene, camera, rw.integrators.BeamTraced(ambient=0.1)).rgb.astype(float)
     rays = look(scene, camera, rw.Whitted(ambient=0.1, contribution=0), samples=1024)
     # With 768 numbers, one in a hundred pictures has one beyond 4.5 standard errors. Radiance that is no
     # polynomial over a pixel is off by less than a thousandth.
@@ -105,7 +107,7 @@ def test_two_mirrors_and_symmetry():
     camera = rw.Camera((0, 0, 1), (0, 0, -2), up=(0, 1, 0), fov=70, width=16, height=16)
     sums = []
     for depth in (1, 2, 5):
-        rgb = look(scene, camera, rw.BeamTraced(depth, ambient=1.0)).rgb[..., 0]
+        rgb = look(scene, camera, rw.integrators.BeamTraced(depth, ambient=1.0)).rgb[..., 0]
         rays = look(scene, camera, rw.Whitted(depth, contribution=0, ambient=1.0), samples=512)
         # If all samples agree, all may have missed a sliver of a pixel.
         assert np.all(np.abs(rgb - rays.rgb[..., 0]) <= 5 * rays.standard_error[..., 0] + 0.02)
@@ -133,7 +135,7 @@ def test_windows_show_what_rays_see_through_them(degrees):
     window = block((0.1, 0.1, 0.2), (0.9, 0.9, 0.4), material=rw.Dielectric(1.5))
     scene = behind_glass(turned(window, degrees, (0.5, 0.5, 0.3)))
     camera = rw.Camera((0.5, 0.5, 2.6), (0.5, 0.5, 0), up=(0, 1, 0), fov=30, width=16, height=16)
-    beams = look(scene, camera, rw.BeamTraced(4, ambient=0.1)).rgb.astype(float)
+    beams = look(scene, camera, rw.integrators.BeamTraced(4, ambient=0.1)).rgb.astype(float)
     rays = look(scene, camera, rw.Whitted(4, ambient=0.1, contribution=0), samples=1024)
     off = np.abs(beams - rays.rgb) - 1e-3 * rays.rgb
     assert np.all(off <= 4.5 * rays.standard_error + 1e-6)
@@ -166,7 +168,11 @@ def test_what_lies_in_water_is_seen_where_snell_says(fov, tolerance, most):
     )
     camera = rw.Camera((0, 0, height), (0, 0, 0), up=(0, 1, 0), fov=fov, width=size, height=size)
     scene = rw.Scene([water, paper], precision="double")
-    rgb = look(scene, camera, rw.BeamTraced(2, ambient=1.0, tolerance=tolerance)).rgb[..., 0].astype(float)
+    rgb = (
+        look(scene, camera, rw.integrators.BeamTraced(2, ambient=1.0, tolerance=tolerance))
+        .rgb[..., 0]
+        .astype(float)
+    )
     for row in range(4, 12):
         expected = scale * seen_at(ior, height, depth, at, (row + 0.5 - size / 2) / scale)
         lit = np.flatnonzero(rgb[row] > 0)
@@ -184,7 +190,9 @@ def test_behind_a_window_directions_are_exact():
     camera = rw.Camera((0, 0, 0), (0, 0, -1), up=(0, 1, 0), fov=40, width=12, height=12)
     free, seen = (
         look(
-            rw.Scene(shapes, precision="double"), camera, rw.BeamTraced(3, ambient=1.0, tolerance=np.inf)
+            rw.Scene(shapes, precision="double"),
+            camera,
+            rw.integrators.BeamTraced(3, ambient=1.0, tolerance=np.inf),
         ).rgb
         for shapes in (paper, [*paper, window])
     )
@@ -203,7 +211,7 @@ def test_a_prism_reflects_all_where_light_cannot_leave():
     faces = [(0, 1, 2), (3, 5, 4), (0, 4, 1), (0, 3, 4), (1, 5, 2), (1, 4, 5), (2, 3, 0), (2, 5, 3)]
     scene = behind_glass(rw.Mesh(corners, faces, material=rw.Dielectric(1.5)))
     camera = rw.Camera((0.5, 0.5, 2.6), (0.5, 0.5, 0), up=(0, 1, 0), fov=30, width=16, height=16)
-    beams = look(scene, camera, rw.BeamTraced(5, ambient=0.1, tolerance=0.05)).rgb.astype(float)
+    beams = look(scene, camera, rw.integrators.BeamTraced(5, ambient=0.1, tolerance=0.05)).rgb.astype(float)
     rays = look(scene, camera, rw.Whitted(5, ambient=0.1, contribution=0), samples=1024)
     # Edges seen through two faces may be off by a tenth of a pixel; the rest agrees with rays.
     off = np.abs(beams - rays.rgb)
@@ -217,7 +225,9 @@ def test_shading_errs_by_less_than_a_thousandth_where_light_is_steep():
     scene = rw.Scene([square(4, 0.0, material=PAPER)], lights=[rw.PointLight((0.13, 0.21, 0.5), 1.0)])
     coarse, fine = (
         look(
-            scene, rw.Camera((0, 0, 5), (0, 0, 0), up=(0, 1, 0), fov=40, width=n, height=n), rw.BeamTraced()
+            scene,
+            rw.Camera((0, 0, 5), (0, 0, 0), up=(0, 1, 0), fov=40, width=n, height=n),
+            rw.integrators.BeamTraced(),
         ).rgb
         for n in (16, 256)
     )
@@ -233,13 +243,25 @@ TWO_WAYS = rw.Mix(rw.Dielectric(1.5), rw.ThinDielectric(1.5), 0.5)
 BENT = rw.Mesh(FLOOR.vertices, FLOOR.faces, normals=[(0.1, 0, 1)] * 4, material=rw.Dielectric(1.5))
 VIEW = rw.Camera((0, 0, 5), (0, 0, 0), up=(0, 1, 0), width=4, height=4)
 REFUSED = [
-    ([SPHERE], {}, VIEW, rw.BeamTraced(), "beams support only meshes, and shape 0 is none"),
-    ([square(1, 0, emission=1.0)], {}, VIEW, rw.BeamTraced(), "shape 0 is emissive"),
-    ([FLOOR, GLASS_BLOCK, WATER_BLOCK], {}, VIEW, rw.BeamTraced(), "shapes 1 and 2 are of glass"),
-    ([square(1, 0, material=TWO_WAYS)], {}, VIEW, rw.BeamTraced(), "shape 0 refracts in several directions"),
-    ([BENT], {}, VIEW, rw.BeamTraced(), "shape 0 reflects or refracts with shading normals"),
-    ([FLOOR], {"environment": 1.0}, VIEW, rw.BeamTraced(), "the scene has an environment"),
-    ([FLOOR], {"lights": [rw.PointLight((0, 0, 1), 1)] * 65}, VIEW, rw.BeamTraced(), "at most 64 lights"),
+    ([SPHERE], {}, VIEW, rw.integrators.BeamTraced(), "beams support only meshes, and shape 0 is none"),
+    ([square(1, 0, emission=1.0)], {}, VIEW, rw.integrators.BeamTraced(), "shape 0 is emissive"),
+    ([FLOOR, GLASS_BLOCK, WATER_BLOCK], {}, VIEW, rw.integrators.BeamTraced(), "shapes 1 and 2 are of glass"),
+    (
+        [square(1, 0, material=TWO_WAYS)],
+        {},
+        VIEW,
+        rw.integrators.BeamTraced(),
+        "shape 0 refracts in several directions",
+    ),
+    ([BENT], {}, VIEW, rw.integrators.BeamTraced(), "shape 0 reflects or refracts with shading normals"),
+    ([FLOOR], {"environment": 1.0}, VIEW, rw.integrators.BeamTraced(), "the scene has an environment"),
+    (
+        [FLOOR],
+        {"lights": [rw.PointLight((0, 0, 1), 1)] * 65},
+        VIEW,
+        rw.integrators.BeamTraced(),
+        "at most 64 lights",
+    ),
 ]
 
 
@@ -251,22 +273,22 @@ def test_what_they_cannot_do_is_refused_by_name(shapes, more, view, way, says):
 
 
 def test_cameras_and_filters_that_are_none_of_theirs():
-    way = rw.BeamTraced()
+    way = rw.integrators.BeamTraced()
     scene = rw.Scene([FLOOR])
     with pytest.raises(ValueError, match="pinhole"):
         look(scene, rw.Orthographic((0, 0, 5), (0, 0, 0), up=(0, 1, 0), width=4, height=4), way)
     with pytest.raises(ValueError, match="BoxFilter"):
-        rw.render(scene, VIEW, way, samples=1, filter=rw.GaussianFilter(), progress=False)
+        rw.render(scene, VIEW, way, samples=1, filter=rw.rendering.GaussianFilter(), progress=False)
 
 
 @pytest.mark.parametrize(
     ("call", "error", "says"),
     [
-        (lambda: rw.BeamTraced(max_depth=-1), ValueError, "max_depth must be between 0 and"),
-        (lambda: rw.BeamTraced(ambient="much"), TypeError, "ambient"),
-        (lambda: rw.BeamTraced(tolerance=0), ValueError, "tolerance must be greater than 0"),
-        (lambda: rw.BeamTraced(tolerance=np.nan), ValueError, "tolerance must be finite"),
-        (lambda: rw.BeamTraced(tolerance="fine"), TypeError, "tolerance"),
+        (lambda: rw.integrators.BeamTraced(max_depth=-1), ValueError, "max_depth must be between 0 and"),
+        (lambda: rw.integrators.BeamTraced(ambient="much"), TypeError, "ambient"),
+        (lambda: rw.integrators.BeamTraced(tolerance=0), ValueError, "tolerance must be greater than 0"),
+        (lambda: rw.integrators.BeamTraced(tolerance=np.nan), ValueError, "tolerance must be finite"),
+        (lambda: rw.integrators.BeamTraced(tolerance="fine"), TypeError, "tolerance"),
     ],
 )
 def test_wrong_numbers_are_told_in_a_line(call, error, says):
@@ -278,7 +300,8 @@ def test_any_number_of_threads_makes_the_same_bits():
     scene = rw.Scene(room(rw.Mirror()), lights=LAMPS)
     camera = rw.Camera((0.5, 0.5, 2.6), (0.5, 0.5, 0), up=(0, 1, 0), fov=38, width=9, height=7)
     pictures = (
-        rw.render(scene, camera, rw.BeamTraced(3), samples=1, threads=n, progress=False) for n in (1, 2)
+        rw.render(scene, camera, rw.integrators.BeamTraced(3), samples=1, threads=n, progress=False)
+        for n in (1, 2)
     )
     one, two = (picture.rgb for picture in pictures)
     assert np.array_equal(one, two)

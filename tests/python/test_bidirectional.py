@@ -51,7 +51,7 @@ def test_what_is_sharp_and_what_is_beside_it():
 
 def test_bumps_textures_masks_and_sides():
     checker = rw.Checker((0.9, 0.2, 0.1), 0.3, 4)
-    floor = square(3, 0, material=rw.BumpMap(rw.Diffuse(checker), rw.Noise(), scale=0.2))
+    floor = square(3, 0, material=rw.BumpMap(rw.Diffuse(checker), rw.textures.Noise(), scale=0.2))
     lace = square(0.8, 1.0, material=rw.Mask(rw.Diffuse(0.7), rw.Checker(1, 0.3, 6)))
     wall = rw.Mesh(
         [(-2, 2, 0), (2, 2, 0), (2, 2, 2), (-2, 2, 2)], [(0, 2, 1), (0, 3, 2)], material=rw.Diffuse(0.5)
@@ -83,7 +83,7 @@ def test_lights_of_every_kind_together():
         lamp(height=3.0),
         rw.Sphere((0, 0, 2.2), 0.3, emission=8),
         rw.Torus((0.3, 0, 0.6), (0, 0, 1), 0.6, 0.2, emission=2),
-        rw.Ellipsoid((-0.8, -0.3, 0.4), (0.2, 0.3, 0.4), emission=3),
+        rw.shapes.Ellipsoid((-0.8, -0.3, 0.4), (0.2, 0.3, 0.4), emission=3),
     ]
     lights = [
         rw.PointLight((-1, 1, 2), 3),
@@ -350,12 +350,12 @@ def test_wrong_input_gets_one_clear_line():
         ({"max_depth": -1}, ValueError, "max_depth must be between 0 and"),
         ({"max_depth": 2.5}, TypeError, "max_depth must be"),
         ({"roulette_depth": "4"}, TypeError, "roulette_depth must be"),
-        ({"merge": 1}, TypeError, "merge must be True or False, got 1"),
-        ({"radius": 0.1}, ValueError, "radius requires merge=True"),
-        ({"photons": 100}, ValueError, "photons requires merge=True"),
-        ({"merge": True, "radius": -1}, ValueError, "radius must be greater than 0"),
-        ({"merge": True, "radius": "1"}, TypeError, "radius must be"),
-        ({"merge": True, "photons": 0}, ValueError, "photons must be between 1 and"),
+        ({"vertex_merging": 1}, TypeError, "vertex_merging must be True or False, got 1"),
+        ({"radius": 0.1}, ValueError, "radius requires vertex_merging=True"),
+        ({"photons": 100}, ValueError, "photons requires vertex_merging=True"),
+        ({"vertex_merging": True, "radius": -1}, ValueError, "radius must be greater than 0"),
+        ({"vertex_merging": True, "radius": "1"}, TypeError, "radius must be"),
+        ({"vertex_merging": True, "photons": 0}, ValueError, "photons must be between 1 and"),
     ]:
         with pytest.raises(kind, match=words):
             rw.Bidirectional(**arguments)
@@ -369,7 +369,7 @@ def test_wrong_input_gets_one_clear_line():
 
 def test_values():
     way = rw.Bidirectional(3, roulette_depth=2)
-    assert repr(way).startswith("Bidirectional(max_depth=3, roulette_depth=2, merge=False")
+    assert repr(way).startswith("Bidirectional(max_depth=3, roulette_depth=2, vertex_merging=False")
     assert pickle.loads(pickle.dumps(way)) == way != rw.Bidirectional()
 
 

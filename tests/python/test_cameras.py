@@ -10,11 +10,11 @@ SIZE = {"width": 37, "height": 21}
 MOVED = rw.Pose((1.5, 2.0, 4.5), (0, 0.2, 0), (0.1, 1, 0))
 CAMERAS = {
     "pinhole": rw.Camera(EYE, AT, **SIZE),
-    "moving pinhole": rw.Camera(EYE, AT, moved_to=MOVED, shutter=(0.25, 0.75), **SIZE),
-    "thin lens": rw.ThinLens(EYE, AT, f_stop=0.01, blades=5, blade_rotation=10, **SIZE),
+    "moving pinhole": rw.Camera(EYE, AT, end_pose=MOVED, shutter=(0.25, 0.75), **SIZE),
+    "thin_lens": rw.ThinLens(EYE, AT, f_stop=0.01, blades=5, blade_rotation=10, **SIZE),
     "orthographic": rw.Orthographic(EYE, AT, scale=4, **SIZE),
     "fisheye": rw.Fisheye(EYE, AT, fov=70, **SIZE),
-    "panorama": rw.Panorama((0.2, 0.4, 0.9), AT, moved_to=MOVED, **SIZE),
+    "panorama": rw.Panorama((0.2, 0.4, 0.9), AT, end_pose=MOVED, **SIZE),
 }
 SCENE = rw.Scene([rw.scenes.torus_knot(along=60, around=8), rw.scenes.teapot(2)])
 every_camera = pytest.mark.parametrize("camera", CAMERAS.values(), ids=CAMERAS)
@@ -51,16 +51,16 @@ def test_rays_through_points_are_those_of_the_pixels(camera):
     assert np.abs(np.linalg.norm(wanted[1][seen], axis=-1) - 1).max() < 1e-15
 
 
-@pytest.mark.parametrize("kind", ["pinhole", "thin lens", "orthographic", "fisheye", "panorama"])
+@pytest.mark.parametrize("kind", ["pinhole", "thin_lens", "orthographic", "fisheye", "panorama"])
 def test_a_camera_moves_rigidly_and_evenly(kind):
     still = CAMERAS[kind]
     shared = {
-        k: v for k, v in vars(still).items() if k not in ("position", "target", "up", "direction", "moved_to")
+        k: v for k, v in vars(still).items() if k not in ("position", "target", "up", "direction", "end_pose")
     }
-    shared |= {"focus_distance": 3.0} if kind == "thin lens" else {}
+    shared |= {"focus_distance": 3.0} if kind == "thin_lens" else {}
     start = type(still)((0, 0, 5), (0, 0, 0), **shared)
     end = type(still)((4, 0, 0), direction=(-1, 0, 0), **shared)
-    moving = type(still)((0, 0, 5), (0, 0, 0), **shared, moved_to=end)
+    moving = type(still)((0, 0, 5), (0, 0, 0), **shared, end_pose=end)
     lens = (0.9, 0.3)
     for time, other in ((0.0, start), (1.0, end)):
         for found, expected in zip(moving.rays(lens=lens, time=time), other.rays(lens=lens), strict=True):
@@ -91,7 +91,7 @@ def test_the_shutter_is_open_in_the_scenes_time():
 
 def test_the_rays_of_a_thin_lens_meet_where_it_is_in_focus():
     lens = np.random.default_rng(2).random((500, 2))
-    camera = CAMERAS["thin lens"]
+    camera = CAMERAS["thin_lens"]
     for sharp in ({}, {"focus_distance": 3.0}, {"focus_point": (0, 1, 1)}):
         camera = rw.ThinLens(EYE, AT, aperture_radius=0.3, **sharp, **SIZE)
         through = EYE + 3 * camera.forward if "focus_distance" in sharp else sharp.get("focus_point", AT)
@@ -111,7 +111,7 @@ def test_the_rays_of_a_thin_lens_meet_where_it_is_in_focus():
 
 def test_a_shifted_lens_sees_what_a_shifted_pinhole_does():
     lens = np.random.default_rng(3).random((100, 2))
-    shift = {"fov": 50, "principal": (4.5, 17.0), **SIZE}
+    shift = {"fov": 50, "principal_point": (4.5, 17.0), **SIZE}
     camera = rw.ThinLens(EYE, AT, aperture_radius=0.3, focus_distance=4.0, **shift)
     pinhole = rw.Camera(EYE, AT, **shift)
     for point in [(18.5, 10.5), (0, 0), (4.5, 17)]:
@@ -170,7 +170,7 @@ def test_an_edge_is_blurred_by_the_cameras_motion():
         scale=10,
         width=10,
         height=10,
-        moved_to=rw.Pose((3, 0, 1), (3, 0, 0)),
+        end_pose=rw.Pose((3, 0, 1), (3, 0, 0)),
         shutter=(0, 0.5),
     )
     image = rw.render(rw.Scene(half), camera, rw.Path(max_depth=0), samples=2000, seed=1, progress=False)
@@ -247,14 +247,14 @@ def test_an_orthographic_camera_shows_lengths():
         assert (hits.t == 7).all()
 
 
-@pytest.mark.parametrize("kind", ["pinhole", "thin lens", "orthographic", "fisheye"])
+@pytest.mark.parametrize("kind", ["pinhole", "thin_lens", "orthographic", "fisheye"])
 def test_from_far_away_every_pixel_is_where_it_should(kind):
     # 1e7 away, with pixels of 0.1: positions there are known to 2e-9, and a direction's error makes as much.
     far, size, pixel = 1e7, {"width": 40, "height": 40}, 0.1
     fov = np.degrees(2 * np.arctan(2 / far))
     make = {
         "pinhole": lambda *pose: rw.Camera(*pose, fov=fov, **size),
-        "thin lens": lambda *pose: rw.ThinLens(*pose, fov=fov, aperture_radius=1.0, **size),
+        "thin_lens": lambda *pose: rw.ThinLens(*pose, fov=fov, aperture_radius=1.0, **size),
         "orthographic": lambda *pose: rw.Orthographic(*pose, scale=4, **size),
         "fisheye": lambda *pose: rw.Fisheye(*pose, fov=fov, fov_axis="diagonal", **size),
     }[kind]

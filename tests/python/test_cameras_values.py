@@ -12,11 +12,11 @@ import raywright as rw
 EYE, AT = (1.0, 2.0, 5.0), (0.1, 0.0, 0.0)
 CAMERAS = [
     rw.Camera(EYE, AT, width=30),
-    rw.Camera(EYE, direction=AT, focal=(100, 90), principal=(4, 5), skew=0.5),
-    rw.Camera(EYE, AT, (1, 0, 0), 70, fov_axis="diagonal", shutter=(0.25, 0.75), moved_to=rw.Pose(AT, EYE)),
+    rw.Camera(EYE, direction=AT, focal_length_px=(100, 90), principal_point=(4, 5), skew=0.5),
+    rw.Camera(EYE, AT, (1, 0, 0), 70, fov_axis="diagonal", shutter=(0.25, 0.75), end_pose=rw.Pose(AT, EYE)),
     rw.ThinLens(EYE, AT, f_stop=2.8, blades=5, blade_rotation=10, focus_point=(0, 0, 1)),
     rw.ThinLens(EYE, AT, aperture_radius=0.5, focal_length=0.1, sensor_height=0.05, focus_distance=2),
-    rw.ThinLens(EYE, AT, f_stop=2, principal=(4, 5)),
+    rw.ThinLens(EYE, AT, f_stop=2, principal_point=(4, 5)),
     rw.Orthographic(EYE, AT, scale=4, scale_axis="x"),
     rw.Fisheye(EYE, AT, fov=70, mapping="equisolid", fov_axis="diagonal"),
     rw.Panorama(EYE),
@@ -42,10 +42,10 @@ def test_what_was_given_can_be_replaced():
     assert replace(lens, target=(1, 2, 4)).focused_distance == 1
     camera = rw.Camera(EYE, AT)
     assert replace(camera, target=None, direction=(0, 0, 1)) == rw.Camera(EYE, direction=(0, 0, 1))
-    assert replace(camera, moved_to=lens).moved_to == rw.Pose(EYE, AT)
+    assert replace(camera, end_pose=lens).end_pose == rw.Pose(EYE, AT)
     assert camera.fov == 40
-    with pytest.raises(TypeError, match=r"moved_to must be a raywright\.Pose, got tuple"):
-        rw.Camera(EYE, AT, moved_to=EYE)
+    with pytest.raises(TypeError, match=r"end_pose must be a raywright\.Pose, got tuple"):
+        rw.Camera(EYE, AT, end_pose=EYE)
 
 
 def test_cameras_tell_where_they_look():
@@ -74,11 +74,20 @@ LENS = {"f_stop": 2.0}
         (lambda: rw.Camera(EYE), "either target or direction must be given, got neither"),
         (lambda: rw.Camera(EYE, AT, direction=AT), "either target or direction must be given, got both"),
         (lambda: rw.Camera(EYE, direction=(0, 0, 0)), "direction must not be zero"),
-        (lambda: rw.Camera(EYE, AT, fov=40, focal=(1, 1)), "either fov or focal must be given, got both"),
-        (lambda: rw.Camera(EYE, AT, focal=(1, 0)), "focal must not be zero, got (1.0, 0.0)"),
-        (lambda: rw.Camera(EYE, AT, principal=(NAN, 0)), "principal must be finite"),
-        (lambda: rw.ThinLens(EYE, AT, f_stop=2, principal=(0, 0, 0)), "principal must be 2 numbers"),
-        (lambda: rw.Camera(EYE, AT, skew=1), "skew must be given with focal"),
+        (
+            lambda: rw.Camera(EYE, AT, fov=40, focal_length_px=(1, 1)),
+            "either fov or focal_length_px must be given, got both",
+        ),
+        (
+            lambda: rw.Camera(EYE, AT, focal_length_px=(1, 0)),
+            "focal_length_px must not be zero, got (1.0, 0.0)",
+        ),
+        (lambda: rw.Camera(EYE, AT, principal_point=(NAN, 0)), "principal_point must be finite"),
+        (
+            lambda: rw.ThinLens(EYE, AT, f_stop=2, principal_point=(0, 0, 0)),
+            "principal_point must be 2 numbers",
+        ),
+        (lambda: rw.Camera(EYE, AT, skew=1), "skew must be given with focal_length_px"),
         (lambda: rw.Camera(EYE, AT, fov_axis="z"), "fov_axis must be one of 'x', 'y'"),
         (lambda: rw.Camera(EYE, AT, shutter=(0.5, 0.25)), "shutter must open and then close within 0 to 1"),
         (lambda: rw.Camera(EYE, AT, shutter=(0, 1.5)), "within 0 to 1, got (0, 1.5)"),

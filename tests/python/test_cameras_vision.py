@@ -116,7 +116,10 @@ def test_matrices_come_back(K):
     assert np.abs(found - R).max() < 1e-15
     assert np.abs(shift - SHIFT).max() < 1e-14
     again = rw.Camera.from_matrix(
-        camera.matrix, focal=camera.focal, principal=camera.principal, skew=camera.skew
+        camera.matrix,
+        focal_length_px=camera.focal_length_px,
+        principal_point=camera.principal_point,
+        skew=camera.skew,
     )
     assert np.abs(again.matrix - camera.matrix).max() < 1e-15
 
@@ -163,9 +166,9 @@ def test_conventions_of_matrices(convention, signs):
 def test_a_matrix_that_mirrors_mirrors_the_picture():
     to_world = np.eye(4)
     to_world[:3, :3] = rotation()
-    straight = rw.Camera.from_matrix(to_world, fov=60, width=8, height=6, principal=(3.0, 2.5))
+    straight = rw.Camera.from_matrix(to_world, fov=60, width=8, height=6, principal_point=(3.0, 2.5))
     to_world[:3, 0] *= -1
-    mirrored = rw.Camera.from_matrix(to_world, fov=60, width=8, height=6, principal=(3.0, 2.5))
+    mirrored = rw.Camera.from_matrix(to_world, fov=60, width=8, height=6, principal_point=(3.0, 2.5))
     points = np.random.default_rng(0).uniform((0, 0), (8, 6), (50, 2))
     flipped = points * (-1, 1) + (6, 0)
     assert np.abs(straight.rays_through(points)[1] - mirrored.rays_through(flipped)[1]).max() < 1e-15
@@ -189,7 +192,7 @@ def test_what_is_rasterised_is_what_rays_hit(seed, focal, principal, skew, mirro
     focal = (-focal[0] if mirror else focal[0], focal[1])
     camera = rw.Camera(
         rng.uniform(-3, 3, 3), (0, 0, 0), rng.normal(size=3), None, 33, 18,
-        focal=focal, principal=principal, skew=skew,
+        focal_length_px=focal, principal_point=principal, skew=skew,
     )  # fmt: skip
     found, wanted = scene.first_hits(camera), scene.intersect(*camera.rays())
     assert found == wanted

@@ -20,7 +20,7 @@ import raywright as rw
 from raywright.rendering import checkpoints
 
 MAGIC = b"raywright checkpoint 1\n"
-LIMITS = {"samples": 40, "seed": 5, "progress": False, "sampler": rw.Sobol(4)}
+LIMITS = {"samples": 40, "seed": 5, "progress": False, "sampler": rw.rendering.Sobol(4)}
 
 
 @pytest.fixture
@@ -56,7 +56,7 @@ def interrupt_after(seconds):
     return timer
 
 
-class Interrupts(rw.Integrator):
+class Interrupts(rw.integrators.Integrator):
     """Something noisy in Python that presses Ctrl-C at its n-th batch."""
 
     def __init__(self, at=-1):
@@ -69,7 +69,7 @@ class Interrupts(rw.Integrator):
         self.batches[0] += 1
         if self.batches[0] == self.at[0]:
             signal.raise_signal(signal.SIGINT)
-        return np.stack([rng.one() ** 3 for _ in range(3)], axis=1)
+        return np.stack([rng.next_1d() ** 3 for _ in range(3)], axis=1)
 
 
 @pytest.mark.parametrize("how", [{}, {"adaptive": True}, {"clamp": 2.0}, {"adaptive": True, "clamp": 2.0}])
@@ -84,12 +84,12 @@ def test_interrupted_and_resumed_is_never_interrupted(box, path, how, often):
 
 def test_a_sampler_goes_on_with_the_batches_it_began_with(box, path):
     few, many = ({"samples": samples, "seed": 5, "progress": False} for samples in (16, 64))
-    begun = {"sampler": rw.Sobol(), "checkpoint": path}
+    begun = {"sampler": rw.rendering.Sobol(), "checkpoint": path}
     rw.render(*box, **few, **begun)
     # 16 samples have batches of four, and 64 batches of sixteen.
-    assert_same(rw.render(*box, **many, **begun), rw.render(*box, **many, sampler=rw.Sobol(4)))
+    assert_same(rw.render(*box, **many, **begun), rw.render(*box, **many, sampler=rw.rendering.Sobol(4)))
     with pytest.raises(ValueError, match=r"it has sampler Sobol\(batch=4\) instead of Sobol\(batch=8\)"):
-        rw.render(*box, **many, sampler=rw.Sobol(8), checkpoint=path)
+        rw.render(*box, **many, sampler=rw.rendering.Sobol(8), checkpoint=path)
 
 
 def test_a_sampler_that_was_chosen_is_kept(box, path):
@@ -101,10 +101,10 @@ def test_a_sampler_that_was_chosen_is_kept(box, path):
     assert_same(gone_on, rw.render(*box, **many, sampler=begun.plan.sampler))
     # Named options apply as named, or are refused.
     with pytest.raises(ValueError, match=r"it has sampler .* instead of Independent\(\)"):
-        rw.render(*box, **many, sampler=rw.Independent(), checkpoint=path)
+        rw.render(*box, **many, sampler=rw.rendering.Independent(), checkpoint=path)
     alone = path.with_name("alone")
-    rw.render(*box, **few, sampler=rw.Independent(), checkpoint=alone)
-    assert rw.render(*box, **many, checkpoint=alone).plan.sampler == rw.Independent()
+    rw.render(*box, **few, sampler=rw.rendering.Independent(), checkpoint=alone)
+    assert rw.render(*box, **many, checkpoint=alone).plan.sampler == rw.rendering.Independent()
 
 
 def test_ctrl_c_writes_and_is_passed_on_within_a_pass(path):

@@ -47,7 +47,7 @@ SHAPES = {
         lambda p: np.linalg.norm(p, axis=1) - 1.5,
     ),
     "ellipsoid": (
-        rw.Ellipsoid((0, 0, 0), (2, 0.5, 1)),
+        rw.shapes.Ellipsoid((0, 0, 0), (2, 0.5, 1)),
         ball((2, 0.5, 1)),
         lambda p: np.linalg.norm(p / (2, 0.5, 1), axis=1) - 1,
     ),
@@ -74,7 +74,7 @@ SHAPES = {
         lambda p: np.hypot(np.hypot(*p.T[:2]) - 1 + 0.375 * p[:, 2], np.clip(p[:, 2], 0, 2) - p[:, 2]),
     ),
     "paraboloid": (
-        rw.Paraboloid((0, 0, 0), (0, 0, 2), 1.0),
+        rw.shapes.Paraboloid((0, 0, 0), (0, 0, 2), 1.0),
         turned(V, 2 * V**2),
         lambda p: np.hypot(p[:, 2] - 2 * (p[:, 0] ** 2 + p[:, 1] ** 2), np.clip(p[:, 2], 0, 2) - p[:, 2]),
     ),
@@ -96,13 +96,13 @@ SHAPES = {
 }
 IMPLICIT = {
     "implicit torus": (
-        rw.Implicit("(sqrt(x**2 + y**2) - 1)**2 + z**2 - 0.0625", (-1.5, -1.5, -0.5), (1.5, 1.5, 0.5)),
+        rw.shapes.Implicit("(sqrt(x**2 + y**2) - 1)**2 + z**2 - 0.0625", (-1.5, -1.5, -0.5), (1.5, 1.5, 0.5)),
         SHAPES["torus"][1],
         SHAPES["torus"][2],
     ),
     # Cut open by its box.
     "implicit bowl": (
-        rw.Implicit("z - x**2 - y**2", (-1, -1, -0.5), (1, 1, 0.75)),
+        rw.shapes.Implicit("z - x**2 - y**2", (-1, -1, -0.5), (1, 1, 0.75)),
         turned(np.sqrt(0.75) * V, 0.75 * V**2),
         lambda p: np.abs(p[:, 2] - p[:, 0] ** 2 - p[:, 1] ** 2) + np.maximum(p[:, 2] - 0.75, 0),
     ),
@@ -151,7 +151,7 @@ def test_nothing_is_nearer_and_the_point_is_on_the_surface(name, transform):
     own = np.linalg.solve(transform[:3, :3], (closest.position - transform[:3, 3]).T).T
     assert np.abs(residual(own)).max() < 1e-13
     assert np.allclose(np.linalg.norm(closest.normal, axis=1), 1, rtol=0, atol=1e-14)
-    assert (closest.primitive == 0).all()
+    assert (closest.primitive_id == 0).all()
     assert ((closest.uv >= 0) & (closest.uv <= 1)).all()
 
 
@@ -199,7 +199,7 @@ def test_at_the_centre_any_of_the_nearest_will_do():
     centre = np.zeros(3)
     for shape, expected in [
         (rw.Sphere((0, 0, 0), 2), 2.0),
-        (rw.Ellipsoid((0, 0, 0), (3, 0.5, 0.5)), 0.5),
+        (rw.shapes.Ellipsoid((0, 0, 0), (3, 0.5, 0.5)), 0.5),
         (rw.Torus((0, 0, 0), (0, 0, 1), 1, 0.25), 0.75),
         (rw.Cylinder((0, 0, -2), (0, 0, 2), 1), 1.0),
         (rw.Box((-1, -2, -1), (1, 2, 1)), 1.0),
@@ -211,7 +211,7 @@ def test_at_the_centre_any_of_the_nearest_will_do():
         assert np.isfinite(closest.position).all()
         assert np.isfinite(closest.normal).all()
     # In the plane of the longer axes, on both sides of the focal curve.
-    flat = rw.Scene(rw.Ellipsoid((0, 0, 0), (2, 2, 1)))
+    flat = rw.Scene(rw.shapes.Ellipsoid((0, 0, 0), (2, 2, 1)))
     assert flat.closest_point((0.75, 0, 0)).distance == pytest.approx(np.sqrt(13 / 16), rel=1e-14)
     assert flat.closest_point((1.75, 0, 0)).distance == pytest.approx(0.25, rel=1e-14)
 
@@ -235,7 +235,14 @@ def test_meshes_and_shapes_are_found_together():
     ]
     points = np.random.default_rng(5).uniform(-2, 2, (400, 3))
     alone = np.stack([rw.Scene(shape).closest_point(points).distance for shape in shapes])
-    for accelerator in (rw.BVH(), rw.BruteForce(), rw.KdTree(), rw.Grid(), rw.Octree(), rw.BSP()):
+    for accelerator in (
+        rw.BVH(),
+        rw.BruteForce(),
+        rw.accelerators.KdTree(),
+        rw.accelerators.Grid(),
+        rw.accelerators.Octree(),
+        rw.accelerators.BSP(),
+    ):
         closest = rw.Scene(shapes, accelerator=accelerator).closest_point(points)
         assert np.array_equal(closest.distance, alone.min(axis=0))
         assert np.array_equal(closest.shape_id, alone.argmin(axis=0))
@@ -252,7 +259,7 @@ def test_rays_that_leave_closest_points_miss_what_they_leave():
     scene = rw.Scene(rw.Sphere((0.3, 0.2, 0.1), 1.3))
     points = np.random.default_rng(6).uniform(-3, 3, (500, 3))
     closest = scene.closest_point(points)
-    assert not scene.occluded(*closest.leave(closest.normal)).any()
+    assert not scene.occluded(*closest.spawn_rays(closest.normal)).any()
 
 
 def test_implicit_surfaces_have_their_closed_forms_where_they_have_one():
@@ -261,17 +268,17 @@ def test_implicit_surfaces_have_their_closed_forms_where_they_have_one():
     tube = np.hypot(np.hypot(points[:, 0], points[:, 1]) - 1, points[:, 2]) - 0.25
     assert np.allclose(torus, tube, rtol=0, atol=4e-15)
     # A plane, cut to a square by its box.
-    square = rw.Scene(rw.Implicit("z - 0.25 * x", (-1, -1, -1), (1, 1, 1))).closest_point(points)
+    square = rw.Scene(rw.shapes.Implicit("z - 0.25 * x", (-1, -1, -1), (1, 1, 1))).closest_point(points)
     along, across = np.array((1, 0, 0.25)), np.array((0, 1, 0))
     u, v = points @ along / (along @ along), points @ across
     expected = np.clip(u, -1, 1)[:, None] * along + np.clip(v, -1, 1)[:, None] * across
     assert np.abs(square.position - expected).max() < 1e-12
     # Two balls at different distances; and an empty surface.
     balls = "min(x**2 + (y - 1)**2 + z**2, x**2 + (y + 1)**2 + z**2) - 0.25"
-    found = rw.Scene(rw.Implicit(balls, (-2, -2, -2), (2, 2, 2))).signed_distance(points)
+    found = rw.Scene(rw.shapes.Implicit(balls, (-2, -2, -2), (2, 2, 2))).signed_distance(points)
     away = np.linalg.norm(points[:, None] - np.array([(0, 1, 0), (0, -1, 0)]), axis=-1).min(axis=1) - 0.5
     assert np.allclose(found, away, rtol=0, atol=4e-15)
-    nothing = rw.Scene(rw.Implicit("x**2 + 1")).closest_point(points)
+    nothing = rw.Scene(rw.shapes.Implicit("x**2 + 1")).closest_point(points)
     assert not nothing.found.any()
 
 
@@ -304,9 +311,9 @@ def test_far_away_nothing_is_lost_under_uneven_transforms(name):
 def test_a_squashed_sphere_is_an_ellipsoid_whatever_it_is_made_of():
     squash = np.diag([2.0, 0.5, 1.0, 1.0])
     points = np.random.default_rng(9).uniform(-3, 3, (60, 3))
-    ellipsoid = rw.Scene(rw.Ellipsoid((0, 0, 0), (2, 0.5, 1))).signed_distance(points)
+    ellipsoid = rw.Scene(rw.shapes.Ellipsoid((0, 0, 0), (2, 0.5, 1))).signed_distance(points)
     ball = "x**2 + y**2 + z**2 - 1"
-    implicit = rw.Implicit(ball, (-1.25, -1.25, -1.25), (1.25, 1.25, 1.25), transform=squash)
+    implicit = rw.shapes.Implicit(ball, (-1.25, -1.25, -1.25), (1.25, 1.25, 1.25), transform=squash)
     assert np.allclose(rw.Scene(implicit).signed_distance(points), ellipsoid, rtol=0, atol=1e-14)
     # An elliptic cylinder acts like its ellipse if its ends are far.
     tube = rw.Cylinder((0, 0, -50), (0, 0, 50), 1, capped=False, transform=squash)
@@ -355,22 +362,22 @@ def test_instances_are_as_near_as_what_is_in_them(uneven):
     assert np.allclose(closest.distance, np.minimum(alone.min(axis=0), ball), rtol=0, atol=1e-13)
     on_copies = closest.shape_id == 0
     assert 20 < on_copies.sum() < 80
-    assert (closest.instance[~on_copies] == -1).all()
+    assert (closest.instance_id[~on_copies] == -1).all()
     which = alone.argmin(axis=0)[on_copies]
-    assert np.array_equal(closest.instance[on_copies], which // 3)
+    assert np.array_equal(closest.instance_id[on_copies], which // 3)
     first = len(MESH.faces)
-    told = closest.primitive[on_copies]
+    told = closest.primitive_id[on_copies]
     assert np.array_equal(np.where(told < first, 0, told - first + 1), which % 3)
     # Normals agree with those of rays to the point.
     ways = (closest.position - points) / closest.distance[:, None]
     hits = scene.intersect(points, ways, t_max=closest.distance * 1.5)
-    same = hits.hit & (np.abs(hits.t - closest.distance) < 1e-9) & (hits.primitive == closest.primitive)
+    same = hits.hit & (np.abs(hits.t - closest.distance) < 1e-9) & (hits.primitive_id == closest.primitive_id)
     # Rims of cylinders have two.
-    same &= (hits.shape_id != 0) | (hits.primitive != first + 1)
+    same &= (hits.shape_id != 0) | (hits.primitive_id != first + 1)
     assert same.sum() > 10
     assert np.abs(np.cross(hits.normal[same], closest.normal[same])).max() < 1e-9
     assert np.allclose(np.linalg.norm(closest.normal, axis=1), 1, rtol=0, atol=1e-14)
-    assert not scene.occluded(*closest.leave(points - closest.position), t_max=0.999).any()
+    assert not scene.occluded(*closest.spawn_rays(points - closest.position), t_max=0.999).any()
 
 
 def test_copies_within_copies_are_stretched_twice():
@@ -384,8 +391,8 @@ def test_copies_within_copies_are_stretched_twice():
     assert np.allclose(a.distance, b.distance, rtol=0, atol=1e-13)
     assert np.allclose(a.position, b.position, rtol=0, atol=1e-12)
     each = len(MESH.faces) + 2
-    assert np.array_equal(a.primitive, b.instance % 5 * each + b.primitive)
-    assert np.array_equal(a.instance, b.instance // 5)
+    assert np.array_equal(a.primitive_id, b.instance_id % 5 * each + b.primitive_id)
+    assert np.array_equal(a.instance_id, b.instance_id // 5)
 
 
 def test_signed_distance_of_copies_has_the_sign_of_the_side():
@@ -409,7 +416,7 @@ def test_many_copies_are_looked_through_by_a_tree(monkeypatch):
     closest = rw.Scene(rw.Instance(rw.Sphere((0, 0, 0), 0.1), matrices)).closest_point(points)
     away = np.stack([np.linalg.norm(matrices[:, :3, 3] - point, axis=1) for point in points[:50]])
     assert np.allclose(closest.distance[:50], np.abs(away - 0.1).min(axis=1), rtol=0, atol=1e-12)
-    assert np.array_equal(closest.instance[:50], np.abs(away - 0.1).argmin(axis=1))
+    assert np.array_equal(closest.instance_id[:50], np.abs(away - 0.1).argmin(axis=1))
 
 
 @pytest.mark.parametrize("scale", [1e-6, 1e6])
@@ -420,8 +427,8 @@ def test_copies_lose_nothing_at_any_scale(scale):
     one = rw.Scene(rw.Instance(GROUP, matrices), precision="double").closest_point(points)
     other = rw.Scene(rw.Instance(GROUP, grow @ matrices), precision="double").closest_point(points * scale)
     assert np.allclose(other.distance, one.distance * scale, rtol=1e-9, atol=1e-13 * scale)
-    assert np.array_equal(other.instance, one.instance)
-    assert np.array_equal(other.primitive, one.primitive)
+    assert np.array_equal(other.instance_id, one.instance_id)
+    assert np.array_equal(other.primitive_id, one.primitive_id)
 
 
 def test_what_moves_is_where_it_is_as_the_shutter_opens():

@@ -25,7 +25,7 @@ def block(low, high, **kwargs):
 
 
 def look(scene, camera, way, samples=1):
-    return rw.render(scene, camera, way, samples=samples, sampler=rw.Independent(), progress=False)
+    return rw.render(scene, camera, way, samples=samples, sampler=rw.rendering.Independent(), progress=False)
 
 
 # Half angles of the cone and of a sphere, and the angle between, in degrees; their common solid angle, in
@@ -112,7 +112,7 @@ def test_an_edge_covers_pixels_to_within_the_roundness_of_cones():
     camera = rw.Camera((0, 0, 5), (0, 0, 0), up=(0, 1, 0), fov=40, width=16, height=12)
     slope, at = 0.3, 0.137
     left = quad((-9, -9, 0), (at - 9 * slope, -9, 0), (at + 9 * slope, 9, 0), (-9, 9, 0), material=PAPER)
-    image = look(rw.Scene([left]), camera, rw.ConeTraced(ambient=1.0), samples=2)
+    image = look(rw.Scene([left]), camera, rw.integrators.ConeTraced(ambient=1.0), samples=2)
     # A cone is round: it has more or less of a pixel at an edge, and all or nothing of others.
     exact = edge(camera, slope, at)
     assert np.abs(image.rgb[..., 0] - exact).max() < 0.15
@@ -126,7 +126,7 @@ def test_an_even_wall_has_no_edges():
     scene = rw.Scene([rw.Mesh(ball.vertices, ball.faces, material=rw.Diffuse(0.8))])
     camera = rw.Camera((0.1, 0.2, 0.3), (1, 0.4, 0.2), fov=70, width=12, height=9)
     # Half the light at a reflectance of 0.8; at 1e-6 a gap of a millionth of a cone would show.
-    assert look(scene, camera, rw.ConeTraced(ambient=0.5)).rgb == pytest.approx(0.4, abs=1e-6)
+    assert look(scene, camera, rw.integrators.ConeTraced(ambient=0.5)).rgb == pytest.approx(0.4, abs=1e-6)
 
 
 def test_a_mirror_shows_cones_what_stands_before_it():
@@ -134,7 +134,7 @@ def test_a_mirror_shows_cones_what_stands_before_it():
     mirrored = rw.Scene([square(9, -2, material=rw.Mirror()), square(1.5, 1.0, material=PAPER)])
     behind = rw.Scene([square(1.5, -5.0, material=PAPER)])
     camera = rw.Camera((0.3, 0.2, 0.5), (0.3, 0.2, -2), up=(0, 1, 0), fov=60, width=15, height=15)
-    a, b = (look(s, camera, rw.ConeTraced(ambient=1.0)).rgb for s in (mirrored, behind))
+    a, b = (look(s, camera, rw.integrators.ConeTraced(ambient=1.0)).rgb for s in (mirrored, behind))
     assert a == pytest.approx(b, abs=2e-6)
 
 
@@ -144,8 +144,8 @@ def test_a_ball_hides_a_round_lamp_as_caps_share():
     ball = rw.Sphere((0.25, 0, 5), 0.3)
     camera = rw.Camera((0, -6, 3), (0, 0, 0), up=(0, 0, 1), fov=0.5, width=1, height=1)
     floor = square(4, 0.0, material=rw.Diffuse(0.6))
-    free = look(rw.Scene([floor, lamp]), camera, rw.ConeTraced()).rgb[0, 0, 0]
-    half = look(rw.Scene([floor, lamp, ball]), camera, rw.ConeTraced()).rgb[0, 0, 0]
+    free = look(rw.Scene([floor, lamp]), camera, rw.integrators.ConeTraced()).rgb[0, 0, 0]
+    half = look(rw.Scene([floor, lamp, ball]), camera, rw.integrators.ConeTraced()).rgb[0, 0, 0]
     # Irradiance of a sphere overhead, π L sin², reflected by the floor with 0.6 / π.
     assert free == pytest.approx(0.6 * 100 / 10**2, rel=1e-3)
     only = rw.Scene([ball]).cone_coverage((0, 0, 1e-6), (0, 0, 1), np.degrees(np.arcsin(0.1))).share
@@ -163,7 +163,9 @@ def test_rough_metal_shows_an_edge_as_blurred_as_rays_do():
     lit = quad(*corners, material=PAPER)
     camera = rw.Camera((0, 0, 5), (0, 0, 0), up=(0, 1, 0), fov=15, width=20, height=4)
     # Cones see surfaces under an even light; rays get an emitter of the same radiance.
-    cones = look(rw.Scene([plate, lit]), camera, rw.ConeTraced(ambient=1.0)).rgb[..., 1].astype(float)
+    cones = (
+        look(rw.Scene([plate, lit]), camera, rw.integrators.ConeTraced(ambient=1.0)).rgb[..., 1].astype(float)
+    )
     rays = look(rw.Scene([plate, wall]), camera, rw.Path(max_depth=1, caustics=False), samples=2048).rgb[
         ..., 1
     ]
@@ -174,12 +176,14 @@ def test_rough_metal_shows_an_edge_as_blurred_as_rays_do():
     assert cones.sum() == pytest.approx(rays.sum(), rel=0.03)
     # At roughness 0 it is the mirror's own picture.
     plates = [square(20, 0.0, material=rw.Conductor("Ag", alpha=alpha)) for alpha in (0.0, 1e-3)]
-    one, other = (look(rw.Scene([smooth, lit]), camera, rw.ConeTraced(ambient=1.0)).rgb for smooth in plates)
+    one, other = (
+        look(rw.Scene([smooth, lit]), camera, rw.integrators.ConeTraced(ambient=1.0)).rgb for smooth in plates
+    )
     assert np.abs(one - other).max() < 0.03
 
 
 def test_cones_see_no_moire_in_a_chequered_floor():
-    pattern = rw.Checker(0.0, 1.0, transform=rw.UvTransform(scale=(40, 40)))
+    pattern = rw.Checker(0.0, 1.0, transform=rw.textures.UvTransform(scale=(40, 40)))
     floor = rw.Mesh(
         [(-20, 0, -20), (-20, 0, 20), (20, 0, 20), (20, 0, -20)],
         [(0, 1, 2), (0, 2, 3)],
@@ -188,7 +192,7 @@ def test_cones_see_no_moire_in_a_chequered_floor():
     )
     scene = rw.Scene([floor])
     camera = rw.Camera((0, 1, 19), (0, 0.4, 0), fov=50, width=24, height=24)
-    cones = look(scene, camera, rw.ConeTraced(ambient=1.0)).rgb[..., 0].astype(float)
+    cones = look(scene, camera, rw.integrators.ConeTraced(ambient=1.0)).rgb[..., 0].astype(float)
     rays = look(scene, camera, rw.Whitted(ambient=1.0), samples=256).rgb[..., 0]
     lit = rays > 0.05
     # In the far rows all squares blur into grey, and rows have the mean.
@@ -212,16 +216,16 @@ REFUSED = [
 @pytest.mark.parametrize(("shapes", "more", "says"), REFUSED)
 def test_what_cones_cannot_do_is_refused_by_name(shapes, more, says):
     with pytest.raises(ValueError, match=says) as caught:
-        look(rw.Scene(shapes, **more), VIEW, rw.ConeTraced())
+        look(rw.Scene(shapes, **more), VIEW, rw.integrators.ConeTraced())
     assert "\n" not in str(caught.value)
 
 
 def test_cameras_and_filters_that_are_none_of_theirs():
-    scene, way = rw.Scene([FLOOR]), rw.ConeTraced()
+    scene, way = rw.Scene([FLOOR]), rw.integrators.ConeTraced()
     with pytest.raises(ValueError, match="pinhole"):
         look(scene, rw.Orthographic((0, 0, 5), (0, 0, 0), up=(0, 1, 0), width=4, height=4), way)
     with pytest.raises(ValueError, match="BoxFilter"):
-        rw.render(scene, VIEW, way, samples=1, filter=rw.GaussianFilter(), progress=False)
+        rw.render(scene, VIEW, way, samples=1, filter=rw.rendering.GaussianFilter(), progress=False)
 
 
 def covered(half_angle, **kwargs):
@@ -231,9 +235,9 @@ def covered(half_angle, **kwargs):
 @pytest.mark.parametrize(
     ("call", "error", "says"),
     [
-        (lambda: rw.ConeTraced(contribution=1), ValueError, "contribution must be at least 0"),
-        (lambda: rw.ConeTraced(max_depth=1.5), TypeError, "max_depth"),
-        (lambda: rw.ConeTraced(ambient="much"), TypeError, "ambient"),
+        (lambda: rw.integrators.ConeTraced(contribution=1), ValueError, "contribution must be at least 0"),
+        (lambda: rw.integrators.ConeTraced(max_depth=1.5), TypeError, "max_depth"),
+        (lambda: rw.integrators.ConeTraced(ambient="much"), TypeError, "ambient"),
         (lambda: covered(0), ValueError, "half_angle must be above 0"),
         (lambda: covered([10.0, 0.0]), ValueError, "half_angle must be above 0"),
         (lambda: covered(90), ValueError, "half_angle must be at least"),
@@ -261,7 +265,8 @@ def test_any_number_of_threads_makes_the_same_bits():
     scene = rw.Scene([square(1, -0.1), *box], lights=[rw.PointLight((0.5, 0.6, 1.7), 1.0)])
     camera = rw.Camera((0.5, 0.5, 2.6), (0.5, 0.5, 0), up=(0, 1, 0), fov=38, width=9, height=7)
     one, two = (
-        rw.render(scene, camera, rw.ConeTraced(3), samples=1, threads=n, progress=False).rgb for n in (1, 2)
+        rw.render(scene, camera, rw.integrators.ConeTraced(3), samples=1, threads=n, progress=False).rgb
+        for n in (1, 2)
     )
     assert np.array_equal(one, two)
     rng = np.random.default_rng(2)
@@ -281,12 +286,12 @@ def test_cones_are_compared_with_distributed_rays():
     lamp = rw.Sphere((0.3, 0, 3), 0.2, material=rw.Diffuse(0), emission=20.0)
     scene = rw.Scene([square(2, 0.0, material=rw.Diffuse(0.6)), rw.Sphere((0, 0, 0.6), 0.3), lamp])
     camera = rw.Camera((0, -4, 3), (0, 0, 0), up=(0, 0, 1), width=12, height=12)
-    cones = look(scene, camera, rw.ConeTraced(), samples=2)
-    rays = look(scene, camera, rw.Distributed(), samples=512)
+    cones = look(scene, camera, rw.integrators.ConeTraced(), samples=2)
+    rays = look(scene, camera, rw.integrators.Distributed(), samples=512)
     # A small round lamp and a ball: soft shadows differ where one cone a pixel is shaded at one point.
     assert cones.error.estimate == 0
     assert cones.rgb.mean() == pytest.approx(rays.rgb.mean(), rel=5e-3)
     assert np.abs(cones.rgb - rays.rgb).max() < 0.03
-    ways = {"cones": rw.ConeTraced(), "rays": rw.Distributed()}
+    ways = {"cones": rw.integrators.ConeTraced(), "rays": rw.integrators.Distributed()}
     contest = rw.report.convergence(scene, camera, ways, seconds=0.1, seeds=1)
     assert set(contest.column("contender")) == {"cones", "rays"}

@@ -5,7 +5,7 @@ import pytest
 
 import raywright as rw
 
-BELL = rw.GaussianFilter(2.0, 0.5)
+BELL = rw.rendering.GaussianFilter(2.0, 0.5)
 SIZE = 6
 
 
@@ -36,14 +36,14 @@ def share(low, high):
 
 def test_what_shines_beyond_the_edge_counts_for_no_pixel():
     lamp = [plate(-3, 0, 100.0), plate(0, 9, 1.0)]
-    whole, cropped = picture(BELL, lamp).rgb, picture(rw.CroppedFilter(BELL), lamp).rgb
+    whole, cropped = picture(BELL, lamp).rgb, picture(rw.rendering.CroppedFilter(BELL), lamp).rgb
     assert np.allclose(cropped, 1, rtol=2e-3)
     assert (whole[:, 0] > 10).all()
 
 
 def test_edges_take_the_part_that_is_on_the_film():
     dark = [plate(0, 1, 2.0), plate(1, 9, 0.0)]
-    image = picture(rw.CroppedFilter(BELL), dark, samples=1024)
+    image = picture(rw.rendering.CroppedFilter(BELL), dark, samples=1024)
     expected = 2 * share(-0.5, 0.5) / share(-0.5, 2), 2 * share(-1.5, -0.5) / share(-1.5, 2)
     for column, value in enumerate(expected):
         middle, error = image.rgb[:, column, 0], image.standard_error[:, column, 0]
@@ -54,10 +54,12 @@ def test_edges_take_the_part_that_is_on_the_film():
 
 
 @pytest.mark.parametrize(
-    "filter", [BELL, rw.MitchellFilter(), rw.LanczosFilter(), rw.BoxFilter(1.2)], ids=repr
+    "filter",
+    [BELL, rw.rendering.MitchellFilter(), rw.rendering.LanczosFilter(), rw.rendering.BoxFilter(1.2)],
+    ids=repr,
 )
 def test_an_even_picture_stays_so(filter):
-    image = picture(rw.CroppedFilter(filter), [plate(-9, 19, 1.0)])
+    image = picture(rw.rendering.CroppedFilter(filter), [plate(-9, 19, 1.0)])
     # Negative lobes turn uniform light into noise.
     assert abs(image.rgb - 1).max() < 5 * image.standard_error.max() + 3e-3
 
@@ -65,7 +67,7 @@ def test_an_even_picture_stays_so(filter):
 def test_light_that_comes_to_the_film_is_cropped_alike():
     floor = rw.Mesh([[-9, -9, 0], [15, -9, 0], [15, 15, 0], [-9, 15, 0]], [[0, 1, 2], [0, 2, 3]])
     lamp = rw.Sphere((3, 3, 9), 1.0, emission=50.0)
-    cropped = rw.CroppedFilter(BELL)
+    cropped = rw.rendering.CroppedFilter(BELL)
     one = picture(cropped, [floor, lamp], rw.Path(max_depth=1), 64, seed=1)
     two = picture(cropped, [floor, lamp], rw.LightTraced(max_depth=1), 2048, seed=2)
     for part in (np.s_[0], np.s_[:, 0], np.s_[2:4, 2:4]):
@@ -79,7 +81,9 @@ def test_light_that_comes_to_the_film_is_cropped_alike():
 
 def test_what_cannot_be_cropped_is_told():
     with pytest.raises(TypeError, match="filter must be one that is not cropped, got CroppedFilter"):
-        rw.CroppedFilter(rw.CroppedFilter(BELL))
+        rw.rendering.CroppedFilter(rw.rendering.CroppedFilter(BELL))
     with pytest.raises(TypeError, match="filter must be one that is not cropped, got float"):
-        rw.CroppedFilter(0.5)
-    assert rw.CroppedFilter(BELL) == rw.CroppedFilter(rw.GaussianFilter(2.0, 0.5))
+        rw.rendering.CroppedFilter(0.5)
+    assert rw.rendering.CroppedFilter(BELL) == rw.rendering.CroppedFilter(
+        rw.rendering.GaussianFilter(2.0, 0.5)
+    )

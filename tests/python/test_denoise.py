@@ -24,7 +24,9 @@ def render(scene, camera, **how):
 
 # 64 times the samples of the tested picture: a sixteenth of the error of a picture with a quarter left.
 def reference(scene, camera, samples=1024):
-    return render(scene, camera, samples=samples, seed=10**9, sampler=rw.Lattice(64)).rgb.astype(float)
+    return render(scene, camera, samples=samples, seed=10**9, sampler=rw.rendering.Lattice(64)).rgb.astype(
+        float
+    )
 
 
 def checkered(side):
@@ -68,7 +70,9 @@ def test_halves_are_parts_of_the_same_picture(box, noisy):
 @pytest.mark.parametrize("adaptive", [False, True])
 def test_quarters_are_independent_and_know_their_variance(adaptive):
     scene, camera = rw.scenes.cornell_box(width=32, height=32)
-    image = render(scene, camera, samples=64, sampler=rw.Independent(), halves=True, adaptive=adaptive)
+    image = render(
+        scene, camera, samples=64, sampler=rw.rendering.Independent(), halves=True, adaptive=adaptive
+    )
     a, b, c, d = image.halves.quarters.astype(float).sum(axis=-1)
     noise = image.standard_error.astype(float).max(axis=-1) > 0
     pairs = [(a - b, c - d), (a - c, b - d), (a - d, b - c)]
@@ -83,7 +87,7 @@ def test_quarters_are_independent_and_know_their_variance(adaptive):
 
 @pytest.mark.parametrize("adaptive", [False, True])
 def test_nothing_depends_on_who_takes_the_samples(box, tmp_path, adaptive):
-    how = {"samples": 72, "seed": 3, "sampler": rw.Sobol(4), "halves": True, "adaptive": adaptive}
+    how = {"samples": 72, "seed": 3, "sampler": rw.rendering.Sobol(4), "halves": True, "adaptive": adaptive}
     whole = render(*box, threads=1, **how)
     with ThreadPoolExecutor(2) as pool:
         assert render(*box, executor=pool, **how).halves == whole.halves
@@ -114,7 +118,7 @@ def test_what_cannot_be_denoised_is_refused(box, noisy):
     with pytest.raises(ValueError, match="four samples per pixel"):
         render(*box, samples=1, halves=True).denoise()
     with pytest.raises(ValueError, match="four batches"):
-        render(*box, samples=64, sampler=rw.Sobol(32), halves=True).denoise()
+        render(*box, samples=64, sampler=rw.rendering.Sobol(32), halves=True).denoise()
     with pytest.raises(ValueError, match="already denoised"):
         noisy.denoise().denoise()
     with pytest.raises(ValueError, match="method must be one of regression, oidn, got 'blur'"):

@@ -75,16 +75,16 @@ PRINTED = {
 @pytest.mark.parametrize("name", INDICES)
 def test_sellmeiers_formula_gives_what_it_must(name):
     indices, abbe = INDICES[name]
-    assert rw.glasses[name].index(LINES) == pytest.approx(indices, rel=1e-10)
-    assert rw.glasses[name].abbe == pytest.approx(abbe, rel=1e-10)
+    assert rw.materials.glasses[name].index(LINES) == pytest.approx(indices, rel=1e-10)
+    assert rw.materials.glasses[name].abbe == pytest.approx(abbe, rel=1e-10)
 
 
 def test_every_glass_is_what_its_maker_says():
-    assert set(rw.glasses) == set(PRINTED)
-    assert len(rw.glasses) == len(PRINTED)
+    assert set(rw.materials.glasses) == set(PRINTED)
+    assert len(rw.materials.glasses) == len(PRINTED)
     for name, (nd, abbe) in PRINTED.items():
-        assert abs(rw.glasses[name].index() - nd) < 6e-6, name
-        assert abs(rw.glasses[name].abbe - abbe) < 6e-3, name
+        assert abs(rw.materials.glasses[name].index() - nd) < 6e-6, name
+        assert abs(rw.materials.glasses[name].abbe - abbe) < 6e-3, name
 
 
 @pytest.mark.parametrize(
@@ -114,7 +114,7 @@ def test_every_glass_is_what_its_maker_says():
     ],
 )
 def test_cauchys_coefficients_come_from_the_number_of_abbe(nd, abbe, b, c, seen):
-    found = rw.Cauchy.from_abbe(nd, abbe)
+    found = rw.materials.Cauchy.from_abbe(nd, abbe)
     assert pytest.approx(b, rel=1e-11) == found.B
     assert pytest.approx(c, rel=1e-11) == found.C
     assert found.index([0.4, 0.55, 0.7]) == pytest.approx(seen, rel=1e-9)
@@ -123,9 +123,9 @@ def test_cauchys_coefficients_come_from_the_number_of_abbe(nd, abbe, b, c, seen)
 
 
 def test_cauchys_formula():
-    found = rw.Cauchy(1.5046, 0.0042).index([0.5875618, 0.4861327, 0.6562725])
+    found = rw.materials.Cauchy(1.5046, 0.0042).index([0.5875618, 0.4861327, 0.6562725])
     assert found == pytest.approx([1.516766, 1.522372, 1.514352], abs=5e-7)
-    assert rw.Cauchy(1.5, 0).abbe == np.inf
+    assert rw.materials.Cauchy(1.5, 0).abbe == np.inf
 
 
 def test_prisms_and_lenses_send_colours_where_they_go():
@@ -134,9 +134,9 @@ def test_prisms_and_lenses_send_colours_where_they_go():
         ("N-BK7", [39.5194794387944, 39.1381087356575, 38.6466985052864, 38.4291367036214]),
         ("SF10", [63.5237517722133, 61.6748265170223, 59.5659105628748, 58.7283906829657]),
     ]:
-        least = 2 * np.arcsin(rw.glasses[name].index(lines) * np.sin(np.pi / 6)) - np.pi / 3
+        least = 2 * np.arcsin(rw.materials.glasses[name].index(lines) * np.sin(np.pi / 6)) - np.pi / 3
         assert np.degrees(least) == pytest.approx(degrees, rel=1e-11)
-    focal = 0.05 / (rw.glasses["N-BK7"].index(lines[1:]) - 1)
+    focal = 0.05 / (rw.materials.glasses["N-BK7"].index(lines[1:]) - 1)
     assert focal == pytest.approx([0.0957164423096727, 0.0967492195473974, 0.0972152975001694], rel=1e-12)
 
 
@@ -144,7 +144,7 @@ def test_prisms_and_lenses_send_colours_where_they_go():
 @pytest.mark.parametrize("line", [0.4358343, 0.6562725])
 def test_rays_through_a_prism_are_turned_as_the_index_says(name, line):
     """A ray that goes through a prism evenly, by Snell's law at two faces that rays find."""
-    index = rw.glasses[name].index(line)
+    index = rw.materials.glasses[name].index(line)
     half = np.pi / 6
     shape = np.array([(-np.tan(half), 0), (np.tan(half), 0), (0, 1)])
     corners = np.array([(x, y, z) for z in (-1, 1) for x, y in shape])
@@ -165,18 +165,18 @@ def test_rays_through_a_prism_are_turned_as_the_index_says(name, line):
 
 
 def test_shapes_of_arrays_are_kept():
-    glass = rw.glasses["F2"]
+    glass = rw.materials.glasses["F2"]
     assert isinstance(glass.index(0.5), float)
     assert glass.index(np.full((2, 3), 0.5, np.float32)).shape == (2, 3)
     assert glass.index([]).shape == (0,)
     assert pickle.loads(pickle.dumps(glass)) == glass
-    assert rw.Sellmeier(np.array([1.0]), [0.01]) == rw.Sellmeier((1.0,), (0.01,))
+    assert rw.materials.Sellmeier(np.array([1.0]), [0.01]) == rw.materials.Sellmeier((1.0,), (0.01,))
 
 
 def test_principled_solids_disperse():
     # A wedge deflects each colour by its own angle: past an edge, some colours see light and others the dark.
     # With white transmission, both materials are glass with single scattering.
-    glass = rw.Cauchy(1.5, 0.03)
+    glass = rw.materials.Cauchy(1.5, 0.03)
     ends = [(x, y, z) for z in (0, -1) for x, y in [(-1, -1), (1, -1), (1, 1), (-1, 1)]]
     ends[4:] = [(x, y, -0.1 if x < 0 else -1.1) for x, y, _ in ends[4:]]
     sides = [[0, 1, 2, 3], [7, 6, 5, 4], [4, 5, 1, 0], [5, 6, 2, 1], [6, 7, 3, 2], [7, 4, 0, 3]]
@@ -211,38 +211,50 @@ def test_principled_solids_disperse():
 @pytest.mark.parametrize(
     ("call", "kind", "message"),
     [
-        (lambda: rw.glasses["BK8"], KeyError, "no glass 'BK8'; there are N-BK7"),
+        (lambda: rw.materials.glasses["BK8"], KeyError, "no glass 'BK8'; there are N-BK7"),
         (
-            lambda: rw.glasses["F2"].index([0.5, 0.0]),
+            lambda: rw.materials.glasses["F2"].index([0.5, 0.0]),
             ValueError,
             "micrometres must be finite and greater than 0",
         ),
-        (lambda: rw.glasses["F2"].index(np.nan), ValueError, "micrometres must be finite .* got nan"),
-        (lambda: rw.glasses["F2"].index("red"), TypeError, "micrometres must be real numbers"),
-        (lambda: rw.Sellmeier([1.0], [0.01]).index(0.09), ValueError, "it has no index at 0.09"),
-        (lambda: rw.Sellmeier([1.0, 2.0], [0.01]), ValueError, "B and C must have equal lengths, got 2"),
-        (lambda: rw.Sellmeier([1.0], [-0.01]), ValueError, "C must be at least 0, got -0.01"),
-        (lambda: rw.Sellmeier([], []), ValueError, "B must be one or more finite numbers"),
         (
-            lambda: rw.Plastic(ior=rw.Cauchy(1.5, 0.004)),
+            lambda: rw.materials.glasses["F2"].index(np.nan),
+            ValueError,
+            "micrometres must be finite .* got nan",
+        ),
+        (lambda: rw.materials.glasses["F2"].index("red"), TypeError, "micrometres must be real numbers"),
+        (lambda: rw.materials.Sellmeier([1.0], [0.01]).index(0.09), ValueError, "it has no index at 0.09"),
+        (
+            lambda: rw.materials.Sellmeier([1.0, 2.0], [0.01]),
+            ValueError,
+            "B and C must have equal lengths, got 2",
+        ),
+        (lambda: rw.materials.Sellmeier([1.0], [-0.01]), ValueError, "C must be at least 0, got -0.01"),
+        (lambda: rw.materials.Sellmeier([], []), ValueError, "B must be one or more finite numbers"),
+        (
+            lambda: rw.Plastic(ior=rw.materials.Cauchy(1.5, 0.004)),
             TypeError,
             "got a Cauchy: what has been under a coat",
         ),
         (
-            lambda: rw.ThinDielectric(rw.glasses["SF10"]),
+            lambda: rw.ThinDielectric(rw.materials.glasses["SF10"]),
             TypeError,
             "got a Sellmeier: a pane sends all colours",
         ),
         (
-            lambda: rw.PrincipledThin(ior=rw.Cauchy(1.5, 0.004)),
+            lambda: rw.materials.PrincipledThin(ior=rw.materials.Cauchy(1.5, 0.004)),
             TypeError,
             "a sheet sends all colours straight",
         ),
-        (lambda: rw.SoapFilm(300.0, rw.Cauchy(1.3, 0.004)), TypeError, "films have the same for all colours"),
-        (lambda: rw.Cauchy(0, 0.004), ValueError, "B must be"),
-        (lambda: rw.Cauchy(1.5, np.inf), ValueError, "C must be"),
-        (lambda: rw.Cauchy(1.5, -0.5).index(0.5), ValueError, "it has no index at 0.5"),
-        (lambda: rw.Cauchy.from_abbe(1.5, 0), ValueError, "Vd must be"),
+        (
+            lambda: rw.materials.SoapFilm(300.0, rw.materials.Cauchy(1.3, 0.004)),
+            TypeError,
+            "films have the same for all colours",
+        ),
+        (lambda: rw.materials.Cauchy(0, 0.004), ValueError, "B must be"),
+        (lambda: rw.materials.Cauchy(1.5, np.inf), ValueError, "C must be"),
+        (lambda: rw.materials.Cauchy(1.5, -0.5).index(0.5), ValueError, "it has no index at 0.5"),
+        (lambda: rw.materials.Cauchy.from_abbe(1.5, 0), ValueError, "Vd must be"),
     ],
 )
 def test_what_is_wrong_is_told(call, kind, message):
@@ -264,7 +276,7 @@ def test_what_is_wrong_is_told(call, kind, message):
         lambda ior: rw.Plastic(0.5, ior, roughness=0.4, multiple_scattering=False),
         lambda ior: rw.Principled(0.5, ior=ior),
         lambda ior: rw.Principled(0.5, ior=ior, transmission=0.5),
-        lambda ior: rw.PrincipledThin(0.5, ior=ior, transmission=0.5),
+        lambda ior: rw.materials.PrincipledThin(0.5, ior=ior, transmission=0.5),
     ],
 )
 def test_what_bends_light_without_measure_mirrors_it(make, ior):

@@ -28,13 +28,13 @@ def test_a_wall_listed_twice_is_one(how: str) -> None:
     with pytest.warns(RuntimeWarning, match=rf"{count} of {12 + count} faces coincide with others"):
         found = rw.view_factors(scene, progress=False)
     np.testing.assert_allclose(found.matrix[:12, :12], once.matrix, rtol=1e-12)
-    np.testing.assert_allclose(found.rest, 0, atol=1e-9)
+    np.testing.assert_allclose(found.to_surroundings, 0, atol=1e-9)
     assert found.dropped == count
     assert not found.areas[12:].any()
     assert not found.matrix[:, 12:].any()
     with pytest.warns(RuntimeWarning, match="coincide"):
         shapes = rw.view_factors(scene, per="shape", progress=False)
-    np.testing.assert_allclose(shapes.rest, 0, atol=1e-9)
+    np.testing.assert_allclose(shapes.to_surroundings, 0, atol=1e-9)
     for method in ("matrix", "stochastic"):
         with pytest.warns(RuntimeWarning, match="coincide"):
             even = rw.radiative_exchange(scene, 300.0, 0.9, method=method, rays=2**12, progress=False)  # type: ignore[arg-type]
@@ -67,7 +67,7 @@ def test_faces_that_overlap_in_part_are_told() -> None:
 def test_neighbours_and_the_other_side_do_not_coincide() -> None:
     back = rw.Mesh(CLOSED.vertices, CLOSED.faces[:, ::-1])
     found = rw.view_factors(rw.Scene([CLOSED, back]), progress=False)
-    np.testing.assert_allclose(found.rest[:12], 0, atol=1e-9)
+    np.testing.assert_allclose(found.to_surroundings[:12], 0, atol=1e-9)
     assert not found.matrix[12:].any()
     assert found.dropped == 0
 
@@ -86,7 +86,7 @@ def test_rays_meet_the_front_of_a_sheet_whichever_side_is_listed_first(is_first:
     assert even.escaped == pytest.approx(0.9 * sent * outer, rel=1e-9)
     assert abs(even.of(inside)) < 1e-4 * sent
     found = rw.view_factors(rw.Scene([*walls, rw.Sphere((3, 2, 1.5), 0.5)]), per="shape", progress=False)
-    np.testing.assert_allclose(found.rest[[inside, 2]], 0, atol=1e-9)
+    np.testing.assert_allclose(found.to_surroundings[[inside, 2]], 0, atol=1e-9)
 
 
 def test_shots_from_faces_that_touch_come_to_each_other() -> None:
@@ -240,7 +240,7 @@ def test_what_touches_in_a_corner_hides_what_lies_within() -> None:
     within = np.flatnonzero((centers < 1).all(axis=1))
     assert len(within) == 3 * 8
     assert (found.matrix[within, :192] <= 3 * found.standard_error[within, :192] + 1e-9).all()
-    np.testing.assert_allclose(found.rest, 0, atol=1e-9)
+    np.testing.assert_allclose(found.to_surroundings, 0, atol=1e-9)
 
 
 # A turn about an axis along no face.
@@ -267,8 +267,8 @@ def test_faces_that_touch_tell_their_errors_also_where_corners_are_rounded(name:
 
     straight = rw.view_factors(placed(np.eye(3)), rays=256, seed=1, progress=False)
     turned = rw.view_factors(placed(TURN), rays=64, seed=2, progress=False)
-    np.testing.assert_allclose(straight.rest, 0, atol=1e-9)
-    np.testing.assert_allclose(turned.rest, 0, atol=1e-9 if dtype is np.float64 else 3e-4)
+    np.testing.assert_allclose(straight.to_surroundings, 0, atol=1e-9)
+    np.testing.assert_allclose(turned.to_surroundings, 0, atol=1e-9 if dtype is np.float64 else 3e-4)
     # One of 400 pairs is beyond six standard errors once in a million cases, if these were exact.
     off = np.abs(straight.matrix - turned.matrix)
     told = np.hypot(straight.standard_error, turned.standard_error)

@@ -33,7 +33,7 @@ CONTACTS: dict[str, list[rw.Mesh | Shape]] = {
     "cylinder upside down": [rw.Cylinder((2, 2, 1), (2, 2, 0), 0.5)],
     "sheared cylinder": [rw.Cylinder((0, 0, 0), (0, 0, 1), 0.5, transform=SHEAR)],
     "truncated cone": [rw.Cone((2, 2, 0), (2, 2, 1), 0.7, 0.2)],
-    "paraboloid": [rw.Paraboloid((2, 2, 1), (2, 2, 0), 0.7, capped=True)],
+    "paraboloid": [rw.shapes.Paraboloid((2, 2, 1), (2, 2, 0), 0.7, capped=True)],
     "stack": [
         rw.Cylinder((2, 2, 0), (2, 2, 1), 0.6),
         rw.Box((1.5, 1.5, 1), (2.5, 2.5, 1.5)),
@@ -96,11 +96,11 @@ def test_what_touches_is_as_what_is_next_to_touching(
     told = np.hypot(found.standard_error, wanted.standard_error)
     assert (np.abs(found.matrix - wanted.matrix) <= 6 * told + 4 * LIFT).all()
     if name in CONTACTS:
-        np.testing.assert_allclose(found.rest, 0, atol=1e-9)
+        np.testing.assert_allclose(found.to_surroundings, 0, atol=1e-9)
     else:
         # The ceiling looks down on the sheet: of 2,048 rays 5 to 10 % meet it.
-        assert found.rest[ABOVE] == pytest.approx(wanted.rest[ABOVE], rel=0.6)
-        assert found.rest[ABOVE] > 0.03
+        assert found.to_surroundings[ABOVE] == pytest.approx(wanted.to_surroundings[ABOVE], rel=0.6)
+        assert found.to_surroundings[ABOVE] > 0.03
 
 
 @pytest.mark.parametrize("name", [name for name in CONTACTS if name != "sheared cylinder"])
@@ -120,7 +120,7 @@ def test_a_box_that_touches_is_as_its_mesh(low: tuple[float, ...]) -> None:
     for box in (plain, rw.Instance([plain], np.eye(4))):
         scene = rw.Scene([*SIDES, box])
         found = rw.view_factors(scene, per="shape", rays=4, progress=False)
-        np.testing.assert_allclose(found.rest, 0, atol=1e-9)
+        np.testing.assert_allclose(found.to_surroundings, 0, atol=1e-9)
         # One of 49 entries is beyond six standard errors in 1e-7 of cases.
         both = np.hypot(found.standard_error, mesh.standard_error)
         assert (np.abs(found.matrix - mesh.matrix) <= 6 * both + 1e-9).all()

@@ -16,7 +16,7 @@ import pytest
 import raywright as rw
 from raywright.rendering import executor as distributed
 
-LIMITS = {"samples": 72, "seed": 3, "progress": False, "sampler": rw.Sobol(4)}
+LIMITS = {"samples": 72, "seed": 3, "progress": False, "sampler": rw.rendering.Sobol(4)}
 
 
 @pytest.fixture(scope="module")
@@ -41,15 +41,15 @@ def assert_same(a, b):
         assert np.array_equal(a.history[name], b.history[name], equal_nan=True)
 
 
-class Noise(rw.Integrator):
+class Noise(rw.integrators.Integrator):
     """Something noisy in Python."""
 
     def radiance(self, scene, rays, rng):
         hit = scene.intersect(rays.origins, rays.directions).hit
-        return np.stack([rng.one() ** 3 + hit for _ in range(3)], axis=1)
+        return np.stack([rng.next_1d() ** 3 + hit for _ in range(3)], axis=1)
 
 
-class Fails(rw.Integrator):
+class Fails(rw.integrators.Integrator):
     def radiance(self, scene, rays, rng):
         raise LookupError("no such light")
 

@@ -38,7 +38,7 @@ def test_identities_are_normal_numbers():
 @pytest.fixture(scope="module")
 def saved(tmp_path_factory):
     scene, camera = rw.scenes.cornell_box(width=12, height=9)
-    image = rw.render(scene, camera, samples=8, adaptive=True, aov=rw.AOVS, progress=False)
+    image = rw.render(scene, camera, samples=8, adaptive=True, aov=rw.rendering.AOVS, progress=False)
     path = tmp_path_factory.mktemp("exr") / "a.exr"
     image.save(path)
     with OpenEXR.File(str(path), separate_channels=True) as file:
@@ -50,7 +50,7 @@ def test_every_aov_is_a_layer(saved):
     names = {
         "depth": "Z", "position": "XYZ", "normal": "XYZ", "shading_normal": "XYZ", "uv": "UV",
         "albedo": "RGB", "motion": "XYZ", "screen_motion": "XY", "alpha": "A", "shape_id": "X",
-        "primitive": "X", "samples": "X", "standard_error": "RGB",
+        "primitive_id": "X", "samples": "X", "standard_error": "RGB",
     }  # fmt: skip
     expected = {*"RGB"} | {f"{layer}.{c}" for layer, all_ in names.items() for c in all_}
     assert set(channels) == expected | {f"CryptoObject{i:02}.{c}" for i in range(3) for c in "RGBA"}

@@ -47,7 +47,7 @@ def test_no_class_is_recognized_by_its_name_alone():
     named = re.compile(r"get_type\(\)\s*\.(?:qual)?name\(\)")
     found = {file.name for file in READERS if named.search(file.read_text(encoding="utf-8"))}
     # It tells the names of classes in its errors.
-    assert found == {"written.rs"}
+    assert found == {"python_integrator.rs"}
 
 
 def test_every_row_of_the_tables_is_a_class_of_that_module():

@@ -8,7 +8,7 @@ def test_lamps_on_plates_leave_a_third_of_the_error_at_most():
     # Asking each leaves 0.0023 to 0.0035, so that luck would have to be three times the spread of seeds.
     scene, camera = rw.scenes.veach_plates(96, 96)
     path = rw.Path(max_depth=1)
-    image = rw.render(scene, camera, path, samples=64, sampler=rw.Sobol(), progress=False)
+    image = rw.render(scene, camera, path, samples=64, sampler=rw.rendering.Sobol(), progress=False)
     assert float(image.error) < 0.0216 / 3
 
 

@@ -8,7 +8,7 @@ import pytest
 import raywright as rw
 
 # Depends on wavelength formally, with a constant index: paths in such a scene carry wavelengths.
-SAME = rw.Cauchy(1.5, 0.0)
+SAME = rw.materials.Cauchy(1.5, 0.0)
 
 
 def looked(material, by_wave, samples):
@@ -33,9 +33,9 @@ def looked(material, by_wave, samples):
 @pytest.mark.parametrize(
     "material",
     [
-        rw.SoapFilm(320.0),
-        rw.ThinFilm(250.0, 1.47, base=rw.Dielectric(1.33)),
-        rw.ThinFilm(120.0, 1.8, base=rw.Conductor("Au")),
+        rw.materials.SoapFilm(320.0),
+        rw.materials.ThinFilm(250.0, 1.47, base=rw.Dielectric(1.33)),
+        rw.materials.ThinFilm(120.0, 1.8, base=rw.Conductor("Au")),
     ],
     ids=["soap", "oil on water", "gold"],
 )

@@ -25,7 +25,7 @@ def after(nodes, i):
 @pytest.mark.parametrize("builder", ["binned", "spatial", "median"])
 def test_arrays_are_what_they_are_said_to_be(name, builder):
     scene = rw.Scene(SCENES[name], accelerator=rw.BVH(builder=builder))
-    flat = scene.flat()
+    flat = scene.gpu_arrays()
     nodes, triangles = flat.nodes, flat.triangles
     assert nodes.dtype.itemsize == 32
     assert triangles.dtype.itemsize == 48
@@ -74,13 +74,13 @@ def test_arrays_are_what_they_are_said_to_be(name, builder):
 @pytest.mark.parametrize("name", ["knot", "far and small", "several"])
 def test_triangles_are_those_of_the_scene(name):
     scene = rw.Scene(SCENES[name], precision="double")
-    flat = scene.flat()
+    flat = scene.gpu_arrays()
     assert np.log2(flat.scale) % 1 == 0
     for shape, first in zip(scene.shapes, flat.first, strict=False):
         if not isinstance(shape, rw.Mesh):
             (box,) = flat.triangles[flat.triangles["primitive"] == first]
             assert box["largest"] == -1
-            lower, upper = (box[end] / flat.scale + flat.centre for end in ("corner", "edge"))
+            lower, upper = (box[end] / flat.scale + flat.center for end in ("corner", "edge"))
             assert lower == pytest.approx(-np.ones(3), abs=1e-5)
             assert upper == pytest.approx(np.ones(3), abs=1e-5)
             continue
@@ -93,7 +93,7 @@ def test_triangles_are_those_of_the_scene(name):
         shortest = np.argmin((edges**2).sum(axis=-1), axis=1)
         a, b, c = (corners[np.arange(len(corners)), (shortest + i) % 3] for i in range(3))
         # Differences come before any rounding.
-        assert (some["corner"] == ((a - flat.centre) * flat.scale).astype(np.float32)).all()
+        assert (some["corner"] == ((a - flat.center) * flat.scale).astype(np.float32)).all()
         assert (some["edge"] == ((b - a) * flat.scale).astype(np.float32)).all()
         assert (some["other"] == ((c - a) * flat.scale).astype(np.float32)).all()
         edges = np.abs(np.concatenate([some["edge"], some["other"]], axis=1))
@@ -132,12 +132,12 @@ def test_a_walk_of_a_few_lines_finds_what_the_scene_does():
     random = np.random.default_rng(4)
     origins = random.uniform(-4, 4, (60, 3))
     directions = random.uniform(-1, 1, (60, 3)) - origins
-    flat = scene.flat()
-    local = (origins - flat.centre) * flat.scale
+    flat = scene.gpu_arrays()
+    local = (origins - flat.center) * flat.scale
     found = [walked(flat, *ray, 0, flat.own)[1] for ray in zip(local, directions, strict=True)]
     hits = scene.intersect(origins, directions)
     assert hits.hit.sum() > 15
-    assert found == [(p,) if p >= 0 else () for p in hits.primitive.tolist()]
+    assert found == [(p,) if p >= 0 else () for p in hits.primitive_id.tolist()]
 
 
 def test_copies_are_entered_by_their_matrices():
@@ -149,7 +149,7 @@ def test_copies_are_entered_by_their_matrices():
     inner = rw.Instance([KNOT], moves[:2])
     pair = rw.Instance([inner, rw.Mesh(KNOT.vertices + 3, KNOT.faces)], moves[2:4])
     scene = rw.Scene([rw.Instance([KNOT], moves), KNOT, pair])
-    flat = scene.flat()
+    flat = scene.gpu_arrays()
     assert flat.instances.dtype.itemsize == 64
     assert [flat.instances.dtype.fields[f][1] for f in flat.instances.dtype.names] == [0, 48, 52, 56, 60]
     # Five and two in the scene, two in the pair; the knot's tree exists once.
@@ -158,14 +158,14 @@ def test_copies_are_entered_by_their_matrices():
     assert flat.own == after(flat.nodes, 0) < len(flat.nodes)
     hits = scene.intersect(*(rays := random_aimed(random, moves)))
     assert len(set(hits.shape_id.tolist())) == 4
-    local = (rays[0] - flat.centre) * flat.scale
+    local = (rays[0] - flat.center) * flat.scale
     for i, (origin, direction) in enumerate(zip(local, rays[1], strict=True)):
         t, found = walked(flat, origin, direction, 0, flat.own)
         assert bool(found) == hits.hit[i]
         if found:
             shape, number = hits.shape_id[i], found[0] - flat.first[hits.shape_id[i]]
             assert t == pytest.approx(hits.t[i] * flat.scale, rel=1e-4)
-            assert number == (hits.primitive[i] if shape == 1 else hits.instance[i])
+            assert number == (hits.primitive_id[i] if shape == 1 else hits.instance_id[i])
 
 
 def random_aimed(random, moves, count=80):
@@ -176,15 +176,15 @@ def random_aimed(random, moves, count=80):
 
 
 def test_what_has_no_end_stands_apart():
-    flat = rw.Scene([rw.Plane((0, 0, 0), (0, 0, 1)), KNOT]).flat()
+    flat = rw.Scene([rw.Plane((0, 0, 0), (0, 0, 1)), KNOT]).gpu_arrays()
     assert flat.unbounded.tolist() == [0]
     assert flat.triangles["primitive"].min() == 1
     assert (
         repr(flat)
-        == f"FlatArrays({len(flat.nodes)} nodes, {len(flat.triangles)} triangles, depth {flat.depth})"
+        == f"GpuArrays({len(flat.nodes)} nodes, {len(flat.triangles)} triangles, depth {flat.depth})"
     )
 
 
 def test_other_accelerators_have_flat_arrays_too():
-    flat = rw.Scene(KNOT, accelerator=rw.Grid()).flat()
-    assert flat.nodes.tobytes() == rw.Scene(KNOT).flat().nodes.tobytes()
+    flat = rw.Scene(KNOT, accelerator=rw.accelerators.Grid()).gpu_arrays()
+    assert flat.nodes.tobytes() == rw.Scene(KNOT).gpu_arrays().nodes.tobytes()

@@ -56,7 +56,7 @@ def answers(scene, seed):
     hits, every = scene.intersect(origins, directions), scene.intersect_all(origins, directions)
     near = scene.closest_point(origins)
     blocked = scene.occluded(origins, directions, t_max=1.0)
-    return hits.t, hits.primitive, hits.uv, every.t, every.ray_splits, near.distance, blocked
+    return hits.t, hits.primitive_id, hits.uv, every.t, every.ray_splits, near.distance, blocked
 
 
 def test_one_scene_is_asked_and_compiled_by_all_at_once():
@@ -104,7 +104,7 @@ def test_metals_and_films_are_tabulated_once_for_all():
         "import threading, numpy as np, raywright as rw\n"
         "def work(k):\n"
         "    gold = rw.Conductor('Au', roughness=0.3)\n"
-        "    ball = rw.Sphere((0, 0, 0), 1, material=rw.ThinFilm(400.0, base=gold))\n"
+        "    ball = rw.Sphere((0, 0, 0), 1, material=rw.materials.ThinFilm(400.0, base=gold))\n"
         "    scene = rw.Scene([ball], environment=rw.Blackbody(4000))\n"
         "    camera = rw.Camera((0, 0, 4), (0, 0, 0), width=4, height=4)\n"
         "    rgb[k] = rw.render(scene, camera, samples=2, progress=False).rgb\n"

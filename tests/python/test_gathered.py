@@ -5,14 +5,14 @@ import time
 import pytest
 
 import raywright as rw
-from raywright.rendering.gathered import rate
+from raywright.rendering.photon_bias import rate
 from raywright.rendering.progress import bar
 
 
 def test_noise_falls_by_the_integrator():
     assert [rate(way) for way in (rw.Path(), rw.PhotonMap(), rw.Bidirectional())] == [1.0, 1.0, 1.0]
     assert rate(rw.ProgressivePhotonMap(alpha=0.5)) == 0.5
-    assert rate(rw.Bidirectional(merge=True)) == pytest.approx(2 / 3)
+    assert rate(rw.Bidirectional(vertex_merging=True)) == pytest.approx(2 / 3)
 
 
 @pytest.mark.parametrize(("rates", "share"), [((), "12%"), ((2 / 3,), "4%")])
@@ -28,7 +28,7 @@ def test_a_bar_goes_by_that(rates, share, capsys):
 
 def test_blur_beyond_the_error_is_told():
     scene, look = rw.scenes.cornell_box(width=8, height=8)
-    coarse = rw.PhotonMap(1000, nearest=None, radius=250.0, gather=0)
+    coarse = rw.PhotonMap(1000, k_nearest=None, radius=250.0, final_gather=0)
     image = rw.render(scene, look, coarse, 64, error=1e-9, progress=False)
     lines = [line for line in image.warnings if line.startswith("error=1e-09 is of noise alone")]
     assert len(lines) == 1

@@ -232,7 +232,7 @@ def test_parallel_cameras_and_those_without_a_width(read):
 def test_what_has_no_camera_is_framed_and_what_has_no_light_is_lit(read):
     shot = read(square(scale=[1e3, 1e3, 1e3]))
     mesh = shot.scene.shapes[0]
-    assert shot == rw.Shot(*rw.scenes.studio(mesh))
+    assert shot == rw.rendering.RenderSetup(*rw.scenes.studio(mesh))
     seen = shot.scene.intersect(*shot.camera.rays()).shape_id == 0
     border = np.concatenate([seen[0], seen[-1], seen[:, 0], seen[:, -1]])
     assert seen.any()

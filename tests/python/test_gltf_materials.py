@@ -83,11 +83,11 @@ def test_all_of_the_model_is_read(tmp_path):
     bumpy = mesh.material.material
     assert (bumpy.normals, bumpy.scale) == (rw.ImageTexture(PIXELS[::-1, :, :3], linear=True), 0.75)
     model = bumpy.material
-    assert model.base_color == rw.ProductTexture(rw.ImageTexture(PIXELS), (1, 0.2, 1))
+    assert model.base_color == rw.textures.ProductTexture(rw.ImageTexture(PIXELS), (1, 0.2, 1))
     assert model.metallic == rw.ImageTexture(PIXELS[..., :3], linear=True, channel="b")
     green = rw.ImageTexture(PIXELS[..., :3], linear=True, channel="g")
-    assert model.roughness == rw.ProductTexture(green, 0.5)
-    shown = rw.ProductTexture(rw.ImageTexture(PIXELS[:, ::-1, :3]), (4, 8, 8))
+    assert model.roughness == rw.textures.ProductTexture(green, 0.5)
+    shown = rw.textures.ProductTexture(rw.ImageTexture(PIXELS[:, ::-1, :3]), (4, 8, 8))
     assert mesh.emission == rw.Emission(shown, both_sides=True)
 
 
@@ -221,20 +221,23 @@ def test_pictures_beside_the_file_are_found(tmp_path):
             ),
             rw.ThinDielectric(1.5),
         ),
-        (clear(baseColorFactor=[1, 0.5, 0, 1]), rw.Tinted(rw.ThinDielectric(1.5), (1, 0.5, 0))),
+        (clear(baseColorFactor=[1, 0.5, 0, 1]), rw.materials.Tinted(rw.ThinDielectric(1.5), (1, 0.5, 0))),
         (
             clear(baseColorFactor=[1, 0.5, 0, 1], extensions=VOLUME),
-            rw.Tinted(rw.Dielectric(1.5, 0.0), (1, 0.5, 0)),
+            rw.materials.Tinted(rw.Dielectric(1.5, 0.0), (1, 0.5, 0)),
         ),
         (
             clear(extensions={**VOLUME, "KHR_materials_dispersion": {"dispersion": 20 / 55}}),
-            rw.Dielectric(rw.Cauchy.from_abbe(1.5, 55.0), 0.0),
+            rw.Dielectric(rw.materials.Cauchy.from_abbe(1.5, 55.0), 0.0),
         ),
         (clear(extensions={**VOLUME, "KHR_materials_dispersion": {}}), rw.Dielectric(1.5, 0.0)),
-        (clear(extensions={**VOLUME, **FILM}), rw.ThinFilm(400.0, 1.4, base=rw.Dielectric(1.5, 0.0))),
+        (
+            clear(extensions={**VOLUME, **FILM}),
+            rw.materials.ThinFilm(400.0, 1.4, base=rw.Dielectric(1.5, 0.0)),
+        ),
         (
             clear(extensions={"KHR_materials_iridescence": {"iridescenceFactor": 0.5}}),
-            rw.Mix(rw.ThinDielectric(1.5), rw.SoapFilm(400.0, 1.3), 0.5),
+            rw.Mix(rw.ThinDielectric(1.5), rw.materials.SoapFilm(400.0, 1.3), 0.5),
         ),
         (clear(extensions={"KHR_materials_iridescence": {}}), rw.ThinDielectric(1.5)),
     ],
@@ -259,14 +262,16 @@ def test_what_goes_through_may_vary(tmp_path):
     mix = loaded(tmp_path, material, writer).material
     blue, red = (rw.ImageTexture(PIXELS[..., :3], linear=True, channel=name) for name in "br")
     assert mix.a.metallic == blue
-    assert mix.amount == rw.ProductTexture(rw.MixTexture(1.0, 0.0, blue), rw.ProductTexture(red, 0.5))
+    assert mix.amount == rw.textures.ProductTexture(
+        rw.textures.MixTexture(1.0, 0.0, blue), rw.textures.ProductTexture(red, 0.5)
+    )
 
 
 def test_tints_and_films_may_vary(tmp_path):
     writer = Writer()
     info = writer.picture(png(PIXELS[..., :3]))
     mesh = loaded(tmp_path, clear(baseColorTexture=info), writer)
-    assert mesh.material == rw.Tinted(rw.ThinDielectric(1.5), rw.ImageTexture(PIXELS[..., :3]))
+    assert mesh.material == rw.materials.Tinted(rw.ThinDielectric(1.5), rw.ImageTexture(PIXELS[..., :3]))
     writer = Writer()
     info = writer.picture(png(PIXELS[..., :3]))
     film = {
@@ -280,8 +285,10 @@ def test_tints_and_films_may_vary(tmp_path):
     }
     mix = loaded(tmp_path, clear(extensions={**VOLUME, **film}), writer).material
     red, green = (rw.ImageTexture(PIXELS[..., :3], linear=True, channel=name) for name in "rg")
-    assert mix.b == rw.ThinFilm(rw.MixTexture(200.0, 600.0, green), 1.3, base=rw.Dielectric(1.5, 0.0))
-    assert (mix.a, mix.amount) == (rw.Dielectric(1.5, 0.0), rw.ProductTexture(red, 0.5))
+    assert mix.b == rw.materials.ThinFilm(
+        rw.textures.MixTexture(200.0, 600.0, green), 1.3, base=rw.Dielectric(1.5, 0.0)
+    )
+    assert (mix.a, mix.amount) == (rw.Dielectric(1.5, 0.0), rw.textures.ProductTexture(red, 0.5))
 
 
 def test_metal_under_a_film_reflects_its_colour_where_the_film_ends(tmp_path):
@@ -313,7 +320,7 @@ def test_metal_of_a_picture_has_its_film(tmp_path):
     partly = loaded(tmp_path, {"pbrMetallicRoughness": metal, "extensions": FILM}, writer, told).material
     blue, green = (rw.ImageTexture(PIXELS[..., :3], linear=True, channel=name) for name in "bg")
     assert partly.a == rw.MetallicRough(rw.ImageTexture(shades), 0.0, green)
-    assert partly.b == rw.ThinFilm(
+    assert partly.b == rw.materials.ThinFilm(
         400.0, 1.4, base=rw.Conductor(eta=partly.b.base.eta, roughness=green, k=0.0)
     )
     assert partly.amount == blue
@@ -395,7 +402,7 @@ def test_extensions_that_may_be_left_out_are_named(tmp_path):
 def test_colours_of_vertices_tint_the_base_colour(tmp_path):
     half = np.tile(np.float32([0.5, 1, 0.25]), (len(SQUARE), 1))
     mesh = loaded(tmp_path, {"pbrMetallicRoughness": {"baseColorFactor": [1, 0.5, 1, 1]}}, COLOR_0=half)
-    assert mesh.material == rw.MetallicRough(rw.ProductTexture(rw.VertexColors(), (1, 0.5, 1)), 1, 1)
+    assert mesh.material == rw.MetallicRough(rw.textures.ProductTexture(rw.VertexColors(), (1, 0.5, 1)), 1, 1)
     assert np.array_equal(mesh.colors, half)
 
 

@@ -29,14 +29,16 @@ def gpu():
 
 def same(hits, wanted):
     """Count rays whose hits are not the same to the bit."""
-    differs = (hits.t != wanted.t) | (hits.shape_id != wanted.shape_id) | (hits.primitive != wanted.primitive)
+    differs = (
+        (hits.t != wanted.t) | (hits.shape_id != wanted.shape_id) | (hits.primitive_id != wanted.primitive_id)
+    )
     return np.count_nonzero(differs | (hits.uv != wanted.uv).any(axis=-1))
 
 
 def agrees(scene, gpu, origins, directions, **ends):
     """Hold a scene's answers on a device against its own, and return what became of the rays."""
     wanted = scene.intersect(origins, directions, **ends)
-    with scene.on(gpu) as there:
+    with scene.on_device(gpu) as there:
         hits = there.intersect(origins, directions, **ends)
         found = there.occluded(origins, directions, **ends)
         assert same(hits, wanted) == 0
@@ -158,7 +160,7 @@ def test_rays_that_leave_a_surface_leave_it_behind(gpu):
     assert stats.closest_share <= MOST_CLOSEST
     # Without one, only the CPU can decide that a leaving ray misses its own face, and it tests just that
     # face.
-    stats, _ = agrees(scene, gpu, *hits.leave(ways))
+    stats, _ = agrees(scene, gpu, *hits.spawn_rays(ways))
     assert stats.any_decided > 0.2 * stats.any
     assert stats.any_walked <= MOST_ANY * stats.any
 
@@ -188,10 +190,10 @@ def test_shapes_and_copies_are_candidates_by_their_boxes(gpu):
     scene = rw.Scene(shapes)
     origins, directions = random_rays(KNOT, 3000)
     wanted = scene.intersect(origins, directions)
-    with scene.on(gpu) as there:
+    with scene.on_device(gpu) as there:
         hits = there.intersect(origins, directions)
         assert hits == wanted
-        np.testing.assert_array_equal(hits.instance, wanted.instance)
+        np.testing.assert_array_equal(hits.instance_id, wanted.instance_id)
         np.testing.assert_array_equal(hits.position, wanted.position)
         np.testing.assert_array_equal(there.occluded(origins, directions), wanted.hit)
     with_plane = rw.Scene([*shapes, rw.Plane((0, 0, -1), (0, 0, 1))])
@@ -208,7 +210,7 @@ def test_coincident_faces_go_to_the_first(gpu):
     # More than four equal triangles are too many candidates.
     one = rw.Mesh([(0.0, 0, 0), (1, 0, 0), (0, 1, 0)], np.tile([(0, 1, 2)], (9, 1)))
     stats, wanted = agrees(rw.Scene(one), gpu, [[0.2, 0.2, 1.0]], [[0.0, 0, -1]])
-    assert wanted.primitive.tolist() == [0]
+    assert wanted.primitive_id.tolist() == [0]
     assert (stats.closest_walked, stats.closest_decided) == (1, 0)
 
 
@@ -218,7 +220,7 @@ def test_nothing_and_one_of_everything(gpu):
     triangle = rw.Scene(rw.Mesh([(0.0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)]))
     for way in ([0.1, 0.1, -1], [0.0, 0.0, -1], [0.5, 0.5, -1]):
         agrees(triangle, gpu, [[0.0, 0, 1]], [way])
-    with triangle.on(gpu) as there:
+    with triangle.on_device(gpu) as there:
         assert there.intersect(np.zeros((0, 3)), np.zeros((0, 3))).shape == (0,)
         assert there.intersect([0.1, 0.1, 1], [0, 0, -1]).shape == ()
         assert there.intersect([0.1, 0.1, 1], np.full((2, 3, 3), [0, 0, -1])).hit.all()
@@ -227,7 +229,7 @@ def test_nothing_and_one_of_everything(gpu):
 def test_images_keep_their_shape(gpu):
     scene, camera = rw.Scene(KNOT), rw.Camera((0, 0, 6), (0, 0, 0), width=50, height=40)
     wanted = scene.intersect(*camera.rays())
-    with scene.on(gpu) as there:
+    with scene.on_device(gpu) as there:
         hits = there.intersect(*camera.rays())
     assert hits == wanted
     assert hits.shape == (40, 50)
@@ -238,7 +240,7 @@ def test_scenes_larger_than_a_binding_are_split(gpu, monkeypatch):
     scene, rays = rw.Scene(KNOT), random_rays(KNOT, 500)
     most, gpu._most = gpu._most, 1 << 15
     try:
-        with scene.on(gpu) as there:
+        with scene.on_device(gpu) as there:
             assert there.bytes > 2 * gpu._most
             assert there.intersect(*rays) == scene.intersect(*rays)
             np.testing.assert_array_equal(there.occluded(*rays), scene.occluded(*rays))
@@ -246,7 +248,7 @@ def test_scenes_larger_than_a_binding_are_split(gpu, monkeypatch):
         monkeypatch.setitem(gpu._device.limits, "max-storage-buffers-per-shader-stage", 8)
         gpu._most = 256
         with pytest.raises(MemoryError, match="bindings, and the device has 8"):
-            scene.on(gpu)
+            scene.on_device(gpu)
     finally:
         gpu._most = most
 
@@ -254,7 +256,7 @@ def test_scenes_larger_than_a_binding_are_split(gpu, monkeypatch):
 def test_a_device_that_is_lost_is_told_of_and_nothing_else_is(gpu, monkeypatch):
     scene, rays = rw.Scene(KNOT), random_rays(KNOT, 1000)
     wanted = scene.intersect(*rays)
-    with scene.on(gpu) as there:
+    with scene.on_device(gpu) as there:
         monkeypatch.setattr(type(there._kernels), "chunk", 300)
         read, calls = there._kernels.read, []
 
@@ -283,7 +285,7 @@ def test_bounds_matter(gpu):
         wrong = 0
         for scene, rays in cases:
             wanted = scene.intersect(*rays)
-            with scene.on(gpu) as there:
+            with scene.on_device(gpu) as there:
                 wrong += same(there.intersect(*rays), wanted)
                 wrong += np.count_nonzero(there.occluded(*rays) != wanted.hit)
     finally:
@@ -292,7 +294,7 @@ def test_bounds_matter(gpu):
 
 
 def test_it_ends_with_its_block(gpu):
-    with rw.Scene(KNOT).on(gpu) as there:
+    with rw.Scene(KNOT).on_device(gpu) as there:
         assert re.fullmatch(r"GpuScene\(\d+ primitives on '.*'\)", repr(there))
     with pytest.raises(RuntimeError, match="its with block has ended"):
         there.intersect([0, 0, 5], [0, 0, -1])
@@ -301,11 +303,11 @@ def test_it_ends_with_its_block(gpu):
 
 def test_what_is_no_device_is_refused(gpu):
     with pytest.raises(TypeError, match="device must be a Gpu, got 3"):
-        rw.Scene([]).on(3)
+        rw.Scene([]).on_device(3)
     with pytest.raises(TypeError, match="device must be a Gpu, got <class"):
-        rw.Scene([]).on(rw.Gpu)
+        rw.Scene([]).on_device(rw.Gpu)
     with pytest.raises(TypeError, match="scene must be a Scene, got int"):
-        gpu.hold(3)
+        gpu.upload(3)
     with pytest.raises(ValueError, match="adapter is 'no such thing', expected part of one of"):
         rw.Gpu("no such thing")
     with pytest.raises(TypeError, match=r"adapter must be a name or a wgpu\.GPUAdapter, got int"):
@@ -373,7 +375,7 @@ SHAPES = {
     "terrain": lambda: rw.scenes.terrain(side=80, blades=10_000),
     "soup": lambda: rw.scenes.soup(20_000),
     "room": lambda: rw.scenes.room(30_000),
-    "diagonal wall": lambda: rw.scenes.diagonal_wall(),
+    "diagonal_wall": lambda: rw.scenes.diagonal_wall(),
 }
 
 
@@ -389,4 +391,4 @@ def test_two_hundred_thousand_rays(gpu, name):
     agrees(scene, gpu, *aimed_rays(mesh, 50_000))
     hits = scene.intersect(*random_rays(mesh, 100_000, seed=1, spread=0.75))
     hits = hits[hits.hit][:50_000]
-    agrees(scene, gpu, *hits.leave(np.random.default_rng(2).normal(size=(len(hits), 3))))
+    agrees(scene, gpu, *hits.spawn_rays(np.random.default_rng(2).normal(size=(len(hits), 3))))

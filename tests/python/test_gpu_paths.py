@@ -103,7 +103,7 @@ def test_the_cornell_box(gpu):
     # The estimated error is the true one, up to the reference's own.
     off = np.mean((there.rgb - here.rgb.astype(float)) ** 2 / (here.rgb.astype(float) ** 2 + 0.01))
     assert there.error.low < off < 2 * there.error.high
-    assert (there.plan.sampler, there.plan.path) == (rw.Independent(), PLAIN)
+    assert (there.plan.sampler, there.plan.path) == (rw.rendering.Independent(), PLAIN)
 
 
 SCENES = {
@@ -152,7 +152,7 @@ SCENES = {
                     rw.ImageTexture(
                         np.random.default_rng(1).random((8, 6, 3), np.float32),
                         filter="bilinear",
-                        transform=rw.UvTransform(3.0, rotation=20),
+                        transform=rw.textures.UvTransform(3.0, rotation=20),
                         wrap=("mirror", "repeat"),
                     )
                 )
@@ -170,7 +170,12 @@ def test_scenes(gpu, name):
     both(SCENES[name](), gpu)
 
 
-FILTERS = [rw.BoxFilter(1.5), rw.TriangleFilter(2), rw.GaussianFilter(), rw.BlackmanHarrisFilter(3)]
+FILTERS = [
+    rw.rendering.BoxFilter(1.5),
+    rw.rendering.TriangleFilter(2),
+    rw.rendering.GaussianFilter(),
+    rw.rendering.BlackmanHarrisFilter(3),
+]
 
 
 @pytest.mark.parametrize("filter", FILTERS, ids=lambda filter: type(filter).__name__)
@@ -180,7 +185,9 @@ def test_filters_draw_samples(gpu, filter):
     how = {"filter": filter, "progress": False}
     there = rw.render(scene, CAMERA, rw.Path(0, reuse=1, caustics=False), 400, device=gpu, **how)
     assert there.plan["device"].chosen == gpu.name
-    here = rw.render(scene, CAMERA, rw.Path(0, reuse=1, caustics=False), 400, sampler=rw.Independent(), **how)
+    here = rw.render(
+        scene, CAMERA, rw.Path(0, reuse=1, caustics=False), 400, sampler=rw.rendering.Independent(), **how
+    )
     error = np.sqrt(there.standard_error.astype(float) ** 2 + here.standard_error.astype(float) ** 2) + 1e-3
     z = ((there.rgb - here.rgb) / error)[..., 0]
     assert np.abs(z).max() < 5.2
@@ -328,16 +335,16 @@ LEFT = {
     "clamp": {"clamp": 10.0},
     "background='transparent'": {"background": "transparent"},
     "halves=True": {"halves": True},
-    "denoise": {"denoise": True, "samples": 4, "sampler": rw.Independent()},
-    "the sampler is a Sobol": {"sampler": rw.Sobol(4)},
-    "the filter is MitchellFilter": {"filter": rw.MitchellFilter()},
+    "denoise": {"denoise": True, "samples": 4, "sampler": rw.rendering.Independent()},
+    "the sampler is a Sobol": {"sampler": rw.rendering.Sobol(4)},
+    "the filter is MitchellFilter": {"filter": rw.rendering.MitchellFilter()},
     "the camera is a Orthographic": {"camera": rw.Orthographic((0, 1, 6), (0, 0, 0), width=4, height=4)},
     "the camera is too far": {"camera": rw.Camera((0, 0, 1e5), (0, 0, 0), width=4, height=4)},
     "shape 0 is a Sphere": {"scene": rw.Scene(rw.Sphere())},
     "the scene has motion": {
         "scene": rw.Scene(rw.Instance([lamp()], [np.eye(4)], [np.diag([2.0, 2, 2, 1])]))
     },
-    "the Phong of shape 0 has an unsupported type": {"scene": rw.Scene(floor(rw.Phong()))},
+    "the Phong of shape 0 has an unsupported type": {"scene": rw.Scene(floor(rw.materials.Phong()))},
     "the scene has masks": {"scene": rw.Scene(floor(rw.Mask(rw.Diffuse(), 0.5)))},
     "the scene has smoke and haze": {"scene": rw.Scene(lamp(), medium=rw.Homogeneous(0.1))},
     "shape 1 is too small": {"scene": rw.Scene([lamp(), ball((0, 0, 0), rw.Diffuse(), 1e-4)])},

@@ -7,7 +7,7 @@ import raywright as rw
 from raywright import _core
 from raywright.gpu.eyes import eye_of
 from raywright.gpu.facets import ENTRIES, loss_table, mean_fresnel, mean_of
-from raywright.gpu.looks import LeftError
+from raywright.gpu.material_table import LeftError
 from raywright.gpu.measured import made_up, reflectances
 from raywright.gpu.packing import packed
 from raywright.rendering.job import Job
@@ -52,21 +52,21 @@ def test_metals_are_those_of_the_core():
 
 CAMERAS = {
     "plain": {"fov": 50},
-    "of a matrix": {"focal": (70.0, -60.0), "principal": (10.0, 30.0), "skew": 3.0},
+    "of a matrix": {"focal_length_px": (70.0, -60.0), "principal_point": (10.0, 30.0), "skew": 3.0},
 }
 
 
 @pytest.mark.parametrize("name", CAMERAS)
 def test_eyes_see_what_cameras_see(name):
     camera = rw.Camera((3, 1, 5), (0, 0.5, 0), width=48, height=20, **CAMERAS[name])
-    flat = rw.Scene(rw.scenes.torus_knot(along=10, around=3)).flat()
+    flat = rw.Scene(rw.scenes.torus_knot(along=10, around=3)).gpu_arrays()
     eye = eye_of(camera, flat)
     points = np.random.default_rng(0).random((50, 2))
     ways = eye.corner + eye.across * points[:, :1] + eye.down * points[:, 1:]
     ways /= np.linalg.norm(ways, axis=1, keepdims=True)
     origins, wanted = camera.rays_through(points * (48, 20))
     np.testing.assert_allclose(ways, wanted, atol=1e-12)
-    np.testing.assert_allclose(eye.eye, (origins[0] - flat.centre) * flat.scale, atol=1e-12)
+    np.testing.assert_allclose(eye.eye, (origins[0] - flat.center) * flat.scale, atol=1e-12)
 
 
 def test_shares_of_light_are_what_they_are_told_to_be():
@@ -76,7 +76,7 @@ def test_shares_of_light_are_what_they_are_told_to_be():
         for size, side in [(1.0, "front"), (2.0, "both"), (3.0, "back")]
     ]
     scene = rw.Scene(lamps, lights=rw.PointLight((0, 0, 1), 5.0), environment=sky)
-    flat = scene.flat()
+    flat = scene.gpu_arrays()
     found = packed(scene, flat)
     assert found.lights["kind"].tolist() == [0, 0, 0, 1]
     assert found.lights["sides"].tolist() == [1, 3, 2, 0]
@@ -96,12 +96,12 @@ def test_shares_of_light_are_what_they_are_told_to_be():
 def test_what_cannot_be_packed_is_told():
     scene = rw.Scene(rw.Mesh(np.eye(3), [(0, 1, 2)], emission=rw.Checker()))
     with pytest.raises(LeftError, match="the emission of shape 0 is a "):
-        packed(scene, scene.flat())
+        packed(scene, scene.gpu_arrays())
 
 
 def test_sums_of_samples_are_worth_the_samples():
     scene, camera = rw.Scene([]), rw.Camera((0, 0, 1), (0, 0, 0), width=7, height=5)
-    job = Job(scene, camera, rw.Path(), 0, False, None, rw.Independent(), rw.BoxFilter())
+    job = Job(scene, camera, rw.Path(), 0, False, None, rw.rendering.Independent(), rw.rendering.BoxFilter())
     rendering = _core.Rendering(job.core, 1, 1)
     samples = np.random.default_rng(3).random((24, 35, 3))
     for first, end in ((0, 5), (5, 24)):
@@ -127,7 +127,9 @@ def test_sums_of_samples_are_worth_the_samples():
             rendering.add(1, wrong, 0)
     with pytest.raises(ValueError, match="more samples were dropped than taken"):
         rendering.add(1, sums, 36)
-    clamped = Job(scene, camera, rw.Path(), 0, False, 1.0, rw.Independent(), rw.BoxFilter())
+    clamped = Job(
+        scene, camera, rw.Path(), 0, False, 1.0, rw.rendering.Independent(), rw.rendering.BoxFilter()
+    )
     other = _core.Rendering(clamped.core, 1, 1)
     other.begin(1)
     with pytest.raises(ValueError, match="stores more than sums"):

@@ -124,16 +124,16 @@ def test_both_ends_of_the_interval_are_asked_for():
     hit = whole.hit
     again = rw.Scene(mesh).intersect(origins[hit], directions[hit], whole.t[hit], whole.t[hit])
     assert np.array_equal(again.t, whole.t[hit])
-    assert np.array_equal(again.primitive, whole.primitive[hit])
+    assert np.array_equal(again.primitive_id, whole.primitive_id[hit])
 
 
 STRUCTURES = [
     rw.BVH(),
     rw.BVH(traversal="stack"),
-    rw.KdTree(),
-    rw.Grid(),
-    rw.Octree(),
-    rw.BSP(),
+    rw.accelerators.KdTree(),
+    rw.accelerators.Grid(),
+    rw.accelerators.Octree(),
+    rw.accelerators.BSP(),
     rw.BruteForce(),
 ]
 
@@ -163,7 +163,7 @@ def test_a_hit_at_an_end_of_a_ray_counts(accelerator, scale):
         assert np.array_equal(hits.t, t if is_met else np.full(3000, np.inf))
         assert (scene.occluded(origins, way, t_min, t_max) == is_met).all()
         # On the diagonal both faces are hit, and count once.
-        assert (scene.count(origins, way, t_min, t_max) == is_met).all()
+        assert (scene.count_hits(origins, way, t_min, t_max) == is_met).all()
         every = scene.intersect_all(origins, way, t_min, t_max)
         assert np.array_equal(every.t, t if is_met else [])
         assert (scene.intersect(origins, way, t_min, t_max, shapes=[True]).hit == is_met).all()
@@ -187,12 +187,12 @@ def test_what_a_ray_is_told_it_meets_it_meets_at_either_end(accelerator, precisi
     for t_min, t_max in ((0, t), (t, np.inf), (t, t)):
         again = scene.intersect(origins, ways, t_min, t_max)
         assert np.array_equal(again.t, t)
-        assert np.array_equal(again.primitive, hits.primitive[hits.hit])
+        assert np.array_equal(again.primitive_id, hits.primitive_id[hits.hit])
         assert scene.occluded(origins, ways, t_min, t_max).all()
     assert not scene.occluded(origins, ways, 0, np.nextafter(t, 0)).any()
     # From the next number on this hit is excluded, and the other side of the ball remains.
     beyond = scene.intersect(origins, ways, np.nextafter(t, np.inf), np.inf)
-    assert (beyond.primitive != hits.primitive[hits.hit]).all()
+    assert (beyond.primitive_id != hits.primitive_id[hits.hit]).all()
 
 
 @pytest.mark.parametrize("dtype", TYPES)
@@ -395,7 +395,7 @@ def test_triangles_without_area_are_never_hit():
     outcome = check(mesh, origins, targets - origins)
     assert outcome.hits > 160
     hits = rw.Scene(mesh).intersect(origins, targets - origins)
-    assert hits.primitive[hits.hit].min() >= len(flat)
+    assert hits.primitive_id[hits.hit].min() >= len(flat)
 
 
 def test_triangles_seen_edge_on_are_never_hit():

@@ -43,7 +43,7 @@ def ways(rng, count):
 
 def failures(scene, origins, directions, inside):
     """Count the rays whose answers cannot be, by themselves or beside another query's."""
-    crossings = scene.count(origins, directions)
+    crossings = scene.count_hits(origins, directions)
     hit = scene.intersect(origins, directions).hit
     wrong = (crossings % 2 == 0) if inside else (crossings % 2 == 1)
     if inside:
@@ -174,7 +174,7 @@ def test_triangles_without_area_in_the_way():
         directions = goals(rng, closed, BATCH) - origins
         failed += failures(strewn, origins, directions, inside=True)
         a, b = plain.intersect(origins, directions), strewn.intersect(origins, directions)
-        failed += np.count_nonzero((a.t != b.t) | (a.primitive != b.primitive))
+        failed += np.count_nonzero((a.t != b.t) | (a.primitive_id != b.primitive_id))
     assert failed == 0
 
 

@@ -82,7 +82,7 @@ def test_t_is_the_f64_nearest_to_that_of_the_map_as_given(maps, precision):
     hits = rw.Scene(placed(mesh, maps), precision=precision).intersect(origins, directions)
     assert hits.hit.sum() > 100
     for i in np.flatnonzero(hits.hit):
-        face = mesh.faces[hits.primitive[i]]
+        face = mesh.faces[hits.primitive_id[i]]
         assert hits.t[i] == float(exact_t(origins[i], directions[i], [corners[k] for k in face]))
 
 
@@ -93,7 +93,7 @@ def test_the_ends_of_a_ray_are_compared_with_the_t_that_is_told(maps, shape):
     origins, directions = rays_to(maps, 1500, 6)
     hits = scene.intersect(origins, directions)
     met = hits.hit & (hits.shape_id == 0)
-    rays, t, primitive = (origins[met], directions[met]), hits.t[met], hits.primitive[met]
+    rays, t, primitive = (origins[met], directions[met]), hits.t[met], hits.primitive_id[met]
     below, above = np.nextafter(t, -np.inf), np.nextafter(t, np.inf)
     assert len(t) > 1000
     np.testing.assert_array_equal(scene.occluded(*rays), True)
@@ -105,11 +105,11 @@ def test_the_ends_of_a_ray_are_compared_with_the_t_that_is_told(maps, shape):
         every = scene.intersect_all(*rays, t_min, t_max)
         starts = every.ray_splits[:-1]
         np.testing.assert_array_equal(every.t[starts], again.t)
-        np.testing.assert_array_equal(scene.count(*rays, t_min, t_max), np.diff(every.ray_splits))
-    np.testing.assert_array_equal(scene.intersect(*rays, t, t).primitive, primitive)
+        np.testing.assert_array_equal(scene.count_hits(*rays, t_min, t_max), np.diff(every.ray_splits))
+    np.testing.assert_array_equal(scene.intersect(*rays, t, t).primitive_id, primitive)
     assert not scene.occluded(*rays, 0, below).any()
     assert not scene.intersect(*rays, 0, below).hit.any()
-    assert not scene.count(*rays, 0, below).any()
+    assert not scene.count_hits(*rays, 0, below).any()
     assert (scene.intersect(*rays, above).t > t).all()
     beyond = scene.intersect_all(*rays, above)
     assert (beyond.t >= above[beyond.ray]).all()

@@ -34,7 +34,7 @@ LIT = 0.8 / math.pi * 3 * 1.740839502734206
         (rw.Direct(light_samples=3, surface_samples=2), LIT),
         (rw.RayCast(ambient=0.5), LIT + 0.4),
         (rw.Whitted(ambient=0.5), LIT + 0.4),
-        (rw.Distributed(ambient=(0.5, 0.5, 0.5), splits=2), LIT + 0.4),
+        (rw.integrators.Distributed(ambient=(0.5, 0.5, 0.5), splits=2), LIT + 0.4),
     ],
 )
 def test_each_gives_lamberts_irradiance(integrator, expected):
@@ -49,23 +49,23 @@ def test_each_gives_lamberts_irradiance(integrator, expected):
 CHECKED = rw.Checker(0.2, 0.6, 2)  # two cells to a unit; the camera sees one of them
 
 
-@pytest.mark.parametrize("make", [rw.RayCast, rw.Whitted, rw.Distributed])
+@pytest.mark.parametrize("make", [rw.RayCast, rw.Whitted, rw.integrators.Distributed])
 @pytest.mark.parametrize(
     ("material", "share"),
     [
-        (rw.Phong(0.5, 0.25, 8, ambient=(0.1, 0.2, 0.7)), (0.1, 0.2, 0.7)),
-        (rw.BlinnPhong(0.5, 0.25, 8, ambient=0), 0),
+        (rw.materials.Phong(0.5, 0.25, 8, ambient=(0.1, 0.2, 0.7)), (0.1, 0.2, 0.7)),
+        (rw.materials.BlinnPhong(0.5, 0.25, 8, ambient=0), 0),
         # By default the diffuse reflectance, without the highlights.
-        (rw.Phong(0.5, 0.25), 0.5),
-        (rw.BlinnPhong((0.1, 0.2, 0.3), 0.25), (0.1, 0.2, 0.3)),
-        (rw.Phong(0.5, 0.25, ambient=CHECKED), 0.2),
+        (rw.materials.Phong(0.5, 0.25), 0.5),
+        (rw.materials.BlinnPhong((0.1, 0.2, 0.3), 0.25), (0.1, 0.2, 0.3)),
+        (rw.materials.Phong(0.5, 0.25, ambient=CHECKED), 0.2),
         # Mixtures have the mean, with nothing from a mirror; masks and maps have that of their material.
-        (rw.Mix(rw.Phong(0.5, 0.25, ambient=0.1), rw.Diffuse(0.7), 0.25), 0.75 * 0.1 + 0.25 * 0.7),
-        (rw.Mix(rw.Phong(0.5, 0.25, ambient=0.8), rw.Mirror(), 0.5), 0.4),
-        (rw.Mask(rw.Phong(ambient=0.3), 1.0), 0.3),
-        (rw.NormalMap(rw.Phong(ambient=0.3), (0.8, 0.5, 0.9)), 0.3),
-        (rw.BumpMap(rw.BlinnPhong(ambient=0.3), rw.Noise(), 0.1), 0.3),
-        (rw.TwoSided(rw.Phong(ambient=0.3), rw.Phong(ambient=0.9)), 0.3),
+        (rw.Mix(rw.materials.Phong(0.5, 0.25, ambient=0.1), rw.Diffuse(0.7), 0.25), 0.75 * 0.1 + 0.25 * 0.7),
+        (rw.Mix(rw.materials.Phong(0.5, 0.25, ambient=0.8), rw.Mirror(), 0.5), 0.4),
+        (rw.Mask(rw.materials.Phong(ambient=0.3), 1.0), 0.3),
+        (rw.NormalMap(rw.materials.Phong(ambient=0.3), (0.8, 0.5, 0.9)), 0.3),
+        (rw.BumpMap(rw.materials.BlinnPhong(ambient=0.3), rw.textures.Noise(), 0.1), 0.3),
+        (rw.TwoSided(rw.materials.Phong(ambient=0.3), rw.materials.Phong(ambient=0.9)), 0.3),
         (rw.Diffuse(0.6), 0.6),
         (rw.Mirror(), 0),
     ],
@@ -86,7 +86,7 @@ def test_ambient_light_times_the_ambient_share_is_added(make, material, share):
 def test_the_classic_model_is_ambient_diffuse_and_specular(make):
     # A lamp right above, seen from right above, where the highlight is strongest: k_a I_a, k_d / pi of the
     # irradiance, and k_s (n + 2) / 2 pi of it (Lafortune and Willems 1994).
-    floor = rw.Disk((0, 0, 0), (0, 0, 1), 9, material=rw.Phong(0.4, 0.3, 10, ambient=0.2))
+    floor = rw.Disk((0, 0, 0), (0, 0, 1), 9, material=rw.materials.Phong(0.4, 0.3, 10, ambient=0.2))
     scene = rw.Scene(floor, lights=[rw.PointLight((0, 0, 2), 8)])
     camera = rw.Camera((0, 0, 1), (0, 0, 0), up=(0, 1, 0), fov=1e-3, width=4, height=4)
     image = rw.render(scene, camera, make(ambient=0.5), samples=2, progress=False)
@@ -116,7 +116,7 @@ def test_splitting_changes_no_bit_with_threads(threads):
     scene, camera = rw.scenes.cornell_box(width=20, height=20)
     for integrator in (
         rw.Whitted(),
-        rw.Distributed(splits=3),
+        rw.integrators.Distributed(splits=3),
         rw.AmbientOcclusion(samples=5),
         rw.Direct(4, 4),
     ):
@@ -150,7 +150,11 @@ def test_occlusion_of_a_floor_without_surroundings_is_none():
             "contribution must be at least 0 and below 1, got 1",
         ),
         (lambda: rw.Whitted(max_depth=-1), ValueError, "max_depth must be between 0 and"),
-        (lambda: rw.Distributed(splits=0), ValueError, "splits must be between 1 and 1024, got 0"),
+        (
+            lambda: rw.integrators.Distributed(splits=0),
+            ValueError,
+            "splits must be between 1 and 1024, got 0",
+        ),
         (lambda: rw.AmbientOcclusion(radius=0), ValueError, "radius must be greater than 0, got 0"),
         (lambda: rw.AmbientOcclusion(radius=math.nan), ValueError, "radius must be finite, got nan"),
         (lambda: rw.AmbientOcclusion(cosine="yes"), TypeError, "cosine must be True or False, got 'yes'"),
@@ -163,7 +167,14 @@ def test_nonsense_is_refused_with_one_line(make, kind, message):
 
 
 def test_integrators_compare_and_pickle():
-    all_ = (rw.Path(5), rw.Direct(), rw.RayCast(0.5), rw.Whitted(), rw.Distributed(), rw.AmbientOcclusion())
+    all_ = (
+        rw.Path(5),
+        rw.Direct(),
+        rw.RayCast(0.5),
+        rw.Whitted(),
+        rw.integrators.Distributed(),
+        rw.AmbientOcclusion(),
+    )
     for integrator in all_:
         assert pickle.loads(pickle.dumps(integrator)) == integrator
         assert sum(integrator == other for other in all_) == 1

@@ -14,16 +14,16 @@ def room():
 def test_numbers_are_those_of_the_rays_through_the_middles(room):
     scene, camera = room
     hits = scene.intersect(*camera.rays())
-    seen = rw.aovs(scene, camera, ("shape_id", "primitive"), samples=1)
+    seen = rw.aovs(scene, camera, ("shape_id", "primitive_id"), samples=1)
     np.testing.assert_array_equal(seen["shape_id"], hits.shape_id)
-    np.testing.assert_array_equal(seen["primitive"], hits.primitive)
+    np.testing.assert_array_equal(seen["primitive_id"], hits.primitive_id)
     assert seen["shape_id"].dtype == np.int32
 
 
 def test_means_tend_to_what_fine_rays_see(room):
     scene, camera = room
     seen = rw.aovs(scene, camera, samples=64)
-    assert set(seen) == set(rw.AOVS)
+    assert set(seen) == set(rw.rendering.AOVS)
     hits = scene.intersect(*camera.rays())
     # Over a pixel of the wall that faces the camera, depth hardly changes; a few pixels have others in them
     # too.
@@ -80,7 +80,7 @@ def test_the_way_in_the_picture_is_that_of_what_moves_and_of_what_looks():
     for name in seen:
         np.testing.assert_allclose(half[name][3:7, 3:7], way[name][3:7, 3:7] / 2, atol=1e-6)
     # A camera that moves to the right sees static things move to the left.
-    going = rw.Orthographic((0, 0, 5), (0, 0, 0), moved_to=rw.Pose((0.2, 0, 5), (0.2, 0, 0)), **parallel)
+    going = rw.Orthographic((0, 0, 5), (0, 0, 0), end_pose=rw.Pose((0.2, 0, 5), (0.2, 0, 0)), **parallel)
     still = rw.aovs(rw.Scene(ball), going, seen, samples=4)
     middle = still["screen_motion"][3:7, 3:7]
     np.testing.assert_allclose(middle, np.broadcast_to([-1.0, 0.0], middle.shape), atol=1e-6)

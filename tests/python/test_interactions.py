@@ -9,7 +9,7 @@ import raywright as rw
 def rays(origins, directions):
     directions = np.asarray(directions, float)
     directions = directions / np.linalg.norm(directions, axis=1)[:, None]
-    return rw.Rays(
+    return rw.query.Rays(
         np.broadcast_to(np.asarray(origins, float), directions.shape), directions, np.zeros(len(directions))
     )
 
@@ -22,11 +22,11 @@ def test_faces_and_coordinates_are_those_of_hits(box):
     scene = rw.Scene([box, rw.Sphere((0.5, 0.5, 3), 1)])
     batch = rays((0.4, 0.5, 0.6), around(500))
     here, hits = scene.interactions(batch), scene.intersect(batch.origins, batch.directions)
-    assert np.array_equal(here.primitive, hits.primitive)
+    assert np.array_equal(here.primitive_id, hits.primitive_id)
     assert np.array_equal(here.shape_id, hits.shape_id)
     assert np.array_equal(here.uv, hits.uv)
     outside = scene.interactions(rays((9, 9, 9), [(1.0, 1, 1)]))
-    assert outside.primitive[0] == -1
+    assert outside.primitive_id[0] == -1
     for name in ("uv", "albedo", "ior"):
         assert np.isnan(getattr(outside, name)).all()
 
@@ -79,7 +79,7 @@ def test_glass_sends_light_both_ways_by_snell_and_fresnel(start):
     assert back.weight[~goes] == pytest.approx(1)
     assert back.weight[goes] + through.weight[goes] * eta**2 == pytest.approx(1)
     # Rays leave on their own side.
-    again = scene.interactions(here.leave(through.direction)[goes])
+    again = scene.interactions(here.spawn_rays(through.direction)[goes])
     assert again.hit.all() == (np.linalg.norm(start) > 1)
 
 
@@ -93,7 +93,9 @@ def test_reports_make_frames_with_names(box):
     assert frame["a"].tolist() == [1, 2]
     assert frame["b"][0] == "x"
     assert pandas.isna(frame["b"][1])
-    report = rw.report.accelerators(rw.Scene(box), accelerators=[rw.BVH(), rw.KdTree()], repeats=1)
+    report = rw.report.accelerators(
+        rw.Scene(box), accelerators=[rw.BVH(), rw.accelerators.KdTree()], repeats=1
+    )
     frame = report.to_dataframe()
     assert isinstance(frame, pandas.DataFrame)
     assert list(frame.columns) == [column.name for column in report.columns]

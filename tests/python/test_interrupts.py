@@ -75,7 +75,8 @@ if sys.argv[2] == "handled":
     signal.signal(signal.SIGTERM, handler)
 box = rw.scenes.cornell_box(width=40, height=30)
 path = rw.Path(reuse=1, caustics=False)
-rw.render(*box, path, samples=10**8, sampler=rw.Independent(), progress=press, checkpoint=sys.argv[1])
+chance = rw.rendering.Independent()
+rw.render(*box, path, samples=10**8, sampler=chance, progress=press, checkpoint=sys.argv[1])
 """
 
 
@@ -88,7 +89,7 @@ def test_sigterm_writes_the_checkpoint_and_does_what_it_did(box, tmp_path, how, 
     )
     assert done.returncode == status, done.stderr
     assert done.stdout == ("heard\n" if how == "handled" else "")
-    how = {"integrator": PLAIN, "sampler": rw.Independent(), "progress": False}
+    how = {"integrator": PLAIN, "sampler": rw.rendering.Independent(), "progress": False}
     kept = rw.render(*box, samples=1, checkpoint=path, **how)
     assert kept.samples >= 3
     again = rw.render(*box, samples=kept.samples, **how)
@@ -100,7 +101,7 @@ def test_a_handler_that_lets_the_process_live_lets_the_render_end(box, tmp_path)
     before = signal.signal(signal.SIGTERM, lambda *_: heard.append(1))
     mine = signal.getsignal(signal.SIGTERM)
     try:
-        how = {"samples": 300, "sampler": rw.Independent()}
+        how = {"samples": 300, "sampler": rw.rendering.Independent()}
         image = rw.render(*box, PLAIN, **how, progress=Presses(signal.SIGTERM), checkpoint=tmp_path / "kept")
         assert signal.getsignal(signal.SIGTERM) is mine
     finally:

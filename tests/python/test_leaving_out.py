@@ -36,7 +36,7 @@ def held(*shapes):
         (PLAIN, {"colors": COLORS}, 0),
         (CHECKED, {"colors": COLORS}, 0),
         (COLORED, {"uv": UV}, 0),
-        (rw.Diffuse(rw.Noise()), {"uv": UV, "colors": COLORS}, 0),
+        (rw.Diffuse(rw.textures.Noise()), {"uv": UV, "colors": COLORS}, 0),
         (CHECKED, {"uv": UV}, 8),
         (COLORED, {"colors": COLORS}, 12),
         (CHECKED, {"uv": UV, "colors": COLORS}, 8),
@@ -104,7 +104,7 @@ def test_hits_hold_no_array_that_was_not_asked_for():
     scene = rw.Scene(mesh())
     hits = scene.intersect(np.zeros((1000, 3)), np.array((1.0, 0.1, 0.2)))
     arrays = {name for name, value in vars(hits).items() if isinstance(value, np.ndarray)}
-    assert arrays == {"t", "shape_id", "primitive", "uv"}
+    assert arrays == {"t", "shape_id", "primitive_id", "uv"}
     # One number seen from every index.
-    assert hits.instance.strides == (0,)
-    assert not (hits.instance != -1).any()
+    assert hits.instance_id.strides == (0,)
+    assert not (hits.instance_id != -1).any()

@@ -27,7 +27,7 @@ def test_every_material_scatters_light_as_it_is_seen(name):
 
 def test_bumps_textures_masks_and_sides():
     checker = rw.Checker((0.9, 0.2, 0.1), 0.3, 4)
-    floor = square(3, 0, material=rw.BumpMap(rw.Diffuse(checker), rw.Noise(), scale=0.2))
+    floor = square(3, 0, material=rw.BumpMap(rw.Diffuse(checker), rw.textures.Noise(), scale=0.2))
     lace = square(0.8, 1.0, material=rw.Mask(rw.Diffuse(0.7), rw.Checker(1, 0.3, 6)))
     wall = rw.Mesh(
         [(-2, 2, 0), (2, 2, 0), (2, 2, 2), (-2, 2, 2)], [(0, 2, 1), (0, 3, 2)], material=rw.Diffuse(0.5)
@@ -107,7 +107,7 @@ def test_depths_count_bounces(depth):
 def test_filters_with_negative_lobes():
     scene, look = rw.scenes.cornell_box(width=SIDE, height=SIDE)
     ours, theirs = (
-        rw.render(scene, look, way, 400, filter=rw.LanczosFilter(), progress=False)
+        rw.render(scene, look, way, 400, filter=rw.rendering.LanczosFilter(), progress=False)
         for way in (rw.LightTraced(), rw.Path(reuse=1))
     )
     error = np.sqrt(blocks(ours.standard_error.astype(float) ** 2 + theirs.standard_error.astype(float) ** 2))

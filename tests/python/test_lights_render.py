@@ -161,7 +161,9 @@ HOLLOW = {
             )
         ]
     },
-    "ellipsoid": {"shapes": [rw.Ellipsoid((0, 0, 0), (2, 3, 4), emission=rw.Emission(3, side="back"))]},
+    "ellipsoid": {
+        "shapes": [rw.shapes.Ellipsoid((0, 0, 0), (2, 3, 4), emission=rw.Emission(3, side="back"))]
+    },
     "box": {"shapes": [rw.Box((-2, -2, -2), (2, 3, 4), emission=rw.Emission(3, side="back"))]},
     "cylinder": {"shapes": [rw.Cylinder((0, 0, -2), (0, 0, 2), 3, emission=rw.Emission(3, side="back"))]},
     "copy": {

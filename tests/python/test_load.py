@@ -44,11 +44,11 @@ def test_a_shot_renders_as_its_file_says_unless_told_otherwise(path):
         rw.Path(max_depth=2),
         samples=32,
         seed=5,
-        filter=rw.CroppedFilter(rw.GaussianFilter(2.0, 0.5)),
+        filter=rw.rendering.CroppedFilter(rw.rendering.GaussianFilter(2.0, 0.5)),
         progress=False,
     )
     assert np.array_equal(image.rgb, own.rgb)
-    assert image.plan.sampler == own.plan.sampler == rw.Lattice(8)
+    assert image.plan.sampler == own.plan.sampler == rw.rendering.Lattice(8)
     note = "the file's independent sampler is Mitsuba's default, and taken as not named"
     assert image.plan["sampler"].why == f"{own.plan['sampler'].why}; {note}"
     assert note in repr(image.plan)
@@ -61,16 +61,16 @@ def test_a_shot_renders_as_its_file_says_unless_told_otherwise(path):
 
 
 def test_a_sampler_that_is_named_overrules_the_file(path, tmp_path):
-    shot = rw.load(path, sampler=rw.Independent())
+    shot = rw.load(path, sampler=rw.rendering.Independent())
     image = shot.render(progress=False)
-    assert (shot.sampler, image.plan["sampler"].why) == (rw.Independent(), "as named")
-    again = rw.load(path).render(sampler=rw.Independent(), progress=False)
+    assert (shot.sampler, image.plan["sampler"].why) == (rw.rendering.Independent(), "as named")
+    again = rw.load(path).render(sampler=rw.rendering.Independent(), progress=False)
     assert np.array_equal(image.rgb, again.rgb)
     assert again.plan["sampler"].why == "as named"
     (tmp_path / "sobol.xml").write_text(SCENE.replace("independent", "ldsampler"), encoding="utf-8")
-    assert rw.load(tmp_path / "sobol.xml").sampler == rw.Sobol()
+    assert rw.load(tmp_path / "sobol.xml").sampler == rw.rendering.Sobol()
     for file in (tmp_path / "sobol.xml", tmp_path / "ball.ply"):
-        assert rw.load(file, sampler=rw.Halton()).sampler == rw.Halton()
+        assert rw.load(file, sampler=rw.rendering.Halton()).sampler == rw.rendering.Halton()
     with pytest.raises(TypeError, match=r"^sampler must be one of raywright's, got str$"):
         rw.load(path, sampler="halton")
 
@@ -83,11 +83,13 @@ def test_shots_compare_and_pickle(path):
 
 
 def test_shots_of_another_size_see_the_same():
-    camera = rw.Camera((0, 0, 5), (0, 0, 0), focal=(20, 30), principal=(4, 5), width=12, height=8)
-    skewed = rw.Camera((0, 0, 5), (0, 0, 0), focal=(20, 30), skew=7, width=12, height=8)
-    lens = rw.ThinLens((0, 0, 5), (0, 0, 0), aperture_radius=0.0, principal=(4, 5), width=12, height=8)
+    camera = rw.Camera(
+        (0, 0, 5), (0, 0, 0), focal_length_px=(20, 30), principal_point=(4, 5), width=12, height=8
+    )
+    skewed = rw.Camera((0, 0, 5), (0, 0, 0), focal_length_px=(20, 30), skew=7, width=12, height=8)
+    lens = rw.ThinLens((0, 0, 5), (0, 0, 0), aperture_radius=0.0, principal_point=(4, 5), width=12, height=8)
     for eye in (camera, rw.Camera((0, 0, 5), (0, 0, 0), width=12, height=8), skewed, lens):
-        small = rw.Shot(rw.Scene([]), eye)
+        small = rw.rendering.RenderSetup(rw.Scene([]), eye)
         large = small.resized(width=36)
         assert (large.camera.width, large.camera.height) == (36, 24)
         assert small.resized(height=24) == large
@@ -99,7 +101,7 @@ def test_shots_of_another_size_see_the_same():
 def test_a_mesh_is_framed_and_lit(path):
     shot = rw.load(path.parent / "ball.ply")
     scene, camera = rw.scenes.studio(path.parent / "ball.ply")
-    assert shot == rw.Shot(scene, camera)
+    assert shot == rw.rendering.RenderSetup(scene, camera)
 
 
 def test_a_gltf_file_is_read_with_what_stands_in_it(tmp_path):

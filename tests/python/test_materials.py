@@ -17,19 +17,19 @@ GREY = rw.Diffuse(0.5)
 MATERIALS = [
     rw.Diffuse((0.1, 0.2, 0.3)),
     rw.Diffuse(rw.Checker()),
-    rw.OrenNayar(0.7, rw.Noise()),
+    rw.materials.OrenNayar(0.7, rw.textures.Noise()),
     rw.Mirror(0.9),
     rw.Conductor("gold", roughness=0.3),
     rw.Conductor(eta=0.2, k=(3, 4, 5), alpha=(0.1, 0.4)),
     rw.Dielectric(1.33, priority=2),
     rw.ThinDielectric(),
     rw.Plastic(0.6, roughness=rw.Checker(0.1, 0.5)),
-    rw.Phong(0.5, 0.3, 20, ambient=0.1),
-    rw.BlinnPhong((0.5, 0.1, 0.1)),
-    rw.MetallicRough(rw.Checker(), 0.5, rw.Noise(0.2, 0.4)),
+    rw.materials.Phong(0.5, 0.3, 20, ambient=0.1),
+    rw.materials.BlinnPhong((0.5, 0.1, 0.1)),
+    rw.MetallicRough(rw.Checker(), 0.5, rw.textures.Noise(0.2, 0.4)),
     rw.Mix(GREY, rw.Mirror(), rw.Checker(0, 1)),
-    rw.Mask(GREY, rw.Stripes(0, 1)),
-    rw.BumpMap(GREY, rw.FBm(), 0.1),
+    rw.Mask(GREY, rw.textures.Stripes(0, 1)),
+    rw.BumpMap(GREY, rw.textures.FBm(), 0.1),
     rw.NormalMap(GREY, rw.ImageTexture(np.full((2, 2, 3), 128, np.uint8), linear=True)),
     rw.TwoSided(GREY, rw.Mirror()),
 ]
@@ -61,23 +61,23 @@ def test_shapes_and_meshes_take_them(material, box):
 
 
 def test_metals_tell_what_was_measured():
-    for name in rw.metals():
-        wavelengths, eta, k = rw.metal_index(name)
+    for name in rw.materials.metals():
+        wavelengths, eta, k = rw.materials.metal_index(name)
         assert wavelengths.shape == eta.shape == k.shape
         assert (np.diff(wavelengths) > 0).all()
         assert min(eta.min(), k.min()) > 0
-    gold = rw.metal_index("Au")
+    gold = rw.materials.metal_index("Au")
     # Lynch and Hunter (1985), at 2 eV.
     at = np.abs(gold.wavelengths - 619.92).argmin()
     assert (gold.eta[at], gold.k[at]) == (0.194, 3.06)
     with pytest.raises(ValueError, match=r"metal must be one of silver, .*, got 'unobtainium'"):
-        rw.metal_index("unobtainium")
+        rw.materials.metal_index("unobtainium")
     with pytest.raises(TypeError, match="metal must be a name, got int"):
-        rw.metal_index(79)
+        rw.materials.metal_index(79)
 
 
 def test_metals_have_names_and_symbols():
-    assert {"gold", "silver", "copper", "aluminium"} <= set(rw.metals())
+    assert {"gold", "silver", "copper", "aluminium"} <= set(rw.materials.metals())
     gold = rw.Conductor("gold")
     assert gold == rw.Conductor("Au") == rw.Conductor("GOLD") == dataclasses.replace(gold)
     assert (gold.metal, gold.eta, gold.k) == ("gold", None, None)
@@ -97,7 +97,11 @@ def test_metals_have_names_and_symbols():
             ValueError,
             r"reflectance must be between 0 and 1, got a texture",
         ),
-        (lambda: rw.OrenNayar(0.5, -0.1), ValueError, r"roughness must be between 0 and 1, got -0.1"),
+        (
+            lambda: rw.materials.OrenNayar(0.5, -0.1),
+            ValueError,
+            r"roughness must be between 0 and 1, got -0.1",
+        ),
         (lambda: rw.Mirror(math.nan), ValueError, r"reflectance must be finite, got nan"),
         (
             lambda: rw.Conductor("unobtainium"),
@@ -135,8 +139,12 @@ def test_metals_have_names_and_symbols():
             ValueError,
             r"roughness must be one number or texture, got",
         ),
-        (lambda: rw.Phong(0.7, 0.4), ValueError, r"diffuse and specular must add up to at most 1, got 1.1"),
-        (lambda: rw.BlinnPhong(exponent=-1), ValueError, r"exponent must be at least 0, got -1"),
+        (
+            lambda: rw.materials.Phong(0.7, 0.4),
+            ValueError,
+            r"diffuse and specular must add up to at most 1, got 1.1",
+        ),
+        (lambda: rw.materials.BlinnPhong(exponent=-1), ValueError, r"exponent must be at least 0, got -1"),
         (
             lambda: rw.MetallicRough(metallic=(0, 1)),
             ValueError,
@@ -178,7 +186,7 @@ def in_white_light(material) -> rw.Image:
     ("material", "share"),
     [
         (rw.Diffuse(0.8), 0.8),
-        (rw.OrenNayar(1, 0.7), 1.0),
+        (rw.materials.OrenNayar(1, 0.7), 1.0),
         (rw.Mirror((0.2, 0.5, 0.9)), (0.2, 0.5, 0.9)),
         (rw.Plastic(1.0, 1.5), 1.0),
         (rw.Plastic(1.0, 1.5, roughness=0.6), 1.0),
@@ -233,11 +241,11 @@ def test_gltf_materials_are_loaded_whole():
     assert np.array_equal(mask.opacity.image[..., 0] == 255, kept)
     assert mask.material.normals == rw.ImageTexture(np.asarray(normals), linear=True)
     model = mask.material.material
-    assert model.base_color == rw.ProductTexture(rw.ImageTexture(np.asarray(base)), (1, 0.2, 1))
+    assert model.base_color == rw.textures.ProductTexture(rw.ImageTexture(np.asarray(base)), (1, 0.2, 1))
     assert model.metallic == rw.ImageTexture(np.asarray(both), linear=True, channel="b")
     green = rw.ImageTexture(np.asarray(both), linear=True, channel="g")
-    assert model.roughness == rw.ProductTexture(green, 0.5)
-    assert mesh.emission == rw.ProductTexture(rw.ImageTexture(np.asarray(glow)), (0.5, 1, 1))
+    assert model.roughness == rw.textures.ProductTexture(green, 0.5)
+    assert mesh.emission == rw.textures.ProductTexture(rw.ImageTexture(np.asarray(glow)), (0.5, 1, 1))
     assert rw.Scene(mesh).intersect((0, 0, 3), (0, 0, -1)).t == 2.5
 
 

@@ -13,8 +13,8 @@ import raywright as rw
 SKY = rw.ConstantEnvironment(1.0)
 NOISE = np.random.default_rng(3).random((6, 5, 7))
 PHASES = {
-    "isotropic": rw.Isotropic(),
-    "Rayleigh": rw.Rayleigh(),
+    "isotropic": rw.media.Isotropic(),
+    "Rayleigh": rw.media.Rayleigh(),
     "forward": rw.HenyeyGreenstein(0.9),
     "backward": rw.HenyeyGreenstein(-0.9),
     "a needle": rw.HenyeyGreenstein(0.9999),
@@ -51,16 +51,16 @@ def assert_invisible(scene, samples=64, camera=None, integrator=None):
 )
 def test_a_white_ball_in_an_even_sky_is_invisible(name, depth):
     medium = rw.Homogeneous(0.0, depth, PHASES[name])
-    assert_invisible(rw.Scene([ball(rw.Boundary(medium))], environment=SKY), 16 if depth > 10 else 64)
+    assert_invisible(rw.Scene([ball(rw.MediumInterface(medium))], environment=SKY), 16 if depth > 10 else 64)
 
 
 def test_so_is_one_of_noise_of_colours_and_of_glass():
     box = [(-1, -1, -1), (1, 1, 1)]
-    for at in ("corners", "centres"):
+    for at in ("corners", "centers"):
         cloud = rw.GridMedium(NOISE, box, scattering=(1, 5, 20), phase=rw.HenyeyGreenstein(0.6), at=at)
-        assert_invisible(rw.Scene([ball(rw.Boundary(cloud))], environment=SKY))
+        assert_invisible(rw.Scene([ball(rw.MediumInterface(cloud))], environment=SKY))
     coloured = rw.Homogeneous(0.0, (0.1, 2.0, 9.0))
-    assert_invisible(rw.Scene([ball(rw.Boundary(coloured))], environment=SKY))
+    assert_invisible(rw.Scene([ball(rw.MediumInterface(coloured))], environment=SKY))
     for roughness in (0.0, 0.4):
         # On average, rough glass compensates its loss to half a percent.
         glass = rw.Dielectric(1.4, roughness, interior=rw.Homogeneous(0.0, 3.0))
@@ -89,10 +89,10 @@ def test_so_is_one_of_an_optical_depth_of_ten_thousand():
 def test_cameras_and_lamps_stand_in_media():
     medium = rw.Homogeneous(0.0, 2.0)
     inside = rw.Camera((0.1, 0.2, 0.3), (1, 0, 0), fov=80, width=16, height=16)
-    assert_invisible(rw.Scene([ball(rw.Boundary(medium))], environment=SKY), camera=inside)
+    assert_invisible(rw.Scene([ball(rw.MediumInterface(medium))], environment=SKY), camera=inside)
     # A lamp in an absorbing ball, from outside of it and from within.
     lamp = rw.Sphere((0, 0, 0), 0.1, material=rw.Diffuse(0), emission=1.0)
-    scene = rw.Scene([ball(rw.Boundary(rw.Homogeneous(2.0))), lamp])
+    scene = rw.Scene([ball(rw.MediumInterface(rw.Homogeneous(2.0))), lamp])
     for distance, way in [(3.0, 0.9), (0.5, 0.4)]:
         camera = rw.Orthographic((0, 0, distance), (0, 0, 0), scale=1e-3, width=2, height=2)
         for integrator in (rw.Path(), rw.Direct(), rw.Whitted()):
@@ -132,19 +132,19 @@ def test_light_comes_through_grids_as_their_optical_depth_says(name):
     box = [(0, -1, -1), (length, 1, 1)]
     camera = rw.Orthographic((-1, 0, 0), direction=(1, 0, 0), scale=1e-3, width=16, height=16)
     absorbing = rw.GridMedium(density, box, absorption=1.0)
-    scene = rw.Scene([rw.Box(*box, material=rw.Boundary(absorbing))], environment=SKY)
+    scene = rw.Scene([rw.Box(*box, material=rw.MediumInterface(absorbing))], environment=SKY)
     media.assert_seen(scene, camera, 512, expected)
     # By shadow rays: the sun through it, on a sheet behind.
     sheet = rw.Mesh(
         [(9, -1, -1), (9, 1, -1), (9, 1, 1), (9, -1, 1)], [(0, 2, 1), (0, 3, 2)], material=rw.Diffuse(0.5)
     )
     sun = rw.DirectionalLight((1, 0, 0), math.pi)
-    lit = rw.Scene([rw.Box(*box, material=rw.Boundary(absorbing)), sheet], lights=[sun])
+    lit = rw.Scene([rw.Box(*box, material=rw.MediumInterface(absorbing)), sheet], lights=[sun])
     close = rw.Orthographic((8, 0, 0), direction=(1, 0, 0), scale=1e-3, width=16, height=16)
     media.assert_seen(lit, close, 2048, 0.5 * expected, rw.Path(1))
     # Scattering removes light as well, except for light scattered into the ray: none for a thin ray.
     scattering = rw.GridMedium(density, box, scattering=1.0)
-    scene = rw.Scene([rw.Box(*box, material=rw.Boundary(scattering))], environment=SKY)
+    scene = rw.Scene([rw.Box(*box, material=rw.MediumInterface(scattering))], environment=SKY)
     media.assert_seen(scene, camera, 2048 if name == "linear" else 1024, expected, rw.Path(0))
     media.assert_seen(scene, camera, 512, expected, rw.Direct())
 
@@ -152,13 +152,13 @@ def test_light_comes_through_grids_as_their_optical_depth_says(name):
 def test_numbers_stand_at_corners_or_in_the_middle_of_cells():
     cube = np.array([[[0, 1], [2, 3]], [[4, 0], [1, 6]]], float)
     medium = rw.GridMedium(cube, absorption=1.0)
-    scene = rw.Scene([rw.Box(material=rw.Boundary(medium))], environment=SKY)
+    scene = rw.Scene([rw.Box(material=rw.MediumInterface(medium))], environment=SKY)
     way = np.ones(3) / math.sqrt(3)
     camera = rw.Orthographic(-way, direction=way, scale=1e-9, width=16, height=16)
     media.assert_seen(scene, camera, 16, 0.015210193488951, most=1e-6)
     # Along x through the middle of the cells of two: 1 and 3, half of the way each, and linear between.
-    cells = rw.GridMedium(np.array([1.0, 3.0]).reshape(2, 1, 1), absorption=1.0, at="centres")
-    scene = rw.Scene([rw.Box(material=rw.Boundary(cells))], environment=SKY)
+    cells = rw.GridMedium(np.array([1.0, 3.0]).reshape(2, 1, 1), absorption=1.0, at="centers")
+    scene = rw.Scene([rw.Box(material=rw.MediumInterface(cells))], environment=SKY)
     camera = rw.Orthographic((-1, 0.5, 0.5), direction=(1, 0, 0), scale=1e-6, width=16, height=16)
     media.assert_seen(scene, camera, 1024, math.exp(-2.0))
 
@@ -176,12 +176,16 @@ def test_a_grid_of_the_same_numbers_is_as_a_medium_of_one():
     small = np.diag([2.0, 4.0, 1.0, 1.0])
     small[:3, 3] = (-1, -1, -0.5)
     within = rw.Box(
-        (0, 0, 0), (1, 0.5, 1), material=rw.Boundary(rw.GridMedium(dense, [(0, 0, 0), (1, 0.5, 1)], **grid))
+        (0, 0, 0),
+        (1, 0.5, 1),
+        material=rw.MediumInterface(rw.GridMedium(dense, [(0, 0, 0), (1, 0.5, 1)], **grid)),
     )
     scenes = [
-        rw.Box(*box, material=rw.Boundary(even)),
-        rw.Box(*box, material=rw.Boundary(rw.GridMedium(dense, box, **grid))),
-        rw.Box(*box, material=rw.Boundary(rw.GridMedium(dense, transform=placed, at="centres", **grid))),
+        rw.Box(*box, material=rw.MediumInterface(even)),
+        rw.Box(*box, material=rw.MediumInterface(rw.GridMedium(dense, box, **grid))),
+        rw.Box(
+            *box, material=rw.MediumInterface(rw.GridMedium(dense, transform=placed, at="centers", **grid))
+        ),
         rw.Instance([within], small),
     ]
     camera = rw.Camera((2, -3, 2), (0, 0, 0), up=(0, 0, 1), fov=40, width=24, height=24)
@@ -203,7 +207,7 @@ def test_a_grid_of_the_same_numbers_is_as_a_medium_of_one():
 def test_max_depth_counts_what_scatters_and_no_boundary():
     sun = rw.DirectionalLight((0, 0, -1), 1.0)
     floor = rw.Plane((0, 0, -5), material=rw.Diffuse(0.5))
-    empty = rw.Boundary(rw.Homogeneous())
+    empty = rw.MediumInterface(rw.Homogeneous())
     matched = rw.Dielectric(1.0, interior=rw.Homogeneous())
     layers = [rw.Box((-9, -9, -i - 0.8), (9, 9, -i), material=matched if i % 2 else empty) for i in range(4)]
     camera = media.looking(side=2, distance=1.0)
@@ -226,29 +230,36 @@ def test_of_what_overlaps_the_greatest_priority_is_there():
     for thin_first in (True, False):
         # From 0 to 2 and from 1 to 3, with one or the other in the middle; at equal priority, the later one.
         for priorities, depth in [((1, 0), 1 + 1 + 3), ((0, 1), 1 + 3 + 3), ((0, 0), 7 if thin_first else 5)]:
-            both = [box(0, 2, rw.Boundary(thin, priorities[0])), box(1, 3, rw.Boundary(thick, priorities[1]))]
+            both = [
+                box(0, 2, rw.MediumInterface(thin, priorities[0])),
+                box(1, 3, rw.MediumInterface(thick, priorities[1])),
+            ]
             assert image(*(both if thin_first else both[::-1])) == pytest.approx(math.exp(-depth), rel=1e-5)
     # Two equal ones count twice, and haze fills the rest.
-    apart = [box(0, 1, rw.Boundary(thin)), box(2, 3, rw.Boundary(thin))]
+    apart = [box(0, 1, rw.MediumInterface(thin)), box(2, 3, rw.MediumInterface(thin))]
     assert image(*apart) == pytest.approx(math.exp(-2), rel=1e-5)
-    touching = [box(0, 1, rw.Boundary(thin)), box(1, 2, rw.Boundary(thin)), box(2, 3, rw.Boundary(thick))]
+    touching = [
+        box(0, 1, rw.MediumInterface(thin)),
+        box(1, 2, rw.MediumInterface(thin)),
+        box(2, 3, rw.MediumInterface(thick)),
+    ]
     assert image(*touching) == pytest.approx(math.exp(-5), rel=1e-5)
-    within = [box(0, 3, rw.Boundary(thin)), box(1, 2, rw.Boundary(thick, 1))]
+    within = [box(0, 3, rw.MediumInterface(thin)), box(1, 2, rw.MediumInterface(thick, 1))]
     assert image(*within) == pytest.approx(math.exp(-5), rel=1e-5)
     behind = rw.Plane((4, 0, 0), (-1, 0, 0), material=rw.Diffuse(0), emission=1.0)
-    assert image(behind, box(0, 3, rw.Boundary(thick)), medium=rw.Homogeneous(0.1)) == pytest.approx(
+    assert image(behind, box(0, 3, rw.MediumInterface(thick)), medium=rw.Homogeneous(0.1)) == pytest.approx(
         math.exp(-9 - 0.1 * 6), rel=1e-4
     )
     # Copies of one object, with separate numbers for their media.
     copies = np.tile(np.eye(4), (3, 1, 1))
     copies[:, 0, 3] = [0, 1, 1.5]
-    many = rw.Instance([box(0, 1, rw.Boundary(thin))], copies)
+    many = rw.Instance([box(0, 1, rw.MediumInterface(thin))], copies)
     assert image(many) == pytest.approx(math.exp(-2.5), rel=1e-5)
 
 
 def test_pictures_are_the_same_for_any_threads_and_batches():
     cloud = rw.GridMedium(NOISE, [(-1, -1, -1), (1, 1, 1)], absorption=0.3, scattering=(3, 4, 6))
-    scene = rw.Scene([ball(rw.Boundary(cloud))], lights=[rw.PointLight((2, 2, 2), 9)], environment=0.2)
+    scene = rw.Scene([ball(rw.MediumInterface(cloud))], lights=[rw.PointLight((2, 2, 2), 9)], environment=0.2)
     camera = rw.Camera((0, 0, 4), (0, 0, 0), fov=40, width=20, height=12)
     one = rw.render(scene, camera, rw.Path(), 8, threads=1, progress=False)
     two = rw.render(scene, camera, rw.Path(), 8, threads=2, progress=False)
@@ -272,8 +283,8 @@ def test_standard_errors_cover():
 
 OTHERS = [
     rw.RayCast(),
-    rw.Distributed(),
-    rw.BeamTraced(),
+    rw.integrators.Distributed(),
+    rw.integrators.BeamTraced(),
     rw.AmbientOcclusion(),
 ]
 
@@ -283,7 +294,7 @@ def test_who_knows_nothing_of_media_says_so(integrator):
     lamp = rw.PointLight((0, 0, 3), 1)
     camera = rw.Camera((0, 0, 4), (0, 0, 0), width=4, height=4)
     for scene in (
-        rw.Scene([ball(rw.Boundary(rw.Homogeneous(1)))], lights=[lamp]),
+        rw.Scene([ball(rw.MediumInterface(rw.Homogeneous(1)))], lights=[lamp]),
         rw.Scene([ball(rw.Diffuse())], lights=[lamp], medium=rw.Homogeneous(1)),
         rw.Scene(
             [rw.Instance([ball(rw.Dielectric(1.5, interior=rw.Homogeneous(1)))], np.eye(4))], lights=[lamp]
@@ -320,11 +331,15 @@ def test_media_compare_print_and_pickle():
     assert repr(rw.GridMedium(NOISE)) == "GridMedium(<6 x 5 x 7>)"
     assert not grid.density.flags.writeable
     assert rw.GridMedium(grid.density).density is grid.density
-    haze = rw.Homogeneous(0.1, (1, 2, 3), rw.Rayleigh())
+    haze = rw.Homogeneous(0.1, (1, 2, 3), rw.media.Rayleigh())
     assert haze == pickle.loads(pickle.dumps(haze)) != rw.Homogeneous(0.1, (1, 2, 3))
     glass = rw.Dielectric(1.5, interior=haze)
     assert glass == pickle.loads(pickle.dumps(glass)) != rw.Dielectric(1.5)
-    assert rw.Boundary(haze, 2) == pickle.loads(pickle.dumps(rw.Boundary(haze, 2))) != rw.Boundary(haze)
+    assert (
+        rw.MediumInterface(haze, 2)
+        == pickle.loads(pickle.dumps(rw.MediumInterface(haze, 2)))
+        != rw.MediumInterface(haze)
+    )
 
 
 @pytest.mark.parametrize(
@@ -360,8 +375,8 @@ def test_media_compare_print_and_pickle():
         (lambda: rw.GridMedium("smoke.vdb"), TypeError, "density must be"),
         (lambda: rw.GridMedium.load("smoke.raw"), ValueError, "a .npy, a .vol or a .vdb"),
         (lambda: rw.GridMedium.load(3), TypeError, "path must be"),
-        (lambda: rw.Boundary(None), TypeError, "interior must be a raywright medium"),
-        (lambda: rw.Boundary(rw.Diffuse()), TypeError, "interior must be a raywright medium"),
+        (lambda: rw.MediumInterface(None), TypeError, "interior must be a raywright medium"),
+        (lambda: rw.MediumInterface(rw.Diffuse()), TypeError, "interior must be a raywright medium"),
         (lambda: rw.Dielectric(1.5, interior=0.5), TypeError, "interior must be a raywright medium"),
         (lambda: rw.Scene([], medium="fog"), TypeError, "medium must be a raywright medium"),
     ],
@@ -374,7 +389,7 @@ def test_what_cannot_be_is_refused(make, error, says):
 
 def test_a_grid_that_lies_nowhere_is_refused_with_the_scene():
     flat = rw.GridMedium(np.ones((1, 1, 1)), transform=np.diag([1.0, 1.0, 0.0, 1.0]))
-    scene = rw.Scene([ball(rw.Boundary(flat))])
+    scene = rw.Scene([ball(rw.MediumInterface(flat))])
     with pytest.raises(ValueError, match="transform has no inverse"):
         scene.build(progress=False)
 
@@ -388,7 +403,7 @@ def test_densities_are_read_from_files(tmp_path):
     data = NOISE.astype("<f4").transpose(2, 1, 0).tobytes()
     (tmp_path / "smoke.vol").write_bytes(header + data)
     loaded = rw.GridMedium.load(str(tmp_path / "smoke.vol"), absorption=1)
-    assert loaded == rw.GridMedium(NOISE, [(-1, -2, -3), (1, 2, 3)], absorption=1, at="centres")
+    assert loaded == rw.GridMedium(NOISE, [(-1, -2, -3), (1, 2, 3)], absorption=1, at="centers")
     assert rw.GridMedium.load(tmp_path / "smoke.vol", [(0, 0, 0), (1, 1, 1)], at="corners") == rw.GridMedium(
         NOISE
     )

@@ -19,7 +19,7 @@ slow = pytest.mark.slow
 
 def smoke(absorption=0.1, scattering=0.6, g=0.5, low=(-2, -2, 0), high=(2, 2, 1.5), **kwargs):
     medium = rw.Homogeneous(absorption, scattering, rw.HenyeyGreenstein(g))
-    return rw.Box(low, high, material=rw.Boundary(medium), **kwargs)
+    return rw.Box(low, high, material=rw.MediumInterface(medium), **kwargs)
 
 
 def swirl():
@@ -27,7 +27,7 @@ def swirl():
     density = np.clip(1.2 - x**2 - y**2 - z**2 + 0.6 * np.sin(7 * x + 3 * y), 0, None)
     bounds = [(-1, -1, 0.2), (1, 1, 1.6)]
     cloud = rw.GridMedium(density, bounds, absorption=(0.1, 0.3, 0.5), scattering=(1.5, 1.2, 0.6))
-    return rw.Box(*bounds, material=rw.Boundary(cloud))
+    return rw.Box(*bounds, material=rw.MediumInterface(cloud))
 
 
 def stained():
@@ -35,7 +35,7 @@ def stained():
     density = np.random.default_rng(3).uniform(0, 1, (6, 6, 6))
     bounds = [(-1, -1, 0.2), (1, 1, 1.2)]
     cloud = rw.GridMedium(density, bounds, absorption=(6.0, 1.0, 0.1), scattering=(0.6, 0.3, 0.1))
-    return rw.Box(*bounds, material=rw.Boundary(cloud))
+    return rw.Box(*bounds, material=rw.MediumInterface(cloud))
 
 
 FLOOR = square(3, 0, material=rw.Diffuse((0.7, 0.6, 0.5)))
@@ -125,7 +125,7 @@ def test_cameras_within_and_without(look):
 def test_a_ball_that_scatters_and_absorbs(way):
     # Optical radius 1, albedo 0.5, solved as an integral equation: the lost share of the sky's light.
     kind, samples = WAYS[way]
-    ball = rw.Sphere((0, 0, 0), 1.0, material=rw.Boundary(media.of_depth(1.0, 0.5)))
+    ball = rw.Sphere((0, 0, 0), 1.0, material=rw.MediumInterface(media.of_depth(1.0, 0.5)))
     scene = rw.Scene([ball], environment=SKY)
     disk = rw.Orthographic((0, 0, 3), (0, 0, 0), scale=2.0, width=48, height=48)
     image = rw.render(scene, disk, kind(), samples // 3 + 8, progress=False)
@@ -138,7 +138,7 @@ def test_a_ball_that_scatters_and_absorbs(way):
 @pytest.mark.parametrize(("way", "g"), [("traced", 0.0), ("both", 0.0), ("both", 0.9)])
 def test_nobody_sees_a_white_ball_in_even_light(way, g):
     kind, samples = WAYS[way]
-    ball = rw.Sphere((0, 0, 0), 1.0, material=rw.Boundary(media.of_depth(1.0, 1.0, g)))
+    ball = rw.Sphere((0, 0, 0), 1.0, material=rw.MediumInterface(media.of_depth(1.0, 1.0, g)))
     scene = rw.Scene([ball], environment=SKY)
     look = rw.Orthographic((0, 0, 3), (0, 0, 0), scale=1.2, width=24, height=24)
     image = rw.render(scene, look, kind(), samples, progress=False)
@@ -152,7 +152,7 @@ def test_nobody_sees_a_white_ball_in_even_light(way, g):
 def test_slabs_reflect_and_let_through_what_discrete_ordinates_say(name):
     # Optical depth 1, albedo 0.5, isotropic, under an even sky and over black.
     below, expected = {"above": (False, 0.149753839073), "below": (True, 0.23028520169)}[name]
-    box = rw.Box((-40, -40, -1), (40, 40, 0), material=rw.Boundary(media.of_depth(1.0, 0.5)))
+    box = rw.Box((-40, -40, -1), (40, 40, 0), material=rw.MediumInterface(media.of_depth(1.0, 0.5)))
     black = square(40, -2.0, material=rw.Diffuse(0.0))
     scene = rw.Scene([box, black], environment=SKY)
     look = media.looking(0.5, below=below, distance=3.0 if below else 0.5, side=8)
@@ -162,7 +162,7 @@ def test_slabs_reflect_and_let_through_what_discrete_ordinates_say(name):
 def test_light_that_is_scattered_once():
     # Chandrasekhar 1960: the sun's irradiance is pi across its rays.
     sun = rw.DirectionalLight((math.sqrt(0.75), 0, -0.5), math.pi)
-    box = rw.Box((-40, -40, -1), (40, 40, 0), material=rw.Boundary(media.of_depth(2.0, 0.9, 0.75)))
+    box = rw.Box((-40, -40, -1), (40, 40, 0), material=rw.MediumInterface(media.of_depth(2.0, 0.9, 0.75)))
     look = media.looking(0.5, azimuth=60.0 + 180)
     media.assert_seen(
         rw.Scene([box], lights=[sun]), look, 512, 0.0305162257168885, rw.Bidirectional(1), most=0.004
@@ -171,13 +171,13 @@ def test_light_that_is_scattered_once():
 
 def test_what_glows_is_found_from_the_camera():
     gas = rw.Homogeneous(0.3, 0.5, emission=(0.5, 0.3, 0.1))
-    scene = rw.Scene([FLOOR, lamp(), rw.Sphere((0, 0, 0.8), 0.6, material=rw.Boundary(gas))])
+    scene = rw.Scene([FLOOR, lamp(), rw.Sphere((0, 0, 0.8), 0.6, material=rw.MediumInterface(gas))])
     assert_same(scene, camera(), (rw.Bidirectional(), 24), (rw.Path(), 128))
 
 
 def test_walks_are_not_merged_among_media():
-    with pytest.raises(ValueError, match=r"walks are not merged among media: use merge=False"):
-        rw.render(SCENES["smoke"], camera(), rw.Bidirectional(merge=True), 4, progress=False)
+    with pytest.raises(ValueError, match=r"walks are not merged among media: use vertex_merging=False"):
+        rw.render(SCENES["smoke"], camera(), rw.Bidirectional(vertex_merging=True), 4, progress=False)
 
 
 def test_bits_are_those_of_any_threads():

@@ -69,7 +69,7 @@ def lit(integrator, medium, samples=1024):
     camera = rw.Camera((0, -5, 3), (0, 0, 0), up=(0, 0, 1), fov=0.01, width=1, height=1)
     scene = rw.Scene([floor(material=rw.Diffuse(0.5)), *lamps], medium=medium)
     image = rw.render(
-        scene, camera, integrator, samples=samples, seed=2, sampler=rw.Independent(), progress=False
+        scene, camera, integrator, samples=samples, seed=2, sampler=rw.rendering.Independent(), progress=False
     )
     return float(image.rgb[0, 0, 1]), float(image.standard_error[0, 0].max())
 
@@ -101,7 +101,9 @@ def test_haze_leaves_as_many_surface_samples():
         ground = floor(material=rw.Conductor("Ag", roughness=0.5))
         scene = rw.Scene([ground, lamp], medium=medium)
         how = rw.Direct(surface_samples=surface_samples)
-        image = rw.render(scene, camera, how, samples=256, seed=2, sampler=rw.Independent(), progress=False)
+        image = rw.render(
+            scene, camera, how, samples=256, seed=2, sampler=rw.rendering.Independent(), progress=False
+        )
         return float(image.rgb[0, 0, 1]), float(image.standard_error[0, 0].max())
 
     # Equal random numbers make the same picture, unlike that of one direction per sample.

@@ -23,7 +23,7 @@ WAYS = pytest.mark.parametrize("by", ["colours", "wavelengths"])
 
 
 def scene(medium, by="colours", **arguments):
-    shapes = [rw.Box(*BOX, material=rw.Boundary(medium)), *([ASIDE] if by == "wavelengths" else [])]
+    shapes = [rw.Box(*BOX, material=rw.MediumInterface(medium)), *([ASIDE] if by == "wavelengths" else [])]
     found = rw.Scene(shapes, **arguments)
     assert (found.wavelengths is not None) == (by == "wavelengths")
     return found
@@ -151,21 +151,21 @@ def puffs(shape=(40, 25, 33)):
     return numbers
 
 
-@pytest.mark.parametrize("at", ["corners", "centres"])
+@pytest.mark.parametrize("at", ["corners", "centers"])
 def test_a_sparse_grid_gives_the_bits_of_an_array(at):
     numbers = puffs()
     parts = [((30, 20, 0), numbers[30:, 20:, :5]), ((3, 7, 20), numbers[3:12, 7:9, 20:31])]
-    sparse = rw.SparseGrid(numbers.shape, parts)
+    sparse = rw.media.SparseGrid(numbers.shape, parts)
     looks = {"absorption": 1.0, "scattering": (8, 4, 2), "at": at}
     heat = 3000 * numbers
     pictures = []
     for density, hot in [
         (numbers, heat),
-        (sparse, rw.SparseGrid.of(heat)),
-        (rw.SparseGrid.of(numbers), heat),
+        (sparse, rw.media.SparseGrid.of(heat)),
+        (rw.media.SparseGrid.of(numbers), heat),
     ]:
         cloud = rw.GridMedium(density, [(-1, -1, -1), (1, 1, 1)], temperature=hot, **looks)
-        shape = rw.Box((-1, -1, -1), (1, 1, 1), material=rw.Boundary(cloud))
+        shape = rw.Box((-1, -1, -1), (1, 1, 1), material=rw.MediumInterface(cloud))
         lit = rw.Scene([shape], lights=[rw.PointLight((2, 2, 2), 9)], environment=0.2)
         camera = rw.Camera((0, 1, 4), (0, 0, 0), fov=40, width=12, height=12)
         pictures.append(rw.render(lit, camera, rw.Path(), 4, progress=False).rgb)
@@ -178,16 +178,16 @@ def test_sparse_grids_keep_their_numbers(coloured):
     numbers = puffs()
     if coloured:
         numbers = numbers[..., None] * np.array([1, 2, 3], np.float32)
-    grid = rw.SparseGrid.of(numbers)
+    grid = rw.media.SparseGrid.of(numbers)
     assert np.array_equal(grid.dense(), numbers)
     assert np.array_equal(np.asarray(grid), numbers)
     assert grid.shape == numbers.shape
     assert grid.max() == numbers.max()
-    assert grid == rw.SparseGrid.of(np.asfortranarray(numbers.astype(float)))
-    assert grid == pickle.loads(pickle.dumps(grid)) != rw.SparseGrid.of(2 * numbers)
+    assert grid == rw.media.SparseGrid.of(np.asfortranarray(numbers.astype(float)))
+    assert grid == pickle.loads(pickle.dumps(grid)) != rw.media.SparseGrid.of(2 * numbers)
     assert hash(grid) == hash(pickle.loads(pickle.dumps(grid)))
     # Later blocks overwrite earlier ones.
-    again = rw.SparseGrid(
+    again = rw.media.SparseGrid(
         numbers.shape, [((8, 8, 8), np.ones((16, 5, 3, *numbers.shape[3:]))), ((0, 0, 0), numbers)]
     )
     assert again == grid
@@ -205,16 +205,32 @@ def test_sparse_grids_keep_their_numbers(coloured):
 @pytest.mark.parametrize(
     ("make", "error", "says"),
     [
-        (lambda: rw.SparseGrid((2, 0, 2)), ValueError, "shape must be"),
-        (lambda: rw.SparseGrid((2, 2, 2, 4)), ValueError, "shape must be"),
-        (lambda: rw.SparseGrid((1 << 20, 1 << 20, 1 << 20)), ValueError, "expected fewer"),
-        (lambda: rw.SparseGrid((4, 4, 4), [((3, 0, 0), np.ones((2, 1, 1)))]), ValueError, "outside the"),
-        (lambda: rw.SparseGrid((4, 4, 4), [((-1, 0, 0), np.ones((1, 1, 1)))]), ValueError, "outside the"),
-        (lambda: rw.SparseGrid((4, 4, 4), [((0, 0, 0), np.ones((1, 1)))]), ValueError, "cannot have shape"),
-        (lambda: rw.SparseGrid((4, 4, 4), [((0, 0, 1), [[[1.0, -1.0]]])]), ValueError, "got -1 at .0, 0, 2"),
-        (lambda: rw.SparseGrid((4, 4, 4), [((0, 0, 1), [[["a"]]])]), TypeError, "must be real"),
-        (lambda: rw.SparseGrid.of([[[1e39]]]), ValueError, "at least 0, got inf"),
-        (lambda: np.array(rw.SparseGrid((1, 1, 1)), copy=False), ValueError, "without a copy"),
+        (lambda: rw.media.SparseGrid((2, 0, 2)), ValueError, "shape must be"),
+        (lambda: rw.media.SparseGrid((2, 2, 2, 4)), ValueError, "shape must be"),
+        (lambda: rw.media.SparseGrid((1 << 20, 1 << 20, 1 << 20)), ValueError, "expected fewer"),
+        (
+            lambda: rw.media.SparseGrid((4, 4, 4), [((3, 0, 0), np.ones((2, 1, 1)))]),
+            ValueError,
+            "outside the",
+        ),
+        (
+            lambda: rw.media.SparseGrid((4, 4, 4), [((-1, 0, 0), np.ones((1, 1, 1)))]),
+            ValueError,
+            "outside the",
+        ),
+        (
+            lambda: rw.media.SparseGrid((4, 4, 4), [((0, 0, 0), np.ones((1, 1)))]),
+            ValueError,
+            "cannot have shape",
+        ),
+        (
+            lambda: rw.media.SparseGrid((4, 4, 4), [((0, 0, 1), [[[1.0, -1.0]]])]),
+            ValueError,
+            "got -1 at .0, 0, 2",
+        ),
+        (lambda: rw.media.SparseGrid((4, 4, 4), [((0, 0, 1), [[["a"]]])]), TypeError, "must be real"),
+        (lambda: rw.media.SparseGrid.of([[[1e39]]]), ValueError, "at least 0, got inf"),
+        (lambda: np.array(rw.media.SparseGrid((1, 1, 1)), copy=False), ValueError, "without a copy"),
         (lambda: rw.GridMedium(ONE, extinction=1.0), ValueError, "extinction must come with an albedo"),
         (
             lambda: rw.GridMedium(np.ones((1, 1, 1)), scattering=1.0, albedo=np.ones((1, 1, 1))),
@@ -232,16 +248,20 @@ def test_sparse_grids_keep_their_numbers(coloured):
             r"temperature must have shape \(X, Y, Z\)",
         ),
         (
-            lambda: rw.GridMedium(np.ones((1, 1, 1)), temperature=rw.SparseGrid((1, 1, 1, 3))),
+            lambda: rw.GridMedium(np.ones((1, 1, 1)), temperature=rw.media.SparseGrid((1, 1, 1, 3))),
             ValueError,
             r"temperature must have shape \(X, Y, Z\)",
         ),
-        (lambda: rw.SparseGrid.of(3.0), ValueError, r"numbers must have shape \(X, Y, Z\) or .*, got \(\)"),
-        (lambda: rw.SparseGrid.of(np.ones((2, 2))), ValueError, "numbers must have shape"),
-        (lambda: rw.SparseGrid((2.5, 2, 2)), TypeError, r"shape must be integers, got \(2.5, 2, 2\)"),
-        (lambda: rw.SparseGrid(2), TypeError, "shape must be integers, got 2"),
         (
-            lambda: rw.SparseGrid((2, 2, 2), [((0.5, 0, 0), np.ones((1, 1, 1)))]),
+            lambda: rw.media.SparseGrid.of(3.0),
+            ValueError,
+            r"numbers must have shape \(X, Y, Z\) or .*, got \(\)",
+        ),
+        (lambda: rw.media.SparseGrid.of(np.ones((2, 2))), ValueError, "numbers must have shape"),
+        (lambda: rw.media.SparseGrid((2.5, 2, 2)), TypeError, r"shape must be integers, got \(2.5, 2, 2\)"),
+        (lambda: rw.media.SparseGrid(2), TypeError, "shape must be integers, got 2"),
+        (
+            lambda: rw.media.SparseGrid((2, 2, 2), [((0.5, 0, 0), np.ones((1, 1, 1)))]),
             TypeError,
             r"origin of a part must be integers, got \(0.5, 0, 0\)",
         ),
@@ -255,7 +275,7 @@ def test_sparse_grids_keep_their_numbers(coloured):
             "emission must be one number or 3",
         ),
     ],
-)  # fmt: skip
+)
 def test_what_cannot_be_is_refused(make, error, says):
     with pytest.raises(error, match=says) as told:
         make()
@@ -296,7 +316,7 @@ class Slabs:
 
 def look(density):
     cloud = rw.GridMedium(density, scattering=1.0)
-    scene = rw.Scene([rw.Box((0, 0, 0), (1, 1, 1), material=rw.Boundary(cloud))], environment=1.0)
+    scene = rw.Scene([rw.Box((0, 0, 0), (1, 1, 1), material=rw.MediumInterface(cloud))], environment=1.0)
     camera = rw.Camera((2, 2, 2), (0.5, 0.5, 0.5), width=4, height=4)
     return rw.render(scene, camera, rw.Path(), 1, progress=False).rgb
 
@@ -310,9 +330,9 @@ before = peak()
     ("grid", "most"),
     [
         # 537 MB of numbers, 1.6 of blocks and 3.1 of majorants, and a slab of 8 planes, 8 MB.
-        pytest.param("rw.SparseGrid.of(Slabs())", 600e6, marks=pytest.mark.slow),
+        pytest.param("rw.media.SparseGrid.of(Slabs())", 600e6, marks=pytest.mark.slow),
         # Where blocks are, 1 MB, and majorants.
-        ("rw.SparseGrid((512, 512, 512), [((200, 100, 50), np.ones((60, 60, 60)))])", 25e6),
+        ("rw.media.SparseGrid((512, 512, 512), [((200, 100, 50), np.ones((60, 60, 60)))])", 25e6),
     ],
 )
 def test_large_grids_take_the_memory_of_what_is_in_them(grid, most):

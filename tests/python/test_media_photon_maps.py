@@ -20,7 +20,7 @@ def camera(at=(2.2, -1.6, 1.6), target=(0, 0, 0.4), fov=40):
     return rw.Camera(at, target, up=(0, 0, 1), fov=fov, width=SIDE, height=SIDE)
 
 
-def haze(absorption=0.1, scattering=0.8, g=0.3, material=rw.Boundary):
+def haze(absorption=0.1, scattering=0.8, g=0.3, material=rw.MediumInterface):
     medium = rw.Homogeneous(absorption, scattering, rw.HenyeyGreenstein(g))
     return rw.Box((-1.4, -1.4, -0.1), (1.4, 1.4, 1.2), material=material(medium))
 
@@ -30,7 +30,7 @@ def cloud():
     bounds = [(-0.9, -0.9, 0.1), (0.9, 0.9, 1.3)]
     density = np.clip(1.3 - x**2 - y**2 - z**2 + 0.4 * np.sin(7 * x), 0, None)
     grid = rw.GridMedium(density, bounds, absorption=0.2, scattering=(2.0, 1.5, 1.0))
-    return rw.Box(*bounds, material=rw.Boundary(grid))
+    return rw.Box(*bounds, material=rw.MediumInterface(grid))
 
 
 LAMP = lamp(1.6, 0.4)
@@ -45,7 +45,7 @@ SCENES = {
             FLOOR,
             LAMP,
             haze(0.1, rw.Spectrum([360, 830], [1.4, 0.3])),
-            rw.Sphere((0, 0, 0.6), 0.35, material=rw.Dielectric(rw.Cauchy(1.5, 0.02))),
+            rw.Sphere((0, 0, 0.6), 0.35, material=rw.Dielectric(rw.materials.Cauchy(1.5, 0.02))),
         ]
     ),
     "tinted": rw.Scene(
@@ -60,9 +60,9 @@ SCENES = {
     ),
 }
 MAPS = {
-    "nearest": rw.PhotonMap(8000, gather=0),
-    "gathered": rw.PhotonMap(8000, nearest=40),
-    "fixed": rw.PhotonMap(8000, nearest=None, radius=0.12, gather=0, filter="epanechnikov"),
+    "nearest": rw.PhotonMap(8000, final_gather=0),
+    "gathered": rw.PhotonMap(8000, k_nearest=40),
+    "fixed": rw.PhotonMap(8000, k_nearest=None, radius=0.12, final_gather=0, filter="epanechnikov"),
     "progressive": rw.ProgressivePhotonMap(8000),
 }
 
@@ -92,7 +92,7 @@ def test_pictures_are_those_of_paths(name, way):
 def test_depths_count_what_scatters(depth):
     scene, look = SCENES["haze"], camera()
     truth = rw.render(scene, look, rw.Path(depth), 256, progress=False)
-    assert_agree(scene, look, rw.PhotonMap(8000, gather=0, max_depth=depth), truth, blur=0.06)
+    assert_agree(scene, look, rw.PhotonMap(8000, final_gather=0, max_depth=depth), truth, blur=0.06)
 
 
 @slow
@@ -104,7 +104,7 @@ def test_a_caustic_in_haze_is_that_of_light_tracing():
     look = camera(at=(2.4, -1.2, 0.8), target=(0, 0, 0.6), fov=25)
     truth = rw.render(scene, look, rw.LightTraced(), 512, progress=False)
     assert truth.rgb[4:12, 6:10].mean() > 3 * rw.render(scene, look, rw.Path(), 8, progress=False).rgb.min()
-    assert_agree(scene, look, rw.PhotonMap(10_000, nearest=40, gather=0), truth, blur=0.08)
+    assert_agree(scene, look, rw.PhotonMap(10_000, k_nearest=40, final_gather=0), truth, blur=0.08)
 
 
 def tank(medium, reflectance=0.0):
@@ -114,7 +114,7 @@ def tank(medium, reflectance=0.0):
     for (ax, ay), (bx, by) in zip(corners, corners[1:] + corners[:1], strict=True):
         points = [(ax, ay, -1.0), (bx, by, -1.0), (bx, by, 0.0), (ax, ay, 0.0)]
         walls.append(rw.Mesh(points, [(0, 1, 2), (0, 2, 3)], material=rw.Mirror(1.0)))
-    box = rw.Box((-0.501, -0.501, -1), (0.501, 0.501, 0), material=rw.Boundary(medium))
+    box = rw.Box((-0.501, -0.501, -1), (0.501, 0.501, 0), material=rw.MediumInterface(medium))
     return rw.Scene([*walls, box, square(0.6, -1.0, material=rw.Diffuse(reflectance))], environment=SKY)
 
 
@@ -140,7 +140,7 @@ def test_a_slab_reflects_what_discrete_ordinates_say():
 
 @pytest.mark.parametrize("way", ["nearest", "progressive"])
 def test_nobody_sees_a_white_ball_in_even_light(way):
-    ball = rw.Sphere((0, 0, 0), 1.0, material=rw.Boundary(media.of_depth(2.0, 1.0)))
+    ball = rw.Sphere((0, 0, 0), 1.0, material=rw.MediumInterface(media.of_depth(2.0, 1.0)))
     scene = rw.Scene([ball], environment=SKY)
     look = rw.Orthographic((0, 0, 3), (0, 0, 0), scale=1.2, width=8, height=8)
     mean, error = told(scene, look, MAPS[way], 8)
@@ -155,7 +155,9 @@ def test_bias_is_told():
     look = rw.Orthographic((0.5, 0, 0), (0.5, 0, -1), up=(0, 1, 0), scale=0.05, width=8, height=8)
     truth = rw.render(scene, look, rw.Path(), 512, progress=False).rgb.mean(dtype=float)
     images = [
-        rw.render(scene, look, rw.PhotonMap(20_000, nearest=None, radius=0.25), 8, seed=seed, progress=False)
+        rw.render(
+            scene, look, rw.PhotonMap(20_000, k_nearest=None, radius=0.25), 8, seed=seed, progress=False
+        )
         for seed in range(4)
     ]
     found = [image.rgb.mean(dtype=float) for image in images]

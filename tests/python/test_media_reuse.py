@@ -18,12 +18,12 @@ def render(scene, reuse, samples, seed=0, depth=None, roulette=4, camera=CAMERA,
 
 def filled(medium, *more, sky=0.0, **around):
     """A ball of a medium under a lamp, and what else there is."""
-    ball = rw.Sphere((0, 0, 0), 1.0, material=rw.Boundary(medium))
+    ball = rw.Sphere((0, 0, 0), 1.0, material=rw.MediumInterface(medium))
     return rw.Scene([ball, LAMP, *more], environment=sky, **around)
 
 
 def thick(g=0.0, albedo=0.9, depth=2.0):
-    phase = rw.HenyeyGreenstein(g) if g else rw.Isotropic()
+    phase = rw.HenyeyGreenstein(g) if g else rw.media.Isotropic()
     return rw.Homogeneous(depth * (1 - albedo), depth * albedo, phase=phase)
 
 
@@ -32,7 +32,7 @@ SCENES = {
     "even": lambda: filled(thick()),
     "forward": lambda: filled(thick(0.8), sky=0.3),
     "backward": lambda: filled(thick(-0.6), lights=[SUN]),
-    "Rayleigh": lambda: filled(rw.Homogeneous(0.1, 1.5, phase=rw.Rayleigh()), lights=[SUN]),
+    "Rayleigh": lambda: filled(rw.Homogeneous(0.1, 1.5, phase=rw.media.Rayleigh()), lights=[SUN]),
     "coloured": lambda: filled(rw.Homogeneous((0.1, 0.3, 0.0), (0.3, 1.0, 6.0)), sky=(1.0, 0.7, 0.4)),
     "one channel": lambda: filled(rw.Homogeneous(0.5, (0.0, 2.0, 0.0)), sky=0.5),
     "things in it": lambda: filled(
@@ -43,7 +43,7 @@ SCENES = {
     ),
     "another in it": lambda: filled(
         thick(0.4),
-        rw.Sphere((0, 0, 0.2), 0.5, material=rw.Boundary(thick(0.0, 0.5, 6.0), priority=1)),
+        rw.Sphere((0, 0, 0.2), 0.5, material=rw.MediumInterface(thick(0.0, 0.5, 6.0), priority=1)),
         sky=0.2,
     ),
     "within glass": lambda: rw.Scene(
@@ -59,7 +59,7 @@ SCENES = {
     ),
     "on a floor": lambda: rw.Scene(
         [
-            rw.Box((-1, -1, -1), (1, 0.2, 1), material=rw.Boundary(thick(0.0, 0.9, 1.0))),
+            rw.Box((-1, -1, -1), (1, 0.2, 1), material=rw.MediumInterface(thick(0.0, 0.9, 1.0))),
             rw.Box((-2, -1.5, -2), (2, -1, 2), material=rw.Diffuse(0.8)),
             LAMP,
         ]
@@ -85,7 +85,7 @@ def test_the_mean_is_what_it_is_without(name, depth):
 
 @pytest.mark.parametrize("g", [0.0, 0.9])
 def test_a_white_ball_in_an_even_sky_is_invisible(g):
-    ball = rw.Sphere((0, 0, 0), 1.0, material=rw.Boundary(thick(g, 1.0, 3.0)))
+    ball = rw.Sphere((0, 0, 0), 1.0, material=rw.MediumInterface(thick(g, 1.0, 3.0)))
     scene = rw.Scene([ball], environment=1.0)
     means = [render(scene, 4, 16, seed).rgb.mean(axis=(0, 1), dtype=float) for seed in range(20)]
     error = np.std(means, axis=0, ddof=1) / math.sqrt(20)
@@ -95,7 +95,7 @@ def test_a_white_ball_in_an_even_sky_is_invisible(g):
 
 
 def test_there_is_less_noise_where_light_is_scattered_often():
-    slab = rw.Box((-3, -1, -3), (3, 1, 3), material=rw.Boundary(thick()))
+    slab = rw.Box((-3, -1, -3), (3, 1, 3), material=rw.MediumInterface(thick()))
     camera = rw.Camera((0, 0.3, 4), (0, 0, 0), fov=34, width=32, height=16)
     scene = rw.Scene([slab, rw.Sphere((0, 4, 0), 0.7, material=rw.Diffuse(0), emission=9.0)])
     pictures = [
@@ -126,12 +126,17 @@ def test_what_cannot_be_shared_is_as_without():
 def test_where_nearly_all_light_goes_straight_on_nothing_is_shared():
     """Shares would be worth a thousand times their mean there, and come once in as many samples."""
     cloud = rw.Homogeneous(0, 1, rw.HenyeyGreenstein(0.99))
-    scene = rw.Scene([rw.Sphere((0, 0, 0), 1, material=rw.Boundary(cloud))], environment=1.0)
+    scene = rw.Scene([rw.Sphere((0, 0, 0), 1, material=rw.MediumInterface(cloud))], environment=1.0)
     camera = rw.Camera((0, 0, 4), (0, 0, 0), fov=20, width=8, height=8)
     errors = []
     for reuse in (1, 4):
         made = rw.render(
-            scene, camera, rw.Path(reuse=reuse), samples=64, sampler=rw.Independent(), progress=False
+            scene,
+            camera,
+            rw.Path(reuse=reuse),
+            samples=64,
+            sampler=rw.rendering.Independent(),
+            progress=False,
         )
         errors.append(float(((made.rgb - 1) ** 2).mean()))
     assert errors[1] < 1.5 * errors[0] < 0.003, errors

@@ -14,7 +14,9 @@ BLOBS = RNG.uniform(0, 4, (11, 9, 13)).astype(np.float32) * (RNG.random((11, 9, 
 
 
 def smoke(density, **more):
-    return rw.Box(*BOX, material=rw.Boundary(rw.GridMedium(density, BOX, **{"absorption": 1.0, **more})))
+    return rw.Box(
+        *BOX, material=rw.MediumInterface(rw.GridMedium(density, BOX, **{"absorption": 1.0, **more}))
+    )
 
 
 def trilinear(density, box, points, *, centres=False):
@@ -44,7 +46,7 @@ def borders(density, box, origin, direction, end, *, centres=False):
     return np.sort(np.clip(np.concatenate(found), 0.0, end))
 
 
-@pytest.mark.parametrize("at", ["corners", "centres"])
+@pytest.mark.parametrize("at", ["corners", "centers"])
 def test_optical_depths_of_grids_are_the_integrals_of_their_densities(at):
     scene = rw.Scene(smoke(BLOBS, at=at))
     origins = RNG.uniform(-4, 4, (40, 3))
@@ -54,10 +56,10 @@ def test_optical_depths_of_grids_are_the_integrals_of_their_densities(at):
     # Gauss's rule of three points between borders of cells, by an interpolation of its own.
     nodes, weights = np.polynomial.legendre.leggauss(3)
     for origin, direction, end, depth in zip(origins, directions, t_max, found, strict=True):
-        t = borders(BLOBS, BOX, origin, direction, end, centres=at == "centres")
+        t = borders(BLOBS, BOX, origin, direction, end, centres=at == "centers")
         middle, half = (t[1:] + t[:-1]) / 2, (t[1:] - t[:-1]) / 2
         points = origin + (middle[:, None] + half[:, None] * nodes)[..., None] * direction
-        density = trilinear(BLOBS, BOX, points, centres=at == "centres")
+        density = trilinear(BLOBS, BOX, points, centres=at == "centers")
         expected = (density * weights * half[:, None]).sum() * np.linalg.norm(direction)
         np.testing.assert_allclose(depth, expected, rtol=1e-9, atol=1e-9)
     assert found.max() > 1
@@ -79,7 +81,9 @@ def test_transmittance_keeps_its_digits_at_any_depth():
 def test_media_in_one_another_and_around_all():
     glass = rw.Dielectric(1.5, interior=rw.Homogeneous(absorption=0.25))
     shapes = [
-        rw.Sphere((0, 0, 0), 2.0, material=rw.Boundary(rw.Homogeneous(absorption=1.0, scattering=1.0))),
+        rw.Sphere(
+            (0, 0, 0), 2.0, material=rw.MediumInterface(rw.Homogeneous(absorption=1.0, scattering=1.0))
+        ),
         rw.Sphere((0, 0, 0), 1.0, material=glass),
         rw.Mesh([(-9, -9, 0), (9, -9, 0), (0, 9, 0)], [(0, 1, 2)], material=BLACK),
     ]
@@ -105,7 +109,7 @@ def test_scenes_by_wavelength_tell_what_those_in_colours_do():
         {"extinction": (1.5, 0.5, 1.0), "albedo": np.full((2, 2, 2), 0.5)},
     ):
         medium = rw.GridMedium(BLOBS, BOX, **how)
-        box = rw.Box(*BOX, material=rw.Boundary(medium))
+        box = rw.Box(*BOX, material=rw.MediumInterface(medium))
         plain, waved = rw.Scene(box), rw.Scene([box, aside])
         assert waved.wavelengths is not None
         np.testing.assert_allclose(waved.optical_depth(*ray), plain.optical_depth(*ray), rtol=1e-12)
@@ -178,7 +182,7 @@ def test_white_smoke_in_an_even_light_is_not_seen(integrator, density):
 
 def test_an_even_grid_looks_as_what_is_even_everywhere():
     def picture(medium, integrator):
-        box = rw.Box(*BOX, material=rw.Boundary(medium))
+        box = rw.Box(*BOX, material=rw.MediumInterface(medium))
         lamp = rw.Sphere((0, 0, 2), 0.5, material=BLACK, emission=8.0)
         scene = rw.Scene([box, lamp], environment=0.2)
         camera = rw.Camera((0, -6, 1), (0, 0, -1.5), up=(0, 0, 1), fov=30, width=8, height=8)

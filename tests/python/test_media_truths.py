@@ -92,7 +92,7 @@ def test_a_flask_of_white_smoke_is_invisible():
 )
 def test_a_ball_that_absorbs_lets_through_what_its_chords_do(depth, share):
     # van de Hulst, 1957. The picture is a square around the disk.
-    ball = rw.Sphere((0, 0, 0), 1.0, material=rw.Boundary(media.of_depth(depth, 0.0)))
+    ball = rw.Sphere((0, 0, 0), 1.0, material=rw.MediumInterface(media.of_depth(depth, 0.0)))
     scene = rw.Scene([ball, ground(-2.0)], lights=[], environment=SKY)
     lit = rw.Plane((0, 0, -2), material=BLACK, emission=1.0)
     scene = rw.Scene([ball, lit])
@@ -120,10 +120,10 @@ def test_gas_that_glows_before_a_wall_that_does():
     # The same by a grid, which needs random sampling.
     box = [(-1, -1, -3), (1, 1, 0)]
     flame = rw.GridMedium(np.full((2, 2, 9), 2.0), box, absorption=0.4, emission=0.8)
-    shape = rw.Box(*box, material=rw.Boundary(flame))
+    shape = rw.Box(*box, material=rw.MediumInterface(flame))
     media.assert_seen(rw.Scene([shape, wall]), media.looking(), 1024, 2.27215385986824)
     apart = rw.GridMedium(np.full((2, 2, 9), 2.0), box, absorption=0.4, emission=np.full((1, 3, 2), 1.6))
-    shape = rw.Box(*box, material=rw.Boundary(apart))
+    shape = rw.Box(*box, material=rw.MediumInterface(apart))
     media.assert_seen(rw.Scene([shape, wall]), media.looking(), 1024, 2.27215385986824)
 
 
@@ -163,7 +163,7 @@ def test_half_spaces_scatter_sunlight_where_they_should(albedo, expected):
 def test_no_optical_depth_is_lost_at_a_boundary(extinction):
     # Independent of density: half a space's albedo, of 0.9, from straight above.
     medium = rw.Homogeneous(0.1 * extinction, 0.9 * extinction)
-    box = rw.Box((-5, -5, -1), (5, 5, 0), material=rw.Boundary(medium))
+    box = rw.Box((-5, -5, -1), (5, 5, 0), material=rw.MediumInterface(medium))
     scene = rw.Scene([box, ground(-2.0)], environment=SKY)
     media.assert_seen(scene, media.looking(), 1536, 0.414947479130817)
 
@@ -301,7 +301,7 @@ def test_the_fluence_around_a_lamp_in_endless_fog(albedo, r, expected, most):
 
 def test_a_ball_that_scatters_and_absorbs():
     # Solved as an integral equation: optical radius 1, albedo 0.5.
-    ball = rw.Sphere((0, 0, 0), 1.0, material=rw.Boundary(media.of_depth(1.0, 0.5)))
+    ball = rw.Sphere((0, 0, 0), 1.0, material=rw.MediumInterface(media.of_depth(1.0, 0.5)))
     scene = rw.Scene([ball], environment=SKY)
     centre = rw.Orthographic((0, 0, 3), (0, 0, 0), scale=1e-3, width=8, height=8)
     media.assert_seen(scene, centre, 512, 0.4104990458)
@@ -320,7 +320,7 @@ def test_the_mean_way_through_a_ball_is_that_of_its_chords(g, depth):
     # shows the mean path length.
     phase = rw.HenyeyGreenstein(g)
     gas = rw.Homogeneous(0.0, depth, phase, emission=1.0)
-    scene = rw.Scene([rw.Sphere((0, 0, 0), 1.0, material=rw.Boundary(gas))])
+    scene = rw.Scene([rw.Sphere((0, 0, 0), 1.0, material=rw.MediumInterface(gas))])
     camera = rw.Orthographic((0, 0, 3), (0, 0, 0), scale=2.0, width=32, height=32)
     image = rw.render(scene, camera, rw.Path(), 32, progress=False)
     mean = image.rgb[..., 1].mean(dtype=float) / (math.pi / 4)
@@ -338,7 +338,7 @@ def test_the_mean_way_through_boxes(size, mean_chord):
     # Pictures from many directions, each covering the visible box.
     gas = rw.Homogeneous(0.0, 2.0, rw.HenyeyGreenstein(0.5), emission=1.0)
     size = np.array(size, float)
-    scene = rw.Scene([rw.Box(-size / 2, size / 2, material=rw.Boundary(gas))])
+    scene = rw.Scene([rw.Box(-size / 2, size / 2, material=rw.MediumInterface(gas))])
     cover = np.linalg.norm(size)
     count, light, variance, area = 100, 0.0, 0.0, 0.0
     for i in range(count):

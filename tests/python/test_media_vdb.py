@@ -21,7 +21,7 @@ def chunk_of_blosc(data, **how):
 
 def test_numbers_are_where_openvdb_has_them():
     fire = rw.GridMedium.load(given.SMOKE, absorption=2, temperature="temperature")
-    assert fire.at == "centres"
+    assert fire.at == "centers"
     assert fire.transform is None
     # Values lie in the middle of cells; the cell of index 0 is around the origin of the file.
     low = np.round((np.array(fire.bounds[0]) - given.MOVED) / given.SCALE + 0.5).astype(int)

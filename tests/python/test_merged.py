@@ -51,11 +51,11 @@ def test_radii_of_nothing_are_connections_alone():
     # precision.
     scene, camera = rw.scenes.cornell_box(width=SIDE, height=SIDE)
     plain = picture(scene, camera, rw.Bidirectional(4), 8)
-    merged = picture(scene, camera, rw.Bidirectional(4, merge=True, radius=1e-6), 8)
+    merged = picture(scene, camera, rw.Bidirectional(4, vertex_merging=True, radius=1e-6), 8)
     np.testing.assert_allclose(merged.rgb, plain.rgb, rtol=1e-6)
     # Direct light is never merged.
     np.testing.assert_array_equal(
-        picture(scene, camera, rw.Bidirectional(1, merge=True, radius=50.0), 8).rgb,
+        picture(scene, camera, rw.Bidirectional(1, vertex_merging=True, radius=50.0), 8).rgb,
         picture(scene, camera, rw.Bidirectional(1), 8).rgb,
     )
 
@@ -65,7 +65,9 @@ def test_a_room_is_that_of_paths(depth):
     scene, camera = rw.scenes.cornell_box(width=SIDE, height=SIDE)
     truth = picture(scene, camera, rw.Path(depth, reuse=1, caustics=False), 1024)
     error = np.sqrt(blocks(truth.standard_error.astype(float) ** 2) / 16)
-    ours = seeds(scene, camera, rw.Bidirectional(depth, merge=True, radius=25.0, photons=2000), 16, 6)
+    ours = seeds(
+        scene, camera, rw.Bidirectional(depth, vertex_merging=True, radius=25.0, photons=2000), 16, 6
+    )
     assert_agree(ours, (blocks(truth.rgb), error, 0.0))
     # Merging is active: disks have some bias.
     assert ours[2].max() > 0
@@ -78,9 +80,11 @@ def test_a_lamp_and_an_eye_both_behind_glass():
     look = rw.Camera((0, -3.5, 1.2), (0, 0, 0.1), up=(0, 0, 1), fov=25, width=SIDE, height=SIDE)
     assert picture(scene, look, rw.Bidirectional(), 4).rgb.max() == 0
     # Light held by total reflection would need thousands of bounces.
-    merging = rw.Bidirectional(40, merge=True, radius=0.06, photons=3000)
+    merging = rw.Bidirectional(40, vertex_merging=True, radius=0.06, photons=3000)
     progressive = rw.ProgressivePhotonMap(3000, 0.06, max_depth=40)
-    ours, theirs = (seeds(scene, look, way, 8, 6, sampler=rw.Sobol(2)) for way in (merging, progressive))
+    ours, theirs = (
+        seeds(scene, look, way, 8, 6, sampler=rw.rendering.Sobol(2)) for way in (merging, progressive)
+    )
     assert_agree(ours, theirs)
     # No other strategy competes: it is the same estimate by the same photons.
     np.testing.assert_allclose(ours[0], theirs[0], rtol=0.05)
@@ -98,13 +102,13 @@ def test_what_moves_is_lit_at_its_time():
     scene = rw.Scene([floor, board, pane, lamp])
     truth = picture(scene, look, rw.LightTraced(), 1024)
     error = np.sqrt(blocks(truth.standard_error.astype(float) ** 2) / 16)
-    ours = seeds(scene, look, rw.Bidirectional(merge=True, radius=0.05, photons=3000), 32, 6)
+    ours = seeds(scene, look, rw.Bidirectional(vertex_merging=True, radius=0.05, photons=3000), 32, 6)
     assert_agree(ours, (blocks(truth.rgb), error, 0.0))
 
 
 def test_bits_go_by_the_seed_alone(tmp_path):
     scene, look = rw.scenes.cornell_box(width=12, height=10)
-    way = rw.Bidirectional(merge=True)
+    way = rw.Bidirectional(vertex_merging=True)
     options = {"samples": 20, "seed": 5, "progress": False}
     one = rw.render(scene, look, way, threads=1, **options)
     # Photon maps kept with a scene make no difference.
@@ -124,11 +128,11 @@ def test_bits_go_by_the_seed_alone(tmp_path):
 
 def test_its_bias_is_told():
     scene, look = rw.scenes.cornell_box(width=8, height=8)
-    image = picture(scene, look, rw.Bidirectional(merge=True, radius=60.0), 4)
+    image = picture(scene, look, rw.Bidirectional(vertex_merging=True, radius=60.0), 4)
     assert image.biased
     assert np.abs(image.bias).max() > 0
     # A requested error below the blur raises a warning.
-    coarse = rw.Bidirectional(merge=True, radius=200.0, photons=1000)
+    coarse = rw.Bidirectional(vertex_merging=True, radius=200.0, photons=1000)
     image = rw.render(scene, look, coarse, 64, error=1e-9, progress=False)
     assert any("error=1e-09 is of noise alone" in line for line in image.warnings)
     plain = picture(scene, look, rw.Bidirectional(), 4)
@@ -141,13 +145,13 @@ def test_scenes_with_nothing_to_merge_have_pictures():
     sky = rw.ConstantEnvironment((0.2, 0.3, 0.4))
     mirrors = rw.Scene(square(3.0, 0.0, material=rw.Mirror(1.0)), environment=sky)
     dark = rw.Scene(square(3.0, 0.0, material=rw.Diffuse(0.5)))
-    way = rw.Bidirectional(merge=True)
+    way = rw.Bidirectional(vertex_merging=True)
     np.testing.assert_allclose(picture(mirrors, look, way, 2).rgb[..., 1], 0.3, rtol=1e-6)
     assert picture(dark, look, way, 2).rgb.max() == 0
-    assert picture(dark, look, rw.Bidirectional(0, merge=True), 2).rgb.max() == 0
+    assert picture(dark, look, rw.Bidirectional(0, vertex_merging=True), 2).rgb.max() == 0
 
 
 def test_it_is_a_value():
-    way = rw.Bidirectional(3, merge=True, radius=0.5)
+    way = rw.Bidirectional(3, vertex_merging=True, radius=0.5)
     assert pickle.loads(pickle.dumps(way)) == way != rw.Bidirectional(3)
-    assert way == rw.Bidirectional(3, merge=True, radius=0.5, photons=None)
+    assert way == rw.Bidirectional(3, vertex_merging=True, radius=0.5, photons=None)

@@ -126,7 +126,7 @@ def test_principled_shaders_of_blender_are_materials():
     metal, clear = of_mesh(blender_mesh([first, glass]))
     assert metal.material == rw.MetallicRough((0.5, 0.25, 0.125), 1.0, 0.5)
     assert metal.emission == rw.Emission((2.0, 1.0, 0.0), both_sides=True)
-    assert isinstance(clear.material, rw.Tinted)
+    assert isinstance(clear.material, rw.materials.Tinted)
     assert clear.material.base == rw.Dielectric(1.25, 0.0)
     assert metal.cells.tolist() == [0]
     assert clear.cells.tolist() == [1]

@@ -89,7 +89,7 @@ def test_one_reflection_is_the_integral_of_what_was_measured():
     """By numpy, with the eye and daylight as the core has them, which are tested there."""
     wavelengths = np.arange(360.0, 831.0)
     for symbol, angle in itertools.product(("Au", "K", "TiN", "Zr"), (0, 30, 60, 80, 89)):
-        measured = rw.metal_index(symbol)
+        measured = rw.materials.metal_index(symbol)
         assert measured.wavelengths[0] <= 360
         assert measured.wavelengths[-1] >= 830
         assert (np.diff(measured.wavelengths) > 0).all()

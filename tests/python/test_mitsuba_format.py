@@ -61,8 +61,8 @@ def test_what_is_not_given_is_as_mitsuba_has_it():
     # 50 mm on a film of 36 by 24 mm.
     assert bare.camera.fov_axis == "diagonal"
     assert np.isclose(np.tan(np.radians(bare.camera.fov / 2)), np.hypot(36, 24) / 100, rtol=1e-15)
-    assert bare.filter == rw.CroppedFilter(rw.GaussianFilter(radius=2.0, sigma=0.5))
-    assert bare.scene.shading_normals == "as given"
+    assert bare.filter == rw.rendering.CroppedFilter(rw.rendering.GaussianFilter(radius=2.0, sigma=0.5))
+    assert bare.scene.shading_normals == "raw"
     assert (bare.samples, bare.seed, bare.integrator) == (4, 0, rw.Path(None, 4))
     assert bare.scene.shapes == (rw.Sphere(material=rw.TwoSided(rw.Diffuse(0.5), rw.Diffuse(0.0))),)
     assert front({"type": "plastic"}).ior == 1.49 / 1.000277
@@ -240,22 +240,22 @@ def test_integrators_samplers_and_filters():
     )
     seen = read({"type": "aov", "aovs": "d:depth, n:sh_normal", "img": {"type": "direct"}})
     assert (seen.aov, seen.integrator) == (("depth", "shading_normal"), rw.Direct())
-    assert read(sampler={"type": "ldsampler", "sample_count": 32, "seed": 7}).sampler == rw.Sobol()
+    assert read(sampler={"type": "ldsampler", "sample_count": 32, "seed": 7}).sampler == rw.rendering.Sobol()
     default = read(sampler={"type": "independent", "sample_count": 16, "seed": 3})
     assert (default.sampler, default.samples, default.seed) == (None, 16, 3)
     assert "independent" in default.unnamed
     assert (read().sampler, read().unnamed) == (None, None)
     counted = read(sampler={"type": "multijitter", "sample_count": 32, "seed": 7})
-    assert (counted.sampler, counted.samples, counted.seed) == (rw.Stratified(), 32, 7)
-    assert read(rfilter={"type": "tent"}).filter == rw.TriangleFilter(1.0)
-    assert read(rfilter={"type": "gaussian", "stddev": 0.25}).filter == rw.GaussianFilter(1.0, 0.25)
-    assert read(rfilter={"type": "mitchell", "B": 0.5}).filter == rw.MitchellFilter(2.0, 0.5, 1 / 3)
-    assert read(rfilter={"type": "catmullrom"}).filter == rw.MitchellFilter(2.0, 0.0, 0.5)
-    assert read(rfilter={"type": "lanczos"}).filter == rw.LanczosFilter(3)
+    assert (counted.sampler, counted.samples, counted.seed) == (rw.rendering.Stratified(), 32, 7)
+    assert read(rfilter={"type": "tent"}).filter == rw.rendering.TriangleFilter(1.0)
+    assert read(rfilter={"type": "gaussian", "stddev": 0.25}).filter == rw.rendering.GaussianFilter(1.0, 0.25)
+    assert read(rfilter={"type": "mitchell", "B": 0.5}).filter == rw.rendering.MitchellFilter(2.0, 0.5, 1 / 3)
+    assert read(rfilter={"type": "catmullrom"}).filter == rw.rendering.MitchellFilter(2.0, 0.0, 0.5)
+    assert read(rfilter={"type": "lanczos"}).filter == rw.rendering.LanczosFilter(3)
     cropped = read(rfilter={"type": "tent"}, border=False).filter
-    assert cropped == rw.CroppedFilter(rw.TriangleFilter(1.0))
+    assert cropped == rw.rendering.CroppedFilter(rw.rendering.TriangleFilter(1.0))
     # The box filter of one pixel does not reach beyond.
-    assert read(rfilter={"type": "box"}, border=False).filter == rw.BoxFilter()
+    assert read(rfilter={"type": "box"}, border=False).filter == rw.rendering.BoxFilter()
 
 
 def test_a_part_of_a_film_sees_what_the_whole_does_there():

@@ -22,13 +22,13 @@ def within(bsdf, medium, **more):
 
 def test_what_is_within_a_shape():
     smoke = rw.Homogeneous((0.5, 1.0, 2.0), (1.5, 3.0, 6.0))
-    assert within({"type": "null"}, SMOKE) == rw.Boundary(smoke)
+    assert within({"type": "null"}, SMOKE) == rw.MediumInterface(smoke)
     glass = {"type": "dielectric", "int_ior": 1.5, "ext_ior": 1.0}
     assert within(glass, SMOKE) == rw.Dielectric(1.5, alpha=0.0, interior=smoke)
     for phase, expected in [
         ({"type": "hg", "g": 0.5}, rw.HenyeyGreenstein(0.5)),
-        ({"type": "rayleigh"}, rw.Rayleigh()),
-        ({"type": "isotropic"}, rw.Isotropic()),
+        ({"type": "rayleigh"}, rw.media.Rayleigh()),
+        ({"type": "isotropic"}, rw.media.Isotropic()),
     ]:
         told = {"type": "homogeneous", "albedo": 0.75, "sigma_t": 2.0, "phase": phase}
         assert within({"type": "null"}, told).interior == rw.Homogeneous(0.5, 1.5, expected)
@@ -39,7 +39,7 @@ def test_what_is_within_a_shape():
     constant = {"type": "constvolume", "value": 2.0, "to_world": moved}
     told = {"type": "heterogeneous", "albedo": 0.75, "sigma_t": constant}
     assert within({"type": "null"}, told).interior == rw.GridMedium(
-        np.ones((1, 1, 1)), transform=moved, absorption=0.5, scattering=1.5, at="centres"
+        np.ones((1, 1, 1)), transform=moved, absorption=0.5, scattering=1.5, at="centers"
     )
     # The inside of a wall is invisible.
     assert (
@@ -61,7 +61,7 @@ def test_densities_from_files(tmp_path):
         "s": {"type": "cube", "interior": medium, "bsdf": {"type": "null"}},
     }
     found = rw.from_mitsuba(scene, folder=tmp_path).scene.shapes[0].material.interior
-    assert found == rw.GridMedium(numbers, transform=moved, absorption=2, scattering=2, at="centres")
+    assert found == rw.GridMedium(numbers, transform=moved, absorption=2, scattering=2, at="centers")
     grid["use_grid_bbox"] = True
     found = rw.from_mitsuba(scene, folder=tmp_path).scene.shapes[0].material.interior
     assert found.bounds == ((0, 0, 0), (2, 3, 4))
@@ -78,7 +78,7 @@ def test_grids_of_albedos_and_of_colours(tmp_path):
     def read():
         return rw.from_mitsuba(scene, folder=tmp_path).scene.shapes[0].material.interior
 
-    assert read() == rw.GridMedium(numbers, transform=np.eye(4), extinction=4, albedo=numbers, at="centres")
+    assert read() == rw.GridMedium(numbers, transform=np.eye(4), extinction=4, albedo=numbers, at="centers")
     medium["albedo"]["to_world"] = np.diag([2.0, 3.0, 4.0, 1.0])
     with pytest.raises(ValueError, match="sigma_t and albedo must lie in the same place"):
         read()

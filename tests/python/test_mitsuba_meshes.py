@@ -67,7 +67,7 @@ def test_vertices_and_faces_have_their_colours(tmp_path):
 
     assert np.allclose(read("vertex_color").colors, given, rtol=0, atol=1e-6)
     by_face = read("face_color", scale=0.5)
-    assert by_face.material.front.reflectance == rw.ProductTexture(rw.VertexColors(), 0.5)
+    assert by_face.material.front.reflectance == rw.textures.ProductTexture(rw.VertexColors(), 0.5)
     # Each face has its own corners, all of one colour.
     assert by_face.vertices.shape == (24, 3)
     assert (by_face.colors.reshape(8, 3, 3) == by_face.colors.reshape(8, 3, 3)[:, :1]).all()
@@ -387,7 +387,7 @@ def test_balls_at_the_joints_of_curves_have_coordinates_as_mitsuba_has_them(tmp_
         outwards /= np.linalg.norm(outwards)
         hit = zig.intersect(point + 2 * outwards, -outwards)
         weights = np.array([1 - hit.uv.sum(), *hit.uv])
-        u, v = weights @ np.asarray(mesh.uv)[np.asarray(mesh.faces)[hit.primitive]]
+        u, v = weights @ np.asarray(mesh.uv)[np.asarray(mesh.faces)[hit.primitive_id]]
         expected = np.arctan2(rot @ outwards, rad @ outwards) / (2 * np.pi) % 1
         assert np.isclose(u, expected, rtol=0, atol=2e-3)
         assert np.isclose(v, k / 3, rtol=0, atol=1e-6)

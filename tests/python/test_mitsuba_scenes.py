@@ -21,7 +21,7 @@ from mitsuba_xml import xml
 import raywright as rw
 
 SCENES = scenes()
-SAMPLES, SAMPLER = 128, rw.Lattice(16)
+SAMPLES, SAMPLER = 128, rw.rendering.Lattice(16)
 
 
 @pytest.fixture(scope="module")

@@ -39,7 +39,7 @@ def test_at_each_time_all_is_as_if_it_stood_still(accelerator: rw.BVH | rw.Brute
     hits = moving.intersect(ORIGINS, DIRECTIONS, time=TIMES)
     every = moving.intersect_all(ORIGINS, DIRECTIONS, time=TIMES)
     shadowed = moving.occluded(ORIGINS, DIRECTIONS, time=TIMES)
-    counted = moving.count(ORIGINS, DIRECTIONS, time=TIMES)
+    counted = moving.count_hits(ORIGINS, DIRECTIONS, time=TIMES)
     assert hits.hit.mean() > 0.3
     np.testing.assert_array_equal(shadowed, hits.hit)
     np.testing.assert_array_equal(counted, every.count)
@@ -47,7 +47,7 @@ def test_at_each_time_all_is_as_if_it_stood_still(accelerator: rw.BVH | rw.Brute
         which = time == TIMES
         then = rw.Scene([still(time).shapes[0], MESH])
         wanted = then.intersect(ORIGINS[which], DIRECTIONS[which])
-        for name in ("t", "shape_id", "instance", "primitive", "uv"):
+        for name in ("t", "shape_id", "instance_id", "primitive_id", "uv"):
             np.testing.assert_array_equal(getattr(hits, name)[which], getattr(wanted, name))
         np.testing.assert_allclose(hits.position[which], wanted.position, rtol=0, atol=1e-12)
         np.testing.assert_allclose(hits.normal[which], wanted.normal, rtol=0, atol=1e-12)
@@ -63,7 +63,7 @@ def test_one_time_is_for_all_and_the_opening_is_the_default(moving: rw.Scene) ->
         assert one == moving.intersect(ORIGINS, DIRECTIONS, time=np.full(3000, time))
         np.testing.assert_array_equal(one.t, still(time).intersect(ORIGINS, DIRECTIONS).t)
     assert moving.intersect(ORIGINS, DIRECTIONS) == moving.intersect(ORIGINS, DIRECTIONS, time=0.0)
-    cost = moving.cost(ORIGINS, DIRECTIONS, time=0.5)
+    cost = moving.traversal_cost(ORIGINS, DIRECTIONS, time=0.5)
     assert cost.nodes.shape == (3000,)
 
 
@@ -93,7 +93,7 @@ def test_a_point_moves_on_a_straight_line() -> None:
     times = np.linspace(0, 1, 9)
     hits = scene.intersect(np.stack([8 * times, 0 * times, 0 * times + 10], axis=1), (0, 0, -1), time=times)
     np.testing.assert_array_equal(hits.t, 10 + 4 * times)
-    np.testing.assert_array_equal(hits.instance, 0)
+    np.testing.assert_array_equal(hits.instance_id, 0)
     np.testing.assert_allclose(hits.position[:, 2], -4 * times, rtol=0, atol=1e-15)
     assert not scene.occluded((0, 0, 10), (0, 0, -1), time=0.5)
 

@@ -39,7 +39,7 @@ def test_polygons_are_fans_in_the_order_of_the_file(tmp_path):
     expected = corners((1, 2, 3), (1, 3, 4), (5, 6, 7), (1, 2, 6), (1, 6, 7), (1, 7, 5))
     assert triangles(mixed) == expected
     hits = rw.Scene(squares).intersect([(0.9, 0.1, -1), (0.9, 0.1, 2)], [(0, 0, 1), (0, 0, -1)])
-    assert hits.primitive.tolist() == [0, 2]
+    assert hits.primitive_id.tolist() == [0, 2]
 
 
 def test_materials_come_in_the_order_of_the_file(tmp_path):

@@ -22,7 +22,7 @@ def seen(shapes, camera=ABOVE, samples=1, **more):
 def scattered(mesh, incoming, outgoing):
     """The scattering function of a mesh at (0.5, 0.5, 0), without its cosine: (N, 3)."""
     point = np.array((0.5, 0.5, 0.0))
-    rays = rw.Rays(point + 2 * outgoing, -outgoing, np.zeros(len(outgoing)))
+    rays = rw.query.Rays(point + 2 * outgoing, -outgoing, np.zeros(len(outgoing)))
     return rw.Scene(mesh).interactions(rays).evaluate(incoming)[0] / incoming[:, 2:]
 
 
@@ -43,7 +43,7 @@ def test_a_picture_of_what_shines_is_multiplied(tmp_path):
     pixels = picture(tmp_path, "glow.png", PIXELS[..., :3])
     glow = rw.ImageTexture(pixels)
     both = loaded(write(tmp_path, "Ke 2 3 4\nmap_Ke glow.png"))
-    assert both.emission == rw.Emission(rw.ProductTexture(glow, (2, 3, 4)), both_sides=True)
+    assert both.emission == rw.Emission(rw.textures.ProductTexture(glow, (2, 3, 4)), both_sides=True)
     # Programs write black beside a picture.
     for statements in ("map_Ke glow.png", "Ke 0 0 0\nmap_Ke glow.png"):
         assert loaded(write(tmp_path, statements)).emission == rw.Emission(glow, both_sides=True)
@@ -126,7 +126,7 @@ def test_pictures_of_highlights(tmp_path):
     assert model.specular.b == pytest.approx((share,) * 3)
     sharp = picture(tmp_path, "sharp.png", PIXELS[..., 0])
     model = material(tmp_path, "Kd 0.2 0.2 0.2\nKs 0.5 0.5 0.5\nNs 30\nmap_Ns sharp.png")
-    assert model.exponent == rw.ProductTexture(rw.ImageTexture(sharp, linear=True), 30.0)
+    assert model.exponent == rw.textures.ProductTexture(rw.ImageTexture(sharp, linear=True), 30.0)
     n = 30 * (sharp / 255)
     assert model.specular.a.image == pytest.approx(8 * (2 ** (-n / 2) + n) / ((n + 2) * (n + 4)), rel=1e-6)
     assert model.specular.b == (0.5, 0.5, 0.5)
@@ -156,7 +156,7 @@ def test_pictures_of_holes(tmp_path):
     leaf = picture(tmp_path, "leaf.png", PIXELS)
     both = material(tmp_path, "Kd 1 1 1\nmap_Kd leaf.png\nmap_d leaf.png\nd 0.5")
     assert both.material == rw.Diffuse(rw.ImageTexture(leaf))
-    assert both.opacity == rw.ProductTexture(rw.ImageTexture(leaf, linear=True, channel="a"), 0.5)
+    assert both.opacity == rw.textures.ProductTexture(rw.ImageTexture(leaf, linear=True, channel="a"), 0.5)
     # Without alpha, or with full alpha, brightness decides.
     full = picture(tmp_path, "full.png", np.dstack([PIXELS[..., :3], np.full((4, 4), 255)]))
     grey = picture(tmp_path, "grey.png", PIXELS[..., 0])
@@ -219,7 +219,7 @@ def test_a_pane_is_glass_where_it_is_not_there(tmp_path):
     assert pane == rw.Mix(rw.Diffuse(0.5), rw.ThinDielectric(1.5), 0.75)
     holes = rw.ImageTexture(picture(tmp_path, "holes.png", PIXELS[..., 0]), linear=True)
     pane = material(tmp_path, "Kd 0.5 0.5 0.5\nmap_d holes.png\nNi 1.5\nillum 4")
-    assert pane == rw.Mix(rw.Diffuse(0.5), rw.ThinDielectric(1.5), rw.MixTexture(1.0, 0.0, holes))
+    assert pane == rw.Mix(rw.Diffuse(0.5), rw.ThinDielectric(1.5), rw.textures.MixTexture(1.0, 0.0, holes))
     # As Maya writes all opaque materials.
     maya = "illum 4\nKd 0.50 0.50 0.50\nKa 0.00 0.00 0.00\nTf 1.00 1.00 1.00\nNi 1.00"
     assert material(tmp_path, maya) == rw.Diffuse(0.5)
@@ -297,7 +297,7 @@ def test_normals_and_bumps(tmp_path):
     large = SQUARE.replace("v 1 0 0", "v 8 0 0").replace("v 1 1 0", "v 8 8 0").replace("v 0 1 0", "v 0 8 0")
     assert loaded(write(tmp_path, "bump heights.png", large)).material == rw.BumpMap(matt, heights, 0.08)
     twice = loaded(write(tmp_path, "bump -s 2 2 2 heights.png", large)).material
-    assert (twice.scale, twice.height.transform) == (pytest.approx(0.04), rw.UvTransform(2))
+    assert (twice.scale, twice.height.transform) == (pytest.approx(0.04), rw.textures.UvTransform(2))
 
 
 def test_bumps_look_the_same_at_any_size(tmp_path):
@@ -326,8 +326,10 @@ def test_options_of_pictures(tmp_path):
     def placed(**more):
         return rw.ImageTexture(pixels, **more)
 
-    assert texture("-s 2 3 1 -o 0.5 0.25 0") == placed(transform=rw.UvTransform((2, 3), offset=(0.5, 0.25)))
-    assert texture("-s 2") == placed(transform=rw.UvTransform((2, 1)))
+    assert texture("-s 2 3 1 -o 0.5 0.25 0") == placed(
+        transform=rw.textures.UvTransform((2, 3), offset=(0.5, 0.25))
+    )
+    assert texture("-s 2") == placed(transform=rw.textures.UvTransform((2, 1)))
     assert texture("-s 1 1 1 -o 0 0 0 -mm 0 1 -blendu on -cc off -t 0 0 0 -clamp off") == placed()
     assert texture("-clamp on") == placed(wrap="clamp")
     told = f"{LEFT_OUT}-boost of map_Kd of 'it', -mm of map_Kd of 'it'"
@@ -337,7 +339,7 @@ def test_options_of_pictures(tmp_path):
     # A name that begins like a number.
     (tmp_path / "2").write_bytes((tmp_path / "a b.png").read_bytes())
     assert material(tmp_path, "map_Kd -o 1 1 2").reflectance == placed(
-        transform=rw.UvTransform(offset=(1, 1))
+        transform=rw.textures.UvTransform(offset=(1, 1))
     )
     for letter, channel in (("r", "r"), ("g", "g"), ("b", "b"), ("m", "a"), ("l", None)):
         opacity = material(tmp_path, f"map_d -imfchan {letter} a b.png").opacity

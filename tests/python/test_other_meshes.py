@@ -492,7 +492,7 @@ def test_open3d_meshes_of_both_kinds():
     assert np.array_equal(mesh.faces, triangles)
     hits = rw.Scene(tensors).intersect((0.7, 0.2, 9), DOWN)
     assert hits.interpolate("height") == pytest.approx(1, abs=1e-15)
-    assert hits.interpolate("number") == 10 * hits.cell == 10 * hits.primitive
+    assert hits.interpolate("number") == 10 * hits.cell == 10 * hits.primitive_id
     legacy = tensors.to_legacy()
     legacy.vertex_colors = o3d.utility.Vector3dVector(POINTS * 0.75)
     colored = rw.Mesh.of(legacy)

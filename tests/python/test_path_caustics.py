@@ -141,8 +141,8 @@ SCENES = {
 
 
 # Mean of red, green and blue without caustics, and its standard error, from
-# [render(scene, camera, False, seed=1000 + s, samples=128, sampler=rw.Sobol()) for s in range(200)],
-# of the glass in glass and the bulb for s in range(300).
+# [render(scene, camera, False, seed=1000 + s, samples=128, sampler=rw.rendering.Sobol()) for s in
+# range(200)], of the glass in glass and the bulb for s in range(300).
 FREE = {
     "glass": ((0.510533, 0.237978, 0.110439), (0.000302, 0.000176, 0.000123)),
     "mirror and varnish": ((0.408407, 0.206501, 0.114372), (0.000172, 0.000092, 0.000074)),
@@ -160,7 +160,7 @@ FREE = {
 def test_the_mean_is_what_it_is_without(name):
     scene, camera = SCENES[name]()
     free, error_of_free = np.array(FREE[name])
-    how = {"samples": 32, "sampler": rw.Sobol(), "threads": 1}
+    how = {"samples": 32, "sampler": rw.rendering.Sobol(), "threads": 1}
     few = np.array([render(scene, camera, True, seed=s, **how).rgb.mean(axis=(0, 1)) for s in range(40)])
     error = np.hypot(few.std(axis=0, ddof=1) / np.sqrt(40), error_of_free)
     # By Student's t of 39 degrees, one of the 27 such numbers of all scenes is off by more once in 640 tries.
@@ -194,7 +194,7 @@ def same_scenes():
     return [(room(*balls)[0], camera) for _ in range(3)]
 
 
-@pytest.mark.parametrize("how", [{}, {"adaptive": True}, {"sampler": rw.Sobol()}, {"reuse": 4}])
+@pytest.mark.parametrize("how", [{}, {"adaptive": True}, {"sampler": rw.rendering.Sobol()}, {"reuse": 4}])
 def test_threads_pieces_and_checkpoints_change_no_bit(how, same_scenes, tmp_path):
     alone, together, elsewhere = same_scenes
     one = render(*alone, True, samples=48, threads=1, **how)

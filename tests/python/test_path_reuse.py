@@ -65,7 +65,7 @@ def glowing():
     return rw.Mesh(corners, [(0, 1, 2), (0, 2, 3)], material=rw.Diffuse((0.9, 0.1, 0)), emission=light)
 
 
-WAYS = [{}, {"adaptive": True}, {"sampler": rw.Sobol()}, {"filter": rw.MitchellFilter()}]
+WAYS = [{}, {"adaptive": True}, {"sampler": rw.rendering.Sobol()}, {"filter": rw.rendering.MitchellFilter()}]
 
 SCENES = {
     "cornell": lambda: box(12, 12),
@@ -76,7 +76,7 @@ SCENES = {
 
 
 # Expectation without sharing: rgb and standard error of render(scene, camera, 1, samples=32768,
-# sampler=rw.Sobol(), seed=10**9), by the name of the scene.
+# sampler=rw.rendering.Sobol(), seed=10**9), by the name of the scene.
 ALONE = Path(__file__).parent / "data" / "path_reuse.npz"
 
 
@@ -121,7 +121,7 @@ def test_the_error_is_a_small_part_of_what_it_is_without():
     scene, camera = box(128, 128)
     errors = {}
     for reuse in (1, 2, 4):
-        how = {"samples": 16, "sampler": rw.Sobol()}
+        how = {"samples": 16, "sampler": rw.rendering.Sobol()}
         pictures = np.array([render(scene, camera, reuse, seed=seed, **how).rgb for seed in range(2)])
         spread = pictures.var(axis=0, ddof=1, dtype=np.float64)
         errors[reuse] = np.mean(spread / (np.square(pictures.mean(axis=0)) + 0.01))

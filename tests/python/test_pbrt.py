@@ -40,8 +40,8 @@ def test_options_are_read(tmp_path):
         50,
         "smaller",
     )
-    assert (shot.samples, shot.sampler, shot.integrator) == (8, rw.Independent(), rw.Path(3))
-    assert shot.filter == rw.GaussianFilter(1.5, 0.5)
+    assert (shot.samples, shot.sampler, shot.integrator) == (8, rw.rendering.Independent(), rw.Path(3))
+    assert shot.filter == rw.rendering.GaussianFilter(1.5, 0.5)
     lens = HEAD.replace('"float fov" 50', '"float fov" 50 "float lensradius" 0.1 "float focaldistance" 4')
     assert load(tmp_path, 'Shape "sphere"', lens).camera.focused_distance == 4
     flat = load(
@@ -58,7 +58,7 @@ def test_options_are_read(tmp_path):
     }.items():
         assert load(tmp_path, 'Shape "sphere"', HEAD.replace('"volpath"', name)).integrator == wanted
     boxed = load(tmp_path, 'Shape "sphere"', HEAD + 'PixelFilter "box"\n')
-    assert boxed.filter == rw.BoxFilter()
+    assert boxed.filter == rw.rendering.BoxFilter()
 
 
 def test_transforms_follow_each_other(tmp_path):
@@ -104,7 +104,7 @@ def test_materials(tmp_path):
     eta, k = white.eta[0], white.k[0]
     assert ((eta - 1) ** 2 + k * k) / ((eta + 1) ** 2 + k * k) == pytest.approx(0.5, rel=1e-9)
     glass = material(tmp_path, 'Material "dielectric" "spectrum eta" "glass-BK7"')
-    assert glass.ior == rw.glasses["N-BK7"]
+    assert glass.ior == rw.materials.glasses["N-BK7"]
     assert material(tmp_path, 'Material "thindielectric" "spectrum eta" "glass-F10"').ior == pytest.approx(
         1.72825, abs=1e-5
     )
@@ -136,14 +136,14 @@ def test_textures(tmp_path):
         'Material "diffuse" "texture reflectance" "p"',
     ).reflectance
     assert np.array_equal(image.image, pixels)
-    assert (image.wrap, image.transform) == (("clamp", "clamp"), rw.UvTransform((2, 1)))
+    assert (image.wrap, image.transform) == (("clamp", "clamp"), rw.textures.UvTransform((2, 1)))
     tiles = material(
         tmp_path,
         'Texture "a" "spectrum" "checkerboard" "float uscale" 4 "float vscale" 4 "rgb tex1" [.1 .1 .1]\n'
         'Texture "b" "spectrum" "scale" "texture tex" "a" "float scale" 0.5\n'
         'Material "diffuse" "texture reflectance" "b"',
     ).reflectance
-    assert tiles == rw.ProductTexture(rw.Checker(0.1, 0.0, rw.UvTransform(4.0)), 0.5)
+    assert tiles == rw.textures.ProductTexture(rw.Checker(0.1, 0.0, rw.textures.UvTransform(4.0)), 0.5)
     bumps = material(
         tmp_path,
         'Texture "h" "float" "constant" "float value" 0.1\nMaterial "diffuse" "texture displacement" "h"',

@@ -81,7 +81,7 @@ def test_lights_have_the_power_that_they_name(tmp_path, light, factor):
 
 def test_boxes_may_be_wider(tmp_path):
     head = HEAD + 'PixelFilter "box" "float xradius" 1.5 "float yradius" 1.5\n'
-    assert load(tmp_path, LIT, head).filter == rw.BoxFilter(1.5)
+    assert load(tmp_path, LIT, head).filter == rw.rendering.BoxFilter(1.5)
 
 
 def test_pictures_that_shine_are_exposed_too(tmp_path):
@@ -183,7 +183,7 @@ def picture(folder, values, text="", of="spectrum", name="p.png"):
     )
     texture = made.reflectance if of == "spectrum" else made.height
     scale = 1.0
-    if isinstance(texture, rw.ProductTexture):
+    if isinstance(texture, rw.textures.ProductTexture):
         texture, scale = texture.a, texture.b[0]
     texels = texture.image[..., list(texture.channels)].astype(np.float64)
     if texture.image.dtype == np.uint8:

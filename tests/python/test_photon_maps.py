@@ -20,12 +20,12 @@ def picture(scene, camera, integrator, samples, **options):
 
 WAYS = {
     "nearest": rw.PhotonMap(5000),
-    "looked up": rw.PhotonMap(5000, gather=0, filter="epanechnikov"),
-    "one map": rw.PhotonMap(5000, caustic=False, gather=0, filter="cone"),
-    "caustics by rays": rw.PhotonMap(5000, caustic=False, gather=2),
-    "fixed": rw.PhotonMap(5000, nearest=None, radius=20.0),
+    "looked up": rw.PhotonMap(5000, final_gather=0, filter="epanechnikov"),
+    "one map": rw.PhotonMap(5000, caustic=False, final_gather=0, filter="cone"),
+    "caustics by rays": rw.PhotonMap(5000, caustic=False, final_gather=2),
+    "fixed": rw.PhotonMap(5000, k_nearest=None, radius=20.0),
     "progressive": rw.ProgressivePhotonMap(5000),
-    "short": rw.PhotonMap(10_000, gather=0, max_depth=2),
+    "short": rw.PhotonMap(10_000, final_gather=0, max_depth=2),
     "short, gathered": rw.PhotonMap(5000, max_depth=3),
 }
 
@@ -60,9 +60,9 @@ def water(n=1.33, depth=0.3):
 @pytest.mark.parametrize(
     "way",
     [
-        rw.PhotonMap(6_000, nearest=None, radius=0.05, gather=0),
+        rw.PhotonMap(6_000, k_nearest=None, radius=0.05, final_gather=0),
         pytest.param(rw.ProgressivePhotonMap(30_000, 0.08), marks=pytest.mark.slow),
-        pytest.param(rw.PhotonMap(60_000, nearest=90, gather=0), marks=pytest.mark.slow),
+        pytest.param(rw.PhotonMap(60_000, k_nearest=90, final_gather=0), marks=pytest.mark.slow),
     ],
 )
 def test_the_sky_over_water(way):
@@ -92,8 +92,10 @@ def caustic():
 @pytest.mark.parametrize(("radius", "expected"), [(0.5, 0.844582472000673), (1.0, 0.585786437626905)])
 def test_a_disk_has_its_bias_and_tells_it(caustic, radius, expected):
     look = rw.Orthographic((0, 0, 0.4), (0, 0, 0), up=(0, 1, 0), width=1, height=1, scale=1e-3)
-    way = rw.PhotonMap(30_000, nearest=None, radius=radius, gather=0)
-    images = [picture(caustic, look, way, 16, sampler=rw.Independent(), seed=seed) for seed in range(4)]
+    way = rw.PhotonMap(30_000, k_nearest=None, radius=radius, final_gather=0)
+    images = [
+        picture(caustic, look, way, 16, sampler=rw.rendering.Independent(), seed=seed) for seed in range(4)
+    ]
     light = [2 * math.pi * float(image.rgb.mean()) for image in images]
     error = np.std(light, ddof=1) / 2
     assert error < 0.01
@@ -121,9 +123,11 @@ def test_edges_are_as_bright_as_what_is_in_the_middle(x, y, photons, nearest):
     pane = square(3.0, 0.5, material=rw.Dielectric(1.0))
     scene = rw.Scene([floor, pane], lights=[rw.DirectionalLight((0, 0, -1), 1.0)])
     look = rw.Orthographic((x, y, 0.4), (x, y, 0), up=(0, 1, 0), width=1, height=1, scale=1e-6)
-    way = rw.PhotonMap(photons, nearest=nearest, radius=0.25, gather=0)
+    way = rw.PhotonMap(photons, k_nearest=nearest, radius=0.25, final_gather=0)
     light = [
-        2 * math.pi * float(picture(scene, look, way, 16, sampler=rw.Independent(), seed=seed).rgb.mean())
+        2
+        * math.pi
+        * float(picture(scene, look, way, 16, sampler=rw.rendering.Independent(), seed=seed).rgb.mean())
         for seed in range(4)
     ]
     assert np.std(light, ddof=1) / 2 < 0.03
@@ -136,7 +140,7 @@ def test_progress_takes_the_bias_away(caustic):
     bias, off = [], []
     for samples in (4, 32, 256):
         images = [
-            picture(caustic, look, way, samples, sampler=rw.Independent(), seed=seed)
+            picture(caustic, look, way, samples, sampler=rw.rendering.Independent(), seed=seed)
             for seed in range(max(64 // samples, 1))
         ]
         bias.append(np.mean([image.bias.mean() for image in images]))
@@ -183,8 +187,8 @@ def test_standard_errors_hold_for_what_maps_tend_to(caustic):
     # Many seeds estimate the expectation. Intervals of 95 % hold it in 93 to 97 % of pixels over all
     # pictures: pixels of one picture share their maps, so that many pictures are needed.
     look = rw.Orthographic((0, 0, 0.4), (0, 0, 0), up=(0, 1, 0), width=6, height=6, scale=1.6)
-    way = rw.PhotonMap(300, nearest=None, radius=0.5, gather=0)
-    options = {"sampler": rw.Independent(), "progress": False}
+    way = rw.PhotonMap(300, k_nearest=None, radius=0.5, final_gather=0)
+    options = {"sampler": rw.rendering.Independent(), "progress": False}
     images = [rw.render(caustic, look, way, 32, seed=seed, **options) for seed in range(100)]
     truth = np.mean([image.rgb.astype(float) for image in images], 0)
     held = []
@@ -201,7 +205,7 @@ def test_a_lamp_and_an_eye_both_behind_glass():
     scene = rw.Scene([*shapes, lamp])
     truth = picture(scene, look, rw.Path(reuse=1, caustics=True), 1024)
     # Light held by total reflection would need thousands of bounces.
-    assert_agree(scene, look, rw.PhotonMap(8000, gather=0, max_depth=40), truth, blur=0.06)
+    assert_agree(scene, look, rw.PhotonMap(8000, final_gather=0, max_depth=40), truth, blur=0.06)
     # They cannot reach a point light in glass; photons see the same as before.
     point = rw.Scene(shapes, lights=[rw.PointLight((0, 0, 1.2), 1.0)])
     assert picture(point, look, rw.Path(), 16).rgb.max() == 0
@@ -223,16 +227,16 @@ def test_what_moves_is_lit_at_its_time():
     )
     scene = rw.Scene([floor, board, pane, lamp])
     truth = picture(scene, look, rw.LightTraced(), 1024)
-    assert_agree(scene, look, rw.PhotonMap(3000, gather=0), truth, samples=16, blur=0.06)
+    assert_agree(scene, look, rw.PhotonMap(3000, final_gather=0), truth, samples=16, blur=0.06)
 
 
 @pytest.mark.parametrize(
     "way",
     [
-        rw.PhotonMap(4000, nearest=None, radius=0.2, gather=0),
+        rw.PhotonMap(4000, k_nearest=None, radius=0.2, final_gather=0),
         rw.PhotonMap(4000, caustic=False),
         rw.ProgressivePhotonMap(4000, 0.2),
-        rw.Bidirectional(merge=True, radius=0.2),
+        rw.Bidirectional(vertex_merging=True, radius=0.2),
     ],
     ids=lambda way: type(way).__name__,
 )
@@ -289,7 +293,7 @@ def test_any_light_comes_through_glass(name):
     scene = rw.Scene([floor, glass, *shapes], **lights)
     below = rw.Camera((0.9, 0, 0.35), (0.1, 0, 0), up=(0, 0, 1), fov=30, width=SIDE, height=SIDE)
     truth = picture(scene, below, rw.LightTraced(), 1024)
-    assert_agree(scene, below, rw.PhotonMap(6000, nearest=30, gather=0), truth, blur=0.08)
+    assert_agree(scene, below, rw.PhotonMap(6000, k_nearest=30, final_gather=0), truth, blur=0.08)
 
 
 def test_bits_go_by_the_seed_alone(tmp_path):
@@ -332,7 +336,7 @@ def test_glass_is_followed_both_ways(kind):
 
 def test_workers_make_the_same_maps():
     scene, look = rw.scenes.cornell_box(width=12, height=10)
-    way = rw.PhotonMap(3000, nearest=20)
+    way = rw.PhotonMap(3000, k_nearest=20)
     here = picture(scene, look, way, 20)
     with ProcessPoolExecutor(2) as executor:
         there = picture(scene, look, way, 20, executor=executor)
@@ -358,7 +362,7 @@ def test_scenes_without_photons_have_pictures():
     mirrors = rw.Scene(square(3.0, 0.0, material=rw.Mirror(1.0)), environment=sky)
     dark = rw.Scene(square(3.0, 0.0, material=rw.Diffuse(0.5)))
     lit = rw.Scene(square(3.0, 0.0, material=rw.Diffuse(0.5)), environment=sky)
-    for way in (rw.PhotonMap(1000), rw.PhotonMap(1000, gather=0), rw.ProgressivePhotonMap(1000)):
+    for way in (rw.PhotonMap(1000), rw.PhotonMap(1000, final_gather=0), rw.ProgressivePhotonMap(1000)):
         # Without matt surfaces nothing is gathered, and the picture is exact.
         np.testing.assert_allclose(picture(mirrors, look, way, 2).rgb[..., 1], 0.3, rtol=1e-6)
         assert picture(dark, look, way, 2).rgb.max() == 0
@@ -377,7 +381,7 @@ def test_what_cannot_be_is_refused_in_one_line():
             ({"photons": 0}, ValueError, "photons must be between 1 and"),
             ({"photons": 1.5}, TypeError, "photons must be an integer"),
             ({"radius": 0}, ValueError, "radius must be greater than 0"),
-            ({"gather": -1}, ValueError, "gather must be between 0 and"),
+            ({"final_gather": -1}, ValueError, "final_gather must be between 0 and"),
             ({"filter": "gauss"}, ValueError, "filter must be one of 'box', 'cone', 'epanechnikov'"),
             ({"max_depth": -1}, ValueError, "max_depth must be"),
             ({"roulette_depth": -1}, ValueError, "roulette_depth must be"),
@@ -385,7 +389,7 @@ def test_what_cannot_be_is_refused_in_one_line():
             with pytest.raises(error, match=words):
                 kind(**arguments)
     for kind, arguments, error, words in [
-        (rw.PhotonMap, {"nearest": 1}, ValueError, "nearest must be between 2 and"),
+        (rw.PhotonMap, {"k_nearest": 1}, ValueError, "k_nearest must be between 2 and"),
         (rw.PhotonMap, {"maps": 0}, ValueError, "maps must be between 1 and"),
         (rw.PhotonMap, {"caustic": 1}, TypeError, "caustic must be True or False"),
         (rw.ProgressivePhotonMap, {"alpha": 0}, ValueError, "alpha must be above 0"),
@@ -402,7 +406,7 @@ def test_what_cannot_be_is_refused_in_one_line():
 
 
 def test_it_is_a_value():
-    way = rw.PhotonMap(1000, nearest=None, filter="cone")
+    way = rw.PhotonMap(1000, k_nearest=None, filter="cone")
     assert pickle.loads(pickle.dumps(way)) == way != rw.PhotonMap()
     assert "filter='cone'" in repr(way)
     scene, look = rw.scenes.cornell_box(width=4, height=4)
@@ -426,7 +430,7 @@ def test_it_is_a_value():
     "way",
     [
         rw.ProgressivePhotonMap(photons=1000),
-        rw.PhotonMap(photons=1000, gather=0),
+        rw.PhotonMap(photons=1000, final_gather=0),
         rw.PhotonMap(photons=1000),
     ],
     ids=["progressive", "seen at once", "looked about"],
@@ -435,7 +439,7 @@ def test_what_a_coat_reflects_is_not_lost(way, coated, among):
     """Of what is reflected in a single direction nothing is known from photons: it has to be followed."""
     shapes = [rw.Sphere((0, 0, 0), 0.8, material=coated)]
     if among:
-        shapes.append(rw.Sphere((0, 0, 0), 2, material=rw.Boundary(rw.Homogeneous(1e-6, 0))))
+        shapes.append(rw.Sphere((0, 0, 0), 2, material=rw.MediumInterface(rw.Homogeneous(1e-6, 0))))
     scene, camera = (
         rw.Scene(shapes, environment=1.0),
         rw.Camera((0, 0, 4), (0, 0, 0), fov=22, width=4, height=4),

@@ -82,7 +82,7 @@ def test_light_in_a_closed_room_is_its_series():
 
 @pytest.mark.slow
 def test_a_paraboloid_makes_a_beam():
-    mirror = rw.Paraboloid((0, 0, 0), (0, 0, 0.5), radius=1, material=rw.Mirror(1.0))
+    mirror = rw.shapes.Paraboloid((0, 0, 0), (0, 0, 0.5), radius=1, material=rw.Mirror(1.0))
     scene = rw.Scene([mirror, square(1.2, 2.0)], lights=[rw.PointLight((0, 0, 0.5), 1)])
 
     def select(found):

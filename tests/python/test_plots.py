@@ -123,8 +123,8 @@ def test_rows_and_columns_of_hits_are_a_picture(plt):
     hits = rw.Scene(ball).intersect(*camera.rays())
     shown = np.ma.filled(hits.plot().images[0].get_array(), np.nan)
     assert np.array_equal(shown, np.where(hits.hit, hits.t, np.nan), equal_nan=True)
-    faces = np.ma.filled(hits.plot(name="primitive").images[0].get_array(), np.nan)
-    assert np.array_equal(faces, np.where(hits.hit, hits.primitive, np.nan), equal_nan=True)
+    faces = np.ma.filled(hits.plot(name="primitive_id").images[0].get_array(), np.nan)
+    assert np.array_equal(faces, np.where(hits.hit, hits.primitive_id, np.nan), equal_nan=True)
     height = np.ma.filled(hits.plot(name="h").images[0].get_array(), np.nan)
     assert np.array_equal(height, hits.interpolate("h"), equal_nan=True)
     with pytest.raises(ValueError, match=r"^name must be an attribute of a mesh of the scene, got 'wings'"):
@@ -138,8 +138,10 @@ def test_view_factors_are_a_matrix(plt, plates):
     assert np.array_equal(shown, np.where(found.matrix > 0, found.matrix, np.nan), equal_nan=True)
     assert (ax.get_xlabel(), ax.get_ylabel()) == ("to", "from")
     assert found.plot(name="standard_error") is not ax
-    with pytest.raises(ValueError, match=r"^name must be one of 'matrix', 'standard_error', got 'rest'$"):
-        found.plot(name="rest")
+    with pytest.raises(
+        ValueError, match=r"^name must be one of 'matrix', 'standard_error', got 'to_surroundings'$"
+    ):
+        found.plot(name="to_surroundings")
 
 
 @pytest.mark.parametrize(("count", "most"), [(7, 7), (7, 3), (8, 3), (12, 4), (5, 1)])

@@ -17,8 +17,8 @@ CHECKED = rw.Diffuse(rw.Checker((0.9, 0.1, 0.1), (0.1, 0.2, 0.9), 8))
 POSE = {"position": (0.4, 1.6, 4.1), "target": (0.0, 0.1, 0.0)}
 CAMERAS = {
     "pinhole": rw.Camera(**POSE, fov=50, width=67, height=45),
-    "off center": rw.Camera(**POSE, fov=50, width=64, height=48, principal=(20, 31)),
-    "thin lens": rw.ThinLens(**POSE, fov=50, width=40, height=31, aperture_radius=0.2, focus_distance=3),
+    "off center": rw.Camera(**POSE, fov=50, width=64, height=48, principal_point=(20, 31)),
+    "thin_lens": rw.ThinLens(**POSE, fov=50, width=40, height=31, aperture_radius=0.2, focus_distance=3),
     "orthographic": rw.Orthographic(**POSE, scale=4, width=33, height=41),
     "fisheye": rw.Fisheye(**POSE, fov=170, width=37, height=37),
     "panorama": rw.Panorama(**POSE, width=64, height=32),
@@ -71,14 +71,14 @@ def by_hand(scene, camera, light):
         blocked = np.zeros(hits.shape, bool)
     elif isinstance(light, rw.PointLight):
         ways = np.array(light.position) - hits.position
-        starts = hits.leave(ways).origins
+        starts = hits.spawn_rays(ways).origins
         blocked = scene.occluded(starts, light.position - starts, t_max=1 - 2.0**-45)
     else:
         sun = -np.array(light.direction) if isinstance(light, rw.DirectionalLight) else np.array(light, float)
         ways = np.broadcast_to(sun, directions.shape)
-        blocked = scene.occluded(hits.leave(sun).origins, sun)
+        blocked = scene.occluded(hits.spawn_rays(sun).origins, sun)
     cosine = np.sum(normal * ways, axis=-1) / np.linalg.norm(ways, axis=-1)
-    flat = rw.Rays(origins.reshape(-1, 3), directions.reshape(-1, 3), np.zeros(hits.t.size))
+    flat = rw.query.Rays(origins.reshape(-1, 3), directions.reshape(-1, 3), np.zeros(hits.t.size))
     albedo = scene.interactions(flat).albedo.reshape(*hits.shape, 3)
     lit = hits.hit & ~blocked & (cosine > 0)
     return np.where(hits.hit[..., None], albedo, 0.0), np.where(lit, cosine, 0.0), hits.hit
@@ -135,7 +135,7 @@ def test_cameras_and_scenes_that_move_are_seen_as_the_shutter_opens():
     moving = rw.Scene([rw.Instance(ball, ends[:1], ends[1:])])
     still = rw.Scene([rw.Instance(ball, ends[:1])])
     end = rw.Pose((5, 5, 5), target=(0, 0, 0))
-    cameras = [rw.Camera(**POSE, fov=30, width=20, height=15, moved_to=moved) for moved in (None, end)]
+    cameras = [rw.Camera(**POSE, fov=30, width=20, height=15, end_pose=moved) for moved in (None, end)]
     wanted = still.preview(cameras[0], SUN)
     assert wanted.any()
     np.testing.assert_array_equal(moving.preview(cameras[1], SUN), wanted)

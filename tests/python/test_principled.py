@@ -13,7 +13,7 @@ def test_they_compare_and_pickle():
     assert one == rw.Principled([0.5, 0.2, 0.1], 0.3, 0.5, transmission=rw.Checker(), clearcoat=0.25)
     assert one != rw.Principled((0.5, 0.2, 0.1), 0.3, 0.5)
     assert pickle.loads(pickle.dumps(one)) == one
-    sheet = rw.PrincipledThin(0.5, diffuse_transmission=0.5)
+    sheet = rw.materials.PrincipledThin(0.5, diffuse_transmission=0.5)
     assert pickle.loads(pickle.dumps(sheet)) == sheet
 
 
@@ -29,12 +29,12 @@ def test_they_compare_and_pickle():
             r"clearcoat must be a texture or one number, got shape \(2,\)",
         ),
         (
-            lambda: rw.PrincipledThin(roughness="rough"),
+            lambda: rw.materials.PrincipledThin(roughness="rough"),
             TypeError,
             "roughness must be real numbers, got 'rough'",
         ),
         (
-            lambda: rw.PrincipledThin(diffuse_transmission=2),
+            lambda: rw.materials.PrincipledThin(diffuse_transmission=2),
             ValueError,
             "diffuse_transmission must be between 0 and 1",
         ),
@@ -69,7 +69,7 @@ def test_smooth_glass_and_metal_lose_nothing():
     for material in (
         rw.Principled(1.0, 0.1, transmission=1.0),
         rw.Principled(1.0, 0.1, 1.0),
-        rw.PrincipledThin(1.0, 0.1, transmission=1.0),
+        rw.materials.PrincipledThin(1.0, 0.1, transmission=1.0),
     ):
         mean, error = lit(material)
         assert abs(mean - 1) < 0.005 + 4 * error, material
@@ -87,8 +87,8 @@ def test_smooth_glass_and_metal_lose_nothing():
         rw.Principled(1.0, 0.5, ior=2.2),
         rw.Principled(1.0, 0.8, transmission=1.0),
         rw.Principled(1.0, 0.5, 0.2, transmission=0.5, clearcoat=0.5),
-        rw.PrincipledThin(1.0, 0.8, transmission=1.0),
-        rw.PrincipledThin(1.0, 0.5, transmission=0.4, diffuse_transmission=0.5, sheen=1.0),
+        rw.materials.PrincipledThin(1.0, 0.8, transmission=1.0),
+        rw.materials.PrincipledThin(1.0, 0.5, transmission=0.4, diffuse_transmission=0.5, sheen=1.0),
     ],
 )
 def test_white_is_white(material):
@@ -124,7 +124,7 @@ def test_highlights_are_those_of_gltf():
 
 def test_paper_lets_light_through():
     """What comes out of a paper lantern has gone through twice, and each time 0.6 of it goes on."""
-    mean, error = lit(rw.PrincipledThin(0.6, 0.0, diffuse_transmission=1.0))
+    mean, error = lit(rw.materials.PrincipledThin(0.6, 0.0, diffuse_transmission=1.0))
     assert abs(mean - 0.36) < 1e-3 + 4 * error
 
 

@@ -63,10 +63,10 @@ def check(mesh, origins, directions, t_min=0.0, t_max=np.inf):
     assert hits == rw.Scene(mesh, accelerator=rw.BruteForce()).intersect_all(
         origins, directions, t_min, t_max
     )
-    assert np.array_equal(hits.count, scene.count(origins, directions, t_min, t_max))
+    assert np.array_equal(hits.count, scene.count_hits(origins, directions, t_min, t_max))
     triangles, shared = exact_hits.rounded(mesh, "double"), 0
     for i, found in enumerate(exact_hits.candidates(triangles, origins, directions)):
-        t, primitive, uv = (array[row(hits, i)] for array in (hits.t, hits.primitive, hits.uv))
+        t, primitive, uv = (array[row(hits, i)] for array in (hits.t, hits.primitive_id, hits.uv))
         assert list(zip(t, primitive, strict=True)) == sorted(zip(t, primitive, strict=True))
         known = {c.primitive: c for c in found if t_min <= c.nearest <= t_max}
         for one, its_t, its_uv in zip(primitive, t, uv, strict=True):
@@ -133,18 +133,18 @@ def test_a_closed_surface_is_crossed_evenly_from_outside_and_oddly_from_inside(a
     rng = np.random.default_rng(4)
     cells = rng.integers(0, 7, (20_000, 3))
     _, directions = lattice_rays(rng, 20_000, -3, 3)
-    counts = scene.count(cells + 0.5, directions)
+    counts = scene.count_hits(cells + 0.5, directions)
     assert np.array_equal(counts % 2 == 1, solid[tuple(cells.T)])
     assert solid[tuple(cells.T)].sum() > 3000
 
 
 def test_an_edge_is_crossed_once_and_what_is_touched_told_twice(triangle):
     quad = rw.Scene(rw.Mesh([(0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0)], [(0, 1, 2), (0, 2, 3)]))
-    assert quad.count((1, 1, 1), (0, 0, -1)) == 1
+    assert quad.count_hits((1, 1, 1), (0, 0, -1)) == 1
     roof = rw.Scene(rw.Mesh([(0, 0, 1), (2, 0, 1), (1, 3, 0), (1, -3, 0)], [(0, 1, 2), (1, 0, 3)]))
-    assert roof.count((1, -5, 1), (0, 1, 0)) == 2
+    assert roof.count_hits((1, -5, 1), (0, 1, 0)) == 2
     # Slightly along x, or along y where x does not matter, is the surface or its end.
-    counts = rw.Scene(triangle).count([(0.5, 0, 1), (0, 0.5, 1), (0.5, 0.5, 1), (0, 0, 1)], (0, 0, -1))
+    counts = rw.Scene(triangle).count_hits([(0.5, 0, 1), (0, 0.5, 1), (0.5, 0.5, 1), (0, 0, 1)], (0, 0, -1))
     assert np.array_equal(counts, [1, 1, 2, 1])
     hits = rw.Scene(triangle).intersect_all((0.5, 0.5, 1), (0, 0, -1))
     assert np.array_equal(hits.t, [1, 1])
@@ -155,7 +155,7 @@ def test_faces_upon_each_other_are_all_told(triangle):
     twice = rw.Scene([triangle, rw.Mesh(triangle.vertices, [(0, 1, 2), (2, 1, 0)])])
     hits = twice.intersect_all((0.2, 0.3, 1), (0, 0, -1))
     assert np.array_equal(hits.shape_id, [0, 1, 1])
-    assert np.array_equal(hits.primitive, [0, 0, 1])
+    assert np.array_equal(hits.primitive_id, [0, 0, 1])
     assert np.array_equal(hits.t, [1, 1, 1])
 
 
@@ -173,7 +173,7 @@ def test_the_first_of_all_hits_is_the_closest_bit_for_bit(knot_rays):
     assert np.array_equal(every.count > 0, closest.hit)
     assert closest.hit.sum() > 1000
     first = every.ray_splits[:-1].reshape(closest.shape)[closest.hit]
-    for name in ("t", "shape_id", "primitive", "uv", "position", "normal"):
+    for name in ("t", "shape_id", "primitive_id", "uv", "position", "normal"):
         assert np.array_equal(getattr(every, name)[first], getattr(closest, name)[closest.hit])
 
 
@@ -185,13 +185,13 @@ def test_neither_threads_nor_batches_nor_tiles_change_all_hits(knot_rays, thread
     assert expected.t.size > 3000
     image = scene.intersect_all(*knot_rays, threads=threads)
     assert image.shape == (40, 50)
-    for name in ("ray_splits", "t", "primitive", "uv", "ray"):
+    for name in ("ray_splits", "t", "primitive_id", "uv", "ray"):
         assert np.array_equal(getattr(image, name), getattr(expected, name))
-    assert np.array_equal(scene.count(*knot_rays, threads=threads), expected.count.reshape(40, 50))
+    assert np.array_equal(scene.count_hits(*knot_rays, threads=threads), expected.count.reshape(40, 50))
     for i in (0, 7, 1999):
         alone = scene.intersect_all(origins[i], directions[i], threads=threads)
         assert np.array_equal(alone.t, expected.t[row(expected, i)])
-        assert np.array_equal(alone.primitive, expected.primitive[row(expected, i)])
+        assert np.array_equal(alone.primitive_id, expected.primitive_id[row(expected, i)])
 
 
 def test_all_hits_know_their_rays(scene):
@@ -208,9 +208,9 @@ def test_all_hits_know_their_rays(scene):
     expected = origins.reshape(-1, 3)[hits.ray] + hits.t[:, None] * directions.reshape(-1, 3)[hits.ray]
     assert np.allclose(hits.position, expected, rtol=0, atol=1e-15)
     assert np.array_equal(hits.normal[:, 2], [1, -1, 1, -1, 1])
-    assert np.array_equal(hits.instance, np.full(5, -1))
+    assert np.array_equal(hits.instance_id, np.full(5, -1))
     assert repr(hits) == "AllHits(shape=(2, 2), 5 hits of 4 rays)"
-    types = {"ray_splits": "i8", "ray": "i8", "t": "f8", "shape_id": "i4", "primitive": "i4", "uv": "f8"}
+    types = {"ray_splits": "i8", "ray": "i8", "t": "f8", "shape_id": "i4", "primitive_id": "i4", "uv": "f8"}
     for name, dtype in {**types, "count": "i8", "position": "f8", "normal": "f8"}.items():
         assert getattr(hits, name).dtype == dtype
         assert getattr(hits, name).flags.writeable == (dtype == "f8")
@@ -230,8 +230,8 @@ def test_no_rays_have_no_hits(scene):
 
 def test_rays_that_are_not_finite_have_no_hits(scene):
     origins = np.array([(0.3, 0.4, 5), (np.nan, 0, 0), (0, np.inf, 0)])
-    assert np.array_equal(scene.count(origins, (0, 0, -1)), [2, 0, 0])
-    assert np.array_equal(scene.count((0.3, 0.4, 5), [(0, 0, 0), (0, 0, -np.inf)]), [0, 0])
+    assert np.array_equal(scene.count_hits(origins, (0, 0, -1)), [2, 0, 0])
+    assert np.array_equal(scene.count_hits((0.3, 0.4, 5), [(0, 0, 0), (0, 0, -np.inf)]), [0, 0])
 
 
 @pytest.mark.parametrize(
@@ -246,7 +246,7 @@ def test_pickled_hits_keep_all_they_knew(scene, again):
     assert np.array_equal(back.position, hits.position)
     assert np.array_equal(back.normal, hits.normal)
     assert back.t.flags.writeable
-    assert not back.primitive.flags.writeable
+    assert not back.primitive_id.flags.writeable
 
 
 def test_equality_is_by_content(scene):
@@ -258,7 +258,7 @@ def test_equality_is_by_content(scene):
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals differ there")
-@pytest.mark.parametrize("ask", ["intersect_all", "count"])
+@pytest.mark.parametrize("ask", ["intersect_all", "count_hits"])
 def test_ctrl_c_ends_a_query_at_once(ask):
     rng = np.random.default_rng(6)
     soup = rw.Mesh(rng.normal(size=(30_000, 3)), np.arange(30_000).reshape(-1, 3))

@@ -76,7 +76,7 @@ def test_every_call_answers_as_if_nothing_were_broadcast(name, shapes, kind):
         assert hits.surface == wanted.surface
         assert np.array_equal(scene.occluded(*parts, **options), wanted.hit)
         assert scene.intersect_all(*parts, **options) == scene.intersect_all(*full, **expanded)
-    assert np.array_equal(scene.count(*parts, time=time), scene.count(*full, time=time))
+    assert np.array_equal(scene.count_hits(*parts, time=time), scene.count_hits(*full, time=time))
     out = np.empty(full[2].shape, np.bool_)
     assert scene.occluded(*parts, out=out) is out
     assert np.array_equal(out, scene.occluded(*full))
@@ -109,7 +109,7 @@ points = np.random.default_rng(1).normal(0, 2, (2000, 3))
 scene.occluded(points, (0, 0, 1.0))
 before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 hidden = scene.occluded(points[None], points[:, None], mask=points[:, :1] < 9)
-counts = scene.count(points[None], points[:, None], t_max=np.full((2000, 1), 9.0))
+counts = scene.count_hits(points[None], points[:, None], t_max=np.full((2000, 1), 9.0))
 after = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 assert np.array_equal(hidden, counts > 0) or (hidden >= (counts > 0)).all()
 print(hidden.nbytes + counts.nbytes, 1024 * (after - before))

@@ -10,7 +10,7 @@ import raywright as rw
 from raywright.scenes import torus_knot
 
 KNOT = torus_knot(along=100, around=12)
-ACCELERATORS = (rw.BVH(), rw.KdTree(), rw.Grid(), rw.Octree())
+ACCELERATORS = (rw.BVH(), rw.accelerators.KdTree(), rw.accelerators.Grid(), rw.accelerators.Octree())
 
 
 def some_cones(count, seed):
@@ -25,24 +25,24 @@ def some_cones(count, seed):
 @pytest.mark.parametrize("accelerator", ACCELERATORS, ids=lambda a: type(a).__name__)
 def test_every_accelerator_agrees_with_brute_force(accelerator):
     cones = some_cones(60, 1)
-    wanted = rw.Scene(KNOT, accelerator=rw.BruteForce()).cone(*cones)
-    assert rw.Scene(KNOT, accelerator=accelerator).cone(*cones) == wanted
+    wanted = rw.Scene(KNOT, accelerator=rw.BruteForce()).faces_in_cone(*cones)
+    assert rw.Scene(KNOT, accelerator=accelerator).faces_in_cone(*cones) == wanted
     assert len(wanted) > 1000
 
 
 def test_the_nearest_come_first_and_t_max_and_threads_change_nothing_else():
     scene = rw.Scene([KNOT, KNOT])
     origins, directions, angles = some_cones(200, 2)
-    every = scene.cone(origins, directions, angles)
+    every = scene.faces_in_cone(origins, directions, angles)
     for threads in (1, 3):
-        assert scene.cone(origins, directions, angles, threads=threads) == every
-    order = np.lexsort((every.primitive, every.shape_id, every.distance, every.cone))
+        assert scene.faces_in_cone(origins, directions, angles, threads=threads) == every
+    order = np.lexsort((every.primitive_id, every.shape_id, every.distance, every.cone))
     assert np.array_equal(order, np.arange(len(every)))
     middle = np.median(every.distance)
-    near = scene.cone(origins, directions * 8, angles, t_max=middle)
+    near = scene.faces_in_cone(origins, directions * 8, angles, t_max=middle)
     kept = every.distance <= middle
     assert np.array_equal(near.distance, every.distance[kept])
-    assert np.array_equal(near.primitive, every.primitive[kept])
+    assert np.array_equal(near.primitive_id, every.primitive_id[kept])
     assert np.array_equal(near.cone, every.cone[kept])
 
 
@@ -50,9 +50,9 @@ def test_a_cone_of_no_angle_is_a_ray():
     scene = rw.Scene(KNOT)
     origins, directions, _ = some_cones(300, 3)
     directions /= np.linalg.norm(directions, axis=1, keepdims=True)
-    touches, hits = scene.cone(origins, directions, 0), scene.intersect_all(origins, directions)
-    touched = set(zip(touches.cone.tolist(), touches.primitive.tolist(), strict=True))
-    assert touched >= set(zip(hits.ray.tolist(), hits.primitive.tolist(), strict=True))
+    touches, hits = scene.faces_in_cone(origins, directions, 0), scene.intersect_all(origins, directions)
+    touched = set(zip(touches.cone.tolist(), touches.primitive_id.tolist(), strict=True))
+    assert touched >= set(zip(hits.ray.tolist(), hits.primitive_id.tolist(), strict=True))
     assert hits.t.size > 300
 
 
@@ -63,14 +63,14 @@ def test_a_square_has_its_distances_in_closed_form():
     for tilt, angle in [(0, 10), (30, 10), (30, 50), (60, 20), (75, 3)]:
         way = (np.sin(np.radians(tilt)), 0.001, -np.cos(np.radians(tilt)))
         steepest = max(tilt - angle, 0)
-        distance = scene.cone((0, 0.001, 1), way, angle).distance[0]
+        distance = scene.faces_in_cone((0, 0.001, 1), way, angle).distance[0]
         assert distance == pytest.approx(1 / np.cos(np.radians(steepest)), rel=1e-5)
     # Straight down, with exact numbers.
-    assert np.array_equal(scene.cone((0, 0, 2), (0, 0, -5), 1).distance, (2, 2))
+    assert np.array_equal(scene.faces_in_cone((0, 0, 2), (0, 0, -5), 1).distance, (2, 2))
     # A cone up to its height touches both faces at one point, and a shorter one touches none.
-    assert scene.cone((0, 0, 2), (0, 0, -1), 30, t_max=2).count == 2
-    assert scene.cone((0, 0, 2), (0, 0, -1), 30, t_max=np.nextafter(2, 0)).count == 0
-    assert scene.cone((0, 0, 2), (0, 0, 1), 89).count == 0
+    assert scene.faces_in_cone((0, 0, 2), (0, 0, -1), 30, t_max=2).count == 2
+    assert scene.faces_in_cone((0, 0, 2), (0, 0, -1), 30, t_max=np.nextafter(2, 0)).count == 0
+    assert scene.faces_in_cone((0, 0, 2), (0, 0, 1), 89).count == 0
 
 
 def nearest_by_optimiser(corners, apex, axis, angle):
@@ -110,7 +110,7 @@ def test_distances_are_those_of_an_optimiser():
         axis /= np.linalg.norm(axis)
         angle = rng.choice([5, 20, 45, 70])
         wanted = nearest_by_optimiser(corners, apex, axis, angle)
-        found = rw.Scene(rw.Mesh(corners, [(0, 1, 2)]), precision="double").cone(apex, axis, angle)
+        found = rw.Scene(rw.Mesh(corners, [(0, 1, 2)]), precision="double").faces_in_cone(apex, axis, angle)
         if wanted is not None:
             assert found.distance == pytest.approx([wanted], rel=1e-5, abs=1e-6)
             agreed += 1
@@ -129,7 +129,7 @@ coordinates = st.tuples(*[st.integers(-4, 4).map(lambda x: x / 2) | st.floats(-2
 def test_nothing_that_dense_sampling_finds_is_missed(corners, apex, axis, angle):
     if np.linalg.norm(axis) < 1e-6:
         return
-    found = rw.Scene(rw.Mesh(corners, [(0, 1, 2)])).cone(apex, axis, angle)
+    found = rw.Scene(rw.Mesh(corners, [(0, 1, 2)])).faces_in_cone(apex, axis, angle)
     u, v = (x.ravel() / 40 for x in np.mgrid[0:41, 0:41])
     u, v = u[u + v <= 1], v[u + v <= 1]
     a, b, c = np.asarray(corners)
@@ -150,27 +150,27 @@ def test_nothing_that_dense_sampling_finds_is_missed(corners, apex, axis, angle)
 
 
 def test_shapes_broadcast_and_angles_may_differ(scene):
-    touches = scene.cone((0.5, 0.5, 4), np.full((4, 1, 3), (0, 0, -1.0)), [1, 10, 50])
+    touches = scene.faces_in_cone((0.5, 0.5, 4), np.full((4, 1, 3), (0, 0, -1.0)), [1, 10, 50])
     assert touches.shape == touches.count.shape == (4, 3)
     assert len(touches.cone_splits) == 13
     assert (np.diff(touches.count, axis=1) >= 0).all()
     assert "12 cones" in repr(touches)
     assert not touches.distance.flags.writeable
-    assert scene.cone(np.zeros((0, 3)), (0, 0, 1), 5).shape == (0,)
-    assert touches != scene.cone((0.5, 0.5, 4), (0, 0, -1), 1)
+    assert scene.faces_in_cone(np.zeros((0, 3)), (0, 0, 1), 5).shape == (0,)
+    assert touches != scene.faces_in_cone((0.5, 0.5, 4), (0, 0, -1), 1)
 
 
 def test_hostile_cones_and_scenes_touch_nothing():
     degenerate = rw.Mesh([(0, 0, 1), (np.nan, 0, 0), (0, 0, 2)], [(0, 1, 2), (0, 0, 0), (0, 2, 2)])
     with pytest.warns(RuntimeWarning, match="NaN"):
-        touches = rw.Scene(degenerate).cone((0, 0, 0), (0, 0, 1), 0)
+        touches = rw.Scene(degenerate).faces_in_cone((0, 0, 0), (0, 0, 1), 0)
     # The cone touches a point and a line, which no ray hits; the face with NaN is dropped.
-    assert touches.primitive.tolist() == [1, 2]
+    assert touches.primitive_id.tolist() == [1, 2]
     assert touches.distance.tolist() == [1, 1]
-    empty = rw.Scene([]).cone(np.zeros((2, 3)), (0, 0, 1), 40)
+    empty = rw.Scene([]).faces_in_cone(np.zeros((2, 3)), (0, 0, 1), 40)
     assert empty.count.tolist() == [0, 0]
     bad = [(np.nan, 0, 0), (np.inf, 0, 0), (0, 0, 0)]
-    assert not rw.Scene(KNOT).cone((0, 0, 0), bad, 89).count.any()
+    assert not rw.Scene(KNOT).faces_in_cone((0, 0, 0), bad, 89).count.any()
 
 
 @pytest.mark.parametrize(
@@ -187,9 +187,9 @@ def test_hostile_cones_and_scenes_touch_nothing():
 )
 def test_what_is_no_cone_is_refused(scene, arguments, message):
     with pytest.raises(ValueError, match=message):
-        scene.cone(**{"origins": (0, 0, 0), "directions": (0, 0, 1)} | arguments)
+        scene.faces_in_cone(**{"origins": (0, 0, 0), "directions": (0, 0, 1)} | arguments)
 
 
 def test_curved_shapes_are_refused():
     with pytest.raises(ValueError, match="only meshes, and shape 0"):
-        rw.Scene(rw.Sphere((0, 0, 0), 1)).cone((0, 0, 3), (0, 0, -1), 5)
+        rw.Scene(rw.Sphere((0, 0, 0), 1)).faces_in_cone((0, 0, 3), (0, 0, -1), 5)

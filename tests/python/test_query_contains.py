@@ -143,7 +143,7 @@ def test_what_is_open_has_no_inside(box):
         rw.Plane((0, 0, 0.25), (0, 0.1, 1)),
         rw.Disk((0, 0, 0.5), (0, 0, 1), 3.0),
         rw.Cylinder((0, 0, -3), (0, 0, 3), 0.5, capped=False),
-        rw.Implicit("z - sin(x)", (-3, -3, -3), (3, 3, 3)),
+        rw.shapes.Implicit("z - sin(x)", (-3, -3, -3), (3, 3, 3)),
         rw.Polygon([(-3, -3, 0), (3, -3, 0), (3, 3, 0)]),
     ]
     expected = ((points >= 0) & (points <= 1)).all(axis=1)

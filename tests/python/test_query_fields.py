@@ -9,7 +9,7 @@ import pytest
 
 import raywright as rw
 
-STORED = ("t", "shape_id", "primitive", "uv", "instance")
+STORED = ("t", "shape_id", "primitive_id", "uv", "instance_id")
 TYPES = {"t": np.float64, "uv": np.float64, "hit": bool}
 
 
@@ -25,7 +25,7 @@ SCENES = {
     "meshes": rw.Scene([SOUP, soup(40, 2)]),
     "ball": rw.Scene([SOUP, rw.Sphere(radius=0.7)]),
     "copies": rw.Scene([SOUP, rw.Instance(soup(30, 3), np.stack([np.eye(4), np.diag([2.0, 2, 2, 1])]))]),
-    "grid": rw.Scene([SOUP], accelerator=rw.Grid()),
+    "grid": rw.Scene([SOUP], accelerator=rw.accelerators.Grid()),
     "nothing": rw.Scene([]),
 }
 # A sequence, an image that is traced in tiles, rays that stand in no order, one ray, and none.
@@ -79,7 +79,7 @@ def test_answers_go_into_arrays_of_any_float_type(name, kind):
 def test_numbers_of_the_caller_stay_the_callers():
     scene, some = SCENES["copies"], rays((500,))
     whole = scene.intersect(*some)
-    out = {part: np.empty(500, np.int32) for part in ("shape_id", "primitive", "instance")}
+    out = {part: np.empty(500, np.int32) for part in ("shape_id", "primitive_id", "instance_id")}
     for _ in range(2):
         found = scene.intersect(*some, out=out, fields=("t", *out))
         for part, array in out.items():
@@ -97,7 +97,7 @@ def test_numbers_of_the_caller_stay_the_callers():
 def test_what_follows_from_the_parts_is_known():
     scene, some = SCENES["meshes"], rays((9, 11))
     whole = scene.intersect(*some)
-    found = scene.intersect(*some, fields=["shape_id", "primitive", "uv"])
+    found = scene.intersect(*some, fields=["shape_id", "primitive_id", "uv"])
     np.testing.assert_array_equal(found.position, whole.position)
     np.testing.assert_array_equal(found.normal, whole.normal)
     np.testing.assert_array_equal(scene.intersect(*some, fields="shape_id").hit, whole.hit)
@@ -105,7 +105,9 @@ def test_what_follows_from_the_parts_is_known():
         _ = scene.intersect(*some, fields="t").position
 
 
-@pytest.mark.parametrize("fields", ["t", "hit", ("uv", "t"), ("instance", "primitive"), ("shape_id", "hit")])
+@pytest.mark.parametrize(
+    "fields", ["t", "hit", ("uv", "t"), ("instance_id", "primitive_id"), ("shape_id", "hit")]
+)
 def test_some_parts_are_indexed_compared_copied_and_pickled(fields):
     scene, some = SCENES["copies"], rays((6, 8))
     found, again = scene.intersect(*some, fields=fields), scene.intersect(*some, fields=fields)
@@ -141,7 +143,7 @@ def test_filters_and_masks_count_as_for_all():
 def test_a_byte_a_ray_and_no_more_than_is_asked_for():
     scene, count = SCENES["mesh"], 1000
     some = rays((count,))
-    sizes = {"hit": 1, ("t", "primitive"): 12, "primitive": 4, ("t", "uv"): 24, STORED: 32}
+    sizes = {"hit": 1, ("t", "primitive_id"): 12, "primitive_id": 4, ("t", "uv"): 24, STORED: 32}
     for fields, size in sizes.items():
         found = vars(scene.intersect(*some, fields=fields))
         arrays = [array for array in found.values() if isinstance(array, np.ndarray) and any(array.strides)]
@@ -159,16 +161,16 @@ def test_broadcast_rays_are_read_where_they_are():
                 part = np.broadcast_to(eyes.astype(kind), (50, 40, 3))
             full = np.ascontiguousarray(np.broadcast_to(part, way.shape))
             wanted = scene.intersect(full, way)
-            found = scene.intersect(part, way, fields=("t", "primitive"))
+            found = scene.intersect(part, way, fields=("t", "primitive_id"))
             np.testing.assert_array_equal(found.t, wanted.t)
-            np.testing.assert_array_equal(found.primitive, wanted.primitive)
+            np.testing.assert_array_equal(found.primitive_id, wanted.primitive_id)
 
 
 REFUSED = [
     (
         {"fields": "depth"},
         ValueError,
-        "fields must be among t, shape_id, primitive, uv, instance, hit, got 'depth'",
+        "fields must be among t, shape_id, primitive_id, uv, instance_id, hit, got 'depth'",
     ),
     ({"fields": ()}, ValueError, "fields must name at least one of"),
     ({"fields": 3}, TypeError, "fields must be names among .*, got 3"),
@@ -184,9 +186,9 @@ REFUSED = [
     ({"out": {"t": np.empty(10)[::2]}}, ValueError, r"out\['t'\] must be C-contiguous and writable"),
     ({"out": {"t": np.broadcast_to(0.0, 5)}}, ValueError, r"out\['t'\] must be C-contiguous and writable"),
     (
-        {"out": {"primitive": np.empty(5, np.int64)}},
+        {"out": {"primitive_id": np.empty(5, np.int64)}},
         TypeError,
-        r"out\['primitive'\] must be an array of int32",
+        r"out\['primitive_id'\] must be an array of int32",
     ),
     (
         {"out": {"hit": np.empty(5, np.uint8)}},

@@ -75,7 +75,7 @@ def test_shared_edges_are_seen_by_the_lowest_face_as_rays_see_them():
     for offsets in [(0, 0), (0.5, 0.5), (0, 0.5), (0.25, 0.25), (1, 1)]:
         hits, _ = agree(rw.Scene(mesh), camera, offsets)
         assert hits.hit[1:-1, 1:-1].all()
-        assert hits.primitive.max() < len(quads)
+        assert hits.primitive_id.max() < len(quads)
 
 
 def test_hostile_triangles():

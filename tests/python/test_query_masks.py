@@ -5,7 +5,15 @@ import pytest
 
 import raywright as rw
 
-KINDS = [rw.BVH(), rw.BVH(traversal="stack"), rw.KdTree(), rw.Octree(), rw.BSP(), rw.Grid(), rw.BruteForce()]
+KINDS = [
+    rw.BVH(),
+    rw.BVH(traversal="stack"),
+    rw.accelerators.KdTree(),
+    rw.accelerators.Octree(),
+    rw.accelerators.BSP(),
+    rw.accelerators.Grid(),
+    rw.BruteForce(),
+]
 IDS = ["wide", "stack", "kdtree", "octree", "bsp", "grid", "brute"]
 
 
@@ -53,13 +61,13 @@ def test_what_does_not_count_is_as_if_it_were_not_there(accelerator):
     )
     found, wanted = every.intersect(*rays(), shapes=KEPT), alone.intersect(*rays())
     assert 300 < wanted.hit.sum() < 1500
-    for name in ("t", "primitive", "uv", "instance"):
+    for name in ("t", "primitive_id", "uv", "instance_id"):
         assert np.array_equal(getattr(found, name), getattr(wanted, name)), name
     assert np.array_equal(found.shape_id, as_alone(wanted, KEPT))
     assert np.array_equal(found.position, wanted.position, equal_nan=True)
     assert np.array_equal(every.occluded(*rays(), shapes=KEPT), wanted.hit)
     all_found, all_wanted = every.intersect_all(*rays(), shapes=KEPT), alone.intersect_all(*rays())
-    for name in ("ray_splits", "t", "primitive", "uv", "instance"):
+    for name in ("ray_splits", "t", "primitive_id", "uv", "instance_id"):
         assert np.array_equal(getattr(all_found, name), getattr(all_wanted, name)), name
     assert np.array_equal(all_found.shape_id, as_alone(all_wanted, KEPT))
     # With all of them, results are unchanged.
@@ -79,12 +87,12 @@ def test_back_faces_are_left_out(accelerator):
     found = scene.intersect(origins, ways, cull="back")
     assert np.array_equal(found.hit, first >= 0)
     assert 100 < found.hit.sum() < scene.intersect(origins, ways).hit.sum()
-    for name in ("t", "shape_id", "primitive", "uv", "instance"):
+    for name in ("t", "shape_id", "primitive_id", "uv", "instance_id"):
         assert np.array_equal(getattr(found, name)[found.hit], getattr(every, name)[first[found.hit]]), name
     assert np.array_equal(scene.occluded(origins, ways, cull="back"), found.hit)
     culled = scene.intersect_all(origins, ways, cull="back")
     assert np.array_equal(culled.ray, every.ray[front])
-    for name in ("t", "shape_id", "primitive", "uv"):
+    for name in ("t", "shape_id", "primitive_id", "uv"):
         assert np.array_equal(getattr(culled, name), getattr(every, name)[front])
     assert culled.first == found
 
@@ -133,7 +141,7 @@ def test_rays_may_be_left_out():
         scene.intersect(origins, ways, t_max=0.8, mask=which),
     )
     assert np.array_equal(masked.t, np.where(which, plain.t, np.inf))
-    assert np.array_equal(masked.primitive, np.where(which, plain.primitive, -1))
+    assert np.array_equal(masked.primitive_id, np.where(which, plain.primitive_id, -1))
     assert np.array_equal(scene.occluded(origins, ways, mask=which), scene.occluded(origins, ways) & which)
     both = scene.intersect_all(origins, ways, mask=which, shapes=KEPT, cull="back")
     assert set(both.ray.tolist()) <= set(np.flatnonzero(which).tolist())

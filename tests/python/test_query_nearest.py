@@ -26,10 +26,10 @@ def test_distances_are_the_least_of_all_faces(accelerator):
     distances = brute_force(KNOT, points)
     closest = rw.Scene(KNOT, accelerator=accelerator).closest_point(points)
     assert np.allclose(closest.distance, distances.min(axis=1), rtol=1e-12, atol=1e-14)
-    told = distances[np.arange(300), closest.primitive]
+    told = distances[np.arange(300), closest.primitive_id]
     assert np.allclose(told, closest.distance, rtol=1e-12, atol=1e-14)
     assert np.allclose(np.linalg.norm(points - closest.position, axis=1), closest.distance, atol=1e-14)
-    corners = KNOT.vertices[KNOT.faces[closest.primitive]]
+    corners = KNOT.vertices[KNOT.faces[closest.primitive_id]]
     u, v = closest.uv.T[..., None]
     assert (closest.uv >= 0).all()
     assert (closest.uv.sum(axis=1) <= 1 + 1e-15).all()
@@ -60,7 +60,7 @@ def test_on_the_surface_the_distance_is_zero(scene):
 def test_of_equal_distances_the_first_shape_and_face_are_told(box):
     closest = rw.Scene([box, box]).closest_point([(0.5, 0.5, 0.5), (-1, -1, -1), (0.25, 0.75, 2)])
     assert np.array_equal(closest.shape_id, [0, 0, 0])
-    assert closest.primitive[0] == closest.primitive[1] == 0
+    assert closest.primitive_id[0] == closest.primitive_id[1] == 0
 
 
 def test_max_distance_is_included_and_per_point(scene):
@@ -68,7 +68,7 @@ def test_max_distance_is_included_and_per_point(scene):
     closest = scene.closest_point((0.25, 0.5, 2), limits)
     assert np.array_equal(closest.found, [False, False, True, True])
     assert np.array_equal(closest.distance, [np.inf, np.inf, 1, 1])
-    assert np.array_equal(closest.primitive >= 0, closest.found)
+    assert np.array_equal(closest.primitive_id >= 0, closest.found)
     assert np.isnan(closest.position[~closest.found]).all()
     assert np.array_equal(closest.position[closest.found], [(0.25, 0.5, 1)] * 2)
     assert scene.closest_point(np.zeros((3, 1, 3)), limits).shape == (3, 4)
@@ -102,7 +102,7 @@ def test_neither_threads_nor_batches_change_the_answer(dtype):
         row = scene.closest_point(np.asfortranarray(points[i]))
         assert np.array_equal(row.distance, expected.distance[i])
         assert np.array_equal(row.position, expected.position[i])
-        assert np.array_equal(row.primitive, expected.primitive[i])
+        assert np.array_equal(row.primitive_id, expected.primitive_id[i])
         assert scene.closest_point(points[i, 3]).distance == expected.distance[i, 3]
 
 
@@ -129,10 +129,10 @@ def test_closest_points_are_values(scene):
         "position": "f8",
         "normal": "f8",
         "uv": "f8",
-        "primitive": "i4",
+        "primitive_id": "i4",
         "shape_id": "i4",
     }
-    for name, dtype in {**types, "instance": "i4", "found": "?"}.items():
+    for name, dtype in {**types, "instance_id": "i4", "found": "?"}.items():
         assert getattr(closest, name).dtype == dtype
         assert getattr(closest, name).flags.writeable == (dtype in ("f8", "?"))
     assert np.array_equal(closest.normal, [(0, 0, 1)] * 2)
@@ -169,7 +169,7 @@ def test_bad_points_are_refused_in_one_line(scene, arguments, error, message):
     assert "\n" not in str(caught.value)
 
 
-@pytest.mark.parametrize("accelerator", [rw.BVH(), rw.BruteForce(), rw.KdTree()])
+@pytest.mark.parametrize("accelerator", [rw.BVH(), rw.BruteForce(), rw.accelerators.KdTree()])
 def test_only_shapes_that_are_named_count(accelerator):
     """As in a scene of these alone: meshes, what is no mesh, and instances."""
     rng = np.random.default_rng(11)
@@ -189,7 +189,7 @@ def test_only_shapes_that_are_named_count(accelerator):
         found, wanted = scene.closest_point(points, shapes=mask), alone.closest_point(points)
         assert np.array_equal(found.distance, wanted.distance)
         assert np.array_equal(found.position, wanted.position)
-        assert np.array_equal(found.primitive, wanted.primitive)
+        assert np.array_equal(found.primitive_id, wanted.primitive_id)
         assert np.array_equal(found.shape_id, np.flatnonzero(mask)[wanted.shape_id])
         assert np.allclose(found.normal, wanted.normal)
         assert np.array_equal(scene.signed_distance(points, shapes=mask), alone.signed_distance(points))

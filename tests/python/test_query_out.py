@@ -25,15 +25,15 @@ def scenes():
 def test_hits_take_over_the_arrays_of_earlier_ones(kind):
     scene = scenes()[kind]
     out = scene.intersect(*fan(1))
-    arrays = out.t, out.shape_id, out.primitive, out.uv
+    arrays = out.t, out.shape_id, out.primitive_id, out.uv
     # Results computed from hits are cached, and must be dropped with them.
-    _ = out.hit, out.position, out.normal, out.surface, out.instance
+    _ = out.hit, out.position, out.normal, out.surface, out.instance_id
     wanted = scene.intersect(*fan(2))
     assert out != wanted
     assert scene.intersect(*fan(2), out=out) is out
     assert out == wanted
-    assert all(a is b for a, b in zip(arrays, (out.t, out.shape_id, out.primitive, out.uv), strict=True))
-    for name in ("hit", "position", "normal", "instance"):
+    assert all(a is b for a, b in zip(arrays, (out.t, out.shape_id, out.primitive_id, out.uv), strict=True))
+    for name in ("hit", "position", "normal", "instance_id"):
         np.testing.assert_array_equal(getattr(out, name), getattr(wanted, name))
     np.testing.assert_array_equal(out.surface.normal, wanted.surface.normal)
     writable = [array.flags.writeable for array in (*arrays, out.hit)]
@@ -69,7 +69,7 @@ def test_what_cannot_be_written_to_is_refused():
     with pytest.raises(ValueError, match="t_min must not be NaN"):
         scene.intersect(origin, ways, t_min=np.nan, out=hits)
     np.testing.assert_array_equal(hits.t, before)
-    assert not hits.primitive.flags.writeable
+    assert not hits.primitive_id.flags.writeable
     with pytest.raises(TypeError, match="out must be an array of bool, got dtype float64"):
         scene.occluded(origin, ways, out=np.zeros((5, 7)))
     with pytest.raises(TypeError, match="out must be an array of bool, got list"):

@@ -127,7 +127,7 @@ def test_what_cannot_be_is_refused_in_one_line():
     endless = rw.Scene([rw.Plane((0, 0, 0), (0, 0, 1))], environment=rw.ConstantEnvironment(1))
     with pytest.raises(ValueError, match="shape 0, which is unbounded, and light paths cannot start there"):
         endless.photons(1)
-    fire = rw.Sphere((0, 0, 0), 1, material=rw.Boundary(rw.Homogeneous(1, emission=1)))
+    fire = rw.Sphere((0, 0, 0), 1, material=rw.MediumInterface(rw.Homogeneous(1, emission=1)))
     with pytest.raises(ValueError, match="a medium is emissive, and light paths cannot start there"):
         rw.Scene([fire], lights=[rw.PointLight((0, 0, 2), 1)]).photons(1)
 

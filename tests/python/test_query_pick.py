@@ -24,7 +24,7 @@ def test_one_pixel_gives_one_hit():
     for row, column in [*np.argwhere(hits.hit)[:20], (0, 0), (20, 36)]:
         picked = SCENE.pick(CAMERA, int(column), int(row))
         assert picked.shape == ()
-        for name in ("t", "shape_id", "primitive"):
+        for name in ("t", "shape_id", "primitive_id"):
             assert getattr(picked, name) == getattr(hits, name)[row, column]
         assert np.array_equal(picked.position, hits.position[row, column], equal_nan=True)
 

@@ -44,10 +44,10 @@ def test_no_ray_from_inside_gets_out(scale, offset):
     scene = rw.Scene(mesh, precision="double")
     rays = aimed(mesh, np.random.default_rng(2), 30_000, inside=True)
     assert scene.intersect(*rays).hit.all()
-    assert (scene.count(*rays) % 2 == 1).all()
+    assert (scene.count_hits(*rays) % 2 == 1).all()
     assert scene.contains(rays[0]).all()
     outside = aimed(mesh, np.random.default_rng(3), 30_000)
-    assert (scene.count(*outside) % 2 == 0).all()
+    assert (scene.count_hits(*outside) % 2 == 0).all()
     assert not scene.contains(outside[0]).any()
 
 
@@ -79,7 +79,7 @@ def test_vertices_that_are_f32_cost_no_more():
     single = rw.Mesh(mesh.vertices.astype(np.float32).astype(np.float64), mesh.faces)
     scenes = [rw.Scene(single, precision=p) for p in ("single", "double")]
     assert scenes[0].bytes == scenes[1].bytes
-    assert scenes[0].accelerator.kind == scenes[1].accelerator.kind
+    assert scenes[0].accelerator_info.kind == scenes[1].accelerator_info.kind
     rays = np.random.default_rng(5).normal(size=(2, 2000, 3))
     assert scenes[0].intersect(*rays) == scenes[1].intersect(*rays)
 
@@ -87,7 +87,7 @@ def test_vertices_that_are_f32_cost_no_more():
 def test_positions_are_on_the_given_faces():
     mesh = ball(1.0, 1e7)
     hits = rw.Scene(mesh, precision="double").intersect(*aimed(mesh, np.random.default_rng(6), 300))
-    corners = mesh.vertices[mesh.faces[hits.primitive[hits.hit]]]
+    corners = mesh.vertices[mesh.faces[hits.primitive_id[hits.hit]]]
     u, v = hits.uv[hits.hit].T[..., None]
     wanted = (1 - u - v) * corners[:, 0] + u * corners[:, 1] + v * corners[:, 2]
     assert np.allclose(hits.position[hits.hit], wanted, rtol=1e-15, atol=0)

@@ -48,18 +48,18 @@ def test_a_refitted_scene_answers_as_a_fresh_one(accelerator, precision):
 
 def test_growth_tells_when_to_build_anew():
     scene = rw.Scene(KNOT)
-    built = scene.accelerator.sah_cost
+    built = scene.accelerator_info.sah_cost
     assert scene.refit(KNOT.vertices) == pytest.approx(1, rel=1e-6)
-    assert scene.accelerator.kind.endswith("refitted")
+    assert scene.accelerator_info.kind.endswith("refitted")
     # Exchanged vertices leave no order in the tree.
     shuffled = np.random.default_rng(2).permutation(KNOT.vertices)
     growth = scene.refit(shuffled)
     assert growth > 2
-    assert growth == scene.accelerator.sah_cost / built
+    assert growth == scene.accelerator_info.sah_cost / built
     hits = scene.intersect(*rays())
     assert scene.rebuild() is None
-    assert not scene.accelerator.kind.endswith("refitted")
-    assert scene.accelerator.sah_cost < growth * built
+    assert not scene.accelerator_info.kind.endswith("refitted")
+    assert scene.accelerator_info.sah_cost < growth * built
     assert scene.intersect(*rays()) == hits
     assert scene.refit(shuffled) == pytest.approx(1, rel=1e-6)
 
@@ -76,13 +76,13 @@ def test_hits_from_before_stay_as_they_were(scene, box):
 def test_all_but_the_vertices_stays(box):
     normals = np.tile((0.0, 0, 1), (8, 1))
     mesh = rw.Mesh(box.vertices, box.faces, normals, np.zeros((8, 2)), rw.Diffuse(0.25), 3.0)
-    scene = rw.Scene([mesh, box], rw.PointLight((0, 0, 9), 1), 0.5, rw.BVH(bins=4), "double", "fast build")
+    scene = rw.Scene([mesh, box], rw.PointLight((0, 0, 9), 1), 0.5, rw.BVH(bins=4), "double", "low")
     scene.bounds  # noqa: B018 (compiles it)
     scene.refit([box.vertices * 2, None])
     expected = rw.Mesh(box.vertices * 2, box.faces, normals, np.zeros((8, 2)), rw.Diffuse(0.25), 3.0)
     assert scene.shapes == (expected, box)
     assert scene.shapes[1] is box
-    assert scene == rw.Scene([expected, box], scene.lights, 0.5, rw.BVH(bins=4), "double", "fast build")
+    assert scene == rw.Scene([expected, box], scene.lights, 0.5, rw.BVH(bins=4), "double", "low")
     assert hash(scene) == hash(pickle.loads(pickle.dumps(scene)))
     assert pickle.loads(pickle.dumps(scene)) == scene
     assert mesh.vertices is not scene.shapes[0].vertices
@@ -105,7 +105,7 @@ def test_lights_move_with_their_meshes():
 def test_a_scene_that_was_not_asked_yet_is_built_where_it_is(box):
     scene = rw.Scene(box)
     assert scene.refit(box.vertices + 5) == 1
-    assert not scene.accelerator.kind.endswith("refitted")
+    assert not scene.accelerator_info.kind.endswith("refitted")
     assert scene.intersect((5.3, 5.4, 9), (0, 0, -1)).t == 3
 
 
@@ -114,13 +114,13 @@ def test_what_cannot_be_refitted_is_built_anew(box):
     scene.intersect((0, 0, 0), (0, 0, 1))
     # Corners beyond f32 need other leaves.
     assert scene.refit(box.vertices / 3) == 1
-    assert not scene.accelerator.kind.endswith("refitted")
+    assert not scene.accelerator_info.kind.endswith("refitted")
     assert scene.intersect((0.1, 0.1, 5), (0, 0, -1)).position[2] == 1 / 3
     broken = box.vertices.copy()
     broken[7] = np.nan
     with pytest.warns(RuntimeWarning, match=r"6 of 12 faces were dropped"):
         assert scene.refit(broken) == 1
-    assert scene.accelerator.primitives == 6
+    assert scene.accelerator_info.primitives == 6
     assert scene.intersect((0.3, 0.4, 5), (0, 0, -1)).t == 5
     assert scene.refit(box.vertices) == 1
     assert scene.intersect((0.3, 0.4, 5), (0, 0, -1)).t == 4

@@ -39,7 +39,7 @@ INDICES = [
     np.array([], np.int64),
     None,
 ]
-ARRAYS = ("t", "shape_id", "primitive", "instance", "hit", "uv", "position", "normal")
+ARRAYS = ("t", "shape_id", "primitive_id", "instance_id", "hit", "uv", "position", "normal")
 
 
 @pytest.mark.parametrize("index", INDICES, ids=repr)
@@ -51,7 +51,7 @@ def test_some_hits_are_those_of_some_rays(scene, index, asked):
         for name in (*ARRAYS, "surface"):
             getattr(hits, name)
     some = hits[index]
-    assert isinstance(some, rw.Hits)
+    assert isinstance(some, rw.query.Hits)
     assert some.shape == hits.t[index].shape
     for name in ARRAYS:
         every = getattr(hits, name)
@@ -64,7 +64,7 @@ def test_some_hits_are_those_of_some_rays(scene, index, asked):
     assert np.array_equal(some.surface.dp_du, hits.surface.dp_du[tail], equal_nan=True)
     assert some == scene.intersect(RAYS[0][tail] if RAYS[0].ndim == 3 else RAYS[0], RAYS[1][tail])
     ways = np.array([0.3, 0.2, 1.0])
-    assert np.array_equal(some.leave(ways).origins, hits.leave(ways).origins[tail], equal_nan=True)
+    assert np.array_equal(some.spawn_rays(ways).origins, hits.spawn_rays(ways).origins[tail], equal_nan=True)
 
 
 def test_one_of_many_is_as_some_that_are_one(scene):
@@ -79,12 +79,20 @@ def test_one_of_many_is_as_some_that_are_one(scene):
             scene.intersect_all(origins, ways)[:, 4],
         ):
             if known:
-                for name in ("position", "normal", "surface", "instance"):
+                for name in ("position", "normal", "surface", "instance_id"):
                     getattr(found, name)
             for i in (0, -1, np.int32(2), len(found) - 1):
                 one, some = found[i], found[[i]]
                 assert one.shape == some.shape[1:] == found.shape[1:]
-                for name in ("shape_id", "primitive", "uv", "position", "normal", "instance", "surface"):
+                for name in (
+                    "shape_id",
+                    "primitive_id",
+                    "uv",
+                    "position",
+                    "normal",
+                    "instance_id",
+                    "surface",
+                ):
                     mine, theirs = getattr(one, name), getattr(some, name)
                     if name == "surface":
                         mine, theirs = mine.dp_du, theirs.dp_du
@@ -128,7 +136,7 @@ def test_all_hits_by_rays(scene):
         assert some.shape == wanted.shape
         assert np.array_equal(some.count, every.count[index])
         parts = [slice(every.ray_splits[i], every.ray_splits[i + 1]) for i in wanted.reshape(-1)]
-        for name in ("t", "shape_id", "primitive", "uv", "position", "normal", "instance"):
+        for name in ("t", "shape_id", "primitive_id", "uv", "position", "normal", "instance_id"):
             array = getattr(every, name)
             assert np.array_equal(
                 getattr(some, name), np.concatenate([array[:0], *(array[part] for part in parts)])
@@ -150,7 +158,7 @@ def test_the_first_of_all_hits_is_what_intersect_finds(scene):
     first, hits = every.first, scene.intersect(*RAYS)
     assert first == hits
     assert first.shape == (7, 9)
-    for name in ("position", "normal", "instance"):
+    for name in ("position", "normal", "instance_id"):
         assert np.array_equal(getattr(first, name), getattr(hits, name), equal_nan=True)
     assert every.first is first
     nothing = scene.intersect_all((9.0, 9, 9), (0, 0, 1.0)).first
@@ -171,7 +179,7 @@ def test_tables(scene):
     hits = scene.intersect(*RAYS)
     table = hits.to_dict()
     position = ["x", "y", "z"]
-    assert list(table) == ["t", "shape_id", "name", "instance", "primitive", "u", "v", *position,
+    assert list(table) == ["t", "shape_id", "name", "instance_id", "primitive_id", "u", "v", *position,
                            "normal_x", "normal_y", "normal_z"]  # fmt: skip
     assert all(column.shape == (63,) for column in table.values())
     stacked = np.stack([table[axis] for axis in position], axis=-1)
@@ -205,8 +213,8 @@ def test_without_pandas_that_is_told(monkeypatch):
 def test_a_pickle_is_as_small_as_its_arrays(scene):
     many = np.random.default_rng(1).normal(size=(5000, 3))
     hits = scene.intersect(many, -many)
-    arrays = [hits.t, hits.shape_id, hits.primitive, hits.uv]
-    arrays += [hits.instance] if vars(hits).get("instance") is not None else []
+    arrays = [hits.t, hits.shape_id, hits.primitive_id, hits.uv]
+    arrays += [hits.instance_id] if vars(hits).get("instance_id") is not None else []
     assert len(pickle.dumps(hits)) < sum(array.nbytes for array in arrays) + 1500
     back = pickle.loads(pickle.dumps(hits))
     assert back == hits
@@ -216,7 +224,7 @@ def test_a_pickle_is_as_small_as_its_arrays(scene):
         ):
             getattr(back, name)
     with pytest.raises(ValueError, match="position is not in pickled hits"):
-        back.leave((0, 0, 1.0))
+        back.spawn_rays((0, 0, 1.0))
     # Computed attributes are kept.
     known = {name: getattr(hits, name) for name in ("position", "normal", "names")}
     back = pickle.loads(pickle.dumps(hits))

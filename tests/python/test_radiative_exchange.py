@@ -11,7 +11,7 @@ import raywright as rw
 from raywright.exchange.radiative import STEFAN_BOLTZMANN
 
 
-def exchanged(scene: rw.Scene, *arguments: Any, **options: Any) -> rw.RadiativeExchange:
+def exchanged(scene: rw.Scene, *arguments: Any, **options: Any) -> rw.exchange.RadiativeExchange:
     return rw.radiative_exchange(scene, *arguments, progress=False, **options)
 
 

@@ -15,11 +15,13 @@ from raywright.exchange.patches import cut
 from raywright.exchange.problem import UNSHOT, Problem
 
 
-def solved(scene: rw.Scene, **options: Any) -> rw.RadiositySolution:
+def solved(scene: rw.Scene, **options: Any) -> rw.exchange.RadiositySolution:
     return rw.radiosity(scene, **{"progress": False, "sides": "front", **options})
 
 
-def assert_mean(solution: rw.RadiositySolution, shape: int, truth: float, patches: float = 0.0) -> None:
+def assert_mean(
+    solution: rw.exchange.RadiositySolution, shape: int, truth: float, patches: float = 0.0
+) -> None:
     """Within three standard errors, of at most 0.2 %, and what is unshot or patches are off by."""
     rows = (solution.patches["shape"] == shape) & (solution.patches["side"] == 1)
     areas = solution.areas[rows]
@@ -30,7 +32,7 @@ def assert_mean(solution: rw.RadiositySolution, shape: int, truth: float, patche
     assert abs(found - truth) <= 3 * error + (solution.bound + patches) * truth
 
 
-def assert_books(solution: rw.RadiositySolution) -> None:
+def assert_books(solution: rw.exchange.RadiositySolution) -> None:
     for emitted, *parts in zip(
         solution.emitted, solution.absorbed, solution.escaped, solution.unshot, strict=True
     ):
@@ -122,7 +124,7 @@ def test_two_squares_in_small_patches_approach_the_continuous_solution() -> None
     assert_mean(found, 1, 0.100947189238679)
 
 
-def at_corners(found: rw.RadiositySolution, places: list[tuple[float, float, float]]) -> float:
+def at_corners(found: rw.exchange.RadiositySolution, places: list[tuple[float, float, float]]) -> float:
     """The mean of what corners of patches have, of those that lie at these places."""
     corners, values = found.corners.reshape(-1, 3), found.corner_radiosity.reshape(-1, 3)[:, 0]
     here = [np.linalg.norm(corners - place, axis=1) < 1e-6 for place in places]
@@ -148,7 +150,7 @@ EDGES = [(0.5, 0), (-0.5, 0), (0, 0.5), (0, -0.5)]
 
 
 def assert_limit(
-    scene: Callable[[int], rw.Scene], seen: Callable[[rw.RadiositySolution], Any], truth: Any
+    scene: Callable[[int], rw.Scene], seen: Callable[[rw.exchange.RadiositySolution], Any], truth: Any
 ) -> None:
     """Flat faces are off what they stand for by the square of their size: two sizes tell where it goes to.
 
@@ -302,7 +304,7 @@ def test_textures_count_by_their_mean() -> None:
         CUBE[0],
         [(0, 1, 2), (0, 2, 3)],
         uv=[(0, 0), (1, 0), (1, 1), (0, 1)],
-        material=rw.Diffuse(rw.Checker(0.2, 0.8, transform=rw.UvTransform(scale=2))),
+        material=rw.Diffuse(rw.Checker(0.2, 0.8, transform=rw.textures.UvTransform(scale=2))),
     )
     found = rw.radiosity(
         rw.Scene([floor], rw.DirectionalLight((0, 0, -1), 1.0)), rays=4096, patch_size=0.2, progress=False
@@ -426,7 +428,7 @@ REFUSED: list[tuple[str, Any, dict[str, Any]]] = [
     ("must have a finite area above 0", lambda: rw.Scene([rw.Plane((0, 0, 0), (0, 0, 1), emission=1.0)]), {}),
     (
         "nonuniform scale",
-        lambda: rw.Scene([rw.Ellipsoid((0, 0, 0), (1, 2, 3), emission=1.0)]),
+        lambda: rw.Scene([rw.shapes.Ellipsoid((0, 0, 0), (1, 2, 3), emission=1.0)]),
         {},
     ),
 ]
@@ -457,4 +459,4 @@ def test_shapes_exchange_light_as_their_scene_does() -> None:
     assert np.array_equal(*(found.flux for found in heat))
     light = (rw.radiosity(of, **quiet) for of in (parts, scene))
     assert np.array_equal(*(found.radiosity for found in light))
-    assert rw.view_factors(parts, **quiet).rest.max() < 1
+    assert rw.view_factors(parts, **quiet).to_surroundings.max() < 1

@@ -13,11 +13,11 @@ import raywright as rw
 DARK = room(0.6, (0,) * 6)
 
 
-def by_matrix(scene: rw.Scene, **options: Any) -> rw.RadiositySolution:
+def by_matrix(scene: rw.Scene, **options: Any) -> rw.exchange.RadiositySolution:
     return rw.radiosity(scene, method="matrix", progress=False, **options)
 
 
-def assert_books(solution: rw.RadiositySolution, within: float) -> None:
+def assert_books(solution: rw.exchange.RadiositySolution, within: float) -> None:
     for emitted, absorbed, escaped in zip(solution.emitted, solution.absorbed, solution.escaped, strict=True):
         assert abs(emitted - absorbed - escaped) <= within * emitted
 

@@ -42,7 +42,7 @@ def test_in_an_even_room_every_pixel_is_the_series() -> None:
 
 def test_textures_are_those_of_the_scene_and_the_sky_is_behind() -> None:
     uv = [(0, 0), (1, 0), (1, 1), (0, 1)]
-    checks = rw.Diffuse(rw.Checker(0.2, 0.8, transform=rw.UvTransform(scale=4)))
+    checks = rw.Diffuse(rw.Checker(0.2, 0.8, transform=rw.textures.UvTransform(scale=4)))
     floor = rw.Mesh(CUBE[0], [(0, 1, 2), (0, 2, 3)], uv=uv, material=checks)
     scene = rw.Scene([floor], rw.DirectionalLight((0, 0, -1), 2.0), environment=0.0)
     found = rw.radiosity(scene, rays=4096, progress=False)

@@ -101,7 +101,7 @@ def test_tables_name_calls_that_are_there(page):
         "s": rw.Scene,
         "scene": rw.Scene,
         "m": rw.measure,
-        "hits": rw.Hits,
+        "hits": rw.query.Hits,
         "mesh": rw.Mesh,
         "image": rw.Image,
     }

@@ -47,7 +47,7 @@ def test_no_pixel_is_biased_where_light_is_rare(lamps):
 def test_the_same_error_takes_fewer_samples(cornell):
     scene, camera, reference = cornell
     # Stratified samples are better everywhere, and leave less to gain by their number.
-    how = {"samples": 64, "sampler": rw.Independent()}
+    how = {"samples": 64, "sampler": rw.rendering.Independent()}
     errors = [
         [relmse(render(scene, camera, **how, seed=s, adaptive=a), reference) for s in range(6)]
         for a in (False, True)
@@ -76,7 +76,7 @@ def test_adaptive_intervals_of_pixels_hold(cornell):
     # From 256 samples on, 93 to 97 of 100 intervals must hold the truth. The share of one picture varies by
     # half a percent, and the mean of three by 0.3 percent; two are allowed.
     scene, camera, reference = cornell
-    how = {"samples": 256, "sampler": rw.Independent(), "adaptive": True}
+    how = {"samples": 256, "sampler": rw.rendering.Independent(), "adaptive": True}
     images = [render(scene, camera, **how, seed=seed) for seed in range(3)]
     within = [np.mean(np.abs(image.rgb - reference) <= 1.96 * image.standard_error) for image in images]
     assert 0.924 < np.mean(within) < 0.976

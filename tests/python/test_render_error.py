@@ -21,7 +21,9 @@ def test_estimate_of_a_cornell_box_is_close_to_its_true_error():
     # Below this size a few pixels at the edge of the lamp hold most of the error, so that no estimate can be
     # so close so often.
     scene, camera = rw.scenes.cornell_box(width=64, height=64)
-    reference = render(scene, camera, samples=768, seed=10**9, sampler=rw.Lattice(64)).rgb.astype(float)
+    reference = render(scene, camera, samples=768, seed=10**9, sampler=rw.rendering.Lattice(64)).rgb.astype(
+        float
+    )
     ratios, inside = [], []
     for seed in range(100):
         image = render(scene, camera, samples=16, seed=seed)
@@ -37,10 +39,10 @@ def test_estimate_of_a_cornell_box_is_close_to_its_true_error():
 @pytest.mark.slow
 def test_intervals_of_pixels_cover_the_reference():
     scene, camera = rw.scenes.cornell_box(width=32, height=32)
-    reference = render(scene, camera, samples=8192, seed=10**9, sampler=rw.Lattice(64)).rgb
+    reference = render(scene, camera, samples=8192, seed=10**9, sampler=rw.rendering.Lattice(64)).rgb
     covered = []
     for seed in range(10):
-        image = render(scene, camera, samples=256, seed=seed, sampler=rw.Independent())
+        image = render(scene, camera, samples=256, seed=seed, sampler=rw.rendering.Independent())
         covered.append(np.mean(np.abs(image.rgb - reference) <= 1.96 * image.standard_error))
     assert 0.93 <= np.mean(covered) <= 0.97
 
@@ -48,7 +50,7 @@ def test_intervals_of_pixels_cover_the_reference():
 def covered(make, side, samples, seeds, **how):
     """The share of pixels' 95 % intervals that hold a long picture."""
     scene, camera = make(side)
-    long = {"samples": 8192, "seed": 10**9, "sampler": rw.Lattice(64)}
+    long = {"samples": 8192, "seed": 10**9, "sampler": rw.rendering.Lattice(64)}
     reference = render(scene, camera, **long).rgb
     held = []
     for seed in range(seeds):
@@ -77,7 +79,7 @@ def test_intervals_of_pixels_cover_the_reference_in_other_scenes(make, side):
 def test_intervals_are_those_of_students_t():
     scene, camera = rw.scenes.cornell_box(width=4, height=4)
     # Three samples leave two degrees of freedom, where the quantile has a closed form.
-    image = render(scene, camera, samples=3, sampler=rw.Independent())
+    image = render(scene, camera, samples=3, sampler=rw.rendering.Independent())
     for level in (0.5, 0.95, 0.99):
         low, high = image.interval(level)
         half = image.standard_error * np.sqrt(2) * level / np.sqrt(1 - level**2)
@@ -132,7 +134,7 @@ def test_rendering_to_an_error_reaches_it(cornell):
 def test_error_falls_as_one_over_samples():
     scene, camera = rw.scenes.cornell_box(width=32, height=32)
     # The larger batches are, the steeper it falls within the first of them.
-    history = render(scene, camera, samples=512, sampler=rw.Independent()).history
+    history = render(scene, camera, samples=512, sampler=rw.rendering.Independent()).history
     late = history[history["samples"] >= 32]
     slope = np.polyfit(np.log(late["samples"]), np.log(late["error"]), 1)[0]
     assert -1.1 < slope < -0.9

@@ -21,14 +21,16 @@ def tell(name, scene, camera, integrator=rw.Path(), **how):
 
 size = {"width": 24, "height": 20}
 cornell = rw.scenes.cornell_box(**size)
-for sampler in (rw.Independent(), rw.Stratified(4), rw.Halton(4), rw.Sobol(4), rw.Lattice(4)):
+kinds = rw.rendering
+batched = [kind(4) for kind in (kinds.Stratified, kinds.Halton, kinds.Sobol, kinds.Lattice)]
+for sampler in (kinds.Independent(), *batched):
     tell(type(sampler).__name__, *cornell, sampler=sampler)
 tell("reuse", *cornell, rw.Path(reuse=4))
 tell("plates", *rw.scenes.veach_plates(**size))
 tell("spheres", *rw.scenes.glass_spheres(**size))
 tell("caustics", *rw.scenes.glass_spheres(**size), rw.Path(caustics=True))
 tell("whitted", *rw.scenes.glass_spheres(**size), rw.Whitted())
-tell("distributed", *rw.scenes.veach_plates(**size), rw.Distributed(splits=3))
+tell("distributed", *rw.scenes.veach_plates(**size), rw.integrators.Distributed(splits=3))
 
 knot = rw.scenes.torus_knot(along=60, around=9)
 sheet = rw.TwoSided(rw.Diffuse((0.2, 0.5, 0.7)), rw.Diffuse(0.1))
@@ -56,18 +58,18 @@ others = (
     rw.Conductor("Au", roughness=0.4, distribution="beckmann", multiple_scattering=False),
     rw.Plastic(blue, roughness=0.4, multiple_scattering=False),
     principled,
-    rw.PrincipledThin(blue, transmission=0.4),
-    rw.OrenNayar(blue, 0.6),
-    rw.Phong(blue, 0.2, 30),
-    rw.BlinnPhong(blue, 0.2, 30),
+    rw.materials.PrincipledThin(blue, transmission=0.4),
+    rw.materials.OrenNayar(blue, 0.6),
+    rw.materials.Phong(blue, 0.2, 30),
+    rw.materials.BlinnPhong(blue, 0.2, 30),
     mixed,
-    rw.Tinted(rw.Dielectric(1.5), transmittance=blue),
-    rw.ThinFilm(300, ior=1.5, base=rw.Dielectric(1.33)),
-    rw.SoapFilm(400),
+    rw.materials.Tinted(rw.Dielectric(1.5), transmittance=blue),
+    rw.materials.ThinFilm(300, ior=1.5, base=rw.Dielectric(1.33)),
+    rw.materials.SoapFilm(400),
 )
 balls = [rw.Sphere((x % 7 - 3, x // 7 - 1, 0), 0.45, material=kind) for x, kind in enumerate(others)]
 tell("others", rw.Scene([floor, lamp, *balls]), camera)
-tell("others split", rw.Scene([floor, lamp, *balls]), camera, rw.Distributed(splits=3))
+tell("others split", rw.Scene([floor, lamp, *balls]), camera, rw.integrators.Distributed(splits=3))
 """
 
 

@@ -11,8 +11,8 @@ import rare_scenes
 
 import raywright as rw
 from raywright import _core
-from raywright.rendering import ways
-from raywright.rendering.ways import StoppedError
+from raywright.rendering import auto_options as ways
+from raywright.rendering.auto_options import StoppedError
 
 
 @pytest.fixture(scope="module")
@@ -27,7 +27,7 @@ def render(box, **how):
 def test_samples_are_placed_where_nothing_is_named(box):
     image = render(box)
     assert image.samples == 64
-    assert isinstance(image.plan.sampler, rw.Lattice)
+    assert isinstance(image.plan.sampler, rw.rendering.Lattice)
     assert np.array_equal(image.rgb, render(box, samples=64, sampler=image.plan.sampler).rgb)
     assert [row.what for row in image.plan.rows] == ["sampler", "batch", "reuse", "caustics"]
     assert image.plan["sampler"].chosen == "Lattice"
@@ -43,8 +43,10 @@ def test_samples_are_placed_where_nothing_is_named(box):
 )
 def test_lattices_unless_of_few_points(box, limits, adaptive):
     sampler = render(box, **limits, adaptive=adaptive).plan.sampler
-    batch = 1 if sampler == rw.Independent() else sampler.batch
-    kind = rw.Independent if batch == 1 else rw.Sobol if batch <= 4 else rw.Lattice
+    batch = 1 if sampler == rw.rendering.Independent() else sampler.batch
+    kind = (
+        rw.rendering.Independent if batch == 1 else rw.rendering.Sobol if batch <= 4 else rw.rendering.Lattice
+    )
     assert type(sampler) is kind
     if "samples" in limits:
         # Each half has two batches for its error, except for pictures without two samples.
@@ -53,13 +55,18 @@ def test_lattices_unless_of_few_points(box, limits, adaptive):
 
 def test_what_is_named_is_used_as_named(box):
     path = rw.Path(reuse=2, caustics=False)
-    for sampler in (rw.Independent(), rw.Halton(8), rw.Sobol(2), rw.Stratified(64)):
+    for sampler in (
+        rw.rendering.Independent(),
+        rw.rendering.Halton(8),
+        rw.rendering.Sobol(2),
+        rw.rendering.Stratified(64),
+    ):
         image = render(box, integrator=path, samples=16, sampler=sampler)
         assert image.plan.sampler == sampler
         assert image.plan.path == path
         assert {row.why for row in image.plan.rows} == {"as named"}
-    image = render(box, samples=64, sampler=rw.Sobol())
-    assert isinstance(image.plan.sampler, rw.Sobol)
+    image = render(box, samples=64, sampler=rw.rendering.Sobol())
+    assert isinstance(image.plan.sampler, rw.rendering.Sobol)
     assert image.plan["sampler"].why == "as named"
     assert image.plan["batch"].why != "as named"
 
@@ -100,10 +107,12 @@ def test_a_plan_prints_as_a_table_and_stays(box):
 
 
 def test_shots_and_views_leave_it_to_render(box):
-    assert rw.Shot(*box).sampler is None
-    assert isinstance(rw.Shot(*box).render(samples=64, progress=False).plan.sampler, rw.Lattice)
-    named = rw.Shot(*box, sampler=rw.Halton(4)).render(samples=64, progress=False)
-    assert named.plan.sampler == rw.Halton(4)
+    assert rw.rendering.RenderSetup(*box).sampler is None
+    assert isinstance(
+        rw.rendering.RenderSetup(*box).render(samples=64, progress=False).plan.sampler, rw.rendering.Lattice
+    )
+    named = rw.rendering.RenderSetup(*box, sampler=rw.rendering.Halton(4)).render(samples=64, progress=False)
+    assert named.plan.sampler == rw.rendering.Halton(4)
 
 
 # Enough samples for a pilot.
@@ -174,10 +183,11 @@ def test_larger_patches_are_tried_where_light_is_rare():
 def test_a_pilot_says_the_same_on_any_number_of_threads():
     scene, camera = made("glass_spheres", 40)
     said = [
-        _core.pilot(scene._compiled(), camera, WAYS, n, None, rw.BoxFilter(), None) for n in (1, 2, 5, None)
+        _core.pilot(scene._compiled(), camera, WAYS, n, None, rw.rendering.BoxFilter(), None)
+        for n in (1, 2, 5, None)
     ]
     assert said == [said[0]] * 4
-    assert _core.pilot(scene._compiled(), camera, [], None, None, rw.BoxFilter(), None) == []
+    assert _core.pilot(scene._compiled(), camera, [], None, None, rw.rendering.BoxFilter(), None) == []
 
 
 def test_a_pilot_tells_the_error_of_the_picture():
@@ -187,10 +197,11 @@ def test_a_pilot_tells_the_error_of_the_picture():
         # Its own error is less than an eightieth of that of 8 samples.
         truth = render(box, integrator=path, samples=1024).rgb.astype(float)
         pictures = [
-            render(box, integrator=path, samples=8, sampler=rw.Sobol(4), seed=seed).rgb for seed in range(50)
+            render(box, integrator=path, samples=8, sampler=rw.rendering.Sobol(4), seed=seed).rgb
+            for seed in range(50)
         ]
         errors = [np.mean((rgb - truth) ** 2 / (truth**2 + 0.01)) for rgb in pictures]
-        (said,) = _core.pilot(box[0]._compiled(), box[1], [path], None, None, rw.BoxFilter(), None)
+        (said,) = _core.pilot(box[0]._compiled(), box[1], [path], None, None, rw.rendering.BoxFilter(), None)
         # It is one picture, whose pixels have two batches each.
         off = (said - np.mean(errors)) / np.std(errors)
         assert abs(off) < 4, (said, np.mean(errors), np.std(errors))

@@ -61,7 +61,9 @@ def test_pictures_with_light_everywhere_know_their_error(make, side, samples):
 @pytest.mark.parametrize(("side", "samples"), [(128, 16), (64, 64)])
 def test_plates_know_their_error_where_no_lamp_is_lost_in_a_pixel(side, samples):
     scene, camera = rare_scenes.plates(side)
-    reference = rw.render(scene, camera, samples=2048, seed=10**9, sampler=rw.Lattice(64), progress=False)
+    reference = rw.render(
+        scene, camera, samples=2048, seed=10**9, sampler=rw.rendering.Lattice(64), progress=False
+    )
     honest, cannot, _ = judged(scene, camera, (samples,), 100, reference.rgb.astype(float))
     assert honest[samples] >= 90
     assert cannot[samples] <= 5
@@ -93,7 +95,7 @@ def test_caustics_are_not_told_to_be_better_than_they_are():
 
 def test_light_through_a_keyhole_is_known_to_be_rare():
     scene, camera = rare_scenes.keyhole(16)
-    # By rw.Path(reuse=8, caustics=False), 32,768 samples of rw.Lattice(64), seed 10**9.
+    # By rw.Path(reuse=8, caustics=False), 32,768 samples of rw.rendering.Lattice(64), seed 10**9.
     with np.load(Path(__file__).parent / "data" / "keyhole_16.npz") as kept:
         reference = kept["rgb"].astype(float)
     honest, cannot, _ = judged(scene, camera, (16, 64), 20, reference)

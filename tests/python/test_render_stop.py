@@ -66,7 +66,8 @@ def test_an_error_that_was_asked_for_is_reached_in_a_small_picture():
 
 def test_stopping_at_an_error_does_not_darken_the_picture():
     scene, camera = rw.scenes.cornell_box(width=16, height=16)
-    # Of rw.render(scene, camera, samples=65536, seed=10**9, sampler=rw.Lattice(64)): mean and standard error.
+    # Of rw.render(scene, camera, samples=65536, seed=10**9, sampler=rw.rendering.Lattice(64)): mean and
+    # standard error.
     truth, doubt = 0.11368074172435172, 1.94e-5
     stopped = [render(scene, camera, error=0.04, seed=seed) for seed in range(150)]
     assert len({image.samples for image in stopped}) > 1

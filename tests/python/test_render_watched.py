@@ -160,7 +160,7 @@ def test_what_it_takes_to_show_it_is_a_tenth_of_the_work_at_most(clock, threads,
 
 def test_pixels_so_far_have_the_first_of_their_samples_and_nothing_else(clock):
     scene, camera = rw.scenes.cornell_box(width=400, height=400)
-    how = {"seed": 7, "sampler": rw.Independent(), "progress": False}
+    how = {"seed": 7, "sampler": rw.rendering.Independent(), "progress": False}
     whole = [rw.render(scene, camera, rw.Path(reuse=1), n, **how).rgb for n in (1, 2)]
     seen = []
 

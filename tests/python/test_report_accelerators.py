@@ -40,7 +40,7 @@ def test_every_accelerator_has_a_row_and_none_is_wrong(report):
 
 def test_what_is_told_of_a_structure_is_what_it_tells_itself(report):
     for one in report.measured:
-        info = rw.Scene(KNOT, accelerator=one.accelerator).accelerator
+        info = rw.Scene(KNOT, accelerator=one.accelerator).accelerator_info
         told = row(report, one.name)
         assert (told["bytes"], told["nodes"], told["depth"]) == (info.bytes, info.nodes, info.depth)
         assert told["sah_cost"] == (info.sah_cost if np.isfinite(info.sah_cost) else None)
@@ -55,7 +55,7 @@ def test_brute_force_visits_no_node_and_tests_every_face(report):
 
 def test_counts_are_means_over_all_rays(report):
     costs = [
-        SCENE.cost(rays.origins, rays.directions, t_max=rays.t_max)
+        SCENE.traversal_cost(rays.origins, rays.directions, t_max=rays.t_max)
         for rays in rw.report.typical_rays(SCENE, CAMERA).values()
     ]
     told = row(report, kinds.name_of(rw.BVH()))
@@ -89,7 +89,7 @@ def test_a_wrong_answer_is_counted(monkeypatch):
 
     def wrong(scene, rays, threads):
         answer = right(scene, rays, threads)
-        if isinstance(scene.accelerator_choice, rw.BruteForce):
+        if isinstance(scene.accelerator, rw.BruteForce):
             return answer
         changed = answer[-1].copy().reshape(-1)
         changed[:3] = ~changed[:3]

@@ -17,11 +17,11 @@ from raywright.report.convergence import LEVELS
 SCENE, CAMERA, TRUTH = cornell_picture(24)
 HISTORY = np.array([(1.0, 16384, 1e-6)], rw.rendering.image.HISTORY)
 # An error that shows unless it is subtracted: the picture's own is a tenth of it.
-ESTIMATE = rw.ErrorEstimate(1e-5, 5e-6, 2e-5)
+ESTIMATE = rw.rendering.ErrorEstimate(1e-5, 5e-6, 2e-5)
 REFERENCE = rw.Image(
     TRUTH.astype(np.float32), np.zeros_like(TRUTH, np.float32), ESTIMATE, HISTORY, 1.0, 16384
 )
-WAYS = {"path": {"sampler": rw.Independent()}, "adaptive": {"adaptive": True}}
+WAYS = {"path": {"sampler": rw.rendering.Independent()}, "adaptive": {"adaptive": True}}
 
 
 @pytest.fixture(scope="module")
@@ -86,7 +86,9 @@ def test_another_seed_is_another_picture(made):
         assert not np.array_equal(images[0].rgb, images[1].rgb)
     longest = made[1]["path", 0.2][1]
     how = {"samples": longest.samples, "seed": 1, "progress": False}
-    assert np.array_equal(rw.render(SCENE, CAMERA, sampler=rw.Independent(), **how).rgb, longest.rgb)
+    assert np.array_equal(
+        rw.render(SCENE, CAMERA, sampler=rw.rendering.Independent(), **how).rgb, longest.rgb
+    )
 
 
 def test_slopes_are_fitted_by_least_squares():
@@ -111,7 +113,7 @@ def test_without_a_reference_errors_are_estimates():
 def test_a_reference_can_be_made_or_given_as_numbers():
     made = rw.report.convergence(SCENE, CAMERA, {"path": {}}, 0.05, 0.5, seeds=1)
     assert any("reference's own relMSE" in note for note in made.notes)
-    way = {"sampler": rw.Independent()}
+    way = {"sampler": rw.rendering.Independent()}
     given = rw.report.convergence(SCENE, CAMERA, {"path": way}, 0.05, np.zeros((24, 24, 3)), seeds=1)
     # Against black, relMSE is the mean square over 0.01.
     image = rw.render(SCENE, CAMERA, **way, samples=given.column("samples")[-1], seed=0, progress=False)

@@ -26,7 +26,7 @@ def heat():
 @pytest.mark.parametrize("what", ["nodes", "primitives"])
 def test_counts_are_what_rays_cost(what):
     heat = rw.report.heatmap(SCENE, CAMERA, what, repeats=0)
-    cost = SCENE.cost(*CAMERA.rays())
+    cost = SCENE.traversal_cost(*CAMERA.rays())
     assert np.array_equal(heat.nodes, cost.nodes)
     assert np.array_equal(heat.primitives, cost.primitives)
     assert np.array_equal(heat.counts, getattr(cost, what))

@@ -52,17 +52,17 @@ def told_rightly(shares):
 
 KINDS = [
     rw.BVH(),
-    rw.BVH(builder="sweep", optimise=("treelet", "reinsertion")),
+    rw.BVH(builder="sweep", optimize=("treelet", "reinsertion")),
     rw.BVH(builder="ploc", traversal="stack"),
     rw.BVH(builder="spatial"),
     rw.BVH(builder="morton", traversal="threaded"),
     rw.BVH(builder="median"),
-    rw.KdTree(),
-    rw.KdTree(builder="median"),
-    rw.Octree(),
-    rw.BSP(),
-    rw.Grid(),
-    rw.NestedGrid(),
+    rw.accelerators.KdTree(),
+    rw.accelerators.KdTree(builder="median"),
+    rw.accelerators.Octree(),
+    rw.accelerators.BSP(),
+    rw.accelerators.Grid(),
+    rw.accelerators.NestedGrid(),
 ]
 
 
@@ -70,22 +70,22 @@ KINDS = [
 def test_a_function_is_told_shares_that_never_fall_and_end_at_one(kind):
     shares = Shares()
     # Planes of any direction take long to choose.
-    mesh = bumpy(4_000 if isinstance(kind, rw.BSP) else 60_000)
+    mesh = bumpy(4_000 if isinstance(kind, rw.accelerators.BSP) else 60_000)
     scene = rw.Scene(mesh, accelerator=kind)
     scene.build(progress=shares)
     told_rightly(shares)
     # Progress reports change nothing.
     plain = rw.Scene(mesh, accelerator=kind)
-    assert scene.accelerator.sah_cost == plain.accelerator.sah_cost
-    assert (scene.accelerator.kind, scene.accelerator.nodes) == (
-        plain.accelerator.kind,
-        plain.accelerator.nodes,
+    assert scene.accelerator_info.sah_cost == plain.accelerator_info.sah_cost
+    assert (scene.accelerator_info.kind, scene.accelerator_info.nodes) == (
+        plain.accelerator_info.kind,
+        plain.accelerator_info.nodes,
     )
 
 
 def test_a_long_build_is_told_about_while_it_goes_on(large):
     shares = Shares()
-    scene = rw.Scene(rw.Instance(large, [np.eye(4), np.diag([2.0, 2.0, 2.0, 1.0])]), quality="fast rays")
+    scene = rw.Scene(rw.Instance(large, [np.eye(4), np.diag([2.0, 2.0, 2.0, 1.0])]), quality="high")
     scene.build(progress=shares)
     told_rightly(shares)
     assert len(set(shares)) >= 3
@@ -122,7 +122,7 @@ def test_what_watches_cannot_ask_the_scene(large):
 
     scene.build(progress=ask)
     assert told
-    assert scene.accelerator.primitives == len(large.faces)
+    assert scene.accelerator_info.primitives == len(large.faces)
 
 
 @pytest.mark.parametrize("progress", ["bar", None, 1])
@@ -156,7 +156,7 @@ def test_a_bar_is_shown_where_it_takes_long(monkeypatch, large, patience, is_ter
     stderr = Terminal(is_terminal)
     monkeypatch.setattr(sys, "stderr", stderr)
     monkeypatch.setattr(watching, "_PATIENCE", patience)
-    build(rw.Scene(large, quality="fast rays"))
+    build(rw.Scene(large, quality="high"))
     assert ("build: 100%" in stderr.getvalue()) == is_shown
     assert (stderr.getvalue() == "") != is_shown
 
@@ -191,14 +191,14 @@ def ended(build, delay):
     return heard
 
 
-INTERRUPTED = [*KINDS, rw.BVH(optimise=("reinsertion",)), rw.BVH(builder="binned", traversal="packets64")]
+INTERRUPTED = [*KINDS, rw.BVH(optimize=("reinsertion",)), rw.BVH(builder="binned", traversal="packets64")]
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals differ there")
 @pytest.mark.parametrize("kind", INTERRUPTED, ids=repr)
 def test_ctrl_c_ends_a_build_at_once(large, kind):
     def ask():
-        rw.Scene(large, accelerator=kind, quality="fast rays").intersect([0, 0, 0], [1, 0, 0])
+        rw.Scene(large, accelerator=kind, quality="high").intersect([0, 0, 0], [1, 0, 0])
 
     # The documented limit is a tenth of a second on an idle machine; tests run beside other work.
     assert ended(ask, 0.15) < 1.0
@@ -208,7 +208,7 @@ def test_ctrl_c_ends_a_build_at_once(large, kind):
 def test_a_scene_is_as_before_when_its_build_was_ended(large):
     def build():
         nonlocal scene
-        scene = rw.Scene([large, rw.Sphere((0, 0, 0), 0.5)], quality="fast rays")
+        scene = rw.Scene([large, rw.Sphere((0, 0, 0), 0.5)], quality="high")
         shapes = scene.shapes
         try:
             scene.build(progress=False)
@@ -224,7 +224,7 @@ def test_a_scene_is_as_before_when_its_build_was_ended(large):
     assert time.process_time() - before < 0.2
     hits = scene.intersect([[0, 0, 0], [3, 0, 0]], [[1, 0, 0], [-1, 0, 0]])
     assert hits.shape_id.tolist() == [1, 0]
-    assert scene.accelerator.primitives == len(large.faces) + 1
+    assert scene.accelerator_info.primitives == len(large.faces) + 1
 
 
 @pytest.mark.slow
@@ -232,7 +232,7 @@ def test_a_scene_is_as_before_when_its_build_was_ended(large):
 def test_ctrl_c_is_heard_within_a_tenth_of_a_second_among_ten_million():
     mesh = bumpy(10_000_000)
     start = time.monotonic()
-    accelerator = rw.Scene(mesh, quality="fast build").accelerator
+    accelerator = rw.Scene(mesh, quality="low").accelerator_info
     whole = time.monotonic() - start
     assert accelerator.bytes <= 60 * len(mesh.faces)
     late = [

@@ -45,7 +45,7 @@ def sky_view(scene, at):
     assert ground.hit.all()
     radius, angle = np.sqrt(rng.random((64, 400))), rng.uniform(0, 2 * np.pi, (64, 400))
     up = np.stack([radius * np.cos(angle), radius * np.sin(angle), np.sqrt(1 - radius**2)], axis=-1)
-    return ground.primitive, ~scene.occluded(*ground.leave(up))
+    return ground.primitive_id, ~scene.occluded(*ground.spawn_rays(up))
 
 
 def test_a_block_at_map_coordinates_is_as_thick_as_it_is():
@@ -78,10 +78,10 @@ def test_what_cameras_and_cones_ask_at_map_coordinates_is_exact_too():
     assert scene.pick(camera, 16, 12) == scene.intersect(*(part[12, 16] for part in camera.rays()))
     same = home.first_hits(before)
     assert same.hit.sum() > 100
-    assert np.array_equal(hits.primitive, same.primitive)
+    assert np.array_equal(hits.primitive_id, same.primitive_id)
     assert np.allclose(hits.t[hits.hit], same.t[same.hit], rtol=0, atol=1e-8)
-    found, wanted = (s.cone(at + eye, -eye, 5.0) for s, at in ((scene, PLACE), (home, np.zeros(3))))
-    assert np.array_equal(found.primitive, wanted.primitive)
+    found, wanted = (s.faces_in_cone(at + eye, -eye, 5.0) for s, at in ((scene, PLACE), (home, np.zeros(3))))
+    assert np.array_equal(found.primitive_id, wanted.primitive_id)
     assert np.allclose(found.distance, wanted.distance, rtol=0, atol=1e-8)
 
 
@@ -105,8 +105,8 @@ def test_digits_are_kept_unless_there_are_none_beyond_float32(off):
     for other in ([], [rw.Mesh(np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0)]) * 2.0**100, [(0, 1, 2)])]):
         scene = rw.Scene([mesh, *other])
         precision = "double" if off else "single"
-        assert scene.accelerator.precision == precision
-        assert precision in scene.accelerator.kind
+        assert scene.accelerator_info.precision == precision
+        assert precision in scene.accelerator_info.kind
         assert row(scene).needed == bool(off)
         assert scene.precision == "auto"
     assert rw.Scene(mesh).bounds is not None
@@ -151,7 +151,7 @@ def test_rays_that_start_next_to_a_face_start_on_their_side_of_it():
     assert is_off.sum() > 3500
     assert np.array_equal(scene.contains(points)[is_off], is_inside[is_off])
     # Outwards from inside, the face is hit once; from beyond the other face, that one as well.
-    count = scene.count(points, outward)[is_off]
+    count = scene.count_hits(points, outward)[is_off]
     assert np.array_equal(count % 2 == 1, is_inside[is_off])
 
 
@@ -166,7 +166,7 @@ def test_rays_that_start_next_to_a_face_start_on_their_side_of_it():
 )
 def test_what_is_float32_stays_so_wherever_it_is(vertices):
     scene = rw.Scene(rw.Mesh(vertices, cuboid().faces))
-    assert scene.accelerator.precision == "single"
+    assert scene.accelerator_info.precision == "single"
     assert row(scene).meaning == "kept as float32, which has all of their digits"
     single = rw.Scene(scene.shapes, precision="single")
     assert scene.bytes == single.bytes
@@ -176,7 +176,7 @@ def test_what_is_float32_stays_so_wherever_it_is(vertices):
 def test_meshes_of_float32_numbers_stay_single():
     for mesh in (bumpy(), trimesh.creation.box(), cuboid(at=(0.5, 0.25, -7.0))):
         scene, single = rw.Scene(mesh), rw.Scene(mesh, precision="single")
-        assert scene.accelerator.precision == "single"
+        assert scene.accelerator_info.precision == "single"
         assert scene.bytes == single.bytes
         rays = np.random.default_rng(2).normal(size=(2, 500, 3))
         assert scene.intersect(*rays) == single.intersect(*rays)
@@ -186,18 +186,18 @@ def test_what_no_face_uses_does_not_count():
     block = cuboid()
     for stray in ((0.0, 0.0, 0.0), (1e30, 0.0, 0.0), (np.nan, 0.0, 0.0)):
         scene = rw.Scene(rw.Mesh(np.concatenate([block.vertices, [stray]]), block.faces))
-        assert scene.accelerator.precision == "double"
+        assert scene.accelerator_info.precision == "double"
         assert row(scene) == row(rw.Scene(block))
     at_home = cuboid(at=0.0)
     stray = rw.Mesh(np.concatenate([at_home.vertices, [PLACE + 0.1]]), at_home.faces)
-    assert rw.Scene(stray).accelerator.precision == "single"
+    assert rw.Scene(stray).accelerator_info.precision == "single"
 
 
 @pytest.mark.parametrize("scale", [1e-60, 1e-42, 1e39, 1e200])
 def test_what_float32_has_no_numbers_for_is_kept(scale):
     block = cuboid(at=0.0)
     scene = rw.Scene(rw.Mesh(block.vertices * scale, block.faces))
-    assert scene.accelerator.precision == "double"
+    assert scene.accelerator_info.precision == "double"
     assert np.allclose(scene.intersect((0, 0, 5 * scale), (0, 0, -scale)).t, 4, rtol=1e-15, atol=0)
 
 
@@ -208,10 +208,10 @@ def test_one_mesh_that_loses_keeps_the_digits_of_all():
     faces = [(0, 2, 3), (0, 3, 1)]
     large, small = rw.Mesh([*near, *mid], faces), rw.Mesh([*mid, *far], faces)
     scene = rw.Scene([large, small])
-    assert scene.accelerator.precision == "double"
+    assert scene.accelerator_info.precision == "double"
     plain = rw.Mesh([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)])
-    assert rw.Scene(plain).accelerator.precision == "single"
-    assert rw.Scene([plain, small]).accelerator.precision == "double"
+    assert rw.Scene(plain).accelerator_info.precision == "single"
+    assert rw.Scene([plain, small]).accelerator_info.precision == "double"
     aims = mid[0] + np.linspace(0, 1, 1001)[:, None] * (mid[1] - mid[0])
     origins = np.array([1e6 / 3, 0.05, 9.1])
     assert scene.occluded(origins, aims - origins).all()
@@ -234,7 +234,7 @@ def test_groups_decide_for_themselves():
     scene = rw.Scene([rw.Instance(block, np.eye(4)), rw.Instance(ball, np.eye(4)), ball])
     assert row(scene).needed
     assert row(scene).meaning == row(rw.Scene(block)).meaning
-    assert scene.accelerator.precision == "single"
+    assert scene.accelerator_info.precision == "single"
     assert abs(scene.intersect(there(0.1, 0.2, 9), (0, 0, -1)).t - 8) < 1e-9
     alone = rw.Scene([rw.Instance(rw.Instance(block, np.eye(4)), np.eye(4))])
     assert row(alone).needed
@@ -274,9 +274,9 @@ def test_vertices_that_move_are_measured_where_they_are():
     home = cuboid(at=0.125)
     scene = rw.Scene(home)
     assert scene.intersect((0.1, 0.1, 9), (0, 0, -1)).hit
-    assert scene.accelerator.precision == "single"
+    assert scene.accelerator_info.precision == "single"
     scene.refit(home.vertices + PLACE)
-    assert scene.accelerator.precision == "double"
+    assert scene.accelerator_info.precision == "double"
     assert np.diff(scene.intersect_all(there(0.1, 0.1, 9), (0, 0, -1)).t) == pytest.approx(2, abs=1e-9)
     assert scene == rw.Scene(rw.Mesh(home.vertices + PLACE, home.faces))
     scene.refit(home.vertices)
@@ -285,7 +285,7 @@ def test_vertices_that_move_are_measured_where_they_are():
     rays = np.random.default_rng(3).normal(size=(2, 500, 3))
     assert scene.intersect(*rays) == fresh.intersect(*rays)
     scene.rebuild()
-    assert scene.accelerator.precision == "single"
+    assert scene.accelerator_info.precision == "single"
     single = rw.Scene(home, precision="single")
     assert single.intersect((0.1, 0.1, 9), (0, 0, -1)).hit
     with pytest.warns(RuntimeWarning, match="moves vertices") as caught:
@@ -305,20 +305,28 @@ def test_what_was_asked_is_kept_and_told():
         back = pickle.loads(pickle.dumps(scene))
         assert back == scene
         assert back.precision == scene.precision
-    assert row(scenes[3]) == rw.PlanRow("float64 vertices", True, "all digits kept, as asked for")
+    assert row(scenes[3]) == rw.scene.PlanRow("float64 vertices", True, "all digits kept, as asked for")
     ways = np.random.default_rng(4).normal(size=(500, 3))
     assert scenes[0].intersect(PLACE, ways) == scenes[3].intersect(PLACE, ways)
     assert scenes[0].bytes == scenes[3].bytes
 
 
-STRUCTURES = (rw.BVH, rw.KdTree, rw.Grid, rw.NestedGrid, rw.Octree, rw.BSP, rw.BruteForce)
+STRUCTURES = (
+    rw.BVH,
+    rw.accelerators.KdTree,
+    rw.accelerators.Grid,
+    rw.accelerators.NestedGrid,
+    rw.accelerators.Octree,
+    rw.accelerators.BSP,
+    rw.BruteForce,
+)
 
 
 @pytest.mark.parametrize("accelerator", [rw.BVH(traversal="stack"), *(kind() for kind in STRUCTURES)])
 def test_every_accelerator_tells_what_it_holds(accelerator):
     for mesh, precision, t in ((cuboid(at=0.0), "single", 8.5), (cuboid(), "double", 8.0)):
         scene = rw.Scene([mesh, rw.Sphere(PLACE, 0.5)], accelerator=accelerator)
-        assert scene.accelerator.precision == precision
+        assert scene.accelerator_info.precision == precision
         assert abs(scene.intersect(there(0, 0, 9), (0, 0, -1)).t - t) < 1e-8
 
 

@@ -38,7 +38,7 @@ def viewed(seed):
 
 
 def drawn(seed):
-    return rw.Rng(seed, np.arange(3, dtype=np.uint32), np.zeros(3, np.uint32)).one()
+    return rw.integrators.Rng(seed, np.arange(3, dtype=np.uint32), np.zeros(3, np.uint32)).next_1d()
 
 
 def timed(report, seed):
@@ -48,13 +48,13 @@ def timed(report, seed):
 
 # What is returned is a function of the seed alone.
 USES = {
-    "FBm": lambda seed: rw.FBm(0.0, 1.0, seed=seed).seed,
-    "Marble": lambda seed: rw.Marble(0.0, 1.0, seed=seed).seed,
-    "Noise": lambda seed: rw.Noise(0.0, 1.0, seed=seed).seed,
+    "FBm": lambda seed: rw.textures.FBm(0.0, 1.0, seed=seed).seed,
+    "Marble": lambda seed: rw.textures.Marble(0.0, 1.0, seed=seed).seed,
+    "Noise": lambda seed: rw.textures.Noise(0.0, 1.0, seed=seed).seed,
     "Rng": drawn,
     "Scene.photons": lambda seed: SCENE.photons(20, seed=seed).positions,
-    "Shot": lambda seed: rw.Shot(SCENE, CAMERA, seed=seed).render(**ONE).rgb,
-    "Wood": lambda seed: rw.Wood(0.0, 1.0, seed=seed).seed,
+    "RenderSetup": lambda seed: rw.rendering.RenderSetup(SCENE, CAMERA, seed=seed).render(**ONE).rgb,
+    "Wood": lambda seed: rw.textures.Wood(0.0, 1.0, seed=seed).seed,
     "aovs": lambda seed: rw.aovs(SCENE, CAMERA, "depth", samples=1, seed=seed)["depth"],
     "measure.ambient_visibility": lambda seed: (
         rw.measure.ambient_visibility(SCENE, POINTS, UP, 64, seed=seed).value
@@ -94,7 +94,9 @@ def with_seed(prefix, things):
     """Yield the names of what has a parameter `seed`, of classes their methods too."""
     for name, thing in things.items():
         if isinstance(thing, ModuleType):
-            yield from with_seed(f"{name}.", {own: getattr(thing, own) for own in thing.__all__})
+            # Other submodules hold what the package knows by its own name, or kinds of it.
+            prefix = f"{name}." if name in ("measure", "report", "scenes") else ""
+            yield from with_seed(prefix, {own: getattr(thing, own) for own in thing.__all__})
         elif callable(thing):
             if inspect.isclass(thing):
                 public = {own: value for own, value in inspect.getmembers(thing, callable) if own[0] != "_"}
@@ -152,7 +154,7 @@ def test_pictures_of_one_generator_differ_and_those_of_one_sequence_do_not():
 
 
 def test_a_shot_keeps_the_number_of_its_generator():
-    shot = rw.Shot(SCENE, CAMERA, seed=np.random.default_rng(3))
+    shot = rw.rendering.RenderSetup(SCENE, CAMERA, seed=np.random.default_rng(3))
     assert np.array_equal(shot.render(**ONE).rgb, shot.render(**ONE).rgb)
 
 

@@ -24,7 +24,7 @@ def unit(*vector):
     return np.array(vector) / np.linalg.norm(vector)
 
 
-def seen(shape, lights=(), sky=None, towards=(0, 0, 1), way=None, mode="as given", samples=4):
+def seen(shape, lights=(), sky=None, towards=(0, 0, 1), way=None, mode="raw", samples=4):
     """The middle of what is seen of the square from a direction, and its standard error."""
     towards = unit(*towards)
     up = (0, 1, 0) if abs(towards[1]) < 0.9 else (1, 0, 0)
@@ -142,7 +142,7 @@ def test_light_from_lights_scatters_as_seen_from_the_camera(way):
         [[1.5, -1, 0], [1.5, 1, 0], [1.5, 1, 2], [1.5, -1, 2]], [[0, 1, 2], [0, 2, 3]], material=GREY
     )
     lamp = rw.Sphere((0.5, 0.3, 2.0), 0.4, material=BLACK, emission=4.0)
-    scene = rw.Scene([square, wall, lamp], shading_normals="as given")
+    scene = rw.Scene([square, wall, lamp], shading_normals="raw")
     eye = rw.Camera((-2, -1, 2), (0, 0, 0), up=(0, 0, 1), fov=30, width=8, height=8)
     one = rw.render(scene, eye, rw.Path(max_depth=3), samples=512, seed=1, progress=False)
     two = rw.render(scene, eye, way, samples=512, seed=2, progress=False)
@@ -153,27 +153,27 @@ def test_light_from_lights_scatters_as_seen_from_the_camera(way):
 
 def test_what_has_no_normals_of_its_own_keeps_its_bits():
     scene, eye = rw.scenes.cornell_box(width=16, height=16)
-    given = scene.replace(shading_normals="as given")
+    given = scene.replace(shading_normals="raw")
     pictures = [rw.render(one, eye, samples=4, progress=False).rgb for one in (scene, given)]
     assert np.array_equal(*pictures)
     assert repr(given.plan()) == repr(scene.plan())
 
 
 def test_a_plan_tells_of_normals_as_given():
-    smooth = rw.Scene(floor(LEANING), shading_normals="as given")
+    smooth = rw.Scene(floor(LEANING), shading_normals="raw")
     assert "normals as given" in smooth.plan().needed
     assert "normals as given" not in smooth.replace(shading_normals="faded").plan().needed
 
 
 def test_scenes_remember_it():
-    scene = rw.Scene(floor(LEANING), shading_normals="as given")
-    assert scene.shading_normals == "as given"
+    scene = rw.Scene(floor(LEANING), shading_normals="raw")
+    assert scene.shading_normals == "raw"
     assert rw.Scene([]).shading_normals == "faded"
     assert scene != scene.replace(shading_normals="faded")
     assert pickle.loads(pickle.dumps(scene)) == scene
-    assert "shading_normals='as given'" in repr(scene)
+    assert "shading_normals='raw'" in repr(scene)
     scene.build(progress=False)
     scene.refit(np.add(scene.shapes[0].vertices, 0.5))
     assert "normals as given" in scene.plan().needed
-    with pytest.raises(ValueError, match="shading_normals must be one of 'faded', 'as given', got 'smooth'"):
+    with pytest.raises(ValueError, match="shading_normals must be one of 'faded', 'raw', got 'smooth'"):
         rw.Scene([], shading_normals="smooth")

@@ -18,11 +18,13 @@ def one_of_each():
         rw.Cylinder((8, -1, 0), (8.5, 1, 0.5), 0.6),
         rw.Cone((12, -1, 0), (12, 1, 0), 1.0, 0.25),
         rw.Box((15, -1, -1), (17, 1, 1)),
-        rw.Ellipsoid((20, 0, 0), (1, 0.4, 0.8)),
-        rw.Paraboloid((24, -1, 0), (24, 1, 0), 0.9),
+        rw.shapes.Ellipsoid((20, 0, 0), (1, 0.4, 0.8)),
+        rw.shapes.Paraboloid((24, -1, 0), (24, 1, 0), 0.9),
         rw.Torus((28, 0, 0), (0, 1, 1), 0.9, 0.3),
         rw.Polygon([(31, -1, 0), (33, -1, 0), (33, 1, 0), (32, 0, 0), (31, 1, 0)]),
-        rw.Implicit("(x - 36)**2 + y**2 + z**2 - 1 + 0.2 * sin(5 * x)", (34.5, -1.5, -1.5), (37.5, 1.5, 1.5)),
+        rw.shapes.Implicit(
+            "(x - 36)**2 + y**2 + z**2 - 1 + 0.2 * sin(5 * x)", (34.5, -1.5, -1.5), (37.5, 1.5, 1.5)
+        ),
         rw.Mesh(ball.vertices + np.array([40, 0, 0]), ball.faces),
     ]
 
@@ -61,19 +63,19 @@ def test_all_questions_agree():
     assert np.array_equal(scene.occluded(origins, directions), hits.hit)
     every = scene.intersect_all(origins, directions)
     first = every.ray_splits[:-1][hits.hit]
-    for name in ("t", "shape_id", "primitive", "uv", "position", "normal"):
+    for name in ("t", "shape_id", "primitive_id", "uv", "position", "normal"):
         assert np.array_equal(getattr(every, name)[first], getattr(hits, name)[hits.hit]), name
-    assert np.array_equal(every.count, scene.count(origins, directions))
+    assert np.array_equal(every.count, scene.count_hits(origins, directions))
     assert np.array_equal(every.count > 0, hits.hit)
     # Both ends of the interval count.
     t = hits.t[hits.hit]
     assert np.array_equal(scene.intersect(origins[hits.hit], directions[hits.hit], t, t).t, t)
-    assert (scene.cost(origins, directions).primitives > 0).any()
+    assert (scene.traversal_cost(origins, directions).primitives > 0).any()
 
 
 @pytest.mark.parametrize(
     "accelerator",
-    [rw.BVH("spatial"), rw.Grid(), rw.NestedGrid(), rw.BruteForce()],
+    [rw.BVH("spatial"), rw.accelerators.Grid(), rw.accelerators.NestedGrid(), rw.BruteForce()],
     ids=lambda a: type(a).__name__,
 )
 def test_every_accelerator_gives_the_same(accelerator):
@@ -153,7 +155,7 @@ def test_a_ball_in_a_furnace_is_not_seen():
     turned = [[0.0, -1.0, 0, 0], [2.0, 0, 0, 0], [0, 0, 0.5, 0], [0, 0, 0, 1]]
     for shape in (
         rw.Sphere((0, 0, 0), 1, material=rw.Diffuse(1.0), transform=turned),
-        rw.Ellipsoid((0, 0, 0), (1, 0.5, 0.7), material=rw.Diffuse(1.0)),
+        rw.shapes.Ellipsoid((0, 0, 0), (1, 0.5, 0.7), material=rw.Diffuse(1.0)),
         rw.Box((-1, -1, -1), (1, 1, 1), material=rw.Diffuse(1.0)),
     ):
         scene = rw.Scene(shape, environment=1.0)
@@ -173,14 +175,14 @@ def test_a_shape_in_an_instance_is_told_as_one_that_is_transformed_itself():
     targets = np.array([4.5, 0, -1]) + rng.uniform(-1, 1, (500, 3))
     origins = targets + 10 * rng.normal(size=(500, 3))
     a, b = copied.intersect(origins, targets - origins), itself.intersect(origins, targets - origins)
-    mine = b.hit & (a.primitive == 0)
+    mine = b.hit & (a.primitive_id == 0)
     assert mine.sum() > 300
     assert np.allclose(a.t[mine], b.t[mine], rtol=1e-13)
     for name in ("position", "normal", "shading_normal", "dp_du", "dp_dv", "dn_du", "dn_dv"):
         of_copy, own = getattr(a.surface, name)[mine], getattr(b.surface, name)[mine]
         assert np.allclose(of_copy, own, atol=1e-7), name
-    assert (a.instance[mine] == 0).all()
-    assert (b.instance == -1).all()
+    assert (a.instance_id[mine] == 0).all()
+    assert (b.instance_id == -1).all()
 
 
 def test_one_ray_alone():

@@ -131,7 +131,7 @@ def test_the_mean_of_what_is_given_off(tmp_path):
     assert own_radiance([twice, dark]) == pytest.approx(3 * 2.5 / 3.5)
     pixels = picture(tmp_path, "half.png", [[255, 0], [188, 188]])
     grey = ((188 / 255 + 0.055) / 1.055) ** 2.4
-    both = rw.Emission(rw.ProductTexture(rw.ImageTexture(pixels), 4.0), both_sides=True)
+    both = rw.Emission(rw.textures.ProductTexture(rw.ImageTexture(pixels), 4.0), both_sides=True)
     lit = rw.Mesh(mesh.vertices, mesh.faces, uv=np.zeros((3, 2)), emission=both)
     assert own_radiance([lit]) == pytest.approx(4 * (1 + 2 * grey) / 4)
     assert own_radiance([rw.Sphere((0, 0, 0), 1.0)]) == own_radiance([]) == 0
@@ -139,7 +139,7 @@ def test_the_mean_of_what_is_given_off(tmp_path):
 
 def test_size_and_the_way_up_may_be_told(tmp_path):
     path = write(tmp_path, "Kd 1 0 0")
-    assert rw.load(path, "z", 20, 10) == rw.Shot(*rw.scenes.studio(path, "z", 20, 10))
+    assert rw.load(path, "z", 20, 10) == rw.rendering.RenderSetup(*rw.scenes.studio(path, "z", 20, 10))
     camera = gltf(tmp_path, camera={"translation": [0, 0, 4]}).camera
     small = rw.load(tmp_path / "file.glb", width=72).camera
     assert (camera.width, camera.height, small.width, small.height) == (720, 480, 72, 48)

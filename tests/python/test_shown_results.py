@@ -53,7 +53,7 @@ def test_a_scene_shows_its_size_its_tree_and_its_plan(scene):
     assert (rows["vertices"], rows["faces"]) == ("8", "12")
     assert rows["bounds"] == "(0, 0, 0) to (1, 1, 1)"
     assert rows["memory"] == f"{scene.bytes:,} bytes"
-    assert f"{scene.accelerator.nodes:,} nodes" in rows["tree"]
+    assert f"{scene.accelerator_info.nodes:,} nodes" in rows["tree"]
     assert f"kernel {scene.plan().kernel}" in rows["plan"]
     plan = cells(scene.plan())
     assert [row[0] for row in plan.rows[1:]] == [row.what for row in scene.plan().rows]
@@ -107,7 +107,7 @@ def results(scene):
         "Topology": (rw.measure.topology(scene), 1),
         "ViewFactors": (rw.view_factors(room, rays=64, progress=False), None),
         "RadiativeExchange": (rw.radiative_exchange(room, 300.0, rays=64, progress=False), 12),
-        "ConeTouches": (scene.cone((0.5, 0.25, 3), (0, 0, -1), 5.0), None),
+        "ConeFaces": (scene.faces_in_cone((0.5, 0.25, 3), (0, 0, -1), 5.0), None),
     }
 
 
@@ -180,7 +180,9 @@ def test_builds_and_plans_are_logged(caplog):
     with caplog.at_level(logging.DEBUG, "raywright"):
         image = rw.render(scene, camera, samples=4, progress=False)
     told = [record.getMessage() for record in caplog.records if record.name == "raywright"]
-    assert any(line.startswith(f"scene built: {scene.accelerator.kind} of 12 primitives") for line in told)
+    assert any(
+        line.startswith(f"scene built: {scene.accelerator_info.kind} of 12 primitives") for line in told
+    )
     assert any(line.startswith("render: sampler: ") for line in told)
     assert len(image.plan.rows) == sum(line.startswith("render: ") for line in told)
     caplog.clear()

@@ -8,7 +8,7 @@ import pytest
 import raywright as rw
 
 
-class Spoilt(rw.Integrator):
+class Spoilt(rw.integrators.Integrator):
     """Radiance 1, but for about this share of the samples, which have something else in one channel."""
 
     def __init__(self, value, share):
@@ -17,7 +17,7 @@ class Spoilt(rw.Integrator):
 
     def radiance(self, scene, rays, rng):
         result = np.ones((len(rays), 3))
-        spoilt = rng.one() < self.share
+        spoilt = rng.next_1d() < self.share
         result[spoilt, 1] = self.value
         self.spoilt += int(spoilt.sum())
         return result
@@ -46,7 +46,7 @@ def test_one_sample_that_is_no_radiance_is_told_as_one():
 
 def test_a_picture_without_any_says_nothing():
     scene, camera = rw.scenes.cornell_box(width=4, height=4)
-    how = {"samples": 16, "sampler": rw.Independent(), "progress": False}
+    how = {"samples": 16, "sampler": rw.rendering.Independent(), "progress": False}
     assert rw.render(scene, camera, Spoilt(2.0, 0.1), **how).warnings == ()
 
 
@@ -66,18 +66,20 @@ def anything(rng, most):
     def material():
         kinds = [
             lambda: rw.Diffuse(share()),
-            lambda: rw.OrenNayar(share(), share()),
+            lambda: rw.materials.OrenNayar(share(), share()),
             lambda: rw.Mirror(share()),
             lambda: rw.Dielectric(ior(), alpha=share(), priority=int(rng.integers(3))),
             lambda: rw.ThinDielectric(ior()),
             lambda: rw.Conductor(eta=ior(), k=float(rng.choice([0, 1e-9, 3, 1e9])), alpha=(share(), share())),
             lambda: rw.Plastic(share(), max(ior(), 1.0), alpha=share()),
-            lambda: rw.Phong(0.5 * share(), 0.5 * share(), float(rng.choice([0, 1, 1e4, 1e12]))),
-            lambda: rw.BlinnPhong(0.5 * share(), 0.5 * share(), float(rng.choice([0, 1, 1e4, 1e12]))),
+            lambda: rw.materials.Phong(0.5 * share(), 0.5 * share(), float(rng.choice([0, 1, 1e4, 1e12]))),
+            lambda: rw.materials.BlinnPhong(
+                0.5 * share(), 0.5 * share(), float(rng.choice([0, 1, 1e4, 1e12]))
+            ),
             lambda: rw.MetallicRough(share(), share(), share()),
             lambda: rw.Mix(rw.Diffuse(share()), rw.Mirror(share()), share()),
             lambda: rw.Mask(rw.Diffuse(share()), share()),
-            lambda: rw.BumpMap(rw.Diffuse(share()), rw.Noise(), float(rng.choice([1e-9, 1, 1e9]))),
+            lambda: rw.BumpMap(rw.Diffuse(share()), rw.textures.Noise(), float(rng.choice([1e-9, 1, 1e9]))),
         ]
         return kinds[rng.integers(len(kinds))]()
 
@@ -116,7 +118,7 @@ INTEGRATORS = [
     rw.Path(max_depth=3),
     rw.Direct(2, 2),
     rw.Whitted(ambient=1.0),
-    rw.Distributed(splits=2, ambient=1.0),
+    rw.integrators.Distributed(splits=2, ambient=1.0),
     rw.RayCast(ambient=1e3),
     rw.AmbientOcclusion(),
 ]

@@ -77,7 +77,9 @@ PAIRS = {
 }
 
 
-@pytest.mark.parametrize("accelerator", [rw.BVH(), rw.KdTree(), rw.Grid(), rw.BruteForce()], ids=repr)
+@pytest.mark.parametrize(
+    "accelerator", [rw.BVH(), rw.accelerators.KdTree(), rw.accelerators.Grid(), rw.BruteForce()], ids=repr
+)
 @pytest.mark.parametrize("kind", PAIRS)
 def test_of_two_in_one_place_the_first_is_there(kind, accelerator):
     # Bit for bit as if there were no other, from all sides, for any accelerator.
@@ -92,7 +94,9 @@ def test_of_two_in_one_place_the_first_is_there(kind, accelerator):
             np.testing.assert_array_equal(one.rgb, other.rgb)
 
 
-@pytest.mark.parametrize("accelerator", [rw.KdTree(), rw.Grid(), rw.BruteForce()], ids=repr)
+@pytest.mark.parametrize(
+    "accelerator", [rw.accelerators.KdTree(), rw.accelerators.Grid(), rw.BruteForce()], ids=repr
+)
 def test_of_sheets_cut_differently_one_is_there_and_always_the_same(accelerator):
     # Rounding may decide, pixel by pixel, but nothing else does, and every sample sees one of them.
     sheets = [sheet(0, material=RED), sheet(0, diagonal=1, material=BLUE)]

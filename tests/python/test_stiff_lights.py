@@ -142,7 +142,7 @@ def hollow(side):
         "sphere": (rw.Sphere((0, 0, 0), 1, **glowing), (0, 0, 0)),
         "small sphere": (rw.Sphere((0.1, 0.2, 0.3), 1e-5, **glowing), (0.1, 0.2, 0.3)),
         "far sphere": (rw.Sphere((1e5, -1e5, 1e4), 1, **glowing), (1e5, -1e5, 1e4)),
-        "ellipsoid": (rw.Ellipsoid((0, 0, 0), (1, 2, 0.5), **glowing), (0, 0, 0)),
+        "ellipsoid": (rw.shapes.Ellipsoid((0, 0, 0), (1, 2, 0.5), **glowing), (0, 0, 0)),
         "box": (rw.Box((-1, -2, -1), (1, 1, 3), **glowing), (0, 0, 0)),
         "cylinder": (rw.Cylinder((0, 0, -1), (0, 0, 1), 1, **glowing), (0, 0, 0)),
         "cone": (rw.Cone((0, 0, -0.5), (0, 0, 1), 1, **glowing), (0, 0, 0)),

@@ -22,14 +22,14 @@ def seen(material, degrees, draws, below=False):
     scene = rw.Scene(rw.Mesh(corners, [(0, 1, 2), (0, 2, 3)], material=material), precision="double")
     angles = np.repeat(np.radians(degrees), draws)
     back = np.stack([np.sin(angles), np.zeros_like(angles), np.cos(angles) * (-1 if below else 1)], axis=1)
-    return scene.interactions(rw.Rays(3 * back + (0.1, 0.2, 0), -back, np.zeros(len(back))))
+    return scene.interactions(rw.query.Rays(3 * back + (0.1, 0.2, 0), -back, np.zeros(len(back))))
 
 
 def scattered_share(material, degrees, index=1.0, below=False, draws=4000):
     """The share of light that is scattered at each angle, and its standard error; `index` is that below."""
     here = seen(material, degrees, draws, below)
     rng = np.random.default_rng(1)
-    drawn = here.sample(rng.random(len(here)), rng.random((len(here), 2)))
+    drawn = here.sample_bsdf(rng.random(len(here)), rng.random((len(here), 2)))
     # Refraction conserves radiance over the square of the index.
     through = np.nan_to_num(drawn.direction[:, 2]) * (-1 if below else 1) < 0
     share = drawn.weight[:, 1] * np.where(through, (1 / index if below else index) ** 2, 1)
@@ -114,7 +114,7 @@ def test_smooth_glass_reflects_by_fresnel_also_at_the_critical_angle(ior):
         angles += [critical + 0.01, 1.5]
     here = seen(rw.Dielectric(ior), np.degrees(angles), 1, below=True)
     for choice in (0.0, 0.5, 1 - 1e-12):
-        drawn = here.sample(np.full(len(here), choice), np.full((len(here), 2), 0.5))
+        drawn = here.sample_bsdf(np.full(len(here), choice), np.full((len(here), 2), 0.5))
         assert np.isfinite(drawn.weight).all()
         assert (drawn.weight[:, 1] > 0).all()
         np.testing.assert_allclose(np.linalg.norm(drawn.direction, axis=1), 1, atol=1e-12)
@@ -147,7 +147,7 @@ def test_draws_are_weighed_by_what_is_evaluated_where_lobes_are_sharp_or_graze(k
     for below in (False, True):
         here = seen(kind(alpha), [0, 45, 85, 89, 89.9, 89.999], 200, below)
         rng = np.random.default_rng(2)
-        drawn = here.sample(rng.random(len(here)), rng.random((len(here), 2)))
+        drawn = here.sample_bsdf(rng.random(len(here)), rng.random((len(here), 2)))
         assert np.isfinite(drawn.weight).all()
         assert (drawn.pdf >= 0).all()
         some = np.isfinite(drawn.pdf) & drawn.any

@@ -54,7 +54,7 @@ ROUND = {
     "sphere": lambda r: rw.Sphere(NOWHERE, r),
     "disk": lambda r: rw.Disk(NOWHERE, (0, 0, 1), r),
     "cylinder": lambda r: rw.Cylinder(NOWHERE, (0, 0, 1), r),
-    "ellipsoid": lambda r: rw.Ellipsoid(NOWHERE, (r, r, r)),
+    "ellipsoid": lambda r: rw.shapes.Ellipsoid(NOWHERE, (r, r, r)),
     "torus": lambda r: rw.Torus(NOWHERE, (0, 0, 1), r, 0.1),
     "thin torus": lambda r: rw.Torus(NOWHERE, (0, 0, 1), 1.0, r),
     "occlusion": lambda r: rw.AmbientOcclusion(radius=r),
@@ -102,15 +102,15 @@ def test_an_index_of_refraction_is_greater_than_0(ior):
 
 ALBEDOS = {
     "diffuse": rw.Diffuse,
-    "rough": rw.OrenNayar,
+    "rough": rw.materials.OrenNayar,
     "mirror": rw.Mirror,
     "plastic": rw.Plastic,
-    "phong": lambda albedo: rw.Phong(albedo, 0.0),
-    "highlight": lambda albedo: rw.BlinnPhong(0.0, albedo),
+    "phong": lambda albedo: rw.materials.Phong(albedo, 0.0),
+    "highlight": lambda albedo: rw.materials.BlinnPhong(0.0, albedo),
     "glTF": rw.MetallicRough,
     "texture": lambda albedo: rw.Diffuse(rw.Checker(0.5, albedo)),
     "picture": lambda albedo: rw.Diffuse(rw.ImageTexture(np.full((2, 2), albedo))),
-    "mixed texture": lambda albedo: rw.Diffuse(rw.MixTexture(0.1, albedo, 0.5)),
+    "mixed texture": lambda albedo: rw.Diffuse(rw.textures.MixTexture(0.1, albedo, 0.5)),
 }
 
 

@@ -19,7 +19,7 @@ FACES = np.array([[0, 1, 2], [0, 2, 3]])
 DENSITY = np.linspace(0.1, 2, 27, dtype=np.float32).reshape(3, 3, 3)
 # Arguments of the classes that need some, or that their defaults leave dull.
 ARGUMENTS = {
-    "Boundary": (rw.Homogeneous(0.1, 2.0),),
+    "MediumInterface": (rw.Homogeneous(0.1, 2.0),),
     "BumpMap": (PAPER, rw.Checker(0.0, 0.1, 3.0)),
     "Conductor": ("Cu",),
     "Mask": (PAPER, 0.5),
@@ -55,7 +55,7 @@ ARGUMENTS = {
     "Fisheye": ((0, 1, 4), (0, 0, 0)),
     "Panorama": ((0, 1, 4), (0, 0, 0)),
     "Pose": ((0, 1, 4), (0, 0, 0)),
-    "CroppedFilter": (rw.GaussianFilter(),),
+    "CroppedFilter": (rw.rendering.GaussianFilter(),),
 }
 NAMED = {
     "GridMedium": {"density": DENSITY, "scattering": 1.0, "bounds": ((-2, -2, -2), (2, 2, 2))},
@@ -69,6 +69,7 @@ NAMED = {
 BASES = {
     *("Material", "Texture", "Medium", "Shape", "Light", "Environment", "AnyCamera", "Integrator"),
     *("CoreIntegrator", "Dispersion", "Illuminants", "Glasses", "MetalIndex", "SparseGrid"),
+    *("AcceleratorInfo", "Rng"),
 }
 MODULES = (accelerators, cameras, integrators, lights, materials, media, shapes, textures)
 PUBLIC = {
@@ -79,7 +80,7 @@ PUBLIC = {
             vars(module)[name]
             for module in (samplers, filters)
             for name in vars(module)
-            if name in rw.__all__
+            if name in rw.rendering.__all__
         ),
         *(Mesh, Instance),
     )
@@ -124,14 +125,14 @@ def picture(thing):
     """Return a small picture that depends on a thing of any kind."""
     shape, rest, how, camera = BALL, {}, {}, CAMERA
     if isinstance(thing, rw.Pose) and not isinstance(thing, cameras.AnyCamera):
-        camera = rw.Camera((1, 1, 4), (0, 0, 0), width=8, height=8, moved_to=thing)
+        camera = rw.Camera((1, 1, 4), (0, 0, 0), width=8, height=8, end_pose=thing)
     elif isinstance(thing, cameras.AnyCamera):
         camera = cameras.any_camera.resized(thing, 8, 8)
     elif isinstance(thing, materials.Material):
         shape = rw.Sphere(material=thing)
     elif isinstance(thing, materials.Dispersion):
         shape = rw.Sphere(material=rw.Dielectric(thing))
-    elif isinstance(thing, rw.UvTransform | rw.ObjectTransform):
+    elif isinstance(thing, rw.textures.UvTransform | rw.textures.ObjectTransform):
         shape = quad(rw.Checker(transform=thing))
     elif isinstance(thing, textures.Texture):
         shape = quad(thing)
@@ -141,7 +142,7 @@ def picture(thing):
         shape = rw.Sphere(emission=thing)
     elif isinstance(thing, media.Medium):
         rest["medium"] = thing
-    elif isinstance(thing, rw.Isotropic | rw.Rayleigh | rw.HenyeyGreenstein):
+    elif isinstance(thing, rw.media.Isotropic | rw.media.Rayleigh | rw.HenyeyGreenstein):
         rest["medium"] = rw.Homogeneous(0.1, 0.3, thing)
     elif isinstance(thing, lights.Environment):
         rest["environment"] = thing
@@ -157,8 +158,8 @@ def picture(thing):
         how["filter"] = thing
     else:
         how["integrator"] = thing
-    if isinstance(thing, rw.Radiosity | rw.BeamTraced | rw.ConeTraced):
-        scene = room(None if isinstance(thing, rw.BeamTraced) else 3.0)
+    if isinstance(thing, rw.Radiosity | rw.integrators.BeamTraced | rw.integrators.ConeTraced):
+        scene = room(None if isinstance(thing, rw.integrators.BeamTraced) else 3.0)
     else:
         light = {} if "lights" in rest else {"environment": rw.ConstantEnvironment((0.9, 1.0, 0.8))}
         scene = rw.Scene([shape], **{**light, **rest})
@@ -187,7 +188,7 @@ def test_all_kinds_are_among_them():
     ("stranger", "use"),
     [
         (type("Diffuse", (materials.Material,), {"reflectance": 0.5}), lambda m: rw.Sphere(material=m)),
-        (type("Homogeneous", (media.Medium,), {}), lambda m: rw.Sphere(material=rw.Boundary(m))),
+        (type("Homogeneous", (media.Medium,), {}), lambda m: rw.Sphere(material=rw.MediumInterface(m))),
         (type("Wood", (textures.Texture,), {"range": ((0, 0, 0), (1, 1, 1))}), lambda t: quad(t)),
     ],
     ids=["material", "medium", "texture"],

@@ -11,18 +11,18 @@ from PIL import Image
 import raywright as rw
 
 PIXELS = np.arange(2 * 3 * 4, dtype=np.uint8).reshape(2, 3, 4)
-TURNED = rw.UvTransform((4, 2), 90, (0.5, 0.25))
+TURNED = rw.textures.UvTransform((4, 2), 90, (0.5, 0.25))
 
 TEXTURES = [
     rw.Checker((0.1, 0.2, 0.3), 0.5, 8),
-    rw.Checker(transform=rw.ObjectTransform(3, (0.5, 0, 0))),
-    rw.Stripes(0.2, 0.7, 0.25, TURNED),
-    rw.Noise(seed=7),
-    rw.FBm(0.2, rw.Noise(), octaves=4, gain=0.6),
-    rw.Marble(distortion=2),
-    rw.Wood(transform=rw.UvTransform(8)),
-    rw.MixTexture(rw.Noise(), 0.5, rw.Checker(0, 1)),
-    rw.ProductTexture(rw.Checker(), (1, 0.5, 0.25)),
+    rw.Checker(transform=rw.textures.ObjectTransform(3, (0.5, 0, 0))),
+    rw.textures.Stripes(0.2, 0.7, 0.25, TURNED),
+    rw.textures.Noise(seed=7),
+    rw.textures.FBm(0.2, rw.textures.Noise(), octaves=4, gain=0.6),
+    rw.textures.Marble(distortion=2),
+    rw.textures.Wood(transform=rw.textures.UvTransform(8)),
+    rw.textures.MixTexture(rw.textures.Noise(), 0.5, rw.Checker(0, 1)),
+    rw.textures.ProductTexture(rw.Checker(), (1, 0.5, 0.25)),
     rw.VertexColors(),
     rw.ImageTexture(PIXELS),
     rw.ImageTexture(
@@ -57,20 +57,27 @@ def test_textures_are_frozen_and_so_are_pictures():
 def test_transforms_scale_then_turn_then_move():
     (a, b, c), (d, e, f) = TURNED.matrix
     assert (a, b, c, d, e, f) == pytest.approx((0, -2, 0.5, 4, 0, 0.25), abs=1e-15)
-    assert rw.UvTransform(matrix=TURNED.matrix) == TURNED
-    assert rw.ObjectTransform((1, 2, 3), (4, 5, 6)).matrix == ((1, 0, 0, 4), (0, 2, 0, 5), (0, 0, 3, 6))
-    assert rw.ObjectTransform(matrix=np.diag([2.0, 2, 2, 1])) == rw.ObjectTransform(2)
+    assert rw.textures.UvTransform(matrix=TURNED.matrix) == TURNED
+    assert rw.textures.ObjectTransform((1, 2, 3), (4, 5, 6)).matrix == (
+        (1, 0, 0, 4),
+        (0, 2, 0, 5),
+        (0, 0, 3, 6),
+    )
+    assert rw.textures.ObjectTransform(matrix=np.diag([2.0, 2, 2, 1])) == rw.textures.ObjectTransform(2)
 
 
 def test_ranges_are_those_of_what_can_come_out():
     assert rw.Checker((0.1, 0.5, 0.3), 0.2).range == ((0.1, 0.2, 0.2), (0.2, 0.5, 0.3))
-    assert rw.ProductTexture(rw.Checker(-1, 2), rw.Checker(-3, 0.5)).range == ((-6.0,) * 3, (3.0,) * 3)
+    assert rw.textures.ProductTexture(rw.Checker(-1, 2), rw.Checker(-3, 0.5)).range == (
+        (-6.0,) * 3,
+        (3.0,) * 3,
+    )
     assert rw.ImageTexture(np.array([[0, 255]], np.uint8)).range == ((0.0,) * 3, (1.0,) * 3)
     grey = rw.ImageTexture(np.array([[188, 51]], np.uint8))
     assert grey.range[1] == pytest.approx((0.502886,) * 3, abs=1e-6)
     assert rw.ImageTexture(grey.image, linear=True).range[0] == (0.2,) * 3
     assert rw.ImageTexture(PIXELS, channel="a").range == ((3 / 255,) * 3, (23 / 255,) * 3)
-    assert rw.MixTexture(0.5, rw.Noise(0.2, 0.7)).range == ((0.2,) * 3, (0.7,) * 3)
+    assert rw.textures.MixTexture(0.5, rw.textures.Noise(0.2, 0.7)).range == ((0.2,) * 3, (0.7,) * 3)
 
 
 def test_sixteen_bits_are_decoded_as_eight():
@@ -124,25 +131,33 @@ def test_files_that_are_no_pictures_are_refused(tmp_path):
             TypeError,
             r"transform must be a UvTransform, an ObjectTransform",
         ),
-        (lambda: rw.Stripes(fraction=1.5), ValueError, r"fraction must be between 0 and 1, got 1.5"),
-        (lambda: rw.Noise(seed=-1), ValueError, r"seed must be between 0 and 4294967295, got -1"),
-        (lambda: rw.FBm(octaves=0), ValueError, r"octaves must be between 1 and 32, got 0"),
+        (lambda: rw.textures.Stripes(fraction=1.5), ValueError, r"fraction must be between 0 and 1, got 1.5"),
+        (lambda: rw.textures.Noise(seed=-1), ValueError, r"seed must be between 0 and 4294967295, got -1"),
+        (lambda: rw.textures.FBm(octaves=0), ValueError, r"octaves must be between 1 and 32, got 0"),
         (
-            lambda: rw.FBm(lacunarity=1),
+            lambda: rw.textures.FBm(lacunarity=1),
             ValueError,
             r"lacunarity must be greater than 1 and at most 16, got 1",
         ),
-        (lambda: rw.FBm(gain=-0.5), ValueError, r"gain must be between 0 and 1, got -0.5"),
-        (lambda: rw.Wood(distortion=math.inf), ValueError, r"distortion must be finite, got inf"),
-        (lambda: rw.MixTexture(0, 1, 2), ValueError, r"amount must be between 0 and 1, got 2"),
-        (lambda: rw.MixTexture(0, 1, rw.Noise(0, 3)), ValueError, r"amount must be .*a texture of 0 to 3"),
-        (lambda: rw.UvTransform(math.nan), ValueError, r"scale must be finite"),
+        (lambda: rw.textures.FBm(gain=-0.5), ValueError, r"gain must be between 0 and 1, got -0.5"),
+        (lambda: rw.textures.Wood(distortion=math.inf), ValueError, r"distortion must be finite, got inf"),
+        (lambda: rw.textures.MixTexture(0, 1, 2), ValueError, r"amount must be between 0 and 1, got 2"),
         (
-            lambda: rw.UvTransform(matrix=np.eye(3)),
+            lambda: rw.textures.MixTexture(0, 1, rw.textures.Noise(0, 3)),
+            ValueError,
+            r"amount must be .*a texture of 0 to 3",
+        ),
+        (lambda: rw.textures.UvTransform(math.nan), ValueError, r"scale must be finite"),
+        (
+            lambda: rw.textures.UvTransform(matrix=np.eye(3)),
             ValueError,
             r"matrix must have shape \(2, 3\), got \(3, 3\)",
         ),
-        (lambda: rw.ObjectTransform(matrix=np.ones((4, 4))), ValueError, r"\(0, 0, 0, 1\) as its last row"),
+        (
+            lambda: rw.textures.ObjectTransform(matrix=np.ones((4, 4))),
+            ValueError,
+            r"\(0, 0, 0, 1\) as its last row",
+        ),
         (lambda: rw.ImageTexture(np.zeros((2, 0))), ValueError, r"image must have shape \(H, W\) or"),
         (lambda: rw.ImageTexture(np.zeros((2, 2, 5))), ValueError, r"image must have .* got \(2, 2, 5\)"),
         (
@@ -200,7 +215,7 @@ def test_procedurals_lie_in_coordinates_or_in_space():
     rows, columns = np.indices((8, 8))
     expected = np.where((columns + (7 - rows)) % 2 == 1, 0.75, 0.25)[..., np.newaxis]
     on = rw.Checker(0.25, 0.75, 8)
-    inside = rw.Checker(0.25, 0.75, rw.ObjectTransform(4, (4, 4, 0.5)))
+    inside = rw.Checker(0.25, 0.75, rw.textures.ObjectTransform(4, (4, 4, 0.5)))
     for texture in (on, inside):
         # The middle one of five by five pixels: beside edges, a pixel's footprint has both colours.
         shown = seen(rw.Diffuse(texture), size=40).rgb[2::5, 2::5]
@@ -209,7 +224,7 @@ def test_procedurals_lie_in_coordinates_or_in_space():
 
 def test_colours_of_vertices_are_seen():
     colors = [(0.0, 0, 0.5), (1, 0, 0.5), (1, 1, 0.5), (0, 1, 0.5)]
-    image = seen(rw.Diffuse(rw.VertexColors()), samples=64, sampler=rw.Independent(), colors=colors)
+    image = seen(rw.Diffuse(rw.VertexColors()), samples=64, sampler=rw.rendering.Independent(), colors=colors)
     rows, columns = np.indices((8, 8))
     expected = np.stack([(columns + 0.5) / 8, (7.5 - rows) / 8, np.full((8, 8), 0.5)], axis=-1)
     # 192 numbers, each within 8 standard errors of its own, from 64 independent samples.

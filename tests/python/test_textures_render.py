@@ -46,7 +46,7 @@ def test_a_textured_lamp_lights_by_the_form_factors_of_its_texels(place, both):
     # A lamp of 4 by 2 at height 1, which faces down: u runs along x, v along -y.
     corners = [(-2, 1, 1), (2, 1, 1), (2, -1, 1), (-2, -1, 1)]
     scale = (2, 1, 0.5) if both else 1
-    lamp = quad(corners, material=rw.Diffuse(0), emission=rw.ProductTexture(texels(), scale))
+    lamp = quad(corners, material=rw.Diffuse(0), emission=rw.textures.ProductTexture(texels(), scale))
     expected = 0.0
     for row in range(2):
         for column in range(4):
@@ -88,8 +88,8 @@ def test_a_textured_cavity_shines_by_the_mean_exitance_of_its_texture():
 # Two radiances in equal shares, some hundred times across a pixel.
 FINE = {
     "checker": rw.Checker(0.9, 0.1, 2000),
-    "checker in space": rw.Checker(0.9, 0.1, rw.ObjectTransform(60)),
-    "stripes": rw.Stripes(0.9, 0.1, 0.5, 2000),
+    "checker in space": rw.Checker(0.9, 0.1, rw.textures.ObjectTransform(60)),
+    "stripes": rw.textures.Stripes(0.9, 0.1, 0.5, 2000),
     "picture": rw.ImageTexture(np.indices((64, 64)).sum(axis=0) % 2 * 0.8 + 0.1, transform=32),
 }
 VIEWS = {

@@ -38,7 +38,9 @@ def colour(thickness, indices, cosine=1.0):
 
 def rays(origins, directions):
     origins, directions = (np.array(given, np.float64) for given in (origins, directions))
-    return rw.Rays(origins, directions / np.linalg.norm(directions, axis=1)[:, None], np.zeros(len(origins)))
+    return rw.query.Rays(
+        origins, directions / np.linalg.norm(directions, axis=1)[:, None], np.zeros(len(origins))
+    )
 
 
 def ways(material, cosine, below=False, shape=None):
@@ -56,7 +58,7 @@ COSINES = np.array([1.0, 0.9, 0.7, 0.4, 0.2, 0.1, 0.03, 0.004])
 
 @pytest.mark.parametrize("thickness", [5.0, 100.0, 310.0, 480.0, 850.0, 3000.0, 5500.0])
 def test_soap_films_have_the_colour_of_the_integral(thickness):
-    reflected, through = ways(rw.SoapFilm(thickness), COSINES)
+    reflected, through = ways(rw.materials.SoapFilm(thickness), COSINES)
     truth = [colour(thickness, (1, SOAP, 1), cosine).clip(0, 1) for cosine in COSINES]
     assert np.abs(reflected.weight - truth).max() < 1e-5
     # Light that is not reflected passes straight through.
@@ -66,11 +68,11 @@ def test_soap_films_have_the_colour_of_the_integral(thickness):
 
 
 def test_soap_is_black_where_it_is_thin_and_a_pane_where_it_is_thick():
-    reflected, through = ways(rw.SoapFilm(0.0), COSINES)
+    reflected, through = ways(rw.materials.SoapFilm(0.0), COSINES)
     assert np.abs(reflected.weight).max() < 1e-6
     assert through.weight == pytest.approx(1, abs=1e-6)
-    assert ways(rw.SoapFilm(5.0), 1.0)[0].weight.max() < 1e-3
-    thick = ways(rw.SoapFilm(1e6), COSINES)[0].weight
+    assert ways(rw.materials.SoapFilm(5.0), 1.0)[0].weight.max() < 1e-3
+    thick = ways(rw.materials.SoapFilm(1e6), COSINES)[0].weight
     # Fresnel's reflectance of either polarisation, with all internal reflections: 2r / (1 + r).
     within = np.sqrt(SOAP**2 - 1 + COSINES**2)
     r = np.array(
@@ -98,14 +100,14 @@ def test_the_orders_of_soap_follow_each_other_as_one_sees_them():
         510: lambda r, g, b: g > 2.5 * max(r, b),
     }
     for thickness, is_so in names.items():
-        rgb = ways(rw.SoapFilm(float(thickness)), 1.0)[0].weight[0]
+        rgb = ways(rw.materials.SoapFilm(float(thickness)), 1.0)[0].weight[0]
         assert is_so(*rgb), (thickness, rgb)
 
 
 @pytest.mark.parametrize(("film", "base"), [(1.47, SOAP), (1.38, 1.52), (2.4, 1.5), (1.1, 1.7)])
 @pytest.mark.parametrize("thickness", [99.6, 300.0, 1200.0])
 def test_films_on_glass_have_the_colour_of_the_integral_from_both_sides(film, base, thickness):
-    material = rw.ThinFilm(thickness, film, base=rw.Dielectric(base))
+    material = rw.materials.ThinFilm(thickness, film, base=rw.Dielectric(base))
     reflected, through = ways(material, COSINES)
     truth = np.array([colour(thickness, (1, film, base), cosine).clip(0, 1) for cosine in COSINES])
     assert np.abs(reflected.weight - truth).max() < 1e-5
@@ -123,21 +125,21 @@ def test_films_on_glass_have_the_colour_of_the_integral_from_both_sides(film, ba
 @pytest.mark.parametrize(("film", "thickness"), [(1.46, 100.0), (2.2, 35.0), (1.5, 700.0)])
 def test_films_on_metals_have_the_colour_of_the_integral(film, thickness):
     for name in ("gold", "aluminium", "tungsten"):
-        wavelengths, eta, k = rw.metal_index(name)
+        wavelengths, eta, k = rw.materials.metal_index(name)
         index = np.interp(EVERY_NM, wavelengths, eta) + 1j * np.interp(EVERY_NM, wavelengths, k)
-        reflected, through = ways(rw.ThinFilm(thickness, film, base=rw.Conductor(name)), COSINES)
+        reflected, through = ways(rw.materials.ThinFilm(thickness, film, base=rw.Conductor(name)), COSINES)
         truth = np.array([colour(thickness, (1, film, index), cosine) for cosine in COSINES])
         assert np.abs(reflected.weight - truth.clip(0)).max() < 5e-5
         assert not through.any.any()
     silicon = rw.Conductor(eta=4.08, k=0.028)
-    reflected, _ = ways(rw.ThinFilm(thickness, film, base=silicon), COSINES)
+    reflected, _ = ways(rw.materials.ThinFilm(thickness, film, base=silicon), COSINES)
     truth = [colour(thickness, (1, film, 4.08 + 0.028j), cosine) for cosine in COSINES]
     assert np.abs(reflected.weight - np.clip(truth, 0, 1)).max() < 1e-5
 
 
 def test_channels_of_metals_have_indices_of_their_own():
     eta, k = (0.2, 1.1, 2.0), (3.0, 2.5, 0.5)
-    reflected, _ = ways(rw.ThinFilm(250.0, 1.5, base=rw.Conductor(eta=eta, k=k)), COSINES)
+    reflected, _ = ways(rw.materials.ThinFilm(250.0, 1.5, base=rw.Conductor(eta=eta, k=k)), COSINES)
     for channel in range(3):
         index = eta[channel] + 1j * k[channel]
         truth = [colour(250.0, (1, 1.5, index), cosine)[channel] for cosine in COSINES]
@@ -160,20 +162,20 @@ def patch(material):
 @pytest.mark.parametrize(
     "filmed",
     [
-        lambda thickness: rw.SoapFilm(thickness),
-        lambda thickness: rw.ThinFilm(thickness, 1.47, base=rw.Dielectric(1.33)),
-        lambda thickness: rw.ThinFilm(thickness, 1.5, base=rw.Conductor("copper")),
-        lambda thickness: rw.ThinFilm(thickness, 1.5, base=rw.Conductor(eta=0.2, k=(3, 2.5, 2))),
+        lambda thickness: rw.materials.SoapFilm(thickness),
+        lambda thickness: rw.materials.ThinFilm(thickness, 1.47, base=rw.Dielectric(1.33)),
+        lambda thickness: rw.materials.ThinFilm(thickness, 1.5, base=rw.Conductor("copper")),
+        lambda thickness: rw.materials.ThinFilm(thickness, 1.5, base=rw.Conductor(eta=0.2, k=(3, 2.5, 2))),
     ],
     ids=["soap", "oil", "copper", "channels"],
 )
 def test_a_textured_thickness_is_at_each_point_what_that_thickness_is(filmed):
     y = np.linspace(0.03, 0.97, 12)
-    for texture in (GRADIENT, rw.MixTexture(20.0, 700.0, rw.Noise(0.0, 1.0, 3.0))):
+    for texture in (GRADIENT, rw.textures.MixTexture(20.0, 700.0, rw.textures.Noise(0.0, 1.0, 3.0))):
         scene = rw.Scene(patch(filmed(texture)))
         to = np.array([0.0, 0.6, -0.8])
         here = scene.interactions(rays(np.column_stack([y * 0 + 0.4, y, y * 0]) - to, np.tile(to, (12, 1))))
-        plain = rw.Scene(patch(rw.Diffuse(rw.ProductTexture(texture, 1e-3))))
+        plain = rw.Scene(patch(rw.Diffuse(rw.textures.ProductTexture(texture, 1e-3))))
         thickness = plain.interactions(here.rays).albedo[:, 0] * 1e3
         assert np.ptp(thickness) > 100
         for found, nm in zip(here.reflected().weight, thickness, strict=True):
@@ -197,17 +199,18 @@ def test_a_film_of_0_nm_is_no_film(base):
         return rw.render(scene, camera, samples=4, progress=False).rgb
 
     bare = picture(base)
-    assert np.array_equal(picture(rw.ThinFilm(0.0, 1.7, base=base)), bare)
+    assert np.array_equal(picture(rw.materials.ThinFilm(0.0, 1.7, base=base)), bare)
     # Also if a texture says so.
-    nothing = rw.MixTexture(0.0, 300.0, rw.Checker(0.0, 0.0))
-    assert np.array_equal(picture(rw.ThinFilm(nothing, 1.7, base=base)), bare)
-    assert not np.array_equal(picture(rw.ThinFilm(200.0, 1.7, base=base)), bare)
+    nothing = rw.textures.MixTexture(0.0, 300.0, rw.Checker(0.0, 0.0))
+    assert np.array_equal(picture(rw.materials.ThinFilm(nothing, 1.7, base=base)), bare)
+    assert not np.array_equal(picture(rw.materials.ThinFilm(200.0, 1.7, base=base)), bare)
 
 
 def test_where_next_to_nothing_is_there_it_is_next_to_bare():
     for base in BASES[:1] + BASES[3:4]:
         bare, film = (
-            ways(material, COSINES)[0].weight for material in (base, rw.ThinFilm(1e-6, 1.7, base=base))
+            ways(material, COSINES)[0].weight
+            for material in (base, rw.materials.ThinFilm(1e-6, 1.7, base=base))
         )
         assert np.abs(film - bare).max() < (1e-6 if isinstance(base, rw.Dielectric) else 1e-3)
 
@@ -222,8 +225,12 @@ def lit_everywhere(material, way, samples, side=8):
 
 def test_smooth_films_keep_all_light():
     for material in (
-        rw.SoapFilm(rw.MixTexture(0.0, 900.0, rw.Noise(0.0, 1.0, 0.5))),
-        rw.ThinFilm(rw.MixTexture(0.0, 900.0, rw.Noise(0.0, 1.0, 0.5)), 1.47, base=rw.Dielectric(1.33)),
+        rw.materials.SoapFilm(rw.textures.MixTexture(0.0, 900.0, rw.textures.Noise(0.0, 1.0, 0.5))),
+        rw.materials.ThinFilm(
+            rw.textures.MixTexture(0.0, 900.0, rw.textures.Noise(0.0, 1.0, 0.5)),
+            1.47,
+            base=rw.Dielectric(1.33),
+        ),
     ):
         seen = lit_everywhere(material, rw.Path(max_depth=400), 256)
         # Only roulette and the choice of lobes are random.
@@ -248,7 +255,9 @@ def test_smooth_films_keep_all_light():
 def test_rough_films_keep_all_light(roughness, distribution):
     # Oil on water, a lens's coat, and a reflectance like that of titanium oxide.
     for thickness, ior, glass in ((120.0, 1.38, 1.52), (300.0, 1.47, 1.33), (60.0, 2.5, 1.5)):
-        film = rw.ThinFilm(thickness, ior, base=rw.Dielectric(glass, roughness, distribution=distribution))
+        film = rw.materials.ThinFilm(
+            thickness, ior, base=rw.Dielectric(glass, roughness, distribution=distribution)
+        )
         ball = rw.Sphere((0, 0, 0), 1, material=film)
         camera = rw.Orthographic((0, 0, 3), (0, 0, 0), scale=1.9, width=8, height=8)
         scene = rw.Scene(ball, environment=rw.ConstantEnvironment(1.0))
@@ -264,19 +273,19 @@ def test_rough_films_keep_all_light(roughness, distribution):
 @pytest.mark.parametrize("roughness", [0.4, 0.7, 1.0])
 def test_rough_mirrors_with_films_keep_all_light(roughness):
     mirror = rw.Conductor(eta=1.0, k=1e9, roughness=roughness)
-    seen = lit_everywhere(rw.ThinFilm(300.0, 1.5, base=mirror), rw.Path(max_depth=100), 256)
+    seen = lit_everywhere(rw.materials.ThinFilm(300.0, 1.5, base=mirror), rw.Path(max_depth=100), 256)
     assert seen.mean(axis=(0, 1)) == pytest.approx(1, abs=0.01)
 
 
 def test_light_from_lamps_finds_the_same_picture():
     # Light paths and bidirectional paths agree with camera paths, through films and off them.
-    oil = rw.ThinFilm(350.0, 1.47, base=rw.Dielectric(1.33, 0.5))
+    oil = rw.materials.ThinFilm(350.0, 1.47, base=rw.Dielectric(1.33, 0.5))
     floor = rw.Plane((0, 0, -1.3), material=rw.Diffuse(0.6))
     lamp = rw.Sphere((1.5, -1.5, 3), 1.2, material=rw.Diffuse(0), emission=4.0)
     film = rw.Mesh(
         [(-2, -2, -1), (2, -2, -1), (2, 2, -1), (-2, 2, -1)],
         [[0, 1, 2], [0, 2, 3]],
-        material=rw.SoapFilm(330.0),
+        material=rw.materials.SoapFilm(330.0),
     )
     scene = rw.Scene([rw.Sphere((0, 0, 0), 0.8, material=oil), floor, film, lamp])
     camera = rw.Camera((0, -5, 3.2), (0, 0, -0.6), up=(0, 0, 1), fov=40, width=10, height=8)
@@ -293,7 +302,7 @@ def test_light_from_lamps_finds_the_same_picture():
 
 def test_what_lies_in_one_another_keeps_its_films():
     # A drink that overlaps its glass: the film lies between the two, and only adjacent media count.
-    oil = rw.ThinFilm(300.0, 1.6, base=rw.Dielectric(1.33, priority=1))
+    oil = rw.materials.ThinFilm(300.0, 1.6, base=rw.Dielectric(1.33, priority=1))
     inner = rw.Box((-5, -5, -1), (5, 5, 0), material=oil)
     outer = rw.Box((-6, -6, -2), (6, 6, 1), material=rw.Dielectric(1.5))
     scene = rw.Scene([outer, inner])
@@ -330,7 +339,12 @@ def test_scenes_of_films_show_their_colours():
 
 
 @pytest.mark.parametrize(
-    "material", [rw.SoapFilm(300.0), rw.SoapFilm(GRADIENT, 1.4), rw.ThinFilm(90, base=BASES[0])]
+    "material",
+    [
+        rw.materials.SoapFilm(300.0),
+        rw.materials.SoapFilm(GRADIENT, 1.4),
+        rw.materials.ThinFilm(90, base=BASES[0]),
+    ],
 )
 def test_films_pickle_compare_and_print(material):
     back = pickle.loads(pickle.dumps(material))
@@ -342,35 +356,39 @@ def test_films_pickle_compare_and_print(material):
 @pytest.mark.parametrize(
     ("make", "error", "said"),
     [
-        (lambda: rw.SoapFilm(-1.0), ValueError, "thickness must be at least 0, got -1"),
-        (lambda: rw.SoapFilm(float("nan")), ValueError, "thickness must be finite, got nan"),
-        (lambda: rw.SoapFilm(float("inf")), ValueError, "thickness must be finite, got inf"),
-        (lambda: rw.SoapFilm((1.0, 2.0, 3.0)), ValueError, "thickness must be a texture or one number"),
-        (lambda: rw.SoapFilm("thin"), TypeError, "thickness must be"),
+        (lambda: rw.materials.SoapFilm(-1.0), ValueError, "thickness must be at least 0, got -1"),
+        (lambda: rw.materials.SoapFilm(float("nan")), ValueError, "thickness must be finite, got nan"),
+        (lambda: rw.materials.SoapFilm(float("inf")), ValueError, "thickness must be finite, got inf"),
         (
-            lambda: rw.SoapFilm(rw.Checker(-1.0, 300.0)),
+            lambda: rw.materials.SoapFilm((1.0, 2.0, 3.0)),
+            ValueError,
+            "thickness must be a texture or one number",
+        ),
+        (lambda: rw.materials.SoapFilm("thin"), TypeError, "thickness must be"),
+        (
+            lambda: rw.materials.SoapFilm(rw.Checker(-1.0, 300.0)),
             ValueError,
             "thickness must be at least 0, got a texture of -1",
         ),
-        (lambda: rw.SoapFilm(300.0, 0.0), ValueError, "ior must be greater than 0, got 0"),
+        (lambda: rw.materials.SoapFilm(300.0, 0.0), ValueError, "ior must be greater than 0, got 0"),
         (
-            lambda: rw.ThinFilm(300.0, -1.33, base=BASES[0]),
+            lambda: rw.materials.ThinFilm(300.0, -1.33, base=BASES[0]),
             ValueError,
             "ior must be greater than 0, got -1.33",
         ),
-        (lambda: rw.ThinFilm(300.0, float("nan"), base=BASES[0]), ValueError, "ior must be finite"),
+        (lambda: rw.materials.ThinFilm(300.0, float("nan"), base=BASES[0]), ValueError, "ior must be finite"),
         (
-            lambda: rw.ThinFilm(300.0, base=rw.Diffuse(0.5)),
+            lambda: rw.materials.ThinFilm(300.0, base=rw.Diffuse(0.5)),
             TypeError,
             "base must be a Dielectric or a Conductor, got Diffuse",
         ),
         (
-            lambda: rw.ThinFilm(300.0, base=None),
+            lambda: rw.materials.ThinFilm(300.0, base=None),
             TypeError,
             "base must be a Dielectric or a Conductor, got NoneType",
         ),
         (
-            lambda: rw.ThinFilm(300.0, base=rw.SoapFilm(100.0)),
+            lambda: rw.materials.ThinFilm(300.0, base=rw.materials.SoapFilm(100.0)),
             TypeError,
             "base must be a Dielectric or a Conductor, got SoapFilm",
         ),
@@ -385,23 +403,23 @@ def test_what_is_no_film_is_refused(make, error, said):
 def test_films_tell_what_they_reflect_at_one_wavelength(outside):
     degrees = np.array([0.0, 30.0, 60.0, 85.0])[:, None]
     cosine = np.cos(np.radians(degrees))
-    wavelengths, eta, k = rw.metal_index("gold")
+    wavelengths, eta, k = rw.materials.metal_index("gold")
     gold = np.interp(EVERY_NM, wavelengths, eta) + 1j * np.interp(EVERY_NM, wavelengths, k)
-    bk7 = rw.glasses["N-BK7"]
+    bk7 = rw.materials.glasses["N-BK7"]
     cases = [
-        (rw.SoapFilm(850.0), SOAP, outside),
-        (rw.ThinFilm(99.6, 1.38, base=rw.Dielectric(1.52)), 1.38, 1.52),
-        (rw.ThinFilm(120.0, 2.4, base=rw.Dielectric(bk7)), 2.4, bk7.index(EVERY_NM / 1000)),
-        (rw.ThinFilm(300.0, 1.5, base=rw.Conductor("gold")), 1.5, gold),
-        (rw.ThinFilm(90.0, 1.46, base=rw.Conductor(eta=4.08, k=0.028)), 1.46, 4.08 + 0.028j),
+        (rw.materials.SoapFilm(850.0), SOAP, outside),
+        (rw.materials.ThinFilm(99.6, 1.38, base=rw.Dielectric(1.52)), 1.38, 1.52),
+        (rw.materials.ThinFilm(120.0, 2.4, base=rw.Dielectric(bk7)), 2.4, bk7.index(EVERY_NM / 1000)),
+        (rw.materials.ThinFilm(300.0, 1.5, base=rw.Conductor("gold")), 1.5, gold),
+        (rw.materials.ThinFilm(90.0, 1.46, base=rw.Conductor(eta=4.08, k=0.028)), 1.46, 4.08 + 0.028j),
     ]
     for film, within, base in cases:
         found = film.reflectance(EVERY_NM, degrees, outside=outside)
         assert found.shape == (4, 471)
         truth = reflectance(film.thickness, (outside, within, base), cosine)
         assert np.abs(found - truth).max() < 1e-10
-    assert rw.SoapFilm(0.0).reflectance(550) == pytest.approx(0, abs=1e-30)
-    assert isinstance(rw.SoapFilm(100.0).reflectance(550), float)
+    assert rw.materials.SoapFilm(0.0).reflectance(550) == pytest.approx(0, abs=1e-30)
+    assert isinstance(rw.materials.SoapFilm(100.0).reflectance(550), float)
 
 
 def test_what_films_reflect_is_seen_as_the_standard_observer_sees_it():
@@ -414,29 +432,38 @@ def test_what_films_reflect_is_seen_as_the_standard_observer_sees_it():
         3000.0: (0.03859432, 0.03939784, 0.03918159),
     }
     for thickness, rgb in truths.items():
-        values = rw.SoapFilm(thickness).reflectance(EVERY_NM)
+        values = rw.materials.SoapFilm(thickness).reflectance(EVERY_NM)
         seen = _core.spectrum_rgb(np.column_stack([EVERY_NM, values]).tolist(), True)
         assert np.abs(np.array(seen) - rgb).max() < 2e-6
         if min(rgb) >= 0:
-            assert np.abs(ways(rw.SoapFilm(thickness), 1.0)[0].weight[0] - rgb).max() < 1e-5
+            assert np.abs(ways(rw.materials.SoapFilm(thickness), 1.0)[0].weight[0] - rgb).max() < 1e-5
 
 
 @pytest.mark.parametrize(
     ("ask", "told"),
     [
         (
-            lambda: rw.SoapFilm(GRADIENT).reflectance(550),
+            lambda: rw.materials.SoapFilm(GRADIENT).reflectance(550),
             "thickness must be one number to have one reflectance",
         ),
-        (lambda: rw.SoapFilm(100.0).reflectance(0), "wavelength must be finite and greater than 0, got 0"),
-        (lambda: rw.SoapFilm(100.0).reflectance(550, 91), "degrees must be between 0 and 90, got 91"),
-        (lambda: rw.SoapFilm(100.0).reflectance(550, outside=0), "outside must be greater than 0, got 0"),
         (
-            lambda: rw.ThinFilm(100.0, base=rw.Conductor("gold")).reflectance(1000),
+            lambda: rw.materials.SoapFilm(100.0).reflectance(0),
+            "wavelength must be finite and greater than 0, got 0",
+        ),
+        (
+            lambda: rw.materials.SoapFilm(100.0).reflectance(550, 91),
+            "degrees must be between 0 and 90, got 91",
+        ),
+        (
+            lambda: rw.materials.SoapFilm(100.0).reflectance(550, outside=0),
+            "outside must be greater than 0, got 0",
+        ),
+        (
+            lambda: rw.materials.ThinFilm(100.0, base=rw.Conductor("gold")).reflectance(1000),
             "wavelength must be from 360 to 830 nm on a named metal",
         ),
         (
-            lambda: rw.ThinFilm(100.0, base=rw.Conductor(eta=(1, 2, 3), k=1)).reflectance(550),
+            lambda: rw.materials.ThinFilm(100.0, base=rw.Conductor(eta=(1, 2, 3), k=1)).reflectance(550),
             "eta of the base must be one number at one wavelength",
         ),
     ],

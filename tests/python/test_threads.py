@@ -60,7 +60,7 @@ import numpy as np
 import raywright as rw
 from raywright.io.quiet import quiet, warn_caller
 from raywright.rendering.worker import _lock as jobs
-from raywright.scene.arrivals import _lock as arrivals
+from raywright.scene.unpickle_cache import _lock as arrivals
 
 box = rw.Scene(rw.Box((0, 0, 0), (1, 1, 1)))
 within, done = threading.Event(), threading.Event()

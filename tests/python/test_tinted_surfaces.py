@@ -31,9 +31,9 @@ def seen(*shapes, way=None, samples=4, environment=SKY, **more):
 
 @pytest.mark.parametrize("way", [rw.Path(), rw.Whitted()], ids=["path", "whitted"])
 def test_of_an_index_that_is_around_it_a_solid_shows_its_colour_twice_and_a_pane_once(way):
-    solid = seen(slab(rw.Tinted(rw.Dielectric(1.0), COLOR)), way=way)
+    solid = seen(slab(rw.materials.Tinted(rw.Dielectric(1.0), COLOR)), way=way)
     assert np.allclose(solid, COLOR**2, rtol=1e-6, atol=0)
-    pane = sheet(9, rw.Tinted(rw.ThinDielectric(1.0), COLOR))
+    pane = sheet(9, rw.materials.Tinted(rw.ThinDielectric(1.0), COLOR))
     assert np.allclose(seen(pane, way=way), COLOR, rtol=1e-6, atol=0)
 
 
@@ -44,7 +44,7 @@ def test_all_ways_to_and_fro_are_tinted_at_every_surface(ior):
     inside = r * mirror
     through = (t * (1 - mirror)) ** 2 / (1 - inside**2)
     back = r * mirror + (t * (1 - mirror)) ** 2 * inside / (1 - inside**2)
-    glass = slab(rw.Tinted(rw.Dielectric(ior), t, r))
+    glass = slab(rw.materials.Tinted(rw.Dielectric(ior), t, r))
     every = rw.Whitted(max_depth=40, contribution=0.0)
     lit = rw.Plane((0, 0, -2), material=rw.Diffuse(0.0), emission=1.0)
     dark = rw.Plane((0, 0, -2), material=rw.Diffuse(0.0))
@@ -63,7 +63,7 @@ def test_rough_glass_shows_its_colours_as_much_as_clear_one(distribution, again)
     rough = rw.Dielectric(1.5, 0.5, distribution=distribution, multiple_scattering=again)
     floor = rw.Plane((0, 0, -1), material=rw.Diffuse(0.0), emission=1.0)
     below = sheet(9, rough)
-    tinted = sheet(9, rw.Tinted(rough, 0.5, 0.5))
+    tinted = sheet(9, rw.materials.Tinted(rough, 0.5, 0.5))
     how = {"samples": 8, "seed": 3, "environment": None}
     one = rw.Path(max_depth=1, roulette_depth=9)
     plain = seen(below, floor, way=one, **how)
@@ -72,23 +72,23 @@ def test_rough_glass_shows_its_colours_as_much_as_clear_one(distribution, again)
 
 
 def test_of_white_it_is_what_it_is_without():
-    plain, glass = slab(rw.Dielectric(1.5)), slab(rw.Tinted(rw.Dielectric(1.5)))
+    plain, glass = slab(rw.Dielectric(1.5)), slab(rw.materials.Tinted(rw.Dielectric(1.5)))
     assert np.array_equal(seen(plain, samples=16), seen(glass, samples=16))
 
 
 def test_a_slide_shows_its_picture():
     pixels = np.random.default_rng(1).uniform(0.1, 1, (4, 4, 3))
     slide = rw.ImageTexture(pixels, linear=True, filter="nearest")
-    pane = sheet(1, rw.Tinted(rw.ThinDielectric(1.0), slide))
+    pane = sheet(1, rw.materials.Tinted(rw.ThinDielectric(1.0), slide))
     picture = seen(pane)
     assert np.allclose(picture[::2, ::2], pixels.astype(np.float32), rtol=1e-5)
     assert np.array_equal(picture[1::2, 1::2], picture[::2, ::2])
 
 
 def test_it_is_described_and_compared():
-    made = rw.Tinted(rw.Dielectric(1.4), (1, 0.5, 0.25), reflectance=0.5)
+    made = rw.materials.Tinted(rw.Dielectric(1.4), (1, 0.5, 0.25), reflectance=0.5)
     assert pickle.loads(pickle.dumps(made)) == copy.deepcopy(made) == made
-    assert made != rw.Tinted(rw.Dielectric(1.4), (1, 0.5, 0.25))
+    assert made != rw.materials.Tinted(rw.Dielectric(1.4), (1, 0.5, 0.25))
 
 
 @pytest.mark.parametrize(
@@ -106,7 +106,7 @@ def test_it_is_described_and_compared():
 )
 def test_what_it_cannot_be_is_refused(arguments, error, message):
     with pytest.raises(error, match=message):
-        rw.Tinted(*arguments)
+        rw.materials.Tinted(*arguments)
 
 
 @pytest.mark.parametrize("kind", ["dielectric", "roughdielectric", "thindielectric"])
@@ -116,7 +116,7 @@ def test_glass_of_mitsuba_keeps_the_colours_of_its_surface(kind):
     ball = {"type": "sphere", "bsdf": bsdf}
     shot = rw.from_mitsuba({"type": "scene", "a": ball, "sensor": {"type": "perspective"}})
     (shape,) = shot.scene.shapes
-    assert isinstance(shape.material, rw.Tinted)
+    assert isinstance(shape.material, rw.materials.Tinted)
     assert shape.material.reflectance == (0.5, 0.5, 0.5)
     assert isinstance(shape.material.transmittance, rw.ImageTexture)
     assert isinstance(shape.material.base, rw.ThinDielectric if kind == "thindielectric" else rw.Dielectric)

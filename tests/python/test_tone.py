@@ -102,7 +102,7 @@ def test_files_for_the_eye_hold_what_is_shown(tmp_path, name, format, off):
     ramps = np.stack(np.meshgrid(np.linspace(0, 2, 64), np.linspace(0, 1, 48)), axis=-1)
     rgb = np.concatenate([ramps, 0.5 * np.ones((48, 64, 1))], axis=-1).astype(np.float32)
     history = np.empty(0, rw.rendering.image.HISTORY)
-    image = rw.Image(rgb, rgb, rw.ErrorEstimate(0, 0, 0), history, 0.0, 1)
+    image = rw.Image(rgb, rgb, rw.rendering.ErrorEstimate(0, 0, 0), history, 0.0, 1)
     for how in ({}, {"exposure": -1.0, "tone": "linear"}):
         image.save(tmp_path / name, **how)
         with Pillow.open(tmp_path / name) as file:

@@ -10,8 +10,8 @@ TREES = [
     rw.BVH(traversal="stack"),
     rw.BVH(traversal="threaded"),
     rw.BVH(builder="spatial"),
-    rw.KdTree(),
-    rw.Octree(),
+    rw.accelerators.KdTree(),
+    rw.accelerators.Octree(),
 ]
 
 
@@ -23,7 +23,7 @@ def knot():
 @pytest.mark.parametrize("accelerator", TREES, ids=repr)
 def test_boxes_are_the_trees(knot, accelerator):
     scene = rw.Scene(knot, accelerator=accelerator)
-    tree, info = scene.tree(), scene.accelerator
+    tree, info = scene.tree_boxes(), scene.accelerator_info
     assert len(tree) == info.nodes + info.leaves
     assert tree.leaf.sum() == info.leaves
     assert tree.depth[-1] == info.depth
@@ -40,16 +40,16 @@ def test_boxes_are_the_trees(knot, accelerator):
     assert np.all(below.depth == 3)
 
 
-@pytest.mark.parametrize("accelerator", [rw.KdTree(), rw.Octree()], ids=repr)
+@pytest.mark.parametrize("accelerator", [rw.accelerators.KdTree(), rw.accelerators.Octree()], ids=repr)
 def test_cells_of_space_part_the_whole(knot, accelerator):
-    tree = rw.Scene(knot, accelerator=accelerator).tree()
+    tree = rw.Scene(knot, accelerator=accelerator).tree_boxes()
     volume = np.prod(tree.upper - tree.lower, axis=1)
     # For thousands of cells, each side rounded by 1e-7 of the whole.
     assert volume[tree.leaf].sum() == pytest.approx(volume[0], rel=1e-4)
 
 
 def test_each_face_is_in_a_leaf(knot):
-    tree = rw.Scene(knot, accelerator=rw.BVH(traversal="stack")).tree()
+    tree = rw.Scene(knot, accelerator=rw.BVH(traversal="stack")).tree_boxes()
     lower, upper = tree.lower[tree.leaf] - 1e-6, tree.upper[tree.leaf] + 1e-6
     for corners in np.asarray(knot.vertices)[np.asarray(knot.faces)[::997]]:
         assert np.any(np.all((corners.min(axis=0) >= lower) & (corners.max(axis=0) <= upper), axis=1))
@@ -62,8 +62,8 @@ def test_turned_boxes_are_told_by_their_corners():
     starts = rng.uniform(-1, 1, (2000, 3))
     corners = np.stack([starts, starts + way, starts + 0.01 * aside], axis=1)
     scene = rw.Scene(rw.Mesh(corners.reshape(-1, 3), np.arange(6000).reshape(-1, 3)))
-    assert "turned" in scene.accelerator.kind
-    tree = scene.tree()
+    assert "turned" in scene.accelerator_info.kind
+    tree = scene.tree_boxes()
     root = tree.corners[0]
     sides = root[[1, 2, 4]] - root[0]
     along = sides @ sides.T
@@ -77,23 +77,27 @@ def test_turned_boxes_are_told_by_their_corners():
 
 def test_meshes_and_other_shapes_have_a_tree_each(box):
     scene = rw.Scene([box, *(rw.Sphere((3, 0, 3 * i), 1) for i in range(40))])
-    tree = scene.tree()
+    tree = scene.tree_boxes()
     assert np.count_nonzero(tree.depth == 0) == 2
     assert tree.primitives[tree.leaf].sum() == 12 + 40
-    assert len(rw.Scene([]).tree()) == 0
-    assert "0 boxes" in repr(rw.Scene([]).tree())
+    assert len(rw.Scene([]).tree_boxes()) == 0
+    assert "0 boxes" in repr(rw.Scene([]).tree_boxes())
 
 
-@pytest.mark.parametrize("accelerator", [rw.Grid(), rw.NestedGrid(), rw.BSP(), rw.BruteForce()], ids=repr)
+@pytest.mark.parametrize(
+    "accelerator",
+    [rw.accelerators.Grid(), rw.accelerators.NestedGrid(), rw.accelerators.BSP(), rw.BruteForce()],
+    ids=repr,
+)
 def test_what_has_no_boxes_says_so(box, accelerator):
     with pytest.raises(ValueError, match=f"a {type(accelerator).__name__} has no tree of boxes"):
-        rw.Scene(box, accelerator=accelerator).tree()
+        rw.Scene(box, accelerator=accelerator).tree_boxes()
 
 
 def test_trees_are_drawn(box, tmp_path):
     pytest.importorskip("matplotlib")
-    scene = rw.Scene(box, accelerator=rw.KdTree())
-    tree = scene.tree()
+    scene = rw.Scene(box, accelerator=rw.accelerators.KdTree())
+    tree = scene.tree_boxes()
     ax = rw.report.tree(scene, plane="xz", ax=tmp_path / "tree.png")
     assert (tmp_path / "tree.png").stat().st_size > 1000
     (lines,) = ax.collections

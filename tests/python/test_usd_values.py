@@ -228,7 +228,7 @@ def test_a_film_that_is_shifted_has_a_lens_too(tmp_path):
     assert (camera.lens_radius, camera.focused_distance) == (pytest.approx(1.25), 5)
     # From -half + offset to half + offset, over the focal length.
     for one in (pinhole, camera):
-        middle = one.principal
+        middle = one.principal_point
         assert middle == pytest.approx((720 * (0.5 - 9 / 36), 480 * (0.5 - 6 / 24)))
         if one is pinhole:
             corner = one.rays_through((0, 0))[1]

@@ -40,11 +40,11 @@ def inward_box(size: Any = (1.0, 1.0, 1.0), cuts: int = 1) -> list[rw.Mesh]:
     ]
 
 
-def factors(*shapes: Any, **how: Any) -> rw.ViewFactors:
+def factors(*shapes: Any, **how: Any) -> rw.exchange.ViewFactors:
     return rw.view_factors(rw.Scene(list(shapes)), **{"per": "shape", "progress": False, **how})
 
 
-def within(found: rw.ViewFactors, i: int, j: int, truth: float) -> None:
+def within(found: rw.exchange.ViewFactors, i: int, j: int, truth: float) -> None:
     """Three standard errors, each of at most 0.2 %."""
     value, error = found.matrix[i, j], found.standard_error[i, j]
     assert error <= 2e-3 * truth
@@ -85,7 +85,7 @@ def test_a_box_by_its_sides() -> None:
         0.102713430993999,
     ]
     np.testing.assert_allclose(found.matrix[0], first, rtol=0, atol=1e-12)
-    np.testing.assert_allclose(found.rest, 0, atol=1e-12)
+    np.testing.assert_allclose(found.to_surroundings, 0, atol=1e-12)
     np.testing.assert_allclose(found.areas, [6, 6, 3, 3, 2, 2], rtol=1e-15)
     assert not found.standard_error.any()
     assert (found.sampled, found.hidden, found.rays) == (0, 0, 0)
@@ -96,7 +96,7 @@ def test_faces_of_a_convex_room_add_up_to_one(size: float) -> None:
     found = factors(*inward_box((size, 2 * size, 0.7 * size), 4), per="face")
     assert len(found) == 192
     assert found.rays == 0
-    np.testing.assert_allclose(found.rest, 0, atol=1e-9)
+    np.testing.assert_allclose(found.to_surroundings, 0, atol=1e-9)
     exchanged = found.areas[:, None] * found.matrix
     np.testing.assert_allclose(exchanged, exchanged.T, rtol=1e-15)
     x = np.linspace(0, 1, len(found))
@@ -109,7 +109,7 @@ def test_a_ball_of_faces_seen_from_inside() -> None:
     ball = trimesh.creation.icosphere(subdivisions=2)
     found = factors(rw.Mesh(ball.vertices, ball.faces[:, ::-1]), per="face")
     assert found.rays == 0
-    np.testing.assert_allclose(found.rest, 0, atol=1e-9)
+    np.testing.assert_allclose(found.to_surroundings, 0, atol=1e-9)
     outside = factors(rw.Mesh(ball.vertices, ball.faces), per="face")
     assert not outside.matrix.any()
 
@@ -149,8 +149,8 @@ def test_a_room_with_a_box_in_it() -> None:
     assert found.sampled > 0
     # 120 rows, each within 5 errors: these come from few batches a pair.
     error = np.sqrt((found.standard_error**2).sum(axis=1))
-    assert (np.abs(found.rest) <= 5 * error + 1e-9).all()
-    assert np.abs(found.rest).max() < 0.02
+    assert (np.abs(found.to_surroundings) <= 5 * error + 1e-9).all()
+    assert np.abs(found.to_surroundings).max() < 0.02
     exchanged = found.areas[:, None] * found.matrix
     np.testing.assert_allclose(exchanged, exchanged.T, rtol=1e-15)
     again = rw.view_factors(scene, rays=64, threads=1, progress=False)
@@ -174,7 +174,7 @@ def test_rows_by_rays_agree_with_pairs(monkeypatch: pytest.MonkeyPatch) -> None:
     shapes = rw.view_factors(scene, per="shape", rays=256, progress=False)
     monkeypatch.setattr(module, "_MOST_DENSE", 10)
     rows = rw.view_factors(scene, rays=256, progress=False)
-    np.testing.assert_allclose(rows.rest, 0, atol=1e-12)
+    np.testing.assert_allclose(rows.to_surroundings, 0, atol=1e-12)
     both = np.hypot(pairs.standard_error, rows.standard_error.toarray())
     apart = np.abs(pairs.matrix - rows.matrix.toarray())
     assert np.mean(apart[both > 0] <= 3 * both[both > 0]) > 0.95
@@ -259,7 +259,7 @@ def test_a_shape_of_no_area_sees_nothing() -> None:
     assert found.areas[6] == 0
     assert not found.matrix[6].any()
     assert not found.matrix[:, 6].any()
-    np.testing.assert_allclose(found.rest, [0] * 6 + [1], atol=1e-12)
+    np.testing.assert_allclose(found.to_surroundings, [0] * 6 + [1], atol=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -307,7 +307,7 @@ def test_arrays_belong_to_the_caller(per: str) -> None:
     room = inward_box()
     found = factors(*room, per=per)
     # torch warns of what cannot be written to.
-    for array in (found.matrix, found.areas, found.standard_error, found.rest):
+    for array in (found.matrix, found.areas, found.standard_error, found.to_surroundings):
         assert array.flags.writeable
         assert array.flags.c_contiguous
         array[:] = 7.0

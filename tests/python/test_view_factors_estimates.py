@@ -82,7 +82,7 @@ def test_told_errors_of_all_pairs_of_a_furnished_room_hold() -> None:
             found = rw.view_factors(scene, seed=seed, progress=False, **how)
             both = np.hypot(found.standard_error, truth.standard_error)
             off.append((found.matrix - truth.matrix)[both > 0] / both[both > 0])
-            assert np.abs(found.rest).max() < 1e-9
+            assert np.abs(found.to_surroundings).max() < 1e-9
             assert 0 <= found.matrix.min() <= found.matrix.max() <= 1
             exchanged = found.areas[:, None] * found.matrix
             np.testing.assert_allclose(exchanged, exchanged.T, rtol=1e-14, atol=0)
@@ -116,10 +116,10 @@ def test_no_count_of_zero_is_certain() -> None:
 def test_rows_of_open_rooms_leave_no_less_than_nothing() -> None:
     sides, box = inward_box(), block((0.3,) * 3, (0.4,) * 3)
     found = factors(*sides[:5], box, rays=64)
-    assert found.rest.min() > -1e-9
+    assert found.to_surroundings.min() > -1e-9
     # Escaping rays arrive at the removed side when it is there.
     closed = factors(*sides, box, rays=2**10)
-    leaves, arrives = float(found.areas @ found.rest), float(closed.areas @ closed.matrix[:, 5])
+    leaves, arrives = float(found.areas @ found.to_surroundings), float(closed.areas @ closed.matrix[:, 5])
     error = math.hypot(*(found.areas @ found.standard_error), *(closed.areas * closed.standard_error[:, 5]))
     assert abs(leaves - arrives) < 4.5 * error < 0.5
 
@@ -127,7 +127,7 @@ def test_rows_of_open_rooms_leave_no_less_than_nothing() -> None:
 def test_a_box_that_stands_on_the_floor_touches_it() -> None:
     scene = rw.Scene([block((0, 0, 0), (6, 5, 3), inwards=True), block((1, 1, 0), (1, 1, 1))])
     found = rw.view_factors(scene, per="shape", progress=False)
-    np.testing.assert_allclose(found.rest, 0, atol=1e-9)
+    np.testing.assert_allclose(found.to_surroundings, 0, atol=1e-9)
     # The bottom sees only the floor, which it hides by the same amount.
     faces = rw.view_factors(scene, progress=False)
     bottom = faces.matrix[12:14]
@@ -142,7 +142,7 @@ def test_a_sheet_of_two_sides_does_not_see_itself() -> None:
     sheet = [rectangle([1, 1, 1.5], x, y), rectangle([1, 1, 1.5], y, x)]
     room = block((0, 0, 0), (6, 5, 3), inwards=True)
     found = factors(room, *sheet)
-    np.testing.assert_allclose(found.rest, 0, atol=1e-9)
+    np.testing.assert_allclose(found.to_surroundings, 0, atol=1e-9)
     np.testing.assert_allclose(found.matrix[1:], [[1, 0, 0], [1, 0, 0]], atol=1e-9)
 
 

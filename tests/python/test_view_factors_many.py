@@ -11,7 +11,7 @@ import raywright as rw
 from raywright.exchange import view_factors as module
 
 
-def by_rays(scene: rw.Scene, monkeypatch: pytest.MonkeyPatch, **how: object) -> rw.ViewFactors:
+def by_rays(scene: rw.Scene, monkeypatch: pytest.MonkeyPatch, **how: object) -> rw.exchange.ViewFactors:
     pytest.importorskip("scipy")
     monkeypatch.setattr(module, "_MOST_DENSE", 10)
     return rw.view_factors(scene, progress=False, **how)  # type: ignore[arg-type]
@@ -37,7 +37,7 @@ def test_rows_by_rays_are_reciprocal_and_add_up(monkeypatch: pytest.MonkeyPatch)
     found = by_rays(uneven_room(), monkeypatch, rays=64)
     exchanged = found.areas[:, None] * found.matrix.toarray()
     np.testing.assert_allclose(exchanged, exchanged.T, rtol=1e-12, atol=0)
-    np.testing.assert_allclose(found.rest, 0, atol=1e-12)
+    np.testing.assert_allclose(found.to_surroundings, 0, atol=1e-12)
     spread = found.areas[:, None] * found.standard_error.toarray()
     np.testing.assert_allclose(spread, spread.T, rtol=1e-12, atol=0)
     # If all faces have equal radiosity, each has that irradiance: no ray is lost.

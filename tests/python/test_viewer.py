@@ -141,7 +141,7 @@ def test_the_exposure_changes_without_a_new_render():
     assert np.array_equal(pixels(brighter), image.srgb(exposure=1.5))
 
 
-class Held(rw.Integrator):
+class Held(rw.integrators.Integrator):
     """Grey, and held up amid the second sample of the first view's pixels until the camera was moved."""
 
     def __init__(self, pixels):
@@ -236,7 +236,7 @@ def test_closing_ends_all_work_at_once(viewer):
     viewer.close()
 
 
-class Failing(rw.Integrator):
+class Failing(rw.integrators.Integrator):
     def radiance(self, scene, rays, rng):
         raise ValueError("no light\ntoday")
 
@@ -309,7 +309,7 @@ def boxes_of(viewer, depth):
 
 def test_boxes_of_the_accelerator_are_drawn_level_by_level():
     scene, camera = rw.scenes.cornell_box(**SIZE)
-    deepest = int(scene.tree().depth[-1])
+    deepest = int(scene.tree_boxes().depth[-1])
     with rw.view(scene, camera, samples=4, fit=False, boxes=0) as viewer, page(viewer) as events:
         root = until(events, is_done)
         assert root["boxes"] == 0
@@ -326,8 +326,8 @@ def test_boxes_of_the_accelerator_are_drawn_level_by_level():
     drawn = (pixels(root) != pixels(plain)).any(axis=2)
     assert (pixels(root)[drawn] == (255, 208, 0)).all()
     # Corners of the root appear at the pixels of their rays, and its edges there but not near the middle.
-    corners = scene.tree().at(0).corners.reshape(-1, 3)
-    lines = boxes.edges(camera, scene.tree().at(0).corners)
+    corners = scene.tree_boxes().at(0).corners.reshape(-1, 3)
+    lines = boxes.edges(camera, scene.tree_boxes().at(0).corners)
     ways = camera.rays_through(lines.reshape(-1, 2) * (96, 72))[1]
     there = corners - camera.position
     there /= np.linalg.norm(there, axis=1)[:, None]
@@ -349,7 +349,7 @@ def test_edges_are_where_rays_to_them_go(kind):
         # Half of the box is behind it.
         "within": rw.Camera((0.1, 0.2, 0.3), (1, 0, 0), **looks),
     }[kind]
-    corners = rw.Scene(rw.Box((-1, -1, -1), (1, 1, 1)), accelerator=rw.BVH()).tree().corners[:1]
+    corners = rw.Scene(rw.Box((-1, -1, -1), (1, 1, 1)), accelerator=rw.BVH()).tree_boxes().corners[:1]
     lines = boxes.edges(camera, corners)
     assert len(lines) == 12 if kind != "within" else 0 < len(lines) < 12
     along = np.linspace(0, 1, 7)[1:-1, None, None]
@@ -370,6 +370,6 @@ def test_boxes_that_cannot_be_drawn_are_refused():
         rw.view(scene, camera, boxes=-1)
     with pytest.raises(ValueError, match="boxes are drawn for a Camera, ThinLens or Orthographic"):
         rw.view(scene, rw.Panorama((0, 1, 0), (0, 1, 1)), boxes=1)
-    grid = rw.Scene(scene.shapes, accelerator=rw.Grid())
+    grid = rw.Scene(scene.shapes, accelerator=rw.accelerators.Grid())
     with pytest.raises(ValueError, match="a Grid has no tree of boxes"):
         rw.view(grid, camera, boxes=1)

@@ -30,7 +30,7 @@ def test_arrays_are_those_of_the_scene_and_have_a_version():
     with rw.view(scene, rw.Camera((0, 0, 6), (0, 0, 0), **SIZE)) as viewer:
         status, told = asked(viewer, "drawing", {})
         assert (status, told["why"], told["left"]) == (200, None, None)
-        flat = scene.flat()
+        flat = scene.gpu_arrays()
         path = f"arrays/{told['version']}/"
         for name, wanted in (("nodes", flat.nodes), ("triangles", flat.triangles)):
             status, headers, body = ask(viewer, path + name)
@@ -38,7 +38,7 @@ def test_arrays_are_those_of_the_scene_and_have_a_version():
             assert len(body) == told["arrays"][name]
             assert "immutable" in headers["Cache-Control"]
         assert (told["nodes"], told["depth"], told["scale"]) == (flat.own, flat.depth, flat.scale)
-        assert told["centre"] == flat.centre.tolist()
+        assert told["centre"] == flat.center.tolist()
         for missing in (
             path + "none",
             path,
@@ -53,7 +53,7 @@ def test_arrays_are_those_of_the_scene_and_have_a_version():
         status, after = asked(viewer, "drawing", {})
         assert after["version"] != told["version"]
         assert ask(viewer, path + "nodes")[0] == 404
-        assert ask(viewer, f"arrays/{after['version']}/nodes")[2] == scene.flat().nodes.tobytes()
+        assert ask(viewer, f"arrays/{after['version']}/nodes")[2] == scene.gpu_arrays().nodes.tobytes()
         assert not viewer.rendering
 
 
@@ -65,7 +65,7 @@ def test_arrays_are_those_of_the_scene_and_have_a_version():
         (rw.Scene(rw.scenes.torus_knot()), rw.Fisheye((0, 0, 4), (0, 0, 0)), "no pictures of a Fisheye"),
         (
             rw.Scene(rw.scenes.torus_knot()),
-            rw.Camera((0, 0, 4), (0, 0, 0), moved_to=rw.Pose((0, 1, 4), (0, 0, 0))),
+            rw.Camera((0, 0, 4), (0, 0, 0), end_pose=rw.Pose((0, 1, 4), (0, 0, 0))),
             "its shutter is open",
         ),
     ],
@@ -82,7 +82,7 @@ def test_what_a_page_cannot_draw_is_told_in_a_line(scene, camera, why):
     [
         ({"integrator": rw.Whitted()}, "the page has no Whitted"),
         ({"clamp": 10.0}, "does not clamp"),
-        ({"filter": rw.GaussianFilter()}, "the page has no filters"),
+        ({"filter": rw.rendering.GaussianFilter()}, "the page has no filters"),
         ({"camera": rw.ThinLens((278, 273, -800), (278, 273, 0), f_stop=0.01)}, "the page has no lenses"),
     ],
 )
@@ -133,11 +133,11 @@ def test_limits_of_paths_are_those_of_the_render():
 
 def test_boxes_are_the_corners_of_a_level_in_box_units():
     scene, camera = rw.scenes.cornell_box(**SIZE)
-    flat, level = scene.flat(), scene.tree().at(1)
+    flat, level = scene.gpu_arrays(), scene.tree_boxes().at(1)
     with rw.view(scene, camera) as viewer:
         status, _, body = ask(viewer, "boxes/1")
         found = np.frombuffer(body, "<f4").reshape(-1, 8, 3)
-        wanted = (level.corners - flat.centre) * flat.scale
+        wanted = (level.corners - flat.center) * flat.scale
         assert (status, len(found)) == (200, len(level))
         key = lambda boxes: boxes[np.lexsort(np.round(boxes.reshape(len(boxes), -1), 5).T)]  # noqa: E731
         assert np.allclose(key(found), key(wanted), rtol=0, atol=1e-6)
@@ -150,7 +150,7 @@ def test_a_pick_is_that_of_the_scene():
         status, found = asked(viewer, "pick", {"view": {}, "x": 40.25 / 96, "y": 50.5 / 72})
         hit = scene.pick(camera, 40, 50, (0.25, 0.5))
         assert status == 200
-        assert (found["shape"], found["face"], found["t"]) == (hit.shape_id, hit.primitive, hit.t)
+        assert (found["shape"], found["face"], found["t"]) == (hit.shape_id, hit.primitive_id, hit.t)
         assert (found["position"], found["name"]) == (hit.position.tolist(), str(hit.names) or None)
         away = asked(viewer, "pick", {"view": {"right": 100}, "x": 0.5, "y": 0.5})
         assert away == (200, {"shape": None})
@@ -202,7 +202,7 @@ def test_colours_and_normals_of_a_sketch():
     two = rw.TwoSided(rw.Diffuse(0.25), rw.Mirror())
     lamp_ = rw.Mesh([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)], material=two, emission=1.0)
     scene = rw.Scene([mesh, lamp_])
-    flat = scene.flat()
+    flat = scene.gpu_arrays()
     rows = paints(scene.shapes, flat)
     assert rows[0, 0] == 204 + 102 * 2**8 + 51 * 2**16
     assert rows[-1, 0] == 64 * 0x010101 + 0xFF000000
@@ -242,7 +242,7 @@ def test_shaders_are_what_other_browsers_take_too():
         pytest.skip(str(missing))
     beginning = text("walk.wgsl").replace("STACK", "32u") + text("sight.wgsl")
     brought = text("brought.wgsl")
-    lit = packed(rw.Scene(rw.scenes.torus_knot()), rw.Scene(rw.scenes.torus_knot()).flat()).lit
+    lit = packed(rw.Scene(rw.scenes.torus_knot()), rw.Scene(rw.scenes.torus_knot()).gpu_arrays()).lit
     paths = known_lit(lit) + text("shading.wgsl") + brought + text("path.wgsl")
     for rest in (brought + text("screen.wgsl"), text("lines.wgsl"), paths):
         device.create_shader_module(code=beginning + rest)

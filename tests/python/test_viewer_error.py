@@ -101,7 +101,7 @@ def agrees(error, core):
 def test_the_page_tells_how_wrong_its_picture_is(page):
     scene, camera = rw.scenes.cornell_box(width=32, height=32)
     # Off by a hundredth of the picture below.
-    reference = {"samples": 1024, "sampler": rw.Sobol(), "seed": 10**9, "progress": False}
+    reference = {"samples": 1024, "sampler": rw.rendering.Sobol(), "seed": 10**9, "progress": False}
     truth = rw.render(scene, camera, rw.Path(reuse=4), **reference).rgb.astype(float)
     with rw.view(scene, camera, fit=False, samples=2) as viewer:
         begin(page, viewer)

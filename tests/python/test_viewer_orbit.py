@@ -13,7 +13,7 @@ POSE = {name: EYE[name] for name in ("position", "target")}
 K = [[150.0, 3.0, 61.0], [0.0, 140.0, 40.0], [0.0, 0.0, 1.0]]
 CAMERAS = {
     "pinhole": rw.Camera(**EYE),
-    "moving": rw.Camera(**EYE, moved_to=rw.Pose((1.5, 2.0, 6.0), (0.5, 1.2, 0.0))),
+    "moving": rw.Camera(**EYE, end_pose=rw.Pose((1.5, 2.0, 6.0), (0.5, 1.2, 0.0))),
     "intrinsics": rw.Camera.from_intrinsics(K, np.diag([1.0, -1.0, -1.0]), (0, 0, 5), 120, 90),
     "lens": rw.ThinLens(**EYE, f_stop=0.05),
     "focused": rw.ThinLens(**EYE, aperture_radius=0.1, focus_point=(0.4, 1.1, 1.0)),
@@ -70,9 +70,9 @@ def test_the_end_of_a_movement_goes_around_as_well():
     camera = CAMERAS["moving"]
     moved = Orbit(camera).camera(VIEW)
     turn = moved.extrinsics[0].T @ camera.extrinsics[0]
-    ends = [np.subtract(one.moved_to.position, one.position) for one in (camera, moved)]
+    ends = [np.subtract(one.end_pose.position, one.position) for one in (camera, moved)]
     assert np.allclose(ends[1], turn @ ends[0] / VIEW.zoom, rtol=0, atol=1e-12)
-    assert np.allclose(moved.moved_to.forward, turn @ camera.moved_to.forward, rtol=0, atol=1e-12)
+    assert np.allclose(moved.end_pose.forward, turn @ camera.end_pose.forward, rtol=0, atol=1e-12)
 
 
 def test_a_lens_stays_in_focus():

@@ -150,7 +150,7 @@ def test_heat_and_boxes_are_drawn_by_keys(page):
         wait(page, "document.getElementById('message').textContent === 'boxes 1 step from the root'")
         lines = picture(page) - heat
         # At the same place as the core's boxes, to a pixel.
-        level = edges(camera, scene.tree().at(1).corners)
+        level = edges(camera, scene.tree_boxes().at(1).corners)
         wanted = drawn(np.zeros((128, 128, 3), np.uint8), level).any(axis=2)
         found = np.abs(lines).max(axis=2) > 20
         near = np.zeros_like(wanted)
@@ -183,7 +183,7 @@ def test_a_click_is_answered_by_the_core(page, box):
             found = json.loads(state(page, "picked"))
             place = np.clip([(at[0] - left) / scale, (at[1] - top) / scale], 0, 0.9999) * SIZE
             hit = scene.pick(camera, *np.int64(place).tolist(), place % 1)
-            assert (found["shape"], found["face"]) == (hit.shape_id, hit.primitive)
+            assert (found["shape"], found["face"]) == (hit.shape_id, hit.primitive_id)
             assert np.allclose(found["position"], hit.position, rtol=0, atol=1.0)
             assert found["t"] == pytest.approx(float(hit.t), abs=1.0)
             assert told(page, "message").startswith(f"shape {hit.shape_id}")

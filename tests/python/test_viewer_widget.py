@@ -116,7 +116,7 @@ def test_it_answers_as_the_server_does(viewer, monkeypatch):
         assert 0 < len(part) <= 1000
         whole, start = whole + part, start + len(part)
     scene = rw.scenes.cornell_box(**SIZE)[0]
-    assert whole == scene.flat().nodes.tobytes()
+    assert whole == scene.gpu_arrays().nodes.tobytes()
     assert b"struct Look" in cell.bytes("sight.wgsl")[1]
     assert cell.ask("pick", {"view": {}, "x": 0.5, "y": 0.6})["shape"] >= 0
     assert cell.ask("view", {"azimuth": 30}) is None

@@ -24,9 +24,9 @@ TO_RGB = np.array(
         [0.05563007969699, -0.203976958889, 1.056971514243],
     ]
 )
-BK7 = rw.glasses["N-BK7"]
+BK7 = rw.materials.glasses["N-BK7"]
 # A dispersion formula with the same index everywhere.
-SAME = rw.Cauchy(1.5, 0.0)
+SAME = rw.materials.Cauchy(1.5, 0.0)
 # Relative precision of pictures in slow tests.
 FINELY = 0.002
 
@@ -82,9 +82,9 @@ def plate(material=None, emission=None):
 def test_even_light_is_reddish_and_daylight_white(assert_looks):
     nothing = rw.Box((50, 50, 50), (51, 51, 51))
     for light, colour in [
-        (rw.illuminants["E"], EVEN),
-        (rw.illuminants["D65"], (1, 1, 1)),
-        (2 * rw.illuminants["A"], 2 * np.array(rw.illuminants["A"].rgb)),
+        (rw.textures.illuminants["E"], EVEN),
+        (rw.textures.illuminants["D65"], (1, 1, 1)),
+        (2 * rw.textures.illuminants["A"], 2 * np.array(rw.textures.illuminants["A"].rgb)),
         (rw.Blackbody(3000), rw.Blackbody(3000).rgb),
     ]:
         assert_looks(rw.Scene(nothing, environment=light), downwards(16), 64, np.array(colour), most=0.005)
@@ -92,12 +92,12 @@ def test_even_light_is_reddish_and_daylight_white(assert_looks):
 
 def test_all_that_glass_does_to_white_light_is_white(assert_looks):
     """A clear ball in white light from everywhere: what is ended honestly loses nothing."""
-    for material in (rw.Dielectric(BK7), rw.Dielectric(rw.glasses["N-SF11"], roughness=0.3)):
+    for material in (rw.Dielectric(BK7), rw.Dielectric(rw.materials.glasses["N-SF11"], roughness=0.3)):
         ball = rw.Sphere((0, 0, 0), 1, material=material)
         camera = rw.Orthographic((0, 0, 5), (0, 0, 0), scale=1.4, width=16, height=16)
         assert_looks(rw.Scene(ball, environment=1.0), camera, 128, np.ones(3), most=0.01)
     # Also with two overlapping ones, if either disperses.
-    inner = rw.Sphere((0, 0, 0), 0.6, material=rw.Dielectric(rw.glasses["water"], priority=1))
+    inner = rw.Sphere((0, 0, 0), 0.6, material=rw.Dielectric(rw.materials.glasses["water"], priority=1))
     outer = rw.Sphere((0, 0, 0), 1, material=rw.Dielectric(BK7))
     assert_looks(rw.Scene([inner, outer], environment=1.0), camera, 128, np.ones(3), most=0.01)
 
@@ -185,7 +185,7 @@ def test_the_rainbow_is_at_its_angles(ring):
 
     The bow of 400 nm has a radius of 40.567 degrees, that of 700 nm 42.440 (Descartes, 1637).
     """
-    water = rw.glasses["water"]
+    water = rw.materials.glasses["water"]
     index = water.index(NM / 1000)[:, None]
     impact = (np.arange(4000) + 0.5) / 4000
     i = np.arcsin(impact)
@@ -221,7 +221,7 @@ def solid(outline, material):
 
 def test_the_edge_of_a_doublet_has_less_colour_than_that_of_a_lens(assert_looks):
     """A wedge of crown, and one with flint on it: a wall that brightens evenly tells how light is bent."""
-    crown, flint = rw.Dielectric(BK7), rw.Dielectric(rw.glasses["F2"])
+    crown, flint = rw.Dielectric(BK7), rw.Dielectric(rw.materials.glasses["F2"])
     a = math.radians(10.0)
     spreads = [glass.ior.index(0.4861327) - glass.ior.index(0.6562725) for glass in (crown, flint)]
     b = a * (1 - spreads[0] / spreads[1])
@@ -299,7 +299,7 @@ def test_spectra_reflect_and_shine_as_integrals_say(assert_looks):
     shining = rw.Spectrum([400, 500, 600, 700], [0.0, 2.0, 1.0, 3.0])
     for light, colour in [
         (rw.Blackbody(4500), rw.Blackbody(4500).rgb),
-        (3 * rw.illuminants["D65"], (3, 3, 3)),
+        (3 * rw.textures.illuminants["D65"], (3, 3, 3)),
     ]:
         assert_looks(rw.Scene(plate(emission=light)), downwards(16), 64, np.array(colour), most=0.01)
     scene = rw.Scene(plate(emission=shining))
@@ -312,7 +312,7 @@ def test_spectra_reflect_and_shine_as_integrals_say(assert_looks):
 
 
 def test_metals_go_by_their_curves(assert_looks):
-    mirror = rw.Scene(plate(rw.Conductor("Au")), environment=rw.illuminants["D65"])
+    mirror = rw.Scene(plate(rw.Conductor("Au")), environment=rw.textures.illuminants["D65"])
     # Computed by numpy from Mitsuba's measured data.
     assert_looks(mirror, downwards(16), 64, np.array((1.0219, 0.7824, 0.3434)), most=0.005)
     nm, eta, k = np.array(_core.metal_index("Au")).T
@@ -323,17 +323,17 @@ def test_metals_go_by_their_curves(assert_looks):
 def test_media_absorb_by_wavelength(assert_looks):
     sigma = 0.5 + (NM - 360) / 470
     medium = rw.Homogeneous(rw.Spectrum(NM, sigma))
-    slab = rw.Box((-9, -9, -1), (9, 9, 0), material=rw.Boundary(medium))
+    slab = rw.Box((-9, -9, -1), (9, 9, 0), material=rw.MediumInterface(medium))
     assert_looks(rw.Scene(slab, environment=1.0), downwards(16), 64, daylit(np.exp(-sigma)), most=0.005)
     # The same by a grid, which light passes at random.
     grid = rw.GridMedium(
         np.full((2, 2, 2), 0.5), ((-9, -9, -1), (9, 9, 0)), absorption=rw.Spectrum(NM, 2 * sigma)
     )
-    slab = rw.Box((-9, -9, -1), (9, 9, 0), material=rw.Boundary(grid))
+    slab = rw.Box((-9, -9, -1), (9, 9, 0), material=rw.MediumInterface(grid))
     assert_looks(rw.Scene(slab, environment=1.0), downwards(16), 256, daylit(np.exp(-sigma)), most=0.02)
     # A medium that scatters everything is white in white light, whatever its spectrum.
     fog = rw.Homogeneous(0.0, rw.Spectrum(NM, 2 * sigma))
-    ball = rw.Sphere((0, 0, 0), 1, material=rw.Boundary(fog))
+    ball = rw.Sphere((0, 0, 0), 1, material=rw.MediumInterface(fog))
     assert_looks(rw.Scene(ball, environment=1.0), downwards(16, 1.2), 64, np.ones(3), most=0.02)
     # And within glass that disperses.
     tinted = rw.Sphere((0, 0, 0), 1, material=rw.Dielectric(BK7, interior=fog))
@@ -407,7 +407,7 @@ def test_coloured_surfaces_and_lights_look_as_they_do_without_wavelengths(assert
 def test_errors_cover_with_wavelengths():
     """Of 768 intervals of 95 %, those of a pixel together, fewer than nine in ten once in 10^5 pictures."""
     nothing = rw.Box((50, 50, 50), (51, 51, 51))
-    scene = rw.Scene([nothing], environment=rw.illuminants["E"])
+    scene = rw.Scene([nothing], environment=rw.textures.illuminants["E"])
     image = rw.render(scene, downwards(16), samples=64, seed=3, progress=False)
     low, high = image.interval(0.95)
     covered = ((low <= EVEN) & (high >= EVEN)).mean()
@@ -422,7 +422,7 @@ def test_the_plan_says_why():
     assert "the ior of glass" in rw.Scene(ball).wavelengths
     assert rw.Scene(plain, environment=(1, 0.5, 0.2)).wavelengths is None
     assert "Blackbody" in rw.Scene(plain, environment=rw.Blackbody(4000)).wavelengths
-    assert "reflectance" in rw.Scene(plate(rw.Diffuse(rw.illuminants["E"] * 0.5))).wavelengths
+    assert "reflectance" in rw.Scene(plate(rw.Diffuse(rw.textures.illuminants["E"] * 0.5))).wavelengths
     inside = rw.Instance([ball], np.eye(4))
     assert rw.Scene(inside).wavelengths == rw.Scene(ball).wavelengths
     image = rw.render(rw.Scene(ball, environment=1.0), downwards(2), samples=1, progress=False)
@@ -431,7 +431,7 @@ def test_the_plan_says_why():
     assert "wavelengths" not in [row.what for row in image.plan.rows]
 
 
-@pytest.mark.parametrize("integrator", [rw.ConeTraced(), rw.BeamTraced()])
+@pytest.mark.parametrize("integrator", [rw.integrators.ConeTraced(), rw.integrators.BeamTraced()])
 def test_who_knows_no_wavelengths_says_so(integrator):
     scene = rw.Scene(rw.Sphere((0, 0, 0), 1, material=rw.Dielectric(BK7)), environment=1.0)
     with pytest.raises(ValueError, match="does not support wavelengths"):
@@ -449,20 +449,20 @@ def test_spectra_are_checked_and_copied():
         with pytest.raises(ValueError, match=r"wavelengths|values"):
             rw.Spectrum(wavelengths, values)
     with pytest.raises(TypeError, match="roughness must be a texture or one number, got a Spectrum"):
-        rw.OrenNayar(0.5, rw.Spectrum([400, 500], [0.5, 0.5]))
+        rw.materials.OrenNayar(0.5, rw.Spectrum([400, 500], [0.5, 0.5]))
     with pytest.raises(ValueError, match="reflectance must be between 0 and 1"):
         rw.Diffuse(rw.Spectrum([400, 500], [0.5, 1.5]))
     for bad in (0, -3, 400, math.inf):
         with pytest.raises(ValueError, match="kelvin"):
             rw.Blackbody(bad)
     with pytest.raises(KeyError, match="D65"):
-        rw.illuminants["F99"]
+        rw.textures.illuminants["F99"]
     spectrum = rw.Spectrum([400, 600], [0, 1])
     assert pickle.loads(pickle.dumps(spectrum)) == copy.deepcopy(spectrum) == spectrum
     assert [spectrum.at(x) for x in (399, 500, 601)] == [0, 0.5, 0]
     assert rw.Blackbody(5000) == rw.Blackbody(5000) != rw.Blackbody(5001)
     assert rw.Blackbody(5000, 3.0).luminance == pytest.approx(3.0)
-    assert (3 * rw.illuminants["A"]).luminance == pytest.approx(3.0)
+    assert (3 * rw.textures.illuminants["A"]).luminance == pytest.approx(3.0)
     # Values of the CIE (CIE 015:2018), to its four digits.
     for name, place in {
         "A": (0.4476, 0.4074),
@@ -473,9 +473,9 @@ def test_spectra_are_checked_and_copied():
         "F11": (0.3805, 0.3769),
     }.items():
         # Sums over every fifth nm, as in their definition; light is relative to daylight here.
-        light = rw.illuminants[name].at(NM[::5]) / rw.illuminants["D65"].at(NM[::5])
+        light = rw.textures.illuminants[name].at(NM[::5]) / rw.textures.illuminants["D65"].at(NM[::5])
         xyz = np.linalg.solve(TO_RGB, SEEN[::5].T @ light)
         assert xyz[:2] / xyz.sum() == pytest.approx(place, abs=2e-4), name
-        assert rw.illuminants[name].luminance == pytest.approx(1.0)
+        assert rw.textures.illuminants[name].luminance == pytest.approx(1.0)
     with pytest.raises(ValueError, match="ior must be above 0 from 360"):
-        rw.Scene(rw.Sphere((0, 0, 0), 1, material=rw.Dielectric(rw.Cauchy(1.0, -1.0)))).build()
+        rw.Scene(rw.Sphere((0, 0, 0), 1, material=rw.Dielectric(rw.materials.Cauchy(1.0, -1.0)))).build()

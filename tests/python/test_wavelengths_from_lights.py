@@ -12,7 +12,7 @@ import pytest
 import raywright as rw
 
 NM = np.arange(360.0, 831.0)
-FLINT = rw.glasses["SF10"]
+FLINT = rw.materials.glasses["SF10"]
 RED = rw.Spectrum(NM, 0.4 + 0.4 / (1 + np.exp((NM - 580) / -15)))
 GREENISH = rw.Spectrum(NM, 0.35 + 0.4 * np.exp(-(((NM - 540) / 45) ** 2)))
 WAYS = {"light": rw.LightTraced(), "both": rw.Bidirectional()}
@@ -45,11 +45,11 @@ def mean(scene, camera, integrator, samples, seed=0):
     return image.rgb.astype(float).mean(axis=(0, 1)), error
 
 
-WHITE = 4 * rw.illuminants["D65"]
+WHITE = 4 * rw.textures.illuminants["D65"]
 GREY = floor(rw.Diffuse(0.8))
 WET = [
     ball(rw.Dielectric(FLINT)),
-    ball(rw.Dielectric(rw.glasses["water"], priority=1), radius=0.35),
+    ball(rw.Dielectric(rw.materials.glasses["water"], priority=1), radius=0.35),
 ]
 # A scene, a camera, and numbers of samples for a good mean by light tracing and by both.
 SCENES = {
@@ -64,9 +64,9 @@ SCENES = {
         rw.Scene(
             [
                 floor(rw.Diffuse(GREENISH)),
-                ball(rw.SoapFilm(400.0), (0.5, 0, 0.8), 0.5),
+                ball(rw.materials.SoapFilm(400.0), (0.5, 0, 0.8), 0.5),
                 ball(rw.Conductor("Cu", roughness=0.4), (-0.6, 0, 0.8), 0.4),
-                lamp(2 * rw.illuminants["F2"]),
+                lamp(2 * rw.textures.illuminants["F2"]),
             ],
         ),
         down(0.2, 2.4),
@@ -168,9 +168,9 @@ def test_what_is_white_is_white_by_way_of_glass(camera, samples, most):
 @pytest.mark.parametrize(
     "integrator",
     [
-        rw.Bidirectional(merge=True, radius=0.15, photons=1000),
+        rw.Bidirectional(vertex_merging=True, radius=0.15, photons=1000),
         rw.ProgressivePhotonMap(1000, radius=0.3),
-        rw.PhotonMap(1000, nearest=None, radius=0.3, gather=0),
+        rw.PhotonMap(1000, k_nearest=None, radius=0.3, final_gather=0),
     ],
     ids=lambda integrator: type(integrator).__name__,
 )
@@ -304,7 +304,7 @@ def test_the_fan_has_its_colours_in_order():
 
 def misty(medium):
     """A lamp over a ball of glass, both in what absorbs and scatters by wavelength."""
-    mist = rw.Box((-2.5, -2.5, 0.02), (2.5, 2.5, 1.6), material=rw.Boundary(medium))
+    mist = rw.Box((-2.5, -2.5, 0.02), (2.5, 2.5, 1.6), material=rw.MediumInterface(medium))
     return rw.Scene([GREY, ball(rw.Dielectric(FLINT), radius=0.5), mist, lamp(WHITE)])
 
 

@@ -73,7 +73,7 @@ def test_coats_and_panes_vanish_in_what_has_their_index(integrator, haze):
     # A gap of air between two faces of glass: 2 R / (1 + R), here at random.
     gap = 2 * bare(1, 0, 1.5) / (1 + bare(1, 0, 1.5))
     for share, of in ((gap, mirrored), (1 - gap, passing)):
-        for pane in (rw.ThinDielectric(1.0), rw.Tinted(rw.ThinDielectric(1.0))):
+        for pane in (rw.ThinDielectric(1.0), rw.materials.Tinted(rw.ThinDielectric(1.0))):
             # A standard deviation of 0.27 over 64 times: five standard errors, once in a million.
             np.testing.assert_allclose(of(pane, 1.5, integrator, **how), share, atol=5 * 0.27 / 64)
 
@@ -96,7 +96,7 @@ def met(material, index, cosine=1.0):
     to = np.array([[np.sqrt(1 - cosine**2), 0, -cosine]])
     around = [rw.Sphere((0, 0, 0), 20.0, material=rw.Dielectric(index))] if index != 1 else []
     scene = rw.Scene([sheet(0, material, half=5.0), *around])
-    return scene.interactions(rw.Rays((0.01, 0.02, 0) - to, to, np.zeros(1)))
+    return scene.interactions(rw.query.Rays((0.01, 0.02, 0) - to, to, np.zeros(1)))
 
 
 @pytest.mark.parametrize("index", [1.0, 1.33, 1.5])
@@ -123,7 +123,7 @@ def test_interactions_scatter_by_the_index_around_them(index):
         ]
     )
     to = np.array([[0.6, 0, -0.8]])
-    through = scene.interactions(rw.Rays((0.01, 0.02, 0) - to, to, np.zeros(1))).refracted()
+    through = scene.interactions(rw.query.Rays((0.01, 0.02, 0) - to, to, np.zeros(1))).refracted()
     np.testing.assert_allclose(through.direction[0, 0], 0.6 * index / 1.8, rtol=1e-12)
 
 
@@ -159,13 +159,15 @@ CUBE = [
 ]  # fmt: skip
 
 SCALED = {
-    "soap film": lambda n: rw.SoapFilm(400 * n, 1.4 / n),
+    "soap film": lambda n: rw.materials.SoapFilm(400 * n, 1.4 / n),
     "rough metal": lambda n: rw.Conductor(eta=0.5 / n, k=2.0 / n, roughness=0.6),
-    "film on metal": lambda n: rw.ThinFilm(300 * n, 1.6 / n, base=rw.Conductor(eta=1.2 / n, k=2.0 / n)),
+    "film on metal": lambda n: rw.materials.ThinFilm(
+        300 * n, 1.6 / n, base=rw.Conductor(eta=1.2 / n, k=2.0 / n)
+    ),
     "plastic": lambda n: rw.Plastic((0.2, 0.4, 0.7), ior=1.8 / n, roughness=0.4),
     "pane": lambda n: rw.ThinDielectric(1.9 / n),
     "principled": lambda n: rw.Principled((0.6, 0.3, 0.2), roughness=0.4, ior=1.9 / n),
-    "principled sheet": lambda n: rw.PrincipledThin(
+    "principled sheet": lambda n: rw.materials.PrincipledThin(
         (0.6, 0.3, 0.2), roughness=0.4, transmission=0.5, ior=1.9 / n
     ),
 }
@@ -173,7 +175,13 @@ SCALED = {
 
 @pytest.mark.parametrize(
     "integrator",
-    [rw.Path(), rw.Bidirectional(), rw.LightTraced(), rw.PhotonMap(200), rw.Bidirectional(merge=True)],
+    [
+        rw.Path(),
+        rw.Bidirectional(),
+        rw.LightTraced(),
+        rw.PhotonMap(200),
+        rw.Bidirectional(vertex_merging=True),
+    ],
     ids=["path", "bidirectional", "light traced", "photon map", "merged"],
 )
 @pytest.mark.parametrize("kind", SCALED)
@@ -198,7 +206,7 @@ def test_only_the_ratio_of_indices_counts(kind, integrator):
 
 
 def test_measured_metals_and_their_films_too():
-    for kind in (rw.Conductor("Cu"), rw.ThinFilm(200.0, 1.4, base=rw.Conductor("Cu"))):
+    for kind in (rw.Conductor("Cu"), rw.materials.ThinFilm(200.0, 1.4, base=rw.Conductor("Cu"))):
         air, glass = mirrored(kind, 1.0, rw.Path()), mirrored(kind, 1.5, rw.Path())
         assert (np.abs(glass - air) > 0.003).all()
 
@@ -231,7 +239,7 @@ def test_copies_stand_in_glass_too():
 
 def test_wavelengths_have_their_own_index_around_a_metal():
     # In dispersive glass, Fresnel at each wavelength.
-    glass = rw.Dielectric(rw.Cauchy(1.5, 0.05))
+    glass = rw.Dielectric(rw.materials.Cauchy(1.5, 0.05))
     lamp = sheet(2, BLACK, 1.0, up=False)
     around = rw.Sphere((0, 0, 0), 20.0, material=glass)
     camera = rw.Camera((0.01, 0.02, 1), (0.01, 0.02, 0), up=(0, 1, 0), fov=0.01, width=1, height=1)
@@ -260,4 +268,11 @@ def test_the_plan_says_so_and_beams_refuse():
     camera = rw.Camera((0, 0, 9), (0, 0, 0), up=(0, 1, 0), width=4, height=4)
     lit = rw.Scene([metal, box], lights=rw.PointLight((3, 3, 9), 5.0))
     with pytest.raises(ValueError, match="in or on glass"):
-        rw.render(lit, camera, rw.BeamTraced(), filter=rw.BoxFilter(), samples=1, progress=False)
+        rw.render(
+            lit,
+            camera,
+            rw.integrators.BeamTraced(),
+            filter=rw.rendering.BoxFilter(),
+            samples=1,
+            progress=False,
+        )

@@ -1,8 +1,11 @@
 """Choice of the structure that finds hits."""
 
+from .._core import AcceleratorInfo
 from .brute import BruteForce
-from .bvh import BVH, Builder, Optimiser, Traversal, Volume
-from .choices import Accelerator, every, name_of
+from .bvh import BVH, Builder, Optimizer, Traversal, Volume
+from .choices import Accelerator
+from .choices import every as every
+from .choices import name_of as name_of
 from .grid import Grid, Mailbox, NestedGrid
 from .space import BSP, KdBuilder, KdTraversal, KdTree, Octree
 
@@ -10,6 +13,7 @@ __all__ = [
     "BSP",
     "BVH",
     "Accelerator",
+    "AcceleratorInfo",
     "BruteForce",
     "Builder",
     "Grid",
@@ -19,9 +23,7 @@ __all__ = [
     "Mailbox",
     "NestedGrid",
     "Octree",
-    "Optimiser",
+    "Optimizer",
     "Traversal",
     "Volume",
-    "every",
-    "name_of",
 ]

@@ -14,6 +14,6 @@ class BruteForce:
     Examples
     --------
     >>> scene = rw.Scene(rw.scenes.torus_knot(along=40, around=8), accelerator=rw.BruteForce())
-    >>> scene.cost([0, 0, 9], [0, 0, -1]).primitives.item() >= 640
+    >>> scene.traversal_cost([0, 0, 9], [0, 0, -1]).primitives.item() >= 640
     True
     """

@@ -6,7 +6,7 @@ from typing import ClassVar, Literal, get_args
 from ..arrays import choice, integer, number, positive
 
 Builder = Literal["binned", "sweep", "spatial", "morton", "ploc", "midpoint", "median", "mean"]
-Optimiser = Literal["reinsertion", "treelet"]
+Optimizer = Literal["reinsertion", "treelet"]
 Traversal = Literal[
     "wide", "wide4", "wide8", "stack", "threaded", "packets4", "packets64", "flat", "stackless"
 ]
@@ -50,7 +50,7 @@ class BVH:
         not given. They add none if they gain little. For ``"spatial"``.
     radius : int, optional
         Search radius of clusters in the order of Morton codes, 1 to 128; 14 if not given. For ``"ploc"``.
-    optimise : {"reinsertion", "treelet"} or a tuple of these, optional
+    optimize : {"reinsertion", "treelet"} or a tuple of these, optional
         Optimizations of the tree, in turn. ``"reinsertion"`` moves subtrees to where they cost less (Meister
         and Bittner 2018, "Parallel reinsertion for bounding volume hierarchy optimization"). ``"treelet"``
         puts treelets of seven leaves together anew (Karras and Aila 2013, "Fast parallel construction of
@@ -76,7 +76,7 @@ class BVH:
           an interval test of all of them (Wald, Boulos and Shirley 2007, "Ray tracing deformable
           scenes using dynamic bounding volume hierarchies"; Overbeck, Ramamoorthi and Mark 2008, "Large ray
           packets for real-time Whitted ray tracing"). For rays that go much the same way.
-        - ``"flat"``: the tree as arrays without pointers, as `Scene.flat` has it, with a stack.
+        - ``"flat"``: the tree as arrays without pointers, as `Scene.gpu_arrays` has it, with a stack.
         - ``"stackless"``: the same without one: each node says where to go on if its box is missed (Smits
           1998), in one order for all rays.
 
@@ -118,7 +118,7 @@ class BVH:
     intersection_cost: float = 1.0
     budget: float | None = None
     radius: int | None = None
-    optimise: Optimiser | tuple[Optimiser, ...] | None = None
+    optimize: Optimizer | tuple[Optimizer, ...] | None = None
     traversal: Traversal = "wide"
     orders: Literal[6, 8] | None = None
     bounds: Volume = "box"
@@ -139,8 +139,8 @@ class BVH:
             self._keep("budget", budget, _BUDGET)
         if self.radius is not None:
             self._keep("radius", integer("radius", self.radius, 1, 128), _RADIUS)
-        if self.optimise is not None:
-            self._keep("optimise", _optimisers(self.optimise))
+        if self.optimize is not None:
+            self._keep("optimize", _optimisers(self.optimize))
         choice("traversal", self.traversal, get_args(Traversal))
         if self.orders is not None:
             orders = integer("orders", self.orders, 6, 8)
@@ -164,9 +164,9 @@ def _optimisers(value: object) -> tuple[str, ...]:
     """Return one name or several as a tuple of names, each at most once."""
     names = (value,) if isinstance(value, str) else value
     if not isinstance(names, tuple | list):
-        raise TypeError(f"optimise must be a name or a tuple of names, got {value!r}")
+        raise TypeError(f"optimize must be a name or a tuple of names, got {value!r}")
     for name in names:
-        choice("optimise", name, get_args(Optimiser))
+        choice("optimize", name, get_args(Optimizer))
     if len(set(names)) != len(names):
-        raise ValueError(f"optimise must name each optimiser at most once, got {value!r}")
+        raise ValueError(f"optimize must name each optimiser at most once, got {value!r}")
     return tuple(names)

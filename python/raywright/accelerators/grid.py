@@ -49,7 +49,7 @@ class Grid:
     Examples
     --------
     >>> knot = rw.scenes.torus_knot(along=40, around=8)
-    >>> scene = rw.Scene(knot, accelerator=rw.Grid(density=2))
+    >>> scene = rw.Scene(knot, accelerator=rw.accelerators.Grid(density=2))
     >>> same = rw.Scene(knot, accelerator=rw.BruteForce())
     >>> rays = [0, 0, 9], np.random.default_rng(0).normal(size=(100, 3)) - [0, 0, 3]
     >>> bool((scene.intersect(*rays).t == same.intersect(*rays).t).all())
@@ -100,7 +100,7 @@ class NestedGrid:
     Examples
     --------
     >>> knot = rw.scenes.torus_knot(along=40, around=8)
-    >>> scene = rw.Scene(knot, accelerator=rw.NestedGrid())
+    >>> scene = rw.Scene(knot, accelerator=rw.accelerators.NestedGrid())
     >>> same = rw.Scene(knot, accelerator=rw.BruteForce())
     >>> rays = [0, 0, 9], np.random.default_rng(0).normal(size=(100, 3)) - [0, 0, 3]
     >>> bool((scene.intersect(*rays).t == same.intersect(*rays).t).all())

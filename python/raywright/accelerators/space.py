@@ -57,7 +57,7 @@ class KdTree:
     Examples
     --------
     >>> knot = rw.scenes.torus_knot(along=40, around=8)
-    >>> scene = rw.Scene(knot, accelerator=rw.KdTree(builder="median"))
+    >>> scene = rw.Scene(knot, accelerator=rw.accelerators.KdTree(builder="median"))
     >>> same = rw.Scene(knot, accelerator=rw.BruteForce())
     >>> rays = [0, 0, 9], np.random.default_rng(0).normal(size=(100, 3)) - [0, 0, 3]
     >>> bool((scene.intersect(*rays).t == same.intersect(*rays).t).all())
@@ -111,7 +111,7 @@ class Octree:
     Examples
     --------
     >>> knot = rw.scenes.torus_knot(along=40, around=8)
-    >>> scene = rw.Scene(knot, accelerator=rw.Octree())
+    >>> scene = rw.Scene(knot, accelerator=rw.accelerators.Octree())
     >>> same = rw.Scene(knot, accelerator=rw.BruteForce())
     >>> rays = [0, 0, 9], np.random.default_rng(0).normal(size=(100, 3)) - [0, 0, 3]
     >>> bool((scene.intersect(*rays).t == same.intersect(*rays).t).all())
@@ -160,7 +160,7 @@ class BSP:
     Examples
     --------
     >>> knot = rw.scenes.torus_knot(along=40, around=8)
-    >>> scene = rw.Scene(knot, accelerator=rw.BSP(candidates=2))
+    >>> scene = rw.Scene(knot, accelerator=rw.accelerators.BSP(candidates=2))
     >>> same = rw.Scene(knot, accelerator=rw.BruteForce())
     >>> rays = [0, 0, 9], np.random.default_rng(0).normal(size=(100, 3)) - [0, 0, 3]
     >>> bool((scene.intersect(*rays).t == same.intersect(*rays).t).all())

@@ -1,6 +1,7 @@
 """Where pictures are taken from, a kind of camera a file."""
 
-from .any_camera import AnyCamera, pixel_offsets
+from .any_camera import AnyCamera
+from .any_camera import pixel_offsets as pixel_offsets
 from .fisheye import Fisheye
 from .orthographic import Orthographic
 from .panorama import Panorama
@@ -16,5 +17,4 @@ __all__ = [
     "Panorama",
     "Pose",
     "ThinLens",
-    "pixel_offsets",
 ]

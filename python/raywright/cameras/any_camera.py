@@ -29,7 +29,7 @@ class AnyCamera(Pose):
     ----------
     width, height : int
         Size of the picture in pixels, 1 to 65536.
-    moved_to : Pose, optional
+    end_pose : Pose, optional
         Pose as the shutter closes; another camera will do. In between it moves straight and turns about one
         axis, both at an even pace (slerp; Shoemake 1985).
     shutter : 2 floats
@@ -40,7 +40,7 @@ class AnyCamera(Pose):
     ValueError
         If a number is out of range or not finite, or the shutter closes before it opens.
     TypeError
-        If something is not a number, or `moved_to` is no Pose.
+        If something is not a number, or `end_pose` is no Pose.
 
     See Also
     --------
@@ -48,13 +48,13 @@ class AnyCamera(Pose):
 
     Examples
     --------
-    >>> isinstance(rw.Camera((0, 0, 5), (0, 0, 0)), rw.AnyCamera)
+    >>> isinstance(rw.Camera((0, 0, 5), (0, 0, 0)), rw.cameras.AnyCamera)
     True
     """
 
     width: int
     height: int
-    moved_to: Pose | None = None
+    end_pose: Pose | None = None
     shutter: tuple[float, float] = (0.0, 1.0)
 
     def __init__(
@@ -65,18 +65,18 @@ class AnyCamera(Pose):
         direction: ArrayLike | None,
         width: int,
         height: int,
-        moved_to: Pose | None,
+        end_pose: Pose | None,
         shutter: ArrayLike,
     ) -> None:
         super().__init__(position, target, up, direction)
-        if moved_to is not None and not isinstance(moved_to, Pose):
-            raise TypeError(f"moved_to must be a raywright.Pose, got {type(moved_to).__name__}")
-        if isinstance(moved_to, AnyCamera):
-            moved_to = Pose(moved_to.position, moved_to.target, moved_to.up, moved_to.direction)
+        if end_pose is not None and not isinstance(end_pose, Pose):
+            raise TypeError(f"end_pose must be a raywright.Pose, got {type(end_pose).__name__}")
+        if isinstance(end_pose, AnyCamera):
+            end_pose = Pose(end_pose.position, end_pose.target, end_pose.up, end_pose.direction)
         self._keep(
             width=integer("width", width, 1, 65536),
             height=integer("height", height, 1, 65536),
-            moved_to=moved_to,
+            end_pose=end_pose,
             shutter=_shutter(shutter),
         )
 
@@ -314,7 +314,7 @@ def resized(camera: AnyCamera, width: int, height: int) -> AnyCamera:
         "height": integer("height", height, 1, 65536),
     }
     # Lengths in pixels grow with their number.
-    for name in ("focal", "principal"):
+    for name in ("focal_length_px", "principal_point"):
         if (lengths := getattr(camera, name, None)) is not None:
             changes[name] = (lengths[0] * across, lengths[1] * down)
     if hasattr(camera, "skew"):

@@ -37,7 +37,7 @@ class Fisheye(AnyCamera):
     fov_axis : str
         Side of the picture that is the diameter of the circle: the ``"smaller"``, so that all of it is seen,
         ``"x"``, ``"y"``, the ``"larger"``, or the ``"diagonal"``, so that it fills the picture.
-    moved_to, shutter
+    end_pose, shutter
         As in `Camera`.
 
     Raises
@@ -75,10 +75,10 @@ class Fisheye(AnyCamera):
         mapping: str = "equidistant",
         fov_axis: str = "smaller",
         direction: ArrayLike | None = None,
-        moved_to: Pose | None = None,
+        end_pose: Pose | None = None,
         shutter: ArrayLike = (0.0, 1.0),
     ) -> None:
-        super().__init__(position, target, up, direction, width, height, moved_to, shutter)
+        super().__init__(position, target, up, direction, width, height, end_pose, shutter)
         choice("mapping", mapping, tuple(_WIDEST))
         most, closed = _WIDEST[mapping]
         self._keep(

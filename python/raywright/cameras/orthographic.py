@@ -26,7 +26,7 @@ class Orthographic(AnyCamera):
     scale_axis : str
         Axis along which `scale` is measured: ``"x"``, ``"y"``, the ``"smaller"`` or ``"larger"`` of these, or
         the ``"diagonal"``. (glTF has ymag, half of the scale along y.)
-    moved_to, shutter
+    end_pose, shutter
         As in `Camera`.
 
     Raises
@@ -62,8 +62,8 @@ class Orthographic(AnyCamera):
         *,
         direction: ArrayLike | None = None,
         scale_axis: str = "y",
-        moved_to: Pose | None = None,
+        end_pose: Pose | None = None,
         shutter: ArrayLike = (0.0, 1.0),
     ) -> None:
-        super().__init__(position, target, up, direction, width, height, moved_to, shutter)
+        super().__init__(position, target, up, direction, width, height, end_pose, shutter)
         self._keep(scale=positive("scale", scale), scale_axis=picture_axis("scale_axis", scale_axis))

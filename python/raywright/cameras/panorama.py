@@ -23,7 +23,7 @@ class Panorama(AnyCamera):
         along -z.
     width, height : int
         Size of the picture in pixels, 1 to 65536.
-    moved_to, shutter
+    end_pose, shutter
         As in `Camera`.
 
     Raises
@@ -60,9 +60,9 @@ class Panorama(AnyCamera):
         height: int = 512,
         *,
         direction: ArrayLike | None = None,
-        moved_to: Pose | None = None,
+        end_pose: Pose | None = None,
         shutter: ArrayLike = (0.0, 1.0),
     ) -> None:
         if target is None and direction is None:
             direction = (0.0, 0.0, -1.0)
-        super().__init__(position, target, up, direction, width, height, moved_to, shutter)
+        super().__init__(position, target, up, direction, width, height, end_pose, shutter)

@@ -28,7 +28,7 @@ class Camera(AnyCamera):
     up : 3 floats
         The direction that points up in the picture; need not be unit nor perpendicular to the view.
     fov : float, optional
-        Angle of view in degrees, between 0 and 180; 40 if neither this nor `focal` is given.
+        Angle of view in degrees, between 0 and 180; 40 if neither this nor `focal_length_px` is given.
     width, height : int
         Size of the picture in pixels, 1 to 65536.
     direction : 3 floats, optional
@@ -36,15 +36,15 @@ class Camera(AnyCamera):
     fov_axis : str
         Axis along which `fov` is measured: ``"x"``, ``"y"``, the ``"smaller"`` or ``"larger"`` of these, or
         the ``"diagonal"``.
-    focal : 2 floats, optional
+    focal_length_px : 2 floats, optional
         Instead of `fov`, focal lengths in pixels, across and down; negative ones mirror the picture.
-    principal : 2 floats, optional
+    principal_point : 2 floats, optional
         The point of the picture that the view goes through, in pixels from its left and its top as in
         `rays_through`; the middle if not given. Elsewhere it is a shifted lens, or a part of a picture.
     skew : float
         Skew coefficient K[0, 1] of a camera matrix, in pixels: the shift to the right of a point as far below
-        the view as it is away. With `focal` only.
-    moved_to : Pose, optional
+        the view as it is away. With `focal_length_px` only.
+    end_pose : Pose, optional
         Pose as the shutter closes; another camera will do.
     shutter : 2 floats
         Opening and closing time, in the scene's time, in which instances move from 0 to 1.
@@ -73,8 +73,8 @@ class Camera(AnyCamera):
 
     fov: float | None = None
     fov_axis: str = "y"
-    focal: Pair | None = None
-    principal: Pair | None = None
+    focal_length_px: Pair | None = None
+    principal_point: Pair | None = None
     skew: float = 0.0
 
     def __init__(
@@ -88,29 +88,29 @@ class Camera(AnyCamera):
         *,
         direction: ArrayLike | None = None,
         fov_axis: str = "y",
-        focal: ArrayLike | None = None,
-        principal: ArrayLike | None = None,
+        focal_length_px: ArrayLike | None = None,
+        principal_point: ArrayLike | None = None,
         skew: float = 0.0,
-        moved_to: Pose | None = None,
+        end_pose: Pose | None = None,
         shutter: ArrayLike = (0.0, 1.0),
     ) -> None:
-        super().__init__(position, target, up, direction, width, height, moved_to, shutter)
-        if fov is not None and focal is not None:
-            raise ValueError("either fov or focal must be given, got both")
-        if focal is None:
+        super().__init__(position, target, up, direction, width, height, end_pose, shutter)
+        if fov is not None and focal_length_px is not None:
+            raise ValueError("either fov or focal_length_px must be given, got both")
+        if focal_length_px is None:
             fov = view_angle("fov", _FOV if fov is None else fov)
-        lengths = None if focal is None else pair("focal", focal)
+        lengths = None if focal_length_px is None else pair("focal_length_px", focal_length_px)
         if lengths is not None and 0 in lengths:
-            raise ValueError(f"focal must not be zero, got {lengths}")
+            raise ValueError(f"focal_length_px must not be zero, got {lengths}")
         self._keep(
             fov=fov,
             fov_axis=picture_axis("fov_axis", fov_axis),
-            focal=lengths,
-            principal=None if principal is None else pair("principal", principal),
+            focal_length_px=lengths,
+            principal_point=None if principal_point is None else pair("principal_point", principal_point),
             skew=number("skew", skew),
         )
-        if self.skew and focal is None:
-            raise ValueError("skew must be given with focal, got it with fov")
+        if self.skew and focal_length_px is None:
+            raise ValueError("skew must be given with focal_length_px, got it with fov")
 
     @classmethod
     def from_intrinsics(
@@ -122,7 +122,7 @@ class Camera(AnyCamera):
         height: int,
         *,
         pixel_centre: float = 0.0,
-        moved_to: Pose | None = None,
+        end_pose: Pose | None = None,
         shutter: ArrayLike = (0.0, 1.0),
     ) -> "Camera":
         """Return the camera of computer vision: a point X is seen at the pixel ``K @ (R @ X + t)``.
@@ -139,7 +139,7 @@ class Camera(AnyCamera):
             Coordinates of the first pixel's centre, across and down: 0 as in OpenCV, so that the centre of
             the pixel in row i and column j is at (j, i); 0.5 to count from the picture's corner, as in
             COLMAP.
-        moved_to, shutter
+        end_pose, shutter
             As for any camera; ``Pose.from_extrinsics(R, t)`` is where it goes.
 
         Returns
@@ -165,10 +165,10 @@ class Camera(AnyCamera):
         >>> camera.project([0, 0, 0]).tolist()
         [32.0, 24.0]
         """
-        focal, (x, y), skew = of_camera_matrix(K)
+        focal_length_px, (x, y), skew = of_camera_matrix(K)
         shift = 0.5 - number("pixel_centre", pixel_centre)
-        lens = {"focal": focal, "principal": (x + shift, y + shift), "skew": skew}
-        others = {"width": width, "height": height, "moved_to": moved_to, "shutter": shutter}
+        lens = {"focal_length_px": focal_length_px, "principal_point": (x + shift, y + shift), "skew": skew}
+        others = {"width": width, "height": height, "end_pose": end_pose, "shutter": shutter}
         return cls._at(of_extrinsics(R, t), {**lens, **others})
 
     @classmethod
@@ -207,8 +207,10 @@ class Camera(AnyCamera):
         if not stand.mirrored:
             return camera
         (across, _, x), (_, down, y), _ = camera.intrinsics.tolist()
-        focal, principal = (-across, down), (x + 0.5, y + 0.5)
-        return replace(camera, fov=None, fov_axis="y", focal=focal, principal=principal)
+        focal_length_px, principal_point = (-across, down), (x + 0.5, y + 0.5)
+        return replace(
+            camera, fov=None, fov_axis="y", focal_length_px=focal_length_px, principal_point=principal_point
+        )
 
     @property
     def intrinsics(self) -> NDArray[np.float64]:
@@ -216,12 +218,12 @@ class Camera(AnyCamera):
 
         To count from the picture's corner, add 0.5 to its K[0, 2] and K[1, 2].
         """
-        if self.focal is None:
+        if self.focal_length_px is None:
             tangent = math.tan(math.radians(0.5 * (self.fov or _FOV)))
             across = down = 0.5 * picture_length(self, self.fov_axis) / tangent
         else:
-            across, down = self.focal
-        x, y = self.principal or (0.5 * self.width, 0.5 * self.height)
+            across, down = self.focal_length_px
+        x, y = self.principal_point or (0.5 * self.width, 0.5 * self.height)
         return np.array([(across, self.skew, x - 0.5), (0, down, y - 0.5), (0, 0, 1)])
 
     def project(self, points: ArrayLike) -> NDArray[np.float64]:

@@ -52,10 +52,10 @@ class ThinLens(AnyCamera):
         right.
     fov_axis : str
         Axis along which `fov` is measured, as in `Camera`.
-    principal : 2 floats, optional
+    principal_point : 2 floats, optional
         Center of the view, in pixels from the left and the top of the picture; its middle if not given.
         Elsewhere the lens is shifted.
-    moved_to, shutter
+    end_pose, shutter
         As in `Camera`. The distance in focus stays that at the shutter's opening.
 
     Raises
@@ -92,7 +92,7 @@ class ThinLens(AnyCamera):
     blades: int = 0
     blade_rotation: float = 0.0
     fov_axis: str = "y"
-    principal: Pair | None = None
+    principal_point: Pair | None = None
 
     def __init__(
         self,
@@ -113,11 +113,11 @@ class ThinLens(AnyCamera):
         blade_rotation: float = 0.0,
         direction: ArrayLike | None = None,
         fov_axis: str = "y",
-        principal: ArrayLike | None = None,
-        moved_to: Pose | None = None,
+        principal_point: ArrayLike | None = None,
+        end_pose: Pose | None = None,
         shutter: ArrayLike = (0.0, 1.0),
     ) -> None:
-        super().__init__(position, target, up, direction, width, height, moved_to, shutter)
+        super().__init__(position, target, up, direction, width, height, end_pose, shutter)
         if fov is not None and focal_length is not None:
             raise ValueError("either fov or focal_length must be given, got both")
         if (f_stop is None) == (aperture_radius is None):
@@ -138,7 +138,7 @@ class ThinLens(AnyCamera):
             blades=integer("blades", blades, 0, 1024),
             blade_rotation=number("blade_rotation", blade_rotation),
             fov_axis=picture_axis("fov_axis", fov_axis),
-            principal=None if principal is None else pair("principal", principal),
+            principal_point=None if principal_point is None else pair("principal_point", principal_point),
         )
         if self.aperture_radius is not None and self.aperture_radius < 0:
             raise ValueError(f"aperture_radius must be at least 0, got {aperture_radius}")

@@ -8,7 +8,7 @@ from ..io.tone import DEFAULT, TONES, check_tone
 from ..materials import Diffuse
 from ..rendering.image import Image
 from ..rendering.render import BACKGROUNDS
-from ..rendering.shot import Shot
+from ..rendering.render_setup import RenderSetup
 from ..scene_files.load import has_camera, load
 from ..scene_files.shown import HEIGHT, WIDTH, size_of
 from ..scenes import cornell_box, torus_knot
@@ -44,7 +44,7 @@ def _demo(options: argparse.Namespace) -> None:
     knot = torus_knot(material=Diffuse((0.78, 0.55, 0.2)))
     # Brighter and whiter than the box's own light, so that the picture needs no exposure.
     scene, camera = cornell_box(knot, options.width, options.height, emission=(40.0, 33.0, 22.0))
-    _picture(Shot(scene, camera), options)
+    _picture(RenderSetup(scene, camera), options)
 
 
 def _render(options: argparse.Namespace) -> None:
@@ -62,23 +62,23 @@ def _view(options: argparse.Namespace) -> None:
         viewer.wait()
 
 
-def shot_of(options: argparse.Namespace) -> Shot:
+def shot_of(options: argparse.Namespace) -> RenderSetup:
     """Return the shot of SCENE: a file, or the Cornell box."""
     if options.up is not None and (options.scene == CORNELL or has_camera(options.scene)):
         options.refuse(f"argument --up: only allowed for mesh files, and {options.scene} defines its own up")
     if options.scene == CORNELL:
-        return Shot(*cornell_box(None, *size_of(options.width, options.height)))
+        return RenderSetup(*cornell_box(None, *size_of(options.width, options.height)))
     return load(options.scene, options.up or "y", options.width, options.height)
 
 
-def _how(options: argparse.Namespace, shot: Shot) -> dict[str, Any]:
+def _how(options: argparse.Namespace, shot: RenderSetup) -> dict[str, Any]:
     """Return the arguments of a render from the options."""
     how = {name: getattr(options, name) for name in _HOW}
     own = {"seed": shot.seed, "clamp": shot.clamp}
     return how | {name: value for name, value in own.items() if how[name] is None}
 
 
-def _picture(shot: Shot, options: argparse.Namespace) -> None:
+def _picture(shot: RenderSetup, options: argparse.Namespace) -> None:
     # A background hidden by the scene stays hidden.
     background = shot.background if options.background == BACKGROUNDS[0] else options.background
     kept = {"checkpoint": options.checkpoint, "background": background, "denoise": options.denoise}

@@ -1,1 +1,12 @@
 """Diffuse exchange between surfaces: view factors, radiosity, radiative heat transfer."""
+
+from .radiative import RadiativeExchange
+from .solution import RadiositySolution, RadiosityStep
+from .view_factors import ViewFactors
+
+__all__ = [
+    "RadiativeExchange",
+    "RadiositySolution",
+    "RadiosityStep",
+    "ViewFactors",
+]

@@ -42,7 +42,7 @@ def solve(problem: Problem, error: float | None, rays: int | None) -> RadiosityS
         system = np.eye(count) - rho[:, None] * matrix
         radiosity = np.linalg.solve(system, emission[:, channel] + rho * light[:, channel])
         irradiance[:, channel] = matrix @ radiosity + light[:, channel]
-        books[ESCAPED, channel] = (problem.areas * radiosity * np.asarray(factors.rest)).sum()
+        books[ESCAPED, channel] = (problem.areas * radiosity * np.asarray(factors.to_surroundings)).sum()
         errors[:, channel] = _error(factors, radiosity, light_error[:, channel], system, rho)
     problem.note_end(problem.core.rays if problem.has_lamps else 0)
     return problem.solved("matrix", irradiance, errors, books)

@@ -70,7 +70,7 @@ class ViewFactors(Tabular):
     >>> floor = rw.Mesh([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 3]])
     >>> ceiling = rw.Mesh([[0, 0, 1], [0, 1, 1], [1, 1, 1], [1, 0, 1]], [[0, 1, 2], [0, 2, 3]])
     >>> found = rw.view_factors([floor, ceiling], per="shape", progress=False)
-    >>> found.matrix.round(6).tolist(), found.rest.round(6).tolist()
+    >>> found.matrix.round(6).tolist(), found.to_surroundings.round(6).tolist()
     ([[0.0, 0.199825], [0.199825, 0.0]], [0.800175, 0.800175])
     """
 
@@ -102,7 +102,7 @@ class ViewFactors(Tabular):
         return error
 
     @cached_property
-    def rest(self) -> NDArray[np.float64]:
+    def to_surroundings(self) -> NDArray[np.float64]:
         """What comes to no front, (N,): 1 less the sum of each row."""
         return 1.0 - np.asarray(self.matrix.sum(axis=1))
 
@@ -306,7 +306,8 @@ class ViewFactors(Tabular):
         kind = "" if isinstance(self.matrix, np.ndarray) else ", sparse"
         return (
             f"ViewFactors({len(self)} {self.per}s{kind}; pairs: {self.closed} closed, {self.hidden} hidden, "
-            f"{self.sampled} sampled; {self.rays} rays; rest up to {max(self.rest, default=0.0):.3g})"
+            f"{self.sampled} sampled; {self.rays} rays; rest up to "
+            f"{max(self.to_surroundings, default=0.0):.3g})"
         )
 
 

@@ -5,7 +5,7 @@ with a certain bound on every error, and the core decides among them, exactly.
 """
 
 from .device import Gpu
-from .held import GpuScene
+from .scene_buffers import GpuScene
 from .stats import GpuStats
 
 __all__ = ["Gpu", "GpuScene", "GpuStats"]

@@ -11,10 +11,10 @@ from ..scene.scene import Scene
 from .adapters import chosen, name_of
 from .arithmetic import pairs, trouble
 from .eyes import eye_of
-from .held import GpuScene
 from .kernels import limits_of, probed
-from .looks import LeftError
+from .material_table import LeftError
 from .packing import packed
+from .scene_buffers import GpuScene
 from .wavefront import Wavefront
 from .wgpu_api import changes_named
 
@@ -31,7 +31,7 @@ _LEFT = (
 
 
 class Gpu:
-    """A graphics processor that answers for rays, by WebGPU: ``with scene.on(rw.Gpu()) as there: ...``.
+    """A graphics processor that traces rays, by WebGPU: ``with scene.on_device(rw.Gpu()) as there: ...``.
 
     It needs the extra ``raywright[gpu]``, and a driver for Vulkan, Metal or Direct3D 12. Its arithmetic is
     tried once: answers are the CPU's, to the bit, on every device that computes as WGSL promises.
@@ -54,7 +54,7 @@ class Gpu:
 
     See Also
     --------
-    Scene.on : Puts a scene on it.
+    Scene.on_device : Puts a scene on it.
 
     Examples
     --------
@@ -89,8 +89,8 @@ class Gpu:
         """Interface of its driver: "Vulkan", "Metal" or "D3D12"."""
         return self._backend
 
-    def hold(self, scene: Scene) -> GpuScene:
-        """Put a scene on the device; `Scene.on` does it.
+    def upload(self, scene: Scene) -> GpuScene:
+        """Put a scene on the device; `Scene.on_device` does it.
 
         Parameters
         ----------
@@ -108,11 +108,11 @@ class Gpu:
 
         See Also
         --------
-        Scene.on : Calls it.
+        Scene.on_device : Calls it.
 
         Examples
         --------
-        >>> with rw.Gpu().hold(rw.Scene(rw.Sphere())) as there:
+        >>> with rw.Gpu().upload(rw.Scene(rw.Sphere())) as there:
         ...     print(there.intersect([0, 0, 5], [0, 0, -1]).t.tolist())
         4.0
         """
@@ -147,7 +147,7 @@ class Gpu:
         for what in _LEFT:
             if what in needed:
                 raise LeftError(f"the scene has {what}")
-        flat = scene.flat()
+        flat = scene.gpu_arrays()
         eye, looks = eye_of(camera, flat), packed(scene, flat)
         settings = max_depth, roulette_depth, seed, quantiles
         return Wavefront(self._device, flat, looks, eye, *settings, self._most, self._pipelines)

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..cameras import AnyCamera, Camera
-from ..query.flats import FlatArrays
-from .looks import LeftError, told
+from ..query.gpu_arrays import GpuArrays
+from .material_table import LeftError, told
 
 # In box units: farther away, float32 cannot resolve a pixel of a large picture.
 _FAR = 256.0
@@ -34,7 +34,7 @@ class Eye:
     height: int
 
 
-def eye_of(camera: AnyCamera, flat: FlatArrays) -> Eye:
+def eye_of(camera: AnyCamera, flat: GpuArrays) -> Eye:
     """Return a camera as it stands in a scene's box units.
 
     Raises
@@ -44,11 +44,11 @@ def eye_of(camera: AnyCamera, flat: FlatArrays) -> Eye:
     """
     if not isinstance(camera, Camera):
         raise LeftError(f"the camera is a {told(camera)}")
-    if camera.moved_to is not None:
+    if camera.end_pose is not None:
         raise LeftError("the camera moves")
     width, height = camera.width, camera.height
     origins, ways = camera.rays_through([(0, 0), (width, 0), (0, height), (width, height)])
-    eye = (origins[0] - flat.centre) * flat.scale
+    eye = (origins[0] - flat.center) * flat.scale
     if not np.abs(eye).max() < _FAR:
         raise LeftError("the camera is far from all that it sees")
     # Directions to the corners have unit length. Before normalization they formed a parallelogram: opposite

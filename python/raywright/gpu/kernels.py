@@ -77,7 +77,7 @@ class Kernels:
     device : wgpu.GPUDevice
         Which.
     nodes, triangles : structured arrays
-        As in `FlatArrays`.
+        As in `GpuArrays`.
     depth : int
         Of the tree.
     most : int

@@ -1,6 +1,6 @@
 """Materials, lights and appearance of faces as arrays for `shading.wgsl`.
 
-All numbers are little-endian, without gaps, and lengths in box units (see `FlatArrays`). Unsupported features
+All numbers are little-endian, without gaps, and lengths in box units (see `GpuArrays`). Unsupported features
 are reported by name: `LeftError`.
 """
 
@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 
 from ..lights import ConstantEnvironment, DirectionalLight, Emission, EnvironmentMap, PointLight
 from ..materials import Dielectric
-from ..query.flats import FlatArrays
+from ..query.gpu_arrays import GpuArrays
 from ..scene.scene import Scene
 from ..shapes.mesh import Mesh
-from .looks import LeftError, Looks, constant
+from .material_table import LeftError, Looks, constant
 
 # 112 bytes a face, by primitive number: a corner and two edges in the winding of the mesh. `material` is that
 # of the front, followed by that of the back. `light` is its light, or NO. `has` is 1 for normals plus 2 for
@@ -114,14 +114,14 @@ def known_lit(lit: NDArray[np.void]) -> str:
     return f"const SKY_KIND = {int(lit['sky_kind'])}u;\nconst HAS_LIGHTS = {has_lights};\n"
 
 
-def packed(scene: Scene, flat: FlatArrays) -> Packed:
+def packed(scene: Scene, flat: GpuArrays) -> Packed:
     """Pack a scene.
 
     Parameters
     ----------
     scene : Scene
         The scene.
-    flat : FlatArrays
+    flat : GpuArrays
         Its arrays.
 
     Raises
@@ -176,9 +176,9 @@ def _is_closed(mesh: Mesh) -> bool:
     return bool((np.unique(edges, axis=0, return_counts=True)[1] == 2).all())
 
 
-def _lay(faces: NDArray[np.void], mesh: Mesh, flat: FlatArrays) -> None:
+def _lay(faces: NDArray[np.void], mesh: Mesh, flat: GpuArrays) -> None:
     """Write the corners of faces and their attributes."""
-    corners = (mesh.vertices.astype(np.float64)[mesh.faces] - flat.centre) * flat.scale
+    corners = (mesh.vertices.astype(np.float64)[mesh.faces] - flat.center) * flat.scale
     faces["corner"] = corners[:, 0]
     faces["edge"], faces["other"] = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     if mesh.normals is not None:
@@ -206,14 +206,14 @@ def _shining(mesh: Mesh, faces: NDArray[np.void], first: int, where: str) -> NDA
     return lights[(lights["area"] > 0) & (max(radiance) > 0)]
 
 
-def _delta(scene: Scene, flat: FlatArrays) -> NDArray[np.void]:
+def _delta(scene: Scene, flat: GpuArrays) -> NDArray[np.void]:
     """Return the lights without extent."""
     lights = np.zeros(len(scene.lights), LIGHT)
     lights["face"] = NO
     for light, given in zip(lights, scene.lights, strict=True):
         what = f"the {type(given).__name__}"
         if isinstance(given, PointLight):
-            light["kind"], light["place"] = _POINT, (np.array(given.position) - flat.centre) * flat.scale
+            light["kind"], light["place"] = _POINT, (np.array(given.position) - flat.center) * flat.scale
             light["radiance"] = np.array(constant(given.intensity, what)) * flat.scale**2
         elif isinstance(given, DirectionalLight):
             way = np.array(given.direction)

@@ -30,7 +30,7 @@ class GpuStats:
 
     Examples
     --------
-    >>> stats = rw.GpuStats(closest=100, closest_decided=3, closest_walked=1)
+    >>> stats = rw.gpu.GpuStats(closest=100, closest_decided=3, closest_walked=1)
     >>> stats.closest_share
     0.04
     """

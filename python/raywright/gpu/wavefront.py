@@ -7,7 +7,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from ..query.flats import FlatArrays
+from ..query.gpu_arrays import GpuArrays
 from .eyes import Eye
 from .kernels import Parts, text
 from .packing import Packed, known_lit
@@ -69,7 +69,7 @@ class Wavefront:
     ----------
     device : wgpu.GPUDevice
         The device.
-    flat : FlatArrays
+    flat : GpuArrays
         The scene's tree.
     scene : Packed
         Appearance of the scene.
@@ -93,7 +93,7 @@ class Wavefront:
     def __init__(
         self,
         device: Any,
-        flat: FlatArrays,
+        flat: GpuArrays,
         scene: Packed,
         eye: Eye,
         max_depth: int | None,

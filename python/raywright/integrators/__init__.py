@@ -14,6 +14,7 @@ from .path import Path
 from .photon_maps import PhotonMap, ProgressivePhotonMap
 from .radiosity import Radiosity
 from .ray_cast import RayCast
+from .rng import Rng
 from .whitted import Whitted
 
 AnyIntegrator: TypeAlias = CoreIntegrator | Integrator
@@ -26,14 +27,15 @@ __all__ = [
     "ConeTraced",
     "Direct",
     "Distributed",
+    "Integrator",
     "LightTraced",
     "Path",
     "PhotonMap",
     "ProgressivePhotonMap",
     "Radiosity",
     "RayCast",
+    "Rng",
     "Whitted",
-    "check_integrator",
 ]
 
 

@@ -30,7 +30,7 @@ class Integrator(ABC):
 
     Examples
     --------
-    >>> class Normals(rw.Integrator):
+    >>> class Normals(rw.integrators.Integrator):
     ...     def radiance(self, scene, rays, rng):
     ...         return np.nan_to_num(np.abs(scene.interactions(rays).normal))
     >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), width=4, height=4)
@@ -62,14 +62,14 @@ class Integrator(ABC):
 
         See Also
         --------
-        Interactions : Scattering and light at hits.
+        query.Interactions : Scattering and light at hits.
 
         Examples
         --------
-        >>> class Lambert(rw.Integrator):
+        >>> class Lambert(rw.integrators.Integrator):
         ...     def radiance(self, scene, rays, rng):
         ...         met = scene.interactions(rays)
-        ...         light = met.light(rng.one(), rng.two())
+        ...         light = met.sample_light(rng.next_1d(), rng.next_2d())
         ...         value, _ = met.evaluate(light.direction)
         ...         return met.emission + value * light.weight * light.visible(scene)[:, None]
         >>> scene = rw.Scene(rw.Plane(), lights=[rw.PointLight((0, 0, 1), intensity=np.pi)])

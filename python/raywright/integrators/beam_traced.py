@@ -61,7 +61,7 @@ class BeamTraced(CoreIntegrator):
     >>> floor = rw.Mesh([[-9, -9, 0], [9, -9, 0], [0, 9, 0]], [[0, 1, 2]])
     >>> scene = rw.Scene(floor, lights=[rw.PointLight((0, 0, 2), intensity=4.0)])
     >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), width=4, height=4)
-    >>> image = rw.render(scene, camera, rw.BeamTraced(), samples=1, progress=False)
+    >>> image = rw.render(scene, camera, rw.integrators.BeamTraced(), samples=1, progress=False)
     >>> bool(image.rgb[1, 1, 0] > image.rgb[0, 0, 0])
     True
     """

@@ -20,7 +20,7 @@ class Bidirectional(CoreIntegrator):
 
     It has no bias, and error estimates hold as usual. One kind of path has no connections: from the camera by
     a mirror or glass to a surface lit by another one from a small light. It is found only if a path hits the
-    light, or with ``merge=True``.
+    light, or with ``vertex_merging=True``.
 
     Merged (vertex connection and merging: Georgiev et al. 2012; Hachisuka et al. 2012), each sample of all
     pixels has photons of its own besides, and every path of the camera gathers those that lie about it on
@@ -38,7 +38,7 @@ class Bidirectional(CoreIntegrator):
         (Mitsuba's max_depth minus 1). None ends paths by Russian roulette alone, which leaves no bias.
     roulette_depth : int
         Bounces before Russian roulette begins, from either end, at least 0.
-    merge : bool
+    vertex_merging : bool
         True if paths are merged too (vertex merging).
     radius : float, optional
         Merged, how far photons may lie in the first sample; of the squared radii, that of sample s + 1 is (s
@@ -55,7 +55,7 @@ class Bidirectional(CoreIntegrator):
         rendering: with `adaptive=True`; if no path can start at a light of the scene (infinite emitters,
         emitters that move in instances); and merged, if the scene has media.
     TypeError
-        If a number is none, or `merge` is neither True nor False.
+        If a number is none, or `vertex_merging` is neither True nor False.
 
     See Also
     --------
@@ -73,16 +73,16 @@ class Bidirectional(CoreIntegrator):
     max_depth: int | None = None
     roulette_depth: int = 4
     _: KW_ONLY
-    merge: bool = False
+    vertex_merging: bool = False
     radius: float | None = None
     photons: int | None = None
 
     def __post_init__(self) -> None:
-        if not isinstance(self.merge, bool):
-            raise TypeError(f"merge must be True or False, got {self.merge!r}")
+        if not isinstance(self.vertex_merging, bool):
+            raise TypeError(f"vertex_merging must be True or False, got {self.vertex_merging!r}")
         for name in ("radius", "photons"):
-            if getattr(self, name) is not None and not self.merge:
-                raise ValueError(f"{name} requires merge=True")
+            if getattr(self, name) is not None and not self.vertex_merging:
+                raise ValueError(f"{name} requires vertex_merging=True")
         photons = None if self.photons is None else integer("photons", self.photons, 1, counts.MOST_PHOTONS)
         settled = {
             "max_depth": None if self.max_depth is None else counts.depth("max_depth", self.max_depth),

@@ -52,7 +52,7 @@ class ConeTraced(CoreIntegrator):
     --------
     >>> scene = rw.Scene(rw.Sphere(emission=1.0))
     >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), width=9, height=9)
-    >>> image = rw.render(scene, camera, rw.ConeTraced(), samples=1, progress=False)
+    >>> image = rw.render(scene, camera, rw.integrators.ConeTraced(), samples=1, progress=False)
     >>> image.rgb[4, 4].tolist()
     [1.0, 1.0, 1.0]
     """

@@ -42,7 +42,7 @@ class Distributed(CoreIntegrator):
     --------
     >>> scene = rw.Scene(rw.Plane(), lights=[rw.PointLight((0, 0, 1), intensity=np.pi)])
     >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), fov=0.1, width=1, height=1)
-    >>> image = rw.render(scene, camera, rw.Distributed(splits=2), samples=4, progress=False)
+    >>> image = rw.render(scene, camera, rw.integrators.Distributed(splits=2), samples=4, progress=False)
     >>> print(image.rgb[0, 0].round(3))
     [0.5 0.5 0.5]
     """

@@ -22,7 +22,7 @@ def _settle(of: "PhotonMap | ProgressivePhotonMap") -> None:
     """Check the common arguments, and settle their types."""
     settled = {
         "radius": None if of.radius is None else positive("radius", of.radius),
-        "gather": integer("gather", of.gather, 0, counts.MOST_SAMPLES),
+        "gather": integer("final_gather", of.final_gather, 0, counts.MOST_SAMPLES),
         "max_depth": None if of.max_depth is None else counts.depth("max_depth", of.max_depth),
         "roulette_depth": counts.depth("roulette_depth", of.roulette_depth),
     }
@@ -51,16 +51,16 @@ class PhotonMap(CoreIntegrator):
     ----------
     photons : int
         Paths from lights for each map, 1 to 2**31 - 1. Maps take about 100 bytes for each photon kept.
-    nearest : int or None
+    k_nearest : int or None
         Number N of photons for a density: the farthest gives the radius, and N - 1 count (García et al.
         2012). With None, all within the radius.
     radius : float, optional
         Maximum distance of photons, at surfaces and in media. If not given, 8 times as far as N neighbours of
-        a photon lie there, in half of all cases, or, with ``nearest=None``, as far as the 24th does.
+        a photon lie there, in half of all cases, or, with ``k_nearest=None``, as far as the 24th does.
     caustic : bool
         True if caustics have a map of their own, which is looked up where the camera's paths end. If not,
-        rays have to find it, or with ``gather=0`` it is part of the global map.
-    gather : int
+        rays have to find it, or with ``final_gather=0`` it is part of the global map.
+    final_gather : int
         Rays from the first matt surface, 0 to 1024; with 0, the global map is looked up there at once.
     maps : int
         Maps that each batch of samples is spread over, where it has as many samples, 1 to 65536.
@@ -90,17 +90,17 @@ class PhotonMap(CoreIntegrator):
     Examples
     --------
     >>> scene, camera = rw.scenes.cornell_box(width=4, height=4)
-    >>> integrator = rw.PhotonMap(photons=1000, nearest=16, gather=0)
+    >>> integrator = rw.PhotonMap(photons=1000, k_nearest=16, final_gather=0)
     >>> image = rw.render(scene, camera, integrator, samples=4, progress=False)
     >>> image.biased, image.bias.shape
     (True, (4, 4, 3))
     """
 
     photons: int = 100_000
-    nearest: int | None = 64
+    k_nearest: int | None = 64
     radius: float | None = None
     caustic: bool = True
-    gather: int = 1
+    final_gather: int = 1
     maps: int = 8
     filter: PhotonFilter = "box"
     max_depth: int | None = None
@@ -109,9 +109,9 @@ class PhotonMap(CoreIntegrator):
     def __post_init__(self) -> None:
         _settle(self)
         object.__setattr__(self, "photons", _photons(self.photons))
-        if self.nearest is not None:
+        if self.k_nearest is not None:
             # The estimate counts N - 1 photons: none of a single one.
-            object.__setattr__(self, "nearest", integer("nearest", self.nearest, 2, counts.MOST_PHOTONS))
+            object.__setattr__(self, "nearest", integer("k_nearest", self.k_nearest, 2, counts.MOST_PHOTONS))
         object.__setattr__(self, "maps", integer("maps", self.maps, 1, _MOST_MAPS))
         if not isinstance(self.caustic, bool):
             raise TypeError(f"caustic must be True or False, got {self.caustic!r}")
@@ -138,7 +138,7 @@ class ProgressivePhotonMap(CoreIntegrator):
     alpha : float
         The share of new photons that is kept, above 0 and at most 1: with more, radii shrink more slowly,
         for less noise and more bias.
-    gather : int
+    final_gather : int
         Rays from the first matt surface, 0 to 1024; with 0, all is looked up there.
     filter : {"box", "cone", "epanechnikov"}
         Kernel of the density estimate.
@@ -172,7 +172,7 @@ class ProgressivePhotonMap(CoreIntegrator):
     photons: int | None = None
     radius: float | None = None
     alpha: float = 2 / 3
-    gather: int = 0
+    final_gather: int = 0
     filter: PhotonFilter = "box"
     max_depth: int | None = None
     roulette_depth: int = 4

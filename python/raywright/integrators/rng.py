@@ -26,14 +26,14 @@ class Rng:
 
     Examples
     --------
-    >>> rng = rw.Rng(0, np.arange(4, dtype=np.uint32), np.zeros(4, np.uint32))
-    >>> rng.one().shape, rng.two().shape
+    >>> rng = rw.integrators.Rng(0, np.arange(4, dtype=np.uint32), np.zeros(4, np.uint32))
+    >>> rng.next_1d().shape, rng.next_2d().shape
     ((4,), (4, 2))
 
     Batches may be split:
 
-    >>> whole = rw.Rng(0, np.arange(4, dtype=np.uint32), np.zeros(4, np.uint32)).one()
-    >>> part = rw.Rng(0, np.arange(2, 4, dtype=np.uint32), np.zeros(2, np.uint32)).one()
+    >>> whole = rw.integrators.Rng(0, np.arange(4, dtype=np.uint32), np.zeros(4, np.uint32)).next_1d()
+    >>> part = rw.integrators.Rng(0, np.arange(2, 4, dtype=np.uint32), np.zeros(2, np.uint32)).next_1d()
     >>> bool((part == whole[2:]).all())
     True
     """
@@ -47,7 +47,7 @@ class Rng:
     def __len__(self) -> int:
         return len(self._pixel)
 
-    def one(self, which: ArrayLike | None = None) -> NDArray[np.float64]:
+    def next_1d(self, which: ArrayLike | None = None) -> NDArray[np.float64]:
         """Return a number in [0, 1), of 53 bits, for each entry: (N,), or (K,) for those that `which` picks.
 
         Parameters
@@ -61,20 +61,20 @@ class Rng:
 
         See Also
         --------
-        Rng.two : Pairs of numbers.
+        Rng.next_2d : Pairs of numbers.
 
         Examples
         --------
-        >>> rng = rw.Rng(7, np.zeros(3, np.uint32), np.arange(3, dtype=np.uint32))
-        >>> numbers = rng.one()
+        >>> rng = rw.integrators.Rng(7, np.zeros(3, np.uint32), np.arange(3, dtype=np.uint32))
+        >>> numbers = rng.next_1d()
         >>> bool((0 <= numbers).all() and (numbers < 1).all())
         True
-        >>> rng.one([True, False, True]).shape
+        >>> rng.next_1d([True, False, True]).shape
         (2,)
         """
         return self._next(which, False)
 
-    def two(self, which: ArrayLike | None = None) -> NDArray[np.float64]:
+    def next_2d(self, which: ArrayLike | None = None) -> NDArray[np.float64]:
         """Return two numbers in (0, 1), of 32 bits each, for each entry: (N, 2), or (K, 2). As `one`.
 
         Parameters
@@ -88,12 +88,12 @@ class Rng:
 
         See Also
         --------
-        Rng.one : Single numbers.
+        Rng.next_1d : Single numbers.
 
         Examples
         --------
-        >>> rng = rw.Rng(7, np.zeros(3, np.uint32), np.arange(3, dtype=np.uint32))
-        >>> rng.two().shape, rng.two([0, 2]).shape
+        >>> rng = rw.integrators.Rng(7, np.zeros(3, np.uint32), np.arange(3, dtype=np.uint32))
+        >>> rng.next_2d().shape, rng.next_2d([0, 2]).shape
         ((3, 2), (2, 2))
         """
         return self._next(which, True)

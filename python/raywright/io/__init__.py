@@ -1,1 +1,7 @@
 """Files of pixels, and quiet for the libraries that read files."""
+
+from .pictures import check_writable
+
+__all__ = [
+    "check_writable",
+]

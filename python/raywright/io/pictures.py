@@ -56,9 +56,9 @@ def check_writable(
 
     Examples
     --------
-    >>> rw.check_writable("picture.png").name
+    >>> rw.io.check_writable("picture.png").name
     'picture.png'
-    >>> rw.check_writable("picture.gif", suffixes=(".png", ".npy"))
+    >>> rw.io.check_writable("picture.gif", suffixes=(".png", ".npy"))
     Traceback (most recent call last):
         ...
     ValueError: a picture is saved as .png, .npy; picture.gif is none of these

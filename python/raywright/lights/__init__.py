@@ -9,7 +9,8 @@ from .constant import ConstantEnvironment
 from .directional import DirectionalLight
 from .emission import Emission
 from .environment_map import EnvironmentMap
-from .light import Environment, Light
+from .light import Environment as Environment
+from .light import Light as Light
 from .point import PointLight
 from .projector import ProjectorLight
 from .spot import SpotLight
@@ -19,15 +20,11 @@ __all__ = [
     "ConstantEnvironment",
     "DirectionalLight",
     "Emission",
-    "Environment",
     "EnvironmentMap",
-    "Light",
     "PointLight",
     "ProjectorLight",
     "SpotLight",
     "SunSky",
-    "environments",
-    "lights",
 ]
 
 

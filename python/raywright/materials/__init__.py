@@ -1,15 +1,16 @@
 """Materials: how surfaces scatter light."""
 
 from .blinn_phong import BlinnPhong
-from .boundary import Boundary
 from .bump_map import BumpMap
 from .conductor import Conductor, MetalIndex, metal_index, metals
 from .dielectric import Dielectric
 from .diffuse import Diffuse
 from .dispersion import Cauchy, Dispersion, Sellmeier
-from .glasses import Glasses, glasses
+from .glasses import Glasses as Glasses
+from .glasses import glasses
 from .mask import Mask
-from .material import Material
+from .material import Material as Material
+from .medium_interface import MediumInterface
 from .metallic_rough import MetallicRough
 from .mirror import Mirror
 from .mix import Mix
@@ -25,16 +26,14 @@ from .two_sided import TwoSided
 
 __all__ = [
     "BlinnPhong",
-    "Boundary",
     "BumpMap",
     "Cauchy",
     "Conductor",
     "Dielectric",
     "Diffuse",
     "Dispersion",
-    "Glasses",
     "Mask",
-    "Material",
+    "MediumInterface",
     "MetalIndex",
     "MetallicRough",
     "Mirror",

@@ -41,7 +41,7 @@ class BlinnPhong(Material):
 
     Examples
     --------
-    >>> shiny = rw.BlinnPhong(diffuse=(0.4, 0.1, 0.1), specular=0.3, exponent=50)
+    >>> shiny = rw.materials.BlinnPhong(diffuse=(0.4, 0.1, 0.1), specular=0.3, exponent=50)
     >>> shiny.diffuse, shiny.exponent
     ((0.4, 0.1, 0.1), 50.0)
     """

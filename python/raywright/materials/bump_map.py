@@ -36,7 +36,7 @@ class BumpMap(Material):
 
     Examples
     --------
-    >>> waves = rw.BumpMap(rw.Diffuse(0.5), rw.Noise(), scale=0.01)
+    >>> waves = rw.BumpMap(rw.Diffuse(0.5), rw.textures.Noise(), scale=0.01)
     >>> waves.material, waves.scale
     (Diffuse(reflectance=(0.5, 0.5, 0.5)), 0.01)
     """

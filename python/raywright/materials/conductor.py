@@ -125,7 +125,7 @@ class MetalIndex(NamedTuple):
 
     Examples
     --------
-    >>> gold = rw.metal_index("gold")
+    >>> gold = rw.materials.metal_index("gold")
     >>> bool(gold.wavelengths[0] < 360), bool((gold.k > 0).all())
     (True, True)
     """
@@ -148,7 +148,7 @@ def metals() -> tuple[str, ...]:
 
     Examples
     --------
-    >>> "gold" in rw.metals(), "Au" in rw.metals()
+    >>> "gold" in rw.materials.metals(), "Au" in rw.materials.metals()
     (True, False)
     """
     return tuple(name for _, name in _core.metals())
@@ -183,7 +183,7 @@ def metal_index(metal: str) -> MetalIndex:
 
     Examples
     --------
-    >>> silver = rw.metal_index("Ag")
+    >>> silver = rw.materials.metal_index("Ag")
     >>> n = np.interp(550, silver.wavelengths, silver.eta + 1j * silver.k)
     >>> bool(abs((n - 1) / (n + 1)) ** 2 > 0.95)
     True

@@ -75,7 +75,7 @@ class Dielectric(Material):
     >>> glass = rw.Dielectric(1.5, transmittance=(0.9, 0.95, 0.9), distance=10)
     >>> glass.ior
     1.5
-    >>> rays = rw.Rays(np.array([[0, 0, 3.0]]), np.array([[0, 0, -1.0]]), np.zeros(1))
+    >>> rays = rw.query.Rays(np.array([[0, 0, 3.0]]), np.array([[0, 0, -1.0]]), np.zeros(1))
     >>> met = rw.Scene(rw.Sphere(material=glass)).interactions(rays)
     >>> met.reflected().weight[0, 0].round(4).item()
     0.04

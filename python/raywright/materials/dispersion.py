@@ -22,18 +22,18 @@ class Dispersion(ABC):
 
     Examples
     --------
-    >>> isinstance(rw.Cauchy(1.5046, 0.0042), rw.Dispersion)
+    >>> isinstance(rw.materials.Cauchy(1.5046, 0.0042), rw.materials.Dispersion)
     True
     """
 
     __slots__ = ()
 
-    def index(self, micrometres: ArrayLike = YELLOW) -> Any:
+    def index(self, micrometers: ArrayLike = YELLOW) -> Any:
         """Return the index of refraction in vacuum's wavelengths.
 
         Parameters
         ----------
-        micrometres : array_like
+        micrometers : array_like
             Wavelengths, of any shape; 0.5875618, the yellow line d of helium, if not given.
 
         Returns
@@ -54,11 +54,11 @@ class Dispersion(ABC):
 
         Examples
         --------
-        >>> bk7 = rw.glasses["N-BK7"]
+        >>> bk7 = rw.materials.glasses["N-BK7"]
         >>> round(bk7.index(), 4), bk7.index([0.4861, 0.6563]).round(4).tolist()
         (1.5168, [1.5224, 1.5143])
         """
-        wavelengths = real_array("micrometres", micrometres).astype(np.float64)
+        wavelengths = real_array("micrometres", micrometers).astype(np.float64)
         bad = ~(np.isfinite(wavelengths) & (wavelengths > 0))
         if bad.any():
             raise ValueError(
@@ -112,7 +112,7 @@ class Cauchy(Dispersion):
 
     Examples
     --------
-    >>> glass = rw.Cauchy(1.5046, 0.0042)
+    >>> glass = rw.materials.Cauchy(1.5046, 0.0042)
     >>> round(glass.index(0.5876), 4), round(glass.abbe, 1)
     (1.5168, 64.4)
     """
@@ -152,7 +152,7 @@ class Cauchy(Dispersion):
 
         Examples
         --------
-        >>> flint = rw.Cauchy.from_abbe(1.62, 36.4)
+        >>> flint = rw.materials.Cauchy.from_abbe(1.62, 36.4)
         >>> round(flint.index(), 6), round(flint.abbe, 6)
         (1.62, 36.4)
         """
@@ -189,7 +189,8 @@ class Sellmeier(Dispersion):
 
     Examples
     --------
-    >>> silica = rw.Sellmeier((0.6961663, 0.4079426, 0.8974794), (0.00467914826, 0.0135120631, 97.9340025))
+    >>> silica = rw.materials.Sellmeier((0.6961663, 0.4079426, 0.8974794), (0.00467914826, 0.0135120631,
+    ... 97.9340025))
     >>> round(silica.index(), 4)
     1.4585
     """

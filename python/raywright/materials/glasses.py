@@ -37,7 +37,7 @@ _MEASURED: dict[str, tuple[tuple[float, ...], tuple[float, ...]]] = {
 
 
 class Glasses(Mapping[str, Sellmeier]):
-    """Clear materials by name: ``rw.glasses["N-BK7"].index(0.5876)``.
+    """Clear materials by name: ``rw.materials.glasses["N-BK7"].index(0.5876)``.
 
     Raises
     ------

@@ -33,7 +33,7 @@ class Mix(Material):
 
     Examples
     --------
-    >>> rust = rw.Mix(rw.Conductor("iron"), rw.Diffuse((0.4, 0.2, 0.1)), amount=rw.FBm())
+    >>> rust = rw.Mix(rw.Conductor("iron"), rw.Diffuse((0.4, 0.2, 0.1)), amount=rw.textures.FBm())
     >>> type(rust.a).__name__
     'Conductor'
     """

@@ -35,7 +35,7 @@ class OrenNayar(Material):
 
     Examples
     --------
-    >>> clay = rw.OrenNayar((0.6, 0.4, 0.3), roughness=0.8)
+    >>> clay = rw.materials.OrenNayar((0.6, 0.4, 0.3), roughness=0.8)
     >>> clay.roughness
     0.8
     """

@@ -39,8 +39,8 @@ class Phong(Material):
 
     Examples
     --------
-    >>> shiny = rw.Phong(diffuse=0.4, specular=0.4, exponent=100)
-    >>> rw.Phong(diffuse=0.8, specular=0.4)
+    >>> shiny = rw.materials.Phong(diffuse=0.4, specular=0.4, exponent=100)
+    >>> rw.materials.Phong(diffuse=0.8, specular=0.4)
     Traceback (most recent call last):
         ...
     ValueError: diffuse and specular must add up to at most 1, got 1.2

@@ -164,7 +164,7 @@ class PrincipledThin(Material):
 
     Examples
     --------
-    >>> leaf = rw.PrincipledThin((0.1, 0.5, 0.1), diffuse_transmission=0.5)
+    >>> leaf = rw.materials.PrincipledThin((0.1, 0.5, 0.1), diffuse_transmission=0.5)
     >>> leaf.diffuse_transmission
     0.5
     """

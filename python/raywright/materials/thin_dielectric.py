@@ -36,7 +36,7 @@ class ThinDielectric(Material):
 
     Examples
     --------
-    >>> rays = rw.Rays(np.array([[0, 0, 3.0]]), np.array([[0, 0, -1.0]]), np.zeros(1))
+    >>> rays = rw.query.Rays(np.array([[0, 0, 3.0]]), np.array([[0, 0, -1.0]]), np.zeros(1))
     >>> met = rw.Scene(rw.Plane(material=rw.ThinDielectric(1.5))).interactions(rays)
     >>> met.refracted().direction.tolist(), met.refracted().weight[0, 0].round(4).item()
     ([[0.0, 0.0, -1.0]], 0.9231)

@@ -57,7 +57,7 @@ class _Film(Material):
         --------
         A quarter-wave coat of magnesium fluoride on glass:
 
-        >>> coat = rw.ThinFilm(550 / 4 / 1.38, ior=1.38, base=rw.Dielectric(1.52))
+        >>> coat = rw.materials.ThinFilm(550 / 4 / 1.38, ior=1.38, base=rw.Dielectric(1.52))
         >>> round(coat.reflectance(550), 4), round(((1.52 - 1.38**2) / (1.52 + 1.38**2)) ** 2, 4)
         (0.0126, 0.0126)
         """
@@ -131,7 +131,7 @@ class ThinFilm(_Film):
 
     Examples
     --------
-    >>> oil = rw.ThinFilm(350, ior=1.47, base=rw.Dielectric(1.33))
+    >>> oil = rw.materials.ThinFilm(350, ior=1.47, base=rw.Dielectric(1.33))
     >>> oil.reflectance([450, 550, 650]).round(4).tolist()
     [0.0429, 0.0259, 0.0543]
     """
@@ -200,12 +200,12 @@ class SoapFilm(_Film):
 
     Examples
     --------
-    >>> rw.SoapFilm(0.0).reflectance(550)
+    >>> rw.materials.SoapFilm(0.0).reflectance(550)
     0.0
 
     Two faces in phase reflect four times as much as one, but for multiple reflections:
 
-    >>> round(rw.SoapFilm(550 / 4 / 1.33).reflectance(550), 4)
+    >>> round(rw.materials.SoapFilm(550 / 4 / 1.33).reflectance(550), 4)
     0.0771
     """
 

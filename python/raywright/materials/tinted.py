@@ -42,8 +42,8 @@ class Tinted(Material):
 
     Examples
     --------
-    >>> rays = rw.Rays(np.array([[0, 0, 3.0]]), np.array([[0, 0, -1.0]]), np.zeros(1))
-    >>> window = rw.Tinted(rw.ThinDielectric(1.5), transmittance=(1, 0.5, 0))
+    >>> rays = rw.query.Rays(np.array([[0, 0, 3.0]]), np.array([[0, 0, -1.0]]), np.zeros(1))
+    >>> window = rw.materials.Tinted(rw.ThinDielectric(1.5), transmittance=(1, 0.5, 0))
     >>> met = rw.Scene(rw.Plane(material=window)).interactions(rays)
     >>> met.refracted().weight.round(4).tolist()
     [[0.9231, 0.4615, 0.0]]
@@ -62,7 +62,7 @@ class Tinted(Material):
         if not isinstance(base, (Dielectric, ThinDielectric)):
             raise TypeError(f"base must be a Dielectric or a ThinDielectric, got {type(base).__name__}")
         if isinstance(base, ThinDielectric) and base.interior is not None:
-            raise ValueError("base must have no interior: give the interior to a Boundary")
+            raise ValueError("base must have no interior: give the interior to a MediumInterface")
         self._set(
             base=base,
             transmittance=value("transmittance", transmittance, most=1.0),

@@ -30,7 +30,8 @@ class TwoSided(Material):
     Examples
     --------
     >>> sheet = rw.TwoSided(front=rw.Diffuse(0.8), back=rw.Diffuse(0.1))
-    >>> rays = rw.Rays(np.array([[0, 0, 1.0], [0, 0, -1]]), np.array([[0, 0, -1.0], [0, 0, 1]]), np.zeros(2))
+    >>> rays = rw.query.Rays(np.array([[0, 0, 1.0], [0, 0, -1]]), np.array([[0, 0, -1.0], [0, 0, 1]]),
+    ... np.zeros(2))
     >>> rw.Scene(rw.Plane(material=sheet)).interactions(rays).albedo[:, 0].round(6).tolist()
     [0.8, 0.1]
     """

@@ -13,7 +13,7 @@ from ..shapes.mesh import Mesh
 
 Floats: TypeAlias = NDArray[np.float64]
 
-# Rays start at this multiple of the error of their point off the surface, as in `Hits.leave`.
+# Rays start at this multiple of the error of their point off the surface, as in `Hits.spawn_rays`.
 _SAFETY = 8.0
 # Tolerances for points on a surface, in multiples of that error: 2**-40 of the largest coordinate of the
 # face, or 2**-22 if vertices were rounded to float32. Points in float32 add 2**-22 of their own coordinates.
@@ -125,13 +125,13 @@ def middles(scene: Scene) -> ClosestPoints:
             raise ValueError(f"points must be given: shape {i} is a {type(shape).__name__}, not a mesh")
     counts = [len(shape.faces) for shape in scene.shapes if isinstance(shape, Mesh)]
     shape_id = np.repeat(np.arange(len(counts), dtype=np.int32), counts)
-    primitive = np.concatenate(
+    primitive_id = np.concatenate(
         [np.arange(0, dtype=np.int32), *(np.arange(n, dtype=np.int32) for n in counts)]
     )
-    uv = np.full((len(primitive), 2), 1 / 3)
+    uv = np.full((len(primitive_id), 2), 1 / 3)
     core = scene._compiled()
-    position = core.positions(shape_id, primitive, uv)
-    return ClosestPoints(np.zeros(len(primitive)), position, shape_id, primitive, uv, None, core)
+    position = core.positions(shape_id, primitive_id, uv)
+    return ClosestPoints(np.zeros(len(primitive_id)), position, shape_id, primitive_id, uv, None, core)
 
 
 @dataclass(frozen=True)
@@ -172,7 +172,7 @@ class Touching:
         return _SAFETY / _STEEP * self.error + self.distance
 
     def beside(self, points: Floats, ways: Floats) -> Floats:
-        """Return origins of rays along directions, as in `Hits.leave`."""
+        """Return origins of rays along directions, as in `Hits.spawn_rays`."""
         normal, lift = self.lift(ways)
         starts: Floats = points + np.where((lift > 0)[..., None], lift[..., None] * normal, 0.0)
         return starts
@@ -214,9 +214,9 @@ def touching(scene: Scene, points: ArrayLike, threads: int | None = None) -> Tou
 
 
 def _of_surface(points: SurfacePoints, normals: ArrayLike | None) -> Places:
-    lead = points.primitive.shape
+    lead = points.primitive_id.shape
     ways = points.normal if normals is None else np.broadcast_to(units("normals", normals), (*lead, 3))
-    starts = points.leave(np.where(np.isfinite(ways), ways, 1.0)).origins
+    starts = points.spawn_rays(np.where(np.isfinite(ways), ways, 1.0)).origins
     return Places(starts.reshape(-1, 3), ways.reshape(-1, 3), lead)
 
 

@@ -64,7 +64,7 @@ def plot(
 
     See Also
     --------
-    Hits.plot : Draw hits.
+    query.Hits.plot : Draw hits.
 
     Examples
     --------

@@ -46,7 +46,7 @@ class LidarScan(Tabular):
         footprint.
     strength : (K,) float64
         Share of the beam that came to the surface there, 0 to 1.
-    shape_id, primitive : (K,) int32
+    shape_id, primitive_id : (K,) int32
         First shape and primitive of the return, as in `Hits`.
     shape : tuple of int
         Shape of the beams: rows and columns.
@@ -70,7 +70,7 @@ class LidarScan(Tabular):
     incidence: Floats
     strength: Floats
     shape_id: NDArray[np.int32]
-    primitive: NDArray[np.int32]
+    primitive_id: NDArray[np.int32]
     shape: tuple[int, ...] = field(default=())
 
     @property
@@ -168,7 +168,7 @@ class LidarScan(Tabular):
         >>> scan.to_dict()["y"].round(9).tolist()
         [0.0, 0.0]
         """
-        names = ("beam", "number", "range", "incidence", "strength", "shape_id", "primitive")
+        names = ("beam", "number", "range", "incidence", "strength", "shape_id", "primitive_id")
         columns = {name: getattr(self, name) for name in names}
         return columns | dict(zip("xyz", self.position.T, strict=True))
 
@@ -343,7 +343,7 @@ def _scanned(
         "incidence": mean(angle),
         "strength": members / scanner.rays,
         "shape_id": of_first(hits.shape_id),
-        "primitive": of_first(hits.primitive),
+        "primitive_id": of_first(hits.primitive_id),
     }
 
 

@@ -60,7 +60,7 @@ class LineOfSight(Plotted):
         """
         first = self.obstruction
         columns = {"visible": self.visible, "distance": self.distance, "t": first.t}
-        columns |= {"shape_id": first.shape_id, "primitive": first.primitive}
+        columns |= {"shape_id": first.shape_id, "primitive_id": first.primitive_id}
         return {name: column.reshape(-1) for name, column in columns.items()}
 
     def __repr__(self) -> str:
@@ -82,7 +82,8 @@ def line_of_sight(
     margin : float, optional
         The share of the way at either end that does not count, at least 0 and less than 0.5. With 0, both
         points count. If not given, points that lie on a surface to within rounding are not hidden by it
-        there: the way leaves it by the bound on its error, as in `Hits.leave`. All else counts, however near.
+        there: the way leaves it by the bound on its error, as in `Hits.spawn_rays`. All else counts, however
+        near.
     threads : int, optional
         Number of threads; all cores if not given. The answer does not depend on it.
 

@@ -115,7 +115,7 @@ def _inward(
     """Return the points, and where rays start that go in."""
     ways = -out.normals.reshape(*out.shape, 3)
     if isinstance(found, SurfacePoints):
-        starts = found.leave(np.where(np.isfinite(ways), ways, 1.0)).origins
+        starts = found.spawn_rays(np.where(np.isfinite(ways), ways, 1.0)).origins
         return found.position.reshape(-1, 3), starts.reshape(-1, 3)
     points = np.broadcast_to(np.asarray(found, np.float64), ways.shape)
     return points.reshape(-1, 3), places(scene, found, ways, offset, threads).origins

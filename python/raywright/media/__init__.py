@@ -2,7 +2,8 @@
 
 from .grid import GridMedium
 from .homogeneous import Homogeneous
-from .medium import Medium, medium
+from .medium import Medium
+from .medium import medium as medium
 from .phases import HenyeyGreenstein, Isotropic, Phase, Rayleigh
 from .sparse_grid import SparseGrid
 
@@ -15,5 +16,4 @@ __all__ = [
     "Phase",
     "Rayleigh",
     "SparseGrid",
-    "medium",
 ]

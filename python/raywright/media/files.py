@@ -43,13 +43,13 @@ def read_grids(path: str | PathLike[str], names: Mapping[str, str]) -> Found:
         from .vdb import read_vdb
 
         grids, place = read_vdb(Path(fspath(path)), tuple(dict.fromkeys(names.values())))
-        return Found({kind: grids[name] for kind, name in names.items()}, place, {"at": "centres"})
+        return Found({kind: grids[name] for kind, name in names.items()}, place, {"at": "centers"})
     if named := [kind for kind in names if kind != "density"]:
         raise ValueError(f"{named[0]} must be numbers: only OpenVDB's files have grids with names")
     density, bounds = read_density(path)
     if bounds is None:
         return Found({"density": density}, {}, {})
-    return Found({"density": density}, {"bounds": bounds}, {"at": "centres"})
+    return Found({"density": density}, {"bounds": bounds}, {"at": "centers"})
 
 
 def read_density(path: str | PathLike[str]) -> tuple[NDArray[Any], Bounds | None]:

@@ -16,7 +16,7 @@ from .phases import Isotropic, Phase
 from .phases import phase as checked
 from .sparse_grid import SparseGrid
 
-At: TypeAlias = Literal["corners", "centres"]
+At: TypeAlias = Literal["corners", "centers"]
 Numbers: TypeAlias = NDArray[np.float32] | SparseGrid
 _ONE, _MANY = (3,), (3, 4)
 _NONE = (0.0, 0.0, 0.0)
@@ -47,8 +47,8 @@ class GridMedium(Medium):
     emission : float, 3 floats, Spectrum, array of (X', Y', Z') or (X', Y', Z', 3), or SparseGrid
         Emitted radiance per unit of length: numbers where the density is 1, or an array, over the same
         bounds, whatever the density.
-    at : {"corners", "centres"}
-        Place of the numbers. "corners": those of the outermost lie on the faces of the bounds. "centres":
+    at : {"corners", "centers"}
+        Place of the numbers. "corners": those of the outermost lie on the faces of the bounds. "centers":
         each is in the middle of a cell, and the same up to the face, as OpenVDB's, pbrt's and Mitsuba's are.
     extinction : float, 3 floats or Spectrum
         With `albedo`, and in place of `absorption` and `scattering`: the share of light that is absorbed or
@@ -80,7 +80,7 @@ class GridMedium(Medium):
     --------
     >>> density = np.ones((4, 4, 4), np.float32)
     >>> fog = rw.GridMedium(density, bounds=[[0, 0, 0], [2, 1, 1]], absorption=0.5)
-    >>> box = rw.Box((0, 0, 0), (2, 1, 1), material=rw.Boundary(fog))
+    >>> box = rw.Box((0, 0, 0), (2, 1, 1), material=rw.MediumInterface(fog))
     >>> rw.Scene(box).optical_depth([-1, 0.5, 0.5], [1, 0, 0]).round(6).tolist()
     [1.0, 1.0, 1.0]
     """
@@ -160,7 +160,7 @@ class GridMedium(Medium):
             Name of the density grid of an OpenVDB file. `emission`, `albedo` and `temperature` may be names
             of grids of that file, too.
         **arguments
-            Of `GridMedium`, by name. `at` is "centres" for files other than numpy's, if it is not given.
+            Of `GridMedium`, by name. `at` is "centers" for files other than numpy's, if it is not given.
 
         Returns
         -------
@@ -185,7 +185,7 @@ class GridMedium(Medium):
         --------
         >>> np.save("smoke.npy", np.full((2, 2, 2), 0.5, np.float32))
         >>> smoke = rw.GridMedium.load("smoke.npy", scattering=1.0)
-        >>> box = rw.Box((0, 0, 0), (1, 1, 1), material=rw.Boundary(smoke))
+        >>> box = rw.Box((0, 0, 0), (1, 1, 1), material=rw.MediumInterface(smoke))
         >>> rw.Scene(box).optical_depth([0.5, 0.5, 5], [0, 0, -1]).round(6).tolist()
         [0.5, 0.5, 0.5]
         """

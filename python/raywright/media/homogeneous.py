@@ -38,7 +38,7 @@ class Homogeneous(Medium):
     See Also
     --------
     GridMedium : A density on a grid.
-    Boundary : A shape around a medium.
+    MediumInterface : A shape around a medium.
 
     Examples
     --------

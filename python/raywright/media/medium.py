@@ -14,7 +14,7 @@ class Medium:
 
     Examples
     --------
-    >>> isinstance(rw.Homogeneous(scattering=1.0), rw.Medium)
+    >>> isinstance(rw.Homogeneous(scattering=1.0), rw.media.Medium)
     True
     """
 

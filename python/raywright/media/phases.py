@@ -34,7 +34,7 @@ class Rayleigh:
 
     Examples
     --------
-    >>> air = rw.Homogeneous(scattering=(0.01, 0.02, 0.05), phase=rw.Rayleigh())
+    >>> air = rw.Homogeneous(scattering=(0.01, 0.02, 0.05), phase=rw.media.Rayleigh())
     >>> air.phase
     Rayleigh()
     """

@@ -55,7 +55,7 @@ class SparseGrid:
 
     Examples
     --------
-    >>> grid = rw.SparseGrid((64, 64, 64), [((8, 8, 8), np.ones((4, 4, 4)))])
+    >>> grid = rw.media.SparseGrid((64, 64, 64), [((8, 8, 8), np.ones((4, 4, 4)))])
     >>> grid.shape, grid.max(), grid.nbytes < 64**3 * 4
     ((64, 64, 64), 1.0, True)
     """
@@ -115,7 +115,7 @@ class SparseGrid:
         --------
         >>> numbers = np.zeros((32, 32, 32))
         >>> numbers[3, 4, 5] = 2.0
-        >>> grid = rw.SparseGrid.of(numbers)
+        >>> grid = rw.media.SparseGrid.of(numbers)
         >>> grid.max(), len(list(grid.parts))
         (2.0, 1)
         """
@@ -149,7 +149,7 @@ class SparseGrid:
 
         Examples
         --------
-        >>> grid = rw.SparseGrid((9, 9, 9), [((1, 1, 1), np.ones((1, 1, 2)))])
+        >>> grid = rw.media.SparseGrid((9, 9, 9), [((1, 1, 1), np.ones((1, 1, 2)))])
         >>> np.argwhere(grid.dense()).tolist()
         [[1, 1, 1], [1, 1, 2]]
         """
@@ -164,7 +164,7 @@ class SparseGrid:
 
         Examples
         --------
-        >>> rw.SparseGrid((9, 9, 9)).max()
+        >>> rw.media.SparseGrid((9, 9, 9)).max()
         0.0
         """
         return self._blocks.greatest()

@@ -14,12 +14,12 @@ from .hits import Hits, SurfacePoints, chosen, restored, sealed
 from .surface import Surface
 
 # Values of a miss.
-_MISSES = {"t": np.inf, "shape_id": -1, "primitive": -1, "uv": 0.0, "instance": -1}
+_MISSES = {"t": np.inf, "shape_id": -1, "primitive_id": -1, "uv": 0.0, "instance_id": -1}
 
 
 @dataclass(frozen=True, eq=False, repr=False, init=False)
 class AllHits(SurfacePoints):
-    """Every hit of each ray, one after the other: by ray, then `t`, then (shape_id, primitive).
+    """Every hit of each ray, one after the other: by ray, then `t`, then (shape_id, primitive_id).
 
     There are K hits of N rays in all, and those of ray i, counted along the rays in C order, are from
     ``ray_splits[i]`` to ``ray_splits[i + 1]``. Arrays of integers are read-only, as in `Hits`.
@@ -32,7 +32,7 @@ class AllHits(SurfacePoints):
         Distance in lengths of the ray's direction, so that the hit is at ``origin + t * direction``.
     shape_id : (K,) int32
         Index in ``scene.shapes``.
-    primitive : (K,) int32
+    primitive_id : (K,) int32
         Face of that shape, 0 if it is no mesh; on an instance, a number for `Instance.locate`.
     uv : (K, 2) float64
         Barycentric weights of the face's second and third corner, so that the hit is at
@@ -58,24 +58,30 @@ class AllHits(SurfacePoints):
     t: NDArray[np.float64]
     shape: tuple[int, ...]
 
-    _parts = ("ray_splits", "t", "shape_id", "primitive", "uv")
+    _parts = ("ray_splits", "t", "shape_id", "primitive_id", "uv")
 
     def __init__(
         self,
         ray_splits: NDArray[np.int64],
         t: NDArray[np.float64],
         shape_id: NDArray[np.int32],
-        primitive: NDArray[np.int32],
+        primitive_id: NDArray[np.int32],
         uv: NDArray[np.float64],
-        instance: NDArray[np.int32] | None,
+        instance_id: NDArray[np.int32] | None,
         shape: tuple[int, ...],
         compiled: _core.CompiledScene,
         rays: tuple[Any, ...] | None = None,
     ) -> None:
-        parts = {"ray_splits": ray_splits, "t": t, "shape_id": shape_id, "primitive": primitive, "uv": uv}
+        parts = {
+            "ray_splits": ray_splits,
+            "t": t,
+            "shape_id": shape_id,
+            "primitive_id": primitive_id,
+            "uv": uv,
+        }
         self.__dict__.update(parts, shape=shape, _compiled=compiled, _rays=rays)
-        if instance is not None:
-            self.__dict__["instance"] = instance
+        if instance_id is not None:
+            self.__dict__["instance_id"] = instance_id
 
     def _surface(self, ray: NDArray[np.int64] | None) -> Surface:
         return super()._surface(self.ray)

@@ -23,8 +23,8 @@ ConeArguments: TypeAlias = tuple[
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ConeTouches(Tabular):
-    """Faces touched by each cone, in one list: by cone, then distance, then (shape_id, primitive).
+class ConeFaces(Tabular):
+    """Faces touched by each cone, in one list: by cone, then distance, then (shape_id, primitive_id).
 
     There are K touches of N cones in all, and those of cone i, counted along the cones in C order, are from
     ``cone_splits[i]`` to ``cone_splits[i + 1]``. All arrays are read-only.
@@ -35,7 +35,7 @@ class ConeTouches(Tabular):
         Start of each cone's touches, and at the end their total number.
     shape_id : (K,) int32
         Index in ``scene.shapes``.
-    primitive : (K,) int32
+    primitive_id : (K,) int32
         Face of that shape.
     distance : (K,) float64
         Distance from the apex to the nearest point of the face that is in the cone, in the scene's unit of
@@ -45,19 +45,19 @@ class ConeTouches(Tabular):
 
     See Also
     --------
-    Scene.cone : Makes it.
+    Scene.faces_in_cone : Makes it.
 
     Examples
     --------
     >>> scene = rw.Scene(rw.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]))
-    >>> touches = scene.cone([[0, 0, 4], [9, 9, 4]], [0, 0, -1], half_angle=5)
+    >>> touches = scene.faces_in_cone([[0, 0, 4], [9, 9, 4]], [0, 0, -1], half_angle=5)
     >>> touches.cone_splits.tolist(), touches.count.tolist()
     ([0, 1, 1], [1, 0])
     """
 
     cone_splits: NDArray[np.int64]
     shape_id: NDArray[np.int32]
-    primitive: NDArray[np.int32]
+    primitive_id: NDArray[np.int32]
     distance: NDArray[np.float64]
     shape: tuple[int, ...]
 
@@ -82,16 +82,16 @@ class ConeTouches(Tabular):
         Examples
         --------
         >>> scene = rw.Scene(rw.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]))
-        >>> list(scene.cone([0, 0, 4], [0, 0, -1], half_angle=5).to_dict())
-        ['cone', 'shape_id', 'primitive', 'distance']
+        >>> list(scene.faces_in_cone([0, 0, 4], [0, 0, -1], half_angle=5).to_dict())
+        ['cone', 'shape_id', 'primitive_id', 'distance']
         """
-        names = ("cone", "shape_id", "primitive", "distance")
+        names = ("cone", "shape_id", "primitive_id", "distance")
         return {name: getattr(self, name) for name in names}
 
     def __eq__(self, other: object) -> bool:
-        if not isinstance(other, ConeTouches):
+        if not isinstance(other, ConeFaces):
             return NotImplemented
-        names = ("cone_splits", "shape_id", "primitive", "distance")
+        names = ("cone_splits", "shape_id", "primitive_id", "distance")
         return self.shape == other.shape and all(same(getattr(self, n), getattr(other, n)) for n in names)
 
     __hash__ = None  # type: ignore[assignment]
@@ -100,7 +100,7 @@ class ConeTouches(Tabular):
         return len(self.distance)
 
     def __repr__(self) -> str:
-        return f"ConeTouches(shape={self.shape}, {len(self)} touches of {len(self.cone_splits) - 1} cones)"
+        return f"ConeFaces(shape={self.shape}, {len(self)} touches of {len(self.cone_splits) - 1} cones)"
 
 
 class ConeCoverage(NamedTuple):

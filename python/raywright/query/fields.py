@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from .rays import written_to
 
 # Parts that are written, in the order that the core has them.
-STORED = ("t", "shape_id", "primitive", "uv", "instance")
+STORED = ("t", "shape_id", "primitive_id", "uv", "instance_id")
 _NAMES = (*STORED, "hit")
 _DOUBLE, _SINGLE, _BOOL = np.dtype(np.float64), np.dtype(np.float32), np.dtype(np.bool_)
 _INTEGER = np.dtype(np.int32)
@@ -62,7 +62,7 @@ class Asked:
     @property
     def bits(self) -> int:
         """The parts that the core finds, a bit each."""
-        needed = {"primitive"} if "hit" in self.names else set()
+        needed = {"primitive_id"} if "hit" in self.names else set()
         return sum(1 << i for i, name in enumerate(STORED) if name in needed.union(self.names))
 
     def given(self) -> tuple[NDArray[Any] | None, ...]:
@@ -76,11 +76,11 @@ class Asked:
         for array in self.out.values():
             # What leads back into a scene comes read-only; these are the caller's.
             array.setflags(write=True)
-        if "instance" in self.names and "instance" not in found:
+        if "instance_id" in self.names and "instance_id" not in found:
             # One number seen from every index, where there are no instances.
-            found["instance"] = np.broadcast_to(np.int32(-1), self.shape)
+            found["instance_id"] = np.broadcast_to(np.int32(-1), self.shape)
         if "hit" in self.names:
-            found["hit"] = np.greater_equal(found["primitive"], 0, out=self.out.get("hit"))
+            found["hit"] = np.greater_equal(found["primitive_id"], 0, out=self.out.get("hit"))
         for name, array in self.out.items():
             if name in found and found[name] is not array:
                 # Of a float type that the core does not write; what does not fit becomes infinite.

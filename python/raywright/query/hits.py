@@ -12,9 +12,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from .. import _core
 from . import rows
-from .leaving import LeavingRays, leaving
 from .masks import names_of
 from .plotted import PlottedPoints
+from .spawned_rays import SpawnedRays, leaving
 from .surface import Surface
 from .tabular import Tabular
 from .values import cells, interpolated
@@ -29,15 +29,15 @@ Points = TypeVar("Points", bound="SurfacePoints")
 class Known:
     """Private data of points, kept apart so that `dataclasses.asdict` gives the public fields."""
 
-    primitive: NDArray[np.int32]
+    primitive_id: NDArray[np.int32]
     _compiled: _core.CompiledScene
     # Origins, directions and times, if shapes need them to compute hit points.
     _rays: tuple[Any, ...] | None
 
     @cached_property
-    def instance(self) -> NDArray[np.int32]:
+    def instance_id(self) -> NDArray[np.int32]:
         """Which instance the point is on: (...) int32; -1 for none and for what is not instanced."""
-        if "instance" not in vars(self).get("_fields", ("instance",)):
+        if "instance_id" not in vars(self).get("_fields", ("instance_id",)):
             raise AttributeError
         # One number seen from every index: scenes without instances spend no memory on them.
         return np.broadcast_to(np.int32(-1), _lead(vars(self)))
@@ -51,7 +51,7 @@ class SurfacePoints(Known, Tabular, PlottedPoints):
     ----------
     shape_id : (...) int32
         Index in ``scene.shapes``; -1 for none.
-    primitive : (...) int32
+    primitive_id : (...) int32
         Face of that shape, 0 if it is no mesh; on an instance, a number for `Instance.locate`.
     uv : (..., 2) float64
         Barycentric weights of the face's second and third corner, so that the point is at
@@ -59,13 +59,13 @@ class SurfacePoints(Known, Tabular, PlottedPoints):
     """
 
     shape_id: NDArray[np.int32]
-    primitive: NDArray[np.int32]
+    primitive_id: NDArray[np.int32]
     uv: NDArray[np.float64]
     # A field, too, although computed on first access.
-    instance: NDArray[np.int32]
+    instance_id: NDArray[np.int32]
 
     # Fields that decide equality.
-    _parts: ClassVar[tuple[str, ...]] = ("shape_id", "primitive", "uv")
+    _parts: ClassVar[tuple[str, ...]] = ("shape_id", "primitive_id", "uv")
 
     @cached_property
     def names(self) -> NDArray[np.str_]:
@@ -80,7 +80,7 @@ class SurfacePoints(Known, Tabular, PlottedPoints):
 
         The face where ``Mesh.cells`` is None, and 0 on a shape that is no mesh.
         """
-        return sealed(cells(self._known("cell").shapes, self.shape_id, self.primitive))
+        return sealed(cells(self._known("cell").shapes, self.shape_id, self.primitive_id))
 
     def interpolate(self, name: str) -> NDArray[np.float64]:
         """Return a vertex or face attribute of the meshes at the points.
@@ -118,7 +118,7 @@ class SurfacePoints(Known, Tabular, PlottedPoints):
         if self._compiled is None:
             raise ValueError("pickled hits have no attributes: interpolate them before pickling")
         shapes = self._compiled.shapes
-        return interpolated(shapes, name, self.shape_id, self.primitive, self.uv)
+        return interpolated(shapes, name, self.shape_id, self.primitive_id, self.uv)
 
     def _known(self, name: str) -> _core.CompiledScene:
         """Return the scene of the points."""
@@ -135,31 +135,31 @@ class SurfacePoints(Known, Tabular, PlottedPoints):
         if self._rays is not None:
             return self.surface.position
         points = self._known("position").positions(
-            self.shape_id.reshape(-1), self.primitive.reshape(-1), self.uv.reshape(-1, 2)
+            self.shape_id.reshape(-1), self.primitive_id.reshape(-1), self.uv.reshape(-1, 2)
         )
-        return points.reshape(*self.primitive.shape, 3)
+        return points.reshape(*self.primitive_id.shape, 3)
 
     @cached_property
     def normal(self) -> NDArray[np.float64]:
         """Unit geometric normal as the winding gives it: (..., 3) float64; NaN for none."""
         if self._rays is not None:
             return self.surface.normal
-        normals = self._known("normal").normals(self.shape_id.reshape(-1), self.primitive.reshape(-1))
-        return normals.reshape(*self.primitive.shape, 3)
+        normals = self._known("normal").normals(self.shape_id.reshape(-1), self.primitive_id.reshape(-1))
+        return normals.reshape(*self.primitive_id.shape, 3)
 
     @cached_property
     def _error(self) -> NDArray[np.float64]:
         """Bound on how far each coordinate of `position` is from the surface: (...) float64; NaN for none."""
         if self._rays is not None:
             return self.surface.error
-        errors = self._known("_error").errors(self.shape_id.reshape(-1), self.primitive.reshape(-1))
-        return sealed(errors.reshape(self.primitive.shape))
+        errors = self._known("_error").errors(self.shape_id.reshape(-1), self.primitive_id.reshape(-1))
+        return sealed(errors.reshape(self.primitive_id.shape))
 
-    def leave(self, directions: ArrayLike) -> LeavingRays:
+    def spawn_rays(self, directions: ArrayLike) -> SpawnedRays:
         """Return rays that leave the points along some directions without meeting the same surface.
 
         Their origins are offset from the surface, to the side of each direction:
-        ``scene.intersect(*hits.leave(ways))``.
+        ``scene.intersect(*hits.spawn_rays(ways))``.
 
         Parameters
         ----------
@@ -169,7 +169,7 @@ class SurfacePoints(Known, Tabular, PlottedPoints):
 
         Returns
         -------
-        LeavingRays
+        SpawnedRays
             Origins and directions, both of the shape that points and directions broadcast to. Origins are NaN
             for misses, and such rays hit nothing.
 
@@ -203,10 +203,10 @@ class SurfacePoints(Known, Tabular, PlottedPoints):
         --------
         >>> scene = rw.Scene([rw.Plane(), rw.Sphere((0, 0, 2), radius=1)])
         >>> hits = scene.intersect([[0, 4, 4], [4, 0, 4]], [[0, -1, -1], [0, 0, -1]])
-        >>> scene.occluded(*hits.leave([0, 0, 1])).tolist()
+        >>> scene.occluded(*hits.spawn_rays([0, 0, 1])).tolist()
         [True, False]
         """
-        return leaving(self.primitive.shape, self.position, self._error, self.normal, directions)
+        return leaving(self.primitive_id.shape, self.position, self._error, self.normal, directions)
 
     @cached_property
     def surface(self) -> Surface:
@@ -216,14 +216,14 @@ class SurfacePoints(Known, Tabular, PlottedPoints):
     def _surface(self, ray: NDArray[np.int64] | None) -> Surface:
         """Ask all about the points; `ray` says which ray each is of, where they are not in turn."""
         # Hit points of meshes follow from barycentric weights alone.
-        t = np.ascontiguousarray(getattr(self, "t", np.zeros(self.primitive.shape))).reshape(-1)
+        t = np.ascontiguousarray(getattr(self, "t", np.zeros(self.primitive_id.shape))).reshape(-1)
         origins, directions, time = self._rays or (np.zeros((1, 3)), np.ones((1, 3)), 0.0)
-        instance = vars(self).get("instance")
+        instance_id = vars(self).get("instance_id")
         parts = _core.points(
             self._known("surface"),
             self.shape_id.reshape(-1),
-            self.primitive.reshape(-1),
-            None if instance is None else np.ascontiguousarray(instance).reshape(-1),
+            self.primitive_id.reshape(-1),
+            None if instance_id is None else np.ascontiguousarray(instance_id).reshape(-1),
             self.uv.reshape(-1, 2),
             t,
             origins.reshape(-1, 3),
@@ -231,7 +231,7 @@ class SurfacePoints(Known, Tabular, PlottedPoints):
             time.reshape(-1) if isinstance(time, np.ndarray) else time,
             ray,
         )
-        lead = self.primitive.shape
+        lead = self.primitive_id.shape
         return Surface(*(part.reshape(lead + part.shape[1:]) for part in parts))
 
     def to_dict(self) -> dict[str, NDArray[Any]]:
@@ -271,7 +271,7 @@ class SurfacePoints(Known, Tabular, PlottedPoints):
         names = self._asked()
         if names != other._asked():
             return False
-        copies = ("instance",) if "instance" in vars(self) or "instance" in vars(other) else ()
+        copies = ("instance_id",) if "instance_id" in vars(self) or "instance_id" in vars(other) else ()
         return all(
             same(getattr(self, name), getattr(other, name)) for name in dict.fromkeys((*names, *copies))
         )
@@ -279,14 +279,14 @@ class SurfacePoints(Known, Tabular, PlottedPoints):
     def _asked(self) -> tuple[str, ...]:
         """Return the parts that there are of the arrays."""
         names = vars(self).get("_fields", self._parts)
-        return tuple(name for name in (*self._parts, "instance", "hit") if name in names)
+        return tuple(name for name in (*self._parts, "instance_id", "hit") if name in names)
 
     __hash__ = None  # type: ignore[assignment]
 
     def __reduce__(self) -> tuple[Any, ...]:
         # Pickles omit the scene, and attributes not computed so far.
         own = vars(self)
-        kept = {name: own[name] for name in (*self._parts, "instance", *_ASKED, "_fields") if name in own}
+        kept = {name: own[name] for name in (*self._parts, "instance_id", *_ASKED, "_fields") if name in own}
         if "hit" in own.get("_fields", ()):
             kept["hit"] = own["hit"]
         # Where hits know their points by their rays, and the scene is gone, those are of no use.
@@ -322,7 +322,7 @@ class Hits(SurfacePoints):
         a miss.
     shape_id : (...) int32
         Index in ``scene.shapes``; -1 for a miss.
-    primitive : (...) int32
+    primitive_id : (...) int32
         Face of that shape, 0 if it is no mesh; on an instance, a number for `Instance.locate`.
     uv : (..., 2) float64
         Barycentric weights of the face's second and third corner, so that the hit is at
@@ -345,19 +345,19 @@ class Hits(SurfacePoints):
 
     t: NDArray[np.float64]
 
-    _parts = ("t", "shape_id", "primitive", "uv")
+    _parts = ("t", "shape_id", "primitive_id", "uv")
 
     def __init__(
         self,
         t: NDArray[np.float64],
         shape_id: NDArray[np.int32],
-        primitive: NDArray[np.int32],
+        primitive_id: NDArray[np.int32],
         uv: NDArray[np.float64],
-        instance: NDArray[np.int32] | None,
+        instance_id: NDArray[np.int32] | None,
         compiled: _core.CompiledScene,
         rays: tuple[Any, ...] | None = None,
     ) -> None:
-        self._tell(t, shape_id, primitive, uv, instance, compiled, rays)
+        self._tell(t, shape_id, primitive_id, uv, instance_id, compiled, rays)
 
     def _tell_some(
         self,
@@ -375,9 +375,9 @@ class Hits(SurfacePoints):
         self,
         t: NDArray[np.float64],
         shape_id: NDArray[np.int32],
-        primitive: NDArray[np.int32],
+        primitive_id: NDArray[np.int32],
         uv: NDArray[np.float64],
-        instance: NDArray[np.int32] | None,
+        instance_id: NDArray[np.int32] | None,
         compiled: _core.CompiledScene,
         rays: tuple[Any, ...] | None,
     ) -> None:
@@ -385,10 +385,10 @@ class Hits(SurfacePoints):
         self.__dict__.clear()
         # Setting the fields of a frozen dataclass takes longer than tracing a ray.
         self.__dict__.update(
-            t=t, shape_id=shape_id, primitive=primitive, uv=uv, _compiled=compiled, _rays=rays
+            t=t, shape_id=shape_id, primitive_id=primitive_id, uv=uv, _compiled=compiled, _rays=rays
         )
-        if instance is not None:
-            self.__dict__["instance"] = instance
+        if instance_id is not None:
+            self.__dict__["instance_id"] = instance_id
 
     if not TYPE_CHECKING:
 
@@ -402,9 +402,9 @@ class Hits(SurfacePoints):
     def hit(self) -> NDArray[np.bool_]:
         """Whether each ray hits anything: (...) bool."""
         own = vars(self)
-        if "primitive" not in own and "shape_id" in own:
+        if "primitive_id" not in own and "shape_id" in own:
             return np.asarray(self.shape_id >= 0)
-        return np.asarray(self.primitive >= 0)
+        return np.asarray(self.primitive_id >= 0)
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -422,7 +422,7 @@ class Hits(SurfacePoints):
         return rows.length(self.shape)
 
     def __repr__(self) -> str:
-        if not {"hit", "primitive", "shape_id"} & set(vars(self)):
+        if not {"hit", "primitive_id", "shape_id"} & set(vars(self)):
             return f"Hits(shape={self.shape}, fields={self._asked()})"
         count = int(np.count_nonzero(self.hit))
         return f"Hits(shape={self.shape}, {count} of {self.hit.size} rays hit)"
@@ -440,7 +440,7 @@ class ClosestPoints(SurfacePoints):
         Distance to the closest point; inf if none is near enough.
     shape_id : (...) int32
         Index in ``scene.shapes``; -1 for none.
-    primitive : (...) int32
+    primitive_id : (...) int32
         Face of that shape, 0 if it is no mesh; on an instance, a number for `Instance.locate`.
     uv : (..., 2) float64
         Barycentric weights of the face's second and third corner, so that the closest point is at
@@ -459,33 +459,33 @@ class ClosestPoints(SurfacePoints):
 
     distance: NDArray[np.float64]
 
-    _parts = ("distance", "shape_id", "primitive", "uv")
+    _parts = ("distance", "shape_id", "primitive_id", "uv")
 
     def __init__(
         self,
         distance: NDArray[np.float64],
         position: NDArray[np.float64],
         shape_id: NDArray[np.int32],
-        primitive: NDArray[np.int32],
+        primitive_id: NDArray[np.int32],
         uv: NDArray[np.float64],
-        instance: NDArray[np.int32] | None,
+        instance_id: NDArray[np.int32] | None,
         compiled: _core.CompiledScene,
     ) -> None:
-        parts = {"distance": distance, "shape_id": shape_id, "primitive": primitive, "uv": uv}
-        if instance is not None:
-            parts["instance"] = instance
+        parts = {"distance": distance, "shape_id": shape_id, "primitive_id": primitive_id, "uv": uv}
+        if instance_id is not None:
+            parts["instance_id"] = instance_id
         # The position is known already, and goes where cached_property keeps its values.
         self.__dict__.update(parts, position=position, _compiled=compiled, _rays=None)
 
     @cached_property
     def _site(self) -> NDArray[np.float64]:
         """The unit normal, and a bound on how far each coordinate of `position` is off: (..., 4) float64."""
-        instance = vars(self).get("instance")
-        copies = None if instance is None else np.ascontiguousarray(instance).reshape(-1)
+        instance_id = vars(self).get("instance_id")
+        copies = None if instance_id is None else np.ascontiguousarray(instance_id).reshape(-1)
         places = self.uv.reshape(-1, 2), self.position.reshape(-1, 3), copies
         known = self._known("normal")
-        sites = known.sites(self.shape_id.reshape(-1), self.primitive.reshape(-1), *places)
-        return sealed(sites.reshape(*self.primitive.shape, 4))
+        sites = known.sites(self.shape_id.reshape(-1), self.primitive_id.reshape(-1), *places)
+        return sealed(sites.reshape(*self.primitive_id.shape, 4))
 
     @cached_property
     def normal(self) -> NDArray[np.float64]:
@@ -499,7 +499,7 @@ class ClosestPoints(SurfacePoints):
     @cached_property
     def found(self) -> NDArray[np.bool_]:
         """Mask of points with a surface near enough: (...) bool."""
-        return np.asarray(self.primitive >= 0)
+        return np.asarray(self.primitive_id >= 0)
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -522,7 +522,7 @@ class ClosestPoints(SurfacePoints):
 
 
 @dataclass(frozen=True, eq=False)
-class QueryCost:
+class TraversalCost:
     """Traversal cost of closest hits; arrays with the leading shape of the rays, read-only.
 
     Attributes
@@ -534,11 +534,11 @@ class QueryCost:
 
     See Also
     --------
-    Scene.cost : Makes it.
+    Scene.traversal_cost : Makes it.
 
     Examples
     --------
-    >>> cost = rw.Scene(rw.Sphere()).cost([[0, 0, 5], [9, 0, 5]], [0, 0, -1])
+    >>> cost = rw.Scene(rw.Sphere()).traversal_cost([[0, 0, 5], [9, 0, 5]], [0, 0, -1])
     >>> cost.primitives.tolist()
     [1, 0]
     """
@@ -547,7 +547,7 @@ class QueryCost:
     primitives: NDArray[np.int32]
 
     def __eq__(self, other: object) -> bool:
-        if not isinstance(other, QueryCost):
+        if not isinstance(other, TraversalCost):
             return NotImplemented
         return same(self.nodes, other.nodes) and same(self.primitives, other.primitives)
 
@@ -556,7 +556,7 @@ class QueryCost:
 
 def _lead(own: Mapping[str, Any]) -> tuple[int, ...]:
     """Return the leading shape of what is known of hits."""
-    name = next(name for name in ("t", "primitive", "shape_id", "hit", "instance", "uv") if name in own)
+    name = next(name for name in ("t", "primitive_id", "shape_id", "hit", "instance_id", "uv") if name in own)
     shape: tuple[int, ...] = own[name].shape
     return shape[:-1] if name == "uv" else shape
 
@@ -568,21 +568,21 @@ def rewritten(out: Hits, shape: tuple[int, ...]) -> Iterator[tuple[Any, ...]]:
         raise TypeError(f"out must be Hits or arrays by name, got {type(out).__name__}")
     if out.shape != shape:
         raise ValueError(f"out has shape {out.shape}, expected {shape}")
-    instance = vars(out).get("instance")
-    if instance is not None and not instance.flags.owndata:
+    instance_id = vars(out).get("instance_id")
+    if instance_id is not None and not instance_id.flags.owndata:
         # One element seen from every index.
-        instance = None
+        instance_id = None
     # What an earlier answer left out, or told in another type, is new.
-    types = {"t": np.float64, "shape_id": np.int32, "primitive": np.int32, "uv": np.float64}
+    types = {"t": np.float64, "shape_id": np.int32, "primitive_id": np.int32, "uv": np.float64}
     own = {name: vars(out).get(name) for name in types}
     arrays = tuple(a if a is not None and a.dtype == types[name] else None for name, a in own.items())
-    known = [array for array in (*arrays, instance) if array is not None]
+    known = [array for array in (*arrays, instance_id) if array is not None]
     try:
         for array in known:
             if not array.flags.owndata:
                 raise ValueError("out cannot be written to: its arrays are views of other memory")
             array.setflags(write=True)
-        yield (*arrays, instance)
+        yield (*arrays, instance_id)
     finally:
         for array in known:
             rows.kept(array)

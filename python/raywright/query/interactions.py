@@ -46,7 +46,7 @@ class Rays:
 
     Examples
     --------
-    >>> rays = rw.Rays(np.zeros((2, 3)), np.array([[0, 0, 1.0], [1.0, 0, 0]]), np.zeros(2))
+    >>> rays = rw.query.Rays(np.zeros((2, 3)), np.array([[0, 0, 1.0], [1.0, 0, 0]]), np.zeros(2))
     >>> rays.directions.shape
     (2, 3)
     """
@@ -74,7 +74,7 @@ class Rays:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Scattered:
+class BsdfSamples:
     """Directions drawn from the scattering at surfaces.
 
     Attributes
@@ -89,11 +89,11 @@ class Scattered:
 
     See Also
     --------
-    Interactions.sample : Makes it.
+    Interactions.sample_bsdf : Makes it.
 
     Examples
     --------
-    >>> rays = rw.Rays(np.array([[0, 0, 3.0]]), np.array([[0, 0, -1.0]]), np.zeros(1))
+    >>> rays = rw.query.Rays(np.array([[0, 0, 3.0]]), np.array([[0, 0, -1.0]]), np.zeros(1))
     >>> met = rw.Scene(rw.Sphere(material=rw.Mirror(0.9))).interactions(rays)
     >>> mirrored = met.reflected()
     >>> mirrored.direction.tolist(), mirrored.weight.tolist(), mirrored.any.tolist()
@@ -113,7 +113,7 @@ class Scattered:
         return len(self.pdf)
 
     def __repr__(self) -> str:
-        return f"Scattered({len(self)})"
+        return f"BsdfSamples({len(self)})"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -131,13 +131,13 @@ class LightSamples:
 
     See Also
     --------
-    Interactions.light : Makes it.
+    Interactions.sample_light : Makes it.
 
     Examples
     --------
     >>> scene = rw.Scene(rw.Sphere(), lights=[rw.PointLight((0, 0, 3), intensity=4.0)])
-    >>> rays = rw.Rays(np.array([[0, 0, 5.0]]), np.array([[0, 0, -1.0]]), np.zeros(1))
-    >>> light = scene.interactions(rays).light(np.zeros(1), np.full((1, 2), 0.5))
+    >>> rays = rw.query.Rays(np.array([[0, 0, 5.0]]), np.array([[0, 0, -1.0]]), np.zeros(1))
+    >>> light = scene.interactions(rays).sample_light(np.zeros(1), np.full((1, 2), 0.5))
     >>> light.direction.tolist(), light.weight.round(9).tolist()
     ([[0.0, 0.0, 1.0]], [[1.0, 1.0, 1.0]])
     """
@@ -171,8 +171,9 @@ class LightSamples:
         --------
         >>> lid = rw.Disk((0, 0, 2), radius=0.1)
         >>> scene = rw.Scene([rw.Plane(), lid], lights=[rw.PointLight((0, 0, 3), intensity=4.0)])
-        >>> rays = rw.Rays(np.array([[0, 0, 1.0], [5, 0, 1]]), np.array([[0, 0, -1.0]] * 2), np.zeros(2))
-        >>> light = scene.interactions(rays).light(np.zeros(2), np.full((2, 2), 0.5))
+        >>> rays = rw.query.Rays(np.array([[0, 0, 1.0], [5, 0, 1]]), np.array([[0, 0, -1.0]] * 2),
+        ... np.zeros(2))
+        >>> light = scene.interactions(rays).sample_light(np.zeros(2), np.full((2, 2), 0.5))
         >>> light.visible(scene).tolist()
         [False, True]
         """
@@ -203,7 +204,7 @@ class Interactions:
     Examples
     --------
     >>> scene = rw.Scene(rw.Plane(material=rw.Diffuse(0.5)), environment=2.0)
-    >>> rays = rw.Rays(np.array([[0, 0, 1.0]] * 2), np.array([[0, 0, -1.0], [0, 0, 1]]), np.zeros(2))
+    >>> rays = rw.query.Rays(np.array([[0, 0, 1.0]] * 2), np.array([[0, 0, -1.0], [0, 0, 1]]), np.zeros(2))
     >>> met = scene.interactions(rays)
     >>> met.hit.tolist(), met.emission[:, 0].tolist()
     ([True, False], [0.0, 2.0])
@@ -243,9 +244,9 @@ class Interactions:
         return self._core.shape_id
 
     @cached_property
-    def primitive(self) -> NDArray[np.int32]:
+    def primitive_id(self) -> NDArray[np.int32]:
         """Face of that shape: (N,) int32; -1 for a miss."""
-        return self._core.primitive
+        return self._core.primitive_id
 
     @cached_property
     def uv(self) -> Floats:
@@ -282,12 +283,12 @@ class Interactions:
         """Index of refraction inside the shape: (N,); 1 for shapes that enclose nothing."""
         return self._core.ior
 
-    def reflected(self) -> Scattered:
+    def reflected(self) -> BsdfSamples:
         """Return the specular reflection of mirrors and smooth glass.
 
         Returns
         -------
-        Scattered
+        BsdfSamples
             One direction for each ray, with all of its weight: the share of the light from there that comes
             back along the ray, by Fresnel's law where that says. No weight and NaN where nothing is reflected
             so.
@@ -298,19 +299,19 @@ class Interactions:
 
         Examples
         --------
-        >>> rays = rw.Rays(np.array([[0, 0, 3.0]]), np.array([[0, 0, -1.0]]), np.zeros(1))
+        >>> rays = rw.query.Rays(np.array([[0, 0, 3.0]]), np.array([[0, 0, -1.0]]), np.zeros(1))
         >>> met = rw.Scene(rw.Sphere(material=rw.Dielectric(1.5))).interactions(rays)
         >>> met.reflected().weight.round(4).tolist()
         [[0.04, 0.04, 0.04]]
         """
-        return Scattered(*self._core.single(False))
+        return BsdfSamples(*self._core.single(False))
 
-    def refracted(self) -> Scattered:
+    def refracted(self) -> BsdfSamples:
         """Return the specular transmission of smooth glass and panes.
 
         Returns
         -------
-        Scattered
+        BsdfSamples
             As in `reflected`, on the other side. Weights are those of radiance, which has the square of the
             index of refraction in it.
 
@@ -320,12 +321,12 @@ class Interactions:
 
         Examples
         --------
-        >>> rays = rw.Rays(np.array([[0, 0, 3.0]]), np.array([[0, 0, -1.0]]), np.zeros(1))
+        >>> rays = rw.query.Rays(np.array([[0, 0, 3.0]]), np.array([[0, 0, -1.0]]), np.zeros(1))
         >>> met = rw.Scene(rw.Sphere(material=rw.Dielectric(1.5))).interactions(rays)
         >>> met.refracted().direction.tolist(), (met.refracted().weight * 1.5**2).round(4).tolist()
         ([[0.0, 0.0, -1.0]], [[0.96, 0.96, 0.96]])
         """
-        return Scattered(*self._core.single(True))
+        return BsdfSamples(*self._core.single(True))
 
     def evaluate(self, directions: ArrayLike) -> tuple[Floats, Floats]:
         """Evaluate the scattering of light from some directions back along the rays.
@@ -344,11 +345,11 @@ class Interactions:
 
         See Also
         --------
-        Interactions.sample : Draw directions with this density.
+        Interactions.sample_bsdf : Draw directions with this density.
 
         Examples
         --------
-        >>> rays = rw.Rays(np.array([[0, 0, 3.0]]), np.array([[0, 0, -1.0]]), np.zeros(1))
+        >>> rays = rw.query.Rays(np.array([[0, 0, 3.0]]), np.array([[0, 0, -1.0]]), np.zeros(1))
         >>> met = rw.Scene(rw.Plane(material=rw.Diffuse(0.5))).interactions(rays)
         >>> value, pdf = met.evaluate(np.array([[0, 0, 1.0]]))
         >>> (value * np.pi).round(6).tolist(), (pdf * np.pi).round(6).tolist()
@@ -356,7 +357,7 @@ class Interactions:
         """
         return self._core.evaluate(_vectors("directions", directions))
 
-    def sample(self, choice: Floats, u: Floats) -> Scattered:
+    def sample_bsdf(self, choice: Floats, u: Floats) -> BsdfSamples:
         """Sample directions from the scattering at the points.
 
         Parameters
@@ -368,7 +369,7 @@ class Interactions:
 
         Returns
         -------
-        Scattered
+        BsdfSamples
             One direction for each ray.
 
         See Also
@@ -377,15 +378,15 @@ class Interactions:
 
         Examples
         --------
-        >>> rays = rw.Rays(np.array([[0, 0, 3.0]]), np.array([[0, 0, -1.0]]), np.zeros(1))
+        >>> rays = rw.query.Rays(np.array([[0, 0, 3.0]]), np.array([[0, 0, -1.0]]), np.zeros(1))
         >>> met = rw.Scene(rw.Plane(material=rw.Diffuse(0.5))).interactions(rays)
-        >>> drawn = met.sample(np.array([0.5]), np.array([[0.25, 0.75]]))
+        >>> drawn = met.sample_bsdf(np.array([0.5]), np.array([[0.25, 0.75]]))
         >>> drawn.weight.round(6).tolist(), bool(drawn.direction[0, 2] > 0)
         ([[0.5, 0.5, 0.5]], True)
         """
-        return Scattered(*self._core.sample(_numbers("choice", choice), _numbers("u", u)))
+        return BsdfSamples(*self._core.sample_bsdf(_numbers("choice", choice), _numbers("u", u)))
 
-    def light(self, choice: Floats, u: Floats) -> LightSamples:
+    def sample_light(self, choice: Floats, u: Floats) -> LightSamples:
         """Sample light that reaches the points from the scene's lights.
 
         Parameters
@@ -408,14 +409,14 @@ class Interactions:
         Examples
         --------
         >>> scene = rw.Scene(rw.Plane(), lights=[rw.PointLight((0, 0, 2), intensity=8.0)])
-        >>> rays = rw.Rays(np.array([[0, 0, 1.0]]), np.array([[0, 0, -1.0]]), np.zeros(1))
+        >>> rays = rw.query.Rays(np.array([[0, 0, 1.0]]), np.array([[0, 0, -1.0]]), np.zeros(1))
         >>> met = scene.interactions(rays)
-        >>> light = met.light(np.zeros(1), np.full((1, 2), 0.5))
+        >>> light = met.sample_light(np.zeros(1), np.full((1, 2), 0.5))
         >>> value, _ = met.evaluate(light.direction)
         >>> (value * light.weight * np.pi).round(6).tolist()
         [[1.0, 1.0, 1.0]]
         """
-        (direction, weight, origins, ways), most, pdf = self._core.light(
+        (direction, weight, origins, ways), most, pdf = self._core.sample_light(
             _numbers("choice", choice), _numbers("u", u)
         )
         return LightSamples(direction, weight, pdf, (origins, ways, most), self.rays.time)
@@ -441,15 +442,15 @@ class Interactions:
         --------
         >>> lamp = rw.Disk((0, 0, 2), normal=(0, 0, -1), radius=0.5, emission=3.0)
         >>> scene = rw.Scene([rw.Plane(), lamp])
-        >>> down = rw.Rays(np.array([[0, 0, 1.0]]), np.array([[0, 0, -1.0]]), np.zeros(1))
+        >>> down = rw.query.Rays(np.array([[0, 0, 1.0]]), np.array([[0, 0, -1.0]]), np.zeros(1))
         >>> floor = scene.interactions(down)
-        >>> found = scene.interactions(floor.leave(np.array([[0, 0, 1.0]])))
+        >>> found = scene.interactions(floor.spawn_rays(np.array([[0, 0, 1.0]])))
         >>> bool(found.light_pdf(floor)[0] > 0)
         True
         """
         return self._core.light_pdf(before._core)
 
-    def leave(self, directions: ArrayLike) -> Rays:
+    def spawn_rays(self, directions: ArrayLike) -> Rays:
         """Return rays that leave along some unit directions, (N, 3), without meeting the same surface.
 
         Parameters
@@ -464,17 +465,17 @@ class Interactions:
 
         See Also
         --------
-        Hits.leave : The same for hits, with broadcast directions.
+        Hits.spawn_rays : The same for hits, with broadcast directions.
 
         Examples
         --------
-        >>> rays = rw.Rays(np.array([[0, 0, 3.0]]), np.array([[0, 0, -1.0]]), np.zeros(1))
+        >>> rays = rw.query.Rays(np.array([[0, 0, 3.0]]), np.array([[0, 0, -1.0]]), np.zeros(1))
         >>> met = rw.Scene(rw.Plane()).interactions(rays)
-        >>> met.leave(np.array([[0, 0, 1.0]])).origins.round(9).tolist()
+        >>> met.spawn_rays(np.array([[0, 0, 1.0]])).origins.round(9).tolist()
         [[0.0, 0.0, 0.0]]
         """
         ways = _vectors("directions", directions)
-        return Rays(self._core.leave(ways), ways, self.rays.time)
+        return Rays(self._core.spawn_rays(ways), ways, self.rays.time)
 
     def __repr__(self) -> str:
         return f"Interactions({len(self)}, {int(np.count_nonzero(self.hit))} hit)"
@@ -501,7 +502,7 @@ def power_heuristic(pdf: ArrayLike, other: ArrayLike) -> Floats:
 
     Examples
     --------
-    >>> rw.power_heuristic([3.0, np.inf, 0.0], 1.0).round(9).tolist()
+    >>> rw.query.power_heuristic([3.0, np.inf, 0.0], 1.0).round(9).tolist()
     [0.9, 1.0, 0.0]
     """
     mine, others = np.broadcast_arrays(_numbers("pdf", pdf), _numbers("other", other))

@@ -33,15 +33,15 @@ class Photons:
     powers : (K, 3) float64
         Flux of each photon, W: power over area is irradiance, and power over volume and extinction is
         fluence.
-    shape_id, primitive : (K,) int32
+    shape_id, primitive_id : (K,) int32
         Shape and primitive of the surface; -1 in a medium.
     path : (K,) int64
         Index of the path, from 0 on.
     bounces : (K,) int64
         Number of scattering events before.
-    sharp : (K,) uint64
+    specular : (K,) uint64
         Bits of the specular bounces, by mirrors, glass or gloss: the first 64, the lowest bit for the first.
-    adrift : (K,) uint64
+    in_medium : (K,) uint64
         Bits of the bounces in media, likewise.
     emitted, escaped, absorbed : tuple of 3 floats
         Flux of all emitted light, of light that leaves the scene, and of light absorbed by media. If red,
@@ -68,11 +68,11 @@ class Photons:
     normals: Floats
     powers: Floats
     shape_id: NDArray[np.int32]
-    primitive: NDArray[np.int32]
+    primitive_id: NDArray[np.int32]
     path: NDArray[np.int64]
     bounces: NDArray[np.int64]
-    sharp: NDArray[np.uint64]
-    adrift: NDArray[np.uint64]
+    specular: NDArray[np.uint64]
+    in_medium: NDArray[np.uint64]
     emitted: Triple
     escaped: Triple
     absorbed: Triple
@@ -85,8 +85,8 @@ class Photons:
     def _of(cls, vectors: tuple[Any, ...], numbers: tuple[Any, ...], bits: Any, flux: Any) -> "Photons":
         """Return what the core gave."""
         positions, directions, normals, powers = vectors
-        shape_id, primitive, path, bounces = numbers
-        hits = positions, directions, normals, powers, shape_id, primitive, path, bounces, *bits
+        shape_id, primitive_id, path, bounces = numbers
+        hits = positions, directions, normals, powers, shape_id, primitive_id, path, bounces, *bits
         return cls(*hits, *map(tuple, flux))
 
     @cached_property
@@ -100,7 +100,7 @@ class Photons:
         told = min(int(self.bounces.max(initial=0)), _TOLD)
         places = np.arange(told, dtype=np.uint64)
         is_sharp, is_adrift = (
-            (bits[:, None] >> places & np.uint64(1)).astype(bool) for bits in (self.sharp, self.adrift)
+            (bits[:, None] >> places & np.uint64(1)).astype(bool) for bits in (self.specular, self.in_medium)
         )
         letters = np.where(is_adrift, "V", np.where(is_sharp, "S", "D")).astype("U1")
         letters[places[None, :] >= self.bounces[:, None].astype(np.uint64)] = ""

@@ -10,7 +10,7 @@ from ..io.plots import plotted
 from ..io.value_plots import AXES, COLORS, Axis, bar, draw_picture, draw_points, frame, scale
 
 # Integer attributes, where -1 stands for a miss.
-_COUNTED = ("shape_id", "primitive", "cell")
+_COUNTED = ("shape_id", "primitive_id", "cell")
 
 
 class PlottedPoints:
@@ -26,7 +26,7 @@ class PlottedPoints:
             .png, .svg or .pdf.
         name : str, optional
             Values that are colored: "t" of hits or "distance" of closest points, as if not given; "shape_id",
-            "primitive", "cell", or the name of an attribute. Misses are grey in pictures.
+            "primitive_id", "cell", or the name of an attribute. Misses are grey in pictures.
         up : {"x", "y", "z"}
             The axis that points up in space.
         cmap : str or matplotlib.colors.Colormap
@@ -83,11 +83,11 @@ def _values(points: Any, name: str) -> NDArray[np.float64]:
     """Return the colored values of points: NaN or infinity for a miss."""
     if name in _COUNTED:
         counted = np.asarray(getattr(points, name), np.float64)
-        return np.where(np.asarray(points.primitive) >= 0, counted, np.nan)
+        return np.where(np.asarray(points.primitive_id) >= 0, counted, np.nan)
     if name in ("t", "distance") and hasattr(points, name):
         return np.asarray(getattr(points, name), np.float64)
     found: NDArray[np.float64] = points.interpolate(name)
-    if found.shape != points.primitive.shape:
-        told = found.shape[points.primitive.ndim :]
+    if found.shape != points.primitive_id.shape:
+        told = found.shape[points.primitive_id.ndim :]
         raise ValueError(f"name must be an attribute of one number a point, {name!r} has {told}")
     return found

@@ -130,7 +130,7 @@ class PointQueries:
         Returns
         -------
         ClosestPoints
-            With the leading shape of the points. Ties go to the lowest (shape_id, primitive).
+            With the leading shape of the points. Ties go to the lowest (shape_id, primitive_id).
 
         Raises
         ------

@@ -80,9 +80,9 @@ class Previews:
 
         Notes
         -----
-        Hits are those of ``intersect(*camera.rays())``, and shadow rays start where ``hits.leave`` has them:
-        what is lit is decided as exactly as by `occluded`. The albedo is `Interactions.albedo` of what is
-        surrounded by nothing; shapes that give off light are white. Masks and media do not count.
+        Hits are those of ``intersect(*camera.rays())``, and shadow rays start where ``hits.spawn_rays`` has
+        them: what is lit is decided as exactly as by `occluded`. The albedo is `Interactions.albedo` of what
+        is surrounded by nothing; shapes that give off light are white. Masks and media do not count.
 
         Examples
         --------

@@ -11,9 +11,9 @@ from .._core import CompiledScene
 from ..arrays import SeedLike, indices, last_axis, number, thread_limit
 from ..cameras import AnyCamera, pixel_offsets
 from .all_hits import AllHits
-from .cones import ConeCoverage, ConeTouches, cone_arguments, cone_solid_angle
+from .cones import ConeCoverage, ConeFaces, cone_arguments, cone_solid_angle
 from .fields import Asked
-from .hits import Hits, QueryCost, rewritten
+from .hits import Hits, TraversalCost, rewritten
 from .interactions import Interactions, Rays
 from .masks import Counted, Cull, ShapeMask, asked, counted
 from .photons import Photons, photon_arguments
@@ -67,16 +67,16 @@ class Queries(PointQueries, Previews):
             Leaves out what is met from behind, where the geometric normal goes along with the ray. Of
             triangles that is decided exactly; of curved shapes and of copies by the normal as float64 has it.
         fields : str or sequence of str, optional
-            The parts of the answer that are wanted, of "t", "shape_id", "primitive", "uv", "instance" and
-            "hit"; only these are computed and written. "hit" alone is a byte a ray, as `occluded` has it.
+            The parts of the answer that are wanted, of "t", "shape_id", "primitive_id", "uv", "instance_id"
+            and "hit"; only these are computed and written. "hit" alone is a byte a ray, as `occluded` has it.
             Those of the arrays in `out` if not given, and all without such arrays.
 
         Returns
         -------
         Hits
             With the leading shape of the rays. Of hits at the same `t`, the one of the lowest
-            (shape_id, instance, primitive). Where `fields` are given, or arrays, it has these parts and what
-            follows from them; an AttributeError tells which parts others would need.
+            (shape_id, instance_id, primitive_id). Where `fields` are given, or arrays, it has these parts and
+            what follows from them; an AttributeError tells which parts others would need.
 
         Raises
         ------
@@ -213,7 +213,7 @@ class Queries(PointQueries, Previews):
         Examples
         --------
         >>> fog = rw.Homogeneous(absorption=0.5, scattering=0.25)
-        >>> ball = rw.Sphere(radius=1, material=rw.Boundary(fog))
+        >>> ball = rw.Sphere(radius=1, material=rw.MediumInterface(fog))
         >>> rw.Scene(ball).optical_depth([0, 0, 5], [0, 0, -1]).round(6).tolist()
         [1.5, 1.5, 1.5]
         """
@@ -257,7 +257,7 @@ class Queries(PointQueries, Previews):
         Examples
         --------
         >>> ink = rw.Homogeneous(absorption=(0.0, 0.5, 1.0))
-        >>> slab = rw.Box((-1, -1, 0), (1, 1, 2), material=rw.Boundary(ink))
+        >>> slab = rw.Box((-1, -1, 0), (1, 1, 2), material=rw.MediumInterface(ink))
         >>> rw.Scene(slab).transmittance([0, 0, 5], [0, 0, -1]).round(4).tolist()
         [1.0, 0.3679, 0.1353]
         """
@@ -272,7 +272,7 @@ class Queries(PointQueries, Previews):
         Parameters
         ----------
         rays : Rays
-            Rays of unit direction, as an integrator is given them or `Interactions.leave` makes them.
+            Rays of unit direction, as an integrator is given them or `Interactions.spawn_rays` makes them.
 
         Returns
         -------
@@ -288,19 +288,19 @@ class Queries(PointQueries, Previews):
 
         See Also
         --------
-        Integrator : The base class of integrators written in Python.
+        integrators.Integrator : The base class of integrators written in Python.
         Scene.intersect : Hits alone, of rays of any length.
 
         Examples
         --------
         >>> scene = rw.Scene(rw.Sphere(material=rw.Diffuse(0.8)), environment=1.0)
-        >>> rays = rw.Rays(np.array([[0, 0, 3.0]]), np.array([[0, 0, -1.0]]), np.zeros(1))
+        >>> rays = rw.query.Rays(np.array([[0, 0, 3.0]]), np.array([[0, 0, -1.0]]), np.zeros(1))
         >>> met = scene.interactions(rays)
         >>> met.t.tolist(), met.albedo.round(2).tolist()
         ([2.0], [[0.8, 0.8, 0.8]])
         """
         if not isinstance(rays, Rays):
-            raise TypeError(f"rays must be raywright.Rays, got {type(rays).__name__}")
+            raise TypeError(f"rays must be raywright.query.Rays, got {type(rays).__name__}")
         core = self._core or self._compiled()
         return Interactions(_core.interactions(core, rays.origins, rays.directions, rays.time), rays)
 
@@ -328,11 +328,11 @@ class Queries(PointQueries, Previews):
         Returns
         -------
         AllHits
-            All hits one after the other, by ray, then `t`, then (shape_id, instance, primitive).
+            All hits one after the other, by ray, then `t`, then (shape_id, instance_id, primitive_id).
 
         See Also
         --------
-        Scene.count : Count the hits alone.
+        Scene.count_hits : Count the hits alone.
         Scene.intersect : Find the closest hit.
 
         Notes
@@ -355,7 +355,7 @@ class Queries(PointQueries, Previews):
         what = None if shapes is None and cull is None else counted(shapes, cull, core.shapes)
         return AllHits(*core.intersect_all(rays, what), rays[4], core, known_by(core, rays))
 
-    def count(
+    def count_hits(
         self,
         origins: ArrayLike,
         directions: ArrayLike,
@@ -385,13 +385,13 @@ class Queries(PointQueries, Previews):
         Examples
         --------
         >>> scene = rw.Scene([rw.Sphere(), rw.Disk(radius=9)])
-        >>> scene.count([[0, 0, 5], [4, 0, 5]], [0, 0, -1]).tolist()
+        >>> scene.count_hits([[0, 0, 5], [4, 0, 5]], [0, 0, -1]).tolist()
         [3, 1]
         """
         rays = asked(ray_arguments(origins, directions, t_min, t_max, threads, time), None)
-        return (self._core or self._compiled()).count(rays)
+        return (self._core or self._compiled()).count_hits(rays)
 
-    def cost(
+    def traversal_cost(
         self,
         origins: ArrayLike,
         directions: ArrayLike,
@@ -399,7 +399,7 @@ class Queries(PointQueries, Previews):
         t_max: ArrayLike = np.inf,
         threads: int | None = None,
         time: ArrayLike | None = None,
-    ) -> QueryCost:
+    ) -> TraversalCost:
         """Count the nodes visited and primitives tested for the closest hit of each ray.
 
         Arguments and errors are those of `intersect`. Neighbouring rays share visits, so a ray's cost may
@@ -412,7 +412,7 @@ class Queries(PointQueries, Previews):
 
         Returns
         -------
-        QueryCost
+        TraversalCost
             With the leading shape of the rays.
 
         See Also
@@ -422,12 +422,12 @@ class Queries(PointQueries, Previews):
         Examples
         --------
         >>> scene = rw.Scene(rw.scenes.torus_knot(along=40, around=8))
-        >>> cost = scene.cost([0, 0, 9], [[0, 0, -1], [0, 0, 1]])
+        >>> cost = scene.traversal_cost([0, 0, 9], [[0, 0, -1], [0, 0, 1]])
         >>> cost.nodes.shape, int(cost.primitives[1])
         ((2,), 0)
         """
         rays = asked(ray_arguments(origins, directions, t_min, t_max, threads, time), None)
-        return QueryCost(*(self._core or self._compiled()).cost(rays))
+        return TraversalCost(*(self._core or self._compiled()).traversal_cost(rays))
 
     def pick(
         self,
@@ -551,20 +551,20 @@ class Queries(PointQueries, Previews):
         where = pixel_offsets(camera, offsets)
         core = self._core or self._compiled()
         moment = camera.scene_time(None if time is None else number("time", time))
-        if core.curved or (time and camera.moved_to):
+        if core.curved or (time and camera.end_pose):
             return self.intersect(*camera.rays(where, time=time), threads=threads, time=moment)
         threads = thread_limit(threads)
-        t, shape_id, primitive, uv, _ = _core.first_hits(core, camera, where, threads)
-        return Hits(t, shape_id, primitive, uv, None, core)
+        t, shape_id, primitive_id, uv, _ = _core.first_hits(core, camera, where, threads)
+        return Hits(t, shape_id, primitive_id, uv, None, core)
 
-    def cone(
+    def faces_in_cone(
         self,
         origins: ArrayLike,
         directions: ArrayLike,
         half_angle: ArrayLike,
         t_max: ArrayLike = np.inf,
         threads: int | None = None,
-    ) -> ConeTouches:
+    ) -> ConeFaces:
         """Find all faces that solid cones touch, the nearest first.
 
         A face is touched if any point of it, its edges and corners included, is in the cone, its surface
@@ -585,8 +585,8 @@ class Queries(PointQueries, Previews):
 
         Returns
         -------
-        ConeTouches
-            Faces by cone, then distance, then (shape_id, primitive).
+        ConeFaces
+            Faces by cone, then distance, then (shape_id, primitive_id).
 
         Raises
         ------
@@ -610,14 +610,14 @@ class Queries(PointQueries, Previews):
         Examples
         --------
         >>> triangle = rw.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
-        >>> touches = rw.Scene(triangle).cone([0, 0, 4], [0, 0, -1], half_angle=5)
-        >>> touches.primitive.tolist(), touches.distance.tolist()
+        >>> touches = rw.Scene(triangle).faces_in_cone([0, 0, 4], [0, 0, -1], half_angle=5)
+        >>> touches.primitive_id.tolist(), touches.distance.tolist()
         ([0], [4.0])
         """
         core = self._core or self._compiled()
         arguments = cone_arguments(origins, directions, half_angle, t_max, threads)
-        splits, distance, shape_id, primitive = _core.cones(core, *arguments)
-        return ConeTouches(splits, shape_id, primitive, distance, arguments[4])
+        splits, distance, shape_id, primitive_id = _core.cones(core, *arguments)
+        return ConeFaces(splits, shape_id, primitive_id, distance, arguments[4])
 
     def cone_coverage(
         self,
@@ -636,7 +636,7 @@ class Queries(PointQueries, Previews):
         Parameters
         ----------
         origins, directions, half_angle, threads
-            As in `cone`; `half_angle` is above 0.
+            As in `faces_in_cone`; `half_angle` is above 0.
         t_max : float or (...) array
             Maximum distance: a shape whose nearest point is farther from the apex does not count.
 
@@ -649,13 +649,14 @@ class Queries(PointQueries, Previews):
         Raises
         ------
         ValueError
-            As `cone`, and if `half_angle` is 0, or something in the scene is neither a mesh nor a `Sphere`.
+            As `faces_in_cone`, and if `half_angle` is 0, or something in the scene is neither a mesh nor a
+            `Sphere`.
         TypeError
             If an array does not hold real numbers.
 
         See Also
         --------
-        Scene.cone : The faces in a cone.
+        Scene.faces_in_cone : The faces in a cone.
         measure.ambient_visibility : The uncovered share of a hemisphere.
 
         Examples

@@ -14,7 +14,7 @@ from .surface import Surface
 _WIDE = ("uv", "position", "normal")
 # Suffixes of columns for arrays with a second dimension, and the attributes of hits in a table.
 _AXES = {2: ("u", "v"), 3: ("x", "y", "z")}
-_TOLD = ("t", "distance", "shape_id", "names", "instance", "primitive", "uv", "position", "normal")
+_TOLD = ("t", "distance", "shape_id", "names", "instance_id", "primitive_id", "uv", "position", "normal")
 
 
 def places(shape: tuple[int, ...], index: Any) -> NDArray[np.int64]:
@@ -152,7 +152,7 @@ def flat(points: Any) -> dict[str, NDArray[Any]]:
         # Nor of hits that were asked for some parts.
         if "_fields" in vars(points) and name not in vars(points):
             continue
-        if points._compiled is None and name not in vars(points) and name != "instance":
+        if points._compiled is None and name not in vars(points) and name != "instance_id":
             continue
         array = getattr(points, name)
         axes = _AXES.get(array.shape[-1]) if name in _WIDE else None

@@ -11,7 +11,7 @@ from .hits import sealed
 
 @dataclass(frozen=True, eq=False, repr=False)
 class TreeBoxes:
-    """The boxes of all nodes of an accelerator, from the root down: `Scene.tree` makes it.
+    """The boxes of all nodes of an accelerator, from the root down: `Scene.tree_boxes` makes it.
 
     Arrays are read-only. A scene of meshes and other shapes has two trees, one over each, and so two roots.
 
@@ -27,11 +27,11 @@ class TreeBoxes:
 
     See Also
     --------
-    Scene.tree : Makes it.
+    Scene.tree_boxes : Makes it.
 
     Examples
     --------
-    >>> boxes = rw.Scene([rw.Sphere(), rw.Sphere((9, 0, 0))]).tree()
+    >>> boxes = rw.Scene([rw.Sphere(), rw.Sphere((9, 0, 0))]).tree_boxes()
     >>> boxes.lower[0].round(3).tolist(), boxes.upper[0].round(3).tolist()
     ([-1.0, -1.0, -1.0], [10.0, 1.0, 1.0])
     """
@@ -69,7 +69,7 @@ class TreeBoxes:
 
         Examples
         --------
-        >>> boxes = rw.Scene(rw.scenes.torus_knot(along=40, around=8)).tree()
+        >>> boxes = rw.Scene(rw.scenes.torus_knot(along=40, around=8)).tree_boxes()
         >>> len(boxes.at(0).depth), bool((boxes.at(2).depth == 2).all())
         (1, True)
         """

@@ -11,32 +11,32 @@ from ..shapes.mesh import Mesh
 Integers: TypeAlias = NDArray[np.integer[Any]]
 
 
-def cells(shapes: Sequence[Any], shape_id: Integers, primitive: Integers) -> NDArray[np.int64]:
+def cells(shapes: Sequence[Any], shape_id: Integers, primitive_id: Integers) -> NDArray[np.int64]:
     """Return the cell of each point: (...) int64; -1 for none."""
-    result = np.full(primitive.size, -1, np.int64)
-    for shape, which, own in _by_shape(shapes, shape_id.reshape(-1), primitive.reshape(-1)):
+    result = np.full(primitive_id.size, -1, np.int64)
+    for shape, which, own in _by_shape(shapes, shape_id.reshape(-1), primitive_id.reshape(-1)):
         known = shape.cells if isinstance(shape, Mesh) else None
         result[which] = own if known is None else known[own]
-    return result.reshape(primitive.shape)
+    return result.reshape(primitive_id.shape)
 
 
 def interpolated(
-    shapes: Sequence[Any], name: str, shape_id: Integers, primitive: Integers, uv: NDArray[np.float64]
+    shapes: Sequence[Any], name: str, shape_id: Integers, primitive_id: Integers, uv: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """Return an attribute at points, as `Hits.interpolate` does."""
     if not isinstance(name, str):
         raise TypeError(f"name must be a str, got {type(name).__name__}")
     shape_of_value = _value_shape(shapes, name)
     weights = uv.reshape(-1, 2)
-    result = np.full((primitive.size, *shape_of_value), np.nan)
-    for shape, which, own in _by_shape(shapes, shape_id.reshape(-1), primitive.reshape(-1)):
+    result = np.full((primitive_id.size, *shape_of_value), np.nan)
+    for shape, which, own in _by_shape(shapes, shape_id.reshape(-1), primitive_id.reshape(-1)):
         if not isinstance(shape, Mesh):
             continue
         if name in shape.vertex_attributes:
             result[which] = _linear(shape.vertex_attributes[name], shape.faces[own], weights[which])
         elif name in shape.face_attributes:
             result[which] = shape.face_attributes[name][own]
-    return result.reshape((*primitive.shape, *shape_of_value))
+    return result.reshape((*primitive_id.shape, *shape_of_value))
 
 
 def _linear(values: NDArray[Any], faces: NDArray[np.uint32], uv: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -73,7 +73,7 @@ def _meshes(shapes: Sequence[Any]) -> Iterator[Mesh]:
 
 
 def _by_shape(
-    shapes: Sequence[Any], shape_id: Integers, primitive: Integers
+    shapes: Sequence[Any], shape_id: Integers, primitive_id: Integers
 ) -> Iterator[tuple[Any, Integers, Integers]]:
     """Yield each shape that has points, in instances too, with their places and their faces in it."""
     order = np.argsort(shape_id, kind="stable") if len(shapes) > 1 else np.arange(len(shape_id))
@@ -82,7 +82,7 @@ def _by_shape(
         return
     found, starts = np.unique(shape_id[order], return_index=True)
     left = [
-        (shapes[i], which, primitive[which])
+        (shapes[i], which, primitive_id[which])
         for i, which in zip(found, np.split(order, starts[1:]), strict=True)
     ]
     while left:

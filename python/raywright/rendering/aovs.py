@@ -22,7 +22,7 @@ _SEEN = (
     "shading_normal",
     "uv",
     "shape_id",
-    "primitive",
+    "primitive_id",
     "albedo",
     "motion",
     "screen_motion",
@@ -74,12 +74,12 @@ def aovs(
     aov : str or some of them
         Names of buffers: ``"depth"`` (distance along the ray; infinite for the background), ``"position"``,
         ``"normal"`` (unit geometric normal, as the winding gives it), ``"shading_normal"``, ``"uv"``,
-        ``"shape_id"`` and ``"primitive"`` (-1 for the background), ``"albedo"``, ``"motion"`` (displacement
-        of the point while the shutter is open, in the scene's space), ``"screen_motion"`` (displacement in
-        the picture, in pixels to the right and down), ``"alpha"`` (covered share of the pixel; masks cover by
-        their opacity, glass covers everything behind it), ``"cryptomatte"`` (the six shapes that cover most
-        of the pixel, the largest first, each as its number, -1 for none, and its share of the pixel). All of
-        them if not given.
+        ``"shape_id"`` and ``"primitive_id"`` (-1 for the background), ``"albedo"``, ``"motion"``
+        (displacement of the point while the shutter is open, in the scene's space), ``"screen_motion"``
+        (displacement in the picture, in pixels to the right and down), ``"alpha"`` (covered share of the
+        pixel; masks cover by their opacity, glass covers everything behind it), ``"cryptomatte"`` (the six
+        shapes that cover most of the pixel, the largest first, each as its number, -1 for none, and its share
+        of the pixel). All of them if not given.
     samples : int
         Samples per pixel, over its square, the lens and the shutter: a pixel is the mean of those that see
         something. Numbers of shapes and primitives are those of its middle.
@@ -137,7 +137,7 @@ def seen(
     if not mine:
         return {}
     arrays = _core.aovs(scene._compiled(), camera, mine, samples, seed, threads)
-    ids = ("shape_id", "primitive")
+    ids = ("shape_id", "primitive_id")
     return {
         name: frozen(array.astype(np.int32 if name in ids else np.float32))
         for name, array in zip(mine, arrays, strict=True)

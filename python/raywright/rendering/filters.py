@@ -36,7 +36,7 @@ class BoxFilter:
     --------
     >>> scene = rw.Scene(rw.Sphere(emission=2.0))
     >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), width=4, height=4)
-    >>> image = rw.render(scene, camera, samples=4, filter=rw.BoxFilter(), progress=False)
+    >>> image = rw.render(scene, camera, samples=4, filter=rw.rendering.BoxFilter(), progress=False)
     >>> image.rgb[1, 1].tolist()
     [2.0, 2.0, 2.0]
     """
@@ -69,7 +69,7 @@ class TriangleFilter:
 
     Examples
     --------
-    >>> rw.TriangleFilter(radius=1.5)
+    >>> rw.rendering.TriangleFilter(radius=1.5)
     TriangleFilter(radius=1.5)
     """
 
@@ -104,9 +104,9 @@ class GaussianFilter:
 
     Examples
     --------
-    >>> rw.GaussianFilter(sigma=0.6)
+    >>> rw.rendering.GaussianFilter(sigma=0.6)
     GaussianFilter(radius=1.5, sigma=0.6)
-    >>> rw.GaussianFilter(sigma=-1.0)
+    >>> rw.rendering.GaussianFilter(sigma=-1.0)
     Traceback (most recent call last):
         ...
     ValueError: sigma must be between 1e-06 and 64, got -1
@@ -143,7 +143,7 @@ class MitchellFilter:
 
     Examples
     --------
-    >>> rw.MitchellFilter(b=0, c=0.5)
+    >>> rw.rendering.MitchellFilter(b=0, c=0.5)
     MitchellFilter(radius=2.0, b=0.0, c=0.5)
     """
 
@@ -178,7 +178,7 @@ class BlackmanHarrisFilter:
 
     Examples
     --------
-    >>> rw.BlackmanHarrisFilter(radius=2)
+    >>> rw.rendering.BlackmanHarrisFilter(radius=2)
     BlackmanHarrisFilter(radius=2.0)
     """
 
@@ -210,7 +210,7 @@ class LanczosFilter:
 
     Examples
     --------
-    >>> rw.LanczosFilter(lobes=2)
+    >>> rw.rendering.LanczosFilter(lobes=2)
     LanczosFilter(lobes=2)
     """
 
@@ -248,7 +248,7 @@ class CroppedFilter:
 
     Examples
     --------
-    >>> rw.CroppedFilter(rw.GaussianFilter()).filter
+    >>> rw.rendering.CroppedFilter(rw.rendering.GaussianFilter()).filter
     GaussianFilter(radius=1.5, sigma=0.5)
     """
 

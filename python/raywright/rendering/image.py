@@ -395,7 +395,7 @@ class Image:
 
         See Also
         --------
-        check_writable : Check a name before the render.
+        io.check_writable : Check a name before the render.
         Image.srgb : The 8-bit numbers.
 
         Examples

@@ -12,13 +12,13 @@ from ..integrators import AnyIntegrator, Path
 from ..scene.instance import AnyShape, Instance
 from ..scene.scene import Scene
 from ..shapes.mesh import face_count
+from .auto_options import StoppedError
 from .choices import Limits
 from .filters import Filter
 from .plan import Choice, RenderPlan
 from .progress import Report
 from .quantiles import quantiles
 from .samplers import Independent, Sampler
-from .ways import StoppedError
 
 if TYPE_CHECKING:
     from ..gpu.wavefront import Wavefront
@@ -69,7 +69,7 @@ class OnDevice:
         self._left = _left(integrator, asked, sampler, filter)
         if self._left:
             return
-        from ..gpu.looks import LeftError
+        from ..gpu.material_table import LeftError
 
         assert isinstance(integrator, Path)
         depths = integrator.max_depth, integrator.roulette_depth

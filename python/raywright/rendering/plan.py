@@ -17,7 +17,7 @@ class Choice:
 
     Examples
     --------
-    >>> rw.Choice("sampler", "Sobol", "batches are small")
+    >>> rw.rendering.Choice("sampler", "Sobol", "batches are small")
     Choice(what='sampler', chosen='Sobol', why='batches are small')
     """
 
@@ -89,7 +89,7 @@ class RenderPlan:
 
         Examples
         --------
-        >>> plan = rw.RenderPlan((rw.Choice("sampler", "Sobol", "it is named"),))
+        >>> plan = rw.rendering.RenderPlan((rw.rendering.Choice("sampler", "Sobol", "it is named"),))
         >>> plan.explained("sampler", "batches are small").rows[0].why
         'it is named; batches are small'
         """

@@ -17,22 +17,22 @@ from ..integrators import AnyIntegrator, Path, ProgressivePhotonMap, check_integ
 from ..integrators.base import Integrator
 from ..scene.scene import Scene
 from .aovs import covers, names_of, seen
+from .auto_options import StoppedError, followed
+from .build_image import doubted, doubts, made, overall
 from .choices import Limits, chosen, waves
 from .denoising import check_method
 from .filters import BoxFilter, Filter
-from .gathered import is_gathered, rate, with_bias
 from .halves import halves_of
 from .image import Image
 from .interrupts import ON_INTERRUPT, unless_terminated
 from .job import Job
-from .made import doubted, doubts, made, overall
 from .notebook import display
 from .on_device import OnDevice, check_device
+from .partial_image import AtRest, ImageSoFar, Sight
+from .photon_bias import is_gathered, rate, with_bias
 from .progress import Report, bar
 from .samplers import Sampler, Unnamed
 from .snapshots import Snapshots
-from .so_far import AtRest, ImageSoFar, Sight
-from .ways import StoppedError, followed
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -197,7 +197,7 @@ def render(
 
     See Also
     --------
-    Shot.render : Render with the settings of a scene file.
+    RenderSetup.render : Render with the settings of a scene file.
     render_frames : Render an animation.
     aovs : Auxiliary buffers without a picture.
     view : A window with the picture as it comes.

@@ -25,7 +25,7 @@ class Independent:
     --------
     >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), width=4, height=4)
     >>> scene = rw.Scene(rw.Sphere(), environment=1.0)
-    >>> image = rw.render(scene, camera, samples=4, sampler=rw.Independent(), progress=False)
+    >>> image = rw.render(scene, camera, samples=4, sampler=rw.rendering.Independent(), progress=False)
     >>> image.plan.sampler
     Independent()
     """
@@ -57,7 +57,7 @@ class Stratified:
 
     Examples
     --------
-    >>> rw.Stratified(batch=16)
+    >>> rw.rendering.Stratified(batch=16)
     Stratified(batch=16)
     """
 
@@ -93,7 +93,7 @@ class Halton:
 
     Examples
     --------
-    >>> rw.Halton(batch=16)
+    >>> rw.rendering.Halton(batch=16)
     Halton(batch=16)
     """
 
@@ -132,7 +132,7 @@ class Sobol:
     --------
     >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), width=4, height=4)
     >>> scene = rw.Scene(rw.Sphere(), environment=1.0)
-    >>> image = rw.render(scene, camera, samples=16, sampler=rw.Sobol(batch=4), progress=False)
+    >>> image = rw.render(scene, camera, samples=16, sampler=rw.rendering.Sobol(batch=4), progress=False)
     >>> image.plan.sampler
     Sobol(batch=4)
     """
@@ -171,7 +171,7 @@ class Lattice:
 
     Examples
     --------
-    >>> rw.Lattice(batch=8)
+    >>> rw.rendering.Lattice(batch=8)
     Lattice(batch=8)
     """
 

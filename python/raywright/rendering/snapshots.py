@@ -5,7 +5,7 @@ import weakref
 from collections.abc import Callable
 
 from .image import Image
-from .so_far import ImageSoFar
+from .partial_image import ImageSoFar
 
 # Least seconds between two pictures, and ten times their cost at least, so that they take a tenth of the
 # work.

@@ -33,7 +33,7 @@ class AcceleratorReport(Table[tuple[Any, ...]]):
     --------
     >>> scene = rw.Scene(rw.scenes.torus_knot(along=40, around=8))
     >>> camera = rw.Camera((0, 0, 9), (0, 0, 0), width=8, height=8)
-    >>> choices = {"bvh": rw.BVH(), "grid": rw.Grid()}
+    >>> choices = {"bvh": rw.BVH(), "grid": rw.accelerators.Grid()}
     >>> report = rw.report.accelerators(scene, camera, choices, repeats=1, check=20)
     >>> report.column("accelerator"), report.column("wrong")
     (('bvh', 'grid'), (0, 0))
@@ -56,7 +56,7 @@ class AcceleratorReport(Table[tuple[Any, ...]]):
         --------
         >>> scene = rw.Scene(rw.scenes.torus_knot(along=40, around=8))
         >>> camera = rw.Camera((0, 0, 9), (0, 0, 0), width=8, height=8)
-        >>> choices = {"bvh": rw.BVH(), "grid": rw.Grid()}
+        >>> choices = {"bvh": rw.BVH(), "grid": rw.accelerators.Grid()}
         >>> report = rw.report.accelerators(scene, camera, choices, repeats=1, check=20)
         >>> len(report.by_rays().rows)
         6
@@ -115,7 +115,7 @@ class AcceleratorReport(Table[tuple[Any, ...]]):
         --------
         >>> scene = rw.Scene(rw.scenes.torus_knot(along=40, around=8))
         >>> camera = rw.Camera((0, 0, 9), (0, 0, 0), width=8, height=8)
-        >>> choices = {"bvh": rw.BVH(), "grid": rw.Grid()}
+        >>> choices = {"bvh": rw.BVH(), "grid": rw.accelerators.Grid()}
         >>> report = rw.report.accelerators(scene, camera, choices, repeats=1, check=20)
         >>> len(report.rays_per_build([1000, 1e6]).rows)
         4
@@ -195,7 +195,7 @@ def accelerators(
     --------
     >>> scene = rw.Scene(rw.scenes.torus_knot(along=40, around=8))
     >>> camera = rw.Camera((0, 0, 9), (0, 0, 0), width=8, height=8)
-    >>> choices = {"bvh": rw.BVH(), "grid": rw.Grid()}
+    >>> choices = {"bvh": rw.BVH(), "grid": rw.accelerators.Grid()}
     >>> report = rw.report.accelerators(scene, camera, choices, repeats=1, check=20)
     >>> report.column("checked"), report.column("wrong")
     ((18, 18), (0, 0))
@@ -251,7 +251,7 @@ def rays_per_build(
     --------
     >>> scene = rw.Scene(rw.scenes.torus_knot(along=40, around=8))
     >>> camera = rw.Camera((0, 0, 9), (0, 0, 0), width=8, height=8)
-    >>> choices = {"bvh": rw.BVH(), "grid": rw.Grid()}
+    >>> choices = {"bvh": rw.BVH(), "grid": rw.accelerators.Grid()}
     >>> report = rw.report.rays_per_build(scene, choices, [1e3, 1e6], camera, repeats=1)
     >>> [column.name for column in report.columns]
     ['rays', 'accelerator', 'seconds', 'mrays', 'build_share']

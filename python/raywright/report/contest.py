@@ -57,7 +57,7 @@ class Measured:
     --------
     >>> scene = rw.Scene(rw.scenes.torus_knot(along=40, around=8))
     >>> camera = rw.Camera((0, 0, 9), (0, 0, 0), width=8, height=8)
-    >>> choices = {"bvh": rw.BVH(), "grid": rw.Grid()}
+    >>> choices = {"bvh": rw.BVH(), "grid": rw.accelerators.Grid()}
     >>> report = rw.report.accelerators(scene, camera, choices, repeats=1, check=20)
     >>> report.measured[0].name, sorted(report.measured[0].rays)
     ('bvh', ['diffuse', 'primary', 'shadow'])
@@ -137,7 +137,7 @@ class _Entry:
         return Measured(
             self.name,
             self.accelerator,
-            self.scene.accelerator,
+            self.scene.accelerator_info,
             statistics.median(self.builds),
             {name: rays.count for name, rays in self.rays.items()},
             {name: statistics.median(self.seconds[name]) / self.rays[name].count for name in self.rays},
@@ -166,7 +166,7 @@ class _Contest:
     def entry(self, name: str, accelerator: Accelerator) -> _Entry:
         """Build it, hold it against brute force, and find how many rays it has the time for."""
         scene = self._over(accelerator)
-        entry = _Entry(name, accelerator, scene, {}, {}, {}, {}, {}, [scene.accelerator.build_seconds])
+        entry = _Entry(name, accelerator, scene, {}, {}, {}, {}, {}, [scene.accelerator_info.build_seconds])
         for key, rays in self._sets.items():
             few = self._checked[key]
             began = time.perf_counter()
@@ -177,7 +177,9 @@ class _Contest:
             entry.wrong[key] = int(np.count_nonzero(np.logical_or.reduce(differs)))
             most = max(int(_LONGEST_SECONDS / max(per_ray, 1e-12)), 1)
             entry.rays[key] = timed = rays.thinned(most)
-            cost = scene.cost(timed.origins, timed.directions, t_max=timed.t_max, threads=self._threads)
+            cost = scene.traversal_cost(
+                timed.origins, timed.directions, t_max=timed.t_max, threads=self._threads
+            )
             entry.nodes[key], entry.primitives[key] = float(cost.nodes.mean()), float(cost.primitives.mean())
             entry.seconds[key] = []
         return entry
@@ -186,7 +188,7 @@ class _Contest:
         """Time every set of rays once, after a build if there is the time for one."""
         if build and sum(entry.builds) < _BUILD_SECONDS:
             entry.scene.rebuild()
-            entry.builds.append(entry.scene.accelerator.build_seconds)
+            entry.builds.append(entry.scene.accelerator_info.build_seconds)
         for key, rays in entry.rays.items():
             ask = entry.scene.occluded if rays.any_hit else entry.scene.intersect
             began = time.perf_counter()
@@ -199,4 +201,4 @@ def _answer(scene: Scene, rays: Rays, threads: int | None) -> Answer:
     if rays.any_hit:
         return (scene.occluded(rays.origins, rays.directions, t_max=rays.t_max, threads=threads),)
     hits = scene.intersect(rays.origins, rays.directions, t_max=rays.t_max, threads=threads)
-    return hits.t, hits.shape_id, hits.primitive
+    return hits.t, hits.shape_id, hits.primitive_id

@@ -81,7 +81,7 @@ def first_hits(scene: Scene, camera: AnyCamera, threads: int | None = 1, repeats
     by_tree = _core.first_hits(core, camera, np.array((0.5, 0.5)), threads)[4]
     pixels = camera.width * camera.height
     differ = wanted.t.view(np.int64) != found.t.view(np.int64)
-    differ |= (wanted.shape_id != found.shape_id) | (wanted.primitive != found.primitive)
+    differ |= (wanted.shape_id != found.shape_id) | (wanted.primitive_id != found.primitive_id)
     differ |= (wanted.uv.view(np.int64) != found.uv.view(np.int64)).any(axis=-1)
     ways: dict[str, Callable[[], object]] = {
         "rays at hand": lambda: scene.intersect(*rays, threads=threads),

@@ -280,7 +280,7 @@ def heatmap(
 
     See Also
     --------
-    Scene.cost : The counts of any rays.
+    Scene.traversal_cost : The counts of any rays.
     report.time_share : The shares of time.
 
     Notes
@@ -294,7 +294,7 @@ def heatmap(
     >>> scene = rw.Scene(rw.scenes.torus_knot(along=40, around=8))
     >>> camera = rw.Camera((0, 0, 9), (0, 0, 0), width=8, height=6)
     >>> heat = rw.report.heatmap(scene, camera, "primitives", repeats=0)
-    >>> bool((heat.counts == scene.cost(*camera.rays()).primitives).all())
+    >>> bool((heat.counts == scene.traversal_cost(*camera.rays()).primitives).all())
     True
     """
     if not isinstance(scene, Scene):
@@ -304,7 +304,7 @@ def heatmap(
     choice("what", what, get_args(What))
     repeats = integer("repeats", repeats, 0, 10_000)
     rays = camera.rays()
-    cost = scene.cost(*rays, threads=threads)
+    cost = scene.traversal_cost(*rays, threads=threads)
     counts = cost.nodes if what == "nodes" else cost.primitives
     most = max(int(counts.max()), 1) if most is None else integer("most", most, 1)
     share = time_share(scene, rays, repeats) if repeats else None

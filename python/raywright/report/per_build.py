@@ -58,7 +58,7 @@ class RaysPerBuild(Table[BuildRow]):
     --------
     >>> scene = rw.Scene(rw.scenes.torus_knot(along=40, around=8))
     >>> camera = rw.Camera((0, 0, 9), (0, 0, 0), width=8, height=8)
-    >>> choices = {"bvh": rw.BVH(), "grid": rw.Grid()}
+    >>> choices = {"bvh": rw.BVH(), "grid": rw.accelerators.Grid()}
     >>> report = rw.report.accelerators(scene, camera, choices, repeats=1, check=20)
     >>> table = report.rays_per_build([1000])
     >>> sorted(table.column("accelerator"))
@@ -78,7 +78,7 @@ class RaysPerBuild(Table[BuildRow]):
         --------
         >>> scene = rw.Scene(rw.scenes.torus_knot(along=40, around=8))
         >>> camera = rw.Camera((0, 0, 9), (0, 0, 0), width=8, height=8)
-        >>> choices = {"bvh": rw.BVH(), "grid": rw.Grid()}
+        >>> choices = {"bvh": rw.BVH(), "grid": rw.accelerators.Grid()}
         >>> report = rw.report.accelerators(scene, camera, choices, repeats=1, check=20)
         >>> len(report.rays_per_build([1000, 10000]).best().rows)
         2

@@ -72,7 +72,7 @@ class Chart:
     ----------
     x, y : str
         Columns of numbers, each on a logarithmic axis.
-    colour : str
+    color : str
         Rows that agree in this column have one colour.
     marker : str, optional
         Rows that agree in this column have one marker.
@@ -85,13 +85,13 @@ class Chart:
 
     Examples
     --------
-    >>> rw.report.Chart("seconds", "relmse", colour="contender", lines=True).x
+    >>> rw.report.Chart("seconds", "relmse", color="contender", lines=True).x
     'seconds'
     """
 
     x: str
     y: str
-    colour: str
+    color: str
     marker: str | None = None
     lines: bool = False
 
@@ -317,7 +317,7 @@ class Table(Generic[Row]):
         --------
         >>> from matplotlib import pyplot as plt
         >>> columns = [rw.report.Column(name, name, ".2f") for name in ("x", "y", "kind")]
-        >>> chart = rw.report.Chart("x", "y", colour="kind")
+        >>> chart = rw.report.Chart("x", "y", color="kind")
         >>> table = rw.report.Table("Squares", columns, [(1.0, 1.0, "a"), (2.0, 4.0, "a")], chart=chart)
         >>> _, axes = plt.subplots()
         >>> axes = table.plot(axes)
@@ -334,25 +334,25 @@ class Table(Generic[Row]):
     def _draw(self, ax: Any, chart: Chart) -> None:
         across, up = self.columns[self._at(chart.x)], self.columns[self._at(chart.y)]
         xs, ys = (_drawable(self.column(column.name)) for column in (across, up))
-        colours = self.column(chart.colour)
+        colours = self.column(chart.color)
         markers = self.column(chart.marker) if chart.marker else ("",) * len(self.rows)
         shapes = dict(zip(dict.fromkeys(markers), "osD^vP*Xhp<>" * (len(self.rows) // 12 + 1), strict=False))
         shades = {name: f"C{i}" for i, name in enumerate(dict.fromkeys(colours))}
         style = "-" if chart.lines else ""
-        for colour, marker in dict.fromkeys(zip(colours, markers, strict=True)):
-            mine = [i for i, key in enumerate(zip(colours, markers, strict=True)) if key == (colour, marker)]
+        for color, marker in dict.fromkeys(zip(colours, markers, strict=True)):
+            mine = [i for i, key in enumerate(zip(colours, markers, strict=True)) if key == (color, marker)]
             points = [(xs[i], ys[i]) for i in mine if xs[i] is not None and ys[i] is not None]
             ax.plot(
                 [p[0] for p in points],
                 [p[1] for p in points],
-                color=shades[colour],
+                color=shades[color],
                 marker=shapes[marker],
                 linestyle=style,
             )
         ax.set(xscale="log", yscale="log", xlabel=across.heading, ylabel=up.heading, title=self.title)
         ax.grid(True, which="major", alpha=0.3)
         # Separate legend entries: one for each colour, one for each marker, or one for both.
-        both = chart.marker == chart.colour
+        both = chart.marker == chart.color
         for name, shade in shades.items():
             key = {"marker": shapes[name], "linestyle": style} if both else {"linewidth": 5}
             ax.plot([], [], color=shade, label=name, **key)

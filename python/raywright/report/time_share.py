@@ -127,7 +127,7 @@ def time_share(scene: Scene, rays: Any, repeats: int = 7) -> TimeShare:
             began = time.perf_counter()
             scene.intersect(*piece, t_max=one.t_max, threads=1)
             seconds[turn, i] = time.perf_counter() - began
-    costs = [scene.cost(*piece, t_max=one.t_max, threads=1) for piece in pieces]
+    costs = [scene.traversal_cost(*piece, t_max=one.t_max, threads=1) for piece in pieces]
     counts = np.array([[c.nodes.sum(), c.primitives.sum(), c.nodes.size] for c in costs], np.float64)
     return fitted(counts, np.median(seconds, axis=0))
 

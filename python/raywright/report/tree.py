@@ -23,7 +23,7 @@ def tree(
     Parameters
     ----------
     scene : Scene
-        Scene with the tree; `Scene.tree` gives the boxes themselves.
+        Scene with the tree; `Scene.tree_boxes` gives the boxes themselves.
     depth : int, optional
         The last level to be drawn; all, if not given.
     plane : {"xy", "xz", "yz"}
@@ -51,7 +51,7 @@ def tree(
 
     See Also
     --------
-    Scene.tree : The boxes.
+    Scene.tree_boxes : The boxes.
 
     Examples
     --------
@@ -65,7 +65,7 @@ def tree(
     if not isinstance(scene, Scene):
         raise TypeError(f"scene must be a Scene, got {type(scene).__name__}")
     choice("plane", plane, get_args(Plane))
-    boxes = scene.tree()
+    boxes = scene.tree_boxes()
     deepest = int(boxes.depth[-1]) if len(boxes) else 0
     last = deepest if depth is None else min(integer("depth", depth, 0), deepest)
     drawn = boxes.depth <= last
@@ -84,7 +84,7 @@ def tree(
         ax.autoscale_view()
         ax.set_aspect("equal")
         count = f"{np.count_nonzero(drawn):,} {'leaves' if leaves else 'boxes'}"
-        title = f"{scene.accelerator.kind}\n{count} to depth {last} of {deepest}"
+        title = f"{scene.accelerator_info.kind}\n{count} to depth {last} of {deepest}"
         ax.set(xlabel=plane[0], ylabel=plane[1], title=title)
 
     return plotted(ax, draw, figsize=(7, 7))

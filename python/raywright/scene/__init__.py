@@ -1,1 +1,12 @@
 """Scenes: shapes and lights, compiled for rays."""
+
+from .instance import Instance
+from .plan import Plan, PlanRow
+from .scene import Scene
+
+__all__ = [
+    "Instance",
+    "Plan",
+    "PlanRow",
+    "Scene",
+]

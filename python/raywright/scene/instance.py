@@ -92,9 +92,9 @@ class Instance:
 
     Notes
     -----
-    ``hits.instance`` is the copy, and ``hits.primitive`` the place in it, numbered flat: shape after shape, a
-    mesh by its faces, an instance by its copies and for each of them all of its contents. `locate` takes such
-    a number apart.
+    ``hits.instance_id`` is the copy, and ``hits.primitive_id`` the place in it, numbered flat: shape after
+    shape, a mesh by its faces, an instance by its copies and for each of them all of its contents. `locate`
+    takes such a number apart.
 
     Rays are transformed to the space of the shapes by the inverse of the matrix, rounded to float64, and hits
     are exact for the transformed ray. Compared with transformed vertices, hits differ by the rounding of
@@ -111,7 +111,7 @@ class Instance:
     >>> places[:, 0, 3] = [0, 5, 10]
     >>> scene = rw.Scene(rw.Instance(rw.Sphere(), places, name="row"))
     >>> hits = scene.intersect([[0, 0, 3], [10, 0, 3], [20, 0, 3]], [0, 0, -1])
-    >>> hits.instance.tolist(), hits.t.tolist()
+    >>> hits.instance_id.tolist(), hits.t.tolist()
     ([0, 2, -1], [2.0, 2.0, inf])
     """
 
@@ -167,13 +167,13 @@ class Instance:
         """Number of primitives in one copy, nested copies included."""
         return self._first[-1]
 
-    def locate(self, primitive: int) -> Location:
-        """Decode a number of ``hits.primitive``.
+    def locate(self, primitive_id: int) -> Location:
+        """Decode a number of ``hits.primitive_id``.
 
         Parameters
         ----------
-        primitive : int
-            Number of a primitive of one copy, as in ``hits.primitive``.
+        primitive_id : int
+            Number of a primitive of one copy, as in ``hits.primitive_id``.
 
         Returns
         -------
@@ -199,7 +199,7 @@ class Instance:
         >>> copies.locate(1).shape == rw.Box()
         True
         """
-        rest = integer("primitive", primitive, 0, self.primitives - 1)
+        rest = integer("primitive_id", primitive_id, 0, self.primitives - 1)
         within = self
         path: list[tuple[int, int]] = []
         while True:
@@ -212,22 +212,22 @@ class Instance:
             path.append((shape_id, copy))
             within = shape
 
-    def parts(self, primitive: NDArray[np.integer[Any]]) -> Iterator[tuple[AnyShape, Places, Places]]:
+    def parts(self, primitive_id: NDArray[np.integer[Any]]) -> Iterator[tuple[AnyShape, Places, Places]]:
         """Yield each of the shapes that primitives are of, which of them are, and their numbers in it.
 
         Those of an instance within are numbered as its own `parts` takes them.
 
         Parameters
         ----------
-        primitive : array of ints
-            Numbers of primitives of one copy, as in ``hits.primitive``.
+        primitive_id : array of ints
+            Numbers of primitives of one copy, as in ``hits.primitive_id``.
 
         Yields
         ------
         shape : Mesh, another shape or Instance
             One of the shapes that occur.
         which : array of ints
-            Indices into `primitive` of the entries on this shape.
+            Indices into `primitive_id` of the entries on this shape.
         number : array of ints
             Their faces on this shape.
 
@@ -243,10 +243,10 @@ class Instance:
         Sphere [1] [0]
         Box [0, 2] [0, 0]
         """
-        shape_id = np.searchsorted(self._first, primitive, "right") - 1
+        shape_id = np.searchsorted(self._first, primitive_id, "right") - 1
         for i in np.unique(shape_id):
             which = np.flatnonzero(shape_id == i)
-            shape, own = self.shapes[i], primitive[which] - self._first[i]
+            shape, own = self.shapes[i], primitive_id[which] - self._first[i]
             yield shape, which, own % shape.primitives if isinstance(shape, Instance) else own
 
     def moved(self, transform: ArrayLike, transform_end: ArrayLike | None = None) -> "Instance":

@@ -18,22 +18,22 @@ from ..lights import lights as checked_lights
 from ..locks import Lock
 from ..media.medium import Medium
 from ..media.medium import medium as checked_medium
-from ..query.flats import FlatArrays, flat_arrays
+from ..query.gpu_arrays import GpuArrays, flat_arrays
 from ..query.masks import names_of
 from ..query.queries import Queries
 from ..query.trees import TreeBoxes
 from ..shapes.mesh import face_count, has_noise, moved
 from ..shapes.welding import Weld, weld_tolerance
-from .arrivals import Arrival
 from .instance import AnyShape, Instance, Shapes, closed, meshes
 from .plan import Plan, PlanRow
 from .progress import BuildProgress, check_progress, watcher
 from .shown import scene_html
+from .unpickle_cache import Arrival
 from .wavelengths import reason
 
 Precision: TypeAlias = Literal["auto", "single", "double"]
-Quality: TypeAlias = Literal["fast build", "balanced", "fast rays"]
-ShadingNormals: TypeAlias = Literal["faded", "as given"]
+Quality: TypeAlias = Literal["low", "medium", "high"]
+ShadingNormals: TypeAlias = Literal["faded", "raw"]
 Held = TypeVar("Held", covariant=True)
 _BINNED_BVH = BVH()
 _ARGUMENTS = (
@@ -52,7 +52,7 @@ _ARGUMENTS = (
 class Device(Protocol[Held]):
     """A device that holds a scene: a `Gpu`."""
 
-    def hold(self, scene: "Scene") -> AbstractContextManager[Held]:
+    def upload(self, scene: "Scene") -> AbstractContextManager[Held]:
         """Hold a scene during a ``with`` block."""
 
 
@@ -83,18 +83,18 @@ class Scene(Queries):
         fastest, "double" does not round. "auto" loses no digit: vertices are float32 if all of them are
         float32 numbers, as those of most binary files are, and float64 otherwise. Either way hits are exact
         for the stored vertices. "double" costs nothing if all vertices are float32 numbers anyway.
-    quality : {"balanced", "fast build", "fast rays"}
-        Effort spent on the accelerator's build to make rays faster. Except with "fast build": if the geometry
+    quality : {"medium", "low", "high"}
+        Effort spent on the accelerator's build to make rays faster. Except with "low": if the geometry
         is rotated as a whole, oriented bounding boxes are used, and long diagonal primitives may be split, by
-        spatial splits if they are few and before the build if they are many. "fast rays" splits more of them.
+        spatial splits if they are few and before the build if they are many. "high" splits more of them.
         `refit` rebuilds a tree that holds pieces.
 
     medium : Homogeneous or GridMedium, optional
         Medium outside of all shapes: haze, fog, sea. None is clear.
-    shading_normals : {"faded", "as given"}
+    shading_normals : {"faded", "raw"}
         Treatment of shading normals that differ from those of faces: of vertices, bumps and normal maps.
         "faded" lets light fade towards the horizon of the face, so that facets do not show at grazing angles,
-        and bends normals that face away towards the viewer. "as given" does neither, as other renderers: see
+        and bends normals that face away towards the viewer. "raw" does neither, as other renderers: see
         Notes.
     weld : "auto", float or None
         Distance at which corners of meshes are merged, in the scene's unit: see Notes. None merges equal
@@ -120,11 +120,11 @@ class Scene(Queries):
     -----
     With "auto", only vertices that faces use count. One mesh that has digits beyond float32 keeps the digits
     of all meshes of the scene, so that vertices which they share stay shared; the shapes of an `Instance` are
-    a group of their own in this. `plan` has the displacement by rounding, and ``accelerator.precision`` the
-    result. If "single" moves a vertex by more than 1e-7 of the extent of its mesh, there is one
+    a group of their own in this. `plan` has the displacement by rounding, and ``accelerator_info.precision``
+    the result. If "single" moves a vertex by more than 1e-7 of the extent of its mesh, there is one
     RuntimeWarning, with the figure, when the scene is compiled.
 
-    With "as given", light counts by its cosine to shading normals alone, and these decide which side is seen:
+    With "raw", light counts by its cosine to shading normals alone, and these decide which side is seen:
     a `TwoSided` whose shading normal points away from the viewer shows its back. Light on one side of a face
     still does not reach the other. Under bumps and normal maps, light has to come from the same side of the
     normal that the surface has without them, and a share of it counts (Estevez, Lecocq and Stein, "A
@@ -164,7 +164,7 @@ class Scene(Queries):
         environment: Environment | Sequence[Environment] | ArrayLike | None = None,
         accelerator: Accelerator = _BINNED_BVH,
         precision: Precision = "auto",
-        quality: Quality = "balanced",
+        quality: Quality = "medium",
         medium: Medium | None = None,
         shading_normals: ShadingNormals = "faded",
         weld: Weld = "auto",
@@ -219,7 +219,7 @@ class Scene(Queries):
         return self._environment
 
     @property
-    def accelerator_choice(self) -> Accelerator:
+    def accelerator(self) -> Accelerator:
         """The argument `accelerator`."""
         return self._accelerator
 
@@ -230,7 +230,7 @@ class Scene(Queries):
 
     @property
     def quality(self) -> Quality:
-        """The argument `quality`: "fast build", "balanced" or "fast rays"."""
+        """The argument `quality`: "low", "medium" or "high"."""
         return self._quality
 
     @property
@@ -240,7 +240,7 @@ class Scene(Queries):
 
     @property
     def shading_normals(self) -> ShadingNormals:
-        """The argument `shading_normals`: "faded" or "as given"."""
+        """The argument `shading_normals`: "faded" or "raw"."""
         return self._shading_normals
 
     @property
@@ -254,7 +254,7 @@ class Scene(Queries):
         return self._wavelengths
 
     @property
-    def accelerator(self) -> _core.AcceleratorInfo:
+    def accelerator_info(self) -> _core.AcceleratorInfo:
         """Statistics of the built accelerator: kind, nodes, leaves, depth, bytes, build_seconds, sah_cost.
 
         Its `precision` is that of the vertices that it holds, "single" or "double"; instances have their own.
@@ -354,8 +354,8 @@ class Scene(Queries):
         Notes
         -----
         The accelerator is rebuilt if it cannot be refitted, for example if other faces than before have a
-        corner that is NaN or infinite, or if it holds pieces of faces; ``scene.accelerator.kind`` then does
-        not end in "refitted". With ``quality="fast build"`` the default accelerator holds no pieces. A scene
+        corner that is NaN or infinite, or if it holds pieces of faces; ``scene.accelerator_info.kind`` then
+        does not end in "refitted". With ``quality="low"`` the default accelerator holds no pieces. A scene
         without queries so far is built by the first one.
 
         Examples
@@ -438,10 +438,10 @@ class Scene(Queries):
         >>> scene = rw.Scene(knot)
         >>> scene.build(progress=False)
         >>> growth = scene.refit(knot.vertices * [1, 3, 1])
-        >>> scene.accelerator.kind.endswith("refitted")
+        >>> scene.accelerator_info.kind.endswith("refitted")
         True
         >>> scene.rebuild(progress=False)
-        >>> scene.accelerator.kind.endswith("refitted")
+        >>> scene.accelerator_info.kind.endswith("refitted")
         False
         """
         check_progress(progress)
@@ -510,7 +510,7 @@ class Scene(Queries):
 
         See Also
         --------
-        RenderPlan : Options that a render has chosen.
+        rendering.RenderPlan : Options that a render has chosen.
 
         Examples
         --------
@@ -524,7 +524,7 @@ class Scene(Queries):
         kernel, rows = _core.plan(self._compiled())
         return Plan(kernel, tuple(PlanRow(*row) for row in rows))
 
-    def tree(self) -> TreeBoxes:
+    def tree_boxes(self) -> TreeBoxes:
         """Return the boxes of the accelerator's nodes, from the root down.
 
         Returns
@@ -540,25 +540,25 @@ class Scene(Queries):
         See Also
         --------
         report.tree : Plot the boxes of a tree.
-        Scene.flat : The tree as arrays for graphics processors.
+        Scene.gpu_arrays : The tree as arrays for graphics processors.
 
         Examples
         --------
         >>> scene = rw.Scene(rw.scenes.torus_knot(along=40, around=8))
-        >>> boxes = scene.tree()
+        >>> boxes = scene.tree_boxes()
         >>> boxes.depth[:3].tolist(), boxes.corners.shape[1:]
         ([0, 1, 1], (8, 3))
         >>> int(boxes.primitives[boxes.leaf].sum()) >= 40 * 8 * 2
         True
         """
-        boxes = _core.tree(self._compiled())
+        boxes = _core.tree_boxes(self._compiled())
         if boxes is None:
             kind = type(self._accelerator).__name__
             raise ValueError(f"a {kind} has no tree of boxes: use BVH, KdTree or Octree")
         depth, primitives, corners = boxes
         return TreeBoxes(depth, primitives, corners.reshape(-1, 8, 3))
 
-    def flat(self) -> FlatArrays:
+    def gpu_arrays(self) -> GpuArrays:
         """Return the scene as arrays without pointers, as graphics processors take it.
 
         A binary tree is built for it, as the accelerator says if that is a `BVH`, and as the default does
@@ -566,23 +566,23 @@ class Scene(Queries):
 
         Returns
         -------
-        FlatArrays
+        GpuArrays
             Nodes of 32 bytes, triangles of 48, and where they are.
 
         See Also
         --------
-        Scene.tree : The boxes of the accelerator.
-        Scene.on : Hold the scene on a graphics processor.
+        Scene.tree_boxes : The boxes of the accelerator.
+        Scene.on_device : Hold the scene on a graphics processor.
 
         Examples
         --------
-        >>> flat = rw.Scene(rw.scenes.torus_knot(along=40, around=8)).flat()
+        >>> flat = rw.Scene(rw.scenes.torus_knot(along=40, around=8)).gpu_arrays()
         >>> len(flat.triangles), flat.nodes.dtype.itemsize
         (640, 32)
         """
         return flat_arrays(_core.FlatScene(self._compiled(), self._accelerator, self._quality, True))
 
-    def on(self, device: Device[Held]) -> AbstractContextManager[Held]:
+    def on_device(self, device: Device[Held]) -> AbstractContextManager[Held]:
         """Copy the scene to a device, which then answers ray queries.
 
         Parameters
@@ -603,13 +603,13 @@ class Scene(Queries):
         See Also
         --------
         Gpu : A graphics processor.
-        Scene.flat : The arrays that are copied.
+        Scene.gpu_arrays : The arrays that are copied.
 
         Examples
         --------
         >>> scene = rw.Scene(rw.Sphere())
         >>> try:
-        ...     scene.on("a device")
+        ...     scene.on_device("a device")
         ... except TypeError as error:
         ...     print(error)
         device must be a Gpu, got 'a device'
@@ -721,7 +721,7 @@ class Scene(Queries):
             parts.append(repr(self._environment))
         parts.append(repr(self._accelerator))
         parts += [f"precision={self._precision!r}"] if self._precision != "auto" else []
-        parts += [f"quality={self._quality!r}"] if self._quality != "balanced" else []
+        parts += [f"quality={self._quality!r}"] if self._quality != "medium" else []
         parts += [f"medium={self._medium!r}"] if self._medium is not None else []
         parts += [f"shading_normals={self._shading_normals!r}"] if self._shading_normals != "faded" else []
         parts += [f"weld={self._weld!r}"] if self._weld != "auto" else []

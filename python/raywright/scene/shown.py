@@ -37,9 +37,9 @@ def _rows(scene: Any) -> Iterator[tuple[str, str]]:
         if getattr(scene, name) is not None:
             yield name, repr(getattr(scene, name))
     if scene._core is None and (faces > _QUICK or copies):
-        yield "accelerator", f"{scene.accelerator_choice!r}, built by the first query or .build()"
+        yield "accelerator", f"{scene.accelerator!r}, built by the first query or .build()"
         return
-    info, bounds = scene.accelerator, scene.bounds
+    info, bounds = scene.accelerator_info, scene.bounds
     if bounds is not None:
         yield "bounds", " to ".join(f"({', '.join(f'{x:.6g}' for x in corner)})" for corner in bounds)
     yield "precision", info.precision

@@ -15,7 +15,7 @@ def described(name: str, scene: Scene) -> str:
     meshes = [shape for shape in scene.shapes if isinstance(shape, Mesh)]
     copies = sum(len(shape) for shape in scene.shapes if isinstance(shape, Instance))
     others = len(scene.shapes) - len(meshes)
-    info = scene.accelerator
+    info = scene.accelerator_info
     size = scene.bytes
     cracks, junctions = (sum(counts) for counts in zip((0, 0), *map(open_edges, meshes), strict=True))
     rows = [

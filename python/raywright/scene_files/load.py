@@ -10,8 +10,8 @@ import numpy as np
 
 from ..arrays import choice
 from ..mesh_files import meshes
+from ..rendering.render_setup import RenderSetup
 from ..rendering.samplers import Sampler
-from ..rendering.shot import Shot
 from ..scene.framing import outline
 from ..shapes.welding import Weld, weld_tolerance
 from .mitsuba import from_mitsuba
@@ -37,7 +37,7 @@ def load(
     sampler: Sampler | None = None,
     weld: Weld = "auto",
     **parameters: Any,
-) -> Shot:
+) -> RenderSetup:
     """Read a scene, or a mesh, with the camera, lights and options of a picture.
 
     A file with light is shown in its own light: lights, or surfaces that give off enough, 0.02 W·sr⁻¹·m⁻² or
@@ -70,7 +70,7 @@ def load(
 
     Returns
     -------
-    Shot
+    RenderSetup
         ``shot.render()`` makes a picture of it.
 
     Raises
@@ -123,7 +123,7 @@ def _read(
     height: int | None,
     weld: Weld,
     parameters: dict[str, Any],
-) -> Shot:
+) -> RenderSetup:
     if not path.exists():
         raise FileNotFoundError(errno.ENOENT, "no such file", str(path))
     suffix = path.suffix.lower()
@@ -154,6 +154,6 @@ def _read(
     return replace(shot, scene=shot.scene.replace(weld=weld))
 
 
-def _welded(shot: Shot, weld: Weld) -> Shot:
+def _welded(shot: RenderSetup, weld: Weld) -> RenderSetup:
     """Return the shot with corners of meshes put in one place that differ by rounding."""
     return replace(shot, scene=shot.scene.replace(weld=weld).welded())

@@ -11,7 +11,7 @@ from ..cameras import AnyCamera
 from ..lights import Emission, Light
 from ..lights.emission import Emitted
 from ..mesh_files.look import linear
-from ..rendering.shot import Shot
+from ..rendering.render_setup import RenderSetup
 from ..scene.framing import framed
 from ..scene.instance import AnyShape, Instance, meshes
 from ..scene.scene import Scene
@@ -33,7 +33,7 @@ def shown(
     up: Literal["y", "z"] = "y",
     width: int | None = None,
     height: int | None = None,
-) -> Shot:
+) -> RenderSetup:
     """Return a shot of a file's contents.
 
     Everything is shown as it is if there is light: if there are lights, if anything shines and there is a
@@ -64,11 +64,11 @@ def shown(
     radiance = own_radiance(parts)
     if camera is not None:
         scene = Scene(parts, lights) if lights or radiance > 0 else lit(parts, camera)
-        return Shot(scene, camera).resized(width, height)
+        return RenderSetup(scene, camera).resized(width, height)
     size = size_of(width, height)
     if lights or radiance >= _ENOUGH:
-        return Shot(Scene(parts, lights), framed(parts, up, *size))
-    return Shot(*studio(parts, up, *size))
+        return RenderSetup(Scene(parts, lights), framed(parts, up, *size))
+    return RenderSetup(*studio(parts, up, *size))
 
 
 def size_of(width: int | None, height: int | None) -> tuple[int, int]:

@@ -19,12 +19,12 @@ from .wall import diagonal_wall
 _VIEWS = {
     "stadium": ((0.0, 0.35, 0.75), (0.0, 0.1, 0.0)),
     "terrain": ((0.0, 16.0, 46.0), (0.0, 3.0, 0.0)),
-    "straight wall": ((0.0, 0.0, 12.0), (0.0, 0.0, 0.0)),
-    "diagonal wall": ((0.0, 0.0, 12.0), (0.0, 0.0, 0.0)),
+    "straight_wall": ((0.0, 0.0, 12.0), (0.0, 0.0, 0.0)),
+    "diagonal_wall": ((0.0, 0.0, 12.0), (0.0, 0.0, 0.0)),
     "soup": ((1.7, 1.4, 2.0), (0.5, 0.5, 0.5)),
     "city": ((-260.0, 190.0, 420.0), (0.0, 20.0, 0.0)),
     "room": (EYE, TARGET),
-    "turned room": (EYE, TARGET),
+    "turned_room": (EYE, TARGET),
     "forest": ((0.0, 12.0, 60.0), (0.0, 3.0, 0.0)),
 }
 _FOV = 50.0
@@ -40,13 +40,13 @@ def classics(
 
     - ``"stadium"``: all detail in one place, `teapot_in_stadium`. Grids collapse.
     - ``"terrain"``: detail evenly spread, `terrain`. Grids do well.
-    - ``"straight wall"`` and ``"diagonal wall"``: `diagonal_wall` at 0 and at 45 degrees. Boxes fit the one
+    - ``"straight_wall"`` and ``"diagonal_wall"``: `diagonal_wall` at 0 and at 45 degrees. Boxes fit the one
       and not the other.
     - ``"soup"``: no order at all, `soup`.
     - ``"city"``: large and small side by side, `city`.
     - ``"forest"``: a thousand copies of a few trees, `forest`: what is seen is a thousand times what is kept,
       and triangles and copies have an accelerator each.
-    - ``"room"`` and ``"turned room"``: long thin boxes seen from inside, `room`; and the same, camera and
+    - ``"room"`` and ``"turned_room"``: long thin boxes seen from inside, `room`; and the same, camera and
       all, turned by 45 degrees about the y axis.
 
     Parameters
@@ -77,7 +77,7 @@ def classics(
     --------
     >>> scenes = rw.scenes.classics(triangles=1000, width=8, height=8)
     >>> sorted(scenes)
-    ['city', 'diagonal wall', 'forest', 'room', 'soup', 'stadium', 'straight wall', 'terrain', 'turned room']
+    ['city', 'diagonal_wall', 'forest', 'room', 'soup', 'stadium', 'straight_wall', 'terrain', 'turned_room']
     """
     count, seed = integer("triangles", triangles, 1000), seed_number(seed, None)
     # Shares as they are by default: two thirds of a stadium are its teapot, half of a terrain its grass.
@@ -87,12 +87,12 @@ def classics(
     made: dict[str, Shapes] = {
         "stadium": teapot_in_stadium(divisions, tiers, around),
         "terrain": terrain(max(round((count / 4) ** 0.5), 1), count // 2, seed),
-        "straight wall": diagonal_wall(count // 12, 0.0),
-        "diagonal wall": diagonal_wall(count // 12, 45.0),
+        "straight_wall": diagonal_wall(count // 12, 0.0),
+        "diagonal_wall": diagonal_wall(count // 12, 45.0),
         "soup": soup(count, seed=seed),
         "city": city(max(round((count / 540) ** 0.5), 1), seed),
         "room": room(count, seed),
-        "turned room": turned(room(count, seed), 45.0),
+        "turned_room": turned(room(count, seed), 45.0),
         "forest": forest(
             1000, max(count // 10_000, 2), count // max(count // 10_000, 2), seed=seed
         ).instances(),
@@ -100,7 +100,7 @@ def classics(
     result = {}
     for name, shapes in made.items():
         eye, target = (np.array(point, np.float64) for point in _VIEWS[name])
-        if name == "turned room":
+        if name == "turned_room":
             eye, target = (point @ rotation(45.0).T for point in (eye, target))
         result[name] = Scene(shapes), Camera(eye, target, fov=_FOV, width=width, height=height)
     return result

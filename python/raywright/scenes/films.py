@@ -36,7 +36,7 @@ def soap_bubble(width: int = 480, height: int = 480) -> tuple[Scene, Camera]:
 
     See Also
     --------
-    SoapFilm : The material.
+    materials.SoapFilm : The material.
 
     Examples
     --------
@@ -95,7 +95,7 @@ def oil_on_water(width: int = 480, height: int = 320) -> tuple[Scene, Camera]:
 
     See Also
     --------
-    ThinFilm : The material.
+    materials.ThinFilm : The material.
 
     Examples
     --------

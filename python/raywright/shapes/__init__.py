@@ -9,7 +9,7 @@ from .implicit import Implicit
 from .paraboloid import Paraboloid
 from .plane import Plane
 from .polygon import Polygon
-from .shape import Shape
+from .shape import Shape as Shape
 from .sphere import Sphere
 from .torus import Torus
 
@@ -23,7 +23,6 @@ __all__ = [
     "Paraboloid",
     "Plane",
     "Polygon",
-    "Shape",
     "Sphere",
     "Torus",
 ]

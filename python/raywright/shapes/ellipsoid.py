@@ -51,7 +51,7 @@ class Ellipsoid(Shape):
 
     Examples
     --------
-    >>> egg = rw.Ellipsoid(semi_axes=(1, 1, 2))
+    >>> egg = rw.shapes.Ellipsoid(semi_axes=(1, 1, 2))
     >>> rw.Scene(egg).intersect([[0, 0, 9], [9, 0, 0]], [[0, 0, -1], [-1, 0, 0]]).t.tolist()
     [7.0, 8.0]
     """

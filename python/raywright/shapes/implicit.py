@@ -61,7 +61,7 @@ class Implicit(Shape):
 
     Examples
     --------
-    >>> ball = rw.Implicit("x**2 + y**2 + z**2 - 1", min=(-2, -2, -2), max=(2, 2, 2))
+    >>> ball = rw.shapes.Implicit("x**2 + y**2 + z**2 - 1", min=(-2, -2, -2), max=(2, 2, 2))
     >>> rw.Scene(ball).intersect_all([0, 0, 5], [0, 0, -1]).t.round(9).tolist()
     [4.0, 6.0]
     """

@@ -56,7 +56,7 @@ class Paraboloid(Shape):
 
     Examples
     --------
-    >>> dish = rw.Paraboloid((0, 0, 0), (0, 0, 1), radius=2)
+    >>> dish = rw.shapes.Paraboloid((0, 0, 0), (0, 0, 1), radius=2)
     >>> rw.Scene(dish).intersect([[1, 0, 9], [0, 0, 9]], [0, 0, -1]).t.tolist()
     [8.75, 9.0]
     """

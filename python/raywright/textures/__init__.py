@@ -11,7 +11,7 @@ from .noise import Noise
 from .product import ProductTexture
 from .spectrum import Spectrum
 from .stripes import Stripes
-from .texture import Texture
+from .texture import Texture as Texture
 from .transform import ObjectTransform, UvTransform
 from .vertex_colors import VertexColors
 from .wood import Wood
@@ -29,7 +29,6 @@ __all__ = [
     "ProductTexture",
     "Spectrum",
     "Stripes",
-    "Texture",
     "UvTransform",
     "VertexColors",
     "Wood",

@@ -40,7 +40,8 @@ class Checker(Texture):
     Examples
     --------
     >>> floor = rw.Plane(material=rw.Diffuse(rw.Checker(0.2, 0.8, transform=2)))
-    >>> rays = rw.Rays(np.array([[0.1, 0.1, 1.0], [0.6, 0.1, 1]]), np.array([[0, 0, -1.0]] * 2), np.zeros(2))
+    >>> rays = rw.query.Rays(np.array([[0.1, 0.1, 1.0], [0.6, 0.1, 1]]), np.array([[0, 0, -1.0]] * 2),
+    ... np.zeros(2))
     >>> rw.Scene(floor).interactions(rays).albedo[:, 0].round(6).tolist()
     [0.2, 0.8]
     """

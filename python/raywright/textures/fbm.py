@@ -61,7 +61,7 @@ class FBm(Texture):
 
     Examples
     --------
-    >>> clouds = rw.FBm(0.0, 1.0, octaves=4)
+    >>> clouds = rw.textures.FBm(0.0, 1.0, octaves=4)
     >>> clouds.octaves, clouds.range
     (4, ((0.0, 0.0, 0.0), (1.0, 1.0, 1.0)))
     """

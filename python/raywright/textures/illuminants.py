@@ -55,7 +55,7 @@ _TOLD: dict[str, Callable[[], NDArray[np.float64]]] = {
 
 
 class Illuminants(Mapping[str, Spectrum]):
-    """Standard illuminants by name, each of a luminance of 1: ``5 * rw.illuminants["A"]``.
+    """Standard illuminants by name, each of a luminance of 1: ``5 * rw.textures.illuminants["A"]``.
 
     "A" is a light bulb, "D65" is daylight, which is white here, "E" is the same at all wavelengths, and "F2",
     "F7" and "F11" are fluorescent lamps (CIE 015:2018).
@@ -71,10 +71,10 @@ class Illuminants(Mapping[str, Spectrum]):
 
     Examples
     --------
-    >>> sorted(rw.illuminants)
+    >>> sorted(rw.textures.illuminants)
     ['A', 'D65', 'E', 'F11', 'F2', 'F7']
-    >>> lamp = rw.PointLight((0, 0, 3), 5 * rw.illuminants["A"])
-    >>> round(rw.illuminants["F11"].luminance, 6)
+    >>> lamp = rw.PointLight((0, 0, 3), 5 * rw.textures.illuminants["A"])
+    >>> round(rw.textures.illuminants["F11"].luminance, 6)
     1.0
     """
 

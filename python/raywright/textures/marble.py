@@ -41,7 +41,7 @@ class Marble(Texture):
 
     Examples
     --------
-    >>> stone = rw.Marble(transform=3.0, seed=1)
+    >>> stone = rw.textures.Marble(transform=3.0, seed=1)
     >>> stone.distortion
     1.5
     """

@@ -32,7 +32,7 @@ class MixTexture(Texture):
 
     Examples
     --------
-    >>> rust = rw.MixTexture((0.5, 0.5, 0.5), (0.4, 0.2, 0.1), rw.Noise())
+    >>> rust = rw.textures.MixTexture((0.5, 0.5, 0.5), (0.4, 0.2, 0.1), rw.textures.Noise())
     >>> rust.range
     ((0.4, 0.2, 0.1), (0.5, 0.5, 0.5))
     """

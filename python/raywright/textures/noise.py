@@ -40,7 +40,7 @@ class Noise(Texture):
 
     Examples
     --------
-    >>> rw.Noise(0.2, 0.4, seed=3).range
+    >>> rw.textures.Noise(0.2, 0.4, seed=3).range
     ((0.2, 0.2, 0.2), (0.4, 0.4, 0.4))
     """
 

@@ -30,7 +30,7 @@ class ProductTexture(Texture):
 
     Examples
     --------
-    >>> dark = rw.ProductTexture(rw.Checker(0.2, 0.8), 0.5)
+    >>> dark = rw.textures.ProductTexture(rw.Checker(0.2, 0.8), 0.5)
     >>> dark.range
     ((0.1, 0.1, 0.1), (0.4, 0.4, 0.4))
     """

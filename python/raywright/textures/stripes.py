@@ -36,7 +36,7 @@ class Stripes(Texture):
 
     Examples
     --------
-    >>> rw.Stripes(0.1, 0.9, fraction=0.25, transform=4).fraction
+    >>> rw.textures.Stripes(0.1, 0.9, fraction=0.25, transform=4).fraction
     0.25
     """
 

@@ -46,7 +46,7 @@ class UvTransform:
 
     Examples
     --------
-    >>> turned = rw.UvTransform(scale=2, rotation=90)
+    >>> turned = rw.textures.UvTransform(scale=2, rotation=90)
     >>> np.round(turned.matrix, 6).tolist()
     [[0.0, -2.0, 0.0], [2.0, 0.0, 0.0]]
     """
@@ -108,7 +108,7 @@ class ObjectTransform:
 
     Examples
     --------
-    >>> rw.ObjectTransform(scale=2, offset=(1, 0, 0)).matrix
+    >>> rw.textures.ObjectTransform(scale=2, offset=(1, 0, 0)).matrix
     ((2.0, 0.0, 0.0, 1.0), (0.0, 2.0, 0.0, 0.0), (0.0, 0.0, 2.0, 0.0))
     """
 

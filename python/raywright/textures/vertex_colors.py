@@ -18,7 +18,7 @@ class VertexColors(Texture):
     --------
     >>> corners, colors = [[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[1, 0, 0], [0, 1, 0], [0, 0, 1]]
     >>> mesh = rw.Mesh(corners, [[0, 1, 2]], colors=colors, material=rw.Diffuse(rw.VertexColors()))
-    >>> rays = rw.Rays(np.array([[0.25, 0.25, 1.0]]), np.array([[0, 0, -1.0]]), np.zeros(1))
+    >>> rays = rw.query.Rays(np.array([[0.25, 0.25, 1.0]]), np.array([[0, 0, -1.0]]), np.zeros(1))
     >>> rw.Scene(mesh).interactions(rays).albedo.round(4).tolist()
     [[0.5, 0.25, 0.25]]
     """

@@ -41,7 +41,7 @@ class Wood(Texture):
 
     Examples
     --------
-    >>> rw.Wood(transform=8.0).distortion
+    >>> rw.textures.Wood(transform=8.0).distortion
     0.3
     """
 

@@ -8,8 +8,8 @@ from ..arrays import SeedLike, integer
 from ..cameras import AnyCamera
 from ..integrators import AnyIntegrator, Path, check_integrator
 from ..io.tone import DEFAULT, check_tone
+from ..rendering.build_image import shines
 from ..rendering.filters import BoxFilter, Filter
-from ..rendering.made import shines
 from ..rendering.render import check
 from ..rendering.samplers import Sampler
 from ..scene.framing import framed
@@ -247,7 +247,7 @@ def view(
         for as many as the camera has. `Viewer.camera` keeps its own size.
     boxes : int, optional
         Level of the accelerator's boxes to draw over the picture, 0 for the root; of a level of more than
-        20,000 the largest. The keys b and B go a level deeper and back. `Scene.tree` gives the boxes.
+        20,000 the largest. The keys b and B go a level deeper and back. `Scene.tree_boxes` gives the boxes.
     port : int
         Port of the server; any free port if 0.
     open : bool

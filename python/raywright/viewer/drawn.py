@@ -9,12 +9,12 @@ from numpy.typing import NDArray
 from .._core import FlatScene
 from ..cameras import Camera, Orthographic, ThinLens
 from ..exchange.copies import laid_out
-from ..gpu.looks import LeftError
+from ..gpu.material_table import LeftError
 from ..gpu.packing import known_lit, packed
 from ..integrators import AnyIntegrator, Path
 from ..io.tone import TONES
 from ..locks import Lock
-from ..query.flats import FlatArrays, flat_arrays
+from ..query.gpu_arrays import GpuArrays, flat_arrays
 from ..rendering.filters import BoxFilter
 from ..scene.instance import AnyShape, Instance
 from ..scene.scene import Scene
@@ -60,7 +60,7 @@ class Drawn:
         self._lock = Lock()
         self._core: Any = None
         self._version = 0
-        self._flat: FlatArrays | None = None
+        self._flat: GpuArrays | None = None
         self._arrays: dict[str, bytes] = {}
         # Features of the scene that the page cannot shade like the core.
         self._left: str | None = None
@@ -88,7 +88,7 @@ class Drawn:
                 "arrays": {name: len(data) for name, data in self._arrays.items()},
                 "nodes": flat.own,
                 "depth": flat.depth,
-                "centre": flat.centre.tolist(),
+                "centre": flat.center.tolist(),
                 "scale": flat.scale,
                 "orbit": self._orbit.told(),
                 "lamp": lamp(self._scene, self._orbit.camera(View())),
@@ -108,13 +108,13 @@ class Drawn:
         """Return points in box units."""
         with self._lock:
             flat = self._laid_out()
-            return np.asarray((points - flat.centre) * flat.scale, "<f4")
+            return np.asarray((points - flat.center) * flat.scale, "<f4")
 
     def _refused(self) -> str | None:
         camera = self._orbit.camera(View())
         if not isinstance(camera, Camera | ThinLens | Orthographic):
             return f"the page draws no pictures of a {type(camera).__name__}"
-        if camera.moved_to is not None:
+        if camera.end_pose is not None:
             return "the page draws no camera that moves while its shutter is open"
         if "motion" in self._scene.plan().needed:
             return "the page draws nothing that moves while the shutter is open"
@@ -151,14 +151,14 @@ class Drawn:
             "error": self._how.get("error"),
         }
 
-    def _laid_out(self) -> FlatArrays:
+    def _laid_out(self) -> GpuArrays:
         """Return the arrays of the current scene; the caller holds the lock."""
         core = self._scene._compiled()
         if self._flat is None or self._core is not core:
             # Copies become separate shapes.
             scene = laid_out(self._scene).scene
             inner = scene._compiled()
-            flat = flat_arrays(FlatScene(inner, scene.accelerator_choice, scene.quality, True))
+            flat = flat_arrays(FlatScene(inner, scene.accelerator, scene.quality, True))
             self._flat, self._core = flat, core
             self._version += 1
             self._arrays = {

@@ -152,8 +152,8 @@ class Orbit:
             }
 
         changes = pose(self._camera)
-        if self._camera.moved_to is not None:
-            changes["moved_to"] = Pose(**pose(self._camera.moved_to))
+        if self._camera.end_pose is not None:
+            changes["end_pose"] = Pose(**pose(self._camera.end_pose))
         if isinstance(self._camera, Orthographic):
             changes["scale"] = self._camera.scale / view.zoom
         if isinstance(self._camera, ThinLens):

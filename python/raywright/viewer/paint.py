@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..query.flats import FlatArrays
+from ..query.gpu_arrays import GpuArrays
 from ..shapes.mesh import Mesh
 
 # Attributes with a material's colour, the first present one counts.
@@ -17,14 +17,14 @@ _GREY = (0.7, 0.7, 0.7)
 _SHINES = 255
 
 
-def paints(shapes: Sequence[Any], flat: FlatArrays) -> NDArray[np.uint32]:
+def paints(shapes: Sequence[Any], flat: GpuArrays) -> NDArray[np.uint32]:
     """Return a color and the normal of each primitive, as far as they do not depend on the place.
 
     Parameters
     ----------
     shapes : sequence of shapes
         Of a scene.
-    flat : FlatArrays
+    flat : GpuArrays
         Its arrays.
 
     Returns

@@ -20,8 +20,8 @@ from ..io.tone import DEFAULT
 from ..locks import Lock
 from ..query.trees import TreeBoxes
 from ..rendering.image import ErrorEstimate, Image
+from ..rendering.partial_image import ImageSoFar
 from ..rendering.render import render
-from ..rendering.so_far import ImageSoFar
 from ..scene.scene import Scene
 from .boxes import check_flat, drawn, edges, largest
 from .drawn import Drawn
@@ -292,7 +292,7 @@ class Session:
 
     @cached_property
     def _tree(self) -> TreeBoxes:
-        return self._scene.tree()
+        return self._scene.tree_boxes()
 
     def corners(self, depth: int) -> bytes:
         """Return the boxes of a level, (K, 8, 3) float32 in box units: of many the largest."""
@@ -310,7 +310,7 @@ class Session:
         return {
             "shape": int(hit.shape_id),
             "name": str(hit.names) or None,
-            "face": int(hit.primitive),
+            "face": int(hit.primitive_id),
             "position": hit.position.tolist(),
             "t": float(hit.t),
         }

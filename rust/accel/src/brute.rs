@@ -60,7 +60,7 @@ impl<L: Leaves<LANES>> BruteForce<L> {
 
 impl<L: Leaves<LANES>> Answers for BruteForce<L> {
     fn answer<Q: Query>(&self, rays: &[Ray], query: &mut Q) {
-        self.level.dispatch(Batch { brute: self, rays, query });
+        self.level.dispatch(BruteBatch { brute: self, rays, query });
     }
 
     fn nearest(&self, points: &[DVec3], max_distances: &[f64], counts: PrimitiveFilter<'_>, nearest: &mut [Nearest]) {
@@ -107,13 +107,13 @@ impl<L: Leaves<LANES>> Answers for BruteForce<L> {
     }
 }
 
-struct Batch<'a, L, Q> {
+struct BruteBatch<'a, L, Q> {
     brute: &'a BruteForce<L>,
     rays: &'a [Ray],
     query: &'a mut Q,
 }
 
-impl<L: Leaves<LANES>, Q: Query> Kernel<LANES> for Batch<'_, L, Q> {
+impl<L: Leaves<LANES>, Q: Query> Kernel<LANES> for BruteBatch<'_, L, Q> {
     type Output = ();
 
     #[inline(always)]

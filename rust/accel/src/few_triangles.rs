@@ -15,7 +15,7 @@ use raywright_shapes::triangle::EdgeRay;
 const UNIT: f32 = 1.0 / (1u32 << 24) as f32;
 
 /// A 2D line as a normal and an offset: a point's signed distance is its dot product with the normal, less the offset.
-type Line = ([f32; 2], f32);
+type EdgeLine = ([f32; 2], f32);
 
 /// A triangle, or a convex planar quadrilateral of two triangles, projected along an axis.
 #[derive(Clone, Debug)]
@@ -28,11 +28,11 @@ struct Patch {
     outline: Outline,
     /// Its edges, as lines with the patch on their negative side. Of a parallelogram, the first two pass through its
     /// center.
-    edges: [Line; 4],
+    edges: [EdgeLine; 4],
     /// Distances from the center of a parallelogram to its edges.
     reach: [f32; 2],
     /// The diagonal of two triangles, with the first on its negative side.
-    diagonal: Line,
+    diagonal: EdgeLine,
     /// The triangles, and their primitives; of one triangle, twice the same.
     halves: [Option<Half>; 2],
     primitives: [u32; 2],
@@ -110,7 +110,7 @@ fn signs(bits: u32) -> u32 {
 
 /// The signed distance of a point from a line.
 #[inline(always)]
-fn beyond<const FUSED: bool>(([x, y], offset): Line, p: [f32; 2]) -> f32 {
+fn beyond<const FUSED: bool>(([x, y], offset): EdgeLine, p: [f32; 2]) -> f32 {
     fused::<FUSED>(x, p[0], fused::<FUSED>(y, p[1], -offset))
 }
 
@@ -439,7 +439,7 @@ impl Patch {
         let [x, y] = [(z + 1) % 3, (z + 2) % 3];
         // Seen from the normal's side, or mirrored.
         let turn = 1f64.copysign(normal[z]);
-        let line = |from: DVec3, to: DVec3| -> Line {
+        let line = |from: DVec3, to: DVec3| -> EdgeLine {
             let along = to - from;
             let (across_x, across_y) = (turn * along[y], -turn * along[x]);
             let length = across_x.hypot(across_y);

@@ -17,10 +17,10 @@ mod crossings;
 #[cfg(test)]
 mod fans;
 mod few_triangles;
+mod filtered_query;
 pub mod flat;
 pub mod grid;
 pub mod kdtree;
-mod kept;
 mod mixed;
 mod nearest;
 pub mod octree;
@@ -40,7 +40,7 @@ pub use boxes::{Boxes, NodeBox};
 pub use brute::BruteForce;
 pub use crossings::Crossings;
 pub use few_triangles::FewTriangles;
-pub use kept::Counts;
+pub use filtered_query::Counts;
 pub use nearest::{Nearest, PrimitiveFilter};
 pub use parity::{Exit, Exits, Side};
 pub use slab::SlabRay;
@@ -51,7 +51,7 @@ pub use walked::walked;
 
 pub use query::{Every, Meeting, Wanted};
 
-use kept::Kept;
+use filtered_query::Kept;
 use parity::WaysOut;
 use query::{Answers, Counted};
 use rare_query::RareQuery;

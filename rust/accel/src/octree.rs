@@ -112,7 +112,7 @@ pub fn build(input: &Input, options: &Options) -> (Box<dyn Structure>, Lists) {
     }
     tree.nodes.push(Node::EMPTY);
     let room = Room::new(parts.len(), max_depth);
-    let mut open = vec![(Cell { node: 0, aabb: bounds, at: [0; 3], depth: 0 }, parts, room)];
+    let mut open = vec![(OctreeCell { node: 0, aabb: bounds, at: [0; 3], depth: 0 }, parts, room)];
     let (steps, mut told) = (input.work.steps(Room::STEPS), 0);
     while let Some((cell, parts, room)) = open.pop() {
         if parts.len() > SHARE && steps.is_stopped() {
@@ -148,7 +148,7 @@ pub fn build(input: &Input, options: &Options) -> (Box<dyn Structure>, Lists) {
 
 /// A node and its cell during the build.
 #[derive(Clone, Copy, Debug)]
-struct Cell {
+struct OctreeCell {
     node: usize,
     aabb: Aabb,
     /// Its index among the cells of its level, by axis.
@@ -158,7 +158,7 @@ struct Cell {
 
 impl Octree {
     /// The splitting plane, rounded to f32. Rays use the exact position and allow for the difference.
-    fn plane(&self, cell: &Cell, axis: usize) -> Plane {
+    fn plane(&self, cell: &OctreeCell, axis: usize) -> Plane {
         let (min, max) = (f64::from(self.bounds.min[axis]), f64::from(self.bounds.max[axis]));
         let share = f64::from(2 * cell.at[axis] + 1) / f64::from(1u32 << (cell.depth + 1));
         Plane { axis, at: (min + (max - min) * share) as f32 }
@@ -166,8 +166,8 @@ impl Octree {
 
     /// One of eight consecutive children. Bits 0 to 2 of its octant are set if it lies above the plane normal to x to
     /// z.
-    fn child(&self, cell: &Cell, first: usize, octant: usize) -> Cell {
-        let mut child = Cell { node: first + octant, depth: cell.depth + 1, ..*cell };
+    fn child(&self, cell: &OctreeCell, first: usize, octant: usize) -> OctreeCell {
+        let mut child = OctreeCell { node: first + octant, depth: cell.depth + 1, ..*cell };
         for axis in 0..3 {
             let side = octant >> axis & 1;
             child.aabb = self.plane(cell, axis).cut(&child.aabb)[side];
@@ -178,7 +178,13 @@ impl Octree {
 
     /// Distribute parts to the children, with their share of the budget. None if that saves no tests or exceeds the
     /// budget.
-    fn parted(&self, input: &Input, cell: &Cell, parts: &[Part], room: Room) -> Option<([Vec<Part>; 8], [Room; 8])> {
+    fn parted(
+        &self,
+        input: &Input,
+        cell: &OctreeCell,
+        parts: &[Part],
+        room: Room,
+    ) -> Option<([Vec<Part>; 8], [Room; 8])> {
         if room.depth == 0 {
             return None;
         }
@@ -202,7 +208,7 @@ impl Octree {
     }
 
     /// Clip a part to each child that it overlaps.
-    fn deal(&self, input: &Input, cell: &Cell, part: Part, to: &mut impl FnMut(usize, Part)) {
+    fn deal(&self, input: &Input, cell: &OctreeCell, part: Part, to: &mut impl FnMut(usize, Part)) {
         let mut pieces = [(0, part); 8];
         let mut count = 1;
         for axis in 0..3 {
@@ -230,8 +236,8 @@ impl Octree {
     }
 
     /// All cells, root first.
-    fn cells(&self) -> impl Iterator<Item = Cell> {
-        let root = Cell { node: 0, aabb: self.bounds, at: [0; 3], depth: 0 };
+    fn cells(&self) -> impl Iterator<Item = OctreeCell> {
+        let root = OctreeCell { node: 0, aabb: self.bounds, at: [0; 3], depth: 0 };
         let mut open: Vec<_> = self.nodes.first().map(|_| root).into_iter().collect();
         std::iter::from_fn(move || {
             let cell = open.pop()?;
@@ -243,7 +249,7 @@ impl Octree {
     }
 
     /// Return whether a part is in all the leaves it overlaps below a node.
-    fn stands(&self, input: &Input, lists: &[Vec<u32>], cell: &Cell, part: Part) -> bool {
+    fn stands(&self, input: &Input, lists: &[Vec<u32>], cell: &OctreeCell, part: Part) -> bool {
         match self.nodes[cell.node].children() {
             Some(first) => {
                 let mut all = true;
@@ -265,9 +271,9 @@ impl Structure for Octree {
         // A path leaves seven siblings per level, and the root.
         let open = Vec::with_capacity(7 * self.depth + 1);
         if counted {
-            Box::new(Walk::<true> { tree: self, way: Way::new(&SlabRay::EVERYWHERE), open, nodes: 0 })
+            Box::new(OctreeTraversal::<true> { tree: self, way: CellRay::new(&SlabRay::EVERYWHERE), open, nodes: 0 })
         } else {
-            Box::new(Walk::<false> { tree: self, way: Way::new(&SlabRay::EVERYWHERE), open, nodes: 0 })
+            Box::new(OctreeTraversal::<false> { tree: self, way: CellRay::new(&SlabRay::EVERYWHERE), open, nodes: 0 })
         }
     }
 
@@ -285,7 +291,7 @@ impl Structure for Octree {
     }
 
     fn boxes(&self, primitives: &dyn Fn(u32) -> usize) -> Option<Vec<NodeBox>> {
-        let of = |Cell { node, aabb, depth, .. }: Cell| {
+        let of = |OctreeCell { node, aabb, depth, .. }: OctreeCell| {
             let node = self.nodes[node];
             NodeBox { aabb, depth, primitives: node.is_leaf().then(|| node.number().map_or(0, primitives)) }
         };
@@ -319,7 +325,7 @@ impl Structure for Octree {
         }
         let mut lists: Vec<_> = numbers.iter().map(|&leaf| primitives(leaf)).collect();
         lists.iter_mut().for_each(|list| list.sort_unstable());
-        let root = Cell { node: 0, aabb: self.bounds, at: [0; 3], depth: 0 };
+        let root = OctreeCell { node: 0, aabb: self.bounds, at: [0; 3], depth: 0 };
         match parts.into_iter().find(|&part| !self.stands(input, &lists, &root, part)) {
             Some(part) => Err(format!("primitive {} is missing from a leaf", part.primitive)),
             None => Ok(()),
@@ -329,7 +335,7 @@ impl Structure for Octree {
 
 /// A ray prepared for cell planes.
 #[derive(Clone, Copy)]
-struct Way {
+struct CellRay {
     t_min: f32,
     /// The `t` of the root's planes by axis: the near plane and the far plane.
     around: [[f32; 3]; 2],
@@ -344,7 +350,7 @@ struct Way {
     mirror: u32,
 }
 
-impl Way {
+impl CellRay {
     fn new(ray: &SlabRay) -> Self {
         Self {
             t_min: ray.t_min,
@@ -378,23 +384,23 @@ impl Way {
 
 /// A node and the `t` of its planes.
 #[derive(Clone, Copy)]
-struct Open {
+struct OpenCell {
     node: Node,
     enter: f32,
     around: [[f32; 3]; 2],
 }
 
-struct Walk<'a, const COUNTED: bool> {
+struct OctreeTraversal<'a, const COUNTED: bool> {
     tree: &'a Octree,
-    way: Way,
-    open: Vec<Open>,
+    way: CellRay,
+    open: Vec<OpenCell>,
     nodes: u32,
 }
 
 /// Masks of the children above the middle of each axis.
 const ABOVE: [u32; 3] = [0b1010_1010, 0b1100_1100, 0b1111_0000];
 
-impl<const COUNTED: bool> Walk<'_, COUNTED> {
+impl<const COUNTED: bool> OctreeTraversal<'_, COUNTED> {
     /// Mask of the children that the ray may enter within the parent's interval, in traversal order.
     #[inline(always)]
     fn met(&self, (enter, leave): (f32, f32), middle: &[f32; 3]) -> u32 {
@@ -414,19 +420,19 @@ impl<const COUNTED: bool> Walk<'_, COUNTED> {
     }
 }
 
-impl<const COUNTED: bool> Walker for Walk<'_, COUNTED> {
+impl<const COUNTED: bool> Walker for OctreeTraversal<'_, COUNTED> {
     fn start(&mut self, ray: &SlabRay) {
-        self.way = Way::around(ray, &self.tree.bounds);
+        self.way = CellRay::around(ray, &self.tree.bounds);
         self.nodes = u32::from(COUNTED);
         self.open.clear();
         if let (Some(&node), true) = (self.tree.nodes.first(), ray.passes(&self.tree.bounds, f32::INFINITY).is_some()) {
             let around = self.way.around;
-            self.open.push(Open { node, enter: self.way.span(&around).0, around });
+            self.open.push(OpenCell { node, enter: self.way.span(&around).0, around });
         }
     }
 
     fn next(&mut self, limit: f32) -> Option<u32> {
-        while let Some(Open { node, enter, around }) = self.open.pop() {
+        while let Some(OpenCell { node, enter, around }) = self.open.pop() {
             if enter > limit {
                 continue;
             }
@@ -452,7 +458,7 @@ impl<const COUNTED: bool> Walker for Walk<'_, COUNTED> {
                 let first = from_fn(|axis| if is_above(axis) { middle[axis] } else { first[axis] });
                 let last = from_fn(|axis| if is_above(axis) { last[axis] } else { middle[axis] });
                 let around = [first, last];
-                self.open.push(Open { node, enter: self.way.span(&around).0, around });
+                self.open.push(OpenCell { node, enter: self.way.span(&around).0, around });
             }
         }
         None

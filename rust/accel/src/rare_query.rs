@@ -1,6 +1,6 @@
 //! Rare queries as one type: dispatch at each hit, so that traversal is compiled once for all.
 
-use super::kept::Kept;
+use super::filtered_query::Kept;
 use super::query::{Every, Query, Wanted};
 use raywright_base::math::Hit;
 use raywright_shapes::Candidate;

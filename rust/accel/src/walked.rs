@@ -86,7 +86,8 @@ impl<const N: usize, L: Leaves<N>> Walked<N, L> {
     /// The BVH that serves point and cone queries, for which it is the best structure.
     fn tree(&self) -> &dyn Accelerator {
         let tree = self.nearest.get_or_init(|| {
-            let mut kept = Kept { corners: vec![[DVec3::NAN; 3]; self.count], is_single: L::PRECISION == "single" };
+            let mut kept =
+                FilteredHits { corners: vec![[DVec3::NAN; 3]; self.count], is_single: L::PRECISION == "single" };
             for (primitive, corners) in self.contents.triangles() {
                 kept.corners[primitive as usize] = corners;
             }
@@ -118,9 +119,9 @@ where
 {
     fn answer<Q: Query>(&self, rays: &[Ray], query: &mut Q) {
         match &self.mailboxes {
-            None => self.level.dispatch(Batch { walked: self, rays, marks: None, query }),
+            None => self.level.dispatch(WalkedBatch { walked: self, rays, marks: None, query }),
             Some(boxes) => {
-                boxes.with(|marks| self.level.dispatch(Batch { walked: self, rays, marks: Some(marks), query }));
+                boxes.with(|marks| self.level.dispatch(WalkedBatch { walked: self, rays, marks: Some(marks), query }));
             }
         }
     }
@@ -222,12 +223,12 @@ impl<const N: usize, L: Leaves<N>> Walked<N, L> {
 }
 
 /// The structure's triangles, as input for a BVH.
-struct Kept {
+struct FilteredHits {
     corners: Vec<[DVec3; 3]>,
     is_single: bool,
 }
 
-impl Primitives for Kept {
+impl Primitives for FilteredHits {
     fn count(&self) -> usize {
         self.corners.len()
     }
@@ -241,14 +242,14 @@ impl Primitives for Kept {
     }
 }
 
-struct Batch<'a, const N: usize, L, Q> {
+struct WalkedBatch<'a, const N: usize, L, Q> {
     walked: &'a Walked<N, L>,
     rays: &'a [Ray],
     marks: Option<&'a mut Marks>,
     query: &'a mut Q,
 }
 
-impl<const N: usize, L: Leaves<N>, Q: Query> Kernel<N> for Batch<'_, N, L, Q> {
+impl<const N: usize, L: Leaves<N>, Q: Query> Kernel<N> for WalkedBatch<'_, N, L, Q> {
     type Output = ();
     const AVX512: bool = false;
 

@@ -59,7 +59,7 @@ impl Channel {
             Self::ShadingNormal => "shading_normal",
             Self::Uv => "uv",
             Self::ShapeId => "shape_id",
-            Self::Primitive => "primitive",
+            Self::Primitive => "primitive_id",
             Self::Albedo => "albedo",
             Self::Motion => "motion",
             Self::ScreenMotion => "screen_motion",

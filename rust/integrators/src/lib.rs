@@ -182,7 +182,7 @@ pub trait LightWorker: Send {
 /// time, so that every ray goes through the accelerator in large groups.
 pub trait Worker: Send {
     /// Writes the radiance that arrives along each ray. Each depends on its own sample only, not on the batch that it
-    /// is in. Returns early, with nothing of use written, soon after `cancel` is raised.
+    /// is in. Returns early, with nothing of use python_integrator, soon after `cancel` is raised.
     fn radiance(&mut self, samples: &mut [CameraSample], cancel: &Cancel, radiance: &mut [Rgb]);
 
     /// As [`Worker::radiance`], or, if there are any groups, as [`Worker::radiance_in_groups`], of samples by columns.

@@ -8,7 +8,7 @@ use raywright_base::parallel;
 use raywright_base::sampling::Sampler;
 use raywright_base::workers::Cancel;
 use raywright_optics::Rgb;
-use raywright_scene::{EmissionSample, Encounter, Scene};
+use raywright_scene::{EmissionSample, Interaction, Scene};
 
 /// Light at a surface, or at a point of a medium that absorbs or scatters it.
 #[derive(Clone, Copy, Debug)]

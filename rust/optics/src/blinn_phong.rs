@@ -2,7 +2,7 @@
 
 use super::bsdf_columns::LaneBsdf;
 use super::lobes::{Lobes, diffuse, power_cosine};
-use super::looped::Looped;
+use super::scalar_lanes::Looped;
 use super::{Bsdf, BsdfSample, Rgb};
 use glam::DVec3;
 use std::f64::consts::{FRAC_1_PI, PI, TAU};

@@ -26,9 +26,9 @@ pub trait Bsdf {
     fn albedo(&self) -> Rgb;
 
     /// Factor for light that such a surface has reflected before; 1 unless a channel's reflectance exceeds 1
-    /// ([`super::conductors::Curve::again`]).
+    /// ([`super::conductors::Curve::repeat_correction`]).
     #[inline(always)]
-    fn again(&self) -> Rgb {
+    fn repeat_correction(&self) -> Rgb {
         Rgb::ONE
     }
 
@@ -76,8 +76,8 @@ impl<B: Bsdf> Bsdf for &B {
     }
 
     #[inline(always)]
-    fn again(&self) -> Rgb {
-        (**self).again()
+    fn repeat_correction(&self) -> Rgb {
+        (**self).repeat_correction()
     }
 
     #[inline(always)]

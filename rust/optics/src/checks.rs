@@ -374,7 +374,7 @@ fn nothing_gains_light() {
         for wo in cases::every(3, number, directions()) {
             let (mean, error) = share(&bsdf, wo, 5_000);
             // A surface may exceed 1 only once along a path.
-            let again = mean * bsdf.again();
+            let again = mean * bsdf.repeat_correction();
             assert!(again.max() < 1.005 + 5.0 * error, "{mean} {bsdf:?} {wo}");
             // A film on gold may have an orange that is purer than that of the bare metal.
             let most = if format!("{bsdf:?}").contains("FilmedMetal") { 1.1 } else { 1.03 };
@@ -451,7 +451,7 @@ proptest! {
         for bsdf in kinds {
             let (value, pdf) = bsdf.evaluate(wo, wi);
             prop_assert!(value.is_radiance() && pdf.is_finite() && pdf >= 0.0, "{value} {pdf} {bsdf:?} {wo} {wi}");
-            let albedo = bsdf.albedo() * bsdf.again();
+            let albedo = bsdf.albedo() * bsdf.repeat_correction();
             prop_assert!(albedo.is_radiance() && albedo.max() <= 1.01, "{bsdf:?}");
             prop_assert!((0.0..=1.42).contains(&bsdf.roughness()));
             prop_assert!(!bsdf.is_delta() || value.is_black());

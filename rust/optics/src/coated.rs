@@ -1,6 +1,6 @@
 //! A diffuse base under a clear coat: plastic, varnish, glaze.
 
-mod lanes;
+mod coated_lanes;
 
 use super::albedo::{Coat, Tabulated};
 use super::bsdf::either;
@@ -19,7 +19,7 @@ use std::f64::consts::FRAC_1_PI;
 #[derive(Clone, Copy, Debug)]
 pub struct Coated<F: Tabulated = Ggx> {
     eta: f64,
-    rough: Option<Rough<F>>,
+    rough: Option<RoughCoat<F>>,
     /// Albedo of the base under the coat.
     base: Rgb,
     /// Mean reflectance of the coat from outside.
@@ -27,7 +27,7 @@ pub struct Coated<F: Tabulated = Ggx> {
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Rough<F> {
+struct RoughCoat<F> {
     facets: F,
     coat: Coat,
 }
@@ -44,7 +44,7 @@ impl<F: Tabulated> Coated<F> {
     /// Creates the BRDF with isotropic facets; without them the coat is specular.
     pub fn of(reflectance: Rgb, eta: f64, facets: Option<F>) -> Self {
         let eta = fresnel::bounded(eta);
-        let rough = facets.map(|facets| Rough { facets, coat: Coat::new(facets, eta) });
+        let rough = facets.map(|facets| RoughCoat { facets, coat: Coat::new(facets, eta) });
         let within = fresnel::dielectric_average(1.0 / eta);
         let average = rough.as_ref().map_or_else(|| fresnel::dielectric_average(eta), |rough| rough.coat.average());
         Self { eta, rough, base: reflectance * (1.0 - within) / (Rgb::ONE - reflectance * within), average }
@@ -92,7 +92,7 @@ impl<F: Tabulated> Bsdf for Coated<F> {
         let reflectance = self.reflectance(wo);
         let share = self.share(reflectance);
         let (base, diffuse) = Self::matt((self.base, self.average), share, wi, [reflectance, self.reflectance(wi)]);
-        let Some(Rough { facets, .. }) = &self.rough else { return (base, diffuse) };
+        let Some(RoughCoat { facets, .. }) = &self.rough else { return (base, diffuse) };
         let (coat, glossy) = Self::glossy((facets, self.eta), share, [wo, wi], facets.mirroring(wo, wi));
         (base + coat, glossy + diffuse)
     }

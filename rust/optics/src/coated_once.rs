@@ -4,7 +4,7 @@ use super::bsdf::either;
 use super::bsdf_columns::LaneBsdf;
 use super::conductor::above;
 use super::lobes::diffuse;
-use super::looped::Looped;
+use super::scalar_lanes::Looped;
 use super::{Bsdf, BsdfSample, Facets, Once, Rgb, Through, fresnel};
 use glam::DVec3;
 use std::f64::consts::FRAC_1_PI;

@@ -1,6 +1,6 @@
 //! Conductors.
 
-mod lanes;
+mod conductor_lanes;
 
 use super::bsdf::either;
 use super::conductors::{Metal, Reflectance};
@@ -21,11 +21,11 @@ use std::f64::consts::{FRAC_1_PI, PI};
 #[derive(Clone, Copy, Debug)]
 pub struct Conductor<F: Lossy = Ggx> {
     fresnel: Reflectance,
-    rough: Option<Rough<F>>,
+    rough: Option<RoughFacets<F>>,
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Rough<F: Lossy> {
+struct RoughFacets<F: Lossy> {
     facets: F,
     loss: F::Mirror,
     /// Directional distribution of multiple scattering.
@@ -34,7 +34,7 @@ struct Rough<F: Lossy> {
     multiple: Rgb,
 }
 
-impl<F: Lossy> Rough<F> {
+impl<F: Lossy> RoughFacets<F> {
     /// Value and density between two directions above, from the result of [`Facets::mirroring`], the reflectance there,
     /// and the losses of both directions.
     #[inline(always)]
@@ -69,7 +69,7 @@ impl<F: Lossy> Conductor<F> {
         let rough = facets.map(|facets| {
             let loss = facets.mirror();
             let multiple = fresnel.seen(|mean| made_up_of(loss.average(), mean)).at_least(Rgb::ZERO);
-            Rough { facets, loss, grazing: Grazing::new(facets.mean_alpha()), multiple }
+            RoughFacets { facets, loss, grazing: Grazing::new(facets.mean_alpha()), multiple }
         });
         Self { fresnel, rough }
     }
@@ -124,7 +124,7 @@ impl<F: Lossy> Bsdf for Conductor<F> {
         let (density, cosine) = rough.facets.mirroring(wo, wi);
         let lost = [rough.loss.of(wo), rough.loss.of(wi)];
         let parts = (&rough.facets, rough.multiple, &rough.grazing);
-        Rough::scattered(parts, [wo, wi], (density, self.reflectance(cosine)), lost)
+        RoughFacets::scattered(parts, [wo, wi], (density, self.reflectance(cosine)), lost)
     }
 
     #[inline]
@@ -158,8 +158,8 @@ impl<F: Lossy> Bsdf for Conductor<F> {
         }
     }
 
-    fn again(&self) -> Rgb {
-        self.fresnel.again()
+    fn repeat_correction(&self) -> Rgb {
+        self.fresnel.repeat_correction()
     }
 
     fn is_delta(&self) -> bool {

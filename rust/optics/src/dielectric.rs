@@ -1,7 +1,7 @@
 //! Dielectric interfaces such as glass and water.
 
+mod dielectric_lanes;
 mod facet;
-mod lanes;
 mod open;
 
 use super::bsdf::either;
@@ -53,15 +53,15 @@ impl<F: Lossy> Rough<F> {
 
     /// Precomputes the losses for `wo`.
     #[inline]
-    fn known(&self, wo: DVec3) -> Known {
-        Known { lost: self.interface.loss(wo), crossing: self.interface.crossing(wo) }
+    fn known(&self, wo: DVec3) -> FacetTerms {
+        FacetTerms { lost: self.interface.loss(wo), crossing: self.interface.crossing(wo) }
     }
 
     /// Samples the compensation lobe with a choice within the lost energy. Also returns the range of choices of its
     /// side. `None` for a direction in the tangent plane.
     #[inline]
-    fn give_back(&self, known: &Known, wo: DVec3, choice: f64, u: [f64; 2]) -> Option<(DVec3, [f64; 2])> {
-        let Known { lost, crossing } = *known;
+    fn give_back(&self, known: &FacetTerms, wo: DVec3, choice: f64, u: [f64; 2]) -> Option<(DVec3, [f64; 2])> {
+        let FacetTerms { lost, crossing } = *known;
         let crossing = lost * crossing;
         let (side, choices) =
             if choice < crossing { (-wo.z.signum(), [0.0, crossing]) } else { (wo.z.signum(), [crossing, lost]) };
@@ -72,7 +72,7 @@ impl<F: Lossy> Rough<F> {
 
 /// Precomputed losses of a direction.
 #[derive(Clone, Copy, Debug)]
-struct Known {
+struct FacetTerms {
     /// Share of energy lost by single scattering.
     lost: f64,
     /// Share of the lost energy that the compensation transmits.
@@ -81,7 +81,7 @@ struct Known {
 
 in_lanes! {
     /// Precomputed losses, one per lane.
-    KnownLanes of Known { lost: f64, crossing: f64 }
+    KnownLanes of FacetTerms { lost: f64, crossing: f64 }
 }
 
 /// A sampled delta direction of a smooth interface.
@@ -187,7 +187,7 @@ impl<F: Lossy, S: Split> Dielectric<F, S> {
     /// Value and density between two mutually visible directions: single scattering by one facet, plus compensation.
     /// The value includes the cosine and is for radiance.
     #[inline]
-    fn scattered(&self, rough: &Rough<F>, known: &Known, [wo, wi]: [DVec3; 2], facet: &Facet) -> (S::Share, f64) {
+    fn scattered(&self, rough: &Rough<F>, known: &FacetTerms, [wo, wi]: [DVec3; 2], facet: &Facet) -> (S::Share, f64) {
         let (eta, divided) = (self.beyond(wo), self.divided(wo, facet.cosines[0]));
         let once = if wo.z * wi.z < 0.0 {
             facet.refracted(&rough.facets, &divided, eta, [wo, wi])
@@ -230,7 +230,7 @@ impl<F: Lossy, S: Split> Dielectric<F, S> {
     }
 }
 
-impl Known {
+impl FacetTerms {
     /// Adds the compensation `back` for light from `wi` to `wo` to a value and density. `grazing` is the compensation's
     /// distribution on the side of `wi`; `eta` is the index of refraction beyond the surface.
     #[inline(always)]

@@ -1,7 +1,7 @@
 //! The GGX facet distribution.
 
 use super::Facets;
-use raywright_base::math::turn::sin_cos_turn;
+use raywright_base::math::trig::sin_cos_turn;
 use raywright_base::math::{DVec3, in_lanes};
 use std::f64::consts::FRAC_1_PI;
 

@@ -3,7 +3,7 @@
 use super::Rgb;
 use super::bsdf::either;
 use glam::DVec3;
-use raywright_base::math::turn::sin_cos_turn;
+use raywright_base::math::trig::sin_cos_turn;
 use raywright_base::math::{Frame, in_lanes};
 use raywright_base::sampling::warp;
 use std::f64::consts::FRAC_1_PI;

@@ -1,6 +1,6 @@
 //! The metallic-roughness BRDF of glTF.
 
-mod lanes;
+mod metallic_rough_lanes;
 
 use super::albedo::{MirrorLoss, SchlickShare};
 use super::conductor::{above, made_up, mirrors};
@@ -21,7 +21,7 @@ use std::f64::consts::FRAC_1_PI;
 /// The dielectric part has the specification's index of 1.5, and reflects by that relative to its surroundings.
 #[derive(Clone, Copy, Debug)]
 pub struct MetallicRough {
-    rough: Option<Rough>,
+    rough: Option<RoughMetal>,
     /// Base contribution, over π and the mean transmittance to it.
     base: Rgb,
     /// Multiple scattering of metal, over π and the mean loss.
@@ -50,13 +50,13 @@ impl Ends {
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Rough {
+struct RoughMetal {
     ggx: Ggx,
     loss: MirrorLoss,
     schlick: SchlickShare,
 }
 
-impl Rough {
+impl RoughMetal {
     fn new(ggx: Ggx) -> Self {
         Self { ggx, loss: MirrorLoss::new(ggx), schlick: SchlickShare::new(ggx) }
     }
@@ -95,7 +95,7 @@ impl MetallicRough {
 
     fn of(base_color: Rgb, metallic: f64, roughness: f64, dielectric: Ends) -> Self {
         let metallic = metallic.clamp(0.0, 1.0);
-        let rough = Ggx::rough([roughness * roughness; 2]).map(Rough::new);
+        let rough = Ggx::rough([roughness * roughness; 2]).map(RoughMetal::new);
         // Schlick's (1 − cos)⁵ has a cosine-weighted average of 1/21.
         let lost = rough.as_ref().map_or(0.0, |rough| rough.loss.average());
         let schlick = rough.as_ref().map_or(1.0 / 21.0, |rough| rough.schlick.average());
@@ -177,7 +177,7 @@ impl Bsdf for MetallicRough {
         let shares = self.shares(once[0]);
         let (wide, [spread, matt]) =
             Self::wide((self.base, self.multiple, &self.grazing, self.dielectric), shares, wi, once);
-        let Some(Rough { ggx, .. }) = &self.rough else { return (wide, spread + matt) };
+        let Some(RoughMetal { ggx, .. }) = &self.rough else { return (wide, spread + matt) };
         let (glossy, facet) = Self::glossy((ggx, self.f0(), self.f90()), shares[0], [wo, wi], ggx.mirroring(wo, wi));
         (wide + glossy, facet + spread + matt)
     }

@@ -1,7 +1,7 @@
 //! A perfectly black surface.
 
 use super::bsdf_columns::LaneBsdf;
-use super::looped::Looped;
+use super::scalar_lanes::Looped;
 use super::{Bsdf, BsdfSample, Rgb};
 use glam::DVec3;
 

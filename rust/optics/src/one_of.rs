@@ -94,9 +94,9 @@ macro_rules! one_of {
             }
 
             #[$inline]
-            fn again(&self) -> crate::Rgb {
+            fn repeat_correction(&self) -> crate::Rgb {
                 match self {
-                    $(Self::$kind(kind) => kind.again(),)+
+                    $(Self::$kind(kind) => kind.repeat_correction(),)+
                 }
             }
 

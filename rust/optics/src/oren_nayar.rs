@@ -1,9 +1,9 @@
 //! The Oren-Nayar BRDF.
 
 use super::bsdf_columns::LaneBsdf;
-use super::straight::Straight;
+use super::soa_lanes::Straight;
 use super::{Bsdf, BsdfSample, Rgb};
-use raywright_base::math::turn::upper_angle;
+use raywright_base::math::trig::upper_angle;
 use raywright_base::math::{DVec3, in_lanes};
 use raywright_base::sampling::warp;
 use std::f64::consts::{FRAC_1_PI, PI};

@@ -2,8 +2,8 @@
 
 use super::bsdf_columns::LaneBsdf;
 use super::lobes::{Lobes, diffuse};
-use super::looped::Looped;
 use super::mirror::mirrored;
+use super::scalar_lanes::Looped;
 use super::{Bsdf, BsdfSample, Rgb};
 use glam::DVec3;
 use std::f64::consts::{FRAC_1_PI, TAU};

@@ -13,7 +13,7 @@ pub use layered_thin::LayeredPrincipledThin;
 use super::bsdf_columns::LaneBsdf;
 use super::conductor::above;
 use super::lobes::diffuse;
-use super::straight::Straight;
+use super::soa_lanes::Straight;
 use super::{Bsdf, BsdfSample, Facets, Ggx, Once, Rgb, fresnel};
 use raywright_base::math::{DVec3, in_lanes, select};
 use std::f64::consts::FRAC_1_PI;

@@ -3,8 +3,8 @@
 use super::bsdf::either;
 use super::bsdf_columns::LaneBsdf;
 use super::filmed::Filmed;
-use super::looped::Looped;
 use super::mirror::mirrored;
+use super::scalar_lanes::Looped;
 use super::spectra::Waves;
 use super::{Bsdf, BsdfSample, Rgb};
 use glam::DVec3;

@@ -3,7 +3,7 @@
 use super::bsdf::either;
 use super::bsdf_columns::LaneBsdf;
 use super::mirror::mirrored;
-use super::straight::Straight;
+use super::soa_lanes::Straight;
 use super::{Bsdf, BsdfSample, Rgb, fresnel};
 use glam::DVec3;
 use raywright_base::math::{in_lanes, select};

@@ -27,7 +27,7 @@ impl Through {
     /// Integrates isotropic facets; `eta` ≥ 1 is the inner over the outer index of refraction.
     pub fn new(facets: &impl Facets, eta: f64) -> Self {
         let eta = fresnel::bounded(eta);
-        let (alpha, seen) = (facets.mean_alpha(), Seen::new(facets));
+        let (alpha, seen) = (facets.mean_alpha(), VisibleFacets::new(facets));
         let mut through =
             Self { alpha, weight: 0.6 * alpha.sqrt().sqrt(), shares: [0.0; NODES], average: 0.0, within: 0.0 };
         for i in 0..NODES {
@@ -117,13 +117,13 @@ fn even_light(from: f64, to: f64, f: impl Fn(f64) -> f64) -> f64 {
 }
 
 /// Visible facets at the points of Gauss's rules.
-struct Seen<'a, F> {
+struct VisibleFacets<'a, F> {
     facets: &'a F,
     /// Random numbers of the facets, and weights.
     draws: Vec<([f64; 2], f64)>,
 }
 
-impl<'a, F: Facets> Seen<'a, F> {
+impl<'a, F: Facets> VisibleFacets<'a, F> {
     const ACROSS: usize = 16;
     const ALONG: usize = 32;
 

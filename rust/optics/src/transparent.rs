@@ -1,7 +1,7 @@
 //! Straight transmission.
 
 use super::bsdf_columns::LaneBsdf;
-use super::straight::Straight;
+use super::soa_lanes::Straight;
 use super::{Bsdf, BsdfSample, Rgb};
 use glam::DVec3;
 use raywright_base::math::in_lanes;

@@ -45,7 +45,7 @@ struct Common {
     width: u32,
     height: u32,
     shutter: [f64; 2],
-    moved_to: Option<Pose>,
+    end_pose: Option<Pose>,
 }
 
 impl FromPyObject<'_, '_> for AnyCamera {
@@ -56,7 +56,7 @@ impl FromPyObject<'_, '_> for AnyCamera {
         let (common, pose): (Common, Pose) = (object.extract()?, object.extract()?);
         let mut body =
             Body::new(pose.viewpoint()?, common.width, common.height).and_then(|b| b.with_shutter(common.shutter));
-        if let Some(end) = common.moved_to {
+        if let Some(end) = common.end_pose {
             let end = end.viewpoint()?;
             body = body.map(|body| body.moved_to(end));
         }
@@ -111,26 +111,32 @@ impl FromPyObject<'_, '_> for Axis {
 struct PyPerspective {
     fov: Option<f64>,
     fov_axis: Axis,
-    focal: Option<[f64; 2]>,
-    principal: Option<[f64; 2]>,
+    focal_length_px: Option<[f64; 2]>,
+    principal_point: Option<[f64; 2]>,
     skew: f64,
 }
 
 fn perspective(camera: &Bound<'_, PyAny>, body: Body) -> PyResult<Box<dyn Camera>> {
-    let PyPerspective { fov, fov_axis, focal, principal, skew } = camera.extract()?;
+    let PyPerspective { fov, fov_axis, focal_length_px, principal_point, skew } = camera.extract()?;
     let size = body.size();
-    let window = match (fov, focal) {
-        (None, Some(focal)) => Window::of_matrix(focal, principal.unwrap_or(size.map(|n| 0.5 * n)), skew, size),
-        (Some(fov), None) => of_view((fov, fov_axis), principal, size),
-        _ => return Err(PyValueError::new_err("a camera must have either fov or focal")),
+    let window = match (fov, focal_length_px) {
+        (None, Some(focal_length_px)) => {
+            Window::of_matrix(focal_length_px, principal_point.unwrap_or(size.map(|n| 0.5 * n)), skew, size)
+        }
+        (Some(fov), None) => of_view((fov, fov_axis), principal_point, size),
+        _ => return Err(PyValueError::new_err("a camera must have either fov or focal_length_px")),
     };
     made(window.map(|window| Perspective::new(body, window)))
 }
 
 /// Creates a window from an angle of view and the film position of the view's center.
-fn of_view((fov, along): (f64, Axis), principal: Option<[f64; 2]>, size: [f64; 2]) -> Result<Window, CameraError> {
+fn of_view(
+    (fov, along): (f64, Axis),
+    principal_point: Option<[f64; 2]>,
+    size: [f64; 2],
+) -> Result<Window, CameraError> {
     let centred = Window::of_view(fov, along.0, size)?;
-    principal.map_or(Ok(centred), |principal| centred.seen_from(principal, size))
+    principal_point.map_or(Ok(centred), |principal_point| centred.seen_from(principal_point, size))
 }
 
 /// `raywright.ThinLens`.
@@ -142,12 +148,12 @@ struct PyThinLens {
     focused_distance: f64,
     blades: u32,
     blade_rotation: f64,
-    principal: Option<[f64; 2]>,
+    principal_point: Option<[f64; 2]>,
 }
 
 fn thin_lens(camera: &Bound<'_, PyAny>, body: Body) -> PyResult<Box<dyn Camera>> {
     let lens: PyThinLens = camera.extract()?;
-    let window = of_view(lens.view, lens.principal, body.size()).map_err(refused)?;
+    let window = of_view(lens.view, lens.principal_point, body.size()).map_err(refused)?;
     let aperture = Aperture::new(lens.lens_radius, lens.blades, lens.blade_rotation.to_radians()).map_err(refused)?;
     made(ThinLens::new(body, window, aperture, lens.focused_distance))
 }
@@ -192,7 +198,7 @@ fn panorama(_: &Bound<'_, PyAny>, body: Body) -> PyResult<Box<dyn Camera>> {
 type CameraRays<'py> = (Bound<'py, PyAny>, Bound<'py, PyAny>);
 
 /// Film points, lens points and times, each one for all rays or one per ray.
-struct Points<'a> {
+struct FilmPoints<'a> {
     film: &'a [[f64; 2]],
     /// Width of the picture if film points are relative to the upper left of each pixel.
     pixels: Option<usize>,
@@ -200,7 +206,7 @@ struct Points<'a> {
     time: &'a [f64],
 }
 
-impl Points<'_> {
+impl FilmPoints<'_> {
     fn check(&self, count: usize) -> PyResult<()> {
         let lengths = [("points", self.film.len()), ("lens", self.lens.len()), ("time", self.time.len())];
         match lengths.into_iter().find(|&(_, n)| n != 1 && n != count) {
@@ -266,7 +272,7 @@ pub fn camera_rays<'py>(
 ) -> PyResult<CameraRays<'py>> {
     let camera = &*camera.0;
     let lead = [camera.height() as usize, camera.width() as usize];
-    let points = Points {
+    let points = FilmPoints {
         film: vectors("offsets", &offsets)?,
         pixels: Some(lead[1]),
         lens: vectors("lens", &lens)?,
@@ -286,6 +292,6 @@ pub fn camera_rays_through<'py>(
     time: Numbers<'py>,
 ) -> PyResult<CameraRays<'py>> {
     let film = vectors("points", &points)?;
-    let points = Points { film, pixels: None, lens: vectors("lens", &lens)?, time: time.slice("time")? };
+    let points = FilmPoints { film, pixels: None, lens: vectors("lens", &lens)?, time: time.slice("time")? };
     points.rays::<f64>(py, &*camera.0, &[film.len()])
 }

@@ -5,7 +5,7 @@ use super::hit_parts::{HitParts, Rounded, To};
 use super::rays::{BATCH, RayArrays};
 use raywright::accel::ByColumns;
 use raywright::math::coherence::is_coherent;
-use raywright::math::gathering::{Gathering, RUN, Spread, WINDOW};
+use raywright::math::ray_sort::{Gathering, RUN, Spread, WINDOW};
 use raywright::math::{HitColumns, Numbers, RayColumns, Run, Tiling, Vectors};
 use raywright::scene::Geometry;
 use raywright::simd::{ask_for, columns_of_four};
@@ -13,7 +13,7 @@ use std::cell::Cell;
 
 /// Rays that are asked together, of a chunk of `count`.
 #[derive(Clone, Copy)]
-struct Part<'a> {
+struct RayChunk<'a> {
     tiling: Tiling,
     from: usize,
     len: usize,
@@ -24,7 +24,7 @@ struct Part<'a> {
     window: usize,
 }
 
-impl Part<'_> {
+impl RayChunk<'_> {
     /// Returns whether the order is sequential.
     fn is_sequence(&self) -> bool {
         self.tiling.is_sequence() && self.order.is_none()
@@ -155,7 +155,7 @@ fn vectors<'a>(
     double: &'a mut [Vec<f64>; 3],
     rows: &Rows<'_>,
     start: usize,
-    part: &Part<'_>,
+    part: &RayChunk<'_>,
 ) -> Vectors<'a> {
     match rows {
         Rows::Single(rows) => Vectors::Single(fill(single, rows, start, part)),
@@ -163,7 +163,12 @@ fn vectors<'a>(
     }
 }
 
-fn fill<'a, T: Coordinate>(room: &'a mut [Vec<T>; 3], rows: &[[T; 3]], start: usize, part: &Part<'_>) -> [&'a [T]; 3] {
+fn fill<'a, T: Coordinate>(
+    room: &'a mut [Vec<T>; 3],
+    rows: &[[T; 3]],
+    start: usize,
+    part: &RayChunk<'_>,
+) -> [&'a [T]; 3] {
     let [x, y, z] = room;
     let (x, y, z) = (some(x, part.len), some(y, part.len), some(z, part.len));
     // One row for all.
@@ -190,7 +195,7 @@ fn fill<'a, T: Coordinate>(room: &'a mut [Vec<T>; 3], rows: &[[T; 3]], start: us
 }
 
 /// Numbers of a part of a chunk; `room` holds them if they are reordered.
-fn numbers<'a>(all: &'a [f64], start: usize, part: &Part<'_>, room: &'a mut Vec<f64>) -> Numbers<'a> {
+fn numbers<'a>(all: &'a [f64], start: usize, part: &RayChunk<'_>, room: &'a mut Vec<f64>) -> Numbers<'a> {
     if let [one] = all {
         return Numbers::One(*one);
     }
@@ -211,7 +216,7 @@ impl RayArrays<'_> {
         tree: &dyn ByColumns,
         start: usize,
         count: usize,
-        mut answer: impl FnMut(&RayColumns<'_>, &Part<'_>, &mut Answers),
+        mut answer: impl FnMut(&RayColumns<'_>, &RayChunk<'_>, &mut Answers),
     ) {
         let mut room = ROOM.take().unwrap_or_default();
         for window in (0..count).step_by(WINDOW) {
@@ -221,7 +226,7 @@ impl RayArrays<'_> {
             for from in (window..end).step_by(BATCH) {
                 let len = BATCH.min(end - from);
                 let order = order.map(|order| &order[(from - window) / RUN..][..len / RUN]);
-                let part = Part { tiling: self.tiling, from, len, count, order, window };
+                let part = RayChunk { tiling: self.tiling, from, len, count, order, window };
                 let rays = RayColumns::new(
                     vectors(o, long_o, &self.origins, start, &part),
                     vectors(d, long_d, &self.directions, start, &part),

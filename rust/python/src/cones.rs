@@ -25,7 +25,7 @@ fn share(count: usize) -> usize {
 }
 
 /// Cones in array form: each part one for all cones, or one per cone.
-struct Cones<'a> {
+struct ConeArrays<'a> {
     apexes: Rows<'a>,
     axes: Rows<'a>,
     angles: &'a [f64],
@@ -33,7 +33,7 @@ struct Cones<'a> {
     count: usize,
 }
 
-impl<'a> Cones<'a> {
+impl<'a> ConeArrays<'a> {
     fn of(
         origins: &'a Triples<'_>,
         directions: &'a Triples<'_>,
@@ -85,7 +85,7 @@ pub fn cones<'py>(
     if let Some(shape) = scene.geometry().first_other() {
         return Err(PyValueError::new_err(format!("cone queries support only meshes, and shape {shape} is none")));
     }
-    let cones = Cones::of(&origins, &directions, &half_angle, &t_max, &shape)?;
+    let cones = ConeArrays::of(&origins, &directions, &half_angle, &t_max, &shape)?;
     let count = cones.count;
     let found = each(py, threads, chunks(count, share(count)), |(start, count)| {
         let cones: Vec<_> = (start..start + count).map(|i| cones.get(i)).collect();
@@ -129,7 +129,7 @@ pub fn cone_coverage<'py>(
     let coverage = Coverage::new(scene).map_err(|shape| {
         PyValueError::new_err(format!("coverage supports only meshes and spheres, and shape {shape} is neither"))
     })?;
-    let cones = Cones::of(&origins, &directions, &half_angle, &t_max, &shape)?;
+    let cones = ConeArrays::of(&origins, &directions, &half_angle, &t_max, &shape)?;
     let found = each(py, threads, chunks(cones.count, share(cones.count)), |(start, count)| {
         let share = |i| match cones.get(i) {
             Some(cone) => coverage.share(&cone, Counted::default()),

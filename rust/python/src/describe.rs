@@ -39,7 +39,7 @@ pub struct Scene<'py> {
 
 /// `raywright.Mesh`.
 #[derive(FromPyObject)]
-struct Mesh<'py> {
+struct PyMesh<'py> {
     vertices: Triples<'py>,
     faces: PyReadonlyArray2<'py, u32>,
     normals: Option<Triples<'py>>,
@@ -50,7 +50,7 @@ struct Mesh<'py> {
 impl Scene<'_> {
     /// Returns whether shading normals are used as given.
     pub fn normals_as_given(&self) -> bool {
-        self.shading_normals == "as given"
+        self.shading_normals == "raw"
     }
 
     /// Converts to the core's description. Also returns the objects that must live as long as the result.
@@ -141,13 +141,13 @@ fn describe<'py>(
     if !MESH.has(shape)? {
         return Ok((scene::Shape { surface: shapes::read(shape)?.into(), ..appearance }, None));
     }
-    let given = shape.extract::<Mesh<'py>>()?;
+    let given = shape.extract::<PyMesh<'py>>()?;
     let mesh = given.describe(precision, appearance.needs())?;
     let is_rounded = mesh.rounding.moved > 0.0;
     Ok((scene::Shape { surface: mesh.into(), ..appearance }, is_rounded.then_some(given.vertices)))
 }
 
-impl Mesh<'_> {
+impl PyMesh<'_> {
     /// Reads only the vertex attributes that are needed.
     fn describe(&self, precision: Precision, needs: Needs) -> PyResult<scene::Mesh> {
         let (given, faces) = (self.vertices.rows("vertices")?, rows("faces", &self.faces)?.to_vec());

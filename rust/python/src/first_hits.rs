@@ -15,7 +15,7 @@ use raywright::scene::FirstHits;
 use raywright::workers;
 
 /// t, shape_id and primitive (H,W), uv (H,W,2), and the number of pixels that used the BVH.
-type Seen<'py> = (
+type HitArrays<'py> = (
     Bound<'py, PyArrayDyn<f64>>,
     Bound<'py, PyArrayDyn<i32>>,
     Bound<'py, PyArrayDyn<i32>>,
@@ -31,7 +31,7 @@ pub fn first_hits<'py>(
     camera: AnyCamera,
     offsets: PyReadonlyArrayDyn<'py, f64>,
     threads: Option<usize>,
-) -> PyResult<Seen<'py>> {
+) -> PyResult<HitArrays<'py>> {
     let (scene, camera) = (scene.get().scene(), &*camera.0);
     let offsets = vectors("offsets", &offsets)?;
     let (width, height) = (camera.width() as usize, camera.height() as usize);

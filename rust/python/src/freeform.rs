@@ -23,7 +23,7 @@ struct PyPolygon {
     holes: Vec<Vec<[f64; 3]>>,
 }
 
-/// `raywright.Implicit`.
+/// `raywright.shapes.Implicit`.
 #[derive(FromPyObject)]
 struct PyImplicit {
     expression: String,

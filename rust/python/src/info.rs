@@ -4,7 +4,7 @@ use pyo3::prelude::*;
 
 use raywright::accel::Info;
 
-/// Statistics of a built accelerator: `Scene.accelerator` makes it.
+/// Statistics of a built accelerator: `Scene.accelerator_info` returns it.
 ///
 /// Attributes
 /// ----------
@@ -30,7 +30,7 @@ use raywright::accel::Info;
 ///
 /// Examples
 /// --------
-/// >>> info = rw.Scene(rw.Sphere()).accelerator
+/// >>> info = rw.Scene(rw.Sphere()).accelerator_info
 /// >>> info.primitives, info.kind.startswith("BVH")
 /// (1, True)
 #[pyclass(frozen, module = "raywright._core")]

@@ -39,7 +39,7 @@ pub struct Wishes<'a> {
 
 /// Cache key of a prototype: the identities of its shapes, its accelerator's description, and the scene's options.
 #[derive(Clone, PartialEq, Eq, Hash)]
-struct Key {
+struct InstanceKey {
     shapes: Vec<usize>,
     accelerator: String,
     precision: Precision,
@@ -49,7 +49,7 @@ struct Key {
 
 /// Cache of prototypes held by some scene. An object is identified by its address, which is not reused while the
 /// prototype lives, because its owners keep its shapes alive ([`CompiledScene::kept`]).
-static GROUPS: LazyLock<Mutex<HashMap<Key, Weak<Prototype>>>> = LazyLock::new(Mutex::default);
+static GROUPS: LazyLock<Mutex<HashMap<InstanceKey, Weak<Prototype>>>> = LazyLock::new(Mutex::default);
 
 /// Rows of (4, 4) or (N, 4, 4) matrices without the last row of each.
 fn matrices(name: &str, array: &PyReadonlyArrayDyn<'_, f64>) -> PyResult<Vec<Matrix>> {
@@ -106,7 +106,7 @@ fn prototype(
     read_shapes: ReadShapes<'_>,
 ) -> PyResult<Arc<Prototype>> {
     let py = shapes.py();
-    let key = Key {
+    let key = InstanceKey {
         shapes: shapes.iter().map(|s| s.as_ptr() as usize).collect(),
         accelerator: accelerator.repr()?.to_str()?.to_owned(),
         precision: wishes.precision,

@@ -40,7 +40,7 @@ fn kernel(of: &Bound<'_, PyAny>) -> PyResult<Kernel> {
 
 /// Options of vertex merging, if it is enabled.
 fn merge(of: &Bound<'_, PyAny>) -> PyResult<Option<Merge>> {
-    if !attribute::<bool>(of, "merge")? {
+    if !attribute::<bool>(of, "vertex_merging")? {
         return Ok(None);
     }
     let (radius, photons) = (attribute(of, "radius")?, attribute(of, "photons")?);
@@ -60,7 +60,7 @@ pub fn path(of: &Bound<'_, PyAny>) -> PyResult<Path> {
 /// Data of a radiosity lookup: cuts (F,), the first face of each primitive of the scene (N + 1,), flags of mirrored
 /// faces (F,), irradiance at three corners (S,3,3), whether there are back sides, and the area of surfaces that are not
 /// instances.
-type Table<'py> = (
+type RadiosityTable<'py> = (
     PyReadonlyArray1<'py, u32>,
     PyReadonlyArray1<'py, u32>,
     PyReadonlyArray1<'py, bool>,
@@ -70,7 +70,7 @@ type Table<'py> = (
 );
 
 fn radiosity(of: &Bound<'_, PyAny>) -> PyResult<Radiosity> {
-    let (cuts, first, mirrored, irradiance, has_backs, area) = of.getattr("_table")?.extract::<Table<'_>>()?;
+    let (cuts, first, mirrored, irradiance, has_backs, area) = of.getattr("_table")?.extract::<RadiosityTable<'_>>()?;
     let patches = Patches::new(numbers("cuts", &cuts)?.to_vec()).map_err(PyValueError::new_err)?;
     let corners: &[[f64; 3]] = vectors("irradiance", &irradiance)?;
     let irradiance: Vec<_> = corners.as_chunks().0.iter().map(|all: &[_; 3]| all.map(Rgb::from_array)).collect();
@@ -98,10 +98,10 @@ static KINDS: Kinds<Read<Box<dyn Integrator>>> = Kinds::new(
         ("integrators.photon_maps", "PhotonMap", |of| {
             Ok(Box::new(PhotonMap {
                 photons: attribute(of, "photons")?,
-                nearest: attribute(of, "nearest")?,
+                nearest: attribute(of, "k_nearest")?,
                 radius: attribute(of, "radius")?,
                 caustic: attribute(of, "caustic")?,
-                gather: attribute(of, "gather")?,
+                gather: attribute(of, "final_gather")?,
                 maps: attribute(of, "maps")?,
                 kernel: kernel(of)?,
                 max_depth: attribute(of, "max_depth")?,
@@ -114,7 +114,7 @@ static KINDS: Kinds<Read<Box<dyn Integrator>>> = Kinds::new(
                 photons: attribute(of, "photons")?,
                 radius: attribute(of, "radius")?,
                 alpha: attribute(of, "alpha")?,
-                gather: attribute(of, "gather")?,
+                gather: attribute(of, "final_gather")?,
                 kernel: kernel(of)?,
                 max_depth: attribute(of, "max_depth")?,
                 roulette_depth: attribute(of, "roulette_depth")?,

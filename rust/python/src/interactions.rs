@@ -10,7 +10,7 @@ use super::rays::{Parts, answer, chunks, each, share};
 use raywright::integrators::indices_outside;
 use raywright::math::{DVec3, Hit, Ray};
 use raywright::optics::{Bsdf, BsdfSample, Rgb};
-use raywright::scene::{Encounter, Scene, ShadingPoint, SurfaceInteraction};
+use raywright::scene::{Interaction, Scene, ShadingPoint, SurfaceInteraction};
 
 type Vectors<'py> = Bound<'py, PyArrayDyn<f64>>;
 
@@ -18,12 +18,12 @@ type Vectors<'py> = Bound<'py, PyArrayDyn<f64>>;
 #[pyclass(frozen, module = "raywright._core")]
 pub struct Interactions {
     scene: Py<CompiledScene>,
-    entries: Vec<Entry>,
+    entries: Vec<InteractionEntry>,
 }
 
 /// The interaction of a ray.
 #[derive(Clone)]
-struct Entry {
+struct InteractionEntry {
     ray: Ray,
     hit: Hit,
     /// None for a miss.
@@ -34,7 +34,7 @@ struct Entry {
     cosine: f64,
 }
 
-impl Entry {
+impl InteractionEntry {
     fn new(scene: &Scene, ray: Ray, hit: Hit, outside: f64) -> Self {
         if !hit.is_hit() {
             let emission = scene.lights().infinite_radiance(ray.direction);
@@ -139,7 +139,7 @@ pub fn interactions<'py>(
         compiled.intersect(&rays, &mut hits);
         let outside = indices_outside(compiled, &rays, &hits);
         let met = rays.into_iter().zip(hits).zip(outside);
-        met.map(|((ray, hit), outside)| Entry::new(compiled, ray, hit, outside)).collect::<Vec<_>>()
+        met.map(|((ray, hit), outside)| InteractionEntry::new(compiled, ray, hit, outside)).collect::<Vec<_>>()
     })?;
     Ok(Interactions { scene: scene.unbind(), entries: made.into_iter().flatten().collect() })
 }
@@ -189,7 +189,7 @@ impl Interactions {
     #[getter]
     fn shape_id<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<i32>>> {
         let geometry = self.scene.get().scene().geometry();
-        let shape = |e: &Entry| e.here.as_ref().map_or(-1, |_| geometry.locate(e.hit.primitive).0 as i32);
+        let shape = |e: &InteractionEntry| e.here.as_ref().map_or(-1, |_| geometry.locate(e.hit.primitive).0 as i32);
         let array = unwritten::<i32>(py, &[self.entries.len()], None)?;
         for (to, entry) in array.readwrite().as_slice_mut()?.iter_mut().zip(&self.entries) {
             *to = shape(entry);
@@ -199,9 +199,10 @@ impl Interactions {
 
     /// Face number within its shape; −1 for a miss.
     #[getter]
-    fn primitive<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<i32>>> {
+    fn primitive_id<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<i32>>> {
         let geometry = self.scene.get().scene().geometry();
-        let primitive = |e: &Entry| e.here.as_ref().map_or(-1, |_| geometry.locate(e.hit.primitive).1 as i32);
+        let primitive =
+            |e: &InteractionEntry| e.here.as_ref().map_or(-1, |_| geometry.locate(e.hit.primitive).1 as i32);
         let array = unwritten::<i32>(py, &[self.entries.len()], None)?;
         for (to, entry) in array.readwrite().as_slice_mut()?.iter_mut().zip(&self.entries) {
             *to = primitive(entry);
@@ -211,7 +212,7 @@ impl Interactions {
 
     #[getter]
     fn uv<'py>(&self, py: Python<'py>) -> PyResult<Vectors<'py>> {
-        let uv = |e: &Entry| e.here.as_ref().map_or([f64::NAN; 2], |_| e.hit.uv);
+        let uv = |e: &InteractionEntry| e.here.as_ref().map_or([f64::NAN; 2], |_| e.hit.uv);
         filled(py, self.entries.len(), |i| uv(&self.entries[i]))
     }
 
@@ -227,13 +228,15 @@ impl Interactions {
     fn ior<'py>(&self, py: Python<'py>) -> PyResult<Vectors<'py>> {
         let scene = self.scene.get().scene();
         let within = |here: &SurfaceInteraction| scene.material(here.surface().shape).interior();
-        let ior = |e: &Entry| e.here.as_ref().map_or(f64::NAN, |here| within(here).map_or(1.0, |within| within.ior));
+        let ior = |e: &InteractionEntry| {
+            e.here.as_ref().map_or(f64::NAN, |here| within(here).map_or(1.0, |within| within.ior))
+        };
         filled(py, self.entries.len(), |i| [ior(&self.entries[i])])
     }
 
     /// Incident delta direction, reflected or transmitted, and its weight; pdf is infinite if there is one.
     fn single<'py>(&self, py: Python<'py>, is_through: bool) -> PyResult<(Vectors<'py>, Vectors<'py>, Vectors<'py>)> {
-        let single = |entry: &Entry| {
+        let single = |entry: &InteractionEntry| {
             let here = entry.here.as_ref()?;
             let mut found: Option<BsdfSample> = None;
             here.bsdf().delta_lobes(here.wo(), |lobe| {
@@ -276,7 +279,7 @@ impl Interactions {
     }
 
     /// Origins of rays along these directions.
-    fn leave<'py>(&self, py: Python<'py>, directions: Triples<'py>) -> PyResult<Vectors<'py>> {
+    fn spawn_rays<'py>(&self, py: Python<'py>, directions: Triples<'py>) -> PyResult<Vectors<'py>> {
         let directions = directions.rows("directions")?;
         self.check("directions", directions.len())?;
         filled(py, self.entries.len(), |i| {
@@ -300,7 +303,7 @@ impl Interactions {
     }
 
     /// Directions, weights and densities, by numbers from 0 to 1: `choice` (N,) and `u` (N,2).
-    fn sample<'py>(
+    fn sample_bsdf<'py>(
         &self,
         py: Python<'py>,
         choice: Numbers<'py>,
@@ -319,7 +322,7 @@ impl Interactions {
     /// Light samples: directions, weights, and visibility segments as origins and directions with `t` up to 1 or, for
     /// infinite lights, infinity; finally their densities.
     #[allow(clippy::type_complexity)]
-    fn light<'py>(
+    fn sample_light<'py>(
         &self,
         py: Python<'py>,
         choice: Numbers<'py>,
@@ -355,7 +358,7 @@ impl Interactions {
         let scene = self.scene.get().scene();
         let (lights, geometry) = (scene.lights(), scene.geometry());
         filled(py, self.entries.len(), |i| {
-            let Entry { ray, hit, here, emission, cosine } = &self.entries[i];
+            let InteractionEntry { ray, hit, here, emission, cosine } = &self.entries[i];
             let Some(from) = &before.entries[i].here else { return [0.0] };
             [match here {
                 None => lights.infinite_pdf(&from.light_context(), ray.direction),

@@ -5,10 +5,10 @@ use pyo3::types::PyBytes;
 
 use super::cameras::AnyCamera;
 use super::integrators::AnyIntegrator;
+use super::python_integrator::Written;
 use super::query::CompiledScene;
 use super::samplers;
 use super::watcher::{Watcher, malformed};
-use super::written::Written;
 use raywright::integrators::{Integrator, Transparent};
 use raywright::render::{Request, Settings, Until};
 use raywright::scene::Camera;
@@ -17,14 +17,14 @@ use raywright::scene::Camera;
 #[pyclass(module = "raywright._core", frozen)]
 pub struct Job {
     camera: AnyCamera,
-    integrator: Chosen,
+    integrator: ChosenIntegrator,
     settings: Settings,
     /// True if the background is transparent where the camera sees it directly.
     transparent: bool,
 }
 
 /// An integrator of the package, or one written in Python.
-enum Chosen {
+enum ChosenIntegrator {
     Own(Box<dyn Integrator>),
     Written { integrator: Py<PyAny>, described: Py<PyAny>, seed: u64 },
 }
@@ -52,8 +52,8 @@ impl Job {
     /// The integrator, for one call.
     pub(super) fn integrator(&self, py: Python<'_>) -> Working<'_> {
         match &self.integrator {
-            Chosen::Own(own) => Working::Own(&**own),
-            Chosen::Written { integrator, described, seed } => {
+            ChosenIntegrator::Own(own) => Working::Own(&**own),
+            ChosenIntegrator::Written { integrator, described, seed } => {
                 Working::Written(Box::new(Written::new(integrator.clone_ref(py), described.clone_ref(py), *seed)))
             }
         }
@@ -94,9 +94,9 @@ impl Job {
         let (sampler, filter) = (samplers::sampler(sampler)?, samplers::filter(filter)?.into());
         let base = integrator.py().import("raywright.integrators.base")?.getattr("Integrator")?;
         let integrator = if integrator.is_instance(&base)? {
-            Chosen::Written { integrator: integrator.clone().unbind(), described: scene, seed }
+            ChosenIntegrator::Written { integrator: integrator.clone().unbind(), described: scene, seed }
         } else {
-            Chosen::Own(integrator.extract::<AnyIntegrator>()?.0)
+            ChosenIntegrator::Own(integrator.extract::<AnyIntegrator>()?.0)
         };
         Ok(Self {
             camera,

@@ -1,6 +1,7 @@
 //! Floor 6: the bindings. They convert arrays and map errors, and hold no algorithms.
 
 mod accelerators;
+mod all_hits;
 mod arrays;
 mod broadcast;
 mod builds;
@@ -9,7 +10,6 @@ mod columns;
 mod cones;
 mod denoise;
 mod describe;
-mod every;
 mod exr_codecs;
 mod first_hits;
 mod flat;
@@ -24,7 +24,6 @@ mod integrators;
 mod interactions;
 mod job;
 mod kinds;
-mod leave;
 mod lights;
 mod materials;
 mod media;
@@ -32,6 +31,7 @@ mod photons;
 mod points;
 mod polygons;
 mod preview;
+mod python_integrator;
 mod query;
 mod radiosity;
 mod random;
@@ -42,14 +42,14 @@ mod samplers;
 mod shapes;
 mod sight;
 mod signals;
+mod spawn_rays;
 mod spectra;
 mod text_numbers;
 mod textures;
 mod topology;
-mod tree;
+mod tree_boxes;
 mod view_factors;
 mod watcher;
-mod written;
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -138,8 +138,6 @@ mod _core {
     #[pymodule_export]
     use super::job::Job;
     #[pymodule_export]
-    use super::leave::leave;
-    #[pymodule_export]
     use super::materials::{metal_index, metals};
     #[pymodule_export]
     use super::photons::photons;
@@ -171,13 +169,15 @@ mod _core {
     #[pymodule_export]
     use super::simd;
     #[pymodule_export]
+    use super::spawn_rays::spawn_rays;
+    #[pymodule_export]
     use super::spectra::{daylight_power, film_reflectance, smooth_spectrum, spectrum_luminance, spectrum_rgb};
     #[pymodule_export]
     use super::text_numbers::leading_numbers;
     #[pymodule_export]
     use super::topology::{MeshTopology, mesh_topology, sections, weld, weld_rounding};
     #[pymodule_export]
-    use super::tree::tree;
+    use super::tree_boxes::tree_boxes;
     #[pymodule_export]
     use super::view_factors::{coincident_faces, view_factor_matrix, view_factor_rows};
     /// Maximum number of samples of a pilot per variant.

@@ -86,7 +86,7 @@ static KINDS: Kinds<Read<Arc<dyn Material>>> = Kinds::new(
                 by_wave: of.waves(),
             }))
         }),
-        ("materials.boundary", "Boundary", |of| {
+        ("materials.medium_interface", "MediumInterface", |of| {
             let medium = of.medium()?.ok_or_else(|| PyTypeError::new_err("interior must be a medium"))?;
             Ok(Arc::new(BoundaryMaterial { medium, priority: of.given.getattr("priority")?.extract()? }))
         }),

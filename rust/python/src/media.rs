@@ -75,7 +75,7 @@ fn grid(given: &Bound<'_, PyAny>, waves: bool, parts: Parts) -> PyResult<Arc<dyn
     let Parts { absorbs, scatters, phase } = parts;
     let told = [absorbs, scatters];
     let at = match given.getattr("at")?.extract::<String>()?.as_str() {
-        "centres" => At::Centres,
+        "centers" => At::Centres,
         _ => At::Corners,
     };
     let some = |name: &'static str| -> PyResult<Option<Field>> {

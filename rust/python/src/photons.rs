@@ -9,12 +9,12 @@ use super::signals::heard;
 use raywright::integrators::{Photon, photons as follow};
 
 /// Rows of three numbers.
-type Rows<'py> = Bound<'py, PyArray2<f64>>;
+type PhotonRows<'py> = Bound<'py, PyArray2<f64>>;
 
 /// Positions, directions, normals and powers (K,3); shape_id, primitive, path and bounces (K,); bit masks of the
 /// bounces that were sharp and of those in media (K,); and emitted, escaped and absorbed power.
 type Found<'py> = (
-    (Rows<'py>, Rows<'py>, Rows<'py>, Rows<'py>),
+    (PhotonRows<'py>, PhotonRows<'py>, PhotonRows<'py>, PhotonRows<'py>),
     (Bound<'py, PyArray1<i32>>, Bound<'py, PyArray1<i32>>, Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<i64>>),
     (Bound<'py, PyArray1<u64>>, Bound<'py, PyArray1<u64>>),
     ([f64; 3], [f64; 3], [f64; 3]),

@@ -11,7 +11,7 @@ use raywright::math::{Hit, Ray};
 use raywright::scene::textures::Needs;
 
 /// Position, error, normal, shading normal, dp/du, dp/dv, dn/du, dn/dv.
-type Points<'py> = (
+type PointArrays<'py> = (
     Bound<'py, PyArrayDyn<f64>>,
     Bound<'py, PyArrayDyn<f64>>,
     Bound<'py, PyArrayDyn<f64>>,
@@ -37,11 +37,11 @@ pub fn points<'py>(
     directions: Triples<'py>,
     time: Numbers<'py>,
     ray: Option<PyReadonlyArray1<'py, i64>>,
-) -> PyResult<Points<'py>> {
-    let (shape, primitive) = (numbers("shape_id", &shape_id)?, numbers("primitive", &primitive)?);
+) -> PyResult<PointArrays<'py>> {
+    let (shape, primitive) = (numbers("shape_id", &shape_id)?, numbers("primitive_id", &primitive)?);
     let (uv, t): (&[[f64; 2]], _) = (rows("uv", &uv)?, numbers("t", &t)?);
     let time = time.slice("time")?;
-    let instances = instance.as_ref().map(|i| numbers("instance", i)).transpose()?;
+    let instances = instance.as_ref().map(|i| numbers("instance_id", i)).transpose()?;
     let (origins, directions) = (origins.rows("origins")?, directions.rows("directions")?);
     let order = ray.as_ref().map(|r| numbers("ray", r)).transpose()?;
     let count = primitive.len();

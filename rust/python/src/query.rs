@@ -5,10 +5,10 @@ use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 
 use super::accelerators;
+use super::all_hits;
 use super::arrays::{Numbers, Triples, numbers, rows, sealed, unwritten, writable};
 use super::builds::{self, Builds};
 use super::describe::Scene;
-use super::every;
 use super::hit_parts::located;
 use super::hits::{ALL, HitArrays, Hits};
 use super::info::AcceleratorInfo;
@@ -220,20 +220,20 @@ impl CompiledScene {
         py: Python<'py>,
         rays: RayArguments<'py>,
         counted: Option<Counted>,
-    ) -> PyResult<every::AllHits<'py>> {
-        every::intersect_all(py, &self.0, &rays.rays()?, rays.threads, counted.map(scene::Filter::from).as_ref())
+    ) -> PyResult<all_hits::AllHits<'py>> {
+        all_hits::intersect_all(py, &self.0, &rays.rays()?, rays.threads, counted.map(scene::Filter::from).as_ref())
     }
 
-    fn count<'py>(&self, py: Python<'py>, rays: RayArguments<'py>) -> PyResult<Bound<'py, PyArrayDyn<i32>>> {
+    fn count_hits<'py>(&self, py: Python<'py>, rays: RayArguments<'py>) -> PyResult<Bound<'py, PyArrayDyn<i32>>> {
         let (lead, threads, rays) = (&rays.shape, rays.threads, rays.rays()?);
         let out = unwritten(py, lead, None)?;
         answer(py, rays.count(), rays.chunk(), threads, out.readwrite().as_slice_mut()?, |start, out| {
-            rays.part(start, out.len(), |rays, start| every::count(&self.0, rays, start, out));
+            rays.part(start, out.len(), |rays, start| all_hits::count(&self.0, rays, start, out));
         })?;
         Ok(out)
     }
 
-    fn cost<'py>(&self, py: Python<'py>, rays: RayArguments<'py>) -> PyResult<Costs<'py>> {
+    fn traversal_cost<'py>(&self, py: Python<'py>, rays: RayArguments<'py>) -> PyResult<Costs<'py>> {
         let (lead, threads, rays) = (&rays.shape, rays.threads, rays.rays()?);
         let (nodes, primitives) = (unwritten(py, lead, None)?, unwritten(py, lead, None)?);
         {
@@ -395,10 +395,10 @@ impl CompiledScene {
         instance: Option<PyReadonlyArray1<'py, i32>>,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let (uv, position) = (rows("uv", &uv)?, rows("position", &position)?);
-        let instance = instance.as_ref().map(|instance| numbers("instance", instance)).transpose()?;
+        let instance = instance.as_ref().map(|instance| numbers("instance_id", instance)).transpose()?;
         // For a shape of instances, primitives are numbered by instance; those inside come from `primitive`.
         let copy_of = |i: usize| instance.and_then(|all| u32::try_from(all[i]).ok());
-        let inside = numbers("primitive", &primitive)?.to_vec();
+        let inside = numbers("primitive_id", &primitive)?.to_vec();
         let which: Vec<i32> = (0..inside.len()).map(|i| copy_of(i).map_or(inside[i], |copy| copy as i32)).collect();
         let which = numpy::PyArray1::from_vec(py, which).readonly();
         self.of_primitives(py, &shape_id, &which, |geometry, p, i| {
@@ -494,7 +494,7 @@ impl CompiledScene {
         primitive: &PyReadonlyArray1<'py, i32>,
         numbers_of: impl Fn(&scene::Geometry, u32, usize) -> [f64; K] + Sync,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        let (shape, primitive) = (numbers("shape_id", shape_id)?, numbers("primitive", primitive)?);
+        let (shape, primitive) = (numbers("shape_id", shape_id)?, numbers("primitive_id", primitive)?);
         let count = primitive.len();
         let out = unwritten(py, &[count], Some(K))?;
         {

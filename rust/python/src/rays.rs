@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use super::arrays::{Numbers, Row, Rows, Triples};
 use super::broadcast::{Repeats, some_of};
 use super::held_rows::Held;
-use raywright::math::gathering::WINDOW;
+use raywright::math::ray_sort::WINDOW;
 use raywright::math::{Ray, Tiling, row_length};
 use raywright::{parallel, workers};
 

@@ -45,20 +45,20 @@ fn batch(sampler: &Bound<'_, PyAny>) -> PyResult<BatchSize> {
     }
 }
 
-/// `raywright.BoxFilter`, `TriangleFilter` and `BlackmanHarrisFilter`.
+/// `raywright.rendering.BoxFilter`, `TriangleFilter` and `BlackmanHarrisFilter`.
 #[derive(FromPyObject)]
 struct Wide {
     radius: f64,
 }
 
-/// `raywright.GaussianFilter`.
+/// `raywright.rendering.GaussianFilter`.
 #[derive(FromPyObject)]
 struct Gaussian {
     radius: f64,
     sigma: f64,
 }
 
-/// `raywright.MitchellFilter`.
+/// `raywright.rendering.MitchellFilter`.
 #[derive(FromPyObject)]
 struct Mitchell {
     radius: f64,
@@ -66,13 +66,13 @@ struct Mitchell {
     c: f64,
 }
 
-/// `raywright.LanczosFilter`.
+/// `raywright.rendering.LanczosFilter`.
 #[derive(FromPyObject)]
 struct Lanczos {
     lobes: u32,
 }
 
-/// `raywright.CroppedFilter`.
+/// `raywright.rendering.CroppedFilter`.
 #[derive(FromPyObject)]
 struct Cropped<'py> {
     filter: Bound<'py, PyAny>,

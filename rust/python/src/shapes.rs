@@ -58,14 +58,14 @@ struct PyBox {
     max: [f64; 3],
 }
 
-/// `raywright.Ellipsoid`.
+/// `raywright.shapes.Ellipsoid`.
 #[derive(FromPyObject)]
 struct PyEllipsoid {
     center: [f64; 3],
     semi_axes: [f64; 3],
 }
 
-/// `raywright.Paraboloid`.
+/// `raywright.shapes.Paraboloid`.
 #[derive(FromPyObject)]
 struct PyParaboloid {
     apex: [f64; 3],

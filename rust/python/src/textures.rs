@@ -18,13 +18,13 @@ use raywright::scene::textures::{
 };
 
 /// A converted object; the original stays alive so that its address is not reused.
-struct Known<T> {
+struct CachedObject<T> {
     _object: Py<PyAny>,
     made: T,
 }
 
 /// Cache of converted objects by address; a shared one is read once.
-pub struct Cache<T>(RefCell<HashMap<usize, Known<T>>>);
+pub struct Cache<T>(RefCell<HashMap<usize, CachedObject<T>>>);
 
 impl<T> Default for Cache<T> {
     fn default() -> Self {
@@ -43,7 +43,7 @@ impl<T: Clone> Cache<T> {
             return Ok(known.made.clone());
         }
         let made = make()?;
-        self.0.borrow_mut().insert(address, Known { _object: object.clone().unbind(), made: made.clone() });
+        self.0.borrow_mut().insert(address, CachedObject { _object: object.clone().unbind(), made: made.clone() });
         Ok(made)
     }
 }
@@ -60,10 +60,10 @@ pub struct Textures {
     waves: bool,
     /// Caches by the quantity of their numbers.
     textures: [Cache<Arc<dyn Texture>>; 4],
-    pictures: RefCell<HashMap<PictureKey, Known<Arc<Picture>>>>,
+    pictures: RefCell<HashMap<PictureKey, CachedObject<Arc<Picture>>>>,
 }
 
-/// `raywright.UvTransform` or `raywright.ObjectTransform`.
+/// `raywright.textures.UvTransform` or `raywright.textures.ObjectTransform`.
 #[derive(FromPyObject)]
 enum PyTransform {
     #[pyo3(transparent)]
@@ -72,13 +72,13 @@ enum PyTransform {
     Object(PyObjectTransform),
 }
 
-/// `raywright.UvTransform`.
+/// `raywright.textures.UvTransform`.
 #[derive(FromPyObject)]
 struct PyUvTransform {
     matrix: [[f64; 3]; 2],
 }
 
-/// `raywright.ObjectTransform`.
+/// `raywright.textures.ObjectTransform`.
 #[derive(FromPyObject)]
 struct PyObjectTransform {
     matrix: [[f64; 4]; 3],
@@ -235,7 +235,7 @@ impl Textures {
             Some(picture) => picture,
             None => {
                 let made = Arc::new(picture(&given.image, one, given.decoded, smaller)?);
-                let known = Known { _object: given.image.clone().unbind(), made: made.clone() };
+                let known = CachedObject { _object: given.image.clone().unbind(), made: made.clone() };
                 self.pictures.borrow_mut().insert(key, known);
                 made
             }

@@ -5,7 +5,7 @@ use pyo3::prelude::*;
 use std::ops::ControlFlow;
 use std::time::Instant;
 
-use super::written::Written;
+use super::python_integrator::Written;
 use raywright::render::{HistoryRow, Malformed, Progress, RenderError};
 
 /// Converts an error about bytes for Python.

@@ -2,8 +2,8 @@
 
 use super::bytes::{Malformed, Reader, Writer, check};
 use super::denominators::{Denominators, cross};
-use super::epoch::{Epoch, dither};
 use super::film::Film;
+use super::sample_allocation::{Epoch, dither};
 use raywright_base::parallel::{self, CHUNK};
 use raywright_optics::Rgb;
 

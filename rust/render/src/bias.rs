@@ -40,7 +40,7 @@ pub fn bias(
             let Some(narrowed) = integrator.narrowed(scale, samples) else { return Ok(None) };
             means.push(render(scene, camera, &*narrowed, &settings, progress)?.film.means());
         }
-        sums.resize(means[0].len(), Sums::default());
+        sums.resize(means[0].len(), BiasSums::default());
         for (i, sums) in sums.iter_mut().enumerate() {
             sums.add(means[0][i], means[1][i], means[2][i]);
         }
@@ -51,12 +51,12 @@ pub fn bias(
 /// Sums over groups of a pixel's estimates from three disks, each with half the area of the previous one: by the first
 /// two, by the last two, and their difference.
 #[derive(Clone, Copy, Debug, Default)]
-struct Sums {
+struct BiasSums {
     sums: [Rgb; 3],
     squares: [Rgb; 3],
 }
 
-impl Sums {
+impl BiasSums {
     /// Significant difference, in standard errors.
     const APART: f64 = 4.0;
 
@@ -98,12 +98,12 @@ mod tests {
         // Exact for r²; for r⁴ and r the larger estimate, which is 1.5 and 0.83 of the bias.
         for (power, expected) in [(2.0, 1.0), (4.0, 1.5), (1.0, 0.828_427_124_746_19)] {
             let [whole, half, quarter] = law(power);
-            let mut sums = Sums::default();
+            let mut sums = BiasSums::default();
             (0..4).for_each(|_| sums.add(whole, half, quarter));
             let [told, error] = sums.told(4.0);
             assert!((told.mean() - expected).abs() < 1e-12 && error.max() < 1e-7);
         }
-        let mut sums = Sums::default();
+        let mut sums = BiasSums::default();
         (0..4).for_each(|_| sums.add(Rgb::ONE, Rgb::ONE, Rgb::ONE));
         assert!(sums.told(4.0)[0].is_black());
     }
@@ -111,7 +111,7 @@ mod tests {
     #[test]
     fn noise_is_told_and_not_taken_for_another_law() {
         // The noise of the smaller disks exceeds their signal.
-        let mut sums = Sums::default();
+        let mut sums = BiasSums::default();
         for noise in [0.3, -0.2, 0.1, -0.3] {
             sums.add(Rgb::splat(2.0), Rgb::splat(1.9 + 0.1 * noise), Rgb::splat(1.8 + noise));
         }

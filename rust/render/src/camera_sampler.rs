@@ -11,7 +11,7 @@ use std::array::from_fn;
 
 /// A requested sample: its pixel, and its number within the pixel.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Wanted {
+pub(super) struct PixelSample {
     pub position: (u32, u32),
     pub number: u32,
 }
@@ -50,19 +50,19 @@ impl<'a> CameraSampler<'a> {
 
     /// Takes samples, and says of each how much it counts, by the filter and the camera: also of those for which the
     /// camera has no ray, and which are not among the samples.
-    pub fn take(&self, wanted: &[Wanted], samples: &mut CameraSamples, weights: &mut Vec<f64>) {
+    pub fn take(&self, wanted: &[PixelSample], samples: &mut CameraSamples, weights: &mut Vec<f64>) {
         let (mut u, mut offsets, mut counts) = ([[0.0; LANES]; 2], [[0.0; LANES]; 2], [0.0; LANES]);
         let (mut lens, mut time, mut rays) = ([[0.5; LANES]; 2], [0.0; LANES], CameraRayLanes::NONE);
         for wanted in wanted.chunks(LANES) {
             // The last sample fills the remaining lanes.
-            let of: [Wanted; LANES] = from_fn(|lane| wanted[lane.min(wanted.len() - 1)]);
-            let pixels = of.map(|Wanted { position: (x, y), .. }| y * self.camera.width() + x);
+            let of: [PixelSample; LANES] = from_fn(|lane| wanted[lane.min(wanted.len() - 1)]);
+            let pixels = of.map(|PixelSample { position: (x, y), .. }| y * self.camera.width() + x);
             let numbers = of.map(|wanted| wanted.number);
             let samplers = SamplerLanes::of(self.kind, self.level, self.seed, &pixels, &numbers);
             samplers.two(self.level, &[0; LANES], &mut u);
             let mut factors = [1.0; LANES];
             if let Some(edges) = &self.edges {
-                for (lane, &Wanted { position: (x, y), .. }) in of.iter().enumerate() {
+                for (lane, &PixelSample { position: (x, y), .. }) in of.iter().enumerate() {
                     let point;
                     (point, factors[lane]) = edges.on_film([x, y], [u[0][lane], u[1][lane]]);
                     [u[0][lane], u[1][lane]] = point;

@@ -1,6 +1,6 @@
 //! Coverage of pixels by shapes.
 
-use super::camera_sampler::{CameraSampler, Wanted};
+use super::camera_sampler::{CameraSampler, PixelSample};
 use super::tile::FilmTile;
 use super::{Film, Settings};
 use raywright_base::parallel;
@@ -58,7 +58,7 @@ fn of_cells(
     let (mut weights, mut seen) = (Vec::new(), Vec::new());
     let mut all = counts().enumerate().flat_map(|(cell, count)| (0..count).map(move |nth| (cell, nth))).peekable();
     while let Some((cell, nth)) = all.next() {
-        wanted.push(Wanted { position: tile.position(cell), number: tile.number(cell, nth) });
+        wanted.push(PixelSample { position: tile.position(cell), number: tile.number(cell, nth) });
         of.push(cell);
         if wanted.len() < BATCH && all.peek().is_some() {
             continue;

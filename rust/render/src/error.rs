@@ -3,10 +3,10 @@
 use super::Film;
 use super::denominators::{Denominators, around, cross};
 use super::film::Spread;
-use super::jumps::Jumps;
+use super::good_turing::{Chances, Sightings};
+use super::heavy_tail_bound::Jumps;
 use super::outliers::{Carried, Largest, beside, is_find};
 use super::patchwork::Patchwork;
-use super::sightings::{Chances, Sightings};
 use raywright_base::parallel;
 use raywright_optics::Rgb;
 
@@ -73,9 +73,9 @@ pub(super) fn estimate(film: &Film) -> Option<ErrorEstimate> {
     seen.iter().for_each(|(band, _)| sightings.join(band));
     let chances = sightings.chances();
     let shown: Vec<f64> = seen.into_iter().flat_map(|(_, shown)| shown).collect();
-    let picture = Picture { means: &means, shown: &shown, width, patch: patch as usize, cells, chances: &chances };
-    let sums: Vec<Sums> = parallel::map_chunks(height, band, |rows| {
-        let (mut sums, mut spreads) = (Sums::default(), vec![Spread::default(); width]);
+    let picture = PixelErrors { means: &means, shown: &shown, width, patch: patch as usize, cells, chances: &chances };
+    let sums: Vec<ErrorSums> = parallel::map_chunks(height, band, |rows| {
+        let (mut sums, mut spreads) = (ErrorSums::default(), vec![Spread::default(); width]);
         let mut patches = vec![Patch::default(); width.div_ceil(band)];
         for y in rows {
             film.spreads(y as u32, &mut spreads);
@@ -88,7 +88,7 @@ pub(super) fn estimate(film: &Film) -> Option<ErrorEstimate> {
         }
         sums
     });
-    let mut all = Sums::default();
+    let mut all = ErrorSums::default();
     for band in &sums {
         all.join(band);
     }
@@ -99,7 +99,7 @@ pub(super) fn estimate(film: &Film) -> Option<ErrorEstimate> {
 
 /// Sums over patches.
 #[derive(Clone, Copy, Default)]
-struct Sums {
+struct ErrorSums {
     /// Errors.
     error: f64,
     /// Errors with the denominators that make them least, and with those that make them largest.
@@ -135,7 +135,7 @@ struct Patch {
 }
 
 /// The whole picture, for neighbour lookups.
-struct Picture<'a> {
+struct PixelErrors<'a> {
     means: &'a [Rgb],
     /// Brightness of pixels without their outliers.
     shown: &'a [f64],
@@ -147,8 +147,8 @@ struct Picture<'a> {
 
 impl Patch {
     #[inline]
-    fn add(&mut self, picture: &Picture<'_>, (x, y): (usize, usize), spread: &Spread, jumps: &mut Jumps) {
-        let Picture { means, shown, width, patch, cells, chances } = *picture;
+    fn add(&mut self, picture: &PixelErrors<'_>, (x, y): (usize, usize), spread: &Spread, jumps: &mut Jumps) {
+        let PixelErrors { means, shown, width, patch, cells, chances } = *picture;
         let mean = means[y * width + x];
         let denominators = Denominators::new(&cross(means, width, x, y), spread.variance, spread.samples);
         // Pixels of a patch share their samples and cannot confirm each other.
@@ -181,7 +181,7 @@ impl Patch {
     }
 }
 
-impl Sums {
+impl ErrorSums {
     #[inline]
     fn add(&mut self, patch: &Patch) {
         self.error += patch.error;

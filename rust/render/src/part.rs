@@ -5,9 +5,9 @@
 //! a picture do not depend on where its samples were taken.
 
 use super::bytes::{Malformed, Reader, Writer, check};
-use super::epoch::Epoch;
-use super::lent::{given_back, lent};
 use super::run::{self, begin};
+use super::sample_allocation::Epoch;
+use super::shared_film::{given_back, lent};
 use super::tile::FilmTile;
 use super::tiles::{Exposure, Goal, Stop};
 use super::{Film, Progress, RenderError, Rendering, Settings};

@@ -1,8 +1,8 @@
 //! Pilot renders that compare integrator variants on a few parts of a picture.
 
 use super::denominators::FLOOR;
-use super::lent::{given_back, lent};
 use super::settings::Settings;
+use super::shared_film::{given_back, lent};
 use super::tile::FilmTile;
 use super::tiles::{Exposure, Goal, Stop};
 use super::{Film, Progress, RenderError};
@@ -47,7 +47,7 @@ pub fn pilot(
     let work = || {
         let guide = if ways.iter().any(|way| way.caustics) { Guide::of(scene, &stop.cancel) } else { None };
         let seen = parallel::map(ways.len(), |i| expose(scene, camera, &ways[i], &settings, &stop));
-        Seen { ways: seen, rare: guide.map(|guide| rarity(scene, camera, &guide)) }
+        PilotMoments { ways: seen, rare: guide.map(|guide| rarity(scene, camera, &guide)) }
     };
     let mut ended = false;
     let watch = || {
@@ -65,14 +65,14 @@ pub fn pilot(
 }
 
 /// Results on the parts.
-struct Seen {
+struct PilotMoments {
     /// Tiles of each variant.
     ways: Vec<Vec<FilmTile>>,
     /// Rarity of caustics per pixel, if any variant uses guiding.
     rare: Option<Vec<Vec<f64>>>,
 }
 
-impl Seen {
+impl PilotMoments {
     fn errors(&self, ways: &[Path]) -> Vec<f64> {
         let mut sums = vec![0.0; ways.len()];
         let mut count = 0.0;

@@ -2,10 +2,10 @@
 
 use super::adaptive::Adaptive;
 use super::bytes::{Malformed, Reader, Writer, check};
-use super::epoch::Epoch;
 use super::error::estimate;
-use super::lent::{LentFilm, Loan};
 use super::pooled::{Uncertainty, uncertainty};
+use super::sample_allocation::Epoch;
+use super::shared_film::{LentFilm, Loan};
 use super::tile::FilmTile;
 use super::tiles::Goal;
 use super::{ErrorEstimate, Film, Until};

@@ -2,7 +2,7 @@
 
 use super::bytes::{Malformed, Reader, Writer, check};
 use super::patchwork::Patchwork;
-use super::quarters::{Quarters, Sums};
+use super::sample_buckets::{Quarters, Sums};
 use raywright_optics::Rgb;
 
 /// Sums for a mean and its error.

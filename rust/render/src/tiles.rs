@@ -1,9 +1,9 @@
 //! Execution of a pass: samples of all pixels, tile by tile on all threads.
 
-use super::camera_sampler::{CameraSampler, Wanted};
-use super::epoch::Epoch;
-use super::lent::held;
+use super::camera_sampler::{CameraSampler, PixelSample};
 use super::patchwork::Patchwork;
+use super::sample_allocation::Epoch;
+use super::shared_film::held;
 use super::splats::{Brought, LightTracer};
 use super::{FilmTile, Settings};
 use raywright_base::parallel;
@@ -73,14 +73,14 @@ impl Goal<'_> {
 
 /// A target, and the contributions of light paths on the way to it.
 #[derive(Clone, Copy)]
-struct Part<'a> {
+struct TilePass<'a> {
     goal: Goal<'a>,
     light: Option<&'a Brought>,
     /// True if the session was prepared for it.
     is_ready: bool,
 }
 
-impl Part<'_> {
+impl TilePass<'_> {
     /// Returns whether to stop. Computed light paths and a prepared session are used up first, so that frequent pauses
     /// still make progress.
     fn is_ended(&self, stop: &Stop) -> bool {
@@ -109,7 +109,7 @@ struct Bench<'a> {
     /// True if samples may be negative.
     signed: bool,
     /// Samples to be taken next.
-    wanted: Vec<Wanted>,
+    wanted: Vec<PixelSample>,
     samples: CameraSamples,
     /// The same one after the other, for whom that serves.
     rows: Vec<CameraSample>,
@@ -221,12 +221,12 @@ impl<'a> Exposure<'a> {
         goal: Goal,
         alone: bool,
         stop: &Stop,
-        mut work: impl FnMut(&[Mutex<FilmTile>], Part) -> bool,
+        mut work: impl FnMut(&[Mutex<FilmTile>], TilePass) -> bool,
     ) -> bool {
         let ready = self.session.at_once();
         let at_once = self.light.as_ref().map(LightTracer::at_once).into_iter().chain(ready).min();
         let (Some(at_once), Goal::Even { before, samples }) = (at_once, goal) else {
-            return work(tiles, Part { goal, light: None, is_ready: false });
+            return work(tiles, TilePass { goal, light: None, is_ready: false });
         };
         let first = before + tiles.iter().map(|tile| held(tile).fewest()).min().unwrap_or(0);
         (first..samples).step_by(at_once.max(1) as usize).all(|start| {
@@ -239,7 +239,7 @@ impl<'a> Exposure<'a> {
             }
             let brought = self.light.as_ref().map(|light| light.trace(start..end, alone, &stop.cancel));
             let goal = Goal::Even { before, samples: end };
-            let part = Part { goal, light: brought.as_ref(), is_ready: ready.is_some() };
+            let part = TilePass { goal, light: brought.as_ref(), is_ready: ready.is_some() };
             !stop.cancel.is_raised() && work(tiles, part)
         })
     }
@@ -270,7 +270,7 @@ impl<'a> Exposure<'a> {
         &self,
         tiles: &[Mutex<FilmTile>],
         first: usize,
-        part: Part,
+        part: TilePass,
         most: usize,
         bench: &mut Bench,
         stop: &Stop,
@@ -300,7 +300,7 @@ impl<'a> Exposure<'a> {
                         for member in &members {
                             let Some(nth) = member.wants(of_step) else { continue };
                             let number = before + tile.number(member.cell, nth);
-                            bench.add(index, member.cell, Wanted { position: member.position, number });
+                            bench.add(index, member.cell, PixelSample { position: member.position, number });
                         }
                         if works_together && bench.ends.last().copied().unwrap_or(0) < bench.wanted.len() {
                             bench.ends.push(bench.wanted.len());
@@ -335,7 +335,7 @@ impl Bench<'_> {
 
     /// Adds a sample of a cell to the batch.
     #[inline]
-    fn add(&mut self, tile: usize, cell: usize, wanted: Wanted) {
+    fn add(&mut self, tile: usize, cell: usize, wanted: PixelSample) {
         self.wanted.push(wanted);
         match self.runs.last_mut() {
             Some(run) if (run.tile, run.cell) == (tile, cell) => run.count += 1,

@@ -5,15 +5,15 @@ mod compiled;
 mod coverage;
 mod description;
 mod emission;
-mod encounter;
 mod filter;
 mod first_hits;
+mod interaction;
 // For the tests of dependent crates; unused code is not linked.
 #[doc(hidden)]
 pub mod fixtures;
-mod gaze;
 mod geometry;
 pub mod lights;
+mod lookup_context;
 pub mod materials;
 pub mod media;
 mod opacity;
@@ -34,15 +34,14 @@ pub use compiled::Scene;
 pub use coverage::{Counted, Coverage, Covering};
 pub use description::{DescriptionError, SceneDescription, Shape};
 pub use emission::{Emission, Sides};
-pub use encounter::Encounter;
 pub use filter::Filter;
 pub use first_hits::FirstHits;
-pub use gaze::Gaze;
 pub use geometry::SurfaceBlock;
 pub use geometry::{
     BadTransform, Enclosing, Geometry, Instances, Matrix, Mesh, Objects, Precision, Prototype, Rounding, Solids,
     Surface, Vertices, check_transforms, rounded,
 };
+pub use interaction::Interaction;
 pub use lights::LightBlock;
 pub use lights::SeenTriangle;
 pub use lights::{
@@ -50,6 +49,7 @@ pub use lights::{
     Emitters, EnvironmentMap, Light, LightBounds, LightContextLanes, LightLanes, LightSample, LightSampleContext,
     Lights, Picture, Place, PointEmission, PointLight, Profile, Projector, Reach, Source, SpotLight, SunSky, Waved,
 };
+pub use lookup_context::LookupContext;
 pub use materials::{DiffuseMaterial, Material};
 pub use opacity::opacity_at;
 pub use patches::{Cell, Patches};

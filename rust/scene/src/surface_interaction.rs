@@ -1,13 +1,13 @@
 //! Interaction of a path with a surface.
 
 mod as_given;
-mod lanes;
+mod interaction_lanes;
 
-pub use lanes::SurfaceInteractionLanes;
+pub use interaction_lanes::SurfaceInteractionLanes;
 
 use super::materials::BsdfMix;
 use super::textures::Needs;
-use super::{Encounter, Gaze, LightSampleContext, RayOrigin, Scene, ShadingPoint, SurfacePoint};
+use super::{Interaction, LightSampleContext, LookupContext, RayOrigin, Scene, ShadingPoint, SurfacePoint};
 use raywright_base::math::{DVec3, Frame, Hit, Ray, select};
 use raywright_optics::{Bsdf, BsdfSample, Rgb};
 
@@ -47,7 +47,7 @@ impl SurfaceInteraction {
         ray: &Ray,
         hit: &Hit,
         surface: SurfacePoint,
-        gaze: impl Into<Gaze>,
+        gaze: impl Into<LookupContext>,
         outside: f64,
     ) -> Self {
         let gaze = gaze.into();
@@ -62,7 +62,7 @@ impl SurfaceInteraction {
     }
 
     /// The interaction for a material that must be evaluated at the point.
-    fn mapped(scene: &Scene, ray: &Ray, hit: &Hit, surface: SurfacePoint, gaze: Gaze, outside: f64) -> Self {
+    fn mapped(scene: &Scene, ray: &Ray, hit: &Hit, surface: SurfacePoint, gaze: LookupContext, outside: f64) -> Self {
         let material = scene.material_at(&surface);
         let mut needs = material.needs();
         needs.tangents |= gaze.width > 0.0;
@@ -129,7 +129,7 @@ impl<B: Bsdf> SurfaceInteraction<B> {
 
     /// Reflectance of ambient light ([`Material::ambient`](super::Material::ambient)); the other arguments are those of
     /// [`SurfaceInteraction::new`].
-    pub fn ambient(&self, scene: &Scene, ray: &Ray, hit: &Hit, gaze: impl Into<Gaze>, outside: f64) -> Rgb {
+    pub fn ambient(&self, scene: &Scene, ray: &Ray, hit: &Hit, gaze: impl Into<LookupContext>, outside: f64) -> Rgb {
         let material = scene.material_at(&self.surface);
         material.ambient(&shading_point(scene, ray, hit, self.surface, material.needs(), gaze, outside))
     }
@@ -260,7 +260,7 @@ impl<B: Bsdf> SurfaceInteraction<B> {
     }
 }
 
-impl<B: Bsdf> Encounter for SurfaceInteraction<B> {
+impl<B: Bsdf> Interaction for SurfaceInteraction<B> {
     #[inline(always)]
     fn position(&self) -> DVec3 {
         self.surface.position
@@ -317,7 +317,7 @@ fn shading_point(
     hit: &Hit,
     surface: SurfacePoint,
     needs: Needs,
-    gaze: impl Into<Gaze>,
+    gaze: impl Into<LookupContext>,
     outside: f64,
 ) -> ShadingPoint {
     let point = ShadingPoint::new(scene.geometry(), ray, hit, surface, needs, gaze);

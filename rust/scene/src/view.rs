@@ -34,7 +34,7 @@ pub(super) struct View {
 
 /// A triangle in view space.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Seen {
+pub(super) struct ProjectedTriangle {
     pub corners: [DVec3; 3],
     /// Error bound of each coordinate, or of a ray's passing point.
     pub slack: f64,
@@ -93,7 +93,7 @@ impl View {
 
     /// Transforms a triangle to view space; `None` if all of it is behind the camera.
     #[inline]
-    pub fn see(&self, corners: [DVec3; 3]) -> Option<Seen> {
+    pub fn see(&self, corners: [DVec3; 3]) -> Option<ProjectedTriangle> {
         let to = corners.map(|c| c - self.position);
         let square = greater(to[0].length_squared(), greater(to[1].length_squared(), to[2].length_squared()));
         let reach = square.sqrt() * self.stretch;
@@ -106,7 +106,7 @@ impl View {
         let least = lesser(lesser(a, b), c);
         let is_before = least > 2.0 * (self.behind + slack);
         let depth = if is_before { least - slack } else { f64::NEG_INFINITY };
-        Some(Seen { corners, slack, reach, depth })
+        Some(ProjectedTriangle { corners, slack, reach, depth })
     }
 
     /// Converts a pixel position to film coordinates from −1 to 1, x to the right and y up, as in
@@ -128,7 +128,7 @@ impl View {
     /// Returns whether no ray through a window of the film can hit a triangle, because it lies beyond one of the four
     /// planes through the window's sides.
     #[inline]
-    pub fn is_beside(&self, seen: &Seen, window: &[[f64; 2]; 2]) -> bool {
+    pub fn is_beside(&self, seen: &ProjectedTriangle, window: &[[f64; 2]; 2]) -> bool {
         let behind = if seen.depth > 0.0 { 0.0 } else { self.behind };
         (0..2).any(|axis| {
             let [low, high] = window[axis];
@@ -140,7 +140,7 @@ impl View {
 
     /// The pixels whose rays may hit a triangle; `None` if there are none.
     #[inline]
-    pub fn pixels(&self, seen: &Seen) -> Option<Pixels> {
+    pub fn pixels(&self, seen: &ProjectedTriangle) -> Option<Pixels> {
         let whole = Pixels { x: [0, (self.size[0] - 1.0) as u16], y: [0, (self.size[1] - 1.0) as u16] };
         if self.is_beside(seen, &self.window(whole)) {
             return None;
@@ -170,7 +170,7 @@ impl View {
     }
 }
 
-impl Seen {
+impl ProjectedTriangle {
     /// For each edge, a vector whose dot product with a ray's (x, y, 1) has the sign of the side on which the ray
     /// passes.
     #[inline(always)]

@@ -1,6 +1,6 @@
 //! The disk and the annulus.
 
-use super::around::Around;
+use super::closest_on_revolution::Around;
 use super::line::Line;
 use super::meeting::tell;
 use super::plane::crossing;
@@ -54,7 +54,7 @@ impl Disk {
 /// otherwise proportional to the chord length on that line. Both differ from uniform solid angle by small factors.
 /// Exactly uniform sampling (Guillén et al., "Area-Preserving Parameterizations for Spherical Ellipses", 2017) inverts
 /// an elliptic integral per sample.
-struct Seen {
+struct EllipseProjection {
     height: f64,
     /// Distance and unit vector from the foot to the centre, in the disk's frame.
     distance: f64,
@@ -72,7 +72,7 @@ struct Chord {
     span: f64,
 }
 
-impl Seen {
+impl EllipseProjection {
     /// The chord at an angle given by its approximate cosine and sine.
     fn chord(&self, cos: f64, sin: f64) -> Chord {
         let (height, aside) = (self.height, self.distance * sin);
@@ -135,12 +135,12 @@ impl Disk {
     const DISTANT: f64 = 3.0;
 
     /// Set up solid angle sampling from a point in the disk's frame; None if sampling is by area.
-    fn seen(&self, place: DVec3) -> Option<Seen> {
+    fn seen(&self, place: DVec3) -> Option<EllipseProjection> {
         let is_near = place.length_squared() < (Self::DISTANT * self.radius).powi(2) && self.inner_radius == 0.0;
         (is_near && place.z != 0.0).then(|| {
             let distance = place.x.hypot(place.y);
             let towards = if distance > 0.0 { [-place.x / distance, -place.y / distance] } else { [1.0, 0.0] };
-            Seen { height: place.z.abs(), distance, towards, radius: self.radius }
+            EllipseProjection { height: place.z.abs(), distance, towards, radius: self.radius }
         })
     }
 }

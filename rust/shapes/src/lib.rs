@@ -1,7 +1,7 @@
 //! Floor 1: geometric shapes and their exact intersection with rays.
 
-mod around;
 mod closest;
+mod closest_on_revolution;
 mod cone;
 mod contact;
 mod cuboid;

@@ -6,7 +6,7 @@ use super::meeting::{ball, ball_surface, tell};
 use super::solid::{Meet, Meets, Solid};
 use super::{Ball, Bounds, Candidate, Carried, Closest, Contact, Drawn, Point, Seen, Shape, Site};
 use raywright_base::math::robust::UNIT;
-use raywright_base::math::turn::{sin_cos_turn, upper_angle};
+use raywright_base::math::trig::{sin_cos_turn, upper_angle};
 use raywright_base::math::{Affine, Bounded, DVec3, Frame, Number, Ray, Triple, at_right_angles, ellipsoid_area};
 use raywright_base::sampling::warp::{UNIFORM_SPHERE_PDF, uniform_sphere};
 use std::f64::consts::{PI, TAU};

@@ -157,7 +157,7 @@ class RaycastingScene:
         answer = {
             "t_hit": _single(hits.t),
             "geometry_ids": _ids(hits.shape_id),
-            "primitive_ids": _ids(hits.primitive),
+            "primitive_ids": _ids(hits.primitive_id),
             "primitive_uvs": _single(hits.uv),
             "primitive_normals": _single(np.where(hits.hit[..., np.newaxis], hits.normal, 0)),
         }
@@ -214,7 +214,7 @@ class RaycastingScene:
 
         See Also
         --------
-        Scene.count : Raywright's own query.
+        Scene.count_hits : Raywright's own query.
 
         Examples
         --------
@@ -226,7 +226,7 @@ class RaycastingScene:
         >>> scene.count_intersections([[0.1, 0.2, 5, 0, 0, -1]]).tolist()
         [2]
         """
-        count = self._compiled.count(*_ends(rays), threads=_threads(nthreads))
+        count = self._compiled.count_hits(*_ends(rays), threads=_threads(nthreads))
         return self._told(count.astype(np.int32), rays)
 
     def list_intersections(self, rays: Any, nthreads: int = 0) -> dict[str, Any]:
@@ -269,7 +269,7 @@ class RaycastingScene:
             "ray_ids": hits.ray.astype(np.uint32),
             "t_hit": _single(hits.t),
             "geometry_ids": _ids(hits.shape_id),
-            "primitive_ids": _ids(hits.primitive),
+            "primitive_ids": _ids(hits.primitive_id),
             "primitive_uvs": _single(hits.uv),
         }
         return self._all_told(answer, rays)
@@ -315,7 +315,7 @@ class RaycastingScene:
         answer = {
             "points": _single(np.where(has, found.position, 0)),
             "geometry_ids": _ids(found.shape_id),
-            "primitive_ids": _ids(found.primitive),
+            "primitive_ids": _ids(found.primitive_id),
             "primitive_uvs": _single(np.where(has, found.uv, 0)),
             "primitive_normals": _single(np.where(has, found.normal, 0)),
         }

@@ -69,7 +69,7 @@ def ray_trace(
     hits = surface.intersector._scene.intersect_all(start, end - start, t_max=1.0)
     # A segment along an edge enters several faces at one point; pyvista returns that point once.
     is_new = np.diff(hits.t, prepend=-1.0) > 0
-    points, cells = hits.position[is_new].astype(mesh.points.dtype), surface.cells[hits.primitive[is_new]]
+    points, cells = hits.position[is_new].astype(mesh.points.dtype), surface.cells[hits.primitive_id[is_new]]
     if first_point and len(points):
         points = points[0]
     if plot:

@@ -166,7 +166,7 @@ def closest_of(intersector: RayMeshIntersector, points: ArrayLike) -> tuple[Floa
     """Return the result of `closest_point` for the mesh of an intersector."""
     at = triples("points", points)
     found = intersector._scene.closest_point(at)
-    position, face = found.position.copy(), found.primitive.astype(np.int64)
+    position, face = found.position.copy(), found.primitive_id.astype(np.int64)
     mesh = intersector.mesh
     if len(mesh.faces):
         facing(_neighbors(intersector), mesh.face_normals, at, found, position, face)

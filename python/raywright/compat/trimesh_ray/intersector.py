@@ -182,7 +182,7 @@ class RayMeshIntersector:
         True
         """
         hits = self._scene.intersect(*_rays(ray_origins, ray_directions))
-        return hits.primitive.copy()
+        return hits.primitive_id.copy()
 
     def intersects_any(self, ray_origins: ArrayLike, ray_directions: ArrayLike) -> NDArray[np.bool_]:
         """Find whether each ray hits anything: (n,) bool.
@@ -287,12 +287,12 @@ class RayMeshIntersector:
             which = np.argsort(depth, kind="stable")
             if most is not None:
                 which = which[: np.searchsorted(depth, most, sorter=which)]
-            primitive, ray = found.primitive[which], found.ray[which]
+            primitive, ray = found.primitive_id[which], found.ray[which]
             position = found.position[which] if with_positions else np.empty((0, 3))
         else:
             first = self._scene.intersect(*rays)
             ray = np.flatnonzero(first.hit) if most != 0 else np.empty(0, np.intp)
-            primitive = first.primitive[ray]
+            primitive = first.primitive_id[ray]
             position = first.position[ray] if with_positions else np.empty((0, 3))
         return primitive.astype(np.int64), ray.astype(np.int64, copy=False), position
 

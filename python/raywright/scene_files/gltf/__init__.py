@@ -7,7 +7,7 @@ from ...io.quiet import refused
 from ...mesh_files.gltf import there
 from ...mesh_files.gltf.document import Document
 from ...mesh_files.gltf.nodes import placed
-from ...rendering.shot import Shot
+from ...rendering.render_setup import RenderSetup
 from ...scene.instance import AnyShape, Instance
 from ...shapes.mesh import face_count
 from ..shown import shown
@@ -18,7 +18,7 @@ from .shapes import shapes
 __all__ = ["read_gltf"]
 
 
-def read_gltf(path: str | PathLike[str], width: int | None = None, height: int | None = None) -> Shot:
+def read_gltf(path: str | PathLike[str], width: int | None = None, height: int | None = None) -> RenderSetup:
     """Read a glTF 2.0 file, .gltf or .glb: meshes with their materials, lights and a camera.
 
     Parameters
@@ -30,7 +30,7 @@ def read_gltf(path: str | PathLike[str], width: int | None = None, height: int |
 
     Returns
     -------
-    Shot
+    RenderSetup
         The file's scene. Large meshes that stand at several nodes are an `Instance` each. The camera is the
         first of the file, or else one from three quarters that has all in its picture. Where there is no
         light of KHR_lights_punctual, and nothing that shines in a file with a camera, or not enough in one

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ... import _core
-from ...materials import Boundary, Dielectric, Mask, Material, ThinDielectric, Tinted
+from ...materials import Dielectric, Mask, Material, MediumInterface, ThinDielectric, Tinted
 from ...media import GridMedium, HenyeyGreenstein, Homogeneous, Isotropic, Medium, Phase, Rayleigh
 from ...media.files import read_density
 from ...textures import Spectrum
@@ -52,7 +52,7 @@ def filled(plugin: Plugin, material: Material | None, box: Box | None = None) ->
         plugin.fail("flip_normals with a medium within, or a null BSDF, is not supported")
     if is_null:
         # A null BSDF without a medium is a hole.
-        return Mask(Dielectric(), 0.0) if interior is None else Boundary(interior)
+        return Mask(Dielectric(), 0.0) if interior is None else MediumInterface(interior)
     if interior is not None and isinstance(material, Tinted):
         if isinstance(material.base, ThinDielectric):
             plugin.fail("a medium within a pane of specular_transmittance other than 1 is not supported")
@@ -133,7 +133,7 @@ def _read(plugin: Plugin, box: Box | None) -> Medium:
     dimmed = _volume(plugin, "sigma_t", 1.0)
     scattered = _volume(plugin, "albedo", 0.75)
     extinction = scale * dimmed.colour
-    placed = {"bounds": dimmed.bounds, "transform": dimmed.transform, "at": "centres", "phase": phase}
+    placed = {"bounds": dimmed.bounds, "transform": dimmed.transform, "at": "centers", "phase": phase}
     if scattered.numbers is None:
         absorption, scattering = extinction * (1 - scattered.colour), extinction * scattered.colour
         return GridMedium(dimmed.density, absorption=absorption, scattering=scattering, **placed)
@@ -166,7 +166,7 @@ def _shared(
         np.ones((1, 1, 1)),
         bounds,
         transform=albedo.transform,
-        at="centres",
+        at="centers",
         phase=phase,
         extinction=extinction,
         albedo=albedo.numbers[np.ix_(*where)],

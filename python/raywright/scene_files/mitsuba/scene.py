@@ -9,7 +9,7 @@ import numpy as np
 
 from ...arrays import integer
 from ...lights import Environment, Light
-from ...rendering.shot import Shot
+from ...rendering.render_setup import RenderSetup
 from ...scene.scene import Scene
 from ...shapes.welding import Weld, weld_tolerance
 from . import bsdfs, emitters, media, sensors, settings, shapes, textures
@@ -41,7 +41,7 @@ def from_mitsuba(
     sensor: int = 0,
     parameters: Mapping[str, Any] | None = None,
     weld: Weld = "auto",
-) -> Shot:
+) -> RenderSetup:
     """Read a scene in the format of Mitsuba 3.
 
     The picture is that of Mitsuba's ``_rgb`` variants. Unsupported plugins are refused by name; approximated
@@ -64,7 +64,7 @@ def from_mitsuba(
 
     Returns
     -------
-    Shot
+    RenderSetup
         The scene, with the camera, the integrator and the settings that it has.
 
     Raises
@@ -109,7 +109,7 @@ def from_mitsuba(
         raise SceneError(f"{scene}: {error}") from error
 
 
-def _read(scene: Plugin, number: int, weld: Weld) -> Shot:
+def _read(scene: Plugin, number: int, weld: Weld) -> RenderSetup:
     found: list[Any] = []
     copies = shapes.Copies()
     lights: list[Light] = []
@@ -156,10 +156,10 @@ def _read(scene: Plugin, number: int, weld: Weld) -> Shot:
         lights,
         around[0] if len(around) == 1 else around or None,
         medium=media.around(scene, eye),
-        shading_normals="as given",
+        shading_normals="raw",
         weld=weld,
     ).welded()
-    return Shot(
+    return RenderSetup(
         whole,
         sensors.camera(eye, film, whole),
         asked.integrator,

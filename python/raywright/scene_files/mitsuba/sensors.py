@@ -115,8 +115,8 @@ def _perspective(plugin: Plugin, crop: Crop) -> Camera:
     return Camera.from_matrix(
         straightened(plugin.to_world()),
         "mitsuba",
-        focal=(focal, focal),
-        principal=(x, y),
+        focal_length_px=(focal, focal),
+        principal_point=(x, y),
         width=width,
         height=height,
     )

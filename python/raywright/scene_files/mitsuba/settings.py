@@ -32,7 +32,7 @@ _AOVS = {
     "geo_normal": "normal",
     "sh_normal": "shading_normal",
     "shape_index": "shape_id",
-    "prim_index": "primitive",
+    "prim_index": "primitive_id",
     "albedo": "albedo",
 }
 

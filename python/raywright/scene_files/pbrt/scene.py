@@ -13,8 +13,8 @@ from ...integrators import Path as PathTraced
 from ...lights import Environment, Light
 from ...materials import Diffuse, Material
 from ...rendering.filters import Filter, GaussianFilter
+from ...rendering.render_setup import RenderSetup
 from ...rendering.samplers import Sampler, Sobol
-from ...rendering.shot import Shot
 from ...scene.instance import Instance
 from ...scene.scene import Scene
 from ..mitsuba.transforms import rotation
@@ -37,7 +37,7 @@ _NEUTRAL = ("pixelstats", "wavefront", "rendercoordsys", "msereferenceimage", "m
 _MIRROR, _AS_IT_IS = np.diag([-1.0, 1.0, 1.0, 1.0]), np.eye(4)
 
 
-def read_pbrt(path: Path) -> Shot:
+def read_pbrt(path: Path) -> RenderSetup:
     """Read a scene in the format of pbrt, version 4.
 
     Parameters
@@ -297,7 +297,7 @@ class _Reader:
         before = self._kept.pop()
         self._state = replace(self._state, matrix=before.matrix) if only_matrix else before
 
-    def shot(self) -> Shot:
+    def shot(self) -> RenderSetup:
         """Return what has been read."""
         if not self._in_world:
             raise PbrtError(f"{self.path} has no WorldBegin")
@@ -329,7 +329,7 @@ class _Reader:
             raise
         except (ValueError, TypeError) as error:
             parameters.fail(str(error))
-        return Shot(
+        return RenderSetup(
             Scene(found, self._lights, around),
             eye,
             self._integrator,

@@ -8,7 +8,7 @@ from typing import Any, Literal
 from ...arrays import integer
 from ...cameras import AnyCamera
 from ...io.quiet import refused
-from ...rendering.shot import Shot
+from ...rendering.render_setup import RenderSetup
 from ...scene.scene import Scene
 from ..shown import shown
 from .cameras import camera, exposure
@@ -26,7 +26,7 @@ _LEFT_OUT = {"RenderSettings": "render settings are left out", "Skeleton": UNPOS
 NO_USD = "reading USD needs usd-core: pip install 'raywright[usd]'"
 
 
-def read_usd(path: Path, width: int | None = None, height: int | None = None) -> Shot:
+def read_usd(path: Path, width: int | None = None, height: int | None = None) -> RenderSetup:
     """Read a USD file: all that its stage shows at its first time.
 
     Parameters
@@ -38,7 +38,7 @@ def read_usd(path: Path, width: int | None = None, height: int | None = None) ->
 
     Returns
     -------
-    Shot
+    RenderSetup
         The stage's shapes, in the light of its own or, where it has none, of `scenes.studio`; seen by the
         first of its cameras, or framed.
 
@@ -85,7 +85,7 @@ def read_usd(path: Path, width: int | None = None, height: int | None = None) ->
     return shot
 
 
-def _shot(path: Path, notes: Notes, width: int | None, height: int | None) -> tuple[Shot, list[str]]:
+def _shot(path: Path, notes: Notes, width: int | None, height: int | None) -> tuple[RenderSetup, list[str]]:
     """Return the shot of a file, and the errors of composing its stage."""
     from pxr import Tf, Usd, UsdGeom
 
@@ -106,7 +106,7 @@ def _shot(path: Path, notes: Notes, width: int | None, height: int | None) -> tu
         if found["light"] or around or any(getattr(one, "emission", None) is not None for one in shapes_of):
             # The scene has its own light; emitting shapes other than meshes count, too.
             sky = around[0] if len(around) == 1 else around or None
-            shot = Shot(Scene(shapes_of, found["light"], sky), shot.camera)
+            shot = RenderSetup(Scene(shapes_of, found["light"], sky), shot.camera)
     except (ImportError, MemoryError, FileNotFoundError):
         raise
     except Exception as error:

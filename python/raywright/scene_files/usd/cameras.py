@@ -44,9 +44,9 @@ def camera(prim: Any, reading: Reading) -> AnyCamera:
     if stop > 0 and distance > 0:
         radius = 0.05 * length / stop
         return ThinLens(
-            place, fov=fov, aperture_radius=radius, focus_distance=distance, principal=middle, **common
+            place, fov=fov, aperture_radius=radius, focus_distance=distance, principal_point=middle, **common
         )
-    return Camera(place, fov=fov, principal=middle, **common)
+    return Camera(place, fov=fov, principal_point=middle, **common)
 
 
 def exposure(prim: Any, reading: Reading) -> float:

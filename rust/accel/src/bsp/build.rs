@@ -52,28 +52,28 @@ pub fn build(input: &Input, options: &Options) -> (Child, Grown) {
     let steps = input.work.steps(Room::STEPS);
     let root = match pieces.is_empty() {
         true => Child::EMPTY,
-        false => Builder { input, options, steps: &steps }.grow(pieces, &cell, 0, room, &mut grown),
+        false => BspBuilder { input, options, steps: &steps }.grow(pieces, &cell, 0, room, &mut grown),
     };
     grown.cost = if area > 0.0 { grown.cost / area } else { parts.len() as f64 };
     (root, grown)
 }
 
 #[derive(Clone, Copy)]
-struct Builder<'a> {
+struct BspBuilder<'a> {
     input: &'a Input<'a>,
     options: &'a Options,
     steps: &'a Steps<'a>,
 }
 
 /// A plane and the two cells it creates.
-struct Split {
+struct BspSplit {
     plane: Plane,
     cells: [Cell; 2],
     sides: [Vec<Piece>; 2],
     rooms: [Room; 2],
 }
 
-impl Builder<'_> {
+impl BspBuilder<'_> {
     /// Build the subtree of a cell.
     fn grow(self, pieces: Vec<Piece>, cell: &Cell, depth: usize, room: Room, grown: &mut Grown) -> Child {
         let count = pieces.len();
@@ -86,7 +86,7 @@ impl Builder<'_> {
         } else {
             Err(pieces)
         };
-        let Split { plane, cells, sides, rooms } = match split {
+        let BspSplit { plane, cells, sides, rooms } = match split {
             Ok(split) => split,
             Err(pieces) => {
                 grown.cost += area * count as f64;
@@ -119,7 +119,7 @@ impl Builder<'_> {
     }
 
     /// Split by the best plane; return the pieces if a leaf is cheaper.
-    fn split(self, pieces: Vec<Piece>, cell: &Cell, area: f64, room: Room) -> Result<Split, Vec<Piece>> {
+    fn split(self, pieces: Vec<Piece>, cell: &Cell, area: f64, room: Room) -> Result<BspSplit, Vec<Piece>> {
         let mut planes: Vec<_> =
             self.planes(&pieces).into_iter().filter_map(|p| Some((self.guess(&pieces, cell, area, &p)?, p))).collect();
         planes.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -143,7 +143,7 @@ impl Builder<'_> {
             }
         }
         let rooms = room.shared(count, sides.each_ref().map(Vec::len)).expect("as many as were counted");
-        Ok(Split { plane, cells, sides, rooms })
+        Ok(BspSplit { plane, cells, sides, rooms })
     }
 
     /// The least cost of a node. `shares` are the children's fractions of the surface area. The counts are the pieces

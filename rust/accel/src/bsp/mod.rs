@@ -161,7 +161,7 @@ impl Bsp {
 
 impl Structure for Bsp {
     fn walker(&self, counted: bool) -> Box<dyn Walker + '_> {
-        if counted { Box::new(Walk::<true>::new(self)) } else { Box::new(Walk::<false>::new(self)) }
+        if counted { Box::new(BspTraversal::<true>::new(self)) } else { Box::new(BspTraversal::<false>::new(self)) }
     }
 
     fn info(&self) -> Info {
@@ -228,13 +228,13 @@ const _: () = assert!(MAX_DEPTH < STACK);
 
 /// A node or leaf, and the interval in which the ray may be inside.
 #[derive(Clone, Copy)]
-struct Open {
+struct StackEntry {
     child: Child,
     enter: f64,
     leave: f64,
 }
 
-struct Walk<'a, const COUNTED: bool> {
+struct BspTraversal<'a, const COUNTED: bool> {
     tree: &'a Bsp,
     origin: DVec3,
     direction: DVec3,
@@ -245,20 +245,20 @@ struct Walk<'a, const COUNTED: bool> {
     /// than 3 · 2⁻²⁴ R within the scene, and the pad is more than twice as much. Divisions in f64 add a negligible
     /// amount.
     room: f64,
-    open: [Open; STACK],
+    open: [StackEntry; STACK],
     /// Height of the stack.
     height: usize,
     nodes: u32,
 }
 
-impl<'a, const COUNTED: bool> Walk<'a, COUNTED> {
+impl<'a, const COUNTED: bool> BspTraversal<'a, COUNTED> {
     fn new(tree: &'a Bsp) -> Self {
-        let open = [Open { child: Child::EMPTY, enter: 0.0, leave: 0.0 }; STACK];
+        let open = [StackEntry { child: Child::EMPTY, enter: 0.0, leave: 0.0 }; STACK];
         Self { tree, origin: DVec3::ZERO, direction: DVec3::ONE, room: 0.0, open, height: 0, nodes: 0 }
     }
 }
 
-impl<const COUNTED: bool> Walker for Walk<'_, COUNTED> {
+impl<const COUNTED: bool> Walker for BspTraversal<'_, COUNTED> {
     fn start(&mut self, ray: &SlabRay) {
         self.origin = DVec3::from_array(ray.origin.map(f64::from));
         self.direction = DVec3::from_array(ray.inverse.map(|inverse| 1.0 / f64::from(inverse)));
@@ -266,7 +266,7 @@ impl<const COUNTED: bool> Walker for Walk<'_, COUNTED> {
         self.height = 0;
         self.nodes = u32::from(COUNTED);
         if let Some((enter, leave)) = ray.passes(&self.tree.bounds, f32::INFINITY) {
-            self.open[0] = Open { child: self.tree.root, enter: enter.into(), leave: leave.into() };
+            self.open[0] = StackEntry { child: self.tree.root, enter: enter.into(), leave: leave.into() };
             self.height = 1;
         }
     }
@@ -277,7 +277,7 @@ impl<const COUNTED: bool> Walker for Walk<'_, COUNTED> {
         let mut height = self.height;
         while height > 0 {
             height -= 1;
-            let Open { mut child, enter, leave } = self.open[height % STACK];
+            let StackEntry { mut child, enter, leave } = self.open[height % STACK];
             if enter > limit {
                 continue;
             }
@@ -302,7 +302,7 @@ impl<const COUNTED: bool> Walker for Walk<'_, COUNTED> {
                     child = other;
                     continue;
                 }
-                self.open[height % STACK] = Open { child: other, enter: greater(from, enter), leave };
+                self.open[height % STACK] = StackEntry { child: other, enter: greater(from, enter), leave };
                 height += 1;
                 leave = lesser(until, leave);
             }

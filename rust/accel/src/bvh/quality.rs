@@ -129,7 +129,7 @@ impl Steps {
         work: Work,
     ) -> Result<(BinaryBvh, String), Stopped> {
         let boxes = boxes.into();
-        let shapes = Wanted { shapes, work };
+        let shapes = StoppableShapes { shapes, work };
         let [look, make] = work.parts([if self.cuts.is_some() { 1.0 } else { 0.0 }, 24.0]);
         let remedy = self.cuts.map(|cuts| (cuts, Remedy::of(&boxes, &shapes, &cuts.options)));
         work.goes_on()?;
@@ -178,12 +178,12 @@ impl Steps {
 }
 
 /// Shapes that clip to nothing once the build is canceled, which ends splitting.
-struct Wanted<'a, S> {
+struct StoppableShapes<'a, S> {
     shapes: S,
     work: Work<'a>,
 }
 
-impl<S: Shapes> Shapes for Wanted<'_, S> {
+impl<S: Shapes> Shapes for StoppableShapes<'_, S> {
     fn clip(&self, primitive: u32, to: &Aabb) -> Aabb {
         if self.work.is_stopped() { Aabb::EMPTY } else { self.shapes.clip(primitive, to) }
     }

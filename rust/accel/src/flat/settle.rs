@@ -48,7 +48,7 @@ pub struct Settled {
 }
 
 /// Up to sixteen rays, each known to hit a triangle.
-struct Sixteen {
+struct SettledBatch {
     places: [usize; RAYS],
     triangles: [u32; RAYS],
     edges: EdgeRays,
@@ -68,7 +68,7 @@ impl<'a> Settler<'a> {
     pub fn closest(&self, rays: &[Ray], candidates: &[[u32; CANDIDATES]], hits: &mut [Hit]) -> Settled {
         assert!(rays.len() == candidates.len() && rays.len() == hits.len(), "candidates and a hit for each ray");
         let mut settled = Settled::default();
-        let mut sixteen = Sixteen::new();
+        let mut sixteen = SettledBatch::new();
         let (mut walked, mut places) = (Vec::new(), Vec::new());
         for (i, (ray, mine)) in rays.iter().zip(candidates).enumerate() {
             match *mine {
@@ -172,7 +172,7 @@ impl<'a> Settler<'a> {
     }
 
     /// Compute the hits of the collected rays, and empty the collection.
-    fn settle(&self, sixteen: &mut Sixteen, rays: &[Ray], hits: &mut [Hit]) {
+    fn settle(&self, sixteen: &mut SettledBatch, rays: &[Ray], hits: &mut [Hit]) {
         let count = std::mem::take(&mut sixteen.len);
         if count == 0 {
             return;
@@ -204,7 +204,7 @@ fn along(edges: &EdgeRay) -> Ray {
     Ray::new(edges.origin, edges.direction)
 }
 
-impl Sixteen {
+impl SettledBatch {
     fn new() -> Self {
         Self {
             places: [0; RAYS],

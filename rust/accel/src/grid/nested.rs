@@ -43,7 +43,7 @@ impl Default for Options {
 }
 
 /// A grid and its first word of bits.
-struct Part {
+struct SubGrid {
     lattice: Lattice,
     word: usize,
 }
@@ -53,7 +53,7 @@ const INNER: u32 = 1 << 31;
 
 /// All grids, outermost first; none without primitives.
 struct Nested {
-    parts: Vec<Part>,
+    parts: Vec<SubGrid>,
     occupied: Occupied,
     /// The entries of nonempty cells, in order.
     entries: Vec<u32>,
@@ -62,7 +62,7 @@ struct Nested {
 }
 
 /// A grid during the build.
-struct Made {
+struct BuiltGrid {
     filled: Filled,
     /// Cells with inner grids and the indices of these, in order.
     inner: Vec<(usize, u32)>,
@@ -87,8 +87,8 @@ pub fn build(input: &Input, options: &Options) -> (Box<dyn Structure>, Lists) {
     let (made, depth) = levels(input, &primitives, options);
     let mut cost = 0.0;
     let (mut parts, mut occupied) = (Vec::with_capacity(made.len()), Occupied::default());
-    for Made { filled: Filled { lattice, counts, .. }, inner, share } in &made {
-        parts.push(Part { lattice: *lattice, word: occupied.words() });
+    for BuiltGrid { filled: Filled { lattice, counts, .. }, inner, share } in &made {
+        parts.push(SubGrid { lattice: *lattice, word: occupied.words() });
         occupied.push(counts);
         let outside: u64 = counts.iter().map(|&n| u64::from(n)).sum();
         let inside: u64 = inner.iter().map(|&(cell, _)| u64::from(counts[cell])).sum();
@@ -101,7 +101,7 @@ pub fn build(input: &Input, options: &Options) -> (Box<dyn Structure>, Lists) {
 }
 
 /// All grids, each after its parent, and the depth.
-fn levels(input: &Input, primitives: &[u32], options: &Options) -> (Vec<Made>, usize) {
+fn levels(input: &Input, primitives: &[u32], options: &Options) -> (Vec<BuiltGrid>, usize) {
     let n = primitives.len() as u64;
     let bounds = around(input, primitives);
     let budget = Budget { looked_at: 64 * n + (1 << 16), references: 4 * n + (1 << 12) };
@@ -109,7 +109,7 @@ fn levels(input: &Input, primitives: &[u32], options: &Options) -> (Vec<Made>, u
     let filled = Filled::new(input, primitives, &bounds, cells, budget);
     let mut left = (12 * n + (1 << 14)).saturating_sub(filled.order.len() as u64);
     let share = filled.lattice.cell_area() / filled.lattice.area();
-    let mut made = vec![Made { filled, inner: Vec::new(), share }];
+    let mut made = vec![BuiltGrid { filled, inner: Vec::new(), share }];
     let (mut depth, mut from) = (1, 0);
     let steps = input.work.steps(options.depth as usize);
     while depth < options.depth as usize && steps.did(1).is_ok() {
@@ -132,7 +132,7 @@ fn levels(input: &Input, primitives: &[u32], options: &Options) -> (Vec<Made>, u
             let share = made[outer].share * filled.lattice.cell_area() / made[outer].filled.lattice.cell_area();
             let number = made.len() as u32;
             made[outer].inner.push((cell, number));
-            made.push(Made { filled, inner: Vec::new(), share });
+            made.push(BuiltGrid { filled, inner: Vec::new(), share });
         }
         if made.len() == from {
             break;
@@ -170,8 +170,8 @@ fn content(input: &Input, lattice: &Lattice, cell: usize, own: &[u32]) -> Aabb {
 
 impl Nested {
     /// Number the leaves below a grid.
-    fn number(&mut self, made: &[Made], part: u32, lists: &mut Lists) {
-        let Made { filled, inner, .. } = &made[part as usize];
+    fn number(&mut self, made: &[BuiltGrid], part: u32, lists: &mut Lists) {
+        let BuiltGrid { filled, inner, .. } = &made[part as usize];
         let mut inner = inner.iter().peekable();
         let first = self.occupied.rank(self.parts[part as usize].word, 0);
         for (place, (cell, own)) in filled.lists().enumerate() {
@@ -276,7 +276,7 @@ impl Structure for Nested {
 }
 
 /// The traversal of one grid.
-struct Level {
+struct GridLevel {
     part: u32,
     walk: Walk,
     /// True if it is still in its first cell.
@@ -287,7 +287,7 @@ struct NestedWalk<'a, const COUNTED: bool> {
     nested: &'a Nested,
     ray: SlabRay,
     /// The stack of traversals, each inside the current cell of the one before.
-    levels: Vec<Level>,
+    levels: Vec<GridLevel>,
     halving: Halving,
     nodes: u32,
 }
@@ -302,7 +302,7 @@ impl<'a, const COUNTED: bool> NestedWalk<'a, COUNTED> {
     #[inline(always)]
     fn enter(&mut self, part: u32, from: f32, until: f32) {
         let walk = Walk::new(&self.nested.parts[part as usize].lattice, &self.ray, from, until);
-        self.levels.extend(walk.map(|walk| Level { part, walk, is_new: true }));
+        self.levels.extend(walk.map(|walk| GridLevel { part, walk, is_new: true }));
     }
 
     #[cold]
@@ -310,7 +310,7 @@ impl<'a, const COUNTED: bool> NestedWalk<'a, COUNTED> {
     fn next_by_halving(&mut self, limit: f32) -> Option<u32> {
         let Nested { parts, occupied, entries, .. } = self.nested;
         let grid = |number: u32| {
-            let Part { lattice, word } = &parts[number as usize];
+            let SubGrid { lattice, word } = &parts[number as usize];
             (lattice, *word)
         };
         loop {
@@ -340,7 +340,7 @@ impl<const COUNTED: bool> Walker for NestedWalk<'_, COUNTED> {
         let Nested { parts, occupied, entries, .. } = self.nested;
         while let Some(level) = self.levels.last_mut() {
             let word = parts[level.part as usize].word;
-            let Level { walk, is_new, .. } = level;
+            let GridLevel { walk, is_new, .. } = level;
             let mut is_there = std::mem::replace(is_new, false) || walk.step(limit);
             while is_there {
                 self.nodes += u32::from(COUNTED);

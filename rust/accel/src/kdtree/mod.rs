@@ -72,7 +72,7 @@ pub fn build(input: &Input, options: &Options) -> (Box<dyn Structure>, Lists) {
 }
 
 /// A node and its cell.
-struct Cell {
+struct KdCell {
     node: usize,
     aabb: Aabb,
     depth: usize,
@@ -80,18 +80,18 @@ struct Cell {
 
 impl KdTree {
     /// All nodes, root first.
-    fn cells(&self) -> impl Iterator<Item = Cell> {
+    fn cells(&self) -> impl Iterator<Item = KdCell> {
         let mut open = Vec::new();
         if !self.nodes.is_empty() {
-            open.push(Cell { node: 0, aabb: self.bounds, depth: 0 });
+            open.push(KdCell { node: 0, aabb: self.bounds, depth: 0 });
         }
         std::iter::from_fn(move || {
             let cell = open.pop()?;
             if let Some((plane, children)) = self.plane(cell.node) {
                 let [below, above] = plane.cut(&cell.aabb);
                 let depth = cell.depth + 1;
-                open.push(Cell { node: children + 1, aabb: above, depth });
-                open.push(Cell { node: children, aabb: below, depth });
+                open.push(KdCell { node: children + 1, aabb: above, depth });
+                open.push(KdCell { node: children, aabb: below, depth });
             }
             Some(cell)
         })
@@ -108,8 +108,8 @@ impl KdTree {
     /// times the probability that a ray through the root's cell hits the cell.
     fn sah_cost(&self) -> f64 {
         let root = area(&self.bounds);
-        let share = |cell: &Cell| if root > 0.0 { area(&cell.aabb) / root } else { 1.0 };
-        let tests = |cell: &Cell| match self.nodes[cell.node] {
+        let share = |cell: &KdCell| if root > 0.0 { area(&cell.aabb) / root } else { 1.0 };
+        let tests = |cell: &KdCell| match self.nodes[cell.node] {
             node if node.is_leaf() => f64::from(node.count()),
             _ => 1.0,
         };
@@ -126,10 +126,10 @@ fn area(aabb: &Aabb) -> f64 {
 impl Structure for KdTree {
     fn walker(&self, counted: bool) -> Box<dyn Walker + '_> {
         match (self.options.traversal, counted) {
-            (Traversal::Stack, false) => Box::new(stack::Walk::<false>::new(self)),
-            (Traversal::Stack, true) => Box::new(stack::Walk::<true>::new(self)),
-            (Traversal::Restart, false) => Box::new(restart::Walk::<false>::new(self)),
-            (Traversal::Restart, true) => Box::new(restart::Walk::<true>::new(self)),
+            (Traversal::Stack, false) => Box::new(stack::StackTraversal::<false>::new(self)),
+            (Traversal::Stack, true) => Box::new(stack::StackTraversal::<true>::new(self)),
+            (Traversal::Restart, false) => Box::new(restart::RestartTraversal::<false>::new(self)),
+            (Traversal::Restart, true) => Box::new(restart::RestartTraversal::<true>::new(self)),
         }
     }
 
@@ -148,7 +148,7 @@ impl Structure for KdTree {
     }
 
     fn boxes(&self, _: &dyn Fn(u32) -> usize) -> Option<Vec<NodeBox>> {
-        let of = |Cell { node, aabb, depth }: Cell| {
+        let of = |KdCell { node, aabb, depth }: KdCell| {
             let node = self.nodes[node];
             NodeBox { aabb, depth, primitives: node.is_leaf().then_some(node.count() as usize) }
         };

@@ -4,7 +4,7 @@ use crate::SlabRay;
 
 /// The data for one axis.
 #[derive(Clone, Copy, Debug)]
-struct Along {
+struct AxisPlane {
     inverse: f32,
     near: f32,
     far: f32,
@@ -15,7 +15,7 @@ struct Along {
 /// By axis, so that the data for a plane are contiguous. The fourth is padding, which makes every two-bit axis valid.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
-pub struct PlaneRay([Along; 4]);
+pub struct PlaneRay([AxisPlane; 4]);
 
 /// The intervals of a ray on the two sides of a plane.
 #[derive(Clone, Copy, Debug)]
@@ -31,7 +31,7 @@ pub struct Sides {
 impl PlaneRay {
     /// Convert from a ray prepared for boxes.
     pub fn new(ray: &SlabRay) -> Self {
-        let along = |axis: usize| Along {
+        let along = |axis: usize| AxisPlane {
             inverse: ray.inverse[axis],
             near: ray.near[axis],
             far: ray.far[axis],
@@ -43,7 +43,7 @@ impl PlaneRay {
     /// The earliest and the latest `t` of a plane.
     #[inline(always)]
     pub fn sides(&self, axis: usize, plane: f32) -> Sides {
-        let Along { inverse, near, far, first } = self.0[axis & 3];
+        let AxisPlane { inverse, near, far, first } = self.0[axis & 3];
         let t = plane * inverse;
         Sides { first, from: t + near, until: t + far }
     }

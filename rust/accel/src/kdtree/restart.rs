@@ -19,7 +19,7 @@ const _: () = assert!(MAX_DEPTH < 64);
 
 /// A node and the interval in which the ray may be inside, regardless of hits.
 #[derive(Clone, Copy)]
-struct At {
+struct RayPosition {
     node: u32,
     enter: f32,
     leave: f32,
@@ -28,30 +28,30 @@ struct At {
 }
 
 /// A stackless traversal.
-pub struct Walk<'a, const COUNTED: bool> {
+pub struct RestartTraversal<'a, const COUNTED: bool> {
     tree: &'a KdTree,
     planes: PlaneRay,
     /// The restart node; None when done.
-    top: Option<At>,
+    top: Option<RayPosition>,
     /// The restart trail: by level, whether the near side is done or there is only one side.
     trail: u64,
     nodes: u32,
 }
 
-impl<'a, const COUNTED: bool> Walk<'a, COUNTED> {
+impl<'a, const COUNTED: bool> RestartTraversal<'a, COUNTED> {
     /// Create a traversal of a tree.
     pub fn new(tree: &'a KdTree) -> Self {
         Self { tree, planes: PlaneRay::new(&SlabRay::EVERYWHERE), top: None, trail: 0, nodes: 0 }
     }
 }
 
-impl<const COUNTED: bool> Walker for Walk<'_, COUNTED> {
+impl<const COUNTED: bool> Walker for RestartTraversal<'_, COUNTED> {
     fn start(&mut self, ray: &SlabRay) {
         self.planes = PlaneRay::new(ray);
         self.nodes = u32::from(COUNTED);
         self.trail = 0;
         let passed = ray.passes(&self.tree.bounds, f32::INFINITY);
-        self.top = passed.map(|(enter, leave)| At { node: 0, enter, leave, level: TOP });
+        self.top = passed.map(|(enter, leave)| RayPosition { node: 0, enter, leave, level: TOP });
     }
 
     fn next(&mut self, limit: f32) -> Option<u32> {

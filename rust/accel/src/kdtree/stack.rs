@@ -15,37 +15,37 @@ const _: () = assert!(MAX_DEPTH < STACK);
 
 /// A node and the interval in which the ray may be inside.
 #[derive(Clone, Copy)]
-struct Open {
+struct StackEntry {
     node: u32,
     enter: f32,
     leave: f32,
 }
 
 /// A traversal with a stack.
-pub struct Walk<'a, const COUNTED: bool> {
+pub struct StackTraversal<'a, const COUNTED: bool> {
     tree: &'a KdTree,
     planes: PlaneRay,
-    open: [Open; STACK],
+    open: [StackEntry; STACK],
     /// Height of the stack.
     height: usize,
     nodes: u32,
 }
 
-impl<'a, const COUNTED: bool> Walk<'a, COUNTED> {
+impl<'a, const COUNTED: bool> StackTraversal<'a, COUNTED> {
     /// Create a traversal of a tree.
     pub fn new(tree: &'a KdTree) -> Self {
-        let nothing = Open { node: 0, enter: 0.0, leave: 0.0 };
+        let nothing = StackEntry { node: 0, enter: 0.0, leave: 0.0 };
         Self { tree, planes: PlaneRay::new(&SlabRay::EVERYWHERE), open: [nothing; STACK], height: 0, nodes: 0 }
     }
 }
 
-impl<const COUNTED: bool> Walker for Walk<'_, COUNTED> {
+impl<const COUNTED: bool> Walker for StackTraversal<'_, COUNTED> {
     fn start(&mut self, ray: &SlabRay) {
         self.planes = PlaneRay::new(ray);
         self.height = 0;
         self.nodes = u32::from(COUNTED);
         if let Some((enter, leave)) = ray.passes(&self.tree.bounds, f32::INFINITY) {
-            self.open[0] = Open { node: 0, enter, leave };
+            self.open[0] = StackEntry { node: 0, enter, leave };
             self.height = 1;
         }
     }
@@ -55,7 +55,7 @@ impl<const COUNTED: bool> Walker for Walk<'_, COUNTED> {
         let mut height = self.height;
         while height > 0 {
             height -= 1;
-            let Open { node: mut at, enter, leave } = self.open[height % STACK];
+            let StackEntry { node: mut at, enter, leave } = self.open[height % STACK];
             if enter > limit {
                 continue;
             }
@@ -79,7 +79,7 @@ impl<const COUNTED: bool> Walker for Walk<'_, COUNTED> {
                     at ^= 1;
                     continue;
                 }
-                self.open[height % STACK] = Open { node: at ^ 1, enter: greater(enter, sides.from), leave };
+                self.open[height % STACK] = StackEntry { node: at ^ 1, enter: greater(enter, sides.from), leave };
                 height += 1;
                 leave = lesser(leave, sides.until);
             };

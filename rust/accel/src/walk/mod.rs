@@ -8,14 +8,14 @@
 //! traversal that visits every cell that the ray may enter within these intervals misses nothing.
 
 mod contents;
-mod few;
+mod few_objects;
 mod mailbox;
 mod parts;
 mod room;
 mod together;
 
 pub(super) use contents::Contents;
-pub(super) use few::Few;
+pub(super) use few_objects::Few;
 pub use mailbox::Mailbox;
 pub(super) use mailbox::{Mailboxes, Marks};
 pub(super) use parts::{Halves, Part, Plane};

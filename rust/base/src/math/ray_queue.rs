@@ -31,12 +31,12 @@ pub struct RayLanes {
 }
 
 /// The selected lanes, in order.
-struct Chosen {
+struct QueuedRay {
     lanes: [u8; LANES],
     count: usize,
 }
 
-impl Chosen {
+impl QueuedRay {
     #[inline(always)]
     fn of(mask: u32) -> Self {
         let (mut lanes, mut count) = ([0; LANES], 0);
@@ -98,7 +98,7 @@ impl RayQueue {
     /// Add the rays of the lanes in a mask.
     #[inline]
     pub fn push_lanes(&mut self, rays: &RayLanes, mask: u32) {
-        let chosen = Chosen::of(mask);
+        let chosen = QueuedRay::of(mask);
         for (columns, lanes) in [(&mut self.origin, &rays.origin), (&mut self.direction, &rays.direction)] {
             for (column, lanes) in columns.iter_mut().zip(lanes.by_axis()) {
                 chosen.append(column, lanes);

@@ -1,7 +1,7 @@
 //! The random numbers of a batch of samples in SoA layout.
 
 use super::bits::number;
-use super::lanes::joined;
+use super::sampler_lanes::joined;
 use super::{Sampler, SamplerKind, SamplerLanes};
 use crate::math::single::lesser;
 use crate::math::{LANES, gather};

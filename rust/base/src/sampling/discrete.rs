@@ -5,12 +5,12 @@
 #[derive(Clone, Debug)]
 pub struct AliasTable {
     /// Each column belongs to its own entry below the threshold, and to its alias above.
-    columns: Vec<Column>,
+    columns: Vec<AliasColumn>,
     probabilities: Vec<f64>,
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Column {
+struct AliasColumn {
     threshold: f64,
     alias: u32,
 }
@@ -33,14 +33,15 @@ impl AliasTable {
 
         let count = weights.len();
         let mut share: Vec<f64> = probabilities.iter().map(|p| p * count as f64).collect();
-        let mut columns: Vec<Column> = (0..count as u32).map(|alias| Column { threshold: 1.0, alias }).collect();
+        let mut columns: Vec<AliasColumn> =
+            (0..count as u32).map(|alias| AliasColumn { threshold: 1.0, alias }).collect();
         let (mut poor, mut rich): (Vec<u32>, Vec<u32>) = (0..count as u32).partition(|&i| share[i as usize] < 1.0);
         // Entries of weight 0 come first, while a donor for their column certainly exists. Rounding may leave a few
         // poor ones at the end, which then keep their column to themselves.
         poor.sort_by_key(|&i| share[i as usize] == 0.0);
         while let Some(&donor) = rich.last() {
             let Some(small) = poor.pop() else { break };
-            columns[small as usize] = Column { threshold: share[small as usize], alias: donor };
+            columns[small as usize] = AliasColumn { threshold: share[small as usize], alias: donor };
             // In this order the difference is exact for small shares (Vose).
             share[donor as usize] = (share[donor as usize] + share[small as usize]) - 1.0;
             if share[donor as usize] < 1.0 {

@@ -1,6 +1,6 @@
 //! Maps from the unit square to directions and points, with their densities.
 
-use crate::math::turn::{sin_cos_eighth, sin_cos_turn};
+use crate::math::trig::{sin_cos_eighth, sin_cos_turn};
 use glam::{DVec2, DVec3};
 use std::f64::consts::{FRAC_1_PI, FRAC_PI_4};
 

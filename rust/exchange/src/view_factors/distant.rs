@@ -112,19 +112,19 @@ static RULES: OnceLock<[Rule; 4]> = OnceLock::new();
 const RATIOS: [f64; 4] = [0.05, 0.18, 0.35, 0.7];
 
 /// Points of a triangle, with their weights times their heights above the other's plane.
-struct Points {
+struct PatchPoints {
     x: [f64; MOST],
     y: [f64; MOST],
     z: [f64; MOST],
     weight: [f64; MOST],
 }
 
-impl Points {
+impl PatchPoints {
     const NONE: Self = Self { x: [0.0; MOST], y: [0.0; MOST], z: [0.0; MOST], weight: [0.0; MOST] };
 }
 
 loops! {
-    fn place(rule: &Rule, corners: &[DVec3; 3], heights: &[f64; 3], to: &mut Points) {
+    fn place(rule: &Rule, corners: &[DVec3; 3], heights: &[f64; 3], to: &mut PatchPoints) {
         let [a, b, c] = *corners;
         let (ab, ac) = (b - a, c - a);
         for i in 0..rule.points {
@@ -139,7 +139,7 @@ loops! {
 }
 
 loops! {
-    fn sum(points: usize, one: &Points, other: &Points, to: &mut f64) {
+    fn sum(points: usize, one: &PatchPoints, other: &PatchPoints, to: &mut f64) {
         let mut sums = [0.0; 8];
         // Divisions dominate the time: one for four points, in whole vectors.
         for four in (0..points).step_by(4) {
@@ -173,15 +173,15 @@ fn added((a, b): (f64, f64), (c, d): (f64, f64)) -> (f64, f64) {
 pub struct Quadrature {
     level: Level,
     rules: &'static [Rule; 4],
-    from: Points,
-    to: Points,
+    from: PatchPoints,
+    to: PatchPoints,
 }
 
 impl Quadrature {
     /// For a SIMD level.
     pub fn new(level: Level) -> Self {
         let rules = RULES.get_or_init(|| [Rule::seven(), Rule::sixteen(), Rule::twenty_five(), Rule::forty_two()]);
-        Self { level, rules, from: Points::NONE, to: Points::NONE }
+        Self { level, rules, from: PatchPoints::NONE, to: PatchPoints::NONE }
     }
 
     /// The area of `one` times its view factor to `other`, if each is wholly in front of the other. None if they are

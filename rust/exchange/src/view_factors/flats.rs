@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 
 /// A flat part of a face: a triangle, or a flat part of another shape.
 #[derive(Clone, Copy, Debug)]
-pub enum Part {
+pub enum FlatPart {
     Triangle(Facet),
     /// As [`Flat::Ellipse`], with the unit normal.
     Ellipse {
@@ -26,7 +26,7 @@ pub enum Part {
 /// Points outside by at most this fraction of the part's size count as inside.
 const NEXT: f64 = 1e-9;
 
-impl Part {
+impl FlatPart {
     fn new(flat: &Flat) -> Self {
         match *flat {
             Flat::Triangle(corners) => Self::Triangle(Facet::new(corners)),
@@ -87,7 +87,7 @@ pub struct SharedPlane {
     /// The faces, lower number first.
     pub faces: [u32; 2],
     /// Their parts.
-    pub parts: [Part; 2],
+    pub parts: [FlatPart; 2],
     /// The area of the overlap; for ellipses to some percent.
     pub area: f64,
     /// A point of the overlap.
@@ -106,7 +106,7 @@ pub fn shared_planes(scene: &Scene) -> Vec<SharedPlane> {
         let facets = overlap.faces.map(corners);
         SharedPlane {
             faces: overlap.faces,
-            parts: facets.map(Part::Triangle),
+            parts: facets.map(FlatPart::Triangle),
             area: overlap.area,
             middle: overlap.middle,
             is_same: overlap.is_same,
@@ -119,7 +119,7 @@ pub fn shared_planes(scene: &Scene) -> Vec<SharedPlane> {
 /// A flat part of a shape, with its face and a triangulation.
 struct OfShape {
     face: u32,
-    part: Part,
+    part: FlatPart,
     pieces: Vec<Facet>,
 }
 
@@ -129,7 +129,7 @@ fn of_shapes(scene: &Scene) -> Vec<SharedPlane> {
     let count = geometry.count() as u32;
     let of = |(face, flat): (u32, Flat)| {
         let pieces = flat.triangles().into_iter().map(Facet::new).filter(|piece| piece.area > 0.0).collect();
-        OfShape { face, part: Part::new(&flat), pieces }
+        OfShape { face, part: FlatPart::new(&flat), pieces }
     };
     let flats = |face| geometry.shape(face).map_or_else(Vec::new, |s| s.flats()).into_iter().map(move |f| (face, f));
     let parts: Vec<OfShape> = (0..count).flat_map(flats).map(of).collect();
@@ -172,7 +172,7 @@ fn of_shapes(scene: &Scene) -> Vec<SharedPlane> {
         for ((face, owner), (area, _, middle, room)) in shared {
             let (other, whole) = match parts.get(owner) {
                 Some(other) => (other.part, other.pieces.iter().map(|piece| piece.area).sum()),
-                None => (Part::Triangle(all[face as usize]), all[face as usize].area),
+                None => (FlatPart::Triangle(all[face as usize]), all[face as usize].area),
             };
             if area <= LEAST * whole.min(part.pieces.iter().map(|piece| piece.area).sum()) {
                 continue;

@@ -1,6 +1,6 @@
 //! The front that a ray hits, also where two faces are back to back or touch front to front.
 
-use super::flats::{Part, SharedPlane, shared_planes};
+use super::flats::{FlatPart, SharedPlane, shared_planes};
 use raywright_base::math::{DVec3, Frame, Hit, Ray};
 use raywright_base::parallel;
 use raywright_base::sampling::{BatchSize, SamplerKind, warp};
@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 #[derive(Clone, Debug)]
 struct Opposite {
     face: u32,
-    part: Part,
+    part: FlatPart,
     /// Maximum distance from the part's plane of points on the other face; infinite for a triangle, all of which is in
     /// the plane.
     room: f64,
@@ -87,7 +87,7 @@ impl Fronts {
             return true;
         }
         let kind = SamplerKind::Sobol(BatchSize::for_budget(Some(4 * RAYS)));
-        let looks_into = |(face, part): (u32, &Part)| {
+        let looks_into = |(face, part): (u32, &FlatPart)| {
             let normal = part.normal();
             let error = if geometry.shape(face).is_some() { pair.room } else { geometry.error(face) };
             let origin = RayOrigin::off(pair.middle, error, normal);

@@ -173,7 +173,7 @@ struct Slices<'a> {
 impl<'a> Slices<'a> {
     /// Divide into parts for integration, so that no slice extends much farther from the line than the other, or than
     /// its own start.
-    fn graded(self, found: &mut Vec<Part<'a>>) {
+    fn graded(self, found: &mut Vec<Integrand<'a>>) {
         let Self { from, to, .. } = self;
         let cut = |slice: &Slice, least: f64| {
             (slice.end > 2.0 * UNEVEN * least).then(|| slice.cut(least.max(slice.end / UNEVEN)))
@@ -184,9 +184,9 @@ impl<'a> Slices<'a> {
             parts.into_iter().for_each(|to| Self { to, ..self }.graded(found));
         } else if from.start + to.start < from.width() + to.width() {
             let near = self.layer() / (from.width() + to.width());
-            found.extend([Fan::First, Fan::Second].map(|fan| Part { both: self, fan, near }));
+            found.extend([Fan::First, Fan::Second].map(|fan| Integrand { both: self, fan, near }));
         } else {
-            found.push(Part { both: self, fan: Fan::None, near: 1.0 });
+            found.push(Integrand { both: self, fan: Fan::None, near: 1.0 });
         }
     }
 
@@ -219,14 +219,14 @@ enum Fan {
 
 /// An integrand over the unit square.
 #[derive(Clone, Copy)]
-struct Part<'a> {
+struct Integrand<'a> {
     both: Slices<'a>,
     fan: Fan,
     /// Distance from the fan's corner within which it is always halved.
     near: f64,
 }
 
-impl Part<'_> {
+impl Integrand<'_> {
     #[inline]
     fn at(&self, x: f64, y: f64) -> f64 {
         match self.fan {
@@ -267,7 +267,7 @@ impl Rectangle {
 }
 
 /// The integral over some squares.
-fn sum(parts: &[Part]) -> f64 {
+fn sum(parts: &[Integrand]) -> f64 {
     static RULE: OnceLock<Vec<(f64, f64)>> = OnceLock::new();
     let rule = RULE.get_or_init(|| gauss(POINTS));
     let whole = Rectangle { corner: [0.0; 2], sides: [1.0; 2] };

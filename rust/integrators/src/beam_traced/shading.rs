@@ -4,7 +4,7 @@ use super::beam::Beam;
 use crate::Job;
 use raywright_base::math::{DVec2, DVec3, Hit, Ray};
 use raywright_optics::{BsdfSample, Rgb};
-use raywright_scene::{Encounter, SurfaceInteraction};
+use raywright_scene::{Interaction, SurfaceInteraction};
 
 /// The intersection of a film position's ray with a face.
 pub(super) struct Met {

@@ -8,7 +8,7 @@ use crate::light_paths::{of_asked, onward_pdf, weight};
 use raywright_base::math::Ray;
 use raywright_optics::spectra::Waves;
 use raywright_optics::{Bsdf, Rgb};
-use raywright_scene::{Emitters, Encounter, LightSampleContext};
+use raywright_scene::{Emitters, Interaction, LightSampleContext};
 
 impl<'a> BidirectionalWorker<'a> {
     /// Sample one light, chosen and sampled by the given numbers.
@@ -54,7 +54,7 @@ impl<'a> BidirectionalWorker<'a> {
         let met = there.met_from(-direction, distance, 0.0);
         let sent = there.share(-direction, || met.evaluate(there.back()).0);
         let mut arriving = path.throughput * scattered * light.flux * sent / square;
-        if path.gilded {
+        if path.has_gamut_excess {
             arriving *= light.again;
         }
         if path.single && light.single {

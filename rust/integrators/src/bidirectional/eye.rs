@@ -6,7 +6,7 @@ use crate::parting::Parting;
 use raywright_base::math::{DVec3, Ray, RayQueue};
 use raywright_optics::spectra::Waves;
 use raywright_optics::{Bsdf, BsdfSample, Rgb};
-use raywright_scene::{Encounter, Footprint, LightSampleContext, SurfaceInteraction};
+use raywright_scene::{Footprint, Interaction, LightSampleContext, SurfaceInteraction};
 
 /// The state of a camera path.
 #[derive(Clone, Copy)]
@@ -23,8 +23,8 @@ pub(super) struct EyePath {
     pub chance: f64,
     /// Width and spread of the ray at its origin.
     pub footprint: Footprint,
-    /// True if a surface of the path has a reflectance above 1 in a channel ([`Bsdf::again`]).
-    pub gilded: bool,
+    /// True if a surface of the path has a reflectance above 1 in a channel ([`Bsdf::repeat_correction`]).
+    pub has_gamut_excess: bool,
     pub partial: Partial,
     /// Merging disk as in [`Partial::merging`]; 0 without merging.
     pub disk: f64,

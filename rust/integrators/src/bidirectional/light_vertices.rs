@@ -11,7 +11,7 @@ pub(super) struct LightVertex<'a> {
     pub arrived: Arrived<'a>,
     /// Flux of the path, divided by the probability that the vertex is stored.
     pub flux: Rgb,
-    /// Remaining share for camera paths with a reflectance above 1 on the way ([`Bsdf::again`]).
+    /// Remaining share for camera paths with a reflectance above 1 on the way ([`Bsdf::repeat_correction`]).
     pub again: Rgb,
     /// Index of the vertex among the path's surfaces, from 1 on.
     pub bounce: u32,

@@ -9,7 +9,7 @@ use raywright_base::sampling::Sampler;
 use raywright_base::workers::Cancel;
 use raywright_optics::Rgb;
 use raywright_optics::spectra::Waves;
-use raywright_scene::{EmissionSample, Emitters, Encounter};
+use raywright_scene::{EmissionSample, Emitters, Interaction};
 use std::f64::consts::PI;
 use std::ops::Range;
 use std::sync::Arc;
@@ -140,7 +140,9 @@ impl<'a> Merging<'a> {
                 Some(_) => 1.0,
                 None => of_merged((light, back), (&path.partial, at.onward_pdf(towards)), path.disk),
             };
-            sum += scattered * photon.power(path.gilded, path.single) * (share * weight / here.normal().dot(towards));
+            sum += scattered
+                * photon.power(path.has_gamut_excess, path.single)
+                * (share * weight / here.normal().dot(towards));
         });
         if sum.is_black() || !sum.is_radiance() {
             return Rgb::ZERO;

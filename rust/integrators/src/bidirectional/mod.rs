@@ -77,7 +77,7 @@ impl Integrator for Bidirectional {
             return super::LightTraced::default().objection(scene, adaptive);
         }
         let is_merged = self.merge.is_some() && scene.plan().needs().media;
-        is_merged.then(|| "walks are not merged among media: use merge=False, or ProgressivePhotonMap".into())
+        is_merged.then(|| "walks are not merged among media: use vertex_merging=False, or ProgressivePhotonMap".into())
     }
 
     fn takes_media(&self) -> bool {

@@ -17,7 +17,7 @@ use raywright_base::sampling::Sampler;
 use raywright_base::workers::Cancel;
 use raywright_optics::spectra::Waves;
 use raywright_optics::{Bsdf, Dispersive, Rgb};
-use raywright_scene::{Emitters, Encounter, Gaze, SurfaceInteraction};
+use raywright_scene::{Emitters, Interaction, LookupContext, SurfaceInteraction};
 use std::sync::Arc;
 
 /// Per-thread state.
@@ -163,7 +163,7 @@ impl<'a> BidirectionalWorker<'a> {
                 media: MediumStack::NONE,
                 chance: -1.0,
                 footprint: self.job.footprint,
-                gilded: false,
+                has_gamut_excess: false,
                 partial: Partial::of_camera(self.paths, 0.0),
                 disk: self.merging.map_or(0.0, |merging| merging.disk(sample.sampler.number())),
                 normal: DVec3::ZERO,
@@ -209,7 +209,7 @@ impl<'a> BidirectionalWorker<'a> {
                     let width = if self.widths { path.footprint.at(hit.t).width } else { 0.0 };
                     let wide = (width > 0.0).then(|| {
                         let surface = *arrived.here.surface();
-                        let gaze = Gaze { width, waves: path.waves };
+                        let gaze = LookupContext { width, waves: path.waves };
                         SurfaceInteraction::new(self.job.scene, &ray, &hit, surface, gaze, arrived.outside)
                     });
                     let at = EyeVertex { arrived, wide, through, parting };
@@ -247,12 +247,12 @@ impl<'a> BidirectionalWorker<'a> {
         if path.disk > 0.0 && is_matt(at.arrived.here.bsdf()) {
             path.partial = path.partial.merging(path.disk);
         }
-        let again = here.bsdf().again();
+        let again = here.bsdf().repeat_correction();
         if again != Rgb::ONE {
-            if path.gilded {
+            if path.has_gamut_excess {
                 path.throughput *= again;
             }
-            path.gilded = true;
+            path.has_gamut_excess = true;
         }
         let dimensions = Dimensions::of(path.bounce, 0);
         if let Some(emitters) = self.emitters.filter(|_| !here.bsdf().is_delta()) {
@@ -303,7 +303,7 @@ impl<'a> BidirectionalWorker<'a> {
         if emission.is_dark() {
             return Rgb::ZERO;
         }
-        let sent = emission.sent(geometry, ray, hit, surface, || Gaze { width, waves: path.waves });
+        let sent = emission.sent(geometry, ray, hit, surface, || LookupContext { width, waves: path.waves });
         if sent.is_black() || path.bounce == 0 && self.alone.is_none() {
             return sent;
         }

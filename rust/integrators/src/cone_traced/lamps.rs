@@ -5,7 +5,7 @@ use crate::Job;
 use raywright_accel::Primitives;
 use raywright_base::math::{DVec3, Ray};
 use raywright_optics::Rgb;
-use raywright_scene::{Counted, Coverage, Encounter, LightSample};
+use raywright_scene::{Counted, Coverage, Interaction, LightSample};
 use raywright_shapes::triangle::SolidCone;
 
 /// An emissive primitive and its shape.

@@ -7,7 +7,7 @@ use raywright_base::parallel;
 use raywright_base::sampling::{AliasTable, Sampler, warp};
 use raywright_base::workers::Cancel;
 use raywright_optics::{AnyBsdf, Bsdf, BsdfSample};
-use raywright_scene::{Encounter, Geometry, LightSample, LightSampleContext, RayOrigin, Scene, SurfaceInteraction};
+use raywright_scene::{Geometry, Interaction, LightSample, LightSampleContext, RayOrigin, Scene, SurfaceInteraction};
 
 /// Number of photons.
 const SENT: u32 = 1 << 16;

@@ -2,7 +2,7 @@
 
 use super::photon::Photon;
 use glam::DMat3;
-use raywright_base::math::turn::sin_cos_turn;
+use raywright_base::math::trig::sin_cos_turn;
 use raywright_base::math::{DVec3, Frame, LANES, VectorLanes};
 use raywright_base::simd::{Level, loops};
 use std::f64::consts::TAU;

@@ -17,7 +17,7 @@ use raywright_base::sampling::warp::{cosine_hemisphere, cosine_hemisphere_pdf};
 use raywright_optics::spectra::Waves;
 use raywright_optics::{Bsdf, BsdfSample, Dispersive, Rgb};
 use raywright_scene::materials::BsdfMix;
-use raywright_scene::{Encounter, Gaze, LightSampleContext, Scene, SurfaceInteraction};
+use raywright_scene::{Interaction, LightSampleContext, LookupContext, Scene, SurfaceInteraction};
 
 /// A surface vertex of a light path. Also a vertex of a camera path, for light that meets it from elsewhere.
 #[derive(Clone)]
@@ -46,7 +46,7 @@ pub(crate) enum Met<'a> {
 }
 
 impl Met<'_> {
-    /// Evaluate as [`Encounter::evaluate`] does.
+    /// Evaluate as [`Interaction::evaluate`] does.
     pub fn evaluate(&self, direction: DVec3) -> (Rgb, f64) {
         match self {
             Self::Alike(here) => here.evaluate(direction),
@@ -54,7 +54,7 @@ impl Met<'_> {
         }
     }
 
-    /// Return the same as [`Encounter::light_context`].
+    /// Return the same as [`Interaction::light_context`].
     pub fn light_context(&self) -> LightSampleContext {
         match self {
             Self::Alike(here) => here.light_context(),
@@ -146,7 +146,7 @@ impl<'a> Arrived<'a> {
         let ray = Ray { origin, direction: -direction, ..self.ray };
         let hit = Hit { t: distance, ..self.hit };
         let surface = *self.here.surface();
-        let gaze = Gaze { width, waves: self.waves };
+        let gaze = LookupContext { width, waves: self.waves };
         Met::Anew(SurfaceInteraction::new(self.scene, &ray, &hit, surface, gaze, self.outside))
     }
 

@@ -13,7 +13,7 @@ use raywright_base::sampling::Sampler;
 use raywright_base::workers::Cancel;
 use raywright_optics::spectra::Waves;
 use raywright_optics::{Bsdf, Rgb};
-use raywright_scene::{Camera, EmissionSample, Emitters, Encounter, Footprint, RayOrigin, Scene};
+use raywright_scene::{Camera, EmissionSample, Emitters, Footprint, Interaction, RayOrigin, Scene};
 
 /// Per-thread state for tracing light paths to a camera.
 pub(crate) struct LightPaths<'a> {

@@ -11,7 +11,7 @@ use raywright_base::sampling::Sampler;
 use raywright_base::workers::Cancel;
 use raywright_optics::spectra::Waves;
 use raywright_optics::{Bsdf, Dispersive, Rgb};
-use raywright_scene::{Camera, EmissionSample, Emitters, Encounter, Scene};
+use raywright_scene::{Camera, EmissionSample, Emitters, Interaction, Scene};
 
 /// Path termination.
 #[derive(Clone, Copy, Debug)]
@@ -127,7 +127,7 @@ pub(crate) struct Flying {
     pub media: MediumStack,
     /// Random number for masks, as in [`Passing::meet`].
     chance: f64,
-    /// Remaining share after the last surface, for a reflectance above 1 met again ([`Bsdf::again`]). It applies once
+    /// Remaining share after the last surface, for a reflectance above 1 met again ([`Bsdf::repeat_correction`]). It applies once
     /// the path reaches another surface: of all such surfaces of a path, the one nearest to the viewer has none.
     pub again: Rgb,
     /// True if the last bounce was specular or nearly so.
@@ -250,7 +250,7 @@ impl<'a> LightWalk<'a> {
                     if parting.is_some() && waiting.is_none() {
                         path.end_all_but_hero();
                     }
-                    let again = arrived.here.bsdf().again();
+                    let again = arrived.here.bsdf().repeat_correction();
                     if again != Rgb::ONE {
                         path.flux *= path.again;
                         path.again = again;

@@ -9,7 +9,7 @@ use crate::volumes::{Filled, Met, Scattering, meet};
 use raywright_base::math::{DVec3, Frame, Hit, Ray};
 use raywright_base::sampling::{Sampler, warp};
 use raywright_optics::Rgb;
-use raywright_scene::{Encounter, Scene};
+use raywright_scene::{Interaction, Scene};
 use std::f64::consts::TAU;
 
 impl Estimate {
@@ -36,7 +36,7 @@ impl Estimate {
                 if weight > 0.0 {
                     let photon = &of.photons[number as usize];
                     let scattered = here.evaluate(-photon.direction.as_dvec3()).0;
-                    sum += scattered * photon.power(visit.gilded, visit.single) * weight;
+                    sum += scattered * photon.power(visit.has_gamut_excess, visit.single) * weight;
                 }
             });
         if sum.is_black() || !sum.is_radiance() {
@@ -126,7 +126,7 @@ mod tests {
         // A fluence of 1 scatters 1 / 4π into each direction. An estimate from the 50 nearest counts 49 with any
         // kernel; 1,000 maps give its mean to half a percent.
         let here = Scattering { position: DVec3::ZERO, before: DVec3::X, phase: Phase::Isotropic };
-        let visit = Visit { number: 0, looks_about: false, gilded: false, single: false, bounces: None };
+        let visit = Visit { number: 0, looks_about: false, has_gamut_excess: false, single: false, bounces: None };
         for kernel in [Kernel::Box, Kernel::Cone, Kernel::Epanechnikov] {
             for (nearest, radius) in [(Some(50), None), (None, Some(0.5))] {
                 let most = radius.unwrap_or(f64::INFINITY) * radius.unwrap_or(1.0);
@@ -161,7 +161,7 @@ mod tests {
         let plane = |i| (0..fine).flat_map(move |j| (0..fine).map(move |k| one(i, j, k)));
         let of = VolumeIndex::new((0..fine).flat_map(plane).collect(), Some(1.0));
         let here = Scattering { position: DVec3::ZERO, before: DVec3::X, phase: Phase::Isotropic };
-        let visit = Visit { number: 0, looks_about: false, gilded: false, single: false, bounces: None };
+        let visit = Visit { number: 0, looks_about: false, has_gamut_excess: false, single: false, bounces: None };
         for scale in [1.0, 0.5f64.sqrt(), 0.5] {
             let estimate = Estimate { nearest: None, most: f64::INFINITY, kernel: Kernel::Box, scale };
             let told = estimate.scattered(&of, &here, &MediumStack::NONE, &visit, |_| 1.0).mean() * 4.0 * PI;

@@ -5,7 +5,7 @@ use super::photon::{FLAT, SAME_SIDE};
 use raywright_base::math::{DVec3, Frame, Hit, Ray};
 use raywright_base::sampling::Sampler;
 use raywright_optics::Bsdf;
-use raywright_scene::{Encounter, Scene, SurfaceInteraction};
+use raywright_scene::{Interaction, Scene, SurfaceInteraction};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
 /// Number of rings of equal area, and of probes on each.

@@ -5,7 +5,7 @@ use super::maps::PhotonIndex;
 use super::photon::StoredPhoton;
 use crate::transport::Visit;
 use raywright_optics::{Bsdf, Rgb};
-use raywright_scene::{Encounter, SurfaceInteraction};
+use raywright_scene::{Interaction, SurfaceInteraction};
 
 /// Parameters of the radiance estimate.
 #[derive(Clone, Copy, Debug)]
@@ -38,7 +38,7 @@ impl Estimate {
                 // Photon power is per area across the geometric normal; the BSDF is per solid angle, so its cosine is
                 // divided out.
                 let scattered = here.evaluate(towards).0 / here.normal().dot(towards);
-                sum += scattered * photon.power(visit.gilded, visit.single) * weight;
+                sum += scattered * photon.power(visit.has_gamut_excess, visit.single) * weight;
             }
         };
         let measured = |number: u32, squared: f64| of.photons[number as usize].measured(here, squared, bounces);
@@ -83,7 +83,7 @@ mod tests {
     const FIXED: Estimate = Estimate { nearest: None, most: f64::INFINITY, kernel: Kernel::Box, scale: 1.0 };
 
     fn visit(bounces: Option<u32>) -> Visit {
-        Visit { number: 0, looks_about: false, gilded: false, single: false, bounces }
+        Visit { number: 0, looks_about: false, has_gamut_excess: false, single: false, bounces }
     }
 
     /// Return the irradiance at a point of a white floor: π times its radiance.

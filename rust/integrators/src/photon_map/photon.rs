@@ -4,7 +4,7 @@ use crate::light_paths::Arrived;
 use raywright_base::math::{DVec3, Vec3};
 use raywright_optics::spectra::Waves;
 use raywright_optics::{Bsdf, Rgb};
-use raywright_scene::{Encounter, SurfaceInteraction};
+use raywright_scene::{Interaction, SurfaceInteraction};
 
 /// A photon at a matte surface, in compact form.
 #[derive(Clone, Copy, Debug)]
@@ -15,7 +15,7 @@ pub(crate) struct StoredPhoton {
     /// Unit geometric normal on the side of incidence.
     pub normal: Vec3,
     power: [f32; 3],
-    /// Remaining share for camera paths with a reflectance above 1 on the way ([`Bsdf::again`]).
+    /// Remaining share for camera paths with a reflectance above 1 on the way ([`Bsdf::repeat_correction`]).
     again: [f32; 3],
     /// Number of previous surface bounces.
     pub bounces: u32,
@@ -38,23 +38,23 @@ impl StoredPhoton {
     }
 
     /// Store the photon of a light path at a surface. `bounces` counts the earlier surfaces, and `single` says that the
-    /// power is of the hero wavelength alone. `again` is the remaining share for camera paths with a reflectance above
+    /// power is of the hero wavelength alone. `repeat_correction` is the remaining share for camera paths with a reflectance above
     /// 1.
     pub fn arrived(arrived: &Arrived, (power, single): (Rgb, bool), bounces: u32, again: Rgb) -> Self {
         let here = &arrived.here;
         let photon = Self::new(here.position(), arrived.ray.direction, here.normal(), power, bounces);
         // If this surface's own reflectance exceeds 1, the camera path applies its factor.
-        let own = here.bsdf().again() != Rgb::ONE;
+        let own = here.bsdf().repeat_correction() != Rgb::ONE;
         let again = if own { Rgb::ONE } else { again };
         Self { again: again.to_array().map(|x| x as f32), single, ..photon }
     }
 
-    /// Return the flux, W. `gilded` is for camera paths with a reflectance above 1, and `single` for those that
+    /// Return the flux, W. `has_gamut_excess` is for camera paths with a reflectance above 1, and `single` for those that
     /// terminated all wavelengths but the hero.
-    pub fn power(&self, gilded: bool, single: bool) -> Rgb {
+    pub fn power(&self, has_gamut_excess: bool, single: bool) -> Rgb {
         let power = Rgb::from_array(self.power.map(f64::from));
         let power = if single && self.single { Waves::joined(power) } else { power };
-        if gilded { power * Rgb::from_array(self.again.map(f64::from)) } else { power }
+        if has_gamut_excess { power * Rgb::from_array(self.again.map(f64::from)) } else { power }
     }
 
     /// Return the flattened squared distance from a point, given the Euclidean one. Return `None` if the photon is on
@@ -78,9 +78,9 @@ mod tests {
     fn what_is_gilded_counts_once() {
         let photon = StoredPhoton::new(DVec3::ZERO, DVec3::NEG_Z, DVec3::Z, Rgb::splat(2.0), 1);
         assert_eq!(photon.power(true, false), photon.power(false, true));
-        let gilded = StoredPhoton { again: [0.5, 1.0, 1.0], ..photon };
-        assert_eq!(gilded.power(true, false), Rgb::new(1.0, 2.0, 2.0));
-        assert_eq!(gilded.power(false, false), Rgb::splat(2.0));
+        let has_gamut_excess = StoredPhoton { again: [0.5, 1.0, 1.0], ..photon };
+        assert_eq!(has_gamut_excess.power(true, false), Rgb::new(1.0, 2.0, 2.0));
+        assert_eq!(has_gamut_excess.power(false, false), Rgb::splat(2.0));
         let ended = StoredPhoton { power: [3.0, 0.0, 0.0], single: true, ..photon };
         assert_eq!(ended.power(false, true) * 3.0, ended.power(false, false));
     }

@@ -45,12 +45,12 @@ impl VolumePhoton {
         self.filled == filled && bounces.is_none_or(|most| self.bounces <= most)
     }
 
-    /// Return the power. `gilded` is for camera paths with a reflectance above 1, and `single` for those that
+    /// Return the power. `has_gamut_excess` is for camera paths with a reflectance above 1, and `single` for those that
     /// terminated all wavelengths but the hero.
-    pub fn power(&self, gilded: bool, single: bool) -> Rgb {
+    pub fn power(&self, has_gamut_excess: bool, single: bool) -> Rgb {
         let power = Rgb::from_array(self.power.map(f64::from));
         let power = if single && self.single { Waves::joined(power) } else { power };
-        if gilded { power * Rgb::from_array(self.again.map(f64::from)) } else { power }
+        if has_gamut_excess { power * Rgb::from_array(self.again.map(f64::from)) } else { power }
     }
 }
 

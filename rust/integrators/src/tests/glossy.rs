@@ -12,7 +12,7 @@ use raywright_base::workers::Cancel;
 use raywright_optics::{AnyBsdf, Bsdf, Coated, Conductor, Rgb};
 use raywright_scene::fixtures::{rectangle, scene, shape};
 use raywright_scene::{
-    ConstantEnvironment, DirectionalLight, Encounter, EnvironmentMap, Instances, Light, Mesh, Picture, PointLight,
+    ConstantEnvironment, DirectionalLight, EnvironmentMap, Instances, Interaction, Light, Mesh, Picture, PointLight,
     Prototype, Scene, SceneDescription, ShadingVariant, Shape, SurfaceInteraction,
 };
 use raywright_shapes::{Plane, Sphere};

@@ -6,7 +6,7 @@ use raywright_base::math::{LANES, VectorLanes};
 use raywright_base::sampling::Pairs;
 use raywright_base::simd::{Level, loops};
 use raywright_optics::{BsdfSample, BsdfSampleLanes, Null, RgbLanes};
-use raywright_scene::{Encounter, SurfaceInteractionLanes};
+use raywright_scene::{Interaction, SurfaceInteractionLanes};
 use std::array;
 
 /// Which of the lanes that go on aim, by their choices; what is left of these is uniform again.

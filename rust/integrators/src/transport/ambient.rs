@@ -4,7 +4,7 @@ use super::features::Features;
 use super::worker::TransportWorker;
 use raywright_base::math::{Hit, Ray};
 use raywright_optics::{Bsdf, Rgb};
-use raywright_scene::{Gaze, SurfaceInteraction};
+use raywright_scene::{LookupContext, SurfaceInteraction};
 
 impl<N: Features> TransportWorker<'_, N> {
     /// Adds what a surface sends back of it to a path of this throughput, that looks at it so, with such an index of
@@ -14,7 +14,7 @@ impl<N: Features> TransportWorker<'_, N> {
         &self,
         here: &SurfaceInteraction<B>,
         (ray, hit): (&Ray, &Hit),
-        (gaze, outside): (Gaze, f64),
+        (gaze, outside): (LookupContext, f64),
         throughput: Rgb,
         light: &mut Rgb,
     ) {

@@ -14,7 +14,7 @@ use raywright_base::math::{LANES, VectorLanes};
 use raywright_base::sampling::Pairs;
 use raywright_base::simd::loops;
 use raywright_optics::{BsdfSample, BsdfSampleLanes, Diffuse, Null, Rgb, RgbLanes};
-use raywright_scene::{Encounter, SurfaceInteractionLanes};
+use raywright_scene::{Interaction, SurfaceInteractionLanes};
 use std::array;
 
 loops! {

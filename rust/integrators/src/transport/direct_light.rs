@@ -9,7 +9,7 @@ use super::worker::TransportWorker;
 use raywright_base::math::{DVec3, LANES, VectorLanes};
 use raywright_base::simd::loops;
 use raywright_optics::{Bsdf, Diffuse, Null, Rgb, RgbLanes};
-use raywright_scene::{Encounter, LightLanes, SurfaceInteractionLanes};
+use raywright_scene::{Interaction, LightLanes, SurfaceInteractionLanes};
 use std::array;
 
 loops! {

@@ -7,7 +7,7 @@ use super::worker::TransportWorker;
 use raywright_base::math::{Hit, Ray};
 use raywright_optics::Rgb;
 use raywright_scene::textures::TexturePoint;
-use raywright_scene::{Gaze, LightSampleContext, SurfacePoint};
+use raywright_scene::{LightSampleContext, LookupContext, SurfacePoint};
 
 impl<N: Features> TransportWorker<'_, N> {
     /// What arrives from outside the scene at a ray that meets nothing.
@@ -38,7 +38,14 @@ impl<N: Features> TransportWorker<'_, N> {
     }
 
     /// What a surface sends back along a ray, by how its path looks at it.
-    pub(super) fn emitted(&self, ray: &Ray, hit: &Hit, surface: &SurfacePoint, path: &PathState, gaze: Gaze) -> Rgb {
+    pub(super) fn emitted(
+        &self,
+        ray: &Ray,
+        hit: &Hit,
+        surface: &SurfacePoint,
+        path: &PathState,
+        gaze: LookupContext,
+    ) -> Rgb {
         let cosine = -ray.direction.dot(surface.normal);
         let emission = if N::PLAIN {
             self.scene.lights().emission(surface.shape).towards(cosine, &TexturePoint::NOWHERE)

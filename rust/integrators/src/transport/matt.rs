@@ -42,8 +42,8 @@ impl<N: Features> TransportWorker<'_, N> {
         let Some(known) = self.known.filter(|_| self.is_at_known(block, lane)) else { return Rgb::ZERO };
         let path = &block.paths[lane];
         let bounces = self.settings.max_depth.map(|depth| depth.saturating_sub(path.bounce + 1));
-        let (looks_about, gilded) = (self.gathers_from(block, lane), path.gilded);
-        let visit = Visit { number, looks_about, gilded, single: path.single, bounces };
+        let (looks_about, has_gamut_excess) = (self.gathers_from(block, lane), path.has_gamut_excess);
+        let visit = Visit { number, looks_about, has_gamut_excess, single: path.single, bounces };
         path.throughput * known.radiance(&block.other(lane), visit)
     }
 

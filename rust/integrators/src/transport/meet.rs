@@ -10,7 +10,9 @@ use crate::nesting::MediumStack;
 use raywright_base::math::{LANES, Ray, VectorLanes};
 use raywright_base::simd::loops;
 use raywright_optics::{Bsdf, Diffuse, Rgb};
-use raywright_scene::{Encounter, LightContextLanes, LightSampleContext, SurfaceInteraction, SurfaceInteractionLanes};
+use raywright_scene::{
+    Interaction, LightContextLanes, LightSampleContext, SurfaceInteraction, SurfaceInteractionLanes,
+};
 use std::borrow::Cow;
 
 loops! {
@@ -125,7 +127,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
             if N::SHARES {
                 path = self.visit(path, &here, block.hits[lane].primitive, samples.len());
             }
-            path.meet(here.bsdf().again());
+            path.meet(here.bsdf().repeat_correction());
             if self.guide.is_some() {
                 let sampler = &mut samples[Self::own(path.sample, samples.len())].sampler;
                 let number = || sampler.one(block.dimensions[lane].roulette());

@@ -22,7 +22,7 @@ pub(super) struct PathState {
     /// Whether each of few lights was asked where it was scattered last.
     pub(super) each: bool,
     /// Whether it has come to a surface that gives more than there is, in a channel.
-    pub(super) gilded: bool,
+    pub(super) has_gamut_excess: bool,
     /// Whether the hero of its wavelengths is all that it carries.
     pub(super) single: bool,
     /// How much denser directions were drawn than surfaces scatter into them, since the last matt one
@@ -41,7 +41,7 @@ impl PathState {
             sample,
             bounce: 0,
             each: false,
-            gilded: false,
+            has_gamut_excess: false,
             single: false,
             aimed: 1.0,
         }
@@ -56,14 +56,14 @@ impl PathState {
     }
 
     /// It comes to a surface that leaves so much of its light if it has been at such a surface before
-    /// ([`raywright_optics::Bsdf::again`]).
+    /// ([`raywright_optics::Bsdf::repeat_correction`]).
     #[inline]
     pub(super) fn meet(&mut self, again: Rgb) {
         if again != Rgb::ONE {
-            if self.gilded {
+            if self.has_gamut_excess {
                 self.throughput *= again;
             }
-            self.gilded = true;
+            self.has_gamut_excess = true;
         }
     }
 

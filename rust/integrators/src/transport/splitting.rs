@@ -4,7 +4,7 @@ use super::block::Block;
 use super::features::Features;
 use super::worker::TransportWorker;
 use raywright_optics::Bsdf;
-use raywright_scene::Encounter;
+use raywright_scene::Interaction;
 
 /// One of so many ways that a path goes on.
 #[derive(Clone, Copy)]

@@ -10,7 +10,7 @@ use crate::parting::Parting;
 use raywright_base::math::LANES;
 use raywright_optics::spectra::Waves;
 use raywright_optics::{BsdfSample, Dispersive, Rgb};
-use raywright_scene::{Gaze, SurfacePoint};
+use raywright_scene::{LookupContext, SurfacePoint};
 
 impl<N: Features> TransportWorker<'_, N> {
     /// Draws the wavelengths of samples, in a scene that needs them.
@@ -33,8 +33,8 @@ impl<N: Features> TransportWorker<'_, N> {
 
     /// How the path of a lane looks at a point.
     #[inline]
-    pub(super) fn gaze(&self, block: &Block, lane: usize) -> Gaze {
-        Gaze { width: block.width[lane], waves: self.waves(block.paths[lane].sample) }
+    pub(super) fn gaze(&self, block: &Block, lane: usize) -> LookupContext {
+        LookupContext { width: block.width[lane], waves: self.waves(block.paths[lane].sample) }
     }
 
     /// Says at which wavelengths light is asked for.

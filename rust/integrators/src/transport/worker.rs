@@ -21,7 +21,7 @@ use raywright_base::timing::{Part, timed};
 use raywright_base::workers::Cancel;
 use raywright_optics::spectra::Waves;
 use raywright_optics::{Bsdf, Rgb};
-use raywright_scene::{Encounter, Footprint, LightLanes, Plan, Scene, SurfaceInteraction};
+use raywright_scene::{Footprint, Interaction, LightLanes, Plan, Scene, SurfaceInteraction};
 use std::marker::PhantomData;
 
 /// What one thread works with, see [`Settings::begin`].

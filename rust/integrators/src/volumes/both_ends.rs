@@ -21,7 +21,9 @@ use raywright_base::math::{DVec3, Ray};
 use raywright_base::workers::Cancel;
 use raywright_optics::Rgb;
 use raywright_optics::spectra::Waves;
-use raywright_scene::{EmissionSample, Emitters, Encounter, Footprint, Gaze, LightSampleContext, SurfaceInteraction};
+use raywright_scene::{
+    EmissionSample, Emitters, Footprint, Interaction, LightSampleContext, LookupContext, SurfaceInteraction,
+};
 
 /// Per-thread state.
 pub(crate) struct BothEnds<'a> {
@@ -62,7 +64,7 @@ struct EyePath {
     going: Going,
     scale: f64,
     bounce: u32,
-    gilded: bool,
+    has_gamut_excess: bool,
     partial: Partial,
     /// Normal for light sampling at the last scattering event.
     normal: DVec3,
@@ -191,8 +193,17 @@ impl<'a> BothEnds<'a> {
         let partial = Partial::of_camera(self.paths, 0.0);
         let (normal, single) = (DVec3::ZERO, false);
         let footprint = self.job.footprint;
-        let mut path =
-            EyePath { going, scale: 1.0, bounce: 0, gilded: false, partial, normal, waves, single, footprint };
+        let mut path = EyePath {
+            going,
+            scale: 1.0,
+            bounce: 0,
+            has_gamut_excess: false,
+            partial,
+            normal,
+            waves,
+            single,
+            footprint,
+        };
         let mut light = Rgb::ZERO;
         let mut sample = Sample { hero, numbers: &mut numbers, cancel, lens, time };
         while self.advance(&mut path, &mut sample, &mut light) {}
@@ -230,7 +241,7 @@ impl<'a> BothEnds<'a> {
                 };
                 path.footprint = path.footprint.at(hit.t);
                 let width = if self.widths { path.footprint.width } else { 0.0 };
-                let gaze = Gaze { width, waves: path.waves };
+                let gaze = LookupContext { width, waves: path.waves };
                 let seen = (width > 0.0).then(|| {
                     let surface = *arrived.here.surface();
                     SurfaceInteraction::new(self.job.scene, &ray, &hit, surface, gaze, arrived.outside)
@@ -252,12 +263,12 @@ impl<'a> BothEnds<'a> {
         } else {
             path.partial.arrived(at.t, cosine)
         };
-        let again = at.again();
+        let again = at.repeat_correction();
         if again != Rgb::ONE {
-            if path.gilded {
+            if path.has_gamut_excess {
                 path.going.weights.carried *= again;
             }
-            path.gilded = true;
+            path.has_gamut_excess = true;
         }
         if let Some(emitters) = self.emitters.filter(|_| !at.is_single()) {
             *light += self.ask(emitters, &at, path, sample);
@@ -290,7 +301,7 @@ impl<'a> BothEnds<'a> {
     }
 
     /// Return the weighted emission of a surface that a path hits.
-    fn emitted(&self, arrived: &Arrived, path: &EyePath, gaze: Gaze) -> Rgb {
+    fn emitted(&self, arrived: &Arrived, path: &EyePath, gaze: LookupContext) -> Rgb {
         let (scene, Arrived { ray, hit, .. }) = (self.job.scene, arrived);
         let (geometry, surface) = (scene.geometry(), arrived.here.surface());
         let emission = scene.emission_at(surface);
@@ -363,7 +374,7 @@ impl<'a> BothEnds<'a> {
         }
         let met = there.met_from(-direction, distance);
         let mut arriving = path.throughput() * scattered * light.flux * met.sent / square;
-        if path.gilded {
+        if path.has_gamut_excess {
             arriving *= light.again;
         }
         if path.single && light.single {

@@ -12,14 +12,14 @@ use crate::transport::{power_heuristic, share};
 use raywright_base::math::Ray;
 use raywright_base::workers::Cancel;
 use raywright_optics::Rgb;
-use raywright_scene::{Encounter, LightSample, LightSampleContext};
+use raywright_scene::{Interaction, LightSample, LightSampleContext};
 
 impl<A: Asks> Walker<'_, A> {
     /// Sample a light at a vertex (next-event estimation) and return the light that arrives. `through` are the media of
     /// rays that leave to the other side, if any do. The sample is one of a number, stratified over the lights.
     pub(super) async fn direct_light(
         &self,
-        here: &impl Encounter,
+        here: &impl Interaction,
         path: &PathState,
         media: impl FnOnce(&LightSample) -> MediumStack<Filled>,
         (hero, draw): (usize, (u32, u32)),
@@ -40,7 +40,7 @@ impl<A: Asks> Walker<'_, A> {
     #[allow(clippy::too_many_arguments)]
     pub(super) async fn arriving(
         &self,
-        here: &impl Encounter,
+        here: &impl Interaction,
         path: &PathState,
         light: &LightSample,
         media: MediumStack<Filled>,

@@ -12,7 +12,7 @@ use raywright_base::math::{DVec3, Ray};
 use raywright_base::workers::Cancel;
 use raywright_optics::{Phase, Rgb};
 use raywright_scene::media::Coefficients;
-use raywright_scene::{Encounter, LightSampleContext};
+use raywright_scene::{Interaction, LightSampleContext};
 
 /// Equiangular sampling of a ray segment of unit direction: distances are uniform in the angle seen from a point (Kulla
 /// and Fajardo, "Importance Sampling Techniques for Path Tracing in Participating Media", 2012). The density is

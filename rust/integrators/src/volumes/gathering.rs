@@ -39,7 +39,7 @@ impl Arrival {
 impl<A> Walker<'_, A> {
     fn visit(&self, path: &PathState, number: u32, looks_about: bool) -> Visit {
         let bounces = self.settings.max_depth.map(|depth| depth.saturating_sub(path.bounce + 1));
-        Visit { number, looks_about, gilded: path.gilded, single: path.single, bounces }
+        Visit { number, looks_about, has_gamut_excess: path.has_gamut_excess, single: path.single, bounces }
     }
 
     /// Return the precomputed in-scattered radiance at a scattering event, for a sample index.

@@ -45,7 +45,7 @@ pub(crate) struct Drifting {
     pub time: f64,
     /// Number of scattering events.
     pub bounce: u32,
-    /// Remaining share as in [`crate::light_paths::Flying::again`].
+    /// Remaining share as in [`crate::light_paths::Flying::repeat_correction`].
     pub again: Rgb,
     /// True if the last bounce was specular or nearly so; and true if a medium scattered it.
     pub is_sharp: bool,
@@ -202,7 +202,7 @@ impl<'a> MediaLightWalk<'a> {
                     Vertex::of_surface(arrived, through, media)
                 }
             };
-            let again = at.again();
+            let again = at.repeat_correction();
             if again != Rgb::ONE {
                 path.going.weights.carried *= path.again;
                 path.again = again;

@@ -28,7 +28,7 @@ pub(super) struct PathState {
     /// Index of the branch among those of a split sample.
     pub branch: u32,
     /// True if a surface of the path has a reflectance above 1 in a channel.
-    pub gilded: bool,
+    pub has_gamut_excess: bool,
     /// Wavelengths, `None` for RGB; and true if only the hero is left.
     pub waves: Option<Waves>,
     pub single: bool,
@@ -61,7 +61,7 @@ impl PathState {
             scale: 1.0,
             bounce: 0,
             branch: 0,
-            gilded: false,
+            has_gamut_excess: false,
             waves,
             single: false,
             shares_waves: false,
@@ -129,13 +129,13 @@ impl PathState {
     }
 
     /// Apply the correction of a surface with reflectance above 1, if the path has met such a surface before
-    /// ([`raywright_optics::Bsdf::again`]).
+    /// ([`raywright_optics::Bsdf::repeat_correction`]).
     pub fn meet(&mut self, again: Rgb) {
         if again != Rgb::ONE {
-            if self.gilded {
+            if self.has_gamut_excess {
                 self.weights.carried *= again;
             }
-            self.gilded = true;
+            self.has_gamut_excess = true;
         }
     }
 }

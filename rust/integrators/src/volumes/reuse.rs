@@ -10,7 +10,7 @@ use raywright_base::workers::Cancel;
 use raywright_optics::{Bsdf, Phase, Rgb};
 use raywright_scene::lights::Place;
 use raywright_scene::media::Coefficients;
-use raywright_scene::{Encounter, RayOrigin, Scene, SurfaceInteraction};
+use raywright_scene::{Interaction, RayOrigin, Scene, SurfaceInteraction};
 use std::f64::consts::FRAC_1_PI;
 
 /// Return whether paths can be reused: some medium is homogeneous and scatters, and nothing moves. Scenes with point

@@ -2,7 +2,7 @@
 
 use raywright_base::math::DVec3;
 use raywright_optics::{BsdfSample, Phase, Rgb};
-use raywright_scene::{Encounter, LightSampleContext, RayOrigin};
+use raywright_scene::{Interaction, LightSampleContext, RayOrigin};
 
 /// A scattering event in a medium. The path weights already include the scattering coefficient.
 #[derive(Clone, Copy, Debug)]
@@ -13,7 +13,7 @@ pub(crate) struct Scattering {
     pub phase: Phase,
 }
 
-impl Encounter for Scattering {
+impl Interaction for Scattering {
     fn position(&self) -> DVec3 {
         self.position
     }

@@ -9,7 +9,7 @@ use super::walker::{ONCE, Walker};
 use raywright_base::math::DVec3;
 use raywright_base::workers::Cancel;
 use raywright_optics::{BsdfSample, Rgb};
-use raywright_scene::{Encounter, LightSampleContext, RayOrigin};
+use raywright_scene::{Interaction, LightSampleContext, RayOrigin};
 use std::f64::consts::FRAC_1_PI;
 
 /// A scattering point with an isotropic phase function. It gives incident light without a weight by direction.
@@ -20,7 +20,7 @@ impl AllWays {
     const PDF: f64 = 0.25 * FRAC_1_PI;
 }
 
-impl Encounter for AllWays {
+impl Interaction for AllWays {
     fn position(&self) -> DVec3 {
         self.0.position()
     }

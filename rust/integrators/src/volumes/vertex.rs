@@ -15,7 +15,7 @@ use raywright_base::math::{DVec3, Ray};
 use raywright_optics::spectra::Waves;
 use raywright_optics::{Bsdf, Rgb};
 use raywright_scene::media::Coefficients;
-use raywright_scene::{Encounter, LightSampleContext, RayOrigin, Scene, SurfaceInteraction};
+use raywright_scene::{Interaction, LightSampleContext, RayOrigin, Scene, SurfaceInteraction};
 
 /// A vertex of a path.
 #[derive(Clone)]
@@ -140,7 +140,7 @@ impl<'a> Vertex<'a> {
         }
     }
 
-    /// Evaluate as [`Encounter::evaluate`] does.
+    /// Evaluate as [`Interaction::evaluate`] does.
     pub fn evaluate(&self, direction: DVec3) -> (Rgb, f64) {
         match &self.point {
             Point::Surface { arrived, wide: None, .. } => arrived.here.evaluate(direction),
@@ -245,10 +245,10 @@ impl<'a> Vertex<'a> {
         }
     }
 
-    /// Return the remaining share of light that met a reflectance above 1 before ([`Bsdf::again`]).
-    pub fn again(&self) -> Rgb {
+    /// Return the remaining share of light that met a reflectance above 1 before ([`Bsdf::repeat_correction`]).
+    pub fn repeat_correction(&self) -> Rgb {
         match &self.point {
-            Point::Surface { arrived, .. } => arrived.here.bsdf().again(),
+            Point::Surface { arrived, .. } => arrived.here.bsdf().repeat_correction(),
             Point::Medium { .. } => Rgb::ONE,
         }
     }

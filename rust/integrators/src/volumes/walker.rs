@@ -19,7 +19,9 @@ use raywright_base::math::{DVec3, Hit, Ray};
 use raywright_base::workers::Cancel;
 use raywright_optics::spectra::Waves;
 use raywright_optics::{Bsdf, BsdfSample, Rgb};
-use raywright_scene::{Encounter, Footprint, Gaze, Light, LightSample, LightSampleContext, Scene, SurfaceInteraction};
+use raywright_scene::{
+    Footprint, Interaction, Light, LightSample, LightSampleContext, LookupContext, Scene, SurfaceInteraction,
+};
 use std::cell::{Cell, RefCell};
 
 /// Index and count of a single light sample.
@@ -128,8 +130,10 @@ impl<'a, A: Asks> Walker<'a, A> {
                     }
                     Place::Medium { here, collision, span } => {
                         path.come_to(collision.t, 0.0);
-                        let takes =
-                            self.settings.shares && parts.first.is_none() && !path.gilded && First::may_be(&here);
+                        let takes = self.settings.shares
+                            && parts.first.is_none()
+                            && !path.has_gamut_excess
+                            && First::may_be(&here);
                         if takes && collision.density.is_some() {
                             let is_limited = self.settings.max_depth.is_some();
                             parts.first = Some(First::new(&here, collision.here, &path, is_limited));
@@ -274,7 +278,7 @@ impl<'a, A: Asks> Walker<'a, A> {
         // Shared contributions are also used by paths of other widths.
         let is_wide = self.footprint.is_some() && shared.is_none() && !path.is_shared;
         let width = if is_wide { path.footprint.at(hit.t).width } else { 0.0 };
-        let gaze = Gaze { width, waves: path.waves };
+        let gaze = LookupContext { width, waves: path.waves };
         if !emission.is_dark() && !self.is_shining_known(path) {
             let sent = emission.sent(geometry, &ray, &hit, &surface, || gaze);
             let cosine = -ray.direction.dot(surface.normal);
@@ -292,7 +296,7 @@ impl<'a, A: Asks> Walker<'a, A> {
         if parting.is_some() && later.is_none() {
             path.end_all_but_hero();
         }
-        path.meet(here.bsdf().again());
+        path.meet(here.bsdf().repeat_correction());
         if let Some(shared) = shared
             && let Some(second) = Second::of_surface(&here, path, hit.t)
         {
@@ -404,7 +408,7 @@ impl<'a, A: Asks> Walker<'a, A> {
     pub(super) fn go_on(
         &self,
         path: &mut PathState,
-        here: &impl Encounter,
+        here: &impl Interaction,
         next: &BsdfSample,
         media: MediumStack<Filled>,
         chance: f64,

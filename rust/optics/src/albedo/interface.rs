@@ -16,12 +16,12 @@ pub struct Interface {
     alpha: Cubic,
     index: Cubic,
     /// Above and below the surface.
-    sides: [Side; 2],
+    sides: [InterfaceSide; 2],
 }
 
 /// Data of one side.
 #[derive(Clone, Copy, Debug)]
-struct Side {
+struct InterfaceSide {
     dense: bool,
     /// Cosine-weighted average of the loss.
     average: f64,
@@ -53,14 +53,18 @@ impl Interface {
         let side = |below: bool| {
             let (own, average) = (if below { 1.0 / eta } else { eta }, averages[usize::from(below)]);
             let through = 1.0 - fresnel::dielectric_average(own);
-            Side { dense: own < 1.0, average, crosses: if average > 0.0 { through * least / average } else { 0.0 } }
+            InterfaceSide {
+                dense: own < 1.0,
+                average,
+                crosses: if average > 0.0 { through * least / average } else { 0.0 },
+            }
         };
         let (alpha, index) = (Cubic::new(a, THIN[0]), Cubic::new(i, THIN[2]));
         Self { tables, rough, alpha, index, sides: [side(false), side(true)] }
     }
 
     #[inline]
-    fn side(&self, w: DVec3) -> &Side {
+    fn side(&self, w: DVec3) -> &InterfaceSide {
         &self.sides[usize::from(w.z < 0.0)]
     }
 

@@ -5,10 +5,10 @@ use glam::DVec3;
 
 /// Share of white light that does not leave after one reflection, for facets of given roughness.
 #[derive(Clone, Copy, Debug)]
-pub struct MirrorLoss(Kind);
+pub struct MirrorLoss(MirrorKind);
 
 #[derive(Clone, Copy, Debug)]
-enum Kind {
+enum MirrorKind {
     Alike(Alike),
     Brushed(Brushed),
 }
@@ -24,15 +24,19 @@ impl MirrorLoss {
     #[inline]
     pub(super) fn with(tables: &'static Tables, alpha: [f64; 2]) -> Self {
         let [a, b] = alpha;
-        Self(if a == b { Kind::Alike(Alike::new(tables, a)) } else { Kind::Brushed(Brushed::new(tables, alpha)) })
+        Self(if a == b {
+            MirrorKind::Alike(Alike::new(tables, a))
+        } else {
+            MirrorKind::Brushed(Brushed::new(tables, alpha))
+        })
     }
 
     /// Loss for direction `w`: 1 − ∫ D G₂ / (4 cos θ) dω.
     #[inline]
     pub fn of(&self, w: DVec3) -> f64 {
         match &self.0 {
-            Kind::Alike(alike) => alike.of(w.z.abs()),
-            Kind::Brushed(brushed) => brushed.of(w),
+            MirrorKind::Alike(alike) => alike.of(w.z.abs()),
+            MirrorKind::Brushed(brushed) => brushed.of(w),
         }
     }
 
@@ -40,8 +44,8 @@ impl MirrorLoss {
     #[inline]
     pub fn average(&self) -> f64 {
         match &self.0 {
-            Kind::Alike(alike) => alike.average(),
-            Kind::Brushed(brushed) => brushed.average(),
+            MirrorKind::Alike(alike) => alike.average(),
+            MirrorKind::Brushed(brushed) => brushed.average(),
         }
     }
 }

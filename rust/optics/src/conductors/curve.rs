@@ -14,17 +14,17 @@ use std::fmt;
 /// green is too low. That is right for one reflection, but its powers would grow without bound in a closed box,
 /// although gold reflects at most 96.2 % at any wavelength from 400 to 700 nm. So multiple scattering within a rough
 /// surface is summed by wavelength ([`Curve::seen`]), and paths that go from one such metal to another apply the factor
-/// [`Curve::again`].
+/// [`Curve::repeat_correction`].
 pub struct Curve {
     /// At equally spaced cosines of incidence from 0 to 1.
     values: Box<[Rgb; Self::STEPS + 1]>,
-    lines: Vec<Line>,
+    lines: Vec<CurveLine>,
     again: Rgb,
 }
 
 /// A representative wavelength.
 #[derive(Clone, Copy, Debug)]
-struct Line {
+struct CurveLine {
     weight: Rgb,
     eta: f64,
     k: f64,
@@ -51,7 +51,7 @@ impl Curve {
             if (400.0..=700.0).contains(&wavelength) {
                 brightest = brightest.max(at(1.0, eta, k));
             }
-            lines.push(Line { weight, eta, k, mean });
+            lines.push(CurveLine { weight, eta, k, mean });
         }
         let mut values = Box::new([Rgb::ZERO; Self::STEPS + 1]);
         for (i, value) in values.iter_mut().enumerate() {
@@ -85,7 +85,7 @@ impl Curve {
     /// The same in a medium of index `outside`; averages are accurate to 1e-3.
     pub fn seen_in(&self, outside: f64, of_mean: impl Fn(f64) -> f64) -> Rgb {
         let relative = |x: f64| Rgb::splat(x / outside);
-        let mean = |line: &Line| fresnel::ConductorIndex::new(relative(line.eta), relative(line.k)).average()[0];
+        let mean = |line: &CurveLine| fresnel::ConductorIndex::new(relative(line.eta), relative(line.k)).average()[0];
         self.lines.iter().map(|line| line.weight * of_mean(mean(line))).sum()
     }
 
@@ -93,7 +93,7 @@ impl Curve {
     /// exceeds 1. It limits the channel to the best reflected wavelength at normal incidence. The red of gold in gold
     /// is accurate to 3 % after two and after five reflections.
     #[inline]
-    pub fn again(&self) -> Rgb {
+    pub fn repeat_correction(&self) -> Rgb {
         self.again
     }
 }
@@ -111,9 +111,9 @@ fn at(cosine: f64, eta: f64, k: f64) -> f64 {
 }
 
 /// RGB reflectance in a medium of index `outside`.
-fn sum(lines: &[Line], cosine: f64, outside: f64) -> Rgb {
+fn sum(lines: &[CurveLine], cosine: f64, outside: f64) -> Rgb {
     let relative = 1.0 / outside;
-    let of = |line: &Line| line.weight * at(cosine, line.eta * relative, line.k * relative);
+    let of = |line: &CurveLine| line.weight * at(cosine, line.eta * relative, line.k * relative);
     lines.iter().map(of).sum()
 }
 
@@ -231,7 +231,7 @@ mod tests {
         }
         let mean = fresnel::ConductorIndex::new(Rgb::splat(0.2), Rgb::splat(3.9)).average();
         assert!((grey.seen(|mean| mean) - mean).abs().max() < 1e-3);
-        assert_eq!(grey.again(), Rgb::ONE);
+        assert_eq!(grey.repeat_correction(), Rgb::ONE);
     }
 
     #[test]
@@ -250,11 +250,11 @@ mod tests {
             let curve = metal.curve();
             let once = |mu: f64| curve.reflectance(mu);
             let most = (0..=100).map(|i| once(f64::from(i) / 100.0)).fold(Rgb::ZERO, Rgb::at_least);
-            assert!((most * curve.again()).max() <= 1.0 + 1e-12 && most.max() < 1.03, "{metal:?}");
+            assert!((most * curve.repeat_correction()).max() <= 1.0 + 1e-12 && most.max() < 1.03, "{metal:?}");
             // The darkest is carbon, which is not a metal.
             assert!((0..=100).all(|i| once(f64::from(i) / 100.0).min() > 0.1), "{metal:?}");
             // Only gold's red is outside the gamut.
-            assert_eq!(curve.again() == Rgb::ONE, metal.symbol != "Au", "{metal:?}");
+            assert_eq!(curve.repeat_correction() == Rgb::ONE, metal.symbol != "Au", "{metal:?}");
             // The sum of all interreflections between facets equals the geometric series per wavelength.
             for lost in [0.1, 0.5, 0.999] {
                 let all = curve.seen(|mean| (1.0 - lost) / (1.0 - lost * mean));
@@ -273,7 +273,7 @@ mod tests {
                 textbook(cosine, eta, k).powi(reflections)
             });
             let once = gold.curve().reflectance(cosine)[0];
-            let red = once * (once * gold.curve().again()[0]).powi(reflections - 1);
+            let red = once * (once * gold.curve().repeat_correction()[0]).powi(reflections - 1);
             assert!((red / truth[0] - 1.0).abs() < bound, "{reflections} {red} {truth}");
         }
     }

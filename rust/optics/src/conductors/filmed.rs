@@ -19,10 +19,10 @@ pub struct FilmedCurve {
 }
 
 /// A metal, and the bits of its film's index, the surrounding index and the thickness.
-type Key = (&'static str, [u64; 3]);
+type FilmKey = (&'static str, [u64; 3]);
 
 /// Cache of all curves computed so far. They are few and never freed, because BSDFs refer to them.
-static KNOWN: LazyLock<RwLock<HashMap<Key, &'static FilmedCurve>>> = LazyLock::new(RwLock::default);
+static KNOWN: LazyLock<RwLock<HashMap<FilmKey, &'static FilmedCurve>>> = LazyLock::new(RwLock::default);
 
 impl FilmedCurve {
     /// With this number of steps, cubic interpolation is within 5e-5 of the integral.
@@ -130,8 +130,8 @@ impl FilmedMetal {
         }
     }
 
-    /// See [`super::Curve::again`].
-    pub fn again(&self) -> Rgb {
+    /// See [`super::Curve::repeat_correction`].
+    pub fn repeat_correction(&self) -> Rgb {
         match self {
             Self::One(curve) => curve.again,
             Self::Between(curves, _) => curves.iter().fold(Rgb::ONE, |least, curve| least.at_most(curve.again)),
@@ -218,7 +218,10 @@ mod tests {
                 let filmed = FilmedMetal::One(FilmedCurve::of(metal(symbol).unwrap(), thickness, 1.5, 1.0));
                 for i in 0..=60 {
                     let once = filmed.reflectance(f64::from(i) / 60.0);
-                    assert!((once * filmed.again()).max() <= 1.0 + 1e-4 && once.min() >= 0.0, "{symbol} {thickness}");
+                    assert!(
+                        (once * filmed.repeat_correction()).max() <= 1.0 + 1e-4 && once.min() >= 0.0,
+                        "{symbol} {thickness}"
+                    );
                 }
             }
         }

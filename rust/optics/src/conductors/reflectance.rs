@@ -77,13 +77,13 @@ impl Reflectance {
         }
     }
 
-    /// See [`Curve::again`].
+    /// See [`Curve::repeat_correction`].
     #[inline]
-    pub fn again(&self) -> Rgb {
+    pub fn repeat_correction(&self) -> Rgb {
         match self {
             Self::Index(_) | Self::Filmed { .. } => Rgb::ONE,
-            Self::FilmedMetal(metal) => metal.again(),
-            Self::Metal(curve) | Self::Within(curve, _) => curve.again(),
+            Self::FilmedMetal(metal) => metal.repeat_correction(),
+            Self::Metal(curve) | Self::Within(curve, _) => curve.repeat_correction(),
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::{Facets, Ggx, Rgb, fresnel};
 use raywright_base::math::exponential::exp;
-use raywright_base::math::turn::sin_cos_turn;
+use raywright_base::math::trig::sin_cos_turn;
 use raywright_base::math::{DVec3, in_lanes};
 use std::f64::consts::PI;
 

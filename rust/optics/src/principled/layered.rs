@@ -6,7 +6,7 @@ use crate::albedo::MirrorLoss;
 use crate::bsdf_columns::LaneBsdf;
 use crate::conductor::{above, made_up};
 use crate::lobes::{Grazing, diffuse};
-use crate::looped::Looped;
+use crate::scalar_lanes::Looped;
 use crate::{Bsdf, BsdfSample, Dielectric, Facets, Ggx, Rgb, Tinted, fresnel};
 use raywright_base::math::DVec3;
 use std::f64::consts::FRAC_1_PI;
@@ -40,7 +40,7 @@ pub struct LayeredPrincipled {
 
 /// Precomputed data of a direction above.
 #[derive(Clone, Copy, Debug)]
-struct Known {
+struct LayerTerms {
     /// Loss of perfectly reflecting metal facets.
     lost: f64,
     /// Albedo of the dielectric facets over the base.
@@ -133,9 +133,9 @@ impl LayeredPrincipled {
     }
 
     #[inline(always)]
-    fn known(&self, w: DVec3) -> Known {
+    fn known(&self, w: DVec3) -> LayerTerms {
         let [metal, matt, _] = self.bodies();
-        Known {
+        LayerTerms {
             lost: if metal > 0.0 { MirrorLoss::new(self.facets).of(w) } else { 0.0 },
             reflected: if matt > 0.0 { self.dielectric().of(w.z) } else { Rgb::ZERO },
             coated: if self.coat > 0.0 { self.coat * self.gloss.albedo(w.z) } else { 0.0 },
@@ -144,7 +144,7 @@ impl LayeredPrincipled {
 
     /// Sampling probabilities for `wo`, above.
     #[inline(always)]
-    fn shares(&self, known: &Known, wo: DVec3) -> Shares {
+    fn shares(&self, known: &LayerTerms, wo: DVec3) -> Shares {
         let ([metal, matt, clear], color) = (self.bodies(), self.look.base_color.max());
         let [most, _] = self.coat_bounds();
         let opaque = metal + matt;
@@ -165,7 +165,7 @@ impl LayeredPrincipled {
 
     /// Value and density without the clear dielectric, between two directions above, with the cosine.
     #[inline(always)]
-    fn opaque(&self, shares: &Shares, [o, i]: [DVec3; 2], [of_o, of_i]: [&Known; 2]) -> (Rgb, f64) {
+    fn opaque(&self, shares: &Shares, [o, i]: [DVec3; 2], [of_o, of_i]: [&LayerTerms; 2]) -> (Rgb, f64) {
         let [metal, matt, _] = self.bodies();
         let (mut value, mut pdf) = (Rgb::ZERO, shares.matt * i.z * FRAC_1_PI);
         if metal > 0.0 {
@@ -199,7 +199,7 @@ impl LayeredPrincipled {
 
     /// Total value and density.
     #[inline(always)]
-    fn scattered(&self, wo: DVec3, wi: DVec3, known: &Known, shares: &Shares) -> (Rgb, f64) {
+    fn scattered(&self, wo: DVec3, wi: DVec3, known: &LayerTerms, shares: &Shares) -> (Rgb, f64) {
         let [metal, matt, clear] = self.bodies();
         let (mut value, mut pdf) = (Rgb::ZERO, 0.0);
         if metal + matt > 0.0 && wo.z * wi.z > 0.0 {

@@ -6,7 +6,7 @@ use crate::albedo::MirrorLoss;
 use crate::bsdf_columns::LaneBsdf;
 use crate::conductor::above;
 use crate::lobes::{Grazing, diffuse};
-use crate::looped::Looped;
+use crate::scalar_lanes::Looped;
 use crate::{Bsdf, BsdfSample, Facets, Ggx, Rgb, fresnel};
 use raywright_base::math::DVec3;
 use std::f64::consts::FRAC_1_PI;

@@ -1,6 +1,6 @@
 use super::super::AnyBsdf;
 use super::*;
-use raywright_base::math::turn::sin_cos_turn;
+use raywright_base::math::trig::sin_cos_turn;
 use raywright_base::sampling::Sampler;
 use std::f64::consts::PI;
 

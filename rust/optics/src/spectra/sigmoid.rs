@@ -118,19 +118,19 @@ fn sigmoid(x: f64) -> f64 {
 }
 
 /// Weights of wavelengths.
-type Seen = Vec<(f64, DVec3)>;
+type MatchedWavelengths = Vec<(f64, DVec3)>;
 
 /// At every fifth nm, which is accurate to a thousandth, and at every nm.
-static COARSE: LazyLock<Seen> = LazyLock::new(|| every(5));
-static FINE: LazyLock<Seen> = LazyLock::new(|| every(1));
+static COARSE: LazyLock<MatchedWavelengths> = LazyLock::new(|| every(5));
+static FINE: LazyLock<MatchedWavelengths> = LazyLock::new(|| every(1));
 
-fn every(step: u32) -> Seen {
+fn every(step: u32) -> MatchedWavelengths {
     let all = Response::new(Illuminant::Daylight, step);
     all.weights().map(|(wavelength, weight)| (wavelength, DVec3::from_array(weight.to_array()))).collect()
 }
 
 /// Colour of a polynomial's sigmoid, and its derivatives by the coefficients.
-fn seen(polynomial: DVec3, by: &Seen) -> (DVec3, DMat3) {
+fn seen(polynomial: DVec3, by: &MatchedWavelengths) -> (DVec3, DMat3) {
     let (mut colour, mut slopes) = (DVec3::ZERO, DMat3::ZERO);
     for &(wavelength, weight) in by {
         let t = (wavelength - FIRST) / (LAST - FIRST);
@@ -161,7 +161,7 @@ fn fit(colour: Rgb, near: Option<DVec3>) -> DVec3 {
 }
 
 /// Moves a polynomial towards a target colour, by damped Gauss-Newton steps (Levenberg 1944, Marquardt 1963).
-fn approach(mut polynomial: DVec3, target: DVec3, by: &Seen) -> DVec3 {
+fn approach(mut polynomial: DVec3, target: DVec3, by: &MatchedWavelengths) -> DVec3 {
     let mut damping = 1e-4;
     let (mut colour, mut slopes) = seen(polynomial, by);
     for _ in 0..40 {
@@ -199,12 +199,12 @@ fn approach(mut polynomial: DVec3, target: DVec3, by: &Seen) -> DVec3 {
 
 /// Polynomials of normalised colours: by the index of the greatest channel, its value, and the ratios of the next two
 /// channels to it.
-struct Table(Vec<DVec3>);
+struct SigmoidTable(Vec<DVec3>);
 
 const LEVELS: usize = 12;
 const SHARES: usize = 24;
 
-static TABLE: LazyLock<Table> = LazyLock::new(|| {
+static TABLE: LazyLock<SigmoidTable> = LazyLock::new(|| {
     let rows: Vec<_> =
         (0..3).flat_map(|k| (0..LEVELS).flat_map(move |l| (0..SHARES).map(move |j| [k, l, j]))).collect();
     let of_row = |&[greatest, level, second]: &[usize; 3]| {
@@ -222,10 +222,10 @@ static TABLE: LazyLock<Table> = LazyLock::new(|| {
         row.reverse();
         row
     };
-    Table(parallel::map(rows.len(), |i| of_row(&rows[i])).concat())
+    SigmoidTable(parallel::map(rows.len(), |i| of_row(&rows[i])).concat())
 });
 
-impl Table {
+impl SigmoidTable {
     fn at(&self, normal: &Normal) -> DVec3 {
         let most = normal.colour[normal.greatest];
         let place = |x: f64, count: usize| {

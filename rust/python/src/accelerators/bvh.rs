@@ -23,7 +23,7 @@ pub struct Bvh {
     intersection_cost: f32,
     budget: Option<f32>,
     radius: Option<usize>,
-    optimise: Option<Vec<String>>,
+    optimize: Option<Vec<String>>,
     traversal: String,
     orders: Option<u32>,
     bounds: String,
@@ -53,10 +53,10 @@ impl Bvh {
     /// Reads the build options of the tree.
     pub fn options(&self, quality: &str) -> PyResult<bvh::Options> {
         let quality = match quality {
-            "fast build" => Quality::FastBuild,
-            "balanced" => Quality::Balanced,
-            "fast rays" => Quality::FastRays,
-            other => return Err(unknown("quality", other, &["fast build", "balanced", "fast rays"])),
+            "low" => Quality::FastBuild,
+            "medium" => Quality::Balanced,
+            "high" => Quality::FastRays,
+            other => return Err(unknown("quality", other, &["low", "medium", "high"])),
         };
         Ok(bvh::Options {
             quality,
@@ -117,16 +117,16 @@ impl Bvh {
     }
 
     fn optimisers(&self) -> PyResult<Option<Optimisers>> {
-        let Some(names) = &self.optimise else { return Ok(None) };
+        let Some(names) = &self.optimize else { return Ok(None) };
         let optimiser = |name: &String| match name.as_str() {
             "reinsertion" => Ok(Optimiser::Reinsertion),
             "treelet" => Ok(Optimiser::Treelet),
-            other => Err(unknown("optimise", other, &["reinsertion", "treelet"])),
+            other => Err(unknown("optimize", other, &["reinsertion", "treelet"])),
         };
         let optimisers = names.iter().map(optimiser).collect::<PyResult<Vec<_>>>()?;
         match Optimisers::new(optimisers) {
             Some(optimisers) => Ok(Some(optimisers)),
-            None => Err(PyValueError::new_err(format!("optimise is {names:?}, expected each at most once"))),
+            None => Err(PyValueError::new_err(format!("optimize is {names:?}, expected each at most once"))),
         }
     }
 }

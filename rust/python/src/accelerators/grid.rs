@@ -14,7 +14,7 @@ enum Cells {
     Each([u32; 3]),
 }
 
-/// `raywright.Grid`.
+/// `raywright.accelerators.Grid`.
 #[derive(FromPyObject)]
 pub struct Grid {
     resolution: Option<Cells>,
@@ -22,7 +22,7 @@ pub struct Grid {
     mailbox: String,
 }
 
-/// `raywright.NestedGrid`.
+/// `raywright.accelerators.NestedGrid`.
 #[derive(FromPyObject)]
 pub struct NestedGrid {
     resolution: Option<Cells>,

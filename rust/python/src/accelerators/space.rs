@@ -9,7 +9,7 @@ use raywright::accel::walk::Mailbox;
 use raywright::accel::{bsp, kdtree, octree};
 use raywright::simd::Level;
 
-/// `raywright.KdTree`.
+/// `raywright.accelerators.KdTree`.
 #[derive(FromPyObject)]
 pub struct KdTree {
     builder: String,
@@ -21,14 +21,14 @@ pub struct KdTree {
     leaf_size: usize,
 }
 
-/// `raywright.Octree`.
+/// `raywright.accelerators.Octree`.
 #[derive(FromPyObject)]
 pub struct Octree {
     max_depth: usize,
     leaf_size: usize,
 }
 
-/// `raywright.BSP`.
+/// `raywright.accelerators.BSP`.
 #[derive(FromPyObject)]
 pub struct Bsp {
     candidates: usize,

@@ -1,7 +1,7 @@
 //! A picture in two halves of its samples, each in two quarters.
 
 use super::super::Film;
-use super::super::quarters::{Sums, counts};
+use super::super::sample_buckets::{Sums, counts};
 use raywright_optics::Rgb;
 
 /// A picture in two halves of its samples, each in two quarters; all four are independent.

@@ -6,15 +6,15 @@
 
 mod features;
 mod halves;
+mod mse_estimate;
 mod planes;
 mod regression;
 mod selection;
-mod settled;
 mod similarity;
 
 pub use features::FEATURES;
 pub use halves::Halves;
-pub use settled::{Denoised, settle};
+pub use mse_estimate::{Denoised, settle};
 
 use planes::Size;
 use raywright_base::workers::Cancel;

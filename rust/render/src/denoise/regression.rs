@@ -177,11 +177,11 @@ fn at(moments: &[f64; MOMENTS], features: &[f64; FEATURES]) -> Rgb {
     Rgb::new(of_channel(0), of_channel(1), of_channel(2))
 }
 
-type Matrix = [[f64; FEATURES]; FEATURES];
+type NormalMatrix = [[f64; FEATURES]; FEATURES];
 
 /// Cholesky decomposition: the lower triangular factor of a matrix, whose lower half is read; `None` if it is not
 /// positive definite.
-fn root(mut matrix: Matrix) -> Option<Matrix> {
+fn root(mut matrix: NormalMatrix) -> Option<NormalMatrix> {
     for i in 0..FEATURES {
         for j in 0..=i {
             let inner: f64 = (0..j).map(|k| matrix[i][k] * matrix[j][k]).sum();
@@ -200,7 +200,7 @@ fn root(mut matrix: Matrix) -> Option<Matrix> {
 }
 
 /// Forward substitution with a lower triangular matrix.
-fn forward(root: &Matrix, mut right: [f64; FEATURES]) -> [f64; FEATURES] {
+fn forward(root: &NormalMatrix, mut right: [f64; FEATURES]) -> [f64; FEATURES] {
     for i in 0..FEATURES {
         let inner: f64 = (0..i).map(|k| root[i][k] * right[k]).sum();
         right[i] = (right[i] - inner) / root[i][i];

@@ -27,14 +27,14 @@ impl Filter for Cropped {
 
 /// The part of a filter along one axis that lies within the film, for a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Part {
+struct CroppedAxis {
     /// Range of random numbers that sample it.
     ends: [f64; 2],
     /// Its integral.
     integral: f64,
 }
 
-impl Part {
+impl CroppedAxis {
     const WHOLE: Self = Self { ends: [0.0, 1.0], integral: 1.0 };
 
     /// Computes the part for a pixel whose center is at these distances from the ends of the film.
@@ -70,14 +70,14 @@ fn integral(filter: &dyn Filter, low: f64, high: f64) -> f64 {
 
 /// Cropping of a separable filter for every row and column of a film.
 #[derive(Debug)]
-pub struct Edges([Vec<Part>; 2]);
+pub struct Edges([Vec<CroppedAxis>; 2]);
 
 impl Edges {
     /// Computes the cropping for a film size; `None` if the edges have no effect.
     pub fn new(filter: &dyn Filter, size: [u32; 2]) -> Option<Self> {
         let part = |pixel: u32, size: u32| {
             let centre = f64::from(pixel) + 0.5;
-            Part::new(filter, [centre, f64::from(size) - centre])
+            CroppedAxis::new(filter, [centre, f64::from(size) - centre])
         };
         filter.is_cropped().then(|| Self(size.map(|size| (0..size).map(|pixel| part(pixel, size)).collect())))
     }
@@ -138,7 +138,7 @@ mod tests {
         assert_eq!(edges.on_film([4, 4], [0.3, 0.7]), ([0.3, 0.7], 1.0));
         assert_eq!(edges.share([4, 4]), 1.0);
         // Half a pixel and one and a half from the edge, by the Gaussian minus its value at its radius.
-        let part = |to: f64| Part::new(&filter, [to, 9.0]).integral;
+        let part = |to: f64| CroppedAxis::new(&filter, [to, 9.0]).integral;
         let bell = |x: f64| (-2.0 * x * x).exp() - (-8f64).exp();
         let at = |low: f64, i: i32| bell(low + (f64::from(i) + 0.5) * (2.0 - low) / 4e3);
         let sum = |low: f64| (0..4000).map(|i| at(low, i)).sum::<f64>() * (2.0 - low);

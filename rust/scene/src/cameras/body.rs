@@ -1,6 +1,6 @@
 //! The parts common to all cameras: picture size, viewpoint and shutter.
 
-use super::viewpoint::Way;
+use super::viewpoint::CameraMotion;
 use super::{CameraError, Viewpoint};
 
 /// Picture size, a viewpoint that may move, and a shutter.
@@ -9,7 +9,7 @@ pub struct Body {
     width: u32,
     height: u32,
     start: Viewpoint,
-    way: Option<Way>,
+    way: Option<CameraMotion>,
     open: f64,
     /// Exposure time.
     duration: f64,
@@ -40,7 +40,7 @@ impl Body {
 
     /// Sets the viewpoint at shutter close; the camera moves there from its first viewpoint.
     pub fn moved_to(self, end: Viewpoint) -> Self {
-        Self { way: (end != self.start).then(|| Way::new(self.start, end)), ..self }
+        Self { way: (end != self.start).then(|| CameraMotion::new(self.start, end)), ..self }
     }
 
     /// Number of columns.

@@ -2,10 +2,10 @@
 
 mod aperture;
 mod body;
+mod camera_lanes;
 mod connection;
 mod error;
 mod fisheye;
-mod lanes;
 mod orthographic;
 mod panorama;
 mod perspective;
@@ -15,10 +15,10 @@ mod window;
 
 pub use aperture::Aperture;
 pub use body::Body;
+pub use camera_lanes::CameraRayLanes;
 pub use connection::CameraConnection;
 pub use error::CameraError;
 pub use fisheye::{Fisheye, Mapping};
-pub use lanes::CameraRayLanes;
 pub use orthographic::Orthographic;
 pub use panorama::Panorama;
 pub use perspective::Perspective;

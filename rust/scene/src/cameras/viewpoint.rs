@@ -55,7 +55,7 @@ impl Viewpoint {
 /// A path between two viewpoints at constant speed: linear in position, and a rotation about one axis (slerp; Shoemake,
 /// "Animating Rotation with Quaternion Curves", 1985) by 180 degrees at most.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Way {
+pub(super) struct CameraMotion {
     start: Viewpoint,
     end: Viewpoint,
     axis: DVec3,
@@ -63,7 +63,7 @@ pub(super) struct Way {
     angle: f64,
 }
 
-impl Way {
+impl CameraMotion {
     pub fn new(start: Viewpoint, end: Viewpoint) -> Self {
         let [from, to] = [start, end].map(|v| DMat3::from_cols(v.right, v.up, -v.forward));
         let turn = DQuat::from_mat3(&(to * from.transpose()));
@@ -151,14 +151,14 @@ mod tests {
     fn a_quarter_turn_is_halfway_an_eighth() {
         let start = Viewpoint::towards(DVec3::ZERO, DVec3::NEG_Z, DVec3::Y).unwrap();
         let end = Viewpoint::towards(DVec3::new(2.0, 0.0, 0.0), DVec3::X, DVec3::Y).unwrap();
-        let way = Way::new(start, end);
+        let way = CameraMotion::new(start, end);
         let (sin, cos) = (0.25 * std::f64::consts::PI).sin_cos();
         let half = way.at(0.5);
         assert_eq!(half.position, DVec3::X);
         assert!(close(half.forward, DVec3::new(sin, 0.0, -cos)) && close(half.up, DVec3::Y));
         assert_eq!((way.at(0.0), way.at(1.0), way.at(f64::NAN)), (start, end, start));
         // Equal viewpoints: no rotation.
-        let still = Way::new(start, start);
+        let still = CameraMotion::new(start, start);
         assert_eq!(still.at(0.3), start);
     }
 
@@ -171,7 +171,7 @@ mod tests {
             let [a, up, b, other] = ways.map(DVec3::from_array);
             let Ok(start) = Viewpoint::towards(a, a, up) else { return Ok(()) };
             let Ok(end) = Viewpoint::towards(b, a + (b - a) * small, up + (other - up) * small) else { return Ok(()) };
-            let way = Way::new(start, end);
+            let way = CameraMotion::new(start, end);
             let here = way.at(time);
             prop_assert!(is_right_handed(&here));
             // The rotation from the start is that share of the whole, about the same axis: each camera axis keeps its

@@ -2,9 +2,9 @@
 
 mod facets;
 mod front;
+mod geometry_lanes;
 mod instance_ray;
 mod instances;
-mod lanes;
 mod motion;
 mod near;
 mod objects;

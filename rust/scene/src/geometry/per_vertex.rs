@@ -5,12 +5,12 @@
 pub(super) struct PerVertex<T> {
     values: Vec<T>,
     /// Ranges of vertices with values, in order; adjacent meshes with values share a range.
-    runs: Vec<Run>,
+    runs: Vec<VertexRun>,
 }
 
 /// A range of vertices that all have a value.
 #[derive(Clone, Copy, Debug)]
-struct Run {
+struct VertexRun {
     /// First vertex, and one past the last.
     vertices: [u32; 2],
     /// Number of vertices before the range that have no value.
@@ -31,7 +31,7 @@ impl<T: Copy> PerVertex<T> {
         let end = first + values.len() as u32;
         match self.runs.last_mut() {
             Some(run) if run.vertices[1] == first => run.vertices[1] = end,
-            _ => self.runs.push(Run { vertices: [first, end], without: first - self.values.len() as u32 }),
+            _ => self.runs.push(VertexRun { vertices: [first, end], without: first - self.values.len() as u32 }),
         }
         if self.values.is_empty() {
             self.values = values;
@@ -66,7 +66,7 @@ impl<T: Copy> PerVertex<T> {
 
     /// Memory in bytes.
     pub fn bytes(&self) -> usize {
-        self.values.capacity() * size_of::<T>() + self.runs.capacity() * size_of::<Run>()
+        self.values.capacity() * size_of::<T>() + self.runs.capacity() * size_of::<VertexRun>()
     }
 }
 
@@ -85,7 +85,7 @@ mod tests {
         all.extend(5, None);
         all.shrink_to_fit();
         assert_eq!((all.of([0, 1, 2]), all.of([3, 4, 3]), all.of([5; 3])), (None, Some([7, 8, 7]), None));
-        assert_eq!(all.bytes(), 2 + size_of::<Run>());
+        assert_eq!(all.bytes(), 2 + size_of::<VertexRun>());
     }
 
     proptest! {

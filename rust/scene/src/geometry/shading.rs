@@ -2,7 +2,7 @@
 
 use super::Geometry;
 use crate::textures::{Needs, TexturePoint};
-use crate::{Gaze, ShadingPoint, SurfacePoint};
+use crate::{LookupContext, ShadingPoint, SurfacePoint};
 use raywright_accel::Primitives;
 use raywright_base::math::{DVec3, Hit, Ray};
 use raywright_optics::Rgb;
@@ -93,9 +93,9 @@ impl ShadingPoint {
         hit: &Hit,
         point: SurfacePoint,
         needs: Needs,
-        gaze: impl Into<Gaze>,
+        gaze: impl Into<LookupContext>,
     ) -> Self {
-        let Gaze { width, waves } = gaze.into();
+        let LookupContext { width, waves } = gaze.into();
         let mut here = Self::plain(point);
         if needs.of_place() {
             here = geometry.shading_point(ray, hit, point, needs);

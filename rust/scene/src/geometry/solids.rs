@@ -35,7 +35,7 @@ pub struct Enclosing {
 pub struct Solids {
     /// The body of each face; [`NONE`] for ignored faces, [`OBJECT`] for other shapes.
     of: Vec<u32>,
-    bodies: Vec<Body>,
+    bodies: Vec<SolidBody>,
     groups: Vec<Group>,
     /// Shapes whose normals all point inwards and that are not cavities of others.
     inverted: Vec<u32>,
@@ -44,7 +44,7 @@ pub struct Solids {
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Body {
+struct SolidBody {
     group: u32,
     is_oriented: bool,
     /// 1, or −1 if normals point inwards.
@@ -74,7 +74,7 @@ impl Solids {
                 let primitives = geometry.primitives_of(shape);
                 solids.of[primitives.start as usize..primitives.end as usize].fill(0);
             }
-            solids.bodies.push(Body { group: 0, is_oriented: false, sign: 1 });
+            solids.bodies.push(SolidBody { group: 0, is_oriented: false, sign: 1 });
             solids.groups.push(Group { shape: None, volume: 0.0, is_oriented: false, is_cavity: false });
             solids.is_exact = false;
             return solids;
@@ -126,7 +126,7 @@ impl Solids {
         self.is_exact &= topology.is_exact;
         let (first, group) = (self.bodies.len() as u32, self.groups.len() as u32);
         let sign = |volume: f64| if volume < 0.0 { -1 } else { 1 };
-        self.bodies.extend(topology.bodies.iter().map(|body| Body {
+        self.bodies.extend(topology.bodies.iter().map(|body| SolidBody {
             group,
             is_oriented: body.is_oriented,
             sign: sign(body.volume),
@@ -241,8 +241,8 @@ impl Solids {
         let mut depth = 0;
         for group in wound.chunk_by(|a, b| a.0 == b.0) {
             let of_body = |body: &[(u64, u32, i32)]| match self.bodies.get(body[0].1 as usize) {
-                Some(Body { is_oriented: true, .. }) => body.iter().map(|(.., crossing)| crossing).sum(),
-                Some(Body { sign, .. }) => sign * (body.len() % 2) as i32,
+                Some(SolidBody { is_oriented: true, .. }) => body.iter().map(|(.., crossing)| crossing).sum(),
+                Some(SolidBody { sign, .. }) => sign * (body.len() % 2) as i32,
                 None => (body.len() % 2) as i32,
             };
             let number: i32 = group.chunk_by(|a, b| a.1 == b.1).map(of_body).sum();

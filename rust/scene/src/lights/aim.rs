@@ -1,6 +1,6 @@
 //! Guided emission: light paths aimed at spheres around specular objects.
 
-use raywright_base::math::turn::sin_cos_turn;
+use raywright_base::math::trig::sin_cos_turn;
 use raywright_base::math::{DVec3, Frame};
 use std::f64::consts::TAU;
 

@@ -57,7 +57,7 @@ struct Lamps {
 }
 
 /// A triangle as it is seen from a place, as [`super::SeenTriangle`] is, in f32.
-struct Seen {
+struct TriangleFromPoint {
     edges: [Vec3; 2],
     corner: Vec3,
     /// Along the normal, twice the area long.
@@ -70,7 +70,7 @@ struct Seen {
     is_near: u32,
 }
 
-impl Seen {
+impl TriangleFromPoint {
     /// See [`super::SeenTriangle`]. Of a solid angle this small, f32 has three digits.
     const THIN: f32 = 1e-4;
     const DISTANT: f32 = 2.0;
@@ -181,7 +181,7 @@ loops! {
         distance: &mut [f32; LANES],
     ) {
         for i in 0..LANES {
-            let seen = Seen::new(lamps.corner.get(i), [lamps.edges[0].get(i), lamps.edges[1].get(i)]);
+            let seen = TriangleFromPoint::new(lamps.corner.get(i), [lamps.edges[0].get(i), lamps.edges[1].get(i)]);
             let (towards, length, spread) = seen.sample([u[0][i], u[1][i]]);
             let spread = spread * lamps.rarity[i];
             let height = -lamps.corner.get(i).dot(seen.area);

@@ -5,7 +5,7 @@ use super::choice::{MOST, Strength};
 use super::light::strength;
 use crate::materials::Material;
 use crate::textures::Needs;
-use crate::{Gaze, Geometry, SurfacePoint};
+use crate::{Geometry, LookupContext, SurfacePoint};
 use raywright_base::math::{DVec3, Hit, Ray};
 use raywright_optics::Rgb;
 use raywright_shapes::{Point, Shape};
@@ -44,7 +44,7 @@ impl<'a> Luminous<'a> {
 
     /// Radiance back along a ray of unit direction: emission times opacity.
     #[inline]
-    pub fn sent<G: Into<Gaze>>(
+    pub fn sent<G: Into<LookupContext>>(
         &self,
         geometry: &Geometry,
         ray: &Ray,

@@ -8,12 +8,12 @@
 pub struct Pyramid {
     size: [usize; 2],
     /// From fine to coarse, the first over 2 × 2 cells.
-    levels: Vec<Level>,
+    levels: Vec<PyramidLevel>,
     total: f64,
 }
 
 #[derive(Clone, Debug)]
-struct Level {
+struct PyramidLevel {
     width: usize,
     sums: Vec<f64>,
 }
@@ -24,7 +24,7 @@ const BELOW_ONE: f64 = 1.0 - f64::EPSILON / 2.0;
 impl Pyramid {
     /// Builds a pyramid over a grid of columns and rows with finite, non-negative weights; `None` if all are 0.
     pub fn new(size: [usize; 2], weight: impl Fn(usize, usize) -> f64) -> Option<Self> {
-        let mut levels: Vec<Level> = Vec::new();
+        let mut levels: Vec<PyramidLevel> = Vec::new();
         let [mut width, mut height] = size;
         loop {
             let [wide, high] = [width.div_ceil(2), height.div_ceil(2)];
@@ -38,7 +38,7 @@ impl Pyramid {
                 finer(2 * i, 2 * j) + finer(2 * i + 1, 2 * j) + (finer(2 * i, 2 * j + 1) + finer(2 * i + 1, 2 * j + 1))
             };
             let sums = (0..high).flat_map(|j| (0..wide).map(move |i| (i, j))).map(|(i, j)| sum(i, j)).collect();
-            levels.push(Level { width: wide, sums });
+            levels.push(PyramidLevel { width: wide, sums });
             (width, height) = (wide, high);
             if width == 1 && height == 1 {
                 break;

@@ -4,7 +4,7 @@ use super::luminous::{along, fine_digits};
 use super::triangle::SeenTriangle;
 use super::{Emission, LightSample, LightSampleContext, Luminous};
 use crate::textures::{Needs, TexturePoint};
-use crate::{Gaze, Geometry, RayOrigin, ShadingPoint, SurfacePoint};
+use crate::{Geometry, LookupContext, RayOrigin, ShadingPoint, SurfacePoint};
 use raywright_accel::Primitives;
 use raywright_base::math::{DVec3, Hit, Ray};
 use raywright_optics::Rgb;
@@ -14,7 +14,7 @@ impl Emission {
     /// Radiance of a surface back along a ray of unit direction that hits it; `gaze` computes the lookup context if
     /// needed.
     #[inline]
-    pub fn sent<G: Into<Gaze>>(
+    pub fn sent<G: Into<LookupContext>>(
         &self,
         geometry: &Geometry,
         ray: &Ray,

@@ -2,7 +2,7 @@
 
 use raywright_base::math::DVec3;
 use raywright_base::math::robust::greater;
-use raywright_base::math::turn::{sin_cos, upper_angle};
+use raywright_base::math::trig::{sin_cos, upper_angle};
 use raywright_base::sampling::warp;
 
 /// A triangle seen from a position. A near triangle is sampled uniformly by solid angle, after Arvo ("Stratified

@@ -18,20 +18,20 @@ pub struct BsdfLanes<'a> {
     /// The BSDF of each lane, borrowed if it is constant over its surface.
     each: Vec<Cow<'a, BsdfMix>>,
     /// Mixture components, as many as any lane has had.
-    parts: Vec<Part>,
+    parts: Vec<WeightedLobe>,
     is_mixed: [bool; LANES],
 }
 
 /// One component of the mixtures, in every lane.
 #[derive(Clone, Debug)]
-struct Part {
+struct WeightedLobe {
     bsdf: AnyBsdfLanes,
     weight: RgbLanes,
     /// Sampling probability.
     probability: [f64; LANES],
 }
 
-impl Part {
+impl WeightedLobe {
     /// An empty component.
     const NONE: Self = Self { bsdf: AnyBsdfLanes::NONE, weight: RgbLanes::ZERO, probability: [0.0; LANES] };
 }
@@ -107,7 +107,7 @@ impl<'a> BsdfLanes<'a> {
     pub fn prepare(&mut self, wo: DVec3) {
         let lane = self.each.len() - 1;
         if self.parts.is_empty() {
-            self.parts.push(Part::NONE);
+            self.parts.push(WeightedLobe::NONE);
         }
         match &*self.each[lane] {
             BsdfMix::One(bsdf) => {
@@ -117,7 +117,7 @@ impl<'a> BsdfLanes<'a> {
             BsdfMix::Several(parts) => {
                 self.is_mixed[lane] = true;
                 if self.parts.len() < parts.len() {
-                    self.parts.resize(parts.len(), Part::NONE);
+                    self.parts.resize(parts.len(), WeightedLobe::NONE);
                 }
                 self.parts.iter_mut().for_each(|part| part.probability[lane] = 0.0);
                 for (part, (weight, probability, bsdf)) in self.parts.iter_mut().zip(weighed(parts)) {

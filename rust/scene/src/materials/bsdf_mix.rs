@@ -126,12 +126,12 @@ impl Bsdf for BsdfMix {
 
     /// For a mixture, 1 minus the weighted sum of the components' differences from 1.
     #[inline]
-    fn again(&self) -> Rgb {
+    fn repeat_correction(&self) -> Rgb {
         match self {
-            Self::One(bsdf) => bsdf.again(),
-            Self::Several(parts) => {
-                parts.iter().fold(Rgb::ONE, |again, (weight, bsdf)| again - *weight * (Rgb::ONE - bsdf.again()))
-            }
+            Self::One(bsdf) => bsdf.repeat_correction(),
+            Self::Several(parts) => parts
+                .iter()
+                .fold(Rgb::ONE, |again, (weight, bsdf)| again - *weight * (Rgb::ONE - bsdf.repeat_correction())),
         }
     }
 

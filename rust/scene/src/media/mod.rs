@@ -103,10 +103,10 @@ pub trait Medium: Debug + Send + Sync {
 
 /// Iterator over the segments of a ray through a medium.
 #[derive(Clone, Debug)]
-pub struct Stretches<'m>(Kind<'m>);
+pub struct Stretches<'m>(MediumKind<'m>);
 
 #[derive(Clone, Debug)]
-enum Kind<'m> {
+enum MediumKind<'m> {
     Whole(Option<Stretch>),
     Blocks(BlockWalk<'m>),
 }
@@ -114,12 +114,12 @@ enum Kind<'m> {
 impl<'m> Stretches<'m> {
     /// A single segment.
     pub fn whole(stretch: Stretch) -> Self {
-        Self(Kind::Whole(Some(stretch)))
+        Self(MediumKind::Whole(Some(stretch)))
     }
 
     /// The segments of a block traversal.
     fn blocks(walk: BlockWalk<'m>) -> Self {
-        Self(Kind::Blocks(walk))
+        Self(MediumKind::Blocks(walk))
     }
 }
 
@@ -129,8 +129,8 @@ impl Iterator for Stretches<'_> {
     #[inline]
     fn next(&mut self) -> Option<Stretch> {
         match &mut self.0 {
-            Kind::Whole(stretch) => stretch.take(),
-            Kind::Blocks(walk) => walk.next(),
+            MediumKind::Whole(stretch) => stretch.take(),
+            MediumKind::Blocks(walk) => walk.next(),
         }
     }
 }

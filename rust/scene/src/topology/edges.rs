@@ -8,7 +8,7 @@ pub struct Edges {
     /// Lower and higher corner number of each edge.
     pub ends: Vec<[u32; 2]>,
     /// Edges of each face: those of face `i` from `first[i]` to `first[i + 1]`.
-    sides: Vec<Along>,
+    sides: Vec<DirectedEdge>,
     first: Vec<u32>,
     /// Faces at each edge, stored alike, and the number of them that remain.
     faces: Vec<u32>,
@@ -19,7 +19,7 @@ pub struct Edges {
 
 /// An edge of a face; true if the face traverses it from the lower corner number to the higher.
 #[derive(Clone, Copy, Debug)]
-struct Along {
+struct DirectedEdge {
     edge: u32,
     is_forward: bool,
 }
@@ -52,11 +52,11 @@ impl Edges {
             first.push(end);
         }
         pieces.sort_unstable();
-        let mut sides = vec![Along { edge: 0, is_forward: false }; pieces.len()];
+        let mut sides = vec![DirectedEdge { edge: 0, is_forward: false }; pieces.len()];
         let (mut ends, mut first_at): (Vec<[u32; 2]>, _) = (Vec::new(), vec![0]);
         for same in pieces.chunk_by(|a, b| a.0 == b.0) {
             for &(_, side, _) in same {
-                sides[side as usize] = Along { edge: ends.len() as u32, is_forward: is_forward[side as usize] };
+                sides[side as usize] = DirectedEdge { edge: ends.len() as u32, is_forward: is_forward[side as usize] };
             }
             ends.push(same[0].0);
             first_at.push(first_at[first_at.len() - 1] + same.len() as u32);
@@ -93,7 +93,7 @@ impl Edges {
         self.along(face).iter().map(|side| side.edge)
     }
 
-    fn along(&self, face: u32) -> &[Along] {
+    fn along(&self, face: u32) -> &[DirectedEdge] {
         let [from, to] = [0, 1].map(|i| self.first[face as usize + i] as usize);
         &self.sides[from..to]
     }

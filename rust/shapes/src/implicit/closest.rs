@@ -24,26 +24,26 @@ const SMALL: f64 = 1.0 / (1u32 << 14) as f64;
 /// The smallest part on the sides of the box, where bisection alone finds the point.
 const LEAST: f64 = 1.0 / (1u64 << 44) as f64;
 
-struct Part {
+struct BoxPart {
     bounds: Bounds,
     gap: f64,
 }
 
-impl PartialEq for Part {
+impl PartialEq for BoxPart {
     fn eq(&self, other: &Self) -> bool {
         self.cmp(other) == Ordering::Equal
     }
 }
 
-impl Eq for Part {}
+impl Eq for BoxPart {}
 
-impl PartialOrd for Part {
+impl PartialOrd for BoxPart {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl Ord for Part {
+impl Ord for BoxPart {
     /// The nearest is the greatest, and the smallest among equals.
     fn cmp(&self, other: &Self) -> Ordering {
         let size = |part: &Self| (part.bounds.max - part.bounds.min).element_sum();
@@ -68,7 +68,7 @@ pub(super) fn closest(shape: &Implicit, map: &Affine, place: DVec3) -> Option<DV
     let mut search = Search { shape, map, place, columns, best: None };
     let whole = shape.bounds;
     let size = whole.max - whole.min;
-    let mut parts = BinaryHeap::from([Part { bounds: whole, gap: gap_under(Some(map), &whole, place) }]);
+    let mut parts = BinaryHeap::from([BoxPart { bounds: whole, gap: gap_under(Some(map), &whole, place) }]);
     for work in 0..WORK {
         let Some(part) = parts.pop() else { break };
         if search.best.is_some_and(|(distance, _)| part.gap >= distance) {
@@ -105,7 +105,7 @@ pub(super) fn closest(shape: &Implicit, map: &Affine, place: DVec3) -> Option<DV
         for bounds in [low, high] {
             let gap = gap_under(Some(map), &bounds, place).max(part.gap);
             if search.best.is_none_or(|(distance, _)| gap < distance) {
-                parts.push(Part { bounds, gap });
+                parts.push(BoxPart { bounds, gap });
             }
         }
     }

@@ -72,7 +72,7 @@ struct Zone {
     place: f64,
 }
 
-struct Search<'a, F> {
+struct RootSearch<'a, F> {
     function: &'a mut F,
     /// Shorter intervals are not bisected.
     shortest: f64,
@@ -94,7 +94,7 @@ pub fn roots<F: Function>(
     shortest: f64,
     met: &mut dyn FnMut(Root) -> bool,
 ) -> bool {
-    let mut search = Search { function, shortest, met, last: None, zone: None, stopped: false };
+    let mut search = RootSearch { function, shortest, met, last: None, zone: None, stopped: false };
     let ends = [span.low, span.high].map(|s| (s, search.function.at(s)));
     let mut stack = vec![ends];
     let mut work = 0;
@@ -119,7 +119,7 @@ pub fn roots<F: Function>(
     search.stopped
 }
 
-impl<F: Function> Search<'_, F> {
+impl<F: Function> RootSearch<'_, F> {
     /// Report the roots of an interval unless it needs bisection; return whether it is done.
     fn settle(&mut self, (a, at_a): (f64, Interval), (b, at_b): (f64, Interval), must: bool) -> bool {
         let (sign_a, sign_b) = (Sign::of(at_a), Sign::of(at_b));

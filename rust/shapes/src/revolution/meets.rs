@@ -37,7 +37,7 @@ impl Revolution {
         {
             return Some(Meets::new(self.capped));
         }
-        let mut side = Side::of(a_sign, &b, || discriminant.sign())?;
+        let mut side = EndSide::of(a_sign, &b, || discriminant.sign())?;
         let mut caps = [false; 2];
         if climbs != Ordering::Equal {
             for (i, p) in planes.iter().enumerate() {
@@ -70,8 +70,8 @@ impl Revolution {
             None => meet(root.clone(), a.clone(), SIDE, SIDE, contact),
         };
         match side {
-            Side::None => {}
-            Side::Two { keep, on_plane } => {
+            EndSide::None => {}
+            EndSide::Two { keep, on_plane } => {
                 if keep.contains(&true) {
                     let both = roots(&a, &b, &c, &discriminant)?;
                     for i in 0..2 {
@@ -81,7 +81,7 @@ impl Revolution {
                     }
                 }
             }
-            Side::One { keep, on_plane, double } => {
+            EndSide::One { keep, on_plane, double } => {
                 if keep {
                     let slope = if double { N::of(0.0) } else { b.plus(&b) };
                     let t = if double { b.over(&a).negated() } else { c.over(&slope).negated() };
@@ -194,7 +194,7 @@ impl Revolution {
 }
 
 /// The intersections with the infinite side surface, and whether they lie between the planes.
-enum Side {
+enum EndSide {
     None,
     /// The only root; double if the line is tangent or passes through the apex.
     One {
@@ -209,7 +209,7 @@ enum Side {
     },
 }
 
-impl Side {
+impl EndSide {
     fn of<N: Number>(a: Ordering, b: &N, discriminant: impl FnOnce() -> Option<Ordering>) -> Option<Self> {
         if a == Ordering::Equal {
             // Without a linear term the line is either contained in the surface, and so edge-on, or misses it.

@@ -1,8 +1,8 @@
 //! The `Shape` and `Solid` implementations of surfaces of revolution.
 
 use super::{BASE, Profile, Revolution, SIDE, TIP};
-use crate::around::Around;
 use crate::closest::of_segment;
+use crate::closest_on_revolution::Around;
 use crate::line::Line;
 use crate::meeting::tell;
 use crate::solid::{Meets, Solid};

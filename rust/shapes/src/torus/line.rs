@@ -46,7 +46,7 @@ fn dot(a: &[DoubleDouble; 3], b: &[DoubleDouble; 3]) -> DoubleDouble {
 }
 
 /// A line relative to a torus; `s` is 0 at the point nearest to the centre.
-struct Line<'a> {
+struct TorusLine<'a> {
     tube: &'a Tube,
     /// The parts of nearest point and direction across the axis.
     across: [[DoubleDouble; 3]; 2],
@@ -64,7 +64,7 @@ struct Line<'a> {
     start: DoubleDouble,
 }
 
-impl<'a> Line<'a> {
+impl<'a> TorusLine<'a> {
     /// Set up a line from an origin relative to the centre and a direction whose largest coordinate is in [1, 2). None
     /// if the line misses the bounding sphere.
     fn new(tube: &'a Tube, q: [DoubleDouble; 3], d: DVec3) -> Option<Self> {
@@ -253,7 +253,7 @@ fn root(
 ///
 /// `q` is the line's origin relative to the centre and `direction` has its largest coordinate in [1, 2).
 pub fn meet(tube: &Tube, q: [DoubleDouble; 3], direction: DVec3, met: &mut dyn FnMut(Meeting) -> bool) -> bool {
-    let Some(line) = Line::new(tube, q, direction) else { return false };
+    let Some(line) = TorusLine::new(tube, q, direction) else { return false };
     let (critical, count) = line.critical();
     let end = DoubleDouble::from(line.reach);
     let (mut before, mut outside) = (-end, true);

@@ -4,7 +4,7 @@ mod line;
 #[cfg(test)]
 mod tests;
 
-use super::around::Around;
+use super::closest_on_revolution::Around;
 use super::{Bounds, Candidate, Closest, Drawn, Point, Shape};
 use line::Tube;
 use raywright_base::math::robust::{UNIT, normalising_scale};

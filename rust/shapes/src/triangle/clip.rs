@@ -31,7 +31,7 @@ pub fn clipped(corners: [DVec3; 3], to: &Aabb) -> Aabb {
         if least.cmpgt(max).any() || greatest.cmplt(min).any() {
             return Aabb::EMPTY;
         }
-        let mut outlines = [Outline { corners: [DVec3::ZERO; MOST], count: 3 }; 2];
+        let mut outlines = [ClippedPolygon { corners: [DVec3::ZERO; MOST], count: 3 }; 2];
         outlines[0].corners[..3].copy_from_slice(&corners);
         let [mut from, mut to] = outlines.each_mut();
         for axis in 0..3 {
@@ -72,12 +72,12 @@ fn extremes(points: &[DVec3]) -> [DVec3; 2] {
 
 /// The corners of a clipped triangle, in order.
 #[derive(Clone, Copy)]
-struct Outline {
+struct ClippedPolygon {
     corners: [DVec3; MOST],
     count: usize,
 }
 
-impl Outline {
+impl ClippedPolygon {
     fn corners(&self) -> &[DVec3] {
         &self.corners[..self.count]
     }

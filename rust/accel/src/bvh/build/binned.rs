@@ -4,7 +4,7 @@
 //! collapse, where the costs of triangle blocks and wide nodes are known.
 
 use super::bins::{Bins, Split};
-use super::part::Part;
+use super::part::Subtree;
 use super::reference::{Bounds, Extents, MANY, Reference, median, partition, references};
 use super::top_down::{Due, TASK};
 use super::{BinaryBvh, Leaves, Node, spare};
@@ -66,7 +66,7 @@ pub struct Task {
 
 impl Task {
     /// Build a subtree.
-    pub fn build(self, references: &mut [Reference], extents: Extents, due: Due) -> Result<Part, Stopped> {
+    pub fn build(self, references: &mut [Reference], extents: Extents, due: Due) -> Result<Subtree, Stopped> {
         if references.len() <= TASK {
             let part = self.build_alone(references, extents);
             due.tell()?;
@@ -91,13 +91,13 @@ impl Task {
             || left_task.build(left, Extents::around_many(left), of_left),
             || right_task.build(right, Extents::around_many(right), of_right),
         );
-        Ok(Part::pair(extents.all.aabb(), left?, right?))
+        Ok(Subtree::pair(extents.all.aabb(), left?, right?))
     }
 
     /// Build a subtree on this thread.
-    pub fn build_alone(self, references: &mut [Reference], extents: Extents) -> Part {
+    pub fn build_alone(self, references: &mut [Reference], extents: Extents) -> Subtree {
         /// A pending node.
-        struct Open {
+        struct PendingNode {
             /// Its index below the root; None for the root.
             node: Option<usize>,
             start: usize,
@@ -109,8 +109,8 @@ impl Task {
         let (mut root, mut below) = (nothing, Vec::with_capacity(references.len()));
         let first = self.first.unwrap_or(0);
         let mut bins = Bins::new();
-        let mut open = vec![Open { node: None, start: 0, end: references.len(), extents, spare: self.spare }];
-        while let Some(Open { node, start, end, extents, spare }) = open.pop() {
+        let mut open = vec![PendingNode { node: None, start: 0, end: references.len(), extents, spare: self.spare }];
+        while let Some(PendingNode { node, start, end, extents, spare }) = open.pop() {
             let own = &mut references[start..end];
             let aabb = extents.all.aabb();
             let split = self.split(own, &extents, spare, &mut bins);
@@ -124,12 +124,12 @@ impl Task {
             let (middle, spare) = (start + middle, spare.saturating_sub(1));
             below.extend([nothing; 2]);
             // The stack is popped from the end, so the left subtree comes first.
-            open.push(Open { node: Some(child + 1), start: middle, end, extents: right, spare });
-            open.push(Open { node: Some(child), start, end: middle, extents: left, spare });
+            open.push(PendingNode { node: Some(child + 1), start: middle, end, extents: right, spare });
+            open.push(PendingNode { node: Some(child), start, end: middle, extents: left, spare });
         }
         let order =
             if self.first.is_none() { references.iter().map(Reference::primitive).collect() } else { Vec::new() };
-        Part::Whole { root, below, order }
+        Subtree::Whole { root, below, order }
     }
 
     /// Split references unless they become a leaf; return the number on the left and the extents of both sides.

@@ -15,7 +15,7 @@ pub fn parts(
     border: impl Fn(usize) -> f32,
     mut give: impl FnMut(usize, &Bounds),
 ) {
-    let edges = Edges::new(corners, axis);
+    let edges = ChopEdges::new(corners, axis);
     let (first, last) = (*bins.start(), *bins.end());
     let (from, to) = (of.least().as_ref()[axis], of.greatest().as_ref()[axis]);
     // The first part begins at the reference's own border.
@@ -38,13 +38,13 @@ pub fn parts(
 }
 
 /// A triangle's corners, sorted along an axis.
-struct Edges {
+struct ChopEdges {
     corners: [Vec4; 3],
     at: [f32; 3],
     axis: usize,
 }
 
-impl Edges {
+impl ChopEdges {
     #[inline(always)]
     fn new(corners: &[Vec4; 3], axis: usize) -> Self {
         let at = |corner: &Vec4| corner.as_ref()[axis];

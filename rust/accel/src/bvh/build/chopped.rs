@@ -28,7 +28,7 @@ const LENGTH: f32 = 0.5;
 
 /// Equal bins along the three axes.
 #[derive(Clone, Copy)]
-struct Grid {
+struct ChopGrid {
     origin: Vec4,
     width: Vec4,
     /// The inverse bin width; 0 along axes that are not tried.
@@ -37,7 +37,7 @@ struct Grid {
     last: Vec4,
 }
 
-impl Grid {
+impl ChopGrid {
     fn new(around: &Bounds, bins: usize) -> Self {
         let width = around.size() / bins as f32;
         let scale = width.recip();
@@ -91,7 +91,7 @@ impl Chopped {
         Self { bounds: Box::new([[Bounds::EMPTY; MAX_BINS]; 3]), begin: none, end: none }
     }
 
-    fn add(&mut self, references: &[Reference], grid: &Grid, shapes: &impl Shapes) {
+    fn add(&mut self, references: &[Reference], grid: &ChopGrid, shapes: &impl Shapes) {
         let (mut axes, mut count) = ([0; 3], 0);
         for axis in grid.axes() {
             axes[count] = axis;
@@ -108,7 +108,7 @@ impl Chopped {
     }
 
     #[inline(always)]
-    fn add_one(&mut self, r: &Reference, grid: &Grid, axes: &[usize], shapes: &impl Shapes) {
+    fn add_one(&mut self, r: &Reference, grid: &ChopGrid, axes: &[usize], shapes: &impl Shapes) {
         let [first, last] = grid.places(r);
         let mut corners = None;
         for &axis in axes {
@@ -151,7 +151,7 @@ impl Chopped {
     }
 
     /// The cheapest plane along an axis.
-    fn best(&self, grid: &Grid, axis: usize, bins: usize, count: usize, budget: usize) -> Option<Plane> {
+    fn best(&self, grid: &ChopGrid, axis: usize, bins: usize, count: usize, budget: usize) -> Option<Plane> {
         let mut after = [(Bounds::EMPTY, 0usize); MAX_BINS];
         let mut right = (Bounds::EMPTY, 0);
         for bin in (1..bins).rev() {
@@ -179,7 +179,7 @@ impl Chopped {
 /// A plane between two bins.
 #[derive(Clone, Copy)]
 pub struct Plane {
-    grid: Grid,
+    grid: ChopGrid,
     axis: usize,
     /// The last bin on the left.
     last: usize,
@@ -200,7 +200,7 @@ impl Plane {
     ) -> Option<Self> {
         // Half as many bins as for object splits, and fewer for small sets: such planes are hardly worse.
         let bins = bins.div_ceil(2).min(references.len() / 256).max(bins.div_ceil(4)).max(4);
-        let grid = Grid::new(around, bins);
+        let grid = ChopGrid::new(around, bins);
         let fill = |share: Range<usize>| {
             let mut filled = Chopped::new();
             if !work.is_stopped() {

@@ -7,7 +7,7 @@ use raywright_base::parallel;
 use raywright_base::work::{Stopped, Work};
 
 /// A part of a tree.
-pub enum Part {
+pub enum Subtree {
     /// A subtree: its root and the nodes below it, whose indices start at 0 for the first of them.
     Whole {
         /// The root.
@@ -25,14 +25,14 @@ pub enum Part {
 pub struct Pair {
     /// Their bounding box.
     aabb: Aabb,
-    parts: [Part; 2],
+    parts: [Subtree; 2],
     /// The number of nodes in both.
     nodes: usize,
     /// The number of listed primitives in both.
     listed: usize,
 }
 
-impl Part {
+impl Subtree {
     /// A leaf that lists its primitives.
     pub fn leaf(aabb: Aabb, references: &[Reference]) -> Self {
         let order: Vec<_> = references.iter().map(Reference::primitive).collect();
@@ -69,16 +69,16 @@ impl Part {
         let (root, below) = nodes.split_at_mut(1);
         if self.listed() > 0 {
             order = vec![0; self.listed()];
-            self.place(&mut root[0], Target { base: 1, below, first: 0, order: &mut order });
+            self.place(&mut root[0], PartTarget { base: 1, below, first: 0, order: &mut order });
         } else {
-            self.place(&mut root[0], Target { base: 1, below, first: 0, order: &mut [] });
+            self.place(&mut root[0], PartTarget { base: 1, below, first: 0, order: &mut [] });
         }
         place.done();
         Ok(BinaryBvh { nodes, order })
     }
 
     /// Write its root and the nodes below.
-    fn place(self, node: &mut Node, to: Target) {
+    fn place(self, node: &mut Node, to: PartTarget) {
         match self {
             Self::Whole { root, below, order } => {
                 let moved =
@@ -91,19 +91,19 @@ impl Part {
             }
             Self::Pair(pair) => {
                 let Pair { aabb, parts: [left, right], .. } = *pair;
-                let Target { base, below, first, order } = to;
+                let PartTarget { base, below, first, order } = to;
                 *node = Node::inner(aabb, base as u32);
                 let (children, below) = below.split_at_mut(2);
                 let [left_node, right_node] = children else { unreachable!("split_at_mut(2) gives two") };
                 let (left_below, right_below) = below.split_at_mut(left.below());
                 let (left_order, right_order) = order.split_at_mut(left.listed());
-                let right_to = Target {
+                let right_to = PartTarget {
                     base: base + 2 + left_below.len(),
                     below: right_below,
                     first: first + left_order.len(),
                     order: right_order,
                 };
-                let left_to = Target { base: base + 2, below: left_below, first, order: left_order };
+                let left_to = PartTarget { base: base + 2, below: left_below, first, order: left_order };
                 parallel::join(|| left.place(left_node, left_to), || right.place(right_node, right_to));
             }
         }
@@ -111,7 +111,7 @@ impl Part {
 }
 
 /// The destination of a part.
-struct Target<'a> {
+struct PartTarget<'a> {
     /// The index of the first node below its root.
     base: usize,
     below: &'a mut [Node],

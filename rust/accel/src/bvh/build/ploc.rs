@@ -78,7 +78,7 @@ struct Cluster {
 }
 
 /// A merged pair: the links of both, and the number of primitives in the first.
-struct Pair {
+struct ClusterPair {
     links: [u32; 2],
     first: u32,
 }
@@ -135,7 +135,7 @@ fn beside(count: usize) -> Vec<u32> {
 }
 
 /// The clusters after merging mutual nearest neighbours, each at the position of its first member.
-fn merged(clusters: &[Cluster], sought: &[u32], leaves: usize, pairs: &mut Vec<Pair>) -> Vec<Cluster> {
+fn merged(clusters: &[Cluster], sought: &[u32], leaves: usize, pairs: &mut Vec<ClusterPair>) -> Vec<Cluster> {
     let agree = |place: usize| sought[sought[place] as usize] as usize == place && sought[place] as usize != place;
     let is_first = |place: &usize| agree(*place) && *place < sought[*place] as usize;
     let made = parallel::map_chunks(clusters.len(), SHARE, |share| share.filter(is_first).count());
@@ -158,7 +158,7 @@ fn merged(clusters: &[Cluster], sought: &[u32], leaves: usize, pairs: &mut Vec<P
                     link: (before[share] + new.len()) as u32,
                     count: cluster.count + other.count,
                 });
-                new.push(Pair { links: [cluster.link, other.link], first: cluster.count });
+                new.push(ClusterPair { links: [cluster.link, other.link], first: cluster.count });
             }
         }
         (left, new)
@@ -177,7 +177,7 @@ fn merged(clusters: &[Cluster], sought: &[u32], leaves: usize, pairs: &mut Vec<P
 struct Merged<'a> {
     link: u32,
     leaves: &'a [Reference],
-    pairs: &'a [Pair],
+    pairs: &'a [ClusterPair],
 }
 
 impl Subtree for Merged<'_> {
@@ -185,7 +185,7 @@ impl Subtree for Merged<'_> {
         match self.leaves.get(self.link as usize) {
             Some(leaf) => Opened::Leaf(leaf.bounds.aabb(), leaf.primitive()),
             None => {
-                let Pair { links: [left, right], first } = self.pairs[self.link as usize - self.leaves.len()];
+                let ClusterPair { links: [left, right], first } = self.pairs[self.link as usize - self.leaves.len()];
                 Opened::Pair(Self { link: left, ..self }, Self { link: right, ..self }, first as usize)
             }
         }

@@ -60,7 +60,7 @@ impl Remedy {
         let coarse = (total.count as f32 * 1e-3).clamp(LEAST, COARSE);
         let least = coarse * total.around.half_area() / total.count as f32;
         let many = (MANY.min(options.budget) * total.count as f32) as usize;
-        let made = Made::of(boxes, shapes, least, many);
+        let made = SplitPieces::of(boxes, shapes, least, many);
         if many > 0 && made.cuts == many {
             Self::Pieces
         } else if made.saved > f64::from(options.worthwhile) * total.area {
@@ -99,7 +99,7 @@ impl Pieces {
             return None;
         }
         let budget = ((f64::from(budget) * total.count as f64) as usize).min(MOST.saturating_sub(total.count));
-        let made = Made::of(boxes, shapes, least, budget);
+        let made = SplitPieces::of(boxes, shapes, least, budget);
         if made.saved <= wanted {
             return None;
         }
@@ -235,7 +235,7 @@ fn long(boxes: &[Aabb], least: f32) -> impl Iterator<Item = (u32, &Aabb)> {
 
 /// The result of splitting.
 #[derive(Default)]
-struct Made {
+struct SplitPieces {
     /// All candidate pieces with their primitives.
     pieces: Vec<(u32, Aabb)>,
     /// The number of splits.
@@ -244,7 +244,7 @@ struct Made {
     saved: f64,
 }
 
-impl Made {
+impl SplitPieces {
     /// Make splits above a minimum gain, up to a maximum number.
     fn of(boxes: &[Aabb], shapes: &impl Shapes, least: f32, budget: usize) -> Self {
         let mut made = Self::default();

@@ -29,13 +29,13 @@ pub fn write(root: impl Subtree, count: usize, work: Work) -> Result<BinaryBvh, 
     let mut nodes = make.collect(2 * count - 1, |_| Node::leaf(Aabb::EMPTY, 0, 0))?;
     let (mut order, steps) = (vec![0; count], fill.steps(count));
     let (top, below) = nodes.split_at_mut(1);
-    subtree(root, &mut top[0], Target { base: 1, below, first: 0, order: &mut order }, &steps)?;
+    subtree(root, &mut top[0], SliceTarget { base: 1, below, first: 0, order: &mut order }, &steps)?;
     fill.done();
     Ok(BinaryBvh { nodes, order })
 }
 
 /// The destination of a subtree.
-struct Target<'a> {
+struct SliceTarget<'a> {
     /// The index of the first node below its root.
     base: usize,
     below: &'a mut [Node],
@@ -45,8 +45,8 @@ struct Target<'a> {
 }
 
 /// Write a subtree: its root, the nodes below, and its primitives.
-fn subtree(tree: impl Subtree, root: &mut Node, to: Target, steps: &Steps) -> Result<(), Stopped> {
-    let Target { base, below, first, order } = to;
+fn subtree(tree: impl Subtree, root: &mut Node, to: SliceTarget, steps: &Steps) -> Result<(), Stopped> {
+    let SliceTarget { base, below, first, order } = to;
     match tree.open() {
         Opened::Leaf(aabb, primitive) => {
             order[0] = primitive;
@@ -59,8 +59,9 @@ fn subtree(tree: impl Subtree, root: &mut Node, to: Target, steps: &Steps) -> Re
             let (left_below, right_below) = below.split_at_mut(2 * count - 2);
             let (left_order, right_order) = order.split_at_mut(count);
             let right_base = base + 2 + left_below.len();
-            let left_to = Target { base: base + 2, below: left_below, first, order: left_order };
-            let right_to = Target { base: right_base, below: right_below, first: first + count, order: right_order };
+            let left_to = SliceTarget { base: base + 2, below: left_below, first, order: left_order };
+            let right_to =
+                SliceTarget { base: right_base, below: right_below, first: first + count, order: right_order };
             // Progress is reported once per single-threaded subtree.
             let told = |count: usize| if parallel && count <= TASK { steps.did(count) } else { Ok(()) };
             let (left_count, right_count) = (left_to.order.len(), right_to.order.len());

@@ -11,7 +11,7 @@
 use super::binned::{MAX_BINS, Task};
 use super::bins::{Side, Split};
 use super::chopped::Plane;
-use super::part::Part;
+use super::part::Subtree;
 use super::reference::{Extents, Reference, median, partition, references};
 use super::top_down::{Due, TASK};
 use super::{BinaryBvh, Leaves, Shapes, spare};
@@ -77,7 +77,7 @@ pub fn build<'a>(
     let extents = Extents::around_many(&references);
     let steps = Due::steps(count, grow);
     let shared = Shared { shapes, bins, leaves, overlap: OVERLAP * extents.all.half_area(), work };
-    let all = Parts { references, extents, spare: spare(count), budget, shared: &shared };
+    let all = SplitParts { references, extents, spare: spare(count), budget, shared: &shared };
     all.build(Due::all(count, &steps))?.assemble(Vec::new(), place)
 }
 
@@ -90,7 +90,7 @@ struct Shared<'a, S> {
     work: Work<'a>,
 }
 
-struct Parts<'a, S> {
+struct SplitParts<'a, S> {
     references: Vec<Reference>,
     extents: Extents,
     /// The remaining number of levels with splits by area.
@@ -100,8 +100,8 @@ struct Parts<'a, S> {
     shared: &'a Shared<'a, S>,
 }
 
-impl<S: Shapes> Parts<'_, S> {
-    fn build(mut self, due: Due) -> Result<Part, Stopped> {
+impl<S: Shapes> SplitParts<'_, S> {
+    fn build(mut self, due: Due) -> Result<Subtree, Stopped> {
         if self.references.len() <= TASK {
             let part = self.build_alone();
             due.tell()?;
@@ -115,24 +115,24 @@ impl<S: Shapes> Parts<'_, S> {
             Ok([left, right]) => {
                 let [of_left, of_right] = due.split([&left, &right].map(|side| side.references.len()))?;
                 let (left, right) = parallel::join(|| left.build(of_left), || right.build(of_right));
-                Ok(Part::pair(aabb, left?, right?))
+                Ok(Subtree::pair(aabb, left?, right?))
             }
             Err(leaf) => {
                 due.tell()?;
-                Ok(Part::leaf(aabb, &leaf))
+                Ok(Subtree::leaf(aabb, &leaf))
             }
         }
     }
 
     /// Build a subtree on this thread.
-    fn build_alone(mut self) -> Part {
+    fn build_alone(mut self) -> Subtree {
         if let Some(task) = self.without_planes() {
             return task.build_alone(&mut self.references, self.extents);
         }
         let aabb = self.extents.all.aabb();
         match self.split() {
-            Ok([left, right]) => Part::pair(aabb, left.build_alone(), right.build_alone()),
-            Err(leaf) => Part::leaf(aabb, &leaf),
+            Ok([left, right]) => Subtree::pair(aabb, left.build_alone(), right.build_alone()),
+            Err(leaf) => Subtree::leaf(aabb, &leaf),
         }
     }
 

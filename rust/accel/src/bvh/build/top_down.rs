@@ -1,6 +1,6 @@
 //! The top-down build of subtrees in parallel, generic over the split criterion.
 
-use super::part::Part;
+use super::part::Subtree;
 use super::{BinaryBvh, Node};
 use raywright_base::math::Aabb;
 use raywright_base::parallel;
@@ -79,7 +79,7 @@ pub fn build<S: Set>(set: S, work: Work) -> Result<BinaryBvh, Stopped> {
     part(set, Due::all(count, &steps))?.assemble(Vec::new(), place)
 }
 
-fn part<S: Set>(set: S, due: Due) -> Result<Part, Stopped> {
+fn part<S: Set>(set: S, due: Due) -> Result<Subtree, Stopped> {
     let below = if set.len() <= TASK {
         Err(set)
     } else {
@@ -90,7 +90,7 @@ fn part<S: Set>(set: S, due: Due) -> Result<Part, Stopped> {
         Ok((aabb, [left, right])) => {
             let [of_left, of_right] = due.split([left.len(), right.len()])?;
             let (left, right) = parallel::join(|| part(left, of_left), || part(right, of_right));
-            Ok(Part::pair(aabb, left?, right?))
+            Ok(Subtree::pair(aabb, left?, right?))
         }
         Err(leaf) => {
             let part = alone(leaf, &mut S::Workspace::default());
@@ -101,7 +101,7 @@ fn part<S: Set>(set: S, due: Due) -> Result<Part, Stopped> {
 }
 
 /// Build a subtree on this thread.
-fn alone<S: Set>(set: S, workspace: &mut S::Workspace) -> Part {
+fn alone<S: Set>(set: S, workspace: &mut S::Workspace) -> Subtree {
     let nothing = Node::leaf(Aabb::EMPTY, 0, 0);
     let (mut root, mut below, mut order) = (nothing, Vec::new(), Vec::with_capacity(set.len()));
     // Each with its index below the root; None for the root.
@@ -125,5 +125,5 @@ fn alone<S: Set>(set: S, workspace: &mut S::Workspace) -> Part {
         };
         *place.map_or(&mut root, |place| &mut below[place]) = made;
     }
-    Part::Whole { root, below, order }
+    Subtree::Whole { root, below, order }
 }

@@ -1,8 +1,8 @@
 //! Optimizers of binary trees, which improve on the local decisions of builders. They treat leaves as opaque, so they
 //! work on the tree of any builder.
 
+mod linked_tree;
 pub mod reinsertion;
-mod tree;
 pub mod treelet;
 
 /// An optimizer.

@@ -12,7 +12,7 @@
 //! better place is skipped for some rounds, so that smaller nodes get their turn. And a search visits a bounded number
 //! of nodes, which bounds the time on any input.
 
-use super::tree::{Move, Tree, sibling};
+use super::linked_tree::{Move, Tree, sibling};
 use crate::bvh::BinaryBvh;
 use crate::bvh::build::Bounds;
 use raywright_base::parallel;
@@ -107,7 +107,7 @@ struct Found {
 }
 
 /// The best place for a subtree, if it is better than the current one.
-fn best_place(tree: &Tree, node: u32, open: &mut Vec<Pair>) -> Option<Found> {
+fn best_place(tree: &Tree, node: u32, open: &mut Vec<InsertionPair>) -> Option<Found> {
     let bounds = *tree.bounds(node);
     let mut beside = sibling(node);
     let mut pivot = tree.parent(node);
@@ -115,11 +115,12 @@ fn best_place(tree: &Tree, node: u32, open: &mut Vec<Pair>) -> Option<Found> {
     let mut saved = tree.area(pivot);
     let mut rest = *tree.bounds(beside);
     open.clear();
-    let mut search = Search { tree, bounds, area: bounds.half_area(), best: 0.0, to: node, patience: PATIENCE, open };
+    let mut search =
+        ReinsertionSearch { tree, bounds, area: bounds.half_area(), best: 0.0, to: node, patience: PATIENCE, open };
     // Reinserting next to its own sibling changes nothing.
     if let Some(first) = tree.below(beside) {
         let grown = rest.union(&bounds).half_area();
-        search.open.push(Pair { first, saved: saved - (grown - rest.half_area()) });
+        search.open.push(InsertionPair { first, saved: saved - (grown - rest.half_area()) });
         search.run();
     }
     while pivot != 0 && search.patience > 0 {
@@ -137,7 +138,7 @@ fn best_place(tree: &Tree, node: u32, open: &mut Vec<Pair>) -> Option<Found> {
 }
 
 /// A branch and bound search for a place.
-struct Search<'a> {
+struct ReinsertionSearch<'a> {
     tree: &'a Tree,
     /// The box of the subtree.
     bounds: Bounds,
@@ -148,17 +149,17 @@ struct Search<'a> {
     to: u32,
     /// The remaining number of pairs to visit.
     patience: u32,
-    open: &'a mut Vec<Pair>,
+    open: &'a mut Vec<InsertionPair>,
 }
 
 /// Two children to visit.
-struct Pair {
+struct InsertionPair {
     first: u32,
     /// The area saved above them.
     saved: f32,
 }
 
-impl Search<'_> {
+impl ReinsertionSearch<'_> {
     #[inline(always)]
     fn offer(&mut self, to: u32, saved: f32) {
         if saved > self.best {
@@ -176,7 +177,7 @@ impl Search<'_> {
         if self.may_save(saved)
             && let Some(first) = self.tree.below(at)
         {
-            self.open.push(Pair { first, saved });
+            self.open.push(InsertionPair { first, saved });
         }
     }
 
@@ -188,7 +189,7 @@ impl Search<'_> {
 
     /// Visit all pending pairs.
     fn run(&mut self) {
-        while let Some(Pair { first, saved }) = self.open.pop() {
+        while let Some(InsertionPair { first, saved }) = self.open.pop() {
             if self.may_save(saved) && self.patience > 0 {
                 self.patience -= 1;
                 self.see(first, saved);

@@ -7,7 +7,7 @@
 //!
 //! Subtrees that fit one block of triangles are leaves here and stay unchanged.
 
-use super::tree::{Tree, Treelet};
+use super::linked_tree::{Tree, Treelet};
 use crate::bvh::BinaryBvh;
 use crate::bvh::build::Bounds;
 use raywright_base::parallel;
@@ -75,7 +75,7 @@ pub fn optimise(bvh: &mut BinaryBvh, options: &Options, work: Work) -> Result<()
 }
 
 /// An inner node before any change below it.
-struct Seen {
+struct NodeSnapshot {
     node: u32,
     height: u32,
     /// The number of leaves below.
@@ -83,7 +83,7 @@ struct Seen {
 }
 
 /// The inner nodes by depth.
-fn levels(tree: &Tree) -> Vec<Vec<Seen>> {
+fn levels(tree: &Tree) -> Vec<Vec<NodeSnapshot>> {
     let has_children = |node: &u32| tree.below(*node).is_some();
     let mut levels: Vec<Vec<u32>> = vec![[0].into_iter().filter(has_children).collect()];
     while let Some(level) = levels.last().filter(|level| !level.is_empty()) {
@@ -97,7 +97,7 @@ fn levels(tree: &Tree) -> Vec<Vec<Seen>> {
             leaves[node as usize] = leaves[first as usize] + leaves[first as usize + 1];
         }
     }
-    let seen = |node: u32| Seen { node, height: tree.height_of(node), leaves: leaves[node as usize] };
+    let seen = |node: u32| NodeSnapshot { node, height: tree.height_of(node), leaves: leaves[node as usize] };
     levels.into_iter().map(|level| level.into_iter().map(seen).collect()).collect()
 }
 

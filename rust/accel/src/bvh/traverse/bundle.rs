@@ -27,28 +27,28 @@ const WIDTH: usize = MOST_TOGETHER;
 /// Create a traversal with packets of sixty-four rays.
 pub fn walk(tree: &Numbered, counted: bool, level: Level) -> Box<dyn Together + '_> {
     match (level.lanes(), counted) {
-        (8.., false) => Box::new(Walk::<8, false>::new(tree, level)),
-        (8.., true) => Box::new(Walk::<8, true>::new(tree, level)),
-        (_, false) => Box::new(Walk::<4, false>::new(tree, level)),
-        (_, true) => Box::new(Walk::<4, true>::new(tree, level)),
+        (8.., false) => Box::new(BundleTraversal::<8, false>::new(tree, level)),
+        (8.., true) => Box::new(BundleTraversal::<8, true>::new(tree, level)),
+        (_, false) => Box::new(BundleTraversal::<4, false>::new(tree, level)),
+        (_, true) => Box::new(BundleTraversal::<4, true>::new(tree, level)),
     }
 }
 
 /// Rays are in groups of `N`, the vector width.
-struct Walk<'a, const N: usize, const COUNTED: bool> {
+struct BundleTraversal<'a, const N: usize, const COUNTED: bool> {
     tree: &'a Numbered,
     level: Level,
     rays: Columns<WIDTH>,
     around: Interval,
     /// The number of rays.
     count: usize,
-    stack: Vec<Entry>,
+    stack: Vec<BundleEntry>,
     nodes: [u32; WIDTH],
 }
 
 /// A node to test, and its groups of rays.
 #[derive(Clone, Copy)]
-struct Entry {
+struct BundleEntry {
     node: u32,
     groups: Range,
 }
@@ -60,7 +60,7 @@ struct Range {
     end: usize,
 }
 
-impl<'a, const N: usize, const COUNTED: bool> Walk<'a, N, COUNTED> {
+impl<'a, const N: usize, const COUNTED: bool> BundleTraversal<'a, N, COUNTED> {
     fn new(tree: &'a Numbered, level: Level) -> Self {
         // A path leaves one sibling per level.
         let stack = Vec::with_capacity(tree.depth + 1);
@@ -126,7 +126,7 @@ impl<'a, const N: usize, const COUNTED: bool> Walk<'a, N, COUNTED> {
     }
 }
 
-impl<const N: usize, const COUNTED: bool> Together for Walk<'_, N, COUNTED>
+impl<const N: usize, const COUNTED: bool> Together for BundleTraversal<'_, N, COUNTED>
 where
     Level: Dispatch<N>,
 {
@@ -141,12 +141,12 @@ where
         self.nodes = [0; WIDTH];
         self.stack.clear();
         if !self.tree.nodes.is_empty() {
-            self.stack.push(Entry { node: 0, groups: Range { first: 0, end: rays.len().div_ceil(N) } });
+            self.stack.push(BundleEntry { node: 0, groups: Range { first: 0, end: rays.len().div_ceil(N) } });
         }
     }
 
     fn next(&mut self, limits: &[f32; WIDTH]) -> Option<(u32, u64)> {
-        self.level.dispatch(Next { walk: self, limits })
+        self.level.dispatch(BundleStep { walk: self, limits })
     }
 
     fn nodes(&self, ray: usize) -> u32 {
@@ -155,12 +155,12 @@ where
 }
 
 /// Advance to the next leaf.
-struct Next<'w, 'a, const N: usize, const COUNTED: bool> {
-    walk: &'w mut Walk<'a, N, COUNTED>,
+struct BundleStep<'w, 'a, const N: usize, const COUNTED: bool> {
+    walk: &'w mut BundleTraversal<'a, N, COUNTED>,
     limits: &'w [f32; WIDTH],
 }
 
-impl<const N: usize, const COUNTED: bool> Kernel<N> for Next<'_, '_, N, COUNTED> {
+impl<const N: usize, const COUNTED: bool> Kernel<N> for BundleStep<'_, '_, N, COUNTED> {
     type Output = Option<(u32, u64)>;
 
     #[inline(always)]
@@ -171,7 +171,7 @@ impl<const N: usize, const COUNTED: bool> Kernel<N> for Next<'_, '_, N, COUNTED>
         for &limit in limits {
             last = greater(limit, last);
         }
-        while let Some(Entry { node: mut at, mut groups }) = walk.stack.pop() {
+        while let Some(BundleEntry { node: mut at, mut groups }) = walk.stack.pop() {
             loop {
                 let node = &nodes[at as usize];
                 let Some((met, ray)) = walk.narrowed(simd, groups, node, limits, last) else { break };
@@ -183,7 +183,7 @@ impl<const N: usize, const COUNTED: bool> Kernel<N> for Next<'_, '_, N, COUNTED>
                     return Some((node.index, rays));
                 }
                 let [near, far] = walk.in_order(node, ray);
-                walk.stack.push(Entry { node: far, groups: met });
+                walk.stack.push(BundleEntry { node: far, groups: met });
                 (at, groups) = (near, met);
             }
         }

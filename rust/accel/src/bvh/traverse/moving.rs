@@ -80,9 +80,9 @@ impl Structure for Moving {
         // A path leaves one sibling per level.
         let stack = Vec::with_capacity(self.tree.depth + 1);
         if counted {
-            Box::new(Walk::<true> { tree: self, ray: SlabRay::EVERYWHERE, time: 0.0, stack, nodes: 0 })
+            Box::new(MovingTraversal::<true> { tree: self, ray: SlabRay::EVERYWHERE, time: 0.0, stack, nodes: 0 })
         } else {
-            Box::new(Walk::<false> { tree: self, ray: SlabRay::EVERYWHERE, time: 0.0, stack, nodes: 0 })
+            Box::new(MovingTraversal::<false> { tree: self, ray: SlabRay::EVERYWHERE, time: 0.0, stack, nodes: 0 })
         }
     }
 
@@ -118,7 +118,7 @@ impl Structure for Moving {
     }
 }
 
-struct Walk<'a, const COUNTED: bool> {
+struct MovingTraversal<'a, const COUNTED: bool> {
     tree: &'a Moving,
     ray: SlabRay,
     time: f64,
@@ -127,7 +127,7 @@ struct Walk<'a, const COUNTED: bool> {
     nodes: u32,
 }
 
-impl<const COUNTED: bool> Walk<'_, COUNTED> {
+impl<const COUNTED: bool> MovingTraversal<'_, COUNTED> {
     /// The `t` at which the ray enters a node's box, if it does.
     #[inline(always)]
     fn enters(&self, node: u32, limit: f32) -> Option<f32> {
@@ -136,7 +136,7 @@ impl<const COUNTED: bool> Walk<'_, COUNTED> {
     }
 }
 
-impl<const COUNTED: bool> Walker for Walk<'_, COUNTED> {
+impl<const COUNTED: bool> Walker for MovingTraversal<'_, COUNTED> {
     fn start(&mut self, ray: &SlabRay) {
         self.start_at(ray, 0.0);
     }

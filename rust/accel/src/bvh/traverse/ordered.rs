@@ -63,7 +63,11 @@ impl<V: Volumes> Ordered<V> {
 
 impl<V: Volumes> Structure for Ordered<V> {
     fn walker(&self, counted: bool) -> Box<dyn Walker + '_> {
-        if counted { Box::new(Walk::<V, true>::new(self)) } else { Box::new(Walk::<V, false>::new(self)) }
+        if counted {
+            Box::new(OrderedTraversal::<V, true>::new(self))
+        } else {
+            Box::new(OrderedTraversal::<V, false>::new(self))
+        }
     }
 
     fn any_walker(&self) -> Box<dyn Walker + '_> {
@@ -105,7 +109,7 @@ impl<V: Volumes> Structure for Ordered<V> {
     }
 }
 
-struct Walk<'a, V: Volumes, const COUNTED: bool> {
+struct OrderedTraversal<'a, V: Volumes, const COUNTED: bool> {
     tree: &'a Numbered,
     volumes: &'a V,
     ray: SlabRay,
@@ -115,7 +119,7 @@ struct Walk<'a, V: Volumes, const COUNTED: bool> {
     nodes: u32,
 }
 
-impl<'a, V: Volumes, const COUNTED: bool> Walk<'a, V, COUNTED> {
+impl<'a, V: Volumes, const COUNTED: bool> OrderedTraversal<'a, V, COUNTED> {
     fn new(of: &'a Ordered<V>) -> Self {
         let ray = SlabRay::EVERYWHERE;
         // A path leaves one sibling per level.
@@ -124,7 +128,7 @@ impl<'a, V: Volumes, const COUNTED: bool> Walk<'a, V, COUNTED> {
     }
 }
 
-impl<V: Volumes, const COUNTED: bool> Walker for Walk<'_, V, COUNTED> {
+impl<V: Volumes, const COUNTED: bool> Walker for OrderedTraversal<'_, V, COUNTED> {
     fn start(&mut self, ray: &SlabRay) {
         self.ray = *ray;
         self.ready = V::ready(ray);

@@ -16,23 +16,23 @@ pub fn walk(tree: &Numbered, counted: bool, level: Level) -> Box<dyn Together + 
     // A path leaves one sibling per level.
     let (rays, stack) = (Columns::NONE, Vec::with_capacity(tree.depth + 1));
     if counted {
-        Box::new(Walk::<true> { tree, level, rays, stack, nodes: [0; WIDTH] })
+        Box::new(PacketTraversal::<true> { tree, level, rays, stack, nodes: [0; WIDTH] })
     } else {
-        Box::new(Walk::<false> { tree, level, rays, stack, nodes: [0; WIDTH] })
+        Box::new(PacketTraversal::<false> { tree, level, rays, stack, nodes: [0; WIDTH] })
     }
 }
 
-struct Walk<'a, const COUNTED: bool> {
+struct PacketTraversal<'a, const COUNTED: bool> {
     tree: &'a Numbered,
     level: Level,
     rays: Columns<WIDTH>,
-    stack: Vec<Entry>,
+    stack: Vec<PacketEntry>,
     nodes: [u32; WIDTH],
 }
 
 /// A node that some rays hit.
 #[derive(Clone, Copy)]
-struct Entry {
+struct PacketEntry {
     /// The `t` at which they enter it.
     enter: [f32; WIDTH],
     node: u32,
@@ -40,7 +40,7 @@ struct Entry {
     rays: u32,
 }
 
-impl<const COUNTED: bool> Together for Walk<'_, COUNTED> {
+impl<const COUNTED: bool> Together for PacketTraversal<'_, COUNTED> {
     fn width(&self) -> usize {
         WIDTH
     }
@@ -56,7 +56,7 @@ impl<const COUNTED: bool> Together for Walk<'_, COUNTED> {
 
     fn next(&mut self, limits: &[f32; MOST_TOGETHER]) -> Option<(u32, u64)> {
         let [a, b, c, d, ..] = *limits;
-        self.level.dispatch(Next { walk: self, limits: &[a, b, c, d] })
+        self.level.dispatch(PacketStep { walk: self, limits: &[a, b, c, d] })
     }
 
     fn nodes(&self, ray: usize) -> u32 {
@@ -64,7 +64,7 @@ impl<const COUNTED: bool> Together for Walk<'_, COUNTED> {
     }
 }
 
-impl<const COUNTED: bool> Walk<'_, COUNTED> {
+impl<const COUNTED: bool> PacketTraversal<'_, COUNTED> {
     /// Count box tests for some rays.
     #[inline(always)]
     fn count(&mut self, rays: u32, boxes: u32) {
@@ -81,14 +81,14 @@ impl<const COUNTED: bool> Walk<'_, COUNTED> {
         if rays != 0 {
             let mut enter = [0.0; WIDTH];
             simd.store(from, &mut enter);
-            self.stack.push(Entry { enter, node, rays });
+            self.stack.push(PacketEntry { enter, node, rays });
         }
     }
 }
 
 /// Tests the root.
 struct Begin<'w, 'a, const COUNTED: bool> {
-    walk: &'w mut Walk<'a, COUNTED>,
+    walk: &'w mut PacketTraversal<'a, COUNTED>,
     rays: usize,
 }
 
@@ -106,12 +106,12 @@ impl<const COUNTED: bool> Kernel<WIDTH> for Begin<'_, '_, COUNTED> {
 }
 
 /// Advances to the next leaf.
-struct Next<'w, 'a, const COUNTED: bool> {
-    walk: &'w mut Walk<'a, COUNTED>,
+struct PacketStep<'w, 'a, const COUNTED: bool> {
+    walk: &'w mut PacketTraversal<'a, COUNTED>,
     limits: &'w [f32; WIDTH],
 }
 
-impl<const COUNTED: bool> Kernel<WIDTH> for Next<'_, '_, COUNTED> {
+impl<const COUNTED: bool> Kernel<WIDTH> for PacketStep<'_, '_, COUNTED> {
     type Output = Option<(u32, u64)>;
 
     #[inline(always)]

@@ -112,9 +112,9 @@ impl Structure for Threaded {
     fn walker(&self, counted: bool) -> Box<dyn Walker + '_> {
         let (ray, links) = (SlabRay::EVERYWHERE, self.links.as_slice());
         if counted {
-            Box::new(Walk::<true> { threaded: self, links, ray, at: Link::END, nodes: 0 })
+            Box::new(ThreadedTraversal::<true> { threaded: self, links, ray, at: Link::END, nodes: 0 })
         } else {
-            Box::new(Walk::<false> { threaded: self, links, ray, at: Link::END, nodes: 0 })
+            Box::new(ThreadedTraversal::<false> { threaded: self, links, ray, at: Link::END, nodes: 0 })
         }
     }
 
@@ -168,7 +168,7 @@ impl Structure for Threaded {
     }
 }
 
-struct Walk<'a, const COUNTED: bool> {
+struct ThreadedTraversal<'a, const COUNTED: bool> {
     threaded: &'a Threaded,
     /// The links of the ray's class.
     links: &'a [Link],
@@ -177,7 +177,7 @@ struct Walk<'a, const COUNTED: bool> {
     nodes: u32,
 }
 
-impl<const COUNTED: bool> Walker for Walk<'_, COUNTED> {
+impl<const COUNTED: bool> Walker for ThreadedTraversal<'_, COUNTED> {
     fn start(&mut self, ray: &SlabRay) {
         let (count, way) = (self.threaded.tree.nodes.len(), self.threaded.orders.way(ray));
         self.links = &self.threaded.links[way * count..(way + 1) * count];

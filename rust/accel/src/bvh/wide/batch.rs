@@ -1,10 +1,10 @@
 //! Chooses the kernel for a batch of rays.
 
-use super::answer::Answer;
-use super::errand::{Errand, Telling};
 use super::first::First;
-use super::winners::{Alone, Winners};
-use super::{WideBvh, few, packet, single, wave};
+use super::hit_sink::Answer;
+use super::leaf_visitor::{Errand, QueryVisitor};
+use super::refine_hits::{Alone, Winners};
+use super::{WideBvh, few_leaves, packet, single, wave};
 use crate::query::Query;
 use raywright_base::math::{RayBatch, coherence};
 use raywright_base::simd::{Kernel, Simd};
@@ -34,7 +34,7 @@ impl<const N: usize, L: Leaves<N>, Q: Query> Kernel<N> for All<'_, N, L, Q> {
     #[inline(always)]
     fn run<S: Simd<N>>(self, simd: S) {
         let Self { bvh, rays, query } = self;
-        let errand = &mut Telling { rays: &rays, query };
+        let errand = &mut QueryVisitor { rays: &rays, query };
         if bvh.nodes.is_empty() {
             miss(bvh, rays.len(), errand);
         } else if Width::<N>::SINGLE_RAYS_ONLY || Q::COUNTED || rays.len() < FEW {
@@ -73,8 +73,8 @@ impl<const N: usize, L: Leaves<N>, A: Answer> Kernel<N> for Firsts<'_, N, L, A> 
             miss(bvh, rays.len(), errand);
         } else if rays.len() < FEW {
             single::answer(simd, bvh, &rays, errand);
-        } else if let Some(leaves) = few::leaves(bvh) {
-            few::answer(simd, bvh, &leaves, errand);
+        } else if let Some(leaves) = few_leaves::leaves(bvh) {
+            few_leaves::answer(simd, bvh, &leaves, errand);
         } else if is_coherent(bvh, rays) {
             packet::answer(simd, bvh, errand);
         } else {
@@ -104,7 +104,7 @@ fn miss<const N: usize, L: Leaves<N>, E: Errand<N, L>>(_: &WideBvh<N, L>, rays: 
 
 #[cfg(test)]
 mod tests {
-    use super::super::answer::Closest;
+    use super::super::hit_sink::Closest;
     use super::*;
     use crate::BruteForce;
     use crate::bvh::Options;
@@ -129,7 +129,7 @@ mod tests {
             Which::Single => single::answer(Scalar, bvh, &rays, errand),
             Which::Wave => wave::answer(Scalar, bvh, &rays, errand),
             Which::Packet => packet::answer(Scalar, bvh, errand),
-            Which::Few => few::answer(Scalar, bvh, &few::leaves(bvh).expect("few triangles"), errand),
+            Which::Few => few_leaves::answer(Scalar, bvh, &few_leaves::leaves(bvh).expect("few triangles"), errand),
         }
     }
 
@@ -140,7 +140,7 @@ mod tests {
         agree: impl Fn(Which, &WideBvh<4, L>, RayBatch, &[Hit]),
     ) {
         let kernels = [Which::Single, Which::Wave, Which::Packet, Which::Few];
-        let is_few = soup.triangles.len() <= few::TRIANGLES;
+        let is_few = soup.triangles.len() <= few_leaves::TRIANGLES;
         let level = Level::current().unwrap();
         let brute = BruteForce::over(soup, level);
         let bvh = WideBvh::<4, L>::new(soup, &Options::DEFAULT, level);

@@ -2,13 +2,13 @@
 //! ([`Winners`]), by the formula that all accelerators share.
 
 use super::WideBvh;
-use super::answer::Answer;
 use super::best::{Best, between};
-use super::errand::{Errand, Visited};
+use super::hit_sink::Answer;
+use super::leaf_visitor::{Errand, Visited};
 use super::looking::Looking;
 use super::node::Packed;
+use super::refine_hits::{Settling, Winners};
 use super::sixteen::Sixteen;
-use super::winners::{Settling, Winners};
 use raywright_base::math::RayBatch;
 use raywright_base::simd::Simd;
 use raywright_shapes::triangle::{EdgeRay, Leaves, RAYS};

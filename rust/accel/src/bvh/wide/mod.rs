@@ -1,27 +1,27 @@
 //! Wide BVHs for traversal: `N` children per node, tested at once, and leaves with blocks of `N` triangles.
 
-mod answer;
 mod batch;
 mod best;
 mod bests;
+mod child_order;
 mod collapse;
-mod errand;
-mod few;
+mod few_leaves;
 mod first;
-mod gate;
+mod hit_sink;
+mod leaf_visitor;
 mod looking;
 mod nearest;
 mod node;
 mod objects;
 mod packet;
-mod prospects;
+mod ray_setup;
+mod refine_hits;
 mod refit;
 mod single;
 mod sixteen;
 mod step;
 mod touched;
 mod wave;
-mod winners;
 
 use super::axes;
 use super::build::presplit::Total;
@@ -32,9 +32,9 @@ use super::parts::cover;
 use super::{Cuts, Quality, Steps};
 use crate::query::{Answers, Query};
 use crate::{Boxes, ByColumns, Info, Nearest, PrimitiveFilter, Primitives, Touches};
-use answer::Closest;
 use batch::{All, Firsts};
 use collapse::Outline;
+use hit_sink::Closest;
 use node::{Child, WideNode};
 pub use objects::over as over_objects;
 use raywright_base::math::{Aabb, Axes, DVec3, Hit, HitColumns, Ray, RayBatch, RayColumns, Region};
@@ -221,7 +221,7 @@ where
     }
 
     fn extent(&self) -> Option<f64> {
-        (self.info.primitives > few::TRIANGLES).then_some(self.region.radius)
+        (self.info.primitives > few_leaves::TRIANGLES).then_some(self.region.radius)
     }
 }
 

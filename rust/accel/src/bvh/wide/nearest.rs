@@ -20,7 +20,7 @@ pub struct Points<'a, const N: usize, L> {
 
 /// A child to visit and its squared distance.
 #[derive(Clone, Copy)]
-struct Entry {
+struct QueueEntry {
     square: f64,
     child: Child,
 }
@@ -31,7 +31,7 @@ impl<const N: usize, L: Leaves<N>> Kernel<N> for Points<'_, N, L> {
     #[inline(always)]
     fn run<S: Simd<N>>(self, simd: S) {
         let Self { bvh, points, max_distances, counts, nearest } = self;
-        let mut stack = vec![Entry { square: 0.0, child: Child::None }; bvh.stack];
+        let mut stack = vec![QueueEntry { square: 0.0, child: Child::None }; bvh.stack];
         // The last point's nearest triangle is a good start for the next point: neighbours then cull most of the tree.
         let mut last = None;
         for (i, (&point, nearest)) in points.iter().zip(nearest).enumerate() {
@@ -57,7 +57,7 @@ fn walk<const N: usize, L: Leaves<N>, S: Simd<N>>(
     counts: PrimitiveFilter<'_>,
     search: &mut Search,
     last: &mut Option<(usize, u32, usize)>,
-    stack: &mut [Entry],
+    stack: &mut [QueueEntry],
 ) {
     let test = LeafTest::new(search, &bvh.region, !L::EDGES);
     let (mut limit, mut leaf_limit) = (search.limit(), test.limit(search));
@@ -74,7 +74,7 @@ fn walk<const N: usize, L: Leaves<N>, S: Simd<N>>(
                     if square > limit {
                         continue;
                     }
-                    let entry = Entry { square, child: node.child(lane) };
+                    let entry = QueueEntry { square, child: node.child(lane) };
                     let mut place = top;
                     while place > bottom && stack[place - 1].square < square {
                         stack[place] = stack[place - 1];

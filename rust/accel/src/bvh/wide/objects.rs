@@ -77,9 +77,9 @@ where
         // Each level leaves at most N − 1 siblings pending.
         let stacks = Stacks::spare::<N>(self.depth * (N - 1) + 1);
         if counted {
-            Box::new(Walk::<N, true> { tree: self, ray: Boxes::NOWHERE, stacks, is_new: true, nodes: 0 })
+            Box::new(InstanceTraversal::<N, true> { tree: self, ray: Boxes::NOWHERE, stacks, is_new: true, nodes: 0 })
         } else {
-            Box::new(Walk::<N, false> { tree: self, ray: Boxes::NOWHERE, stacks, is_new: true, nodes: 0 })
+            Box::new(InstanceTraversal::<N, false> { tree: self, ray: Boxes::NOWHERE, stacks, is_new: true, nodes: 0 })
         }
     }
 
@@ -140,7 +140,7 @@ where
     }
 }
 
-struct Walk<'a, const N: usize, const COUNTED: bool> {
+struct InstanceTraversal<'a, const N: usize, const COUNTED: bool> {
     tree: &'a Objects<N>,
     ray: Boxes,
     stacks: Stacks,
@@ -149,13 +149,13 @@ struct Walk<'a, const N: usize, const COUNTED: bool> {
     nodes: u32,
 }
 
-impl<const N: usize, const COUNTED: bool> Drop for Walk<'_, N, COUNTED> {
+impl<const N: usize, const COUNTED: bool> Drop for InstanceTraversal<'_, N, COUNTED> {
     fn drop(&mut self) {
         std::mem::replace(&mut self.stacks, Stacks::NONE).put_away();
     }
 }
 
-impl<const N: usize, const COUNTED: bool> Walker for Walk<'_, N, COUNTED>
+impl<const N: usize, const COUNTED: bool> Walker for InstanceTraversal<'_, N, COUNTED>
 where
     Level: Dispatch<N>,
 {
@@ -176,7 +176,7 @@ where
 
 /// Advances to the next leaf.
 struct Next<'a, 'b, const N: usize, const COUNTED: bool> {
-    walk: &'a mut Walk<'b, N, COUNTED>,
+    walk: &'a mut InstanceTraversal<'b, N, COUNTED>,
     limit: f32,
 }
 
@@ -185,7 +185,7 @@ impl<const N: usize, const COUNTED: bool> Kernel<N> for Next<'_, '_, N, COUNTED>
 
     #[inline(always)]
     fn run<S: Simd<N>>(self, simd: S) -> Option<u32> {
-        let Walk { tree, ray, stacks, is_new, nodes } = self.walk;
+        let InstanceTraversal { tree, ray, stacks, is_new, nodes } = self.walk;
         if *is_new {
             (*is_new, ray.limit) = (false, self.limit);
         } else {

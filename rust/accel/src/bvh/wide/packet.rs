@@ -13,14 +13,14 @@
 //! difference, and 2v + v of it for the inverse and the product. That is less than 6v·R in units of |r|.
 
 use super::WideBvh;
-use super::answer::Answer;
 use super::bests::{Bests, are_few};
 use super::first::First;
+use super::hit_sink::Answer;
 use super::node::{Packed, WideNode};
+use super::refine_hits::Settling;
 use super::sixteen::Sixteen;
 use super::step::Stacks;
-use super::winners::Settling;
-use super::{single, winners};
+use super::{refine_hits, single};
 use crate::slab::Clock;
 use raywright_base::simd::{ASCENDING, Lanes, Simd};
 use raywright_shapes::triangle::{ALL, Column, Leaves, Met, RAYS};
@@ -38,7 +38,7 @@ struct Packet<'a> {
     bests: [Bests; SIXTEENS],
     /// The end of each ray in box units; −∞ for finished or missing rays.
     limits: [Column<f32>; SIXTEENS],
-    bounds: Bounds,
+    bounds: PacketBounds,
     /// The near plane of all rays, by axis.
     first: [usize; 3],
     /// The batch index of the first ray.
@@ -46,7 +46,7 @@ struct Packet<'a> {
 }
 
 /// Intervals that contain all rays of a packet.
-struct Bounds {
+struct PacketBounds {
     /// The origin for which the near plane is hit last, by axis.
     near: [f32; 3],
     /// The origin for which the far plane is hit first.
@@ -91,7 +91,7 @@ pub fn answer<const N: usize, L: Leaves<N>, S: Simd<N>, A: Answer>(
                 if A::ANY {
                     errand.answer.some(start, count, bests.answered, &Met::NONE, &[0; RAYS]);
                 } else {
-                    winners::settle(simd.sixteen(), bvh, batch, start, count, bests, errand.answer);
+                    refine_hits::settle(simd.sixteen(), bvh, batch, start, count, bests, errand.answer);
                 }
             }
         } else {
@@ -104,7 +104,7 @@ pub fn answer<const N: usize, L: Leaves<N>, S: Simd<N>, A: Answer>(
     errand.winners.settle(simd.sixteen(), bvh, batch, errand.answer);
 }
 
-impl Bounds {
+impl PacketBounds {
     #[inline(always)]
     fn of<S: Lanes<RAYS>>(simd: S, rays: &[Sixteen], first: [usize; 3]) -> Self {
         let mut earliest = simd.splat(f32::INFINITY);
@@ -145,7 +145,7 @@ impl<'a> Packet<'a> {
             simd.store(simd.select(here, simd.load(&sixteen.slabs.limit), none), &mut limits[which]);
             bests[which] = Bests::none(sixteen);
         }
-        Self { rays, bests, limits, bounds: Bounds::of(simd, rays, first), first, start }
+        Self { rays, bests, limits, bounds: PacketBounds::of(simd, rays, first), first, start }
     }
 
     /// The farthest end of all rays.

@@ -1,7 +1,7 @@
 //! Traversal by single rays: for few rays, and for those that remain of a packet.
 
 use super::WideBvh;
-use super::errand::{Errand, Visited, enter};
+use super::leaf_visitor::{Errand, Visited, enter};
 use super::node::Packed;
 use super::step::{Boxes, Stacks};
 use crate::slab::SlabRay;

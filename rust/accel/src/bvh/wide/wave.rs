@@ -7,9 +7,9 @@
 //! of entries beyond it.
 
 use super::WideBvh;
-use super::errand::{Errand, Visited, enter};
-use super::gate::Gate;
+use super::leaf_visitor::{Errand, Visited, enter};
 use super::node::Packed;
+use super::ray_setup::Gate;
 use super::step::{Boxes, Stacks};
 use raywright_base::math::RayBatch;
 use raywright_base::simd::Simd;

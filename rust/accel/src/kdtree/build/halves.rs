@@ -15,7 +15,7 @@ pub struct Halving<'a> {
 }
 
 /// The parts on each side of a plane, and their budgets.
-type Sides = ([Vec<Part>; 2], [Room; 2]);
+type SplitSides = ([Vec<Part>; 2], [Room; 2]);
 
 impl Halving<'_> {
     /// Build the subtree of a cell; return its node.
@@ -75,7 +75,7 @@ impl Halving<'_> {
     }
 
     /// Distribute the parts to both sides; None if that is no improvement, as for coincident primitives.
-    fn parted(self, parts: &[Part], plane: Plane, room: Room) -> Option<Sides> {
+    fn parted(self, parts: &[Part], plane: Plane, room: Room) -> Option<SplitSides> {
         let mut sides = [Vec::new(), Vec::new()];
         for part in parts {
             match part.halves(self.input, plane) {

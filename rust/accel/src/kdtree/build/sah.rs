@@ -64,7 +64,7 @@ impl Event {
 
 /// A plane and the side for parts in the plane.
 #[derive(Clone, Copy, Debug)]
-struct Split {
+struct SahSplit {
     cost: f64,
     plane: Plane,
     flat: usize,
@@ -99,17 +99,17 @@ pub fn grow(input: &Input, options: &Options, parts: Vec<Part>, cell: Aabb, room
             return Node::EMPTY;
         }
     }
-    Builder { input, options, steps: &grow.steps(Room::STEPS) }.grow(Set { parts, events, cell, room }, grown)
+    SahBuilder { input, options, steps: &grow.steps(Room::STEPS) }.grow(Set { parts, events, cell, room }, grown)
 }
 
 #[derive(Clone, Copy)]
-struct Builder<'a> {
+struct SahBuilder<'a> {
     input: &'a Input<'a>,
     options: &'a Options,
     steps: &'a Steps<'a>,
 }
 
-impl Builder<'_> {
+impl SahBuilder<'_> {
     fn grow(self, set: Set, grown: &mut Grown) -> Node {
         let count = set.parts.len();
         if is_stopped(self.steps, count) {
@@ -134,13 +134,13 @@ impl Builder<'_> {
     }
 
     /// The plane of least cost; the first of several.
-    fn best(self, set: &Set) -> Option<Split> {
+    fn best(self, set: &Set) -> Option<SahSplit> {
         let splits = on_axes(set.parts.len() > PARALLEL, |axis| self.best_across(set, axis));
         splits.into_iter().flatten().reduce(|best, split| if split.cost < best.cost { split } else { best })
     }
 
     /// The same along one axis: a sweep over the events counts the parts on either side.
-    fn best_across(self, set: &Set, axis: usize) -> Option<Split> {
+    fn best_across(self, set: &Set, axis: usize) -> Option<SahSplit> {
         let cell = &set.cell;
         let size = cell.max.as_dvec3() - cell.min.as_dvec3();
         let (wide, other) = (size[axis], [size[(axis + 1) % 3], size[(axis + 2) % 3]]);
@@ -158,7 +158,7 @@ impl Builder<'_> {
             let cost = traversal + intersection * (areas[0] * below as f64 + areas[1] * above as f64);
             if below == 0 || above == 0 { bonus * cost } else { cost }
         };
-        let mut best: Option<Split> = None;
+        let mut best: Option<SahSplit> = None;
         let (mut below, mut above) = (0, set.parts.len());
         let mut rest = set.events[axis].as_slice();
         while let Some(&first) = rest.first() {
@@ -180,7 +180,7 @@ impl Builder<'_> {
                 let costs = [cost(areas, below + flat, above), cost(areas, below, above + flat)];
                 let side = usize::from(costs[1] < costs[0]);
                 if best.is_none_or(|b| costs[side] < b.cost) {
-                    best = Some(Split { cost: costs[side], plane, flat: side });
+                    best = Some(SahSplit { cost: costs[side], plane, flat: side });
                 }
             }
             below += start + flat;
@@ -189,8 +189,8 @@ impl Builder<'_> {
     }
 
     /// Distribute everything to both sides; None if that exceeds the budget.
-    fn parted(self, set: &Set, split: Split) -> Option<[Set; 2]> {
-        let Split { plane, flat, .. } = split;
+    fn parted(self, set: &Set, split: SahSplit) -> Option<[Set; 2]> {
+        let SahSplit { plane, flat, .. } = split;
         // By side, the new index of each uncut part.
         let count = set.parts.len();
         let mut numbers = [vec![GONE; count], vec![GONE; count]];

@@ -42,13 +42,13 @@ impl Contest {
     pub fn new(rays: &[SingleRay], triangles: &[[Vec3; 3]]) -> Self {
         assert_eq!(rays.len(), triangles.len(), "as many rays as triangles");
         let contenders = vec![
-            Pairs::<MollerTrumbore>::ready(rays, triangles),
-            Pairs::<MollerTrumboreEdges>::ready(rays, triangles),
-            Pairs::<Badouel>::ready(rays, triangles),
-            Pairs::<Volumes>::ready(rays, triangles),
-            Pairs::<Woop>::ready(rays, triangles),
-            Pairs::<EdgeF32>::ready(rays, triangles),
-            Pairs::<EdgeF64>::ready(rays, triangles),
+            TestPairs::<MollerTrumbore>::ready(rays, triangles),
+            TestPairs::<MollerTrumboreEdges>::ready(rays, triangles),
+            TestPairs::<Badouel>::ready(rays, triangles),
+            TestPairs::<Volumes>::ready(rays, triangles),
+            TestPairs::<Woop>::ready(rays, triangles),
+            TestPairs::<EdgeF32>::ready(rays, triangles),
+            TestPairs::<EdgeF64>::ready(rays, triangles),
         ];
         Self { contenders, pairs: rays.len() }
     }
@@ -67,9 +67,9 @@ impl Contest {
 }
 
 /// Pairs in the form that a routine needs.
-struct Pairs<R: Routine>(Vec<(R::Ray, R::Triangle)>);
+struct TestPairs<R: Routine>(Vec<(R::Ray, R::Triangle)>);
 
-impl<R> Pairs<R>
+impl<R> TestPairs<R>
 where
     R: Routine + 'static,
     R::Ray: Send + Sync,
@@ -88,7 +88,7 @@ fn test<R: Routine>(pair: &(R::Ray, R::Triangle)) -> Option<Meeting> {
     R::meet(ray, triangle)
 }
 
-impl<R> Contender for Pairs<R>
+impl<R> Contender for TestPairs<R>
 where
     R: Routine,
     R::Ray: Send + Sync,

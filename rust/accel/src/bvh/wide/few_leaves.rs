@@ -1,14 +1,14 @@
 //! Queries for few triangles: sixteen rays at a time visit every leaf that some of them may hit, without any nodes.
 
 use super::WideBvh;
-use super::answer::Answer;
 use super::bests::{Bests, are_few};
 use super::first::First;
+use super::hit_sink::Answer;
 use super::node::Packed;
+use super::refine_hits::Settling;
 use super::sixteen::Sixteen;
 use super::step::Stacks;
-use super::winners::Settling;
-use super::{single, winners};
+use super::{refine_hits, single};
 use raywright_base::math::Aabb;
 use raywright_base::simd::{Lanes, Simd};
 use raywright_shapes::triangle::{ALL, Leaves, Met, RAYS};
@@ -80,7 +80,7 @@ pub fn answer<const N: usize, L: Leaves<N>, S: Simd<N>, A: Answer>(
         if A::ANY {
             errand.answer.some(start, count, bests.answered, &Met::NONE, &[0; RAYS]);
         } else {
-            winners::settle(sixteen, bvh, batch, start, count, &bests, errand.answer);
+            refine_hits::settle(sixteen, bvh, batch, start, count, &bests, errand.answer);
         }
         let mut others = here & !plain;
         while others != 0 {

@@ -31,7 +31,7 @@ impl Prospect {
 }
 
 /// The data about a child that do not depend on its descendants.
-struct Known {
+struct ChildBounds {
     /// The probability that a ray through the node hits the child.
     met: f32,
     of_leaf: Option<Prospect>,
@@ -53,13 +53,13 @@ fn arrange<const N: usize, L: Leaves<N>>(
     to_box: impl Fn(DVec3) -> DVec3 + Sync,
 ) {
     // Local data in parallel; then a sequential bottom-up pass, which is little work; then the moves.
-    let known: Vec<[Known; N]> = parallel::collect(nodes.len(), |i| {
+    let known: Vec<[ChildBounds; N]> = parallel::collect(nodes.len(), |i| {
         let node = &nodes[i];
         let whole = node.bounds().half_area().max(f32::MIN_POSITIVE);
         from_fn(|lane| {
             let (child, bounds) = (Packed::of(node.children[lane]), node.aabb(lane));
             let of_leaf = (child.kind() == 1).then(|| leaf(leaves, &to_box, child, &bounds));
-            Known { met: (bounds.half_area() / whole).min(1.0), of_leaf }
+            ChildBounds { met: (bounds.half_area() / whole).min(1.0), of_leaf }
         })
     });
     let mut of_nodes = vec![Prospect { chance: 0.0, cost: 1.0 }; nodes.len()];

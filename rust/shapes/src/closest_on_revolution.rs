@@ -32,7 +32,7 @@ pub(super) struct Around {
 
 /// The closest point of a profile curve.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Met {
+pub(super) struct CurvePoint {
     /// The offset from the query point.
     pub way: DVec3,
     /// Distance from the axis and height along it, before mapping.
@@ -54,7 +54,7 @@ struct Sample {
     distance: f64,
     /// Has the sign of the distance's derivative.
     slope: f64,
-    met: Met,
+    met: CurvePoint,
 }
 
 impl Around {
@@ -66,7 +66,7 @@ impl Around {
 
     /// Minimize over all angles. At each angle `curve` returns the closest point of the profile in that half-plane,
     /// given the image of the unit vector away from the axis. The profile stays within `widest` of the axis.
-    pub fn nearest(&self, widest: f64, curve: impl Fn(DVec3) -> Met) -> Nearest {
+    pub fn nearest(&self, widest: f64, curve: impl Fn(DVec3) -> CurvePoint) -> Nearest {
         let [x, y] = self.across;
         let at = |angle: f64| {
             let (sin, cos) = angle.sin_cos();
@@ -124,7 +124,7 @@ impl Around {
     }
 
     /// The closest point of a segment between two points of the half-plane, given as radius and height.
-    pub fn of_segment(&self, out: DVec3, ends: [[f64; 2]; 2]) -> Met {
+    pub fn of_segment(&self, out: DVec3, ends: [[f64; 2]; 2]) -> CurvePoint {
         let [a, b] = ends.map(|[radius, height]| self.foot + out * radius + self.up * height);
         let along = share_of_segment(a, b);
         // From the nearer end, to keep its digits.
@@ -132,11 +132,11 @@ impl Around {
             if along <= 0.5 { (a, ends[0], ends[1], along) } else { (b, ends[1], ends[0], 1.0 - along) };
         let [radius, height] = [0, 1].map(|k| from[k] + (to[k] - from[k]) * part);
         let far = if along <= 0.5 { b } else { a };
-        Met { way: near + (far - near) * part, radius, height }
+        CurvePoint { way: near + (far - near) * part, radius, height }
     }
 
     /// The closest point of the parabola from the foot to a rim; the height is proportional to the radius squared.
-    pub fn of_parabola(&self, out: DVec3, [rim, height]: [f64; 2]) -> Met {
+    pub fn of_parabola(&self, out: DVec3, [rim, height]: [f64; 2]) -> CurvePoint {
         let (across, up) = (out * rim, self.up * height);
         let at = |q: f64| self.foot + across * q + up * (q * q);
         // The derivative of half the squared distance with respect to the fraction of the rim's radius.
@@ -153,14 +153,14 @@ impl Around {
                 best = (way, q);
             }
         }
-        Met { way: best.0, radius: rim * best.1, height: height * best.1 * best.1 }
+        CurvePoint { way: best.0, radius: rim * best.1, height: height * best.1 * best.1 }
     }
 
     /// The closest point of a circle in the half-plane whose center has height 0.
-    pub fn of_circle(&self, out: DVec3, major: f64, minor: f64) -> Met {
+    pub fn of_circle(&self, out: DVec3, major: f64, minor: f64) -> CurvePoint {
         let (middle, axes) = (self.foot + out * major, [out * minor, self.up * minor]);
         let [cos, sin] = turn_of_ellipse(middle, axes);
-        Met { way: middle + axes[0] * cos + axes[1] * sin, radius: major + minor * cos, height: minor * sin }
+        CurvePoint { way: middle + axes[0] * cos + axes[1] * sin, radius: major + minor * cos, height: minor * sin }
     }
 }
 

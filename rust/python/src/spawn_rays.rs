@@ -12,7 +12,7 @@ use raywright::scene::RayOrigin;
 /// Origins of rays along directions of leading shape `shape`, from the points indexed by `which`, or from all points
 /// cyclically. NaN for the points of misses.
 #[pyfunction]
-pub fn leave<'py>(
+pub fn spawn_rays<'py>(
     py: Python<'py>,
     position: PyReadonlyArray2<'py, f64>,
     error: PyReadonlyArray1<'py, f64>,

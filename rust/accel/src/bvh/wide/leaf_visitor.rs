@@ -76,7 +76,7 @@ pub fn enter<const N: usize, L: Leaves<N>, S: Simd<N>, E: Errand<N, L>>(
 }
 
 /// Offers all intersections to a query.
-pub struct Telling<'a, Q> {
+pub struct QueryVisitor<'a, Q> {
     pub rays: &'a RayBatch<'a>,
     pub query: &'a mut Q,
 }
@@ -89,7 +89,7 @@ pub struct Told<T> {
     ray: usize,
 }
 
-impl<const N: usize, L: Leaves<N>, Q: Query> Errand<N, L> for Telling<'_, Q> {
+impl<const N: usize, L: Leaves<N>, Q: Query> Errand<N, L> for QueryVisitor<'_, Q> {
     type Flight = Told<Q::State>;
     const NEAREST_FIRST: bool = Q::NEAREST_FIRST;
     const SHORTENS: bool = true;

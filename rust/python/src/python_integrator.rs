@@ -12,7 +12,7 @@ use raywright::math::DVec3;
 use raywright::optics::Rgb;
 use raywright::workers::Cancel;
 
-/// `raywright.Integrator`. An exception that it raises ends the render.
+/// `raywright.integrators.Integrator`. An exception that it raises ends the render.
 pub struct Written {
     integrator: Py<PyAny>,
     /// `raywright.Scene`.
@@ -33,17 +33,18 @@ impl Written {
     }
 
     fn ask(&self, py: Python<'_>, samples: &[CameraSample], radiance: &mut [Rgb]) -> PyResult<()> {
-        let package = py.import("raywright")?;
+        let query = py.import("raywright.query.interactions")?;
+        let random = py.import("raywright.integrators.rng")?;
         let vectors_of = |of: fn(&CameraSample) -> DVec3| {
             let rows: Vec<f64> = samples.iter().flat_map(|s| of(s).to_array()).collect();
             PyArray1::from_vec(py, rows).reshape([samples.len(), 3])
         };
         let time = PyArray1::from_iter(py, samples.iter().map(|s| s.ray.time));
         let rays =
-            package.getattr("Rays")?.call1((vectors_of(|s| s.ray.origin)?, vectors_of(|s| s.ray.direction)?, time))?;
+            query.getattr("Rays")?.call1((vectors_of(|s| s.ray.origin)?, vectors_of(|s| s.ray.direction)?, time))?;
         let pixel = PyArray1::from_iter(py, samples.iter().map(|s| s.sampler.pixel()));
         let sample = PyArray1::from_iter(py, samples.iter().map(|s| s.sampler.number()));
-        let rng = package.getattr("Rng")?.call1((self.seed, pixel, sample))?;
+        let rng = random.getattr("Rng")?.call1((self.seed, pixel, sample))?;
         let given = self.integrator.bind(py).call_method1("radiance", (self.scene.bind(py), rays, rng))?;
         let named = [("dtype", "float64"), ("order", "C")];
         let options = PyDict::new(py);

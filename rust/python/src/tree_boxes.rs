@@ -7,12 +7,12 @@ use super::arrays::{sealed, unwritten};
 use super::query::CompiledScene;
 
 /// Depth (K,), primitives (K,) and corners (K,24) of all boxes.
-type Boxes<'py> = (Bound<'py, PyArrayDyn<i32>>, Bound<'py, PyArrayDyn<i32>>, Bound<'py, PyArrayDyn<f64>>);
+type BoxArrays<'py> = (Bound<'py, PyArrayDyn<i32>>, Bound<'py, PyArrayDyn<i32>>, Bound<'py, PyArrayDyn<f64>>);
 
 /// Boxes of all nodes of the scene's accelerator, from the root down; inner nodes have −1 primitives. `None` if it has
 /// no boxes.
 #[pyfunction]
-pub fn tree<'py>(py: Python<'py>, scene: &Bound<'py, CompiledScene>) -> PyResult<Option<Boxes<'py>>> {
+pub fn tree_boxes<'py>(py: Python<'py>, scene: &Bound<'py, CompiledScene>) -> PyResult<Option<BoxArrays<'py>>> {
     let scene = scene.get().scene();
     let Some(trees) = py.detach(|| scene.accelerator().boxes()) else { return Ok(None) };
     let mut all: Vec<_> = trees.iter().flat_map(|tree| tree.nodes.iter().map(move |node| (node, tree))).collect();

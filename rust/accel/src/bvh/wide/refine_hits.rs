@@ -1,9 +1,9 @@
 //! Computation of closest hits in f64, sixteen at a time.
 
 use super::WideBvh;
-use super::answer::Answer;
 use super::best::{Best, meet, primitive};
 use super::bests::Bests;
+use super::hit_sink::Answer;
 use super::node::Packed;
 use raywright_base::math::{Ray, RayBatch};
 use raywright_base::simd::Lanes;
@@ -63,13 +63,13 @@ impl Settling for Alone {
 /// Finished rays with the triangles they hit. While one group of sixteen fills up, the previous one waits. Scalar
 /// stores must not be followed at once by vector loads of the same data, which would stall.
 pub struct Winners {
-    sixteens: [Sixteen; 2],
+    sixteens: [RefinedBatch; 2],
     /// The group that fills up.
     filling: usize,
 }
 
 /// Up to sixteen finished rays.
-struct Sixteen {
+struct RefinedBatch {
     rays: [usize; RAYS],
     leaves: Column<Packed>,
     lanes: Column<u32>,
@@ -82,7 +82,7 @@ struct Sixteen {
 impl Winners {
     /// Without hits.
     pub fn new() -> Self {
-        Self { sixteens: [Sixteen::new(), Sixteen::new()], filling: 0 }
+        Self { sixteens: [RefinedBatch::new(), RefinedBatch::new()], filling: 0 }
     }
 }
 
@@ -123,7 +123,7 @@ impl Settling for Winners {
     }
 }
 
-impl Sixteen {
+impl RefinedBatch {
     fn new() -> Self {
         Self {
             rays: [0; RAYS],

@@ -1,7 +1,7 @@
 //! Dielectric interfaces in batches of lanes.
 
 use super::facet::{Bent, Divided, Facet, FacetLanes, seen};
-use super::{Dielectric, Known, KnownLanes, Rough, Single};
+use super::{Dielectric, FacetTerms, KnownLanes, Rough, Single};
 use crate::bsdf_columns::{BsdfColumns, LaneBsdf};
 use crate::lobes::{Grazing, GrazingLanes};
 use crate::losses::{Lossy, LostBetween};
@@ -99,7 +99,7 @@ loops! {
         goes: &mut [bool; LANES],
     ) {
         for i in 0..LANES {
-            let (wo, known) = (wo.get(i), Known::get(&of.known, i));
+            let (wo, known) = (wo.get(i), FacetTerms::get(&of.known, i));
             let is_mirrored = known.rest(choice[i]) < chances[i];
             let bent = Bent::new(&of.facets(i), beyond(of.etas[i], wo), wo, normal.get(i), is_mirrored);
             wi.set(i, bent.wi);
@@ -145,7 +145,7 @@ loops! {
                 if is_through { refracted.1 } else { mirrored.1 },
             );
             let [up, down] = InLanes::get(&of.grazing, i);
-            let (known, grazing) = (Known::get(&of.known, i), if w.z < 0.0 { down } else { up });
+            let (known, grazing) = (FacetTerms::get(&of.known, i), if w.z < 0.0 { down } else { up });
             let (scattered, drawn) = known.with_given_back(once, [o, w], eta, back[i], &grazing);
             value.set(i, Rgb::select(asks[i], scattered.rgb(), Rgb::ZERO));
             pdf[i] = if asks[i] { drawn } else { 0.0 };
@@ -198,7 +198,7 @@ impl<F: Lossy> DielectricLanes<F> {
             for lane in (0..LANES).filter(|&lane| asks[lane]) {
                 let Some((of, rough)) = each(lane).and_then(|of| Some((of, of.rough.as_ref()?))) else { continue };
                 let directions = [wo.get(lane), wi.get(lane)];
-                let known = Known::get(&self.known, lane);
+                let known = FacetTerms::get(&self.known, lane);
                 let (scattered, drawn) = of.scattered(rough, &known, directions, &Facet::get(facets, lane));
                 value.set(lane, scattered.rgb());
                 pdf[lane] = drawn;
@@ -278,7 +278,7 @@ impl<F: Lossy, S: Split> BsdfColumns<Dielectric<F, S>> for DielectricLanes<F> {
         etas: [1.0; LANES],
         is_rough: [false; LANES],
         alpha: [1.0; LANES],
-        known: Known::EMPTY,
+        known: FacetTerms::EMPTY,
         grazing: [Grazing::EMPTY; 2],
         kind: PhantomData,
     };
@@ -341,7 +341,7 @@ impl<F: Lossy, S: Split> BsdfColumns<Dielectric<F, S>> for DielectricLanes<F> {
         let mut goes = [false; LANES];
         bend::<F>(level, self, wo, &normal, &chances, choice, &rough, wi, &mut facets, &mut goes);
         for lane in (0..LANES).filter(|&lane| rough[lane] && choice[lane] < self.known.lost[lane]) {
-            let (wo, known, u) = (wo.get(lane), Known::get(&self.known, lane), [u[0][lane], u[1][lane]]);
+            let (wo, known, u) = (wo.get(lane), FacetTerms::get(&self.known, lane), [u[0][lane], u[1][lane]]);
             goes[lane] = false;
             let rough = each(lane).and_then(|of| of.rough.as_ref()).filter(|_| F::sees(wo));
             if let Some((from, _)) = rough.and_then(|rough| rough.give_back(&known, wo, choice[lane], u)) {

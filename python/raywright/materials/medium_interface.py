@@ -9,7 +9,7 @@ from .material import Material
 
 
 @dataclass(frozen=True, init=False)
-class Boundary(Material):
+class MediumInterface(Material):
     """An index-matched boundary of a medium, as of smoke or a cloud: light passes straight.
 
     Its normals point out of the medium. `Scene.intersect` and the like hit the shape.
@@ -37,7 +37,7 @@ class Boundary(Material):
     Examples
     --------
     >>> smoke = rw.Homogeneous(scattering=1.0)
-    >>> scene = rw.Scene(rw.Sphere(material=rw.Boundary(smoke)))
+    >>> scene = rw.Scene(rw.Sphere(material=rw.MediumInterface(smoke)))
     >>> round(scene.transmittance([0, 0, 5], [0, 0, -1])[0].item(), 4)
     0.1353
     """

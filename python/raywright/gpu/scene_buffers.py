@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .._core import FlatScene
 from ..locks import Lock
-from ..query.flats import flat_arrays
+from ..query.gpu_arrays import flat_arrays
 from ..query.hits import Hits
 from ..query.masks import asked
 from ..query.queries import known_by
@@ -23,20 +23,20 @@ _OPEN = 0xFFFFFFFE
 
 
 class GpuScene:
-    """A scene on a graphics processor: `Scene.on` makes it. It answers as the scene does, to the bit.
+    """A scene on a graphics processor: `Scene.on_device` makes it. It answers as the scene does, to the bit.
 
     The CPU decides the rays that the device cannot; `stats` counts them. If the device is lost, there is one
     warning, and the CPU answers from then on.
 
     See Also
     --------
-    Scene.on : Makes it.
+    Scene.on_device : Makes it.
 
     Examples
     --------
     >>> scene = rw.Scene(rw.scenes.torus_knot(along=40, around=8))
     >>> rays = [0, 0, 9], np.random.default_rng(0).normal(size=(100, 3)) - [0, 0, 3]
-    >>> with scene.on(rw.Gpu()) as there:
+    >>> with scene.on_device(rw.Gpu()) as there:
     ...     print(bool((there.intersect(*rays).t == scene.intersect(*rays).t).all()))
     True
     """
@@ -45,7 +45,7 @@ class GpuScene:
         self, device: Any, name: str, scene: Scene, most: int, bounds: float, pipelines: dict[str, Any]
     ) -> None:
         self._core = scene._compiled()
-        self._flat = FlatScene(self._core, scene.accelerator_choice, scene.quality, False)
+        self._flat = FlatScene(self._core, scene.accelerator, scene.quality, False)
         self._name = name
         self._stats = GpuStats()
         arrays = flat_arrays(self._flat)
@@ -100,7 +100,7 @@ class GpuScene:
 
         Examples
         --------
-        >>> with rw.Scene(rw.Sphere()).on(rw.Gpu()) as there:
+        >>> with rw.Scene(rw.Sphere()).on_device(rw.Gpu()) as there:
         ...     print(there.intersect([0, 0, 5], [0, 0, -1]).t.tolist())
         4.0
         """
@@ -146,7 +146,7 @@ class GpuScene:
 
         Examples
         --------
-        >>> with rw.Scene(rw.Sphere()).on(rw.Gpu()) as there:
+        >>> with rw.Scene(rw.Sphere()).on_device(rw.Gpu()) as there:
         ...     print(there.occluded([0, 0, 5], [[0, 0, -1], [0, 0, 1]]).tolist())
         [True, False]
         """

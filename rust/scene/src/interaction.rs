@@ -5,7 +5,7 @@ use raywright_base::math::DVec3;
 use raywright_optics::{BsdfSample, Rgb};
 
 /// A path vertex: a point of a surface or of a medium. It has all that direct lighting and path continuation need.
-pub trait Encounter {
+pub trait Interaction {
     /// Position.
     fn position(&self) -> DVec3;
 
@@ -16,7 +16,7 @@ pub trait Encounter {
     fn light_context(&self) -> LightSampleContext;
 
     /// Evaluates scattering from a direction back along the path, including the cosine at surfaces. Also returns the
-    /// density of [`Encounter::sample`] for that direction.
+    /// density of [`Interaction::sample`] for that direction.
     fn evaluate(&self, direction: DVec3) -> (Rgb, f64);
 
     /// Samples a continuation direction in world space. `choice` and `u` are as in [`raywright_optics::Bsdf::sample`].

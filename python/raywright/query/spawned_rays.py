@@ -10,7 +10,7 @@ from ..arrays import last_axis
 from .rays import spread
 
 
-class LeavingRays(NamedTuple):
+class SpawnedRays(NamedTuple):
     """Rays that leave surfaces, as a scene takes them: ``scene.intersect(*rays)``.
 
     Attributes
@@ -22,12 +22,12 @@ class LeavingRays(NamedTuple):
 
     See Also
     --------
-    Hits.leave : Makes them.
+    Hits.spawn_rays : Makes them.
 
     Examples
     --------
     >>> scene = rw.Scene(rw.Plane())
-    >>> rays = scene.intersect([0, 0, 2], [0, 0, -1]).leave([0, 0, 1])
+    >>> rays = scene.intersect([0, 0, 2], [0, 0, -1]).spawn_rays([0, 0, 1])
     >>> rays.origins.round(9).tolist(), rays.directions.tolist()
     ([0.0, 0.0, 0.0], [0.0, 0.0, 1.0])
     """
@@ -42,7 +42,7 @@ def leaving(
     error: NDArray[np.float64],
     normal: NDArray[np.float64],
     directions: ArrayLike,
-) -> LeavingRays:
+) -> SpawnedRays:
     """Return the rays that leave points of leading shape `shape`."""
     ways = last_axis("directions", directions, 3)
     try:
@@ -55,5 +55,5 @@ def leaving(
     in_turn = count == 1 or lead[len(lead) - len(shape) :] == shape
     which = None if in_turn else np.broadcast_to(np.arange(count).reshape(shape), lead).reshape(-1)
     parts = position.reshape(-1, 3), error.reshape(-1), normal.reshape(-1, 3)
-    origins = _core.leave(*parts, spread(ways, lead, (3,)), which, lead)
-    return LeavingRays(origins, np.broadcast_to(ways, (*lead, 3)))
+    origins = _core.spawn_rays(*parts, spread(ways, lead, (3,)), which, lead)
+    return SpawnedRays(origins, np.broadcast_to(ways, (*lead, 3)))

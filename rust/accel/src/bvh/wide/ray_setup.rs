@@ -1,7 +1,7 @@
 //! Setup of rays before traversal, sixteen at a time; rays that miss the tree are finished at once.
 
 use super::WideBvh;
-use super::errand::Errand;
+use super::leaf_visitor::Errand;
 use super::node::Packed;
 use super::sixteen::Sixteen;
 use super::step::Boxes;

@@ -17,7 +17,7 @@ _LIMITS = ("samples", "error", "seconds")
 
 
 @dataclass(frozen=True)
-class Shot:
+class RenderSetup:
     """A scene, a camera and the options of a render: the result of `load` and `from_mitsuba`.
 
     Shots compare by contents, and pickle.
@@ -55,7 +55,7 @@ class Shot:
     Examples
     --------
     >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), width=4, height=4)
-    >>> shot = rw.Shot(rw.Scene(rw.Sphere(emission=1.0)), camera, samples=4)
+    >>> shot = rw.rendering.RenderSetup(rw.Scene(rw.Sphere(emission=1.0)), camera, samples=4)
     >>> shot.render(progress=False).samples
     4
     """
@@ -103,7 +103,7 @@ class Shot:
         Examples
         --------
         >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), width=4, height=4)
-        >>> shot = rw.Shot(rw.Scene(rw.Sphere(emission=1.0)), camera, samples=4)
+        >>> shot = rw.rendering.RenderSetup(rw.Scene(rw.Sphere(emission=1.0)), camera, samples=4)
         >>> shot.render(samples=2, progress=False).samples
         2
         """
@@ -123,7 +123,7 @@ class Shot:
             overrides = {name: value for name, value in overrides.items() if name not in _LIMITS}
         return render(**(own | overrides))
 
-    def resized(self, width: int | None = None, height: int | None = None) -> "Shot":
+    def resized(self, width: int | None = None, height: int | None = None) -> "RenderSetup":
         """Return the shot with a picture of another size.
 
         Parameters
@@ -133,7 +133,7 @@ class Shot:
 
         Returns
         -------
-        Shot
+        RenderSetup
 
         Raises
         ------
@@ -145,7 +145,7 @@ class Shot:
         Examples
         --------
         >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), width=400, height=300)
-        >>> small = rw.Shot(rw.Scene(rw.Sphere()), camera).resized(width=40)
+        >>> small = rw.rendering.RenderSetup(rw.Scene(rw.Sphere()), camera).resized(width=40)
         >>> small.camera.width, small.camera.height
         (40, 30)
         """

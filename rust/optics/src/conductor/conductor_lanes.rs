@@ -1,6 +1,6 @@
 //! Conductors in batches of lanes.
 
-use super::{Conductor, Rough, above, mirrored, mirrors};
+use super::{Conductor, RoughFacets, above, mirrored, mirrors};
 use crate::bsdf_columns::{BsdfColumns, LaneBsdf};
 use crate::conductors::Reflectance;
 use crate::fresnel::ConductorIndex;
@@ -79,7 +79,7 @@ loops! {
             let (facets, grazing) = (of.facets(i), Grazing::get(&of.grazing, i));
             let parts = (&facets, of.multiple.get(i), &grazing);
             let told = (density[i], reflectance.get(i));
-            let (scattered, drawn) = Rough::scattered(parts, [above(o), above(w)], told, [of.lost[i], lost[i]]);
+            let (scattered, drawn) = RoughFacets::scattered(parts, [above(o), above(w)], told, [of.lost[i], lost[i]]);
             let is_seen = asks[i] & mirrors::<F>(o, w);
             value.set(i, Rgb::select(is_seen, scattered, Rgb::ZERO));
             pdf[i] = if is_seen { drawn } else { 0.0 };

@@ -31,8 +31,8 @@ INSTANCE = np.dtype(
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class FlatArrays:
-    """A scene's binary tree and its triangles as arrays without pointers: `Scene.flat` makes it.
+class GpuArrays:
+    """A scene's binary tree and its triangles as arrays without pointers: `Scene.gpu_arrays` makes it.
 
     The arrays are read-only, little-endian and without gaps, so that their bytes can go to a graphics
     processor as they are. All lengths are in box units: a point p of the scene is at ``(p - centre) * scale``
@@ -83,7 +83,7 @@ class FlatArrays:
         Infinite primitives, as a `Plane`: they are in no leaf.
     first : (S + 1,) int64
         The number of the first primitive of each of the scene's shapes, and how many there are in all.
-    centre : (3,) float64
+    center : (3,) float64
         The middle of box units, in the scene's own.
     scale : float
         Factor from the scene's units to box units: a power of two.
@@ -92,12 +92,12 @@ class FlatArrays:
 
     See Also
     --------
-    Scene.flat : Makes it.
+    Scene.gpu_arrays : Makes it.
 
     Examples
     --------
-    >>> flat = rw.Scene(rw.Sphere((4, 0, 0), radius=1)).flat()
-    >>> flat.own, flat.centre.tolist(), flat.scale
+    >>> flat = rw.Scene(rw.Sphere((4, 0, 0), radius=1)).gpu_arrays()
+    >>> flat.own, flat.center.tolist(), flat.scale
     (1, [4.0, 0.0, 0.0], 1.0)
     >>> flat.bytes
     80
@@ -109,7 +109,7 @@ class FlatArrays:
     own: int
     unbounded: NDArray[np.uint32]
     first: NDArray[np.int64]
-    centre: NDArray[np.float64]
+    center: NDArray[np.float64]
     scale: float
     depth: int
 
@@ -119,16 +119,16 @@ class FlatArrays:
         return self.nodes.nbytes + self.triangles.nbytes + self.instances.nbytes
 
     def __repr__(self) -> str:
-        return f"FlatArrays({len(self.nodes)} nodes, {len(self.triangles)} triangles, depth {self.depth})"
+        return f"GpuArrays({len(self.nodes)} nodes, {len(self.triangles)} triangles, depth {self.depth})"
 
 
-def flat_arrays(flat: FlatScene) -> FlatArrays:
+def flat_arrays(flat: FlatScene) -> GpuArrays:
     """Return the arrays of a scene that the core has laid out flat."""
     kinds = ((flat.nodes, NODE), (flat.triangles, TRIANGLE), (flat.instances, INSTANCE))
     nodes, triangles, instances = (
         sealed(np.ascontiguousarray(rows).view(kind).reshape(-1)) for rows, kind in kinds
     )
     first = sealed(np.asarray(flat.first, np.int64))
-    unbounded, centre = sealed(flat.unbounded), sealed(flat.centre)
+    unbounded, center = sealed(flat.unbounded), sealed(flat.centre)
     own = flat.own[0]
-    return FlatArrays(nodes, triangles, instances, own, unbounded, first, centre, flat.scale, flat.depth)
+    return GpuArrays(nodes, triangles, instances, own, unbounded, first, center, flat.scale, flat.depth)

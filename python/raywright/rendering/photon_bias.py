@@ -8,14 +8,14 @@ from numpy.typing import NDArray
 
 from .. import _core
 from ..integrators import AnyIntegrator, Bidirectional, PhotonMap, ProgressivePhotonMap
+from .auto_options import StoppedError
 from .image import Image
 from .job import Job
-from .ways import StoppedError
 
 
 def is_gathered(integrator: AnyIntegrator) -> bool:
     """Return whether light is gathered from about a point."""
-    merges = isinstance(integrator, Bidirectional) and integrator.merge
+    merges = isinstance(integrator, Bidirectional) and integrator.vertex_merging
     return merges or isinstance(integrator, PhotonMap | ProgressivePhotonMap)
 
 

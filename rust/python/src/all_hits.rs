@@ -101,7 +101,7 @@ pub fn intersect_all<'py>(
             py,
             threads,
             places.collect(),
-            |(chunk, mut at, splits, (t, shape, primitive, uv), mut instances): Place<'_>| {
+            |(chunk, mut at, splits, (t, shape, primitive, uv), mut instances): HitRows<'_>| {
                 for (split, length) in splits.iter_mut().zip(chunk.lengths) {
                     at += i64::from(length);
                     *split = at;
@@ -119,7 +119,7 @@ pub fn intersect_all<'py>(
     Ok((sealed(splits)?, t, sealed(shape)?, sealed(primitive)?, uv, instance.map(sealed).transpose()?))
 }
 
-type Place<'a> = (
+type HitRows<'a> = (
     Chunk,
     i64,
     &'a mut [i64],
