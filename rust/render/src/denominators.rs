@@ -76,7 +76,8 @@ impl Denominators {
     /// neighbours, next to a lamp or in a caustic; or by the whole picture, if samples of this brightness are mostly
     /// seen again ([`Chance`]). Otherwise the denominator is that of the other samples alone, which is much too small
     /// for a lamp smaller than a pixel. So the largest error uses the neighbours alone, and the least error uses the
-    /// upper bound from the whole picture. The contribution of a few even darker pixels is bounded in `heavy_tail_bound.rs`.
+    /// upper bound from the whole picture. The contribution of a few even darker pixels is bounded in
+    /// `heavy_tail_bound.rs`.
     #[inline]
     pub fn of_peak(&self, mean: Rgb, without: Rgb, around: Rgb, chance: &Chance, samples: f64) -> Peak {
         let (low, high) = (mean.at_most(without), mean.at_least(without));

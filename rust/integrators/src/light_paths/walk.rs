@@ -127,8 +127,9 @@ pub(crate) struct Flying {
     pub media: MediumStack,
     /// Random number for masks, as in [`Passing::meet`].
     chance: f64,
-    /// Remaining share after the last surface, for a reflectance above 1 met again ([`Bsdf::repeat_correction`]). It applies once
-    /// the path reaches another surface: of all such surfaces of a path, the one nearest to the viewer has none.
+    /// Remaining share after the last surface, for a reflectance above 1 met again ([`Bsdf::repeat_correction`]). It
+    /// applies once the path reaches another surface: of all such surfaces of a path, the one nearest to the viewer
+    /// has none.
     pub again: Rgb,
     /// True if the last bounce was specular or nearly so.
     pub is_sharp: bool,

@@ -38,8 +38,8 @@ impl StoredPhoton {
     }
 
     /// Store the photon of a light path at a surface. `bounces` counts the earlier surfaces, and `single` says that the
-    /// power is of the hero wavelength alone. `repeat_correction` is the remaining share for camera paths with a reflectance above
-    /// 1.
+    /// power is of the hero wavelength alone. `repeat_correction` is the remaining share for camera paths with a
+    /// reflectance above 1.
     pub fn arrived(arrived: &Arrived, (power, single): (Rgb, bool), bounces: u32, again: Rgb) -> Self {
         let here = &arrived.here;
         let photon = Self::new(here.position(), arrived.ray.direction, here.normal(), power, bounces);
@@ -49,8 +49,8 @@ impl StoredPhoton {
         Self { again: again.to_array().map(|x| x as f32), single, ..photon }
     }
 
-    /// Return the flux, W. `has_gamut_excess` is for camera paths with a reflectance above 1, and `single` for those that
-    /// terminated all wavelengths but the hero.
+    /// Return the flux, W. `has_gamut_excess` is for camera paths with a reflectance above 1, and `single` for those
+    /// that terminated all wavelengths but the hero.
     pub fn power(&self, has_gamut_excess: bool, single: bool) -> Rgb {
         let power = Rgb::from_array(self.power.map(f64::from));
         let power = if single && self.single { Waves::joined(power) } else { power };

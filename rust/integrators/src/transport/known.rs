@@ -21,7 +21,8 @@ pub(crate) struct Visit {
     pub number: u32,
     /// Whether paths look about from there, so that what surfaces send each other is found by them.
     pub looks_about: bool,
-    /// Whether the path has been at a surface that gives more than there is ([`raywright_optics::Bsdf::repeat_correction`]).
+    /// Whether the path has been at a surface that gives more than there is
+    /// ([`raywright_optics::Bsdf::repeat_correction`]).
     pub has_gamut_excess: bool,
     /// Whether the hero of its wavelengths is all that it carries.
     pub single: bool,

@@ -259,8 +259,8 @@ impl Lights {
         lamps
     }
 
-    /// Return whether f32 suffices for the choice of a light: there is one, or each of few lamps has a probability of at
-    /// least a thousandth.
+    /// Return whether f32 suffices for the choice of a light: there is one, or each of few lamps has a probability of
+    /// at least a thousandth.
     pub fn choices_are_even(&self) -> bool {
         /// One over the probability.
         const RAREST: f32 = 1000.0;
