@@ -30,11 +30,11 @@ ANYWHERE = re.compile(
 #: What kernels call by themselves, by the reason that makes it no loss.
 CALLED = {
     # Exact fallbacks where f32 and f64 cannot decide.
-    "EdgeRay::meet_closely", "winners::alone", "looking::decide", "looking::decide_any", "Bests::decide",
+    "EdgeRay::meet_closely", "refine_hits::alone", "looking::decide", "looking::decide_any", "Bests::decide",
     "parity::sign_of_t", "nearest::nearest_far_point", "SolidCone::nearest", "View::see",
     "Primitives::corners",
     # Once per batch, or once per full stack.
-    "Stacks::new", "Stacks::spare", "Stacks::put_away", "Gate::new", "few::leaves", "coherence::is_coherent",
+    "Stacks::new", "Stacks::spare", "Stacks::put_away", "Gate::new", "few_leaves::leaves", "coherence::is_coherent",
     "Boxes::new",
     # Shapes other than triangles, rare queries, their answers.
     "Contents::meet_objects", "RareQuery::initial_state", "RareQuery::offer_hit", "RareQuery::write_answer",
