@@ -38,7 +38,7 @@ CALLED = {
     "Boxes::new",
     # Shapes other than triangles, rare queries, their answers.
     "Contents::meet_objects", "RareQuery::initial_state", "RareQuery::offer_hit", "RareQuery::write_answer",
-    "Few::ask", "Touches::push", "Telling::finish",
+    "Few::ask", "Touches::push", "QueryVisitor::finish",
     # Scalar table lookups by lane.
     "halton::coordinate", "beckmann::leaning", "Filmed::reflectance",
     "LayeredPrincipled::evaluate", "LayeredPrincipled::sample",
