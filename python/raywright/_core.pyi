@@ -137,7 +137,7 @@ class CompiledScene:
         rays: _Rays,
         out: tuple[NDArray[Any] | None, ...] | None = None,
         counted: tuple[list[bool] | None, bool] | None = None,
-        fields: int = 0b11111,
+        fields: int = ...,
     ) -> tuple[Any, Any, Any, Any, Any]:
         """Closest hits of rays of leading shape `shape`: t, shape_id and primitive (...), uv (..., 2).
 
@@ -147,7 +147,7 @@ class CompiledScene:
         ``t_min`` and ``t_max`` are floats or arrays. Each has one row, or one for each ray. Rays of two or
         more dimensions are an image, and traced in tiles. ``out`` is written to and given back.
         ``counted`` says of each shape whether it counts, and whether only what faces the ray does.
-        ``fields`` has a bit for each of the five arrays that is asked for; None comes back for the others.
+        ``fields`` has a bit for each of the five arrays to return; the others are None.
         """
     def occluded(
         self,
