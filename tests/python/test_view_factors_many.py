@@ -90,7 +90,7 @@ scene.build(progress=False)
 before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 found = rw.view_factors(scene, rays=4, progress=False)
 after = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-assert abs(found.rest).max() < 1e-9
+assert abs(found.to_surroundings).max() < 1e-9
 x = found.matvec(np.ones(len(found)))
 assert abs(x - 1).max() < 1e-9
 print(len(found), found.matrix.nnz, (after - before) * 1024)
