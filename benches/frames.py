@@ -121,7 +121,9 @@ def check(shots):
 def main():
     """Print a table for each mesh and number of threads."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    parser.add_argument("--mesh", action="append", help=f"{', '.join(MADE)}, or a file; {' and '.join(DEFAULT)}")
+    parser.add_argument(
+        "--mesh", action="append", help=f"{', '.join(MADE)}, or a file; {' and '.join(DEFAULT)}"
+    )
     parser.add_argument("--triangles", type=int, default=100_000, help="of meshes that are made here")
     parser.add_argument("--size", default="800x600", help="of the picture")
     parser.add_argument("--frames", type=int, default=60)
