@@ -34,8 +34,8 @@ CALLED = {
     "parity::sign_of_t", "nearest::nearest_far_point", "SolidCone::nearest", "View::see",
     "Primitives::corners",
     # Once per batch, or once per full stack.
-    "Stacks::new", "Stacks::spare", "Stacks::put_away", "Gate::new", "few_leaves::leaves", "coherence::is_coherent",
-    "Boxes::new",
+    "Stacks::new", "Stacks::spare", "Stacks::put_away", "Gate::new", "few_leaves::leaves",
+    "coherence::is_coherent", "Boxes::new",
     # Shapes other than triangles, rare queries, their answers.
     "Contents::meet_objects", "RareQuery::initial_state", "RareQuery::offer_hit", "RareQuery::write_answer",
     "Few::ask", "Touches::push", "QueryVisitor::finish",
