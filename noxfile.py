@@ -1,7 +1,7 @@
 """Each check by itself, in the environment that runs nox; `nox --list` names them.
 
 What follows `--` goes to the tool: `nox -s rust -- -p raywright-accel`, or
-`nox -s python -- tests/python/test_cli.py`.
+`nox -s python -- tests/python/cli/test_cli.py`.
 `.ci/run` runs these sessions and no other checks.
 """
 
@@ -94,7 +94,7 @@ def package(session):
     run_module(session, "maturin", "sdist", "--out", "dist")
     (sdist,) = Path("dist").glob("*.tar.gz")
     named = {"RAYWRIGHT_SDIST": str(sdist)}
-    run_module(session, "pytest", "tests/python/test_package.py", "-k", "sdist", env=named)
+    run_module(session, "pytest", "tests/python/house/test_package.py", "-k", "sdist", env=named)
 
 
 @nox.session
@@ -104,7 +104,9 @@ def browser(session):
     if not any(map(shutil.which, names)):
         session.skip("there is no chromium")
     run_module(session, "pip", "install", "--quiet", "raywright[browser,widget]")
-    tests = [f"tests/python/test_viewer_{name}.py" for name in ("browser", "error", "webgpu", "widget")]
+    tests = [
+        f"tests/python/viewer/test_viewer_{name}.py" for name in ("browser", "error", "webgpu", "widget")
+    ]
     run_module(session, "pytest", "--numprocesses=1", *tests)
 
 

@@ -3,7 +3,8 @@
     python benches/stress.py [--rays 10000] [--engines embreex,open3d]
 
 Each case is a mesh and rays, all of them float32, so that every engine is given the same numbers. The truth
-is that of exact rational arithmetic (`tests/python/exact_hits.py`), which shares no code with the core.
+is that of exact rational arithmetic (`tests/python/helpers/exact_hits.py`), which shares no code with the
+core.
 Wrong is an answer "hit" or "miss" that is not the exact one, and a hit that is off from the closest exact
 one by more than a ten-thousandth of the way to it and of the size of the mesh: it is then of another
 surface.
@@ -20,7 +21,7 @@ from peers import ENGINES, chosen, installed
 from peers_rays import Rays, unit
 from peers_tables import head, line
 
-sys.path.append(str(Path(__file__).parents[1] / "tests" / "python"))
+sys.path.append(str(Path(__file__).parents[1] / "tests" / "python" / "helpers"))
 from exact_hits import candidates
 
 # A hit farther off than this share of the ray and of the mesh belongs to another surface.

@@ -43,7 +43,7 @@
 // Neither can be large: |n/D| <= 6 SEF / 256 UEF < 2^23.
 //
 // All bounds are themselves computed in f32, and err by some U of themselves, for which each has room.
-// tests/python/test_gpu_bounds.py checks them against the worst possible arithmetic.
+// tests/python/gpu/test_gpu_bounds.py checks them against the worst possible arithmetic.
 
 struct Node {
     lower: vec3<u32>,
